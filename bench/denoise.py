@@ -57,10 +57,11 @@ def measure_error(program, scenes, work, options, samples, reference_samples):
           f"{'displayed':>9} {'factor':>8} {'of one seed':>16} {'change of the mean':>19}")
     for name, scene in scenes.items():
         reference, noisy, clean = (work / f"{kind}.exr" for kind in ("reference", "noisy", "clean"))
-        render(program, scene, reference, options, "--samples", reference_samples, "--seed", 999)
+        render(program, scene, reference, options, "--samples", reference_samples, "--set", "render.seed=999")
         squares, displayed, changes = {noisy: [], clean: []}, {noisy: [], clean: []}, []
         for seed in range(1, options.seeds + 1):
-            render(program, scene, noisy, options, "--samples", samples, "--layers", "halves", "--seed", seed)
+            render(program, scene, noisy, options, "--samples", samples, "--layers", "halves",
+                   "--set", f"render.seed={seed}")
             trade.run(program, "denoise", noisy, "-o", clean, "-q")
             for file in (noisy, clean):
                 squares[file].append(trade.compared(program, file, reference)["display"] ** 2)
@@ -100,7 +101,7 @@ def measure_flicker(program, work, options):
         angle = f"camera.look_from=[{13 - 0.05 * frame:.3f}, 2, {3 + 0.2 * frame:.3f}]"
         for way, words in ways.items():
             file = work / f"{way.replace(' ', '-')}.{frame}.exr"
-            render(program, scene, file, options, *words, "--set", angle, "--seed", 100 + frame)
+            render(program, scene, file, options, *words, "--set", angle, "--set", f"render.seed={100 + frame}")
             frames[way].append(file)
     flicker = {}
     for way in ("denoised", "more samples"):

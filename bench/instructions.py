@@ -18,10 +18,16 @@ SCENE = pathlib.Path(__file__).resolve().parent.parent / "scenes" / "book" / "fi
 FEW, MANY = 16, 48
 
 
+def packets(program):
+    """Options for traversal by packets, which does not depend on time; older versions have another option."""
+    text = subprocess.run([program, "render", "--help"], check=True, capture_output=True, text=True).stdout
+    return ["--traversal", "packet"] if "--traversal" in text else ["--set", "render.traversal=packet"]
+
+
 def instructions(program, scene, precision, samples, folder):
     subprocess.run(["valgrind", "--tool=callgrind", "--trace-children=yes",  # the launcher becomes the program
                     f"--callgrind-out-file={folder}/counts", f"--log-file={folder}/log", program, "render",
-                    scene, "-q", "-t", "1", "--traversal", "packet", "--precision", precision,
+                    scene, "-q", "-t", "1", *packets(program), "--precision", precision,
                     "--width", "96", "--height", "54", "--samples", str(samples), "-o", f"{folder}/picture.exr"],
                    check=True)
     return int(re.search(r"^(?:totals|summary): (\d+)", pathlib.Path(folder, "counts").read_text(), re.M).group(1))

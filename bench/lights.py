@@ -86,13 +86,15 @@ def main():
             if options.scene and name not in options.scene:
                 continue
             reference = work / "reference.exr"
-            render(options.program, scene, reference, [*size, "--samples", 64 * options.samples, "--seed", 999])
+            render(options.program, scene, reference, [*size, "--samples", 64 * options.samples,
+                                                         "--set", "render.seed=999"])
             seconds, errors = {"mis": [], "bsdf": []}, {"mis": [], "bsdf": []}
             for seed in range(1, options.runs + 1):
                 for mode in seconds:
                     picture = work / "picture.exr"
                     seconds[mode].append(render(options.program, scene, picture, [
-                        *size, "--samples", options.samples, "--seed", seed, "--set", f"render.direct_lighting={mode}"]))
+                        *size, "--samples", options.samples, "--set", f"render.seed={seed}",
+                        "--set", f"render.direct_lighting={mode}"]))
                     errors[mode].append(error(options.program, picture, reference))
             time = statistics.median(seconds["mis"]) / statistics.median(seconds["bsdf"])
             worse = (statistics.fmean(e * e for e in errors["bsdf"]) / statistics.fmean(e * e for e in errors["mis"])) ** 0.5
@@ -101,7 +103,8 @@ def main():
         for seed in range(1, options.runs + 1):
             for scene, times in ((ROOT / "scenes/light/three-point.toml", lit), (ROOT / "scenes/book/final.toml", unlit)):
                 times.append(render(options.program, scene, work / "picture.exr", [
-                    *size, "--samples", options.samples, "--seed", seed, "--max-depth", 50, "--set", "output.layers=[]"]))
+                    *size, "--samples", options.samples, "--set", f"render.seed={seed}",
+                    "--set", "render.max_depth=50", "--set", "output.layers=[]"]))
         print(f"\ntime of a sample, final scene with three lamps / without: "
               f"{statistics.median(lit) / statistics.median(unlit):.2f}")
     return 0

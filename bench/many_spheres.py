@@ -17,6 +17,7 @@ subtracted. --json FILE keeps the numbers. --isa avx2 limits the instruction set
 import argparse
 import array
 import json
+import os
 import pathlib
 import random
 import subprocess
@@ -151,10 +152,11 @@ class Program:
     """The orrery executable, with an instruction set."""
 
     def __init__(self, path, isa):
-        self.path, self.isa = path, ["--isa", isa] if isa else []
+        self.path, self.environment = path, {**os.environ, **({"ORRERY_ISA": isa} if isa else {})}
 
     def run(self, *words):
-        return subprocess.run([self.path, *words, *self.isa], check=True, capture_output=True, text=True).stdout
+        return subprocess.run([self.path, *words], check=True, capture_output=True, text=True,
+                              env=self.environment).stdout
 
 
 def statistics(program, scene, folder, *options):

@@ -111,8 +111,8 @@ def main():
                 toml = folder / "scene.toml"
                 toml.write_text(scene(kind, texels))
                 reference, unfiltered, picture = (folder / f"{n}.exr" for n in ("reference", "unfiltered", "picture"))
-                render(before, toml, reference, *SIZE, "--samples", options.reference, "--seed", 99)
-                render(before, toml, unfiltered, *SIZE, "--samples", COUNTS[-1], "--seed", 5)
+                render(before, toml, reference, *SIZE, "--samples", options.reference, "--set", "render.seed=99")
+                render(before, toml, unfiltered, *SIZE, "--samples", COUNTS[-1], "--set", "render.seed=5")
                 seconds = [[] for _ in options.programs]
                 for _ in range(options.runs):
                     for program, times in zip(options.programs, seconds):
@@ -121,7 +121,7 @@ def main():
                 for i, program in enumerate(options.programs):
                     errors = []
                     for count in COUNTS:
-                        render(program, toml, picture, *SIZE, "--samples", count, "--seed", 5)
+                        render(program, toml, picture, *SIZE, "--samples", count, "--set", "render.seed=5")
                         errors.append(compare(before, picture, reference)["display"])
                     difference = compare(before, picture, unfiltered)["max"]
                     print(f"{title if i == 0 else '':24} {i:7}" + "".join(f"{e:9.4f}" for e in errors) +

@@ -72,16 +72,17 @@ def main():
         for name, scene in scenes(options.program, work).items():
             if options.scene and name not in options.scene:
                 continue
-            reference, _ = render(options.program, scene, work, size, ["--noise", options.noise / 4, "--seed", 999])
+            reference, _ = render(options.program, scene, work, size,
+                                  ["--noise", options.noise / 4, "--set", "render.seed=999"])
             reference = reference.rename(work / "reference.exr")
             # All methods get about as many samples as adaptive sampling, so that their errors are similar.
-            _, told = render(options.program, scene, work, size, ["--noise", options.noise, "--seed", 998])
+            _, told = render(options.program, scene, work, size, ["--noise", options.noise, "--set", "render.seed=998"])
             samples = 1 << max(4, round(told["samples"]).bit_length() - 1)
             found = {way: ([], [], []) for way in WAYS}
             for seed in range(1, options.runs + 1):
                 for way, words in WAYS.items():
                     words = ["--noise", options.noise] if words is None else [*words, "--samples", samples]
-                    picture, told = render(options.program, scene, work, size, [*words, "--seed", seed])
+                    picture, told = render(options.program, scene, work, size, [*words, "--set", f"render.seed={seed}"])
                     found[way][0].append(told["seconds"]["render"])
                     found[way][1].append(compared(options.program, picture, reference)["display"])
                     found[way][2].append(told["samples"])

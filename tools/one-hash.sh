@@ -27,7 +27,7 @@ picture() {
   reference=${reference:-$hash}
   printf '%-44s %s  %s\n' "$name" "$hash" "$isa"
   [ "$hash" = "$reference" ] || status=1
-  case " $* " in *" --isa $isa "*) ;; *" --isa "*) echo "$name: ran with $isa, not with the requested instruction set"; status=1 ;; esac
+  case "${ORRERY_ISA:-$isa}" in "$isa") ;; *) echo "$name: ran with $isa, not with the requested instruction set"; status=1 ;; esac
 }
 
 # program NAME COMPILER FLAGS: builds the program, prints its path.
@@ -41,8 +41,8 @@ program() {
 
 first=$(program gcc-O3 g++ "-O3 -DNDEBUG")
 for threads in 1 2 7; do picture "GCC -O3, $threads threads" "$first" -t "$threads"; done
-picture "GCC -O3, list" "$first" --accelerator list
-for isa in avx2 avx512; do picture "GCC -O3, --isa $isa" "$first" --isa "$isa"; done
+picture "GCC -O3, list" "$first" --set render.accelerator=list
+for isa in avx2 avx512; do ORRERY_ISA=$isa picture "GCC -O3, $isa" "$first"; done
 if p=$(program gcc-O0 g++ "-O0"); then picture "GCC -O0" "$p"; fi
 if p=$(program gcc-native g++ "-O3 -march=native -DNDEBUG"); then picture "GCC -O3 -march=native" "$p"; fi
 if p=$(program clang-O2 clang++ "-O2 -DNDEBUG"); then picture "Clang -O2" "$p"; fi

@@ -33,7 +33,7 @@ done
 for name in 06-hemisphere-diffuse 07-child-ray-limit 08-shadow-acne 09-shadow-acne-fixed 10-lambertian; do
   linear $name --samples 400
 done
-picture scenes/book/07-child-ray-limit.toml 07-child-ray-limit-two --view Raw --max-depth 2 --samples 400
+picture scenes/book/07-child-ray-limit.toml 07-child-ray-limit-two --view Raw --set render.max_depth=2 --samples 400
 picture scenes/book/08-shadow-acne.toml 08-shadow-acne-exact --view Raw --precision exact --samples 400
 picture scenes/book/11-gamma.toml 11-gamma-linear --view Raw --samples 1000
 for name in 11-gamma 12-metal 13-fuzzy-metal 14-glass-always-refracts 15-glass-total-internal-reflection \

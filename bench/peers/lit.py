@@ -36,7 +36,7 @@ class Orrery:
         """Returns seconds."""
         stats = out.with_suffix(".json")
         run(self.program, "render", str(scene), "-o", str(out), "--type", "float", "-t", "1", "-q", "--stats", str(stats),
-            "--width", self.size[0], "--height", self.size[1], "--samples", str(samples), "--seed", str(seed),
+            "--width", self.size[0], "--height", self.size[1], "--samples", str(samples), "--set", f"render.seed={seed}",
             "--precision", self.precision, "--layers", "")
         return json.loads(stats.read_text())["seconds"]["render"]
 

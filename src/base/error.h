@@ -12,8 +12,8 @@ namespace orrery::base {
 
 /// Kinds of errors that a caller can distinguish; exit_status() maps them to the exit status of the program.
 enum class ErrorKind {
-  kInternal,      ///< a bug in orrery (exit 1)
-  kNoMemory,      ///< not enough memory (exit 1)
+  kInternal,      ///< a bug in orrery, or its installation is incomplete (exit 70)
+  kNoMemory,      ///< not enough memory (exit 71)
   kUsage,         ///< the request is invalid (exit 2)
   kBadData,       ///< a scene or data file is invalid (exit 65)
   kMissingInput,  ///< an input cannot be opened (exit 66)
@@ -43,11 +43,12 @@ class Error : public std::runtime_error {
 /// Throws an Error of kind kUsage.
 [[noreturn]] inline void refuse(const std::string& message) { throw Error(ErrorKind::kUsage, message); }
 
-/// Returns the program's exit status for a kind of error; stable, documented in the man page.
+/// Returns the program's exit status for a kind of error: those of sysexits.h; stable, documented in the man page. None
+/// is 1, which `compare` returns if images differ.
 constexpr int exit_status(ErrorKind kind) {
   switch (kind) {
-    case ErrorKind::kInternal: return 1;
-    case ErrorKind::kNoMemory: return 1;
+    case ErrorKind::kInternal: return 70;
+    case ErrorKind::kNoMemory: return 71;
     case ErrorKind::kUsage: return 2;
     case ErrorKind::kBadData: return 65;
     case ErrorKind::kMissingInput: return 66;
@@ -55,7 +56,7 @@ constexpr int exit_status(ErrorKind kind) {
     case ErrorKind::kIo: return 74;
     case ErrorKind::kStopped: return 75;
   }
-  return 1;
+  return 70;
 }
 
 }  // namespace orrery::base

@@ -102,6 +102,13 @@ std::string frames_text(const std::vector<int>& frames) {
 
 bool has_frame_pattern(const std::string& name) { return find_pattern(name, 0).end > 0; }
 
+void refuse_one_name(const std::string& name, std::size_t frames, const std::string& example) {
+  const bool has_single = name.find('#') != std::string::npos;
+  throw Error(ErrorKind::kUsage, name + " is one name for " + std::to_string(frames) +
+                                     " frames; add a frame pattern, e.g. " + example +
+                                     (has_single ? "; a single # is an ordinary character, so write at least ##" : ""));
+}
+
 std::string with_frame(const std::string& name, int frame) {
   std::string out;
   std::size_t at = 0;

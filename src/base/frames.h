@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <cstddef>
 #include <string>
 #include <vector>
 
@@ -20,6 +21,11 @@ std::string frames_text(const std::vector<int>& frames);
 /// True if a file name has a pattern for the frame number: `##` or more, one digit each, or `%04d`. A single `#` is an
 /// ordinary character.
 bool has_frame_pattern(const std::string& name);
+
+/// Throws an error for a name without frame pattern that several frames would share.
+///
+/// `example`  names with a pattern
+[[noreturn]] void refuse_one_name(const std::string& name, std::size_t frames, const std::string& example);
 
 /// Replaces all such patterns by the frame number: "shot.####.exr" becomes "shot.0007.exr" for frame 7.
 std::string with_frame(const std::string& name, int frame);

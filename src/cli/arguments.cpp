@@ -41,6 +41,11 @@ Option* Option::excludes(const Option* other) {
   return this;
 }
 
+Option* Option::may_be_empty() {
+  option_->get_validator(0)->active(false);  // see Command::added()
+  return this;
+}
+
 Option* Option::take_all() {
   option_->take_all();
   return this;

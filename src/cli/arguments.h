@@ -34,6 +34,8 @@ class Option {
   /// Rejects values that fail `check`, and replaces the others with its output.
   Option* transform(Check check);
   Option* excludes(const Option* other);
+  /// Accepts an empty value, which is otherwise an error.
+  Option* may_be_empty();
   /// Makes the option take all values up to the next option.
   Option* take_all();
   /// Allows the option to be given several times, with one value each.

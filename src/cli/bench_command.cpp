@@ -46,15 +46,11 @@ void add_bench(Command& program, Action& action) {
   Command& command =
       *program.add_subcommand("bench", "Benchmark a scene in each precision, with Embree and with a list of spheres");
   command.add_option("SCENE", options->request.scene.file, "Scene file")->required()->type_name("FILE");
-  options->scene.add_to(command);
+  options->scene.add_to(command, SceneOptions::Short::kSize);
   options->scene.add_frame_to(command);
   command.add_option("-t,--threads", options->request.threads, "Number of threads; default: 1")
       ->transform(whole_number(1, kMaxThreads))
       ->type_name("N");
-  command
-      .add_option("--isa", options->request.isa,
-                  "Highest instruction set to use: sse4, avx2 or avx512; default: the processor's best")
-      ->type_name("NAME");
   command.add_option("--rounds", options->request.rounds, "Repetitions per case; default: 7")
       ->transform(whole_number(1, kMaxRounds))
       ->type_name("N");
@@ -66,7 +62,9 @@ void add_bench(Command& program, Action& action) {
   command.add_flag("--json", options->json, "Print JSON");
   command.add_flag("-q,--quiet", options->quiet, "Do not show progress");
   command.footer(
-      "Ignored: --samples, --precision, --accelerator and --layers. Larger images are reduced to about 5,184 pixels.\n"
+      "Samples, precision, accelerator and layers of the scene have no effect. Larger images are reduced to about "
+      "5,184 "
+      "pixels.\n"
       "Examples:\n"
       "  orrery bench scenes/book/final.toml\n"
       "  orrery bench cloud.toml --threads 8 --rounds 15 --json");

@@ -104,8 +104,8 @@ void add_compare(Command& program, Action& action) {
   command
       .add_option(
           "--fail-above", options->limits,
-          "Exit with status 1 if a metric exceeds the value: rmse, relmse, mae, max, display, flip, bias or z; can be "
-          "repeated")
+          "Exit with status 1 if a metric exceeds the value: rmse, relmse, mae, max, display, flip, bias or z; errors "
+          "have other statuses; can be repeated")
       ->type_name("METRIC=VALUE")
       ->repeatable();
   command

@@ -7,9 +7,9 @@
 #include <climits>
 #include <csignal>
 #include <cstdio>
-#include <cstdlib>
 #include <cstring>
 
+#include <sysexits.h>
 #include <unistd.h>
 
 namespace orrery::cli {
@@ -45,5 +45,5 @@ int main(int, char** argv) {
   char path[PATH_MAX];
   if (orrery::cli::find_program(path)) execv(path, argv);
   std::perror("orrery: cannot start the program, which is installed as " ORRERY_PROGRAM_FROM_LAUNCHER);
-  return EXIT_FAILURE;
+  return EX_SOFTWARE;
 }

@@ -42,7 +42,8 @@ int merge(MergeOptions& options) {
 void add_merge(Command& program, Action& action) {
   const auto options = std::make_shared<MergeOptions>();
   Command& command = *program.add_subcommand("merge", "Merge shards of an image");
-  command.add_option("SHARD", options->shards, "EXR files rendered with --samples A:B or --shard I/N, in any order")
+  command
+      .add_option("SHARD", options->shards, "EXR files rendered with --sample-range A:B or --shard I/N, in any order")
       ->required()
       ->type_name("FILE");
   options->picture.add_to(command, options->job, false);  // shards have no deep samples

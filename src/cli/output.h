@@ -7,12 +7,10 @@
 
 namespace orrery::cli {
 
-/// Thrown if the reader of stdout, a pipe, has exited, as head(1) does. The command ends without a message.
-struct BrokenPipe {};
-
-/// Prints a result to stdout and flushes it.
+/// Prints a result to stdout and flushes it. A pipe whose reader has exited, as head(1) does, is not an error: the
+/// reader has what it wanted.
 ///
-/// Errors     BrokenPipe; base::Error(kIo) if stdout cannot be written
+/// Errors     base::Error(kIo) if stdout cannot be written
 void print_result(const std::string& text);
 
 /// An error as whole lines: each diagnostic with its location, then the error.

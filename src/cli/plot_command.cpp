@@ -252,7 +252,7 @@ void add_plot(Command& program, Action& action) {
   add_data_options(command, arguments->data, arguments->plot);
   add_look_options(command, arguments->data, arguments->plot);
   add_view_options(command, arguments);
-  add_render_options(command, arguments->render, false);
+  add_render_options(command, arguments->render);
   command.footer(
       "Settings without an option are chosen from the data and printed.\n"
       "\n"

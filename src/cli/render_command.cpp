@@ -57,11 +57,11 @@ std::optional<std::pair<Number, Number>> pair_of(const std::string& text, char s
 }
 
 void read_shard(const RenderOptions& options, job::Job& job) {
-  if (const auto text = options.scene.sample_range()) {
-    const auto range = pair_of<std::uint32_t>(*text, ':');
+  if (const std::string& text = options.sample_range; !text.empty()) {
+    const auto range = pair_of<std::uint32_t>(text, ':');
     if (!range || range->first >= range->second || range->second > std::numeric_limits<std::int32_t>::max())
       base::refuse(fmt::format(
-          "--samples: `{}` is not a range of samples; write A:B, e.g. 0:100 and 100:200 for two shards", *text));
+          "--sample-range: `{}` is not a range of samples; write A:B, e.g. 0:100 and 100:200 for two shards", text));
     job.sampling.sample_begin = range->first;
     job.sampling.sample_end = range->second;
   }
@@ -150,8 +150,6 @@ int run_render(RenderOptions& options) {
   job.scene.overrides = options.scene.overrides();
   options.picture.finish(job);
   read_shard(options, job);
-  if (options.traversal == "packet") job.resources.traversal = accel::Traversal::kPacket;
-  if (options.traversal == "single") job.resources.traversal = accel::Traversal::kSingle;
   if (!options.frames.empty()) batch.frames = base::parse_frames(options.frames);
   const bool is_many = batch.scenes.size() * std::max<std::size_t>(batch.frames.size(), 1) > 1;
   batch.keep_going = is_many && !options.fail_fast;
@@ -203,9 +201,9 @@ int run_render(RenderOptions& options) {
   return failed != 0 ? failed : status;
 }
 
-void add_render_options(Command& command, RenderOptions& options, bool allows_range) {
+void add_render_options(Command& command, RenderOptions& options) {
   options.picture.add_to(command, options.batch.job);
-  options.scene.add_to(command, allows_range);
+  options.scene.add_to(command);
   command.add_flag("--skip-existing", options.batch.job.skip_existing,
                    "Skip images that exist, are intact, and match this scene and these settings");
   command.add_flag("--fail-fast", options.fail_fast, "Stop at the first frame or scene that fails");
@@ -230,15 +228,6 @@ void add_render_options(Command& command, RenderOptions& options, bool allows_ra
                   "Number of threads; default: all CPUs available to the process")
       ->transform(whole_number(1, kMaxThreads))
       ->type_name("N");
-  command
-      .add_option("--traversal", options.traversal,
-                  "BVH traversal: packet, single, or auto (times both and uses the faster); default: auto")
-      ->check(one_of({"auto", "packet", "single"}))
-      ->type_name("MODE");
-  command
-      .add_option("--isa", options.batch.job.resources.isa,
-                  "Highest instruction set to use: sse4, avx2 or avx512; default: the processor's best")
-      ->type_name("NAME");
   command
       .add_option("--memory-limit", options.batch.job.resources.memory_limit,
                   "Refuse to render if the estimated memory exceeds SIZE, e.g. 8G; default: free memory")
@@ -268,7 +257,11 @@ void add_render(Command& program, Action& action) {
   command.add_option("SCENE", options->batch.scenes, "Scene file; with several, use {scene} in the names of outputs")
       ->required()
       ->type_name("FILE");
-  add_render_options(command, *options, true);
+  add_render_options(command, *options);
+  command
+      .add_option("--sample-range", options->sample_range,
+                  "Render a shard: samples A to B-1 of each pixel; combine the shards with orrery merge")
+      ->type_name("A:B");
   command
       .add_option("--shard", options->shard,
                   "Render shard I of N (I from 1): every N-th 16 x 16 tile; combine the shards with orrery merge")
@@ -284,7 +277,7 @@ void add_render(Command& program, Action& action) {
       "  orrery render scene.toml -o final.exr --noise 0.01 --time 10m\n"
       "  orrery render scene.toml -o final.exr --preview preview.png\n"
       "  orrery render shot.toml -o shot.####.exr --frames 1-240 --resume --skip-existing\n"
-      "  orrery render shot.toml -o shard.2.exr --samples 100:200\n"
+      "  orrery render shot.toml -o shard.2.exr --sample-range 100:200\n"
       "  orrery render scene.toml -o book.png --display \"Gamma 2.0 Rec.709\"");
   command.callback([options, &action] { action = [options] { return run_render(*options); }; });
 }

@@ -15,7 +15,7 @@ struct RenderOptions {
   farm::Batch batch;
   SceneOptions scene;
   PictureOptions picture;
-  std::string preview, progress = "auto", traversal = "auto", shard, frames;
+  std::string preview, progress = "auto", sample_range, shard, frames;
   bool quiet = false, verbose = false, strict = false, fail_fast = false;
   bool shows_display = false;          ///< the display transform is used for more than images
   std::function<void()> before_files;  ///< called when all names are checked, before any file is written
@@ -23,9 +23,8 @@ struct RenderOptions {
 
 /// Adds the options of rendering, except those that name the scene, its frames and its shard.
 ///
-/// `allows_range`  --samples may be A:B
 /// Domain     called once; `options` does not move until the command line is parsed
-void add_render_options(Command& command, RenderOptions& options, bool allows_range);
+void add_render_options(Command& command, RenderOptions& options);
 
 /// Renders the scenes and frames of a batch.
 ///

@@ -98,12 +98,11 @@ int run(int argc, const char* const* argv) {
   prepare_signals();
   try {
     return parse_and_act(argc, argv);
-  } catch (const BrokenPipe&) {
-    return base::exit_status(base::ErrorKind::kIo);
   } catch (const base::Error& error) {
     return print_error(error);
   } catch (const std::bad_alloc&) {
     std::fputs("orrery: out of memory; end other programs, or raise the limit of the shell (ulimit -v)\n", stderr);
+    return base::exit_status(base::ErrorKind::kNoMemory);
   } catch (const std::exception& error) {
     std::fprintf(stderr, "orrery: internal error: %s\n", error.what());
   }

@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "cli/scene_options.h"
 
-#include <string_view>
-
 #include <fmt/core.h>
 
 #include "base/error.h"
@@ -12,45 +10,31 @@
 
 namespace orrery::cli {
 
-void SceneOptions::add_to(Command& command, bool allows_range) {
+void SceneOptions::add_to(Command& command, Short forms) {
   const OptionGroup group(command, "Scene options");
-  allows_range_ = allows_range;
   command.add_option("--set", set_, "Override a key of the scene file, e.g. camera.vfov=30; can be repeated")
       ->type_name("KEY=VALUE")
       ->repeatable();
-  const auto add = [&](const char* flag, const char* key, const char* type, const std::string& what) {
+  const auto add = [&](const char* flag, const char* key, const char* type, const char* what) {
     ShortForm& option = short_forms_.emplace_back(ShortForm{flag, key, {}, nullptr, false});
     option.flag = command.add_option(flag, option.value, fmt::format("{} ({})", what, key))->type_name(type);
   };
-  add("--samples", "render.samples", allows_range ? "N or A:B" : "N",
-      allows_range ? "Samples per pixel, or a shard with samples A to B-1 of each pixel" : "Samples per pixel");
   add("--width", "image.width", "N", "Image width in pixels");
   add("--height", "image.height", "N", "Image height in pixels");
-  add("--seed", "render.seed", "N", "Random seed");
-  add("--max-depth", "render.max_depth", "N", "Maximum rays per path, including the camera ray");
+  if (forms == Short::kSize) return;
+  add("--samples", "render.samples", "N", "Samples per pixel");
   add("--precision", "render.precision", "NAME", "Arithmetic: exact, fast or book");
-  add("--accelerator", "render.accelerator", "NAME", "Acceleration structure: embree or list");
   add("--layers", "output.layers", "NAMES",
       "Additional EXR layers, e.g. Z,N,diffuse; all: every layer of the scene; \"\": none");
   short_forms_.back().is_list = true;
-}
-
-bool SceneOptions::is_range(const ShortForm& option) const {
-  return allows_range_ && std::string_view(option.key) == "render.samples" &&
-         option.value.find(':') != std::string::npos;
-}
-
-std::optional<std::string> SceneOptions::sample_range() const {
-  for (const ShortForm& option : short_forms_)
-    if (option.flag->count() > 0 && is_range(option)) return option.value;
-  return {};
+  short_forms_.back().flag->may_be_empty();
 }
 
 format::Overrides SceneOptions::overrides() const {
   format::Overrides out, set;
   for (const std::string& setting : set_) set.add(setting);
   for (const ShortForm& option : short_forms_) {
-    if (option.flag->count() == 0 || is_range(option)) continue;
+    if (option.flag->count() == 0) continue;
     for (const format::Override& other : set)
       if (other.sets(option.key))
         throw base::Error(base::ErrorKind::kUsage,

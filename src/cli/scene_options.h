@@ -2,7 +2,6 @@
 #pragma once
 
 #include <deque>
-#include <optional>
 #include <string>
 #include <vector>
 
@@ -14,14 +13,13 @@ namespace orrery::cli {
 /// The options that override scene keys: --set, and short forms of frequent keys.
 class SceneOptions {
  public:
+  /// Which short forms a command has: those that have an effect.
+  enum class Short { kAll, kSize };
+
   /// Adds the options to a command.
   ///
-  /// `allows_range`  --samples may be A:B
   /// Domain     called once; this must not move, and `command` must exist, until the last call of overrides()
-  void add_to(Command& command, bool allows_range = false);
-
-  /// The value of --samples if it is a range A:B of the scene's samples, which overrides no key.
-  std::optional<std::string> sample_range() const;
+  void add_to(Command& command, Short forms = Short::kAll);
 
   /// All overrides, short forms first, so that --set wins.
   format::Overrides overrides() const;
@@ -39,12 +37,9 @@ class SceneOptions {
     const char* name;  ///< "--samples"
     const char* key;
     std::string value;
-    const Option* flag;
+    Option* flag;
     bool is_list;  ///< comma-separated words
   };
-  bool is_range(const ShortForm& option) const;
-
-  bool allows_range_ = false;
   std::vector<std::string> set_;
   std::string frame_;
   std::deque<ShortForm> short_forms_;  ///< a deque: the parser keeps pointers to the values

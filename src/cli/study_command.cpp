@@ -77,10 +77,6 @@ void add_study(Command& program, Action& action) {
                   "Number of threads; default: all CPUs available to the process")
       ->transform(whole_number(1, kMaxThreads))
       ->type_name("N");
-  command
-      .add_option("--isa", options->request.isa,
-                  "Highest instruction set to use: sse4, avx2 or avx512; default: the processor's best")
-      ->type_name("NAME");
   command.add_flag("--json", options->json, "Print JSON");
   command.add_flag("-q,--quiet", options->quiet, "Do not show progress");
   command.footer(

@@ -1,7 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "display/config.h"
 
+#include <cctype>
+#include <cerrno>
 #include <cstdlib>
+#include <filesystem>
 #include <mutex>
 #include <sstream>
 
@@ -9,6 +12,7 @@
 
 #include "base/error.h"
 #include "base/input_file.h"
+#include "base/text.h"
 #include "display/builtin_config.h"
 #include "display/config_files.h"
 
@@ -42,6 +46,29 @@ class LogCapture {
 /// Returns whether a name denotes a config built into newer versions of OCIO, which is not a file.
 bool is_library_config(const std::string& name) { return name.rfind("ocio://", 0) == 0; }
 
+/// OCIO reads this variable when it creates a processor, and throws an exception that does not name it.
+void check_optimization_flags() {
+  const char* const text = std::getenv(ocio::OCIO_OPTIMIZATION_FLAGS_ENVVAR);
+  if (text == nullptr || *text == '\0') return;
+  char* end = nullptr;
+  errno = 0;
+  static_cast<void>(std::strtoul(text, &end, 0));
+  if (std::isdigit(static_cast<unsigned char>(*text)) == 0 || *end != '\0' || errno != 0)
+    throw base::Error(base::ErrorKind::kUsage,
+                      fmt::format("${} is `{}`; must be a number such as 0x1FF, or unset",
+                                  ocio::OCIO_OPTIMIZATION_FLAGS_ENVVAR, base::printable(text)));
+}
+
+/// The version of the library, for errors that a newer one would not have. Some of its messages say it themselves.
+std::string version_note(const std::string& file, const std::string& message) {
+  const std::string version = ocio::GetVersion();
+  if (message.find(version) != std::string::npos) return {};
+  const bool is_new_kind = is_library_config(file) || std::filesystem::path(file).extension() == ".ocioz";
+  return fmt::format("; this is OpenColorIO {}{}", version,
+                     is_new_kind ? ", and ocio:// configs and .ocioz archives need 2.2 or later"
+                                 : ", and configs for later versions may not load");
+}
+
 ocio::ConstConfigRcPtr load(const std::string& file) {
   if (file.empty()) {
     std::istringstream text(kBuiltinConfig);
@@ -53,8 +80,8 @@ ocio::ConstConfigRcPtr load(const std::string& file) {
     config->validate();
     return config;
   } catch (const std::exception& error) {
-    throw base::Error(base::ErrorKind::kBadData,
-                      fmt::format("the OCIO config {} cannot be used: {}", file, error.what()));
+    throw base::Error(base::ErrorKind::kBadData, fmt::format("the OCIO config {} cannot be used: {}{}", file,
+                                                             error.what(), version_note(file, error.what())));
   }
 }
 
@@ -74,6 +101,7 @@ std::vector<std::filesystem::path> config_files(const std::string& config) {
 }
 
 Config load_config(const std::string& file) {
+  check_optimization_flags();
   Config out;
   const std::string environment = config_of_environment();
   const bool is_of_environment = file.empty() && !environment.empty();

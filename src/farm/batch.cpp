@@ -39,8 +39,7 @@ std::vector<fs::path*> names_of(job::Job& job) {
 void check_name(const Batch& batch, const std::string& name) {
   const bool has_pattern = base::has_frame_pattern(name);
   if (batch.frames.size() > 1 && !has_pattern)
-    base::refuse(fmt::format("{} is one name for {} frames; add a frame pattern, e.g. shot.####.exr or shot.%04d.exr",
-                             name, batch.frames.size()));
+    base::refuse_one_name(name, batch.frames.size(), "shot.####.exr or shot.%04d.exr");
   if (batch.frames.empty() && has_pattern)
     base::refuse(name + " has a frame pattern; select frames with --frames, e.g. --frames 1-48");
   if (batch.scenes.size() > 1 && !has_scene_pattern(name))

@@ -41,9 +41,10 @@ Parts parts_of(std::string_view text) {
     } else if (c == '=') {
       if (i == 0) throw Fault{"no key before the =", kOverrideExample};
       if (list_end == 0) return {{}, 0, i};
-      if (text[list_end] != '.')
+      const std::size_t dot = text.find_first_not_of(" \t", list_end);
+      if (text[dot] != '.')
         throw Fault{"a list element cannot be set as a whole", "set one of its keys, e.g. sphere[0].radius=2"};
-      return {text.substr(0, list_end), list_end + 1, i};
+      return {text.substr(0, list_end), dot + 1, i};
     }
   }
   throw Fault{"not of the form KEY=VALUE", kOverrideExample};

@@ -33,10 +33,20 @@ void wrong_type(ReadState& state, const toml::node& node, const std::string& nam
   state.error(place_of(node), fmt::format("{} must be {}, not {}", name, wanted, type_name(node)));
 }
 
+/// As above for a number. An override such as `064` is a string, because TOML has no numbers with leading zeros.
+void not_a_number(ReadState& state, const toml::node& node, const std::string& name, const std::string& wanted) {
+  const std::string text = node.is_string() ? node.as_string()->get() : "";
+  if (text.size() < 2 || text[0] != '0' || text.find_first_not_of("0123456789") != std::string::npos)
+    return wrong_type(state, node, name, wanted);
+  const std::size_t begin = std::min(text.find_first_not_of('0'), text.size() - 1);
+  state.error(place_of(node), fmt::format("{} is `{}`; must be {}", name, text, wanted),
+              fmt::format("write {}, without leading zeros", text.substr(begin)));
+}
+
 std::optional<double> read_number(ReadState& state, const toml::node& node, const std::string& name,
                                   const scene::Range& range) {
   if (!node.is_number()) {
-    wrong_type(state, node, name, "a number");
+    not_a_number(state, node, name, "a number");
     return {};
   }
   const double x = node.is_integer() ? static_cast<double>(node.as_integer()->get()) : node.as_floating_point()->get();
@@ -74,7 +84,7 @@ std::optional<Value> read_vector(ReadState& state, const toml::node& node, const
 std::optional<Value> read_integer(ReadState& state, const toml::node& node, const std::string& name,
                                   const scene::Range& range) {
   if (!node.is_integer()) {
-    wrong_type(state, node, name, "an integer");
+    not_a_number(state, node, name, "an integer");
     return {};
   }
   const std::int64_t x = node.as_integer()->get();

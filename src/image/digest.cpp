@@ -73,7 +73,7 @@ void require_digest(const std::filesystem::path& file) {
   std::error_code failed;
   const std::uint64_t size = std::filesystem::file_size(file, failed);
   constexpr const char* kNoPartial =
-      " is not a checkpoint or shard, or it is truncated; --resume, --samples A:B and --shard write such files";
+      " is not a checkpoint or shard, or it is truncated; --resume, --sample-range A:B and --shard write such files";
   if (failed || size < kLineSize) damaged(kNoPartial);
   const std::string expected = digest_line(in.get(), size - kLineSize);
   char found[kLineSize];

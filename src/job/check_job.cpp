@@ -21,9 +21,9 @@ void check_shard(const Job& job) {
   const auto refuse = [](const std::string& text) { throw base::Error(base::ErrorKind::kUsage, text); };
   if (job.outputs.images.size() > 1 || job.outputs.images.front().format != image::Format::kExr ||
       !job.outputs.deep.empty())
-    refuse("--samples A:B and --shard write one shard, a single EXR; orrery merge makes images from shards");
+    refuse("--sample-range A:B and --shard write one shard, a single EXR; orrery merge makes images from shards");
   if (job.sampling.is_adaptive())
-    refuse("--noise and --time need the whole image; they cannot be combined with --samples A:B or --shard");
+    refuse("--noise and --time need the whole image; they cannot be combined with --sample-range A:B or --shard");
 }
 
 }  // namespace
@@ -51,7 +51,7 @@ void check_samples(const Job& job, const compile::CompiledScene& compiled) {
   if (job.sampling.sample_end > static_cast<std::uint32_t>(compiled.samples))
     throw base::Error(
         base::ErrorKind::kUsage,
-        fmt::format("--samples {}:{} exceeds the scene's {} samples; raise them with --set render.samples={}",
+        fmt::format("--sample-range {}:{} exceeds the scene's {} samples; raise them with --samples {}",
                     job.sampling.sample_begin, job.sampling.sample_end, compiled.samples, job.sampling.sample_end));
 }
 

@@ -19,7 +19,7 @@ void check_request(const Job& job);
 /// Errors     base::Error(kUsage)
 void check_layers(const Job& job, const scene::Scene& scene);
 
-/// Checks that --samples A:B is within the scene's sample count.
+/// Checks that --sample-range A:B is within the scene's sample count.
 ///
 /// Errors     base::Error(kUsage)
 void check_samples(const Job& job, const compile::CompiledScene& compiled);

@@ -128,10 +128,11 @@ std::string missed_target(const Job& job, const render::Statistics& statistics) 
   return out;
 }
 
-render::Settings settings_of(const Job& job, const film::LayerRequest& layers) {
+render::Settings settings_of(const Job& job, const scene::Scene& scene, const film::LayerRequest& layers) {
   render::Settings out;
   out.threads = job.resources.threads > 0 ? job.resources.threads : default_threads();
-  out.traversal = job.resources.traversal;
+  if (scene.render.traversal == scene::Traversal::kPacket) out.traversal = accel::Traversal::kPacket;
+  if (scene.render.traversal == scene::Traversal::kSingle) out.traversal = accel::Traversal::kSingle;
   out.layers = layers;
   out.on_progress = job.hooks.on_progress;
   out.on_build = job.hooks.on_build;
@@ -229,7 +230,7 @@ void run_phases(const Job& job, base::FileSet& files, JobReport& report) {
   report.phases.compile_s = watch.lap();
   stop_if_cancelled(job);
 
-  const render::Settings settings = settings_of(job, layers.request);
+  const render::Settings settings = settings_of(job, read.scene, layers.request);
   if (job.hooks.on_start && job.merge.shards.empty())
     job.hooks.on_start(
         {job.scene.file.filename().string(), compiled.width, compiled.height, compiled.pixel_aspect, display});

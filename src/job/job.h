@@ -8,7 +8,6 @@
 #include <string>
 #include <vector>
 
-#include "accel/traversal.h"
 #include "base/file_set.h"
 #include "job/checkpoint.h"
 #include "job/hooks.h"
@@ -24,11 +23,10 @@ struct JobReport;
 
 /// Limits on the job's use of the machine.
 struct Resources {
-  int threads = 0;                            ///< 0: default_threads()
-  std::uint64_t memory_limit = 0;             ///< bytes; 0: the free memory
-  std::uint64_t disk_limit = 0;               ///< bytes per file system; 0: its free space
-  std::string isa;                            ///< best instruction set to use, "avx2"; empty: the processor's best
-  std::optional<accel::Traversal> traversal;  ///< see render::Settings
+  int threads = 0;                 ///< 0: default_threads()
+  std::uint64_t memory_limit = 0;  ///< bytes; 0: the free memory
+  std::uint64_t disk_limit = 0;    ///< bytes per file system; 0: its free space
+  std::string isa;                 ///< best instruction set to use, "avx2"; empty: see choose_isa()
 };
 
 /// The shards that a job merges instead of rendering.

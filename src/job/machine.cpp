@@ -36,10 +36,13 @@ int default_threads() {
 }
 
 void choose_isa(const std::string& name) {
-  if (kernel::limit_isa(name)) return;
+  const char* const of_environment = std::getenv("ORRERY_ISA");
+  const bool is_of_environment = name.empty() && of_environment != nullptr;
+  const std::string isa = is_of_environment ? of_environment : name;
+  if (kernel::limit_isa(isa)) return;
   throw base::Error(base::ErrorKind::kUsage,
-                    fmt::format("instruction set {} is not available; this processor and program have {}", name,
-                                base::joined(kernel::available_isas())));
+                    fmt::format("{}instruction set {} is not available; this processor and program have {}",
+                                is_of_environment ? "$ORRERY_ISA: " : "", isa, base::joined(kernel::available_isas())));
 }
 
 }  // namespace orrery::job

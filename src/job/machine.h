@@ -8,9 +8,10 @@ namespace orrery::job {
 /// is not a positive integer is ignored.
 int default_threads();
 
-/// Limits kernel and accelerators to this instruction set; empty: the best available.
+/// Limits kernel and accelerators to this instruction set; empty: that of the environment variable ORRERY_ISA, which is
+/// for tests and comparisons, or else the best available.
 ///
 /// Errors     base::Error(kUsage) if the program or the processor lacks it; the message lists the available ones
-void choose_isa(const std::string& name);
+void choose_isa(const std::string& name = {});
 
 }  // namespace orrery::job

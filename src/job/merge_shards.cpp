@@ -89,7 +89,7 @@ class Coverage {
   std::map<std::pair<std::uint32_t, std::uint32_t>, std::size_t> gaps_;  ///< number of pixels by missing range
 };
 
-/// The options of missing shards, for sample ranges of which some shard is present: "--samples 0:100 --shard 2/3".
+/// The options of missing shards, for sample ranges of which some shard is present: "--sample-range 0:100 --shard 2/3".
 std::string missing_shards(const std::vector<ShardFile>& shards) {
   std::map<std::pair<std::string, int>, std::set<int>> found;
   for (const ShardFile& shard : shards) {
@@ -100,7 +100,7 @@ std::string missing_shards(const std::vector<ShardFile>& shards) {
   for (const auto& [group, indices] : found)
     for (int i = 0; i < group.second; ++i)
       if (indices.count(i) == 0)
-        missing.push_back(fmt::format("--samples {} --shard {}/{}", group.first, i + 1, group.second));
+        missing.push_back(fmt::format("--sample-range {} --shard {}/{}", group.first, i + 1, group.second));
   constexpr std::size_t kMax = 20;
   if (missing.size() > kMax) missing.resize(kMax);
   return missing.empty() ? "" : "there is no shard with " + base::joined(missing);

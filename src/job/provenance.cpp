@@ -72,7 +72,8 @@ std::string stamp_of(const Job& job, const image::Provenance& provenance, const 
                                   display.display, display.view, display.look, display.working_space})
     all += word + "\n";
   for (const format::KeyValue& set : job.scene.overrides.values())
-    if (set.key != "render.accelerator") all += set.text + "\n";  // the accelerator changes no bits
+    if (set.key != "render.accelerator" && set.key != "render.traversal")  // they change no bits
+      all += set.text + "\n";
   return text_hash(all);
 }
 
@@ -82,8 +83,9 @@ std::string difference(const image::Provenance& a, const image::Provenance& b, c
     return found == p.end() ? std::string() : found->second;
   };
   static const std::vector<std::pair<std::string, std::string>> names = {
-      {"version", "orrery version "}, {"sceneHash", "scene hash "}, {"samples", "--samples "},   {"shard", "--shard "},
-      {"noise", "--noise "},          {"time", "time budget: "},    {"limit", "sample limit: "}, {"layers", "layers "}};
+      {"version", "orrery version "}, {"sceneHash", "scene hash "}, {"samples", "--sample-range "},
+      {"shard", "--shard "},          {"noise", "--noise "},        {"time", "time budget: "},
+      {"limit", "sample limit: "},    {"layers", "layers "}};
   for (const auto& [key, name] : names) {
     if (std::find(keys.begin(), keys.end(), key) == keys.end() || value(a, key) == value(b, key)) continue;
     return fmt::format("{}{}, not {}", name, value(a, key).empty() ? "none" : value(a, key),

@@ -138,7 +138,7 @@ class Planner {
     for (const std::uint32_t depth : {2u, 4u, 8u, 16u}) {
       if (depth >= compiled_.max_depth) continue;
       Choice& c = add("depth", fmt::format("at most {}", depth),
-                      fmt::format("{} --max-depth {}", flag(kCompared), depth), kCompared);
+                      fmt::format("{} --set render.max_depth={}", flag(kCompared), depth), kCompared);
       c.apply = [depth](CompiledScene& w) { w.max_depth = depth; };
       c.is_shortcut = true;
     }
@@ -196,15 +196,15 @@ class Planner {
       out_.left_out.push_back("no spheres: no accelerator axis");
       return;
     }
-    add("accelerator", "embree, packets", flag(kTimed) + " --traversal packet", kTimed).traversal =
+    add("accelerator", "embree, packets", flag(kTimed) + " --set render.traversal=packet", kTimed).traversal =
         accel::Traversal::kPacket;
-    add("accelerator", "embree, single rays", flag(kTimed) + " --traversal single", kTimed).traversal =
+    add("accelerator", "embree, single rays", flag(kTimed) + " --set render.traversal=single", kTimed).traversal =
         accel::Traversal::kSingle;
     if (compiled_.spheres.size() > kMaxListSpheres) {
       out_.left_out.push_back("more than 5000 spheres: the list is too slow");
       return;
     }
-    Choice& list = add("accelerator", "list", flag(kTimed) + " --accelerator list", kTimed);
+    Choice& list = add("accelerator", "list", flag(kTimed) + " --set render.accelerator=list", kTimed);
     list.apply = [](CompiledScene& w) { w.accelerator = compile::Accelerator::kList; };
     list.slowness = 1 + static_cast<double>(compiled_.spheres.size()) / 12;
     out_.left_out.push_back("Embree's build qualities: equally fast, see docs/benchmarks.md");

@@ -256,7 +256,7 @@ BenchCase result_of(const Case& c, const std::vector<double>& reference) {
 }  // namespace
 
 std::vector<FeatureCost> bench_features(const BenchRequest& request) {
-  job::choose_isa(request.isa);
+  job::choose_isa();
   Subject subject(request);
   const compile::CompiledScene& compiled = subject.compiled();
   std::vector<Case> cases = {Case{}};
@@ -275,7 +275,7 @@ std::vector<FeatureCost> bench_features(const BenchRequest& request) {
 
 Benchmark bench_scene(const BenchRequest& request) {
   const base::StopScope scope(request.cancel);
-  job::choose_isa(request.isa);
+  job::choose_isa();
   Subject subject(request);
   const compile::CompiledScene& compiled = subject.compiled();
   Benchmark out;

@@ -17,7 +17,6 @@ namespace orrery::measure {
 /// Scene and protocol of a benchmark.
 struct BenchRequest {
   load::SceneSource scene;
-  std::string isa;  ///< instruction set; empty: the best available
   int threads = 1;
   int rounds = 7;         ///< number of rounds; each measures every case once
   double seconds = 0.25;  ///< minimum duration of one measurement
@@ -65,7 +64,7 @@ struct Benchmark {
 
 /// Measures the render speed of a scene at a reduced size, in every precision, with Embree and with the list.
 ///
-/// Errors     those of format::read_scene; base::Error(kStopped) after `cancel`, kUsage for an unknown `isa`
+/// Errors     those of format::read_scene; base::Error(kStopped) after `cancel`, kUsage for an unknown $ORRERY_ISA
 Benchmark bench_scene(const BenchRequest& request);
 
 /// A benchmark as a text table.

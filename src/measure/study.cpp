@@ -64,7 +64,7 @@ class Runner {
  public:
   explicit Runner(const Request& request)
       : request_(request), renderer_(request, request.threads > 0 ? request.threads : job::default_threads()) {
-    job::choose_isa(request.isa);
+    job::choose_isa();
     out_.threads = request.threads > 0 ? request.threads : job::default_threads();
     out_.budget_s = request.budget_s;
     out_.scene = request.scene.file.string();
@@ -292,7 +292,6 @@ class Runner {
     report_progress("features");
     measure::BenchRequest bench;
     bench.scene = request_.scene;
-    bench.isa = request_.isa;
     bench.rounds = 5;
     bench.seconds = std::clamp(request_.budget_s * kFeatureShare / 5 / 6, 0.02, 0.25);
     bench.cancel = request_.cancel;

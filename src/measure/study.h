@@ -19,7 +19,6 @@ namespace orrery::measure {
 struct Request {
   load::SceneSource scene;
   std::filesystem::path report;  ///< file that the caller will write; checked for conflicts with input files
-  std::string isa;               ///< instruction set; empty: the best available
   int threads = 0;               ///< 0: as many as this process may use
   double budget_s = 120;         ///< time for the whole study
   double noise = 0.01;           ///< target noise of the recommendation

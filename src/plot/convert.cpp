@@ -191,8 +191,7 @@ class Converter {
   void check_outputs() const {
     const std::string name = options_.output.string();
     if (data_.numbers().size() > 1 && !base::has_frame_pattern(name))
-      base::refuse(fmt::format("{} is one name for {} frames; add a frame pattern, e.g. out.####.ply", name,
-                               data_.numbers().size()));
+      base::refuse_one_name(name, data_.numbers().size(), "out.####.ply");
     if (data_.numbers().empty() && base::has_frame_pattern(name))
       base::refuse(name + " has a frame pattern; select frames with --frames, e.g. --frames all");
     base::FileSet files;

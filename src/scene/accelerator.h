@@ -9,4 +9,11 @@ enum class Accelerator {
   kList,    ///< a loop over all spheres
 };
 
+/// Order in which rays traverse Embree's BVH. The image does not depend on it.
+enum class Traversal {
+  kAuto,    ///< the faster one, found by a trial
+  kPacket,  ///< 16 rays together
+  kSingle,  ///< one ray after the other
+};
+
 }  // namespace orrery::scene

@@ -97,6 +97,7 @@ struct Render {
   Precision precision = Precision::kExact;
   Shading shading = Shading::kPath;
   Accelerator accelerator = Accelerator::kEmbree;
+  Traversal traversal = Traversal::kAuto;
   Filter filter = Filter::kBox;
   std::optional<double> filter_width = {};  ///< full width, px; default: 1, 3, 3 or 4, depending on the filter
   int roulette_depth = 3;                   ///< scattering events before Russian roulette begins; 0: off

@@ -189,6 +189,13 @@ Table render_table() {
                   "bit for bit; in `fast` for static spheres up to 10,000 times the scene's size from the origin",
                   "`list`: time is proportional to the number of spheres"},
                  [](S& s) -> Accelerator& { return s.render.accelerator; }),
+       choice<S>(
+           "traversal", {"auto", "packet", "single"},
+           {"",
+            "Traversal of Embree's BVH, for comparison: by packets of rays, or ray by ray. `auto`: times both with "
+            "rays of the scene and uses the faster. The image is the same, bit for bit",
+            "-"},
+           [](S& s) -> Traversal& { return s.render.traversal; }),
        choice<S>("direct_lighting", {"mis", "bsdf", "light"},
                  {"",
                   "Sampling of direct light. `mis`: light and BSDF sampling, combined by multiple importance sampling. "

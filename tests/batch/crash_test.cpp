@@ -44,7 +44,7 @@ material = "grey"
 )");
     ASSERT_EQ(run("render scene.toml -o a.exr --reproducible -q").status, 0);
     right_ = text_of(folder_ / "a.exr");
-    ASSERT_EQ(run("render scene.toml -o a.exr --reproducible -q --seed 5 --samples 1").status, 0);
+    ASSERT_EQ(run("render scene.toml -o a.exr --reproducible -q --set render.seed=5 --samples 1").status, 0);
     old_ = text_of(folder_ / "a.exr");
     ASSERT_NE(right_, old_);
   }

@@ -51,6 +51,10 @@ TEST_F(BatchFrames, RangeWithoutFramePlaceholderIsRejected) {
   const Outcome range = run("render shot.toml -o s.png --frames 1-5");
   EXPECT_EQ(range.status, 2);
   EXPECT_NE(range.err.find("s.png is one name for 5 frames"), std::string::npos) << range.err;
+  const Outcome single = run("render shot.toml -o s.#.png --frames 1-5");
+  EXPECT_EQ(single.status, 2);
+  EXPECT_NE(single.err.find("; a single # is an ordinary character, so write at least ##\n"), std::string::npos)
+      << single.err;
   const Outcome place = run("render shot.toml -o s.##.png");
   EXPECT_EQ(place.status, 2);
   EXPECT_NE(place.err.find("--frames"), std::string::npos) << place.err;

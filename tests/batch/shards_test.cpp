@@ -54,7 +54,7 @@ TEST_F(BatchShards, AnySplitMergesToTheSameBytes) {
     for (int i = 0; i < count; ++i) {
       by_samples.push_back("s" + std::to_string(i) + ".exr");
       render(by_samples.back(),
-             "--samples " + std::to_string(35 * i / count) + ":" + std::to_string(35 * (i + 1) / count));
+             "--sample-range " + std::to_string(35 * i / count) + ":" + std::to_string(35 * (i + 1) / count));
       by_tiles.push_back("t" + std::to_string(i) + ".exr");
       render(by_tiles.back(), "--shard " + std::to_string(i + 1) + "/" + std::to_string(count));
     }
@@ -79,21 +79,21 @@ TEST_F(BatchShards, ShardsWithLayersMergeToAnImageWithoutLayers) {
 }
 
 TEST_F(BatchShards, SampleShardsAndPixelShardsCombine) {
-  render("a.exr", "--samples 0:10 --shard 1/2");
-  render("b.exr", "--samples 0:10 --shard 2/2");
-  render("c.exr", "--samples 10:35");
+  render("a.exr", "--sample-range 0:10 --shard 1/2");
+  render("b.exr", "--sample-range 0:10 --shard 2/2");
+  render("c.exr", "--sample-range 10:35");
   ASSERT_EQ(merge({"a.exr", "b.exr", "c.exr"}).status, 0);
   EXPECT_EQ(text_of(folder_ / "merged.exr"), whole_);
 }
 
 TEST_F(BatchShards, MismatchedShardsAreNamed) {
-  render("a.exr", "--samples 0:10");
-  render("b.exr", "--samples 10:35");
-  render("b1.exr", "--samples 9:35");
+  render("a.exr", "--sample-range 0:10");
+  render("b.exr", "--sample-range 10:35");
+  render("b1.exr", "--sample-range 9:35");
   expect_refused(merge({"a.exr"}), 65, {"samples 10:35 of all pixels are in no shard"});
   expect_refused(run("merge a.exr b1.exr -o merged.exr"), 65, {"b1.exr: error: has samples that a.exr has too"});
-  render("foreign.exr", "--samples 10:35 --seed 8");
-  render("other.exr", "--samples 10:35 --layers Z");
+  render("foreign.exr", "--sample-range 10:35 --set render.seed=8");
+  render("other.exr", "--sample-range 10:35 --layers Z");
   expect_refused(
       run("merge a.exr foreign.exr other.exr nothing.exr whole.exr -o merged.exr"), 65,
       {"foreign.exr: error: has scene hash", "other.exr: error: has layers", "nothing.exr: error: cannot open",
@@ -108,14 +108,15 @@ TEST_F(BatchShards, MismatchedShardsAreNamed) {
   expect_refused(run("merge a.exr a.exr -o merged.exr"), 2, {"a.exr is given twice"});
   render("t1.exr", "--shard 1/3");
   render("t3.exr", "--shard 3/3");
-  expect_refused(run("merge t1.exr t3.exr -o merged.exr"), 65, {"there is no shard with --samples 0:35 --shard 2/3"});
+  expect_refused(run("merge t1.exr t3.exr -o merged.exr"), 65,
+                 {"there is no shard with --sample-range 0:35 --shard 2/3"});
   EXPECT_EQ(run("merge a.exr b.exr -o a.exr").status, 2);  // an input
   EXPECT_EQ(text_of(folder_ / "b.exr"), bytes);
 }
 
 TEST_F(BatchShards, MissingSamplesCanBeAllowed) {
-  render("a.exr", "--samples 0:10");
-  render("c.exr", "--samples 20:35");
+  render("a.exr", "--sample-range 0:10");
+  render("c.exr", "--sample-range 20:35");
   const Outcome r = merge({"a.exr", "c.exr"}, "--allow-missing -o merged.png --stats m.json");
   ASSERT_EQ(r.status, 0) << r.err;
   EXPECT_NE(r.err.find("warning: samples 10:20 of all pixels are missing"), std::string::npos) << r.err;
@@ -132,8 +133,8 @@ TEST_F(BatchShards, FilesThatAreNotShardsAreReportedIfThereAreNoOthers) {
 }
 
 TEST_F(BatchShards, DamagedShardsCanBeTreatedAsMissing) {
-  render("a.exr", "--samples 0:10");
-  render("b.exr", "--samples 10:35");
+  render("a.exr", "--sample-range 0:10");
+  render("b.exr", "--sample-range 10:35");
   const std::string bytes = text_of(folder_ / "b.exr");
   std::string flipped = bytes;
   flipped[bytes.size() / 2] = static_cast<char>(flipped[bytes.size() / 2] ^ 1);
@@ -152,18 +153,18 @@ TEST_F(BatchShards, DamagedShardsCanBeTreatedAsMissing) {
 }
 
 TEST_F(BatchShards, UnfinishedShardIsNamed) {
-  render("b.exr", "--samples 10:35");
+  render("b.exr", "--sample-range 10:35");
   // A render that is stopped at once leaves a checkpoint of its shard.
   {
-    PacedProgram part(folder_, {"render", "good.toml", "-o", "a.exr", "--set", "render.samples=3000000", "--samples",
+    PacedProgram part(folder_, {"render", "good.toml", "-o", "a.exr", "--samples", "3000000", "--sample-range",
                                 "0:2999965", "--width", "70", "--height", "45", "--progress", "arnold", "-t", "1"});
     ASSERT_TRUE(part.run_to(0)) << part.text();
     part.send(SIGTERM);
     ASSERT_EQ(part.wait(), 75) << part.text();
   }
   ASSERT_TRUE(std::filesystem::exists(folder_ / "a.checkpoint.exr"));
-  ASSERT_EQ(run("render good.toml -o z.exr --set render.samples=3000000 --samples 2999965:3000000 --width 70 --height "
-                "45 -q")
+  ASSERT_EQ(run("render good.toml -o z.exr --samples 3000000 --sample-range 2999965:3000000 --width 70 "
+                "--height 45 -q")
                 .status,
             0);
   expect_refused(run("merge a.checkpoint.exr z.exr -o merged.exr"), 65,
@@ -178,19 +179,19 @@ TEST_F(BatchShards, InvalidShardOptionsAreRejected) {
     EXPECT_FALSE(r.err.empty());
   };
   for (const char* range : {"5:5", "7:3", ":", "0:", ":4", "a:b", "0:4294967296", "-1:3", "0:3:4"})
-    refused(std::string("-o a.exr --samples ") + range);
+    refused(std::string("-o a.exr --sample-range ") + range);
   for (const char* tiles : {"0/2", "3/2", "1", "1/0", "a/b", "1/99999999"})
     refused(std::string("-o a.exr --shard ") + tiles);
   refused("-o a.png --shard 1/2");
   refused("-o a.exr -o b.exr --shard 1/2");
   refused("-o a.exr --shard 1/2 --noise 0.1");
   refused("-o a.exr --shard 1/2 --deep d.exr");
-  refused("-o a.exr --samples 0:5");  // the scene has four
+  refused("-o a.exr --sample-range 0:5");  // the scene has four
 }
 
 TEST_F(BatchShards, SceneOptionFindsAMovedScene) {
   render("a.exr", "");
-  render("b.exr", "--samples 0:35");
+  render("b.exr", "--sample-range 0:35");
   std::filesystem::rename(folder_ / "good.toml", folder_ / "moved.toml");
   EXPECT_EQ(run("merge b.exr -o merged.exr").status, 66);
   ASSERT_EQ(run("merge b.exr -o merged.exr --scene moved.toml --reproducible").status, 0);

@@ -22,8 +22,16 @@ TEST_F(CliBench, PrintsOnlyATableOrJson) {
 TEST_F(CliBench, BadInputExitsWithDocumentedStatus) {
   EXPECT_EQ(run("bench none.toml").status, 66);
   EXPECT_EQ(run("bench good.toml --rounds 0").status, 2);
-  EXPECT_EQ(run("bench good.toml --isa mmx").status, 2);
+  EXPECT_EQ(run("bench good.toml", "ORRERY_ISA=mmx").status, 2);
   EXPECT_EQ(run("bench good.toml --set render.samples=0").status, 65);
+}
+
+TEST_F(CliBench, OptionsWithoutEffectAreRefused) {
+  for (const char* option : {"--samples 1", "--precision fast", "--layers Z"}) {
+    const Outcome r = run(std::string("bench good.toml ") + option);
+    EXPECT_EQ(r.status, 2) << option;
+    EXPECT_TRUE(contains(r.err, "unknown option")) << r.err;
+  }
 }
 
 }  // namespace

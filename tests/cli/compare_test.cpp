@@ -11,7 +11,7 @@ class CliCompare : public ProgramTest {
   void SetUp() override {
     ProgramTest::SetUp();
     ASSERT_EQ(run("render good.toml -o a.exr -q").status, 0);
-    ASSERT_EQ(run("render good.toml -o b.exr -q --seed 2").status, 0);
+    ASSERT_EQ(run("render good.toml -o b.exr -q --set render.seed=2").status, 0);
   }
 };
 
@@ -36,6 +36,29 @@ TEST_F(CliCompare, AnotherSeedDiffersAndExceedsLimits) {
   EXPECT_EQ(failed.err.rfind("orrery: max is ", 0), 0u) << failed.err;
 }
 
+/// Status 1 means that images differ, and nothing else: an incomplete installation is another status.
+TEST_F(CliCompare, InternalErrorsAreNoDifference) {
+  const std::filesystem::path program(ORRERY_PROGRAM);
+  std::filesystem::copy_file(program, folder_ / "launcher");
+  std::filesystem::copy_file(program.parent_path() / "../libexec/orrery/orrery-program", folder_ / "program");
+  const std::string words = " compare a.exr a.exr --fail-above max=0";
+  EXPECT_EQ(run("--version; ./launcher" + words).status, 70) << "the program is missing";
+  EXPECT_EQ(run("--version; ./program" + words).status, 70) << "the module for images is missing";
+  EXPECT_EQ(run("--version; \"" ORRERY_PROGRAM "\"" + words).status, 0);
+}
+
+/// libpng prints its errors, too.
+TEST_F(CliCompare, AnErrorInAPngIsPrintedOnce) {
+  constexpr unsigned char kWithoutPixels[] = {0x89, 0x50, 0x4e, 0x47, 0x0d, 0x0a, 0x1a, 0x0a, 0,    0, 0, 0x0d,
+                                              0x49, 0x48, 0x44, 0x52, 0,    0,    0,    4,    0,    0, 0, 4,
+                                              8,    2,    0,    0,    0,    0x26, 0x93, 0x09, 0x29, 0, 0, 0,
+                                              0,    0x49, 0x45, 0x4e, 0x44, 0xae, 0x42, 0x60, 0x82};
+  write("a.png", {reinterpret_cast<const char*>(kWithoutPixels), sizeof(kWithoutPixels)});
+  const Outcome r = run("compare a.png a.png");
+  EXPECT_EQ(r.status, 65);
+  EXPECT_EQ(r.err, "orrery: cannot read image a.png: PNG read error: IEND: out of place\n");
+}
+
 TEST_F(CliCompare, UnmatchedLayersAreNamedAndTheRestIsCompared) {
   ASSERT_EQ(run("render good.toml -o z.exr -q --layers Z,variance").status, 0);
   const Outcome r = run("compare z.exr a.exr");
@@ -50,7 +73,7 @@ TEST_F(CliCompare, UnmatchedLayersAreNamedAndTheRestIsCompared) {
 
 TEST_F(CliCompare, HitLayersAndCryptomattesAreCompared) {
   ASSERT_EQ(run("render good.toml -o l.exr -q --layers Z,CryptoObject").status, 0);
-  ASSERT_EQ(run("render good.toml -o m.exr -q --seed 2 --layers Z,CryptoObject").status, 0);
+  ASSERT_EQ(run("render good.toml -o m.exr -q --set render.seed=2 --layers Z,CryptoObject").status, 0);
   const auto of = [&](const std::string& layer) {
     const Outcome r = run("compare l.exr m.exr -t 2 --json --layer " + layer);
     EXPECT_EQ(r.status, 0) << r.err;
@@ -76,8 +99,9 @@ TEST_F(CliCompare, PartsAreCompared) {
 
 TEST_F(CliCompare, ZTestDetectsABrighterScene) {
   ASSERT_EQ(run("render good.toml -o v.exr -q --layers variance --samples 64").status, 0);
-  ASSERT_EQ(run("render good.toml -o w.exr -q --layers variance --samples 64 --seed 9").status, 0);
-  ASSERT_EQ(run("render good.toml -o x.exr -q --layers variance --samples 64 --seed 9 --set background.top=[0.6,0.8,1]")
+  ASSERT_EQ(run("render good.toml -o w.exr -q --layers variance --samples 64 --set render.seed=9").status, 0);
+  ASSERT_EQ(run("render good.toml -o x.exr -q --layers variance --samples 64 --set render.seed=9 --set "
+                "background.top=[0.6,0.8,1]")
                 .status,
             0);
   EXPECT_NE(run("compare w.exr v.exr").out.find("no difference but noise"), std::string::npos);

@@ -243,7 +243,9 @@ TEST_F(CliConvert, ColorMapsAreInputsOfAllCommands) {
 TEST_F(CliConvert, SavedScenesHaveTheSettingsOfTheCommandLine) {
   write("a.csv", "x,y,z,q\n0,0,0,1\n1,0,0,2\n");
   const std::string size = " --width 16 --height 9 --samples 4 -q";
-  ASSERT_EQ(run("plot a.csv -o a.ppm --set camera.width=5 --seed 7 --exposure 1 --save-scene s.toml" + size).status, 0);
+  ASSERT_EQ(run("plot a.csv -o a.ppm --set camera.width=5 --set render.seed=7 --exposure 1 --save-scene s.toml" + size)
+                .status,
+            0);
   ASSERT_EQ(run("render s.toml -o b.ppm -q").status, 0);
   EXPECT_TRUE(text_of(folder_ / "a.ppm") == text_of(folder_ / "b.ppm"));
   ASSERT_EQ(run("plot a.csv -o c.ppm" + size).status, 0);

@@ -16,7 +16,7 @@ TEST_F(CliDenoise, ThreadsAndInstructionSetDoNotMatter) {
   const std::string render = "render good.toml -q --reproducible --denoise --samples 8 -o ";
   ASSERT_EQ(run(render + "a.exr -t 1").status, 0);
   ASSERT_EQ(run(render + "a.ppm -o with.exr -t 1").status, 0);
-  ASSERT_EQ(run(render + "b.exr -t 2 --isa avx2").status, 0);
+  ASSERT_EQ(run(render + "b.exr -t 2", "ORRERY_ISA=avx2").status, 0);
   ASSERT_EQ(run(render + "c.ppm").status, 0) << "a display format alone";
   ASSERT_EQ(run("render good.toml -q --reproducible --samples 8 -o noisy.exr -o noisy.ppm").status, 0);
   EXPECT_TRUE(bytes("a.exr") == bytes("b.exr"));
@@ -65,7 +65,7 @@ TEST_F(CliDenoise, FilteringTwiceIsAWarning) {
 /// One sample has no second half; in a file it is NaN.
 TEST_F(CliDenoise, ASingleSampleIsAWarning) {
   const std::string render = "render good.toml -q --type float --samples ";
-  ASSERT_EQ(run(render + "4000 --seed 5 -o reference.exr").status, 0);
+  ASSERT_EQ(run(render + "4000 --set render.seed=5 -o reference.exr").status, 0);
   const Outcome one = run("render good.toml --type float --samples 1 --denoise -o clean.exr");
   EXPECT_NE(one.err.find("render at least 2 samples per pixel"), std::string::npos) << one.err;
   EXPECT_EQ(run("render good.toml --type float --samples 2 --denoise -o two.exr").err.find("warning"),
@@ -101,7 +101,7 @@ TEST_F(CliDenoise, FilesInTilesAreRewrittenInTiles) {
 
 TEST_F(CliDenoise, PartsWithSeparateColorsAreCopiedAndNamed) {
   ASSERT_EQ(run("render good.toml -q --samples 8 -o left.exr --type float").status, 0);
-  ASSERT_EQ(run("render good.toml -q --samples 8 -o right.exr --type float --seed 2").status, 0);
+  ASSERT_EQ(run("render good.toml -q --samples 8 -o right.exr --type float --set render.seed=2").status, 0);
   const auto file = [&](const char* name) { return "'" + (folder_ / name).string() + "' "; };
   const std::string join = "oiiotool " + file("left.exr") + "--attrib oiio:subimagename left " + file("right.exr") +
                            "--attrib oiio:subimagename right --siappend -o " + file("both.exr");

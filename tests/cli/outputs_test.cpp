@@ -211,7 +211,7 @@ TEST_F(CliOutputs, OtherCommandsDoNotOverwriteTheirInputs) {
   expect_refused("compare a.exr b.exr --heat c.png --flip ./c.png", "are the same file");
   std::filesystem::create_symlink("a.exr", folder_ / "soft.png");
   expect_refused("develop a.exr -o soft.png", "would overwrite");
-  ASSERT_EQ(run("render good.toml -o shard.exr --samples 0:2 -q").status, 0);
+  ASSERT_EQ(run("render good.toml -o shard.exr --sample-range 0:2 -q").status, 0);
   expect_refused("merge shard.exr -o shard.exr --allow-missing", "shard.exr (shard)");
   expect_refused("merge shard.exr -o m.exr --allow-missing --stats good.toml", "scene");
   expect_refused("merge shard.exr ./shard.exr -o m.exr --allow-missing", "given twice");

@@ -64,5 +64,20 @@ TEST_F(CliOverrides, AreComparedByValue) {
   }
 }
 
+TEST_F(CliOverrides, AnEmptyValueOfLayersSelectsNone) {
+  EXPECT_EQ(run("render good.toml -o a.exr -q --set output.layers=[Z]").status, 0);
+  const std::string with = text_of(folder_ / "a.exr");
+  const Outcome r = run("render good.toml -o a.exr -q --layers \"\"");
+  EXPECT_EQ(r.status, 0) << r.err;
+  EXPECT_LT(text_of(folder_ / "a.exr").size(), with.size());
+}
+
+TEST_F(CliOverrides, NumbersHaveNoLeadingZeros) {
+  const Outcome r = run("check good.toml --samples 064");
+  EXPECT_EQ(r.status, 65);
+  EXPECT_EQ(r.err.substr(0, r.err.find('\n')),
+            "--samples: error: render.samples is `064`; must be an integer; write 64, without leading zeros");
+}
+
 }  // namespace
 }  // namespace orrery::test

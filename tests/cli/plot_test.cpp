@@ -154,7 +154,7 @@ TEST_F(CliPlot, MemoryOfMoleculesIsEstimated) {
     pdb += "ATOM      1  CA  ALA A   1       1.000   2.000   3.000  1.00  0.00           C\n";
   write("a.pdb", pdb);
   const Outcome r = plot("a.pdb -o a.ppm --memory-limit 5M");
-  EXPECT_EQ(r.status, 1) << r.err;
+  EXPECT_EQ(r.status, 71) << r.err;
   EXPECT_TRUE(contains(r.err, "of atoms need about ")) << r.err;
 }
 

@@ -350,7 +350,7 @@ TEST_F(CliValidation, TheMemoryOfABackgroundImageIsCheckedBeforeItIsRead) {
   write("huge.hdr", "#?RADIANCE\nFORMAT=32-bit_rle_rgbe\n\n-Y 32768 +X 65536\n");
   write("a.toml", std::string(kGoodScene) + kImageBackground + "\"huge.hdr\"\n");
   const Outcome r = run("render a.toml -q -o a.exr --memory-limit 1G");
-  EXPECT_EQ(r.status, 1);
+  EXPECT_EQ(r.status, 71);
   EXPECT_EQ(r.err,
             "orrery: huge.hdr: an image of 65536 x 32768 texels needs about 26.7 GiB, and --memory-limit allows "
             "1.0 GiB\n");

@@ -48,10 +48,10 @@ class DeterminismProgram : public testing::TestWithParam<StoredImage> {
   }
   void TearDown() override { fs::remove_all(folder_); }
 
-  /// Renders the scene to a reproducible 32-bit EXR file; `arguments` are appended.
-  fs::path render(const std::string& name, const std::string& arguments) {
+  /// Renders the scene to a reproducible 32-bit EXR file; `arguments` are appended, `before` precedes the command.
+  fs::path render(const std::string& name, const std::string& arguments, const std::string& before = "") {
     fs::path file = folder_ / (name + ".exr");
-    const std::string command = std::string("\"") + ORRERY_PROGRAM + "\" render \"" +
+    const std::string command = before + " \"" + ORRERY_PROGRAM + "\" render \"" +
                                 (folder_ / GetParam().scene).string() + "\" -o \"" + file.string() +
                                 "\" --type float --reproducible -q " + arguments;
     EXPECT_EQ(std::system(command.c_str()), 0) << command;
@@ -91,8 +91,8 @@ TEST_P(DeterminismProgram, OneTwoAndFiveThreadsGiveTheSameFile) {
 
 TEST_P(DeterminismProgram, EmbreeAndListGiveTheSameValuesInEveryPrecision) {
   for (const std::string precision : {"exact", "fast", "book"}) {
-    const auto embree = render("embree-" + precision, "--accelerator embree --precision " + precision);
-    const auto list = render("list-" + precision, "--accelerator list --threads 3 --precision " + precision);
+    const auto embree = render("embree-" + precision, "--set render.accelerator=embree --precision " + precision);
+    const auto list = render("list-" + precision, "--set render.accelerator=list --threads 3 --precision " + precision);
     EXPECT_TRUE(same_values(embree, list)) << precision;
   }
 }
@@ -104,8 +104,8 @@ TEST_P(DeterminismProgram, EveryInstructionSetFromAvx2UpwardsGivesTheSameValues)
     for (const std::string& isa : kernel::available_isas()) {
       const fs::path statistics = folder_ / "statistics.json";
       const auto limited =
-          render(isa, "--precision " + precision + " --isa " + isa + " --stats \"" + statistics.string() + "\"");
-      EXPECT_NE(bytes_of(statistics).find("\"isa\": \"" + isa + "\""), std::string::npos) << "--isa was ignored";
+          render(isa, "--precision " + precision + " --stats \"" + statistics.string() + "\"", "ORRERY_ISA=" + isa);
+      EXPECT_NE(bytes_of(statistics).find("\"isa\": \"" + isa + "\""), std::string::npos) << "ORRERY_ISA was ignored";
       if (isa != "sse4") {
         EXPECT_TRUE(same_values(best, limited)) << isa << ", " << precision;
       }
@@ -130,8 +130,8 @@ TEST_P(DeterminismProgram, ImageMatchesTheStoredHash) {
 TEST_P(DeterminismProgram, OptionsThatMatterChangeTheImage) {
   // Guards the tests above: they would pass if the program ignored its options.
   const auto plain = render("plain", "");
-  EXPECT_FALSE(same_values(plain, render("seed", "--seed 18")));
-  EXPECT_FALSE(same_values(plain, render("depth", "--max-depth 2")));
+  EXPECT_FALSE(same_values(plain, render("seed", "--set render.seed=18")));
+  EXPECT_FALSE(same_values(plain, render("depth", "--set render.max_depth=2")));
   EXPECT_FALSE(same_values(plain, render("fast", "--precision fast")));
 }
 

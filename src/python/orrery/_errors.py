@@ -5,7 +5,7 @@
 class Error(Exception):
     """Base class of all errors of orrery."""
 
-    exit_status = 1  # of the program, for the same error
+    exit_status = 70  # of the program, for the same error
 
 
 class UsageError(Error, ValueError):
@@ -34,6 +34,8 @@ class OutputError(Error, OSError):
 
 class OutOfMemoryError(Error, MemoryError):
     """The scene does not fit into memory."""
+
+    exit_status = 71
 
 
 class SceneWarning(UserWarning):

@@ -8,7 +8,8 @@ namespace {
 
 // Users' scripts depend on these numbers.
 TEST(BaseError, EachKindHasItsDocumentedNumber) {
-  EXPECT_EQ(exit_status(ErrorKind::kInternal), 1);
+  EXPECT_EQ(exit_status(ErrorKind::kInternal), 70);
+  EXPECT_EQ(exit_status(ErrorKind::kNoMemory), 71);
   EXPECT_EQ(exit_status(ErrorKind::kUsage), 2);
   EXPECT_EQ(exit_status(ErrorKind::kBadData), 65);
   EXPECT_EQ(exit_status(ErrorKind::kMissingInput), 66);

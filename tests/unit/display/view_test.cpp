@@ -73,6 +73,27 @@ TEST_F(DisplayView, TheNamedConfigOverridesTheEnvironmentAndTheBuiltIn) {
   EXPECT_EQ(choose({}).config, "built-in");
 }
 
+TEST_F(DisplayView, InvalidOptimizationFlagsAreNamed) {
+  for (const char* flags : {"zz", "-1", "0x", "99999999999999999999", "1 2"}) {
+    ::setenv("OCIO_OPTIMIZATION_FLAGS", flags, 1);
+    expect_error({}, base::ErrorKind::kUsage, {"$OCIO_OPTIMIZATION_FLAGS is `" + std::string(flags) + "`"});
+  }
+  for (const char* flags : {"", "0", "0x1FF"}) {
+    ::setenv("OCIO_OPTIMIZATION_FLAGS", flags, 1);
+    EXPECT_EQ(choose({}).display, "sRGB") << flags;
+  }
+  ::unsetenv("OCIO_OPTIMIZATION_FLAGS");
+}
+
+/// The library's own message for a file of a later version is that of its parser.
+TEST_F(DisplayView, ErrorsInConfigsNameTheVersionOfTheLibrary) {
+  for (const char* name : {"a.ocioz", "b.ocio"}) {
+    Settings settings;
+    settings.config = file(name, std::string("PK\3\4\x14\0\0", 7));
+    expect_error(settings, base::ErrorKind::kBadData, {"OpenColorIO " + ocio_version()});
+  }
+}
+
 TEST_F(DisplayView, UsesTheTransformsOfAConfig) {
   Settings settings;
   settings.config = file("a.ocio", config_text("Root"));

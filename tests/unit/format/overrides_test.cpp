@@ -195,6 +195,15 @@ TEST(FormatOverrides, ValuesAreReadByKey) {
             "sphere[1].radius=2\n");
 }
 
+TEST(FormatOverrides, SpellingsOfAListElementAreEqual) {
+  SceneFiles files;
+  for (const char* text : {"sphere[1].radius=2", " sphere [1] . radius = 2 ", "\"sphere\"[1].'radius'=2"}) {
+    const Overrides overrides = {text};
+    EXPECT_EQ(overrides.integer("sphere[1].radius"), 2) << text;
+    EXPECT_EQ(files.read(kScene, overrides).scene.spheres[1].radius, 2) << text;
+  }
+}
+
 TEST(FormatOverrides, AListContainsItsElements) {
   EXPECT_TRUE(Overrides({"sphere=[]"}).sets("sphere[2].radius"));
   EXPECT_FALSE(Overrides({"sphere=[]"}).sets("spheres"));
