@@ -140,7 +140,12 @@ void refuse_data_files(const std::vector<std::filesystem::path>& scenes) {
 
 }  // namespace
 
+void begin_messages(const RenderOptions& options) {
+  if (progress_style(options.progress) == ProgressStyle::kJson) use_json_messages();
+}
+
 int run_render(RenderOptions& options) {
+  begin_messages(options);
   farm::Batch& batch = options.batch;
   job::Job& job = batch.job;
   if (job.scene.text == nullptr) refuse_data_files(batch.scenes);
