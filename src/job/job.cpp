@@ -212,7 +212,7 @@ void run_phases(const Job& job, base::FileSet& files, JobReport& report) {
   check_sizes(job, compiled);
   const Layers layers = layers_for(job, read.scene, compiled);
   for (const auto& manifest : manifest_files(layers.mattes, job.outputs)) base::check_creatable(manifest);
-  const image::Provenance provenance = provenance_of(job, compiled, layers);
+  const image::Provenance provenance = provenance_of(job, read, compiled, layers);
   const std::string stamp = stamp_of(job, provenance, display, report.display);
   report.scene_hash = provenance.at("sceneHash");
   report.was_skipped = job.skip_existing && is_up_to_date(job, compiled, provenance, stamp);
@@ -272,7 +272,7 @@ void run_phases(const Job& job, base::FileSet& files, JobReport& report) {
       save_samples(error, *result.partial, checkpoint, report);
     }
   }
-  checkpoint.remove();
+  checkpoint.finish(result.partial && job.keep == nullptr ? &*result.partial : nullptr);
   report.phases.write_s = watch.lap();
 }
 

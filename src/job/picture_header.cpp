@@ -30,15 +30,6 @@ void set_capture_date(image::Header& header) {
   header.utc_offset_s = static_cast<float>(-local.tm_gmtoff);
 }
 
-/// All settings as lines of a scene file: "camera.vfov = 20".
-std::string settings_lines(const std::vector<format::Setting>& settings, bool reproducible) {
-  std::string lines;
-  for (const format::Setting& setting : settings)
-    if (!reproducible || setting.key != "render.accelerator")
-      lines += fmt::format("{} = {}\n", setting.key, setting.value);
-  return lines;
-}
-
 /// Frame rate as a fraction: whole rates exactly, NTSC rates such as 23.976 as multiples of 1000/1001, others in
 /// thousandths.
 std::array<int, 2> rational(double rate) {
@@ -65,6 +56,14 @@ int mean_samples(const compile::CompiledScene& compiled, const JobReport& report
 }
 
 }  // namespace
+
+std::string settings_lines(const std::vector<format::Setting>& settings, bool reproducible) {
+  std::string lines;
+  for (const format::Setting& setting : settings)
+    if (!reproducible || setting.key != "render.accelerator")
+      lines += fmt::format("{} = {}\n", setting.key, setting.value);
+  return lines;
+}
 
 image::Header picture_header(const format::ReadResult& read, const compile::CompiledScene& compiled,
                              const JobReport& report, bool reproducible) {
