@@ -2,7 +2,6 @@
 #pragma once
 
 #include <string>
-#include <vector>
 
 #include "compile/forward.h"
 #include "format/forward.h"
@@ -21,6 +20,6 @@ image::Header picture_header(const format::ReadResult& read, const compile::Comp
 /// All settings as lines of a scene file: "camera.vfov = 20".
 ///
 /// `reproducible` omits the accelerator.
-std::string settings_lines(const std::vector<format::Setting>& settings, bool reproducible);
+std::string settings_lines(const format::ReadResult& read, bool reproducible);
 
 }  // namespace orrery::job

@@ -91,7 +91,7 @@ image::Provenance provenance_of(const Job& job, const format::ReadResult& read, 
   const SceneHashes hashes = scene_hashes(compiled);
   out["sceneHash"] = hashes.of_image;
   out["sampleHash"] = hashes.of_samples;
-  out["settings"] = settings_lines(read.settings, true);
+  out["settings"] = settings_lines(read, true);
   const bool depends_on_total =
       job.sampling.is_adaptive() || layers.request.guides() || compiled.sampler.kind == kernel::SamplerKind::kBlueNoise;
   out["total"] = depends_on_total ? std::to_string(compiled.samples) : "any";
