@@ -97,7 +97,7 @@ void add_submit(Command& program, Action& action) {
   options->command = &command;
   options->merge = &program.subcommand("merge");
   add_job_options(command, *options);
-  add_render_options(command, options->render, false);
+  add_render_options(command, options->render);
   command.footer(
       "All other options are those of orrery render; the tasks get them as typed.\n"
       "\n"

@@ -60,8 +60,8 @@ std::map<std::string, std::string> settings_of(const image::Provenance& provenan
 
 /// True if a setting changes no sample: what is written of them, and how they are displayed.
 bool is_of_output(const std::string& key) {
-  static const std::vector<std::string> keys = {"color.config", "color.display", "color.view", "color.look",
-                                                "color.exposure"};
+  static const std::vector<std::string> keys = {"color.config", "color.display",  "color.view",
+                                                "color.look",   "color.exposure", "render.traversal"};
   return key.starts_with("output.") || base::contains(keys, key);
 }
 
@@ -123,14 +123,15 @@ std::string stamp_of(const Job& job, const image::Provenance& provenance, const 
                                   display.display, display.view, display.look, display.working_space})
     all += word + "\n";
   for (const format::KeyValue& set : job.scene.overrides.values())
-    if (set.key != "render.accelerator") all += set.text + "\n";  // the accelerator changes no bits
+    if (set.key != "render.accelerator" && set.key != "render.traversal")  // they change no bits
+      all += set.text + "\n";
   return base::text_hash(all);
 }
 
 std::string difference(const image::Provenance& a, const image::Provenance& b, const std::vector<std::string>& keys) {
   static const std::vector<std::pair<std::string, std::string>> names = {
       {"version", "orrery version "},  {"sceneHash", ""},           {"sampleHash", ""},
-      {"samples", "--sample-range "},       {"shard", "--shard "},       {"noise", "--noise "},
+      {"samples", "--sample-range "},  {"shard", "--shard "},       {"noise", "--noise "},
       {"time", "time budget: "},       {"limit", "sample limit: "}, {"layers", "layers "},
       {"total", "samples per pixel: "}};
   for (const auto& [key, name] : names) {
