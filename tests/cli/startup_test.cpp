@@ -131,7 +131,7 @@ TEST_F(CliStartup, AnImageLibraryThatCannotBeLoadedIsReportedBeforeRendering) {
   const std::string program = "'" + (copy / "orrery-program").string() + "' ";
   for (const std::string words : {"render good.toml -o a.png", "plot a.csv -o a.png --samples 1"}) {
     const std::string command = "cd '" + folder_.string() + "' && " + program + words + " --progress arnold 2> .err";
-    EXPECT_EQ(WEXITSTATUS(std::system(command.c_str())), 1);
+    EXPECT_EQ(WEXITSTATUS(std::system(command.c_str())), 70);
     const std::string err = text_of(folder_ / ".err");
     EXPECT_NE(err.find("cannot load "), std::string::npos) << err;
     EXPECT_EQ(err.find("% done"), std::string::npos) << "it rendered: " << err;
