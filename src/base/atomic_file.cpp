@@ -73,6 +73,20 @@ std::filesystem::path rename_target(const std::filesystem::path& path) {
   return target.empty() ? path : target;
 }
 
+/// Refuses a file that a rename must not, or cannot, replace: write-protected or immutable, or of another user in a
+/// directory such as /tmp.
+void check_replaceable(const std::filesystem::path& path, const std::filesystem::path& target) {
+  struct stat file {
+  }, directory{};
+  if (::stat(target.c_str(), &file) != 0) return;
+  if (::faccessat(AT_FDCWD, target.c_str(), W_OK, AT_EACCESS) != 0)
+    cannot_create(path, std::string("it exists and cannot be written: ") + std::strerror(errno));
+  if (::stat(directory_of(target).c_str(), &directory) != 0 || (directory.st_mode & S_ISVTX) == 0) return;
+  const uid_t user = ::geteuid();
+  if (user != 0 && user != file.st_uid && user != directory.st_uid)
+    cannot_create(path, "it belongs to another user, and its directory has the sticky bit");
+}
+
 /// A new, empty file, and its slot in the table that a signal handler unlinks.
 struct NewFile {
   std::string name;
@@ -96,6 +110,7 @@ NewFile create_beside(const std::filesystem::path& path, const std::filesystem::
   const std::filesystem::path directory = directory_of(target);
   if (!std::filesystem::is_directory(directory, ignored))
     cannot_create(path, "directory " + directory.string() + " does not exist");
+  check_replaceable(path, target);
   // If the file system accepts a name, it must also accept the temporary name.
   const long limit = ::pathconf(directory.c_str(), _PC_NAME_MAX);
   const std::size_t longest = limit > 0 ? static_cast<std::size_t>(limit) : kLongestFileName;
@@ -109,7 +124,8 @@ NewFile create_beside(const std::filesystem::path& path, const std::filesystem::
     const int descriptor = ::open(file.name.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0666);
     if (descriptor >= 0) {
       struct stat replaced {};
-      if (::stat(target.c_str(), &replaced) == 0) ::fchmod(descriptor, replaced.st_mode & 07777);  // keeps the mode
+      // Keeps the permissions, but no setuid, setgid or sticky bit. The owner must write the new file and read it back.
+      if (::stat(target.c_str(), &replaced) == 0) ::fchmod(descriptor, (replaced.st_mode & 0777) | S_IRUSR | S_IWUSR);
       ::close(descriptor);
       return file;
     }

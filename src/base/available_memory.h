@@ -11,7 +11,8 @@ namespace orrery::base {
 /// Empty if neither is known.
 ///
 /// Domain     `root` is "/", or a folder in its place in tests
-/// Reference  proc_meminfo(5); the kernel's documentation of control groups, version 2, memory.max
+/// Reference  proc_meminfo(5); the kernel's documentation of control groups: memory.max of version 2,
+///            memory.limit_in_bytes of version 1
 std::optional<std::uint64_t> available_memory(const std::filesystem::path& root = "/");
 
 /// Returns freed memory to the operating system. The C library keeps that of arrays of up to 32 MiB.

@@ -3,7 +3,10 @@
 
 #include <CLI/CLI.hpp>
 
+#include <algorithm>
 #include <utility>
+
+#include <fmt/core.h>
 
 namespace orrery::cli {
 namespace {
@@ -66,8 +69,19 @@ std::vector<std::string> Option::arguments() const {
   const bool is_flag = option_->get_items_expected_max() == 0;
   if (is_flag) return values.back() == "true" ? std::vector{name} : std::vector<std::string>{};
   std::vector<std::string> out;
-  for (const std::string& value : values) out.insert(out.end(), {name, value});
+  for (const std::string& value : values) {
+    if (value.starts_with('-')) {
+      out.push_back(fmt::format("{}={}", this->name(), value));
+    } else {
+      out.insert(out.end(), {name, value});
+    }
+  }
   return out;
+}
+
+std::string Option::name() const {
+  const std::vector<std::string>& names = option_->get_lnames();
+  return names.empty() ? "" : "--" + names.front();
 }
 
 std::string Option::heading() const { return option_->get_group(); }
@@ -76,6 +90,11 @@ Command* Command::add_subcommand(const std::string& name, const std::string& des
   CLI::App* const command = app_->add_subcommand(name, description);
   if (!heading_.empty()) command->group(heading_);
   return &subcommands_.emplace_back(*command);
+}
+
+const Command& Command::subcommand(const std::string& name) const {
+  return *std::find_if(subcommands_.begin(), subcommands_.end(),
+                       [&](const Command& command) { return command.app_->get_name() == name; });
 }
 
 void Command::require_subcommand() { app_->require_subcommand(1); }

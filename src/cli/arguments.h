@@ -42,8 +42,11 @@ class Option {
   Option* repeatable();
   /// Number of times that the option was given.
   std::size_t count() const;
-  /// The option's arguments as typed: {"-o", "a.exr", "-o", "b.png"}.
+  /// The option's arguments as typed: {"-o", "a.exr", "-o", "b.png"}. A value that begins with a dash is one word with
+  /// its option: {"--exposure=-1"}.
   std::vector<std::string> arguments() const;
+  /// The option's long name: "--output"; empty for a positional argument.
+  std::string name() const;
   /// The option's heading in the help.
   std::string heading() const;
 
@@ -63,6 +66,12 @@ class Command {
 
   Command* add_subcommand(const std::string& name, const std::string& description);
   void require_subcommand();
+  /// The subcommand with this name.
+  ///
+  /// Domain     it was added
+  const Command& subcommand(const std::string& name) const;
+  /// All options and positional arguments, in the order in which they were added.
+  const std::deque<Option>& options() const { return options_; }
 
   // `names` are "-o,--output", or "SCENE" for a positional argument. Parsing writes the value to `variable`. Empty
   // values are errors.

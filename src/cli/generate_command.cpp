@@ -27,6 +27,7 @@ struct GenerateOptions {
   double ground_albedo = 0.2;
   bool no_sun = false;
   std::filesystem::path output;
+  bool force = false;
   bool quiet = false;  ///< no generator prints anything but errors
 };
 
@@ -38,14 +39,15 @@ void add_quiet(Command& command, GenerateOptions& options) {
 }
 
 /// Adds the options of all scene generators.
-void add_common(Command& command, std::filesystem::path& output, std::uint64_t& seed) {
-  command.add_option("-o,--output", output, "Scene file to write")->required()->type_name("FILE");
+void add_common(Command& command, GenerateOptions& options, std::uint64_t& seed) {
+  command.add_option("-o,--output", options.output, "Scene file to write")->required()->type_name("FILE");
+  command.add_flag("--force", options.force, "Replace a scene file that was edited, or not written by orrery");
   command.add_option("--seed", seed, "Random seed; default: 1")->transform(whole_number(0, kMaxSeed))->type_name("N");
 }
 
 void add_final(Command& generate, const std::shared_ptr<GenerateOptions>& options, Action& action) {
   Command& command = *generate.add_subcommand("final", "The random final scene of Ray Tracing in One Weekend");
-  add_common(command, options->output, options->final_scene.seed);
+  add_common(command, *options, options->final_scene.seed);
   add_quiet(command, *options);
   command
       .add_option("--grid", options->final_scene.grid, "Grid cells from the centre to the edge, 0 to 1000; default: 11")
@@ -61,7 +63,7 @@ void add_final(Command& generate, const std::shared_ptr<GenerateOptions>& option
   command.callback([options, &action] {
     action = [options] {
       end_on_signals();
-      generate::generate_final(options->final_scene, options->output);
+      generate::generate_final(options->final_scene, options->output, options->force);
       return 0;
     };
   });
@@ -70,7 +72,7 @@ void add_final(Command& generate, const std::shared_ptr<GenerateOptions>& option
 void add_cloud(Command& generate, const std::shared_ptr<GenerateOptions>& options, Action& action) {
   Command& command =
       *generate.add_subcommand("cloud", "A cloud of small spheres: a scene file and a PLY file next to it");
-  add_common(command, options->output, options->cloud.seed);
+  add_common(command, *options, options->cloud.seed);
   add_quiet(command, *options);
   command.add_option("--count", options->cloud.count, "Number of spheres; default: 1000")
       ->transform(whole_number(1, generate::kLargestCloud))
@@ -84,7 +86,7 @@ void add_cloud(Command& generate, const std::shared_ptr<GenerateOptions>& option
   command.callback([options, &action] {
     action = [options] {
       end_on_signals();
-      generate::generate_cloud(options->cloud, options->output);
+      generate::generate_cloud(options->cloud, options->output, options->force);
       return 0;
     };
   });

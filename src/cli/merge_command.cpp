@@ -3,6 +3,7 @@
 #include <sstream>
 #include <vector>
 
+#include "base/stop_point.h"
 #include "cli/commands.h"
 #include "cli/messages.h"
 #include "cli/option_checks.h"
@@ -29,9 +30,10 @@ int merge(MergeOptions& options) {
   job.hooks.on_warning = [&](const base::Diagnostic& warning) {
     if (!options.quiet) print_message(base::formatted(warning));
   };
+  job.hooks.cancel = &stop_on_signals();
+  const base::StopScope scope(job.hooks.cancel);
   job.merge.shards = job::read_shards(options.shards, job.merge.allow_missing ? job.hooks.on_warning : nullptr);
   job::take_scene(job.merge.shards.front(), job);
-  job.hooks.cancel = &stop_on_signals();
   const job::JobReport report = job::run_job(job);
   if (!options.quiet) print_message(report_text(job, report, {options.verbose}));
   return 0;

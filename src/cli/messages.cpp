@@ -12,6 +12,7 @@
 #include <sstream>
 
 #include <fmt/core.h>
+#include <nlohmann/json.hpp>
 
 #include "base/error.h"
 
@@ -19,6 +20,7 @@ namespace orrery::cli {
 namespace {
 
 int log_file = -1;
+bool is_json = false;
 
 /// "2026-11-21T22:48:05.123Z".
 std::string time_text() {
@@ -35,8 +37,17 @@ std::string time_text() {
 
 }  // namespace
 
+void use_json_messages() { is_json = true; }
+
+std::string printed_message(const std::string& text) {
+  if (!is_json || text.empty()) return text;
+  const std::string whole = text.ends_with('\n') ? text.substr(0, text.size() - 1) : text;
+  const nlohmann::json line = {{"message", whole}};
+  return line.dump(-1, ' ', false, nlohmann::json::error_handler_t::replace) + "\n";
+}
+
 void print_message(const std::string& text) {
-  std::fputs(text.c_str(), stderr);
+  std::fputs(printed_message(text).c_str(), stderr);
   std::fflush(stderr);
   log_message(text);
 }

@@ -6,6 +6,14 @@
 
 namespace orrery::cli {
 
+/// Prints messages to stderr as JSON from now on, so that all lines are JSON beside --progress json.
+void use_json_messages();
+
+/// A message as it is printed: unchanged, or as a line {"message": "..."}.
+///
+/// Domain     whole lines
+std::string printed_message(const std::string& text);
+
 /// Prints a message to stderr, and to the log if it is open.
 ///
 /// Domain     whole lines

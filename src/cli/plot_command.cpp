@@ -15,14 +15,20 @@
 #include "base/frames.h"
 #include "base/image_limits.h"
 #include "base/output_file.h"
+#include "base/stop_point.h"
 #include "cli/commands.h"
 #include "cli/data_options.h"
 #include "cli/messages.h"
 #include "cli/option_checks.h"
 #include "cli/render_options.h"
+#include "cli/signals.h"
 #include "format/write_tree.h"
+#include "format/written_text.h"
+#include "image/library.h"
 #include "job/check_job.h"
 #include "job/job_files.h"
+#include "job/job_report.h"
+#include "job/statistics.h"
 #include "load/load_scene.h"
 #include "load/loaded_scene.h"
 #include "load/scene_files.h"
@@ -44,6 +50,7 @@ struct PlotArguments {
   DataArguments data;
   std::string style;  ///< empty: not set
   std::filesystem::path save_scene, legend;
+  bool force = false;
 };
 
 /// A side of the image, which the camera must know. An invalid one is reported when the scene is read.
@@ -92,6 +99,7 @@ void check_request(const PlotArguments& arguments, const format::Overrides& over
   for (const job::Job& one : farm::jobs_of(batch)) job::check_request(one);
   job.scene.overrides = overrides;
   job::check_layers(job, settings_of(job, arguments, overrides, job.outputs.has_display_format()).read.scene);
+  image::load();
 }
 
 /// The choices that are not made by plot::make_plot().
@@ -150,6 +158,12 @@ display::Settings display_of(const display::Settings& options, const format::Ove
   return out;
 }
 
+/// The statistics file of the first frame; empty: none.
+std::filesystem::path statistics_of(const PlotArguments& arguments) {
+  const std::vector<int>& frames = arguments.plot.frames;
+  return base::with_frame(arguments.render.batch.job.outputs.statistics.string(), frames.empty() ? 1 : frames.front());
+}
+
 /// Checks the names that are known before the data are read, which may take long. run_render() checks all names.
 void check_outputs(const PlotArguments& arguments) {
   const plot::PlotOptions& plot = arguments.plot;
@@ -162,13 +176,36 @@ void check_outputs(const PlotArguments& arguments) {
     files.add_output(output.path, output.role);
     base::check_creatable(output.path);
   }
+  if (!arguments.save_scene.empty() && !arguments.force) format::check_unedited(arguments.save_scene);
+  if (const std::filesystem::path stats = statistics_of(arguments); !stats.empty()) {
+    files.add_output(stats, "--stats");
+    base::check_creatable(stats);
+  }
   if (!arguments.render.preview.empty())
     if (const auto file = preview::parse_target(arguments.render.preview).file; !file.empty())
       files.add_output(file, "--preview");
   for (const job::ImageFile& image : arguments.render.batch.job.outputs.images) files.add_output(image.path, "-o");
 }
 
+/// Reads the data and makes a scene. If that fails or is stopped, writes the statistics.
+plot::PlotScene prepare(const PlotArguments& arguments, const format::Overrides& overrides,
+                        const std::filesystem::path& folder) {
+  const auto begin = std::chrono::steady_clock::now();
+  const base::StopScope scope(arguments.render.batch.job.hooks.cancel);
+  try {
+    return plot::make_plot(arguments.plot, folder,
+                           [&](const std::vector<int>& frames) { check_request(arguments, overrides, frames); });
+  } catch (const base::Error& error) {
+    job::JobReport report;
+    report.phases.prepare_s = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
+    if (error.kind() != base::ErrorKind::kUsage) job::write_failure(statistics_of(arguments), report, error);
+    throw;
+  }
+}
+
 int run_plot(PlotArguments& arguments) {
+  begin_messages(arguments.render);
+  arguments.render.batch.job.hooks.cancel = &stop_on_signals();
   if (arguments.plot.file.extension() == ".toml")
     base::refuse(fmt::format("{} is a scene; render it: orrery render {}", arguments.plot.file.string(),
                              arguments.plot.file.string()));
@@ -191,10 +228,9 @@ int run_plot(PlotArguments& arguments) {
   job::Job& job = render.batch.job;
   plot.display = display_of(job.outputs.display, overrides, scene_file);
   check_outputs(arguments);
+  image::start_loading();
   const auto begin = std::chrono::steady_clock::now();
-  plot::PlotScene made = plot::make_plot(plot, scene_file.parent_path(), [&](const std::vector<int>& frames) {
-    check_request(arguments, overrides, frames);
-  });
+  plot::PlotScene made = prepare(arguments, overrides, scene_file.parent_path());
   render.batch.frames = made.frames;
   job.prepare_s = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
   add_choices(job, plot, overrides, made);
@@ -208,8 +244,8 @@ int run_plot(PlotArguments& arguments) {
                   made.frames.size() > 1 ? std::to_string(made.frames.size()) + " frames" : "the file"));
   print_choices(made, arguments);
   render.shows_display = !arguments.legend.empty() || saves;
-  const auto text =
-      std::make_shared<const std::string>(saves ? saved_text(made.text, overrides, job.outputs.display) : made.text);
+  const auto text = std::make_shared<const std::string>(
+      saves ? format::marked_text(saved_text(made.text, overrides, job.outputs.display)) : made.text);
   job.scene.text = text;
   job.scene.is_generated = !saves;
   job.scene.has_file = false;
@@ -249,6 +285,8 @@ void add_plot(Command& program, Action& action) {
   add_data_file(command, arguments->plot);
   command.add_option("--legend", arguments->legend, "Write a legend of the colours: .svg or .png")->type_name("FILE");
   command.add_option("--save-scene", arguments->save_scene, "Also write the scene file")->type_name("FILE");
+  command.add_flag("--force", arguments->force,
+                   "Let --save-scene replace a file that was edited, or not written by orrery");
   add_data_options(command, arguments->data, arguments->plot);
   add_look_options(command, arguments->data, arguments->plot);
   add_view_options(command, arguments);

@@ -60,7 +60,7 @@ void ProgressPrinter::building(double fraction) {
 void ProgressPrinter::note(const std::string& text) {
   const std::lock_guard lock(mutex_);
   clear_bar();
-  print(text);
+  print(printed_message(text));
   log_message(text);
 }
 

@@ -140,7 +140,12 @@ void refuse_data_files(const std::vector<std::filesystem::path>& scenes) {
 
 }  // namespace
 
+void begin_messages(const RenderOptions& options) {
+  if (progress_style(options.progress) == ProgressStyle::kJson) use_json_messages();
+}
+
 int run_render(RenderOptions& options) {
+  begin_messages(options);
   farm::Batch& batch = options.batch;
   job::Job& job = batch.job;
   if (job.scene.text == nullptr) refuse_data_files(batch.scenes);
@@ -213,6 +218,8 @@ void add_render_options(Command& command, RenderOptions& options) {
                   "Checkpoint interval, e.g. 5m; default: only when a signal stops the render")
       ->transform(duration())
       ->type_name("TIME");
+  command.add_flag("--keep-checkpoint", options.batch.job.checkpoint.keep,
+                   "Keep a checkpoint of the finished render; with --resume, one with more samples continues from it");
   command.add_option("--noise", options.batch.job.sampling.noise, "Target noise (relative display error), e.g. 0.01")
       ->transform(real_number(1e-6, 1))
       ->type_name("X");

@@ -12,6 +12,7 @@
 
 #include "base/error.h"
 #include "cli/commands.h"
+#include "cli/messages.h"
 #include "cli/option_checks.h"
 #include "cli/output.h"
 #include "cli/signals.h"
@@ -101,10 +102,10 @@ int run(int argc, const char* const* argv) {
   } catch (const base::Error& error) {
     return print_error(error);
   } catch (const std::bad_alloc&) {
-    std::fputs("orrery: out of memory; end other programs, or raise the limit of the shell (ulimit -v)\n", stderr);
+    print_message("orrery: out of memory; end other programs, or raise the limit of the shell (ulimit -v)\n");
     return base::exit_status(base::ErrorKind::kNoMemory);
   } catch (const std::exception& error) {
-    std::fprintf(stderr, "orrery: internal error: %s\n", error.what());
+    print_message(fmt::format("orrery: internal error: {}\n", error.what()));
   }
   return base::exit_status(base::ErrorKind::kInternal);
 }

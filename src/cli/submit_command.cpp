@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
+#include <algorithm>
 #include <memory>
 
 #include "base/error.h"
@@ -8,38 +9,56 @@
 #include "cli/option_checks.h"
 #include "cli/output.h"
 #include "cli/picture_options.h"
-#include "cli/scene_options.h"
+#include "cli/render_options.h"
 #include "farm/submit.h"
 
 namespace orrery::cli {
 namespace {
 
+/// Heading, in the help, of the options that are not those of `render`.
+constexpr const char* kJobOptions = "Job options";
+
 struct SubmitOptions {
+  RenderOptions render;
   farm::Submission submission;
-  SceneOptions scene;
-  PictureOptions picture;
   std::filesystem::path scene_file;
   bool slurm = false, openjd = false, opencue = false;
   const Option* parallel = nullptr;
-  std::vector<const Option*> forwarded;  ///< besides the image and display options
-  const Command* command = nullptr;
+  const Command *command = nullptr, *merge = nullptr;
 };
+
+bool has_option(const Command& command, const std::string& name) {
+  return std::any_of(command.options().begin(), command.options().end(),
+                     [&](const Option& option) { return option.name() == name; });
+}
+
+/// Passes the arguments of `render` on as typed. With shards, the merge gets those that it has, and the renders get all
+/// but those that describe the images.
+void pass_arguments_on(const SubmitOptions& options, farm::Submission& submission) {
+  const auto append = [](std::vector<std::string>& out, const std::vector<std::string>& words) {
+    out.insert(out.end(), words.begin(), words.end());
+  };
+  for (const Option& option : options.command->options()) {
+    if (option.heading() == kJobOptions) continue;
+    const std::vector<std::string> words = option.arguments();
+    const bool is_split = submission.shards > 1;
+    const bool is_of_images = (option.heading() == kImageOptions && option.name() != "--denoise") ||
+                              option.heading() == kDisplayOptions || option.name() == "--stats";
+    if (is_split && has_option(*options.merge, option.name())) append(submission.merge_arguments, words);
+    if (!is_split || !is_of_images) append(submission.render_arguments, words);
+  }
+}
 
 int submit(SubmitOptions& options) {
   farm::Submission& s = options.submission;
-  farm::Batch& batch = s.batch;
-  batch.scenes = {options.scene_file};
-  batch.job.scene.overrides = options.scene.overrides();
-  options.picture.finish(batch.job);
-  if (!s.frames_text.empty()) batch.frames = base::parse_frames(s.frames_text);
+  s.batch = options.render.batch;
+  s.batch.scenes = {options.scene_file};
+  s.batch.job.scene.overrides = options.render.scene.overrides();
+  options.render.picture.finish(s.batch.job);
+  if (!s.frames_text.empty()) s.batch.frames = base::parse_frames(s.frames_text);
   if (options.slurm + options.openjd + options.opencue + static_cast<int>(options.parallel->count()) != 1)
-    throw base::Error(base::ErrorKind::kUsage, "specify one of --slurm, --openjd, --opencue and --parallel N");
-  s.arguments = options.command->arguments(kImageOptions);
-  const auto forward = [&](const std::vector<std::string>& words) {
-    s.arguments.insert(s.arguments.end(), words.begin(), words.end());
-  };
-  forward(options.command->arguments(kDisplayOptions));
-  for (const Option* option : options.forwarded) forward(option->arguments());
+    base::refuse("specify one of --slurm, --openjd, --opencue and --parallel N");
+  pass_arguments_on(options, s);
   s.engine = options.slurm     ? farm::Engine::kSlurm
              : options.openjd  ? farm::Engine::kOpenJd
              : options.opencue ? farm::Engine::kOpenCue
@@ -48,45 +67,40 @@ int submit(SubmitOptions& options) {
   return 0;
 }
 
-}  // namespace
-
-void add_submit(Command& program, Action& action) {
-  const auto options = std::make_shared<SubmitOptions>();
-  farm::Submission& s = options->submission;
-  Command& command = *program.add_subcommand(
-      "submit", "Write a render-farm job (Slurm, OpenJD, OpenCue, GNU parallel) to standard output");
-  command.add_option("SCENE", options->scene_file, "Scene file")->required()->type_name("FILE");
-  command.add_flag("--slurm", options->slurm, "Write a shell script that calls sbatch");
-  command.add_flag("--openjd", options->openjd, "Write an Open Job Description template (jobtemplate-2023-09)");
-  command.add_flag("--opencue", options->opencue, "Write an OpenCue job specification (XML, cjsl-1.12)");
-  options->parallel =
+void add_job_options(Command& command, SubmitOptions& options) {
+  const OptionGroup group(command, kJobOptions);
+  farm::Submission& s = options.submission;
+  command.add_option("SCENE", options.scene_file, "Scene file")->required()->type_name("FILE");
+  command.add_flag("--slurm", options.slurm, "Write a shell script that calls sbatch");
+  command.add_flag("--openjd", options.openjd, "Write an Open Job Description template (jobtemplate-2023-09)");
+  command.add_flag("--opencue", options.opencue, "Write an OpenCue job specification (XML, cjsl-1.12)");
+  options.parallel =
       command
           .add_option("--parallel", s.jobs_at_a_time, "Write a shell script that calls GNU parallel, N tasks at a time")
           ->transform(whole_number(1, kMaxThreads))
           ->type_name("N");
-  options->picture.add_to(command, s.batch.job);
-  options->scene.add_to(command);
   command.add_option("--frames", s.frames_text, "Frames to render, e.g. 1-48, 1-48x2 or 1,3,7-9")->type_name("RANGE");
   command.add_option("--shards", s.shards, "Number of shards per frame, merged at the end; default: 1")
       ->transform(whole_number(1, 1000))
       ->type_name("N");
-  Option* const noise =
-      command.add_option("--noise", s.batch.job.sampling.noise, "Target noise of each frame; not with --shards")
-          ->transform(real_number(1e-6, 1))
-          ->type_name("X");
-  Option* const time =
-      command.add_option("--time", s.batch.job.sampling.seconds, "Time budget of each frame; not with --shards")
-          ->transform(duration())
-          ->type_name("TIME");
-  Option* const stats =
-      command.add_option("--stats", s.batch.job.outputs.statistics, "Write statistics of each frame as JSON")
-          ->type_name("FILE");
-  options->forwarded = {noise, time, stats};
-  options->command = &command;
   command.add_option("--program", s.program, "orrery executable on the render nodes; default: orrery")
       ->type_name("FILE");
   s.program = "orrery";
+}
+
+}  // namespace
+
+void add_submit(Command& program, Action& action) {
+  const auto options = std::make_shared<SubmitOptions>();
+  Command& command = *program.add_subcommand(
+      "submit", "Write a render-farm job (Slurm, OpenJD, OpenCue, GNU parallel) to standard output");
+  options->command = &command;
+  options->merge = &program.subcommand("merge");
+  add_job_options(command, *options);
+  add_render_options(command, options->render);
   command.footer(
+      "All other options are those of orrery render; the tasks get them as typed.\n"
+      "\n"
       "Examples:\n"
       "  orrery submit shot.toml -o shot.####.exr --frames 1-240 --shards 4 --slurm > shot.sh; sh shot.sh\n"
       "  orrery submit shot.toml -o shot.####.png --frames 1-48 --parallel 2 | sh");

@@ -18,23 +18,26 @@ std::string replaced(std::string text, const std::string& what, const std::strin
   return text;
 }
 
-Words with_numbers(Words words, const std::string& frame, const std::string& shard) {
-  for (std::string& word : words) word = replaced(replaced(word, Commands::kFrame, frame), Commands::kShard, shard);
-  return words;
-}
-
-/// One shell command line. The frame and shard placeholders become `frame` and `shard`, outside single quotes so that
-/// the shell expands them.
+/// One shell command line. `frame` and `shard` replace their placeholders, outside quotes so that the shell expands
+/// them.
 std::string shell_line(const Words& words, const std::string& frame, const std::string& shard) {
-  std::string out;
+  std::string out, piece;
+  const auto end_piece = [&] {
+    if (!piece.empty()) out += base::shell_quoted(piece);
+    piece.clear();
+  };
   for (const std::string& word : words) {
-    // Close the quotes around what the shell substitutes.
-    const bool is_plain = base::shell_quoted(word) == word;
-    const std::string quote = is_plain ? "" : "'";
-    std::string text = base::shell_quoted(word);
-    text = replaced(text, Commands::kFrame, quote + frame + quote);
-    text = replaced(text, Commands::kShard, quote + shard + quote);
-    out += (out.empty() ? "" : " ") + text;
+    if (!out.empty()) out += ' ';
+    if (word.empty()) out += "''";
+    for (const char c : word) {
+      if (c != Commands::kFrame && c != Commands::kShard && c != Commands::kThreads) {
+        piece += c;
+        continue;
+      }
+      end_piece();
+      out += c == Commands::kFrame ? frame : c == Commands::kShard ? shard : "\"$threads\"";
+    }
+    end_piece();
   }
   return out;
 }
@@ -67,11 +70,11 @@ std::string slurm_array(const Commands& c, const std::string& kind, std::size_t 
 }
 
 std::string slurm_text(const Submission& s, const Commands& c) {
-  // #SBATCH lines have no way to escape these.
-  if (c.folder.string().find_first_of("\"\\\n\r") != std::string::npos)
-    throw base::Error(base::ErrorKind::kUsage, base::printable(c.folder.string()) +
-                                                   ": Slurm's log files cannot be in folders with quotes, backslashes "
-                                                   "or line ends in their names; write the image elsewhere");
+  // An #SBATCH line has no way to escape the first two, and Slurm replaces what follows a percent sign.
+  if (c.folder.string().find_first_of("\"\\%") != std::string::npos)
+    base::refuse(c.folder.string() +
+                 ": Slurm's log files cannot be in folders with quotes, backslashes or percent signs in their names; "
+                 "write the image elsewhere");
   std::string out = "#!/bin/sh\n" + heading(s, c, "Slurm");
   out += fmt::format(
       "# Run it with sh in a directory that all nodes mount at the same path. Edit it as needed.\n"
@@ -88,7 +91,7 @@ std::string slurm_text(const Submission& s, const Commands& c) {
       "#SBATCH --signal=B:TERM@60\n";
   out += fmt::format("shards={}\nset -- {}\n", s.shards, frame_list(c, " "));
   out += "shift $((SLURM_ARRAY_TASK_ID / shards))\nframe=$1\nshard=$((SLURM_ARRAY_TASK_ID % shards + 1))\n";
-  out += shell_line(c.render, "\"$frame\"", "\"$shard\"") + " --progress alf &\n";
+  out += shell_line(c.render, "\"$frame\"", "\"$shard\"") + " &\n";
   out +=
       "child=$!\ntrap 'kill -TERM $child' TERM\nstatus=0\nwait $child || status=$?\n"
       "if kill -0 $child 2>/dev/null; then status=0; wait $child || status=$?; fi  # a signal interrupts the first "
@@ -129,7 +132,7 @@ std::string parallel_text(const Submission& s, const Commands& c) {
   };
   std::string shards;
   for (int i = 1; s.shards > 1 && i <= s.shards; ++i) shards += (i == 1 ? " ::: " : " ") + std::to_string(i);
-  run(shell_line(c.render, "\"$1\"", "\"$2\"") + " --progress none -q -t \"$threads\"", "render", shards);
+  run(shell_line(c.render, "\"$1\"", "\"$2\""), "render", shards);
   if (!c.merge.empty()) run(shell_line(c.merge, "\"$1\"", ""), "merge", "");
   return out;
 }
@@ -145,13 +148,9 @@ std::string openjd_text(const Submission& s, const Commands& c) {
     return ordered_json{{"name", name}, {"type", "INT"}, {"range", values}};
   };
   const auto step = [&](const char* name, const Words& words, ordered_json parameters) {
-    // Braces of a name would begin a format string, which has no way to escape them.
-    for (const std::string& word : words)
-      if (word.find("{{") != std::string::npos)
-        throw base::Error(
-            base::ErrorKind::kUsage,
-            fmt::format("{}: Open Job Description cannot pass on {{{{; choose another name", base::printable(word)));
-    Words arguments = with_numbers(words, frame, shard);
+    Words arguments = words;
+    for (std::string& word : arguments)
+      word = replaced(replaced(word, {Commands::kFrame}, frame), {Commands::kShard}, shard);
     const std::string command = arguments.front();
     arguments.erase(arguments.begin());
     return ordered_json{
@@ -164,18 +163,16 @@ std::string openjd_text(const Submission& s, const Commands& c) {
               {"args", arguments},
               {"cancelation", {{"mode", "NOTIFY_THEN_TERMINATE"}, {"notifyPeriodInSeconds", 60}}}}}}}}}};
   };
-  Words render = c.render;
-  render.insert(render.end(), {"--progress", "openjd"});
   ordered_json parameters = ordered_json::array({parameter("Frame", range)});
   if (s.shards > 1) parameters.push_back(parameter("Shard", fmt::format("1-{}", s.shards)));
   ordered_json job = {{"specificationVersion", "jobtemplate-2023-09"}, {"name", c.name}};
-  job["steps"] = ordered_json::array({step("Render", render, parameters)});
+  job["steps"] = ordered_json::array({step("Render", c.render, parameters)});
   if (!c.merge.empty()) {
     ordered_json merge = step("Merge", c.merge, ordered_json::array({parameter("Frame", range)}));
     merge["dependencies"] = ordered_json::array({{{"dependsOn", "Render"}}});
     job["steps"].push_back(merge);
   }
-  return job.dump(2, ' ', false, ordered_json::error_handler_t::replace) + "\n";
+  return job.dump(2) + "\n";
 }
 
 // -------------------------------------------------------------------------------------------------- OpenCue
@@ -202,8 +199,7 @@ std::string opencue_text(const Submission& s, const Commands& c) {
         name, type, xml_escaped(command), range);
   };
   for (int i = 1; i <= s.shards; ++i)
-    layer(fmt::format("render_{}", i), "Render",
-          shell_line(c.render, "#IFRAME#", std::to_string(i)) + " --progress arnold");
+    layer(fmt::format("render_{}", i), "Render", shell_line(c.render, "#IFRAME#", std::to_string(i)));
   if (!c.merge.empty()) layer("merge", "Post", shell_line(c.merge, "#IFRAME#", ""));
   out += "    </layers>\n  </job>\n";
   if (!c.merge.empty()) {

@@ -10,6 +10,7 @@
 #include "base/error.h"
 #include "base/output_file.h"
 #include "format/write_ply.h"
+#include "format/written_text.h"
 #include "scene/animation.h"
 #include "scene/schema.h"
 #include "scene/texture.h"
@@ -141,7 +142,7 @@ std::string scene_text(const scene::Scene& scene, const std::string& comment) {
 
 void write_scene(const scene::Scene& scene, const std::string& comment, const std::filesystem::path& file) {
   for (const scene::Points& points : scene.points) write_ply(points, file.parent_path() / points.file);
-  base::write_text_file(file, scene_text(scene, comment));
+  base::write_text_file(file, marked_text(scene_text(scene, comment)));
 }
 
 }  // namespace orrery::format

@@ -15,7 +15,7 @@ namespace orrery::format {
 ///            material index that does not exist
 std::string scene_text(const scene::Scene& scene, const std::string& comment);
 
-/// Writes a scene file, and a PLY file for each of its Points.
+/// Writes a scene file, marked by marked_text(), and a PLY file for each of its Points.
 ///
 /// Errors     base::Error: kCannotCreate, kIo; kInternal as for scene_text
 void write_scene(const scene::Scene& scene, const std::string& comment, const std::filesystem::path& file);

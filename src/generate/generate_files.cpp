@@ -11,6 +11,7 @@
 #include "film/picture.h"
 #include "format/write_ply.h"
 #include "format/write_scene.h"
+#include "format/written_text.h"
 #include "generate/generate.h"
 #include "image/exr_options.h"
 #include "image/format.h"
@@ -67,12 +68,13 @@ std::filesystem::path points_file_of(const std::filesystem::path& file) {
 
 /// Checks the output files before anything is generated. The points file, which the user does not name, is replaced
 /// only if an earlier run wrote it.
-void check(const std::filesystem::path& file, bool has_points) {
+void check(const std::filesystem::path& file, bool has_points, bool force) {
   if (file.extension() == ".ply")
     throw base::Error(base::ErrorKind::kUsage,
                       fmt::format("{}: .ply is the extension of the points file; name the scene, e.g. {}",
                                   file.string(), std::filesystem::path(file).replace_extension(".toml").string()));
   base::check_creatable(file);
+  if (!force) format::check_unedited(file);
   if (!has_points) return;
   const std::filesystem::path points = file.parent_path() / points_file_of(file);
   base::FileSet files;
@@ -111,14 +113,14 @@ void write_environment(const film::Picture& picture, const std::string& command,
 
 }  // namespace
 
-void generate_final(const FinalScene& options, const std::filesystem::path& file) {
-  check(file, options.grid > kLargestWrittenGrid);
+void generate_final(const FinalScene& options, const std::filesystem::path& file, bool force) {
+  check(file, options.grid > kLargestWrittenGrid, force);
   format::write_scene(make_final_scene(options, points_file_of(file)), comment(options, file.filename().string()),
                       file);
 }
 
-void generate_cloud(const Cloud& options, const std::filesystem::path& file) {
-  check(file, true);
+void generate_cloud(const Cloud& options, const std::filesystem::path& file, bool force) {
+  check(file, true, force);
   format::write_scene(make_cloud(options, points_file_of(file)), comment(options, file.filename().string()), file);
 }
 

@@ -16,10 +16,11 @@ struct FinalScene;
 /// A comment at the top describes the scene and gives the command that reproduces it, byte for byte. An existing points
 /// file is replaced only if orrery wrote it.
 ///
+/// `force`    replace a scene file that orrery did not write, or that was edited since
 /// Errors     base::Error: kUsage for options out of range and for a `file` that ends in .ply; kCannotCreate, before
-///            anything is generated, including for a points file that orrery did not write; kIo
-void generate_final(const FinalScene& options, const std::filesystem::path& file);
-void generate_cloud(const Cloud& options, const std::filesystem::path& file);
+///            anything is generated, including for files that must not be replaced; kIo
+void generate_final(const FinalScene& options, const std::filesystem::path& file, bool force = false);
+void generate_cloud(const Cloud& options, const std::filesystem::path& file, bool force = false);
 
 /// Writes a generated environment to an EXR file with float channels, or a planet with half channels. Its attribute
 /// `orrery/command` is the command that reproduces the file.

@@ -10,6 +10,14 @@ namespace orrery::image {
 /// Cost       runs once per process
 void prepare_library();
 
+/// Starts loading OpenImageIO on another thread, in a program that loads it on demand. Failure is reported by load().
+void start_loading();
+
+/// Loads OpenImageIO, or waits until it is loaded.
+///
+/// Errors     base::Error(kInternal)
+void load();
+
 /// Sets the number of threads that OpenImageIO encodes and decodes with; the default is 1.
 ///
 /// Domain     count >= 1

@@ -46,7 +46,7 @@ std::optional<film::Partial> Checkpoint::load(int width_px, int height_px) {
   }
   try {
     const image::Provenance found = image::read_provenance(file_);
-    if (const std::string wrong = difference(found, provenance_, keys_of_checkpoints()); !wrong.empty())
+    if (const std::string wrong = difference_of_checkpoint(found, provenance_); !wrong.empty())
       throw base::Error(
           base::ErrorKind::kBadData,
           fmt::format("{} has {}; delete it, or render without --resume to start again", file_.string(), wrong));
@@ -83,7 +83,8 @@ void Checkpoint::write(const film::Partial& partial) {
   is_ours_ = true;
 }
 
-void Checkpoint::remove() {
+void Checkpoint::finish(const film::Partial* partial) {
+  if (settings_.keep && partial != nullptr) return write_snapshot(*partial);
   std::error_code ignored;
   if (is_ours_) std::filesystem::remove(file_, ignored);
 }

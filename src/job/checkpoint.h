@@ -20,6 +20,7 @@ std::filesystem::path checkpoint_file(const std::filesystem::path& first_output)
 /// When checkpoints are written and read.
 struct CheckpointSettings {
   bool resume = false;    ///< continue from the checkpoint if it exists
+  bool keep = false;      ///< keep a checkpoint of the finished render, from which one with more samples can continue
   double interval_s = 0;  ///< 0: only when the job is stopped
 };
 
@@ -54,8 +55,11 @@ class Checkpoint {
   /// Errors     base::Error: kCannotCreate, kIo
   void write(const film::Partial& partial);
 
-  /// Removes the checkpoint if this job wrote it or resumed from it. Call after the images are written.
-  void remove();
+  /// Removes the checkpoint if this job wrote it or resumed from it; writes it instead if the settings keep it. Call
+  /// after the images are written.
+  ///
+  /// `partial`  the finished sums; null for a merge, which has no checkpoint
+  void finish(const film::Partial* partial);
 
  private:
   using Clock = std::chrono::steady_clock;

@@ -198,6 +198,7 @@ void keep(const Job& job, const format::ReadResult& read, const compile::Compile
 void run_phases(const Job& job, base::FileSet& files, JobReport& report) {
   Stopwatch watch, total;
   report.phases.prepare_s = job.prepare_s;
+  if (job.keep == nullptr) image::start_loading();
   load::LoadedScene loaded = load(job, report);
   format::ReadResult& read = loaded.read;
   const display::Settings& display = loaded.display;
@@ -211,7 +212,7 @@ void run_phases(const Job& job, base::FileSet& files, JobReport& report) {
   check_sizes(job, compiled);
   const Layers layers = layers_for(job, read.scene, compiled);
   for (const auto& manifest : manifest_files(layers.mattes, job.outputs)) base::check_creatable(manifest);
-  const image::Provenance provenance = provenance_of(job, compiled, layers);
+  const image::Provenance provenance = provenance_of(job, read, compiled, layers);
   const std::string stamp = stamp_of(job, provenance, display, report.display);
   report.scene_hash = provenance.at("sceneHash");
   report.was_skipped = job.skip_existing && is_up_to_date(job, compiled, provenance, stamp);
@@ -234,7 +235,7 @@ void run_phases(const Job& job, base::FileSet& files, JobReport& report) {
   if (job.hooks.on_start && job.merge.shards.empty())
     job.hooks.on_start(
         {job.scene.file.filename().string(), compiled.width, compiled.height, compiled.pixel_aspect, display});
-  if (job.keep == nullptr) image::set_threads(settings.threads);
+  if (job.keep == nullptr) image::set_threads(settings.threads);  // fails now if the library cannot be loaded
   const auto write_sums = [&](const std::filesystem::path& file, const film::Partial& partial) {
     image::write_partial(file, preview(compiled, partial),
                          picture_header(read, compiled, report, job.outputs.reproducible), provenance, partial);
@@ -271,7 +272,7 @@ void run_phases(const Job& job, base::FileSet& files, JobReport& report) {
       save_samples(error, *result.partial, checkpoint, report);
     }
   }
-  checkpoint.remove();
+  checkpoint.finish(result.partial && job.keep == nullptr ? &*result.partial : nullptr);
   report.phases.write_s = watch.lap();
 }
 
@@ -289,17 +290,6 @@ bool may_report(const Job& job, const JobReport& report, const base::Error& erro
   }
 }
 
-/// Writes the failure to the statistics file, if possible. Errors of writing are dropped: the caller gets `error`.
-void write_failure(const Job& job, const JobReport& report, const base::Error& error) {
-  if (job.outputs.statistics.empty()) return;
-  const bool stopped = error.kind() == base::ErrorKind::kStopped;
-  try {
-    write_statistics(job.outputs.statistics, report,
-                     {stopped ? "stopped" : "failed", base::exit_status(error.kind()), error.what()});
-  } catch (const base::Error&) {
-  }
-}
-
 }  // namespace
 
 bool is_limited(const Job& job) { return job.scene.overrides.sets("render.samples"); }
@@ -314,12 +304,12 @@ JobReport run_job(const Job& job) {
   try {
     run_phases(job, files, report);
   } catch (const base::Error& error) {
-    if (may_report(job, report, error, files)) write_failure(job, report, error);
+    if (may_report(job, report, error, files)) write_failure(job.outputs.statistics, report, error);
     throw;
   } catch (const std::bad_alloc&) {
     const base::Error error(base::ErrorKind::kNoMemory,
                             "out of memory; orrery info SCENE prints how much a scene needs");
-    if (may_report(job, report, error, files)) write_failure(job, report, error);
+    if (may_report(job, report, error, files)) write_failure(job.outputs.statistics, report, error);
     throw error;
   }
   if (!job.outputs.statistics.empty() && !report.was_skipped) write_statistics(job.outputs.statistics, report, {});

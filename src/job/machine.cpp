@@ -8,6 +8,7 @@
 
 #include <fmt/core.h>
 
+#include "base/control_group.h"
 #include "base/error.h"
 #include "base/text.h"
 #include "kernel/isa.h"
@@ -28,8 +29,9 @@ int granted_by(const char* variable) {
 
 }  // namespace
 
-int default_threads() {
+int default_threads(const std::filesystem::path& root) {
   int threads = std::max(1, render::available_threads());
+  if (const auto granted = base::granted_cpus(root)) threads = std::min(threads, *granted);
   for (const char* variable : {"SLURM_CPUS_PER_TASK", "CUE_THREADS"})
     if (const int granted = granted_by(variable); granted > 0) threads = std::min(threads, granted);
   return threads;

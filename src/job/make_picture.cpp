@@ -111,7 +111,7 @@ bool is_up_to_date(const Job& job, const compile::CompiledScene& compiled, const
     try {
       const image::PartialFile shard =
           image::read_partial(job.outputs.images.front().path, compiled.width, compiled.height);
-      return difference(shard.provenance, provenance, keys_of_checkpoints()).empty() && is_finished(shard);
+      return difference(shard.provenance, provenance, keys_of_files()).empty() && is_finished(shard);
     } catch (const base::Error&) {
       return false;
     }

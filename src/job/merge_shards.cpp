@@ -13,6 +13,7 @@
 #include "base/error.h"
 #include "base/file_set.h"
 #include "base/frames.h"
+#include "base/stop_point.h"
 #include "base/text.h"
 #include "image/partial_file.h"
 #include "job/checkpoint.h"
@@ -114,7 +115,9 @@ std::vector<ShardFile> read_shards(const std::vector<std::filesystem::path>& fil
   std::vector<base::Diagnostic> diagnostics, left_out;
   bool only_missing = true;
   base::FileSet seen;
+  const base::StopPoint stop;
   for (const std::filesystem::path& file : files) {
+    stop.check();
     if (!seen.add_input(file, "shard")) throw base::Error(ErrorKind::kUsage, file.string() + " is given twice");
     try {
       shards.push_back({file, image::read_provenance(file)});
@@ -172,7 +175,9 @@ MergedShards merge_shards(std::vector<ShardFile> shards, int width_px, int heigh
   Coverage coverage(out.partial.pixel_count(), width_px);
   std::vector<base::Diagnostic> diagnostics;
   std::set<std::string> hosts;
+  const base::StopPoint stop;
   for (std::size_t i = 0; i < shards.size(); ++i) {
+    stop.check();
     image::PartialFile file;
     try {
       file = image::read_partial(shards[i].file, width_px, height_px);

@@ -30,15 +30,6 @@ void set_capture_date(image::Header& header) {
   header.utc_offset_s = static_cast<float>(-local.tm_gmtoff);
 }
 
-/// All settings as lines of a scene file: "camera.vfov = 20".
-std::string settings_lines(const std::vector<format::Setting>& settings, bool reproducible) {
-  std::string lines;
-  for (const format::Setting& setting : settings)
-    if (!reproducible || setting.key != "render.accelerator")
-      lines += fmt::format("{} = {}\n", setting.key, setting.value);
-  return lines;
-}
-
 /// Frame rate as a fraction: whole rates exactly, NTSC rates such as 23.976 as multiples of 1000/1001, others in
 /// thousandths.
 std::array<int, 2> rational(double rate) {
@@ -65,6 +56,14 @@ int mean_samples(const compile::CompiledScene& compiled, const JobReport& report
 }
 
 }  // namespace
+
+std::string settings_lines(const format::ReadResult& read, bool reproducible) {
+  std::string lines;
+  for (const format::Setting& setting : read.settings)
+    if (!reproducible || setting.key != "render.accelerator")
+      lines += fmt::format("{} = {}\n", setting.key, setting.value);
+  return lines;
+}
 
 image::Header picture_header(const format::ReadResult& read, const compile::CompiledScene& compiled,
                              const JobReport& report, bool reproducible) {
@@ -97,7 +96,7 @@ image::Header picture_header(const format::ReadResult& read, const compile::Comp
         {"orrery/badValues/" + layer, fmt::format("{} nan, {} infinite, {} negative, {} above half", bad.nan,
                                                   bad.infinite, bad.negative, bad.above_half)});
   if (!report.display.config_id.empty()) header.attributes.push_back({"orrery/ocioConfigId", report.display.config_id});
-  header.attributes.push_back({"orrery/settings", settings_lines(read.settings, reproducible)});
+  header.attributes.push_back({"orrery/settings", settings_lines(read, reproducible)});
   if (!report.missing.empty()) header.attributes.push_back({"orrery/missing", report.missing});
   if (reproducible) return header;
   set_capture_date(header);

@@ -5,16 +5,22 @@
 
 #include <algorithm>
 #include <cstdio>
+#include <map>
+#include <sstream>
 #include <utility>
 
 #include <fmt/core.h>
 
+#include "base/hash.h"
+#include "base/text.h"
 #include "compile/compiled_scene.h"
 #include "display/settings.h"
 #include "film/layer_film.h"
+#include "format/read_result.h"
 #include "image/partial_file.h"
 #include "job/job.h"
 #include "job/layers.h"
+#include "job/picture_header.h"
 #include "job/scene_hash.h"
 #include "job/version.h"
 #include "render/sampling_limits.h"
@@ -32,23 +38,68 @@ std::string layers_text(const Layers& layers) {
     for (const auto& [name, id] : matte.things) out += fmt::format(" {:08x}", id);
   // A hash replaces the rest of a long list, such as that of a matte with ten thousand names.
   constexpr std::size_t kLongest = 200;
-  if (out.size() > kLongest) out = fmt::format("{}... {}", out.substr(0, kLongest), text_hash(out));
+  if (out.size() > kLongest) out = fmt::format("{}... {}", out.substr(0, kLongest), base::text_hash(out));
   return out;
+}
+
+std::string value(const image::Provenance& provenance, const std::string& key) {
+  const auto found = provenance.find(key);
+  return found == provenance.end() ? std::string() : found->second;
+}
+
+/// Settings that are lines "key = value", by key.
+std::map<std::string, std::string> settings_of(const image::Provenance& provenance) {
+  std::map<std::string, std::string> out;
+  std::istringstream lines(value(provenance, "settings"));
+  constexpr std::string_view kEquals = " = ";
+  for (std::string line; std::getline(lines, line);)
+    if (const std::size_t equals = line.find(kEquals); equals != std::string::npos)
+      out[line.substr(0, equals)] = line.substr(equals + kEquals.size());
+  return out;
+}
+
+/// True if a setting changes no sample: what is written of them, and how they are displayed.
+bool is_of_output(const std::string& key) {
+  static const std::vector<std::string> keys = {"color.config", "color.display",  "color.view",
+                                                "color.look",   "color.exposure", "render.traversal"};
+  return key.starts_with("output.") || base::contains(keys, key);
+}
+
+/// Names the settings in which two scenes of different hashes differ.
+///
+/// `counts`   the number of samples is a difference
+std::string scene_difference(const image::Provenance& a, const image::Provenance& b, bool counts) {
+  const std::map<std::string, std::string> mine = settings_of(a);
+  std::string out;
+  for (const auto& [key, other] : settings_of(b)) {
+    const auto found = mine.find(key);
+    if (found == mine.end() || found->second == other || is_of_output(key) || (!counts && key == "render.samples"))
+      continue;
+    out += fmt::format("{}{} = {}, not {}", out.empty() ? "" : "; ", key, found->second, other);
+  }
+  return out.empty() ? "other spheres, materials, lights or images" : out;
 }
 
 }  // namespace
 
-image::Provenance provenance_of(const Job& job, const compile::CompiledScene& compiled, const Layers& layers) {
+image::Provenance provenance_of(const Job& job, const format::ReadResult& read, const compile::CompiledScene& compiled,
+                                const Layers& layers) {
   const std::uint32_t end =
       job.sampling.sample_end > 0 ? job.sampling.sample_end : static_cast<std::uint32_t>(compiled.samples);
   image::Provenance out;
   out["version"] = program_version();
-  out["sceneHash"] = scene_hash(compiled);
+  const SceneHashes hashes = scene_hashes(compiled);
+  out["sceneHash"] = hashes.of_image;
+  out["sampleHash"] = hashes.of_samples;
+  out["settings"] = settings_lines(read, true);
+  const bool depends_on_total =
+      job.sampling.is_adaptive() || layers.request.guides() || compiled.sampler.kind == kernel::SamplerKind::kBlueNoise;
+  out["total"] = depends_on_total ? std::to_string(compiled.samples) : "any";
   out["samples"] = fmt::format("{}:{}", job.sampling.sample_begin, end);
   out["shard"] = fmt::format("{}/{}", job.sampling.shard.index + 1, job.sampling.shard.count);
   out["noise"] = fmt::format("{}", job.sampling.noise);  // shortest text that reads back exactly
   out["time"] = job.sampling.seconds > 0 ? "yes" : "no";
-  out["limit"] = is_limited(job) ? "yes" : "no";
+  out["limit"] = job.sampling.is_adaptive() && is_limited(job) ? "yes" : "no";
   out["layers"] = layers_text(layers);
   out["scene"] = std::filesystem::absolute(job.scene.file).lexically_normal().string();
   std::string& overrides = out["overrides"];
@@ -63,7 +114,7 @@ image::Provenance provenance_of(const Job& job, const compile::CompiledScene& co
 std::string stamp_of(const Job& job, const image::Provenance& provenance, const display::Settings& display,
                      const display::Choice& choice) {
   std::string all;
-  for (const std::string& key : keys_of_checkpoints()) all += fmt::format("{} {}\n", key, provenance.at(key));
+  for (const std::string& key : keys_of_files()) all += fmt::format("{} {}\n", key, provenance.at(key));
   all += fmt::format("{:.17g} s, frame {}, {} bits, float {:d}, multipart {:d}, reproducible {:d}, exposure {:.17g}\n",
                      job.sampling.seconds, job.scene.frame, job.outputs.bits, job.outputs.exr.as_float,
                      job.outputs.exr.multipart, job.outputs.reproducible, display.exposure.value_or(0));
@@ -74,20 +125,18 @@ std::string stamp_of(const Job& job, const image::Provenance& provenance, const 
   for (const format::KeyValue& set : job.scene.overrides.values())
     if (set.key != "render.accelerator" && set.key != "render.traversal")  // they change no bits
       all += set.text + "\n";
-  return text_hash(all);
+  return base::text_hash(all);
 }
 
 std::string difference(const image::Provenance& a, const image::Provenance& b, const std::vector<std::string>& keys) {
-  const auto value = [](const image::Provenance& p, const std::string& key) {
-    const auto found = p.find(key);
-    return found == p.end() ? std::string() : found->second;
-  };
   static const std::vector<std::pair<std::string, std::string>> names = {
-      {"version", "orrery version "}, {"sceneHash", "scene hash "}, {"samples", "--sample-range "},
-      {"shard", "--shard "},          {"noise", "--noise "},        {"time", "time budget: "},
-      {"limit", "sample limit: "},    {"layers", "layers "}};
+      {"version", "orrery version "},  {"sceneHash", ""},           {"sampleHash", ""},
+      {"samples", "--sample-range "},  {"shard", "--shard "},       {"noise", "--noise "},
+      {"time", "time budget: "},       {"limit", "sample limit: "}, {"layers", "layers "},
+      {"total", "samples per pixel: "}};
   for (const auto& [key, name] : names) {
     if (std::find(keys.begin(), keys.end(), key) == keys.end() || value(a, key) == value(b, key)) continue;
+    if (name.empty()) return scene_difference(a, b, key == "sceneHash");
     return fmt::format("{}{}, not {}", name, value(a, key).empty() ? "none" : value(a, key),
                        value(b, key).empty() ? "none" : value(b, key));
   }
@@ -99,10 +148,21 @@ const std::vector<std::string>& keys_of_shards() {
   return keys;
 }
 
-const std::vector<std::string>& keys_of_checkpoints() {
+const std::vector<std::string>& keys_of_files() {
   static const std::vector<std::string> keys = {"version", "sceneHash", "samples", "shard",
                                                 "noise",   "time",      "limit",   "layers"};
   return keys;
+}
+
+std::string difference_of_checkpoint(const image::Provenance& checkpoint, const image::Provenance& job) {
+  // The sums count samples, so that they do not depend on how many there will be, unless `total` says so.
+  static const std::vector<std::string> keys = {"version", "sampleHash", "total", "shard",
+                                                "noise",   "time",       "limit", "layers"};
+  std::string out = difference(checkpoint, job, keys);
+  const SampleRange begun = sample_range(checkpoint), wanted = sample_range(job);
+  if (out.empty() && (begun.begin != wanted.begin || begun.end > wanted.end))
+    out = difference(checkpoint, job, {"samples"});
+  return out;
 }
 
 bool is_finished(const image::PartialFile& shard) {

@@ -7,6 +7,7 @@
 
 #include "compile/forward.h"
 #include "display/forward.h"
+#include "format/forward.h"
 #include "image/forward.h"
 #include "image/provenance.h"
 #include "render/forward.h"
@@ -18,7 +19,8 @@ struct Layers;
 
 /// The provenance of a shard or checkpoint of this job: program version, scene, and every setting that its sums depend
 /// on. It prevents merging or resuming incompatible files.
-image::Provenance provenance_of(const Job& job, const compile::CompiledScene& compiled, const Layers& layers);
+image::Provenance provenance_of(const Job& job, const format::ReadResult& read, const compile::CompiledScene& compiled,
+                                const Layers& layers);
 
 /// Hash of everything that determines the images of a job. An image with this stamp in its header is up to date.
 ///
@@ -26,14 +28,17 @@ image::Provenance provenance_of(const Job& job, const compile::CompiledScene& co
 std::string stamp_of(const Job& job, const image::Provenance& provenance, const display::Settings& display,
                      const display::Choice& choice);
 
-/// Describes the first difference between two provenances: "scene hash 1234, not 5678"; empty: none.
+/// Describes the first difference between two provenances: "camera.vfov = 20, not 30"; empty: none.
 ///
 /// `keys`     the keys to compare
 std::string difference(const image::Provenance& a, const image::Provenance& b, const std::vector<std::string>& keys);
 
-/// The keys whose values must match in all shards of an image, and in a checkpoint and the job that resumes from it.
+/// The keys whose values must match in all shards of an image, and in a finished file and the job that would write it.
 const std::vector<std::string>& keys_of_shards();
-const std::vector<std::string>& keys_of_checkpoints();
+const std::vector<std::string>& keys_of_files();
+
+/// Describes why a job cannot continue from a checkpoint; empty: it can. It can have more samples than the checkpoint.
+std::string difference_of_checkpoint(const image::Provenance& checkpoint, const image::Provenance& job);
 
 /// True if every pixel of a shard has all samples of the shard's range.
 bool is_finished(const image::PartialFile& shard);

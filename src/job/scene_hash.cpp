@@ -4,8 +4,7 @@
 #include <algorithm>
 #include <cstring>
 
-#include <fmt/core.h>
-
+#include "base/hash.h"
 #include "base/stop_point.h"
 #include "compile/compiled_scene.h"
 #include "compile/environment.h"
@@ -13,23 +12,7 @@
 namespace orrery::job {
 namespace {
 
-/// FNV-1a over 64-bit words. Folds high bits down, since the product carries only upwards.
-class Hash {
- public:
-  void add(double x) {
-    std::uint64_t bits;
-    std::memcpy(&bits, &x, sizeof(bits));
-    add_bits(bits);
-  }
-  void add_bits(std::uint64_t bits) {
-    state_ = (state_ ^ bits) * 0x100000001b3u;
-    state_ ^= state_ >> 29;
-  }
-  std::string text() const { return fmt::format("{:016x}", state_); }
-
- private:
-  std::uint64_t state_ = 0xcbf29ce484222325u;
-};
+using base::Hash;
 
 template <std::size_t N>
 void add_all(Hash& hash, const double (&values)[N]) {
@@ -93,7 +76,7 @@ void add_textures(Hash& hash, const compile::TextureStore& store) {
 
 }  // namespace
 
-std::string scene_hash(const compile::CompiledScene& compiled) {
+SceneHashes scene_hashes(const compile::CompiledScene& compiled) {
   Hash hash;
   hash.add_bits(compiled.spheres.size());
   const base::StopPoint stop;
@@ -123,20 +106,18 @@ std::string scene_hash(const compile::CompiledScene& compiled) {
   add_all(hash, compiled.background.bottom);
   add_all(hash, compiled.background.top);
   for (const std::uint64_t v :
-       {std::uint64_t(compiled.width), std::uint64_t(compiled.height), std::uint64_t(compiled.samples),
-        std::uint64_t{compiled.max_depth}, std::uint64_t{compiled.roulette_depth}, std::uint64_t{compiled.sampler.seed},
+       {std::uint64_t(compiled.width), std::uint64_t(compiled.height), std::uint64_t{compiled.max_depth},
+        std::uint64_t{compiled.roulette_depth}, std::uint64_t{compiled.sampler.seed},
         std::uint64_t(compiled.sampler.kind), std::uint64_t(compiled.shading), std::uint64_t(compiled.precision)})
     hash.add_bits(v);
   for (const double v : compiled.filter.above) hash.add(v);
   add_lights(hash, compiled);
   add_textures(hash, compiled.textures);
-  return hash.text();
-}
-
-std::string text_hash(std::string_view text) {
-  Hash hash;
-  for (const char c : text) hash.add_bits(static_cast<unsigned char>(c));
-  return hash.text();
+  SceneHashes out;
+  out.of_samples = hash.text();
+  hash.add_bits(static_cast<std::uint64_t>(compiled.samples));
+  out.of_image = hash.text();
+  return out;
 }
 
 }  // namespace orrery::job

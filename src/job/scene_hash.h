@@ -2,20 +2,20 @@
 #pragma once
 
 #include <string>
-#include <string_view>
 
 #include "compile/forward.h"
 
 namespace orrery::job {
 
-/// Hash of everything that determines the image, as sixteen hexadecimal digits: spheres, materials, lights, camera,
-/// background, samples, seed. Excludes names, comments and the accelerator, which change no bit of the image. Not
-/// cryptographic.
-///
-/// Reference  fnv
-std::string scene_hash(const compile::CompiledScene& compiled);
+/// Hashes of everything that determines the image: spheres, materials, lights, camera, background, seed. They exclude
+/// names, comments and the accelerator, which change no bit of the image.
+struct SceneHashes {
+  std::string of_samples;  ///< without the number of samples: what determines each sample of each pixel
+  std::string of_image;    ///< with the number of samples
+};
+SceneHashes scene_hashes(const compile::CompiledScene& compiled);
 
-/// The same hash of a text.
-std::string text_hash(std::string_view text);
+/// SceneHashes::of_image, which identifies the scene.
+inline std::string scene_hash(const compile::CompiledScene& compiled) { return scene_hashes(compiled).of_image; }
 
 }  // namespace orrery::job

@@ -86,4 +86,13 @@ void write_statistics(const std::filesystem::path& file, const JobReport& report
   base::write_text_file(file, statistics_json(report, outcome));
 }
 
+void write_failure(const std::filesystem::path& file, const JobReport& report, const base::Error& error) {
+  if (file.empty()) return;
+  const bool stopped = error.kind() == base::ErrorKind::kStopped;
+  try {
+    write_statistics(file, report, {stopped ? "stopped" : "failed", base::exit_status(error.kind()), error.what()});
+  } catch (const base::Error&) {
+  }
+}
+
 }  // namespace orrery::job

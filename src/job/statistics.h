@@ -4,6 +4,8 @@
 #include <filesystem>
 #include <string>
 
+#include "base/error.h"
+
 namespace orrery::job {
 
 struct JobReport;
@@ -22,6 +24,9 @@ std::string statistics_json(const JobReport& report, const Outcome& outcome);
 ///
 /// Errors     base::Error: kCannotCreate, kIo
 void write_statistics(const std::filesystem::path& file, const JobReport& report, const Outcome& outcome);
+
+/// Writes the statistics of a job that ended with an error, if it has a file for them. Errors of writing are dropped.
+void write_failure(const std::filesystem::path& file, const JobReport& report, const base::Error& error);
 
 /// Peak resident memory of this process, in bytes.
 std::size_t peak_memory();

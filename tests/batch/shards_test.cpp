@@ -96,8 +96,8 @@ TEST_F(BatchShards, MismatchedShardsAreNamed) {
   render("other.exr", "--sample-range 10:35 --layers Z");
   expect_refused(
       run("merge a.exr foreign.exr other.exr nothing.exr whole.exr -o merged.exr"), 65,
-      {"foreign.exr: error: has scene hash", "other.exr: error: has layers", "nothing.exr: error: cannot open",
-       "whole.exr: error: whole.exr is not a checkpoint or shard", "4 errors"});
+      {"foreign.exr: error: has render.seed = 8, not ", "other.exr: error: has layers",
+       "nothing.exr: error: cannot open", "whole.exr: error: whole.exr is not a checkpoint or shard", "4 errors"});
   expect_refused(run("merge a.exr nothing.exr -o merged.exr"), 66, {"nothing.exr"});
   const std::string bytes = text_of(folder_ / "b.exr");
   for (const std::size_t share : {1u, 2u, 9u}) {

@@ -3,8 +3,10 @@
 // Slurm and GNU parallel.
 #include <nlohmann/json.hpp>
 
+#include <map>
 #include <regex>
 #include <set>
+#include <sstream>
 
 #include "cli/program.h"
 
@@ -136,15 +138,47 @@ TEST_F(BatchSubmit, ScriptsAreValidShellAndCallTheGivenProgram) {
   }
 }
 
-TEST_F(BatchSubmit, PassesOutputOptionsOnAsTyped) {
+TEST_F(BatchSubmit, PassesOptionsOnAsTyped) {
   const std::string text = submit(
       "-o s.exr -o s.png --stats s.json --time 90s --bits 16 --exposure -1.5 --disk-limit 8G --multipart "
-      "--compression dwaa:45 --type float --parallel 1");
+      "--compression dwaa:45 --type float --samples 9 --set camera.vfov=30 --memory-limit 4G --parallel 1");
+  EXPECT_NE(text.find("render good.toml --progress none -q -t \"$threads\" -o s.exr -o s.png --exposure=-1.5 --bits 16 "
+                      "--type float --compression dwaa:45 --multipart --disk-limit 8G --set camera.vfov=30 --samples 9 "
+                      "--time 90s --memory-limit 4G --stats s.json --resume"),
+            std::string::npos)
+      << text;
+}
+
+/// With shards, the merge makes the images and the statistics.
+TEST_F(BatchSubmit, ShardsGetTheOptionsOfRenderingAndTheMergeThoseOfImages) {
+  const std::string text = submit(
+      "-o s.exr --bits 16 --denoise --type float --stats s.json --memory-limit 4G --checkpoint 5m "
+      "--samples 9 --shards 2 --slurm");
+  EXPECT_NE(text.find("render good.toml --progress alf --denoise --samples 9 --checkpoint 5m --memory-limit 4G "
+                      "-o s.exr.shards/%d.\"$shard\".shard.exr --shard \"$shard\"/2 --frames \"$frame\" --resume "
+                      "--skip-existing &\n"),
+            std::string::npos)
+      << text;
   EXPECT_NE(
-      text.find("-o s.exr -o s.png --type float --compression dwaa:45 --multipart --disk-limit 8G --exposure -1.5 "
-                "--bits 16 --time 90s --stats s.json --resume"),
+      text.find("merge s.exr.shards/\"$frame\".1.shard.exr s.exr.shards/\"$frame\".2.shard.exr -o s.exr --bits 16 "
+                "--type float --denoise --memory-limit 4G --stats s.json\n"),
       std::string::npos)
       << text;
+}
+
+TEST_F(BatchSubmit, HasEveryOptionOfRender) {
+  const auto options_of = [&](const std::string& command) {
+    std::set<std::string> out;
+    const std::string help = run(command + " --help").out;
+    const std::regex option("\n  (?:-[a-z],)?(--[a-z-]+)");
+    for (auto i = std::sregex_iterator(help.begin(), help.end(), option); i != std::sregex_iterator(); ++i)
+      out.insert((*i)[1]);
+    return out;
+  };
+  const std::set<std::string> known = options_of("submit");
+  EXPECT_GT(known.size(), 30u);
+  for (const std::string& option : options_of("render"))
+    EXPECT_EQ(known.count(option), option == "--shard" || option == "--sample-range" ? 0u : 1u) << option;
 }
 
 /// Two jobs of one scene with different settings must not find each other's shards.
@@ -162,13 +196,160 @@ TEST_F(BatchSubmit, ParallelDoesNotSeeTheNamesOfFiles) {
   EXPECT_EQ(text.find("--resume-failed"), std::string::npos) << "which skips tasks by their number, whatever they do";
 }
 
-TEST_F(BatchSubmit, NamesCannotAddLinesToScripts) {
-  write("a\nrm -rf x.toml", kGoodScene);
-  const Outcome r = run("submit 'a\nrm -rf x.toml' -o s.exr --slurm");
-  EXPECT_EQ(r.status, 0) << r.err;
-  EXPECT_EQ(r.out.find("\nrm -rf x.toml,"), std::string::npos) << r.out;
-  EXPECT_EQ(run("submit good.toml -o 's\"x.exr' --slurm").status, 2);
-  EXPECT_EQ(run("submit good.toml -o '{{Param.x}}.exr' --openjd").status, 2);
+/// Runs generated jobs with mocks of the engines, and of orrery, which writes its arguments to the file `calls`.
+class BatchHostileNames : public BatchSubmit {
+ protected:
+  void SetUp() override {
+    BatchSubmit::SetUp();
+    std::filesystem::create_directory(folder_ / "mocks");
+    write_script("orrery", "printf '<%s>\\n' \"$@\" >> \"$CALLS\"\n");
+    write_script("sbatch", R"sh(
+script=$(mktemp)
+cat > "$script"
+last=$(sed -n 's/^#SBATCH --array=0-//p' "$script")
+for task in $(seq 0 "$last"); do SLURM_ARRAY_TASK_ID=$task sh "$script" > /dev/null; done
+rm "$script"
+echo 1
+)sh");
+    // --jobs N --joblog FILE --retries N COMMAND ::: FRAMES [::: SHARDS]
+    write_script("parallel", R"sh(
+[ "$1 $3 $5" = "--jobs --joblog --retries" ] || exit 1
+: > "$4" || exit 1
+command=$7
+shift 8
+frames= shards=none
+while [ $# -gt 0 ] && [ "$1" != ::: ]; do frames="$frames $1"; shift; done
+[ $# -eq 0 ] || { shift; shards=$*; }
+for frame in $frames; do for shard in $shards; do
+  sh -c "$(printf %s "$command" | sed "s/{1}/$frame/; s/{2}/$shard/")" || exit 1
+done; done
+)sh");
+  }
+
+  void write_script(const std::string& name, const std::string& text) {
+    write("mocks/" + name, "#!/bin/sh\n" + text);
+    std::filesystem::permissions(folder_ / "mocks" / name, std::filesystem::perms::owner_all);
+  }
+
+  int run_shell(const std::string& command) {
+    write("run.sh", command);
+    return std::system(
+        ("cd '" + folder_.string() + "' && PATH=\"$PWD/mocks:$PATH\" CALLS=\"$PWD/calls\" sh run.sh").c_str());
+  }
+
+  static std::string quoted(const std::string& word) {
+    return "'" + std::regex_replace(word, std::regex("'"), "'\\''") + "'";
+  }
+
+  static std::string replaced(std::string text, const std::string& what, const std::string& by) {
+    for (std::size_t at = text.find(what); at != std::string::npos; at = text.find(what, at + by.size()))
+      text.replace(at, what.size(), by);
+    return text;
+  }
+
+  /// Runs a job for two frames in two shards.
+  void run_job(char engine, const std::string& text) {
+    if (engine == 'S' || engine == 'P') {
+      EXPECT_EQ(run_shell(text), 0) << text;
+    } else if (engine == 'J') {
+      const auto job = nlohmann::json::parse(text);
+      for (const auto& step : job["steps"])
+        for (const std::string frame : {"1", "2"})
+          for (const std::string shard : {"1", "2"}) {
+            if (step["name"] == "Merge" && shard == "2") continue;
+            const auto& action = step["script"]["actions"]["onRun"];
+            std::string command = quoted(action["command"]);
+            for (const std::string word : action["args"])
+              command +=
+                  " " + quoted(replaced(replaced(word, "{{Task.Param.Frame}}", frame), "{{Task.Param.Shard}}", shard));
+            EXPECT_EQ(run_shell(command), 0) << command;
+          }
+    } else {
+      const std::regex element("<cmd>([^<]*)</cmd>");
+      for (auto i = std::sregex_iterator(text.begin(), text.end(), element); i != std::sregex_iterator(); ++i)
+        for (const std::string frame : {"1", "2"}) {
+          std::string command = replaced(replaced((*i)[1], "&lt;", "<"), "&gt;", ">");
+          // As OpenCue does, also in names.
+          for (const char* token : {"#FRAME#", "#IFRAME#", "#ZFRAME#", "#LAYER#"})
+            command = replaced(command, token, frame);
+          EXPECT_EQ(run_shell(replaced(command, "&amp;", "&")), 0) << command;
+        }
+    }
+  }
+};
+
+TEST_F(BatchHostileNames, ArriveUnchangedOrAreRefused) {
+  struct Name {
+    std::string text;
+    std::string refused_by;  ///< engines: Slurm, GNU Parallel, OpenJD, OpenCue
+  };
+  const std::vector<Name> names = {{"x\nEND\ntouch PWNED; : '", "SPJC"},
+                                   {"x\ntouch PWNED\n", "SPJC"},
+                                   {"x\rtouch PWNED\r", "SPJC"},
+                                   {"tab\there", "SPJC"},
+                                   {"\x1B[2J", "SPJC"},
+                                   {"\xC2\x85", "SPJC"},
+                                   {"bad\xFF", "SPJC"},
+                                   {"\x01", "SPJC"},
+                                   {"$(touch PWNED)", ""},
+                                   {"`touch PWNED`", ""},
+                                   {"'; touch PWNED; '", ""},
+                                   {"a\"; touch PWNED; \"", "S"},
+                                   {"back\\slash\\n", "S"},
+                                   {"a & b < c > d | touch PWNED", ""},
+                                   {"]]>&amp;--><x>", ""},
+                                   {"{1}{2}{}", ""},
+                                   {"{{Task.Param.Frame}}", "J"},
+                                   {"{{Param.x", "J"},
+                                   {"#IFRAME#", "C"},
+                                   {"##FRAME##", "C"},
+                                   {"#ZFRAME#.#LAYER#", "C"},
+                                   {"@FRAME@ @SHARD@", ""},
+                                   {"%a%j%%", ""},
+                                   {"~", ""},
+                                   {"* ? [a]", ""},
+                                   {"!x $HOME ${x}", ""},
+                                   {"-x", ""},
+                                   {"--log=PWNED", ""},
+                                   {"+x", ""},
+                                   {"\xC3\xA9 \xE2\x82\xAC \xF0\x9F\x98\x80", ""}};
+  const std::vector<std::pair<char, std::string>> engines = {
+      {'S', "--slurm"}, {'P', "--parallel 2"}, {'J', "--openjd"}, {'C', "--opencue"}};
+  for (const Name& name : names)
+    for (const auto& [engine, option] : engines) {
+      SCOPED_TRACE(option + " " + name.text);
+      const std::string scene = name.text + ".toml", image = name.text + ".%d.png";
+      write(scene, kGoodScene);
+      std::filesystem::remove(folder_ / "calls");
+      const Outcome r = run("submit " + option + " --frames 1-2 --shards 2 --output=" + quoted(image) +
+                            " --set 'sphere[0].name=\"it'\\''s $x\"' -- " + quoted(scene));
+      const bool is_refused = name.refused_by.find(engine) != std::string::npos;
+      EXPECT_EQ(r.status, is_refused ? 2 : 0) << r.err;
+      if (r.status != 0) {
+        EXPECT_EQ(r.out, "");
+        continue;
+      }
+      run_job(engine, r.out);
+      std::map<std::string, int> calls;
+      std::istringstream lines(text_of(folder_ / "calls"));
+      for (std::string line; std::getline(lines, line);) ++calls[line];
+      const std::string prefix = name.text[0] == '-' || name.text[0] == '+' ? "./" : "";
+      EXPECT_EQ(calls["<render>"], 4);
+      EXPECT_EQ(calls["<merge>"], 2);
+      EXPECT_EQ(calls["<" + prefix + scene + ">"], 4);
+      EXPECT_EQ(calls["<sphere[0].name=\"it's $x\">"], 4);
+      EXPECT_EQ(calls["<" + image + ">"] + calls["<--output=" + image + ">"], 2);
+      EXPECT_FALSE(std::filesystem::exists(folder_ / "PWNED"));
+    }
+}
+
+TEST_F(BatchSubmit, FoldersThatSlurmCannotWriteLogsToAreRefused) {
+  for (const char* folder : {"100%", "a\"b", "a\\b"}) {
+    std::filesystem::create_directory(folder_ / folder);
+    const std::string words = "submit good.toml -o '" + std::string(folder) + "/s.exr' ";
+    EXPECT_EQ(run(words + "--slurm").status, 2) << folder;
+    EXPECT_EQ(run(words + "--parallel 1").status, 0) << folder;
+  }
 }
 
 TEST_F(BatchSubmit, InvalidJobsFailAtSubmission) {

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // The command plot.
 #include <algorithm>
+#include <sstream>
 
 #include <nlohmann/json.hpp>
 
@@ -79,7 +80,7 @@ TEST_F(CliPlot, ChoicesOfTheRenderArePrinted) {
 TEST_F(CliPlot, TimesIncludeThePlotsOwnPass) {
   const Outcome r = plot("a.dump -o a.##.ppm --frames all --stats s.##.json -v");
   ASSERT_EQ(r.status, 0) << r.err;
-  EXPECT_TRUE(contains(r.err, "prepare 0.")) << r.err;
+  EXPECT_TRUE(contains(r.err, "\nprepare ")) << r.err;
   const auto lines = std::count(r.err.begin(), r.err.end(), '\n');
   EXPECT_GT(lines, 0);
   std::size_t totals = 0;
@@ -156,6 +157,47 @@ TEST_F(CliPlot, MemoryOfMoleculesIsEstimated) {
   const Outcome r = plot("a.pdb -o a.ppm --memory-limit 5M");
   EXPECT_EQ(r.status, 71) << r.err;
   EXPECT_TRUE(contains(r.err, "of atoms need about ")) << r.err;
+}
+
+TEST_F(CliPlot, EditedScenesAreNotReplaced) {
+  const std::string save = "a.dump -o a.ppm -q --save-scene s.toml";
+  ASSERT_EQ(plot(save).status, 0);
+  ASSERT_EQ(plot(save + " --look-from +x").status, 0) << "its own file";
+  const std::string edited = text_of(folder_ / "s.toml") + "# a note\n";
+  write("s.toml", edited);
+  std::filesystem::remove(folder_ / "a.ppm");
+  const Outcome r = plot(save);
+  EXPECT_EQ(r.status, 73) << r.err;
+  EXPECT_TRUE(contains(r.err, "s.toml: the existing file was edited since orrery wrote it")) << r.err;
+  EXPECT_EQ(text_of(folder_ / "s.toml"), edited);
+  EXPECT_FALSE(std::filesystem::exists(folder_ / "a.ppm")) << "refused before anything is written";
+  EXPECT_EQ(plot(save + " --force").status, 0);
+  EXPECT_EQ(run("render s.toml -o b.ppm -q").status, 0);
+
+  write("g.toml", kGoodScene);
+  EXPECT_EQ(run("generate final --grid 1 -o g.toml").status, 73);
+  EXPECT_EQ(run("generate cloud --count 9 -o g.toml").status, 73);
+  EXPECT_EQ(text_of(folder_ / "g.toml"), kGoodScene);
+  EXPECT_EQ(run("generate final --grid 1 -o g.toml --force").status, 0);
+  EXPECT_EQ(run("generate final --grid 2 -o g.toml").status, 0) << "its own file";
+}
+
+/// Messages are JSON, too, wherever they come from.
+TEST_F(CliPlot, EveryLineOfJsonProgressIsJson) {
+  for (const char* words : {"plot a.dump -o a.png --width 16 --height 9 --samples 1 -v --display sRGB -o a.exr",
+                            "plot a.dump -o none/a.png", "render good.toml -o a.exr --bits 16",
+                            "render good.toml -o a.exr --set camera.vfow=3", "render none.toml -o a.exr"}) {
+    const Outcome r = run(std::string(words) + " --progress json");
+    std::istringstream lines(r.err);
+    int messages = 0;
+    for (std::string line; std::getline(lines, line);) {
+      const auto json = nlohmann::json::parse(line, nullptr, false);
+      ASSERT_TRUE(json.is_object()) << words << ": " << line;
+      EXPECT_NE(json.contains("progress"), json.contains("message")) << line;
+      messages += json.contains("message");
+    }
+    EXPECT_GT(messages, 0) << words << r.err;
+  }
 }
 
 }  // namespace

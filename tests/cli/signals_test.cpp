@@ -61,6 +61,25 @@ TEST_F(CliSignals, IgnoredSignalsStayIgnored) {
   EXPECT_EQ(render.wait(), 75);
 }
 
+/// The signal comes while the data are read, or while a render that would take hours begins.
+TEST_F(CliSignals, PlotStopsWhileItPrepares) {
+  std::string rows = "x,y,z\n";
+  for (int i = 0; i < 1'000'000; ++i) rows += std::to_string(i % 1000) + "," + std::to_string(i / 1000) + ",0\n";
+  write("a.csv", rows);
+  for (const int number : {SIGTERM, SIGINT}) {
+    PacedProgram plot(folder_, {"plot",    "a.csv",     "-o",       "a.exr",      "--width",    "1000", "--height",
+                                "1000",    "--samples", "60000",    "--progress", "arnold",     "-t",   "1",
+                                "--stats", "a.json",    "--legend", "l.svg",      "--color-by", "x"});
+    ASSERT_TRUE(plot.run_changes(1)) << plot.text();  // the check that files can be created comes before the data
+    plot.send(number);
+    EXPECT_EQ(plot.wait(), 75) << plot.text();
+    EXPECT_NE(plot.text().find("orrery: stopped"), std::string::npos) << plot.text();
+    EXPECT_NE(text_of(folder_ / "a.json").find("\"stopped\""), std::string::npos);
+    EXPECT_FALSE(std::filesystem::exists(folder_ / "a.exr"));
+    std::filesystem::remove(folder_ / "a.json");
+  }
+}
+
 TEST_F(CliSignals, GenerateExitsAtTheFirstSignalAndLeavesNoFiles) {
   // The points file is first written under a temporary name. If the program was faster than the test, the signal came
   // too late; it is then given more work.

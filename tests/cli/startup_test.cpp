@@ -120,6 +120,24 @@ TEST_F(CliStartup, OnlyCommandsWithImagesLoadOpenImageIO) {
   EXPECT_TRUE(loads_it("render good.toml -o a.exr -q"));
 }
 
+/// A copy of the program beside which the image module is damaged.
+TEST_F(CliStartup, AnImageLibraryThatCannotBeLoadedIsReportedBeforeRendering) {
+  const std::filesystem::path copy = folder_ / "program", libexec = std::filesystem::path(ORRERY_MODULES);
+  std::filesystem::create_directory(copy);
+  for (const char* file : {"orrery-program", "orrery-particles.so"})
+    std::filesystem::copy_file(libexec / file, copy / file);
+  write("program/orrery-image.so", "no library");
+  write("a.csv", "x,y,z\n0,0,0\n3,0,0\n");
+  const std::string program = "'" + (copy / "orrery-program").string() + "' ";
+  for (const std::string words : {"render good.toml -o a.png", "plot a.csv -o a.png --samples 1"}) {
+    const std::string command = "cd '" + folder_.string() + "' && " + program + words + " --progress arnold 2> .err";
+    EXPECT_EQ(WEXITSTATUS(std::system(command.c_str())), 70);
+    const std::string err = text_of(folder_ / ".err");
+    EXPECT_NE(err.find("cannot load "), std::string::npos) << err;
+    EXPECT_EQ(err.find("% done"), std::string::npos) << "it rendered: " << err;
+  }
+}
+
 TEST_F(CliStartup, BrokenStderrPipeDoesNotStopTheRender) {
   EXPECT_EQ(run_prepared({"render", "good.toml", "-o", "a.png", "-v"}, [] { break_pipe(2); }), 0);
   EXPECT_TRUE(std::filesystem::exists(folder_ / "a.png"));

@@ -75,7 +75,7 @@ TEST(ImageBookFiles, EverySceneIsShownInTheReadme) {
 TEST(ImageBookFiles, FinalSceneMatchesGenerate) {
   const fs::path folder = fs::path(testing::TempDir()) / "orrery-book-files";
   fs::create_directories(folder);
-  generate::generate_final({}, folder / "final.toml");
+  generate::generate_final({}, folder / "final.toml", true);
   EXPECT_TRUE(text_of(folder / "final.toml") == text_of(kScenes / "book/final.toml"))
       << "regenerate it: orrery generate final -o scenes/book/final.toml";
   fs::remove_all(folder);
@@ -86,7 +86,7 @@ TEST(ImageBookFiles, BouncingSpheresMatchGenerate) {
   fs::create_directories(folder);
   generate::FinalScene options;
   options.moving = true;
-  generate::generate_final(options, folder / name);
+  generate::generate_final(options, folder / name, true);
   EXPECT_TRUE(text_of(folder / name) == text_of(kScenes / "next-week" / name))
       << "regenerate it: orrery generate final --moving -o scenes/next-week/01-bouncing-spheres.toml";
   fs::remove_all(folder);

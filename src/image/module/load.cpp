@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // The program's side of the module: forwards the room's functions to the module and loads it on the first call. Loading
 // OpenImageIO's 260 libraries takes longer than most commands, so commands without image I/O do not load them.
-#include <atomic>
-#include <chrono>
 #include <cstdint>
 #include <future>
 
@@ -14,28 +12,18 @@
 namespace orrery::image {
 namespace {
 
-std::atomic<int> threads{0};  ///< 0: set_threads() was not called
-
-const Functions& load() {
-  const Functions& functions = *static_cast<const Functions*>(base::load_module("image"));
-  if (threads > 0) functions.set_threads(threads);
-  return functions;
-}
-
 const Functions& module() {
-  static const Functions& functions = load();
+  static const Functions& functions = *static_cast<const Functions*>(base::load_module("image"));
   return functions;
 }
 
 }  // namespace
 
-void set_threads(int count) {
-  threads = count;
-  // A job calls this before rendering and later writes an image, so the module is loaded in the background. The first
-  // call that needs the module tries again and reports an error.
-  static const std::future<void> loading = std::async(std::launch::async, [] { module(); });
-  if (loading.wait_for(std::chrono::seconds(0)) == std::future_status::ready) module().set_threads(count);
-}
+void start_loading() { static const std::future<void> loading = std::async(std::launch::async, load); }
+
+void load() { module(); }
+
+void set_threads(int count) { module().set_threads(count); }
 
 std::string oiio_version() { return module().oiio_version(); }
 

@@ -88,6 +88,64 @@ TEST(BaseAtomicFile, AReplacedFileKeepsItsMode) {
   }
 }
 
+TEST(BaseAtomicFile, AReplacedFileLosesSetuidAndSetgid) {
+  const TempDir folder;
+  write_bytes(folder / "a.txt", "old");
+  ASSERT_EQ(::chmod((folder / "a.txt").c_str(), 06755), 0);
+  write_text_file(folder / "a.txt", "new");
+  struct stat status {};
+  ASSERT_EQ(::stat((folder / "a.txt").c_str(), &status), 0);
+  EXPECT_EQ(status.st_mode & 07777u, 0755u);
+}
+
+/// Runs `act` as a user without privileges, if this process has any.
+template <class Act>
+void as_plain_user(const TempDir& folder, Act act) {
+  constexpr uid_t kNobody = 65534;
+  const bool is_root = ::geteuid() == 0;
+  ASSERT_EQ(::chmod(folder.path().c_str(), 0777), 0);
+  if (is_root) {
+    ASSERT_EQ(::seteuid(kNobody), 0);
+  }
+  act();
+  if (is_root) {
+    ASSERT_EQ(::seteuid(0), 0);
+  }
+}
+
+TEST(BaseAtomicFile, AWriteProtectedFileIsNotReplaced) {
+  const TempDir folder;
+  as_plain_user(folder, [&] {
+    write_bytes(folder / "a.txt", "old");
+    ASSERT_EQ(::chmod((folder / "a.txt").c_str(), 0444), 0);
+    for (const bool checks : {true, false}) {
+      const Error error = error_of([&] {
+        if (checks) check_creatable(folder / "a.txt");
+        AtomicFile file(folder / "a.txt");
+      });
+      EXPECT_EQ(error.kind(), ErrorKind::kCannotCreate);
+      EXPECT_NE(std::string(error.what()).find("a.txt: it exists and cannot be written"), std::string::npos)
+          << error.what();
+    }
+  });
+  EXPECT_EQ(file_bytes(folder / "a.txt"), "old");
+  EXPECT_EQ(folder.count(), 1u);
+}
+
+TEST(BaseAtomicFile, AFileOfAnotherUserInAStickyFolderIsNotReplaced) {
+  if (::geteuid() != 0) GTEST_SKIP() << "needs two users";
+  const TempDir folder;
+  write_bytes(folder / "a.txt", "old");
+  ASSERT_EQ(::chmod((folder / "a.txt").c_str(), 0666), 0);
+  as_plain_user(folder, [&] { check_creatable(folder / "a.txt"); });
+  ASSERT_EQ(::chmod(folder.path().c_str(), 01777), 0);
+  ASSERT_EQ(::seteuid(65534), 0);
+  const Error error = error_of([&] { check_creatable(folder / "a.txt"); });
+  ASSERT_EQ(::seteuid(0), 0);
+  EXPECT_EQ(error.kind(), ErrorKind::kCannotCreate);
+  EXPECT_NE(std::string(error.what()).find("another user"), std::string::npos) << error.what();
+}
+
 TEST(BaseAtomicFile, MissingFolderIsNamed) {
   const TempDir folder;
   const Error error = error_of([&] { AtomicFile file(folder / "none" / "a.txt"); });

@@ -54,6 +54,17 @@ TEST_F(BaseAvailableMemory, TheTightestControlGroupLimits) {
   EXPECT_EQ(available(), 0u) << "zero, without wrapping";
 }
 
+TEST_F(BaseAvailableMemory, ControlGroupsOfVersionOneLimitToo) {
+  write("proc/meminfo", "MemAvailable:   1048576 kB\n");
+  write("proc/self/cgroup", "8:pids:/\n4:memory:/job\n0::/\n");
+  write("sys/fs/cgroup/memory/job/memory.limit_in_bytes", "104857600\n");
+  write("sys/fs/cgroup/memory/job/memory.usage_in_bytes", "83886080\n");
+  write("sys/fs/cgroup/memory/job/memory.stat", "inactive_file 1\ntotal_inactive_file 20971520\n");
+  EXPECT_EQ(available(), 40 * kMega);
+  write("sys/fs/cgroup/memory/job/memory.limit_in_bytes", "9223372036854771712\n");
+  EXPECT_EQ(available(), 1024 * kMega) << "a group without a limit";
+}
+
 TEST_F(BaseAvailableMemory, TheRootControlGroupLimitsToo) {
   write("proc/self/cgroup", "0::/\n");
   write("sys/fs/cgroup/memory.max", "10485760\n");

@@ -65,5 +65,13 @@ TEST(BaseText, BytesHaveTheLargestUnitAboveOne) {
   EXPECT_EQ(bytes_text(5ull << 50), "5120.0 TiB");
 }
 
+TEST(BaseText, PrintableTextIsUtf8WithoutControlCharacters) {
+  for (const char* text : {"", "a b", "~$`'\"\\", "\xC3\xA9", "\xE2\x82\xAC", "\xF0\x9F\x98\x80"})
+    EXPECT_TRUE(is_printable(text)) << text;
+  for (const char* text : {"\n", "a\tb", "\x1B[2J", "\x7F", "\xC2\x85", "\xFF", "\xC3", "\xC0\x80", "\xED\xA0\x80",
+                           "\xEF\xBF\xBF", "\xF4\x90\x80\x80"})
+    EXPECT_FALSE(is_printable(text)) << text;
+}
+
 }  // namespace
 }  // namespace orrery::base

@@ -161,6 +161,54 @@ TEST_F(JobRun, ResumesFromTheCheckpointOfAStoppedRenderToTheSameBytes) {
   EXPECT_FALSE(std::filesystem::exists(folder_ / "a.checkpoint.exr"));
 }
 
+/// The samples of a pixel do not depend on how many there are, so that a render with fewer samples is a beginning.
+TEST_F(JobRun, MoreSamplesContinueAStoppedOrAFinishedRender) {
+  job_.outputs.images = {folder_ / "a.exr"};
+  const auto set_samples = [&](int samples) {
+    job_.scene.overrides = {"image.width=200", "image.height=100", "output.layers=[\"Z\", \"diffuse\"]",
+                            "render.samples=" + std::to_string(samples)};
+  };
+  job_.outputs.reproducible = true;
+  set_samples(300);
+  run_job(job_);
+  const std::string uninterrupted = support::file_bytes(folder_ / "a.exr");
+
+  set_samples(100);
+  stop_while_rendering();
+  set_samples(300);
+  run_job(job_);
+  EXPECT_EQ(statistics()["resumed"], true);
+  EXPECT_TRUE(support::file_bytes(folder_ / "a.exr") == uninterrupted) << "of a stopped render";
+  EXPECT_FALSE(std::filesystem::exists(folder_ / "a.checkpoint.exr"));
+
+  set_samples(60);
+  job_.checkpoint.keep = true;
+  run_job(job_);
+  EXPECT_EQ(statistics()["resumed"], false);
+  EXPECT_TRUE(std::filesystem::exists(folder_ / "a.checkpoint.exr"));
+  set_samples(300);
+  job_.checkpoint.keep = false;
+  const JobReport report = run_job(job_);
+  EXPECT_EQ(statistics()["resumed"], true);
+  EXPECT_EQ(report.render.paths, 200u * 100 * 300) << "counts the samples of both runs";
+  EXPECT_TRUE(support::file_bytes(folder_ / "a.exr") == uninterrupted) << "of a finished render";
+  EXPECT_FALSE(std::filesystem::exists(folder_ / "a.checkpoint.exr"));
+}
+
+/// With blue noise and with halves for denoising, the samples depend on their number.
+TEST_F(JobRun, MoreSamplesDoNotContinueARenderWhoseSumsDependOnTheirNumber) {
+  job_.outputs.images = {folder_ / "a.exr"};
+  for (const char* setting : {"render.sampler=\"blue-noise\"", "output.layers=[\"halves\"]"}) {
+    job_.checkpoint.keep = true;
+    job_.scene.overrides = {setting, "render.samples=10"};
+    run_job(job_);
+    job_.checkpoint.resume = true;
+    job_.scene.overrides = {setting, "render.samples=30"};
+    EXPECT_NE(std::string(error().what()).find("samples per pixel: 10, not 30"), std::string::npos) << setting;
+    std::filesystem::remove(folder_ / "a.checkpoint.exr");
+  }
+}
+
 /// A sky with the sun and an image background, each with a lamp and light groups: the checkpoint of a stopped render
 /// and two shards lead to the bytes of an uninterrupted render.
 TEST_F(JobRun, ResumedRendersAndShardsUnderASkyOrAnImageHaveTheSameBytes) {
@@ -229,7 +277,11 @@ TEST_F(JobRun, RejectsACheckpointOfAnotherRender) {
     job_ = right;
   };
   job_.scene.overrides.add("render.seed=2");
-  expect_refused("scene hash");
+  expect_refused("render.seed = 1, not 2;");
+  job_.scene.overrides.add("sphere[0].radius=0.4");
+  expect_refused("other spheres, materials, lights or images");
+  job_.scene.overrides.add("render.samples=200");
+  expect_refused("--sample-range 0:300, not 0:200");
   job_.sampling.noise = 0.0008;  // the nearest double is 0.00080000000000000004
   expect_refused("--noise 0, not 0.0008;");
   job_.sampling.shard = {0, 2};

@@ -6,6 +6,7 @@
 #include <cstdlib>
 
 #include "render/render.h"
+#include "support/temp_dir.h"
 
 namespace orrery::job {
 namespace {
@@ -28,6 +29,15 @@ TEST_F(JobMachine, SchedulersLimitTheDefault) {
   ::unsetenv("SLURM_CPUS_PER_TASK");
   ::setenv("CUE_THREADS", "1", 1);
   EXPECT_EQ(default_threads(), 1);
+}
+
+TEST_F(JobMachine, QuotasOfControlGroupsLimitTheDefault) {
+  const support::TempDir root;
+  std::filesystem::create_directories(root / "proc/self");
+  std::filesystem::create_directories(root / "sys/fs/cgroup");
+  support::write_bytes(root / "proc/self/cgroup", "0::/\n");
+  support::write_bytes(root / "sys/fs/cgroup/cpu.max", "50000 100000\n");
+  EXPECT_EQ(default_threads(root.path()), 1);
 }
 
 TEST_F(JobMachine, SchedulersCannotExceedTheAffinityMask) {
