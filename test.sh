@@ -25,6 +25,7 @@ if [ $# -eq 0 ]; then set -- -LE slow; fi
 if [ -z "${TMPDIR:-}" ] && [ "$(stat -f -c %T /dev/shm 2>/dev/null)" = tmpfs ] && [ -w /dev/shm ] &&
   [ "$(df --output=avail -B 1M /dev/shm | tail -n 1)" -ge 2048 ]; then
   TMPDIR=$(mktemp -d /dev/shm/orrery-tests.XXXXXX)
+  chmod 711 "$TMPDIR"  # some tests become another user
   export TMPDIR
   trap 'rm -rf "$TMPDIR"' EXIT
 fi

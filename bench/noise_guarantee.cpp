@@ -30,7 +30,7 @@
 #include "film/display_error.h"
 #include "film/picture.h"
 #include "format/read_result.h"
-#include "format/read_scene.h"
+#include "load/load_scene.h"
 #include "render/render.h"
 #include "render/result.h"
 #include "render/settings.h"
@@ -56,8 +56,11 @@ scene::Scene room_with_mirror() {
 std::vector<Case> cases() {
   const std::filesystem::path folder = ORRERY_SCENES;
   const auto file = [&](const char* name) {
-    return Case{std::filesystem::path(name).stem().string(),
-                [path = folder / name] { return format::read_scene(path).scene; }};
+    return Case{std::filesystem::path(name).stem().string(), [path = folder / name] {
+                  load::SceneRequest request;
+                  request.source.file = path;
+                  return load::read_with_data(request).scene;
+                }};
   };
   const auto room = [](const char* name, double radius, double sky) {
     return Case{name, [=] { return test::room(radius, sky, 64, 36); }};

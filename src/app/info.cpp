@@ -10,12 +10,11 @@
 #include "app/lights_text.h"
 #include "app/precision_advice.h"
 #include "base/text.h"
-#include "compile/compile.h"
 #include "compile/compiled_scene.h"
 #include "film/layer_film.h"
 #include "format/read_result.h"
 #include "job/layers.h"
-#include "job/scene_hash.h"
+#include "job/prepared_scene.h"
 #include "job/text.h"
 #include "kernel/isa.h"
 #include "load/load_scene.h"
@@ -113,14 +112,19 @@ std::vector<std::pair<std::string, std::uint64_t>> count_materials(const compile
 }  // namespace
 
 SceneInfo scene_info(const load::SceneRequest& request) {
+  job::PreparedScene prepared;
+  return scene_info(request, prepared);
+}
+
+SceneInfo scene_info(const load::SceneRequest& request, job::PreparedScene& prepared) {
   load::SceneRequest with_any_background = request;
   with_any_background.skips_large_background = true;
-  load::LoadedScene loaded = load::load_scene(with_any_background);
+  const load::LoadedScene& loaded = prepared.load(with_any_background);
   const format::ReadResult& read = loaded.read;
-  const compile::CompiledScene compiled = compile::compile(read.scene, read.closing ? &*read.closing : nullptr);
+  const compile::CompiledScene& compiled = prepared.compile(request.memory_limit);
   const film::LayerRequest layers = job::choose_layers(read.scene, compiled).request;
   SceneInfo info;
-  info.scene_hash = job::scene_hash(compiled);
+  info.scene_hash = prepared.hashes().of_image;
   info.frame = request.source.frame;
   info.width = compiled.width;
   info.height = compiled.height;
@@ -141,7 +145,10 @@ SceneInfo scene_info(const load::SceneRequest& request) {
   info.materials = count_materials(compiled);
   info.emitters = count_emitters(compiled);
   info.lights = lights_text(compiled, info.emitters);
-  for (const scene::Points& p : read.scene.points) info.points.push_back({p.file.string(), p.centers.size(), p.unused});
+  for (std::size_t i = 0; i < read.scene.points.size(); ++i) {
+    const scene::Points& p = read.scene.points[i];
+    info.points.push_back({p.file.string(), compiled.points_sizes[i], p.unused});
+  }
   info.layers = scene::requested_layers(read.scene);
   info.available_layers = scene::available_layers(read.scene);
   info.features = features_of(compiled, layers.any());
@@ -158,7 +165,7 @@ SceneInfo scene_info(const load::SceneRequest& request) {
     if (!loaded.background->image) info.scene_hash.clear();  // it depends on the pixels, which were not read
     const bool is_sky = read.scene.background.type == scene::BackgroundType::kSky;
     info.background_file = is_sky ? "sky" : read.scene.background.file.string();
-    info.background = std::move(loaded.background);
+    info.background = loaded.background;
   }
   needs.textures = 0;
   for (const load::LoadedTexture& texture : loaded.textures) {
@@ -167,7 +174,7 @@ SceneInfo scene_info(const load::SceneRequest& request) {
   }
   info.textures = texture_infos(read.scene, loaded.textures);
   info.memory = job::estimate_memory(needs);
-  info.warnings = std::move(loaded.warnings);
+  info.warnings = loaded.warnings;
   for (const std::string& advice : precision_advice(compiled)) {
     info.warnings.push_back(base::file_diagnostic(base::Severity::kWarning, request.source.file.string(), advice));
   }

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "base/diagnostic.h"
+#include "job/forward.h"
 #include "job/memory.h"
 #include "load/forward.h"
 #include "load/loaded_map.h"
@@ -69,6 +70,9 @@ struct SceneInfo {
 ///
 /// Errors     those of load::load_scene
 SceneInfo scene_info(const load::SceneRequest& request);
+
+/// The same; takes what has not changed from `prepared`, which then holds this scene.
+SceneInfo scene_info(const load::SceneRequest& request, job::PreparedScene& prepared);
 
 /// Measures the time saved by omitting the kernel features that the scene does not require, and sets Feature::saves.
 ///

@@ -27,4 +27,14 @@ void require_readable(const std::filesystem::path& file) {
   ::close(descriptor);
 }
 
+std::string file_version(const std::filesystem::path& file) {
+  std::error_code size_error, time_error;
+  const std::uintmax_t size = std::filesystem::file_size(file, size_error);
+  const std::filesystem::file_time_type time = std::filesystem::last_write_time(file, time_error);
+  std::string out = std::filesystem::absolute(file).string();
+  if (!size_error && !time_error)
+    out += '\n' + std::to_string(size) + ' ' + std::to_string(time.time_since_epoch().count());
+  return out;
+}
+
 }  // namespace orrery::base

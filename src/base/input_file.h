@@ -2,6 +2,7 @@
 #pragma once
 
 #include <filesystem>
+#include <string>
 
 namespace orrery::base {
 
@@ -10,5 +11,11 @@ namespace orrery::base {
 ///
 /// Errors     base::Error(kMissingInput) with the file and the reason
 void require_readable(const std::filesystem::path& file);
+
+/// Identifies a file and its contents by its absolute name, size and modification time. Equal texts: the contents that
+/// were read have not changed since.
+///
+/// Result     of a file that cannot be examined, its name only
+std::string file_version(const std::filesystem::path& file);
 
 }  // namespace orrery::base

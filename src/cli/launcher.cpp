@@ -9,7 +9,6 @@
 #include <cstdio>
 #include <cstring>
 
-#include <sysexits.h>
 #include <unistd.h>
 
 namespace orrery::cli {
@@ -45,5 +44,5 @@ int main(int, char** argv) {
   char path[PATH_MAX];
   if (orrery::cli::find_program(path)) execv(path, argv);
   std::perror("orrery: cannot start the program, which is installed as " ORRERY_PROGRAM_FROM_LAUNCHER);
-  return EX_SOFTWARE;
+  return 70;  // base::ErrorKind::kInternal; the launcher links no library of the project
 }

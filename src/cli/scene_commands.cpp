@@ -18,9 +18,8 @@
 #include "cli/output.h"
 #include "cli/scene_options.h"
 #include "format/read_scene.h"
-#include "load/load_background.h"
+#include "job/prepared_scene.h"
 #include "load/load_scene.h"
-#include "load/load_textures.h"
 
 namespace orrery::cli {
 namespace {
@@ -95,17 +94,14 @@ std::string memory_warning(const app::SceneInfo& info) {
 /// Checks the frames of one scene. Prints equal messages of several frames once.
 class FrameChecks {
  public:
-  explicit FrameChecks(load::SceneRequest request) : request_(std::move(request)) {
-    request_.background_cache = std::make_shared<load::BackgroundCache>();
-    request_.texture_cache = std::make_shared<load::TextureCache>();
-  }
+  explicit FrameChecks(load::SceneRequest request) : request_(std::move(request)) {}
 
   /// Result     the exit status
   int run(const std::vector<int>& frames) {
     for (const int frame : frames) {
       request_.source.frame = frame;
       try {
-        const app::SceneInfo info = app::scene_info(request_);
+        const app::SceneInfo info = app::scene_info(request_, prepared_);
         print_once(warnings_text(info) + memory_warning(info));
       } catch (const base::Error& error) {
         if (status_ == 0) status_ = base::exit_status(error.kind());
@@ -131,6 +127,7 @@ class FrameChecks {
   static constexpr std::size_t kMaxTexts = 100;
 
   load::SceneRequest request_;
+  job::PreparedScene prepared_;
   std::set<std::string> printed_;
   std::vector<int> bad_;
   int status_ = 0;

@@ -26,30 +26,6 @@ using math::Vec3d;
 
 kernel::Sphere sphere_of(Vec3d center, double radius) { return {center.x, center.y, center.z, std::abs(radius)}; }
 
-void add_spheres(const scene::Scene& scene, CompiledScene& compiled) {
-  const base::StopPoint stop;
-  const std::size_t count = scene.sphere_count();
-  compiled.sphere_materials.reserve(count);
-  MaterialTable table(scene, compiled);
-  for (const scene::Sphere& s : scene.spheres) {
-    compiled.spheres.push_back(sphere_of(s.center, s.radius));
-    compiled.sphere_materials.push_back(table.index(s.material, s.radius < 0));
-  }
-  compiled.spheres.append(scene.points);
-  for (std::size_t p = 0; p < scene.points.size(); ++p) {
-    const scene::Points& points = scene.points[p];
-    for (std::size_t i = 0; i < points.centers.size(); ++i) {
-      stop.check(i);
-      const std::uint32_t material = points.materials.empty() ? points.material : points.materials[i];
-      const bool inside_out = points.radii[i] < 0;
-      compiled.sphere_materials.push_back(
-          points.colors.empty()
-              ? table.index(material, inside_out)
-              : table.colored_index(material, inside_out, p, points.colors[i], points.palette[points.colors[i]]));
-    }
-  }
-}
-
 Bounds bounds_of(const SphereStore& spheres) {
   if (spheres.empty()) return {};
   constexpr double kInfinity = std::numeric_limits<double>::infinity();
@@ -66,10 +42,45 @@ Bounds bounds_of(const SphereStore& spheres) {
   return b;
 }
 
-/// Adds the motion of the camera and of [[sphere]] tables from shutter open to shutter close.
-void add_motion(const scene::Scene& opening, const scene::Scene& closing, double view_scale, CompiledScene& compiled) {
+/// Sets the spheres, and the material of each.
+void set_spheres(const scene::Scene& scene, CompiledScene& compiled) {
+  compiled.spheres = {};
+  for (const scene::Sphere& s : scene.spheres) compiled.spheres.push_back(sphere_of(s.center, s.radius));
+  compiled.spheres.append(scene.points);
+  compiled.points_sizes.clear();
+  for (const scene::Points& points : scene.points) compiled.points_sizes.push_back(points.centers.size());
+  compiled.bounds = bounds_of(compiled.spheres);
+  compiled.distinct_in = scene.distinct_in;
+}
+
+/// Numbers the materials of the spheres.
+void set_sphere_materials(const scene::Scene& scene, CompiledScene& compiled) {
+  const base::StopPoint stop;
+  compiled.sphere_materials = {};
+  compiled.sphere_materials.reserve(scene.sphere_count());
+  compiled.material_sources.clear();
+  MaterialTable table(scene, compiled.material_sources);
+  for (const scene::Sphere& s : scene.spheres)
+    compiled.sphere_materials.push_back(table.index(s.material, s.radius < 0));
+  for (std::size_t p = 0; p < scene.points.size(); ++p) {
+    const scene::Points& points = scene.points[p];
+    for (std::size_t i = 0; i < points.centers.size(); ++i) {
+      stop.check(i);
+      const std::uint32_t material = points.materials.empty() ? points.material : points.materials[i];
+      const bool inside_out = points.radii[i] < 0;
+      compiled.sphere_materials.push_back(points.colors.empty()
+                                              ? table.index(material, inside_out)
+                                              : table.colored_index(material, inside_out, p, points.colors[i]));
+    }
+  }
+}
+
+/// Sets the motion of [[sphere]] tables from shutter open to shutter close.
+void set_sphere_motion(const scene::Scene& opening, const scene::Scene* closing, CompiledScene& compiled) {
+  compiled.motion.clear();
+  if (closing == nullptr) return;
   for (std::size_t i = opening.spheres.size(); i-- > 0;) {
-    const scene::Sphere &from = opening.spheres[i], &to = closing.spheres[i];
+    const scene::Sphere &from = opening.spheres[i], &to = closing->spheres[i];
     const Vec3d displacement = to.center - from.center;
     const kernel::Sphere change{displacement.x, displacement.y, displacement.z,
                                 std::abs(to.radius) - std::abs(from.radius)};
@@ -77,13 +88,23 @@ void add_motion(const scene::Scene& opening, const scene::Scene& closing, double
     if (compiled.motion.empty() && !rests) compiled.motion.resize(i + 1, kernel::Sphere{0, 0, 0, 0});
     if (!rests) compiled.motion[i] = change;
   }
-  const kernel::Camera last = compile_camera(closing.camera, closing.image, view_scale);
+}
+
+/// Sets the camera, and its motion from shutter open to shutter close.
+void set_camera(const scene::Scene& opening, const scene::Scene* closing, CompiledScene& compiled) {
+  kernel::Features& features = compiled.features;
+  features.lens = opening.camera.defocus_angle > 0 || (closing != nullptr && closing->camera.defocus_angle > 0);
+  const double scale = features.lens ? 1 : view_scale(opening.camera);
+  compiled.camera = compile_camera(opening.camera, opening.image, scale);
+  compiled.camera_motion = {};
+  features.motion = !compiled.motion.empty();
+  if (closing == nullptr) return;
+  const kernel::Camera last = compile_camera(closing->camera, closing->image, scale);
   kernel::Camera& change = compiled.camera_motion;
-  bool camera_moves = false;
   const auto subtract = [&](const double(&to)[3], const double(&from)[3], double(&out)[3]) {
     for (int k = 0; k < 3; ++k) {
       out[k] = to[k] - from[k];
-      camera_moves = camera_moves || out[k] != 0;
+      features.motion = features.motion || out[k] != 0;
     }
   };
   subtract(last.origin, compiled.camera.origin, change.origin);
@@ -92,12 +113,13 @@ void add_motion(const scene::Scene& opening, const scene::Scene& closing, double
   subtract(last.down, compiled.camera.down, change.down);
   subtract(last.lens_u, compiled.camera.lens_u, change.lens_u);
   subtract(last.lens_v, compiled.camera.lens_v, change.lens_v);
-  compiled.features.motion = camera_moves || !compiled.motion.empty();
 }
 
 /// Compiles an image background or a sky; without one, the gradient or constant colour.
 void set_background(const scene::Scene& scene, CompiledScene& compiled) {
   const scene::Background& from = scene.background;
+  compiled.environment = nullptr;
+  compiled.features.sky = false;
   std::shared_ptr<const scene::EnvironmentImage> image = from.image;
   if (!image && from.type == scene::BackgroundType::kSky)
     image = std::make_shared<const scene::EnvironmentImage>(bake_sky(from));
@@ -130,6 +152,53 @@ kernel::Sampler compile_sampler(const scene::Render& render) {
   }
   out.blue_noise_bits = blue_noise_bits(render.samples);
   return out;
+}
+
+Precision precision_of(scene::Precision precision) {
+  switch (precision) {
+    case scene::Precision::kExact: return Precision::kExact;
+    case scene::Precision::kFast: return Precision::kFast;
+    case scene::Precision::kBook: return Precision::kBook;
+  }
+  return {};
+}
+
+kernel::Shading shading_of(scene::Shading shading) {
+  switch (shading) {
+    case scene::Shading::kPath: return kernel::Shading::kPath;
+    case scene::Shading::kNormal: return kernel::Shading::kNormal;
+    case scene::Shading::kFlat: return kernel::Shading::kFlat;
+  }
+  return {};
+}
+
+kernel::DirectLighting direct_lighting_of(scene::DirectLighting mode) {
+  switch (mode) {
+    case scene::DirectLighting::kMis: return kernel::DirectLighting::kMis;
+    case scene::DirectLighting::kBsdf: return kernel::DirectLighting::kBsdf;
+    case scene::DirectLighting::kLight: return kernel::DirectLighting::kLight;
+  }
+  return {};
+}
+
+/// Sets the camera, the window, and how paths are sampled.
+void set_view(const scene::Scene& scene, const scene::Scene* closing, CompiledScene& compiled) {
+  const scene::Window window = scene.image.data_window();
+  compiled.window_x = window.x;
+  compiled.window_y = window.y;
+  compiled.width = window.width;
+  compiled.height = window.height;
+  compiled.frame_width = scene.image.width;
+  compiled.frame_height = scene.image.height;
+  compiled.pixel_aspect = scene.image.pixel_aspect;
+  compiled.samples = scene.render.samples;
+  compiled.max_depth = static_cast<std::uint32_t>(scene.render.max_depth);
+  compiled.roulette_depth =
+      scene.render.roulette_depth > 0 ? static_cast<std::uint32_t>(scene.render.roulette_depth) : kernel::kNoRoulette;
+  compiled.sampler = compile_sampler(scene.render);
+  compiled.shading = shading_of(scene.render.shading);
+  compiled.filter = compile_filter(scene.render);
+  set_camera(scene, closing, compiled);
 }
 
 }  // namespace
@@ -184,51 +253,28 @@ int blue_noise_bits(int samples) noexcept {
 
 CompiledScene compile(const scene::Scene& scene, const scene::Scene* closing) {
   CompiledScene compiled;
-  const scene::Window window = scene.image.data_window();
-  compiled.window_x = window.x;
-  compiled.window_y = window.y;
-  compiled.frame_width = scene.image.width;
-  compiled.frame_height = scene.image.height;
-  compiled.pixel_aspect = scene.image.pixel_aspect;
-  compiled.width = window.width;
-  compiled.height = window.height;
-  compiled.samples = scene.render.samples;
-  compiled.max_depth = static_cast<std::uint32_t>(scene.render.max_depth);
-  if (scene.render.roulette_depth > 0)
-    compiled.roulette_depth = static_cast<std::uint32_t>(scene.render.roulette_depth);
-  compiled.sampler = compile_sampler(scene.render);
-  switch (scene.render.precision) {
-    case scene::Precision::kExact: compiled.precision = Precision::kExact; break;
-    case scene::Precision::kFast: compiled.precision = Precision::kFast; break;
-    case scene::Precision::kBook: compiled.precision = Precision::kBook; break;
-  }
-  switch (scene.render.shading) {
-    case scene::Shading::kPath: compiled.shading = kernel::Shading::kPath; break;
-    case scene::Shading::kNormal: compiled.shading = kernel::Shading::kNormal; break;
-    case scene::Shading::kFlat: compiled.shading = kernel::Shading::kFlat; break;
-  }
-  switch (scene.render.direct_lighting) {
-    case scene::DirectLighting::kMis: compiled.direct_lighting = kernel::DirectLighting::kMis; break;
-    case scene::DirectLighting::kBsdf: compiled.direct_lighting = kernel::DirectLighting::kBsdf; break;
-    case scene::DirectLighting::kLight: compiled.direct_lighting = kernel::DirectLighting::kLight; break;
-  }
-  compiled.accelerator = scene.render.accelerator;
-  compiled.features.lens = scene.camera.defocus_angle > 0 || (closing != nullptr && closing->camera.defocus_angle > 0);
-  const double scale = compiled.features.lens ? 1 : view_scale(scene.camera);
-  compiled.camera = compile_camera(scene.camera, scene.image, scale);
-  compiled.light_groups = {""};
-  compiled.filter = compile_filter(scene.render);
-  add_spheres(scene, compiled);
-  compiled.distinct_in = scene.distinct_in;
-  set_background(scene, compiled);
-  light_group(compiled, scene::background_light_group(scene.background));
-  const auto is_dark = [](const kernel::Material& m) { return m.kind != kernel::MaterialKind::kEmitter; };
-  if (std::all_of(compiled.materials.begin(), compiled.materials.end(), is_dark)) compiled.emission.clear();
-  compiled.features.lit = !compiled.emission.empty() || compiled.environment != nullptr;
-  if (closing != nullptr) add_motion(scene, *closing, scale, compiled);
-  update_lights(compiled);
-  compiled.bounds = bounds_of(compiled.spheres);
+  update(scene, closing, scene::Parts::all(), compiled);
   return compiled;
+}
+
+void update(const scene::Scene& scene, const scene::Scene* closing, scene::Parts changed, CompiledScene& compiled) {
+  if (changed.geometry) {
+    compiled.precision = precision_of(scene.render.precision);
+    compiled.accelerator = scene.render.accelerator;
+    set_spheres(scene, compiled);
+    set_sphere_motion(scene, closing, compiled);
+  }
+  if (changed.geometry || changed.assignment) set_sphere_materials(scene, compiled);
+  if (changed.geometry || changed.assignment || changed.look) {
+    compiled.direct_lighting = direct_lighting_of(scene.render.direct_lighting);
+    compile_materials(scene, compiled);
+    set_background(scene, compiled);
+    light_group(compiled, scene::background_light_group(scene.background));
+    compiled.features.lit = !compiled.emission.empty() || compiled.environment != nullptr;
+    compiled.light_tree = {};
+    update_lights(compiled);
+  }
+  if (changed.geometry || changed.view) set_view(scene, closing, compiled);
 }
 
 }  // namespace orrery::compile

@@ -2,6 +2,7 @@
 #pragma once
 
 #include "compile/forward.h"
+#include "scene/changed_parts.h"
 #include "scene/forward.h"
 
 namespace orrery::compile {
@@ -16,6 +17,13 @@ namespace orrery::compile {
 /// `closing`  the scene at shutter close, without points; null: no motion blur. Static objects cost nothing.
 /// Domain     scenes in which scene::validate finds no error
 CompiledScene compile(const scene::Scene& scene, const scene::Scene* closing = nullptr);
+
+/// Compiles again the parts of a compiled scene that a change of the authored scene affects. The result is that of
+/// compile(), and what has not changed keeps its address: a BVH of the spheres stays valid unless `changed.geometry`.
+///
+/// `changed`  a superset of what has changed since `compiled` was compiled or updated
+/// Domain     the points tables of `scene` have their spheres if `changed` contains geometry or assignment
+void update(const scene::Scene& scene, const scene::Scene* closing, scene::Parts changed, CompiledScene& compiled);
 
 /// Builds the light tree, if the scene samples its emitters. Needed after a change of `precision`, since other spheres
 /// may coincide in another number type, and of `direct_lighting`.

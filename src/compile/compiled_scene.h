@@ -10,6 +10,7 @@
 
 #include "compile/forward.h"
 #include "compile/light_tree.h"
+#include "compile/material_table.h"
 #include "compile/packed_indices.h"
 #include "compile/pixel_filter.h"
 #include "compile/sphere_store.h"
@@ -37,7 +38,9 @@ struct Bounds {
 /// sphere is its id in hits.
 struct CompiledScene {
   SphereStore spheres;
-  PackedIndices sphere_materials;  ///< one per sphere, index into `materials`
+  std::vector<std::size_t> points_sizes;         ///< number of spheres of each points table
+  PackedIndices sphere_materials;                ///< one per sphere, index into `materials`
+  std::vector<MaterialSource> material_sources;  ///< one per material
   std::vector<kernel::Material> materials;
   std::vector<kernel::Emission> emission;  ///< one per material; empty if none emits
   TextureStore textures;

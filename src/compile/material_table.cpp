@@ -122,50 +122,74 @@ std::uint16_t light_group(CompiledScene& compiled, const std::string& name) {
   return static_cast<std::uint16_t>(index);
 }
 
-MaterialTable::MaterialTable(const scene::Scene& scene, CompiledScene& compiled)
-    : scene_(scene), out_(compiled), compiled_(scene.materials.size(), {kNone, kNone}) {}
+MaterialTable::MaterialTable(const scene::Scene& scene, std::vector<MaterialSource>& sources)
+    : scene_(scene), sources_(sources), numbers_(scene.materials.size(), {kNone, kNone}) {}
+
+bool MaterialTable::is_dielectric(std::uint32_t authored) const {
+  return std::holds_alternative<scene::Dielectric>(scene_.materials[authored].model);
+}
 
 std::uint32_t MaterialTable::index(std::uint32_t authored, bool inside_out) {
-  std::uint32_t& at = compiled_[authored][inside_out ? 1 : 0];
+  std::uint32_t& at = numbers_[authored][inside_out ? 1 : 0];
   if (at != kNone) return at;
-  kernel::Material m =
-      std::visit([](const auto& model) { return compile_model(model); }, scene_.materials[authored].model);
   // Only dielectrics have two different sides; other materials are the same from both.
-  if (inside_out && m.kind != kernel::MaterialKind::kDielectric) return at = index(authored, false);
-  if (inside_out) m = turned_inside_out(m);
-  at = static_cast<std::uint32_t>(out_.materials.size());
-  kernel::Emission emission = emission_of(scene_.materials[authored].model, out_);
-  set_textures(scene_.materials[authored].model, out_, m, emission);
-  out_.materials.push_back(m);
-  out_.emission.push_back(emission);
-  if (m.kind == kernel::MaterialKind::kHemisphere) out_.features.hemisphere = true;
+  if (inside_out && !is_dielectric(authored)) return at = index(authored, false);
+  at = static_cast<std::uint32_t>(sources_.size());
+  sources_.push_back({authored, inside_out});
   return at;
 }
 
 std::uint32_t MaterialTable::colored_index(std::uint32_t authored, bool inside_out, std::size_t points,
-                                           std::uint16_t color, Vec3d rgb) {
+                                           std::uint16_t color) {
   const std::uint32_t plain = index(authored, inside_out);
-  if (out_.materials[plain].kind == kernel::MaterialKind::kDielectric) return plain;  // has no colour
+  if (is_dielectric(authored)) return plain;  // has no colour
   if (points != points_) colored_.clear();
   points_ = points;
   const std::uint64_t key = std::uint64_t{plain} << 16 | color;
-  const auto [at, is_new] = colored_.try_emplace(key, static_cast<std::uint32_t>(out_.materials.size()));
-  if (!is_new) return at->second;
-  kernel::Material m = out_.materials[plain];
-  kernel::Emission e = out_.emission[plain];
-  kernel::MaterialTextures textures = out_.textures.material(plain);
-  if (m.kind == kernel::MaterialKind::kEmitter) {
-    for (int k = 0; k < 3; ++k) e.radiance[k] *= k == 0 ? rgb.x : k == 1 ? rgb.y : rgb.z;
-    if (textures.radiance != kernel::MaterialTextures::kNone)
-      textures.radiance = out_.textures.add_scaled(textures.radiance, rgb);
-  } else {
-    set(m.albedo, rgb);
-    textures.albedo = kernel::MaterialTextures::kNone;
-  }
-  out_.materials.push_back(m);
-  out_.emission.push_back(e);
-  out_.textures.add_material(textures);
+  const auto [at, is_new] = colored_.try_emplace(key, static_cast<std::uint32_t>(sources_.size()));
+  if (is_new) sources_.push_back({plain, false, static_cast<std::uint32_t>(points), color});
   return at->second;
+}
+
+void compile_materials(const scene::Scene& scene, CompiledScene& compiled) {
+  std::vector<kernel::Material>& materials = compiled.materials;
+  std::vector<kernel::Emission>& emission = compiled.emission;
+  TextureStore& textures = compiled.textures;
+  materials.clear();
+  emission.clear();
+  textures = {};
+  compiled.light_groups = {""};
+  compiled.features.extended = compiled.features.hemisphere = false;
+  for (const MaterialSource& source : compiled.material_sources) {
+    if (source.color == MaterialSource::kNoColor) {
+      const scene::MaterialModel& model = scene.materials[source.material].model;
+      kernel::Material m = std::visit([](const auto& typed) { return compile_model(typed); }, model);
+      if (source.inside_out) m = turned_inside_out(m);
+      kernel::Emission e = emission_of(model, compiled);
+      set_textures(model, compiled, m, e);
+      materials.push_back(m);
+      emission.push_back(e);
+      if (m.kind == kernel::MaterialKind::kHemisphere) compiled.features.hemisphere = true;
+      continue;
+    }
+    const Vec3d rgb = scene.points[source.points].palette[source.color];
+    kernel::Material m = materials[source.material];
+    kernel::Emission e = emission[source.material];
+    kernel::MaterialTextures replaced = textures.material(source.material);
+    if (m.kind == kernel::MaterialKind::kEmitter) {
+      for (int k = 0; k < 3; ++k) e.radiance[k] *= k == 0 ? rgb.x : k == 1 ? rgb.y : rgb.z;
+      if (replaced.radiance != kernel::MaterialTextures::kNone)
+        replaced.radiance = textures.add_scaled(replaced.radiance, rgb);
+    } else {
+      set(m.albedo, rgb);
+      replaced.albedo = kernel::MaterialTextures::kNone;
+    }
+    materials.push_back(m);
+    emission.push_back(e);
+    textures.add_material(replaced);
+  }
+  const auto is_dark = [](const kernel::Material& m) { return m.kind != kernel::MaterialKind::kEmitter; };
+  if (std::all_of(materials.begin(), materials.end(), is_dark)) emission.clear();
 }
 
 }  // namespace orrery::compile

@@ -6,10 +6,8 @@
 #include "base/frames.h"
 #include "job/job_files.h"
 #include "job/job_report.h"
-#include "load/load_background.h"
-#include "load/load_textures.h"
+#include "job/prepared_scene.h"
 #include "load/scene_files.h"
-#include "points/open_data.h"
 
 namespace orrery::farm {
 namespace {
@@ -64,9 +62,7 @@ std::vector<job::Job> jobs_of(const Batch& batch) {
   const std::vector<int> frames = batch.frames.empty() ? std::vector<int>{load::SceneSource().frame} : batch.frames;
   std::vector<job::Job> jobs;
   common.files = std::make_shared<base::FileSet>();
-  common.background_cache = std::make_shared<load::BackgroundCache>();
-  common.texture_cache = std::make_shared<load::TextureCache>();
-  if (frames.size() > 1 && !common.scene.open_data) common.scene.open_data = points::open_once();
+  if (frames.size() > 1) common.prepared = std::make_shared<job::PreparedScene>(true);
   base::FileSet& files = *common.files;
   if (!batch.log.empty()) files.add_output(batch.log, "--log");
   if (!batch.preview.empty()) files.add_output(batch.preview, "--preview");

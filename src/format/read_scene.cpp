@@ -16,8 +16,6 @@
 #include "format/read_materials.h"
 #include "format/read_result.h"
 #include "format/read_tracks.h"
-#include "points/load_points.h"
-#include "points/source_rows.h"
 #include "scene/animation.h"
 #include "scene/diagnostic.h"
 #include "scene/limits.h"
@@ -124,23 +122,6 @@ void add_problem(ReadState& state, const toml::table& root, const std::string& f
   state.add(diagnostic.severity, node != nullptr ? place_of(*node) : Place{file, 0, 0, 1}, text, {}, diagnostic.kind);
 }
 
-/// Reads the data file of a points table. Errors in the file are reported at the location in the scene that names it,
-/// and at those in the file.
-void read_points_file(ReadState& state, const toml::table& root, const std::string& scene_file, const Place& place,
-                      const points::LoadRequest& request, scene::Points& points) {
-  const std::string& full_name = request.key;
-  try {
-    for (const scene::SceneDiagnostic& diagnostic : points::load_points(request, points))
-      add_problem(state, root, scene_file, diagnostic, fmt::format("{}: {}", diagnostic.key, diagnostic.text));
-  } catch (const base::Error& error) {
-    if (error.kind() != base::ErrorKind::kBadData && error.kind() != base::ErrorKind::kMissingInput) throw;
-    state.error(place, fmt::format("{}.file: {}", full_name, error.what()), {}, error.kind());
-    for (const base::Diagnostic& diagnostic : error.diagnostics())
-      state.diagnostics.add(diagnostic.severity, {diagnostic.file, diagnostic.line, 0, 1}, error.kind(),
-                            [&] { return diagnostic; });
-  }
-}
-
 /// Reads a table from particle types to numbers or colours: `radius = { type = { 1 = 0.5, 2 = 0.7 } }`.
 template <class T>
 void read_types(ReadState& state, const toml::table& table, const std::string& table_name, const std::string& name,
@@ -159,16 +140,10 @@ void read_types(ReadState& state, const toml::table& table, const std::string& t
   }
 }
 
-/// The rest of a memory limit, at least one byte; 0 if there is no limit.
-std::uint64_t rest_of(std::uint64_t limit, std::uint64_t used) {
-  return limit == 0 ? 0 : std::max<std::uint64_t>(limit - std::min(used, limit), 1);
-}
-
-void read_points(ReadState& state, const toml::table& root, const std::filesystem::path& scene_file,
-                 const ReadOptions& options, const MaterialIndex& index, scene::Scene& scene) {
+void read_points(ReadState& state, const toml::table& root, int frame, const MaterialIndex& index,
+                 scene::Scene& scene) {
   const toml::array* list = tables_under(state, root, "points");
   if (list == nullptr) return;
-  std::uint64_t used = 0;
   for (std::size_t i = 0; i < list->size(); ++i) {
     const toml::table& table = *list->get(i)->as_table();
     const std::string full_name = fmt::format("points[{}]", i);
@@ -178,37 +153,10 @@ void read_points(ReadState& state, const toml::table& root, const std::filesyste
                {scene::kSmallestRadius, scene::kLargestLength}, points.radius.types);
     read_types(state, table, full_name, "color.type", scene::ValueType::kVector, {0, 1}, points.color.types);
     points.material = read_material_name(state, table, full_name, scene, index);
-    if (state.unread.count(full_name + ".file") == 0) {
-      const std::string pattern = points.file.string();
-      points.file = base::with_frame(pattern, options.frame);
-      points::LoadRequest request;
-      request.folder = scene_file.parent_path();
-      request.file = request.folder / points.file;
-      request.key = full_name;
-      request.frame = options.frame;
-      request.is_sequence = points.file.string() != pattern;
-      request.materials = scene.materials.size();
-      request.memory_limit = rest_of(options.memory_limit, used);
-      request.open = options.open_data;
-      read_points_file(state, root, scene_file.string(), place_of(*table.get("file")), request, points);
-    }
-    used += points.bytes();
+    const std::string pattern = points.file.string();
+    points.file = base::with_frame(pattern, frame);
+    points.is_sequence = points.file.string() != pattern;
     scene.points.push_back(std::move(points));
-  }
-}
-
-/// Adds the diagnostics of the whole scene. Those that may follow from the default of a key that could not be read are
-/// dropped, and so are warnings if the scene has errors.
-void add_problems(ReadState& state, const toml::table& root, const std::vector<scene::SceneDiagnostic>& diagnostics,
-                  const std::string& file) {
-  const bool has_errors = state.diagnostics.has_errors();
-  const auto is_of_camera = [](const std::string& key) { return key.rfind("camera.", 0) == 0; };
-  const bool camera_is_read = std::none_of(state.unread.begin(), state.unread.end(), is_of_camera);
-  for (const scene::SceneDiagnostic& diagnostic : diagnostics) {
-    if (has_errors && diagnostic.severity == base::Severity::kWarning) continue;
-    if (state.unread.count(diagnostic.key) != 0 || (is_of_camera(diagnostic.key) && !camera_is_read)) continue;
-    add_problem(state, root, file, diagnostic,
-                diagnostic.key.empty() ? diagnostic.text : fmt::format("{}: {}", diagnostic.key, diagnostic.text));
   }
 }
 
@@ -304,38 +252,84 @@ std::vector<Setting> settings_of(const SourceText& source, const toml::table& ro
 
 }  // namespace
 
-ReadResult read_scene(const std::filesystem::path& file, const Overrides& overrides, const ReadOptions& options) {
-  const int frame = options.frame;
-  const std::string text = options.text ? *options.text : read_file(file, kLargestSceneFile), name = file.string();
-  ReadState state;
-  const toml::table root = parse_tree(name, text, overrides, state.source, state.diagnostics);
-  if (root.empty()) state.diagnostics.raise_errors(name);
-  if (options.is_generated) state.source.add(name, text, true);
-
+struct SceneReader::State : ReadState {
+  std::string file;
+  toml::table root;
   ReadResult result;
+};
+
+SceneReader::SceneReader(const std::filesystem::path& file, const Overrides& overrides, const ReadOptions& options)
+    : state_(std::make_unique<State>()) {
+  State& state = *state_;
+  const std::string text = options.text ? *options.text : read_file(file, kLargestSceneFile);
+  state.file = file.string();
+  state.root = parse_tree(state.file, text, overrides, state.source, state.diagnostics);
+  const toml::table& root = state.root;
+  if (root.empty()) state.diagnostics.raise_errors(state.file);
+  if (options.is_generated) state.source.add(state.file, text, true);
+  scene::Scene& scene = state.result.scene;
   report_unknown_tables(state, root);
-  read_single_tables(state, root, result.scene);
-  result.scene.background.file = base::with_frame(result.scene.background.file.string(), frame);
-  read_materials(state, root, frame, result.scene.materials);
+  read_single_tables(state, root, scene);
+  scene.background.file = base::with_frame(scene.background.file.string(), options.frame);
+  read_materials(state, root, options.frame, scene.materials);
   MaterialIndex index;
-  for (const scene::Material& material : result.scene.materials)
+  for (const scene::Material& material : scene.materials)
     index.emplace(material.name, static_cast<std::uint32_t>(index.size()));
-  read_spheres(state, root, index, result.scene);
-  if (const toml::array* keys = tables_under(state, root, "key")) read_tracks(state, *keys, result.scene);
-  warn_of_animated_overrides(state, overrides, result.scene);
-  if (!state.diagnostics.has_errors()) pose(state, root, name, frame, result);
-  read_points(state, root, file, options, index, result.scene);
-  add_problems(state, root, scene::validate(result.scene), name);
-  const auto coincident = scene::warn_of_coincident(result.scene, result.closing ? &*result.closing : nullptr);
-  if (coincident.empty()) result.scene.distinct_in = result.scene.render.precision;
-  add_problems(state, root, coincident, name);
-  const auto is_of_color = [](const std::string& key) { return key.rfind("color.", 0) == 0; };
-  if (options.also && std::none_of(state.unread.begin(), state.unread.end(), is_of_color))
-    add_problems(state, root, options.also(result.scene), name);
-  state.diagnostics.raise_errors(name);
-  result.warnings = state.diagnostics.take_warnings();
-  result.settings = settings_of(state.source, root, result.scene);
-  return result;
+  read_spheres(state, root, index, scene);
+  if (const toml::array* keys = tables_under(state, root, "key")) read_tracks(state, *keys, scene);
+  warn_of_animated_overrides(state, overrides, scene);
+  if (!state.diagnostics.has_errors()) pose(state, root, state.file, options.frame, state.result);
+  read_points(state, root, options.frame, index, scene);
+}
+
+SceneReader::~SceneReader() = default;
+SceneReader::SceneReader(SceneReader&&) noexcept = default;
+
+scene::Scene& SceneReader::scene() { return state_->result.scene; }
+
+std::optional<scene::Scene>& SceneReader::closing() { return state_->result.closing; }
+
+bool SceneReader::has_errors() const { return state_->diagnostics.has_errors(); }
+
+bool SceneReader::is_read(const std::string& name) const {
+  const auto at = state_->unread.lower_bound(name);
+  return at == state_->unread.end() || !at->starts_with(name);
+}
+
+void SceneReader::add(const std::vector<scene::SceneDiagnostic>& diagnostics) {
+  State& state = *state_;
+  const bool had_errors = has_errors(), camera_is_read = is_read("camera.");
+  for (const scene::SceneDiagnostic& diagnostic : diagnostics) {
+    if (had_errors && diagnostic.severity == base::Severity::kWarning) continue;
+    if (state.unread.count(diagnostic.key) != 0 || (diagnostic.key.starts_with("camera.") && !camera_is_read)) continue;
+    add_problem(state, state.root, state.file, diagnostic,
+                diagnostic.key.empty() ? diagnostic.text : fmt::format("{}: {}", diagnostic.key, diagnostic.text));
+  }
+}
+
+void SceneReader::add_file_error(const std::string& key, const base::Error& error) {
+  State& state = *state_;
+  add_problem(state, state.root, state.file, {base::Severity::kError, key, "", error.kind()},
+              fmt::format("{}: {}", key, error.what()));
+  for (const base::Diagnostic& diagnostic : error.diagnostics())
+    state.diagnostics.add(diagnostic.severity, {diagnostic.file, diagnostic.line, 0, 1}, error.kind(),
+                          [&] { return diagnostic; });
+}
+
+ReadResult SceneReader::finish() {
+  State& state = *state_;
+  state.diagnostics.raise_errors(state.file);
+  state.result.warnings = state.diagnostics.take_warnings();
+  state.result.settings = settings_of(state.source, state.root, state.result.scene);
+  return std::move(state.result);
+}
+
+ReadResult read_scene(const std::filesystem::path& file, const Overrides& overrides, const ReadOptions& options) {
+  SceneReader reader(file, overrides, options);
+  const std::optional<scene::Scene>& closing = reader.closing();
+  reader.add(scene::validate(reader.scene()));
+  reader.add(scene::warn_of_coincident(reader.scene(), closing ? &*closing : nullptr));
+  return reader.finish();
 }
 
 std::string toml_version() { return fmt::format("{}.{}.{}", TOML_LIB_MAJOR, TOML_LIB_MINOR, TOML_LIB_PATCH); }

@@ -1,15 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include <cstdint>
 #include <filesystem>
-#include <functional>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
+#include "base/error.h"
 #include "format/overrides.h"
-#include "points/open_data.h"
 #include "scene/forward.h"
 
 namespace orrery::format {
@@ -19,24 +18,58 @@ struct ReadResult;
 /// The frame that is read by default.
 inline constexpr int kFirstFrame = 1;
 
-/// An additional check of a scene, such as for names that the OCIO config does not define.
-using SceneCheck = std::function<std::vector<scene::SceneDiagnostic>(const scene::Scene&)>;
-
 struct ReadOptions {
   std::shared_ptr<const std::string> text = {};  ///< text of the scene; null: read the file
-  int frame = kFirstFrame;          ///< selects the values of animated keys, and the files and frames of data
-  SceneCheck also = {};             ///< called if [color] has no errors
-  std::uint64_t memory_limit = 0;   ///< maximum memory for reading the spheres of a data file, bytes; 0: no limit
-  points::OpenData open_data = {};  ///< see points::LoadRequest
-  bool is_generated = false;        ///< `text` was written by a program: diagnostics omit its lines
+  int frame = kFirstFrame;    ///< selects the values of animated keys, and the files and frames of data
+  bool is_generated = false;  ///< `text` was written by a program: diagnostics omit its lines
 };
 
-/// Reads and checks a scene file, and the data files that it names.
+/// A scene file that is being read: the scene that it describes, and the places of its keys for diagnostics, which are
+/// collected until finish(). Reads no other file: the points tables have no spheres.
 ///
-/// Errors     base::Error: kMissingInput if the scene cannot be opened, or if the only errors are data files that
-///            cannot be opened; kIo; kBadData with the diagnostics of the file, the overrides and the points files,
-///            each with its location, the first kMaxErrors of them
+/// `overrides` are "key=value", with the value as in the file; words need no quotes. Keys are dotted, spheres are
+/// counted from 0: "camera.vfov=30", "material.gold.fuzz=0.3", "sphere[2].radius=0.5".
+///
 /// Reference  docs/scene-format.md
+class SceneReader {
+ public:
+  /// Reads the text, and poses the scene at the frame.
+  ///
+  /// Errors     base::Error: kMissingInput if the file cannot be opened; kIo; kBadData if it is not TOML
+  SceneReader(const std::filesystem::path& file, const Overrides& overrides, const ReadOptions& options);
+  ~SceneReader();
+  SceneReader(SceneReader&&) noexcept;
+
+  /// Keys that cannot be read have their defaults.
+  scene::Scene& scene();
+  /// The scene at shutter close, without points; `scene` is then the scene at shutter open. Empty without motion blur.
+  std::optional<scene::Scene>& closing();
+
+  bool has_errors() const;
+  /// False if an error is known about a key whose full name begins with `name`: "points[0].file", "color.".
+  bool is_read(const std::string& name) const;
+
+  /// Adds diagnostics at the locations of their keys. Those that may follow from the default of a key that could not be
+  /// read are dropped, and so are warnings if the scene has errors.
+  void add(const std::vector<scene::SceneDiagnostic>& diagnostics);
+
+  /// Adds the error of a file at the location of the key that names it, and the diagnostics in the file.
+  void add_file_error(const std::string& key, const base::Error& error);
+
+  /// Ends reading.
+  ///
+  /// Errors     base::Error with the diagnostics, the first kMaxErrors of them: kMissingInput if all are files that
+  ///            cannot be opened, else kBadData
+  ReadResult finish();
+
+ private:
+  struct State;
+  std::unique_ptr<State> state_;
+};
+
+/// Reads and checks a scene file, without the files that it names.
+///
+/// Errors     those of SceneReader
 ReadResult read_scene(const std::filesystem::path& file, const Overrides& overrides = {},
                       const ReadOptions& options = {});
 

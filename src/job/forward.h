@@ -8,6 +8,7 @@ struct Hooks;
 struct Job;
 struct JobReport;
 struct Outputs;
+class PreparedScene;
 struct Rendering;
 
 }  // namespace orrery::job

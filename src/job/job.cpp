@@ -35,6 +35,7 @@
 #include "job/matte_manifest.h"
 #include "job/memory.h"
 #include "job/picture_header.h"
+#include "job/prepared_scene.h"
 #include "job/provenance.h"
 #include "job/rendering.h"
 #include "job/statistics.h"
@@ -73,13 +74,11 @@ void warn(const Job& job, const base::Diagnostic& diagnostic) {
 }
 
 /// Loads the scene and checks it against the job's output formats.
-load::LoadedScene load(const Job& job, JobReport& report) {
+const load::LoadedScene& load(const Job& job, PreparedScene& prepared, JobReport& report) {
   const bool writes_display_format = job.outputs.has_display_format();
   load::SceneRequest request{job.scene, job.outputs.display, writes_display_format || job.hooks.develops_pixels};
   request.memory_limit = job.resources.memory_limit;
-  request.background_cache = job.background_cache;
-  request.texture_cache = job.texture_cache;
-  load::LoadedScene loaded = load::load_scene(request);
+  const load::LoadedScene& loaded = prepared.load(std::move(request));
   for (const base::Diagnostic& warning : loaded.warnings) warn(job, warning);
   if (writes_display_format) {
     report.display = *loaded.choice;
@@ -198,32 +197,31 @@ void keep(const Job& job, const format::ReadResult& read, const compile::Compile
 void run_phases(const Job& job, base::FileSet& files, JobReport& report) {
   Stopwatch watch, total;
   report.phases.prepare_s = job.prepare_s;
+  const std::shared_ptr<PreparedScene> prepared = job.prepared ? job.prepared : std::make_shared<PreparedScene>();
   if (job.keep == nullptr) image::start_loading();
-  load::LoadedScene loaded = load(job, report);
-  format::ReadResult& read = loaded.read;
+  const load::LoadedScene& loaded = load(job, *prepared, report);
+  const format::ReadResult& read = loaded.read;
   const display::Settings& display = loaded.display;
   load::add_scene_files(job.scene.file, read.scene, files);
   report.phases.read_s = watch.lap();
   stop_if_cancelled(job);
 
-  require_memory_to_compile(read.scene, job.resources.memory_limit);
-  const compile::CompiledScene compiled = compile::compile(read.scene, read.closing ? &*read.closing : nullptr);
+  const compile::CompiledScene& compiled = prepared->compile(job.resources.memory_limit);
   check_samples(job, compiled);
   check_sizes(job, compiled);
   const Layers layers = layers_for(job, read.scene, compiled);
   for (const auto& manifest : manifest_files(layers.mattes, job.outputs)) base::check_creatable(manifest);
-  const image::Provenance provenance = provenance_of(job, read, compiled, layers);
+  const image::Provenance provenance = provenance_of(job, read, compiled, prepared->hashes(), layers);
   const std::string stamp = stamp_of(job, provenance, display, report.display);
   report.scene_hash = provenance.at("sceneHash");
   report.was_skipped = job.skip_existing && is_up_to_date(job, compiled, provenance, stamp);
   if (report.was_skipped) return;
   require_disk_space(job.outputs, is_shard(job), image_size(compiled.width, compiled.height, layers.request),
                      job.resources.disk_limit);
-  // Keep no second copy of the spheres during the BVH build.
-  for (scene::Points& points : read.scene.points) points.release_spheres();
-  base::release_freed_memory();
-  const MemoryNeeds needs = memory_needs(compiled, layers.request, job.sampling.is_adaptive());
-  require_memory(estimate_memory(needs), job.resources.memory_limit, held_memory(needs));
+  if (!prepared->has_accelerator()) {
+    const MemoryNeeds needs = memory_needs(compiled, layers.request, job.sampling.is_adaptive());
+    require_memory(estimate_memory(needs), job.resources.memory_limit, held_memory(needs));
+  }
   report.hosts = {provenance.at("host")};
   report.width = compiled.width;
   report.height = compiled.height;
@@ -244,7 +242,7 @@ void run_phases(const Job& job, base::FileSet& files, JobReport& report) {
       job.keep == nullptr ? checkpoint_file(job.outputs.images.front().path) : std::filesystem::path();
   Checkpoint checkpoint(checkpoint_path, job.checkpoint, job.hooks, provenance, write_sums);
   render::Result result = job.merge.shards.empty()
-                              ? render_job(job, compiled, settings, checkpoint, total.lap(), report)
+                              ? render_job(job, *prepared, compiled, settings, checkpoint, total.lap(), report)
                               : merge_job(job, compiled, settings, provenance, report);
   report.render = result.statistics;
   const double made_s = watch.lap();

@@ -13,13 +13,13 @@
 #include "job/hooks.h"
 #include "job/outputs.h"
 #include "job/shard_file.h"
-#include "load/forward.h"
 #include "load/scene_source.h"
 #include "render/sampling_limits.h"
 
 namespace orrery::job {
 
 struct JobReport;
+class PreparedScene;
 
 /// Limits on the job's use of the machine.
 struct Resources {
@@ -51,10 +51,10 @@ struct Job {
   bool skip_existing = false;  ///< do nothing if all files exist, are intact, and come from this job
   /// Files of the batch that this job belongs to; null: the job is not part of a batch.
   std::shared_ptr<base::FileSet> files = nullptr;
-  std::shared_ptr<load::BackgroundCache> background_cache = nullptr;  ///< shared by the jobs of a batch
+  /// The scene of an earlier job, of which this job prepares only what has changed; null: nothing is kept.
+  std::shared_ptr<PreparedScene> prepared = nullptr;
   Rendering* keep = nullptr;  ///< receives the image and all layers of the scene; no file is written
-  std::shared_ptr<load::TextureCache> texture_cache = nullptr;  ///< shared by the jobs of a batch
-  double prepare_s = 0;                                         ///< time taken to create the scene, for the report
+  double prepare_s = 0;       ///< time taken to create the scene, for the report
 };
 
 /// True if the scene's sample count limits adaptive sampling, because an override sets it.

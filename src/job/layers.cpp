@@ -64,37 +64,31 @@ class MatteMaker {
       std::make_shared<RunLengthIds>();  // shared, since std::function copies its target
 };
 
-void add_object_matte(const scene::Scene& scene, Layers& layers) {
+void add_object_matte(const scene::Scene& scene, const std::vector<std::size_t>& points_sizes, Layers& layers) {
   MatteMaker maker("CryptoObject");
   for (std::size_t i = 0; i < scene.spheres.size(); ++i)
     maker.add(1, scene.spheres[i].name.empty() ? "sphere." + std::to_string(i) : scene.spheres[i].name);
-  for (const scene::Points& p : scene.points)
-    maker.add(p.centers.size(), p.name.empty() ? p.file.stem().string() : p.name);
+  for (std::size_t i = 0; i < scene.points.size(); ++i) {
+    const scene::Points& p = scene.points[i];
+    maker.add(points_sizes[i], p.name.empty() ? p.file.stem().string() : p.name);
+  }
   maker.finish(layers);
 }
 
-void add_group_matte(const scene::Scene& scene, Layers& layers) {
+void add_group_matte(const scene::Scene& scene, const std::vector<std::size_t>& points_sizes, Layers& layers) {
   MatteMaker maker("CryptoGroup");
   for (const scene::Sphere& s : scene.spheres) maker.add(1, s.group);
-  for (const scene::Points& p : scene.points) maker.add(p.centers.size(), p.group);
+  for (std::size_t i = 0; i < scene.points.size(); ++i) maker.add(points_sizes[i], scene.points[i].group);
   maker.finish(layers);
 }
 
-/// Calls `f(authored material, compiled material)` for every sphere. Compilation merges equal materials and may split
-/// glass in two.
-template <class F>
-void each_material(const scene::Scene& scene, const compile::CompiledScene& compiled, F f) {
-  std::size_t sphere = 0;
-  for (const scene::Sphere& s : scene.spheres) f(s.material, compiled.sphere_materials[sphere++]);
-  for (const scene::Points& p : scene.points)
-    for (std::size_t i = 0; i < p.centers.size(); ++i)
-      f(p.materials.empty() ? p.material : p.materials[i], compiled.sphere_materials[sphere++]);
-}
-
-/// The authored material of each compiled material.
-std::vector<std::uint32_t> authored_materials(const scene::Scene& scene, const compile::CompiledScene& compiled) {
-  std::vector<std::uint32_t> authored(compiled.materials.size());
-  each_material(scene, compiled, [&](std::uint32_t from, std::uint32_t to) { authored[to] = from; });
+/// The authored material of each compiled material. Compilation may split glass and coloured materials.
+std::vector<std::uint32_t> authored_materials(const compile::CompiledScene& compiled) {
+  const std::vector<compile::MaterialSource>& sources = compiled.material_sources;
+  std::vector<std::uint32_t> authored;
+  for (const compile::MaterialSource& source : sources)
+    authored.push_back(source.color == compile::MaterialSource::kNoColor ? source.material
+                                                                         : sources[source.material].material);
   return authored;
 }
 
@@ -130,13 +124,13 @@ Layers choose_layers(const scene::Scene& scene, const compile::CompiledScene& co
   for (const film::LayerType& layer : film::kLayerTypes) r.*layer.requested = requested(layer.name);
   if (r.light_groups) r.groups = light_groups(scene, compiled);
   r.coverage = scene.background.alpha == 0;
-  if (requested("CryptoObject")) add_object_matte(scene, out);
+  if (requested("CryptoObject")) add_object_matte(scene, compiled.points_sizes, out);
   if (r.material_id || requested("CryptoMaterial")) {
-    const std::vector<std::uint32_t> authored = authored_materials(scene, compiled);
+    const std::vector<std::uint32_t> authored = authored_materials(compiled);
     for (const std::uint32_t material : authored) r.material_numbers.push_back(material + 1);
     if (requested("CryptoMaterial")) add_material_matte(scene, compiled, authored, out);
   }
-  if (requested("CryptoGroup")) add_group_matte(scene, out);
+  if (requested("CryptoGroup")) add_group_matte(scene, compiled.points_sizes, out);
   return out;
 }
 

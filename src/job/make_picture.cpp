@@ -2,6 +2,7 @@
 #include "job/make_picture.h"
 
 #include <algorithm>
+#include <chrono>
 #include <optional>
 #include <string>
 #include <utility>
@@ -20,6 +21,7 @@
 #include "job/job.h"
 #include "job/job_report.h"
 #include "job/merge_shards.h"
+#include "job/prepared_scene.h"
 #include "job/provenance.h"
 #include "render/render.h"
 #include "render/result.h"
@@ -42,6 +44,19 @@ bool is_of_this_render(const film::Partial& from, const compile::CompiledScene& 
                        const render::Settings& settings) {
   return from.is_adaptive() == settings.sampling.is_adaptive() && from.layers.empty() != settings.layers.records() &&
          from.halves.empty() != settings.layers.guides() && from.has_known_spheres(compiled.spheres.size());
+}
+
+/// The accelerator; null if the job was cancelled while it was built.
+accel::Accel* build(const Job& job, PreparedScene& prepared, int threads) {
+  try {
+    return &prepared.accelerator(threads, [&job](double fraction) {
+      if (job.hooks.on_build) job.hooks.on_build(fraction);
+      return job.hooks.cancel == nullptr || !job.hooks.cancel->load(std::memory_order_relaxed);
+    });
+  } catch (const base::Error& error) {
+    if (error.kind() != base::ErrorKind::kStopped) throw;
+    return nullptr;
+  }
 }
 
 /// Requires that shards have the layers of the image.
@@ -122,8 +137,8 @@ bool is_up_to_date(const Job& job, const compile::CompiledScene& compiled, const
          (job.outputs.deep.empty() || is_same(job.outputs.deep));
 }
 
-render::Result render_job(const Job& job, const compile::CompiledScene& compiled, render::Settings settings,
-                          Checkpoint& checkpoint, double seconds_so_far, JobReport& report) {
+render::Result render_job(const Job& job, PreparedScene& prepared, const compile::CompiledScene& compiled,
+                          render::Settings settings, Checkpoint& checkpoint, double seconds_so_far, JobReport& report) {
   settings.sampling = limits_of(job, seconds_so_far);
   settings.snapshot_is_due = [&] { return checkpoint.is_due(); };
   settings.on_snapshot = [&](const film::Partial& partial) { checkpoint.write_snapshot(partial); };
@@ -134,9 +149,15 @@ render::Result render_job(const Job& job, const compile::CompiledScene& compiled
                       checkpoint.file().string() +
                           " contains sums that do not match its header; delete it, or render "
                           "without --resume to start again");
-  render::Result result = render::render(compiled, settings, std::move(from));
+  const auto begin = std::chrono::steady_clock::now();
+  accel::Accel* const accel = build(job, prepared, settings.threads);
+  const double build_s = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
+  settings.sampling.spend(build_s);
+  render::Result result;
+  if (accel != nullptr) result = render::render(compiled, *accel, settings, std::move(from));
+  result.statistics.build_s = build_s;
   report.render = result.statistics;
-  report.phases.build_s = result.statistics.build_s;
+  report.phases.build_s = build_s;
   report.phases.render_s = result.statistics.render_s;
   report.phases.finish_s = result.statistics.finish_s;
   if (result.completed) return result;

@@ -13,13 +13,15 @@ namespace orrery::job {
 class Checkpoint;
 struct Job;
 struct JobReport;
+class PreparedScene;
 
-/// Renders, resuming from the checkpoint if there is one, and writes a checkpoint if stopped.
+/// Renders, resuming from the checkpoint if there is one, and writes a checkpoint if stopped. Builds the accelerator of
+/// the prepared scene, unless there is one.
 ///
 /// `settings` threads, traversal, layers and callbacks; the job's sampling limits are added
 /// Errors     base::Error: kStopped; those of Checkpoint::load and write
-render::Result render_job(const Job& job, const compile::CompiledScene& compiled, render::Settings settings,
-                          Checkpoint& checkpoint, double seconds_so_far, JobReport& report);
+render::Result render_job(const Job& job, PreparedScene& prepared, const compile::CompiledScene& compiled,
+                          render::Settings settings, Checkpoint& checkpoint, double seconds_so_far, JobReport& report);
 
 /// Merges shards instead of rendering.
 ///

@@ -83,12 +83,11 @@ std::string scene_difference(const image::Provenance& a, const image::Provenance
 }  // namespace
 
 image::Provenance provenance_of(const Job& job, const format::ReadResult& read, const compile::CompiledScene& compiled,
-                                const Layers& layers) {
+                                const SceneHashes& hashes, const Layers& layers) {
   const std::uint32_t end =
       job.sampling.sample_end > 0 ? job.sampling.sample_end : static_cast<std::uint32_t>(compiled.samples);
   image::Provenance out;
   out["version"] = program_version();
-  const SceneHashes hashes = scene_hashes(compiled);
   out["sceneHash"] = hashes.of_image;
   out["sampleHash"] = hashes.of_samples;
   out["settings"] = settings_lines(read, true);

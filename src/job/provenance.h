@@ -16,11 +16,12 @@ namespace orrery::job {
 
 struct Job;
 struct Layers;
+struct SceneHashes;
 
 /// The provenance of a shard or checkpoint of this job: program version, scene, and every setting that its sums depend
 /// on. It prevents merging or resuming incompatible files.
 image::Provenance provenance_of(const Job& job, const format::ReadResult& read, const compile::CompiledScene& compiled,
-                                const Layers& layers);
+                                const SceneHashes& hashes, const Layers& layers);
 
 /// Hash of everything that determines the images of a job. An image with this stamp in its header is up to date.
 ///

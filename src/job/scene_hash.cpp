@@ -77,6 +77,10 @@ void add_textures(Hash& hash, const compile::TextureStore& store) {
 }  // namespace
 
 SceneHashes scene_hashes(const compile::CompiledScene& compiled) {
+  return scene_hashes(compiled, hash_of_spheres(compiled));
+}
+
+Hash hash_of_spheres(const compile::CompiledScene& compiled) {
   Hash hash;
   hash.add_bits(compiled.spheres.size());
   const base::StopPoint stop;
@@ -85,6 +89,10 @@ SceneHashes scene_hashes(const compile::CompiledScene& compiled) {
     for (const kernel::Sphere s = compiled.spheres[i]; const double v : {s.x, s.y, s.z, s.radius}) hash.add(v);
   }
   for (std::size_t i = 0; i < compiled.sphere_materials.size(); ++i) hash.add_bits(compiled.sphere_materials[i]);
+  return hash;
+}
+
+SceneHashes scene_hashes(const compile::CompiledScene& compiled, Hash hash) {
   hash.add_bits(compiled.materials.size());
   for (const kernel::Material& m : compiled.materials) {
     add_all(hash, m.albedo);

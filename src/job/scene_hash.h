@@ -3,6 +3,7 @@
 
 #include <string>
 
+#include "base/hash.h"
 #include "compile/forward.h"
 
 namespace orrery::job {
@@ -14,6 +15,12 @@ struct SceneHashes {
   std::string of_image;    ///< with the number of samples
 };
 SceneHashes scene_hashes(const compile::CompiledScene& compiled);
+
+/// The part of the hashes that depends on the spheres and on which material each has; it takes longest.
+base::Hash hash_of_spheres(const compile::CompiledScene& compiled);
+
+/// Completes hash_of_spheres().
+SceneHashes scene_hashes(const compile::CompiledScene& compiled, base::Hash spheres);
 
 /// SceneHashes::of_image, which identifies the scene.
 inline std::string scene_hash(const compile::CompiledScene& compiled) { return scene_hashes(compiled).of_image; }

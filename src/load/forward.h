@@ -4,11 +4,9 @@
 /// Declarations of the room's types, for headers that only name them.
 namespace orrery::load {
 
-struct BackgroundCache;
 struct LoadedMap;
 struct LoadedScene;
 struct SceneRequest;
 struct SceneSource;
-struct TextureCache;
 
 }  // namespace orrery::load

@@ -2,10 +2,12 @@
 #include "load/load_background.h"
 
 #include <algorithm>
+#include <utility>
 
 #include <fmt/core.h>
 
 #include "base/error.h"
+#include "base/input_file.h"
 #include "compile/daylight.h"
 #include "compile/environment.h"
 #include "display/color_space.h"
@@ -35,17 +37,6 @@ MapRequest map_request(const BackgroundRequest& request, const scene::Scene& sce
   out.memory_limit = request.memory_limit;
   out.skips_large = request.skips_large;
   return out;
-}
-
-/// Identifies a version of the file and the conversion; empty if the file cannot be examined.
-std::string key_of(const BackgroundRequest& request, const scene::Scene& scene) {
-  std::error_code size_error, time_error;
-  const std::uintmax_t size = fs::file_size(request.file, size_error);
-  const fs::file_time_type time = fs::last_write_time(request.file, time_error);
-  if (size_error || time_error) return {};
-  return fmt::format("{}\n{} {}\n{}\n{}\n{}\n{}", fs::absolute(request.file).string(), size,
-                     time.time_since_epoch().count(), request.ocio_config, scene.background.color_space,
-                     scene.color.space, scene.color.working_space());
 }
 
 /// Converts a colour, and replaces negative components by 0.
@@ -97,13 +88,15 @@ LoadedBackground load_sky(const std::string& ocio_config, const scene::Scene& sc
 }
 
 LoadedBackground load_background(const BackgroundRequest& request, const scene::Scene& scene) {
-  if (!request.cache) return load_map(map_request(request, scene));
-  const std::string key = key_of(request, scene);
-  if (!key.empty() && key == request.cache->key && request.cache->loaded.image) return request.cache->loaded;
-  *request.cache = {};  // its memory must be free before another image is read
-  LoadedBackground loaded = load_map(map_request(request, scene));
-  *request.cache = {key, loaded};
-  return loaded;
+  std::string version = background_version(request, scene);
+  LoadedBackground out = load_map(map_request(request, scene));
+  out.version = std::move(version);
+  return out;
+}
+
+std::string background_version(const BackgroundRequest& request, const scene::Scene& scene) {
+  return fmt::format("{}\n{}\n{}\n{}\n{}", base::file_version(request.file), request.ocio_config,
+                     scene.background.color_space, scene.color.space, scene.color.working_space());
 }
 
 }  // namespace orrery::load

@@ -3,7 +3,6 @@
 
 #include <cstdint>
 #include <filesystem>
-#include <memory>
 #include <string>
 
 #include "load/loaded_map.h"
@@ -11,19 +10,12 @@
 
 namespace orrery::load {
 
-/// The last background that was read, for the frames of a sequence. A file that has changed since is read again.
-struct BackgroundCache {
-  std::string key;  ///< identifies the file, its modification time and the conversion
-  LoadedBackground loaded;
-};
-
 /// A background to read.
 struct BackgroundRequest {
   std::filesystem::path file;
   std::string ocio_config;         ///< in the form of display::Settings
   std::uint64_t memory_limit = 0;  ///< bytes; 0: the free memory
   bool skips_large = false;        ///< an image that does not fit into memory is a warning and is not read
-  std::shared_ptr<BackgroundCache> cache = nullptr;
 };
 
 /// Reads the image of scene.background and converts it to the working space; see load_map.
@@ -32,6 +24,9 @@ struct BackgroundRequest {
 /// Errors     those of the file and of colour spaces become diagnostics; base::Error(kNoMemory) if the image does not
 ///            fit into memory, before its pixels are read
 LoadedBackground load_background(const BackgroundRequest& request, const scene::Scene& scene);
+
+/// Identifies the file and the conversion: equal texts, equal results of load_background().
+std::string background_version(const BackgroundRequest& request, const scene::Scene& scene);
 
 /// Computes the sky of scene.background and converts it to the working space.
 ///

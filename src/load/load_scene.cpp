@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "load/load_scene.h"
 
+#include <algorithm>
 #include <string>
 #include <utility>
 
@@ -8,6 +9,7 @@
 
 #include "base/available_memory.h"
 #include "base/error.h"
+#include "base/input_file.h"
 #include "display/look_up.h"
 #include "format/read_result.h"
 #include "format/read_scene.h"
@@ -15,6 +17,7 @@
 #include "load/load_textures.h"
 #include "load/loaded_scene.h"
 #include "load/working_space.h"
+#include "points/load_points.h"
 #include "scene/validate.h"
 
 namespace orrery::load {
@@ -123,54 +126,226 @@ std::vector<scene::SceneDiagnostic> check_exposures(const scene::Scene& scene, c
   return out;
 }
 
-}  // namespace
+/// A pointer to the scene at shutter close; null without motion blur.
+const scene::Scene* pointer_to(const std::optional<scene::Scene>& closing) { return closing ? &*closing : nullptr; }
 
-LoadedScene load_scene(const SceneRequest& request) {
-  LoadedScene out;
-  ColorCheck check(request);
-  const auto check_and_load = [&](const scene::Scene& scene) {
-    std::vector<scene::SceneDiagnostic> diagnostics = check(scene);
-    if (!diagnostics.empty()) return diagnostics;
-    out.textures = load_textures(request.source.file, settings_of(request, scene.color).config, request.memory_limit,
-                                 request.skips_large_background, request.texture_cache.get(), scene);
+/// The rest of a memory limit, at least one byte; 0 if there is no limit.
+std::uint64_t rest_of(std::uint64_t limit, std::uint64_t used) {
+  return limit == 0 ? 0 : std::max<std::uint64_t>(limit - std::min(used, limit), 1);
+}
+
+/// One load of a scene.
+class SceneLoader {
+ public:
+  SceneLoader(const SceneRequest& request, std::optional<LoadedScene> previous)
+      : request_(request),
+        previous_(std::move(previous)),
+        check_colors_(request),
+        reader_(request.source.file, request.source.overrides,
+                {request.source.text, request.source.frame, request.source.is_generated}),
+        scene_(reader_.scene()) {}
+
+  format::ReadResult read_with_data() {
+    load_data();
+    reader_.add(scene::validate(scene_));
+    find_coincident();
+    return reader_.finish();
+  }
+
+  LoadedScene run() {
+    if (request_.keeps_authored) {
+      out_.authored = scene_;
+      out_.authored_closing = reader_.closing();
+    }
+    compare();
+    load_data();
+    reader_.add(scene::validate(scene_));
+    find_coincident();
+    if (reader_.is_read("color.")) load_images();
+    out_.read = reader_.finish();
+    out_.choice = check_colors_.take();
+    finish(out_.read.scene);
+    return std::move(out_);
+  }
+
+ private:
+  /// Determines what has changed since the previous load.
+  void compare() {
+    if (request_.keeps_authored) out_.data_version = data_version();
+    if (!previous_ || reader_.has_errors()) return;
+    out_.changed = scene::changed_parts(*previous_->authored, pointer_to(previous_->authored_closing), scene_,
+                                        pointer_to(reader_.closing()));
+    if (out_.data_version != previous_->data_version) out_.changed.add(scene::Part::kGeometry);
+    if (request_.on_change && out_.changed.any()) request_.on_change(out_.changed);
+  }
+
+  bool has_new_data() const { return out_.changed.geometry || out_.changed.assignment; }
+
+  points::LoadRequest data_request(std::size_t index) const {
+    points::LoadRequest out;
+    out.folder = request_.source.file.parent_path();
+    out.file = out.folder / scene_.points[index].file;
+    out.key = fmt::format("points[{}]", index);
+    out.frame = request_.source.frame;
+    out.materials = scene_.materials.size();
+    out.open = request_.source.open_data;
+    return out;
+  }
+
+  /// Identifies the data files, their contents, and the frames that are read from them.
+  std::string data_version() const {
+    const auto version_of = [&](const std::filesystem::path& file) {
+      return request_.source.data_version ? request_.source.data_version(file) : base::file_version(file);
+    };
+    std::string out;
+    for (std::size_t i = 0; i < scene_.points.size(); ++i) {
+      const scene::Points& points = scene_.points[i];
+      if (!reader_.is_read(fmt::format("points[{}].file", i))) continue;
+      const points::LoadRequest request = data_request(i);
+      int frame = 0;
+      try {
+        frame = points::chosen_frame(request, points);
+      } catch (const base::Error&) {  // reported when the file is loaded
+      }
+      out += fmt::format("{}\n{}\n", version_of(request.file), frame);
+      if (points.color.has_map_file()) out += base::file_version(request.folder / points.color.map) + '\n';
+    }
+    return out;
+  }
+
+  /// Reads the data files, or takes what was determined when they were read.
+  void load_data() {
+    if (!has_new_data()) {
+      for (std::size_t i = 0; i < scene_.points.size(); ++i) take_loaded(i);
+      out_.data_warnings = std::move(previous_->data_warnings);
+      reader_.add(out_.data_warnings);
+      return;
+    }
+    const std::uint64_t limit =
+        request_.memory_limit > 0 ? request_.memory_limit : base::available_memory().value_or(0);
+    std::uint64_t used = 0;
+    for (std::size_t i = 0; i < scene_.points.size(); ++i) {
+      points::LoadRequest data = data_request(i);
+      if (!reader_.is_read(data.key + ".file")) continue;
+      data.memory_limit = rest_of(limit, used);
+      try {
+        const std::vector<scene::SceneDiagnostic> found = points::load_points(data, scene_.points[i]);
+        reader_.add(found);
+        out_.data_warnings.insert(out_.data_warnings.end(), found.begin(), found.end());
+      } catch (const base::Error& error) {
+        if (error.kind() != base::ErrorKind::kBadData && error.kind() != base::ErrorKind::kMissingInput) throw;
+        reader_.add_file_error(data.key + ".file", error);
+      }
+      used += scene_.points[i].bytes();
+    }
+  }
+
+  /// Takes what is known of a points table besides its spheres.
+  void take_loaded(std::size_t index) {
+    scene::Points &from = previous_->read.scene.points[index], &to = scene_.points[index];
+    to.palette = std::move(previous_->palettes[index]);
+    to.palette_rec709 = from.palette_rec709;
+    to.color_range = from.color_range;
+    to.color_names = std::move(from.color_names);
+    to.unused = std::move(from.unused);
+    to.spheres_are_rows = from.spheres_are_rows;
+  }
+
+  void find_coincident() {
+    if (!out_.changed.geometry) {
+      scene_.distinct_in = previous_->read.scene.distinct_in;
+      reader_.add(previous_->coincident);
+      out_.coincident = std::move(previous_->coincident);
+      return;
+    }
+    out_.coincident = scene::warn_of_coincident(scene_, pointer_to(reader_.closing()));
+    if (out_.coincident.empty()) scene_.distinct_in = scene_.render.precision;
+    reader_.add(out_.coincident);
+  }
+
+  /// Checks the names in [color], then reads textures and the background.
+  void load_images() {
+    std::vector<scene::SceneDiagnostic> diagnostics = check_colors_(scene_);
     const auto add = [&](const std::vector<scene::SceneDiagnostic>& more) {
       diagnostics.insert(diagnostics.end(), more.begin(), more.end());
     };
-    for (const LoadedTexture& texture : out.textures) add(texture.map.diagnostics);
-    if (scene.background.type == scene::BackgroundType::kSky) {
-      out.background = load_sky(settings_of(request, scene.color).config, scene);
-    } else if (has_image(scene.background)) {
-      const BackgroundRequest background{request.source.file.parent_path() / scene.background.file,
-                                         settings_of(request, scene.color).config, request.memory_limit,
-                                         request.skips_large_background, request.background_cache};
-      out.background = load_background(background, scene);
+    if (diagnostics.empty()) {
+      const std::string config = settings_of(request_, scene_.color).config;
+      load_textures(config);
+      for (const LoadedTexture& texture : out_.textures) add(texture.map.diagnostics);
+      load_background(config);
+      if (out_.background) add(out_.background->diagnostics);
+      add(check_exposures(scene_, out_));
     }
-    if (out.background) add(out.background->diagnostics);
-    add(check_exposures(scene, out));
-    return diagnostics;
-  };
-  format::ReadOptions options;
-  options.text = request.source.text;
-  options.is_generated = request.source.is_generated;
-  options.frame = request.source.frame;
-  options.open_data = request.source.open_data;
-  options.also = check_and_load;
-  options.memory_limit = request.memory_limit > 0 ? request.memory_limit : base::available_memory().value_or(0);
-  out.read = format::read_scene(request.source.file, request.source.overrides, options);
-  out.choice = check.take();
-  scene::Scene& scene = out.read.scene;
-  if (out.background) scene.background.image = out.background->image;
-  set_textures(out.textures, scene);
-  out.display = settings_of(request, scene.color);
-  out.warnings = std::move(out.read.warnings);
-  if (out.choice)
-    for (const std::string& text : out.choice->warnings)
-      out.warnings.push_back(base::file_diagnostic(base::Severity::kWarning, out.choice->config, text));
-  if (const int clamped = to_working_space(out.display.config, scene); clamped > 0)
-    out.warnings.push_back(base::file_diagnostic(
-        base::Severity::kWarning, request.source.file.string(),
-        fmt::format("{} colours are out of range in {} and were clamped", clamped, scene.color.working_space())));
-  return out;
+    reader_.add(diagnostics);
+  }
+
+  void load_textures(const std::string& config) {
+    static const std::vector<LoadedTexture> kNone;
+    const std::vector<LoadedTexture>& known = previous_ ? previous_->textures : kNone;
+    out_.textures = load::load_textures(request_.source.file, config, request_.memory_limit,
+                                        request_.skips_large_background, known, scene_);
+    const auto is_same = [](const LoadedTexture& a, const LoadedTexture& b) { return a.map.image == b.map.image; };
+    if (!std::equal(known.begin(), known.end(), out_.textures.begin(), out_.textures.end(), is_same))
+      out_.changed.add(scene::Part::kLook);
+  }
+
+  void load_background(const std::string& config) {
+    const scene::Background& background = scene_.background;
+    const bool is_sky = background.type == scene::BackgroundType::kSky;
+    if (!is_sky && !has_image(background)) return;
+    const BackgroundRequest wanted{request_.source.file.parent_path() / background.file, config, request_.memory_limit,
+                                   request_.skips_large_background};
+    std::optional<LoadedBackground> known;
+    if (previous_) known = std::move(previous_->background);
+    const bool is_known = known && known->image &&
+                          (is_sky ? !out_.changed.look && !out_.changed.assignment && !out_.changed.geometry
+                                  : known->version == background_version(wanted, scene_));
+    if (is_known) {
+      out_.background = std::move(known);
+      return;
+    }
+    known.reset();
+    if (previous_ && !out_.changed.look) {
+      out_.changed.add(scene::Part::kLook);
+      if (request_.on_change) request_.on_change(out_.changed);
+    }
+    out_.background = is_sky ? load_sky(config, scene_) : load::load_background(wanted, scene_);
+  }
+
+  /// Completes the scene: its images, display transform and working space.
+  void finish(scene::Scene& scene) {
+    if (request_.keeps_authored)
+      for (const scene::Points& points : scene.points) out_.palettes.push_back(points.palette);
+    if (out_.background) scene.background.image = out_.background->image;
+    set_textures(out_.textures, scene);
+    out_.display = settings_of(request_, scene.color);
+    out_.warnings = std::move(out_.read.warnings);
+    if (out_.choice)
+      for (const std::string& text : out_.choice->warnings)
+        out_.warnings.push_back(base::file_diagnostic(base::Severity::kWarning, out_.choice->config, text));
+    if (const int clamped = to_working_space(out_.display.config, scene); clamped > 0)
+      out_.warnings.push_back(base::file_diagnostic(
+          base::Severity::kWarning, request_.source.file.string(),
+          fmt::format("{} colours are out of range in {} and were clamped", clamped, scene.color.working_space())));
+  }
+
+  const SceneRequest& request_;
+  std::optional<LoadedScene> previous_;
+  ColorCheck check_colors_;
+  format::SceneReader reader_;
+  scene::Scene& scene_;
+  LoadedScene out_;
+};
+
+}  // namespace
+
+LoadedScene load_scene(const SceneRequest& request) { return SceneLoader(request, {}).run(); }
+
+LoadedScene load_scene(const SceneRequest& request, LoadedScene previous) {
+  return SceneLoader(request, std::move(previous)).run();
 }
+
+format::ReadResult read_with_data(const SceneRequest& request) { return SceneLoader(request, {}).read_with_data(); }
 
 }  // namespace orrery::load

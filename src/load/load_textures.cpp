@@ -2,11 +2,11 @@
 #include "load/load_textures.h"
 
 #include <algorithm>
-#include <system_error>
 #include <utility>
 
 #include <fmt/core.h>
 
+#include "base/input_file.h"
 #include "image/read_map.h"
 #include "load/load_map.h"
 #include "scene/scene.h"
@@ -34,25 +34,25 @@ MapRequest request_of(const scene::NamedTexture& named, const fs::path& folder, 
   return out;
 }
 
-/// Identifies a version of the file and the conversion.
-std::string name_of(const MapRequest& request) {
-  std::error_code size_error, time_error;
-  const std::uintmax_t size = fs::file_size(request.file, size_error);
-  const fs::file_time_type time = fs::last_write_time(request.file, time_error);
-  const bool is_known = !size_error && !time_error;
-  return fmt::format("{}\n{} {}\n{}\n{}\n{}\n{}\n{} {} {}", fs::absolute(request.file).string(), is_known ? size : 0,
-                     is_known ? time.time_since_epoch().count() : 0, request.ocio_config, request.color_space,
-                     request.default_space, request.working_space, request.is_color, request.largest,
-                     request.has_mip_map);
+std::string version_of(const MapRequest& request) {
+  return fmt::format("{}\n{}\n{}\n{}\n{}\n{} {} {}", base::file_version(request.file), request.ocio_config,
+                     request.color_space, request.default_space, request.working_space, request.is_color,
+                     request.largest, request.has_mip_map);
+}
+
+/// The texture with this version; null if there is none.
+const LoadedTexture* find(const std::vector<LoadedTexture>& textures, const std::string& version) {
+  for (const LoadedTexture& texture : textures)
+    if (texture.map.version == version && texture.map.image) return &texture;
+  return nullptr;
 }
 
 }  // namespace
 
 std::vector<LoadedTexture> load_textures(const fs::path& scene_file, const std::string& ocio_config,
-                                         std::uint64_t memory_limit, bool skips_large, TextureCache* cache,
-                                         const scene::Scene& scene) {
+                                         std::uint64_t memory_limit, bool skips_large,
+                                         const std::vector<LoadedTexture>& known, const scene::Scene& scene) {
   std::vector<LoadedTexture> out;
-  std::map<std::string, LoadedMap> maps;
   std::uint64_t bytes = 0;
   for (const scene::NamedTexture& named : scene::image_textures(scene)) {
     if (named.texture->file.empty()) {
@@ -62,26 +62,23 @@ std::vector<LoadedTexture> load_textures(const fs::path& scene_file, const std::
       continue;
     }
     MapRequest request = request_of(named, scene_file.parent_path(), ocio_config, scene);
-    const std::string name = name_of(request);
-    if (const auto same = maps.find(name); same != maps.end()) {
-      out.push_back({named.key, same->second, true});
+    const std::string version = version_of(request);
+    if (const LoadedTexture* same = find(out, version)) {
+      out.push_back({named.key, LoadedMap(same->map), true});
       out.back().map.diagnostics.clear();  // reported at the first
       continue;
     }
-    if (cache != nullptr && cache->maps.count(name) != 0) {
-      out.push_back({named.key, cache->maps.at(name), false});
+    if (const LoadedTexture* same = find(known, version)) {
+      out.push_back({named.key, same->map, false});
     } else {
       if (memory_limit > 0)
         request.memory_limit = std::max<std::uint64_t>(memory_limit - std::min(bytes, memory_limit), 1);
       request.skips_large = skips_large;
       out.push_back({named.key, load_map(request), false});
+      out.back().map.version = version;
     }
-    if (out.back().map.image) {
-      bytes += out.back().map.bytes;
-      maps.emplace(name, out.back().map);
-    }
+    if (out.back().map.image) bytes += out.back().map.bytes;
   }
-  if (cache != nullptr) cache->maps = std::move(maps);
   return out;
 }
 

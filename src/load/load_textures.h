@@ -3,7 +3,6 @@
 
 #include <cstdint>
 #include <filesystem>
-#include <map>
 #include <string>
 #include <vector>
 
@@ -19,23 +18,17 @@ struct LoadedTexture {
   bool is_shared = false;  ///< an earlier texture has the same image
 };
 
-/// The images of the last scene that was loaded, for the frames of a sequence. A file that has changed since is read
-/// again.
-struct TextureCache {
-  std::map<std::string, LoadedMap> maps;  ///< by file, its modification time and the conversion
-};
-
 /// Reads the files of all image textures, each once, and converts them to the working space. Reflectances and numbers
 /// are clamped to 0..1. The memory limit applies to all of them together.
 ///
 /// `scene_file`   names of textures are relative to its folder
 /// `ocio_config`  in the form of display::Settings
-/// `cache`        null: none
+/// `known`        textures of an earlier load; those whose files have not changed since are not read again
 /// Result         in the order of scene::image_textures
 /// Errors         as load_map
 std::vector<LoadedTexture> load_textures(const std::filesystem::path& scene_file, const std::string& ocio_config,
-                                         std::uint64_t memory_limit, bool skips_large, TextureCache* cache,
-                                         const scene::Scene& scene);
+                                         std::uint64_t memory_limit, bool skips_large,
+                                         const std::vector<LoadedTexture>& known, const scene::Scene& scene);
 
 /// Assigns the images that load_textures() has read to the textures of a scene.
 void set_textures(const std::vector<LoadedTexture>& loaded, scene::Scene& scene);

@@ -13,6 +13,7 @@ namespace orrery::load {
 
 /// A map that was read, and the properties of its file.
 struct LoadedMap {
+  std::string version;        ///< identifies the contents of the file and the conversion; empty: unknown
   int width = 0, height = 0;  ///< texels
   std::string color_space;    ///< colour space of the file; empty for data
   std::uint64_t bytes = 0;    ///< estimated memory of the texels, and of their mip map or sampling tables

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <filesystem>
+#include <functional>
 #include <memory>
 #include <string>
 
@@ -17,8 +18,10 @@ struct SceneSource {
   int frame = 1;
   std::shared_ptr<const std::string> text = {};  ///< text of the scene; null: read the file
   bool has_file = true;                          ///< false: `file` is only a name
-  points::OpenData open_data = {};               ///< see format::ReadOptions
-  bool is_generated = false;                     ///< see format::ReadOptions
+  points::OpenData open_data = {};               ///< see points::LoadRequest
+  /// Identifies the contents of a data file; empty: base::file_version.
+  std::function<std::string(const std::filesystem::path&)> data_version = {};
+  bool is_generated = false;  ///< see format::ReadOptions
 };
 
 }  // namespace orrery::load

@@ -97,11 +97,11 @@ LoadedFrame DataFrames::load(int frame, const scene::Points& keys, points::Sourc
   request.folder = folder_;
   request.key = "points[0]";
   request.frame = frame;
-  request.is_sequence = is_sequence_;
   request.memory_limit = options_.memory_limit;
   request.source = source;
   request.open = open_;
   LoadedFrame out{keys, {}};
+  out.points.is_sequence = is_sequence_;
   if (keys.file.empty()) out.points.file = request.file;
   std::vector<base::Diagnostic> errors;
   for (const scene::SceneDiagnostic& d : points::load_points(request, out.points)) {

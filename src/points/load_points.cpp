@@ -37,6 +37,26 @@ using data::Vec3d;
 /// Rows are numbered by 32 bits.
 constexpr std::uint64_t kMaxRows = std::numeric_limits<std::uint32_t>::max();
 
+std::unique_ptr<data::DataFile> open(const LoadRequest& request, const scene::Points& points) {
+  data::OpenOptions options;
+  options.component = points.component;
+  options.limit_memory(request.memory_limit);
+  return request.open && !points.is_sequence ? request.open(request.file, options)
+                                             : particles::open(request.file, options);
+}
+
+/// The requested frame, from 1; before the file is opened.
+int requested_frame(const LoadRequest& request, const scene::Points& points) {
+  return points.frame ? *points.frame : points.is_sequence ? 1 : request.frame;
+}
+
+/// The frame to read, from 1. A file of a single frame is the same in all rendered frames.
+int frame_in(data::DataFile& file, const LoadRequest& request, const scene::Points& points) {
+  const int frame = requested_frame(request, points);
+  if (frame == 1 || points.frame) return frame;  // without counting: that may read the whole file
+  return file.frame_count() == 1 ? 1 : frame;
+}
+
 /// Loads the spheres of one points table.
 class Loader {
  public:
@@ -44,11 +64,7 @@ class Loader {
       : request_(request), points_(points), faults_(request.key) {}
 
   std::vector<scene::SceneDiagnostic> run() {
-    data::OpenOptions options;
-    options.component = points_.component;
-    options.limit_memory(request_.memory_limit);
-    file_ = request_.open && !request_.is_sequence ? request_.open(request_.file, options)
-                                                   : particles::open(request_.file, options);
+    file_ = open(request_, points_);
     if (points_.component && file_->format() != data::Format::kHdf5)
       faults_.warning(".component", "has no effect: only HDF5 files have components");
     if (const std::optional<int> frame = choose_frame()) {
@@ -68,13 +84,12 @@ class Loader {
   }
 
  private:
-  /// Returns the frame of the file, from 0. A file of a single frame is the same in all rendered frames.
+  /// Returns the frame of the file, from 0.
   std::optional<int> choose_frame() {
-    const int frame = points_.frame ? *points_.frame : request_.is_sequence ? 1 : request_.frame;
-    if (frame == 1) return 0;  // without counting: that may read the whole file
+    const int frame = frame_in(*file_, request_, points_);
+    if (frame == 1) return 0;
     const int count = file_->frame_count();
     if (frame >= 1 && frame <= count) return frame - 1;
-    if (!points_.frame && count == 1) return 0;
     faults_.error(points_.frame ? ".frame" : ".file",
                   fmt::format("there is no frame {}; {} has {}{}", frame, points_.file.string(), count,
                               count == 1 ? " frame" : " frames"));
@@ -271,6 +286,11 @@ class Loader {
 
 std::vector<scene::SceneDiagnostic> load_points(const LoadRequest& request, scene::Points& points) {
   return Loader(request, points).run();
+}
+
+int chosen_frame(const LoadRequest& request, const scene::Points& points) {
+  const int frame = requested_frame(request, points);
+  return frame == 1 || points.frame ? frame : frame_in(*open(request, points), request, points);
 }
 
 }  // namespace orrery::points

@@ -22,7 +22,6 @@ struct LoadRequest {
   std::filesystem::path folder;    ///< folder of the scene file, for the file of a colour map
   std::string key;                 ///< "points[0]", for diagnostics
   int frame = 1;                   ///< the rendered frame
-  bool is_sequence = false;        ///< the file was selected by the rendered frame
   std::size_t materials = 0;       ///< number of materials of the scene
   SourceRows* source = nullptr;    ///< if not null, receives the rows of the spheres
   std::uint64_t memory_limit = 0;  ///< maximum memory of the spheres, bytes; 0: no limit
@@ -38,5 +37,12 @@ struct LoadRequest {
 /// Errors     base::Error: those of particles::open and data::DataFile; kNoMemory
 /// Cost       one read of the needed columns, or of all columns for `source`
 std::vector<scene::SceneDiagnostic> load_points(const LoadRequest& request, scene::Points& points);
+
+/// Returns the frame of the file, from 1, that load_points() would read.
+///
+/// Result     beyond the last frame if the file does not have the requested one
+/// Errors     those of particles::open
+/// Cost       opens the file if it may have several frames; counting them may read all of it
+int chosen_frame(const LoadRequest& request, const scene::Points& points);
 
 }  // namespace orrery::points

@@ -4,14 +4,12 @@
 #include <algorithm>
 #include <cmath>
 
-#include "base/available_memory.h"
 #include "base/error.h"
 #include "base/file_set.h"
 #include "base/output_file.h"
 #include "data/table_file.h"
 #include "format/named_files.h"
 #include "format/read_result.h"
-#include "format/read_scene.h"
 #include "format/source_text.h"
 #include "format/write_ply.h"
 #include "format/write_tree.h"
@@ -83,15 +81,12 @@ std::vector<base::Diagnostic> check(const SceneData& scene) {
 }
 
 double largest_radius(const SceneData& scene, std::uint64_t memory_limit) {
-  const load::SceneSource source = scene.source();
-  format::ReadOptions options;
-  options.text = source.text;
-  options.frame = source.frame;
-  options.open_data = source.open_data;
-  options.memory_limit = memory_limit > 0 ? memory_limit : base::available_memory().value_or(0);
+  load::SceneRequest request;
+  request.source = scene.source();
+  request.memory_limit = memory_limit;
   double out = 0;
   try {
-    for (const scene::Points& points : format::read_scene(source.file, source.overrides, options).scene.points)
+    for (const scene::Points& points : load::read_with_data(request).scene.points)
       for (const double radius : points.radii) out = std::max(out, std::abs(radius));
   } catch (const base::Error&) {
     return 0;

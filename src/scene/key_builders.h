@@ -165,6 +165,12 @@ Key<Target> choices(const char* name, std::vector<std::string> choices, const Ke
   key.choices = std::move(choices);
   return key;
 }
+/// Sets what a key changes, if that differs from its table.
+template <class Target>
+Key<Target> changes(Part part, Key<Target> key) {
+  key.part = part;
+  return key;
+}
 template <class Target>
 Key<Target> required(Key<Target> key) {
   key.required = true;

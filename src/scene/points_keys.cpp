@@ -40,22 +40,26 @@ std::vector<Key<P>> make_keys() {
       number<P>("radius.scale", {0, kLargestLength, true, false},
                 {"", "Scale factor for radii from a column or by element, e.g. 0.5 for a column of diameters"},
                 [](P& p) -> double& { return p.radius.scale; }),
-      text<P>("color.column", {"", "Column of the file that `color.map` maps to colours"},
-              [](P& p) -> std::string& { return p.color.column; }),
-      text<P>("color.map",
-              {"",
-               "Colour map: the name of a built-in map, or a text file relative to the scene file; see "
-               "[Data files](data.md#colour)"},
-              [](P& p) -> std::string& { return p.color.map; }),
-      optional_interval<P>(
-          "color.range", kAnyValue, {"", "Values of the column at both ends of the map, e.g. `[-2, 2]`"},
-          "minimum and maximum of the frame", [](P& p) -> std::optional<Interval>& { return p.color.range; }),
-      vector<P>("color.nan_color", {0, 1}, {"scene-linear", "Colour of NaN values"},
-                [](P& p) -> Vec3d& { return p.color.nan_color; }),
-      choice_of_text<P>("color.element", {"jmol"},
-                        {"", "Colours by chemical element. `jmol`: those of Jmol, with hydrogen in light grey"},
-                        [](P& p) -> std::string& { return p.color.element; }),
-      boolean<P>("color.rgb", {"", "Uses the colours in the file, as sRGB"}, [](P& p) -> bool& { return p.color.rgb; }),
+      changes(Part::kAssignment, text<P>("color.column", {"", "Column of the file that `color.map` maps to colours"},
+                                         [](P& p) -> std::string& { return p.color.column; })),
+      changes(Part::kAssignment,
+              text<P>("color.map",
+                      {"",
+                       "Colour map: the name of a built-in map, or a text file relative to the scene file; see "
+                       "[Data files](data.md#colour)"},
+                      [](P& p) -> std::string& { return p.color.map; })),
+      changes(Part::kAssignment,
+              optional_interval<P>(
+                  "color.range", kAnyValue, {"", "Values of the column at both ends of the map, e.g. `[-2, 2]`"},
+                  "minimum and maximum of the frame", [](P& p) -> std::optional<Interval>& { return p.color.range; })),
+      changes(Part::kAssignment, vector<P>("color.nan_color", {0, 1}, {"scene-linear", "Colour of NaN values"},
+                                           [](P& p) -> Vec3d& { return p.color.nan_color; })),
+      changes(Part::kAssignment,
+              choice_of_text<P>("color.element", {"jmol"},
+                                {"", "Colours by chemical element. `jmol`: those of Jmol, with hydrogen in light grey"},
+                                [](P& p) -> std::string& { return p.color.element; })),
+      changes(Part::kAssignment, boolean<P>("color.rgb", {"", "Uses the colours in the file, as sRGB"},
+                                            [](P& p) -> bool& { return p.color.rgb; })),
       text<P>("select",
               {"", "Condition on the columns, e.g. `type == 2 && z > 0`; see [Selections](data.md#selections)"},
               [](P& p) -> std::string& { return p.select; }),
@@ -81,18 +85,20 @@ std::vector<Key<P>> make_keys() {
                            [](P& p) -> std::optional<Interval>& { return p.clip[1]; }),
       optional_interval<P>("clip.z", kAnyLength, {"scene units", "As `clip.x`"}, "unlimited",
                            [](P& p) -> std::optional<Interval>& { return p.clip[2]; }),
-      text<P>(
-          "material_column",
-          {"",
-           "PLY: column of indices into the scene's materials, counted from 0 in the order of the scene file. `\"\"`: "
-           "none"},
-          [](P& p) -> std::string& { return p.material_column; }),
+      changes(Part::kAssignment, text<P>("material_column",
+                                         {"",
+                                          "PLY: column of indices into the scene's materials, counted from 0 in the "
+                                          "order of the scene file. `\"\"`: "
+                                          "none"},
+                                         [](P& p) -> std::string& { return p.material_column; })),
       boolean<P>("skip_bad", {"", "Skips rows with non-finite coordinates or radii"},
                  [](P& p) -> bool& { return p.skip_bad; }),
-      text<P>("name", {"", "Name in the CryptoObject matte, shared by all spheres of the file. Default: the file name"},
-              [](P& p) -> std::string& { return p.name; }),
-      text<P>("group", {"", "CryptoGroup name; objects of a group share one matte"},
-              [](P& p) -> std::string& { return p.group; })};
+      changes(Part::kOutput,
+              text<P>("name",
+                      {"", "Name in the CryptoObject matte, shared by all spheres of the file. Default: the file name"},
+                      [](P& p) -> std::string& { return p.name; })),
+      changes(Part::kOutput, text<P>("group", {"", "CryptoGroup name; objects of a group share one matte"},
+                                     [](P& p) -> std::string& { return p.group; }))};
   return keys;
 }
 

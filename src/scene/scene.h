@@ -195,6 +195,7 @@ struct Points {
   std::uint32_t material = 0;    ///< index into Scene::materials; used if the file has no materials
   std::string name = {};         ///< optional, for mattes: all spheres share it; default: the file name
   std::string group = {};        ///< optional, for mattes
+  bool is_sequence = false;      ///< the rendered frame selects the file
   std::optional<int> frame;      ///< frame of the file, from 1; default: the rendered frame, if the file has several
   std::optional<int> component;  ///< particle type of an HDF5 snapshot
   PointsRadius radius;

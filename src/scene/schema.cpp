@@ -19,6 +19,7 @@ Table image_table() {
   const char* const cost = "Time and memory scale linearly";
   return {
       "image",
+      Part::kView,
       {integer<S>("width", {1, kLargestSide}, {"px", "Image width", cost}, [](S& s) -> int& { return s.image.width; }),
        integer<S>("height", {1, kLargestSide}, {"px", "Image height", cost},
                   [](S& s) -> int& { return s.image.height; }),
@@ -39,6 +40,7 @@ Table image_table() {
 Table camera_table() {
   return {
       "camera",
+      Part::kView,
       {choice<S>("projection", {"perspective", "orthographic"},
                  {"",
                   "`perspective`: rays start at `look_from`. `orthographic`: parallel rays start on the plane through "
@@ -77,6 +79,7 @@ Table camera_table() {
 
 Table animation_table() {
   return {"animation",
+          Part::kOutput,
           {number<S>("fps", {0.001, 1000}, {"frames per second", "Frame rate, written to the EXR header"},
                      [](S& s) -> double& { return s.animation.fps; }),
            number<S>("turntable", {-kMaxFrame, kMaxFrame},
@@ -90,6 +93,7 @@ Table background_table() {
   const char* const unit = "scene-linear";
   return {
       "background",
+      Part::kLook,
       {choice<S>("type", {"gradient", "constant", "image", "sky"},
                  {"",
                   "`gradient`: from `bottom` to `top`, linear in the y component of the unit ray direction. "
@@ -147,6 +151,7 @@ Table background_table() {
 Table render_table() {
   return {
       "render",
+      Part::kView,
       {integer<S>("samples", {1, std::numeric_limits<std::int32_t>::max()},
                   {"per pixel", "Paths per pixel", "Time scales linearly; four times as many samples halve the noise"},
                   [](S& s) -> int& { return s.render.samples; }),
@@ -173,22 +178,26 @@ Table render_table() {
        integer<S>("seed", {0, std::numeric_limits<std::uint32_t>::max()},
                   {"", "Random seed. The same seed gives the same image, bit for bit"},
                   [](S& s) -> std::uint32_t& { return s.render.seed; }),
-       choice<S>("precision", {"exact", "fast", "book"},
-                 {"",
-                  "`exact`: double precision without epsilons. `fast`: single precision. `book`: the book's "
-                  "intersection formula with its minimum t",
-                  "`fast` and `book` trade accuracy for speed"},
-                 [](S& s) -> Precision& { return s.render.precision; }),
+       changes(Part::kGeometry,
+               choice<S>("precision", {"exact", "fast", "book"},
+                         {"",
+                          "`exact`: double precision without epsilons. `fast`: single precision. `book`: the book's "
+                          "intersection formula with its minimum t",
+                          "`fast` and `book` trade accuracy for speed"},
+                         [](S& s) -> Precision& { return s.render.precision; })),
        choice<S>("shading", {"path", "normal", "flat"},
                  {"", "`path`: path tracing. `normal`: surface normals as colours. `flat`: albedo without lighting",
                   "`normal` and `flat`: one ray per sample"},
                  [](S& s) -> Shading& { return s.render.shading; }),
-       choice<S>("accelerator", {"embree", "list"},
-                 {"",
-                  "`embree`: Embree's BVH. `list`: each ray tests every sphere, for comparison. The image is the same, "
-                  "bit for bit; in `fast` for static spheres up to 10,000 times the scene's size from the origin",
-                  "`list`: time is proportional to the number of spheres"},
-                 [](S& s) -> Accelerator& { return s.render.accelerator; }),
+       changes(
+           Part::kGeometry,
+           choice<S>(
+               "accelerator", {"embree", "list"},
+               {"",
+                "`embree`: Embree's BVH. `list`: each ray tests every sphere, for comparison. The image is the same, "
+                "bit for bit; in `fast` for static spheres up to 10,000 times the scene's size from the origin",
+                "`list`: time is proportional to the number of spheres"},
+               [](S& s) -> Accelerator& { return s.render.accelerator; })),
        choice<S>(
            "traversal", {"auto", "packet", "single"},
            {"",
@@ -196,14 +205,17 @@ Table render_table() {
             "rays of the scene and uses the faster. The image is the same, bit for bit",
             "-"},
            [](S& s) -> Traversal& { return s.render.traversal; }),
-       choice<S>("direct_lighting", {"mis", "bsdf", "light"},
-                 {"",
-                  "Sampling of direct light. `mis`: light and BSDF sampling, combined by multiple importance sampling. "
-                  "`bsdf`: BSDF sampling only, as in the book. `light`: light sampling only, except for reflections in "
-                  "mirrors and glass and inside emitters, where it is impossible",
-                  "`mis` and `light`: one shadow ray per vertex on a diffuse material or fuzzy metal; none in scenes "
-                  "without lights"},
-                 [](S& s) -> DirectLighting& { return s.render.direct_lighting; }),
+       changes(
+           Part::kLook,
+           choice<S>(
+               "direct_lighting", {"mis", "bsdf", "light"},
+               {"",
+                "Sampling of direct light. `mis`: light and BSDF sampling, combined by multiple importance sampling. "
+                "`bsdf`: BSDF sampling only, as in the book. `light`: light sampling only, except for reflections in "
+                "mirrors and glass and inside emitters, where it is impossible",
+                "`mis` and `light`: one shadow ray per vertex on a diffuse material or fuzzy metal; none in scenes "
+                "without lights"},
+               [](S& s) -> DirectLighting& { return s.render.direct_lighting; })),
        choice<S>("filter", {"box", "gaussian", "blackman-harris", "mitchell"},
                  {"",
                   "Pixel filter. `box`: the area of the pixel, as in the book. `gaussian`, `blackman-harris`: softer. "
@@ -219,6 +231,7 @@ Table output_table() {
   layers.emplace_back(kAllLayers);
   return {
       "output",
+      Part::kOutput,
       {choices<S>("layers", std::move(layers),
                   {"",
                    "Layers of EXR files in addition to the beauty image. `all`: every layer that the scene can have, "
@@ -250,15 +263,22 @@ const std::vector<Table>& tables() {
       background_table(),
       render_table(),
       {"color",
-       {text<S>("space",
-                {"", "Colour space of all colours in the scene file: any scene-linear space of the OCIO config"},
-                [](S& s) -> std::string& { return s.color.space; }),
-        text<S>("working", {"", "Colour space for rendering and for EXR output. Default: `space`"},
-                [](S& s) -> std::string& { return s.color.working; }),
-        text<S>(
-            "config",
-            {"", "OCIO config, relative to the scene file. Default: `$OCIO`, or the built-in config if it is not set"},
-            [](S& s) -> std::filesystem::path& { return s.color.config; }),
+       Part::kOutput,
+       {changes(
+            Part::kAssignment,
+            text<S>("space",
+                    {"", "Colour space of all colours in the scene file: any scene-linear space of the OCIO config"},
+                    [](S& s) -> std::string& { return s.color.space; })),
+        changes(Part::kAssignment,
+                text<S>("working", {"", "Colour space for rendering and for EXR output. Default: `space`"},
+                        [](S& s) -> std::string& { return s.color.working; })),
+        changes(
+            Part::kAssignment,
+            text<S>(
+                "config",
+                {"",
+                 "OCIO config, relative to the scene file. Default: `$OCIO`, or the built-in config if it is not set"},
+                [](S& s) -> std::filesystem::path& { return s.color.config; })),
         text<S>("display", {"", "Display for PNG, TIFF, JPEG and PPM. Default: that of the config"},
                 [](S& s) -> std::string& { return s.color.display; }),
         text<S>("view", {"", "View of the display. Default: that of the display"},
@@ -279,10 +299,11 @@ const std::vector<Key<Sphere>>& sphere_keys() {
           "radius", kAnyLength,
           {"scene units", "Radius. Must not be 0. If negative, the normal points inward, for hollow glass"},
           [](Sphere& s) -> double& { return s.radius; })),
-      text<Sphere>("name", {"", "Name in the CryptoObject matte. Default: `sphere.` and the index"},
-                   [](Sphere& s) -> std::string& { return s.name; }),
-      text<Sphere>("group", {"", "CryptoGroup name; objects of a group share one matte"},
-                   [](Sphere& s) -> std::string& { return s.group; })};
+      changes(Part::kOutput,
+              text<Sphere>("name", {"", "Name in the CryptoObject matte. Default: `sphere.` and the index"},
+                           [](Sphere& s) -> std::string& { return s.name; })),
+      changes(Part::kOutput, text<Sphere>("group", {"", "CryptoGroup name; objects of a group share one matte"},
+                                          [](Sphere& s) -> std::string& { return s.group; }))};
   return keys;
 }
 

@@ -3,10 +3,12 @@
 
 #include <cstdint>
 #include <functional>
+#include <optional>
 #include <string>
 #include <variant>
 #include <vector>
 
+#include "scene/changed_parts.h"
 #include "scene/value.h"
 
 /// The schema of scene files: the only description of all keys, used for reading, validation, `--set`, suggestions,
@@ -37,11 +39,13 @@ struct Key {
   bool required;
   std::function<void(Target&, const Value&)> set;
   std::function<std::string(const Target&)> text;  ///< value as written in a scene file
+  std::optional<Part> part = {};                   ///< what the key changes; empty: as the other keys of its table
 };
 
 /// A table that a scene has at most once; keys in documentation order.
 struct Table {
   std::string name;
+  Part part;  ///< what its keys change, unless they say otherwise
   std::vector<Key<Scene>> keys;
 };
 const std::vector<Table>& tables();
@@ -75,7 +79,7 @@ struct MaterialType {
 };
 const std::vector<MaterialType>& material_types();
 
-/// Keys of [[sphere]] and [[points]], except `material`.
+/// Keys of [[sphere]] and [[points]], except `material`. They change the geometry, unless they say otherwise.
 const std::vector<Key<Sphere>>& sphere_keys();
 const std::vector<Key<Points>>& points_keys();
 

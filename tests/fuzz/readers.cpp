@@ -16,6 +16,7 @@
 #include "format/read_result.h"
 #include "format/read_scene.h"
 #include "format/write_scene.h"
+#include "load/load_scene.h"
 #include "particles/open.h"
 #include "points/color_map.h"
 #include "points/load_points.h"
@@ -70,7 +71,10 @@ std::string fault_with(const std::filesystem::path& folder, const std::filesyste
                        const format::Overrides& overrides) {
   format::ReadResult read;
   try {
-    read = format::read_scene(file, overrides);
+    load::SceneRequest request;
+    request.source.file = file;
+    request.source.overrides = overrides;
+    read = load::read_with_data(request);
   } catch (const base::Error& error) {
     return fault_with_error(error, true);
   } catch (const std::exception& error) {

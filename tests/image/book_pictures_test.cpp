@@ -11,10 +11,10 @@
 #include "compile/compile.h"
 #include "film/picture.h"
 #include "format/read_result.h"
-#include "format/read_scene.h"
 #include "image/render_scene.h"
 #include "math/vec3.h"
 #include "render/render.h"
+#include "support/read_scene_file.h"
 
 namespace orrery {
 namespace {
@@ -27,7 +27,7 @@ film::Picture picture_of(const std::string& name, format::Overrides overrides = 
   overrides.add("image.width=" + std::to_string(kWidth));
   overrides.add("image.height=" + std::to_string(kHeight));
   return test::render_scene(
-      format::read_scene(std::filesystem::path(ORRERY_SCENES) / "book" / (name + ".toml"), overrides));
+      support::read_scene_file(std::filesystem::path(ORRERY_SCENES) / "book" / (name + ".toml"), overrides));
 }
 
 /// Mean colour of a block of 7 x 7 pixels.

@@ -15,7 +15,6 @@
 #include "compile/compiled_scene.h"
 #include "film/picture.h"
 #include "format/read_result.h"
-#include "format/read_scene.h"
 #include "generate/generate.h"
 #include "image/render_scene.h"
 #include "render/render.h"
@@ -25,6 +24,7 @@
 #include "scene/scene.h"
 #include "scene/schema.h"
 #include "scene/textures.h"
+#include "support/read_scene_file.h"
 
 namespace orrery {
 namespace {
@@ -47,7 +47,8 @@ void set_planet(scene::Scene& scene) {
 film::Picture picture_of_scene(const std::string& name, format::Overrides overrides = {}) {
   overrides.add("image.width=" + std::to_string(kSceneWidth));
   overrides.add("image.height=" + std::to_string(kSceneHeight));
-  auto read = format::read_scene(std::filesystem::path(ORRERY_SCENES) / "next-week" / (name + ".toml"), overrides);
+  auto read =
+      support::read_scene_file(std::filesystem::path(ORRERY_SCENES) / "next-week" / (name + ".toml"), overrides);
   if (name == "03-planet") set_planet(read.scene);
   return test::render_scene(read);
 }
@@ -140,8 +141,8 @@ TEST(ImageNextWeekPictures, RoughGlassBlursWhatIsBehindIt) {
 /// Renders the scene with every texture flattened to one colour, either as a texture or as a constant.
 film::Picture flattened(bool as_texture, const std::string& precision) {
   auto read =
-      format::read_scene(std::filesystem::path(ORRERY_SCENES) / ".." / "tests" / "determinism" / "textures.toml",
-                         {"render.precision=" + precision, "material.rough.fuzz=0"});
+      support::read_scene_file(std::filesystem::path(ORRERY_SCENES) / ".." / "tests" / "determinism" / "textures.toml",
+                               {"render.precision=" + precision, "material.rough.fuzz=0"});
   for (scene::Material& material : read.scene.materials) {
     for (const scene::TexturedKey& key : scene::material_types()[material.model.index()].textured) {
       const scene::TextureSlot texture = key.get(material.model);
@@ -169,12 +170,12 @@ TEST(ImageNextWeekPictures, ATextureOfOneColourIsAConstantBitForBit) {
 
 TEST(ImageNextWeekPictures, LightAndBsdfSamplingOfATexturedEmitterAgree) {
   const auto mean = [](const std::string& mode) {
-    const auto read =
-        format::read_scene(std::filesystem::path(ORRERY_SCENES) / ".." / "tests" / "determinism" / "textures.toml",
-                           {"render.direct_lighting=" + mode, "render.samples=6000", "background.type=constant",
-                            "background.color=[0,0,0]", "image.width=40", "image.height=24", "image.crop=[0,18,40,6]",
-                            // The lower half shines: the lamp's centre is on a face of the cells.
-                            "material.lamp.radiance={texture=\"checker\",scale=1.6,even=[0,0,0],odd=[9,9,9]}"});
+    const auto read = support::read_scene_file(
+        std::filesystem::path(ORRERY_SCENES) / ".." / "tests" / "determinism" / "textures.toml",
+        {"render.direct_lighting=" + mode, "render.samples=6000", "background.type=constant",
+         "background.color=[0,0,0]", "image.width=40", "image.height=24", "image.crop=[0,18,40,6]",
+         // The lower half shines: the lamp's centre is on a face of the cells.
+         "material.lamp.radiance={texture=\"checker\",scale=1.6,even=[0,0,0],odd=[9,9,9]}"});
     const film::Picture p = render::render(compile::compile(read.scene, &*read.closing), {}).picture;
     // The floor; caustics of the metal and the glass would be noise.
     double sum = 0;

@@ -1,7 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <filesystem>
+#include <functional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "base/diagnostic.h"
@@ -15,6 +18,13 @@ namespace orrery::support {
 /// Temporary scene files of one test, and the reader's diagnostics.
 class SceneFiles {
  public:
+  using Reader = std::function<format::ReadResult(const std::filesystem::path&, const format::Overrides&)>;
+
+  /// `read`     format::read_scene by default, which reads no data files; see support/read_scene_file.h
+  explicit SceneFiles(Reader read = [](const auto& file,
+                                       const auto& overrides) { return format::read_scene(file, overrides); })
+      : read_(std::move(read)) {}
+
   /// Writes a file next to scene.toml.
   void add(const std::string& name, const std::string& bytes) { write_bytes(folder_ / name, bytes); }
 
@@ -22,7 +32,7 @@ class SceneFiles {
   format::ReadResult read(const std::string& text, const format::Overrides& overrides = {}) {
     add("scene.toml", text);
     try {
-      return format::read_scene(folder_ / "scene.toml", overrides);
+      return read_(folder_ / "scene.toml", overrides);
     } catch (const base::Error& error) {
       ADD_FAILURE() << told(error);
       return {};
@@ -34,8 +44,7 @@ class SceneFiles {
     add("scene.toml", text);
     try {
       std::string out;
-      for (const base::Diagnostic& f : format::read_scene(folder_ / "scene.toml", overrides).warnings)
-        out += base::formatted(f);
+      for (const base::Diagnostic& f : read_(folder_ / "scene.toml", overrides).warnings) out += base::formatted(f);
       return without_folder(out);
     } catch (const base::Error& error) {
       EXPECT_EQ(error.kind(), base::ErrorKind::kBadData);
@@ -58,6 +67,7 @@ class SceneFiles {
     return text;
   }
 
+  Reader read_;
   TempDir folder_;
 };
 

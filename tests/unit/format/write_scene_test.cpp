@@ -115,33 +115,6 @@ TEST(FormatWriteScene, CommentsAcceptAnyFileName) {
   EXPECT_EQ(files.read(text).scene.camera.vfov, 33);
 }
 
-TEST(FormatWriteScene, WritesPointsFilesNextToTheScene) {
-  const support::TempDir folder;
-  scene::Scene s;
-  s.materials = {{"a", scene::Dielectric{}}, {"b", scene::Dielectric{2}}};
-  s.points.resize(2);
-  s.points[0].file = "one.ply";
-  s.points[0].material = 1;
-  s.points[0].centers = {{1, 2, 3}, {4, 5, 6}};
-  s.points[0].radii = {0.1, -0.2};
-  s.points[0].materials = {1, 0};
-  s.points[1].file = "two.ply";
-  s.points[1].radius.value = 0.25;
-  s.points[1].centers = {{7, 8, 9}};
-  s.points[1].radii = {0.25};
-  write_scene(s, "", folder / "s.toml");
-  const auto read = read_scene(folder / "s.toml").scene;
-  ASSERT_EQ(read.points.size(), 2u);
-  for (std::size_t i = 0; i < 2; ++i) {
-    EXPECT_EQ(read.points[i].file, s.points[i].file);
-    EXPECT_EQ(read.points[i].material, s.points[i].material);
-    EXPECT_EQ(read.points[i].radius.value, s.points[i].radius.value);
-    EXPECT_EQ(read.points[i].centers, s.points[i].centers);
-    EXPECT_EQ(read.points[i].radii, s.points[i].radii);
-    EXPECT_EQ(read.points[i].materials, s.points[i].materials);
-  }
-}
-
 TEST(FormatWriteScene, AnUnwritableSceneIsAnInternalError) {
   const auto kind_of = [](const scene::Scene& s) {
     try {

@@ -10,10 +10,10 @@
 
 #include "base/error.h"
 #include "format/read_result.h"
-#include "format/read_scene.h"
 #include "format/write_scene.h"
 #include "generate/generate.h"
 #include "image/read.h"
+#include "support/read_scene_file.h"
 
 namespace orrery::generate {
 namespace {
@@ -44,7 +44,7 @@ class GenerateFiles : public testing::Test {
 TEST_F(GenerateFiles, FinalReadsBackAsTheSameScene) {
   const auto file = folder_ / "a.toml";
   generate_final({5, 3}, file);
-  const auto read = format::read_scene(file);
+  const auto read = support::read_scene_file(file);
   EXPECT_TRUE(read.warnings.empty());
   EXPECT_EQ(format::scene_text(read.scene, ""), format::scene_text(make_final_scene({5, 3}), ""));
   EXPECT_EQ(files(), 1u);
@@ -60,14 +60,14 @@ TEST_F(GenerateFiles, LargeFinalHasAPointsFile) {
   const auto file = folder_ / "wide.toml";
   generate_final({1, 40}, file);
   EXPECT_TRUE(std::filesystem::exists(folder_ / "wide.ply"));
-  const auto read = format::read_scene(file);
+  const auto read = support::read_scene_file(file);
   EXPECT_EQ(read.scene.points.at(0).materials, make_final_scene({1, 40}).points.at(0).materials);
 }
 
 TEST_F(GenerateFiles, CloudReadsBackAsTheSameSpheres) {
   const auto file = folder_ / "c.toml";
   generate_cloud({1, 500}, file);
-  const auto read = format::read_scene(file);
+  const auto read = support::read_scene_file(file);
   const auto made = make_cloud({1, 500});
   ASSERT_EQ(read.scene.points.size(), 1u);
   EXPECT_EQ(read.scene.points[0].file, "c.ply");

@@ -54,8 +54,8 @@ class LoadTextures : public testing::Test {
     image::write_encoded(folder_ / name, picture, "test");
   }
   void truncate(const std::string& name, std::uintmax_t bytes) { std::filesystem::resize_file(folder_ / name, bytes); }
-  std::vector<LoadedTexture> load(TextureCache* cache = nullptr, std::uint64_t limit = 0) {
-    return load_textures(folder_ / "scene.toml", "", limit, false, cache, scene_);
+  std::vector<LoadedTexture> load(const std::vector<LoadedTexture>& known = {}, std::uint64_t limit = 0) {
+    return load_textures(folder_ / "scene.toml", "", limit, false, known, scene_);
   }
   static std::string text(const LoadedTexture& texture) {
     std::string out;
@@ -154,11 +154,10 @@ TEST_F(LoadTextures, AFileIsReadOnceForAllItsUses) {
   write_flat("a.png", 0.5F);
   add("a.png");
   add("a.png");
-  TextureCache cache;
-  const auto loaded = load(&cache);
+  const auto loaded = load();
   EXPECT_EQ(loaded[0].map.image, loaded[1].map.image);
   EXPECT_TRUE(loaded[1].is_shared);
-  EXPECT_EQ(load(&cache)[0].map.image, loaded[0].map.image) << "by the next frame, too";
+  EXPECT_EQ(load(loaded)[0].map.image, loaded[0].map.image) << "by the next load, too";
 }
 
 TEST_F(LoadTextures, OnlyFilteredImagesHaveAMipMap) {
@@ -179,10 +178,10 @@ TEST_F(LoadTextures, TheMemoryLimitHoldsForAllOfThem) {
   write_flat("b.png", 0.5F);
   add("a.png");
   constexpr std::uint64_t kBytes = (64 * 32 + 32 * 16) * 12;  // with a mip map
-  EXPECT_THROW(load(nullptr, kBytes - 1), base::Error);
-  EXPECT_NO_THROW(load(nullptr, kBytes));
+  EXPECT_THROW(load({}, kBytes - 1), base::Error);
+  EXPECT_NO_THROW(load({}, kBytes));
   add("b.png");
-  EXPECT_THROW(load(nullptr, kBytes * 3 / 2), base::Error);
+  EXPECT_THROW(load({}, kBytes * 3 / 2), base::Error);
 }
 
 TEST_F(LoadTextures, TheSceneGetsTheImages) {

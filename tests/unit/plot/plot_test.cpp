@@ -10,7 +10,7 @@
 #include "display/develop.h"
 #include "film/picture.h"
 #include "format/read_result.h"
-#include "format/read_scene.h"
+#include "load/load_scene.h"
 #include "points/color_map.h"
 #include "points/elements.h"
 #include "support/temp_dir.h"
@@ -47,10 +47,11 @@ class PlotPlot : public testing::Test {
   }
   /// The scene that the plot writes, read at a frame.
   scene::Scene read(int at = 1) {
-    format::ReadOptions read_options;
-    read_options.text = std::make_shared<const std::string>(made.text);
-    read_options.frame = at;
-    return format::read_scene(folder_ / "scene.toml", {}, read_options).scene;
+    load::SceneRequest request;
+    request.source.file = folder_ / "scene.toml";
+    request.source.text = std::make_shared<const std::string>(made.text);
+    request.source.frame = at;
+    return load::read_with_data(request).scene;
   }
   bool chose(const std::string& choice) const {
     return std::count(made.choices.begin(), made.choices.end(), choice) == 1;

@@ -1,0 +1,67 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "job/prepared_scene.h"
+
+#include <utility>
+
+#include "base/available_memory.h"
+#include "compile/compile.h"
+#include "job/memory.h"
+#include "job/scene_hash.h"
+#include "load/load_scene.h"
+#include "render/render.h"
+
+namespace orrery::job {
+
+PreparedScene::PreparedScene(bool keeps_files) {
+  if (keeps_files) open_data_ = points::open_once();
+}
+
+void PreparedScene::clear() {
+  accel_.reset();  // refers to the compiled spheres
+  loaded_.reset();
+  compiled_ = {};
+  is_complete_ = false;
+}
+
+const load::LoadedScene& PreparedScene::load(load::SceneRequest request) {
+  if (!std::exchange(is_complete_, false)) clear();
+  request.keeps_authored = true;
+  if (!request.source.open_data) request.source.open_data = open_data_;
+  request.on_change = [this](const scene::Parts& changed) {
+    if (changed.geometry) {
+      accel_.reset();
+      compiled_ = {};
+    }
+    if (changed.look) compiled_.environment = nullptr;
+  };
+  std::optional<load::LoadedScene> previous = std::exchange(loaded_, {});
+  loaded_ = previous ? load::load_scene(request, std::move(*previous)) : load::load_scene(request);
+  return *loaded_;
+}
+
+const compile::CompiledScene& PreparedScene::compile(std::uint64_t memory_limit) {
+  format::ReadResult& read = loaded_->read;
+  const scene::Parts& changed = loaded_->changed;
+  if (changed.geometry) {
+    accel_.reset();
+    compiled_ = {};
+    require_memory_to_compile(read.scene, memory_limit);
+  }
+  compile::update(read.scene, read.closing ? &*read.closing : nullptr, changed, compiled_);
+  if (changed.geometry || changed.assignment) {
+    sphere_hash_ = hash_of_spheres(compiled_);
+    // Keep no second copy of the spheres during the BVH build.
+    for (scene::Points& points : read.scene.points) points.release_spheres();
+    base::release_freed_memory();
+  }
+  hashes_ = scene_hashes(compiled_, sphere_hash_);
+  is_complete_ = true;
+  return compiled_;
+}
+
+accel::Accel& PreparedScene::accelerator(int threads, const accel::BuildMonitor& monitor) {
+  if (!accel_) accel_ = render::build(compiled_, threads, monitor);
+  return *accel_;
+}
+
+}  // namespace orrery::job

@@ -1,0 +1,108 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "scene/changed_parts.h"
+
+#include <algorithm>
+#include <variant>
+#include <vector>
+
+#include "scene/scene.h"
+#include "scene/schema.h"
+#include "scene/texture.h"
+
+namespace orrery::scene {
+namespace {
+
+/// Adds what the keys change that have different values.
+template <class Target>
+void compare(const std::vector<Key<Target>>& keys, Part otherwise, const Target& before, const Target& after,
+             Parts& parts) {
+  for (const Key<Target>& key : keys)
+    if (key.text(before) != key.text(after)) parts.add(key.part.value_or(otherwise));
+}
+
+bool is_same(TextureUse use, const TextureSlot& before, const TextureSlot& after) {
+  if (!before || !after || before == after) return before == after;
+  if (before->type != after->type) return false;
+  for (const TextureTypeKeys& type : texture_types(use))
+    if (type.type == before->type)
+      return std::all_of(type.keys.begin(), type.keys.end(),
+                         [&](const Key<Texture>& key) { return key.text(*before) == key.text(*after); });
+  return false;
+}
+
+/// Materials are numbered in the order of the file, and only dielectrics have two sides and no colour: which ones
+/// exist, and whether they are dielectrics, decides what the spheres refer to.
+void compare_materials(const std::vector<Material>& before, const std::vector<Material>& after, Parts& parts) {
+  const auto has_same_role = [](const Material& a, const Material& b) {
+    return a.name == b.name &&
+           std::holds_alternative<Dielectric>(a.model) == std::holds_alternative<Dielectric>(b.model);
+  };
+  if (!std::equal(before.begin(), before.end(), after.begin(), after.end(), has_same_role))
+    return parts.add(Part::kAssignment);
+  for (std::size_t i = 0; i < before.size(); ++i) {
+    const MaterialModel &a = before[i].model, &b = after[i].model;
+    if (a.index() != b.index()) return parts.add(Part::kLook);
+    const MaterialType& type = material_types()[a.index()];
+    compare(type.keys, Part::kLook, a, b, parts);
+    for (const TexturedKey& key : type.textured)
+      if (!is_same(key.use, key.get(a), key.get(b))) parts.add(Part::kLook);
+  }
+}
+
+/// The keys of [[sphere]], compared as members: there may be a million tables.
+void compare_spheres(const std::vector<Sphere>& before, const std::vector<Sphere>& after, Parts& parts) {
+  if (before.size() != after.size()) return parts.add(Part::kGeometry);
+  for (std::size_t i = 0; i < before.size(); ++i) {
+    const Sphere &a = before[i], &b = after[i];
+    parts.geometry = parts.geometry || !(a.center == b.center) || a.radius != b.radius;
+    parts.assignment = parts.assignment || a.material != b.material;
+    parts.output = parts.output || a.name != b.name || a.group != b.group;
+  }
+}
+
+void compare_points(const Points& before, const Points& after, Parts& parts) {
+  compare(points_keys(), Part::kGeometry, before, after, parts);
+  if (before.radius.types != after.radius.types) parts.add(Part::kGeometry);
+  const auto is_same_color = [](const auto& a, const auto& b) { return a.first == b.first && a.second == b.second; };
+  if (!std::equal(before.color.types.begin(), before.color.types.end(), after.color.types.begin(),
+                  after.color.types.end(), is_same_color) ||
+      before.material != after.material)
+    parts.add(Part::kAssignment);
+}
+
+void compare_scenes(const Scene& before, const Scene& after, Parts& parts) {
+  for (const Table& table : tables()) compare(table.keys, table.part, before, after, parts);
+  compare_spheres(before.spheres, after.spheres, parts);
+}
+
+}  // namespace
+
+void Parts::add(Part part) {
+  switch (part) {
+    case Part::kGeometry: geometry = true; break;
+    case Part::kAssignment: assignment = true; break;
+    case Part::kLook: look = true; break;
+    case Part::kView: view = true; break;
+    case Part::kOutput: output = true; break;
+  }
+}
+
+Parts changed_parts(const Scene& before, const Scene* closing_before, const Scene& after, const Scene* closing_after) {
+  Parts parts;
+  compare_scenes(before, after, parts);
+  compare_materials(before.materials, after.materials, parts);
+  if (before.points.size() != after.points.size()) {
+    parts.add(Part::kGeometry);
+  } else {
+    for (std::size_t i = 0; i < before.points.size(); ++i) compare_points(before.points[i], after.points[i], parts);
+  }
+  if ((closing_before == nullptr) != (closing_after == nullptr)) {
+    parts.add(Part::kGeometry);
+    parts.add(Part::kView);
+  } else if (closing_before != nullptr) {
+    compare_scenes(*closing_before, *closing_after, parts);
+  }
+  return parts;
+}
+
+}  // namespace orrery::scene

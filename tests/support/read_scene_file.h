@@ -1,0 +1,20 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <filesystem>
+#include <vector>
+
+#include "format/read_result.h"
+#include "load/load_scene.h"
+
+namespace orrery::support {
+
+/// Reads a scene file and its data files, but no images.
+inline format::ReadResult read_scene_file(const std::filesystem::path& file, const format::Overrides& overrides = {}) {
+  load::SceneRequest request;
+  request.source.file = file;
+  request.source.overrides = overrides;
+  return load::read_with_data(request);
+}
+
+}  // namespace orrery::support
