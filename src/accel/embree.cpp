@@ -100,7 +100,7 @@ class Embree final : public Accel {
 
   kernel::Tracer tracer() const noexcept override { return functions_.tracer_of(scene_); }
   void use(Traversals traversals) noexcept override { scene_.traversals = traversals; }
-  std::string name() const override { return "embree " + embree_version(); }
+  std::string name() const override { return "embree " + embree_.version(); }
   std::size_t bytes() const noexcept override { return embree_.bytes() + bvh_.bytes(); }
 
  private:
@@ -161,6 +161,7 @@ class Embree final : public Accel {
       throw base::Error(base::ErrorKind::kInternal,
                         "Embree would silently drop " + std::to_string(moving.refused + still.refused) + " spheres");
     scene_.scene = embree_.get();
+    scene_.has_packets = embree_.has_packets_of(functions_.width);
   }
 
   void add_geometry(std::size_t primitives, unsigned time_steps, void* data, RTCBoundsFunction bounds,
@@ -214,6 +215,9 @@ std::unique_ptr<Accel> make_embree(const kernel::SceneView& scene, kernel::Preci
   return std::make_unique<Embree>(scene, precision, monitor, std::max<std::size_t>(1, threshold));
 }
 
-std::string embree_version() { return RTC_VERSION_STRING; }
+std::string embree_version() {
+  static const std::string version = OwnedScene().version();
+  return version;
+}
 
 }  // namespace orrery::accel

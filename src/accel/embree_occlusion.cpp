@@ -19,8 +19,6 @@
 HWY_BEFORE_NAMESPACE();
 namespace orrery::accel::HWY_NAMESPACE {
 
-using EmbreeShadowRays = std::conditional_t<kWidth == 16, RTCRay16, std::conditional_t<kWidth == 8, RTCRay8, RTCRay4>>;
-
 /// Tests lanes `first` .. of a packet against one sphere and stores which of them it occludes.
 ///
 /// Result     the lanes that it occludes
@@ -95,13 +93,14 @@ void occlude(const void* self, Packet& packet) {
     set_rays<false, kMoves>(query, rays, valid);
     for (int i = 0; i < kWidth; ++i)
       if (packet.occluded[first + i] != 0) valid[i] = 0;
-    if (scene.traversals.secondary == Traversal::kPacket || scene.has_bvh) {
+    if (scene.by_packets(scene.traversals.secondary)) {
       accel::occluded(valid, scene.scene, query.context, rays);
       continue;
     }
     for (int i = 0; i < kWidth; ++i) {
       if (valid[i] == 0) continue;
       query.first = first + i;
+      query.lane = i;
       RTCRay ray = one_ray(rays, i);
       accel::occluded(scene.scene, query.context, ray);
     }

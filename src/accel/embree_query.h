@@ -18,7 +18,8 @@ struct EmbreeQuery {
   EmbreeContext context;  // first member, so that Embree's pointer to it points to the query
   const EmbreeScene* scene;
   Packet* packet;
-  int first;  ///< packet lane that corresponds to Embree's lane 0
+  int first;     ///< packet lane that corresponds to Embree's lane 0
+  int lane = 0;  ///< of a ray that is traced alone: its distance from the first lane of its register
   /// Distance by which each ray was advanced, indexed by Embree's lane, box space.
   alignas(64) std::remove_cvref_t<decltype(Packet::distance[0])> start[kernel::kPacketSize];
 };
@@ -30,6 +31,7 @@ struct EmbreeFunctions {
   RTCOccludedFunctionN occluded = nullptr;
   RTCIntersectFunctionN intersect_bvh = nullptr;  ///< for a geometry whose user data is a SphereBvh
   RTCOccludedFunctionN occluded_by_bvh = nullptr;
+  int width = 0;          ///< rays per packet handed to Embree
   kernel::Tracer tracer;  ///< `self` is not set
 
   kernel::Tracer tracer_of(const EmbreeScene& scene) const noexcept {

@@ -12,6 +12,7 @@
 #include <algorithm>
 #include <cstddef>
 #include <limits>
+#include <type_traits>
 
 #include "accel/accel.h"
 #include "accel/box_ray-inl.h"
@@ -24,6 +25,9 @@ namespace orrery::accel::HWY_NAMESPACE {
 
 /// Rays per Embree packet: the number of floats in a register.
 constexpr int kWidth = static_cast<int>(hn::MaxLanes(hn::ScalableTag<float>()));
+
+/// Embree's packet of rays without hits.
+using EmbreeShadowRays = std::conditional_t<kWidth == 16, RTCRay16, std::conditional_t<kWidth == 8, RTCRay8, RTCRay4>>;
 
 template <class Packet>
 using DistanceOf = std::remove_cvref_t<decltype(Packet::distance[0])>;

@@ -28,8 +28,14 @@ struct EmbreeScene {
   std::vector<std::uint32_t> duplicates;  ///< ascending ids of spheres that are never hit: their boxes are empty
   /// If there is a SphereBvh: ascending ids of the static spheres outside it, one primitive each.
   std::vector<std::uint32_t> singles;
-  bool has_bvh = false;  ///< Embree receives packets; `traversals` applies to the SphereBvh
+  bool has_bvh = false;  ///< `traversals` applies to the SphereBvh
+  /// Whether Embree hands packets to its callbacks as they are. Otherwise, as with an Embree that was built or opened
+  /// for narrower vectors than this program uses, it divides them, and even traces rays that are not valid.
+  bool has_packets = false;
   Traversals traversals;
+
+  /// Whether Embree receives packets, with this choice for its traversal.
+  bool by_packets(Traversal chosen) const noexcept { return has_packets && (has_bvh || chosen == Traversal::kPacket); }
 
   /// The sphere of a primitive: ids count all spheres, primitives only those that are not outliers.
   std::uint32_t sphere_id(std::uint32_t geometry, std::uint32_t primitive) const noexcept {

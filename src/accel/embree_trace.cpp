@@ -95,6 +95,7 @@ HWY_INLINE void trace_one_by_one(const int* valid, const EmbreeRays& rays, Embre
     if (valid[i] == 0) continue;
     ray.ray = one_ray(rays.ray, i);
     query.first = first + i;
+    query.lane = i;
     query.start[0] = start[i];
     accel::intersect(query.scene->scene, query.context, ray);
   }
@@ -134,7 +135,7 @@ void trace(const void* self, Packet& packet) {
   for (int first = 0; first < packet.count; first += kWidth) {
     query.first = first;
     set_rays<true, kMoves>(query, rays.ray, valid);
-    if (traversal == Traversal::kPacket || scene.has_bvh) {
+    if (scene.by_packets(traversal)) {
       accel::intersect(valid, scene.scene, query.context, rays);
     } else {
       trace_one_by_one(valid, rays, query);
@@ -147,6 +148,7 @@ EmbreeFunctions instance(kernel::Precision precision) {
   using kernel::Precision, kernel::RayPacket, kernel::RayPacketFast;
   EmbreeFunctions f;
   f.tracer.target = HWY_TARGET;
+  f.width = kWidth;
   switch (precision) {
     case Precision::kExact:
       f.intersect = intersect<RayPacket, Precision::kExact, kMoves>;

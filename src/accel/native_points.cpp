@@ -70,7 +70,7 @@ class NativePoints final : public Accel {
     t.self = scene_.get();
     return t;
   }
-  std::string name() const override { return "embree " + embree_version() + ", sphere points"; }
+  std::string name() const override { return "embree " + scene_.version() + ", sphere points"; }
   std::size_t bytes() const noexcept override { return scene_.bytes(); }
 
  private:

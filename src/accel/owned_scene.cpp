@@ -49,6 +49,19 @@ std::size_t OwnedScene::bytes() const noexcept {
   return static_cast<std::size_t>(std::max<std::int64_t>(0, bytes_.load(std::memory_order_relaxed)));
 }
 
+std::string OwnedScene::version() const {
+  const auto part = [&](RTCDeviceProperty property) { return std::to_string(rtcGetDeviceProperty(device_, property)); };
+  return part(RTC_DEVICE_PROPERTY_VERSION_MAJOR) + '.' + part(RTC_DEVICE_PROPERTY_VERSION_MINOR) + '.' +
+         part(RTC_DEVICE_PROPERTY_VERSION_PATCH);
+}
+
+bool OwnedScene::has_packets_of(int width) const noexcept {
+  const RTCDeviceProperty property = width == 16  ? RTC_DEVICE_PROPERTY_NATIVE_RAY16_SUPPORTED
+                                     : width == 8 ? RTC_DEVICE_PROPERTY_NATIVE_RAY8_SUPPORTED
+                                                  : RTC_DEVICE_PROPERTY_NATIVE_RAY4_SUPPORTED;
+  return rtcGetDeviceProperty(device_, property) != 0;
+}
+
 void OwnedScene::attach(RTCGeometry geometry) {
   rtcCommitGeometry(geometry);
   rtcAttachGeometry(scene_, geometry);

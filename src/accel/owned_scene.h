@@ -27,6 +27,12 @@ class OwnedScene {
   RTCScene get() const noexcept { return scene_; }
   std::size_t bytes() const noexcept;
 
+  /// The version of the Embree library that was loaded, e.g. "3.13.5".
+  std::string version() const;
+
+  /// Whether Embree hands packets of 4, 8 or 16 rays to callbacks as they are.
+  bool has_packets_of(int width) const noexcept;
+
   /// Commits a geometry and transfers it to the scene.
   void attach(RTCGeometry geometry);
 
