@@ -47,11 +47,11 @@ struct RankedCoverage {
 };
 
 /// The ids of a matte in a pixel by descending coverage; ties by ascending id.
-std::vector<RankedCoverage> ranked(const Matte& matte, const LayerPixel& p) {
+std::vector<RankedCoverage> ranked(const LayerRequest& r, const Matte& matte, const LayerPixel& p) {
   std::vector<RankedCoverage> shares;
   for (const SphereCoverage& s : p.shares) {
     if (s.sphere == kernel::kNoSphere) continue;
-    const std::uint32_t id = matte.id_of_sphere(s.sphere);
+    const std::uint32_t id = r.matte_id(matte, s.sphere);
     if (id == 0) continue;
     const auto known =
         std::find_if(shares.begin(), shares.end(), [id](const RankedCoverage& share) { return share.id == id; });
@@ -181,7 +181,7 @@ void each_channel(const LayerRequest& r, const LayerPixel& p, const Halves& halv
   }
   if (r.halves) each_half_channel(halves, f);
   for (const Matte& matte : r.mattes) {
-    const std::vector<RankedCoverage> shares = ranked(matte, p);
+    const std::vector<RankedCoverage> shares = ranked(r, matte, p);
     // A layer of four channels holds two ranks: id, coverage, id, coverage.
     for (int rank = 0; rank < r.matte_ranks + r.matte_ranks % 2; ++rank) {
       const char name[] = {static_cast<char>('0' + rank / 20), static_cast<char>('0' + rank / 2 % 10), 0};

@@ -108,7 +108,7 @@ void LayerPixel::add(const LayerRequest& request, const kernel::SceneView& scene
   const bool is_candidate = hits && request.nearest() && may_be_nearer(scene, path, depth);
   if (is_candidate || (hits && request.deep)) hit = locate(scene, path);
   if (request.deep || (hits && !request.mattes.empty())) {
-    SphereCoverage& share = share_of(shares, path.sphere);
+    SphereCoverage& share = share_of(shares, request.coverage_key(path.sphere));
     share.weight += path_weight;
     if (request.deep && is_valid(path.light)) add3(share.light, path.light, path_weight);
     share.front = std::min(share.front, hits ? hit.z : double{kNothingHit});

@@ -15,7 +15,7 @@ namespace orrery::film {
 
 struct LayerRequest;
 
-/// The paths of a pixel whose first hit is a given sphere.
+/// The paths of a pixel whose first hit is a given sphere, or one that LayerRequest::coverage_key() replaces by it.
 struct SphereCoverage {
   std::uint32_t sphere = kernel::kNoSphere;
   std::int64_t weight = 0;

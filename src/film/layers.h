@@ -3,12 +3,13 @@
 
 #include <cstddef>
 #include <cstdint>
-#include <functional>
 #include <iterator>
+#include <memory>
 #include <string>
 #include <utility>
 #include <vector>
 
+#include "base/packed_array.h"
 #include "kernel/lobe.h"
 
 namespace orrery::film {
@@ -34,10 +35,16 @@ struct LightGroup {
   }
 };
 
-/// A Cryptomatte layer: maps every sphere to the hash of its object, material or group name.
+/// The spheres in classes, each of spheres that have the same ids in all mattes.
+struct MatteClasses {
+  base::PackedArray of_sphere;
+  std::vector<std::uint32_t> first_sphere;  ///< of each class
+};
+
+/// A Cryptomatte layer: the hash of an object, material or group name.
 struct Matte {
-  std::string name;                                                 ///< "CryptoObject"
-  std::function<std::uint32_t(std::uint32_t sphere)> id_of_sphere;  ///< 0: the sphere is not in this matte
+  std::string name;                ///< "CryptoObject"
+  std::vector<std::uint32_t> ids;  ///< of each class of spheres; 0: it is not in this matte
 };
 
 /// The layers (AOVs) to render in addition to the beauty; docs/output.md defines each.
@@ -54,7 +61,17 @@ struct LayerRequest {
   std::vector<std::uint32_t> material_numbers;  ///< material_id of each material of the compiled scene
   std::vector<LightGroup> groups;               ///< light groups of the scene, indexed by kernel::LightEvent::group
   std::vector<Matte> mattes;
+  std::shared_ptr<const MatteClasses> matte_classes;  ///< null without mattes
 
+  /// The id of a sphere in a matte of this request.
+  std::uint32_t matte_id(const Matte& matte, std::uint32_t sphere) const {
+    return matte.ids[matte_classes->of_sphere[sphere]];
+  }
+  /// The sphere that stands for this one in the coverage of a pixel. A deep image needs each sphere by itself, mattes
+  /// only the first of its class.
+  std::uint32_t coverage_key(std::uint32_t sphere) const {
+    return deep ? sphere : matte_classes->first_sphere[matte_classes->of_sphere[sphere]];
+  }
   bool lights() const;   ///< true if a layer needs radiance by lobe or light group, from light events
   bool hits() const;     ///< true if a layer needs the first hits of individual paths
   bool nearest() const;  ///< true if a layer needs a property of the nearest hit

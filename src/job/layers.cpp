@@ -2,8 +2,12 @@
 #include "job/layers.h"
 
 #include <algorithm>
+#include <array>
+#include <map>
 #include <memory>
 #include <set>
+#include <string>
+#include <utility>
 
 #include "compile/compiled_scene.h"
 #include "film/cryptomatte.h"
@@ -13,74 +17,22 @@
 namespace orrery::job {
 namespace {
 
-/// Matte id of each sphere, run-length encoded over sphere indices.
-class RunLengthIds {
+/// The names of one matte.
+class NameList {
  public:
-  void add(std::size_t spheres, std::uint32_t id) {
-    end_ += static_cast<std::uint32_t>(spheres);
-    if (!ids_.empty() && ids_.back() == id) {
-      ends_.back() = end_;
-    } else if (spheres > 0) {
-      ends_.push_back(end_);
-      ids_.push_back(id);
-    }
-  }
-  std::uint32_t operator()(std::uint32_t sphere) const {
-    const auto run = std::upper_bound(ends_.begin(), ends_.end(), sphere) - ends_.begin();
-    return ids_[static_cast<std::size_t>(run)];
-  }
-
- private:
-  std::uint32_t end_ = 0;
-  std::vector<std::uint32_t> ends_, ids_;
-};
-
-/// Collects the names of one matte.
-class MatteMaker {
- public:
-  explicit MatteMaker(std::string layer) { names_.layer = std::move(layer); }
-
-  /// Assigns the next spheres to this name; an empty name: to no matte.
-  void add(std::size_t spheres, const std::string& name) { runs_->add(spheres, id_of(name)); }
-
+  /// The id of a name; 0 of an empty one.
   std::uint32_t id_of(const std::string& name) {
     if (name.empty()) return 0;
     const std::uint32_t id = film::matte_id(name);
-    if (known_.insert(name).second) names_.things.emplace_back(name, id);
+    if (known_.insert(name).second) things.emplace_back(name, id);
     return id;
   }
-  void finish(Layers& layers) {
-    finish(layers, [runs = runs_](std::uint32_t sphere) { return (*runs)(sphere); });
-  }
-  void finish(Layers& layers, std::function<std::uint32_t(std::uint32_t)> id_of_sphere) {
-    layers.request.mattes.push_back({names_.layer, std::move(id_of_sphere)});
-    layers.mattes.push_back(std::move(names_));
-  }
+
+  decltype(MatteNames::things) things;
 
  private:
-  MatteNames names_;
   std::set<std::string> known_;
-  std::shared_ptr<RunLengthIds> runs_ =
-      std::make_shared<RunLengthIds>();  // shared, since std::function copies its target
 };
-
-void add_object_matte(const scene::Scene& scene, const std::vector<std::size_t>& points_sizes, Layers& layers) {
-  MatteMaker maker("CryptoObject");
-  for (std::size_t i = 0; i < scene.spheres.size(); ++i)
-    maker.add(1, scene.spheres[i].name.empty() ? "sphere." + std::to_string(i) : scene.spheres[i].name);
-  for (std::size_t i = 0; i < scene.points.size(); ++i) {
-    const scene::Points& p = scene.points[i];
-    maker.add(points_sizes[i], p.name.empty() ? p.file.stem().string() : p.name);
-  }
-  maker.finish(layers);
-}
-
-void add_group_matte(const scene::Scene& scene, const std::vector<std::size_t>& points_sizes, Layers& layers) {
-  MatteMaker maker("CryptoGroup");
-  for (const scene::Sphere& s : scene.spheres) maker.add(1, s.group);
-  for (std::size_t i = 0; i < scene.points.size(); ++i) maker.add(points_sizes[i], scene.points[i].group);
-  maker.finish(layers);
-}
 
 /// The authored material of each compiled material. Compilation may split glass and coloured materials.
 std::vector<std::uint32_t> authored_materials(const compile::CompiledScene& compiled) {
@@ -92,13 +44,63 @@ std::vector<std::uint32_t> authored_materials(const compile::CompiledScene& comp
   return authored;
 }
 
-void add_material_matte(const scene::Scene& scene, const compile::CompiledScene& compiled,
-                        const std::vector<std::uint32_t>& authored, Layers& layers) {
-  MatteMaker maker("CryptoMaterial");
-  std::vector<std::uint32_t> ids;
-  for (const std::uint32_t material : authored) ids.push_back(maker.id_of(scene.materials[material].name));
-  const compile::PackedIndices& of_sphere = compiled.sphere_materials;
-  maker.finish(layers, [ids, &of_sphere](std::uint32_t sphere) { return ids[of_sphere[sphere]]; });
+/// Adds the mattes whose layers are requested, in the order of kMatteLayers.
+///
+/// `authored`   the authored material of each compiled material
+template <class Requested>
+void add_mattes(const scene::Scene& scene, const compile::CompiledScene& compiled,
+                const std::vector<std::uint32_t>& authored, const Requested& requested, Layers& layers) {
+  using Ids = std::array<std::uint32_t, kMatteLayers.size()>;
+  std::array<bool, kMatteLayers.size()> is_requested;
+  std::transform(kMatteLayers.begin(), kMatteLayers.end(), is_requested.begin(), requested);
+  const auto [by_object, by_material, by_group] = is_requested;
+  if (!by_object && !by_material && !by_group) return;
+
+  std::array<NameList, kMatteLayers.size()> names;
+  auto& [objects, materials, groups] = names;
+  std::vector<std::uint32_t> material_ids;
+  if (by_material)
+    for (const std::uint32_t material : authored)
+      material_ids.push_back(materials.id_of(scene.materials[material].name));
+
+  const std::size_t blocks = scene.spheres.size() + scene.points.size();
+  const std::size_t most = std::min(compiled.spheres.size(), by_material ? blocks * material_ids.size() : blocks);
+  film::MatteClasses classes{{compiled.spheres.size(), static_cast<std::uint32_t>(most)}, {}};
+  std::map<Ids, std::uint32_t> known;
+  std::vector<Ids> ids;
+  std::uint32_t sphere = 0, current = 0;
+  const auto add = [&](std::size_t count, const std::string& object, const std::string& group) {
+    Ids wanted = {by_object ? objects.id_of(object) : 0, 0, by_group ? groups.id_of(group) : 0};
+    for (; count > 0; --count, ++sphere) {
+      if (by_material) wanted[1] = material_ids[compiled.sphere_materials[sphere]];
+      if (ids.empty() || wanted != ids[current]) {
+        const auto [at, is_new] = known.try_emplace(wanted, static_cast<std::uint32_t>(ids.size()));
+        current = at->second;
+        if (is_new) {
+          ids.push_back(wanted);
+          classes.first_sphere.push_back(sphere);
+        }
+      }
+      classes.of_sphere.set(sphere, current);
+    }
+  };
+  for (std::size_t i = 0; i < scene.spheres.size(); ++i) {
+    const scene::Sphere& s = scene.spheres[i];
+    add(1, s.name.empty() ? "sphere." + std::to_string(i) : s.name, s.group);
+  }
+  for (std::size_t i = 0; i < scene.points.size(); ++i) {
+    const scene::Points& p = scene.points[i];
+    add(compiled.points_sizes[i], p.name.empty() ? p.file.stem().string() : p.name, p.group);
+  }
+
+  layers.request.matte_classes = std::make_shared<film::MatteClasses>(std::move(classes));
+  for (std::size_t m = 0; m < kMatteLayers.size(); ++m) {
+    if (!is_requested[m]) continue;
+    film::Matte& matte = layers.request.mattes.emplace_back();
+    matte.name = kMatteLayers[m];
+    for (const Ids& of_class : ids) matte.ids.push_back(of_class[m]);
+    layers.mattes.push_back({kMatteLayers[m], std::move(names[m].things)});
+  }
 }
 
 /// The light groups of the scene, in the order of the compiled ones.
@@ -124,13 +126,11 @@ Layers choose_layers(const scene::Scene& scene, const compile::CompiledScene& co
   for (const film::LayerType& layer : film::kLayerTypes) r.*layer.requested = requested(layer.name);
   if (r.light_groups) r.groups = light_groups(scene, compiled);
   r.coverage = scene.background.alpha == 0;
-  if (requested("CryptoObject")) add_object_matte(scene, compiled.points_sizes, out);
-  if (r.material_id || requested("CryptoMaterial")) {
-    const std::vector<std::uint32_t> authored = authored_materials(compiled);
+  std::vector<std::uint32_t> authored;
+  if (r.material_id || requested("CryptoMaterial")) authored = authored_materials(compiled);
+  if (r.material_id)
     for (const std::uint32_t material : authored) r.material_numbers.push_back(material + 1);
-    if (requested("CryptoMaterial")) add_material_matte(scene, compiled, authored, out);
-  }
-  if (requested("CryptoGroup")) add_group_matte(scene, compiled.points_sizes, out);
+  add_mattes(scene, compiled, authored, requested, out);
   return out;
 }
 

@@ -22,7 +22,7 @@ struct Layers {
 
 /// Returns the layer request and the mattes for the names in [output]. CryptoGroup is empty for a scene without groups.
 ///
-/// Domain     the scene is valid; `compiled` was compiled from it and outlives the result
+/// Domain     the scene is valid; `compiled` was compiled from it
 Layers choose_layers(const scene::Scene& scene, const compile::CompiledScene& compiled);
 
 }  // namespace orrery::job

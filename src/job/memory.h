@@ -30,6 +30,7 @@ struct MemoryNeeds {
   bool records = false;              ///< LayerRequest::records()
   bool guides = false;               ///< LayerRequest::guides()
   std::uint64_t light_cells = 0;     ///< LayerRequest::light_cells()
+  double shares = 0;                 ///< expected entries of film::LayerPixel::shares, mean over the pixels
   bool embree = true;                ///< false: the list
   bool is_adaptive = false;          ///< --noise or --time: a second sum and an error estimate per pixel
 };

@@ -14,6 +14,7 @@
 #include "kernel/material.h"
 #include "kernel/path_record.h"
 #include "kernel/scene_view.h"
+#include "support/add_matte.h"
 
 namespace orrery::film {
 namespace {
@@ -408,7 +409,7 @@ TEST_F(FilmLayerFilm, VarianceIsFiniteForTheLargestRadiance) {
 }
 
 TEST_F(FilmLayerFilm, MattesRankIdsByCoverage) {
-  request_.mattes = {{"CryptoObject", [](std::uint32_t sphere) { return sphere == 0 ? 0x3f000000u : 0x40000000u; }}};
+  test::add_matte(request_, "CryptoObject", {0x3f000000u, 0x40000000u});
   for (int i = 0; i < 3; ++i) add(path_to(1));
   for (int i = 0; i < 2; ++i) add(path_to(0));
   for (int i = 0; i < 3; ++i) add(kernel::PathRecord{});
@@ -423,7 +424,8 @@ TEST_F(FilmLayerFilm, MattesRankIdsByCoverage) {
 }
 
 TEST_F(FilmLayerFilm, SpheresWithOneIdShareARankAndIdZeroHasNone) {
-  request_.mattes = {{"A", [](std::uint32_t) { return 0x3f000000u; }}, {"B", [](std::uint32_t) { return 0u; }}};
+  test::add_matte(request_, "A", {0x3f000000u, 0x3f000000u});
+  test::add_matte(request_, "B", {0, 0});
   add(path_to(1));
   add(path_to(0));
   const Picture p = picture();
@@ -432,8 +434,22 @@ TEST_F(FilmLayerFilm, SpheresWithOneIdShareARankAndIdZeroHasNone) {
   EXPECT_EQ(value(p, "B00.G"), 0);
 }
 
+/// Memory does not grow with the spheres of an object, except in a deep image.
+TEST_F(FilmLayerFilm, SpheresOfOneClassHaveOneSum) {
+  test::add_matte(request_, "A", {0x3f000000u, 0x3f000000u});
+  request_.matte_classes = std::make_shared<MatteClasses>(MatteClasses{{2, 0}, {0}});
+  for (const bool deep : {false, true}) {
+    clear();
+    request_.deep = deep;
+    add(path_to(1));
+    add(path_to(0));
+    EXPECT_EQ(pixel_.shares.size(), deep ? 2u : 1u);
+    EXPECT_EQ(value(picture(), "A00.G"), 1);
+  }
+}
+
 TEST_F(FilmLayerFilm, EqualCoverageRanksBySmallerId) {
-  request_.mattes = {{"A", [](std::uint32_t sphere) { return sphere == 0 ? 0x40000000u : 0x3f000000u; }}};
+  test::add_matte(request_, "A", {0x40000000u, 0x3f000000u});
   add(path_to(0));
   add(path_to(1));
   EXPECT_EQ(value(picture(), "A00.R"), 0.5F);

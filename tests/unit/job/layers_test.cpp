@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <ctime>
+#include <set>
 
 #include <nlohmann/json.hpp>
 
@@ -23,11 +24,7 @@
 namespace orrery::job {
 namespace {
 
-Layers layers_of(const scene::Scene& scene) {
-  static std::vector<std::unique_ptr<compile::CompiledScene>> worlds;  // layers refer to them
-  worlds.push_back(std::make_unique<compile::CompiledScene>(compile::compile(scene)));
-  return choose_layers(scene, *worlds.back());
-}
+Layers layers_of(const scene::Scene& scene) { return choose_layers(scene, compile::compile(scene)); }
 
 scene::Scene with_layers(std::vector<std::string> layers) {
   scene::Scene s = test::everything();
@@ -71,7 +68,7 @@ TEST(JobLayers, ObjectsAreNamedAfterSpheresIndicesAndFiles) {
     EXPECT_EQ(id, film::matte_id(name));
   }
   EXPECT_EQ(names, "sphere.0 bunny dust named ");
-  const auto& id_of = layers.request.mattes[0].id_of_sphere;
+  const auto id_of = [&](std::uint32_t i) { return layers.request.matte_id(layers.request.mattes[0], i); };
   const char* const wanted[] = {"sphere.0", "bunny", "bunny", "dust", "dust", "named", "named"};
   for (std::uint32_t i = 0; i < 7; ++i) EXPECT_EQ(id_of(i), film::matte_id(wanted[i])) << i;
 }
@@ -82,10 +79,36 @@ TEST(JobLayers, GroupsHoldOnlySpheresWithAGroup) {
   s.spheres[3].group = "left";
   const Layers layers = layers_of(s);
   EXPECT_EQ(layers.mattes[0].things.size(), 1u);
-  EXPECT_EQ(layers.request.mattes[0].id_of_sphere(0), 0u);
-  EXPECT_EQ(layers.request.mattes[0].id_of_sphere(1), film::matte_id("left"));
-  EXPECT_EQ(layers.request.mattes[0].id_of_sphere(2), 0u);
-  EXPECT_EQ(layers.request.mattes[0].id_of_sphere(3), film::matte_id("left"));
+  EXPECT_EQ(layers.request.matte_id(layers.request.mattes[0], 0), 0u);
+  EXPECT_EQ(layers.request.matte_id(layers.request.mattes[0], 1), film::matte_id("left"));
+  EXPECT_EQ(layers.request.matte_id(layers.request.mattes[0], 2), 0u);
+  EXPECT_EQ(layers.request.matte_id(layers.request.mattes[0], 3), film::matte_id("left"));
+}
+
+/// One sum per pixel for spheres that no matte distinguishes.
+TEST(JobLayers, SpheresOfTheSameIdsShareTheirCoverage) {
+  scene::Scene s = with_layers({"CryptoObject"});
+  s.materials.resize(2);
+  s.spheres.assign(2, {{0, 0, 0}, 1, 0, "pair"});
+  scene::Points cloud;
+  cloud.file = "dust.ply";
+  cloud.centers.resize(1000);
+  cloud.radii = {1};
+  cloud.materials.resize(1000);
+  for (std::size_t i = 0; i < 1000; ++i) cloud.materials[i] = i % 2;
+  s.points = {cloud};
+  const auto keys = [&](std::vector<std::string> names, bool deep) {
+    s.output.layers = std::move(names);
+    film::LayerRequest request = layers_of(s).request;
+    request.deep = deep;
+    std::set<std::uint32_t> out;
+    for (std::uint32_t i = 0; i < 1002; ++i) out.insert(request.coverage_key(i));
+    return out;
+  };
+  EXPECT_EQ(keys({"CryptoObject"}, false), (std::set<std::uint32_t>{0, 2}));
+  EXPECT_EQ(keys({"CryptoMaterial"}, false), (std::set<std::uint32_t>{0, 3}));
+  EXPECT_EQ(keys({"CryptoObject", "CryptoMaterial"}, false), (std::set<std::uint32_t>{0, 2, 3}));
+  EXPECT_EQ(keys({"CryptoObject"}, true).size(), 1002u) << "deep samples are spheres";
 }
 
 TEST(JobLayers, LightGroupsAreThoseOfEmittersAndTheBackground) {
@@ -125,7 +148,9 @@ TEST(JobLayers, MaterialMattesUseAuthoredMaterials) {
   const Layers layers = layers_of(with_layers({"CryptoMaterial", "material_id"}));
   const scene::Scene s = test::everything();
   for (std::uint32_t i = 0; i < s.spheres.size(); ++i)
-    EXPECT_EQ(layers.request.mattes[0].id_of_sphere(i), film::matte_id(s.materials[s.spheres[i].material].name)) << i;
+    EXPECT_EQ(layers.request.matte_id(layers.request.mattes[0], i),
+              film::matte_id(s.materials[s.spheres[i].material].name))
+        << i;
   const compile::CompiledScene compiled = compile::compile(s);
   for (std::size_t i = 0; i < s.spheres.size(); ++i)
     EXPECT_EQ(layers.request.material_numbers[compiled.sphere_materials[i]], s.spheres[i].material + 1) << i;

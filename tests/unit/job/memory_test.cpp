@@ -74,6 +74,31 @@ TEST(JobMemoryEstimate, GrowsWithLightGroups) {
   EXPECT_EQ(film_of({"emission"}) - film_of({"samples"}), 1000 * (sum + heap + 3 * 8 - 8));
 }
 
+/// A pixel has a sum for each object of a matte that its paths hit, and for each sphere of a deep image.
+TEST(JobMemoryEstimate, GrowsWithTheCoverageOfMattesAndDeepImages) {
+  scene::Scene scene;
+  scene.materials = {{"a", scene::Lambertian{}}};
+  scene::Points cloud;
+  cloud.centers.resize(100'000);
+  cloud.radii = {1};
+  scene.points = {cloud};
+  scene.image = {100, 10};
+  scene.render.samples = 500;
+  const auto film_of = [&](std::vector<std::string> layers, bool deep) {
+    scene.output.layers = std::move(layers);
+    const compile::CompiledScene compiled = compile::compile(scene);
+    film::LayerRequest request = choose_layers(scene, compiled).request;
+    request.deep = deep;
+    return estimate_memory(memory_needs(compiled, request)).film;
+  };
+  const std::uint64_t planes = (12 - 1) * 8, share = sizeof(film::SphereCoverage) * 3 / 2, heap = 16;
+  EXPECT_EQ(film_of({"CryptoObject"}, false) - film_of({"samples"}, false), 1000 * (planes + share + heap))
+      << "one object";
+  EXPECT_EQ(film_of({"samples"}, true) - film_of({"samples"}, false), 1000 * (102 * share + heap));
+  scene.render.samples = 5;
+  EXPECT_EQ(film_of({"samples"}, true) - film_of({"samples"}, false), 1000 * (5 * share + heap)) << "five paths";
+}
+
 /// Denoising alone needs no records of paths.
 TEST(JobMemoryEstimate, CountsTheHalvesOnlyWhereTheyAreNeeded) {
   scene::Scene scene;

@@ -17,6 +17,7 @@
 #include "render/result.h"
 #include "render/sampling_limits.h"
 #include "render/settings.h"
+#include "support/add_matte.h"
 #include "support/everything.h"
 
 namespace orrery::render {
@@ -29,7 +30,7 @@ film::LayerRequest all_layers() {
   r.groups = {{"default", true, true}, {"other", true, false}};
   r.variance = r.samples = r.object_id = r.material_id = r.guide_albedo = r.guide_normal = r.deep = true;
   r.material_numbers.assign(16, 1);
-  r.mattes = {{"CryptoObject", [](std::uint32_t sphere) { return 0x3f000000u + sphere; }}};
+  test::add_matte_of_spheres(r, 0x3f000000u);
   return r;
 }
 
@@ -273,7 +274,7 @@ TEST(RenderLayers, TransparentBackgroundLeavesNoHaloAtADefocusedEdge) {
   const Result opaque = render_with(s, {});
   film::LayerRequest cut_out;
   cut_out.coverage = true;
-  cut_out.mattes = all_layers().mattes;
+  test::add_matte_of_spheres(cut_out, 0x3f000000u);
   const Result empty = render_with(s, cut_out);
   double worst = 0;
   int edges = 0;

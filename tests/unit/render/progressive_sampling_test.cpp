@@ -25,6 +25,7 @@
 #include "render/result.h"
 #include "render/sampling_limits.h"
 #include "render/settings.h"
+#include "support/add_matte.h"
 #include "support/everything.h"
 #include "support/plane_values.h"
 #include "support/tile_functions.h"
@@ -75,7 +76,7 @@ Settings with_layers(Settings settings = {}) {
   r.emission = r.light_groups = true;
   r.groups = {{"default", true, true}, {"other", true, false}};
   r.variance = r.samples = r.object_id = r.guide_albedo = r.guide_normal = r.halves = r.coverage = r.deep = true;
-  r.mattes = {{"CryptoObject", [](std::uint32_t sphere) { return sphere + 1; }}};
+  test::add_matte_of_spheres(r, 1);
   return settings;
 }
 
