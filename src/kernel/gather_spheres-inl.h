@@ -35,9 +35,8 @@ HWY_INLINE void gather_spheres(D d, const SphereArray& spheres, IdOfLane id_of_l
     compact = compact & (ids[i] >= spheres.plain_count);
   }
   if (compact) {
-    const float* const centers = spheres.centers - 3 * spheres.plain_count;
     gather4(
-        d, [&](std::size_t i) { return centers + 3 * ids[i]; }, out);
+        d, [&](std::size_t i) { return spheres.centers + 3 * (ids[i] - spheres.plain_count); }, out);
     if (spheres.radii == nullptr && spheres.radius_indices == nullptr) {
       out[3] = hn::Set(d, static_cast<T>(spheres.radius_palette[0]));
       return;

@@ -11,6 +11,7 @@
 
 #include "kernel/precision.h"
 #include "kernel/ray_packet.h"
+#include "math/functions-inl.h"
 #include "math/vec3-inl.h"
 
 HWY_BEFORE_NAMESPACE();
@@ -99,13 +100,21 @@ HWY_INLINE Chord<D> plain_chord(const Rays<D>& ray, const Spheres<D>& sphere) {
   return {middle, discriminant<D>(sphere.radius, to_center), to_center};
 }
 
-/// Refines a plain chord with the rounding error of the difference and a second projection.
+/// Refines a plain chord with the rounding errors of the difference and of the projection, and a second projection.
 ///
 /// Precision  test Extremes.HitOrMissAndHitPointError, against MPFR
 template <class D>
 HWY_INLINE Chord<D> compensated(const Rays<D>& ray, const Spheres<D>& sphere, const Chord<D>& plain) {
   const auto lost = difference_error(sphere.center, ray.origin, sphere.center - ray.origin);
   auto to_center = plain.to_center + (lost - ray.origin_low);
+#if !HWY_NATIVE_FMA
+  // The projection subtracted rounded products, which may be as large as the distance.
+  const auto product_error = [&](auto x) {
+    return math::HWY_NAMESPACE::product_error(D(), x, plain.middle, x * plain.middle);
+  };
+  const auto& along = ray.direction;
+  to_center = to_center - Vec3<hn::Vec<D>>{product_error(along.x), product_error(along.y), product_error(along.z)};
+#endif
   // With a distant origin, to_center keeps a component along the ray; project it out once more.
   const auto rest = dot(to_center, ray.direction) * ray.inverse_square;
   to_center = neg_mul_add(ray.direction, rest, to_center);

@@ -10,6 +10,7 @@
 #include <random>
 #include <string>
 
+#include "kernel/isa.h"
 #include "support/big_real.h"
 #include "support/intersect_batch.h"
 #include "support/quad_real.h"
@@ -269,11 +270,11 @@ Tally run(const Regime& regime, kernel::Precision precision, int rays) {
   return tally;
 }
 
-TEST(Extremes, HitOrMissAndHitPointError) {
-  std::printf("%-32s %10s %8s %8s %14s %14s %14s\n", "regime", "rays", "in band", "wrong", "point x cos",
-              "distance x cos", "off the sphere");
+void expect_exact_hits(int rays) {
+  std::printf("%-32s %10s %8s %8s %14s %14s %14s\n", ("regime, " + kernel::isa_name()).c_str(), "rays", "in band",
+              "wrong", "point x cos", "distance x cos", "off the sphere");
   for (const Regime& regime : regimes()) {
-    const Tally t = run(regime, kernel::Precision::kExact, rays_per_regime());
+    const Tally t = run(regime, kernel::Precision::kExact, rays);
     std::printf("%-32s %10ld %8ld %8ld %14.2e %14.2e %14.2e\n", regime.name.c_str(), t.rays, t.skipped, t.wrong,
                 t.worst, t.worst_distance, t.worst_length);
     EXPECT_EQ(t.wrong, 0) << regime.name;
@@ -284,6 +285,18 @@ TEST(Extremes, HitOrMissAndHitPointError) {
     EXPECT_LE(t.worst_length, kLengthBound) << regime.name;
     EXPECT_LT(t.skipped, t.rays / 10) << regime.name << ": too many rays in the band";
   }
+}
+
+TEST(Extremes, HitOrMissAndHitPointError) { expect_exact_hits(rays_per_regime()); }
+
+/// The same bounds without fused multiply-add, and with fewer lanes.
+TEST(Extremes, EveryInstructionSetIsAsExact) {
+  for (const std::string& isa : kernel::available_isas()) {
+    if (isa == kernel::available_isas().front()) continue;
+    ASSERT_TRUE(kernel::limit_isa(isa));
+    expect_exact_hits(rays_per_regime() / 4);
+  }
+  kernel::limit_isa("");
 }
 
 /// The same test rejects the book's quadratic formula, which shows that it can fail.
