@@ -69,6 +69,7 @@ MapHeader read_map_header(const std::filesystem::path& file, MapFormats formats)
                   spec.y + spec.height < spec.full_y + spec.full_height;
   out.color_interop_id = std::string(spec.get_string_attribute("colorInteropID"));
   out.color_space = std::string(spec.get_string_attribute("oiio:ColorSpace"));
+  out.is_half = spec.format == TypeDesc::HALF;
   out.is_encoded = is_display_format(*known_format(file)) && spec.format != TypeDesc::FLOAT;
   // For integers, the name that OpenImageIO reports is an assumption as well.
   if (out.is_encoded || is_assumed(out.color_space)) out.color_space.clear();

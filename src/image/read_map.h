@@ -23,6 +23,7 @@ struct MapHeader {
   std::string color_space = {};  ///< colour space as declared by OpenImageIO's tools; empty: not declared
   bool is_encoded = false;       ///< the file has a display format: values are not scene-linear
   bool is_padded = false;        ///< pixels of the display window without data are black
+  bool is_half = false;          ///< values are in half precision, which cannot hold more than 65,504
 };
 
 /// Reads the header of an image file, without its pixels.

@@ -27,6 +27,8 @@ constexpr const char* kEncodedSpace = "srgb_texture";
 /// White may come out of a conversion brighter by this factor.
 constexpr float kRoundingFactor = 1 + 1e-5F;
 
+constexpr float kLargestHalf = 65504;
+
 /// Values of texels that were replaced.
 struct Replaced {
   std::uint64_t nan = 0, infinite = 0, negative = 0, out_of_range = 0;
@@ -130,11 +132,14 @@ class Loader {
   void read(const image::MapHeader& header, const display::PixelConversion& convert) {
     const auto image = std::make_shared<scene::EnvironmentImage>(header.width, header.height);
     const std::size_t values = 3 * static_cast<std::size_t>(header.width);
+    // An infinite sun is one that did not fit into the file.
+    const float infinite = header.is_half ? std::min(kLargestHalf, request_.largest) : request_.largest;
     const auto take = [&](int y, float* rgb) {
       for (std::size_t i = 0; i < values; ++i) {
         if (rgb[i] >= 0 && std::isfinite(rgb[i])) continue;
-        ++(std::isnan(rgb[i]) ? replaced_.nan : std::isinf(rgb[i]) ? replaced_.infinite : replaced_.negative);
-        rgb[i] = 0;
+        const bool is_infinite = rgb[i] > 0;
+        ++(std::isnan(rgb[i]) ? replaced_.nan : is_infinite ? replaced_.infinite : replaced_.negative);
+        rgb[i] = is_infinite ? infinite : 0;
       }
       if (convert) convert(rgb, values / 3);
       float* const row = image->row(y);
@@ -148,9 +153,13 @@ class Loader {
     image::read_map(request_.file, take, request_.formats);
     if (request_.has_mip_map) compile::add_mip_map(*image);
     out_.image = image;
-    if (replaced_.nan + replaced_.infinite + replaced_.negative > 0)
-      warn(request_.file_key, fmt::format("{} values are NaN, {} infinite and {} negative; they are replaced by 0",
-                                          replaced_.nan, replaced_.infinite, replaced_.negative));
+    if (replaced_.nan + replaced_.negative > 0)
+      warn(request_.file_key, fmt::format("{} values are NaN and {} negative; they are replaced by 0", replaced_.nan,
+                                          replaced_.negative));
+    if (replaced_.infinite > 0)
+      warn(request_.file_key,
+           fmt::format("{} values are infinite; they are replaced by {}{}", replaced_.infinite, infinite,
+                       header.is_half ? "; write brighter values in single precision" : ""));
     if (replaced_.out_of_range > 0)
       warn(request_.file_key, fmt::format("{} values are out of range{} and were clamped", replaced_.out_of_range,
                                           request_.is_color ? " in " + request_.working_space : ""));

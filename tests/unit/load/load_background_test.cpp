@@ -105,15 +105,26 @@ TEST_F(LoadBackground, DisplaySpacesAreLinearized) {
 TEST_F(LoadBackground, InvalidRadianceCountsAsZero) {
   ExrFile exr = ExrFile::constant(4, 2, {1, 1, 1});
   exr.rgb[0] = std::numeric_limits<float>::quiet_NaN();
-  exr.rgb[4] = std::numeric_limits<float>::infinity();
   exr.rgb[5] = -std::numeric_limits<float>::infinity();
   exr.rgb[8] = -1e-6F;
   exr.rgb[9] = -0.0F;
   const LoadedBackground loaded = load(exr);
   EXPECT_EQ(texts(loaded),
-            Texts{"background.file: 1 values are NaN, 2 infinite and 1 negative; they are replaced by 0"});
-  for (int i = 0; i < 24; ++i)
-    EXPECT_EQ(loaded.image->row(0)[i], i == 0 || i == 4 || i == 5 || i == 8 || i == 9 ? 0 : 1) << i;
+            Texts{"background.file: 1 values are NaN and 2 negative; they are replaced by 0"});
+  for (int i = 0; i < 24; ++i) EXPECT_EQ(loaded.image->row(0)[i], i == 0 || i == 5 || i == 8 || i == 9 ? 0 : 1) << i;
+}
+
+/// An infinite texel is a sun that did not fit into the file: it must not be black.
+TEST_F(LoadBackground, InfiniteRadianceIsTheLargestThatTheFileCanHold) {
+  for (const bool is_half : {false, true}) {
+    ExrFile exr = ExrFile::constant(4, 2, {1, 1, 1});
+    exr.rgb[4] = std::numeric_limits<float>::infinity();
+    exr.is_half = is_half;
+    const LoadedBackground loaded = load(exr);
+    const std::string value = is_half ? "65504; write brighter values in single precision" : "1.7179869e+10";
+    EXPECT_EQ(texts(loaded), Texts{"background.file: 1 values are infinite; they are replaced by " + value});
+    for (int i = 0; i < 24; ++i) EXPECT_EQ(loaded.image->row(0)[i], i != 4 ? 1 : is_half ? 65504 : 0x1p34F) << i;
+  }
 }
 
 TEST_F(LoadBackground, ValuesBeyondTheFilmAreClamped) {
