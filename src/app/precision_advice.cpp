@@ -7,7 +7,9 @@
 #include <limits>
 
 #include "compile/compiled_scene.h"
+#include "kernel/material.h"
 #include "kernel/precision.h"
+#include "kernel/sphere.h"
 
 namespace orrery::app {
 namespace {
@@ -37,6 +39,28 @@ Proportions proportions_of(const compile::CompiledScene& compiled) {
   return p;
 }
 
+/// The smallest emitter that the surface of the largest sphere passes through: a lamp half sunk into a ground. Negative
+/// radius: there is none.
+double sunk_lamp_radius(const compile::CompiledScene& compiled, const kernel::Sphere& ground) {
+  double smallest = -1;
+  for (std::size_t i = 0; i < compiled.spheres.size(); ++i) {
+    if (compiled.materials[compiled.sphere_materials[i]].kind != kernel::MaterialKind::kEmitter) continue;
+    const kernel::Sphere s = compiled.spheres[i];
+    const double dx = s.x - ground.x, dy = s.y - ground.y, dz = s.z - ground.z;
+    const double height = std::sqrt(dx * dx + dy * dy + dz * dz) - ground.radius;
+    if (s.radius < ground.radius && std::abs(height) < s.radius && (smallest < 0 || s.radius < smallest))
+      smallest = s.radius;
+  }
+  return smallest;
+}
+
+kernel::Sphere largest_sphere(const compile::CompiledScene& compiled) {
+  kernel::Sphere largest = compiled.spheres[0];
+  for (std::size_t i = 1; i < compiled.spheres.size(); ++i)
+    if (compiled.spheres[i].radius > largest.radius) largest = compiled.spheres[i];
+  return largest;
+}
+
 template <class... Arguments>
 std::string text(const char* format, Arguments... arguments) {
   char line[300];
@@ -58,6 +82,14 @@ std::vector<std::string> precision_advice(const compile::CompiledScene& compiled
           text("precision fast: hit points on the smallest sphere (radius %g) have an error of about %.1g of its "
                "radius, since coordinates reach %.1g radii; use exact",
                p.smallest, error, p.coordinate));
+    // Points on the ground are off by up to 2^-23 of its radius, and so is the part of the lamp above their horizon.
+    const kernel::Sphere ground = largest_sphere(compiled);
+    const double lamp = sunk_lamp_radius(compiled, ground), light = 0x1p-22 * ground.radius / lamp;
+    if (light > kVisible)
+      advice.push_back(
+          text("precision fast: light of a lamp of radius %g, partly inside a sphere of radius %g, has an error of about "
+               "%.1g beside it; use exact",
+               lamp, ground.radius, light));
     return advice;
   }
   // The quadratic subtracts the squared radius from the squared distance: cancellation grows with their ratio.

@@ -32,5 +32,23 @@ TEST(AppPrecisionAdvice, WarnsAboutDistantScenesInFastAndAboutDistanceAndSmallRa
   EXPECT_EQ(advice_for(scene::Precision::kBook, 0.1, 0.01, 0), 1u);
 }
 
+TEST(AppPrecisionAdvice, WarnsAboutASunkLampInFast) {
+  const auto advice_of = [](scene::Precision precision, double ground, double lamp_height, bool glows = true) {
+    scene::Scene s;
+    s.render.precision = precision;
+    s.materials = {{"ground", scene::Lambertian{}}, {"lamp", scene::Emitter{}}};
+    s.spheres = {{{0, -ground, 0}, ground, 0, ""}, {{0, lamp_height, 0}, 2, glows ? 1u : 0u, ""}};
+    return precision_advice(compile::compile(s));
+  };
+  ASSERT_EQ(advice_of(scene::Precision::kFast, 1e4, 0).size(), 1u);
+  EXPECT_EQ(advice_of(scene::Precision::kFast, 1e4, 0)[0],
+            "precision fast: light of a lamp of radius 2, partly inside a sphere of radius 10000, has an error of about "
+            "0.001 beside it; use exact");
+  EXPECT_EQ(advice_of(scene::Precision::kFast, 1e4, 5).size(), 0u) << "the lamp is above the ground";
+  EXPECT_EQ(advice_of(scene::Precision::kFast, 1e4, 0, false).size(), 0u) << "it is no lamp";
+  EXPECT_EQ(advice_of(scene::Precision::kFast, 1e3, 0).size(), 0u);
+  EXPECT_EQ(advice_of(scene::Precision::kExact, 1e4, 0).size(), 0u);
+}
+
 }  // namespace
 }  // namespace orrery::app
