@@ -75,8 +75,9 @@ struct HalfSums {
 /// Both halves of a pixel.
 using Halves = std::array<HalfSums, 2>;
 
-/// Upper bound to which squared radiance is clamped. A variance that large is evident from the radiance itself.
-inline constexpr double kLargestSquare = 0x1p48;
+/// Upper bound to which squared radiance is clamped: the sum over two halves of 2^31 paths still fits into 128 bits. A
+/// variance that large is evident from the radiance itself.
+inline constexpr double kLargestSquare = 0x1p47;
 inline constexpr double kSquareUnit = 0x1p-48;
 
 /// The mean of fixed-point values from their sum and total weight; 0 without weight.

@@ -51,7 +51,8 @@ std::optional<double> read_number(ReadState& state, const toml::node& node, cons
   }
   const double x = node.is_integer() ? static_cast<double>(node.as_integer()->get()) : node.as_floating_point()->get();
   if (!range.contains(x)) {
-    state.error(place_of(node), fmt::format("{} is {}; {}", name, scene::number_text(x), range.requirement()));
+    state.error(place_of(node), fmt::format("{} is {}; {}", name, scene::number_text(x), range.requirement()),
+                x > range.to ? range.remedy : "");
     return {};
   }
   return x;

@@ -17,7 +17,7 @@ namespace orrery::scene {
 
 /// Range of a reflectance, probability or fuzz; range of a radiance without exposure.
 inline constexpr Range kUnit{0, 1};
-inline constexpr Range kLight{0, kBrightestBackground};
+inline constexpr Range kLight{0, kBrightestLight, false, false, kBrighterLightRemedy};
 /// Range of a coordinate, and of a length, scene units.
 inline constexpr Range kAnyLength{-kLargestLength, kLargestLength};
 inline constexpr Range kLength{kSmallestRadius, kLargestLength};

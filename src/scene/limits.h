@@ -36,12 +36,11 @@ inline constexpr double kSmallestUpSine = 1e-9;
 
 using base::kLargestSide;
 
-/// Maximum background radiance: the sum of a pixel's samples then fits into 128 bits.
-inline constexpr double kBrightestBackground = 1e6;
-
-/// Maximum radiance after exposure: half of kernel::kLargestSample. A path whose total exceeds kLargestSample is a bad
-/// sample.
+/// Maximum radiance of a light or background, also after exposure: half of kernel::kLargestSample, so that a pixel's sums
+/// hold it. The luminance of the sun, 1.6e9 cd/m2, is less. A path whose total exceeds kLargestSample is a bad sample.
 inline constexpr double kBrightestLight = 0x1p34;
+inline constexpr const char* kBrighterLightRemedy =
+    "divide the light of the whole scene by one factor, and raise color.exposure";
 
 /// Maximum absolute rotation of the background, degrees: an animation may make many turns.
 inline constexpr double kLargestRotation = 1e6;

@@ -257,8 +257,8 @@ void check_light_groups(const Scene& scene, DiagnosticList& diagnostics) {
 std::string exposure_fault(double radiance, double exposure) {
   const double product = radiance * std::exp2(exposure);
   if (product <= kBrightestLight) return {};
-  return fmt::format("the radiance with exposure would be {}; the maximum is {}; reduce the exposure",
-                     number_text(product), number_text(kBrightestLight));
+  return fmt::format("the radiance with exposure would be {}; the maximum is {}; {}", number_text(product),
+                     number_text(kBrightestLight), kBrighterLightRemedy);
 }
 
 std::vector<std::string> sphere_faults(Vec3d center, double radius, Precision precision) {

@@ -19,6 +19,7 @@ enum class ValueType { kInteger, kNumber, kVector, kText, kChoice, kChoices, kWi
 struct Range {
   double from = 0, to = 0;
   bool from_open = false, to_open = false;
+  const char* remedy = "";  ///< what to do instead of a larger number, for messages
 
   bool contains(double x) const { return (from_open ? x > from : x >= from) && (to_open ? x < to : x <= to); }
   /// Returns the interval for documentation: "0..1", "above 0 and below 180".

@@ -11,7 +11,7 @@
 
 namespace orrery::test {
 
-/// Adds a matte with the ids of the spheres, each of which is a class of its own.
+/// Adds a matte with the ids of the spheres, each of which is its class.
 inline void add_matte(film::LayerRequest& request, std::string name, std::vector<std::uint32_t> ids) {
   const auto count = static_cast<std::uint32_t>(ids.size());
   film::MatteClasses classes{{count, count}, {}};

@@ -403,9 +403,28 @@ TEST_F(FilmLayerFilm, NormalsPointAgainstTheRay) {
 TEST_F(FilmLayerFilm, VarianceIsFiniteForTheLargestRadiance) {
   request_.variance = true;
   for (const double light : {0.0, 0x1p34}) add(path_to(0, light));
-  // Squares are clamped to 2^48; the variance must be finite and not negative.
+  // Squares are clamped to 2^47; the variance must be finite and not negative.
   EXPECT_GE(value(picture(), "variance.R"), 0);
   EXPECT_TRUE(std::isfinite(value(picture(), "variance.R")));
+}
+
+/// All that two halves of the maximum number of samples can add up to fits into the sums.
+TEST_F(FilmLayerFilm, SumsHoldTheMaximumCountOfTheBrightestPaths) {
+  request_.variance = request_.diffuse = true;
+  const auto twice = [&] {
+    pixel_.add(LayerPixel(pixel_));
+    beauty_ += kernel::PixelSum(beauty_);
+  };
+  for (int bit = 0; bit < 31; ++bit) {
+    twice();
+    add(path_to(0, kernel::kLargestSample));
+  }
+  twice();
+  EXPECT_EQ(pixel_.paths, 2 * ((std::int64_t{1} << 31) - 1));
+  const Picture p = picture();
+  EXPECT_EQ(value(p, "diffuse_direct.R"), 0x1p35F);
+  EXPECT_EQ(mean(beauty_.rgb[0], beauty_.weight), 0x1p35);
+  for (int c = 0; c < 3; ++c) EXPECT_TRUE(pixel_.squares[c] > 0) << "overflow";
 }
 
 TEST_F(FilmLayerFilm, MattesRankIdsByCoverage) {

@@ -53,7 +53,15 @@ TEST(FormatReadKeys, RangesAreClosedOrOpen) {
   EXPECT_EQ(text_of("render.max_depth = 10000"), "");
   EXPECT_EQ(text_of("render.seed = -1"), "render.seed is -1; must be in 0..4294967295");
   EXPECT_EQ(text_of("image.width = 9223372036854775807"), "image.width is 9223372036854775807; must be in 1..65536");
-  EXPECT_EQ(text_of("background.top = [0, -0.5, 0]"), "background.top[1] is -0.5; must be in 0..1e+06");
+  EXPECT_EQ(text_of("background.top = [0, -0.5, 0]"), "background.top[1] is -0.5; must be in 0..17179869184");
+}
+
+TEST(FormatReadKeys, TheSunMayBeWrittenInCandelaPerSquareMetre) {
+  EXPECT_EQ(text_of("background.top = [1.6e9, 1.6e9, 17179869184]"), "");
+  SceneFiles files;
+  const std::string told = files.diagnostics("background.top = [0, 0, 2e10]");
+  EXPECT_NE(told.find("background.top[2] is 20000000000; must be in 0..17179869184"), std::string::npos) << told;
+  EXPECT_NE(told.find("raise color.exposure"), std::string::npos) << told;
 }
 
 TEST(FormatReadKeys, NaNAndInfinityAreInNoRange) {
