@@ -86,10 +86,10 @@ std::vector<std::string> precision_advice(const compile::CompiledScene& compiled
     const kernel::Sphere ground = largest_sphere(compiled);
     const double lamp = sunk_lamp_radius(compiled, ground), light = 0x1p-22 * ground.radius / lamp;
     if (light > kVisible)
-      advice.push_back(
-          text("precision fast: light of a lamp of radius %g, partly inside a sphere of radius %g, has an error of about "
-               "%.1g beside it; use exact",
-               lamp, ground.radius, light));
+      advice.push_back(text(
+          "precision fast: light of a lamp of radius %g, partly inside a sphere of radius %g, has an error of about "
+          "%.1g beside it; use exact",
+          lamp, ground.radius, light));
     return advice;
   }
   // The quadratic subtracts the squared radius from the squared distance: cancellation grows with their ratio.

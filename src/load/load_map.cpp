@@ -154,8 +154,8 @@ class Loader {
     if (request_.has_mip_map) compile::add_mip_map(*image);
     out_.image = image;
     if (replaced_.nan + replaced_.negative > 0)
-      warn(request_.file_key, fmt::format("{} values are NaN and {} negative; they are replaced by 0", replaced_.nan,
-                                          replaced_.negative));
+      warn(request_.file_key,
+           fmt::format("{} values are NaN and {} negative; they are replaced by 0", replaced_.nan, replaced_.negative));
     if (replaced_.infinite > 0)
       warn(request_.file_key,
            fmt::format("{} values are infinite; they are replaced by {}{}", replaced_.infinite, infinite,

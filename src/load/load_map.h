@@ -35,8 +35,8 @@ struct MapRequest {
 /// chromaticities, or the name that OpenImageIO's tools write), else in that of `color_space`, else in sRGB for
 /// integers and in `default_space` for scene-linear files.
 ///
-/// NaN and negative values become 0, infinite ones the largest that the file can hold, and values above `largest` become
-/// `largest`; warnings state how many.
+/// NaN and negative values become 0, infinite ones the largest that the file can hold, and values above `largest`
+/// become `largest`; warnings state how many.
 ///
 /// Errors     those of the file and of colour spaces become diagnostics; base::Error(kNoMemory) if the image does not
 ///            fit into memory, before its pixels are read

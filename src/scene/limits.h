@@ -36,8 +36,9 @@ inline constexpr double kSmallestUpSine = 1e-9;
 
 using base::kLargestSide;
 
-/// Maximum radiance of a light or background, also after exposure: half of kernel::kLargestSample, so that a pixel's sums
-/// hold it. The luminance of the sun, 1.6e9 cd/m2, is less. A path whose total exceeds kLargestSample is a bad sample.
+/// Maximum radiance of a light or background, also after exposure: half of kernel::kLargestSample, so that a pixel's
+/// sums hold it. The luminance of the sun, 1.6e9 cd/m2, is less. A path whose total exceeds kLargestSample is a bad
+/// sample.
 inline constexpr double kBrightestLight = 0x1p34;
 inline constexpr const char* kBrighterLightRemedy =
     "divide the light of the whole scene by one factor, and raise color.exposure";

@@ -58,7 +58,8 @@ struct ExrFile {
     attribute("screenWindowCenter", "v2f", packed(std::array<float, 2>{0, 0}));
     attribute("screenWindowWidth", "float", one);
     out += '\0';
-    const std::size_t values = 3 * (is_half ? 2 : 4) * static_cast<std::size_t>(width), line = 8 + values, rows = static_cast<std::size_t>(height);
+    const std::size_t values = 3 * (is_half ? 2 : 4) * static_cast<std::size_t>(width), line = 8 + values,
+                      rows = static_cast<std::size_t>(height);
     const std::size_t first = out.size() + 8 * rows;
     for (std::size_t y = 0; y < rows; ++y) add(static_cast<std::uint64_t>(first + y * line));
     for (std::size_t y = 0; y < rows; ++y) {

@@ -109,8 +109,7 @@ TEST_F(LoadBackground, InvalidRadianceCountsAsZero) {
   exr.rgb[8] = -1e-6F;
   exr.rgb[9] = -0.0F;
   const LoadedBackground loaded = load(exr);
-  EXPECT_EQ(texts(loaded),
-            Texts{"background.file: 1 values are NaN and 2 negative; they are replaced by 0"});
+  EXPECT_EQ(texts(loaded), Texts{"background.file: 1 values are NaN and 2 negative; they are replaced by 0"});
   for (int i = 0; i < 24; ++i) EXPECT_EQ(loaded.image->row(0)[i], i == 0 || i == 5 || i == 8 || i == 9 ? 0 : 1) << i;
 }
 

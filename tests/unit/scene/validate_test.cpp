@@ -109,8 +109,9 @@ TEST(SceneValidate, RadianceWithExposureIsLimited) {
   scene.materials = {{"lamp", lamp}};
   EXPECT_EQ(told(scene), Told{}) << "2^34 is allowed";
   std::get<Emitter>(scene.materials[0].model).exposure = 15;
-  EXPECT_EQ(told(scene), Told{"material.lamp.exposure: the radiance with exposure would be 34359738368; the maximum is "
-                              "17179869184; divide the light of the whole scene by one factor, and raise color.exposure"});
+  EXPECT_EQ(told(scene),
+            Told{"material.lamp.exposure: the radiance with exposure would be 34359738368; the maximum is "
+                 "17179869184; divide the light of the whole scene by one factor, and raise color.exposure"});
   const auto texture = std::make_shared<Texture>();
   texture->high = {0, 0x1p19, 0};
   std::get<Emitter>(scene.materials[0].model).radiance_texture = texture;
