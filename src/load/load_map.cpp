@@ -157,9 +157,9 @@ class Loader {
       warn(request_.file_key,
            fmt::format("{} values are NaN and {} negative; they are replaced by 0", replaced_.nan, replaced_.negative));
     if (replaced_.infinite > 0)
-      warn(request_.file_key,
-           fmt::format("{} values are infinite; they are replaced by {}{}", replaced_.infinite, infinite,
-                       header.is_half ? "; write brighter values in single precision" : ""));
+      warn(request_.file_key, fmt::format("{} values are infinite; they are replaced by {}{}", replaced_.infinite,
+                                          static_cast<double>(infinite),
+                                          header.is_half ? "; write brighter values in single precision" : ""));
     if (replaced_.out_of_range > 0)
       warn(request_.file_key, fmt::format("{} values are out of range{} and were clamped", replaced_.out_of_range,
                                           request_.is_color ? " in " + request_.working_space : ""));
