@@ -132,10 +132,11 @@ TEST_P(DeterminismProgram, AnEmbreeForFewerInstructionSetsGivesTheSameValues) {
       if (isa == "sse4") continue;  // no Embree has fewer lanes
       for (const std::string limit : {"avx2", "sse4.2"}) {
         if (limit == isa) continue;
-        const auto narrow = render("narrow", "--traversal packet --precision " + precision + " --isa " + isa,
-                                   "LD_PRELOAD=\"" NARROW_EMBREE
-                                   "\" ASAN_OPTIONS=verify_asan_link_order=0 "
-                                   "ORRERY_TEST_EMBREE=max_isa=" +
+        const auto narrow = render("narrow", "--set render.traversal=packet --precision " + precision,
+                                   "ORRERY_ISA=" + isa +
+                                       " LD_PRELOAD=\"" NARROW_EMBREE
+                                       "\" ASAN_OPTIONS=verify_asan_link_order=0 "
+                                       "ORRERY_TEST_EMBREE=max_isa=" +
                                        limit);
         EXPECT_TRUE(same_values(plain, narrow)) << isa << ", Embree with " << limit << ", " << precision;
       }
