@@ -15,14 +15,13 @@
 namespace orrery::bench {
 namespace {
 
-using kernel::Lanes;
 using kernel::Precision;
 
-template <class Packet, class Stream, class Render>
-void run(benchmark::State& state, Precision precision, Render render) {
+template <class Packet>
+void run(benchmark::State& state, Precision precision, kernel::RenderTile render) {
   auto& work = workload<Packet>(0, precision);
   std::vector<kernel::PixelSum> sums(std::size_t{kRecordedWidth} * kRecordedHeight);
-  const auto stream = std::make_unique<Stream>();
+  const auto stream = std::make_unique<kernel::PathStream>();
   const kernel::Tracer tracer = work.embree->tracer();
   const kernel::SceneView view = work.compiled.view();
   std::uint64_t rays = 0;
@@ -36,25 +35,20 @@ void run(benchmark::State& state, Precision precision, Render render) {
   state.counters["rays_per_path"] = static_cast<double>(rays) / static_cast<double>(paths);
 }
 
-void in_double(benchmark::State& state, Precision precision, Lanes lanes) {
-  run<kernel::RayPacket, kernel::PathStream>(
-      state, precision,
-      lanes == Lanes::kOne ? test::one_lane_tile_function({}, precision) : kernel::render_tile_function({}, precision));
-}
-void in_float(benchmark::State& state) {
-  run<kernel::RayPacketFast, kernel::PathStreamFast>(state, Precision::kFast, kernel::render_tile_fast_function({}));
-}
-
 [[maybe_unused]] const bool kRegistered = [] {
-  for (const Precision precision : {Precision::kExact, Precision::kBook}) {
-    for (const Lanes lanes : {Lanes::kOne, Lanes::kAll}) {
-      benchmark::RegisterBenchmark(
-          ("kernel/render_tile/" + name_of(precision) + (lanes == Lanes::kOne ? "/one_lane" : "/all_lanes")).c_str(),
-          in_double, precision, lanes)
-          ->Unit(benchmark::kMillisecond);
-    }
-  }
-  benchmark::RegisterBenchmark("kernel/render_tile/fast/all_lanes", in_float)->Unit(benchmark::kMillisecond);
+  const auto add = [](const char* name, auto function) {
+    benchmark::RegisterBenchmark((std::string("kernel/render_tile/") + name).c_str(), function)
+        ->Unit(benchmark::kMillisecond);
+  };
+  add("exact/one_lane", [](benchmark::State& state) {
+    run<kernel::RayPacket>(state, Precision::kExact, test::one_lane_tile_function());
+  });
+  add("exact/all_lanes", [](benchmark::State& state) {
+    run<kernel::RayPacket>(state, Precision::kExact, kernel::render_tile_function({}, Precision::kExact, false));
+  });
+  add("fast/all_lanes", [](benchmark::State& state) {
+    run<kernel::RayPacketFast>(state, Precision::kFast, kernel::render_tile_function({}, Precision::kFast, false));
+  });
   return true;
 }();
 

@@ -11,10 +11,9 @@
 
 #include <algorithm>
 #include <limits>
-#include <type_traits>
 
 #include "kernel/compaction-inl.h"
-#include "kernel/cone-inl.h"
+#include "kernel/deposit-inl.h"
 #include "kernel/environment-inl.h"
 #include "kernel/light-inl.h"
 #include "kernel/path_record.h"
@@ -47,21 +46,6 @@ HWY_INLINE V bsdf_sample_weight(D d, DirectLighting mode, V inverse) {
   const V zero = hn::Zero(d), one = hn::Set(d, hn::TFromD<D>(1));
   if (mode == DirectLighting::kLight) return hn::IfThenElse(inverse > zero, zero, one);
   return one / hn::MulAdd(inverse, inverse, one);
-}
-
-/// Adds radiance to paths of the batch.
-template <class D, class Lit>
-HWY_INLINE void gain(D d, hn::Mask<D> lanes, const Vec3<hn::Vec<D>>& light, hn::Vec<IdTag<D>> paths, Lit& lit) {
-  using T = hn::TFromD<D>;
-  HWY_ALIGN T rgb[3][hn::MaxLanes(D())];
-  HWY_ALIGN hn::TFromD<IdTag<D>> path[hn::MaxLanes(D())];
-  hn::Store(light.x, d, rgb[0]);
-  hn::Store(light.y, d, rgb[1]);
-  hn::Store(light.z, d, rgb[2]);
-  hn::Store(paths, IdTag<D>(), path);
-  each_lane(d, lanes, [&](int i) {
-    for (int k = 0; k < 3; ++k) lit.radiance[k][path[i]] += rgb[k][i];
-  });
 }
 
 /// Radiance and light group of emitters, one per lane.
@@ -111,7 +95,7 @@ inline bool chooses_light(const SceneView& scene) {
 ///
 /// `pdf`      density of the direction; infinite for delta materials
 template <class D, class V = hn::Vec<D>>
-HWY_NOINLINE Vec3<V> weighted_environment(D d, const SceneView& scene, const Vec3<V>& direction, V pdf) {
+HWY_NOINLINE Vec3<V> weighted_environment(D d, const SceneView& scene, Vec3<V> direction, V pdf) {
   using T = hn::TFromD<D>;
   const Environment& environment = *scene.environment;
   const auto at = environment_footprint(d, environment, direction);
@@ -125,15 +109,14 @@ HWY_NOINLINE Vec3<V> weighted_environment(D d, const SceneView& scene, const Vec
 
 /// The weight of emitters that rays with a sampled direction have hit.
 ///
+/// `at`       where the rays start
 /// `pdf`      density of the direction; infinite for delta materials
-template <class D, bool kMoves, class V = hn::Vec<D>>
-HWY_NOINLINE V emitter_weight(D d, const SceneView& scene, const Rays<D>& ray, hn::Vec<IdTag<D>> hits,
-                              const hn::TFromD<D>* times, V pdf) {
+template <class D, class V = hn::Vec<D>>
+HWY_NOINLINE V emitter_weight(D d, const SceneView& scene, const Vertex<D>& at, hn::Vec<IdTag<D>> hits, V pdf) {
   using T = hn::TFromD<D>;
   const V one = hn::Set(d, T(1));
   if (scene.direct_lighting == DirectLighting::kBsdf || scene.lights.count == 0) return one;
-  const Vertex<D> at{ray.origin, ray.origin_low, normal_along(d, ray.offset, ray.direction)};
-  const auto sphere = load_spheres<D, kMoves>(d, scene, hits, times);
+  const auto sphere = load_spheres(d, scene, hits, at.times);
   const auto cone = subtended_cone(d, to_center(at, sphere.center), sphere.radius);
   const V probability =
       choice_probability(d, scene, at, hits) * hn::Set(d, static_cast<T>(1 - environment_share(scene)));
@@ -157,31 +140,25 @@ struct LightSample {
   hn::Vec<IdTag<D>> group;   ///< light group
 };
 
-/// Stands in for the cones of light samples in loops without textures.
-struct NoCone {};
-template <class D, bool kExtended>
-using LightCone = std::conditional_t<kExtended, RayCone<hn::Vec<D>>, NoCone>;
-
 /// Chooses an emitter for each vertex and samples a point that is visible from it.
-template <class D, bool kMoves, bool kExtended, class V = hn::Vec<D>>
-HWY_INLINE LightSample<D> sample_emitter(D d, const SceneView& scene, const Vertex<D>& at,
-                                         [[maybe_unused]] LightCone<D, kExtended> cone_of_lobe, V u, V v, V choice,
-                                         V fresh, const hn::TFromD<D>* times) {
+///
+/// `random`   two numbers for the point, two for the choice
+template <class D, class V = hn::Vec<D>>
+HWY_NOINLINE LightSample<D> sample_emitter(D d, const SceneView& scene, const Vertex<D>& at, const Four<V>& random) {
   const V one = hn::Set(d, hn::TFromD<D>(1));
-  const auto chosen = choose_light(d, scene, at, choice, fresh);
-  const auto light = load_spheres<D, kMoves>(d, scene, chosen.spheres, times);
+  const auto chosen = choose_light(d, scene, at, random.v[2], random.v[3]);
+  const auto light = load_spheres(d, scene, chosen.spheres, at.times);
   const auto to = to_center(at, light.center);
   const auto cone = subtended_cone(d, to, light.radius);
-  const auto point = sample_visible_sphere(d, to, cone, u, v);
+  const auto point = sample_visible_sphere(d, to, cone, random.v[0], random.v[1]);
   auto source = emitted(d, scene, chosen.spheres, hn::FirstN(d, hn::Lanes(d)));
-  if constexpr (kExtended)
-    if (scene.textures != nullptr) {
-      const V width2 = cone_of_lobe.width2_at(cone.distance);
-      source.radiance = textured_radiance(
-          d, scene, chosen.spheres,
-          {light.center, point.normal * light.radius, point.normal, width2 / (light.radius * light.radius)},
-          source.radiance);
-    }
+  if (scene.textures != nullptr) {
+    const V width2 = at.cone.width2_at(cone.distance);
+    source.radiance = textured_radiance(
+        d, scene, chosen.spheres,
+        {light.center, point.normal * light.radius, point.normal, width2 / (light.radius * light.radius)},
+        source.radiance);
+  }
   return {point.direction,
           mul_add(point.normal, light.radius, to),
           one,
@@ -194,7 +171,7 @@ HWY_INLINE LightSample<D> sample_emitter(D d, const SceneView& scene, const Vert
 
 /// Samples a direction towards the environment.
 template <class D, class V = hn::Vec<D>>
-HWY_INLINE LightSample<D> sample_background(D d, const Environment& environment, V u, V v) {
+HWY_NOINLINE LightSample<D> sample_background(D d, const Environment& environment, V u, V v) {
   using T = hn::TFromD<D>;
   using Id = hn::TFromD<IdTag<D>>;
   const IdTag<D> du;
@@ -210,25 +187,17 @@ HWY_INLINE LightSample<D> sample_background(D d, const Environment& environment,
 }
 
 /// Samples the environment or an emitter at each vertex.
-///
-/// `cone`     cones of the rays to the light
-///
-/// Not inlined, like the other large functions of lit loops, so that all loops of a lane type share one copy.
-template <class D, bool kMoves, bool kExtended, class V = hn::Vec<D>>
-HWY_NOINLINE LightSample<D> sample_light(D d, const SceneView& scene, const Vertex<D>& at, LightCone<D, kExtended> cone,
-                                         const Four<V>& random, const hn::TFromD<D>* times) {
+template <class D, class V = hn::Vec<D>>
+HWY_NOINLINE LightSample<D> sample_light(D d, const SceneView& scene, const Vertex<D>& at, const Four<V>& random) {
   using T = hn::TFromD<D>;
   const double share = environment_share(scene);
   if (share == 1) return sample_background(d, *scene.environment, random.v[0], random.v[1]);
-  if (share == 0)
-    return sample_emitter<D, kMoves, kExtended>(d, scene, at, cone, random.v[0], random.v[1], random.v[2], random.v[3],
-                                                times);
+  if (share == 0) return sample_emitter(d, scene, at, random);
   const V to_background = hn::Set(d, static_cast<T>(share)), to_emitter = hn::Set(d, static_cast<T>(1 - share));
   const auto is_background = random.v[2] < to_background;
   const V rest = hn::IfThenElseZero(hn::Not(is_background), (random.v[2] - to_background) / to_emitter);
   const auto sky = sample_background(d, *scene.environment, random.v[0], random.v[1]);
-  const auto lamp =
-      sample_emitter<D, kMoves, kExtended>(d, scene, at, cone, random.v[0], random.v[1], rest, random.v[3], times);
+  const auto lamp = sample_emitter(d, scene, at, Four<V>{{random.v[0], random.v[1], rest, random.v[3]}});
   const auto ids = hn::RebindMask(IdTag<D>(), is_background);
   return {select(is_background, sky.direction, lamp.direction),
           select(is_background, sky.reach, lamp.reach),
@@ -240,51 +209,8 @@ HWY_NOINLINE LightSample<D> sample_light(D d, const SceneView& scene, const Vert
           hn::IfThenElse(ids, sky.group, lamp.group)};
 }
 
-/// Next-event estimation: samples a light at each vertex and appends shadow rays to the shadow stream.
-///
-/// `center`   centres of the spheres on which the vertices lie
-/// `tinted`   throughput times albedo
-/// `cone`     cones of the rays to the light
-/// `lanes`    vertices whose material is neither delta nor an emitter
-/// Domain     samples_lights(scene)
-template <class D, Loop kLoop, class Lit, class V = hn::Vec<D>>
-HWY_INLINE void connect(D d, const SceneView& scene, const Surface<D>& surface, const Vec3<V>& center,
-                        const Vec3<V>& tinted, LightCone<D, kLoop.extended> cone, hn::Mask<D> lanes,
-                        hn::Vec<IdTag<D>> self, hn::Vec<IdTag<D>> paths, hn::Vec<IdTag<D>> history,
-                        const Four<V>& random, const hn::TFromD<D>* times, Lit& lit) {
-  const V zero = hn::Zero(d);
-  const auto origin = center + surface.offset;
-  const auto unit = normalized(d, surface.offset);
-  const Vertex<D> at{origin, sum_error(center, surface.offset, origin),
-                     select(surface.from_outside, unit, negated(unit))};
-  const auto sample = sample_light<D, kLoop.moves, kLoop.extended>(d, scene, at, cone, random, times);
-  const V pdf = pdf_bsdf(d, scene.features, surface, sample.direction);
-  const V factor = light_sample_factor(d, scene.direct_lighting, pdf * sample.inverse_pdf / sample.probability);
-  lanes = hn::And(lanes, hn::And(sample.probability > zero, factor > zero));
-  if (hn::AllFalse(d, lanes)) return;
-
-  auto& shadow = lit.shadow;
-  const int n = shadow.count;
-  const Compactor<D> compactor(d, lanes);
-  compactor.store3(d, center, shadow.base, n);
-  compactor.store3(d, surface.offset, shadow.offset, n);
-  compactor.store3(d, sample.reach, shadow.direction, n);
-  compactor.store(d, sample.distance, shadow.distance + n);
-  if constexpr (kLoop.moves)
-    if (scene.features.motion) compactor.store(d, hn::Load(d, times), shadow.time + n);
-  compactor.store3(d, sample.radiance * tinted * factor, shadow.light, n);
-  compactor.store_ids(d, self, shadow.self + n);
-  compactor.store_ids(d, sample.target, shadow.target + n);
-  compactor.store_ids(d, paths, shadow.path + n);
-  if constexpr (kLoop.records) {
-    compactor.store_ids(d, history, shadow.history + n);
-    compactor.store_ids(d, sample.group, shadow.group + n);
-  }
-  shadow.count += compactor.count();
-}
-
 /// Traces the last packet of shadow rays in the stream and adds the unoccluded light to its paths.
-template <class D, Loop kLoop, class Lit>
+template <class D, bool kRecords, class Lit>
 HWY_INLINE void trace_shadow_packet(D d, const SceneView& scene, const Tracer& tracer, const Tile& tile, Lit& lit,
                                     TileCounts& counts) {
   using T = hn::TFromD<D>;
@@ -312,8 +238,7 @@ HWY_INLINE void trace_shadow_packet(D d, const SceneView& scene, const Tracer& t
     hn::Store(hn::LoadU(d, shadow.distance + i), d, packet.distance + v);
     hn::Store(hn::LoadU(du, shadow.self + i), du, packet.self + v);
     hn::Store(hn::LoadU(du, shadow.target + i), du, packet.target + v);
-    if constexpr (kLoop.moves)
-      if (scene.features.motion) hn::Store(hn::LoadU(d, shadow.time + i), d, packet.time + v);
+    if (scene.features.motion) hn::Store(hn::LoadU(d, shadow.time + i), d, packet.time + v);
   }
   counts.rays += static_cast<std::uint64_t>(packet.count);
   occlude(tracer, packet);
@@ -327,17 +252,15 @@ HWY_INLINE void trace_shadow_packet(D d, const SceneView& scene, const Tracer& t
                                  hn::LoadU(d, shadow.light[2] + i)};
     const auto paths = hn::LoadU(du, shadow.path + i);
     gain(d, lanes, light, paths, lit);
-    if constexpr (kLoop.records) {
-      if (!tile.record_light) continue;
-      HWY_ALIGN Id pixel[hn::MaxLanes(D())] = {}, sample[hn::MaxLanes(D())] = {};
-      each_lane(d, lanes, [&](int lane) {
-        pixel[lane] = lit.pixel[shadow.path[i + lane]];
-        sample[lane] = lit.sample[shadow.path[i + lane]];
-      });
-      Recorder<D> record(d, scene, tile, hn::Load(du, pixel), hn::Load(du, sample));
-      record.event(d, lanes, light, hn::LoadU(du, shadow.history + i), hn::LoadU(du, shadow.group + i),
-                   Lobe::kEmission /* a surface has scattered it */);
-    }
+    if (!kRecords || !tile.record_light) continue;
+    HWY_ALIGN Id pixel[hn::MaxLanes(D())] = {}, sample[hn::MaxLanes(D())] = {};
+    each_lane(d, lanes, [&](int lane) {
+      pixel[lane] = lit.pixel[shadow.path[i + lane]];
+      sample[lane] = lit.sample[shadow.path[i + lane]];
+    });
+    Recorder<D, kRecords> record(scene, tile, hn::Load(du, pixel), hn::Load(du, sample));
+    record.event(d, lanes, light, hn::LoadU(du, shadow.history + i), hn::LoadU(du, shadow.group + i),
+                 Lobe::kEmission /* a surface has scattered it */);
   }
 }
 

@@ -11,6 +11,7 @@ struct GuideSum;
 struct LightEvent;
 struct LightEvents;
 struct PathRecord;
+struct PathStream;
 struct PixelSum;
 struct SceneView;
 struct SphereArray;
@@ -22,10 +23,5 @@ template <class T, class Id>
 struct RayPacketOf;
 using RayPacket = RayPacketOf<double, std::uint64_t>;
 using RayPacketFast = RayPacketOf<float, std::uint32_t>;
-
-template <class T, class Id>
-struct PathStreamOf;
-using PathStream = PathStreamOf<double, std::uint64_t>;
-using PathStreamFast = PathStreamOf<float, std::uint32_t>;
 
 }  // namespace orrery::kernel

@@ -12,6 +12,7 @@
 #include <cmath>
 #include <limits>
 
+#include "kernel/cone-inl.h"
 #include "kernel/gather-inl.h"
 #include "kernel/intersect-inl.h"
 #include "kernel/lights.h"
@@ -25,8 +26,10 @@ namespace orrery::kernel::HWY_NAMESPACE {
 template <class D>
 struct Vertex {
   using V = hn::Vec<D>;
-  Vec3<V> origin, origin_low;  ///< the point, as in RaysOf
-  Vec3<V> normal;              ///< unit, on the side that is lit
+  Vec3<V> origin, origin_low;            ///< the point, as in RaysOf
+  Vec3<V> normal;                        ///< unit, on the side that is lit
+  RayCone<V> cone{};                     ///< of rays to lights; only in scenes with ray cones
+  const hn::TFromD<D>* times = nullptr;  ///< times of the paths; null: nothing moves
 };
 
 /// The normal at the origin of rays that leave spheres, on the side on which they leave.

@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
+#include <new>
 
 #include "kernel/ray_packet.h"
 
@@ -61,11 +63,19 @@ struct alignas(64) PathStreamOf {
   Id sample[kCapacity];
   Id history[kCapacity];      ///< only in loops that record paths; see record-inl.h
   RayPacketOf<T, Id> packet;  ///< the rays being traced
-  LitPathsOf<T, Id> lit;      ///< only in lit loops
-  T cone[3][kCapacity];       ///< only in extended loops, if the scene has ray cones; see cone-inl.h
+  LitPathsOf<T, Id> lit;      ///< only in full loops
+  T cone[3][kCapacity];       ///< only in full loops, if the scene has ray cones; see cone-inl.h
 };
 
-using PathStream = PathStreamOf<double, std::uint64_t>;
-using PathStreamFast = PathStreamOf<float, std::uint32_t>;
+/// Memory for the paths of a tile, in any precision.
+struct alignas(64) PathStream {
+  std::byte bytes[sizeof(PathStreamOf<double, std::uint64_t>)];
+
+  /// The stream of a loop, uninitialized.
+  template <class T, class Id>
+  PathStreamOf<T, Id>& as() noexcept {
+    return *new (bytes) PathStreamOf<T, Id>;
+  }
+};
 
 }  // namespace orrery::kernel

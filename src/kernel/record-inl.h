@@ -27,22 +27,22 @@ inline constexpr unsigned kOnlyDeltaBit = 4;  ///< only delta materials so far
 inline constexpr unsigned kIndirectBit = 8;   ///< scattered again, not counting transmission through glass
 enum FirstLobe : unsigned { kDiffuse = 1, kSpecular = 2, kTransmission = 3 };
 
-/// Writes the records and guides of one vector of paths.
-template <class D>
+/// Writes the records, events and guides of one vector of paths.
+///
+/// `kRecords`  false: the loop records nothing
+template <class D, bool kRecords>
 class Recorder {
  public:
   using V = hn::Vec<D>;
   using Ids = hn::Vec<IdTag<D>>;
   using Id = hn::TFromD<IdTag<D>>;
 
-  HWY_INLINE Recorder(D d, const SceneView& scene, const Tile& tile, Ids pixels, Ids samples)
-      : scene_(scene), tile_(tile), pixels_(pixels), samples_(samples) {
-    (void)d;
-  }
+  HWY_INLINE Recorder(const SceneView& scene, const Tile& tile, Ids pixels, Ids samples)
+      : scene_(scene), tile_(tile), pixels_(pixels), samples_(samples) {}
 
   /// Initializes the members of new records that are read later but not written for every path.
   HWY_INLINE void begin(D d, hn::Mask<D> active, hn::Mask<D> missed) {
-    if (!tile_.record_hits) return;
+    if (!kRecords || !tile_.record_hits) return;
     if (tile_.record_light) each(d, active, [](PathRecord& r, int) { std::fill_n(r.light, 3, 0.0); });
     each(d, missed, [](PathRecord& r, int) { r.sphere = kNoSphere; });
   }
@@ -52,7 +52,7 @@ class Recorder {
   /// `times`    times of the rays; null if nothing moves
   HWY_INLINE void first_hit(D d, hn::Mask<D> hit, Ids spheres, const Vec3<V>& offset, const Vec3<V>& direction,
                             const hn::TFromD<D>* times) {
-    if (!tile_.record_hits) return;
+    if (!kRecords || !tile_.record_hits) return;
     const IdTag<D> du;
     HWY_ALIGN Id sphere[kMax];
     Stored at(d, offset), along(d, direction);
@@ -67,7 +67,7 @@ class Recorder {
 
   /// Records the albedo at the first hits.
   HWY_INLINE void albedo(D d, hn::Mask<D> hit, const Vec3<V>& albedo) {
-    if (!tile_.record_hits) return;
+    if (!kRecords || !tile_.record_hits) return;
     Stored color(d, albedo);
     each(d, hit, [&](PathRecord& r, int i) {
       for (int k = 0; k < 3; ++k) r.albedo[k] = static_cast<float>(color.v[k][i]);
@@ -79,7 +79,7 @@ class Recorder {
   /// `groups`   light groups of the sources
   /// `unscattered`  lobe of light that no surface has scattered
   HWY_INLINE void event(D d, hn::Mask<D> lanes, const Vec3<V>& light, Ids history, Ids groups, Lobe unscattered) {
-    if (tile_.events == nullptr) return;
+    if (!kRecords || !tile_.record_light || tile_.events == nullptr) return;
     const IdTag<D> du;
     HWY_ALIGN Id way[kMax], group[kMax];
     Stored rgb(d, light);
@@ -101,6 +101,7 @@ class Recorder {
 
   /// Records the total radiance of paths that end.
   HWY_INLINE void light(D d, hn::Mask<D> lanes, const Vec3<V>& light) {
+    if (!kRecords || !tile_.record_light) return;
     Stored rgb(d, light);
     each(d, lanes, [&](PathRecord& r, int i) {
       for (int k = 0; k < 3; ++k) r.light[k] = static_cast<double>(rgb.v[k][i]);
@@ -109,7 +110,7 @@ class Recorder {
 
   /// Adds the guides of the first surfaces that are not delta, or of the background, to the tile's sums.
   HWY_INLINE void guide(D d, hn::Mask<D> lanes, const Vec3<V>& albedo, const Vec3<V>& normal) {
-    if (tile_.guides == nullptr || hn::AllFalse(d, lanes)) return;
+    if (!kRecords || tile_.guides == nullptr || hn::AllFalse(d, lanes)) return;
     const Vec3<V> a = in_guide_units(d, albedo), n = in_guide_units(d, normal);
     if (GuideSum* const sum = common_sum(d, lanes)) {
       sum->albedo[0] += total(d, lanes, a.x);
@@ -131,7 +132,7 @@ class Recorder {
 
   /// Adds the reciprocal distances of first hits to the tile's sums.
   HWY_INLINE void inverse_depth(D d, hn::Mask<D> hit, V distance) {
-    if (tile_.guides == nullptr || hn::AllFalse(d, hit)) return;
+    if (!kRecords || tile_.guides == nullptr || hn::AllFalse(d, hit)) return;
     const auto set = [d](double x) { return hn::Set(d, static_cast<hn::TFromD<D>>(x)); };
     const V inverse = hn::Min(set(1) / distance, set(kLargestInverseDepth));
     if (GuideSum* const sum = common_sum(d, hit)) {

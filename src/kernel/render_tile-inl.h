@@ -51,6 +51,7 @@ class PathCounter {
 template <class D, Loop kLoop, class Packet, class Carried>
 HWY_INLINE void load_camera_rays(D d, const SceneView& scene, PathCounter& counter, int count, Packet& packet,
                                  Carried& carried) {
+  const Features features = features_of<kLoop>(scene);
   using T = hn::TFromD<D>;
   using Id = IdFor<T>;
   const IdTag<D> du;
@@ -64,7 +65,7 @@ HWY_INLINE void load_camera_rays(D d, const SceneView& scene, PathCounter& count
   for (int v = 0; v < kPacketSize; v += static_cast<int>(hn::Lanes(d))) {
     const auto pixels = hn::Load(du, carried.pixel + v);
     const auto samples = hn::Load(du, carried.sample + v);
-    auto random = random_at_vertex(d, scene.sampler, pixels, samples, 0, scene.features.lens);
+    auto random = random_at_vertex(d, scene.sampler, pixels, samples, 0, features.lens);
     if (scene.filter.above != nullptr) filter_place(d, scene.filter, samples, random);
     const auto place = [&](hn::Vec<IdTag<D>> at, std::uint32_t begin) {
       return to_real(d, hn::And(at - hn::Set(du, static_cast<Id>(begin)), hn::Set(du, Id{0xffff})));
@@ -73,7 +74,7 @@ HWY_INLINE void load_camera_rays(D d, const SceneView& scene, PathCounter& count
     const auto y = place(hn::template ShiftRight<16>(pixels), scene.window_y);
     const auto store = [&](const auto& value, auto& to) { store3(d, value, to, v); };
     auto camera = camera_vectors(d, scene.camera);
-    if (kLoop.moves && scene.features.motion) {
+    if (features.motion) {
       const auto time = time_of_path(d, scene.sampler, pixels, samples);
       hn::Store(time, d, packet.time + v);
       camera = moved(camera, camera_vectors(d, scene.camera_motion), time);
@@ -87,12 +88,11 @@ HWY_INLINE void load_camera_rays(D d, const SceneView& scene, PathCounter& count
     store(Vec3<hn::Vec<D>>{one, one, one}, carried.throughput);
     hn::Store(one / dot(ray.direction, ray.direction), d, packet.inverse_square + v);
     hn::Store(hn::Set(du, static_cast<Id>(kNoSphere)), du, packet.self + v);
-    if constexpr (kLoop.records) hn::Store(hn::Set(du, static_cast<Id>(kOnlyDeltaBit)), du, carried.history + v);
-    if constexpr (kLoop.extended)
-      if (scene.cone_width > 0) {
-        const auto cone = camera_cone(d, scene, camera, ray.direction, scene.cone_width);
-        store(Vec3<hn::Vec<D>>{cone.width2, cone.mixed, cone.slope2}, carried.cone);
-      }
+    if (kLoop.records) hn::Store(hn::Set(du, static_cast<Id>(kOnlyDeltaBit)), du, carried.history + v);
+    if (features.extended && scene.cone_width > 0) {
+      const auto cone = camera_cone(d, scene, camera, ray.direction, scene.cone_width);
+      store(Vec3<hn::Vec<D>>{cone.width2, cone.mixed, cone.slope2}, carried.cone);
+    }
   }
 }
 
@@ -100,6 +100,7 @@ HWY_INLINE void load_camera_rays(D d, const SceneView& scene, PathCounter& count
 template <class D, Loop kLoop, class Stream, class Carried>
 HWY_INLINE void load_secondary_rays(D d, const SceneView& scene, Stream& stream, int first, int count,
                                     Carried& carried) {
+  const Features features = features_of<kLoop>(scene);
   using T = hn::TFromD<D>;
   const IdTag<D> du;
   auto& packet = stream.packet;
@@ -124,23 +125,20 @@ HWY_INLINE void load_secondary_rays(D d, const SceneView& scene, Stream& stream,
     const auto pixels = hn::LoadU(du, stream.pixel + i), samples = hn::LoadU(du, stream.sample + i);
     hn::Store(pixels, du, carried.pixel + v);
     hn::Store(samples, du, carried.sample + v);
-    if (kLoop.moves && scene.features.motion)
-      hn::Store(time_of_path(d, scene.sampler, pixels, samples), d, packet.time + v);
-    if constexpr (kLoop.records) hn::Store(hn::LoadU(du, stream.history + i), du, carried.history + v);
-    if constexpr (kLoop.lit) {
-      hn::Store(hn::LoadU(du, stream.lit.path + i), du, carried.path + v);
-      hn::Store(hn::LoadU(d, stream.lit.pdf + i), d, carried.pdf + v);
-    }
-    if constexpr (kLoop.extended)
-      if (scene.cone_width > 0) store(at(stream.cone), carried.cone);
+    if (features.motion) hn::Store(time_of_path(d, scene.sampler, pixels, samples), d, packet.time + v);
+    if (kLoop.records) hn::Store(hn::LoadU(du, stream.history + i), du, carried.history + v);
+    if (kLoop.full) hn::Store(hn::LoadU(du, stream.lit.path + i), du, carried.path + v);
+    if (features.lit) hn::Store(hn::LoadU(d, stream.lit.pdf + i), d, carried.pdf + v);
+    if (features.extended && scene.cone_width > 0) store(at(stream.cone), carried.cone);
   }
 }
 
 /// The path loop, instantiated for each lane type and each Loop in use.
-template <class D, Loop kLoop, class Stream>
-TileCounts render_tile(const SceneView& scene, const Tracer& tracer, const Tile& tile, Stream& stream) {
+template <class D, Loop kLoop>
+TileCounts render_tile(const SceneView& scene, const Tracer& tracer, const Tile& tile, PathStream& memory) {
   const D d;
   using T = hn::TFromD<D>;
+  auto& stream = memory.as<T, IdFor<T>>();
   PathPayload<T, IdFor<T>> carried;
   TileCounts counts;
   counts.target = HWY_TARGET;
@@ -148,38 +146,36 @@ TileCounts render_tile(const SceneView& scene, const Tracer& tracer, const Tile&
   for (int i = 0; i < tile.pixel_count(); ++i) {
     const PixelPlace at = tile.pixel(i);
     tile.sums[at.y * tile.row_stride + at.x].weight += weight;
-    if constexpr (kLoop.records)
-      if (tile.guides != nullptr) tile.guides[at.y * tile.row_stride + at.x].weight += weight;
+    if (kLoop.records && tile.guides != nullptr) tile.guides[at.y * tile.row_stride + at.x].weight += weight;
   }
 
   PathCounter counter(tile, scene);
   std::uint64_t to_start = tile.path_count();
+  auto& shadow = stream.lit.shadow;
+  const auto trace_shadows = [&](int waiting) {
+    if (kLoop.full && shadow.count >= waiting)
+      trace_shadow_packet<D, kLoop.records>(d, scene, tracer, tile, stream.lit, counts);
+  };
   const auto trace_and_shade = [&](std::uint32_t depth, int alive) {
     reset_hits(stream.packet);
     counts.rays += static_cast<std::uint64_t>(stream.packet.count);
     trace(tracer, stream.packet);
-    alive = shade<D, kLoop>(d, scene, tile, depth, carried, stream, alive, counts);
-    if constexpr (kLoop.lit)
-      if (stream.lit.shadow.count >= kPacketSize)
-        trace_shadow_packet<D, kLoop>(d, scene, tracer, tile, stream.lit, counts);
+    alive = Shader<D, kLoop>(scene, tile, depth, stream, counts).shade(carried, alive);
+    trace_shadows(kPacketSize);
     return alive;
   };
-  // At the end of each depth, so that a path's light is summed in the same order in every batch.
-  const auto trace_remaining_shadows = [&] {
-    if constexpr (kLoop.lit)
-      if (stream.lit.shadow.count > 0) trace_shadow_packet<D, kLoop>(d, scene, tracer, tile, stream.lit, counts);
-  };
-  if constexpr (kLoop.lit) stream.lit.shadow.count = 0;
+  shadow.count = 0;
   while (to_start > 0) {
     const int batch = static_cast<int>(std::min<std::uint64_t>(to_start, kStreamSize));
     to_start -= static_cast<std::uint64_t>(batch);
     int alive = 0;
     for (int i = 0; i < batch; i += kPacketSize) {
       load_camera_rays<D, kLoop>(d, scene, counter, std::min(kPacketSize, batch - i), stream.packet, carried);
-      if constexpr (kLoop.lit) begin_lit(d, i, carried, stream.lit);
+      if (kLoop.full) begin_paths(d, i, carried, stream.lit);
       alive = trace_and_shade(0, alive);
     }
-    trace_remaining_shadows();
+    // Shadow rays do not wait for the next depth, so that a path's light is summed in the same order in every batch.
+    trace_shadows(1);
     for (std::uint32_t depth = 1; alive > 0; ++depth) {
       // Survivors overwrite paths that have already been read, because a packet never grows.
       int survivors = 0;
@@ -188,11 +184,19 @@ TileCounts render_tile(const SceneView& scene, const Tracer& tracer, const Tile&
         survivors = trace_and_shade(depth, survivors);
       }
       alive = survivors;
-      trace_remaining_shadows();
+      trace_shadows(1);
     }
-    if constexpr (kLoop.lit) deposit_batch<D, kLoop>(d, batch, scene, tile, stream.lit, counts);
+    if (kLoop.full) deposit_paths<D, kLoop.records>(d, batch, scene, tile, stream.lit, counts);
   }
   return counts;
+}
+
+/// The instance for these options.
+template <class D, Precision kPrecision>
+RenderTile instance(bool full, bool records) {
+  if (full)
+    return records ? render_tile<D, Loop{kPrecision, true, true}> : render_tile<D, Loop{kPrecision, false, true}>;
+  return records ? render_tile<D, Loop{kPrecision, true, false}> : render_tile<D, Loop{kPrecision, false, false}>;
 }
 
 }  // namespace orrery::kernel::HWY_NAMESPACE

@@ -39,29 +39,27 @@ struct TileCounts {
   std::int64_t target = 0;        ///< instruction set that the loop was compiled for, HWY_AVX2 etc.
 };
 
-/// Renders a tile and adds its samples to the tile's sums, without records, events and guides.
+/// Renders a tile: adds its samples to the tile's sums and fills its records, events and guides.
 ///
-/// Domain     the tracer intersects the view's spheres, in the precision that the function was chosen for
+/// Domain     the tracer intersects the view's spheres in the loop's precision; tiles with events have records
 using RenderTile = TileCounts (*)(const SceneView& scene, const Tracer& tracer, const Tile& tile, PathStream& stream);
-using RenderTileFast = TileCounts (*)(const SceneView& scene, const Tracer& tracer, const Tile& tile,
-                                      PathStreamFast& stream);
 
-/// Number of lanes of an instance of the kernel. Instances with one lane are compiled into tests and benchmarks
-/// only, as the reference for those with all lanes.
+/// Number of lanes of an instance of the kernel. Except in Precision::kBook, instances with one lane are compiled into
+/// tests and benchmarks only, as the reference for those with all lanes.
 enum class Lanes : std::uint8_t { kOne, kAll };
 
-/// Returns the path loop for the best enabled instruction set, specialized for scenes with these features.
+/// Returns the path loop for the best enabled instruction set: the plain or the full one.
 ///
+/// `records`  false: a loop that ignores the tile's records, events and guides
 /// Domain     the scene has these features
-/// Result     bit-identical images for any number of lanes, with or without records, and on every instruction set with
-///            fused multiply-add
-RenderTile render_tile_function(const Features& features, Precision precision);
-RenderTileFast render_tile_fast_function(const Features& features);
+/// Result     bit-identical images for any number of lanes, plain or full, with or without records, and on every
+///            instruction set with fused multiply-add
+RenderTile render_tile_function(const Features& features, Precision precision, bool records);
 
-/// Returns the variant of this loop that also fills the tile's records, events and guides.
-///
-/// Domain     tiles with events have records
-RenderTile record_tile_function(const Features& features, Precision precision);
-RenderTileFast record_tile_fast_function(const Features& features);
+// The instances. Each precision is compiled separately, because they take most of the time to compile this room.
+RenderTile exact_tile_function(bool full, bool records);
+RenderTile fast_tile_function(bool full, bool records);
+/// One lane, since Precision::kBook is for comparison with the book.
+RenderTile book_tile_function();
 
 }  // namespace orrery::kernel

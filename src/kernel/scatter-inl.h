@@ -184,9 +184,7 @@ HWY_INLINE BsdfSample<D> sample_rough_dielectric(D d, const Surface<D>& at, V u,
 }
 
 /// Samples every lane's BSDF with the first two random numbers of its vertex.
-///
-/// `kExtended`  dielectrics may be rough
-template <bool kExtended = false, class D, class V = hn::Vec<D>>
+template <class D, class V = hn::Vec<D>>
 HWY_INLINE BsdfSample<D> sample_bsdf(D d, const Features& features, const Surface<D>& at, const Four<V>& random) {
   BsdfSample<D> out{at.normal, hn::FirstN(d, hn::Lanes(d))};
   const Vec3<V> on_sphere = sample_unit_sphere(d, random.v[0], random.v[1]);
@@ -202,7 +200,7 @@ HWY_INLINE BsdfSample<D> sample_bsdf(D d, const Features& features, const Surfac
   }
   const auto glass = among(MaterialKind::kDielectric);
   if (!hn::AllFalse(d, glass)) {
-    if constexpr (kExtended) {
+    if (features.extended) {  // it may be rough
       const auto sampled = sample_rough_dielectric(d, at, random.v[0], random.v[1]);
       out.direction = select(glass, sampled.direction, out.direction);
       out.alive = hn::Or(hn::AndNot(glass, out.alive), hn::And(glass, sampled.alive));

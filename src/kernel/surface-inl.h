@@ -18,15 +18,6 @@
 HWY_BEFORE_NAMESPACE();
 namespace orrery::kernel::HWY_NAMESPACE {
 
-/// Compile-time options of an instance of the path loop.
-struct Loop {
-  Precision precision = Precision::kExact;
-  bool records = false;   ///< fills the tile's records
-  bool moves = false;     ///< camera or spheres move; in lit loops, they may
-  bool lit = false;       ///< paths gain radiance at their vertices, not only where they leave the scene
-  bool extended = false;  ///< materials may have textures, and glass may be rough
-};
-
 /// Scene data of a vector of hits.
 template <class D>
 struct Lookup {
@@ -38,15 +29,15 @@ struct Lookup {
 
 /// Loads the spheres with these ids, one per lane.
 ///
-/// `times`    times of the rays; read only if kMoves
-template <class D, bool kMoves>
+/// `times`    times of the rays; null: nothing moves
+template <class D>
 HWY_INLINE Spheres<D> load_spheres(D d, const SceneView& scene, const hn::TFromD<IdTag<D>>* id,
                                    const hn::TFromD<D>* times) {
   hn::Vec<D> sphere[4];
   gather_spheres(
       d, scene.spheres, [&](std::size_t i) { return id[i]; }, sphere);
   const Spheres<D> at_opening{{sphere[0], sphere[1], sphere[2]}, sphere[3]};
-  if (!kMoves || scene.moving_count == 0) return at_opening;
+  if (times == nullptr || scene.moving_count == 0) return at_opening;
   static constexpr Sphere kAtRest{0, 0, 0, 0};
   hn::Vec<D> change[4];
   gather4(
@@ -66,17 +57,17 @@ HWY_INLINE void store_loadable(D, const SceneView& scene, hn::Vec<IdTag<D>> hits
 }
 
 /// Loads the spheres of the hits; lanes without a hit get the last one.
-template <class D, bool kMoves>
+template <class D>
 HWY_INLINE Spheres<D> load_spheres(D d, const SceneView& scene, hn::Vec<IdTag<D>> hits, const hn::TFromD<D>* times) {
   HWY_ALIGN hn::TFromD<IdTag<D>> id[hn::MaxLanes(D())];
   store_loadable(d, scene, hits, id);
-  return load_spheres<D, kMoves>(d, scene, id, times);
+  return load_spheres(d, scene, id, times);
 }
 
 /// Loads spheres and materials of the hits; lanes without a hit get those of the last sphere.
 ///
-/// `times`    times of the rays; read only if kMoves
-template <class D, bool kMoves>
+/// `times`    times of the rays; null: nothing moves
+template <class D>
 HWY_INLINE Lookup<D> look_up(D d, const SceneView& scene, hn::Vec<IdTag<D>> hits, const hn::TFromD<D>* times) {
   using Id = hn::TFromD<IdTag<D>>;
   constexpr std::size_t kMax = hn::MaxLanes(D());
@@ -95,7 +86,7 @@ HWY_INLINE Lookup<D> look_up(D d, const SceneView& scene, hn::Vec<IdTag<D>> hits
   gather4(
       d, [&](std::size_t i) { return material[i]->eta; }, glass);
   Lookup<D> out;
-  out.sphere = load_spheres<D, kMoves>(d, scene, id, times);
+  out.sphere = load_spheres(d, scene, id, times);
   out.albedo = {color[0], color[1], color[2]};
   out.surface.fuzz = color[3];
   out.eta_outside = glass[0];
@@ -108,10 +99,10 @@ HWY_INLINE Lookup<D> look_up(D d, const SceneView& scene, hn::Vec<IdTag<D>> hits
 }
 
 /// Computes point, normal and side of every hit, and selects the material's constants for that side.
-template <class D, Precision kPrecision, bool kMoves>
+template <class D, Precision kPrecision>
 HWY_INLINE Lookup<D> reach_surface(D d, const SceneView& scene, const Rays<D>& ray, hn::Vec<IdTag<D>> hits,
                                    hn::Vec<D> distance, const hn::TFromD<D>* times) {
-  Lookup<D> at = look_up<D, kMoves>(d, scene, hits, times);
+  Lookup<D> at = look_up(d, scene, hits, times);
   Surface<D>& surface = at.surface;
   const auto is_self = hn::RebindMask(d, hits == ray.self);
   surface.direction = ray.direction;

@@ -47,23 +47,34 @@ struct TextureIndices {
   }
 };
 
-/// Replaces albedo and fuzz at hits by the values of their textures.
+/// Constants of materials that textures may replace.
+template <class V>
+struct Textured {
+  Vec3<V> albedo;
+  V fuzz;
+};
+
+/// Albedo and fuzz at hits: the values of their textures, or the material's constants.
 ///
 /// `hit`      lanes with a hit
 /// `width2`   squared width of the ray cones at the hits
+///
+/// This and other large functions are not inlined, so that the loops of a precision share one copy. They take what they
+/// read by value: a reference would keep the caller's variables in memory.
 template <class D, Precision kPrecision, class V = hn::Vec<D>>
-HWY_NOINLINE void apply_textures(D d, const SceneView& scene, const Rays<D>& ray, hn::Vec<IdTag<D>> hits,
-                                 hn::Mask<D> hit, V distance, V width2, Lookup<D>& at) {
+HWY_NOINLINE Textured<V> textured_surface(D d, const SceneView& scene, Rays<D> ray, hn::Vec<IdTag<D>> hits,
+                                          hn::Mask<D> hit, V distance, V width2, Lookup<D> at) {
   const TextureIndices<D> index(d, scene, hits, hit);
-  if (!index.has_albedo && !index.has_fuzz) return;
-  Surface<D>& surface = at.surface;
+  const Surface<D>& surface = at.surface;
+  Textured<V> out{at.albedo, surface.fuzz};
+  if (!index.has_albedo && !index.has_fuzz) return out;
   const auto outward = select(surface.from_outside, surface.normal, negated(surface.normal));
   const auto point = texture_point<D, kPrecision>(d, ray, at.sphere, surface.offset, outward, distance,
                                                   width2 / (at.sphere.radius * at.sphere.radius));
-  if (index.has_albedo) at.albedo = replaced_by_textures(d, scene.textures, index.albedo, point, at.albedo);
+  if (index.has_albedo) out.albedo = replaced_by_textures(d, scene.textures, index.albedo, point, out.albedo);
   if (index.has_fuzz)
-    surface.fuzz =
-        replaced_by_textures(d, scene.textures, index.fuzz, point, {surface.fuzz, surface.fuzz, surface.fuzz}).x;
+    out.fuzz = replaced_by_textures(d, scene.textures, index.fuzz, point, {out.fuzz, out.fuzz, out.fuzz}).x;
+  return out;
 }
 
 /// Emitted radiance at sampled points of emitters: the value of the texture, or `radiance` without one.
@@ -79,14 +90,14 @@ HWY_NOINLINE Vec3<V> textured_radiance(D d, const SceneView& scene, hn::Vec<IdTa
 ///
 /// `lanes`    hits of emitters
 /// `width2`   squared width of the ray cones at the hits
-/// `times`    times of the rays; read only if kMoves
-template <class D, Precision kPrecision, bool kMoves, class V = hn::Vec<D>>
-HWY_NOINLINE Vec3<V> textured_radiance(D d, const SceneView& scene, const Rays<D>& ray, hn::Vec<IdTag<D>> hits,
+/// `times`    times of the rays; null: nothing moves
+template <class D, Precision kPrecision, class V = hn::Vec<D>>
+HWY_NOINLINE Vec3<V> textured_radiance(D d, const SceneView& scene, Rays<D> ray, hn::Vec<IdTag<D>> hits,
                                        hn::Mask<D> lanes, V distance, V width2, const hn::TFromD<D>* times,
-                                       const Vec3<V>& radiance) {
+                                       Vec3<V> radiance) {
   const TextureIndices<D> index(d, scene, hits, lanes);
   if (!index.has_radiance) return radiance;
-  const auto sphere = load_spheres<D, kMoves>(d, scene, hits, times);
+  const auto sphere = load_spheres(d, scene, hits, times);
   const auto at = hit_point<D, kPrecision>(d, ray, sphere, hn::RebindMask(d, hits == ray.self), distance);
   const auto point = texture_point<D, kPrecision>(d, ray, sphere, at.offset, at.outward, distance,
                                                   width2 / (sphere.radius * sphere.radius));

@@ -49,12 +49,13 @@ void occlude_fast(const void* self, kernel::ShadowPacketFast& packet) {
   kernel::occlude(recorded<kernel::RayPacketFast>(self), packet);
 }
 
-template <class Packet, class Stream, class RenderTile>
-RecordedRays<Packet> record(const kernel::SceneView& view, const accel::Accel& accel,
-                            const std::vector<kernel::Tile>& tiles, RenderTile render_tile) {
+template <class Packet>
+RecordedRays<Packet> record(const kernel::SceneView& view, const accel::Accel& accel, kernel::Precision precision,
+                            const std::vector<kernel::Tile>& tiles) {
   Recorder<Packet> recorder{accel.tracer(), {}};
   const kernel::Tracer tap{trace, trace_fast, occlude, occlude_fast, &recorder};
-  const auto stream = std::make_unique<Stream>();
+  const kernel::RenderTile render_tile = kernel::render_tile_function(view.features, precision, false);
+  const auto stream = std::make_unique<kernel::PathStream>();
   std::vector<kernel::PixelSum> sums;
   for (kernel::Tile tile : tiles) {
     const std::uint64_t pixels = static_cast<std::uint64_t>(tile.width) * static_cast<std::uint64_t>(tile.height);
@@ -81,14 +82,12 @@ double seconds_to_trace(const kernel::Tracer& tracer, std::vector<Packet>& packe
 
 RecordedRays<kernel::RayPacket> record_rays(const kernel::SceneView& view, const accel::Accel& accel,
                                             kernel::Precision precision, const std::vector<kernel::Tile>& tiles) {
-  return record<kernel::RayPacket, kernel::PathStream>(view, accel, tiles,
-                                                       kernel::render_tile_function(view.features, precision));
+  return record<kernel::RayPacket>(view, accel, precision, tiles);
 }
 
 RecordedRays<kernel::RayPacketFast> record_rays_fast(const kernel::SceneView& view, const accel::Accel& accel,
                                                      const std::vector<kernel::Tile>& tiles) {
-  return record<kernel::RayPacketFast, kernel::PathStreamFast>(view, accel, tiles,
-                                                               kernel::render_tile_fast_function(view.features));
+  return record<kernel::RayPacketFast>(view, accel, kernel::Precision::kFast, tiles);
 }
 
 double trace_again(const kernel::Tracer& tracer, std::vector<kernel::RayPacket>& packets) {

@@ -63,15 +63,8 @@ TileRenderer::TileRenderer(const compile::CompiledScene& compiled, const accel::
       // Each half of a low-discrepancy sequence is a sequence in its own right.
       second_half_(is_adaptive ? kernel::Sampler::kSecondHalf
                                : std::max(1U, static_cast<std::uint32_t>(compiled.samples) / 2)) {
-  const bool layers = request.any();
   if (request.coverage) view_.background_visible = false;
-  if (compiled.precision == compile::Precision::kFast) {
-    render_fast_ =
-        layers ? kernel::record_tile_fast_function(view_.features) : kernel::render_tile_fast_function(view_.features);
-  } else {
-    render_ = layers ? kernel::record_tile_function(view_.features, compiled.precision)
-                     : kernel::render_tile_function(view_.features, compiled.precision);
-  }
+  render_ = kernel::render_tile_function(view_.features, compiled.precision, request.any());
 }
 
 void TileRenderer::operator()(const kernel::Tile& tile, TileWorker& worker, film::Partial& image) const {
@@ -90,14 +83,8 @@ void TileRenderer::operator()(const kernel::Tile& tile, TileWorker& worker, film
 }
 
 void TileRenderer::trace(const kernel::Tile& tile, TileWorker& worker) const {
-  kernel::TileCounts counts;
-  if (render_fast_ != nullptr) {
-    if (!worker.stream_fast) worker.stream_fast = std::make_unique<kernel::PathStreamFast>();
-    counts = render_fast_(view_, tracer_, tile, *worker.stream_fast);
-  } else {
-    if (!worker.stream) worker.stream = std::make_unique<kernel::PathStream>();
-    counts = render_(view_, tracer_, tile, *worker.stream);
-  }
+  if (!worker.stream) worker.stream = std::make_unique<kernel::PathStream>();
+  const kernel::TileCounts counts = render_(view_, tracer_, tile, *worker.stream);
   worker.counts.rays += counts.rays;
   worker.counts.bad_samples += counts.bad_samples;
   worker.counts.target = counts.target;

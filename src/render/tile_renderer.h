@@ -33,7 +33,6 @@ class LightEventBuffer : public kernel::LightEvents {
 /// Buffers of one thread, so that the kernel's loop does not allocate.
 struct TileWorker {
   std::unique_ptr<kernel::PathStream> stream;
-  std::unique_ptr<kernel::PathStreamFast> stream_fast;
   std::vector<kernel::PathRecord> records;
   std::vector<kernel::PixelSum> light;   ///< sums of a tile's pixels
   std::vector<kernel::GuideSum> guides;  ///< guides of a tile's pixels
@@ -44,7 +43,7 @@ struct TileWorker {
 /// Renders tiles in the scene's precision and adds their paths to the layers, if there are any.
 class TileRenderer {
  public:
-  /// Selects the kernel's instances for the scene.
+  /// Selects the kernel's instance for the scene.
   ///
   /// `is_adaptive`  samples from Sampler::kSecondHalf on are the second half
   /// Domain     all arguments outlive this
@@ -65,7 +64,6 @@ class TileRenderer {
   const film::LayerRequest& request_;
   std::uint32_t second_half_;  ///< first sample of the second half
   kernel::RenderTile render_ = nullptr;
-  kernel::RenderTileFast render_fast_ = nullptr;  ///< used if not null
 };
 
 }  // namespace orrery::render

@@ -67,8 +67,9 @@ k::Surface<D> surface(D d, const Interaction& interaction) {
 }
 
 /// Fills x, y, z and alive with samples first .. first + as many as there is room for, a multiple of 16.
-template <bool kExtended>
-void sample_all(const Interaction& interaction, std::uint32_t first, Directions& out) {
+void sample_all(const Interaction& interaction, std::uint32_t first, bool is_extended, Directions& out) {
+  kernel::Features features = kAllFeatures;
+  features.extended = is_extended;
   const hn::ScalableTag<double> d;
   using D = std::remove_const_t<decltype(d)>;
   const k::IdTag<D> du;
@@ -78,7 +79,7 @@ void sample_all(const Interaction& interaction, std::uint32_t first, Directions&
     const auto name = hn::Iota(du, first + i);
     const auto u = k::random_at_vertex(d, {kernel::SamplerKind::kIndependent, 3}, hn::ShiftRight<8>(name),
                                        hn::And(name, hn::Set(du, 255)), 1, false);
-    const auto sampled = k::sample_bsdf<kExtended>(d, kAllFeatures, at, u);
+    const auto sampled = k::sample_bsdf(d, features, at, u);
     hn::StoreU(sampled.direction.x, d, &out.x[i]);
     hn::StoreU(sampled.direction.y, d, &out.y[i]);
     hn::StoreU(sampled.direction.z, d, &out.z[i]);
@@ -88,10 +89,10 @@ void sample_all(const Interaction& interaction, std::uint32_t first, Directions&
 }
 
 void sample(const Interaction& interaction, std::uint32_t first, Directions& out) {
-  sample_all<false>(interaction, first, out);
+  sample_all(interaction, first, false, out);
 }
 void sample_extended(const Interaction& interaction, std::uint32_t first, Directions& out) {
-  sample_all<true>(interaction, first, out);
+  sample_all(interaction, first, true, out);
 }
 
 /// Fills pdf and value, in lanes of T.

@@ -15,15 +15,7 @@ namespace orrery::test::HWY_NAMESPACE {
 namespace k = kernel::HWY_NAMESPACE;
 using One = hwy::HWY_NAMESPACE::FixedTag<double, 1>;
 
-template <bool kMoves>
-kernel::RenderTile instance(kernel::Precision precision) {
-  using kernel::PathStream, kernel::Precision;
-  if (precision == Precision::kBook) return k::render_tile<One, k::Loop{Precision::kBook, false, kMoves}, PathStream>;
-  return k::render_tile<One, k::Loop{Precision::kExact, false, kMoves}, PathStream>;
-}
-kernel::RenderTile one_lane_instance(bool moves, kernel::Precision precision) {
-  return moves ? instance<true>(precision) : instance<false>(precision);
-}
+kernel::RenderTile one_lane_instance() { return k::render_tile<One, k::Loop{kernel::Precision::kExact, false, false}>; }
 
 }  // namespace orrery::test::HWY_NAMESPACE
 HWY_AFTER_NAMESPACE();
@@ -33,9 +25,7 @@ namespace orrery::test {
 
 HWY_EXPORT(one_lane_instance);
 
-kernel::RenderTile one_lane_tile_function(const kernel::Features& features, kernel::Precision precision) {
-  return ORRERY_BEST(one_lane_instance)(features.motion, precision);
-}
+kernel::RenderTile one_lane_tile_function() { return ORRERY_BEST(one_lane_instance)(); }
 
 }  // namespace orrery::test
 #endif

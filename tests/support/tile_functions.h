@@ -3,11 +3,10 @@
 #pragma once
 
 #include "kernel/render_tile.h"
-#include "kernel/scene_view.h"
 
 namespace orrery::test {
 
-/// kernel::render_tile_function with one lane: the reference for those with all lanes.
-kernel::RenderTile one_lane_tile_function(const kernel::Features& features, kernel::Precision precision);
+/// The plain path loop in `exact` with one lane: the reference for those with all lanes.
+kernel::RenderTile one_lane_tile_function();
 
 }  // namespace orrery::test

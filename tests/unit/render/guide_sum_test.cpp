@@ -44,13 +44,8 @@ Sums rendered(const compile::CompiledScene& compiled, std::uint32_t step) {
   for (std::uint32_t begin = 0; begin < static_cast<std::uint32_t>(compiled.samples); begin += step) {
     tile.sample_begin = begin;
     tile.sample_end = begin + step;
-    if (compiled.precision == compile::Precision::kFast) {
-      kernel::record_tile_fast_function(view.features)(view, accel->tracer(), tile,
-                                                       *std::make_unique<kernel::PathStreamFast>());
-    } else {
-      kernel::record_tile_function(view.features, compiled.precision)(view, accel->tracer(), tile,
-                                                                      *std::make_unique<kernel::PathStream>());
-    }
+    kernel::render_tile_function(view.features, compiled.precision, true)(view, accel->tracer(), tile,
+                                                                          *std::make_unique<kernel::PathStream>());
   }
   return out;
 }

@@ -56,15 +56,8 @@ void render_tile(const compile::CompiledScene& compiled, kernel::SceneView view,
     tile.guides = out.guides.data();
     tile.events = &out.events;
   }
-  if (compiled.precision == compile::Precision::kFast) {
-    const auto loop =
-        records ? kernel::record_tile_fast_function(view.features) : kernel::render_tile_fast_function(view.features);
-    out.counts = loop(view, accel->tracer(), tile, *std::make_unique<kernel::PathStreamFast>());
-  } else {
-    const auto loop = records ? kernel::record_tile_function(view.features, compiled.precision)
-                              : kernel::render_tile_function(view.features, compiled.precision);
-    out.counts = loop(view, accel->tracer(), tile, *std::make_unique<kernel::PathStream>());
-  }
+  const auto loop = kernel::render_tile_function(view.features, compiled.precision, records);
+  out.counts = loop(view, accel->tracer(), tile, *std::make_unique<kernel::PathStream>());
 }
 
 bool equal(const double (&a)[3], const double (&b)[3]) { return a[0] == b[0] && a[1] == b[1] && a[2] == b[2]; }

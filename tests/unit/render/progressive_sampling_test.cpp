@@ -57,8 +57,8 @@ std::vector<float> rendered_in_pieces(const compile::CompiledScene& compiled, in
   const auto stream = std::make_unique<kernel::PathStream>();
   const kernel::SceneView view = compiled.view();
   const kernel::RenderTile render_tile = lanes == kernel::Lanes::kOne
-                                             ? test::one_lane_tile_function(view.features, compiled.precision)
-                                             : kernel::render_tile_function(view.features, compiled.precision);
+                                             ? test::one_lane_tile_function()
+                                             : kernel::render_tile_function(view.features, compiled.precision, false);
   for (const kernel::Tile& piece : pieces) render_tile(view, accel->tracer(), piece, *stream);
   return test::plane_values(film.picture());
 }
