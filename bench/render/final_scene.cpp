@@ -67,10 +67,11 @@ void register_render(const std::string& name, Size size, compile::Accelerator ac
   using compile::Accelerator;
   for (const Precision precision : {Precision::kExact, Precision::kFast, Precision::kBook}) {
     const std::string mode = name_of(precision);
+    register_render("list/" + mode + "/one_thread/small", kSmall, Accelerator::kList, precision, 1);
+    if (precision == Precision::kBook) continue;
     register_render("embree/" + mode + "/one_thread", kLarge, Accelerator::kEmbree, precision, 1);
     register_render("embree/" + mode + "/all_threads", kLarge, Accelerator::kEmbree, precision, 0);
     register_render("embree/" + mode + "/one_thread/small", kSmall, Accelerator::kEmbree, precision, 1);
-    register_render("list/" + mode + "/one_thread/small", kSmall, Accelerator::kList, precision, 1);
   }
   benchmark::RegisterBenchmark("render/final_scene/baseline/one_thread/small", render_baseline, kSmall,
                                baseline::Spheres::kList)

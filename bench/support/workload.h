@@ -26,13 +26,14 @@ template <class Packet>
 struct Workload {
   scene::Scene scene;
   compile::CompiledScene compiled;
-  std::unique_ptr<accel::Accel> embree, list;
+  std::unique_ptr<accel::Accel> embree, list;  ///< Precision::kBook: both are lists
   render::RecordedRays<Packet> rays;
 
   Workload(scene::Scene authored, kernel::Precision precision)
       : scene(std::move(authored)),
         compiled(compile_for(scene, precision)),
-        embree(accel::make_embree(compiled.view(), precision)),
+        embree(precision == kernel::Precision::kBook ? accel::make_list(compiled.view(), precision)
+                                                     : accel::make_embree(compiled.view(), precision)),
         list(accel::make_list(compiled.view(), precision)) {
     embree->use(render::choose_traversals(compiled, *embree, std::nullopt));
     kernel::Tile whole;

@@ -260,7 +260,8 @@ CompiledScene compile(const scene::Scene& scene, const scene::Scene* closing) {
 void update(const scene::Scene& scene, const scene::Scene* closing, scene::Parts changed, CompiledScene& compiled) {
   if (changed.geometry) {
     compiled.precision = precision_of(scene.render.precision);
-    compiled.accelerator = scene.render.accelerator;
+    // The book's own method. It has no BVH, and the kernel has no vector loop for its precision.
+    compiled.accelerator = compiled.precision == Precision::kBook ? Accelerator::kList : scene.render.accelerator;
     set_spheres(scene, compiled);
     set_sphere_motion(scene, closing, compiled);
   }

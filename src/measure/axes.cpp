@@ -90,7 +90,17 @@ class Planner {
     };
     add_one("exact", compile::Precision::kExact, false);
     add_one("fast", compile::Precision::kFast, true);
-    add_one("book", compile::Precision::kBook, true);
+    if (compiled_.spheres.size() > kMaxListSpheres) {
+      out_.left_out.push_back("more than 5000 spheres: precision book is too slow");
+      return;
+    }
+    Choice& book = add("precision", "book", flag(kCompared) + " --precision book", kCompared);
+    book.apply = [](CompiledScene& w) {
+      w.precision = compile::Precision::kBook;
+      w.accelerator = compile::Accelerator::kList;
+    };
+    book.is_shortcut = true;
+    book.slowness = list_slowness();
   }
 
   void samplers() {
@@ -191,6 +201,9 @@ class Planner {
     add_one("bsdf", kernel::DirectLighting::kBsdf);
   }
 
+  /// Time with the list of spheres relative to that with Embree.
+  double list_slowness() const { return 1 + static_cast<double>(compiled_.spheres.size()) / 12; }
+
   void accelerator() {
     if (compiled_.spheres.empty()) {
       out_.left_out.push_back("no spheres: no accelerator axis");
@@ -206,7 +219,7 @@ class Planner {
     }
     Choice& list = add("accelerator", "list", flag(kTimed) + " --set render.accelerator=list", kTimed);
     list.apply = [](CompiledScene& w) { w.accelerator = compile::Accelerator::kList; };
-    list.slowness = 1 + static_cast<double>(compiled_.spheres.size()) / 12;
+    list.slowness = list_slowness();
     out_.left_out.push_back("Embree's build qualities: equally fast, see docs/benchmarks.md");
   }
 

@@ -47,9 +47,9 @@ std::vector<std::string> names(const std::vector<BenchCase>& cases) {
 
 TEST_F(MeasureBenchScene, MeasuresEveryPrecisionWithEmbreeAndLists) {
   const Benchmark b = bench_scene(request());
-  EXPECT_EQ(names(b.cases), (std::vector<std::string>{"embree exact", "embree fast", "embree book", "exact packet",
-                                                      "exact single", "SIMD list exact", "SIMD list fast",
-                                                      "SIMD list book", "list exact", "list fast", "list book"}));
+  EXPECT_EQ(names(b.cases),
+            (std::vector<std::string>{"embree exact", "embree fast", "exact packet", "exact single", "SIMD list exact",
+                                      "SIMD list fast", "list exact", "list fast", "list book"}));
   EXPECT_EQ(b.spheres, 1u);
   EXPECT_EQ(b.threads, 1);
   EXPECT_GT(b.rays_per_path, 1);

@@ -34,7 +34,7 @@ std::vector<float> pixels(const scene::Scene& scene, int threads = 0) {
 }
 
 TEST(RenderRender, ListAndEmbreeGiveTheSameBits) {
-  for (const auto precision : {scene::Precision::kExact, scene::Precision::kFast, scene::Precision::kBook}) {
+  for (const auto precision : {scene::Precision::kExact, scene::Precision::kFast}) {
     for (scene::Scene s : {everything(), with_lamps(everything())}) {
       s.render.precision = precision;
       s.render.accelerator = scene::Accelerator::kEmbree;

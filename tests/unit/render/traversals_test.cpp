@@ -26,7 +26,7 @@ std::vector<float> pixels_by(const scene::Scene& scene, std::optional<accel::Tra
 }
 
 TEST(RenderTraversals, AllGiveTheSameBits) {
-  for (const auto precision : {scene::Precision::kExact, scene::Precision::kFast, scene::Precision::kBook}) {
+  for (const auto precision : {scene::Precision::kExact, scene::Precision::kFast}) {
     scene::Scene scene = test::everything();
     scene.render.precision = precision;
     const auto packet = pixels_by(scene, accel::Traversal::kPacket);
