@@ -266,7 +266,7 @@ SceneReader::SceneReader(const std::filesystem::path& file, const Overrides& ove
   state.root = parse_tree(state.file, text, overrides, state.source, state.diagnostics);
   const toml::table& root = state.root;
   if (root.empty()) state.diagnostics.raise_errors(state.file);
-  if (options.is_generated) state.source.add(state.file, text, true);
+  if (options.typed_lines) state.source.add(state.file, text, options.typed_lines);
   scene::Scene& scene = state.result.scene;
   report_unknown_tables(state, root);
   read_single_tables(state, root, scene);

@@ -36,8 +36,8 @@ std::size_t byte_of_character(std::string_view line, std::size_t index) {
 
 }  // namespace
 
-void SourceText::add(const std::string& name, std::string_view text, bool is_generated) {
-  texts_[name] = {std::string(text), is_generated, {}};
+void SourceText::add(const std::string& name, std::string_view text, std::optional<int> typed_lines) {
+  texts_[name] = {std::string(text), typed_lines, {}};
 }
 
 std::string_view SourceText::line_of(const Text& text, int line) {
@@ -96,7 +96,7 @@ base::Diagnostic SourceText::diagnostic(base::Severity severity, const Place& pl
   out.column = place.column;
   out.width = place.width;
   const auto found = texts_.find(place.text_name);
-  if (found != texts_.end() && found->second.is_generated) {
+  if (found != texts_.end() && place.line > found->second.typed_lines.value_or(place.line)) {
     out.line = out.column = 0;
     return out;
   }

@@ -189,9 +189,9 @@ plot::ViewExtent extent_of(const std::vector<NamedArray>& positions, double radi
 
 void bind_scene(py::module_& m) {
   py::class_<SceneData>(m, "SceneData")
-      .def(py::init([](std::filesystem::path file, bool is_file, std::string text, std::vector<std::string> overrides,
-                       int frame) {
-        return SceneData{std::move(file), is_file, std::move(text), std::move(overrides), frame, {}};
+      .def(py::init([](std::filesystem::path file, bool is_file, std::string text, int typed_lines,
+                       std::vector<std::string> overrides, int frame) {
+        return SceneData{std::move(file), is_file, std::move(text), typed_lines, std::move(overrides), frame, {}};
       }))
       .def("add_table", [](SceneData& self, const std::string& name,
                            const std::vector<NamedArray>& columns) { self.tables[name] = table_of(columns); })
@@ -203,6 +203,7 @@ void bind_scene(py::module_& m) {
             return out;
           },
           ReleaseGil())
+      .def("check_keys", &check_keys)  // with the GIL: it takes microseconds
       .def("save", &save, ReleaseGil())
       .def("largest_radius", &largest_radius, ReleaseGil())
       .def("render", &render_scene);
