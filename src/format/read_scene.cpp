@@ -311,6 +311,8 @@ void SceneReader::add_file_error(const std::string& key, const base::Error& erro
   State& state = *state_;
   add_problem(state, state.root, state.file, {base::Severity::kError, key, "", error.kind()},
               fmt::format("{}: {}", key, error.what()));
+  if (const auto* const missing = dynamic_cast<const base::FileError*>(&error))
+    state.diagnostics.add_missing(*missing);
   for (const base::Diagnostic& diagnostic : error.diagnostics())
     state.diagnostics.add(diagnostic.severity, {diagnostic.file, diagnostic.line, 0, 1}, error.kind(),
                           [&] { return diagnostic; });

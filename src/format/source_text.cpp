@@ -11,7 +11,7 @@
 
 #include <fmt/core.h>
 
-#include "base/error.h"
+#include "base/file_error.h"
 #include "base/input_file.h"
 
 namespace orrery::format {
@@ -119,8 +119,8 @@ std::string read_file(const std::filesystem::path& file, std::uint64_t largest_b
   base::require_readable(file);
   const std::unique_ptr<std::FILE, int (*)(std::FILE*)> in(std::fopen(file.c_str(), "rb"), &std::fclose);
   if (!in)
-    throw base::Error(base::ErrorKind::kMissingInput,
-                      fmt::format("cannot open {}: {}", file.string(), std::strerror(errno)));
+    throw base::FileError(base::ErrorKind::kMissingInput,
+                          fmt::format("cannot open {}: {}", file.string(), std::strerror(errno)), file, errno);
   const auto size = std::filesystem::file_size(file, error);
   if (!error && size > largest_bytes) throw too_large();
   std::string bytes;

@@ -7,6 +7,7 @@
 #include <pybind11/stl.h>
 #include <pybind11/stl/filesystem.h>
 
+#include <cerrno>
 #include <cstddef>
 #include <cstdint>
 #include <cstring>
@@ -20,7 +21,7 @@
 #include <utility>
 #include <vector>
 
-#include "base/error.h"
+#include "base/file_error.h"
 #include "base/module.h"
 #include "display/settings.h"
 #include "film/picture.h"
@@ -74,6 +75,18 @@ const char* class_of(base::ErrorKind kind) {
   return "Error";
 }
 
+/// Sets errno, strerror and filename of an OSError.
+void set_reason(const base::Error& error, const py::object& raised) {
+  const auto* const failed = dynamic_cast<const base::FileError*>(&error);
+  const int number = failed != nullptr                                ? failed->number()
+                     : error.kind() == base::ErrorKind::kMissingInput ? ENOENT
+                                                                      : EIO;
+  raised.attr("errno") = number;
+  raised.attr("strerror") = str_of(std::strerror(number));
+  if (failed != nullptr)
+    raised.attr("filename") = py::reinterpret_steal<py::str>(PyUnicode_DecodeFSDefault(failed->file().c_str()));
+}
+
 void translate(std::exception_ptr thrown) {
   try {
     if (thrown) std::rethrow_exception(thrown);
@@ -81,6 +94,7 @@ void translate(std::exception_ptr thrown) {
     const py::object type = py::module_::import("orrery._errors").attr(class_of(error.kind()));
     const py::object raised = type(str_of(text_of(error)));
     raised.attr("exit_status") = base::exit_status(error.kind());
+    if (PyErr_GivenExceptionMatches(type.ptr(), PyExc_OSError) != 0) set_reason(error, raised);
     PyErr_SetObject(type.ptr(), raised.ptr());
   }
 }

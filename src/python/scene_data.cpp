@@ -2,9 +2,10 @@
 #include "python/scene_data.h"
 
 #include <algorithm>
+#include <cerrno>
 #include <cmath>
 
-#include "base/error.h"
+#include "base/file_error.h"
 #include "base/file_set.h"
 #include "base/output_file.h"
 #include "base/text.h"
@@ -58,9 +59,10 @@ void check_data_file(const fs::path& file, const fs::path& scene_file) {
   base::check_creatable(file);
   std::error_code ignored;
   if (fs::exists(file, ignored) && !is_saved_data(file, scene_file))
-    throw base::Error(base::ErrorKind::kCannotCreate,
-                      "cannot create " + file.string() +
-                          ": the existing file was not written by save(); move it, or choose another name");
+    throw base::FileError(base::ErrorKind::kCannotCreate,
+                          "cannot create " + file.string() +
+                              ": the existing file was not written by save(); move it, or choose another name",
+                          file, EEXIST);
 }
 
 format::ReadResult read(const SceneData& scene, std::uint64_t memory_limit) {

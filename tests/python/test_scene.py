@@ -2,6 +2,7 @@
 """Scenes: the same bits and the same errors as the program; loading, saving and settings."""
 
 import copy
+import errno
 import os
 import pickle
 import tracemalloc
@@ -234,6 +235,26 @@ class Messages(FolderTest):
                         raised += 1
                         self.assertNotRegex(str(error), r"incompatible|_orrery|std::|Invoked with|internal")
         self.assertGreater(raised, len(calls) * len(wrong) // 2)
+
+    def test_errors_of_the_system_have_number_and_file(self):
+        write("points.toml", SCENE + '[[points]]\nfile = "none.ply"\nmaterial = "red"\n')
+        os.mkdir("folder.toml")
+        picture = small_scene(positions()).render(4, 4, samples=1)
+        for kind, number, file, call in (
+            (FileNotFoundError, errno.ENOENT, "none.toml", lambda: orrery.load("none.toml")),
+            (FileNotFoundError, errno.EISDIR, "folder.toml", lambda: orrery.load("folder.toml")),
+            (FileNotFoundError, errno.ENOENT, "none.csv", lambda: orrery.read_points("none.csv")),
+            (FileNotFoundError, errno.ENOENT, "none.ply", lambda: orrery.load("points.toml").check()),
+            (OSError, errno.ENOENT, "none/a.exr", lambda: picture.write("none/a.exr")),
+            (OSError, errno.ENOENT, "none/a.toml", lambda: small_scene(positions()).save("none/a.toml")),
+        ):
+            with self.subTest(file=file), self.assertRaises(kind) as caught:
+                call()
+            error = caught.exception
+            self.assertEqual((error.errno, error.filename, error.strerror), (number, file, os.strerror(number)))
+            self.assertIn(file, str(error))
+            self.assertNotIn("[Errno", str(error))
+            self.assertEqual(str(pickle.loads(pickle.dumps(error))), str(error))
 
 
 class Encodings(FolderTest):
