@@ -78,11 +78,11 @@ void check_replaceable(const std::filesystem::path& path, const std::filesystem:
   }, directory{};
   if (::stat(target.c_str(), &file) != 0) return;
   if (::faccessat(AT_FDCWD, target.c_str(), W_OK, AT_EACCESS) != 0)
-    cannot_create(path, std::string("it exists and cannot be written: ") + std::strerror(errno));
+    cannot_create(path, std::string("it exists and cannot be written: ") + std::strerror(errno), errno);
   if (::stat(directory_of(target).c_str(), &directory) != 0 || (directory.st_mode & S_ISVTX) == 0) return;
   const uid_t user = ::geteuid();
   if (user != 0 && user != file.st_uid && user != directory.st_uid)
-    cannot_create(path, "it belongs to another user, and its directory has the sticky bit");
+    cannot_create(path, "it belongs to another user, and its directory has the sticky bit", EPERM);
 }
 
 /// A new, empty file, and its slot in the table that a signal handler unlinks.
