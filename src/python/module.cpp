@@ -7,6 +7,7 @@
 #include <pybind11/stl.h>
 #include <pybind11/stl/filesystem.h>
 
+#include <atomic>
 #include <cerrno>
 #include <cstddef>
 #include <cstdint>
@@ -27,6 +28,7 @@
 #include "film/picture.h"
 #include "job/job.h"
 #include "job/job_report.h"
+#include "job/prepared_scene.h"
 #include "job/version.h"
 #include "plot/view.h"
 #include "points/color_map.h"
@@ -109,8 +111,15 @@ display::Settings display_settings(const std::string& display, const std::string
   return out;
 }
 
-Picture render_scene(const SceneData& scene, double noise, double seconds, int threads, std::uint64_t memory_limit,
-                     const std::string& isa, bool denoise, const py::object& on_progress,
+/// What the renders of a scene share. A copy of the scene begins with nothing.
+struct Prepared {
+  std::shared_ptr<job::PreparedScene> scene = std::make_shared<job::PreparedScene>();
+  /// During a render. Another one that runs at the same time, also from its on_progress, prepares its own scene.
+  std::atomic<bool> is_in_use{false};
+};
+
+Picture render_scene(const SceneData& scene, Prepared& prepared, double noise, double seconds, int threads,
+                     std::uint64_t memory_limit, const std::string& isa, bool denoise, const py::object& on_progress,
                      const py::object& on_warning) {
   job::Job job;
   job.scene = scene.source();
@@ -120,6 +129,12 @@ Picture render_scene(const SceneData& scene, double noise, double seconds, int t
   job.resources.memory_limit = memory_limit;
   job.resources.isa = isa;
   job.denoise = denoise;
+  if (prepared.is_in_use.exchange(true)) return render(std::move(job), on_progress, on_warning);
+  struct Release {
+    std::atomic<bool>& is_in_use;
+    ~Release() { is_in_use = false; }
+  } const release{prepared.is_in_use};
+  job.prepared = prepared.scene;
   return render(std::move(job), on_progress, on_warning);
 }
 
@@ -202,6 +217,10 @@ plot::ViewExtent extent_of(const std::vector<NamedArray>& positions, double radi
 }
 
 void bind_scene(py::module_& m) {
+  py::class_<Prepared>(m, "Prepared")
+      .def(py::init<>())
+      .def(py::pickle([](const Prepared&) { return py::tuple(); },
+                      [](const py::tuple&) { return std::make_unique<Prepared>(); }));
   py::class_<SceneData>(m, "SceneData")
       .def(py::init([](std::filesystem::path file, bool is_file, std::string text, int typed_lines,
                        std::vector<std::string> overrides, int frame) {

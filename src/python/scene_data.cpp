@@ -4,9 +4,18 @@
 #include <algorithm>
 #include <cerrno>
 #include <cmath>
+#include <cstdint>
+#include <memory>
+#include <string>
+#include <type_traits>
+#include <variant>
+
+#include <fmt/core.h>
 
 #include "base/file_error.h"
 #include "base/file_set.h"
+#include "base/hash.h"
+#include "base/input_file.h"
 #include "base/output_file.h"
 #include "base/text.h"
 #include "data/table_file.h"
@@ -65,6 +74,32 @@ void check_data_file(const fs::path& file, const fs::path& scene_file) {
                           file, EEXIST);
 }
 
+/// Identifies the contents of a table: the owner of an array may change its values between two renders.
+std::string contents_of(const data::Table& table) {
+  std::string out;
+  for (const data::Column& column : table.columns) {
+    base::Hash hash;
+    const auto add = [&](auto value) {
+      if constexpr (std::is_floating_point_v<decltype(value)>)
+        hash.add(static_cast<double>(value));
+      else
+        hash.add_bits(static_cast<std::uint64_t>(value));
+    };
+    std::visit(
+        [&](const auto& values) {
+          if constexpr (requires { values.words; }) {
+            for (const std::string& word : values.words) out += word + '\n';
+            for (const std::uint32_t index : values.index) add(index);
+          } else {
+            for (std::size_t i = 0; i < values.size(); ++i) add(values[i]);
+          }
+        },
+        column.values);
+    out += fmt::format("{}: {} {} {}\n", column.name, column.values.index(), column.size(), hash.text());
+  }
+  return out;
+}
+
 format::ReadResult read(const SceneData& scene, std::uint64_t memory_limit) {
   load::SceneRequest request;
   request.source = scene.source();
@@ -82,13 +117,19 @@ load::SceneSource SceneData::source() const {
   for (const std::string& setting : overrides) out.overrides.add(setting, true);
   out.frame = frame;
   out.typed_lines = typed_lines;
-  if (!tables.empty())
-    out.open_data = [own = std::make_shared<const Tables>(tables), folder = file.parent_path()](
-                        const fs::path& path, const data::OpenOptions& options) {
-      const auto found = own->find(path.filename().string());
-      const bool is_own = found != own->end() && path == folder / found->first;
-      return is_own ? data::open_table(found->first, found->second) : particles::open(path, options);
-    };
+  if (tables.empty()) return out;
+  const auto find = [own = std::make_shared<const Tables>(tables), folder = file.parent_path()](const fs::path& path) {
+    const auto found = own->find(path.filename().string());
+    return found != own->end() && path == folder / found->first ? &*found : nullptr;
+  };
+  out.open_data = [find](const fs::path& path, const data::OpenOptions& options) {
+    const auto* const own = find(path);
+    return own != nullptr ? data::open_table(own->first, own->second) : particles::open(path, options);
+  };
+  out.data_version = [find](const fs::path& path) {
+    const auto* const own = find(path);
+    return own != nullptr ? contents_of(*own->second) : base::file_version(path);
+  };
   return out;
 }
 

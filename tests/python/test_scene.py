@@ -47,6 +47,51 @@ def write(name, text):
         file.write(text)
 
 
+class FurtherRenders(unittest.TestCase):
+    def test_they_have_the_bits_of_a_first_one(self):
+        points = positions()
+        scene = small_scene(points)
+
+        def move():
+            points[::7] += 0.25  # in place: the scene has the same array
+
+        changes = [
+            lambda: scene.set("render.seed", 7),
+            lambda: scene.set("material.matte.albedo", [0.1, 0.9, 0.2]),
+            move,
+            lambda: scene.set("render.precision", "fast"),
+            lambda: scene.add_sphere((0, 0, 3), 0.5),
+            lambda: scene.set("sphere[0].radius", 0.4),
+            lambda: scene.set("camera.vfov", 20),
+            lambda: scene.add_points(positions(20, 2), radius=0.2),
+            move,
+        ]
+        first = beauty(scene)
+        self.assertEqual(beauty(scene), first)
+        for change in changes:
+            change()
+            self.assertEqual(beauty(scene), beauty(copy.deepcopy(scene)))
+        self.assertNotEqual(beauty(scene), first)
+
+    def test_nothing_is_built_again_without_need(self):
+        scene = small_scene(positions())
+        self.assertGreater(scene.render(*SIZE).statistics["build_seconds"], 0)
+        scene.set("material.matte.albedo", [0.5, 0.1, 0.1])
+        self.assertEqual(scene.render(*SIZE).statistics["build_seconds"], 0)
+        self.assertEqual(beauty(scene), beauty(pickle.loads(pickle.dumps(scene))))
+
+    def test_a_render_may_start_in_on_progress(self):
+        scene = small_scene(positions())
+        pictures = []
+
+        def report(_):
+            if not pictures:
+                pictures.append(None)
+                pictures.append(beauty(scene))
+
+        self.assertEqual(scene.render(*SIZE, threads=2, on_progress=report).beauty.tobytes(), pictures[1])
+
+
 class CameraObjects(unittest.TestCase):
     def test_a_fitted_camera_is_copied_and_pickled(self):
         scene = small_scene(positions())

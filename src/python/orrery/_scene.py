@@ -58,6 +58,7 @@ class Scene:
         self._settings = {}
         self._parents = set()  # keys of tables of which single keys are set
         self._arrays = {}
+        self._prepared = _orrery.Prepared()  # what renders of this scene share
         self._radii = {}  # of the arrays; None if they are not a number for all
         if camera is not None:
             self.set("camera", camera)
@@ -170,6 +171,9 @@ class Scene:
         denoise        filters the beauty and the light layers, like `orrery render --denoise`
         on_progress    called with a Progress, at most ten times a second
 
+        The scene keeps what it has prepared: a further render reads and builds only what has changed since, such as a
+        material or the camera.
+
         Other Python threads can run in the meantime. KeyboardInterrupt, and an exception in on_progress, stop the render.
         """
         sizes = [None if n is None else _arguments.whole(name, n) for name, n in (("width", width), ("height", height))]
@@ -188,7 +192,7 @@ class Scene:
         def warn(text):
             warnings.warn(text.rstrip("\n"), SceneWarning, stacklevel=3)
 
-        return Picture(data.render(*limits, threads, memory, "", bool(denoise), report if on_progress else None, warn))
+        return Picture(data.render(self._prepared, *limits, threads, memory, "", bool(denoise), report if on_progress else None, warn))
 
     def _new_name(self):
         """Returns a name for arrays that the scene does not use for a file."""
