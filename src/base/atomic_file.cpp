@@ -15,7 +15,7 @@
 #include <string>
 #include <string_view>
 
-#include "base/error.h"
+#include "base/file_error.h"
 #include "base/file_name.h"
 
 namespace orrery::base {
@@ -49,11 +49,8 @@ std::filesystem::path directory_of(const std::filesystem::path& path) {
   return path.has_parent_path() ? path.parent_path() : std::filesystem::path(".");
 }
 
-[[noreturn]] void cannot_create(const std::filesystem::path& path, const std::string& reason) {
-  throw Error(ErrorKind::kCannotCreate, "cannot create " + path.string() + ": " + reason);
-}
-[[noreturn]] void io_failed(const std::filesystem::path& path, int error) {
-  throw Error(ErrorKind::kIo, "writing " + path.string() + " failed: " + std::strerror(error));
+[[noreturn]] void cannot_create(const std::filesystem::path& path, const std::string& reason, int number) {
+  throw FileError(ErrorKind::kCannotCreate, "cannot create " + path.string() + ": " + reason, path, number);
 }
 
 /// Returns the path to rename onto: the target of a symbolic link, so that the link itself stays. Devices and pipes are
@@ -63,11 +60,12 @@ std::filesystem::path rename_target(const std::filesystem::path& path) {
   struct stat entry {};
   // Finds names that are too long, loops of links and unsearchable directories before rendering, not after.
   if (::lstat(path.c_str(), &entry) != 0 && errno != ENOENT && errno != ENOTDIR)
-    cannot_create(path, std::strerror(errno));
+    cannot_create(path, std::strerror(errno), errno);
   const std::filesystem::file_status status = std::filesystem::status(path, ignored);
-  if (path.filename().empty() || std::filesystem::is_directory(status)) cannot_create(path, "it is a directory");
+  if (path.filename().empty() || std::filesystem::is_directory(status))
+    cannot_create(path, "it is a directory", EISDIR);
   if (!std::filesystem::exists(status)) return link_target(path);
-  if (!std::filesystem::is_regular_file(status)) cannot_create(path, "it is not a regular file");
+  if (!std::filesystem::is_regular_file(status)) cannot_create(path, "it is not a regular file", EINVAL);
   if (!std::filesystem::is_symlink(path, ignored)) return path;
   std::filesystem::path target = std::filesystem::canonical(path, ignored);
   return target.empty() ? path : target;
@@ -80,11 +78,11 @@ void check_replaceable(const std::filesystem::path& path, const std::filesystem:
   }, directory{};
   if (::stat(target.c_str(), &file) != 0) return;
   if (::faccessat(AT_FDCWD, target.c_str(), W_OK, AT_EACCESS) != 0)
-    cannot_create(path, std::string("it exists and cannot be written: ") + std::strerror(errno));
+    cannot_create(path, std::string("it exists and cannot be written: ") + std::strerror(errno), errno);
   if (::stat(directory_of(target).c_str(), &directory) != 0 || (directory.st_mode & S_ISVTX) == 0) return;
   const uid_t user = ::geteuid();
   if (user != 0 && user != file.st_uid && user != directory.st_uid)
-    cannot_create(path, "it belongs to another user, and its directory has the sticky bit");
+    cannot_create(path, "it belongs to another user, and its directory has the sticky bit", EPERM);
 }
 
 /// A new, empty file, and its slot in the table that a signal handler unlinks.
@@ -109,7 +107,7 @@ NewFile create_beside(const std::filesystem::path& path, const std::filesystem::
   std::error_code ignored;
   const std::filesystem::path directory = directory_of(target);
   if (!std::filesystem::is_directory(directory, ignored))
-    cannot_create(path, "directory " + directory.string() + " does not exist");
+    cannot_create(path, "directory " + directory.string() + " does not exist", ENOENT);
   check_replaceable(path, target);
   // If the file system accepts a name, it must also accept the temporary name.
   const long limit = ::pathconf(directory.c_str(), _PC_NAME_MAX);
@@ -131,9 +129,9 @@ NewFile create_beside(const std::filesystem::path& path, const std::filesystem::
     }
     const int error = errno;
     free_slot(file.slot);
-    if (error != EEXIST) cannot_create(path, std::strerror(error));
+    if (error != EEXIST) cannot_create(path, std::strerror(error), error);
   }
-  cannot_create(path, std::strerror(EEXIST));
+  cannot_create(path, std::strerror(EEXIST), EEXIST);
 }
 
 }  // namespace
@@ -159,11 +157,11 @@ AtomicFile::~AtomicFile() {
 
 void AtomicFile::commit() {
   const int file = ::open(temporary_.c_str(), O_RDONLY | O_CLOEXEC);
-  if (file < 0) io_failed(path_, errno);
+  if (file < 0) fail_to_write(path_, errno);
   const int synced = ::fsync(file);
   const int error = errno;
   ::close(file);
-  if (synced != 0 && error != EINVAL) io_failed(path_, error);  // EINVAL: the file system does not support fsync
+  if (synced != 0 && error != EINVAL) fail_to_write(path_, error);  // EINVAL: the file system does not support fsync
   commit_unsynced();
   const int directory = ::open(directory_of(target_).c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
   if (directory >= 0) {
@@ -173,7 +171,7 @@ void AtomicFile::commit() {
 }
 
 void AtomicFile::commit_unsynced() {
-  if (::rename(temporary_.c_str(), target_.c_str()) != 0) io_failed(path_, errno);
+  if (::rename(temporary_.c_str(), target_.c_str()) != 0) fail_to_write(path_, errno);
   committed_ = true;
 }
 

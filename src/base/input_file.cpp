@@ -9,21 +9,21 @@
 #include <cstring>
 #include <string>
 
-#include "base/error.h"
+#include "base/file_error.h"
 
 namespace orrery::base {
 
 void require_readable(const std::filesystem::path& file) {
-  const auto refuse = [&](const std::string& reason) {
-    throw Error(ErrorKind::kMissingInput, "cannot open " + file.string() + ": " + reason);
+  const auto refuse = [&](const std::string& reason, int number) {
+    throw FileError(ErrorKind::kMissingInput, "cannot open " + file.string() + ": " + reason, file, number);
   };
   // The type is checked before opening: opening a pipe blocks, and opening a device may have side effects.
   struct stat status {};
-  if (::stat(file.c_str(), &status) != 0) refuse(std::strerror(errno));
-  if (S_ISDIR(status.st_mode)) refuse("it is a directory");
-  if (!S_ISREG(status.st_mode)) refuse("it is not a regular file");
+  if (::stat(file.c_str(), &status) != 0) refuse(std::strerror(errno), errno);
+  if (S_ISDIR(status.st_mode)) refuse("it is a directory", EISDIR);
+  if (!S_ISREG(status.st_mode)) refuse("it is not a regular file", EINVAL);
   const int descriptor = ::open(file.c_str(), O_RDONLY | O_CLOEXEC);
-  if (descriptor < 0) refuse(std::strerror(errno));
+  if (descriptor < 0) refuse(std::strerror(errno), errno);
   ::close(descriptor);
 }
 

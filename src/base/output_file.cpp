@@ -6,10 +6,9 @@
 
 #include <cerrno>
 #include <cstddef>
-#include <cstring>
 #include <string_view>
 
-#include "base/error.h"
+#include "base/file_error.h"
 
 namespace orrery::base {
 namespace {
@@ -34,7 +33,7 @@ void OutputFile::write() {
   while (!left.empty()) {
     const ssize_t written = ::write(descriptor_, left.data(), left.size());
     if (written < 0 && errno == EINTR) continue;
-    if (written < 0) throw Error(ErrorKind::kIo, "writing " + path_.string() + " failed: " + std::strerror(errno));
+    if (written < 0) fail_to_write(path_, errno);
     left.remove_prefix(static_cast<std::size_t>(written));
   }
   buffer_.clear();
@@ -44,7 +43,7 @@ void OutputFile::finish(bool synced) {
   write();
   const int status = ::close(descriptor_);
   descriptor_ = -1;
-  if (status != 0) throw Error(ErrorKind::kIo, "writing " + path_.string() + " failed: " + std::strerror(errno));
+  if (status != 0) fail_to_write(path_, errno);
   synced ? file_.commit() : file_.commit_unsynced();
 }
 

@@ -66,7 +66,7 @@ load::LoadedScene settings_of(const job::Job& job, const PlotArguments& argument
   load::SceneRequest request{job.scene, job.outputs.display, develops};
   request.source.file = arguments.save_scene.empty() ? arguments.plot.file : arguments.save_scene;
   request.source.text = std::make_shared<const std::string>();
-  request.source.is_generated = true;
+  request.source.typed_lines = 0;
   request.source.overrides = {};
   for (const format::Override& override : overrides) {
     const std::string table = override.values.empty() ? "" : override.values.front().key;  // all keys are of one table
@@ -247,7 +247,7 @@ int run_plot(PlotArguments& arguments) {
   const auto text = std::make_shared<const std::string>(
       saves ? format::marked_text(saved_text(made.text, overrides, job.outputs.display)) : made.text);
   job.scene.text = text;
-  job.scene.is_generated = !saves;
+  if (!saves) job.scene.typed_lines = 0;
   job.scene.has_file = false;
   render.batch.scenes = {scene_file};
   render.batch.others = own_outputs(arguments);

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "data/table_file.h"
 
+#include <algorithm>
 #include <utility>
 
 #include "data/customary.h"
@@ -18,7 +19,11 @@ class TableFile : public DataFile {
     info_.roles = required_roles(info_.columns, faults);
   }
 
-  Format format() const override { return Format::kPly; }
+  Format format() const override {
+    const bool has_strings = std::any_of(info_.columns.begin(), info_.columns.end(),
+                                         [](const ColumnInfo& c) { return c.type == ColumnType::kText; });
+    return has_strings ? Format::kNpy : Format::kPly;
+  }
   int frame_count() override { return 1; }
   FrameInfo describe(int) override { return info_; }
   Table read(int, const std::vector<std::string>& columns) override {

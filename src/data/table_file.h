@@ -9,11 +9,11 @@
 
 namespace orrery::data {
 
-/// Returns a table in memory as a data file of one frame, equivalent to the PLY file that write_table() would write.
-/// Columns that are views stay views.
+/// Returns a table in memory as a data file of one frame, equivalent to the PLY file that write_table() would write, or
+/// to the NPY file if it has columns of strings. Columns that are views stay views.
 ///
 /// `name`     for messages
-/// Domain     columns of numbers; all have table.rows rows and distinct names
+/// Domain     columns with table.rows rows and distinct names
 /// Errors     base::Error(kBadData): there are no columns x, y and z
 std::unique_ptr<DataFile> open_table(const std::filesystem::path& name, std::shared_ptr<const Table> table);
 

@@ -15,8 +15,12 @@ void Diagnostics::raise_errors(const std::string& file) const {
     rest.text = fmt::format("and {} more ({} in all)", errors_ - shown_.size(), errors_);
     diagnostics.push_back(std::move(rest));
   }
-  throw base::Error(missing_ == errors_ ? base::ErrorKind::kMissingInput : base::ErrorKind::kBadData,
-                    fmt::format("{}: {}{}", file, errors_, errors_ == 1 ? " error" : " errors"),
+  const std::string message = fmt::format("{}: {}{}", file, errors_, errors_ == 1 ? " error" : " errors");
+  const bool all_missing = missing_ == errors_;
+  if (all_missing && missing_file_)
+    throw base::FileError(base::ErrorKind::kMissingInput, message, missing_file_->file(), missing_file_->number(),
+                          std::move(diagnostics));
+  throw base::Error(all_missing ? base::ErrorKind::kMissingInput : base::ErrorKind::kBadData, message,
                     std::move(diagnostics));
 }
 

@@ -4,13 +4,14 @@
 #include <cstddef>
 #include <iterator>
 #include <map>
+#include <optional>
 #include <string>
 #include <tuple>
 #include <utility>
 #include <vector>
 
 #include "base/diagnostic.h"
-#include "base/error.h"
+#include "base/file_error.h"
 #include "format/source_text.h"
 
 namespace orrery::format {
@@ -36,13 +37,19 @@ class Diagnostics {
     if (shown_.size() > kMaxErrors) shown_.erase(std::prev(shown_.end()));
   }
 
+  /// Adds an input that cannot be opened, and which an error names.
+  void add_missing(const base::FileError& error) {
+    if (!missing_file_) missing_file_ = error;
+  }
+
   bool has_errors() const { return errors_ > 0; }
   std::vector<base::Diagnostic> take_warnings() { return std::move(warnings_); }
 
   /// Throws if there are errors.
   ///
-  /// Errors     base::Error with the diagnostics: kMissingInput if all errors are inputs that cannot be opened, else
-  ///            kBadData
+  /// Errors     base::Error with the diagnostics: kMissingInput if all errors are inputs that cannot be opened, with
+  /// the
+  ///            first of add_missing(); else kBadData
   void raise_errors(const std::string& file) const;
 
  private:
@@ -51,6 +58,7 @@ class Diagnostics {
   std::multimap<Key, base::Diagnostic> shown_;
   std::vector<base::Diagnostic> warnings_;
   std::size_t errors_ = 0, missing_ = 0;
+  std::optional<base::FileError> missing_file_;
 };
 
 }  // namespace orrery::format

@@ -266,7 +266,7 @@ SceneReader::SceneReader(const std::filesystem::path& file, const Overrides& ove
   state.root = parse_tree(state.file, text, overrides, state.source, state.diagnostics);
   const toml::table& root = state.root;
   if (root.empty()) state.diagnostics.raise_errors(state.file);
-  if (options.is_generated) state.source.add(state.file, text, true);
+  if (options.typed_lines) state.source.add(state.file, text, options.typed_lines);
   scene::Scene& scene = state.result.scene;
   report_unknown_tables(state, root);
   read_single_tables(state, root, scene);
@@ -311,6 +311,8 @@ void SceneReader::add_file_error(const std::string& key, const base::Error& erro
   State& state = *state_;
   add_problem(state, state.root, state.file, {base::Severity::kError, key, "", error.kind()},
               fmt::format("{}: {}", key, error.what()));
+  if (const auto* const missing = dynamic_cast<const base::FileError*>(&error))
+    state.diagnostics.add_missing(*missing);
   for (const base::Diagnostic& diagnostic : error.diagnostics())
     state.diagnostics.add(diagnostic.severity, {diagnostic.file, diagnostic.line, 0, 1}, error.kind(),
                           [&] { return diagnostic; });

@@ -20,8 +20,8 @@ inline constexpr int kFirstFrame = 1;
 
 struct ReadOptions {
   std::shared_ptr<const std::string> text = {};  ///< text of the scene; null: read the file
-  int frame = kFirstFrame;    ///< selects the values of animated keys, and the files and frames of data
-  bool is_generated = false;  ///< `text` was written by a program: diagnostics omit its lines
+  int frame = kFirstFrame;              ///< selects the values of animated keys, and the files and frames of data
+  std::optional<int> typed_lines = {};  ///< see SourceText::add
 };
 
 /// A scene file that is being read: the scene that it describes, and the places of its keys for diagnostics, which are

@@ -11,7 +11,7 @@
 
 #include <fmt/core.h>
 
-#include "base/error.h"
+#include "base/file_error.h"
 #include "base/input_file.h"
 
 namespace orrery::format {
@@ -36,8 +36,8 @@ std::size_t byte_of_character(std::string_view line, std::size_t index) {
 
 }  // namespace
 
-void SourceText::add(const std::string& name, std::string_view text, bool is_generated) {
-  texts_[name] = {std::string(text), is_generated, {}};
+void SourceText::add(const std::string& name, std::string_view text, std::optional<int> typed_lines) {
+  texts_[name] = {std::string(text), typed_lines, {}};
 }
 
 std::string_view SourceText::line_of(const Text& text, int line) {
@@ -96,7 +96,7 @@ base::Diagnostic SourceText::diagnostic(base::Severity severity, const Place& pl
   out.column = place.column;
   out.width = place.width;
   const auto found = texts_.find(place.text_name);
-  if (found != texts_.end() && found->second.is_generated) {
+  if (found != texts_.end() && place.line > found->second.typed_lines.value_or(place.line)) {
     out.line = out.column = 0;
     return out;
   }
@@ -119,8 +119,8 @@ std::string read_file(const std::filesystem::path& file, std::uint64_t largest_b
   base::require_readable(file);
   const std::unique_ptr<std::FILE, int (*)(std::FILE*)> in(std::fopen(file.c_str(), "rb"), &std::fclose);
   if (!in)
-    throw base::Error(base::ErrorKind::kMissingInput,
-                      fmt::format("cannot open {}: {}", file.string(), std::strerror(errno)));
+    throw base::FileError(base::ErrorKind::kMissingInput,
+                          fmt::format("cannot open {}: {}", file.string(), std::strerror(errno)), file, errno);
   const auto size = std::filesystem::file_size(file, error);
   if (!error && size > largest_bytes) throw too_large();
   std::string bytes;

@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <filesystem>
 #include <map>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -29,10 +30,11 @@ struct Place {
 /// The sources of a scene, the text of the file and the overrides, for quoting lines in diagnostics.
 class SourceText {
  public:
-  /// Adds a text.
+  /// Adds a text, or replaces the one of this name.
   ///
-  /// `is_generated`  a program wrote the text, so that its lines mean nothing to the user: diagnostics omit them
-  void add(const std::string& name, std::string_view text, bool is_generated = false);
+  /// `typed_lines`   number of lines at the beginning of the text that the user knows, if not all; a program wrote the
+  ///                 others, and diagnostics omit their location
+  void add(const std::string& name, std::string_view text, std::optional<int> typed_lines = {});
 
   /// Makes the overrides the lines of kOverrideName.
   ///
@@ -49,7 +51,7 @@ class SourceText {
  private:
   struct Text {
     std::string bytes;
-    bool is_generated;
+    std::optional<int> typed_lines;
     mutable std::vector<std::size_t> begins;  ///< offset of every kStride-th line; filled on first use
   };
   static std::string_view line_of(const Text& text, int line);

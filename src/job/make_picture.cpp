@@ -149,9 +149,10 @@ render::Result render_job(const Job& job, PreparedScene& prepared, const compile
                       checkpoint.file().string() +
                           " contains sums that do not match its header; delete it, or render "
                           "without --resume to start again");
+  const bool is_built = prepared.has_accelerator();
   const auto begin = std::chrono::steady_clock::now();
   accel::Accel* const accel = build(job, prepared, settings.threads);
-  const double build_s = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
+  const double build_s = is_built ? 0 : std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
   settings.sampling.spend(build_s);
   render::Result result;
   if (accel != nullptr) result = render::render(compiled, *accel, settings, std::move(from));

@@ -7,6 +7,7 @@
 #include "compile/compile.h"
 #include "job/memory.h"
 #include "job/scene_hash.h"
+#include "kernel/isa.h"
 #include "load/load_scene.h"
 #include "render/render.h"
 
@@ -60,6 +61,8 @@ const compile::CompiledScene& PreparedScene::compile(std::uint64_t memory_limit)
 }
 
 accel::Accel& PreparedScene::accelerator(int threads, const accel::BuildMonitor& monitor) {
+  if (accel_ && isa_ != kernel::isa_name()) accel_.reset();
+  isa_ = kernel::isa_name();
   if (!accel_) accel_ = render::build(compiled_, threads, monitor);
   return *accel_;
 }

@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <memory>
 #include <optional>
+#include <string>
 
 #include "accel/accel.h"
 #include "compile/compiled_scene.h"
@@ -56,6 +57,7 @@ class PreparedScene {
   std::optional<load::LoadedScene> loaded_;
   compile::CompiledScene compiled_;
   std::unique_ptr<accel::Accel> accel_;  ///< of the spheres of compiled_
+  std::string isa_;                      ///< instruction set that accel_ was built for
   base::Hash sphere_hash_;
   SceneHashes hashes_;
   points::OpenData open_data_;  ///< empty: particles::open

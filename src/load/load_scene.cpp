@@ -142,7 +142,7 @@ class SceneLoader {
         previous_(std::move(previous)),
         check_colors_(request),
         reader_(request.source.file, request.source.overrides,
-                {request.source.text, request.source.frame, request.source.is_generated}),
+                {request.source.text, request.source.frame, request.source.typed_lines}),
         scene_(reader_.scene()) {}
 
   format::ReadResult read_with_data() {

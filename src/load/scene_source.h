@@ -4,6 +4,7 @@
 #include <filesystem>
 #include <functional>
 #include <memory>
+#include <optional>
 #include <string>
 
 #include "format/overrides.h"
@@ -21,7 +22,7 @@ struct SceneSource {
   points::OpenData open_data = {};               ///< see points::LoadRequest
   /// Identifies the contents of a data file; empty: base::file_version.
   std::function<std::string(const std::filesystem::path&)> data_version = {};
-  bool is_generated = false;  ///< see format::ReadOptions
+  std::optional<int> typed_lines = {};  ///< see format::ReadOptions
 };
 
 }  // namespace orrery::load

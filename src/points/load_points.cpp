@@ -22,7 +22,7 @@
 #include "points/point_radii.h"
 #include "points/read_memory.h"
 #include "points/rows.h"
-#include "points/select.h"
+#include "points/selection.h"
 #include "points/source_rows.h"
 #include "points/valid_spheres.h"
 #include "scene/limits.h"
@@ -134,15 +134,14 @@ class Loader {
 
   void plan_selection() {
     try {
-      selection_ = parse_selection(points_.select);
-      selection_.check(info_.columns);
+      selection_ = parse_selection(points_.select, info_.columns);
     } catch (const base::Error& error) {
       for (const base::Diagnostic& d : error.diagnostics())
         faults_.error(".select",
                       fmt::format("at character {}: {}{}", d.column, d.text, d.remedy.empty() ? "" : "; " + d.remedy));
       return;
     }
-    for (const std::string& column : selection_.columns()) need(column);
+    for (const std::string& column : selection_.columns) need(column);
   }
 
   void plan_unwrap() {

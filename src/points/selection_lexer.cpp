@@ -1,9 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "points/selection_lexer.h"
 
+#include <algorithm>
 #include <charconv>
 #include <system_error>
 #include <utility>
+
+#include "base/diagnostic.h"
+#include "base/error.h"
 
 namespace orrery::points {
 namespace {
@@ -18,7 +22,17 @@ bool is_blank(char c) { return c == ' ' || c == '\t' || c == '\n' || c == '\r'; 
 
 }  // namespace
 
-Token SelectionLexer::next() {
+void fail_selection(const std::string& selection, Span span, const std::string& text, const std::string& remedy) {
+  base::Diagnostic diagnostic;
+  diagnostic.text = text;
+  diagnostic.remedy = remedy;
+  diagnostic.source_line = selection;
+  diagnostic.column = selection.empty() ? 0 : static_cast<int>(span.begin) + 1;
+  diagnostic.width = std::max(1, static_cast<int>(span.end - span.begin));
+  throw base::Error(base::ErrorKind::kBadData, "invalid selection", {diagnostic});
+}
+
+Token SelectionLexer::next(bool takes_word) {
   std::size_t at = next_;
   while (at < text_.size() && is_blank(text_[at])) ++at;
   Token token;
@@ -26,12 +40,12 @@ Token SelectionLexer::next() {
   next_ = at;
   if (at == text_.size()) return token;
   const char c = text_[at];
-  if (is_digit(c) || (c == '.' && at + 1 < text_.size() && is_digit(text_[at + 1]))) {
+  if (is_letter(c) || (takes_word && is_name(c))) {
+    read_name(token);
+  } else if (is_digit(c) || (c == '.' && at + 1 < text_.size() && is_digit(text_[at + 1]))) {
     read_number(token);
   } else if (c == '"' || c == '\'' || c == '`') {
     read_quoted(c, token);
-  } else if (is_letter(c)) {
-    read_name(token);
   } else {
     read_symbol(token);
   }
@@ -80,8 +94,8 @@ void SelectionLexer::read_name(Token& token) const {
 }
 
 void SelectionLexer::read_symbol(Token& token) const {
-  static constexpr std::string_view kSymbols[] = {"==", "!=", "<=", ">=", "&&", "||", "<", ">", "+",
-                                                  "-",  "*",  "/",  "!",  "(",  ")",  "[", "]", ","};
+  static constexpr std::string_view kSymbols[] = {"==", "!=", "<=", ">=", "&&", "||", "<", ">", "+", "-", "*",
+                                                  "/",  "!",  "(",  ")",  "[",  "]",  "{", "}", ":", ","};
   static constexpr std::pair<std::string_view, std::string_view> kForeign[] = {
       {"=", "equality is =="}, {"&", "write &&"}, {"|", "write ||"}, {"^", "write x * x"}, {"~", "write !"}};
   const std::string_view rest = std::string_view(text_).substr(token.span.begin);

@@ -5,9 +5,16 @@
 #include <string>
 #include <string_view>
 
-#include "points/selection_code.h"
-
 namespace orrery::points {
+
+/// A range of bytes in the text of a selection.
+struct Span {
+  std::size_t begin = 0, end = 0;
+};
+
+/// Throws base::Error(kBadData) for a position in a selection.
+[[noreturn]] void fail_selection(const std::string& selection, Span span, const std::string& text,
+                                 const std::string& remedy);
 
 enum class TokenKind { kEnd, kNumber, kText, kName, kQuotedName, kSymbol };
 
@@ -28,8 +35,9 @@ class SelectionLexer {
 
   /// Returns the next token; at the end of the text kEnd.
   ///
-  /// Errors     those of fail_selection()
-  Token next();
+  /// `takes_word`   names may begin with a digit
+  /// Errors         those of fail_selection()
+  Token next(bool takes_word = false);
 
  private:
   void read_number(Token& token) const;

@@ -1,17 +1,19 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <algorithm>
 #include <array>
-#include <optional>
+#include <cmath>
+#include <functional>
+#include <limits>
+#include <span>
 #include <unordered_map>
 #include <utility>
 
 #include <fmt/core.h>
 
-#include "base/diagnostic.h"
-#include "base/error.h"
 #include "base/text.h"
-#include "points/selection_code.h"
+#include "points/selection.h"
 #include "points/selection_lexer.h"
+#include "points/selection_run.h"
 
 namespace orrery::points {
 namespace {
@@ -22,42 +24,98 @@ constexpr std::size_t kMaxLength = std::size_t{1} << 20;
 /// Maximum nesting of parentheses, functions and prefixes: the parser recurses, and evaluation needs 8 KiB per level.
 constexpr int kMaxDepth = 100;
 
+/// Column names listed in a message.
+constexpr std::size_t kMaxListed = 40;
+
 /// Words of other languages and their replacements.
 constexpr std::array<std::pair<std::string_view, std::string_view>, 3> kForeignWords = {
     {{"and", "&&"}, {"or", "||"}, {"not", "!"}}};
 
-struct Function {
-  std::string_view name;
-  SelectionOp op;
-  bool takes_many;
-};
-constexpr Function kFunctions[] = {{"abs", SelectionOp::kAbs, false},
-                                   {"sqrt", SelectionOp::kSqrt, false},
-                                   {"min", SelectionOp::kMin, true},
-                                   {"max", SelectionOp::kMax, true}};
+constexpr const char* kLists = "e.g. type in [1, 2], z in [20:60], chain in {A, B}";
 
+/// A symbol or the name of a function, and the step that it adds.
+struct Operator {
+  std::string_view name;
+  void (*step)(SelectionRun&);
+};
+using Run = SelectionRun;
+constexpr Operator kOr[] = {{"||", [](Run& run) { run.combine_truths(std::bit_or<Run::Truth>()); }}};
+constexpr Operator kAnd[] = {{"&&", [](Run& run) { run.combine_truths(std::bit_and<Run::Truth>()); }}};
+constexpr Operator kComparisons[] = {
+    {"==", [](Run& run) { run.compare(std::equal_to<>()); }},
+    {"!=", [](Run& run) { run.compare([](double a, double b) { return a < b || a > b; }); }},  // false for NaN
+    {"<", [](Run& run) { run.compare(std::less<>()); }},
+    {"<=", [](Run& run) { run.compare(std::less_equal<>()); }},
+    {">", [](Run& run) { run.compare(std::greater<>()); }},
+    {">=", [](Run& run) { run.compare(std::greater_equal<>()); }}};
+constexpr Operator kSums[] = {{"+", [](Run& run) { run.combine(std::plus<>()); }},
+                              {"-", [](Run& run) { run.combine(std::minus<>()); }}};
+constexpr Operator kProducts[] = {{"*", [](Run& run) { run.combine(std::multiplies<>()); }},
+                                  {"/", [](Run& run) { run.combine(std::divides<>()); }}};
+constexpr Operator kFunctions[] = {{"abs", [](Run& run) { run.change([](double a) { return std::abs(a); }); }},
+                                   {"sqrt", [](Run& run) { run.change([](double a) { return std::sqrt(a); }); }}};
+/// Functions of two or more operands: min(x, y, z) is min(min(x, y), z). NaN if one operand is NaN: a missing value
+/// must not become the limit of a clamp.
+constexpr Operator kFolds[] = {
+    {"min", [](Run& run) { run.combine([](double a, double b) { return a < b || a != a ? a : b; }); }},
+    {"max", [](Run& run) { run.combine([](double a, double b) { return a > b || a != a ? a : b; }); }}};
+
+const Operator* find(std::span<const Operator> operators, std::string_view name) {
+  const auto found =
+      std::find_if(operators.begin(), operators.end(), [&](const Operator& o) { return o.name == name; });
+  return found == operators.end() ? nullptr : &*found;
+}
+
+enum class Type { kNumber, kTruth, kTextColumn, kText };
+
+constexpr const char* type_text(Type type) {
+  switch (type) {
+    case Type::kNumber: return "a number";
+    case Type::kTruth: return "a condition";
+    case Type::kTextColumn:
+    case Type::kText: return "a string";
+  }
+  return "";
+}
+
+/// An operand whose steps have been added; strings have none until they are compared.
+struct Operand {
+  Type type;
+  Span span;                   ///< of the operand, or of its operator
+  std::size_t column = 0;      ///< kTextColumn: index into the columns of the selection
+  std::string_view text = {};  ///< kText
+};
+
+/// Parses a selection, checks its types and adds its steps, all in one pass.
 class Parser {
  public:
-  explicit Parser(std::string_view text) {
+  Parser(std::string_view text, const std::vector<data::ColumnInfo>& columns) : columns_(columns) {
     if (text.size() > kMaxLength)
       fail_selection("", {}, "the condition is longer than " + base::bytes_text(kMaxLength),
                      "select by ranges, or filter the file");
-    code_.text = text;
+    text_ = text;
+    for (const data::ColumnInfo& column : columns)  // the first of a name, as in Table::find()
+      known_.try_emplace(column.name, Known{column.type == data::ColumnType::kText, kUnused});
     read();
   }
 
-  SelectionCode parse() {
-    if (token_.kind != TokenKind::kEnd) {
-      parse_or();
-      if (token_.kind != TokenKind::kEnd) fail_at_token("expected an operator", remedy_for_operator());
-    }
-    return std::move(code_);
+  Selection parse() {
+    if (token_.kind == TokenKind::kEnd) return {};
+    const Operand result = parse_or();
+    if (token_.kind != TokenKind::kEnd) fail_at_token("expected an operator", remedy_for_operator());
+    if (result.type != Type::kTruth)
+      fail(result.span, std::string("expected a condition, not ") + type_text(result.type),
+           "compare it, as in: x != 0");
+    return std::move(selection_);
   }
 
  private:
   // Tokens.
 
-  void read() { token_ = lexer_.next(); }
+  void read(bool takes_word = false) {
+    follows_equality_ = is_symbol("==") || is_symbol("!=");
+    token_ = lexer_.next(takes_word);
+  }
 
   bool is_symbol(std::string_view symbol) const { return token_.kind == TokenKind::kSymbol && token_.text == symbol; }
   bool is_word(std::string_view word) const { return token_.kind == TokenKind::kName && token_.text == word; }
@@ -68,8 +126,17 @@ class Parser {
     return true;
   }
 
+  const Operator* operator_in(std::span<const Operator> operators) const {
+    return token_.kind == TokenKind::kSymbol ? find(operators, token_.text) : nullptr;
+  }
+
+  // Errors.
+
+  [[noreturn]] void fail(Span span, const std::string& text, const std::string& remedy) const {
+    fail_selection(text_, span, text, remedy);
+  }
   [[noreturn]] void fail_at_token(const std::string& text, const std::string& remedy) const {
-    fail_selection(code_.text, token_.span, text, remedy);
+    fail(token_.span, text, remedy);
   }
 
   /// The remedy for a token where an operator is expected.
@@ -80,196 +147,279 @@ class Parser {
     return "e.g. ==, &&, || or +";
   }
 
-  // Steps.
-
-  void emit(SelectionOp op, Span span, double number = 0, std::size_t index = 0) {
-    code_.steps.push_back({op, span, number, index});
+  [[noreturn]] void fail_unknown_column(const Token& token, bool is_compared) const {
+    const std::string name(token.text);
+    std::vector<std::string> names;
+    for (const data::ColumnInfo& column : columns_) names.push_back(column.name);
+    std::string remedy = base::did_you_mean(name, names);
+    if (remedy.empty()) {
+      const std::size_t more = names.size() > kMaxListed ? names.size() - kMaxListed : 0;
+      names.resize(names.size() - more);
+      remedy = names.empty() ? "the data has no columns" : "columns are " + base::joined(names);
+      if (more > 0) remedy += fmt::format(" and {} more", more);
+    }
+    if (is_compared) remedy += fmt::format("; strings are quoted: \"{}\"", name);  // element == C
+    fail(token.span, "unknown column " + name, remedy);
   }
 
-  std::size_t column_index(std::string_view name) {
-    const auto [found, is_new] = column_indices_.try_emplace(std::string(name), code_.columns.size());
-    if (is_new) code_.columns.emplace_back(name);
-    return found->second;
+  /// `reason`   why this type is expected; empty: because of the operator
+  void require(const Operand& operand, Type type, Span op, const char* reason = "") const {
+    if (operand.type == type) return;
+    std::string remedy = reason;
+    if (remedy.empty() && type == Type::kTruth) remedy = "compare it, as in: x != 0";
+    if (remedy.empty() && operand.type == Type::kTruth) remedy = "add parentheses";
+    if (remedy.empty()) remedy = "strings can be compared with ==, != and in";
+    if (type == Type::kTextColumn && operand.type == Type::kText) remedy = "write a column without quotes";
+    fail(operand.span,
+         fmt::format("{} expects {}, not {}", text_.substr(op.begin, op.end - op.begin), type_text(type),
+                     type_text(operand.type)),
+         remedy);
+  }
+
+  [[noreturn]] void fail_equality(Operand left, Operand right, Span op) const {
+    if (left.type == Type::kTruth || right.type == Type::kTruth)
+      fail(op, "a condition cannot be compared", "combine conditions by && and ||, or add parentheses");
+    if (left.type == Type::kText && right.type == Type::kText)
+      fail(op, "two strings are compared", "write a column without quotes");
+    if (left.type == Type::kNumber) std::swap(left, right);
+    if (left.type == Type::kText) fail(left.span, "text compared with a number", "numbers are written without quotes");
+    fail(left.span, "text column " + selection_.columns[left.column] + " compared with a number",
+         "quote the other side, as in: element == \"C\"");
+  }
+
+  // Steps.
+
+  Operand emit(SelectionStep step, Type result, Span span) {
+    selection_.steps.push_back(std::move(step));
+    return {result, span};
+  }
+
+  Operand emit_text_test(TextTest test, Span span) {
+    selection_.text_tests.push_back(std::move(test));
+    const std::size_t index = selection_.text_tests.size() - 1;
+    return emit([index](Run& run) { run.test_text(index); }, Type::kTruth, span);
   }
 
   // Grammar, one function per precedence.
 
-  void parse_or() {
-    parse_and();
-    while (is_symbol("||")) parse_binary(SelectionOp::kOr, &Parser::parse_and);
-  }
+  Operand parse_or() { return parse_chain(kOr, Type::kTruth, &Parser::parse_and); }
+  Operand parse_and() { return parse_chain(kAnd, Type::kTruth, &Parser::parse_comparison); }
+  Operand parse_sum() { return parse_chain(kSums, Type::kNumber, &Parser::parse_product); }
+  Operand parse_product() { return parse_chain(kProducts, Type::kNumber, &Parser::parse_operand); }
 
-  void parse_and() {
-    parse_comparison();
-    while (is_symbol("&&")) parse_binary(SelectionOp::kAnd, &Parser::parse_comparison);
-  }
-
-  std::optional<SelectionOp> comparison() const {
-    static constexpr std::pair<std::string_view, SelectionOp> kComparisons[] = {
-        {"==", SelectionOp::kEqual},     {"!=", SelectionOp::kUnequal}, {"<", SelectionOp::kLess},
-        {"<=", SelectionOp::kLessEqual}, {">", SelectionOp::kGreater},  {">=", SelectionOp::kGreaterEqual}};
-    for (const auto& [symbol, op] : kComparisons)
-      if (is_symbol(symbol)) return op;
-    return {};
-  }
-
-  void parse_comparison() {
-    parse_sum();
-    if (const auto op = comparison()) {
-      parse_binary(*op, &Parser::parse_sum);
-    } else if (is_word("in")) {
-      parse_list();
-    } else {
-      return;
+  /// Parses operands between operators of one precedence, from the left.
+  Operand parse_chain(std::span<const Operator> operators, Type type, Operand (Parser::*parse_next)()) {
+    Operand left = (this->*parse_next)();
+    while (const Operator* const op = operator_in(operators)) {
+      const Span span = token_.span;
+      read();
+      const Operand right = (this->*parse_next)();
+      require(right, type, span);
+      require(left, type, span);
+      left = emit(op->step, type, span);
     }
-    if (comparison() || is_word("in")) fail_at_token("comparisons cannot be chained", "write 1 < x && x < 2");
+    return left;
   }
 
-  void parse_sum() {
-    parse_product();
-    while (is_symbol("+") || is_symbol("-"))
-      parse_binary(is_symbol("+") ? SelectionOp::kAdd : SelectionOp::kSubtract, &Parser::parse_product);
+  Operand parse_comparison() {
+    Operand left = parse_sum();
+    if (const Operator* const op = operator_in(kComparisons)) {
+      const Span span = token_.span;
+      read();
+      left = compare(*op, left, parse_sum(), span);
+    } else if (is_word("in")) {
+      left = parse_list(left);
+    } else {
+      return left;
+    }
+    if (operator_in(kComparisons) || is_word("in"))
+      fail_at_token("comparisons cannot be chained", "write 1 < x && x < 2");
+    return left;
   }
 
-  void parse_product() {
-    parse_operand();
-    while (is_symbol("*") || is_symbol("/"))
-      parse_binary(is_symbol("*") ? SelectionOp::kMultiply : SelectionOp::kDivide, &Parser::parse_operand);
+  Operand compare(const Operator& op, Operand left, Operand right, Span span) {
+    const bool is_equality = op.name == "==" || op.name == "!=";
+    if (!is_equality || (left.type == Type::kNumber && right.type == Type::kNumber)) {
+      require(right, Type::kNumber, span);
+      require(left, Type::kNumber, span);
+      return emit(op.step, Type::kTruth, span);
+    }
+    if (left.type == Type::kText) std::swap(left, right);
+    if (left.type != Type::kTextColumn || (right.type != Type::kTextColumn && right.type != Type::kText))
+      fail_equality(left, right, span);
+    TextTest test{left.column, right.column, right.type == Type::kTextColumn, {}};
+    if (!test.is_same) test.words.emplace_back(right.text);
+    const Operand out = emit_text_test(std::move(test), span);
+    return op.name == "==" ? out : emit([](Run& run) { run.negate(); }, Type::kTruth, span);
   }
 
-  /// Parses an operator and its right operand.
-  void parse_binary(SelectionOp op, void (Parser::*parse_right)()) {
-    const Span span = token_.span;
-    read();
-    (this->*parse_right)();
-    emit(op, span);
-  }
-
-  void parse_operand() {
+  Operand parse_operand() {
     if (++depth_ > kMaxDepth)
       fail_at_token(fmt::format("more than {} nested parentheses or prefixes", kMaxDepth), "simplify it");
     const Token token = token_;
+    Operand out{Type::kNumber, token.span};
     if (take("(")) {
-      parse_or();
+      out = parse_or();
       close("(", token.span);
     } else if (take("!")) {
-      parse_operand();
-      emit(SelectionOp::kNot, token.span);
+      require(parse_operand(), Type::kTruth, token.span);
+      out = emit([](Run& run) { run.negate(); }, Type::kTruth, token.span);
     } else if (take("-")) {
-      parse_operand();
-      emit(SelectionOp::kNegate, token.span);
+      require(parse_operand(), Type::kNumber, token.span);
+      emit([](Run& run) { run.change(std::negate<>()); }, Type::kNumber, token.span);
     } else if (token.kind == TokenKind::kNumber) {
       read();
-      emit(SelectionOp::kNumber, token.span, token.number);
+      emit([value = token.number](Run& run) { run.push_constant(value); }, Type::kNumber, token.span);
     } else if (token.kind == TokenKind::kText) {
       read();
-      emit(SelectionOp::kText, token.span, 0, code_.texts.size());
-      code_.texts.emplace_back(token.text);
+      out = {Type::kText, token.span, 0, token.text};
     } else if (token.kind == TokenKind::kQuotedName || token.kind == TokenKind::kName) {
-      parse_name();
+      out = parse_name();
     } else {
       fail_at_token(
           token.kind == TokenKind::kEnd ? "the condition ends too early" : "expected a column, number or text",
           "e.g. type == 2 && z > 0");
     }
     --depth_;
+    return out;
   }
 
-  void parse_name() {
+  Operand parse_name() {
     const Token token = token_;
     if (token.kind == TokenKind::kName) {
       for (const auto& [word, symbol] : kForeignWords)
         if (is_word(word)) fail_at_token("unknown word " + std::string(word), "write " + std::string(symbol));
-      if (is_word("in")) fail_at_token("expected a column before `in`", "e.g. chain in [\"A\", \"B\"]");
+      if (is_word("in")) fail_at_token("expected a column before `in`", "e.g. chain in {A, B}");
     }
+    const bool is_compared = follows_equality_;
     read();
-    if (token.kind == TokenKind::kName && is_symbol("(")) {
-      parse_call(token);
-    } else {
-      emit(SelectionOp::kColumn, token.span, 0, column_index(token.text));
+    if (token.kind == TokenKind::kName && is_symbol("(")) return parse_call(token);
+    const auto found = known_.find(token.text);
+    if (found == known_.end()) fail_unknown_column(token, is_compared);
+    auto& [is_text, index] = found->second;
+    if (index == kUnused) {
+      index = selection_.columns.size();
+      selection_.columns.emplace_back(token.text);
     }
+    if (is_text) return {Type::kTextColumn, token.span, index};
+    return emit([column = index](Run& run) { run.load(column); }, Type::kNumber, token.span);
   }
 
-  void parse_call(const Token& name) {
-    const Function* function = nullptr;
-    std::vector<std::string> names;
-    for (const Function& known : kFunctions) {
-      names.emplace_back(known.name);
-      if (known.name == name.text) function = &known;
-    }
-    if (function == nullptr)
-      fail_selection(code_.text, name.span, "unknown function " + std::string(name.text),
-                     "functions are " + base::joined(names));
+  Operand parse_call(const Token& name) {
+    const Operator* const fold = find(kFolds, name.text);
+    const Operator* const function = find(kFunctions, name.text);
+    if (fold == nullptr && function == nullptr)
+      fail(name.span, "unknown function " + std::string(name.text), "functions are abs, sqrt, min, max");
     const Span open = token_.span;
-    read();
     int count = 0;
     do {
-      parse_sum();
-      // min(x, y, z) is min(min(x, y), z).
-      if (++count > 1 && function->takes_many) emit(function->op, name.span);
-    } while (take(","));
+      read();
+      require(parse_sum(), Type::kNumber, name.span);
+      if (++count > 1 && fold != nullptr) emit(fold->step, Type::kNumber, name.span);
+    } while (is_symbol(","));
     close(name.text, open);
-    if (function->takes_many ? count < 2 : count != 1)
-      fail_selection(code_.text, name.span, fmt::format("{} with {} operands", name.text, count),
-                     function->takes_many ? "two or more are needed" : "exactly one is allowed");
-    if (!function->takes_many) emit(function->op, name.span);
+    if (fold != nullptr ? count < 2 : count != 1)
+      fail(name.span, fmt::format("{} with {} operands", name.text, count),
+           fold != nullptr ? "two or more are needed" : "exactly one is allowed");
+    if (function != nullptr) emit(function->step, Type::kNumber, name.span);
+    return {Type::kNumber, name.span};
   }
 
   void close(std::string_view what, Span open) {
     if (take(")")) return;
     if (token_.kind == TokenKind::kEnd)
-      fail_selection(code_.text, open, std::string(what == "(" ? "parenthesis" : what) + " is not closed", "add )");
+      fail(open, std::string(what == "(" ? "parenthesis" : what) + " is not closed", "add )");
     fail_at_token("expected ) or an operator", remedy_for_operator());
   }
 
-  void parse_list() {
+  Operand parse_list(const Operand& left) {
     const Span in = token_.span;
     read();
-    if (!take("[")) fail_at_token("expected a list after `in`", "e.g. type in [1, 2]");
-    std::vector<double> numbers;
-    std::vector<std::string> texts;
+    const bool has_braces = is_symbol("{");
+    if (!has_braces && !is_symbol("[")) fail_at_token("expected a list after `in`", kLists);
+    const bool takes_words = has_braces && left.type == Type::kTextColumn;
+    std::vector<NumberRange> ranges;
+    std::vector<std::string> words;
     do {
-      const bool negative = take("-");
-      if (token_.kind == TokenKind::kNumber) {
-        numbers.push_back(negative ? -token_.number : token_.number);
-      } else if (token_.kind == TokenKind::kText && !negative) {
-        texts.emplace_back(token_.text);
+      read(takes_words);
+      const bool is_text = token_.kind == TokenKind::kText || (takes_words && token_.kind == TokenKind::kName);
+      const bool is_number = token_.kind == TokenKind::kNumber || is_symbol("-") || is_symbol(":");
+      if (!is_text && !is_number) fail_at_token("expected a number or a string", kLists);
+      if (is_text ? !ranges.empty() : !words.empty())
+        fail_at_token("list of both numbers and strings", "use two lists");
+      if (is_text) {
+        words.emplace_back(token_.text);
+        read();
       } else {
-        fail_at_token("expected a number or a string", "e.g. type in [1, 2], chain in [\"A\", \"B\"]");
+        ranges.push_back(parse_range());
       }
-      if (!numbers.empty() && !texts.empty()) fail_at_token("list of both numbers and strings", "use two lists");
-      read();
-    } while (take(","));
-    if (!take("]")) fail_at_token("expected , or ]", "e.g. type in [1, 2]");
-    if (texts.empty()) {
-      std::sort(numbers.begin(), numbers.end());
-      emit(SelectionOp::kInNumbers, in, 0, code_.number_lists.size());
-      code_.number_lists.push_back(std::move(numbers));
-    } else {
-      emit(SelectionOp::kInTexts, in, 0, code_.text_lists.size());
-      code_.text_lists.push_back(std::move(texts));
+    } while (is_symbol(","));
+    if (!take(has_braces ? "}" : "]")) fail_at_token(has_braces ? "expected , or }" : "expected , or ]", kLists);
+    if (ranges.empty()) {
+      require(left, Type::kTextColumn, in, "the list has strings");
+      return emit_text_test({left.column, 0, false, std::move(words)}, in);
     }
+    require(left, Type::kNumber, in, "the list has numbers");
+    return emit([disjoint = disjoint(std::move(ranges))](Run& run) { run.find(disjoint); }, Type::kTruth, in);
   }
 
-  SelectionCode code_;
-  SelectionLexer lexer_{code_.text};
-  std::unordered_map<std::string, std::size_t> column_indices_;
+  /// Parses `5`, `5:8`, `5:`, `:8` or `:`.
+  NumberRange parse_range() {
+    constexpr double kInfinity = std::numeric_limits<double>::infinity();
+    const Span first = token_.span;
+    NumberRange out{-kInfinity, kInfinity};
+    if (!is_symbol(":")) out.low = parse_number();
+    if (!take(":")) return {out.low, out.low};
+    if (is_symbol(",") || is_symbol("]") || is_symbol("}")) return out;
+    const Span last = token_.span;
+    out.high = parse_number();
+    if (out.low > out.high)
+      fail({first.begin, last.end}, "the range is empty", "write the smaller number first, as in: z in [20:60]");
+    return out;
+  }
+
+  double parse_number() {
+    const bool is_negative = take("-");
+    if (token_.kind != TokenKind::kNumber) fail_at_token("expected a number", kLists);
+    const double value = token_.number;
+    read();
+    return is_negative ? -value : value;
+  }
+
+  /// Sorts ranges and joins those that overlap.
+  static std::vector<NumberRange> disjoint(std::vector<NumberRange> ranges) {
+    std::sort(ranges.begin(), ranges.end(), [](const NumberRange& a, const NumberRange& b) { return a.low < b.low; });
+    std::vector<NumberRange> out;
+    for (const NumberRange& range : ranges) {
+      if (out.empty() || out.back().high < range.low) {
+        out.push_back(range);
+      } else {
+        out.back().high = std::max(out.back().high, range.high);
+      }
+    }
+    return out;
+  }
+
+  static constexpr std::size_t kUnused = std::numeric_limits<std::size_t>::max();
+  struct Known {
+    bool is_text;
+    std::size_t index;  ///< into the columns of the selection, or kUnused
+  };
+
+  std::string text_;
+  const std::vector<data::ColumnInfo>& columns_;
+  std::unordered_map<std::string_view, Known> known_;
+  Selection selection_;
+  SelectionLexer lexer_{text_};
   Token token_;
+  bool follows_equality_ = false;  ///< whether the token before token_ is == or !=
   int depth_ = 0;
 };
 
 }  // namespace
 
-SelectionCode parse_selection_code(std::string_view text) { return Parser(text).parse(); }
-
-void fail_selection(const std::string& selection, Span span, const std::string& text, const std::string& remedy) {
-  base::Diagnostic diagnostic;
-  diagnostic.text = text;
-  diagnostic.remedy = remedy;
-  diagnostic.source_line = selection;
-  diagnostic.column = selection.empty() ? 0 : static_cast<int>(span.begin) + 1;
-  diagnostic.width = std::max(1, static_cast<int>(span.end - span.begin));
-  throw base::Error(base::ErrorKind::kBadData, "invalid selection", {diagnostic});
+Selection parse_selection(std::string_view text, const std::vector<data::ColumnInfo>& columns) {
+  return Parser(text, columns).parse();
 }
 
 }  // namespace orrery::points

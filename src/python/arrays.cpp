@@ -50,9 +50,14 @@ py::object moved(std::vector<T> values) {
 
 std::shared_ptr<const data::Table> table_of(const std::vector<NamedArray>& columns) {
   auto out = std::make_shared<data::Table>();
-  for (const auto& [name, array] : columns) {
+  for (const auto& [name, array, words] : columns) {
     out->rows = static_cast<std::size_t>(array.shape(0));
-    out->columns.push_back({name, values_of(array)});
+    if (words) {
+      const std::vector<std::int32_t> index = copied<std::int32_t>(array);
+      out->columns.push_back({name, data::Words{*words, {index.begin(), index.end()}}});
+    } else {
+      out->columns.push_back({name, values_of(array)});
+    }
   }
   return out;
 }

@@ -4,8 +4,9 @@
 #include <pybind11/numpy.h>
 
 #include <memory>
+#include <optional>
 #include <string>
-#include <utility>
+#include <tuple>
 #include <vector>
 
 #include "data/table.h"
@@ -13,13 +14,15 @@
 
 namespace orrery::python {
 
-/// A column of a table: its name and a one-dimensional array of numbers.
-using NamedArray = std::pair<std::string, pybind11::array>;
+/// A column of a table: its name and a one-dimensional array; of strings, the array of their indices in the distinct
+/// ones.
+using NamedArray = std::tuple<std::string, pybind11::array, std::optional<std::vector<std::string>>>;
 
 /// Makes a table of arrays. Arrays of float64 and float32 are not copied, regardless of their strides; the caller keeps
 /// them alive.
 ///
-/// Domain     one-dimensional arrays of one length, of native float64, float32, int64, int32, uint16 or uint8
+/// Domain     one-dimensional arrays of one length, of native float64, float32, int64, int32, uint16 or uint8; indices
+///            are int32
 std::shared_ptr<const data::Table> table_of(const std::vector<NamedArray>& columns);
 
 /// Returns a str. Bytes that are not valid UTF-8, as in older files and folders, are replaced.

@@ -7,6 +7,8 @@
 #include <pybind11/stl.h>
 #include <pybind11/stl/filesystem.h>
 
+#include <atomic>
+#include <cerrno>
 #include <cstddef>
 #include <cstdint>
 #include <cstring>
@@ -20,12 +22,13 @@
 #include <utility>
 #include <vector>
 
-#include "base/error.h"
+#include "base/file_error.h"
 #include "base/module.h"
 #include "display/settings.h"
 #include "film/picture.h"
 #include "job/job.h"
 #include "job/job_report.h"
+#include "job/prepared_scene.h"
 #include "job/version.h"
 #include "plot/view.h"
 #include "points/color_map.h"
@@ -74,6 +77,18 @@ const char* class_of(base::ErrorKind kind) {
   return "Error";
 }
 
+/// Sets errno, strerror and filename of an OSError.
+void set_reason(const base::Error& error, const py::object& raised) {
+  const auto* const failed = dynamic_cast<const base::FileError*>(&error);
+  const int number = failed != nullptr                                ? failed->number()
+                     : error.kind() == base::ErrorKind::kMissingInput ? ENOENT
+                                                                      : EIO;
+  raised.attr("errno") = number;
+  raised.attr("strerror") = str_of(std::strerror(number));
+  if (failed != nullptr)
+    raised.attr("filename") = py::reinterpret_steal<py::str>(PyUnicode_DecodeFSDefault(failed->file().c_str()));
+}
+
 void translate(std::exception_ptr thrown) {
   try {
     if (thrown) std::rethrow_exception(thrown);
@@ -81,6 +96,7 @@ void translate(std::exception_ptr thrown) {
     const py::object type = py::module_::import("orrery._errors").attr(class_of(error.kind()));
     const py::object raised = type(str_of(text_of(error)));
     raised.attr("exit_status") = base::exit_status(error.kind());
+    if (PyErr_GivenExceptionMatches(type.ptr(), PyExc_OSError) != 0) set_reason(error, raised);
     PyErr_SetObject(type.ptr(), raised.ptr());
   }
 }
@@ -95,8 +111,15 @@ display::Settings display_settings(const std::string& display, const std::string
   return out;
 }
 
-Picture render_scene(const SceneData& scene, double noise, double seconds, int threads, std::uint64_t memory_limit,
-                     const std::string& isa, bool denoise, const py::object& on_progress,
+/// What the renders of a scene share. A copy of the scene begins with nothing.
+struct Prepared {
+  std::shared_ptr<job::PreparedScene> scene = std::make_shared<job::PreparedScene>();
+  /// During a render. Another one that runs at the same time, also from its on_progress, prepares its own scene.
+  std::atomic<bool> is_in_use{false};
+};
+
+Picture render_scene(const SceneData& scene, Prepared& prepared, double noise, double seconds, int threads,
+                     std::uint64_t memory_limit, const std::string& isa, bool denoise, const py::object& on_progress,
                      const py::object& on_warning) {
   job::Job job;
   job.scene = scene.source();
@@ -106,6 +129,12 @@ Picture render_scene(const SceneData& scene, double noise, double seconds, int t
   job.resources.memory_limit = memory_limit;
   job.resources.isa = isa;
   job.denoise = denoise;
+  if (prepared.is_in_use.exchange(true)) return render(std::move(job), on_progress, on_warning);
+  struct Release {
+    std::atomic<bool>& is_in_use;
+    ~Release() { is_in_use = false; }
+  } const release{prepared.is_in_use};
+  job.prepared = prepared.scene;
   return render(std::move(job), on_progress, on_warning);
 }
 
@@ -188,10 +217,14 @@ plot::ViewExtent extent_of(const std::vector<NamedArray>& positions, double radi
 }
 
 void bind_scene(py::module_& m) {
+  py::class_<Prepared>(m, "Prepared")
+      .def(py::init<>())
+      .def(py::pickle([](const Prepared&) { return py::tuple(); },
+                      [](const py::tuple&) { return std::make_unique<Prepared>(); }));
   py::class_<SceneData>(m, "SceneData")
-      .def(py::init([](std::filesystem::path file, bool is_file, std::string text, std::vector<std::string> overrides,
-                       int frame) {
-        return SceneData{std::move(file), is_file, std::move(text), std::move(overrides), frame, {}};
+      .def(py::init([](std::filesystem::path file, bool is_file, std::string text, int typed_lines,
+                       std::vector<std::string> overrides, int frame) {
+        return SceneData{std::move(file), is_file, std::move(text), typed_lines, std::move(overrides), frame, {}};
       }))
       .def("add_table", [](SceneData& self, const std::string& name,
                            const std::vector<NamedArray>& columns) { self.tables[name] = table_of(columns); })
@@ -203,6 +236,7 @@ void bind_scene(py::module_& m) {
             return out;
           },
           ReleaseGil())
+      .def("check_keys", &check_keys)  // with the GIL: it takes microseconds
       .def("save", &save, ReleaseGil())
       .def("largest_radius", &largest_radius, ReleaseGil())
       .def("render", &render_scene);

@@ -2,11 +2,22 @@
 #include "python/scene_data.h"
 
 #include <algorithm>
+#include <cerrno>
 #include <cmath>
+#include <cstdint>
+#include <memory>
+#include <string>
+#include <type_traits>
+#include <variant>
 
-#include "base/error.h"
+#include <fmt/core.h>
+
+#include "base/file_error.h"
 #include "base/file_set.h"
+#include "base/hash.h"
+#include "base/input_file.h"
 #include "base/output_file.h"
+#include "base/text.h"
 #include "data/table_file.h"
 #include "format/named_files.h"
 #include "format/read_result.h"
@@ -35,18 +46,65 @@ std::string moved(const std::string& name, const fs::path& from, const fs::path&
 /// Named in the data files of saved scenes, which save() may replace.
 constexpr const char* kWriter = "orrery Scene.save";
 
-/// The data file of a table next to the scene file.
-std::string table_file_name(const fs::path& scene_file, const std::string& table) {
-  return scene_file.stem().string() + "." + table + ".ply";
+/// The data file of a table next to the scene file. PLY cannot store strings.
+std::string table_file_name(const fs::path& scene_file, const std::string& name, const data::Table& table) {
+  const bool has_strings = std::any_of(table.columns.begin(), table.columns.end(),
+                                       [](const data::Column& c) { return c.type() == data::ColumnType::kText; });
+  return scene_file.stem().string() + "." + name + (has_strings ? ".npy" : ".ply");
 }
 
-void check_data_file(const fs::path& file) {
+/// Returns whether save() wrote an existing data file. NPY cannot store the writer's name; such a file belongs to the
+/// scene file that names it, which save() replaces.
+bool is_saved_data(const fs::path& file, const fs::path& scene_file) {
+  if (file.extension() == ".ply") return format::is_ply_of(kWriter, file);
+  try {
+    return base::contains(format::named_files(scene_file, {}).points, file.filename().string());
+  } catch (const base::Error&) {
+    return false;
+  }
+}
+
+void check_data_file(const fs::path& file, const fs::path& scene_file) {
   base::check_creatable(file);
   std::error_code ignored;
-  if (fs::exists(file, ignored) && !format::is_ply_of(kWriter, file))
-    throw base::Error(base::ErrorKind::kCannotCreate,
-                      "cannot create " + file.string() +
-                          ": the existing file was not written by save(); move it, or choose another name");
+  if (fs::exists(file, ignored) && !is_saved_data(file, scene_file))
+    throw base::FileError(base::ErrorKind::kCannotCreate,
+                          "cannot create " + file.string() +
+                              ": the existing file was not written by save(); move it, or choose another name",
+                          file, EEXIST);
+}
+
+/// Identifies the contents of a table: the owner of an array may change its values between two renders.
+std::string contents_of(const data::Table& table) {
+  std::string out;
+  for (const data::Column& column : table.columns) {
+    base::Hash hash;
+    const auto add = [&](auto value) {
+      if constexpr (std::is_floating_point_v<decltype(value)>)
+        hash.add(static_cast<double>(value));
+      else
+        hash.add_bits(static_cast<std::uint64_t>(value));
+    };
+    std::visit(
+        [&](const auto& values) {
+          if constexpr (requires { values.words; }) {
+            for (const std::string& word : values.words) out += word + '\n';
+            for (const std::uint32_t index : values.index) add(index);
+          } else {
+            for (std::size_t i = 0; i < values.size(); ++i) add(values[i]);
+          }
+        },
+        column.values);
+    out += fmt::format("{}: {} {} {}\n", column.name, column.values.index(), column.size(), hash.text());
+  }
+  return out;
+}
+
+format::ReadResult read(const SceneData& scene, std::uint64_t memory_limit) {
+  load::SceneRequest request;
+  request.source = scene.source();
+  request.memory_limit = memory_limit;
+  return load::read_with_data(request);
 }
 
 }  // namespace
@@ -58,13 +116,20 @@ load::SceneSource SceneData::source() const {
   out.has_file = is_file;
   for (const std::string& setting : overrides) out.overrides.add(setting, true);
   out.frame = frame;
-  if (!tables.empty())
-    out.open_data = [own = tables, folder = file.parent_path()](const fs::path& path,
-                                                                const data::OpenOptions& options) {
-      for (const auto& [name, table] : own)
-        if (path == folder / name) return data::open_table(name, table);
-      return particles::open(path, options);
-    };
+  out.typed_lines = typed_lines;
+  if (tables.empty()) return out;
+  const auto find = [own = std::make_shared<const Tables>(tables), folder = file.parent_path()](const fs::path& path) {
+    const auto found = own->find(path.filename().string());
+    return found != own->end() && path == folder / found->first ? &*found : nullptr;
+  };
+  out.open_data = [find](const fs::path& path, const data::OpenOptions& options) {
+    const auto* const own = find(path);
+    return own != nullptr ? data::open_table(own->first, own->second) : particles::open(path, options);
+  };
+  out.data_version = [find](const fs::path& path) {
+    const auto* const own = find(path);
+    return own != nullptr ? contents_of(*own->second) : base::file_version(path);
+  };
   return out;
 }
 
@@ -74,6 +139,8 @@ std::string read_scene_text(const fs::path& file) {
   return text;
 }
 
+void check_keys(const SceneData& scene) { static_cast<void>(read(scene, 0)); }
+
 std::vector<base::Diagnostic> check(const SceneData& scene) {
   load::SceneRequest request;
   request.source = scene.source();
@@ -81,12 +148,9 @@ std::vector<base::Diagnostic> check(const SceneData& scene) {
 }
 
 double largest_radius(const SceneData& scene, std::uint64_t memory_limit) {
-  load::SceneRequest request;
-  request.source = scene.source();
-  request.memory_limit = memory_limit;
   double out = 0;
   try {
-    for (const scene::Points& points : load::read_with_data(request).scene.points)
+    for (const scene::Points& points : read(scene, memory_limit).scene.points)
       for (const double radius : points.radii) out = std::max(out, std::abs(radius));
   } catch (const base::Error&) {
     return 0;
@@ -104,16 +168,18 @@ void save(const SceneData& scene, const fs::path& file) {
   files.add_output(file, "save()");
   base::check_creatable(file);
   for (const auto& [name, table] : scene.tables) {
-    files.add_output(folder / table_file_name(file, name), "points file");
-    check_data_file(folder / table_file_name(file, name));
+    const fs::path data = folder / table_file_name(file, name, *table);
+    files.add_output(data, "points file");
+    check_data_file(data, file);
   }
   const auto renamed = [&](const std::string& name) {
-    return scene.tables.count(name) != 0 ? table_file_name(file, name) : moved(name, scene.file.parent_path(), folder);
+    const auto table = scene.tables.find(name);
+    return table != scene.tables.end() ? table_file_name(file, name, *table->second)
+                                       : moved(name, scene.file.parent_path(), folder);
   };
   const std::string text = format::merged_text(scene.file, scene.text, source.overrides, renamed);
   for (const auto& [name, table] : scene.tables)
-    static_cast<void>(
-        particles::write_table(folder / table_file_name(file, name), *table, kWriter));  // all are numbers
+    static_cast<void>(particles::write_table(folder / table_file_name(file, name, *table), *table, kWriter));
   base::write_text_file(file, text);
 }
 

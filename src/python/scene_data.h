@@ -14,14 +14,18 @@
 
 namespace orrery::python {
 
+/// Tables of arrays, by the name that [[points]] gives as its file.
+using Tables = std::map<std::string, std::shared_ptr<const data::Table>>;
+
 /// A scene as Python holds it: the text of a scene file, overrides, and tables of arrays in place of data files.
 struct SceneData {
   std::filesystem::path file;  ///< scene file
   bool is_file = false;        ///< false: the scene was made in Python, and `file` is only its name
   std::string text;
+  int typed_lines = 0;  ///< lines at the beginning of `text` that are those of the scene file
   std::vector<std::string> overrides;
   int frame = 1;
-  std::map<std::string, std::shared_ptr<const data::Table>> tables;  ///< by the name that [[points]] gives as its file
+  Tables tables;
 
   /// The scene as a job reads it. The memory of the arrays must outlive the result's use.
   load::SceneSource source() const;
@@ -31,6 +35,11 @@ struct SceneData {
 ///
 /// Errors     base::Error: those of format::read_scene, except those for keys and data files
 std::string read_scene_text(const std::filesystem::path& file);
+
+/// Checks the keys of [[sphere]] and [[points]], and the names of columns and colour maps.
+///
+/// Errors     those of format::read_scene
+void check_keys(const SceneData& scene);
 
 /// Checks everything that a render would reject.
 ///
@@ -44,8 +53,8 @@ std::vector<base::Diagnostic> check(const SceneData& scene);
 /// `memory_limit`   maximum memory for reading the spheres, bytes; 0: the free memory
 double largest_radius(const SceneData& scene, std::uint64_t memory_limit);
 
-/// Writes the scene as a scene file, and its arrays as PLY files next to it. Both read back to the same scene. A PLY
-/// file is replaced only if orrery wrote it.
+/// Writes the scene as a scene file, and its arrays as PLY files next to it, or as NPY files if they have strings. Both
+/// read back to the same scene. A data file is replaced only if save() wrote it.
 ///
 /// Errors     those of check(); base::Error: kUsage if a file is an input of the scene; kCannotCreate; kIo
 void save(const SceneData& scene, const std::filesystem::path& file);

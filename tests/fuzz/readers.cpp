@@ -20,7 +20,7 @@
 #include "particles/open.h"
 #include "points/color_map.h"
 #include "points/load_points.h"
-#include "points/select.h"
+#include "points/selection.h"
 #include "scene/diagnostic.h"
 #include "scene/validate.h"
 
@@ -258,10 +258,12 @@ std::string fault_with_selection(const std::filesystem::path&, const std::string
       {"x", std::vector<double>{0, -1, 1e300, NAN}},   {"z", std::vector<float>{1, 2, 3, INFINITY}},
       {"type", std::vector<std::int32_t>{1, 2, 2, 3}}, {"c_stress[1]", std::vector<std::uint8_t>{0, 1, 2, 255}},
       {"name", data::Words{{"C", "N"}, {0, 1, 0, 0}}}, {"odd name", data::Words{{"N", ""}, {1, 0, 1, 1}}}};
+  std::vector<data::ColumnInfo> columns;
+  for (const data::Column& column : table.columns) columns.push_back({column.name, column.type()});
   return fault_with_reader(
       [&]() -> std::string {
-        const points::Selection selection = points::parse_selection(bytes);
-        for (const std::string& name : selection.columns())
+        const points::Selection selection = points::parse_selection(bytes, columns);
+        for (const std::string& name : selection.columns)
           if (name.empty()) return "a column without a name";
         const std::vector<std::uint8_t> mask = selection.evaluate(table);
         if (mask.size() != table.rows) return "a mask of another size";

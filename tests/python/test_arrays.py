@@ -122,6 +122,54 @@ class Layouts(unittest.TestCase):
         self.assertEqual(beauty(picked), beauty(small_scene(self.positions[keep])))
 
 
+class Strings(FolderTest):
+    """Columns of strings, as read_points() returns them."""
+
+    ELEMENTS = ["C", "H", "Na", "O"] * 15
+
+    def test_all_kinds_of_arrays(self):
+        keys = {"radius": {"element": "vdw"}, "color": {"element": "jmol"}, "select": "element in {C, O}"}
+        wanted = None
+        for elements in (self.ELEMENTS, np.array(self.ELEMENTS), np.array(self.ELEMENTS, object), np.array(self.ELEMENTS, "S")):
+            image = beauty(small_scene(positions(), columns={"element": elements}, **keys))
+            self.assertEqual(image, wanted or image)
+            wanted = image
+        others = ["C", "H", "Na", "N"] * 15
+        self.assertNotEqual(beauty(small_scene(positions(), columns={"element": others}, **keys)), wanted)
+
+    def test_each_string_has_a_color(self):
+        numbers = np.array([self.ELEMENTS.index(e) for e in self.ELEMENTS])
+        by_name = beauty(small_scene(positions(), color=orrery.colormap(self.ELEMENTS, "tab10")))
+        self.assertEqual(by_name, beauty(small_scene(positions(), color=orrery.colormap(numbers + 1, "tab10"))))
+
+    def test_columns_of_a_file_are_given_back(self):
+        p = positions()
+        with open("a.pdb", "w", encoding="ascii") as file:
+            for n, (x, y, z) in enumerate(p):
+                element, chain = self.ELEMENTS[n], "AB1"[n % 3]
+                file.write(f"HETATM{n:5d} {element:<4} MOL {chain}{n:4d}    {x:8.3f}{y:8.3f}{z:8.3f}  1.00  0.00          {element:>2}\n")
+            file.write("END\n")
+        points = orrery.read_points("a.pdb")
+        keys = {"material": "matte", "radius": {"element": "covalent"}, "select": "chain in {A, 1}", "color": {"column": "chain"}}
+        columns = {name: points[name] for name in points if name not in ("x", "y", "z")}
+        scene = small_scene(points.positions, columns=columns, **keys)
+        from_file = orrery.Scene(camera=orrery.Camera.fit(positions(), 0.3), background=orrery.Gradient())
+        from_file.set("points", [{"file": "a.pdb", **keys}])
+        from_file.set("render.samples", 4)
+        self.assertEqual(beauty(scene), beauty(from_file))
+
+    def test_saved_as_npy(self):
+        keys = {"radius": {"element": "vdw", "scale": 0.2}, "color": {"column": "name"}}
+        names = [f"caf\u00e9 {n % 7}" for n in range(60)]
+        scene = small_scene(positions(), columns={"element": self.ELEMENTS, "name": names}, **keys)
+        for _ in range(2):  # the second time, it replaces its own files
+            scene.save("saved.toml")
+            self.assertEqual(beauty(orrery.load("saved.toml")), beauty(scene))
+        with self.assertRaisesRegex(OSError, r"was not written by save\(\)"):
+            np.save("other.positions-1.npy", np.zeros(3))
+            scene.save("other.toml")
+
+
 class BadInput(FolderTest):
     def refused(self, kind, text, array, **keys):
         with self.assertRaisesRegex(kind, text):
@@ -142,6 +190,8 @@ class BadInput(FolderTest):
             orrery.colormap(p)
 
     def test_types(self):
+        for values in ([None] * 60, [["a"]] * 60, ["a", 1] * 30, np.zeros(60, complex)):
+            self.refused((TypeError, ValueError), "name must", positions(), columns={"name": values})
         for array in (np.zeros((3, 3), complex), np.full((3, 3), "a"), np.full((3, 3), None), [["a", "b", "c"]]):
             self.refused(TypeError, "positions must be an array of numbers", array)
 
@@ -172,21 +222,19 @@ class BadInput(FolderTest):
                 small_scene(p, radius=radii).check()
         with self.assertRaisesRegex(orrery.SceneError, "radius"):
             small_scene(p, radius=0).check()
-        scene = orrery.Scene()
-        scene.add_points(p)
         with self.assertRaisesRegex(orrery.SceneError, "the file has no radius"):
-            scene.check()
+            orrery.Scene().add_points(p)
 
     def test_unknown_names(self):
         p = positions()
         with self.assertRaisesRegex(orrery.SceneError, 'there is no colour map "viridi".*did you mean `viridis`'):
-            small_scene(p, color=orrery.colormap(p[:, 0], "viridi")).check()
+            orrery.colormap(p[:, 0], "viridi")
         with self.assertRaisesRegex(orrery.SceneError, 'material is "gold", which is not defined'):
             small_scene(p, material="gold").check()
         with self.assertRaisesRegex(orrery.SceneError, "has no column `speed`"):
-            small_scene(p, color={"column": "speed"}).check()
+            small_scene(p, color={"column": "speed"})
         with self.assertRaisesRegex(orrery.SceneError, "unknown key.*`selct`"):
-            small_scene(p, selct="x > 0").check()
+            small_scene(p, selct="x > 0")
 
 
 if __name__ == "__main__":

@@ -2,9 +2,12 @@
 """Scenes: the same bits and the same errors as the program; loading, saving and settings."""
 
 import copy
+import errno
 import os
 import pickle
+import tracemalloc
 import unittest
+import warnings
 
 import numpy as np
 import orrery
@@ -44,6 +47,51 @@ def write(name, text):
         file.write(text)
 
 
+class FurtherRenders(unittest.TestCase):
+    def test_they_have_the_bits_of_a_first_one(self):
+        points = positions()
+        scene = small_scene(points)
+
+        def move():
+            points[::7] += 0.25  # in place: the scene has the same array
+
+        changes = [
+            lambda: scene.set("render.seed", 7),
+            lambda: scene.set("material.matte.albedo", [0.1, 0.9, 0.2]),
+            move,
+            lambda: scene.set("render.precision", "fast"),
+            lambda: scene.add_sphere((0, 0, 3), 0.5),
+            lambda: scene.set("sphere[0].radius", 0.4),
+            lambda: scene.set("camera.vfov", 20),
+            lambda: scene.add_points(positions(20, 2), radius=0.2),
+            move,
+        ]
+        first = beauty(scene)
+        self.assertEqual(beauty(scene), first)
+        for change in changes:
+            change()
+            self.assertEqual(beauty(scene), beauty(copy.deepcopy(scene)))
+        self.assertNotEqual(beauty(scene), first)
+
+    def test_nothing_is_built_again_without_need(self):
+        scene = small_scene(positions())
+        self.assertGreater(scene.render(*SIZE).statistics["build_seconds"], 0)
+        scene.set("material.matte.albedo", [0.5, 0.1, 0.1])
+        self.assertEqual(scene.render(*SIZE).statistics["build_seconds"], 0)
+        self.assertEqual(beauty(scene), beauty(pickle.loads(pickle.dumps(scene))))
+
+    def test_a_render_may_start_in_on_progress(self):
+        scene = small_scene(positions())
+        pictures = []
+
+        def report(_):
+            if not pictures:
+                pictures.append(None)
+                pictures.append(beauty(scene))
+
+        self.assertEqual(scene.render(*SIZE, threads=2, on_progress=report).beauty.tobytes(), pictures[1])
+
+
 class CameraObjects(unittest.TestCase):
     def test_a_fitted_camera_is_copied_and_pickled(self):
         scene = small_scene(positions())
@@ -77,6 +125,181 @@ class Arguments(unittest.TestCase):
         with self.assertRaises(TypeError):
             scene.add_points(positions(), 1, select=object())
         self.assertEqual(repr(scene), before)
+
+
+class Changes(FolderTest):
+    """A call that fails leaves the scene as it was, and its message names only what the user wrote."""
+
+    def test_points_that_are_refused(self):
+        scene = small_scene(positions())
+        wanted = beauty(scene)
+        for keys, text in (
+            ({"selct": "x > 0"}, r"^add_points\(\): error: unknown key `selct`; did you mean `select`\?\n"),
+            ({"select": "x > 0 && q < 1"}, r"^add_points\(\): error: select: at character 10: unknown column q;"),
+            ({"color": {"column": "speed"}}, r"^add_points\(\): error: color.column: the file has no column `speed`"),
+            ({"color": {"column": "x", "map": "virids"}}, "there is no colour map \"virids\"; did you mean `viridis`"),
+            ({"radius": -1}, "radius is -1"),
+            ({"transform": {"scale": 0}}, "transform.scale is 0"),
+            ({"material": 5}, "material must be a string"),
+        ):
+            with self.subTest(keys=keys), self.assertRaisesRegex(orrery.SceneError, text):
+                scene.add_points(positions(), **{"radius": 0.1, **keys})
+        with self.assertRaisesRegex(TypeError, "'file'"):
+            scene.add_points(positions(), 0.1, file="a.ply")
+        self.assertEqual(beauty(scene), wanted)
+
+    def test_spheres_that_are_refused(self):
+        scene = small_scene(positions())
+        wanted = beauty(scene)
+        for arguments, text in (
+            (((0, 0, 0), 0), r"^add_sphere\(\): error: radius: radius is 0"),
+            (((0, 0), 1), "center must be three numbers"),
+            (((0, 0, float("nan")), 1), r"center\[2\] is nan"),
+            (((0, 0, 0), "1"), "radius must be a number"),
+            (((0, 0, 0), 1, 5), "material must be a string"),
+            ((5, 1), "center must be three numbers"),
+        ):
+            with self.subTest(arguments=arguments), self.assertRaisesRegex(orrery.SceneError, text):
+                scene.add_sphere(*arguments)
+        with self.assertRaises(TypeError):
+            scene.add_sphere((0, 0, object()), 1)
+        self.assertEqual(beauty(scene), wanted)
+
+    def test_a_material_may_be_added_later(self):
+        scene = small_scene(positions(), material="gold")
+        with self.assertRaisesRegex(orrery.SceneError, r"^scene: error: points\[0\].material is \"gold\", which is not defined"):
+            scene.check()
+        scene.add_material("gold", orrery.Metal(0.5))
+        self.assertEqual(scene.check(), [])
+
+    def test_lines_are_those_of_the_scene_file(self):
+        write("scene.toml", SCENE.replace("radius = 0.5", "radius = 0"))
+        scene = orrery.load("scene.toml")
+        scene.add_sphere((0, 0, 0), 1, "gold")
+        with self.assertRaises(orrery.SceneError) as caught:
+            scene.check()
+        line = SCENE[: SCENE.index("radius = 0.5")].count("\n") + 1
+        self.assertIn(f"scene.toml:{line}:", str(caught.exception))
+        self.assertIn("scene.toml: error: sphere[2].material is \"gold\"", str(caught.exception))
+
+    def test_none_removes_a_setting(self):
+        scene = small_scene(positions())
+        wanted = beauty(scene)
+        scene.set("camera.vfow", 30)
+        scene.set("background", orrery.Sky(20))
+        scene.set("background.turbidity", 3)
+        self.assertRaises(orrery.SceneError, scene.check)
+        scene.set("camera.vfow", None)
+        scene.set("background", None)
+        scene.set("camera.none", None)
+        scene.set("background", orrery.Gradient())
+        self.assertEqual(beauty(scene), wanted)
+
+    def test_the_cost_of_a_change_does_not_grow_with_the_scene(self):
+        scene = orrery.Scene()
+        for i in range(5000):
+            scene.add_sphere((i, 0, 0), 0.3)
+            scene.set(f"sphere[{i}].radius", 0.2)
+        self.assertEqual(scene.check(), [])
+
+        class Settings(dict):
+            __iter__ = None  # nothing looks at all settings
+
+        scene._settings = Settings(scene._settings)
+        tracemalloc.start()
+        try:
+            scene.add_sphere((0, 1, 0), 0.3)
+            scene.add_points(positions(), 0.1)
+            scene.add_material("gold", orrery.Metal(0.5))
+            self.assertLess(tracemalloc.get_traced_memory()[1], 50_000)  # nothing copies the text of all spheres
+        finally:
+            tracemalloc.stop()
+
+
+class Messages(FolderTest):
+    def test_wrong_arguments_are_named(self):
+        """No message shows the C++ functions behind the package."""
+        p, scene = positions(), small_scene(positions())
+        picture = scene.render(4, 4, samples=1)
+        wrong = (object(), 5, 1.5, -1, 2**70, float("nan"), "a\0b", "\ud800", b"\xff", None, True, [], {}, (1, 2, 3), ["a"])
+        calls = [
+            lambda v: orrery.Camera.fit(v),
+            lambda v: orrery.Camera.fit(p, v),
+            lambda v: orrery.Camera.fit(p, look_from=v),
+            lambda v: orrery.Camera.fit(p, up=v),
+            lambda v: orrery.Camera.fit(p).keys_for(v),
+            lambda v: orrery.Camera.fit(p).keys_for(1, v),
+            lambda v: orrery.Camera.fit(p).keys_for(1, 1, v),
+            lambda v: orrery.load(v),
+            lambda v: orrery.read_points(v),
+            lambda v: orrery.read_points("none.csv", frame=v),
+            lambda v: orrery.read_points("none.csv", component=v),
+            lambda v: orrery.read_points("none.csv", columns=v),
+            lambda v: orrery.colormap(v),
+            lambda v: orrery.colormap(p[:, 0], v),
+            lambda v: orrery.colormap(p[:, 0], range=v),
+            lambda v: orrery.colormap(p[:, 0], nan_color=v),
+            lambda v: small_scene(p).set(v, 1),
+            lambda v: small_scene(p).set("camera.vfov", v),
+            lambda v: small_scene(p).add_material(v, v),
+            lambda v: small_scene(p).add_sphere(v, 1),
+            lambda v: small_scene(p).add_sphere((0, 0, 0), v, v, name=v, group=v),
+            lambda v: small_scene(v),
+            lambda v: small_scene(p, radius=v),
+            lambda v: small_scene(p, color=v),
+            lambda v: small_scene(p, material=v),
+            lambda v: small_scene(p, columns=v),
+            lambda v: small_scene(p, columns={v: p[:, 0]}),
+            lambda v: small_scene(p, columns={"a": v}),
+            lambda v: small_scene(p, select=v, clip=v, name=v),
+            lambda v: small_scene(p).save(v),
+            lambda v: orrery.Scene(v, v, {"m": v}).check(),
+            lambda v: scene.render(v, 4, samples=1),
+            lambda v: scene.render(4, 4, samples=v and 1, frame=v),
+            lambda v: scene.render(4, 4, samples=1, threads=v),
+            lambda v: scene.render(4, 4, samples=1, noise=v and 1, time=v and 0.01),
+            lambda v: scene.render(4, 4, samples=1, on_progress=v),
+            lambda v: picture[v],
+            lambda v: picture.write(v),
+            lambda v: picture.write("a.exr", compression=v),
+            lambda v: picture.write("a.exr", type=v),
+            lambda v: picture.write("a.png", bits=v),
+            lambda v: picture.to_srgb8(display=v),
+            lambda v: picture.to_srgb8(view=v),
+            lambda v: picture.to_srgb8(look=v),
+            lambda v: picture.to_srgb8(exposure=v),
+        ]
+        raised = 0
+        for number, call in enumerate(calls):
+            for value in wrong:
+                with self.subTest(call=number, value=value), warnings.catch_warnings():
+                    warnings.simplefilter("ignore")
+                    try:
+                        call(value)
+                    except (orrery.Error, TypeError, ValueError, KeyError, OSError) as error:
+                        raised += 1
+                        self.assertNotRegex(str(error), r"incompatible|_orrery|std::|Invoked with|internal")
+        self.assertGreater(raised, len(calls) * len(wrong) // 2)
+
+    def test_errors_of_the_system_have_number_and_file(self):
+        write("points.toml", SCENE + '[[points]]\nfile = "none.ply"\nmaterial = "red"\n')
+        os.mkdir("folder.toml")
+        picture = small_scene(positions()).render(4, 4, samples=1)
+        for kind, number, file, call in (
+            (FileNotFoundError, errno.ENOENT, "none.toml", lambda: orrery.load("none.toml")),
+            (FileNotFoundError, errno.EISDIR, "folder.toml", lambda: orrery.load("folder.toml")),
+            (FileNotFoundError, errno.ENOENT, "none.csv", lambda: orrery.read_points("none.csv")),
+            (FileNotFoundError, errno.ENOENT, "none.ply", lambda: orrery.load("points.toml").check()),
+            (OSError, errno.ENOENT, "none/a.exr", lambda: picture.write("none/a.exr")),
+            (OSError, errno.ENOENT, "none/a.toml", lambda: small_scene(positions()).save("none/a.toml")),
+        ):
+            with self.subTest(file=file), self.assertRaises(kind) as caught:
+                call()
+            error = caught.exception
+            self.assertEqual((error.errno, error.filename, error.strerror), (number, file, os.strerror(number)))
+            self.assertIn(file, str(error))
+            self.assertNotIn("[Errno", str(error))
+            self.assertEqual(str(pickle.loads(pickle.dumps(error))), str(error))
 
 
 class Encodings(FolderTest):
@@ -339,10 +562,11 @@ class Cameras(FolderTest):
         self.assertNotEqual(beauty(self.fitted(0.0)), beauty(explicit))
 
     def test_errors_of_points_are_those_of_the_render(self):
-        for radius in (0, float("nan"), {"column": "size"}):
-            scene = orrery.Scene(camera=orrery.Camera.fit(positions()))
-            scene.add_points(positions(), radius=radius)
-            with self.subTest(radius=radius), self.assertRaisesRegex(orrery.SceneError, "radius|size"):
+        scene = orrery.Scene(camera=orrery.Camera.fit(positions()))
+        radii = np.zeros(len(positions()))
+        scene.add_points(positions(), radius=radii)
+        for radii[0] in (0, float("nan")):
+            with self.subTest(radius=radii[0]), self.assertRaisesRegex(orrery.SceneError, "radius"):
                 scene.render(8, 8, samples=1)
 
     def test_a_field_of_view_makes_a_fitted_camera_perspective(self):
@@ -505,7 +729,7 @@ class ReadPoints(FolderTest):
         np.save("a.npy", p)
         points = orrery.read_points("a.npy")
         from_file = orrery.Scene(camera=orrery.Camera.fit(p, 0.3))
-        from_file._add_table("points", {"file": "a.npy", "material": "matte", "radius": 0.3})
+        from_file.set("points", [{"file": "a.npy", "material": "matte", "radius": 0.3}])
         from_arrays = orrery.Scene(camera=orrery.Camera.fit(p, 0.3))
         from_arrays.add_points(points.positions, radius=0.3)
         self.assertEqual(beauty(from_file), beauty(from_arrays))

@@ -91,17 +91,17 @@ class Emitter(_Keys):
 class ColorMap:
     values: NDArray[Any]
     name: str
-    range: list[float] | None
+    range: Sequence[float] | None
     nan_color: _Vector | None
     def __init__(
-        self, values: NDArray[Any], name: str, range: list[float] | None, nan_color: _Vector | None
+        self, values: NDArray[Any], name: str, range: Sequence[float] | None, nan_color: _Vector | None
     ) -> None: ...
     def keys(self, column: str) -> dict[str, Any]: ...
 
 def colormap(
     values: ArrayLike,
     name: _Path = "viridis",
-    range: tuple[float, float] | None = None,
+    range: Sequence[float] | None = None,
     nan_color: _Vector | None = None,
 ) -> ColorMap: ...
 

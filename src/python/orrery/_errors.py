@@ -7,6 +7,9 @@ class Error(Exception):
 
     exit_status = 70  # of the program, for the same error
 
+    def __str__(self):  # OSError shows errno and filename, which the text contains
+        return str(self.args[0]) if self.args else ""
+
 
 class UsageError(Error, ValueError):
     """The request is invalid."""

@@ -3,12 +3,15 @@
 
 import json
 import os
+import re
 from collections.abc import Iterable, Mapping
 
 import numpy as np
 
-from orrery import _arrays
-from orrery._orrery import Extent
+from orrery import _arguments, _arrays
+from orrery._arguments import is_number
+from orrery._errors import Error
+from orrery._orrery import Extent, SceneData
 
 
 def toml_text(value):
@@ -26,7 +29,7 @@ def toml_text(value):
     if isinstance(value, os.PathLike):
         value = os.fspath(value)
     if isinstance(value, str):
-        return json.dumps(value, ensure_ascii=False).replace("\x7f", "\\u007F")
+        return json.dumps(_arguments.text("a string", value), ensure_ascii=False).replace("\x7f", "\\u007F")
     if isinstance(value, Mapping):
         return "{" + ", ".join(f"{toml_text(str(k))} = {toml_text(v)}" for k, v in value.items()) + "}"
     if isinstance(value, Iterable):
@@ -34,8 +37,28 @@ def toml_text(value):
     raise TypeError(f"a scene has no values of type {type(value).__name__}")
 
 
-def is_number(value):
-    return isinstance(value, (int, float, np.number)) and not isinstance(value, bool)
+def table_text(name, keys):
+    """Returns a table of an array of tables, such as [[sphere]]."""
+    lines = [f"{key} = {toml_text(value)}\n" for key, value in keys.items() if value is not None]
+    return f"\n[[{name}]]\n" + "".join(lines)
+
+
+def check_table(call, text, material, file="", columns=None):
+    """Checks the keys of a table, and the names of columns, but no values of arrays.
+
+    call      name of the function, for messages
+    material  name of the material, which may be defined later
+    file      name of the columns in the text
+    """
+    text = f"[material.{toml_text(str(material))}]\ntype = 'lambertian'\nalbedo = [0, 0, 0]\n{text}"
+    data = SceneData(call, False, text, 0, [], 1)
+    if columns is not None:
+        data.add_table(file, _arrays.native(columns, 0))
+    try:
+        data.check_keys()
+    except Error as error:  # the index is another one in the scene
+        error.args = (re.sub(r" in (points|sphere)\[0\]|\b(points|sphere)\[0\]\.", "", str(error)),)
+        raise
 
 
 def _color(value):
@@ -75,11 +98,11 @@ class Camera(Keys):
         look_from  "iso", "+x", "-x" .. "-z", or "azimuth,elevation" in degrees, as for `orrery plot`
         up         "x", "y" or "z"
         """
-        if radius is not None and not 0 <= radius < float("inf"):
-            raise ValueError(f"radius is {radius!r}; must be a finite number, at least 0")
-        columns = [(axis, column) for axis, column in zip("xyz", _arrays.positions(positions).T)]
+        radius_or_0 = 0.0 if radius is None else _arguments.number("radius", radius, 0, 1e18)
+        look_from, up = _arguments.text("look_from", look_from), _arguments.text("up", up)
+        columns = _arrays.native(dict(zip("xyz", _arrays.positions(positions).T)))
         camera = cls()
-        camera._extent = Extent(columns, float(radius or 0), look_from, up)
+        camera._extent = Extent(columns, radius_or_0, look_from, up)
         camera._completes_radius = radius is None
         camera.keys = camera.keys_for(16 / 9)
         return camera
@@ -93,7 +116,9 @@ class Camera(Keys):
         """
         if self._extent is None:
             return self.keys
-        return self._extent.camera(aspect, radius if self._completes_radius else 0.0, vfov)
+        aspect = _arguments.number("aspect", aspect, 1e-9, 1e9)
+        radius = _arguments.number("radius", radius, 0, 1e18) if self._completes_radius else 0.0
+        return self._extent.camera(aspect, radius, None if vfov is None else _arguments.number("vfov", vfov, 0, 180))
 
 
 class Constant(Keys):

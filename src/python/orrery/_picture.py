@@ -4,11 +4,14 @@
 import os
 import tempfile
 
-from orrery import _orrery
+from orrery import _arguments, _orrery
 
 
 def _display(display, view, look, exposure):
-    return _orrery.Display(display or "", view or "", look or "", exposure)
+    names = {"display": display, "view": view, "look": look}
+    texts = ["" if value is None else _arguments.text(name, value) for name, value in names.items()]
+    stops = None if exposure is None else _arguments.number("exposure", exposure, -1e4, 1e4)
+    return _orrery.Display(*texts, stops)
 
 
 class Picture:
@@ -52,6 +55,7 @@ class Picture:
     def __getitem__(self, name):
         if not isinstance(name, str):
             raise TypeError(f"layers have names, not {name!r}; pixels are picture.beauty[row, column]")
+        _arguments.text("name", name)
         array = self._native.array(name) if name else None
         if array is not None:
             return array
@@ -94,8 +98,11 @@ class Picture:
         if not files:
             raise TypeError("write() needs a file name")
         settings = _display(display, view, look, exposure)
-        names = [os.fspath(file) for file in files]
-        self._native.write(names, bits, settings, type == "float", compression, multipart, reproducible)
+        names = [_arguments.path("file", file) for file in files]
+        compression = _arguments.text("compression", compression)
+        self._native.write(
+            names, bits, settings, type == "float", compression, bool(multipart), bool(reproducible)
+        )
 
     def to_srgb8(self, *, display=None, view=None, look=None, exposure=None):
         """Returns the image for an sRGB display: uint8, shape (height, width, 3), or 4 with a transparent background.

@@ -6,8 +6,7 @@ from collections.abc import Mapping
 
 import numpy as np
 
-from orrery import _arrays
-from orrery import _orrery
+from orrery import _arguments, _arrays, _keys, _orrery
 
 
 class ColorMap:
@@ -35,18 +34,22 @@ class ColorMap:
 def colormap(values, name="viridis", range=None, nan_color=None):
     """Returns colours for Scene.add_points(): one value per position, shown by a colour map.
 
-    values     shape (n,)
+    values     shape (n,): numbers, or strings, of which each has its own colour
     name       one of orrery.color_maps, or a file, e.g. "map.txt"
     range      values at the ends of the map; by default the minimum and the maximum
     nan_color  linear colour of values that are NaN; by default grey
     """
-    array = _arrays.numbers(values, "values")
+    array = _arrays.numbers_or_strings(values, "values")
     if array.ndim != 1:
         raise ValueError(f"values must have the shape (n,), not {array.shape}")
-    name = os.fspath(name)
+    name = _arguments.path("name", name)
     if os.path.exists(name) and name not in _orrery.color_map_names():
         name = os.path.abspath(name)
-    return ColorMap(array, name, None if range is None else [float(x) for x in range], nan_color)
+    out = ColorMap(array, name, range, nan_color)
+    keys = {"file": "positions", "material": "matte", "radius": 1, "color": out.keys("x")}
+    columns = dict.fromkeys("xyz", np.empty(0))
+    _keys.check_table("colormap()", _keys.table_text("points", keys), "matte", "positions", columns)
+    return out
 
 
 class Points(Mapping):
@@ -115,4 +118,7 @@ def read_points(file, *, frame=1, component=None, columns=None):
     component  HDF5 snapshots: particle type
     columns    names of the columns to read; by default all
     """
-    return Points(*_orrery.read_points(os.fspath(file), frame, component, list(columns or [])))
+    file, frame = _arguments.path("file", file), _arguments.whole("frame", frame)
+    component = None if component is None else _arguments.whole("component", component)
+    names = [_arguments.text("a name in columns", name) for name in columns or []]
+    return Points(*_orrery.read_points(file, frame, component, names))

@@ -2,8 +2,6 @@
 """Scenes: the text of a scene file, settings that override it, and arrays in place of data files."""
 
 import math
-import operator
-import os
 import re
 import tomllib
 import warnings
@@ -12,7 +10,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from orrery import _arrays, _keys, _orrery
+from orrery import _arguments, _arrays, _keys, _orrery
 from orrery._errors import SceneWarning
 from orrery._picture import Picture
 from orrery._points import ColorMap
@@ -36,7 +34,7 @@ class Progress(NamedTuple):
 def load(file):
     """Returns the scene in a file. Keys and data files are checked when it is rendered, saved or checked."""
     scene = Scene()
-    scene._file = os.fspath(file)
+    scene._file = _arguments.path("file", file)
     scene._is_file = True
     scene._text = _orrery.read_scene_text(scene._file)
     return scene
@@ -55,9 +53,12 @@ class Scene:
     def __init__(self, camera=None, background=None, materials=None):
         self._file = "scene"
         self._is_file = False
-        self._text = _NEW_SCENE
+        self._text = _NEW_SCENE  # of the scene file
+        self._tables = []  # texts of [[sphere]] and [[points]] that were added to it
         self._settings = {}
+        self._parents = set()  # keys of tables of which single keys are set
         self._arrays = {}
+        self._prepared = _orrery.Prepared()  # what renders of this scene share
         self._radii = {}  # of the arrays; None if they are not a number for all
         if camera is not None:
             self.set("camera", camera)
@@ -72,17 +73,18 @@ class Scene:
     def set(self, key, value):
         """Sets a key, as --set does: scene.set("camera.vfov", 30), scene.set("background", orrery.Constant(0)).
 
-        A table, such as a Camera, replaces all keys of its name.
+        A table, such as a Camera, replaces all keys of its name. None removes the setting.
         """
-        if not isinstance(key, str):
-            raise TypeError(f"a key is text such as 'camera.vfov', not {key!r}")
-        if isinstance(value, (_keys.Keys, Mapping)):
+        key = _arguments.text("key", key)
+        if value is not None and not isinstance(value, _keys.Camera):
+            value = _keys.toml_text(value)
+        if key in self._parents and (value is None or value[:1] == "{" or isinstance(value, _keys.Camera)):
             for old in [old for old in self._settings if old.startswith(key + ".")]:
                 del self._settings[old]
-        if not isinstance(value, _keys.Camera):
-            value = _keys.toml_text(value)
         self._settings.pop(key, None)  # the last one wins, at its place
-        self._settings[key] = value
+        if value is not None:
+            self._settings[key] = value
+            self._parents.update(key[: dot.start()] for dot in re.finditer(r"\.", key))
 
     def add_material(self, name, material):
         """Adds a material, or replaces the one with this name."""
@@ -90,25 +92,33 @@ class Scene:
 
     def add_sphere(self, center, radius, material="matte", *, name=None, group=None):
         """Adds a sphere. A negative radius turns the normal inward, for hollow glass."""
-        self._add_table("sphere", dict(center=center, radius=radius, material=material, name=name, group=group))
+        keys = {"center": center, "radius": radius, "material": material, "name": name, "group": group}
+        text = _keys.table_text("sphere", keys)
+        if not _is_ordinary(center, radius, material, name, group):
+            _keys.check_table("add_sphere()", text, material)
+        self._tables.append(text)
 
     def add_points(self, positions, radius=None, *, color=None, material="matte", columns=None, **keys):
         """Adds a sphere per position.
+
+        Keys and names are checked at once, values of arrays when the scene is rendered, saved or checked.
 
         positions  shape (n, 3); float64 and float32 are read without a copy, in any layout
         radius     a number, or an array of shape (n,), or keys such as {"column": "mass", "scale": 0.1}
         color      a colormap(), or display-referred sRGB: shape (3,) or (n, 3), from 0 to 1, or integers to 255;
                    by default the colour of the material
-        columns    further arrays of shape (n,) by name, for keys that name columns
+        columns    further arrays of shape (n,) by name, for keys that name columns: numbers, or strings, which are copied
         keys       of [[points]]: select, clip, transform, name, group ...
         """
         positions = _arrays.positions(positions)
         rows = len(positions)
         table = dict(zip("xyz", positions.T))
-        for name, values in (columns or {}).items():
-            if not re.fullmatch(r"[A-Za-z_][A-Za-z0-9_]*", name):
-                raise ValueError(f"{name!r} is not a name for a column; use letters, digits and _")
+        for name, values in dict(columns or {}).items():
+            if not re.fullmatch(r"[^\s\x00-\x1f\x7f]+", _arguments.text("a name in columns", name)):
+                raise ValueError(f"{name!r} is not a name for a column; names have no spaces")
             _add_column(table, name, _arrays.column(values, name, rows))
+        if "file" in keys:
+            raise TypeError("add_points() has no key 'file'; set radius, color or columns, or read_points(file)")
         keys["material"] = material
         if radius is not None:
             keys["radius"] = _radius(radius, rows, table)
@@ -116,8 +126,10 @@ class Scene:
             keys["color"] = _color(color, rows, table)
         name = self._new_name()
         # Cryptomatte names spheres after their file, which is another one in a scene that was saved.
-        self._add_table("points", {"file": name, "name": name, **keys})
-        self._arrays[name] = list(table.items())
+        text = _keys.table_text("points", {"file": name, "name": name, **keys})
+        _keys.check_table("add_points()", text, material, name, table)
+        self._tables.append(text)
+        self._arrays[name] = table
         value = keys.get("radius")
         is_one = _keys.is_number(value) and math.isfinite(value) and "transform" not in keys
         self._radii[name] = abs(float(value)) if is_one else None
@@ -127,11 +139,11 @@ class Scene:
         return self._data().check()
 
     def save(self, file):
-        """Writes a scene file, and a PLY file next to it for each add_points(). Both read back without loss.
+        """Writes a scene file, and next to it a PLY file for each add_points(), or an NPY file if that has strings.
 
-        Comments of a loaded scene are not kept. No file that the scene reads is replaced.
+        Both read back without loss. Comments of a loaded scene are not kept. No file that the scene reads is replaced.
         """
-        self._data().save(os.fspath(file))
+        self._data().save(_arguments.path("file", file))
 
     def render(
         self,
@@ -159,13 +171,19 @@ class Scene:
         denoise        filters the beauty and the light layers, like `orrery render --denoise`
         on_progress    called with a Progress, at most ten times a second
 
+        The scene keeps what it has prepared: a further render reads and builds only what has changed since, such as a
+        material or the camera.
+
         Other Python threads can run in the meantime. KeyboardInterrupt, and an exception in on_progress, stop the render.
         """
-        sizes = [_whole("width", width), _whole("height", height)]
-        samples, frame = _whole("samples", samples), _whole("frame", frame)
+        sizes = [None if n is None else _arguments.whole(name, n) for name, n in (("width", width), ("height", height))]
+        samples = None if samples is None else _arguments.whole("samples", samples)
+        frame = _arguments.whole("frame", frame)
         limits = [_limit("noise", noise, 1e-6, 1), _limit("time", time, 1e-3, 1e9)]
-        threads = _limit("threads", _whole("threads", threads), 1, 1024)
+        threads = 0 if threads is None else _arguments.whole("threads", threads, 1, 1024)
         memory = int(_limit("memory_limit", memory_limit, 1, 2**63))
+        if on_progress is not None and not callable(on_progress):
+            raise TypeError(f"on_progress is {on_progress!r}; must be a function")
         data = self._data(*sizes, samples, frame, memory)
 
         def report(*values):
@@ -174,11 +192,7 @@ class Scene:
         def warn(text):
             warnings.warn(text.rstrip("\n"), SceneWarning, stacklevel=3)
 
-        return Picture(data.render(*limits, threads, memory, "", bool(denoise), report if on_progress else None, warn))
-
-    def _add_table(self, name, keys):
-        lines = [f"{key} = {_keys.toml_text(value)}\n" for key, value in keys.items() if value is not None]
-        self._text += ("" if self._text.endswith("\n") else "\n") + f"\n[[{name}]]\n" + "".join(lines)
+        return Picture(data.render(self._prepared, *limits, threads, memory, "", bool(denoise), report if on_progress else None, warn))
 
     def _new_name(self):
         """Returns a name for arrays that the scene does not use for a file."""
@@ -226,9 +240,11 @@ class Scene:
                     value = _keys.toml_text(value.keys_for(aspect, radius, vfov))
                 overrides.append(f"{key}={value}")
             overrides += [f"{key}={_keys.toml_text(value)}" for key, value in own.items() if value is not None]
-            out = _orrery.SceneData(self._file, self._is_file, self._text, overrides, frame)
-            for name, columns in self._arrays.items():
-                out.add_table(name, columns)
+            lines = self._text.count("\n") + 1 if self._is_file else 0
+            text = "\n".join([self._text, *self._tables])
+            out = _orrery.SceneData(self._file, self._is_file, text, lines, overrides, frame)
+            for name, table in self._arrays.items():
+                out.add_table(name, _arrays.native(table))
             return out
 
         camera = self._settings.get("camera")
@@ -248,21 +264,20 @@ def _table_of(value):
     return dict(value) if isinstance(value, Mapping) else {}
 
 
+def _is_ordinary(center, radius, material, name, group):
+    """Returns whether a sphere is certainly valid, because the reader takes 0.1 ms to find out."""
+    numbers = [*center, radius, 1, 1] if isinstance(center, (tuple, list, np.ndarray)) else []
+    return (
+        len(numbers) == 6
+        and all(_keys.is_number(x) and abs(x) < 1e9 for x in numbers)
+        and abs(radius) > 1e-9
+        and all(isinstance(word, str) for word in (material, name or "", group or ""))
+    )
+
+
 def _limit(name, value, low, high):
     """Returns a limit of a render; 0 if it is not set."""
-    if value is None:
-        return 0
-    if not _keys.is_number(value) or not low <= value <= high:
-        raise ValueError(f"{name} is {value!r}; must be in [{low:g}, {high:g}]")
-    return value
-
-
-def _whole(name, value):
-    """Returns an integer, or None."""
-    try:
-        return None if value is None else operator.index(value)
-    except TypeError:
-        raise TypeError(f"{name} is {value!r}; must be an integer") from None
+    return 0 if value is None else _arguments.number(name, value, low, high)
 
 
 def _add_column(table, name, values):

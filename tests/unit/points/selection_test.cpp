@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "points/select.h"
+#include "points/selection.h"
 
 #include <gtest/gtest.h>
 
@@ -37,9 +37,19 @@ Table six_atoms() {
   return table;
 }
 
+std::vector<data::ColumnInfo> columns_of(const Table& table) {
+  std::vector<data::ColumnInfo> out;
+  for (const Column& column : table.columns) out.push_back({column.name, column.type()});
+  return out;
+}
+
+std::vector<std::uint8_t> mask_of(const std::string& text, const Table& table) {
+  return parse_selection(text, columns_of(table)).evaluate(table);
+}
+
 /// The selected rows as digits: "024".
 std::string rows(const std::string& text, const Table& table = six_atoms()) {
-  const auto mask = parse_selection(text).evaluate(table);
+  const auto mask = mask_of(text, table);
   EXPECT_EQ(mask.size(), table.rows) << text;
   std::string out;
   for (std::size_t i = 0; i < mask.size(); ++i) {
@@ -49,14 +59,10 @@ std::string rows(const std::string& text, const Table& table = six_atoms()) {
   return out;
 }
 
-/// The diagnostic of a selection that fails, when it is parsed or when it is evaluated.
+/// The diagnostic of a selection that is invalid.
 base::Diagnostic fault(const std::string& text) {
   try {
-    parse_selection(text).check([] {
-      std::vector<data::ColumnInfo> columns;
-      for (const Column& column : six_atoms().columns) columns.push_back({column.name, column.type()});
-      return columns;
-    }());
+    parse_selection(text, columns_of(six_atoms()));
   } catch (const base::Error& error) {
     EXPECT_EQ(error.kind(), base::ErrorKind::kBadData) << text;
     EXPECT_EQ(error.diagnostics().size(), 1u) << text;
@@ -71,7 +77,7 @@ std::string message(const std::string& text) {
   return std::to_string(d.column) + "+" + std::to_string(d.width) + " " + d.text + "; " + d.remedy;
 }
 
-TEST(PointsSelect, ComparesNumbersOfAllTypes) {
+TEST(PointsSelection, ComparesNumbersOfAllTypes) {
   EXPECT_EQ(rows("type == 2"), "124");
   EXPECT_EQ(rows("type != 2"), "035");
   EXPECT_EQ(rows("z < 1"), "12");
@@ -82,7 +88,7 @@ TEST(PointsSelect, ComparesNumbersOfAllTypes) {
   EXPECT_EQ(rows("2 == type"), "124");
 }
 
-TEST(PointsSelect, ComparesStrings) {
+TEST(PointsSelection, ComparesStrings) {
   EXPECT_EQ(rows("element == \"C\""), "025");
   EXPECT_EQ(rows("element != 'C'"), "134");
   EXPECT_EQ(rows("'CA' == element"), "3");
@@ -91,15 +97,40 @@ TEST(PointsSelect, ComparesStrings) {
   EXPECT_EQ(rows("element != label"), "234");
 }
 
-TEST(PointsSelect, FindsInLists) {
+TEST(PointsSelection, FindsInLists) {
   EXPECT_EQ(rows("type in [3, 1]"), "035");
   EXPECT_EQ(rows("x in [-5, 2]"), "25");
   EXPECT_EQ(rows("element in [\"N\", 'CA']"), "134");
   EXPECT_EQ(rows("!(element in[\"N\"])"), "0235");
   EXPECT_EQ(rows("id / 10 in [2]"), "1");
+  EXPECT_EQ(rows("type in {3, 1}"), "035");
 }
 
-TEST(PointsSelect, PrecedenceIsThatOfC) {
+TEST(PointsSelection, FindsInClosedRanges) {
+  EXPECT_EQ(rows("id in [20:40]"), "123");
+  EXPECT_EQ(rows("id in [20.5:39.5]"), "2");
+  EXPECT_EQ(rows("x in [-5:0]"), "05");
+  EXPECT_EQ(rows("x in [-5:-1]"), "5");
+  EXPECT_EQ(rows("id in [50:]"), "45");
+  EXPECT_EQ(rows("id in [:20]"), "01");
+  EXPECT_EQ(rows("id in [ 20 : 20 ]"), "1");
+  EXPECT_EQ(rows("id in [10, 55:, 30:40, 35:45]"), "0235") << "lists may have ranges that overlap";
+  EXPECT_EQ(rows("id in {10, 55:}"), "05");
+  EXPECT_EQ(rows("x in [:]", six_atoms()), "01235") << "every number, but not NaN";
+  EXPECT_EQ(rows("x in [:100]"), "01235");
+}
+
+TEST(PointsSelection, StringsInBracesNeedNoQuotes) {
+  EXPECT_EQ(rows("element in {N, CA}"), "134");
+  EXPECT_EQ(rows("element in{C}&&label in {'N', C}"), "05");
+  Table table;
+  table.rows = 4;
+  table.columns = {Column{"chain", Words{{"A", "1", "2MG", "O5*"}, {0, 1, 2, 3}}}};
+  EXPECT_EQ(rows("chain in {1, 2MG}", table), "12") << "digits are strings in a column of strings";
+  EXPECT_EQ(rows("chain in {'O5*', A}", table), "03");
+}
+
+TEST(PointsSelection, PrecedenceIsThatOfC) {
   EXPECT_EQ(rows("type == 1 || type == 2 && z > 0"), "0234");
   EXPECT_EQ(rows("(type == 1 || type == 2) && z > 1"), "34");
   EXPECT_EQ(rows("1 + 2 * 3 == 7"), "012345");
@@ -109,7 +140,7 @@ TEST(PointsSelect, PrecedenceIsThatOfC) {
   EXPECT_EQ(rows("!!(type == 2)"), "124");
 }
 
-TEST(PointsSelect, Functions) {
+TEST(PointsSelection, Functions) {
   EXPECT_EQ(rows("abs(x) == 5"), "5");
   EXPECT_EQ(rows("sqrt(id * 10) == 10"), "0");
   EXPECT_EQ(rows("min(z, 1, v.x) == 1"), "0345");
@@ -117,16 +148,16 @@ TEST(PointsSelect, Functions) {
   EXPECT_EQ(rows("sqrt(x * x + z * z) < 2"), "01");
 }
 
-TEST(PointsSelect, NamesWithIndicesDotsAndBackquotes) {
+TEST(PointsSelection, NamesWithIndicesDotsAndBackquotes) {
   EXPECT_EQ(rows("c_stress[1] > 4"), "45");
   EXPECT_EQ(rows("v.x>4"), "01");
   EXPECT_EQ(rows("`Potential Energy` < -5"), "5");
   EXPECT_EQ(rows("`c_stress[1]`==1"), "0");
-  EXPECT_EQ(parse_selection("z > 1 && type in [1] && `a b` < z").columns(),
-            (std::vector<std::string>{"z", "type", "a b"}));
+  EXPECT_EQ(parse_selection("z > 1 && type in [1] && `Potential Energy` < z", columns_of(six_atoms())).columns,
+            (std::vector<std::string>{"z", "type", "Potential Energy"}));
 }
 
-TEST(PointsSelect, ComparisonsWithNanAreFalse) {
+TEST(PointsSelection, ComparisonsWithNanAreFalse) {
   for (const char* op : {"==", "!=", "<", "<=", ">", ">="}) {
     EXPECT_EQ(rows(std::string("x ") + op + " 0").find('4'), std::string::npos) << op;
     EXPECT_EQ(rows(std::string("0 ") + op + " x").find('4'), std::string::npos) << op;
@@ -136,14 +167,14 @@ TEST(PointsSelect, ComparisonsWithNanAreFalse) {
   EXPECT_EQ(rows("sqrt(x) >= 0"), "0123") << "the root of a negative number is NaN";
 }
 
-TEST(PointsSelect, EmptySelectsAll) {
+TEST(PointsSelection, EmptySelectsAll) {
   EXPECT_EQ(rows(""), "012345");
   EXPECT_EQ(rows(" \t\n"), "012345");
-  EXPECT_TRUE(parse_selection("").columns().empty());
+  EXPECT_TRUE(parse_selection("", columns_of(six_atoms())).columns.empty());
   EXPECT_EQ(Selection().evaluate(six_atoms()).size(), 6u);
 }
 
-TEST(PointsSelect, EvaluatesEveryBlock) {
+TEST(PointsSelection, EvaluatesEveryBlock) {
   // More than two blocks, the last of them incomplete.
   constexpr std::size_t kRows = 2500;
   Table table;
@@ -155,18 +186,18 @@ TEST(PointsSelect, EvaluatesEveryBlock) {
     word.index[i] = i % 2;
   }
   table.columns = {Column{"x", x}, Column{"word", word}};
-  const auto mask = parse_selection("word == 'odd' && (x < 3 || x * 2 - 1 >= 4995)").evaluate(table);
+  const auto mask = mask_of("word == 'odd' && (x < 3 || x * 2 - 1 >= 4995)", table);
   for (std::size_t i = 0; i < kRows; ++i) EXPECT_EQ(mask[i], i % 2 == 1 && (i < 3 || i >= 2498) ? 1 : 0) << i;
-  EXPECT_TRUE(parse_selection("x > 0").evaluate(Table{0, {Column{"x", std::vector<double>{}}}}).empty());
+  EXPECT_TRUE(mask_of("x > 0", Table{0, {Column{"x", std::vector<double>{}}}}).empty());
 }
 
-TEST(PointsSelect, UnknownColumnsAreReportedWithThoseThatExist) {
+TEST(PointsSelection, UnknownColumnsAreReportedWithThoseThatExist) {
   EXPECT_EQ(message("z > 0 && typ == 2"), "10+3 unknown column typ; did you mean `type`?");
   EXPECT_NE(message("charge > 0").find("columns are x, z, type, id"), std::string::npos);
   EXPECT_NE(message("element == Xe").find("strings are quoted: \"Xe\""), std::string::npos);
 }
 
-TEST(PointsSelect, TypesAreChecked) {
+TEST(PointsSelection, TypesAreChecked) {
   EXPECT_EQ(message("z > 0 && element == 2"),
             "10+7 text column element compared with a number; "
             "quote the other side, as in: element == \"C\"");
@@ -185,7 +216,7 @@ TEST(PointsSelect, TypesAreChecked) {
   EXPECT_EQ(message("abs(z > 0) == 1").substr(0, 9), "7+1 expec");
 }
 
-TEST(PointsSelect, SyntaxErrorsHavePositionAndRemedy) {
+TEST(PointsSelection, SyntaxErrorsHavePositionAndRemedy) {
   EXPECT_EQ(message("type = 2"), "6+1 unknown operator =; equality is ==");
   EXPECT_EQ(message("type == 2 and z > 0"), "11+3 expected an operator; write &&");
   EXPECT_EQ(message("not (z > 0)"), "1+3 unknown word not; write !");
@@ -198,6 +229,13 @@ TEST(PointsSelect, SyntaxErrorsHavePositionAndRemedy) {
   EXPECT_EQ(message("type in []").substr(0, 29), "10+1 expected a number or a s");
   EXPECT_EQ(message("type in 1").substr(0, 29), "9+1 expected a list after `in");
   EXPECT_EQ(message("type in [1, 'a']").substr(0, 29), "13+3 list of both numbers and");
+  EXPECT_EQ(message("id in [60:20]"), "8+5 the range is empty; write the smaller number first, as in: z in [20:60]");
+  EXPECT_EQ(message("id in [1:'a']").substr(0, 22), "10+3 expected a number");
+  EXPECT_EQ(message("type in {C}").substr(0, 34), "10+1 expected a number or a string");
+  EXPECT_EQ(message("element in [C]").substr(0, 34), "13+1 expected a number or a string");
+  EXPECT_EQ(message("element in {C]").substr(0, 20), "14+1 expected , or }");
+  EXPECT_EQ(message("element in ['C', 2:]").substr(0, 29), "18+1 list of both numbers and");
+  EXPECT_EQ(message("z : 1").substr(0, 24), "3+1 expected an operator");
   EXPECT_EQ(message("floor(z) > 1"), "1+5 unknown function floor; functions are abs, sqrt, min, max");
   EXPECT_EQ(message("abs(z, x) > 1").substr(0, 23), "1+3 abs with 2 operands");
   EXPECT_EQ(message("min(z) > 1").substr(0, 23), "1+3 min with 1 operands");
@@ -208,7 +246,7 @@ TEST(PointsSelect, SyntaxErrorsHavePositionAndRemedy) {
   EXPECT_EQ(fault("z >").source_line, "z >");
 }
 
-TEST(PointsSelect, HostileSelectionsAreRefusedOrEvaluated) {
+TEST(PointsSelection, HostileSelectionsAreRefusedOrEvaluated) {
   const std::size_t many = 100'000;
   EXPECT_NE(message(std::string(many, '(')).find("more than 100 nested"), std::string::npos);
   EXPECT_NE(message(std::string(many, '!')).find("more than 100 nested"), std::string::npos);

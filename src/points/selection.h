@@ -1,0 +1,59 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <functional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "data/table.h"
+
+/// Selection of the rows of a table. Pure functions, which read no data file.
+namespace orrery::points {
+
+class SelectionRun;
+
+/// A step of a selection in postfix order: takes its operands from the stacks of a run, and pushes its result. Postfix
+/// rather than a tree, to avoid recursion: a chain of a million `||` would be a million levels deep.
+using SelectionStep = std::function<void(SelectionRun&)>;
+
+/// A condition on text columns, which is tested once for each distinct string.
+struct TextTest {
+  std::size_t column = 0;          ///< index into the columns of the selection
+  std::size_t other = 0;           ///< the column that must have the same string, if `is_same`
+  bool is_same = false;            ///< false: the string must be in `words`
+  std::vector<std::string> words;  ///< without a particular order
+};
+
+/// A condition on the rows of a table: `type == 2 && z > 0`, `element == "C" || !(chain in {A, B})`.
+///
+/// Operators by precedence, weakest first: `||`, `&&`, one of `== != < <= > >= in`, `+ -`, `* /`, and the prefixes `!`
+/// and `-`; parentheses; functions abs(x), sqrt(x), min(x, y, ...), max(x, y, ...). `x in [1, 5:8, 20:]` tests for
+/// numbers and closed ranges, `chain in {A, B}` for strings. Strings are quoted, except in braces, and can be compared
+/// with ==, != and `in`. Columns are written by name, or `in backquotes` if the name contains characters other than
+/// letters, digits, `_`, `.` and indices as in `c_stress[1]`.
+///
+/// Any comparison with NaN is false, even `!=`.
+///
+/// Precision  numbers are double: integers beyond 2^53 are rounded before they are compared
+struct Selection {
+  std::vector<std::string> columns;  ///< those that it reads, each once, in order of appearance
+  std::vector<TextTest> text_tests;
+  std::vector<SelectionStep> steps;  ///< empty: all rows are selected
+
+  /// Returns for each row of a table whether it is selected, 1 or 0.
+  ///
+  /// Domain     a table with the columns of parse_selection(), as far as the selection reads them
+  /// Cost       on one core 0.03 s for ten million rows of `type == 2 && z > 0`; memory one byte per row
+  std::vector<std::uint8_t> evaluate(const data::Table& table) const;
+};
+
+/// Parses a selection of the rows of a table with some columns. A blank string selects all rows.
+///
+/// Errors     base::Error(kBadData) with one diagnostic: what is wrong, the remedy, and the selection as source line
+///            with column and width. The caller sets file and line.
+Selection parse_selection(std::string_view text, const std::vector<data::ColumnInfo>& columns);
+
+}  // namespace orrery::points
