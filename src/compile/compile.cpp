@@ -98,6 +98,7 @@ void add_motion(const scene::Scene& opening, const scene::Scene& closing, double
 /// Compiles an image background or a sky; without one, the gradient or constant colour.
 void set_background(const scene::Scene& scene, CompiledScene& compiled) {
   const scene::Background& from = scene.background;
+  compiled.backdrop = from.backdrop;
   std::shared_ptr<const scene::EnvironmentImage> image = from.image;
   if (!image && from.type == scene::BackgroundType::kSky)
     image = std::make_shared<const scene::EnvironmentImage>(bake_sky(from));
@@ -156,7 +157,9 @@ kernel::SceneView CompiledScene::view() const noexcept {
   v.camera = camera;
   v.background = background;
   v.environment = environment ? &environment->view() : nullptr;
-  v.background_visible = !environment || environment->view().visible;
+  v.background_visible = backdrop || !environment || environment->view().visible;
+  v.has_backdrop = backdrop.has_value();
+  v.backdrop = backdrop.value_or(math::Vec3d());
   v.features = features;
   v.shading = shading;
   v.max_depth = max_depth;

@@ -221,7 +221,9 @@ HWY_INLINE int shade(D d, const SceneView& scene, const Tile& tile, std::uint32_
       if (depth > 0 || scene.background_visible) {
         Vec3<hn::Vec<D>> light;
         auto groups = hn::Zero(du);
-        if (kLoop.lit && scene.environment != nullptr) {
+        if (depth == 0 && scene.has_backdrop) {
+          light = set3(d, scene.backdrop);
+        } else if (kLoop.lit && scene.environment != nullptr) {
           light = depth == 0 ? environment_radiance(d, *scene.environment, ray.direction)
                              : weighted_environment(d, scene, ray.direction, hn::Load(d, carried.pdf + v));
           groups = hn::Set(du, static_cast<Id>(scene.environment->light_group));
