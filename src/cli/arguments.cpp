@@ -8,6 +8,9 @@
 
 #include <fmt/core.h>
 
+#include "base/error.h"
+#include "base/text.h"
+
 namespace orrery::cli {
 namespace {
 
@@ -84,6 +87,16 @@ std::string Option::name() const {
   return names.empty() ? "" : "--" + names.front();
 }
 
+void Option::require_one() const {
+  const bool is_flag = option_->get_items_expected_max() == 0;  // a repeated flag means the same
+  if (takes_several_ || is_flag || option_->count() < 2) return;
+  std::vector<std::string> values;
+  for (const std::string& value : typed_.empty() ? option_->results() : typed_)
+    values.push_back(fmt::format("`{}`", value));
+  base::refuse(
+      fmt::format("{} is given {} times: {}; give it once", option_->get_name(), values.size(), base::joined(values)));
+}
+
 std::string Option::heading() const { return option_->get_group(); }
 
 Command* Command::add_subcommand(const std::string& name, const std::string& description) {
@@ -99,10 +112,10 @@ const Command& Command::subcommand(const std::string& name) const {
 
 void Command::require_subcommand() { app_->require_subcommand(1); }
 
-Option* Command::added(CLI::Option& option) {
+Option* Command::added(CLI::Option& option, bool takes_several) {
   // Otherwise, --frames "$frames" with an unset variable would be equivalent to no option.
   option.check(validator([](const std::string& value) { return value.empty() ? "the value is empty" : ""; }));
-  return &options_.emplace_back(option);
+  return &options_.emplace_back(option, takes_several);
 }
 
 Option* Command::add_option(const std::string& names, std::string& variable, const std::string& description) {
@@ -131,12 +144,12 @@ Option* Command::add_option(const std::string& names, std::optional<double>& var
 
 Option* Command::add_option(const std::string& names, std::vector<std::string>& variable,
                             const std::string& description) {
-  return added(*app_->add_option(names, variable, description));
+  return added(*app_->add_option(names, variable, description), true);
 }
 
 Option* Command::add_option(const std::string& names, std::vector<std::filesystem::path>& variable,
                             const std::string& description) {
-  return added(*app_->add_option(names, variable, description));
+  return added(*app_->add_option(names, variable, description), true);
 }
 
 Option* Command::add_flag(const std::string& names, bool& variable, const std::string& description) {
@@ -157,7 +170,12 @@ void Command::heading(const std::string& text) { heading_ = text; }
 
 void Command::footer(const std::string& text) { app_->footer(text); }
 
-void Command::callback(std::function<void()> function) { app_->callback(std::move(function)); }
+void Command::callback(std::function<void()> function) {
+  app_->callback([this, function = std::move(function)] {
+    for (const Option& option : options_) option.require_one();
+    function();
+  });
+}
 
 OptionGroup::OptionGroup(Command& command, const std::string& heading)
     : app_(command.app_), outer_(app_->option_defaults()->get_group()) {

@@ -25,7 +25,8 @@ using Check = std::function<std::string(std::string& value)>;
 /// An option or a positional argument.
 class Option {
  public:
-  explicit Option(CLI::Option& option) : option_(&option) {}
+  /// `takes_several`  its variable is a list
+  explicit Option(CLI::Option& option, bool takes_several = false) : option_(&option), takes_several_(takes_several) {}
 
   Option* required();
   Option* type_name(const std::string& name);
@@ -49,9 +50,14 @@ class Option {
   std::string name() const;
   /// The option's heading in the help.
   std::string heading() const;
+  /// Refuses an option of a single value that was given several times: all values but one would be ignored.
+  ///
+  /// Errors     base::Error(kUsage)
+  void require_one() const;
 
  private:
   CLI::Option* option_;
+  bool takes_several_;
   std::vector<std::string> typed_;  ///< values before transform()
 };
 
@@ -93,13 +99,14 @@ class Command {
   void heading(const std::string& text);
   /// Sets the text below the options in the help.
   void footer(const std::string& text);
-  /// Calls the function after parsing, if the command line names this command.
+  /// Calls the function after parsing, if the command line names this command. Options that were given twice are
+  /// refused before.
   void callback(std::function<void()> function);
 
  private:
   friend class OptionGroup;
 
-  Option* added(CLI::Option& option);
+  Option* added(CLI::Option& option, bool takes_several = false);
 
   CLI::App* app_;
   std::string heading_;

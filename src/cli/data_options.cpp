@@ -13,6 +13,7 @@
 #include "base/error.h"
 #include "base/frames.h"
 #include "cli/option_checks.h"
+#include "plot/data_frames.h"
 #include "scene/limits.h"
 
 namespace orrery::cli {
@@ -71,11 +72,10 @@ void read_points(const DataArguments& arguments, scene::Points& points) {
   }
 }
 
-void read_slice(const std::string& text, plot::DataOptions& data) {
-  if (text.empty()) return;
+std::pair<int, double> slice_of(const std::string& text) {
   const std::string usage = fmt::format("--slice: `{}` is not a plane; write AXIS=POSITION, e.g. z=10", text);
   if (text.size() < 3 || text[0] < 'x' || text[0] > 'z' || text[1] != '=') base::refuse(usage);
-  data.slice = std::pair{text[0] - 'x', numbers_of(text.substr(2), '=', 1, usage)[0]};
+  return {text[0] - 'x', numbers_of(text.substr(2), '=', 1, usage)[0]};
 }
 
 }  // namespace
@@ -95,10 +95,16 @@ void add_data_options(Command& command, DataArguments& arguments, plot::DataOpti
   command
       .add_option("--frames", arguments.frames, "Frames of the file: all, or e.g. 1-48; name outputs like out.####.png")
       ->type_name("RANGE");
-  command.add_option("--select", points.select, "Use only the rows that match, e.g. 'type == 2 && z > 0'")
-      ->type_name("CONDITION");
-  command.add_option("--slice", arguments.slice, "Slice plane: remove the spheres in front of it, e.g. z=10")
-      ->type_name("AXIS=POSITION");
+  command
+      .add_option("--select", arguments.select,
+                  "Use only the rows that match, e.g. 'type == 2 && z > 0'; if repeated, all must match")
+      ->type_name("CONDITION")
+      ->repeatable();
+  command
+      .add_option("--slice", arguments.slice,
+                  "Slice plane: remove the spheres in front of it, e.g. z=10; can be repeated")
+      ->type_name("AXIS=POSITION")
+      ->repeatable();
   command.add_option("--component", arguments.component, "HDF5: particle type, N of PartTypeN")
       ->check(whole_number(0, 1000))
       ->type_name("N");
@@ -142,7 +148,8 @@ void read_data_options(const DataArguments& arguments, plot::DataOptions& data) 
   if (!arguments.frames.empty() && !data.all_frames) data.frames = base::parse_frames(arguments.frames);
   data.has_map = arguments.map->count() > 0;
   read_points(arguments, data.points);
-  read_slice(arguments.slice, data);
+  data.points.select = plot::all_of(arguments.select);
+  for (const std::string& plane : arguments.slice) data.slices.push_back(slice_of(plane));
 }
 
 }  // namespace orrery::cli

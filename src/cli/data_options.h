@@ -2,6 +2,7 @@
 #pragma once
 
 #include <string>
+#include <vector>
 
 #include "plot/data_options.h"
 
@@ -12,7 +13,8 @@ class Option;
 
 /// Arguments of the data options that need further parsing.
 struct DataArguments {
-  std::string frame, frames, radius, range, slice, replicate, component;
+  std::string frame, frames, radius, range, replicate, component;
+  std::vector<std::string> select, slice;
   const Option* map = nullptr;
 };
 

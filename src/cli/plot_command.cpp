@@ -2,6 +2,7 @@
 #include <algorithm>
 #include <chrono>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -142,6 +143,15 @@ std::string saved_text(const std::string& text, const format::Overrides& overrid
   return fmt::format("{}\n\n{}", text.substr(0, text.find('\n')), format::merged_text("plot", text, settings, same));
 }
 
+/// The vertical field of view if the overrides select a perspective camera, also by a field of view alone. An invalid
+/// one is reported when the scene is read.
+std::optional<double> vfov_of(const format::Overrides& overrides) {
+  const std::optional<std::string> projection = overrides.string("camera.projection");
+  const std::optional<double> vfov = overrides.number("camera.vfov");
+  if (projection != "perspective" && (projection || !vfov)) return {};
+  return vfov && *vfov > 0 && *vfov < 180 ? *vfov : scene::Camera().vfov;
+}
+
 /// The display transform that the command line selects. Options have precedence over --set.
 display::Settings display_of(const display::Settings& options, const format::Overrides& overrides,
                              const std::filesystem::path& scene_file) {
@@ -217,9 +227,12 @@ int run_plot(PlotArguments& arguments) {
   read_data_options(arguments.data, plot);
   plot.has_size = overrides.sets("image.width") || overrides.sets("image.height");
   plot.has_style = !arguments.style.empty();
-  plot.style = arguments.style == "flat"    ? plot::Style::kFlat
+  plot.style = arguments.style == "ambient" ? plot::Style::kAmbient
+               : arguments.style == "flat"  ? plot::Style::kFlat
                : arguments.style == "night" ? plot::Style::kNight
                                             : plot::Style::kStudio;
+  plot.is_turntable = overrides.number("animation.turntable").value_or(0) != 0;
+  plot.vfov = vfov_of(overrides);
   plot.memory_limit = render.batch.job.resources.memory_limit > 0 ? render.batch.job.resources.memory_limit
                                                                   : base::available_memory().value_or(0);
   const bool saves = !arguments.save_scene.empty();
@@ -271,9 +284,14 @@ void add_view_options(Command& command, const std::shared_ptr<PlotArguments>& ar
   command.add_option("--up", arguments->plot.up, "Axis that points up in the image; default: z, y for PDB and mmCIF")
       ->check(one_of({"x", "y", "z"}))
       ->type_name("AXIS");
-  command.add_option("--style", arguments->style, "Look: studio, flat (no shading) or night; default: studio")
-      ->check(one_of({"studio", "flat", "night"}))
+  command
+      .add_option(
+          "--style", arguments->style,
+          "Look: studio, ambient (white light from all directions), flat (no shading) or night; default: studio")
+      ->check(one_of({"studio", "ambient", "flat", "night"}))
       ->type_name("STYLE");
+  command.add_flag("--allow-empty", arguments->plot.allow_empty,
+                   "Render the background alone if --select or --slice leaves nothing; default: an error");
   command.add_flag("--ground", arguments->plot.ground, "Add a ground that receives shadows");
 }
 

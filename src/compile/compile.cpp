@@ -118,6 +118,7 @@ void set_camera(const scene::Scene& opening, const scene::Scene* closing, Compil
 /// Compiles an image background or a sky; without one, the gradient or constant colour.
 void set_background(const scene::Scene& scene, CompiledScene& compiled) {
   const scene::Background& from = scene.background;
+  compiled.backdrop = from.backdrop;
   compiled.environment = nullptr;
   compiled.features.sky = false;
   std::shared_ptr<const scene::EnvironmentImage> image = from.image;
@@ -225,7 +226,9 @@ kernel::SceneView CompiledScene::view() const noexcept {
   v.camera = camera;
   v.background = background;
   v.environment = environment ? &environment->view() : nullptr;
-  v.background_visible = !environment || environment->view().visible;
+  v.background_visible = backdrop || !environment || environment->view().visible;
+  v.has_backdrop = backdrop.has_value();
+  v.backdrop = backdrop.value_or(math::Vec3d());
   v.features = features;
   v.shading = shading;
   v.max_depth = max_depth;

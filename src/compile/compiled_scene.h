@@ -52,6 +52,7 @@ struct CompiledScene {
   kernel::Camera camera;
   kernel::Camera camera_motion;
   kernel::Background background;
+  std::optional<math::Vec3d> backdrop;                ///< see scene::Background
   std::shared_ptr<const EnvironmentMap> environment;  ///< an image background; null: none
   kernel::Features features;
   kernel::Shading shading = kernel::Shading::kPath;

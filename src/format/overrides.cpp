@@ -252,6 +252,10 @@ std::optional<T> Overrides::value(std::string_view key) const {
 }
 
 std::optional<std::int64_t> Overrides::integer(std::string_view key) const { return value<std::int64_t>(key); }
+std::optional<double> Overrides::number(std::string_view key) const {
+  if (const auto whole = integer(key)) return static_cast<double>(*whole);
+  return value<double>(key);
+}
 std::optional<std::string> Overrides::string(std::string_view key) const { return value<std::string>(key); }
 
 }  // namespace orrery::format

@@ -81,8 +81,9 @@ class Overrides {
 
   bool sets(std::string_view key) const;
 
-  /// The value of a key if it is an integer or a string; otherwise, and if it is not set, nullopt.
+  /// The value of a key if it is an integer, a number or a string; otherwise, and if it is not set, nullopt.
   std::optional<std::int64_t> integer(std::string_view key) const;
+  std::optional<double> number(std::string_view key) const;
   std::optional<std::string> string(std::string_view key) const;
 
   /// All keys with the values that count, each once.

@@ -113,6 +113,7 @@ SceneHashes scene_hashes(const compile::CompiledScene& compiled, Hash hash) {
   }
   add_all(hash, compiled.background.bottom);
   add_all(hash, compiled.background.top);
+  if (compiled.backdrop) add_all(hash, *compiled.backdrop);  // others keep the hash that they had before there was one
   for (const std::uint64_t v :
        {std::uint64_t(compiled.width), std::uint64_t(compiled.height), std::uint64_t{compiled.max_depth},
         std::uint64_t{compiled.roulette_depth}, std::uint64_t{compiled.sampler.seed},

@@ -89,6 +89,8 @@ struct SceneView {
   /// the frame, so a window's pixels equal those of the full frame.
   std::uint32_t window_x = 0, window_y = 0;
   bool background_visible = true;  ///< false: camera rays that leave the scene carry no radiance
+  bool has_backdrop = false;       ///< camera rays that leave the scene carry `backdrop`, not the background's radiance
+  math::Vec3d backdrop{0, 0, 0};
 };
 
 /// A sphere at a time between 0 (shutter opens) and 1 (shutter closes), computed like in the kernel's loops.

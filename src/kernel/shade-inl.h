@@ -180,7 +180,9 @@ class Shader {
     if (depth_ == 0 && !scene_.background_visible) return;
     Vec3<V> radiance;
     Ids groups = hn::Zero(du);
-    if (features_.lit && scene_.environment != nullptr) {
+    if (depth_ == 0 && scene_.has_backdrop) {
+      radiance = set3(d, scene_.backdrop);
+    } else if (features_.lit && scene_.environment != nullptr) {
       radiance = depth_ == 0 ? environment_radiance(d, *scene_.environment, at.ray.direction)
                              : weighted_environment(d, scene_, at.ray.direction, at.pdf);
       groups = hn::Set(du, static_cast<Id>(scene_.environment->light_group));

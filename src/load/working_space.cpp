@@ -26,6 +26,7 @@ std::vector<BoundedColor> colors_of(scene::Scene& scene) {
   constexpr double kNoLimit = std::numeric_limits<double>::max();
   scene::Background& sky = scene.background;
   std::vector<BoundedColor> out = {{&sky.bottom, kNoLimit}, {&sky.top, kNoLimit}, {&sky.color, kNoLimit}};
+  if (sky.backdrop) out.push_back({&*sky.backdrop, kNoLimit});
   for (scene::Material& material : scene.materials)
     std::visit(
         [&](auto& model) {

@@ -15,7 +15,9 @@
 #include "points/color_map.h"
 #include "points/derived.h"
 #include "points/load_points.h"
+#include "points/select.h"
 #include "points/source_rows.h"
+#include "points/spacing.h"
 
 namespace orrery::plot {
 namespace {
@@ -113,6 +115,51 @@ LoadedFrame DataFrames::load(int frame, const scene::Points& keys, points::Sourc
   }
   if (!errors.empty())
     throw base::Error(base::ErrorKind::kBadData, "cannot use " + request.file.string(), std::move(errors));
+  return out;
+}
+
+std::vector<int> DataFrames::distinct() const {
+  std::vector<int> out = all();
+  if (out.size() > 1 && !is_sequence_ && file_->frame_count() == 1) out.resize(1);
+  return out;
+}
+
+double DataFrames::spacing(const scene::Points& keys) const {
+  scene::Points all_particles;
+  all_particles.file = keys.file;
+  all_particles.component = keys.component;
+  all_particles.material_column = keys.material_column;
+  all_particles.radius.value = 1;
+  all_particles.skip_bad = true;
+  const auto of_frame = [&](int frame) {
+    return points::median_neighbor_distance(load(frame, all_particles).points.centers);
+  };
+  double distance = 0;
+  if (is_sequence_) {
+    for (const int frame : all())
+      if (distance == 0) distance = of_frame(frame);
+    return distance;
+  }
+  distance = of_frame(1);
+  // Frames are counted only if that is necessary: it may read the whole file.
+  for (int frame = 2; distance == 0 && frame <= file_->frame_count(); ++frame) distance = of_frame(frame);
+  return distance;
+}
+
+std::string all_of(const std::vector<std::string>& conditions) {
+  if (conditions.size() == 1) return conditions.front();  // the points table checks it
+  std::string out;
+  for (const std::string& condition : conditions) {
+    try {
+      static_cast<void>(points::parse_selection(
+          condition));  // alone, so that the message counts its characters, and parentheses match
+    } catch (const base::Error& error) {
+      for (const base::Diagnostic& d : error.diagnostics())
+        throw base::Error(error.kind(), fmt::format("--select `{}`: at character {}: {}{}", condition, d.column, d.text,
+                                                    d.remedy.empty() ? "" : "; " + d.remedy));
+    }
+    out += fmt::format("{}({})", out.empty() ? "" : " && ", condition);
+  }
   return out;
 }
 

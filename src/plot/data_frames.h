@@ -43,6 +43,8 @@ class DataFrames {
   const std::vector<int>& numbers() const { return numbers_; }
   /// The frames to use; { 1 } for a single frame without a number.
   std::vector<int> all() const { return numbers_.empty() ? std::vector<int>{1} : numbers_; }
+  /// The frames to use that differ: a file with a single frame is the same in all.
+  std::vector<int> distinct() const;
   std::filesystem::path file_of(int frame) const;
 
   /// Reads the spheres of a frame.
@@ -51,6 +53,13 @@ class DataFrames {
   /// `source`   see points::LoadRequest
   /// Errors     base::Error: those of points::load_points(); kBadData with its errors
   LoadedFrame load(int frame, const scene::Points& keys, points::SourceRows* source = nullptr) const;
+
+  /// The median distance between neighbours in the first frame in which particles have neighbours; 0: in none. It
+  /// depends on the file alone, not on which frame and which particles are used: all panels of a figure show a particle
+  /// in one size. Of a sequence of files, the frames to use are measured.
+  ///
+  /// `keys`     the scene's keys
+  double spacing(const scene::Points& keys) const;
 
  private:
   void require_frames() const;
@@ -64,6 +73,11 @@ class DataFrames {
   int described_ = 1;
   std::vector<int> numbers_;
 };
+
+/// Returns the condition that all conditions are met; empty if there are none.
+///
+/// Errors     base::Error(kBadData) if one of several is malformed
+std::string all_of(const std::vector<std::string>& conditions);
 
 /// Sets the colour keys that `color_by` selects, with the names of DataOptions::color_by.
 ///

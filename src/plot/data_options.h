@@ -3,7 +3,6 @@
 
 #include <cstdint>
 #include <filesystem>
-#include <optional>
 #include <string>
 #include <utility>
 #include <vector>
@@ -20,8 +19,8 @@ struct DataOptions {
   scene::Points points;        ///< keys that the user has set; `file` and the spheres are not used
   std::string color_by;        ///< "element", "type", "rgb", "none" or a column; empty: not set
   bool has_map = false;        ///< the user set `points.color.map`
-  /// Slice plane: axis 0, 1 or 2, and position. Spheres in front of it are removed.
-  std::optional<std::pair<int, double>> slice = {};
+  /// Slice planes: axis 0, 1 or 2, and position. Spheres in front of any of them are removed.
+  std::vector<std::pair<int, double>> slices = {};
   std::uint64_t memory_limit = 0;  ///< bytes; 0: no limit
 };
 

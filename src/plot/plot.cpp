@@ -7,15 +7,15 @@
 
 #include <fmt/core.h>
 
+#include "base/error.h"
+#include "base/text.h"
 #include "data/data_file.h"
-
 #include "display/look_up.h"
 #include "plot/data_frames.h"
 #include "plot/loaded_frame.h"
 #include "plot/scene_text.h"
 #include "plot/view.h"
 #include "points/color_map.h"
-#include "points/spacing.h"
 #include "scene/value_text.h"
 
 namespace orrery::plot {
@@ -53,16 +53,24 @@ class PlotMaker {
       chose("up " + up_name, info_.z_up ? "customary for simulations and scans" : "customary for molecules");
     const math::Vec3d up = axis_of(up_name);
     const ViewAxes axes = view_axes(options_.look_from, up_name);
-    if (options_.slice) slice(*options_.slice, axes, out_.points);
-    ViewExtent extent(axes);
+    for (const auto& plane : options_.slices) slice(plane, axes, out_.points);
+    // A camera that looks along the up axis orbits around the vertical of its image.
+    const bool is_vertical = math::length(math::cross(up, axes.back)) < kSmallestSine;
+    const math::Vec3d pole = options_.is_turntable && !is_vertical ? up : axes.up;
+    ViewExtent extent(options_.is_turntable ? turned(axes, pole) : axes);
     visit_frames(extent, up);
-    if (extent.is_empty()) out_.warnings.push_back("nothing to render: " + empty_scene_reason());
+    if (extent.is_empty()) report_empty();
+    if (options_.is_turntable && !extent.is_empty()) extent = orbit(axes, extent.center(), pole);
     const double aspect = static_cast<double>(options_.width) / options_.height;
-    const scene::Camera camera = extent.camera(aspect);
-    chose(fmt::format("view {}, {} wide", options_.look_from, number_text(rounded(*camera.width))),
-          out_.frames.size() > 1 ? "fitted to the spheres of all frames" : "fitted to the spheres");
+    scene::Camera camera = options_.vfov ? extent.perspective_camera(aspect, *options_.vfov) : extent.camera(aspect);
+    camera.up = pole;
+    chose(fmt::format("view {}, {}", options_.look_from,
+                      options_.vfov ? fmt::format("vertical field of view {}", number_text(*options_.vfov))
+                                    : number_text(rounded(*camera.width)) + " wide"),
+          fmt::format("fitted to the spheres{}{}", out_.frames.size() > 1 ? " of all frames" : "",
+                      options_.is_turntable ? " and the whole orbit" : ""));
     choose_display_view();
-    PlotParts parts{options_, out_.points, camera, out_.view, extent.center(), extent.radius(), {}};
+    PlotParts parts{options_, out_.points, camera, out_.view, axes, extent.center(), extent.radius(), {}};
     if (options_.ground && !extent.is_empty()) {
       parts.ground = ground_below(lowest_, up, extent);
       if (hides_view(*parts.ground, camera, aspect)) {
@@ -71,7 +79,8 @@ class PlotMaker {
               fmt::format("it would hide the spheres from {}; look from further above", options_.look_from));
       }
     }
-    if (!options_.has_style) chose("style studio", "white light from all directions");
+    if (!options_.has_style)
+      chose("style studio", "a key light from the upper left, and white light from all directions");
     if (!options_.has_size)
       chose(fmt::format("size {} x {}", options_.width, options_.height), "--width and --height change it");
     out_.text = scene_text(parts);
@@ -79,11 +88,31 @@ class PlotMaker {
   }
 
  private:
-  /// Formats a number with a sensible number of digits.
-  static double rounded(double x) {
+  /// Minimum sine of the angle between the camera and the up axis for an orbit around that axis.
+  static constexpr double kSmallestSine = 1e-6;
+
+  /// Rounds a number to a sensible number of digits.
+  static double rounded(double x, int digits = 4) {
     char text[32];
-    std::snprintf(text, sizeof(text), "%.4g", x);
+    std::snprintf(text, sizeof(text), "%.*g", digits, x);
     return std::strtod(text, nullptr);
+  }
+
+  /// A range with as many digits as distinguish a thousandth of it, at least four.
+  static std::string range_text(const scene::Interval& range) {
+    const auto digits_suffice = [&](int digits) {
+      const double error = std::max(std::abs(rounded(range.low, digits) - range.low),
+                                    std::abs(rounded(range.high, digits) - range.high));
+      return range.low == range.high || error <= (range.high - range.low) / 1000;
+    };
+    int digits = 4;
+    while (digits < 17 && !digits_suffice(digits)) ++digits;
+    return number_text(rounded(range.low, digits)) + ":" + number_text(rounded(range.high, digits));
+  }
+
+  /// The axes of the same view at the height of its target.
+  static ViewAxes turned(const ViewAxes& axes, const math::Vec3d& pole) {
+    return {axes.right, pole, math::cross(axes.right, pole)};
   }
 
   void chose(const std::string& what, const std::string& why) {
@@ -101,27 +130,41 @@ class PlotMaker {
       chose("frame 1", "the first; --frame N selects another");
   }
 
-  /// Describes what has no spheres, and what to do.
-  std::string empty_scene_reason() const {
-    if (out_.frames.size() > 1) return fmt::format("none of the {} frames has spheres", out_.frames.size());
+  /// The options that select spheres; empty: none does.
+  std::string selection() const {
+    std::vector<std::string> out;
+    if (!options_.points.select.empty()) out.emplace_back("--select");
+    if (!options_.slices.empty()) out.emplace_back("--slice");
+    return base::joined(out);
+  }
+
+  /// Reports that there are no spheres: an error if the user's selection leaves none, a warning if the file has none.
+  void report_empty() {
+    const std::size_t frames = out_.frames.size();
+    const std::string which = frames > 1 ? fmt::format("none of the {} frames has spheres", frames) : "";
+    if (const std::string options = selection(); !options.empty() && info_.rows > 0) {
+      const std::string left = frames > 1 ? which + " with " + options
+                                          : fmt::format("{} leaves none of the {} particles", options, info_.rows);
+      if (!options_.allow_empty)
+        throw base::Error(base::ErrorKind::kBadData,
+                          fmt::format("nothing to render: {}; `orrery info {}` lists the columns and their values, "
+                                      "--allow-empty renders the background alone",
+                                      left, options_.file.string()));
+      return out_.warnings.push_back("nothing to render: " + left);
+    }
     const std::optional<int> count = data_.frame_count();
-    if (count == 1 || data_.is_sequence())
-      return std::string(options_.points.select.empty() ? "the file" : "the selection") + " has no spheres";
-    return fmt::format("frame {}{} has no spheres; --frame N selects another, --frames all renders all",
-                       data_.described_frame(), count ? fmt::format(" of {}", *count) : "");
+    if (frames > 1)
+      out_.warnings.push_back("nothing to render: " + which);
+    else if (count == 1 || data_.is_sequence())
+      out_.warnings.emplace_back("nothing to render: the file has no spheres");
+    else
+      out_.warnings.push_back(
+          fmt::format("nothing to render: frame {}{} has no spheres; --frame N selects another, "
+                      "--frames all renders all",
+                      data_.described_frame(), count ? fmt::format(" of {}", *count) : ""));
   }
 
   scene::Points load(int frame) const { return data_.load(frame, out_.points).points; }
-
-  /// The median distance between neighbours in the first frame where particles have neighbours; 0: in none.
-  double spacing() {
-    const math::Vec3d replicate = std::exchange(out_.points.replicate, {1, 1, 1});
-    double distance = 0;
-    for (const int frame : data_.all())
-      if (distance == 0) distance = points::median_neighbor_distance(load(frame).centers);
-    out_.points.replicate = replicate;
-    return distance;
-  }
 
   void choose_radius() {
     scene::PointsRadius& radius = out_.points.radius;
@@ -134,7 +177,7 @@ class PlotMaker {
       chose("radius vdw", "van der Waals radii of the elements");
     } else {
       radius.value = 1;
-      const double distance = spacing();
+      const double distance = data_.spacing(out_.points);
       if (distance > 0) radius.value = distance / 2;
       radius.value = rounded(*radius.value * radius.scale);
       chose("radius " + number_text(*radius.value),
@@ -157,10 +200,9 @@ class PlotMaker {
       out.push_back(fmt::format("{}: {}", by == "none" ? "no colour" : "colour by " + by, why));
     }
     if (set_color(options_, by, info_, color))
-      out.push_back(fmt::format("map {}: {}", color.map,
-                                points::find_color_map(color.map)->is_categorical
-                                    ? "colours for categories"
-                                    : "no dark colours, which shading would hide"));
+      out.push_back(fmt::format(
+          "map {}: {}", color.map,
+          points::find_color_map(color.map)->is_categorical ? "colours for categories" : "the default for numbers"));
     return out;
   }
 
@@ -177,8 +219,11 @@ class PlotMaker {
   void visit_frames(ViewExtent& extent, const math::Vec3d& up) {
     const bool needs_range = !out_.points.color.column.empty() && !out_.points.color.range;
     std::optional<scene::Interval> range;
-    for (const int frame : data_.all()) {
+    std::size_t fewest = std::numeric_limits<std::size_t>::max(), most = 0;
+    for (const int frame : data_.distinct()) {
       const scene::Points points = load(frame);
+      fewest = std::min(fewest, points.centers.size());
+      most = std::max(most, points.centers.size());
       extent.add(points);
       for (std::size_t i = 0; i < points.centers.size(); ++i)
         lowest_ = std::min(lowest_, math::dot(points.centers[i], up) - std::abs(points.radii[i]));
@@ -186,6 +231,7 @@ class PlotMaker {
       out_.legend.add(points);
       widen(range, points);
     }
+    report_count(fewest, most);
     out_.legend.range = out_.points.color.range ? out_.points.color.range : range;
     if (out_.legend.has_conflict)
       out_.warnings.push_back(
@@ -194,8 +240,29 @@ class PlotMaker {
                       out_.legend.title));
     if (!needs_range || !range) return;
     if (range->low < range->high) out_.points.color.range = range;
-    chose(fmt::format("range {}:{}", number_text(range->low), number_text(range->high)),
+    chose("range " + range_text(*range),
           out_.frames.size() > 1 ? "minimum and maximum over all frames" : "minimum and maximum");
+  }
+
+  /// Prints how many spheres are drawn, next to the number of particles, where they differ.
+  void report_count(std::size_t fewest, std::size_t most) {
+    if (most == info_.rows && fewest == most) return;
+    std::vector<std::string> why;
+    if (!options_.points.assembly.empty()) why.push_back("assembly " + options_.points.assembly);
+    if (!(options_.points.replicate == math::Vec3d{1, 1, 1})) why.emplace_back("--replicate");
+    if (const std::string options = selection(); !options.empty()) why.push_back(options);
+    if (why.empty()) why.emplace_back(fewest == most ? "--skip-bad" : "the fewest and the most of all frames");
+    out_.choices.insert(
+        out_.choices.begin() + 1,
+        fmt::format("{} {}: {}", fewest == most ? std::to_string(most) : fmt::format("{} to {}", fewest, most),
+                    most == 1 ? "sphere" : "spheres", base::joined(why)));
+  }
+
+  /// The space that the spheres of all frames pass through on the orbit of the camera.
+  ViewExtent orbit(const ViewAxes& axes, const math::Vec3d& pivot, const math::Vec3d& pole) const {
+    ViewExtent out(axes);
+    for (const int frame : data_.distinct()) out.add_orbits(load(frame), pivot, pole);
+    return out;
   }
 
   const PlotOptions& options_;

@@ -3,6 +3,7 @@
 
 #include <filesystem>
 #include <functional>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -14,7 +15,7 @@
 /// Makes a scene for a data file: settings that the user did not choose are chosen from the data, and reported.
 namespace orrery::plot {
 
-enum class Style { kStudio, kFlat, kNight };
+enum class Style { kStudio, kAmbient, kFlat, kNight };
 
 struct PlotOptions : DataOptions {
   std::string look_from = "iso";  ///< "iso", "+x" .. "-z", or "azimuth,elevation" in degrees
@@ -25,6 +26,9 @@ struct PlotOptions : DataOptions {
   int width = 1920, height = 1080;  ///< px
   display::Settings display;        ///< display transform of the images; an empty view is chosen
   bool has_size = false;            ///< the user set `width` or `height`
+  std::optional<double> vfov = {};  ///< degrees: a perspective camera; default: orthographic
+  bool is_turntable = false;        ///< the camera orbits around the up axis
+  bool allow_empty = false;         ///< a selection or a slice may leave nothing
 };
 
 /// The view that reproduces the colours of the colour map, if the OCIO config defines it.
@@ -44,9 +48,10 @@ struct PlotScene {
 ///
 /// `folder`   folder of the scene file; paths in the scene are relative to it
 /// `check`    called with PlotScene::frames before any row is read, so that an invalid request fails early
-/// Errors     base::Error: those of points::load_points() and particles::open(); kBadData with its errors; kUsage for
-///            an invalid view, and for options without effect; those of `check`
-/// Cost       reads every frame once, to fit the camera and the colour map
+/// Errors     base::Error: those of points::load_points() and particles::open(); kBadData with its errors, and if a
+///            selection or a slice leaves nothing; kUsage for an invalid view, and for options without effect; those of
+///            `check`
+/// Cost       reads every frame once, to fit the camera and the colour map; twice for a turntable
 PlotScene make_plot(const PlotOptions& options, const std::filesystem::path& folder,
                     const std::function<void(const std::vector<int>& frames)>& check = {});
 

@@ -70,15 +70,54 @@ std::string points_text(const scene::Points& points) {
   return out;
 }
 
-/// A lamp in front of the scene, to the upper left. It is behind the camera's plane, which does not see it.
-std::string lamp_text(const PlotParts& parts) {
-  const math::Vec3d back = math::normalized(parts.camera.look_from - parts.camera.look_at);
-  const math::Vec3d right = math::cross(parts.camera.up, back);
-  const math::Vec3d toward = math::normalized(back + parts.camera.up * 0.9 - right * 0.7);
-  constexpr double kDistance = 6, kRadius = 1.2;  // in radii of the scene
+/// The light of a style: a spherical lamp to the upper left of the camera, a background, and what the camera sees of
+/// it.
+struct Lighting {
+  const char* background;  ///< radiance from all directions
+  const char* backdrop;    ///< colour behind the spheres; null: the background
+  const char* ground;      ///< albedo
+  // The lamp. It is behind the camera's plane, which does not see it.
+  const char* radiance;  ///< null: no lamp
+  double up, left;       ///< its position along the image's axes, where the distance towards the camera is 1
+  double distance;       ///< from the centre, in radii of the scene
+  double radius;         ///< in radii of the scene
+};
+
+/// Half of the light on a sphere comes from all directions, so that gaps between spheres are dark, and half from a lamp
+/// of 35 degrees, whose shadows are soft. It is far away, so that it illuminates all parts alike. The mean radiance
+/// over the image of an unoccluded matte sphere is then that of its albedo in white light of radiance 1 (test
+/// PlotPlot.TheMeanOfASphereInTheStudioIsItsColor).
+constexpr Lighting kStudio = {
+    "[0.5, 0.5, 0.5]", "[1, 1, 1]", "[0.75, 0.75, 0.75]", "[10.896, 10.896, 10.896]", 0.7, 0.5, 100, 30};
+constexpr Lighting kWhite = {"[1, 1, 1]", nullptr, "[0.95, 0.95, 0.95]", nullptr, 0, 0, 0, 0};
+/// The irradiance at the centre, pi times radiance times (radius / distance)^2, is that of a white dome.
+constexpr Lighting kNight = {"[0.02, 0.02, 0.025]", nullptr, "[0.1, 0.1, 0.1]", "[25, 24.5, 23.5]", 0.9, 0.7, 6, 1.2};
+
+const Lighting& lighting_of(Style style) {
+  switch (style) {
+    case Style::kStudio: return kStudio;
+    case Style::kAmbient:
+    case Style::kFlat: return kWhite;
+    case Style::kNight: return kNight;
+  }
+  return kWhite;
+}
+
+std::string lamp_text(const PlotParts& parts, const Lighting& light) {
+  const math::Vec3d toward =
+      math::normalized(parts.axes.back + parts.axes.up * light.up - parts.axes.right * light.left);
   return fmt::format("\n[[sphere]]\ncenter = {}\nradius = {}\nmaterial = \"lamp\"\n",
-                     vector_text(parts.center + toward * (kDistance * parts.radius)),
-                     number_text(kRadius * parts.radius));
+                     vector_text(parts.center + toward * (light.distance * parts.radius)),
+                     number_text(light.radius * parts.radius));
+}
+
+std::string camera_text(const PlotParts& parts) {
+  const scene::Camera& camera = parts.camera;
+  const bool is_perspective = camera.projection == scene::Projection::kPerspective;
+  return fmt::format("[camera]\nprojection = \"{}\"\n{} = {}\nlook_from = {}\nlook_at = {}\nup = {}\n",
+                     is_perspective ? "perspective" : "orthographic", is_perspective ? "vfov" : "width",
+                     number_text(is_perspective ? camera.vfov : camera.width.value_or(1)),
+                     vector_text(camera.look_from), vector_text(camera.look_at), vector_text(camera.up));
 }
 
 std::string ground_text(const Ground& ground) {
@@ -96,7 +135,7 @@ std::string ground_text(const Ground& ground) {
 
 std::string scene_text(const PlotParts& parts) {
   const PlotOptions& options = parts.options;
-  const bool is_night = options.style == Style::kNight;
+  const Lighting& light = lighting_of(options.style);
   std::string out = fmt::format(
       "# Written by orrery plot for {}\n"
       "\n"
@@ -104,17 +143,14 @@ std::string scene_text(const PlotParts& parts) {
       "width = {}\n"
       "height = {}\n"
       "\n"
-      "[camera]\n"
-      "projection = \"orthographic\"\n"
-      "width = {}\n"
-      "look_from = {}\n"
-      "look_at = {}\n"
-      "up = {}\n",
-      string_text(options.file.filename().string()), options.width, options.height,
-      number_text(parts.camera.width.value_or(1)), vector_text(parts.camera.look_from),
-      vector_text(parts.camera.look_at), vector_text(parts.camera.up));
-  out +=
-      fmt::format("\n[background]\ntype = \"constant\"\ncolor = {}\n", is_night ? "[0.02, 0.02, 0.025]" : "[1, 1, 1]");
+      "{}"
+      "\n"
+      "[background]\n"
+      "type = \"constant\"\n"
+      "color = {}\n",
+      string_text(options.file.filename().string()), options.width, options.height, camera_text(parts),
+      light.background);
+  if (light.backdrop != nullptr) out += fmt::format("backdrop = {}\n", light.backdrop);
   if (options.style == Style::kFlat) out += "\n[render]\nshading = \"flat\"\n";
   out += fmt::format(
       "\n"
@@ -125,14 +161,12 @@ std::string scene_text(const PlotParts& parts) {
       "type = \"lambertian\"\n"
       "albedo = [0.8, 0.8, 0.8]\n",
       string_text(parts.view));
-  if (parts.ground)
-    out += fmt::format("\n[material.ground]\ntype = \"lambertian\"\nalbedo = {}\n",
-                       is_night ? "[0.1, 0.1, 0.1]" : "[0.95, 0.95, 0.95]");
-  // Its irradiance at the centre, pi times radiance times (radius / distance)^2, is that of a white dome.
-  if (is_night) out += "\n[material.lamp]\ntype = \"emitter\"\nradiance = [25, 24.5, 23.5]\n";
+  if (parts.ground) out += fmt::format("\n[material.ground]\ntype = \"lambertian\"\nalbedo = {}\n", light.ground);
+  if (light.radiance != nullptr)
+    out += fmt::format("\n[material.lamp]\ntype = \"emitter\"\nradiance = {}\n", light.radiance);
   out += "\n" + points_text(parts.points);
   if (parts.ground) out += ground_text(*parts.ground);
-  if (is_night) out += lamp_text(parts);
+  if (light.radiance != nullptr) out += lamp_text(parts, light);
   return out;
 }
 

@@ -16,6 +16,7 @@ struct PlotParts {
   const scene::Points& points;
   const scene::Camera& camera;
   const std::string& view;       ///< view of the display
+  const ViewAxes& axes;          ///< axes of the image
   Vec3d center;                  ///< centre of the spheres
   double radius = 1;             ///< radius of a sphere around `center` that contains all spheres
   std::optional<Ground> ground;  ///< ground below the spheres

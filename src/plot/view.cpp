@@ -88,8 +88,12 @@ ViewAxes view_axes(const std::string& look_from, const std::string& up) {
 void slice(std::pair<int, double> plane, const ViewAxes& axes, scene::Points& points) {
   const auto [axis, place] = plane;
   const double back[3] = {axes.back.x, axes.back.y, axes.back.z};
-  points.clip[static_cast<std::size_t>(axis)] =
-      back[axis] > 0 ? scene::Interval{-scene::kLargestLength, place} : scene::Interval{place, scene::kLargestLength};
+  std::optional<scene::Interval>& clip = points.clip[static_cast<std::size_t>(axis)];
+  if (!clip) clip = scene::Interval{-scene::kLargestLength, scene::kLargestLength};
+  if (back[axis] > 0)
+    clip->high = std::min(clip->high, place);
+  else
+    clip->low = std::max(clip->low, place);
 }
 
 void ViewExtent::add(const scene::Points& points) {
@@ -98,13 +102,26 @@ void ViewExtent::add(const scene::Points& points) {
 
 void ViewExtent::add(Vec3d center, double radius) {
   const Vec3d axes[3] = {axes_.right, axes_.up, axes_.back};
-  const double r = std::abs(radius);
-  for (int k = 0; k < 3; ++k) {
-    const double at = math::dot(center, axes[k]);
-    low_[k] = is_empty_ ? at - r : std::min(low_[k], at - r);
-    high_[k] = is_empty_ ? at + r : std::max(high_[k], at + r);
-  }
+  for (int k = 0; k < 3; ++k) add(k, math::dot(center, axes[k]), std::abs(radius));
   is_empty_ = false;
+}
+
+void ViewExtent::add_orbits(const scene::Points& points, Vec3d pivot, Vec3d axis) {
+  const Vec3d axes[3] = {axes_.right, axes_.up, axes_.back};
+  for (std::size_t i = 0; i < points.centers.size(); ++i) {
+    const Vec3d from_pivot = points.centers[i] - pivot;
+    const double height = math::dot(from_pivot, axis), distance = math::length(from_pivot - axis * height);
+    for (int k = 0; k < 3; ++k) {
+      const double along = math::dot(axis, axes[k]), across = std::sqrt(std::max(0.0, 1 - along * along));
+      add(k, math::dot(pivot, axes[k]), std::abs(height * along) + distance * across + std::abs(points.radii[i]));
+    }
+    is_empty_ = false;
+  }
+}
+
+void ViewExtent::add(int k, double at, double reach) {
+  low_[k] = is_empty_ ? at - reach : std::min(low_[k], at - reach);
+  high_[k] = is_empty_ ? at + reach : std::max(high_[k], at + reach);
 }
 
 Vec3d ViewExtent::center() const {
@@ -126,11 +143,11 @@ Ground ground_below(double lowest, Vec3d up, const ViewExtent& extent) {
 
 bool hides_view(const Ground& ground, const scene::Camera& camera, double aspect) {
   const Vec3d back = math::normalized(camera.look_from - camera.look_at);
-  const Vec3d right = math::cross(camera.up, back);
-  const double half_width = camera.width.value_or(1) / 2;
+  const Vec3d right = math::normalized(math::cross(camera.up, back)), up = math::cross(back, right);
+  const double half_width = camera.width.value_or(0) / 2;  // the rays of a perspective camera begin at one point
   for (const double x : {-half_width, half_width})
     for (const double y : {-half_width / aspect, half_width / aspect})
-      if (math::length(camera.look_from + right * x + camera.up * y - ground.center) < ground.radius) return true;
+      if (math::length(camera.look_from + right * x + up * y - ground.center) < ground.radius) return true;
   return false;
 }
 

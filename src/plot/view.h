@@ -24,7 +24,7 @@ struct ViewAxes {
 /// Errors       base::Error(kUsage)
 ViewAxes view_axes(const std::string& look_from, const std::string& up);
 
-/// Removes the spheres on the camera's side of a plane: sets the clip of `points`.
+/// Removes the spheres on the camera's side of a plane: narrows the clip of `points`.
 ///
 /// `plane`    axis 0, 1 or 2, and position
 void slice(std::pair<int, double> plane, const ViewAxes& axes, scene::Points& points);
@@ -36,6 +36,11 @@ class ViewExtent {
 
   void add(const scene::Points& points);
   void add(Vec3d center, double radius);
+  /// Adds the space that the spheres pass through when they, or the camera, turn about an axis through a point, which
+  /// stays the centre.
+  ///
+  /// `axis`     unit vector
+  void add_orbits(const scene::Points& points, Vec3d pivot, Vec3d axis);
   bool is_empty() const { return is_empty_; }
 
   /// Returns the extent if all radii were larger by a length. An empty extent stays empty.
@@ -56,6 +61,9 @@ class ViewExtent {
   double radius() const;  ///< radius of a sphere around center() that contains all spheres, scene units
 
  private:
+  /// Adds an interval along axis `k`.
+  void add(int k, double at, double reach);
+
   ViewAxes axes_;
   double low_[3] = {0, 0, 0}, high_[3] = {0, 0, 0};  ///< along right, up, back
   bool is_empty_ = true;
@@ -73,7 +81,7 @@ struct Ground {
 Ground ground_below(double lowest, Vec3d up, const ViewExtent& extent);
 
 /// Returns whether a ground hides spheres or part of the background from a camera of ViewExtent, because camera rays
-/// start below it. That is the case if the camera looks horizontally or upwards.
+/// start below it. That is the case if an orthographic camera looks horizontally or upwards.
 ///
 /// `aspect`   image width divided by its height
 bool hides_view(const Ground& ground, const scene::Camera& camera, double aspect);

@@ -144,7 +144,7 @@ std::vector<EmitterCoverage> find_small_emitters(const kernel::SceneView& scene,
     coverage.add(image_of(opening, {a.x, a.y, a.z}, a.radius), image_of(closing, {b.x, b.y, b.z}, b.radius), radiance);
   }
   const kernel::Environment* const sky = scene.environment;
-  if (sky != nullptr && sky->has_sun && scene.background_visible && !opening.is_orthographic) {
+  if (sky != nullptr && sky->has_sun && scene.background_visible && !scene.has_backdrop && !opening.is_orthographic) {
     const double distance = kSunDistance * length(vector_of(opening.forward));
     const double radius = distance * std::sqrt(2 * sky->sun_one_minus_cos);
     const auto image = [&](const kernel::Camera& camera) {

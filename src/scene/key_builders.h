@@ -147,6 +147,12 @@ Key<Target> optional_integer(const char* name, Range range, const KeyDoc& about,
   return key_of<Target>(name, ValueType::kInteger, range, about, at,
                         [otherwise](const auto& x) { return x ? std::to_string(*x) : std::string(otherwise); });
 }
+/// Builds a key for an optional vector; `otherwise` describes its default.
+template <class Target, class At>
+Key<Target> optional_vector(const char* name, Range range, const KeyDoc& about, const char* otherwise, At at) {
+  return key_of<Target>(name, ValueType::kVector, range, about, at,
+                        [otherwise](const auto& x) { return x ? vector_text(*x) : std::string(otherwise); });
+}
 /// Builds a key for an optional interval; `otherwise` describes its default.
 template <class Target, class At>
 Key<Target> optional_interval(const char* name, Range range, const KeyDoc& about, const char* otherwise, At at) {

@@ -65,10 +65,11 @@ enum class BackgroundType { kGradient, kConstant, kImage, kSky };
 
 struct Background {
   BackgroundType type = BackgroundType::kGradient;
-  Vec3d bottom{1, 1, 1};   ///< gradient: radiance from straight below
-  Vec3d top{0.5, 0.7, 1};  ///< gradient: radiance from straight above
-  Vec3d color{1, 1, 1};    ///< constant: radiance
-  int alpha = 1;           ///< 0: the background is transparent
+  Vec3d bottom{1, 1, 1};               ///< gradient: radiance from straight below
+  Vec3d top{0.5, 0.7, 1};              ///< gradient: radiance from straight above
+  Vec3d color{1, 1, 1};                ///< constant: radiance
+  int alpha = 1;                       ///< 0: the background is transparent
+  std::optional<Vec3d> backdrop = {};  ///< radiance that camera rays see in its place; default: they see it
   // Image and sky.
   std::shared_ptr<const EnvironmentImage> image = {};  ///< the texels of `file`, or the baked sky; null until loaded
   std::filesystem::path file = {};                     ///< image: latitude-longitude map, relative to the scene file

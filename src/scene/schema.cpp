@@ -110,6 +110,12 @@ Table background_table() {
                   {"", "1: the background is opaque. 0: the image is transparent where only the background is visible",
                    "0: costs as much as one layer"},
                   [](S& s) -> int& { return s.background.alpha; }),
+       optional_vector<S>("backdrop", kLight,
+                          {unit,
+                           "Radiance that camera rays see in place of the background. It illuminates nothing; "
+                           "reflections and refractions still see the background"},
+                          "camera rays see the background",
+                          [](S& s) -> std::optional<Vec3d>& { return s.background.backdrop; }),
        text<S>("file",
                {"",
                 "Image: EXR or HDR file, relative to the scene file, with the poles at +y and -y, +z at the centre and "

@@ -60,6 +60,13 @@ const MessageCase kCases[] = {
     {"info good.toml --json --settings", 2,
      "orrery: --json excludes --settings\n"
      "Try orrery info --help.\n"},
+    {"render good.toml -o a.png --samples 1 --samples 2", 2,
+     "orrery: --samples is given 2 times: `1`, `2`; give it once\n"},
+    {"plot a.xyz -o a.png --up x --up y", 2, "orrery: --up is given 2 times: `x`, `y`; give it once\n"},
+    {"convert a.xyz -o a.ply -o b.ply", 2, "orrery: --output is given 2 times: `a.ply`, `b.ply`; give it once\n"},
+    {"generate cloud -o a.toml --seed 1 --seed 1", 2, "orrery: --seed is given 2 times: `1`, `1`; give it once\n"},
+    {"submit good.toml --slurm -o a.exr --noise 0.1 --noise 0.2", 2,
+     "orrery: --noise is given 2 times: `0.1`, `0.2`; give it once\n"},
     {"info good.toml > /dev/full", 74, "orrery: writing to standard output failed: No space left on device\n"},
     {"--version > /dev/full", 74, "orrery: writing to standard output failed: No space left on device\n"},
     {"check good.toml > /dev/full", 74, "orrery: writing to standard output failed: No space left on device\n"},

@@ -105,6 +105,46 @@ TEST_F(CliPlot, RequestsAreCheckedBeforeFramesAreRead) {
   expect_error(plot + "-o a.png --set render.samples=0", 65, "render.samples");
 }
 
+/// Exit status, and the number of spheres that the plot reports.
+TEST_F(CliPlot, RepeatedSelectionsAndSlicesCombine) {
+  write("d.csv", "x,y,z,radius\n0,0,0,1\n3,0,0,1\n0,3,0,1\n3,3,0,1\n");
+  for (const std::string options : {"--select 'x > 1' --select 'y > 1'", "--slice x=1 --slice y=1 --look-from 0,20",
+                                    "--select 'x > 1 || x < 1' --select 'y > 1 && x > 1'"}) {
+    const Outcome r = plot("d.csv -o a.ppm " + options);
+    EXPECT_EQ(r.status, 0) << r.err;
+    EXPECT_TRUE(contains(r.err, "\nplot: 1 sphere: --s")) << options << r.err;
+  }
+  ASSERT_EQ(run("convert d.csv -o e.csv -q --select 'x > 1' --select 'y > 1'").status, 0);
+  const std::string converted = text_of(folder_ / "e.csv");
+  EXPECT_TRUE(contains(converted, "\n3,3,0")) << converted;
+  EXPECT_EQ(std::count(converted.begin(), converted.end(), '\n'), 2) << converted;
+}
+
+TEST_F(CliPlot, ASelectionThatMatchesNothingIsAnError) {
+  Outcome r = plot("c.csv -o none.ppm --select 'q > 5'");
+  EXPECT_EQ(r.status, 65) << r.err;
+  EXPECT_TRUE(contains(r.err, "nothing to render: --select leaves none of the 2 particles")) << r.err;
+  EXPECT_FALSE(std::filesystem::exists(folder_ / "none.ppm"));
+  r = plot("c.csv -o none.ppm --select 'q > 5' --allow-empty");
+  EXPECT_EQ(r.status, 0) << r.err;
+}
+
+/// One setting in three spellings: the projection, the field of view, or both.
+TEST_F(CliPlot, PerspectiveAndTurntableAreFitted) {
+  const auto scene = [&](const std::string& options) {
+    const Outcome r = plot("c.csv -o a.ppm --save-scene s.toml -q " + options);
+    EXPECT_EQ(r.status, 0) << r.err;
+    EXPECT_EQ(r.err, "");
+    return text_of(folder_ / "s.toml");
+  };
+  const std::string wide = scene("--set 'camera.projection=\"perspective\"'");
+  EXPECT_TRUE(contains(wide, "vfov = 90")) << wide;
+  EXPECT_FALSE(contains(wide, "\nwidth = 1 ")) << wide;
+  EXPECT_EQ(scene("--set camera.vfov=30"), scene("--set camera.vfov=30 --set 'camera.projection=\"perspective\"'"));
+  EXPECT_FALSE(contains(scene("--set animation.turntable=0"), "up = [0.0, 0.0, 1.0]"));
+  EXPECT_TRUE(contains(scene("--set animation.turntable=4"), "turntable = 4")) << text_of(folder_ / "s.toml");
+}
+
 TEST_F(CliPlot, OptionsWithoutEffectAreRefused) {
   expect_error("plot c.csv -o a.png --map viridis", 2, "--map has nothing to map");
   expect_error("plot c.csv -o a.png --range 0:1", 2, "--range has nothing to map");

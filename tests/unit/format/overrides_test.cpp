@@ -182,6 +182,8 @@ TEST(FormatOverrides, ValuesAreReadByKey) {
   const Overrides overrides = {"image={width=64,height=\"x\"}",    "image.width=65",         "color.view=\"a\\\"b\"",
                                "material.\"dark gold\".fuzz=1e-1", "\"sphere\"[1].radius=2", "render={}"};
   EXPECT_EQ(overrides.integer("image.width"), 65);
+  EXPECT_EQ(overrides.number("image.width"), 65.0);
+  EXPECT_EQ(overrides.number("material.dark gold.fuzz"), 0.1);
   EXPECT_EQ(overrides.integer("image.height"), std::nullopt);
   EXPECT_EQ(overrides.string("color.view"), "a\"b");
   EXPECT_TRUE(overrides.sets("material.dark gold.fuzz"));

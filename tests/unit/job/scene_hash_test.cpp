@@ -39,6 +39,9 @@ TEST(JobSceneHash, ChangesWithEverythingThatChangesTheImage) {
       [](scene::Scene& s) { s.camera.vfov += 1e-12; },
       [](scene::Scene& s) { s.camera.defocus_angle += 1e-12; },
       [](scene::Scene& s) { s.background.top.z = 0.999; },
+      [](scene::Scene& s) {
+        s.background.backdrop = {1, 1, 1};
+      },
       [](scene::Scene& s) { s.render.samples += 1; },
       [](scene::Scene& s) { s.render.max_depth += 1; },
       [](scene::Scene& s) { s.render.seed += 1; },

@@ -11,8 +11,10 @@
 #include "film/picture.h"
 #include "format/read_result.h"
 #include "load/load_scene.h"
+#include "plot/data_frames.h"
 #include "points/color_map.h"
 #include "points/elements.h"
+#include "scene/animation.h"
 #include "support/temp_dir.h"
 
 namespace orrery::plot {
@@ -84,7 +86,7 @@ TEST_F(PlotPlot, DefaultsWithoutRadiusAndColor) {
             "no colour: light grey\n"
             "up z: customary for simulations and scans\n"
             "view iso, 20.8 wide: fitted to the spheres\n"
-            "style studio: white light from all directions\n"
+            "style studio: a key light from the upper left, and white light from all directions\n"
             "size 1920 x 1080: --width and --height change it\n");
   const scene::Scene scene = read();
   ASSERT_EQ(scene.points.size(), 1u);
@@ -96,9 +98,9 @@ TEST_F(PlotPlot, DefaultsWithoutRadiusAndColor) {
   EXPECT_EQ(scene.image.width, 1920);
   EXPECT_EQ(scene.image.height, 1080);
   EXPECT_EQ(scene.background.type, scene::BackgroundType::kConstant);
-  EXPECT_EQ(scene.background.color, (Vec3d{1, 1, 1}));
+  EXPECT_EQ(scene.background.backdrop, (Vec3d{1, 1, 1}));
   EXPECT_EQ(scene.color.view, "Un-tone-mapped") << "colours match the colour map";
-  EXPECT_TRUE(scene.spheres.empty());
+  EXPECT_EQ(scene.spheres.size(), 1u) << "the key light";
   EXPECT_TRUE(made.warnings.empty());
   EXPECT_TRUE(made.frames.empty());
 }
@@ -148,7 +150,7 @@ TEST_F(PlotPlot, MoleculesHaveRadiiAndColorsOfTheirElements) {
 
 /// Colours as a plot shows them where all light reaches the sphere; the background comes first.
 std::vector<std::array<int, 3>> shown(const scene::Scene& scene) {
-  std::vector<Vec3d> colors = {scene.background.color};
+  std::vector<Vec3d> colors = {scene.background.backdrop.value_or(scene.background.color)};
   for (const scene::Points& points : scene.points)
     colors.insert(colors.end(), points.palette.begin(), points.palette.end());
   film::Picture row;
@@ -306,7 +308,69 @@ TEST_F(PlotPlot, RadiusOfTheFirstFrameWithNeighbours) {
   EXPECT_EQ(read(3).points[0].radius.value, 1.5) << choices();
   options.all_frames = false;
   make();
+  EXPECT_EQ(read().points[0].radius.value, 1.5) << "of the file, whatever is shown: " << choices();
+  make("b.dump", frame("x y z", {"0 0 0"}) + frame("x y z", {"1 0 0"}));
   EXPECT_TRUE(chose("radius 1: no particle has a neighbour")) << choices();
+}
+
+/// Panels of one figure show a particle in one size.
+TEST_F(PlotPlot, TheRadiusDoesNotDependOnWhatIsShown) {
+  write("a.dump", frame("x y z q", {"0 0 0 1", "0 2 0 2", "0 4 0 1", "0 9 0 2"}) +
+                      frame("x y z q", {"0 0 0 1", "0 1 0 2", "nan 0 0 3"}));
+  const auto radius = [&] {
+    make();
+    return read().points[0].radius.value;
+  };
+  EXPECT_EQ(radius(), 1.0);
+  options.points.select = "q == 1";
+  EXPECT_EQ(radius(), 1.0);
+  options.points.select.clear();
+  options.slices = {{1, 3.0}};
+  EXPECT_EQ(radius(), 1.0);
+  options.slices.clear();
+  options.points.frame = 2;
+  options.points.select = "q < 3";
+  EXPECT_EQ(radius(), 1.0);
+  options.points.frame.reset();
+  options.frames = {2};
+  EXPECT_EQ(radius(), 1.0);
+  options.points.replicate = {2, 2, 2};
+  options.frames = {1};
+  EXPECT_EQ(radius(), 1.0);
+}
+
+TEST_F(PlotPlot, TheNumberOfSpheresIsPrintedIfItIsNotThatOfTheParticles) {
+  make("a.csv", kCorners);
+  EXPECT_EQ(choices().find("spheres: "), std::string::npos) << choices();
+  options.points.select = "mass > 3";
+  make();
+  EXPECT_EQ(choices().rfind("CSV: 9 particles\n6 spheres: --select\n", 0), 0u) << choices();
+  options.slices = {{2, 2.0}};
+  make();
+  EXPECT_TRUE(chose("2 spheres: --select, --slice")) << choices();
+  options = {};
+  options.points.replicate = {3, 1, 2};
+  make("a.dump", frame("x y z radius", {"1 1 1 1", "2 2 2 1"}) + frame("x y z radius", {"1 1 1 1"}));
+  EXPECT_TRUE(chose("12 spheres: --replicate")) << choices();
+  options.points.replicate = {1, 1, 1};
+  options.all_frames = true;
+  make();
+  EXPECT_TRUE(chose("1 to 2 spheres: the fewest and the most of all frames")) << choices();
+}
+
+TEST_F(PlotPlot, RangesHaveEnoughDigits) {
+  options.color_by = "q";
+  const auto range = [&](const std::string& low, const std::string& high) {
+    make("a.csv", "x,y,z,radius,q\n0,0,0,1," + low + "\n9,0,0,1," + high + "\n");
+    const std::string all = choices();
+    const std::size_t begin = all.find("range ") + 6;
+    return all.substr(begin, all.find(": ", begin) - begin);
+  };
+  EXPECT_EQ(range("0.032497108477101466", "5.1823988183562255"), "0.0325:5.182");
+  EXPECT_EQ(range("1000.123456", "1000.223456"), "1000.1235:1000.2235");
+  EXPECT_EQ(range("0", "1"), "0:1");
+  make("a.csv", "x,y,z,radius,q\n0,0,0,1,0.032497108477101466\n9,0,0,1,5.1823988183562255\n");
+  EXPECT_EQ(read().points[0].color.range->low, 0.032497108477101466) << "exact in the scene";
 }
 
 TEST_F(PlotPlot, SequencesOfFiles) {
@@ -353,13 +417,50 @@ TEST_F(PlotPlot, NothingToRenderIsAWarning) {
   options.frames = {1, 2};
   EXPECT_EQ(warning(none + none + one), "nothing to render: none of the 2 frames has spheres");
   options.frames.clear();
+  options.allow_empty = true;
   options.points.select = "x > 5";
-  EXPECT_EQ(warning(one), "nothing to render: the selection has no spheres");
+  EXPECT_EQ(warning(one), "nothing to render: --select leaves none of the 1 particles");
   options.points.select.clear();
   warning(none);
   options.ground = true;
   make();
   EXPECT_TRUE(read().points[0].centers.empty()) << "the scene is valid";
+}
+
+TEST_F(PlotPlot, ASelectionThatLeavesNothingIsAnError) {
+  write("a.dump", frame("x y z radius", {"0 0 0 1"}) + frame("x y z radius", {"0 0 9 1"}));
+  const auto kind = [&] {
+    try {
+      make();
+    } catch (const base::Error& e) {
+      EXPECT_NE(std::string(e.what()).find("--allow-empty"), std::string::npos) << e.what();
+      return base::exit_status(e.kind());
+    }
+    return 0;
+  };
+  options.points.select = "z > 5";
+  EXPECT_EQ(kind(), 65);
+  options.all_frames = true;
+  EXPECT_EQ(kind(), 0) << "one of the frames has spheres";
+  options.points.select = "z > 10";
+  EXPECT_EQ(kind(), 65);
+  options.points.select.clear();
+  options.slices = {{2, -5.0}};
+  EXPECT_EQ(kind(), 65);
+  options.allow_empty = true;
+  EXPECT_EQ(kind(), 0);
+}
+
+TEST_F(PlotPlot, AllConditionsApply) {
+  EXPECT_EQ(all_of({}), "");
+  EXPECT_EQ(all_of({"x > 0 || y > 0"}), "x > 0 || y > 0");
+  EXPECT_EQ(all_of({"x > 0 || y > 0", "z > 0"}), "(x > 0 || y > 0) && (z > 0)");
+  try {
+    all_of({"x > 0", "z > 0) || (z < 0"});
+    ADD_FAILURE() << "each is a complete condition";
+  } catch (const base::Error& e) {
+    EXPECT_NE(std::string(e.what()).find("--select `z > 0) || (z < 0`: at character 6"), std::string::npos) << e.what();
+  }
 }
 
 TEST_F(PlotPlot, SlicesRemoveTheSideOfTheCamera) {
@@ -371,8 +472,13 @@ TEST_F(PlotPlot, SlicesRemoveTheSideOfTheCamera) {
     for (const Vec3d& c : plotted.points[0].centers) out.push_back(c.z);
     return out;
   };
-  options.slice = std::pair{2, 1.0};
+  options.slices = {{2, 1.0}};
   EXPECT_EQ(kept(), (std::vector<double>{-5, 0})) << "iso looks from above";
+  options.slices = {{2, 1.0}, {2, -1.0}};
+  EXPECT_EQ(kept(), (std::vector<double>{-5})) << "all slices apply";
+  options.slices = {{2, -1.0}, {2, 1.0}};
+  EXPECT_EQ(kept(), (std::vector<double>{-5})) << "in any order";
+  options.slices = {{2, 1.0}};
   options.look_from = "-z";
   EXPECT_EQ(kept(), (std::vector<double>{5}));
   options.look_from = "30,-20";
@@ -408,6 +514,10 @@ TEST_F(PlotPlot, StylesAndGround) {
   options.style = Style::kFlat;
   make();
   EXPECT_EQ(read().render.shading, scene::Shading::kFlat);
+  options.style = Style::kAmbient;
+  make();
+  EXPECT_EQ(read().background.color, (Vec3d{1, 1, 1}));
+  EXPECT_TRUE(read().spheres.empty());
   options.style = Style::kNight;
   options.ground = true;
   make();
@@ -421,6 +531,97 @@ TEST_F(PlotPlot, StylesAndGround) {
   EXPECT_GT(math::dot(lamp.center - scene.camera.look_from, back), lamp.radius) << "behind the camera";
 }
 
+/// The mean over the image of an unoccluded matte sphere: the mean over the visible normals of the irradiance from the
+/// lamp and the background, by quadrature.
+TEST_F(PlotPlot, TheMeanOfASphereInTheStudioIsItsColor) {
+  make("a.csv", "x,y,z,radius\n0,0,0,1\n");
+  const scene::Scene scene = read();
+  const scene::Sphere& lamp = scene.spheres.at(0);
+  const double distance = math::length(lamp.center), size = lamp.radius / distance;
+  const Vec3d toward = lamp.center / distance, back = math::normalized(scene.camera.look_from - scene.camera.look_at);
+  const double radiance = std::get<scene::Emitter>(scene.materials[lamp.material].model).radiance.x;
+  constexpr int kSteps = 40;
+  constexpr double kPi = 3.14159265358979;
+  const Vec3d u = math::normalized(math::cross(toward, back)), v = math::cross(toward, u);
+  const Vec3d across = math::normalized(math::cross(back, toward)), down = math::cross(back, across);
+  double sum = 0;
+  for (int i = 0; i < kSteps; ++i)
+    for (int j = 0; j < kSteps; ++j) {
+      // Uniform over the visible disc.
+      const double r = std::sqrt((i + 0.5) / kSteps), phi = (j + 0.5) / kSteps * 2 * kPi;
+      const Vec3d normal = across * (r * std::cos(phi)) + down * (r * std::sin(phi)) + back * std::sqrt(1 - r * r);
+      for (int k = 0; k < kSteps; ++k)
+        for (int l = 0; l < kSteps; ++l) {
+          // Uniform over the cone of directions to the lamp.
+          const double cosine = 1 - (k + 0.5) / kSteps * (1 - std::sqrt(1 - size * size));
+          const double sine = std::sqrt(1 - cosine * cosine), turn = (l + 0.5) / kSteps * 2 * kPi;
+          const Vec3d to = toward * cosine + u * (sine * std::cos(turn)) + v * (sine * std::sin(turn));
+          sum += std::max(0.0, math::dot(normal, to));
+        }
+    }
+  const double solid_angle = 2 * kPi * (1 - std::sqrt(1 - size * size));
+  // The lamp hides a part of the background.
+  const double from_lamp = (radiance - scene.background.color.x) * solid_angle / kPi * sum / std::pow(kSteps, 4);
+  EXPECT_NEAR(from_lamp + scene.background.color.x, 1, 2e-3);
+  EXPECT_GT(math::dot(lamp.center - scene.camera.look_from, back), lamp.radius) << "behind the camera";
+  EXPECT_LT(math::dot(lamp.center, math::cross(scene.camera.up, back)), 0) << "left";
+  EXPECT_GT(math::dot(lamp.center, scene.camera.up), 0) << "above";
+}
+
+TEST_F(PlotPlot, APerspectiveCameraIsFitted) {
+  options.vfov = 30;
+  make("a.csv", kCorners);
+  EXPECT_EQ(choices().find(" wide"), std::string::npos) << choices();
+  const scene::Scene scene = read();
+  EXPECT_EQ(scene.camera.projection, scene::Projection::kPerspective);
+  EXPECT_EQ(scene.camera.vfov, 30);
+  const Vec3d back = math::normalized(scene.camera.look_from - scene.camera.look_at);
+  const Vec3d right = math::cross(scene.camera.up, back);
+  double reach = 0;
+  for (const Vec3d& c : scene.points[0].centers) {
+    const Vec3d at = c - scene.camera.look_from;
+    const double seen = -math::dot(at, back) * std::tan(15.0 / 180 * 3.14159265358979);
+    reach = std::max(
+        {reach, std::abs(math::dot(at, right)) / seen / (16.0 / 9), std::abs(math::dot(at, scene.camera.up)) / seen});
+  }
+  EXPECT_LT(reach, 0.9);
+  EXPECT_GT(reach, 0.3) << "not a speck";
+}
+
+/// A rod that points at the camera is seen from the side after a quarter of the orbit.
+TEST_F(PlotPlot, ATurntableFitsTheWholeOrbitAndAllFrames) {
+  std::string rod = "x,y,z,radius\n";
+  for (int i = -20; i <= 20; ++i) rod += std::to_string(i) + ",0,0,1\n";
+  write("a.csv", rod);
+  options.is_turntable = true;
+  for (const char* view : {"+x", "90,30", "iso", "+z", "0,-40"})
+    for (const bool is_perspective : {false, true}) {
+      options.look_from = view;
+      options.vfov = is_perspective ? std::optional(40.0) : std::nullopt;
+      options.frames = {1, 2, 3, 4, 5, 6, 7, 8};
+      make();
+      scene::Scene turning = read();
+      turning.animation.turntable = 8;
+      double reach = 0;
+      for (const int frame : options.frames) {
+        const scene::Camera camera = scene::posed(turning, frame).camera;
+        const Vec3d back = math::normalized(camera.look_from - camera.look_at);
+        const Vec3d right = math::normalized(math::cross(camera.up, back)), up = math::cross(back, right);
+        for (const Vec3d& c : turning.points[0].centers) {
+          const Vec3d at = c - camera.look_from;
+          const double half = is_perspective ? -math::dot(at, back) * std::tan(20.0 / 180 * 3.14159265358979) * 16 / 9
+                                             : *camera.width / 2;
+          ASSERT_GT(-math::dot(at, back), 1) << view;
+          reach = std::max(
+              {reach, (std::abs(math::dot(at, right)) + 1) / half, (std::abs(math::dot(at, up)) + 1) / half * 16 / 9});
+        }
+        EXPECT_EQ(camera.up, std::string(view) == "+z" ? (Vec3d{0, 1, 0}) : (Vec3d{0, 0, 1})) << "upright";
+      }
+      EXPECT_LE(reach, 0.9 + 0.02) << view << is_perspective;
+      EXPECT_GT(reach, 0.4) << view << is_perspective;
+    }
+}
+
 /// From level or below, the ground would be in front of the spheres, or a bar at the bottom of the image.
 TEST_F(PlotPlot, TheGroundIsOmittedIfItWouldHideTheSpheres) {
   write("a.csv", "x,y,z,radius\n0,0,2,1\n0,0,7,1\n");
@@ -429,7 +630,7 @@ TEST_F(PlotPlot, TheGroundIsOmittedIfItWouldHideTheSpheres) {
     options.look_from = view;
     make();
     const bool has_note = choices().find("no ground: ") != std::string::npos;
-    const bool has_sphere = !read().spheres.empty();
+    const bool has_sphere = read().spheres.size() > 1;  // the other one is the key light
     EXPECT_NE(has_note, has_sphere) << view << ": " << choices();
     return has_sphere;
   };

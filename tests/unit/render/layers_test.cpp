@@ -292,6 +292,28 @@ TEST(RenderLayers, TransparentBackgroundLeavesNoHaloAtADefocusedEdge) {
   EXPECT_LT(worst, 1e-6);
 }
 
+/// Camera rays see the backdrop; all other light is that of the background.
+TEST(RenderLayers, ABackdropIlluminatesNothing) {
+  scene::Scene s = test::everything();
+  s.render.samples = 64;
+  film::LayerRequest cut_out;
+  cut_out.coverage = true;
+  const Result empty = render_with(s, cut_out);
+  s.background.backdrop = {0.25, 0.5, 0.75};
+  const Result seen = render_with(s, {});
+  double worst = 0;
+  int edges = 0;
+  for (std::size_t i = 0; i < plane(empty, "A").size(); ++i) {
+    const double uncovered = 1 - plane(empty, "A")[i];
+    edges += uncovered > 0 && uncovered < 1 ? 1 : 0;
+    worst = std::max(worst, std::abs(plane(empty, "R")[i] + uncovered * 0.25 - plane(seen, "R")[i]));
+    worst = std::max(worst, std::abs(plane(empty, "B")[i] + uncovered * 0.75 - plane(seen, "B")[i]));
+  }
+  EXPECT_GT(edges, 20);
+  EXPECT_LT(worst, 1e-5);
+  EXPECT_EQ(plane(render_with(s, cut_out), "R"), plane(empty, "R")) << "a transparent background has none";
+}
+
 TEST(RenderLayers, DeepSamplesFlattenToTheBeauty) {
   const Result r = render_with(test::everything(), all_layers());
   for (std::size_t i = 0; i < r.deep.pixels.size(); ++i) {

@@ -102,6 +102,8 @@ TEST(RenderLitLoop, SameBitsWhereNothingEmits) {
           const compile::CompiledScene compiled = compile::compile(scene);
           kernel::SceneView view = compiled.view();
           view.background_visible = background_visible;
+          view.has_backdrop = records;
+          view.backdrop = {0.25, 0.5, 0.75};
           Rendered plain, lit;
           render_tile(compiled, view, Kind::kPlain, records, plain);
           render_tile(compiled, view, Kind::kLit, records, lit);
