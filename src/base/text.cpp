@@ -59,6 +59,31 @@ std::string printable_lines(std::string_view text) {
   }
 }
 
+std::size_t printable_length(std::string_view text, std::size_t at) {
+  const auto byte = [&](std::size_t i) { return static_cast<unsigned>(static_cast<unsigned char>(text[i])); };
+  const unsigned lead = byte(at);
+  if (lead < 0x80) return lead >= 0x20 && lead != 0x7F ? 1 : 0;
+  const std::size_t length = lead >= 0xF0 ? 4 : lead >= 0xE0 ? 3 : 2;
+  if (lead < 0xC2 || lead > 0xF4 || at + length > text.size()) return 0;
+  unsigned code = lead & (0x7Fu >> length);
+  for (std::size_t i = 1; i < length; ++i) {
+    if ((byte(at + i) & 0xC0u) != 0x80u) return 0;
+    code = code << 6 | (byte(at + i) & 0x3Fu);
+  }
+  const bool is_overlong = code < (length == 4 ? 0x10000u : length == 3 ? 0x800u : 0x80u);
+  const bool is_forbidden = code < 0xA0 || (code >= 0xD800 && code < 0xE000) || code == 0xFFFE || code == 0xFFFF;
+  return is_overlong || is_forbidden || code > 0x10FFFF ? 0 : length;
+}
+
+bool is_printable(std::string_view text) {
+  for (std::size_t at = 0; at < text.size();) {
+    const std::size_t length = printable_length(text, at);
+    if (length == 0) return false;
+    at += length;
+  }
+  return true;
+}
+
 std::string shell_quoted(const std::string& word) {
   static const std::string plain = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789_-./:=,+@%^";
   if (!word.empty() && word.find_first_not_of(plain) == std::string::npos) return word;

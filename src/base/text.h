@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 #include <string>
 #include <string_view>
@@ -18,6 +19,14 @@ std::string bytes_text(std::uint64_t bytes);
 std::string printable(std::string_view text);
 /// The same for a text of several lines: also keeps newlines.
 std::string printable_lines(std::string_view text);
+
+/// Length of the UTF-8 character at a position; 0 if the bytes are not valid UTF-8, or if it is a control character or
+/// another character that XML does not allow.
+///
+/// Domain     at < text.size()
+std::size_t printable_length(std::string_view text, std::size_t at);
+/// True if a text consists of such characters.
+bool is_printable(std::string_view text);
 
 /// Converts ASCII letters to lower case.
 std::string lower(std::string_view text);

@@ -1,9 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "points/elements.h"
 
-#include <charconv>
+#include <algorithm>
 #include <cstddef>
 #include <iterator>
+
+#include "data/elements.h"
 
 namespace orrery::points {
 namespace {
@@ -137,8 +139,9 @@ constexpr Row kRows[] = {
 };
 // clang-format on
 
-constexpr std::size_t kCount = 118;
-static_assert(std::size(kRows) == kCount);
+constexpr std::size_t kCount = data::kElementSymbols.size();
+static_assert(std::equal(std::begin(kRows), std::end(kRows), data::kElementSymbols.begin(), data::kElementSymbols.end(),
+                         [](const Row& row, std::string_view symbol) { return row.symbol == symbol; }));
 
 constexpr Srgb8 srgb8(std::uint32_t code) {
   return {static_cast<std::uint8_t>(code >> 16), static_cast<std::uint8_t>(code >> 8), static_cast<std::uint8_t>(code)};
@@ -155,15 +158,6 @@ constexpr std::array<Element, kCount> make_elements() {
 
 constexpr std::array<Element, kCount> kElements = make_elements();
 
-constexpr char lower(char c) { return c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c; }
-
-bool equals_ignoring_case(std::string_view a, std::string_view b) {
-  if (a.size() != b.size()) return false;
-  for (std::size_t i = 0; i < a.size(); ++i)
-    if (lower(a[i]) != lower(b[i])) return false;
-  return true;
-}
-
 }  // namespace
 
 double Element::radius(ElementRadius kind) const {
@@ -179,16 +173,6 @@ const Element* find_element(int number) {
   return number >= 1 && number <= static_cast<int>(kCount) ? &kElements[static_cast<std::size_t>(number) - 1] : nullptr;
 }
 
-const Element* find_element(std::string_view symbol) {
-  const std::size_t begin = symbol.find_first_not_of(" \t");
-  if (begin == std::string_view::npos) return nullptr;
-  symbol = symbol.substr(begin, symbol.find_last_not_of(" \t") + 1 - begin);
-  if (equals_ignoring_case(symbol, "D")) return &kElements[0];
-  for (const Element& element : kElements)
-    if (equals_ignoring_case(symbol, element.symbol)) return &element;
-  int number = 0;
-  const auto [end, status] = std::from_chars(symbol.data(), symbol.data() + symbol.size(), number);
-  return status == std::errc() && end == symbol.data() + symbol.size() ? find_element(number) : nullptr;
-}
+const Element* find_element(std::string_view symbol) { return find_element(data::atomic_number(symbol)); }
 
 }  // namespace orrery::points

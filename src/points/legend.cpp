@@ -23,23 +23,6 @@ constexpr double kSvgMargin = 12, kSvgFont = 14, kSvgTitleHeight = 28, kSvgBarWi
 constexpr double kCharacterWidth = 0.62;
 constexpr std::size_t kSvgMaxTextBytes = 120;
 
-/// Length of the valid UTF-8 character at a position, of characters that XML allows; 0 if there is none.
-std::size_t character_length(std::string_view text, std::size_t at) {
-  const auto byte = [&](std::size_t i) { return static_cast<unsigned>(static_cast<unsigned char>(text[i])); };
-  const unsigned lead = byte(at);
-  if (lead < 0x80) return lead >= 0x20 && lead != 0x7F ? 1 : 0;
-  const std::size_t length = lead >= 0xF0 ? 4 : lead >= 0xE0 ? 3 : 2;
-  if (lead < 0xC2 || lead > 0xF4 || at + length > text.size()) return 0;
-  unsigned code = lead & (0x7Fu >> length);
-  for (std::size_t i = 1; i < length; ++i) {
-    if ((byte(at + i) & 0xC0u) != 0x80u) return 0;
-    code = code << 6 | (byte(at + i) & 0x3Fu);
-  }
-  const bool is_overlong = code < (length == 4 ? 0x10000u : length == 3 ? 0x800u : 0x80u);
-  const bool is_forbidden = code < 0xA0 || (code >= 0xD800 && code < 0xE000) || code == 0xFFFE || code == 0xFFFF;
-  return is_overlong || is_forbidden || code > 0x10FFFF ? 0 : length;
-}
-
 /// A string as XML, and its estimated width.
 struct Label {
   std::string xml;
@@ -54,7 +37,7 @@ Label label_of(const std::string& text) {
     out.width += kCharacterWidth * kSvgFont;
   };
   for (std::size_t i = 0; i < prefix.size();) {
-    const std::size_t length = character_length(prefix, i);
+    const std::size_t length = base::printable_length(prefix, i);
     const std::string_view character = prefix.substr(i, std::max<std::size_t>(length, 1));
     if (length == 0) {
       add("?");
