@@ -11,6 +11,7 @@
 #include "base/available_memory.h"
 #include "base/diagnostic.h"
 #include "base/error.h"
+#include "base/file_name.h"
 #include "base/file_set.h"
 #include "base/frames.h"
 #include "base/image_limits.h"
@@ -155,7 +156,7 @@ void check_outputs(const PlotArguments& arguments) {
   const plot::PlotOptions& plot = arguments.plot;
   base::FileSet files;
   for (const int frame : plot.frames.empty() ? std::vector<int>{1} : plot.frames)
-    files.add_input(base::with_frame(plot.file.string(), frame), "data file");
+    files.add_input(base::input_at_frame({}, plot.file.string(), frame), "data file");
   if (plot.points.color.has_map_file()) files.add_input(plot.points.color.map, "colour map");
   load::add_ocio_configs(plot.display.config, files);
   for (const job::OutputFile& output : own_outputs(arguments)) {
@@ -169,7 +170,7 @@ void check_outputs(const PlotArguments& arguments) {
 }
 
 int run_plot(PlotArguments& arguments) {
-  if (arguments.plot.file.extension() == ".toml")
+  if (base::extension(arguments.plot.file) == ".toml")
     base::refuse(fmt::format("{} is a scene; render it: orrery render {}", arguments.plot.file.string(),
                              arguments.plot.file.string()));
   RenderOptions& render = arguments.render;

@@ -22,8 +22,8 @@ inline constexpr std::array<std::string_view, 118> kElementSymbols = {
     "Lv", "Ts", "Og"};
 // clang-format on
 
-/// Returns the atomic number of an element given by symbol, ignoring case and surrounding spaces, or by atomic number as
-/// text: "Fe", " FE", "26". D is hydrogen.
+/// Returns the atomic number of an element given by symbol, ignoring case and surrounding spaces, or by atomic number
+/// as text: "Fe", " FE", "26". D is hydrogen.
 ///
 /// Result     0 if there is none
 int atomic_number(std::string_view word);

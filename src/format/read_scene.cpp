@@ -179,14 +179,13 @@ void read_points(ReadState& state, const toml::table& root, const std::filesyste
     read_types(state, table, full_name, "color.type", scene::ValueType::kVector, {0, 1}, points.color.types);
     points.material = read_material_name(state, table, full_name, scene, index);
     if (state.unread.count(full_name + ".file") == 0) {
-      const std::string pattern = points.file.string();
-      points.file = base::with_frame(pattern, options.frame);
       points::LoadRequest request;
-      request.folder = scene_file.parent_path();
+      request.folder = state.folder;
+      request.is_sequence = base::is_sequence(request.folder / points.file);
+      points.file = base::input_at_frame(request.folder, points.file.string(), options.frame);
       request.file = request.folder / points.file;
       request.key = full_name;
       request.frame = options.frame;
-      request.is_sequence = points.file.string() != pattern;
       request.materials = scene.materials.size();
       request.memory_limit = rest_of(options.memory_limit, used);
       request.open = options.open_data;
@@ -308,15 +307,20 @@ ReadResult read_scene(const std::filesystem::path& file, const Overrides& overri
   const int frame = options.frame;
   const std::string text = options.text ? *options.text : read_file(file, kLargestSceneFile), name = file.string();
   ReadState state;
+  state.folder = file.parent_path();
+  state.frame = frame;
   const toml::table root = parse_tree(name, text, overrides, state.source, state.diagnostics);
-  if (root.empty()) state.diagnostics.raise_errors(name);
+  if (root.empty() && state.diagnostics.has_errors()) {
+    refuse_data_file(file, text);
+    state.diagnostics.raise_errors(name);
+  }
   if (options.is_generated) state.source.add(name, text, true);
 
   ReadResult result;
   report_unknown_tables(state, root);
   read_single_tables(state, root, result.scene);
-  result.scene.background.file = base::with_frame(result.scene.background.file.string(), frame);
-  read_materials(state, root, frame, result.scene.materials);
+  result.scene.background.file = base::input_at_frame(state.folder, result.scene.background.file.string(), frame);
+  read_materials(state, root, result.scene.materials);
   MaterialIndex index;
   for (const scene::Material& material : result.scene.materials)
     index.emplace(material.name, static_cast<std::uint32_t>(index.size()));

@@ -40,10 +40,7 @@ bool is_text(const data::FrameInfo& info, const std::string& name) {
 }  // namespace
 
 DataFrames::DataFrames(const DataOptions& options, const std::filesystem::path& folder)
-    : options_(options),
-      folder_(folder),
-      is_sequence_(base::has_frame_pattern(options.file.string())),
-      numbers_(options.frames) {
+    : options_(options), folder_(folder), is_sequence_(base::is_sequence(options.file)), numbers_(options.frames) {
   data::OpenOptions open_options;
   open_options.component = options.points.component;
   open_options.limit_memory(options.memory_limit);
@@ -89,7 +86,9 @@ void DataFrames::require_frames() const {
                                                              options_.file.string(), count));
 }
 
-std::filesystem::path DataFrames::file_of(int frame) const { return base::with_frame(options_.file.string(), frame); }
+std::filesystem::path DataFrames::file_of(int frame) const {
+  return is_sequence_ ? std::filesystem::path(base::with_frame(options_.file.string(), frame)) : options_.file;
+}
 
 LoadedFrame DataFrames::load(int frame, const scene::Points& keys, points::SourceRows* source) const {
   points::LoadRequest request;

@@ -72,14 +72,18 @@ TEST_F(ParticlesOpen, AByteOrderMarkIsSkippedInAllFormats) {
 
 TEST_F(ParticlesOpen, OtherEncodingsAreNamedWithARemedy) {
   for (const bool is_big_endian : {false, true})
-    for (const auto& [name, text] : {std::pair("a.dump", std::string(kDump)), {"a.xyz", kXyz}, {"a.pdb", kPdb}, {"a.csv", "x,y,z\n"}}) {
+    for (const auto& [name, text] :
+         {std::pair("a.dump", std::string(kDump)), {"a.xyz", kXyz}, {"a.pdb", kPdb}, {"a.csv", "x,y,z\n"}}) {
       const std::string mark = is_big_endian ? "\xFE\xFF" : "\xFF\xFE";
       for (const std::string& begin : {std::string(), mark})
         EXPECT_NE(errors_of(name, begin + utf16(text, is_big_endian)).find("iconv -f UTF-16 -t UTF-8"),
                   std::string::npos)
             << name;
     }
-  for (const auto& [name, text] : {std::pair("a.dump", std::string(kDump)), {"a.xyz", kXyz}, {"a.pdb", std::string(kPdb) + "END\n"}, {"a.csv", "x,y,z\n1,2,3"}})
+  for (const auto& [name, text] : {std::pair("a.dump", std::string(kDump)),
+                                   {"a.xyz", kXyz},
+                                   {"a.pdb", std::string(kPdb) + "END\n"},
+                                   {"a.csv", "x,y,z\n1,2,3"}})
     EXPECT_NE(errors_of(name, replaced(text, "\n", "\r")).find("tr '\\r' '\\n'"), std::string::npos) << name;
 }
 
