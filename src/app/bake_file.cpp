@@ -3,6 +3,7 @@
 
 #include "base/atomic_file.h"
 #include "base/error.h"
+#include "base/file_name.h"
 #include "base/output_file.h"
 #include "display/settings.h"
 #include "load/scene_files.h"
@@ -10,7 +11,7 @@
 namespace orrery::app {
 
 void bake_file(const display::Settings& display, int cube_size, const std::filesystem::path& file) {
-  const std::string extension = file.extension().string();
+  const std::string extension = base::extension(file);
   if (extension != ".cube" && extension != ".clf")
     throw base::Error(base::ErrorKind::kUsage,
                       file.string() + " is not a display transform file; use the extension .cube or .clf");

@@ -50,6 +50,7 @@ class GsdReader final : public DataFile {
   Format format() const override { return Format::kGsd; }
   int frame_count() override { return static_cast<int>(file_.frame_count()); }
   FrameInfo describe(int frame) override;
+  std::uint64_t memory() const override { return file_.memory(); }
   Table read(int frame, const std::vector<std::string>& columns) override;
 
  private:
@@ -222,6 +223,8 @@ Table GsdReader::read(int index, const std::vector<std::string>& columns) {
 
 bool is_gsd(const Signature& signature) { return signature.head.starts_with("\xdf\x65\xdf\x65\xdf\x65\xdf\x65"); }
 
-std::unique_ptr<DataFile> open_gsd(const Bytes& bytes) { return std::make_unique<GsdReader>(bytes); }
+std::unique_ptr<DataFile> open_gsd(const Bytes& bytes, const OpenOptions&) {
+  return std::make_unique<GsdReader>(bytes);
+}
 
 }  // namespace orrery::arrays

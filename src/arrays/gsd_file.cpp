@@ -97,6 +97,7 @@ void GsdFile::read_index(std::uint64_t offset, std::uint64_t count) {
 }
 
 const std::filesystem::path& GsdFile::path() const { return bytes_->file(); }
+std::uint64_t GsdFile::memory() const { return bytes_->memory(); }
 
 const GsdChunk* GsdFile::find(std::uint64_t frame, const std::string& name) const {
   const auto id = ids_.find(name);

@@ -37,6 +37,7 @@ class GsdFile {
   explicit GsdFile(std::shared_ptr<const data::ByteSource> bytes);
 
   const std::filesystem::path& path() const;
+  std::uint64_t memory() const;
   const std::string& schema() const { return schema_; }
   std::uint64_t frame_count() const { return chunks_.empty() ? 0 : chunks_.back().frame + 1; }
 

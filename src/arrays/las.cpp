@@ -244,6 +244,6 @@ class LasFile final : public SingleFrame {
 
 bool is_las(const Signature& signature) { return signature.head.starts_with(kLasSignature); }
 
-std::unique_ptr<DataFile> open_las(const Bytes& bytes) { return std::make_unique<LasFile>(bytes); }
+std::unique_ptr<DataFile> open_las(const Bytes& bytes, const OpenOptions&) { return std::make_unique<LasFile>(bytes); }
 
 }  // namespace orrery::arrays

@@ -55,6 +55,7 @@ class NpyFile final : public SingleFrame {
     check_unique(faults);
     info_.rows = header.rows();
     info_.roles = required_roles(info_.columns, faults);
+    settle_names();
   }
 
   Table read(int, const std::vector<std::string>& names) override {
@@ -84,6 +85,6 @@ class NpyFile final : public SingleFrame {
 
 bool is_npy(const Signature& signature) { return has_npy_signature(signature.head); }
 
-std::unique_ptr<DataFile> open_npy(const Bytes& bytes) { return std::make_unique<NpyFile>(bytes); }
+std::unique_ptr<DataFile> open_npy(const Bytes& bytes, const OpenOptions&) { return std::make_unique<NpyFile>(bytes); }
 
 }  // namespace orrery::arrays

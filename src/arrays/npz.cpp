@@ -39,15 +39,14 @@ Member described(ZipReader& zip) {
   constexpr std::uint64_t kShortestHead = 12;
   Member member;
   member.name = zip.name().substr(0, zip.name().rfind(".npy"));
-  std::vector<char> head = zip.read(kShortestHead);
-  if (!has_npy_signature({head.data(), head.size()})) {
+  std::string head = zip.read_text(kShortestHead);
+  if (!has_npy_signature(head)) {
     member.fault = "not an array in NumPy's format";
     return member;
   }
-  const std::uint64_t end = std::min(npy_header_end({head.data(), head.size()}), kLongestNpyHeader);
-  const std::vector<char> rest = zip.read(end - std::min<std::uint64_t>(end, head.size()));
-  head.insert(head.end(), rest.begin(), rest.end());
-  member.fault = parse_npy_header({head.data(), head.size()}, member.header);
+  const std::uint64_t end = std::min<std::uint64_t>(npy_header_end(head), kLongestNpyHeader);
+  head += zip.read_text(static_cast<std::size_t>(end - std::min<std::uint64_t>(end, head.size())));
+  member.fault = parse_npy_header(head, member.header);
   const NpyHeader& header = member.header;
   const bool is_table =
       header.shape.size() == 1 || (header.shape.size() == 2 && !header.is_structured && header.shape[1] <= kMaxColumns);
@@ -83,6 +82,15 @@ class NpzFile final : public SingleFrame {
     info_.rows = positions->header.rows();
     for (Member& member : members_) add_columns(member);
     info_.roles = required_roles(info_.columns, faults);
+    settle_names();
+  }
+
+  /// One array is decompressed at a time.
+  std::uint64_t memory() const override {
+    std::uint64_t largest = 0;
+    for (const Member& member : members_)
+      if (!member.columns.empty()) largest = std::max(largest, npy_data_bytes(member.header));
+    return SingleFrame::memory() + largest;
   }
 
   Table read(int, const std::vector<std::string>& names) override {
@@ -133,13 +141,13 @@ class NpzFile final : public SingleFrame {
   }
 
   /// Decompresses an array, at most `limit` bytes, and subtracts its size from the limit.
-  static std::vector<char> array_bytes(ZipReader& zip, const Member& member, std::uint64_t& limit, Faults& faults) {
+  static ByteBlocks array_bytes(ZipReader& zip, const Member& member, std::uint64_t& limit, Faults& faults) {
     const std::uint64_t data = npy_data_bytes(member.header), begin = member.header.begin;
     if (data > limit || begin > limit - data)
       faults.fail(0, fmt::format("array {} with shape {} exceeds the limit of {} of decompressed data",
                                  quoted_word(member.name), shape_text(member.header), base::bytes_text(limit)));
     limit -= data + begin;
-    std::vector<char> bytes = zip.read(data + begin + 1);
+    ByteBlocks bytes = zip.read(data + begin + 1);
     if (bytes.size() != data + begin)
       faults.fail(0, fmt::format("array {} with shape {} needs {} bytes of data, but {} follow its header",
                                  quoted_word(member.name), shape_text(member.header), data,

@@ -10,16 +10,16 @@
 namespace orrery::arrays {
 
 bool is_npy(const data::Signature& signature);
-std::unique_ptr<data::DataFile> open_npy(const data::Bytes& bytes);
+std::unique_ptr<data::DataFile> open_npy(const data::Bytes& bytes, const data::OpenOptions& options);
 
 bool is_npz(const data::Signature& signature);
 std::unique_ptr<data::DataFile> open_npz(const data::Bytes& bytes, const data::OpenOptions& options);
 
 bool is_las(const data::Signature& signature);
-std::unique_ptr<data::DataFile> open_las(const data::Bytes& bytes);
+std::unique_ptr<data::DataFile> open_las(const data::Bytes& bytes, const data::OpenOptions& options);
 
 bool is_gsd(const data::Signature& signature);
-std::unique_ptr<data::DataFile> open_gsd(const data::Bytes& bytes);
+std::unique_ptr<data::DataFile> open_gsd(const data::Bytes& bytes, const data::OpenOptions& options);
 
 bool is_hdf5(const data::Signature& signature);
 std::unique_ptr<data::DataFile> open_hdf5(const data::Bytes& bytes, const data::OpenOptions& options);

@@ -63,6 +63,13 @@ class VtkFile final : public SingleFrame {
     info_.roles = required_roles(info_.columns, faults);
   }
 
+  /// One array is decoded at a time.
+  std::uint64_t memory() const override {
+    std::uint64_t largest = 0;
+    for (const VtkArray& array : arrays_) largest = std::max(largest, array.components * size_of(array.type));
+    return SingleFrame::memory() + document_.memory() + largest * info_.rows;
+  }
+
   Table read(int, const std::vector<std::string>& names) override {
     Table table;
     table.rows = static_cast<std::size_t>(info_.rows);

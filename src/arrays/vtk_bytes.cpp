@@ -6,7 +6,9 @@
 #include <algorithm>
 #include <bit>
 #include <charconv>
-#include <cstring>
+#include <limits>
+#include <new>
+#include <span>
 #include <type_traits>
 #include <vector>
 
@@ -119,9 +121,33 @@ bool take_length(Stream& stream, const VtkStorage& storage, std::uint64_t& out) 
   return true;
 }
 
+/// Appends a zlib stream of `bytes` decompressed bytes; false if it is damaged.
+bool append_inflated(const std::vector<char>& compressed, std::uint64_t bytes, ByteBlocks& out) {
+  if (compressed.size() > std::numeric_limits<uInt>::max()) return false;
+  z_stream stream{};
+  if (inflateInit(&stream) != Z_OK) throw std::bad_alloc();
+  stream.next_in = const_cast<Bytef*>(reinterpret_cast<const Bytef*>(compressed.data()));
+  stream.avail_in = static_cast<uInt>(compressed.size());
+  int status = Z_OK;
+  for (std::uint64_t left = bytes; status == Z_OK;) {
+    // One byte more than there should be shows that there are too many.
+    const std::span<char> room = out.room(left + 1);
+    stream.next_out = reinterpret_cast<Bytef*>(room.data());
+    stream.avail_out = static_cast<uInt>(room.size());
+    status = inflate(&stream, Z_NO_FLUSH);
+    const std::size_t got = room.size() - stream.avail_out;
+    if (got > left) break;
+    out.append(got);
+    left -= got;
+    if (status == Z_STREAM_END && left > 0) status = Z_DATA_ERROR;
+  }
+  inflateEnd(&stream);
+  return status == Z_STREAM_END;
+}
+
 /// Decompresses an array: number of blocks, size of a block, size of the last one if it is smaller, compressed sizes,
 /// blocks.
-std::string decompress(Stream& stream, const VtkStorage& storage, std::vector<char>& out) {
+std::string decompress(Stream& stream, const VtkStorage& storage, ByteBlocks& out) {
   /// Maximum expansion of a zlib stream.
   constexpr std::uint64_t kMaxExpansion = 1040;
   constexpr const char* kBadHeader = "the header of the compressed data is wrong";
@@ -144,24 +170,18 @@ std::string decompress(Stream& stream, const VtkStorage& storage, std::vector<ch
     if (bytes > kMaxExpansion * (sizes[i] + 1)) return kBadHeader;
     if (bytes > storage.limit - std::min<std::uint64_t>(storage.limit, out.size()))
       return fmt::format("the array exceeds the limit of {} of decompressed data", base::bytes_text(storage.limit));
-    const std::size_t begin = out.size();
-    out.resize(begin + static_cast<std::size_t>(bytes));
-    uLongf got = bytes;
-    if (uncompress(reinterpret_cast<Bytef*>(out.data() + begin), &got,
-                   reinterpret_cast<const Bytef*>(compressed.data()), compressed.size()) != Z_OK ||
-        got != bytes)
-      return "the compressed data are damaged";
+    if (!append_inflated(compressed, bytes, out)) return "the compressed data are damaged";
   }
   return {};
 }
 
-VtkBytes in_memory(const std::filesystem::path& file, std::vector<char> bytes, bool is_big_endian) {
+VtkBytes in_memory(const std::filesystem::path& file, ByteBlocks bytes, bool is_big_endian) {
   const std::uint64_t size = bytes.size();
   return {ByteSource::of_memory(file, std::move(bytes)), 0, size, is_big_endian};
 }
 
 template <class T>
-bool append_number(std::string_view word, std::vector<char>& out) {
+bool append_number(std::string_view word, ByteBlocks& out) {
   T value{};
   if constexpr (std::is_floating_point_v<T>) {
     double number = 0;
@@ -171,9 +191,7 @@ bool append_number(std::string_view word, std::vector<char>& out) {
     const auto [end, error] = std::from_chars(word.data(), word.data() + word.size(), value);
     if (error != std::errc() || end != word.data() + word.size()) return false;
   }
-  const std::size_t begin = out.size();
-  out.resize(begin + sizeof(T));
-  std::memcpy(out.data() + begin, &value, sizeof(T));
+  out.append(std::string_view(reinterpret_cast<const char*>(&value), sizeof(T)));
   return true;
 }
 
@@ -183,7 +201,7 @@ std::string find_vtk_raw(const std::shared_ptr<const ByteSource>& file, std::uin
                          VtkBytes& out) {
   RawStream stream(*file, offset);
   if (storage.is_compressed) {
-    std::vector<char> bytes;
+    ByteBlocks bytes;
     std::string fault = decompress(stream, storage, bytes);
     out = in_memory(file->file(), std::move(bytes), storage.is_big_endian);
     return fault;
@@ -197,15 +215,20 @@ std::string find_vtk_raw(const std::shared_ptr<const ByteSource>& file, std::uin
 std::string decode_vtk_base64(const std::filesystem::path& file, std::string_view text, const VtkStorage& storage,
                               VtkBytes& out) {
   Base64Stream stream(text);
-  std::vector<char> bytes;
+  ByteBlocks bytes;
   std::string fault;
   if (storage.is_compressed) {
     fault = decompress(stream, storage, bytes);
   } else {
     std::uint64_t size = 0;
     if (!take_length(stream, storage, size)) return kTruncated;
-    bytes.reserve(static_cast<std::size_t>(std::min<std::uint64_t>(size, text.size())));
-    if (!stream.take(size, bytes)) return kTruncated;
+    constexpr std::uint64_t kStep = std::uint64_t{1} << 20;
+    std::vector<char> some;
+    for (; size > 0; size -= some.size()) {
+      some.clear();
+      if (!stream.take(std::min(size, kStep), some)) return kTruncated;
+      bytes.append({some.data(), some.size()});
+    }
   }
   out = in_memory(file, std::move(bytes), storage.is_big_endian);
   return fault;
@@ -213,7 +236,7 @@ std::string decode_vtk_base64(const std::filesystem::path& file, std::string_vie
 
 std::string parse_vtk_ascii(const std::filesystem::path& file, std::string_view text, NumberType type, VtkBytes& out) {
   constexpr std::string_view kBlanks = " \t\r\n";
-  std::vector<char> bytes;
+  ByteBlocks bytes;
   for (std::size_t at = text.find_first_not_of(kBlanks); at != std::string_view::npos;
        at = text.find_first_not_of(kBlanks, at)) {
     const std::size_t end = std::min(text.find_first_of(kBlanks, at), text.size());

@@ -22,6 +22,9 @@ class VtkDocument {
   /// Cost       memory for the file, excluding appended raw data
   VtkDocument(std::shared_ptr<const data::ByteSource> bytes, std::uint64_t limit);
 
+  /// Memory of the text.
+  std::uint64_t memory() const { return text_.size(); }
+
   /// Returns <PolyData> or <UnstructuredGrid>.
   pugi::xml_node data() const;
 

@@ -19,6 +19,8 @@ std::uint32_t digest(std::string_view text) {
 
 }  // namespace
 
+std::string extension(const std::filesystem::path& file) { return lower(file.extension().string()); }
+
 std::string_view utf8_prefix(std::string_view text, std::size_t bytes) {
   if (text.size() <= bytes) return text;
   while (bytes > 0 && (static_cast<unsigned char>(text[bytes]) & 0xC0u) == 0x80u) --bytes;

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstddef>
+#include <filesystem>
 #include <string>
 #include <string_view>
 
@@ -9,6 +10,9 @@ namespace orrery::base {
 
 /// Maximum length of a file name on common file systems, bytes.
 inline constexpr std::size_t kLongestFileName = 255;
+
+/// Returns the extension of a file in lower case: ".ply". Extensions are compared ignoring case.
+std::string extension(const std::filesystem::path& file);
 
 /// Returns the longest prefix of at most `bytes` bytes that does not split a UTF-8 character: some file systems refuse
 /// names that are not valid UTF-8.

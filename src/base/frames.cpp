@@ -39,6 +39,9 @@ struct Pattern {
   int digits = 0;
 };
 
+/// Index of the first character after the folders.
+std::size_t name_begin(const std::string& name) { return name.rfind('/') + 1; }
+
 /// Finds the first frame pattern at or after `from`.
 Pattern find_pattern(const std::string& name, std::size_t from) {
   for (std::size_t i = from; i < name.size(); ++i) {
@@ -100,7 +103,7 @@ std::string frames_text(const std::vector<int>& frames) {
   return out;
 }
 
-bool has_frame_pattern(const std::string& name) { return find_pattern(name, 0).end > 0; }
+bool has_frame_pattern(const std::string& name) { return find_pattern(name, name_begin(name)).end > 0; }
 
 void refuse_one_name(const std::string& name, std::size_t frames, const std::string& example) {
   const bool has_single = name.find('#') != std::string::npos;
@@ -110,15 +113,24 @@ void refuse_one_name(const std::string& name, std::size_t frames, const std::str
 }
 
 std::string with_frame(const std::string& name, int frame) {
-  std::string out;
-  std::size_t at = 0;
-  for (Pattern p = find_pattern(name, 0); p.end > 0; p = find_pattern(name, at)) {
+  std::size_t at = name_begin(name);
+  std::string out = name.substr(0, at);
+  for (Pattern p = find_pattern(name, at); p.end > 0; p = find_pattern(name, at)) {
     char digits[128];
     std::snprintf(digits, sizeof(digits), "%0*d", p.digits, frame);
     out += name.substr(at, p.begin - at) + digits;
     at = p.end;
   }
   return out + name.substr(at);
+}
+
+bool is_sequence(const std::filesystem::path& input) {
+  std::error_code ignored;
+  return has_frame_pattern(input.string()) && !std::filesystem::exists(input, ignored);
+}
+
+std::string input_at_frame(const std::filesystem::path& folder, const std::string& name, int frame) {
+  return is_sequence(folder / name) ? with_frame(name, frame) : name;
 }
 
 }  // namespace orrery::base

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstddef>
+#include <filesystem>
 #include <string>
 #include <vector>
 
@@ -19,7 +20,7 @@ std::vector<int> parse_frames(const std::string& text);
 std::string frames_text(const std::vector<int>& frames);
 
 /// True if a file name has a pattern for the frame number: `##` or more, one digit each, or `%04d`. A single `#` is an
-/// ordinary character.
+/// ordinary character, and so are all characters of folders.
 bool has_frame_pattern(const std::string& name);
 
 /// Throws an error for a name without frame pattern that several frames would share.
@@ -29,5 +30,14 @@ bool has_frame_pattern(const std::string& name);
 
 /// Replaces all such patterns by the frame number: "shot.####.exr" becomes "shot.0007.exr" for frame 7.
 std::string with_frame(const std::string& name, int frame);
+
+/// True if the name of an input is a pattern for a sequence of files. It is not if a file has this very name, such as
+/// "20%density.ply".
+bool is_sequence(const std::filesystem::path& input);
+
+/// Returns the name of an input at a frame: of a sequence, that of the frame's file.
+///
+/// `folder`   folder to which the name is relative
+std::string input_at_frame(const std::filesystem::path& folder, const std::string& name, int frame);
 
 }  // namespace orrery::base

@@ -12,6 +12,7 @@
 #include "base/available_memory.h"
 #include "base/diagnostic.h"
 #include "base/error.h"
+#include "base/file_name.h"
 #include "base/file_set.h"
 #include "base/frames.h"
 #include "base/image_limits.h"
@@ -179,7 +180,7 @@ void check_outputs(const PlotArguments& arguments) {
   const plot::PlotOptions& plot = arguments.plot;
   base::FileSet files;
   for (const int frame : plot.frames.empty() ? std::vector<int>{1} : plot.frames)
-    files.add_input(base::with_frame(plot.file.string(), frame), "data file");
+    files.add_input(base::input_at_frame({}, plot.file.string(), frame), "data file");
   if (plot.points.color.has_map_file()) files.add_input(plot.points.color.map, "colour map");
   load::add_ocio_configs(plot.display.config, files);
   for (const job::OutputFile& output : own_outputs(arguments)) {
@@ -216,7 +217,7 @@ plot::PlotScene prepare(const PlotArguments& arguments, const format::Overrides&
 int run_plot(PlotArguments& arguments) {
   begin_messages(arguments.render);
   arguments.render.batch.job.hooks.cancel = &stop_on_signals();
-  if (arguments.plot.file.extension() == ".toml")
+  if (base::extension(arguments.plot.file) == ".toml")
     base::refuse(fmt::format("{} is a scene; render it: orrery render {}", arguments.plot.file.string(),
                              arguments.plot.file.string()));
   RenderOptions& render = arguments.render;

@@ -13,6 +13,7 @@
 #include "base/atomic_file.h"
 #include "base/diagnostic.h"
 #include "base/error.h"
+#include "base/file_name.h"
 #include "base/frames.h"
 #include "cli/commands.h"
 #include "cli/messages.h"
@@ -126,18 +127,6 @@ int print_summary(const farm::BatchReport& report, bool quiet) {
   return report.failures.empty() ? 0 : base::exit_status(report.failures.front().error.kind());
 }
 
-/// Refuses data files by their extension; parsed as a scene, they would cause meaningless errors.
-void refuse_data_files(const std::vector<std::filesystem::path>& scenes) {
-  constexpr const char* kExtensions[] = {".csv", ".tsv", ".xyz",  ".extxyz", ".dump", ".lammpstrj", ".pdb",
-                                         ".ent", ".cif", ".ply",  ".npy",    ".npz",  ".las",       ".laz",
-                                         ".gsd", ".h5",  ".hdf5", ".vtp",    ".vtu",  ".gz",        ".zst"};
-  for (const std::filesystem::path& scene : scenes)
-    for (const char* extension : kExtensions)
-      if (scene.extension() == extension)
-        base::refuse(fmt::format("{} is a data file, not a scene; render it: orrery plot {} -o IMAGE", scene.string(),
-                                 scene.string()));
-}
-
 }  // namespace
 
 void begin_messages(const RenderOptions& options) {
@@ -148,9 +137,8 @@ int run_render(RenderOptions& options) {
   begin_messages(options);
   farm::Batch& batch = options.batch;
   job::Job& job = batch.job;
-  if (job.scene.text == nullptr) refuse_data_files(batch.scenes);
   for (std::size_t i = 1; i < batch.scenes.size(); ++i)
-    if (batch.scenes[i].extension() != ".toml")
+    if (base::extension(batch.scenes[i]) != ".toml")
       base::refuse(fmt::format("unexpected argument `{}`; name output files with -o", batch.scenes[i].string()));
   job.scene.overrides = options.scene.overrides();
   options.picture.finish(job);

@@ -12,6 +12,7 @@
 #include "app/info.h"
 #include "base/diagnostic.h"
 #include "base/error.h"
+#include "base/file_name.h"
 #include "base/frames.h"
 #include "cli/commands.h"
 #include "cli/option_checks.h"
@@ -66,7 +67,7 @@ int data_info(const InfoOptions& options) {
 }
 
 int info(const InfoOptions& options) {
-  if (options.file.extension() != ".toml") return data_info(options);
+  if (base::extension(options.file) != ".toml") return data_info(options);
   refuse_option(!options.component.empty(), "--component", options, "scene; the option applies to data files");
   load::SceneRequest request;
   request.source.file = options.file;

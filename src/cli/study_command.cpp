@@ -6,6 +6,7 @@
 #include <memory>
 
 #include "base/error.h"
+#include "base/file_name.h"
 #include "base/output_file.h"
 #include "cli/commands.h"
 #include "cli/option_checks.h"
@@ -24,7 +25,7 @@ struct StudyOptions {
 };
 
 void check_report_name(const std::filesystem::path& file) {
-  if (file.extension() != ".html" && file.extension() != ".htm")
+  if (base::extension(file) != ".html" && base::extension(file) != ".htm")
     throw base::Error(base::ErrorKind::kUsage,
                       file.string() + ": the report is an HTML file; name it .html, or print numbers with --json");
 }

@@ -24,7 +24,12 @@
 namespace orrery::data {
 namespace {
 
+constexpr std::size_t kBlock = std::size_t{1} << 20;
+
 std::string reason() { return std::strerror(errno); }
+
+constexpr std::size_t kLongestSignature = 6;  // of compressed data
+constexpr std::string_view kByteOrderMark = "\xEF\xBB\xBF";
 
 /// A plain file.
 class PlainFile final : public ByteSource {
@@ -37,7 +42,7 @@ class PlainFile final : public ByteSource {
 
   void read(std::uint64_t offset, std::size_t count, char* out) const override {
     for (std::size_t done = 0; done < count;) {
-      const ssize_t got = ::pread(descriptor_, out + done, count - done, static_cast<off_t>(offset + done));
+      const ssize_t got = ::pread(descriptor_, out + done, count - done, static_cast<off_t>(begin() + offset + done));
       if (got < 0 && errno == EINTR) continue;
       if (got < 0)
         throw base::Error(base::ErrorKind::kIo, fmt::format("cannot read {}: {}", file().string(), reason()));
@@ -52,15 +57,15 @@ class PlainFile final : public ByteSource {
 
 class BytesInMemory final : public ByteSource {
  public:
-  BytesInMemory(const std::filesystem::path& file, std::vector<char> bytes)
+  BytesInMemory(const std::filesystem::path& file, ByteBlocks bytes)
       : ByteSource(file, bytes.size(), true), bytes_(std::move(bytes)) {}
 
   void read(std::uint64_t offset, std::size_t count, char* out) const override {
-    std::memcpy(out, bytes_.data() + offset, count);
+    bytes_.read(begin() + offset, count, out);
   }
 
  private:
-  std::vector<char> bytes_;
+  ByteBlocks bytes_;
 };
 
 using Archive = std::unique_ptr<archive, decltype(&archive_read_free)>;
@@ -75,8 +80,6 @@ bool is_of_archive_library(std::string_view head) {
              "7zXZ\0"sv);
 }
 
-constexpr std::size_t kBlock = std::size_t{1} << 20;
-
 [[noreturn]] void fail_as_damaged(const std::filesystem::path& file, const std::string& why) {
   Faults(file).fail(0, "damaged compressed data: " + why,
                     "`gzip -t`, `zstd -t`, `bzip2 -t` or `xz -t` checks the file");
@@ -85,6 +88,12 @@ constexpr std::size_t kBlock = std::size_t{1} << 20;
 void check_limit(const std::filesystem::path& file, std::uint64_t size, std::uint64_t limit) {
   if (size > limit)
     Faults(file).fail(0, "decompresses to more than " + base::bytes_text(limit), "decompress the file first");
+}
+
+/// Room for the next bytes up to the limit, and one more, which shows that there are more. Grows only by what was
+/// decompressed: a header may declare any size.
+std::span<char> room_below(ByteBlocks& out, std::uint64_t limit) {
+  return out.room(std::min<std::uint64_t>(limit - out.size(), kBlock) + 1);
 }
 
 /// Decompresses the members of a gzip file. By zlib, since libarchive does not verify their checksums.
@@ -98,18 +107,16 @@ class GzipFile {
   GzipFile& operator=(const GzipFile&) = delete;
   ~GzipFile() { inflateEnd(&stream_); }
 
-  std::vector<char> read(std::uint64_t limit) {
-    std::vector<char> out;
+  ByteBlocks read(std::uint64_t limit) {
+    ByteBlocks out;
     const base::StopPoint stop;
     for (bool ends = false; !ends;) {
       stop.check();
-      const std::size_t at = out.size();
-      // Grows only by what was decompressed: a header may declare any size.
-      out.resize(at + kBlock);
-      stream_.next_out = reinterpret_cast<Bytef*>(out.data() + at);
-      stream_.avail_out = kBlock;
+      const std::span<char> room = room_below(out, limit);
+      stream_.next_out = reinterpret_cast<Bytef*>(room.data());
+      stream_.avail_out = static_cast<uInt>(room.size());
       while (stream_.avail_out > 0 && !ends) ends = !step();
-      out.resize(out.size() - stream_.avail_out);
+      out.append(room.size() - stream_.avail_out);
       check_limit(bytes_.file(), out.size(), limit);
     }
     return out;
@@ -148,7 +155,7 @@ class GzipFile {
   z_stream stream_{};
 };
 
-std::vector<char> decompressed(const std::filesystem::path& file, std::uint64_t limit) {
+ByteBlocks decompressed(const std::filesystem::path& file, std::uint64_t limit) {
   const Archive in(archive_read_new(), &archive_read_free);
   if (!in) throw std::bad_alloc();
   const auto check = [&](la_ssize_t status) {
@@ -166,21 +173,45 @@ std::vector<char> decompressed(const std::filesystem::path& file, std::uint64_t 
   check(archive_read_open_filename(in.get(), file.c_str(), kBlock));
   archive_entry* entry = nullptr;
   if (check(archive_read_next_header(in.get(), &entry)) == ARCHIVE_EOF) return {};
-  std::vector<char> out;
+  ByteBlocks out;
   const base::StopPoint stop;
   for (;;) {
     stop.check();
-    const std::size_t at = out.size();
-    // Grows only by what was decompressed: the header of a compressed file may declare any size.
-    out.resize(at + kBlock);
-    const auto got = static_cast<std::size_t>(check(archive_read_data(in.get(), out.data() + at, kBlock)));
-    out.resize(at + got);
+    const std::span<char> room = room_below(out, limit);
+    const auto got = static_cast<std::size_t>(check(archive_read_data(in.get(), room.data(), room.size())));
     if (got == 0) return out;
+    out.append(got);
     check_limit(file, out.size(), limit);
   }
 }
 
 }  // namespace
+
+std::span<char> ByteBlocks::room(std::uint64_t most) {
+  const auto used = static_cast<std::size_t>(size_ % kBlock);
+  if (size_ == blocks_.size() * kBlock) blocks_.push_back(std::make_unique_for_overwrite<char[]>(kBlock));
+  return {blocks_.back().get() + used, static_cast<std::size_t>(std::min<std::uint64_t>(kBlock - used, most))};
+}
+
+void ByteBlocks::append(std::string_view bytes) {
+  while (!bytes.empty()) {
+    const std::span<char> to = room(bytes.size());
+    std::memcpy(to.data(), bytes.data(), to.size());
+    append(to.size());
+    bytes.remove_prefix(to.size());
+  }
+}
+
+void ByteBlocks::read(std::uint64_t offset, std::size_t count, char* out) const {
+  while (count > 0) {
+    const auto block = static_cast<std::size_t>(offset / kBlock), at = static_cast<std::size_t>(offset % kBlock);
+    const std::size_t some = std::min(count, kBlock - at);
+    std::memcpy(out, blocks_[block].get() + at, some);
+    out += some;
+    offset += some;
+    count -= some;
+  }
+}
 
 std::shared_ptr<const ByteSource> ByteSource::open(const std::filesystem::path& file, std::uint64_t limit) {
   base::require_readable(file);
@@ -191,16 +222,28 @@ std::shared_ptr<const ByteSource> ByteSource::open(const std::filesystem::path& 
     if (descriptor >= 0) ::close(descriptor);
     throw base::Error(base::ErrorKind::kMissingInput, fmt::format("cannot open {}: {}", file.string(), why));
   }
-  auto plain = std::make_shared<const PlainFile>(file, descriptor, static_cast<std::uint64_t>(status.st_size));
-  constexpr std::size_t kLongestSignature = 6;
-  const std::string head = plain->text(0, kLongestSignature);
-  if (is_gzip(head)) return of_memory(file, GzipFile(*plain).read(limit));
-  if (is_of_archive_library(head)) return of_memory(file, decompressed(file, limit));
-  return plain;
+  std::shared_ptr<ByteSource> out =
+      std::make_shared<PlainFile>(file, descriptor, static_cast<std::uint64_t>(status.st_size));
+  const std::string head = out->text(0, kLongestSignature);
+  if (is_gzip(head))
+    out = std::make_shared<BytesInMemory>(file, GzipFile(*out).read(limit));
+  else if (is_of_archive_library(head))
+    out = std::make_shared<BytesInMemory>(file, decompressed(file, limit));
+  if (out->text(0, kByteOrderMark.size()) == kByteOrderMark) {
+    out->begin_ += kByteOrderMark.size();
+    out->size_ -= kByteOrderMark.size();
+  }
+  return out;
 }
 
-std::shared_ptr<const ByteSource> ByteSource::of_memory(const std::filesystem::path& file, std::vector<char> bytes) {
+std::shared_ptr<const ByteSource> ByteSource::of_memory(const std::filesystem::path& file, ByteBlocks bytes) {
   return std::make_shared<const BytesInMemory>(file, std::move(bytes));
+}
+
+std::shared_ptr<const ByteSource> ByteSource::of_memory(const std::filesystem::path& file, std::string_view bytes) {
+  ByteBlocks blocks;
+  blocks.append(bytes);
+  return of_memory(file, std::move(blocks));
 }
 
 std::string ByteSource::text(std::uint64_t offset, std::size_t count) const {
@@ -209,5 +252,7 @@ std::string ByteSource::text(std::uint64_t offset, std::size_t count) const {
   read(offset, out.size(), out.data());
   return out;
 }
+
+bool is_compressed(std::string_view head) { return is_gzip(head) || is_of_archive_library(head); }
 
 }  // namespace orrery::data

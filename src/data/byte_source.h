@@ -5,14 +5,40 @@
 #include <cstdint>
 #include <filesystem>
 #include <memory>
+#include <span>
 #include <string>
+#include <string_view>
 #include <utility>
 #include <vector>
 
 namespace orrery::data {
 
+/// Bytes that arrive in an unknown number. In blocks, because a vector exists twice while it grows.
+class ByteBlocks {
+ public:
+  std::uint64_t size() const { return size_; }
+
+  /// Returns room for the next bytes: at least one, and at most `most`.
+  ///
+  /// Domain     most > 0
+  std::span<char> room(std::uint64_t most);
+  /// Appends the first `count` bytes of the room.
+  void append(std::size_t count) { size_ += count; }
+  /// Appends a copy of some bytes.
+  void append(std::string_view bytes);
+
+  /// Copies bytes.
+  ///
+  /// Domain     offset + count <= size()
+  void read(std::uint64_t offset, std::size_t count, char* out) const;
+
+ private:
+  std::vector<std::unique_ptr<char[]>> blocks_;
+  std::uint64_t size_ = 0;
+};
+
 /// The bytes of a data file. A plain file is read on demand; a file compressed with gzip, zstd, bzip2 or xz is
-/// decompressed into memory when it is opened. Thread-safe.
+/// decompressed into memory when it is opened. A UTF-8 byte order mark is skipped. Thread-safe.
 class ByteSource {
  public:
   /// Opens a file.
@@ -22,13 +48,16 @@ class ByteSource {
   static std::shared_ptr<const ByteSource> open(const std::filesystem::path& file, std::uint64_t limit);
 
   /// Returns bytes in memory as a source. `file` is for messages.
-  static std::shared_ptr<const ByteSource> of_memory(const std::filesystem::path& file, std::vector<char> bytes);
+  static std::shared_ptr<const ByteSource> of_memory(const std::filesystem::path& file, ByteBlocks bytes);
+  static std::shared_ptr<const ByteSource> of_memory(const std::filesystem::path& file, std::string_view bytes);
 
   virtual ~ByteSource() = default;
 
   const std::filesystem::path& file() const { return file_; }
   std::uint64_t size() const { return size_; }
-  bool is_compressed() const { return is_compressed_; }
+  bool is_compressed() const { return is_in_memory_; }
+  /// Memory that the bytes take until this is destroyed.
+  std::uint64_t memory() const { return is_in_memory_ ? size_ : 0; }
 
   /// Reads exactly `count` bytes.
   ///
@@ -40,13 +69,20 @@ class ByteSource {
   std::string text(std::uint64_t offset, std::size_t count) const;
 
  protected:
-  ByteSource(std::filesystem::path file, std::uint64_t size, bool is_compressed)
-      : file_(std::move(file)), size_(size), is_compressed_(is_compressed) {}
+  ByteSource(std::filesystem::path file, std::uint64_t size, bool is_in_memory)
+      : file_(std::move(file)), size_(size), is_in_memory_(is_in_memory) {}
+
+  /// Offset of the first byte in the file.
+  std::uint64_t begin() const { return begin_; }
 
  private:
   std::filesystem::path file_;
+  std::uint64_t begin_ = 0;
   std::uint64_t size_ = 0;
-  bool is_compressed_ = false;
+  bool is_in_memory_ = false;
 };
+
+/// Returns whether a file begins like one that open() decompresses.
+bool is_compressed(std::string_view head);
 
 }  // namespace orrery::data

@@ -64,6 +64,9 @@ class DataFile {
   /// Errors     base::Error(kBadData) with diagnostics for truncated or malformed data; kIo
   /// Cost       memory in proportion to the rows in the file, not to a count that its header declares
   virtual Table read(int frame, const std::vector<std::string>& columns) = 0;
+
+  /// Memory that the file takes while it is open and read, bytes, in addition to the tables that are read.
+  virtual std::uint64_t memory() const { return 0; }
 };
 
 /// The first bytes of a file and its extension, used to recognise formats.

@@ -2,8 +2,11 @@
 #pragma once
 
 #include <utility>
+#include <variant>
 
+#include "data/byte_source.h"
 #include "data/data_file.h"
+#include "data/elements.h"
 #include "data/forward.h"
 
 namespace orrery::data {
@@ -16,8 +19,16 @@ class SingleFrame : public DataFile {
   Format format() const final { return format_; }
   int frame_count() final { return 1; }
   FrameInfo describe(int) override { return info_; }
+  std::uint64_t memory() const override { return bytes_->memory(); }
 
  protected:
+  /// Reads the column of elements, if there is one, and settles its role, see settle_element().
+  void settle_names() {
+    if (info_.roles.element.empty()) return;
+    const Table table = read(0, {info_.roles.element});
+    settle_element(std::get<Words>(table.columns.at(0).values).words, info_.roles);
+  }
+
   Bytes bytes_;
   FrameInfo info_;
 

@@ -2,11 +2,14 @@
 #include "data/text_frames.h"
 
 #include <limits>
+#include <variant>
 
 #include <fmt/core.h>
 
+#include "base/error.h"
 #include "data/byte_source.h"
 #include "data/faults.h"
+#include "data/text_rows.h"
 
 namespace orrery::data {
 
@@ -16,11 +19,37 @@ int TextFrames::frame_count() {
   return static_cast<int>(frames_.size());
 }
 
+bool TextFrames::has_frame(int number) {
+  while (frames_.size() <= static_cast<std::size_t>(number))
+    if (!add_frame()) return false;
+  return true;
+}
+
 TextCursor TextFrames::frame(int number) {
-  const auto index = static_cast<std::size_t>(number);
-  while (frames_.size() <= index && add_frame()) {
+  has_frame(number);
+  return TextCursor(*bytes_, frames_.at(static_cast<std::size_t>(number)));
+}
+
+const std::vector<std::string>& TextFrames::names() {
+  if (names_) return *names_;
+  names_.emplace();
+  std::optional<Names> found;
+  for (int i = 0; has_frame(i) && (found = names_of(i)) && found->count == 0;) ++i;
+  if (!found || found->count == 0) return *names_;
+  TextLayout layout;
+  layout.begin = found->rows.offset;
+  layout.first_line = found->rows.line;
+  layout.rows = found->count;
+  layout.columns.assign(found->column + 1, {ColumnType::kText, false});
+  layout.columns.back().is_wanted = true;
+  layout.allows_more = true;
+  try {
+    Faults faults(bytes_->file());
+    *names_ = std::get<Words>(read_text_rows(*bytes_, layout, faults).values.back()).words;
+  } catch (const base::Error& error) {
+    if (error.kind() != base::ErrorKind::kBadData) throw;
   }
-  return TextCursor(*bytes_, frames_.at(index));
+  return *names_;
 }
 
 void TextFrames::require_end(TextCursor rows_end, std::uint64_t count_line) const {

@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <utility>
@@ -17,6 +19,7 @@ namespace orrery::data {
 class TextFrames : public DataFile {
  public:
   int frame_count() override;
+  std::uint64_t memory() const override { return bytes_->memory(); }
 
  protected:
   explicit TextFrames(Bytes bytes) : bytes_(std::move(bytes)), end_(*bytes_) {}
@@ -28,6 +31,17 @@ class TextFrames : public DataFile {
   /// Errors     base::Error(kBadData) for a malformed header up to that frame
   TextCursor frame(int number);
 
+  /// The column of names of a frame's particles.
+  struct Names {
+    TextCursor::Place rows;
+    std::uint64_t count = 0;  ///< of the rows
+    std::size_t column = 0;
+  };
+
+  /// The distinct names in the first frame that has rows: what they mean must not change from frame to frame. Empty if
+  /// names_of() returns none, and if they cannot be read, which is reported when their frame is read.
+  const std::vector<std::string>& names();
+
   /// Checks that the rows of a frame are followed by another frame or by the end of the file.
   ///
   /// `rows_end`   place after the rows `count_line` the line that declares their number
@@ -37,12 +51,15 @@ class TextFrames : public DataFile {
   /// Reads a header, and returns the number of rows.
   virtual std::uint64_t skip_header(TextCursor& cursor) const = 0;
   virtual bool begins_frame(std::string_view line) const = 0;
+  virtual std::optional<Names> names_of(int frame) = 0;
 
+  bool has_frame(int number);
   bool add_frame();
 
   Bytes bytes_;
   std::vector<TextCursor::Place> frames_;  ///< frames found so far
   TextCursor end_;                         ///< position after the last of them
+  std::optional<std::vector<std::string>> names_;
 };
 
 }  // namespace orrery::data

@@ -88,19 +88,24 @@ bool ZipReader::next() {
   return true;
 }
 
-std::vector<char> ZipReader::read(std::uint64_t count) {
+ByteBlocks ZipReader::read(std::uint64_t count) {
   const base::StopPoint stop;
-  std::vector<char> out;
+  ByteBlocks out;
   while (out.size() < count) {
     stop.check();
     // Grows only by what was decompressed: the headers may declare any size.
-    const std::size_t at = out.size();
-    out.resize(at + static_cast<std::size_t>(std::min<std::uint64_t>(count - at, State::kBlockBytes)));
-    const auto got =
-        static_cast<std::size_t>(state_->check(archive_read_data(state_->in.get(), out.data() + at, out.size() - at)));
-    out.resize(at + got);
+    const std::span<char> room = out.room(count - out.size());
+    const la_ssize_t got = state_->check(archive_read_data(state_->in.get(), room.data(), room.size()));
     if (got == 0) break;
+    out.append(static_cast<std::size_t>(got));
   }
+  return out;
+}
+
+std::string ZipReader::read_text(std::size_t count) {
+  const ByteBlocks bytes = read(count);
+  std::string out(static_cast<std::size_t>(bytes.size()), '\0');
+  bytes.read(0, out.size(), out.data());
   return out;
 }
 

@@ -32,7 +32,9 @@ class ZipReader {
   ///
   /// Errors     as for next()
   /// Cost       memory for the bytes that exist, not for `count`
-  std::vector<char> read(std::uint64_t count);
+  ByteBlocks read(std::uint64_t count);
+  /// The same as text, for the header of a member.
+  std::string read_text(std::size_t count);
 
  private:
   struct State;

@@ -10,10 +10,13 @@ namespace orrery::format {
 NamedFiles named_files(const std::filesystem::path& scene_file, const Overrides& overrides, const std::string* text) {
   SourceText source;
   Diagnostics diagnostics;
-  const toml::table root =
-      parse_tree(scene_file.string(), text != nullptr ? *text : read_file(scene_file, kLargestSceneFile), overrides,
-                 source, diagnostics);
-  if (root.empty()) diagnostics.raise_errors(scene_file.string());
+  const std::string own = text != nullptr ? std::string() : read_file(scene_file, kLargestSceneFile);
+  const std::string& scene = text != nullptr ? *text : own;
+  const toml::table root = parse_tree(scene_file.string(), scene, overrides, source, diagnostics);
+  if (root.empty() && diagnostics.has_errors()) {
+    refuse_data_file(scene_file, scene);
+    diagnostics.raise_errors(scene_file.string());
+  }
   NamedFiles out;
   out.ocio_config = root["color"]["config"].value_or(std::string());
   out.background = root["background"]["file"].value_or(std::string());

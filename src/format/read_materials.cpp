@@ -52,7 +52,7 @@ const scene::MaterialType* read_type(ReadState& state, const toml::table& table,
 }
 
 /// Reads a texture, the value of a material's key; null, and an error is reported, if its type is missing or unknown.
-scene::TextureSlot read_texture(ReadState& state, const toml::table& table, const std::string& full_name, int frame,
+scene::TextureSlot read_texture(ReadState& state, const toml::table& table, const std::string& full_name,
                                 const std::vector<scene::TextureTypeKeys>& types) {
   std::vector<std::string> names, all_keys = {"texture"};
   for (const scene::TextureTypeKeys& type : types) {
@@ -72,26 +72,26 @@ scene::TextureSlot read_texture(ReadState& state, const toml::table& table, cons
     const auto texture = std::make_shared<scene::Texture>();
     texture->type = type.type;
     read_keys(state, table, full_name, type.keys, {"texture"}, *texture);
-    texture->file = base::with_frame(texture->file.string(), frame);
+    texture->file = base::input_at_frame(state.folder, texture->file.string(), state.frame);
     return texture;
   }
   return nullptr;
 }
 
 /// Reads the keys whose values are tables as textures. Their names are added to `also`.
-void read_textures(ReadState& state, const toml::table& table, const std::string& full_name, int frame,
+void read_textures(ReadState& state, const toml::table& table, const std::string& full_name,
                    const scene::MaterialType& type, std::vector<std::string>& also, scene::MaterialModel& model) {
   for (const scene::TexturedKey& key : type.textured) {
     const toml::node* node = table.get(key.name);
     if (node == nullptr || !node->is_table()) continue;
-    key.at(model) = read_texture(state, *node->as_table(), fmt::format("{}.{}", full_name, key.name), frame,
+    key.at(model) = read_texture(state, *node->as_table(), fmt::format("{}.{}", full_name, key.name),
                                  scene::texture_types(key.use));
     for (const auto& [word, value] : *node->as_table()) also.push_back(fmt::format("{}.{}", key.name, word.str()));
     also.push_back(key.name + ".texture");
   }
 }
 
-void read_material(ReadState& state, const toml::table& table, int frame, scene::Material& material) {
+void read_material(ReadState& state, const toml::table& table, scene::Material& material) {
   const std::string full_name = "material." + material.name;
   const scene::MaterialType* type = read_type(state, table, full_name);
   if (type == nullptr) return report_keys_of_no_type(state, table, full_name);
@@ -105,7 +105,7 @@ void read_material(ReadState& state, const toml::table& table, int frame, scene:
     also.push_back(word);
   }
   material.model = type->model;
-  read_textures(state, table, full_name, frame, *type, also, material.model);
+  read_textures(state, table, full_name, *type, also, material.model);
   read_keys(state, table, full_name, type->keys, also, material.model);
 }
 
@@ -147,7 +147,7 @@ void drop_keys_of_old_types(toml::table& root) {
   }
 }
 
-void read_materials(ReadState& state, const toml::table& root, int frame, std::vector<scene::Material>& materials) {
+void read_materials(ReadState& state, const toml::table& root, std::vector<scene::Material>& materials) {
   const toml::node* node = root.get("material");
   if (node == nullptr) return;
   const toml::table* all = node->as_table();
@@ -162,7 +162,7 @@ void read_materials(ReadState& state, const toml::table& root, int frame, std::v
     // An invalid material is added, too: spheres may use its name without further errors.
     materials.push_back({name, scene::Lambertian{}});
     if (const toml::table* table = entry.value->as_table()) {
-      read_material(state, *table, frame, materials.back());
+      read_material(state, *table, materials.back());
     } else {
       state.error(place_of(*entry.value), fmt::format("material.{} must be a table", name),
                   fmt::format("write [material.{}]", name));

@@ -14,9 +14,7 @@ struct ReadState;
 /// Reads the [material.NAME] tables in the order of the file, which defines the material indices of points files.
 /// Materials that only overrides define follow. An invalid material keeps its name and index, so that spheres that use
 /// it cause no further errors.
-///
-/// `frame`    replaces frame patterns in names of texture files
-void read_materials(ReadState& state, const toml::table& root, int frame, std::vector<scene::Material>& materials);
+void read_materials(ReadState& state, const toml::table& root, std::vector<scene::Material>& materials);
 
 /// Removes the keys of a material or texture that only its type in the file has, if an override has replaced the type.
 void drop_keys_of_old_types(toml::table& root);

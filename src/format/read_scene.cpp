@@ -140,8 +140,7 @@ void read_types(ReadState& state, const toml::table& table, const std::string& t
   }
 }
 
-void read_points(ReadState& state, const toml::table& root, int frame, const MaterialIndex& index,
-                 scene::Scene& scene) {
+void read_points(ReadState& state, const toml::table& root, const MaterialIndex& index, scene::Scene& scene) {
   const toml::array* list = tables_under(state, root, "points");
   if (list == nullptr) return;
   for (std::size_t i = 0; i < list->size(); ++i) {
@@ -153,9 +152,10 @@ void read_points(ReadState& state, const toml::table& root, int frame, const Mat
                {scene::kSmallestRadius, scene::kLargestLength}, points.radius.types);
     read_types(state, table, full_name, "color.type", scene::ValueType::kVector, {0, 1}, points.color.types);
     points.material = read_material_name(state, table, full_name, scene, index);
-    const std::string pattern = points.file.string();
-    points.file = base::with_frame(pattern, frame);
-    points.is_sequence = points.file.string() != pattern;
+    if (state.unread.count(full_name + ".file") == 0) {
+      points.is_sequence = base::is_sequence(state.folder / points.file);
+      points.file = base::input_at_frame(state.folder, points.file.string(), state.frame);
+    }
     scene.points.push_back(std::move(points));
   }
 }
@@ -263,15 +263,20 @@ SceneReader::SceneReader(const std::filesystem::path& file, const Overrides& ove
   State& state = *state_;
   const std::string text = options.text ? *options.text : read_file(file, kLargestSceneFile);
   state.file = file.string();
+  state.folder = file.parent_path();
+  state.frame = options.frame;
   state.root = parse_tree(state.file, text, overrides, state.source, state.diagnostics);
   const toml::table& root = state.root;
-  if (root.empty()) state.diagnostics.raise_errors(state.file);
+  if (root.empty() && state.diagnostics.has_errors()) {
+    refuse_data_file(file, text);
+    state.diagnostics.raise_errors(state.file);
+  }
   if (options.typed_lines) state.source.add(state.file, text, options.typed_lines);
   scene::Scene& scene = state.result.scene;
   report_unknown_tables(state, root);
   read_single_tables(state, root, scene);
-  scene.background.file = base::with_frame(scene.background.file.string(), options.frame);
-  read_materials(state, root, options.frame, scene.materials);
+  scene.background.file = base::input_at_frame(state.folder, scene.background.file.string(), options.frame);
+  read_materials(state, root, scene.materials);
   MaterialIndex index;
   for (const scene::Material& material : scene.materials)
     index.emplace(material.name, static_cast<std::uint32_t>(index.size()));
@@ -279,7 +284,7 @@ SceneReader::SceneReader(const std::filesystem::path& file, const Overrides& ove
   if (const toml::array* keys = tables_under(state, root, "key")) read_tracks(state, *keys, scene);
   warn_of_animated_overrides(state, overrides, scene);
   if (!state.diagnostics.has_errors()) pose(state, root, state.file, options.frame, state.result);
-  read_points(state, root, options.frame, index, scene);
+  read_points(state, root, index, scene);
 }
 
 SceneReader::~SceneReader() = default;
@@ -311,8 +316,7 @@ void SceneReader::add_file_error(const std::string& key, const base::Error& erro
   State& state = *state_;
   add_problem(state, state.root, state.file, {base::Severity::kError, key, "", error.kind()},
               fmt::format("{}: {}", key, error.what()));
-  if (const auto* const missing = dynamic_cast<const base::FileError*>(&error))
-    state.diagnostics.add_missing(*missing);
+  if (const auto* const missing = dynamic_cast<const base::FileError*>(&error)) state.diagnostics.add_missing(*missing);
   for (const base::Diagnostic& diagnostic : error.diagnostics())
     state.diagnostics.add(diagnostic.severity, {diagnostic.file, diagnostic.line, 0, 1}, error.kind(),
                           [&] { return diagnostic; });

@@ -12,7 +12,9 @@
 #include <fmt/core.h>
 
 #include "base/file_error.h"
+#include "base/file_name.h"
 #include "base/input_file.h"
+#include "particles/open.h"
 
 namespace orrery::format {
 
@@ -32,6 +34,17 @@ std::size_t byte_of_character(std::string_view line, std::size_t index) {
     if (begins && index-- == 0) return at;
   }
   return at + index;
+}
+
+using File = std::unique_ptr<std::FILE, int (*)(std::FILE*)>;
+
+File opened(const std::filesystem::path& file) {
+  base::require_readable(file);
+  File in(std::fopen(file.c_str(), "rb"), &std::fclose);
+  if (!in)
+    throw base::FileError(base::ErrorKind::kMissingInput,
+                          fmt::format("cannot open {}: {}", file.string(), std::strerror(errno)), file, errno);
+  return in;
 }
 
 }  // namespace
@@ -110,28 +123,30 @@ base::Diagnostic SourceText::diagnostic(base::Severity severity, const Place& pl
   return out;
 }
 
+void refuse_data_file(const std::filesystem::path& file, std::string_view text) {
+  if (base::extension(file) != ".toml" && particles::is_data_file(file, text))
+    base::refuse(fmt::format("{0} is a data file, not a scene; render it: orrery plot {0} -o IMAGE", file.string()));
+}
+
 std::string read_file(const std::filesystem::path& file, std::uint64_t largest_bytes) {
-  const auto too_large = [&] {
+  char more[65536];
+  const File in = opened(file);
+  const auto too_large = [&](std::string_view head) {
+    refuse_data_file(file, head);
     return base::Error(base::ErrorKind::kBadData,
                        fmt::format("{} exceeds the limit of {} MiB", file.string(), largest_bytes >> 20));
   };
   std::error_code error;
-  base::require_readable(file);
-  const std::unique_ptr<std::FILE, int (*)(std::FILE*)> in(std::fopen(file.c_str(), "rb"), &std::fclose);
-  if (!in)
-    throw base::FileError(base::ErrorKind::kMissingInput,
-                          fmt::format("cannot open {}: {}", file.string(), std::strerror(errno)), file, errno);
   const auto size = std::filesystem::file_size(file, error);
-  if (!error && size > largest_bytes) throw too_large();
+  if (!error && size > largest_bytes) throw too_large({more, std::fread(more, 1, sizeof(more), in.get())});
   std::string bytes;
   bytes.resize(error ? 0 : static_cast<std::size_t>(size));
   std::size_t got = std::fread(bytes.data(), 1, bytes.size(), in.get());
   if (got < bytes.size()) bytes.resize(got);
   // A file may have grown in the meantime, and files in /proc report a size of 0: read to the end.
-  char more[65536];
   while ((got = std::fread(more, 1, sizeof(more), in.get())) > 0) {
     bytes.append(more, got);
-    if (bytes.size() > largest_bytes) throw too_large();
+    if (bytes.size() > largest_bytes) throw too_large(bytes);
   }
   if (std::ferror(in.get()) != 0)
     throw base::Error(base::ErrorKind::kIo, fmt::format("reading {} failed", file.string()));

@@ -64,10 +64,13 @@ class SourceText {
 /// Maximum size of a scene file, bytes: a million [[sphere]] tables. Larger scenes use points files.
 inline constexpr std::uint64_t kLargestSceneFile = 256u << 20;
 
-/// Reads a whole file.
+/// Throws base::Error(kUsage), which names the right command, if a text that is not a scene is a data file.
+void refuse_data_file(const std::filesystem::path& file, std::string_view text);
+
+/// Reads the text of a scene.
 ///
 /// Errors     base::Error(kMissingInput) if it cannot be opened or is not a regular file, kBadData if it is larger than
-///            `largest_bytes`, kIo if reading fails
+///            `largest_bytes`, kIo if reading fails; those of refuse_data_file()
 std::string read_file(const std::filesystem::path& file, std::uint64_t largest_bytes);
 
 }  // namespace orrery::format

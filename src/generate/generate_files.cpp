@@ -7,6 +7,7 @@
 
 #include "base/atomic_file.h"
 #include "base/error.h"
+#include "base/file_name.h"
 #include "base/file_set.h"
 #include "film/picture.h"
 #include "format/write_ply.h"
@@ -69,7 +70,7 @@ std::filesystem::path points_file_of(const std::filesystem::path& file) {
 /// Checks the output files before anything is generated. The points file, which the user does not name, is replaced
 /// only if an earlier run wrote it.
 void check(const std::filesystem::path& file, bool has_points, bool force) {
-  if (file.extension() == ".ply")
+  if (base::extension(file) == ".ply")
     throw base::Error(base::ErrorKind::kUsage,
                       fmt::format("{}: .ply is the extension of the points file; name the scene, e.g. {}",
                                   file.string(), std::filesystem::path(file).replace_extension(".toml").string()));

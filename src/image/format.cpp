@@ -6,6 +6,7 @@
 #include <fmt/core.h>
 
 #include "base/error.h"
+#include "base/file_name.h"
 #include "base/text.h"
 
 namespace orrery::image {
@@ -33,7 +34,7 @@ const std::vector<FormatInfo>& formats() {
 const FormatInfo& info_of(Format format) { return formats().at(static_cast<std::size_t>(format)); }
 
 Format format_of(const std::filesystem::path& file) {
-  std::string extension = base::lower(file.extension().string());
+  std::string extension = base::extension(file);
   if (!extension.empty()) extension.erase(0, 1);
   std::vector<std::string> known;
   for (const FormatInfo& info : formats()) {

@@ -29,11 +29,12 @@ void add_named_files(const SceneSource& scene, const std::vector<int>& frames, b
   color.config = named.ocio_config;
   add_ocio_configs(config_of(scene_file, color), files);
   const auto add = [&](const std::string& name, const char* role) {
-    if (!base::has_frame_pattern(name)) {
-      files.add_input(scene_file.parent_path() / name, role);
+    const fs::path folder = scene_file.parent_path();
+    if (!base::is_sequence(folder / name)) {
+      files.add_input(folder / name, role);
       return;
     }
-    for (const int frame : frames) files.add_input(scene_file.parent_path() / base::with_frame(name, frame), role);
+    for (const int frame : frames) files.add_input(folder / base::with_frame(name, frame), role);
   };
   for (const std::string& name : named.points) add(name, kPointsRole);
   for (const std::string& name : named.color_maps) add(name, kMapRole);

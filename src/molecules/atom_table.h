@@ -4,6 +4,7 @@
 #include <array>
 #include <cstdint>
 #include <string>
+#include <tuple>
 #include <unordered_map>
 #include <vector>
 
@@ -35,6 +36,10 @@ class AtomTable {
   void add(const Atom& atom);
 
   std::uint64_t rows() const { return numbers_.size(); }
+  /// Memory of the rows, bytes.
+  std::uint64_t memory() const {
+    return rows() * (3 * sizeof(double) + 2 * sizeof(float) + (1 + std::tuple_size_v<decltype(texts_)>)*4);
+  }
 
   /// Describes the table.
   ///

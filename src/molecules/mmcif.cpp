@@ -8,6 +8,7 @@
 
 #include <fmt/core.h>
 
+#include "base/text.h"
 #include "data/byte_source.h"
 #include "data/faults.h"
 #include "molecules/atom_table.h"
@@ -52,6 +53,8 @@ const std::vector<std::string> kOperatorItems = {
     "id",           "matrix[1][1]", "matrix[1][2]", "matrix[1][3]", "vector[1]",    "matrix[2][1]", "matrix[2][2]",
     "matrix[2][3]", "vector[2]",    "matrix[3][1]", "matrix[3][2]", "matrix[3][3]", "vector[3]"};
 
+constexpr std::string_view kCifBlanks = " \t\r\n";
+
 using Row = std::vector<std::string>;
 
 class MmcifReader final : public DataFile {
@@ -61,6 +64,11 @@ class MmcifReader final : public DataFile {
   Format format() const override { return Format::kMmcif; }
   int frame_count() override { return static_cast<int>(models_.size()); }
   FrameInfo describe(int frame) override;
+  std::uint64_t memory() const override {
+    std::uint64_t bytes = 0;
+    for (const Model& model : models_) bytes += model.atoms.memory();
+    return bytes;
+  }
   Table read(int frame, const std::vector<std::string>& columns) override {
     return models_[static_cast<std::size_t>(frame)].atoms.table(columns);
   }
@@ -123,7 +131,7 @@ void MmcifReader::take_atom(const Row& row, std::uint64_t line) {
 MmcifReader::MmcifReader(const Bytes& bytes, const OpenOptions& options) : faults_(bytes->file()) {
   // Measured: 2.1 for short rows of atoms; longer rows take less.
   constexpr double kMemoryPerByte = 2.25;
-  require_parse_memory(bytes->file(), bytes->size(), kMemoryPerByte, options.memory_limit);
+  require_parse_memory(bytes->file(), bytes->size(), kMemoryPerByte, bytes->memory(), options.memory_limit);
   CifAssemblies assemblies;
   const auto take_operator = [&](const Row& row, std::uint64_t line) {
     double v[12];
@@ -168,12 +176,22 @@ FrameInfo MmcifReader::describe(int frame) {
 
 bool is_mmcif(const Signature& signature) {
   std::string_view text = signature.head;
-  for (;;) {  // skips comments
-    text.remove_prefix(std::min(text.find_first_not_of(" \t\r\n"), text.size()));
-    if (!text.starts_with('#')) break;
-    text.remove_prefix(std::min(text.find('\n'), text.size()));
-  }
-  return text.starts_with("data_") || text.starts_with("DATA_");
+  // Removes the next word, and the comments before it.
+  const auto word = [&] {
+    for (;;) {
+      text.remove_prefix(std::min(text.find_first_not_of(kCifBlanks), text.size()));
+      if (!text.starts_with('#')) break;
+      text.remove_prefix(std::min(text.find('\n'), text.size()));
+    }
+    const std::string_view out = text.substr(0, text.find_first_of(kCifBlanks));
+    text.remove_prefix(out.size());
+    return base::lower(out);
+  };
+  if (!word().starts_with("data_")) return false;
+  if (signature.extension == ".cif" || signature.extension == ".mmcif") return true;
+  // The first column of a table may be named so.
+  const std::string second = word();
+  return second.starts_with('_') || second == "loop_" || second.starts_with("save_");
 }
 
 std::unique_ptr<DataFile> open_mmcif(const Bytes& bytes, const OpenOptions& options) {

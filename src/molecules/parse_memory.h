@@ -13,11 +13,12 @@ namespace orrery::molecules {
 ///
 /// `bytes`    size of the text
 /// `factor`   bytes of memory per byte of text, as measured
+/// `held`     bytes that the file takes in memory already
 /// `limit`    bytes; 0: none
 /// Errors     base::Error(kNoMemory) with the needed size
 inline void require_parse_memory(const std::filesystem::path& file, std::uint64_t bytes, double factor,
-                                 std::uint64_t limit) {
-  const double need = static_cast<double>(bytes) * factor;
+                                 std::uint64_t held, std::uint64_t limit) {
+  const double need = static_cast<double>(bytes) * factor + static_cast<double>(held);
   if (limit == 0 || need <= static_cast<double>(limit)) return;
   throw base::Error(base::ErrorKind::kNoMemory,
                     file.string() + ": " + base::bytes_text(bytes) + " of atoms need about " +

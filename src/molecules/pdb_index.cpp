@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <charconv>
 
+#include <fmt/core.h>
+
 #include "data/byte_source.h"
 #include "data/faults.h"
 #include "molecules/biomt.h"
@@ -16,6 +18,8 @@ namespace {
 
 constexpr std::size_t kMaxLine = 120;
 constexpr std::size_t kMaxTitle = 1000;
+/// Columns of a record, and of its name.
+constexpr std::size_t kRecordWidth = 80, kRecordName = 6;
 
 /// The text in a range of a record's columns, 1-based and inclusive, without surrounding spaces.
 std::string columns(std::string_view line, std::size_t first, std::size_t last) {
@@ -32,12 +36,33 @@ std::optional<double> number(const std::string& text) {
   return value;
 }
 
+/// Throws an error at the first control character: a file with binary data would lose atoms.
+void require_text(const ByteSource& bytes, Faults& faults) {
+  constexpr std::size_t kBlock = std::size_t{1} << 20;
+  const auto is_control = [](char c) {
+    return (static_cast<unsigned char>(c) < 0x20 && (c < '\t' || c > '\r')) || c == 0x7f;
+  };
+  std::uint64_t line = 1;
+  for (std::uint64_t at = 0; at < bytes.size(); at += kBlock) {
+    const std::string block = bytes.text(at, kBlock);
+    const auto bad = std::find_if(block.begin(), block.end(), is_control);
+    line += static_cast<std::uint64_t>(std::count(block.begin(), bad, '\n'));
+    if (bad != block.end())
+      faults.fail(line, fmt::format("binary data: a byte of value {}", static_cast<unsigned char>(*bad)),
+                  "the file is damaged; download or write it again");
+  }
+}
+
 class Indexer {
  public:
   Indexer(PdbIndex& index, Faults& faults) : index_(index), faults_(faults) {}
 
   void take(std::string_view line, std::uint64_t offset) {
     ++line_;
+    // Other characters are common in the text of remarks and titles.
+    const std::string_view record = line.substr(0, is_pdb_atom(line) ? kRecordWidth : kRecordName);
+    if (std::any_of(record.begin(), record.end(), [](char c) { return static_cast<unsigned char>(c) > 0x7e; }))
+      faults_.add_of_many(line_, "the record has characters that are not ASCII");
     if (is_pdb_atom(line)) {
       has_atoms_ = true;
       ++atoms_;
@@ -63,6 +88,7 @@ class Indexer {
   }
 
   void finish_file(std::uint64_t size) {
+    faults_.raise_if_any();
     const bool has_all_atoms = declared_atoms_ && *declared_atoms_ == static_cast<double>(atoms_);
     if (has_header_ && !has_end_ && !has_all_atoms)
       faults_.fail(line_, "truncated: the file has HEADER, but not the record END",
@@ -127,6 +153,7 @@ void for_each_pdb_line(const ByteSource& bytes, std::uint64_t begin, std::uint64
 
 PdbIndex index_pdb(const ByteSource& bytes) {
   Faults faults(bytes.file());
+  require_text(bytes, faults);
   PdbIndex index;
   Indexer indexer(index, faults);
   for_each_pdb_line(bytes, 0, bytes.size(),

@@ -3,11 +3,13 @@
 
 #include <algorithm>
 #include <iterator>
+#include <span>
 #include <string_view>
 
 #include <fmt/core.h>
 
 #include "arrays/readers.h"
+#include "base/file_name.h"
 #include "base/text.h"
 #include "data/byte_source.h"
 #include "data/data_file.h"
@@ -24,9 +26,9 @@ namespace {
 constexpr std::size_t kHeadBytes = std::size_t{64} << 10;
 
 std::string extension_of(const std::filesystem::path& file) {
-  const std::string last = base::lower(file.extension().string());
+  const std::string last = base::extension(file);
   const bool is_compressed = last == ".gz" || last == ".zst" || last == ".bz2" || last == ".xz";
-  return is_compressed ? base::lower(file.stem().extension().string()) : last;
+  return is_compressed ? base::extension(file.stem()) : last;
 }
 
 /// Returns whether a file begins like an EXR, PNG, JPEG, TIFF or Radiance image.
@@ -73,26 +75,66 @@ void refuse_folder(const std::filesystem::path& file) {
   Faults(bytes.file()).fail(0, text, remedy);
 }
 
+/// Refuses text that no reader of text can read.
+void refuse_encoding(const ByteSource& bytes, std::string_view head) {
+  using namespace std::string_view_literals;
+  const std::string name = base::shell_quoted(bytes.file().filename().string());
+  const auto is_ascii = [&](std::size_t i) { return head[i] > 0; };
+  const bool has_pairs = head.size() >= 4 && ((is_ascii(0) && head[1] == 0 && is_ascii(2) && head[3] == 0) ||
+                                              (head[0] == 0 && is_ascii(1) && head[2] == 0 && is_ascii(3)));
+  if (has_pairs || head.starts_with("\xFF\xFE"sv) || head.starts_with("\xFE\xFF"sv))
+    Faults(bytes.file())
+        .fail(0, "the text is encoded in UTF-16", fmt::format("convert it: iconv -f UTF-16 -t UTF-8 {} > NEW", name));
+  const std::size_t end = head.find_first_of("\r\n\0"sv);
+  if (end + 1 < head.size() && head[end] == '\r' && head[end + 1] != '\n')
+    Faults(bytes.file())
+        .fail(0, "the lines end in CR only, as on the classic Mac OS",
+              fmt::format("convert it: tr '\\r' '\\n' < {} > NEW", name));
+}
+
+struct Reader {
+  bool (*recognises)(const Signature&);
+  std::unique_ptr<DataFile> (*open)(const Bytes&, const OpenOptions&);
+};
+
+constexpr Reader kBinary[] = {
+    {rows::is_ply, rows::open_ply},     {arrays::is_hdf5, arrays::open_hdf5}, {arrays::is_gsd, arrays::open_gsd},
+    {arrays::is_las, arrays::open_las}, {arrays::is_npy, arrays::open_npy},   {arrays::is_npz, arrays::open_npz},
+    {arrays::is_vtk, arrays::open_vtk},
+};
+/// The extension of CSV comes before signatures that are words, which may also be in a table.
+constexpr Reader kText[] = {
+    {rows::is_lammps_dump, rows::open_lammps_dump},
+    {rows::has_csv_extension, rows::open_csv},
+    {molecules::is_mmcif, molecules::open_mmcif},
+    {molecules::is_pdb, molecules::open_pdb},
+    {rows::is_xyz, rows::open_xyz},
+    {rows::is_lammps_data, rows::open_lammps_data},
+    {rows::is_csv, rows::open_csv},
+};
+
+/// Returns the first reader that recognises a file; null if there is none.
+const Reader* find(std::span<const Reader> readers, const Signature& signature) {
+  const auto at =
+      std::find_if(readers.begin(), readers.end(), [&](const Reader& reader) { return reader.recognises(signature); });
+  return at == readers.end() ? nullptr : &*at;
+}
+
 }  // namespace
 
 std::unique_ptr<DataFile> open(const std::filesystem::path& file, const OpenOptions& options) {
   refuse_folder(file);
   const Bytes bytes = ByteSource::open(file, options.decompressed_limit);
   const Signature signature{bytes->text(0, kHeadBytes), extension_of(file)};
-  if (rows::is_ply(signature)) return rows::open_ply(bytes);
-  if (arrays::is_hdf5(signature)) return arrays::open_hdf5(bytes, options);
-  if (arrays::is_gsd(signature)) return arrays::open_gsd(bytes);
-  if (arrays::is_las(signature)) return arrays::open_las(bytes);
-  if (arrays::is_npy(signature)) return arrays::open_npy(bytes);
-  if (arrays::is_npz(signature)) return arrays::open_npz(bytes, options);
-  if (arrays::is_vtk(signature)) return arrays::open_vtk(bytes, options);
-  if (rows::is_lammps_dump(signature)) return rows::open_lammps_dump(bytes);
-  if (molecules::is_mmcif(signature)) return molecules::open_mmcif(bytes, options);
-  if (molecules::is_pdb(signature)) return molecules::open_pdb(bytes, options);
-  if (rows::is_xyz(signature)) return rows::open_xyz(bytes);
-  if (rows::is_lammps_data(signature)) return rows::open_lammps_data(bytes);
-  if (rows::is_csv(signature)) return rows::open_csv(bytes);
+  if (const Reader* const reader = find(kBinary, signature)) return reader->open(bytes, options);
+  refuse_encoding(*bytes, signature.head);
+  if (const Reader* const reader = find(kText, signature)) return reader->open(bytes, options);
   refuse(*bytes, signature);
+}
+
+bool is_data_file(const std::filesystem::path& file, std::string_view head) {
+  const Signature signature{std::string(head.substr(0, kHeadBytes)), extension_of(file)};
+  return is_compressed(head) || find(kBinary, signature) != nullptr || find(kText, signature) != nullptr;
 }
 
 }  // namespace orrery::particles

@@ -3,6 +3,7 @@
 
 #include <filesystem>
 #include <memory>
+#include <string_view>
 
 #include "data/data_file.h"
 
@@ -13,5 +14,10 @@ namespace orrery::particles {
 ///
 /// Errors     base::Error: kMissingInput, kIo; kBadData with a remedy for unknown formats, LAZ and ADIOS2; kNoMemory
 std::unique_ptr<data::DataFile> open(const std::filesystem::path& file, const data::OpenOptions& options = {});
+
+/// Returns whether open() recognises a file as a data file.
+///
+/// `head`     its first bytes: 64 KiB suffice
+bool is_data_file(const std::filesystem::path& file, std::string_view head);
 
 }  // namespace orrery::particles

@@ -4,6 +4,7 @@
 #include <fmt/core.h>
 
 #include "base/error.h"
+#include "base/file_name.h"
 #include "particles/table_output.h"
 
 namespace orrery::particles {
@@ -15,7 +16,7 @@ void refuse_to_write(const std::filesystem::path& file, const std::string& text)
 }
 
 TableFormat table_format(const std::filesystem::path& file) {
-  const std::string extension = file.extension().string();
+  const std::string extension = base::extension(file);
   if (extension == ".ply") return TableFormat::kPly;
   if (extension == ".xyz") return TableFormat::kXyz;
   if (extension == ".npy") return TableFormat::kNpy;

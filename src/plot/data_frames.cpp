@@ -15,7 +15,7 @@
 #include "points/color_map.h"
 #include "points/derived.h"
 #include "points/load_points.h"
-#include "points/select.h"
+#include "points/selection.h"
 #include "points/source_rows.h"
 #include "points/spacing.h"
 
@@ -42,10 +42,7 @@ bool is_text(const data::FrameInfo& info, const std::string& name) {
 }  // namespace
 
 DataFrames::DataFrames(const DataOptions& options, const std::filesystem::path& folder)
-    : options_(options),
-      folder_(folder),
-      is_sequence_(base::has_frame_pattern(options.file.string())),
-      numbers_(options.frames) {
+    : options_(options), folder_(folder), is_sequence_(base::is_sequence(options.file)), numbers_(options.frames) {
   data::OpenOptions open_options;
   open_options.component = options.points.component;
   open_options.limit_memory(options.memory_limit);
@@ -91,7 +88,9 @@ void DataFrames::require_frames() const {
                                                              options_.file.string(), count));
 }
 
-std::filesystem::path DataFrames::file_of(int frame) const { return base::with_frame(options_.file.string(), frame); }
+std::filesystem::path DataFrames::file_of(int frame) const {
+  return is_sequence_ ? std::filesystem::path(base::with_frame(options_.file.string(), frame)) : options_.file;
+}
 
 LoadedFrame DataFrames::load(int frame, const scene::Points& keys, points::SourceRows* source) const {
   points::LoadRequest request;
@@ -151,8 +150,7 @@ std::string all_of(const std::vector<std::string>& conditions) {
   std::string out;
   for (const std::string& condition : conditions) {
     try {
-      static_cast<void>(points::parse_selection(
-          condition));  // alone, so that the message counts its characters, and parentheses match
+      points::require_closed(condition);
     } catch (const base::Error& error) {
       for (const base::Diagnostic& d : error.diagnostics())
         throw base::Error(error.kind(), fmt::format("--select `{}`: at character {}: {}{}", condition, d.column, d.text,

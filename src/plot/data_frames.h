@@ -76,7 +76,7 @@ class DataFrames {
 
 /// Returns the condition that all conditions are met; empty if there are none.
 ///
-/// Errors     base::Error(kBadData) if one of several is malformed
+/// Errors     base::Error(kBadData) if one of several is not closed
 std::string all_of(const std::vector<std::string>& conditions);
 
 /// Sets the colour keys that `color_by` selects, with the names of DataOptions::color_by.

@@ -23,6 +23,16 @@ namespace {
 
 using scene::number_text;
 
+/// Scenes are TOML, which is UTF-8.
+void require_utf8(const std::string& text) {
+  for (std::size_t at = 0, length = 1; at < text.size(); at += std::max<std::size_t>(length, 1)) {
+    length = base::printable_length(text, at);
+    if (length == 0 && static_cast<unsigned char>(text[at]) >= 0x80)
+      base::refuse(fmt::format("`{}` is not valid UTF-8, and a scene cannot name it; rename the file or the column",
+                               base::printable(text)));
+  }
+}
+
 /// A points table of the scene as its author would write it, completed step by step.
 class PlotMaker {
  public:
@@ -35,6 +45,10 @@ class PlotMaker {
     if (std::string& map = out_.points.color.map; options_.has_map && map.find_first_of("./") != std::string::npos)
       map = std::filesystem::proximate(map, folder.empty() ? "." : folder).string();
     out_.frames = data_.numbers();
+    const scene::Points& points = out_.points;
+    for (const std::string& text : {points.file.string(), options.color_by, points.color.column, points.color.map,
+                                    points.radius.column, points.select, points.assembly})
+      require_utf8(text);
   }
 
   const std::vector<int>& frames() const { return out_.frames; }

@@ -10,6 +10,7 @@
 #include <fmt/core.h>
 
 #include "base/error.h"
+#include "base/file_name.h"
 #include "base/output_file.h"
 #include "display/develop.h"
 #include "display/settings.h"
@@ -103,7 +104,7 @@ void LegendColors::add(const scene::Points& frame) {
 
 void write_legend(const std::filesystem::path& file, const LegendColors& colors, const display::Settings& display) {
   const points::Legend legend = legend_of(colors, display);
-  if (file.extension() == ".svg") return base::write_text_file(file, points::legend_svg(legend));
+  if (base::extension(file) == ".svg") return base::write_text_file(file, points::legend_svg(legend));
   if (!image::is_display_format(image::format_of(file)))
     throw base::Error(base::ErrorKind::kUsage, "--legend: name an .svg or .png file");
   write_image(file, legend);

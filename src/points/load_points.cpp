@@ -157,6 +157,7 @@ class Loader {
   /// `are_rounded`   whether make_copies() rounds their centres
   void require_memory(std::uint64_t count, bool are_rounded) const {
     ReadMemory need;
+    need.file_bytes = file_->memory();
     need.rows = info_.rows;
     for (const std::string& column : columns_) need.row_bytes += data::bytes_per_value(type_of(info_, column));
     need.sphere_bytes = bytes_per_sphere(info_, points_, radius_, are_rounded);

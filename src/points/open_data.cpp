@@ -36,6 +36,7 @@ class SharedFile final : public data::DataFile {
   int frame_count() override { return file_->frame_count(); }
   data::FrameInfo describe(int frame) override { return file_->describe(frame); }
   data::Table read(int frame, const std::vector<std::string>& columns) override { return file_->read(frame, columns); }
+  std::uint64_t memory() const override { return file_->memory(); }
 
  private:
   std::shared_ptr<data::DataFile> file_;

@@ -15,6 +15,7 @@ struct RadiusSource;
 
 /// Memory that is needed to read the spheres of a data file.
 struct ReadMemory {
+  std::uint64_t file_bytes = 0;    ///< bytes of the open file, see data::DataFile::memory()
   std::uint64_t rows = 0;          ///< number of rows in the file
   std::uint64_t row_bytes = 0;     ///< bytes per row of the columns that are read
   std::uint64_t sphere_bytes = 0;  ///< bytes per sphere of scene data

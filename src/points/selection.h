@@ -56,4 +56,10 @@ struct Selection {
 ///            with column and width. The caller sets file and line.
 Selection parse_selection(std::string_view text, const std::vector<data::ColumnInfo>& columns);
 
+/// Requires that a selection closes the parentheses that it opens, so that it can be combined with others. Columns need
+/// not be known.
+///
+/// Errors     as parse_selection()
+void require_closed(const std::string& selection);
+
 }  // namespace orrery::points

@@ -5,9 +5,11 @@
 #include <charconv>
 #include <system_error>
 #include <utility>
+#include <vector>
 
 #include "base/diagnostic.h"
 #include "base/error.h"
+#include "points/selection.h"
 
 namespace orrery::points {
 namespace {
@@ -118,6 +120,22 @@ std::string_view SelectionLexer::verbatim(Span span) const {
 
 void SelectionLexer::fail(const Token& token, const std::string& text, const std::string& remedy) const {
   fail_selection(text_, token.span, text, remedy);
+}
+
+void require_closed(const std::string& selection) {
+  SelectionLexer lexer(selection);
+  std::vector<Span> open;
+  bool is_in_braces = false;
+  for (Token token = lexer.next(); token.kind != TokenKind::kEnd; token = lexer.next(is_in_braces)) {
+    if (token.kind != TokenKind::kSymbol) continue;
+    if (token.text == "{" || token.text == "}") is_in_braces = token.text == "{";
+    if (token.text == "(") open.push_back(token.span);
+    if (token.text != ")") continue;
+    if (open.empty())
+      fail_selection(selection, token.span, "this `)` closes nothing", "remove it, or open it with `(`");
+    open.pop_back();
+  }
+  if (!open.empty()) fail_selection(selection, open.back(), "this `(` is not closed", "close it with `)`");
 }
 
 }  // namespace orrery::points

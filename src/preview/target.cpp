@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "preview/target.h"
 
-#include <algorithm>
 #include <charconv>
 
 #include <fmt/core.h>
 
 #include "base/error.h"
+#include "base/file_name.h"
 #include "base/frames.h"
 #include "preview/file_sink.h"
 #include "preview/tev_sink.h"
@@ -46,13 +46,6 @@ Target tev_at(const std::string& address) {
   return target;
 }
 
-bool is_png(const std::filesystem::path& file) {
-  std::string extension = file.extension().string();
-  std::transform(extension.begin(), extension.end(), extension.begin(),
-                 [](char c) { return c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c; });
-  return extension == ".png";
-}
-
 }  // namespace
 
 Target parse_target(const std::string& text) {
@@ -61,7 +54,7 @@ Target parse_target(const std::string& text) {
     throw base::Error(
         base::ErrorKind::kUsage,
         fmt::format("--preview: {} has a frame pattern; all frames share one preview, so write one name", text));
-  if (is_png(text)) return {TargetKind::kFile, {}, {}, text};
+  if (base::extension(text) == ".png") return {TargetKind::kFile, {}, {}, text};
   if (text.starts_with("tev:")) return tev_at(text.substr(4));
   refuse(fmt::format("`{}` is not a preview", text));
 }

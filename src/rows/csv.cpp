@@ -65,6 +65,17 @@ double full_intensity(const std::vector<ColumnInfo>& columns, const std::vector<
   return largest > 255 ? 65535 : largest > 1 ? 255 : 1;
 }
 
+constexpr const char* kDecimalPoints = "write numbers with decimal points instead of decimal commas";
+
+/// Returns whether a word is a number but for its decimal comma.
+bool has_decimal_comma(std::string word) {
+  const std::size_t comma = word.find(',');
+  double ignored = 0;
+  if (comma == std::string::npos) return false;
+  word[comma] = '.';
+  return parse_number(word, ignored);
+}
+
 class CsvFile final : public SingleFrame {
  public:
   explicit CsvFile(const Bytes& bytes) : SingleFrame(data::Format::kCsv, bytes), shape_(csv_shape(*bytes)) {
@@ -83,6 +94,7 @@ class CsvFile final : public SingleFrame {
     if (info_.roles.position[0].empty()) find_positions(faults);
     if (!info_.roles.rgb[0].empty())
       info_.roles.rgb_maximum = full_intensity(shape_.columns, survey.surveys, info_.roles.rgb);
+    settle_names();
   }
 
   Table read(int, const std::vector<std::string>& names) override {
@@ -114,10 +126,11 @@ class CsvFile final : public SingleFrame {
     for (std::size_t i = 0; i < surveys.size(); ++i) {
       const ColumnSurvey& survey = surveys[i];
       const std::string& name = shape_.columns[i].name;
-      if (!survey.has_numbers || survey.first_word_line == 0) continue;
+      const bool has_comma = has_decimal_comma(survey.first_word);
+      if (survey.first_word_line == 0 || !(survey.has_numbers || has_comma)) continue;
       if (std::find(coordinates.begin(), coordinates.end(), name) != coordinates.end())
         faults.add(survey.first_word_line, fmt::format("column {}: '{}' is not a number", name, survey.first_word),
-                   "correct it, or leave it empty");
+                   has_comma ? kDecimalPoints : "correct it, or leave it empty");
       if (name == roles.radius || std::find(roles.rgb.begin(), roles.rgb.end(), name) != roles.rgb.end())
         shape_.columns[i].type = ColumnType::kFloat64;
     }
@@ -140,12 +153,16 @@ class CsvFile final : public SingleFrame {
                            [](const ColumnInfo& c) { return c.type == ColumnType::kFloat64; })) {
       info_.roles.position = {info_.columns[0].name, info_.columns[1].name, info_.columns[2].name};
     } else {
+      // A row of such numbers is taken for the header.
+      const bool has_commas = std::any_of(info_.columns.begin(), info_.columns.end(),
+                                          [](const ColumnInfo& c) { return has_decimal_comma(c.name); });
       faults.fail(shape_.first_line,
                   "there are neither columns x, y and z of numbers nor ra, dec and distance (or parallax); the columns "
                   "are: " +
                       listed(info_.columns),
-                  shape_.has_header ? "name the coordinates x, y and z in the header"
-                                    : "add a header line with the names of the columns");
+                  has_commas          ? kDecimalPoints
+                  : shape_.has_header ? "name the coordinates x, y and z in the header"
+                                      : "add a header line with the names of the columns");
     }
   }
 
@@ -192,22 +209,21 @@ class CsvFile final : public SingleFrame {
 
 }  // namespace
 
+bool has_csv_extension(const Signature& signature) {
+  return signature.extension == ".csv" || signature.extension == ".tsv" || signature.extension == ".tab";
+}
+
 bool is_csv(const Signature& signature) {
-  const std::string& extension = signature.extension;
-  if (extension == ".csv" || extension == ".tsv" || extension == ".tab") return true;
   // Any text file whose lines consist of numbers, or which has a header with names of coordinates.
   if (signature.head.find('\0') != std::string::npos) return false;
   const std::size_t end = signature.head.rfind('\n');  // the last line may be incomplete
-  const std::vector<char> lines(
-      signature.head.begin(),
-      end == std::string::npos ? signature.head.end() : signature.head.begin() + static_cast<std::ptrdiff_t>(end));
-  const CsvShape shape = csv_shape(*ByteSource::of_memory({}, lines));
+  const CsvShape shape = csv_shape(*ByteSource::of_memory({}, std::string_view(signature.head).substr(0, end)));
   if (shape.has_header)
     return !customary_roles(shape.columns).position[0].empty() || equatorial(shape.columns).has_value();
   return shape.columns.size() >= 3 && std::all_of(shape.columns.begin(), shape.columns.end(),
                                                   [](const ColumnInfo& c) { return c.type == ColumnType::kFloat64; });
 }
 
-std::unique_ptr<DataFile> open_csv(const Bytes& bytes) { return std::make_unique<CsvFile>(bytes); }
+std::unique_ptr<DataFile> open_csv(const Bytes& bytes, const OpenOptions&) { return std::make_unique<CsvFile>(bytes); }
 
 }  // namespace orrery::rows

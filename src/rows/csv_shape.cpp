@@ -20,8 +20,6 @@ namespace {
 constexpr std::size_t kSampleRows = 1000;
 constexpr std::uint64_t kSampleBytes = std::uint64_t{4} << 20;
 
-constexpr std::string_view kByteOrderMark = "\xEF\xBB\xBF";
-
 struct Line {
   std::string text;
   std::uint64_t offset = 0, end = 0, number = 0;
@@ -42,10 +40,6 @@ Sample read_sample(const ByteSource& bytes) {
     if (!sample.lines.empty() && line.offset > begin + kSampleBytes) break;
     if (!cursor.next(line.text)) break;
     line.end = cursor.offset();
-    if (line.offset == 0 && line.text.starts_with(kByteOrderMark)) {
-      line.offset = kByteOrderMark.size();
-      line.text.erase(0, kByteOrderMark.size());
-    }
     const std::string_view text = trimmed(line.text);
     if (text.empty()) continue;
     // Above the rows, names may follow the comment sign immediately; CloudCompare writes two slashes.

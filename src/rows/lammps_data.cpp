@@ -194,6 +194,7 @@ class LammpsData final : public DataFile {
   Format format() const override { return Format::kLammpsData; }
   int frame_count() override { return 1; }
   FrameInfo describe(int) override { return info_; }
+  std::uint64_t memory() const override { return bytes_->memory(); }
 
   Table read(int, const std::vector<std::string>& columns) override {
     TextLayout layout = layout_;
@@ -244,6 +245,8 @@ bool is_lammps_data(const Signature& signature) {
   return false;
 }
 
-std::unique_ptr<DataFile> open_lammps_data(const Bytes& bytes) { return std::make_unique<LammpsData>(bytes); }
+std::unique_ptr<DataFile> open_lammps_data(const Bytes& bytes, const OpenOptions&) {
+  return std::make_unique<LammpsData>(bytes);
+}
 
 }  // namespace orrery::rows

@@ -6,6 +6,7 @@
 #include <array>
 #include <cstring>
 #include <iterator>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <utility>
@@ -13,6 +14,7 @@
 
 #include "base/text.h"
 #include "data/byte_source.h"
+#include "data/elements.h"
 #include "data/faults.h"
 #include "data/text_cursor.h"
 #include "data/text_frames.h"
@@ -124,7 +126,11 @@ class LammpsDump final : public TextFrames {
 
   Format format() const override { return Format::kLammpsDump; }
 
-  FrameInfo describe(int frame) override { return described(header(frame).first); }
+  FrameInfo describe(int frame) override {
+    FrameInfo info = described(header(frame).first);
+    if (!info.roles.element.empty()) settle_element(names(), info.roles);
+    return info;
+  }
 
   Table read(int number, const std::vector<std::string>& columns) override {
     const auto [frame, cursor] = header(number);
@@ -155,6 +161,13 @@ class LammpsDump final : public TextFrames {
   }
 
   bool begins_frame(std::string_view line) const override { return line.starts_with("ITEM:"); }
+
+  std::optional<Names> names_of(int number) override {
+    const auto [frame, cursor] = header(number);
+    const auto element = std::find(frame.columns.begin(), frame.columns.end(), "element");
+    if (element == frame.columns.end()) return std::nullopt;
+    return Names{cursor.place(), frame.rows, static_cast<std::size_t>(element - frame.columns.begin())};
+  }
 
   /// Whether the types of atoms are labels, as with `dump_modify types labels`: the first one is not a number.
   ///
@@ -195,7 +208,7 @@ bool is_lammps_dump(const Signature& signature) {
   return signature.head.starts_with("ITEM:") || is_binary(signature.head);
 }
 
-std::unique_ptr<DataFile> open_lammps_dump(const Bytes& bytes) {
+std::unique_ptr<DataFile> open_lammps_dump(const Bytes& bytes, const OpenOptions&) {
   constexpr std::size_t kSignatureBytes = 32;
   if (is_binary(bytes->text(0, kSignatureBytes)))
     Faults(bytes->file())

@@ -119,8 +119,7 @@ class PlyFile final : public SingleFrame {
     std::size_t e = vertex_ + 1;
     for (; e < header_.elements.size() && !header_.elements[e].has_list(); ++e)
       at += header_.elements[e].count * min_bytes(header_.elements[e], header_.encoding);
-    const std::string rest = bytes_->text(at, static_cast<std::size_t>(bytes_->size() - at));
-    PlyCursor cursor(rest, header_.encoding, 0);
+    PlyCursor cursor(*bytes_, at, header_.encoding, 0);
     for (; e < header_.elements.size(); ++e) {
       check_count(faults, header_.elements[e], header_, cursor.bytes_left());
       skip_element(faults, header_.elements[e], header_, cursor);
@@ -149,8 +148,7 @@ class PlyFile final : public SingleFrame {
 
   /// Reads all rows one by one, with lists and with other elements between them.
   std::vector<Values> read_rows(const std::vector<std::size_t>& wanted, Faults& faults) const {
-    const std::string all = bytes_->text(header_.bytes, static_cast<std::size_t>(bytes_->size() - header_.bytes));
-    PlyCursor cursor(all, header_.encoding, header_.lines + 1);
+    PlyCursor cursor(*bytes_, header_.bytes, header_.encoding, header_.lines + 1);
     std::vector<Values> out;
     for (const std::size_t p : wanted) out.push_back(empty_values(type_of(vertex().properties[p])));
     for (const PlyElement& element : header_.elements) {
@@ -160,6 +158,12 @@ class PlyFile final : public SingleFrame {
         continue;
       }
       std::vector<double> row(element.properties.size());
+      for (Values& values : out)
+        std::visit(
+            [&](auto& column) {
+              if constexpr (requires { column.reserve(0); }) column.reserve(static_cast<std::size_t>(element.count));
+            },
+            values);
       for (std::uint64_t i = 0; i < element.count; ++i) {
         const auto name = [&] { return fmt::format("vertex {} of {}", i + 1, element.count); };
         read_row(faults, element, cursor, name, [&](const PlyProperty& property, std::size_t k) {
@@ -199,9 +203,9 @@ class PlyFile final : public SingleFrame {
 }  // namespace
 
 bool is_ply(const Signature& signature) {
-  return signature.head.starts_with("ply\n") || signature.head.starts_with("ply\r");
+  return signature.head.starts_with("ply\n") || signature.head.starts_with("ply\r\n");
 }
 
-std::unique_ptr<DataFile> open_ply(const Bytes& bytes) { return std::make_unique<PlyFile>(bytes); }
+std::unique_ptr<DataFile> open_ply(const Bytes& bytes, const OpenOptions&) { return std::make_unique<PlyFile>(bytes); }
 
 }  // namespace orrery::rows

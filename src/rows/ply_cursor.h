@@ -4,19 +4,24 @@
 #include <cstddef>
 #include <cstdint>
 #include <string>
-#include <string_view>
+#include <vector>
 
+#include "data/byte_source.h"
 #include "rows/ply_header.h"
 
 namespace orrery::rows {
 
 /// Reads values in sequence from the data after the header. In an ASCII file, each row is one line.
+///
+/// Cost       2 MiB of memory
 class PlyCursor {
  public:
-  /// `line` is the line number of the first data byte.
-  PlyCursor(std::string_view data, PlyEncoding encoding, int line);
+  /// `begin`    offset of the first data byte, `line` its line number
+  PlyCursor(const data::ByteSource& bytes, std::uint64_t begin, PlyEncoding encoding, int line);
 
   /// Advances to the next row; skips blank lines.
+  ///
+  /// Errors     base::Error: kIo; kBadData for a line that is too long
   void begin_row();
   /// Ends a row; false if the row has unread values left.
   bool end_row();
@@ -30,22 +35,27 @@ class PlyCursor {
   /// Skips bytes of a binary file.
   ///
   /// Domain     bytes <= bytes_left()
-  void skip_bytes(std::uint64_t bytes) { at_ += bytes; }
+  void skip_bytes(std::uint64_t bytes);
 
-  std::uint64_t bytes_left() const { return static_cast<std::uint64_t>(end_ - at_); }
+  std::uint64_t bytes_left() const { return static_cast<std::uint64_t>(end_ - at_) + bytes_->size() - next_; }
   /// Returns why the last take or skip failed.
   std::string fault() const;
   /// Returns the next word in the row, truncated if it is long.
   std::string word() const;
 
  private:
+  void fill();
+  void find_row_end();
   void skip_blanks();
   void step_over_line_end();
   bool take_word(double& value);
 
-  const char* at_;
-  const char* end_;
-  const char* row_end_;
+  const data::ByteSource* bytes_;
+  std::uint64_t next_;  ///< offset of the first byte behind the buffer
+  std::vector<char> buffer_;
+  const char* at_ = nullptr;
+  const char* end_ = nullptr;  ///< of the bytes in the buffer
+  const char* row_end_ = nullptr;
   int line_, row_line_ = 0;
   bool ascii_, is_big_endian_, is_bad_length_ = false;
 };

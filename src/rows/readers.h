@@ -10,18 +10,20 @@
 namespace orrery::rows {
 
 bool is_lammps_dump(const data::Signature& signature);
-std::unique_ptr<data::DataFile> open_lammps_dump(const data::Bytes& bytes);
+std::unique_ptr<data::DataFile> open_lammps_dump(const data::Bytes& bytes, const data::OpenOptions& options);
 
 bool is_lammps_data(const data::Signature& signature);
-std::unique_ptr<data::DataFile> open_lammps_data(const data::Bytes& bytes);
+std::unique_ptr<data::DataFile> open_lammps_data(const data::Bytes& bytes, const data::OpenOptions& options);
 
 bool is_xyz(const data::Signature& signature);
-std::unique_ptr<data::DataFile> open_xyz(const data::Bytes& bytes);
+std::unique_ptr<data::DataFile> open_xyz(const data::Bytes& bytes, const data::OpenOptions& options);
 
 bool is_ply(const data::Signature& signature);
-std::unique_ptr<data::DataFile> open_ply(const data::Bytes& bytes);
+std::unique_ptr<data::DataFile> open_ply(const data::Bytes& bytes, const data::OpenOptions& options);
 
+/// Whether the extension alone selects the format.
+bool has_csv_extension(const data::Signature& signature);
 bool is_csv(const data::Signature& signature);
-std::unique_ptr<data::DataFile> open_csv(const data::Bytes& bytes);
+std::unique_ptr<data::DataFile> open_csv(const data::Bytes& bytes, const data::OpenOptions& options);
 
 }  // namespace orrery::rows

@@ -2,6 +2,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <utility>
@@ -12,6 +13,7 @@
 #include "data/byte_source.h"
 
 #include "data/customary.h"
+#include "data/elements.h"
 #include "data/faults.h"
 #include "data/text_cursor.h"
 #include "data/text_frames.h"
@@ -37,6 +39,7 @@ bool parse_count(std::string_view line, std::int64_t& count) {
 struct XyzHeader {
   FrameInfo info;
   bool is_extended = false;
+  std::size_t names = 0;         ///< index of the column with the role `element`
   std::uint64_t count_line = 0;  ///< the line with the number of atoms
   TextCursor::Place rows;
 };
@@ -85,11 +88,13 @@ class XyzHeaderReader {
     return {add(names[0], type), add(names[1], type), add(names[2], type)};
   }
 
-  /// Elements or types: some programs interpret numbers in the element column as atomic numbers, others as types.
+  /// Elements or types: some programs interpret numbers in the element column as atomic numbers, others as types. Names
+  /// are elements if all of them are, see data::settle_element().
   void set_species(const std::string& name, const Parts& first, std::size_t column) {
     std::int64_t ignored = 0;
     const bool is_number = column < first.size() && parse_integer(first[column], ignored);
     (is_number ? out_.info.roles.type : out_.info.roles.element) = name;
+    out_.names = column;
   }
 
   void add_properties(const std::vector<XyzProperty>& properties, const Parts& first) {
@@ -190,7 +195,20 @@ class Xyz final : public TextFrames {
   }
 
  private:
-  XyzHeader header(int number) { return XyzHeaderReader(bytes(), frame(number)).read(); }
+  XyzHeader header(int number) {
+    XyzHeader header = XyzHeaderReader(bytes(), frame(number)).read();
+    Roles& roles = header.info.roles;
+    if (roles.element.empty()) return header;
+    settle_element(names(), roles);
+    if (!header.is_extended && roles.element.empty()) header.info.columns[header.names].name = roles.type = "type";
+    return header;
+  }
+
+  std::optional<Names> names_of(int number) override {
+    const XyzHeader header = XyzHeaderReader(bytes(), frame(number)).read();
+    if (header.info.roles.element.empty()) return std::nullopt;
+    return Names{header.rows, header.info.rows, header.names};
+  }
 
   std::uint64_t skip_header(TextCursor& cursor) const override {
     std::string line;
@@ -224,6 +242,6 @@ bool is_xyz(const Signature& signature) {
   return comment.find("Properties=") != std::string_view::npos;
 }
 
-std::unique_ptr<DataFile> open_xyz(const Bytes& bytes) { return std::make_unique<Xyz>(bytes); }
+std::unique_ptr<DataFile> open_xyz(const Bytes& bytes, const OpenOptions&) { return std::make_unique<Xyz>(bytes); }
 
 }  // namespace orrery::rows

@@ -160,8 +160,48 @@ TEST_F(CliPlot, RangesAreFinite) {
 }
 
 TEST_F(CliPlot, ScenesAndDataFilesAreDistinguished) {
-  expect_error("render c.csv -o a.png", 2, "c.csv is a data file, not a scene; render it: orrery plot c.csv -o IMAGE");
+  write("b.mmcif", "data_b\nloop_\n_atom_site.cartn_x\n_atom_site.cartn_y\n_atom_site.cartn_z\n1 2 3\n");
+  write("c.csv.gz", "\x1f\x8b\x08");
+  write("dump.txt", frame({}));
+  for (const std::string data : {"a.dump", "b.mmcif", "c.csv", "c.csv.gz", "dump.txt"})
+    for (const std::string& command : {"render " + data + " -o a.png", "check " + data, "study " + data,
+                                       "submit " + data + " -o a.##.png --frames 1-2 --slurm"})
+      expect_error(command, 2, data + " is a data file, not a scene; render it: orrery plot " + data + " -o IMAGE");
+  write("scene.txt", "[image\n");
+  expect_error("check scene.txt", 65, "scene.txt:1:");
   expect_error("plot good.toml -o a.png", 2, "good.toml is a scene; render it: orrery render good.toml");
+  write("bad.TOML", "[image\n");
+  expect_error("plot bad.TOML -o a.png", 2, "bad.TOML is a scene; render it: orrery render bad.TOML");
+}
+
+/// A pattern stands for files only if no file has this very name, and only in the name of the file.
+TEST_F(CliPlot, NamesLikeFramePatternsAreRead) {
+  std::filesystem::create_directory(folder_ / "run##2");
+  for (const std::string name : {"20%density.csv", "run##2/a.csv", "a.##.csv"}) {
+    write(name, "x,y,z,radius\n0,0,0,1\n");
+    std::filesystem::remove(folder_ / "a.toml");
+    EXPECT_EQ(plot("'" + name + "' -o a.ppm -q --save-scene a.toml").status, 0) << name;
+    EXPECT_EQ(run("check a.toml -q").status, 0) << name;
+    EXPECT_EQ(run("convert '" + name + "' -o a.PLY -q").status, 0) << name;
+    EXPECT_EQ(run("submit a.toml -o a.##.png --frames 1-2 --slurm").status, 0) << name;
+  }
+  expect_error("plot 30%density.csv -o a.png", 66, "301ensity.csv");
+}
+
+/// Without pointing into a scene that nobody wrote.
+TEST_F(CliPlot, NamesThatScenesCannotHoldAreRefused) {
+  write("bad\xff.dump", frame({"1 1 0 0 0 1 0"}));
+  expect_error("plot 'bad\xff.dump' -o a.png", 2, "is not valid UTF-8, and a scene cannot name it");
+  write("caf\xc3\xa9.dump", frame({"1 1 0 0 0 1 0"}));
+  EXPECT_EQ(plot("'caf\xc3\xa9.dump' -o a.ppm -q").status, 0);
+}
+
+TEST_F(CliPlot, NamesOfParticlesThatAreNoElementsAreTypes) {
+  write("model.xyz", "4\n\nA 0 0 0\nB 2 0 0\nC1 4 0 0\nH2 6 0 0\n");
+  const Outcome r = plot("model.xyz -o a.ppm");
+  EXPECT_EQ(r.status, 0) << r.err;
+  EXPECT_TRUE(contains(r.err, "radius 1: half the median distance")) << r.err;
+  EXPECT_TRUE(contains(r.err, "colour by type")) << r.err;
 }
 
 TEST_F(CliPlot, AdiosFoldersAreRefused) {

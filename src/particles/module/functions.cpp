@@ -7,7 +7,7 @@ namespace orrery::particles {
 using namespace data;  // NOLINT(google-build-using-namespace)
 
 extern "C" const void* orrery_particles_functions() {
-  static constexpr Functions functions{open, table_format, write_table};
+  static constexpr Functions functions{open, is_data_file, table_format, write_table};
   return &functions;
 }
 

@@ -10,6 +10,7 @@ namespace orrery::particles {
 /// loads on the first call.
 struct Functions {
   decltype(&particles::open) open;
+  decltype(&particles::is_data_file) is_data_file;
   decltype(&particles::table_format) table_format;
   decltype(&particles::write_table) write_table;
 };

@@ -21,6 +21,10 @@ std::unique_ptr<DataFile> open(const std::filesystem::path& file, const OpenOpti
   return module().open(file, options);
 }
 
+bool is_data_file(const std::filesystem::path& file, std::string_view head) {
+  return module().is_data_file(file, head);
+}
+
 TableFormat table_format(const std::filesystem::path& file) { return module().table_format(file); }
 
 std::vector<std::string> write_table(const std::filesystem::path& file, const Table& table, const std::string& writer) {

@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include "base/error.h"
+#include "support/temp_dir.h"
 
 namespace orrery::base {
 namespace {
@@ -65,16 +66,26 @@ TEST(BaseFrames, FormatsShortRanges) {
 TEST(BaseFrames, ReplacesPatterns) {
   EXPECT_EQ(with_frame("shot.####.exr", 7), "shot.0007.exr");
   EXPECT_EQ(with_frame("shot.####.exr", 12345), "shot.12345.exr");
-  EXPECT_EQ(with_frame("a/%04d/b.%d.exr", 12), "a/0012/b.12.exr");
+  EXPECT_EQ(with_frame("a/%04d/b.%d.exr", 12), "a/%04d/b.12.exr") << "not in folders";
   EXPECT_EQ(with_frame("##", -3), "-3");
   EXPECT_EQ(with_frame("####", -3), "-003");
   EXPECT_EQ(with_frame("take#1.exr", 5), "take#1.exr");
   EXPECT_EQ(with_frame("100%.exr", 5), "100%.exr");
+  EXPECT_FALSE(has_frame_pattern("run##2/a.png"));
   EXPECT_TRUE(has_frame_pattern("a.##.png"));
   EXPECT_TRUE(has_frame_pattern("a.%02d.png"));
   EXPECT_FALSE(has_frame_pattern("a#.png"));
   EXPECT_FALSE(has_frame_pattern("a%s.png"));
   EXPECT_FALSE(has_frame_pattern("%999999999999999999999d"));
+}
+
+TEST(BaseFrames, InputsThatExistUnderTheirNameAreNoSequence) {
+  const support::TempDir folder;
+  support::write_bytes(folder / "20%density.ply", "");
+  EXPECT_FALSE(is_sequence(folder / "20%density.ply"));
+  EXPECT_TRUE(is_sequence(folder / "30%density.ply"));
+  EXPECT_EQ(input_at_frame(folder.path(), "20%density.ply", 1), "20%density.ply");
+  EXPECT_EQ(input_at_frame(folder.path(), "30%density.ply", 1), "301ensity.ply");
 }
 
 }  // namespace

@@ -198,9 +198,6 @@ TEST_F(MoleculesPdb, MalformedAtomsAreRefusedWithTheirLine) {
     EXPECT_EQ(error.line, 3) << field;
   }
   EXPECT_NE(error_of(carbon + carbon.substr(0, 50)).text.find("truncated"), std::string::npos);
-  std::string null = carbon;
-  null[20] = '\0';
-  EXPECT_NE(error_of(carbon + null).text.find("null"), std::string::npos);
   // The line in a later model.
   try {
     open("MODEL        1\r\n" + carbon + "ENDMDL\r\nMODEL        2\r\n" + carbon + carbon.substr(0, 40) + "\n")
@@ -209,6 +206,24 @@ TEST_F(MoleculesPdb, MalformedAtomsAreRefusedWithTheirLine) {
   } catch (const base::Error& error) {
     EXPECT_EQ(error.diagnostics().at(0).line, 6);
   }
+}
+
+/// Such bytes hide the name of the record, so that the atom would be lost.
+TEST_F(MoleculesPdb, BinaryDataAreRefusedWithTheirLine) {
+  const std::string carbon = atom(" C", "ALA", 'A', 1, {}, " C");
+  for (const char byte : {'\0', '\x01', '\x1f', '\x7f', '\x80', '\xff'}) {
+    std::string within = carbon;
+    within[20] = byte;
+    for (const std::string& bad : {byte + carbon, std::string(3, byte) + "\n" + carbon, within}) {
+      const auto error = error_of(carbon + bad + carbon);
+      EXPECT_EQ(error.line, 2) << int{byte};
+      EXPECT_NE(error.text, "") << int{byte};
+    }
+  }
+  const std::string long_remark = "REMARK   2 " + std::string(200, ' ') + '\0' + "\n";
+  EXPECT_EQ(error_of(carbon + long_remark).line, 2);
+  EXPECT_EQ(error_of("AUTHOR    J. M\xc3\x9cLLER, J. M\xdcLLER\t\n" + carbon).text, "")
+      << "text of remarks may be in any encoding";
 }
 
 TEST_F(MoleculesPdb, CrLfAndUnusualSerialNumbersAreRead) {

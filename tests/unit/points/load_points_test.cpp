@@ -522,6 +522,32 @@ TEST_F(PointsLoadPointsMemory, LimitsRowsAndSpheres) {
   EXPECT_EQ(shortage(), "") << "no limit";
 }
 
+/// A data file that takes a mebibyte of memory while it is open.
+class HeavyFile final : public data::DataFile {
+ public:
+  explicit HeavyFile(std::unique_ptr<data::DataFile> file) : file_(std::move(file)) {}
+
+  data::Format format() const override { return file_->format(); }
+  int frame_count() override { return file_->frame_count(); }
+  data::FrameInfo describe(int frame) override { return file_->describe(frame); }
+  data::Table read(int frame, const std::vector<std::string>& columns) override { return file_->read(frame, columns); }
+  std::uint64_t memory() const override { return 1 << 20; }
+
+ private:
+  std::unique_ptr<data::DataFile> file_;
+};
+
+TEST_F(PointsLoadPointsMemory, TheOpenFileCounts) {
+  write("a.csv", kCsv);
+  request.open = [](const std::filesystem::path& file, const data::OpenOptions& options) {
+    return std::make_unique<HeavyFile>(particles::open(file, options));
+  };
+  request.memory_limit = 1 << 20;
+  EXPECT_NE(shortage().find("3 rows and 3 spheres need "), std::string::npos) << shortage();
+  request.memory_limit = (1 << 20) + 10'000;
+  EXPECT_EQ(shortage(), "");
+}
+
 TEST_F(PointsLoadPointsMemory, CopiesAreCountedBeforeTheyAreMade) {
   write("a.dump", frame("x y z radius", {"1 0 0 1", "2 0 0 1"}));
   request.memory_limit = 1 << 20;

@@ -155,6 +155,23 @@ TEST_F(RowsCsv, AWordInAColumnWithAMeaningIsAnError) {
   EXPECT_EQ(columns("x,y,z,radius\n0,0,0,small\n"), "x:float64 y:float64 z:float64 radius:text") << "no number at all";
 }
 
+TEST_F(RowsCsv, DecimalCommasAreNamed) {
+  const std::string remedy = "write numbers with decimal points instead of decimal commas\n";
+  EXPECT_EQ(faults("x;y;z\n1,5;2;3\n"), "2: column x: '1,5' is not a number; " + remedy);
+  EXPECT_EQ(faults("x y z\n1 2 3\n1 -2,5e3 3\n"), "3: column y: '-2,5e3' is not a number; " + remedy);
+  EXPECT_EQ(faults("x,y,z\n1,2,\"3,5\"\n"), "2: column z: '3,5' is not a number; " + remedy);
+  EXPECT_NE(faults("1,5;2,5;3,5\n4,5;5,5;6,5\n").find(remedy), std::string::npos) << "without a header";
+  EXPECT_EQ(faults("x;y;z;tag\n1;2;3;1,5\n"), "") << "not needed as a number";
+}
+
+/// Of elements, only if all are.
+TEST_F(RowsCsv, NamesThatAreNotElementsAreTypes) {
+  EXPECT_EQ(roles("x,y,z,species\n0,0,0,C\n1,0,0,h\n").element, "species");
+  EXPECT_EQ(roles("x,y,z,species\n0,0,0,C\n1,0,0,C1\n").element, "");
+  EXPECT_EQ(roles("x,y,z,species\n0,0,0,C\n1,0,0,C1\n").type, "species");
+  EXPECT_EQ(roles("x,y,z,species,type\n0,0,0,setosa,1\n").type, "type");
+}
+
 TEST_F(RowsCsv, MarkersOfMissingValuesAreNan) {
   for (const std::string marker : {"NA", "N/A", "n/a", "#N/A", "<NA>", "null", "NULL", "None", ""}) {
     const Table table = read("x,y,z,radius\n0,0,0,0.5\n0,0,0," + marker + "\n0,0,0,2\n");

@@ -1,9 +1,15 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <gtest/gtest.h>
 
+#include <cstdlib>
+#include <filesystem>
+#include <string>
+
 #include "data/data_file.h"
 #include "support/data_file_test.h"
 #include "support/data_tables.h"
+#include "support/peak_memory.h"
+#include "support/temp_dir.h"
 
 namespace orrery::rows {
 
@@ -189,6 +195,37 @@ TEST_F(RowsPly, ElementsAfterTheVerticesMustBeComplete) {
       faults(header("binary_little_endian", std::string(kTwo) + "element e 3\nproperty double d\n") +
              std::string(2 * 16, '\0')),
       "8: the header declares 3 rows of `e`, but only 0 bytes follow; the file is truncated, or the count is wrong\n");
+}
+
+/// Faces are checked, but neither kept nor counted.
+TEST_F(RowsPly, FacesTakeNoMemory) {
+  if (!support::kMeasuresMemory) GTEST_SKIP() << "sanitizers take memory of their own";
+  constexpr std::size_t kFaces = 2'000'000;
+  const std::string begin = "element vertex 1\n" + std::string(kXyz) + "element face ";
+  const std::string end = "\nproperty list uchar int v\n", vertex = std::string(12, '\0');
+  std::string binary = header("binary_little_endian", begin + std::to_string(kFaces) + end) + vertex;
+  std::string ascii = header("ascii", begin + std::to_string(kFaces) + end) + "1 2 3\n";
+  for (std::size_t i = 0; i < kFaces; ++i) {
+    binary += number_bytes<std::uint8_t>(3) + vertex;
+    ascii += "3 1000 2000 3000\n";
+  }
+  const std::string small = header("binary_little_endian", begin + "1" + end) + vertex + '\3' + vertex;
+  const auto path = [&](const std::string& name, const std::string& bytes) {
+    support::write_bytes(folder_ / name, bytes);
+    return folder_ / name;
+  };
+  const std::filesystem::path files[] = {path("binary.ply", binary), path("ascii.ply", ascii),
+                                         path("small.ply", small)};
+  const std::size_t size = binary.size();
+  binary = ascii = {};
+  const auto peak = [](const std::filesystem::path& file) {
+    return support::peak_memory([&] {
+      if (support::read_table(file).rows != 1) std::abort();
+    });
+  };
+  const std::uint64_t before = peak(files[2]);
+  EXPECT_LT(peak(files[0]), before + size / 4);
+  EXPECT_LT(peak(files[1]), before + size / 4);
 }
 
 }  // namespace

@@ -56,6 +56,31 @@ TEST_F(RowsXyz, PlainFilesMayHaveMoreColumns) {
   EXPECT_EQ(open("2\n\nH 1 2 3 0.5\nO 1 2 3\n")->read(0, {"x"}).rows, 2u);
 }
 
+TEST_F(RowsXyz, NamesAreElementsOnlyIfAllAre) {
+  for (const std::string names : {"A B", "C1 H2", "C X", "LJ LJ"}) {
+    const std::string a = names.substr(0, names.find(' ')), b = names.substr(names.find(' ') + 1);
+    const auto plain = open("2\n\n" + a + " 1 2 3\n" + b + " 1 2 3\n");
+    EXPECT_EQ(plain->describe(0).roles.element, "") << names;
+    EXPECT_EQ(plain->describe(0).roles.type, "type") << names;
+    EXPECT_EQ(texts(plain->read(0, {"type"}), "type"), (Texts{a, b}));
+    const auto extended = open("2\nProperties=pos:R:3:species:S:1\n1 2 3 " + a + "\n1 2 3 " + b + "\n");
+    EXPECT_EQ(extended->describe(0).roles.element, "") << names;
+    EXPECT_EQ(extended->describe(0).roles.type, "species") << names;
+  }
+  EXPECT_EQ(open("3\n\nC 1 2 3\nfe 1 2 3\nD 1 2 3\n")->describe(0).roles.element, "element");
+}
+
+/// Otherwise, radii and colours would change within an animation.
+TEST_F(RowsXyz, TheFirstFrameWithAtomsDecidesWhatNamesAre) {
+  const std::string empty = "0\n\n", types = "2\n\nA 1 2 3\nC 1 2 3\n", carbon = "1\n\nC 1 2 3\n";
+  const auto file = open(empty + types + carbon);
+  for (const int frame : {2, 0, 1}) {
+    EXPECT_EQ(file->describe(frame).roles.type, "type") << frame;
+    EXPECT_EQ(column_names(file->describe(frame)).at(0), "type") << frame;
+  }
+  EXPECT_EQ(open(empty + carbon + types)->describe(2).roles.element, "element");
+}
+
 TEST_F(RowsXyz, NumbersInThePlaceOfElementsAreTypes) {
   const auto file = open("1\nAtoms. Timestep: 0\n2 1 2 3\n");
   EXPECT_EQ(file->describe(0).roles.type, "type");
