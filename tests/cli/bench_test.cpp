@@ -15,7 +15,7 @@ TEST_F(CliBench, PrintsOnlyATableOrJson) {
   EXPECT_NE(text.out.find("\nlist book "), std::string::npos) << text.out;
   const Outcome json = run("bench good.toml --rounds 1 --seconds 0.001 --json");
   EXPECT_EQ(json.status, 0) << json.err;
-  EXPECT_EQ(nlohmann::json::parse(json.out)["cases"].size(), 11u);
+  EXPECT_EQ(nlohmann::json::parse(json.out)["cases"].size(), 9u);
   EXPECT_EQ(file_count(), 0);
 }
 
