@@ -16,6 +16,7 @@
 #include "molecules/cif_rows.h"
 #include "molecules/parse_memory.h"
 #include "molecules/readers.h"
+#include "molecules/require_text.h"
 
 namespace orrery::molecules {
 
@@ -132,6 +133,7 @@ MmcifReader::MmcifReader(const Bytes& bytes, const OpenOptions& options) : fault
   // Measured: 2.1 for short rows of atoms; longer rows take less.
   constexpr double kMemoryPerByte = 2.25;
   require_parse_memory(bytes->file(), bytes->size(), kMemoryPerByte, bytes->memory(), options.memory_limit);
+  require_text(*bytes, faults_);
   CifAssemblies assemblies;
   const auto take_operator = [&](const Row& row, std::uint64_t line) {
     double v[12];

@@ -4,11 +4,10 @@
 #include <algorithm>
 #include <charconv>
 
-#include <fmt/core.h>
-
 #include "data/byte_source.h"
 #include "data/faults.h"
 #include "molecules/biomt.h"
+#include "molecules/require_text.h"
 
 namespace orrery::molecules {
 
@@ -34,23 +33,6 @@ std::optional<double> number(const std::string& text) {
   const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
   if (error != std::errc() || end != text.data() + text.size()) return std::nullopt;
   return value;
-}
-
-/// Throws an error at the first control character: a file with binary data would lose atoms.
-void require_text(const ByteSource& bytes, Faults& faults) {
-  constexpr std::size_t kBlock = std::size_t{1} << 20;
-  const auto is_control = [](char c) {
-    return (static_cast<unsigned char>(c) < 0x20 && (c < '\t' || c > '\r')) || c == 0x7f;
-  };
-  std::uint64_t line = 1;
-  for (std::uint64_t at = 0; at < bytes.size(); at += kBlock) {
-    const std::string block = bytes.text(at, kBlock);
-    const auto bad = std::find_if(block.begin(), block.end(), is_control);
-    line += static_cast<std::uint64_t>(std::count(block.begin(), bad, '\n'));
-    if (bad != block.end())
-      faults.fail(line, fmt::format("binary data: a byte of value {}", static_cast<unsigned char>(*bad)),
-                  "the file is damaged; download or write it again");
-  }
 }
 
 class Indexer {

@@ -149,6 +149,9 @@ TEST_F(MoleculesMmcif, MalformedAssembliesAreRefused) {
 }
 
 TEST_F(MoleculesMmcif, DamagedFilesAreRefusedWithTheirLine) {
+  const auto binary = error_of("data_a\n" + kLoop + kCarbon + "# \x01\n" + kCarbon);
+  EXPECT_EQ(binary.text, "binary data: a byte of value 1");
+  EXPECT_GT(binary.line, 10) << "also in a comment";
   const auto number = error_of("data_a\n" + kLoop + kCarbon + "ATOM 2 C CA . ALA A 1.5 oops 0 1 0 7 X 1\n");
   EXPECT_NE(number.text.find("`oops` is not a number"), std::string::npos);
   EXPECT_EQ(number.line, 19);
