@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <unordered_map>
 
 #include <fmt/core.h>
 
@@ -11,6 +10,7 @@
 #include "arrays/readers.h"
 #include "data/byte_source.h"
 #include "data/data_file.h"
+#include "data/dictionary.h"
 #include "data/faults.h"
 
 namespace orrery::arrays {
@@ -146,7 +146,7 @@ Words GsdReader::types_of(std::uint64_t frame, std::uint64_t rows) {
   if (chunk != nullptr) ids.values = file_.component(*chunk, 0);
   constexpr auto kUnused = static_cast<std::uint32_t>(-1);
   std::vector<std::uint32_t> word_of(names.size(), kUnused);
-  std::unordered_map<std::string, std::uint32_t> number_of;
+  Dictionary words;
   Words out;
   out.index.reserve(ids.size());
   for (std::size_t row = 0; row < ids.size(); ++row) {
@@ -155,14 +155,10 @@ Words GsdReader::types_of(std::uint64_t frame, std::uint64_t rows) {
       fail(fmt::format("frame {}: particle {} has a type without a name; there are {} types", frame, row + 1,
                        names.size()));
     std::uint32_t& word = word_of[static_cast<std::size_t>(id)];
-    if (word == kUnused) {
-      const std::string& name = names[static_cast<std::size_t>(id)];
-      const auto [same, is_new] = number_of.try_emplace(name, static_cast<std::uint32_t>(out.words.size()));
-      if (is_new) out.words.push_back(name);
-      word = same->second;
-    }
+    if (word == kUnused) word = words.index_of(names[static_cast<std::size_t>(id)]);
     out.index.push_back(word);
   }
+  out.words = words.take();
   return out;
 }
 

@@ -7,10 +7,10 @@
 
 #include <fmt/core.h>
 
-#include "arrays/word_index.h"
 #include "data/byte_source.h"
 
 #include "data/customary.h"
+#include "data/dictionary.h"
 #include "data/faults.h"
 #include "data/records.h"
 
@@ -64,7 +64,8 @@ Values read_texts(const ByteSource& bytes, std::uint64_t rows, const NpyColumn& 
   constexpr std::uint64_t kBlockBytes = std::uint64_t{1} << 20;
   const std::uint64_t stride = column.stride;
   const std::uint64_t block_rows = std::max<std::uint64_t>(1, stride > 0 ? kBlockBytes / stride : kBlockBytes);
-  WordIndex out;
+  Dictionary words;
+  Words out;
   std::string word;
   for (std::uint64_t first = 0; first < rows; first += block_rows) {
     const std::uint64_t count = std::min(block_rows, rows - first);
@@ -72,10 +73,11 @@ Values read_texts(const ByteSource& bytes, std::uint64_t rows, const NpyColumn& 
     for (std::uint64_t i = 0; i < count; ++i) {
       if (!decode_text(column.field, block.data() + i * stride + column.offset, word))
         faults.add_of_many(0, fmt::format("row {}: `{}` has an invalid character", first + i + 1, column.name));
-      out.add(word);
+      out.index.push_back(words.index_of(word));
     }
   }
-  return out.take();
+  out.words = words.take();
+  return out;
 }
 
 bool has_record_of(const NpyColumn& a, const NpyColumn& b) { return a.begin == b.begin && a.stride == b.stride; }

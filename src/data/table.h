@@ -26,6 +26,23 @@ struct Words {
   std::vector<std::uint32_t> index;  ///< one per row, into `words`
 };
 
+/// Returns a text column whose rows have the strings with these indices. Other strings are dropped, and the order of
+/// first appearance is restored.
+inline Words words_at(const std::vector<std::string>& words, const std::vector<std::uint32_t>& index) {
+  constexpr auto kUnused = static_cast<std::uint32_t>(-1);
+  std::vector<std::uint32_t> renumbered(words.size(), kUnused);
+  Words out;
+  out.index.reserve(index.size());
+  for (const std::uint32_t old : index) {
+    if (renumbered[old] == kUnused) {
+      renumbered[old] = static_cast<std::uint32_t>(out.words.size());
+      out.words.push_back(words[old]);
+    }
+    out.index.push_back(renumbered[old]);
+  }
+  return out;
+}
+
 /// A column that views an array in memory. The caller owns the array and keeps it alive.
 template <class T>
 class ArrayView {

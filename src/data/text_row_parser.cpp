@@ -36,22 +36,10 @@ T& element(void* column, std::uint64_t row) {
 
 }  // namespace
 
-std::uint32_t WordList::index_of(std::string_view word) {
-  if (last_ < words_.size() && words_[last_] == word) return last_;
-  const auto [at, is_new] = indices_.try_emplace(word, static_cast<std::uint32_t>(words_.size()));
-  if (is_new) words_.push_back(word);
-  return last_ = at->second;
-}
-
-void WordList::clear() {
-  words_.clear();
-  indices_.clear();
-}
-
 const char* RowParser::parse(const TextLines& lines, std::uint64_t line, std::uint64_t first_row, std::uint64_t rows,
                              const ColumnAddresses& columns) {
   columns_ = &columns;
-  for (WordList& words : words_) words.clear();
+  for (auto& words : words_) words.clear();
   unescaped_.clear();
   if (layout_->surveys) surveys_.assign(layout_->columns.size(), {});
   faults_.clear();

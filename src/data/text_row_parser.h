@@ -5,27 +5,14 @@
 #include <deque>
 #include <string>
 #include <string_view>
-#include <unordered_map>
 #include <vector>
 
+#include "data/dictionary.h"
 #include "data/text_rows.h"
 
 namespace orrery::data {
 
 class TextLines;
-
-/// Distinct words of a column, in order of first appearance. The words are views of text that the caller keeps.
-class WordList {
- public:
-  std::uint32_t index_of(std::string_view word);
-  const std::vector<std::string_view>& words() const { return words_; }
-  void clear();
-
- private:
-  std::vector<std::string_view> words_;
-  std::unordered_map<std::string_view, std::uint32_t> indices_;
-  std::uint32_t last_ = 0;
-};
 
 /// Destinations of the parsed values: one address per column, null for columns to skip.
 using ColumnAddresses = std::vector<void*>;
@@ -68,7 +55,7 @@ class RowParser {
   const ColumnAddresses* columns_ = nullptr;
   std::uint64_t row_ = 0;
   std::uint64_t line_ = 0;
-  std::vector<WordList> words_;
+  std::vector<Dictionary<std::string_view>> words_;
   std::deque<std::string> unescaped_;  ///< storage for words with escaped quotes
   std::vector<ColumnSurvey> surveys_;
   std::vector<Fault> faults_;

@@ -12,24 +12,19 @@
 #include <atomic>
 #include <functional>
 #include <string>
-#include <unordered_map>
 #include <utility>
 
 #include <fmt/core.h>
 
 #include "base/stop_point.h"
 #include "data/byte_source.h"
+#include "data/dictionary.h"
 #include "data/faults.h"
 #include "data/text_lines.h"
 #include "data/text_row_parser.h"
 
 namespace orrery::data {
 namespace {
-
-struct TextHash : std::hash<std::string_view> {
-  using is_transparent = void;
-};
-using WordIndices = std::unordered_map<std::string, std::uint32_t, TextHash, std::equal_to<>>;
 
 /// A part of the file on its way through the pipeline.
 struct Chunk {
@@ -102,7 +97,7 @@ class TableReader {
         max_rows_(layout.rows == kRowsToEnd ? counted_rows() : std::min(layout.rows, possible_rows())),
         next_line_(layout.first_line),
         is_complete_(max_rows_ == 0),
-        word_indices_(layout.columns.size()) {
+        words_(layout.columns.size()) {
     table_.end = begin_;
     for (const TextColumn& column : layout.columns) table_.values.push_back(reserved_column(column, max_rows_));
     if (layout.surveys) table_.surveys.resize(layout.columns.size());
@@ -126,6 +121,8 @@ class TableReader {
       faults_.add(next_line_, fmt::format("the file ends after {} of {} rows", table_.rows, layout_.rows),
                   "the file is truncated, or its header declares too many");
     faults_.raise_if_any();
+    for (std::size_t c = 0; c < words_.size(); ++c)
+      if (auto* const column = std::get_if<Words>(&table_.values[c])) column->words = words_[c].take();
     return std::move(table_);
   }
 
@@ -210,19 +207,10 @@ class TableReader {
 
   /// Replaces indices into the chunk's words by indices into the table's.
   void merge_words(const Chunk& chunk, std::size_t column) {
-    auto& words = std::get<Words>(table_.values[column]).words;
-    WordIndices& indices = word_indices_[column];
     std::vector<std::uint32_t> merged;
-    for (const std::string_view word : chunk.parser.words(column)) {
-      auto at = indices.find(word);
-      if (at == indices.end()) {
-        if (words.size() == std::numeric_limits<std::uint32_t>::max())
-          faults_.fail(chunk.first_line, fmt::format("column {} has too many distinct strings", column + 1));
-        at = indices.emplace(word, static_cast<std::uint32_t>(words.size())).first;
-        words.emplace_back(word);
-      }
-      merged.push_back(at->second);
-    }
+    for (const std::string_view word : chunk.parser.words(column)) merged.push_back(words_[column].index_of(word));
+    if (words_[column].words().size() > std::numeric_limits<std::uint32_t>::max())
+      faults_.fail(chunk.first_line, fmt::format("column {} has too many distinct strings", column + 1));
     auto* const index = static_cast<std::uint32_t*>(chunk.addresses[column]) + chunk.first_row;
     if (!chunk.parser.faults().empty()) return;  // some rows have no index
     for (std::uint64_t i = 0; i < chunk.parsed_rows; ++i) index[i] = merged[index[i]];
@@ -239,7 +227,7 @@ class TableReader {
   std::uint64_t next_line_;
   std::atomic<bool> is_complete_;
   std::vector<Chunk> chunks_;
-  std::vector<WordIndices> word_indices_;
+  std::vector<Dictionary<>> words_;  ///< of the text columns
   TextTable table_;
 };
 

@@ -31,30 +31,6 @@ std::string identity(const Atom& atom) {
 
 }  // namespace
 
-std::uint32_t AtomTable::Texts::index_of(const std::string& text) {
-  // Neighbouring atoms mostly share the string.
-  if (!words.index.empty() && words.words[words.index.back()] == text) return words.index.back();
-  const auto [it, is_new] = known.try_emplace(text, static_cast<std::uint32_t>(words.words.size()));
-  if (is_new) words.words.push_back(text);
-  return it->second;
-}
-
-/// Drops strings of replaced atoms and restores the order of first appearance.
-Words AtomTable::Texts::compacted() const {
-  constexpr auto kUnused = static_cast<std::uint32_t>(-1);
-  std::vector<std::uint32_t> renumbered(words.words.size(), kUnused);
-  Words out;
-  out.index.reserve(words.index.size());
-  for (const std::uint32_t old : words.index) {
-    if (renumbered[old] == kUnused) {
-      renumbered[old] = static_cast<std::uint32_t>(out.words.size());
-      out.words.push_back(words.words[old]);
-    }
-    out.index.push_back(renumbered[old]);
-  }
-  return out;
-}
-
 void AtomTable::add(const Atom& atom) {
   if (!atom.altloc.empty()) {
     const auto [it, is_new] = alternates_.try_emplace(identity(atom), numbers_.size());
@@ -69,7 +45,7 @@ void AtomTable::add(const Atom& atom) {
   occupancies_.emplace_back();
   numbers_.emplace_back();
   for (std::size_t i = 0; i < kTexts.size(); ++i)
-    texts_[i].words.index.push_back(texts_[i].index_of(atom.*kTexts[i].member));
+    texts_[i].index.push_back(texts_[i].words.index_of(atom.*kTexts[i].member));
   set(row, atom);
 }
 
@@ -81,7 +57,7 @@ void AtomTable::set(std::size_t row, const Atom& atom) {
   occupancies_[row] = static_cast<float>(atom.occupancy);
   numbers_[row] = atom.residue_number;
   for (std::size_t i = 0; i < kTexts.size(); ++i)
-    texts_[i].words.index[row] = texts_[i].index_of(atom.*kTexts[i].member);
+    texts_[i].index[row] = texts_[i].words.index_of(atom.*kTexts[i].member);
 }
 
 FrameInfo AtomTable::info(bool has_subchains) const {
@@ -107,7 +83,8 @@ Table AtomTable::table(const std::vector<std::string>& columns) const {
     for (std::size_t i = 0; i < 3; ++i)
       if (name == kPositionNames[i]) table.columns.push_back({name, position_[i]});
     for (std::size_t i = 0; i < kTexts.size(); ++i)
-      if (name == kTexts[i].name) table.columns.push_back({name, texts_[i].compacted()});
+      if (name == kTexts[i].name)  // without the strings of replaced atoms
+        table.columns.push_back({name, words_at(texts_[i].words.words(), texts_[i].index)});
     if (name == "residue_number") table.columns.push_back({name, numbers_});
     if (name == "b_factor") table.columns.push_back({name, b_factors_});
     if (name == "occupancy") table.columns.push_back({name, occupancies_});

@@ -8,6 +8,7 @@
 #include <unordered_map>
 #include <vector>
 
+#include "data/dictionary.h"
 #include "data/table.h"
 
 namespace orrery::molecules {
@@ -51,11 +52,8 @@ class AtomTable {
  private:
   /// A text column under construction.
   struct Texts {
-    data::Words words;
-    std::unordered_map<std::string, std::uint32_t> known;
-
-    std::uint32_t index_of(const std::string& text);
-    data::Words compacted() const;
+    data::Dictionary<> words;
+    std::vector<std::uint32_t> index;  ///< one per row
   };
 
   void set(std::size_t row, const Atom& atom);

@@ -60,23 +60,6 @@ std::array<Bytes, 3> file_colors(const points::SourceRows& source) {
   return out;
 }
 
-/// The strings in the given rows, excluding those of other rows, which the output format may not support.
-data::Words gathered(const data::Words& all, const std::vector<std::uint32_t>& rows) {
-  constexpr auto kUnused = static_cast<std::uint32_t>(-1);
-  std::vector<std::uint32_t> renumbered(all.words.size(), kUnused);
-  data::Words out;
-  out.index.reserve(rows.size());
-  for (const std::uint32_t row : rows) {
-    std::uint32_t& number = renumbered[all.index[row]];
-    if (number == kUnused) {
-      number = static_cast<std::uint32_t>(out.words.size());
-      out.words.push_back(all.words[all.index[row]]);
-    }
-    out.index.push_back(number);
-  }
-  return out;
-}
-
 /// The numbers in the given rows.
 template <class Numbers>
 auto gathered(const Numbers& all, const std::vector<std::uint32_t>& rows) {
@@ -84,6 +67,11 @@ auto gathered(const Numbers& all, const std::vector<std::uint32_t>& rows) {
   out.reserve(rows.size());
   for (const std::uint32_t row : rows) out.push_back(all[row]);
   return out;
+}
+
+/// The strings in the given rows, excluding those of other rows, which the output format may not support.
+data::Words gathered(const data::Words& all, const std::vector<std::uint32_t>& rows) {
+  return data::words_at(all.words, gathered(all.index, rows));
 }
 
 /// Makes the table of an output. Moves the columns of the source one by one, so that few of them exist twice.
