@@ -218,10 +218,9 @@ void run_phases(const Job& job, base::FileSet& files, JobReport& report) {
   if (report.was_skipped) return;
   require_disk_space(job.outputs, is_shard(job), image_size(compiled.width, compiled.height, layers.request),
                      job.resources.disk_limit);
-  if (!prepared->has_accelerator()) {
-    const MemoryNeeds needs = memory_needs(compiled, layers.request, job.sampling.is_adaptive());
-    require_memory(estimate_memory(needs), job.resources.memory_limit, held_memory(needs));
-  }
+  const MemoryNeeds needs =
+      memory_needs(compiled, layers.request, job.sampling.is_adaptive(), prepared->has_accelerator());
+  require_memory(estimate_memory(needs), job.resources.memory_limit, held_memory(needs));
   report.hosts = {provenance.at("host")};
   report.width = compiled.width;
   report.height = compiled.height;

@@ -88,12 +88,14 @@ MemoryEstimate estimate_memory(const MemoryNeeds& needs) {
   return m;
 }
 
-MemoryNeeds memory_needs(const compile::CompiledScene& compiled, const film::LayerRequest& layers, bool is_adaptive) {
+MemoryNeeds memory_needs(const compile::CompiledScene& compiled, const film::LayerRequest& layers, bool is_adaptive,
+                         bool has_accelerator) {
   MemoryNeeds needs;
   needs.width = compiled.width;
   needs.height = compiled.height;
   needs.spheres = compiled.spheres.size();
-  needs.spheres_in_bvh = accel::spheres_in_bvh(compiled.view());
+  needs.embree = compiled.accelerator == compile::Accelerator::kEmbree && !has_accelerator;
+  if (needs.embree) needs.spheres_in_bvh = accel::spheres_in_bvh(compiled.view());
   needs.sphere_bytes = compiled.spheres.bytes() + compiled.sphere_materials.bytes() +
                        (layers.matte_classes ? layers.matte_classes->of_sphere.bytes() : 0);
   if (compiled.environment) needs.background = compiled.environment->bytes();
@@ -104,7 +106,6 @@ MemoryNeeds memory_needs(const compile::CompiledScene& compiled, const film::Lay
   needs.guides = layers.guides();
   needs.light_cells = layers.light_cells();
   needs.shares = expected_shares(compiled, layers);
-  needs.embree = compiled.accelerator == compile::Accelerator::kEmbree;
   needs.is_adaptive = is_adaptive;
   return needs;
 }

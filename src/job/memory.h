@@ -39,8 +39,10 @@ struct MemoryNeeds {
 MemoryEstimate estimate_memory(const MemoryNeeds& needs);
 
 /// Determines these properties for a render of this scene.
+///
+/// `has_accelerator`  there is one already, so that none is built
 MemoryNeeds memory_needs(const compile::CompiledScene& compiled, const film::LayerRequest& layers,
-                         bool is_adaptive = false);
+                         bool is_adaptive = false, bool has_accelerator = false);
 
 /// Bytes of these that a compiled scene has already allocated.
 std::uint64_t held_memory(const MemoryNeeds& needs);

@@ -206,6 +206,16 @@ TEST_F(JobPreparedScene, TheAcceleratorOutlivesWhatDoesNotMoveSpheres) {
   EXPECT_FALSE((set({}), prepared.load({job_.scene, {}}), prepared.has_accelerator()));
 }
 
+TEST_F(JobPreparedScene, ALargerImageMustFitIntoMemory) {
+  const auto prepared = std::make_shared<PreparedScene>();
+  Rendering rendering;
+  EXPECT_EQ(render(prepared, rendering), "");
+  job_.resources.memory_limit = 10'000'000;
+  EXPECT_EQ(render(prepared, rendering), "");
+  set({"image.width=2000", "image.height=2000"});
+  EXPECT_NE(render(prepared, rendering).find("the render needs about"), std::string::npos);
+}
+
 TEST_F(JobPreparedScene, AFailureForgetsEverything) {
   const auto prepared = std::make_shared<PreparedScene>();
   Rendering first, second;
