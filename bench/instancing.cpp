@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Compares instances of an asymmetric unit with expanded spheres, for docs/decisions/0026:
+// Compares instances of an asymmetric unit with expanded spheres, for docs/decisions/0025:
 //
 //   bench_instancing 1M4X.pdb instances   Embree instances of the unit's sphere points
 //   bench_instancing 1M4X.pdb expanded    Embree's sphere points of all copies

@@ -36,7 +36,7 @@ enum class Shading : std::uint8_t { kPath, kNormal, kFlat };
 
 /// Features that the scene uses; the kernel skips those that are false. Only features whose absence saves time have a
 /// bit. Materials need none: the kernel skips a material that no lane of a vector has hit
-/// (docs/decisions/0012-few-feature-bits.md).
+/// (docs/decisions/0012-two-path-loops-few-feature-bits.md).
 struct Features {
   bool lens = false;        ///< the camera has an aperture
   bool hemisphere = false;  ///< some sphere has a hemisphere material
