@@ -9,9 +9,15 @@ if(TARGET orrery)
           RUNTIME DESTINATION ${CMAKE_INSTALL_LIBEXECDIR}/orrery COMPONENT runtime
           LIBRARY DESTINATION ${CMAKE_INSTALL_LIBEXECDIR}/orrery COMPONENT runtime)
 endif()
-if(EXISTS ${PROJECT_SOURCE_DIR}/docs/orrery.1)
-  install(FILES docs/orrery.1 DESTINATION ${CMAKE_INSTALL_MANDIR}/man1 COMPONENT runtime)
-endif()
+set(documents ${PROJECT_BINARY_DIR}/docs)
+install(FILES ${documents}/orrery.1 DESTINATION ${CMAKE_INSTALL_MANDIR}/man1 COMPONENT runtime)
+install(FILES ${documents}/orrery.bash RENAME orrery COMPONENT runtime
+        DESTINATION ${CMAKE_INSTALL_DATADIR}/bash-completion/completions)
+install(FILES ${documents}/orrery.fish COMPONENT runtime DESTINATION ${CMAKE_INSTALL_DATADIR}/fish/vendor_completions.d)
+# Debian's zsh searches the first folder below /usr/local, and the second below /usr.
+foreach(folder IN ITEMS site-functions vendor-completions)
+  install(FILES ${documents}/_orrery COMPONENT runtime DESTINATION ${CMAKE_INSTALL_DATADIR}/zsh/${folder})
+endforeach()
 # scenes/ contains examples to copy. Debian requires the licence under the name `copyright`.
 install(DIRECTORY scenes/ DESTINATION ${CMAKE_INSTALL_DOCDIR}/scenes COMPONENT runtime FILES_MATCHING PATTERN "*.toml")
 install(FILES LICENSE DESTINATION ${CMAKE_INSTALL_DOCDIR} COMPONENT runtime RENAME copyright)

@@ -24,8 +24,8 @@ picture() {
   "$program" render "$scene" -o "$out/$name.png" --width 240 --height 135 --quiet "$@"
 }
 # The book's display transforms: linear until it introduces gamma, then the square root.
-linear() { name=$1; shift; picture "scenes/book/$name.toml" "$name" --view Raw "$@"; }
-gamma() { name=$1; shift; picture "scenes/book/$name.toml" "$name" --display "Gamma 2.0 Rec.709" --samples 1000 "$@"; }
+linear() { name=$1; shift; picture "scenes/book/$name.toml" "$name" --set color.view=Raw "$@"; }
+gamma() { name=$1; shift; picture "scenes/book/$name.toml" "$name" --set color.display="Gamma 2.0 Rec.709" --samples 1000 "$@"; }
 
 for name in 01-gradient-sky 02-red-sphere 03-normals-one-sphere 04-normals-with-ground 05-antialiased; do
   linear $name
@@ -33,9 +33,9 @@ done
 for name in 06-hemisphere-diffuse 07-child-ray-limit 08-shadow-acne 09-shadow-acne-fixed 10-lambertian; do
   linear $name --samples 400
 done
-picture scenes/book/07-child-ray-limit.toml 07-child-ray-limit-two --view Raw --set render.max_depth=2 --samples 400
-picture scenes/book/08-shadow-acne.toml 08-shadow-acne-exact --view Raw --precision exact --samples 400
-picture scenes/book/11-gamma.toml 11-gamma-linear --view Raw --samples 1000
+picture scenes/book/07-child-ray-limit.toml 07-child-ray-limit-two --set color.view=Raw --set render.max_depth=2 --samples 400
+picture scenes/book/08-shadow-acne.toml 08-shadow-acne-exact --set color.view=Raw --precision exact --samples 400
+picture scenes/book/11-gamma.toml 11-gamma-linear --set color.view=Raw --samples 1000
 for name in 11-gamma 12-metal 13-fuzzy-metal 14-glass-always-refracts 15-glass-total-internal-reflection \
             16-glass-schlick 17-hollow-glass 18-wide-angle-two-spheres 19-far-view 20-zoomed-view 21-defocus-blur final; do
   gamma $name
@@ -69,7 +69,7 @@ picture $balls light-studio --samples 400 --set "background={ type = \"image\", 
 "$program" generate planet -o "$work/planet.exr" --width 2048
 cp scenes/next-week/*.toml "$work"
 for name in 01-bouncing-spheres 02-checkered-spheres 03-planet 04-perlin-noise 05-turbulence 06-marble 07-lamp; do
-  picture "$work/$name.toml" "next-week-$name" --display "Gamma 2.0 Rec.709" --samples 1000
+  picture "$work/$name.toml" "next-week-$name" --set color.display="Gamma 2.0 Rec.709" --samples 1000
 done
 picture "$work/08-rough-glass.toml" next-week-08-rough-glass --samples 1000
 for count in 30 1000 100000; do
@@ -79,4 +79,4 @@ done
 du -ch "$out"/*.png | tail -1
 echo docs/final.jpg
 "$program" render scenes/book/final.toml -o docs/final.jpg --width 800 --height 450 --noise 0.01 \
-  --display "Gamma 2.0 Rec.709" --reproducible --quiet
+  --set color.display="Gamma 2.0 Rec.709" --reproducible --quiet

@@ -4,6 +4,10 @@
 #include <CLI/CLI.hpp>
 
 #include <algorithm>
+#include <charconv>
+#include <cmath>
+#include <string_view>
+#include <type_traits>
 #include <utility>
 
 #include <fmt/core.h>
@@ -14,18 +18,129 @@
 namespace orrery::cli {
 namespace {
 
+/// Parses the whole text, not only its beginning.
+template <class Number>
+bool parse(const std::string& text, Number& value) {
+  const char* const end = text.data() + text.size();
+  const auto [stopped, error] = std::from_chars(text.data(), end, value);
+  return error == std::errc() && stopped == end;
+}
+
+/// Maximum time limit, one year in seconds: a longer time probably has the wrong unit.
+constexpr double kLongestTime = 365.0 * 24 * 3600;
+/// Minimum time limit, seconds; 0 would mean no limit.
+constexpr double kShortestTime = 0.01;
+
+/// The message for a number without a unit; `next_unit` is the index of the largest unit that may follow.
+std::string missing_unit(const std::string& text, std::size_t next_unit) {
+  if (next_unit == 0) return fmt::format("`{0}` has no unit; write {0}s, {0}m or {0}h", text);
+  if (next_unit == 1) return fmt::format("`{0}` has no final unit; write {0}m or {0}s", text);
+  return fmt::format("`{0}` has no final unit; write {0}s", text);
+}
+
+/// Parses times such as "1h30m": numbers with units, each unit at most once, in descending order.
+///
+/// Result     an error message, or an empty string
+std::string parse_duration(const std::string& text, double& seconds) {
+  constexpr std::string_view kUnits = "hms";
+  constexpr double kSeconds[] = {3600, 60, 1};
+  const std::string wrong = fmt::format("must be a time such as 90s, 5m, 1.5h or 1h30m, not `{}`", text);
+  seconds = 0;
+  std::size_t next_unit = 0;
+  for (std::size_t begin = 0; begin < text.size();) {
+    const std::size_t end = text.find_first_not_of("0123456789.", begin);
+    double value = 0;
+    if (!parse(text.substr(begin, end - begin), value)) return wrong;
+    if (end == std::string::npos) return next_unit < kUnits.size() ? missing_unit(text, next_unit) : wrong;
+    const std::size_t unit = kUnits.find(text[end], next_unit);
+    if (unit == std::string_view::npos) return wrong;
+    seconds += value * kSeconds[unit];
+    next_unit = unit + 1;
+    begin = end + 1;
+  }
+  if (text.empty()) return wrong;
+  if (seconds < kShortestTime) return fmt::format("must be at least {:g}s, not `{}`", kShortestTime, text);
+  if (!(seconds <= kLongestTime)) return fmt::format("must be at most {:g}h, not `{}`", kLongestTime / 3600, text);
+  return {};
+}
+
 /// Adds no text to the help, where the option's description suffices.
 CLI::Validator validator(Check check) { return CLI::Validator(std::move(check), ""); }
 
 }  // namespace
+
+Check one_of(std::vector<std::string> names) {
+  return [names = std::move(names)](std::string& word) -> std::string {
+    if (std::find(names.begin(), names.end(), word) != names.end()) return {};
+    const bool is_number = !word.empty() && word[0] >= '0' && word[0] <= '9';  // do not suggest 16 for 12
+    const std::string remedy = is_number ? "" : base::did_you_mean(word, names);
+    return fmt::format("unknown value `{}`; {}", word, remedy.empty() ? "use one of " + base::joined(names) : remedy);
+  };
+}
+
+Check whole_number(std::uint64_t from, std::uint64_t to) {
+  return [from, to](std::string& text) -> std::string {
+    std::uint64_t value = 0;
+    if (parse(text, value) && value >= from && value <= to) {
+      text = std::to_string(value);  // CLI11 would read 010 as eight
+      return {};
+    }
+    return fmt::format("must be an integer from {} to {}, not `{}`", from, to, text);
+  };
+}
+
+int integer_of(const std::string& text) {
+  int value = 0;
+  parse(text, value);
+  return value;
+}
+
+Check real_number(double from, double to) {
+  return [from, to](std::string& text) -> std::string {
+    double value = 0;
+    const bool plus = text.size() > 1 && text[0] == '+' && text[1] != '-';
+    if (parse(plus ? text.substr(1) : text, value) && value >= from && value <= to) return {};
+    return fmt::format("must be a number from {:g} to {:g}, not `{}`", from, to, text);
+  };
+}
+
+Check byte_size() {
+  return [](std::string& text) -> std::string {
+    constexpr std::string_view kUnits = "KMGT";
+    const std::size_t unit = text.empty() ? std::string::npos : kUnits.find(text.back());
+    double value = 0;
+    if (unit != std::string::npos && parse(text.substr(0, text.size() - 1), value)) {
+      value = std::ldexp(value, 10 * (static_cast<int>(unit) + 1));
+      if (value >= 1 && value < 0x1p63) {
+        text = std::to_string(static_cast<std::uint64_t>(value));
+        return {};
+      }
+    }
+    return fmt::format("must be a size with a unit, e.g. 512M or 1.5G, not `{}`", text);
+  };
+}
+
+Check duration() {
+  return [](std::string& text) -> std::string {
+    double seconds = 0;
+    if (std::string wrong = parse_duration(text, seconds); !wrong.empty()) return wrong;
+    text = fmt::format("{:.17g}", seconds);
+    return {};
+  };
+}
 
 Option* Option::required() {
   option_->required();
   return this;
 }
 
-Option* Option::type_name(const std::string& name) {
-  option_->type_name(name);
+Option* Option::choices(std::vector<std::string> words) {
+  choices_ = words;
+  return check(one_of(std::move(words)));
+}
+
+Option* Option::details(const char* sentences) {
+  details_ = sentences;
   return this;
 }
 
@@ -87,6 +202,21 @@ std::string Option::name() const {
   return names.empty() ? "" : "--" + names.front();
 }
 
+OptionText Option::text() const {
+  OptionText out;
+  for (const std::string& name : option_->get_snames()) out.names.push_back("-" + name);
+  for (const std::string& name : option_->get_lnames()) out.names.push_back("--" + name);
+  if (out.names.empty()) out.names.push_back(option_->get_name());
+  if (option_->get_items_expected_max() > 0) out.type = option_->get_type_name();
+  out.description = option_->get_description();
+  out.details = details_;
+  out.heading = option_->get_group();
+  out.choices = choices_;
+  out.is_required = option_->get_required();
+  out.is_repeatable = takes_several_;
+  return out;
+}
+
 void Option::require_one() const {
   const bool is_flag = option_->get_items_expected_max() == 0;  // a repeated flag means the same
   if (takes_several_ || is_flag || option_->count() < 2) return;
@@ -105,52 +235,45 @@ Command* Command::add_subcommand(const std::string& name, const std::string& des
   return &subcommands_.emplace_back(*command);
 }
 
-const Command& Command::subcommand(const std::string& name) const {
-  return *std::find_if(subcommands_.begin(), subcommands_.end(),
-                       [&](const Command& command) { return command.app_->get_name() == name; });
-}
-
 void Command::require_subcommand() { app_->require_subcommand(1); }
 
-Option* Command::added(CLI::Option& option, bool takes_several) {
+void Command::hide() { app_->group(""); }
+
+std::string Command::full_name() const {
+  const CLI::App* const parent = app_->get_parent();
+  return (parent == nullptr ? "" : Command(*app_->get_parent()).full_name() + " ") + app_->get_name();
+}
+
+std::string Command::name() const { return app_->get_name(); }
+
+std::string Command::description() const { return app_->get_description(); }
+
+bool Command::is_hidden() const { return app_->get_group().empty(); }
+
+Option* Command::added(CLI::Option& option, const std::string& type, bool takes_several) {
+  option.type_name(type);
   // Otherwise, --frames "$frames" with an unset variable would be equivalent to no option.
   option.check(validator([](const std::string& value) { return value.empty() ? "the value is empty" : ""; }));
   return &options_.emplace_back(option, takes_several);
 }
 
-Option* Command::add_option(const std::string& names, std::string& variable, const std::string& description) {
-  return added(*app_->add_option(names, variable, description));
-}
-
-Option* Command::add_option(const std::string& names, std::filesystem::path& variable, const std::string& description) {
-  return added(*app_->add_option(names, variable, description));
-}
-
-Option* Command::add_option(const std::string& names, int& variable, const std::string& description) {
-  return added(*app_->add_option(names, variable, description));
-}
-
-Option* Command::add_option(const std::string& names, std::uint64_t& variable, const std::string& description) {
-  return added(*app_->add_option(names, variable, description));
-}
-
-Option* Command::add_option(const std::string& names, double& variable, const std::string& description) {
-  return added(*app_->add_option(names, variable, description));
-}
-
-Option* Command::add_option(const std::string& names, std::optional<double>& variable, const std::string& description) {
-  return added(*app_->add_option(names, variable, description));
-}
-
-Option* Command::add_option(const std::string& names, std::vector<std::string>& variable,
+template <class Variable>
+Option* Command::add_option(const std::string& names, Variable& variable, const std::string& type,
                             const std::string& description) {
-  return added(*app_->add_option(names, variable, description), true);
+  constexpr bool kIsList = std::is_same_v<Variable, std::vector<std::string>> ||
+                           std::is_same_v<Variable, std::vector<std::filesystem::path>>;
+  return added(*app_->add_option(names, variable, description), type, kIsList);
 }
 
-Option* Command::add_option(const std::string& names, std::vector<std::filesystem::path>& variable,
-                            const std::string& description) {
-  return added(*app_->add_option(names, variable, description), true);
-}
+using Text = std::string;
+template Option* Command::add_option(const Text&, Text&, const Text&, const Text&);
+template Option* Command::add_option(const Text&, std::filesystem::path&, const Text&, const Text&);
+template Option* Command::add_option(const Text&, int&, const Text&, const Text&);
+template Option* Command::add_option(const Text&, std::uint64_t&, const Text&, const Text&);
+template Option* Command::add_option(const Text&, double&, const Text&, const Text&);
+template Option* Command::add_option(const Text&, std::optional<double>&, const Text&, const Text&);
+template Option* Command::add_option(const Text&, std::vector<Text>&, const Text&, const Text&);
+template Option* Command::add_option(const Text&, std::vector<std::filesystem::path>&, const Text&, const Text&);
 
 Option* Command::add_flag(const std::string& names, bool& variable, const std::string& description) {
   return &options_.emplace_back(*app_->add_flag(names, variable, description));
@@ -168,7 +291,10 @@ std::vector<std::string> Command::arguments(const std::string& heading) const {
 
 void Command::heading(const std::string& text) { heading_ = text; }
 
-void Command::footer(const std::string& text) { app_->footer(text); }
+void Command::footer(const std::string& text) {
+  footer_ = text;
+  app_->footer(text);
+}
 
 void Command::callback(std::function<void()> function) {
   app_->callback([this, function = std::move(function)] {

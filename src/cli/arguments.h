@@ -16,11 +16,46 @@ class Option;
 
 namespace orrery::cli {
 
-// The part of CLI11 that commands use, without its headers, which take several seconds to compile. Only arguments.cpp,
-// usage.cpp and run.cpp include them.
+// The part of CLI11 that commands use, without its headers, which take several seconds to compile. Only arguments.cpp
+// and run.cpp include them.
 
 /// Checks the text of an argument, and may replace it. Returns an error message, or an empty string.
 using Check = std::function<std::string(std::string& value)>;
+
+// Checks of option values. They replace CLI11's own, whose messages differ between versions. Those that convert the
+// value need Option::transform(); Option::check() keeps the typed text.
+
+/// Maximum number of threads: more than any machine has.
+inline constexpr std::uint64_t kMaxThreads = 4096;
+
+/// Rejects a word that is not one of `names`, and suggests the closest one.
+Check one_of(std::vector<std::string> names);
+
+/// Accepts an integer in from..to. Removes leading zeros, which CLI11 would interpret as octal.
+Check whole_number(std::uint64_t from, std::uint64_t to);
+
+/// Returns the integer in a string that whole_number() accepts; 0 for other strings.
+int integer_of(const std::string& text);
+
+/// Accepts a finite number in from..to.
+Check real_number(double from, double to);
+
+/// Accepts a size such as 512M or 1.5G and converts it to bytes; K, M, G and T are powers of 1024.
+Check byte_size();
+
+/// Accepts a time from 0.01 seconds to a year, such as 90s, 5m, 1.5h or 1h30m, and converts it to seconds.
+Check duration();
+
+/// An option or a positional argument, as help, manual and completions show it.
+struct OptionText {
+  std::vector<std::string> names;  ///< "-o", "--output"; "SCENE" for a positional argument
+  std::string type;                ///< "FILE"; empty: a flag
+  std::string description;
+  std::string details;               ///< further sentences of the manual
+  std::string heading;               ///< "Image options"
+  std::vector<std::string> choices;  ///< values, if they are words of a list
+  bool is_required = false, is_repeatable = false;
+};
 
 /// An option or a positional argument.
 class Option {
@@ -29,7 +64,10 @@ class Option {
   explicit Option(CLI::Option& option, bool takes_several = false) : option_(&option), takes_several_(takes_several) {}
 
   Option* required();
-  Option* type_name(const std::string& name);
+  /// Accepts only these words.
+  Option* choices(std::vector<std::string> words);
+  /// Adds sentences that only the manual has.
+  Option* details(const char* sentences);
   /// Rejects values that fail `check`, and keeps the others as typed.
   Option* check(Check check);
   /// Rejects values that fail `check`, and replaces the others with its output.
@@ -50,6 +88,7 @@ class Option {
   std::string name() const;
   /// The option's heading in the help.
   std::string heading() const;
+  OptionText text() const;
   /// Refuses an option of a single value that was given several times: all values but one would be ignored.
   ///
   /// Errors     base::Error(kUsage)
@@ -59,6 +98,8 @@ class Option {
   CLI::Option* option_;
   bool takes_several_;
   std::vector<std::string> typed_;  ///< values before transform()
+  std::vector<std::string> choices_;
+  const char* details_ = "";
 };
 
 /// A command with its options, or the program with its commands. Its options and subcommands live as long as it does.
@@ -72,23 +113,25 @@ class Command {
 
   Command* add_subcommand(const std::string& name, const std::string& description);
   void require_subcommand();
-  /// The subcommand with this name.
-  ///
-  /// Domain     it was added
-  const Command& subcommand(const std::string& name) const;
+  /// Hides the command in the help and in the manual.
+  void hide();
+  /// "orrery generate final".
+  std::string full_name() const;
+  std::string name() const;
+  std::string description() const;
+  bool is_hidden() const;
+  /// Adds sentences that only the manual has.
+  void details(const char* sentences) { details_ = sentences; }
+  const char* details() const { return details_; }
+  const std::string& footer() const { return footer_; }
+  const std::deque<Command>& subcommands() const { return subcommands_; }
   /// All options and positional arguments, in the order in which they were added.
   const std::deque<Option>& options() const { return options_; }
 
-  // `names` are "-o,--output", or "SCENE" for a positional argument. Parsing writes the value to `variable`. Empty
-  // values are errors.
-  Option* add_option(const std::string& names, std::string& variable, const std::string& description);
-  Option* add_option(const std::string& names, std::filesystem::path& variable, const std::string& description);
-  Option* add_option(const std::string& names, int& variable, const std::string& description);
-  Option* add_option(const std::string& names, std::uint64_t& variable, const std::string& description);
-  Option* add_option(const std::string& names, double& variable, const std::string& description);
-  Option* add_option(const std::string& names, std::optional<double>& variable, const std::string& description);
-  Option* add_option(const std::string& names, std::vector<std::string>& variable, const std::string& description);
-  Option* add_option(const std::string& names, std::vector<std::filesystem::path>& variable,
+  // `names` are "-o,--output", or "SCENE" for a positional argument; `type` names the value in the help. Parsing writes
+  // the value to `variable`. Empty values are errors.
+  template <class Variable>
+  Option* add_option(const std::string& names, Variable& variable, const std::string& type,
                      const std::string& description);
   Option* add_flag(const std::string& names, bool& variable, const std::string& description);
 
@@ -106,10 +149,12 @@ class Command {
  private:
   friend class OptionGroup;
 
-  Option* added(CLI::Option& option, bool takes_several = false);
+  /// Adds what all options with a value have.
+  Option* added(CLI::Option& option, const std::string& type, bool takes_several);
 
   CLI::App* app_;
-  std::string heading_;
+  std::string heading_, footer_;
+  const char* details_ = "";
   std::deque<Option> options_;
   std::deque<Command> subcommands_;
 };

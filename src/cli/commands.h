@@ -29,5 +29,7 @@ void add_convert(Command& program, Action& action);
 void add_develop(Command& program, Action& action);
 void add_denoise(Command& program, Action& action);
 void add_bake(Command& program, Action& action);
+/// The hidden command that prints the manual page and shell completions, for the build. Added last.
+void add_documents(Command& program, Action& action);
 
 }  // namespace orrery::cli

@@ -15,14 +15,13 @@
 #include "base/text.h"
 #include "cli/commands.h"
 #include "cli/messages.h"
-#include "cli/option_checks.h"
-#include "cli/output.h"
+#include "cli/options.h"
 #include "cli/signals.h"
 
 namespace orrery::cli {
 namespace {
 
-/// As diff(1): the comparison succeeded, and the images differ. Listed in docs/orrery.1.
+/// As diff(1): the comparison succeeded, and the images differ. Listed in docs/orrery.1.in.
 constexpr int kDiffer = 1;
 
 /// The maximum of a metric.
@@ -99,27 +98,37 @@ int compare(const CompareOptions& options) {
 void add_compare(Command& program, Action& action) {
   const auto options = std::make_shared<CompareOptions>();
   Command& command = *program.add_subcommand("compare", "Compare two images with error metrics");
-  command.add_option("A", options->picture, "Image to compare")->required()->type_name("FILE");
-  command.add_option("B", options->reference, "Reference image")->required()->type_name("FILE");
+  command.add_option("A", options->picture, "FILE", "Image to compare")->required();
+  command.add_option("B", options->reference, "FILE", "Reference image")->required();
   command
       .add_option(
-          "--fail-above", options->limits,
+          "--fail-above", options->limits, "METRIC=VALUE",
           "Exit with status 1 if a metric exceeds the value: rmse, relmse, mae, max, display, flip, bias or z; errors "
           "have other statuses; can be repeated")
-      ->type_name("METRIC=VALUE")
+      ->details("Also if a value is not finite. Images without common finite values are an error.")
       ->repeatable();
   command
-      .add_option("--layer", options->layer,
+      .add_option("--layer", options->layer, "NAME",
                   "Layer to compare; Cryptomattes are compared by coverage; default: the beauty")
-      ->type_name("NAME");
-  command.add_option("--difference", options->pictures.difference, "Write A - B as an image")->type_name("FILE");
-  command.add_option("--heat", options->pictures.heat, "Write the display error as a heat map")->type_name("FILE");
-  command.add_option("--flip", options->pictures.flip, "Write the FLIP error map")->type_name("FILE");
-  command.add_option("-t,--threads", options->threads, "Number of threads; default: all CPUs available to the process")
-      ->transform(whole_number(1, kMaxThreads))
-      ->type_name("N");
-  command.add_flag("--json", options->json, "Print JSON");
+      ->details(
+          "Pixels without a hit (1e30 in Z and depth) in one of the images are excluded and counted. The coverage of a "
+          "Cryptomatte, e.g. CryptoObject, is the fraction of each pixel that belongs to different objects.");
+  command.add_option("--difference", options->pictures.difference, "FILE", "Write A - B as an image")
+      ->details("An EXR holds the values; a display format, half of them added to mid-grey.");
+  command.add_option("--heat", options->pictures.heat, "FILE", "Write the display error as a heat map")
+      ->details("From 0 to 0.1; an EXR holds the values.");
+  command.add_option("--flip", options->pictures.flip, "FILE", "Write the FLIP error map")
+      ->details("From 0 to 1; an EXR holds the values.");
+  add_threads_option(command, options->threads);
+  command.add_flag("--json", options->json, "Print JSON")->details("Schema orrery.compare/2.");
   command.add_flag("-q,--quiet", options->quiet, "Print only errors and exceeded limits");
+  command.details(
+      "Measures, in R, G and B: root mean square error, relative mean square error, mean absolute error, maximum error "
+      "and its position, PSNR, display error (as for --noise), bias of the mean, SSIM, FLIP (HDR-FLIP for scene-linear "
+      "images), and the number of different values in all common channels, or in those of --layer. If A has the layer "
+      "variance, also the fraction of the error that is noise, and a z-test over blocks of 16 x 16 pixels with a false "
+      "alarm probability of one per cent for the whole image. Both images must be scene-linear, or both "
+      "display-encoded.");
   command.footer(
       "Examples:\n"
       "  orrery compare fast.exr exact.exr\n"

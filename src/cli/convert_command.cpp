@@ -8,9 +8,8 @@
 #include "base/error.h"
 #include "base/text.h"
 #include "cli/commands.h"
-#include "cli/data_options.h"
 #include "cli/messages.h"
-#include "cli/option_checks.h"
+#include "cli/options.h"
 #include "cli/signals.h"
 #include "plot/convert.h"
 #include "plot/converted_file.h"
@@ -55,13 +54,15 @@ void add_convert(Command& program, Action& action) {
   const auto arguments = std::make_shared<ConvertArguments>();
   Command& command = *program.add_subcommand("convert", "Write the spheres of a data file as PLY, XYZ, NPY or CSV");
   plot::ConvertOptions& convert = arguments->convert;
-  add_data_file(command, convert);
-  command.add_option("-o,--output", convert.output, "File to write: .ply, .xyz (extended), .npy or .csv")
-      ->required()
-      ->type_name("FILE");
+  command.add_option("-o,--output", convert.output, "FILE", "File to write: .ply, .xyz (extended), .npy or .csv")
+      ->details("PLY is binary, NPY a structured array.")
+      ->required();
   command.add_flag("-q,--quiet", arguments->quiet, "Print only errors and warnings");
   add_data_options(command, arguments->data, convert);
-  add_look_options(command, arguments->data, convert);
+  command.details(
+      "The spheres are selected, unwrapped, replicated and sliced. Colours are sRGB, 8 bits. Copies of a particle have "
+      "the same values in the other columns. If the file has particle ids, they give the order. Columns that a format "
+      "cannot store are omitted, with a note: strings in PLY; in XYZ, strings that are empty or contain spaces.");
   command.footer(
       "Columns: x, y, z; radius and red, green, blue if they are defined; then the other columns of the file.\n"
       "\n"

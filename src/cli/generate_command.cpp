@@ -6,7 +6,6 @@
 
 #include "base/error.h"
 #include "cli/commands.h"
-#include "cli/option_checks.h"
 #include "cli/signals.h"
 #include "generate/generate.h"
 #include "generate/generate_files.h"
@@ -40,9 +39,10 @@ void add_quiet(Command& command, GenerateOptions& options) {
 
 /// Adds the options of all scene generators.
 void add_common(Command& command, GenerateOptions& options, std::uint64_t& seed) {
-  command.add_option("-o,--output", options.output, "Scene file to write")->required()->type_name("FILE");
-  command.add_flag("--force", options.force, "Replace a scene file that was edited, or not written by orrery");
-  command.add_option("--seed", seed, "Random seed; default: 1")->transform(whole_number(0, kMaxSeed))->type_name("N");
+  command.add_option("-o,--output", options.output, "FILE", "Scene file to write")->required();
+  command.add_flag("--force", options.force, "Replace a scene file that was edited, or not written by orrery")
+      ->details("Without it, the exit status is 73.");
+  command.add_option("--seed", seed, "N", "Random seed; default: 1")->transform(whole_number(0, kMaxSeed));
 }
 
 void add_final(Command& generate, const std::shared_ptr<GenerateOptions>& options, Action& action) {
@@ -50,12 +50,15 @@ void add_final(Command& generate, const std::shared_ptr<GenerateOptions>& option
   add_common(command, *options, options->final_scene.seed);
   add_quiet(command, *options);
   command
-      .add_option("--grid", options->final_scene.grid, "Grid cells from the centre to the edge, 0 to 1000; default: 11")
-      ->transform(whole_number(0, generate::kLargestFinalGrid))
-      ->type_name("N");
-  command.add_flag(
-      "--moving", options->final_scene.moving,
-      "Generate the variant in The Next Week: checkered ground, small spheres that move while the shutter is open");
+      .add_option("--grid", options->final_scene.grid, "N",
+                  "Grid cells from the centre to the edge, 0 to 1000; default: 11")
+      ->details("As in the book. Above 32, the spheres are written to a PLY file.")
+      ->transform(whole_number(0, generate::kLargestFinalGrid));
+  command
+      .add_flag(
+          "--moving", options->final_scene.moving,
+          "Generate the variant in The Next Week: checkered ground, small spheres that move while the shutter is open")
+      ->details("The grid is then at most 32.");
   command.footer(
       "Examples:\n"
       "  orrery generate final -o final.toml --seed 7\n"
@@ -74,14 +77,13 @@ void add_cloud(Command& generate, const std::shared_ptr<GenerateOptions>& option
       *generate.add_subcommand("cloud", "A cloud of small spheres: a scene file and a PLY file next to it");
   add_common(command, *options, options->cloud.seed);
   add_quiet(command, *options);
-  command.add_option("--count", options->cloud.count, "Number of spheres; default: 1000")
-      ->transform(whole_number(1, generate::kLargestCloud))
-      ->type_name("N");
+  command.add_option("--count", options->cloud.count, "N", "Number of spheres; default: 1000")
+      ->transform(whole_number(1, generate::kLargestCloud));
   command
-      .add_option("--radius", options->cloud.radius,
+      .add_option("--radius", options->cloud.radius, "R",
                   "Radius of all spheres, in scene units; default: random, with a mean that depends on --count")
-      ->check(real_number(0, generate::kLargestCloudRadius))
-      ->type_name("R");
+      ->check(real_number(0, generate::kLargestCloudRadius));
+  command.details("An existing PLY file is replaced only if orrery wrote it; otherwise the exit status is 73.");
   command.footer("Example:\n  orrery generate cloud -o cloud.toml --count 1000000");
   command.callback([options, &action] {
     action = [options] {
@@ -100,44 +102,42 @@ void add_sky_options(Command& command, GenerateOptions& options) {
   scene::Background& sky = options.sky;
   options.ground_albedo = sky.ground_albedo.x;
   command
-      .add_option("--sun-elevation", sky.sun_elevation,
+      .add_option("--sun-elevation", sky.sun_elevation, "DEG",
                   "Sun elevation above the horizon, in degrees; default: " + scene::number_text(sky.sun_elevation))
-      ->check(real_number(-90, 90))
-      ->type_name("DEG");
+      ->check(real_number(-90, 90));
   command
-      .add_option("--sun-azimuth", sky.sun_azimuth,
+      .add_option("--sun-azimuth", sky.sun_azimuth, "DEG",
                   "Sun azimuth in degrees, from +z towards +x; default: " + scene::number_text(sky.sun_azimuth))
-      ->check(real_number(-scene::kLargestRotation, scene::kLargestRotation))
-      ->type_name("DEG");
+      ->check(real_number(-scene::kLargestRotation, scene::kLargestRotation));
   command
-      .add_option("--turbidity", sky.turbidity,
+      .add_option("--turbidity", sky.turbidity, "T",
                   "Turbidity, 1 (pure air) to 10 (hazy); default: " + scene::number_text(sky.turbidity))
-      ->check(real_number(scene::kLowestTurbidity, scene::kHighestTurbidity))
-      ->type_name("T");
+      ->check(real_number(scene::kLowestTurbidity, scene::kHighestTurbidity));
   command
-      .add_option("--ground-albedo", options.ground_albedo,
+      .add_option("--ground-albedo", options.ground_albedo, "A",
                   "Ground albedo, 0 to 1; default: " + scene::number_text(options.ground_albedo))
-      ->check(real_number(0, 1))
-      ->type_name("A");
+      ->check(real_number(0, 1));
   command.add_flag("--no-sun", options.no_sun, "Omit the sun's disc");
 }
 
 void add_env(Command& generate, const std::shared_ptr<GenerateOptions>& options, Action& action) {
   Command& command =
       *generate.add_subcommand("env", "A latitude-longitude environment map: a photo studio, or daylight");
-  command.add_option("KIND", options->environment, "studio or sky")
-      ->required()
-      ->check(one_of({"studio", "sky"}))
-      ->type_name("NAME");
-  command.add_option("-o,--output", options->output, "EXR file to write")->required()->type_name("FILE");
+  command.add_option("KIND", options->environment, "NAME", "studio or sky")->required()->choices({"studio", "sky"});
+  command.add_option("-o,--output", options->output, "FILE", "EXR file to write")->required();
   add_quiet(command, *options);
   command
-      .add_option("--width", options->width,
+      .add_option("--width", options->width, "PX",
                   "Image width in pixels, a multiple of 4; the height is half of it; default: " +
                       std::to_string(generate::kEnvironmentWidth))
-      ->transform(whole_number(generate::kSmallestEnvironment, generate::kLargestEnvironment))
-      ->type_name("PX");
+      ->transform(whole_number(generate::kSmallestEnvironment, generate::kLargestEnvironment));
   add_sky_options(command, *options);
+  command.details(
+      "Scene-linear Rec.709, for a background of type image. studio: a photo studio around a ball at the origin, for "
+      "material tests, with the camera at +z. A key light at the left of the camera has radiance 18 in its centre, a "
+      "fill light at the right 3, a strip behind the ball 25, and an overhead light 4; soft boxes are 40 % darker in "
+      "their corners. The walls are dark, the floor is grey. A white surface that faces the key light has radiance "
+      "1.1. sky: the daylight sky of a background of type sky, including the sun.");
   command.footer(
       "Examples:\n"
       "  orrery generate env studio -o studio.exr\n"
@@ -162,17 +162,16 @@ void add_env(Command& generate, const std::shared_ptr<GenerateOptions>& options,
 
 void add_planet(Command& generate, const std::shared_ptr<GenerateOptions>& options, Action& action) {
   Command& command = *generate.add_subcommand("planet", "A planet map for textures: continents, ice and clouds");
-  command.add_option("-o,--output", options->output, "EXR file to write")->required()->type_name("FILE");
+  command.add_option("-o,--output", options->output, "FILE", "EXR file to write")->required();
   add_quiet(command, *options);
-  command.add_option("--seed", options->planet_seed, "Random seed; default: 1")
-      ->transform(whole_number(0, kMaxSeed))
-      ->type_name("N");
+  command.add_option("--seed", options->planet_seed, "N", "Random seed; default: 1")
+      ->transform(whole_number(0, kMaxSeed));
   command
-      .add_option("--width", options->width,
+      .add_option("--width", options->width, "PX",
                   "Image width in pixels, a multiple of 4; the height is half of it; default: " +
                       std::to_string(generate::kEnvironmentWidth))
-      ->transform(whole_number(generate::kSmallestEnvironment, generate::kLargestEnvironment))
-      ->type_name("PX");
+      ->transform(whole_number(generate::kSmallestEnvironment, generate::kLargestEnvironment));
+  command.details("The map holds reflectance, scene-linear Rec.709, for textures of type image.");
   command.footer("Example:\n  orrery generate planet -o planet.exr --width 2048");
   command.callback([options, &action] {
     action = [options] {

@@ -6,9 +6,7 @@
 #include "base/stop_point.h"
 #include "cli/commands.h"
 #include "cli/messages.h"
-#include "cli/option_checks.h"
-#include "cli/picture_options.h"
-#include "cli/render_report.h"
+#include "cli/render_options.h"
 #include "cli/signals.h"
 #include "job/job.h"
 #include "job/job_report.h"
@@ -45,25 +43,27 @@ void add_merge(Command& program, Action& action) {
   const auto options = std::make_shared<MergeOptions>();
   Command& command = *program.add_subcommand("merge", "Merge shards of an image");
   command
-      .add_option("SHARD", options->shards, "EXR files rendered with --sample-range A:B or --shard I/N, in any order")
-      ->required()
-      ->type_name("FILE");
-  options->picture.add_to(command, options->job, false);  // shards have no deep samples
+      .add_option("SHARD", options->shards, "FILE",
+                  "EXR files rendered with --sample-range A:B or --shard I/N, in any order")
+      ->required();
+  options->picture.add_to(command, options->job);
+  add_display_options(command, options->job.outputs.display, true);
+  command.add_option("--scene", options->job.scene.file, "FILE",
+                     "Scene file; default: the file that the shards were rendered from");
   command
-      .add_option("--scene", options->job.scene.file,
-                  "Scene file; default: the file that the shards were rendered from")
-      ->type_name("FILE");
-  command.add_flag("--allow-missing", options->job.merge.allow_missing,
-                   "Merge even if shards are missing or damaged; record missing samples in the header");
+      .add_flag("--allow-missing", options->job.merge.allow_missing,
+                "Merge even if shards are missing or damaged; record missing samples in the header")
+      ->details("They are skipped with a warning.");
   command
-      .add_option("--memory-limit", options->job.resources.memory_limit,
+      .add_option("--memory-limit", options->job.resources.memory_limit, "SIZE",
                   "Refuse to merge if the estimated memory exceeds SIZE, e.g. 8G; default: free memory")
-      ->transform(byte_size())
-      ->type_name("SIZE");
-  command.add_option("--stats", options->job.outputs.statistics, "Write statistics of all shards as JSON")
-      ->type_name("FILE");
+      ->transform(byte_size());
+  command.add_option("--stats", options->job.outputs.statistics, "FILE", "Write statistics of all shards as JSON");
   command.add_flag("-q,--quiet", options->quiet, "Print only errors");
   command.add_flag("-v,--verbose", options->verbose, "Also print the time of each phase");
+  command.details(
+      "Writes the files that a single render would have written. Lists every shard that is missing, damaged, "
+      "unfinished, overlapping, or of another scene or setting, and the samples that no shard has.");
   command.footer(
       "Examples:\n"
       "  orrery merge shard.*.exr -o final.exr -o final.png\n"

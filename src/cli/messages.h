@@ -1,10 +1,17 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include <filesystem>
 #include <string>
 
+#include "base/error.h"
+
 namespace orrery::cli {
+
+/// Prints a result to stdout and flushes it. A pipe whose reader has exited, as head(1) does, is not an error: the
+/// reader has what it wanted.
+///
+/// Errors     base::Error(kIo) if stdout cannot be written
+void print_result(const std::string& text);
 
 /// Prints messages to stderr as JSON from now on, so that all lines are JSON beside --progress json.
 void use_json_messages();
@@ -14,18 +21,17 @@ void use_json_messages();
 /// Domain     whole lines
 std::string printed_message(const std::string& text);
 
-/// Prints a message to stderr, and to the log if it is open.
+/// Prints a message to stderr.
 ///
 /// Domain     whole lines
 void print_message(const std::string& text);
 
-/// Writes a message to the log only, if it is open.
-void log_message(const std::string& text);
+/// An error as whole lines: each diagnostic with its location, then the error.
+std::string error_text(const base::Error& error);
 
-/// Opens the log. Each message line is appended to it with UTC time and process id. Lines are appended atomically, so
-/// that several processes can share a log.
+/// Prints error_text to stderr.
 ///
-/// Errors     base::Error(kCannotCreate)
-void open_log(const std::filesystem::path& file);
+/// Result     the exit status of the error's kind
+int print_error(const base::Error& error);
 
 }  // namespace orrery::cli

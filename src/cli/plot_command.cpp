@@ -19,9 +19,7 @@
 #include "base/output_file.h"
 #include "base/stop_point.h"
 #include "cli/commands.h"
-#include "cli/data_options.h"
 #include "cli/messages.h"
-#include "cli/option_checks.h"
 #include "cli/render_options.h"
 #include "cli/signals.h"
 #include "format/write_tree.h"
@@ -38,7 +36,6 @@
 #include "plot/plot.h"
 #include "plot/write_legend.h"
 #include "preview/target.h"
-#include "scene/value_text.h"
 
 namespace orrery::cli {
 namespace {
@@ -65,7 +62,7 @@ int side_of(const format::Overrides& overrides, const char* key, int otherwise) 
 /// `develops` see load::SceneRequest
 load::LoadedScene settings_of(const job::Job& job, const PlotArguments& arguments, const format::Overrides& overrides,
                               bool develops) {
-  load::SceneRequest request{job.scene, job.outputs.display, develops};
+  load::SceneRequest request{job.scene, {}, develops};
   request.source.file = arguments.save_scene.empty() ? arguments.plot.file : arguments.save_scene;
   request.source.text = std::make_shared<const std::string>();
   request.source.typed_lines = 0;
@@ -123,7 +120,7 @@ void print_choices(const plot::PlotScene& made, const PlotArguments& arguments) 
 }
 
 /// The scene with the settings of the command line applied, so that rendering it does not need them again.
-std::string saved_text(const std::string& text, const format::Overrides& overrides, const display::Settings& display) {
+std::string saved_text(const std::string& text, const format::Overrides& overrides) {
   format::Overrides settings;
   for (const format::Override& override : overrides) {
     const auto is_of_plot = [](const format::KeyValue& set) {  // make_plot() handles these two
@@ -131,14 +128,6 @@ std::string saved_text(const std::string& text, const format::Overrides& overrid
     };
     if (!std::all_of(override.values.begin(), override.values.end(), is_of_plot)) settings.add(override);
   }
-  const auto set = [&](const char* key, const std::string& value) {
-    if (!value.empty()) settings.add(fmt::format("color.{}={}", key, scene::string_text(value)));
-  };
-  if (!display.config.empty()) set("config", std::filesystem::absolute(display.config).string());
-  set("display", display.display);
-  set("view", display.view);
-  set("look", display.look);
-  if (display.exposure) settings.add("color.exposure=" + scene::number_text(*display.exposure));
   if (settings.empty()) return text;
   const auto same = [](const std::string& file) { return file; };
   return fmt::format("{}\n\n{}", text.substr(0, text.find('\n')), format::merged_text("plot", text, settings, same));
@@ -153,19 +142,15 @@ std::optional<double> vfov_of(const format::Overrides& overrides) {
   return vfov && *vfov > 0 && *vfov < 180 ? *vfov : scene::Camera().vfov;
 }
 
-/// The display transform that the command line selects. Options have precedence over --set.
-display::Settings display_of(const display::Settings& options, const format::Overrides& overrides,
-                             const std::filesystem::path& scene_file) {
-  display::Settings out = options;
-  const auto otherwise = [&](std::string& option, const char* key) {
-    if (option.empty()) option = overrides.string(key).value_or("");
-  };
+/// The display transform that the command line selects.
+display::Settings display_of(const format::Overrides& overrides, const std::filesystem::path& scene_file) {
+  display::Settings out;
   scene::Color color;
   color.config = overrides.string("color.config").value_or("");
-  if (out.config.empty()) out.config = load::config_of(scene_file, color);
-  otherwise(out.display, "color.display");
-  otherwise(out.view, "color.view");
-  otherwise(out.look, "color.look");
+  out.config = load::config_of(scene_file, color);
+  out.display = overrides.string("color.display").value_or("");
+  out.view = overrides.string("color.view").value_or("");
+  out.look = overrides.string("color.look").value_or("");
   return out;
 }
 
@@ -240,7 +225,7 @@ int run_plot(PlotArguments& arguments) {
   const std::filesystem::path scene_file = saves ? arguments.save_scene : plot.file;
   render.picture.finish(render.batch.job);
   job::Job& job = render.batch.job;
-  plot.display = display_of(job.outputs.display, overrides, scene_file);
+  plot.display = display_of(overrides, scene_file);
   check_outputs(arguments);
   image::start_loading();
   const auto begin = std::chrono::steady_clock::now();
@@ -257,9 +242,8 @@ int run_plot(PlotArguments& arguments) {
       fmt::format("prepared in {:.1f} s: read {} to fit the view and the colours", job.prepare_s,
                   made.frames.size() > 1 ? std::to_string(made.frames.size()) + " frames" : "the file"));
   print_choices(made, arguments);
-  render.shows_display = !arguments.legend.empty() || saves;
-  const auto text = std::make_shared<const std::string>(
-      saves ? format::marked_text(saved_text(made.text, overrides, job.outputs.display)) : made.text);
+  const auto text =
+      std::make_shared<const std::string>(saves ? format::marked_text(saved_text(made.text, overrides)) : made.text);
   job.scene.text = text;
   if (!saves) job.scene.typed_lines = 0;
   job.scene.has_file = false;
@@ -279,18 +263,21 @@ int run_plot(PlotArguments& arguments) {
 void add_view_options(Command& command, const std::shared_ptr<PlotArguments>& arguments) {
   const OptionGroup group(command, "Look options");
   command
-      .add_option("--look-from", arguments->plot.look_from,
+      .add_option("--look-from", arguments->plot.look_from, "VIEW",
                   "View: iso, +x, -x, +y, -y, +z, -z, or azimuth and elevation in degrees, e.g. 30,20; default: iso")
-      ->type_name("VIEW");
-  command.add_option("--up", arguments->plot.up, "Axis that points up in the image; default: z, y for PDB and mmCIF")
-      ->check(one_of({"x", "y", "z"}))
-      ->type_name("AXIS");
+      ->details("iso: from 45 degrees to the right of the front and 35.26 degrees above.");
+  command
+      .add_option("--up", arguments->plot.up, "AXIS",
+                  "Axis that points up in the image; default: z, y for PDB and mmCIF")
+      ->choices({"x", "y", "z"});
   command
       .add_option(
-          "--style", arguments->style,
+          "--style", arguments->style, "STYLE",
           "Look: studio, ambient (white light from all directions), flat (no shading) or night; default: studio")
-      ->check(one_of({"studio", "ambient", "flat", "night"}))
-      ->type_name("STYLE");
+      ->details(
+          "studio: a key light from the upper left of the camera, and white light from all directions. night: a lamp "
+          "and a dark sky.")
+      ->choices({"studio", "ambient", "flat", "night"});
   command.add_flag("--allow-empty", arguments->plot.allow_empty,
                    "Render the background alone if --select or --slice leaves nothing; default: an error");
   command.add_flag("--ground", arguments->plot.ground, "Add a ground that receives shadows");
@@ -301,15 +288,24 @@ void add_view_options(Command& command, const std::shared_ptr<PlotArguments>& ar
 void add_plot(Command& program, Action& action) {
   const auto arguments = std::make_shared<PlotArguments>();
   Command& command = *program.add_subcommand("plot", "Render a particle data file");
-  add_data_file(command, arguments->plot);
-  command.add_option("--legend", arguments->legend, "Write a legend of the colours: .svg or .png")->type_name("FILE");
-  command.add_option("--save-scene", arguments->save_scene, "Also write the scene file")->type_name("FILE");
+  add_data_options(command, arguments->data, arguments->plot);
+  command.add_option("--legend", arguments->legend, "FILE", "Write a legend of the colours: .svg or .png")
+      ->details("Its colours have the display transform of the image. It has at most 500 names.");
+  command.add_option("--save-scene", arguments->save_scene, "FILE", "Also write the scene file")
+      ->details(
+          "A file that was edited, or that orrery did not write, is not replaced. Rendering it with the same --noise, "
+          "--time or --samples gives the same pixels.");
   command.add_flag("--force", arguments->force,
                    "Let --save-scene replace a file that was edited, or not written by orrery");
-  add_data_options(command, arguments->data, arguments->plot);
-  add_look_options(command, arguments->data, arguments->plot);
   add_view_options(command, arguments);
   add_render_options(command, arguments->render);
+  command.details(
+      "Writes a scene for the data, and renders it. Settings that the options leave open are chosen from the data and "
+      "printed: the radius is that of the file, else by chemical element, else half the median distance to the nearest "
+      "neighbour in the first frame; the colour is that of the file, else by element, else by type, else light grey; "
+      "an orthographic camera is fitted to the spheres of all frames; the view transform is Un-tone-mapped, or the "
+      "default view if the OpenColorIO config has none of this name; --noise is 0.02, unless --noise, --time or "
+      "--samples is given. docs/data.md describes data files.");
   command.footer(
       "Settings without an option are chosen from the data and printed.\n"
       "\n"

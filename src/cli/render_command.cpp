@@ -17,13 +17,11 @@
 #include "base/frames.h"
 #include "cli/commands.h"
 #include "cli/messages.h"
-#include "cli/option_checks.h"
-#include "cli/output.h"
 #include "cli/progress.h"
 #include "cli/render_options.h"
-#include "cli/render_report.h"
 #include "cli/signals.h"
 #include "display/picture_info.h"
+#include "display/settings.h"
 #include "film/partial.h"
 #include "film/picture.h"
 #include "film/rendered_pixels.h"
@@ -117,6 +115,51 @@ std::unique_ptr<preview::Preview> start_preview(const preview::Target& target, p
   return out;
 }
 
+void add_bad_values(std::string& out, const job::JobReport& report) {
+  const auto warn = [&out](std::uint64_t count, const char* what) {
+    if (count > 0) out += base::warning_line(fmt::format("{} {}", count, what));
+  };
+  warn(report.render.bad_samples, "samples were not finite and were excluded from their pixels");
+  for (const auto& [layer, bad] : report.bad_layers) {
+    const auto warn_of = [&, &name = layer](std::uint64_t count, const char* what) {
+      if (count > 0) out += base::warning_line(fmt::format("{}: {} values are {}", name, count, what));
+    };
+    warn_of(bad.nan, "not a number");
+    warn_of(bad.infinite, "infinite");
+    warn_of(bad.negative, "negative");
+  }
+  if (!report.missing.empty()) out += base::warning_line(fmt::format("{} are missing", report.missing));
+  warn(report.written.not_finite, "values that are not finite were written as 0");
+  warn(report.written.clamped,
+       "values exceed the range of their file and were clamped; EXR with --type float keeps them");
+}
+
+void add_summary(std::string& out, const job::Job& job, const job::JobReport& report, ReportDetail detail) {
+  std::string files;
+  for (const job::ImageFile& output : job.outputs.images) files += (files.empty() ? "" : ", ") + output.path.string();
+  const double pixels = static_cast<double>(report.width) * report.height;
+  const render::Statistics& r = report.render;
+  out += fmt::format("wrote {}: {} x {}, {:.5g} samples per pixel in {:.1f} s, {:.2f} M samples/s", files, report.width,
+                     report.height, static_cast<double>(r.paths) / pixels, r.render_s,
+                     r.render_s > 0 ? static_cast<double>(r.paths) / r.render_s / 1e6 : 0.0);
+  if (r.noise) out += fmt::format("; noise {:.3g}, {} to {} samples", *r.noise, r.min_samples, r.max_samples);
+  if (detail.has_total) out += fmt::format("; {:.1f} s in all", report.phases.total_s());
+  out += '\n';
+  if (!detail.is_verbose) return;
+  if (r.accelerator.empty()) return;  // a merge
+  out += fmt::format("{} spheres, {}, {}, traversal {}, {} threads, {} rays; scene {}\n", report.spheres, r.accelerator,
+                     r.isa, r.traversal, r.threads, r.rays, report.scene_hash);
+  const job::Phases& p = report.phases;
+  if (p.prepare_s > 0) out += fmt::format("prepare {:.3f} s\n", p.prepare_s);
+  if (p.denoise_s > 0) out += fmt::format("denoise {:.3f} s\n", p.denoise_s);
+  out +=
+      fmt::format("read {:.3f} s, compile {:.3f} s, build {:.3f} s, render {:.3f} s, finish {:.3f} s, write {:.3f} s\n",
+                  p.read_s, p.compile_s, p.build_s, p.render_s, p.finish_s, p.write_s);
+  const display::Choice& display = report.display;
+  if (!display.display.empty())
+    out += fmt::format("display {}, view {}, OCIO config {}\n", display.display, display.view, display.config);
+}
+
 /// Prints the summary of a batch. Returns the exit status of the first failure, or 0.
 int print_summary(const farm::BatchReport& report, bool quiet) {
   std::string text = fmt::format("{} of {} rendered, {} skipped, {} failed\n", report.rendered, report.jobs,
@@ -128,6 +171,13 @@ int print_summary(const farm::BatchReport& report, bool quiet) {
 }
 
 }  // namespace
+
+std::string report_text(const job::Job& job, const job::JobReport& report, ReportDetail detail) {
+  std::string out;
+  add_bad_values(out, report);
+  add_summary(out, job, report, detail);
+  return out;
+}
 
 void begin_messages(const RenderOptions& options) {
   if (progress_style(options.progress) == ProgressStyle::kJson) use_json_messages();
@@ -145,7 +195,7 @@ int run_render(RenderOptions& options) {
   read_shard(options, job);
   if (!options.frames.empty()) batch.frames = base::parse_frames(options.frames);
   const bool is_many = batch.scenes.size() * std::max<std::size_t>(batch.frames.size(), 1) > 1;
-  batch.keep_going = is_many && !options.fail_fast;
+  batch.keep_going = is_many;
   job.hooks.cancel = &stop_on_signals();
   job.hooks.snapshot = &snapshot_request();
   const preview::Target target = options.preview.empty() ? preview::Target() : preview::parse_target(options.preview);
@@ -153,95 +203,95 @@ int run_render(RenderOptions& options) {
   if (!target.file.empty()) base::check_creatable(target.file);
   ProgressPrinter printer(style_of(options), stderr);
   BatchProgress progress(printer);
-  int status = 0;
   job.hooks.on_progress = [&](const render::Progress& p) { progress.update(p); };
   job.hooks.on_build = [&](double fraction) { printer.building(fraction); };
-  const auto note = [&](const std::string& text) {  // --quiet messages still go to the log
-    options.quiet ? log_message(text) : printer.note(text);
+  const auto note = [&](const std::string& text) {
+    if (!options.quiet) printer.note(text);
   };
   job.hooks.on_warning = [&](const base::Diagnostic& warning) { note(base::formatted(warning)); };
-  if (const std::string unused = options.picture.unused_options(job, options.shows_display || !options.preview.empty());
-      !unused.empty())
-    note(unused);
+  if (const std::string unused = options.picture.unused_options(job); !unused.empty()) note(unused);
   job.hooks.on_note = [&](const std::string& text) { note(text + "\n"); };
   const auto preview = start_preview(target, note, job.hooks);
-  batch.on_begin = [&](const job::Job& one, std::size_t index, std::size_t count) {
-    progress.begin(index, count);
-    log_message(fmt::format("rendering {}\n", farm::job_name(batch, one)));
-  };
+  batch.on_begin = [&](std::size_t index, std::size_t count) { progress.begin(index, count); };
   batch.on_end = [&](const job::Job& one, const job::JobReport& report) {
     if (!is_many) printer.finish();
     const std::string text = report.was_skipped
                                  ? fmt::format("skipped {}: its files are up to date\n", farm::job_name(batch, one))
                                  : report_text(one, report, {options.verbose, is_many});
     note(text);
-    if (report.target_missed.empty()) return;
-    if (!options.quiet || options.strict)
-      printer.note(options.strict ? fmt::format("orrery: {}\n", report.target_missed)
-                                  : base::warning_line(report.target_missed));
-    if (options.strict) status = base::exit_status(base::ErrorKind::kStopped);
+    if (!report.target_missed.empty()) note(base::warning_line(report.target_missed));
   };
   batch.on_failure = [&](const job::Job&, const base::Error& error) { printer.note(error_text(error)); };
   const std::vector<job::Job> jobs = farm::jobs_of(batch);
   // Only now is it known that no output is an input.
   if (options.before_files) options.before_files();
-  if (!batch.log.empty()) open_log(batch.log);
   const farm::BatchReport report = farm::run_batch(batch, jobs);
   if (preview) preview->end();
   printer.finish();
-  if (!is_many) return status;
-  const int failed = print_summary(report, options.quiet);
-  return failed != 0 ? failed : status;
+  return is_many ? print_summary(report, options.quiet) : 0;
 }
 
 void add_render_options(Command& command, RenderOptions& options) {
   options.picture.add_to(command, options.batch.job);
+  command.add_option("--deep", options.batch.job.outputs.deep, "FILE",
+                     "Also write a deep EXR, with one sample for each sphere in a pixel");
   options.scene.add_to(command);
   command.add_flag("--skip-existing", options.batch.job.skip_existing,
                    "Skip images that exist, are intact, and match this scene and these settings");
-  command.add_flag("--fail-fast", options.fail_fast, "Stop at the first frame or scene that fails");
-  command.add_flag("--resume", options.batch.job.checkpoint.resume, "Resume from the checkpoint, if it exists");
+  command.add_flag("--resume", options.batch.job.checkpoint.resume, "Resume from the checkpoint, if it exists")
+      ->details(
+          "The image has the same bits as without the interruption. It can have more samples than the interrupted "
+          "render, except with --noise, --time, --denoise, the layer halves and the sampler blue-noise.");
   command
-      .add_option("--checkpoint", options.batch.job.checkpoint.interval_s,
+      .add_option("--checkpoint", options.batch.job.checkpoint.interval_s, "TIME",
                   "Checkpoint interval, e.g. 5m; default: only when a signal stops the render")
-      ->transform(duration())
-      ->type_name("TIME");
+      ->transform(duration());
   command.add_flag("--keep-checkpoint", options.batch.job.checkpoint.keep,
                    "Keep a checkpoint of the finished render; with --resume, one with more samples continues from it");
-  command.add_option("--noise", options.batch.job.sampling.noise, "Target noise (relative display error), e.g. 0.01")
-      ->transform(real_number(1e-6, 1))
-      ->type_name("X");
   command
-      .add_option("--time", options.batch.job.sampling.seconds,
+      .add_option("--noise", options.batch.job.sampling.noise, "X", "Target noise (relative display error), e.g. 0.01")
+      ->details(
+          "The root mean square over the pixels of the standard error of the displayed value, relative to that value. "
+          "The render ends when an upper estimate of it reaches the target and enough paths have found light "
+          "everywhere. Samples go to the pixels where they reduce the noise most. A target that is missed is a "
+          "warning, and stated in --stats.")
+      ->transform(real_number(1e-6, 1));
+  command
+      .add_option("--time", options.batch.job.sampling.seconds, "TIME",
                   "Time budget for adaptive sampling, e.g. 90s, 5m or 1.5h")
-      ->transform(duration())
-      ->type_name("TIME");
-  command.add_flag("--strict", options.strict,
-                   "Exit with status 75 if the target noise was not reached or could not be estimated");
+      ->details(
+          "At least 0.01s. It includes reading the scene and building the BVH, but not writing files. The first of "
+          "--samples, --noise and --time to be reached ends the render. With --noise or --time, the samples of the "
+          "scene file are no limit; those of --samples or --set are.")
+      ->transform(duration());
+  add_threads_option(command, options.batch.job.resources.threads);
   command
-      .add_option("-t,--threads", options.batch.job.resources.threads,
-                  "Number of threads; default: all CPUs available to the process")
-      ->transform(whole_number(1, kMaxThreads))
-      ->type_name("N");
-  command
-      .add_option("--memory-limit", options.batch.job.resources.memory_limit,
+      .add_option("--memory-limit", options.batch.job.resources.memory_limit, "SIZE",
                   "Refuse to render if the estimated memory exceeds SIZE, e.g. 8G; default: free memory")
-      ->transform(byte_size())
-      ->type_name("SIZE");
+      ->details(
+          "The check runs before anything is built; orrery info prints the estimate. Free memory is that of the "
+          "machine and of the control group.")
+      ->transform(byte_size());
   command
-      .add_option("--progress", options.progress,
+      .add_option("--progress", options.progress, "STYLE",
                   "Progress format: auto, bar, alf, openjd, arnold, json or none; default: auto")
-      ->check(one_of(progress_style_names()))
-      ->type_name("STYLE");
+      ->details(
+          "auto: bar on a terminal, otherwise arnold. bar: one line with a bar, samples per second and time left. alf: "
+          "ALF_PROGRESS 42%. openjd: openjd_progress: 42. arnold: 42% done. json: one object per line; messages are "
+          "objects with the key message. A line is printed whenever the whole percent changes, and at least once a "
+          "minute.")
+      ->choices(progress_style_names());
   command
-      .add_option("--preview", options.preview,
+      .add_option("--preview", options.preview, "WHERE",
                   "Show the image while it is rendered: tev, tev:HOST:PORT, or a .png file to rewrite")
-      ->check([](std::string& text) { return std::string(text.empty() ? "must not be empty" : ""); })
-      ->type_name("WHERE");
-  command.add_option("--stats", options.batch.job.outputs.statistics, "Write statistics of the render as JSON")
-      ->type_name("FILE");
-  command.add_option("--log", options.batch.log, "Append all messages to a log file, with timestamps")
-      ->type_name("FILE");
+      ->details(
+          "tev gets scene-linear pixels, by default at 127.0.0.1, port 14158; the PNG is rewritten every second, "
+          "through the display transform. It takes at most 1 % of the render time, unless the render is very short, "
+          "and the image has the same bits. A viewer that cannot be reached, hangs or disconnects is no error. "
+          "docs/output.md describes what is shown.")
+      ->check([](std::string& text) { return std::string(text.empty() ? "must not be empty" : ""); });
+  command.add_option("--stats", options.batch.job.outputs.statistics, "FILE", "Write statistics of the render as JSON")
+      ->details("docs/statistics.md lists the keys.");
   command.add_flag("-q,--quiet", options.quiet, "Print only errors");
   command.add_flag("-v,--verbose", options.verbose, "Also print the time of each phase");
 }
@@ -249,22 +299,27 @@ void add_render_options(Command& command, RenderOptions& options) {
 void add_render(Command& program, Action& action) {
   const auto options = std::make_shared<RenderOptions>();
   Command& command = *program.add_subcommand("render", "Render a scene to image files");
-  command.add_option("SCENE", options->batch.scenes, "Scene file; with several, use {scene} in the names of outputs")
-      ->required()
-      ->type_name("FILE");
+  command
+      .add_option("SCENE", options->batch.scenes, "FILE",
+                  "Scene file; with several, use {scene} in the names of outputs")
+      ->details("If one of several fails, the error is printed and the others continue.")
+      ->required();
   add_render_options(command, *options);
+  command.add_option("--sample-range", options->sample_range, "A:B",
+                     "Render a shard: samples A to B-1 of each pixel; combine the shards with orrery merge");
   command
-      .add_option("--sample-range", options->sample_range,
-                  "Render a shard: samples A to B-1 of each pixel; combine the shards with orrery merge")
-      ->type_name("A:B");
-  command
-      .add_option("--shard", options->shard,
+      .add_option("--shard", options->shard, "I/N",
                   "Render shard I of N (I from 1): every N-th 16 x 16 tile; combine the shards with orrery merge")
-      ->type_name("I/N");
+      ->details("It can be combined with --sample-range. The output of a shard is one EXR.");
   command
-      .add_option("--frames", options->frames,
+      .add_option("--frames", options->frames, "RANGE",
                   "Frames to render, e.g. 1-48, 1-48x2 or 1,3,7-9; name outputs like shot.####.exr")
-      ->type_name("RANGE");
+      ->details(
+          "At most 100000 frames, each from -9999999 to 9999999. The pattern in the names of outputs is #### (one # "
+          "per digit, at least two) or %04d. If a frame fails, the error is printed and the others continue.");
+  command.details(
+      "Before rendering starts, it is checked that the files can be created, that their formats hold an image of that "
+      "size, that display and view exist, and that no output is an input or another output; see FILES.");
   command.footer(
       "Examples:\n"
       "  orrery render scenes/book/final.toml -o final.exr -o final.png\n"
@@ -273,7 +328,7 @@ void add_render(Command& program, Action& action) {
       "  orrery render scene.toml -o final.exr --preview preview.png\n"
       "  orrery render shot.toml -o shot.####.exr --frames 1-240 --resume --skip-existing\n"
       "  orrery render shot.toml -o shard.2.exr --sample-range 100:200\n"
-      "  orrery render scene.toml -o book.png --display \"Gamma 2.0 Rec.709\"");
+      "  orrery render scene.toml -o book.png --set color.display=\"Gamma 2.0 Rec.709\"");
   command.callback([options, &action] { action = [options] { return run_render(*options); }; });
 }
 

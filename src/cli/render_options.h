@@ -4,8 +4,7 @@
 #include <functional>
 #include <string>
 
-#include "cli/picture_options.h"
-#include "cli/scene_options.h"
+#include "cli/options.h"
 #include "farm/batch.h"
 
 namespace orrery::cli {
@@ -16,8 +15,7 @@ struct RenderOptions {
   SceneOptions scene;
   PictureOptions picture;
   std::string preview, progress = "auto", sample_range, shard, frames;
-  bool quiet = false, verbose = false, strict = false, fail_fast = false;
-  bool shows_display = false;          ///< the display transform is used for more than images
+  bool quiet = false, verbose = false;
   std::function<void()> before_files;  ///< called when all names are checked, before any file is written
 };
 
@@ -34,5 +32,14 @@ void begin_messages(const RenderOptions& options);
 /// Result     the exit status
 /// Errors     those of farm::jobs_of and farm::run_batch
 int run_render(RenderOptions& options);
+
+/// Optional contents of the summary of a render, in addition to files, samples and render time.
+struct ReportDetail {
+  bool is_verbose = false;  ///< time of each phase, accelerator, display
+  bool has_total = false;   ///< time of the whole job
+};
+
+/// Warnings about an image and a summary of its render, as whole lines.
+std::string report_text(const job::Job& job, const job::JobReport& report, ReportDetail detail);
 
 }  // namespace orrery::cli

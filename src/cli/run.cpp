@@ -6,21 +6,94 @@
 #include <new>
 #include <sstream>
 #include <string>
+#include <utility>
 #include <vector>
+
+#include <CLI/CLI.hpp>
 
 #include <fmt/core.h>
 
 #include "base/error.h"
+#include "base/text.h"
 #include "cli/commands.h"
 #include "cli/messages.h"
-#include "cli/option_checks.h"
-#include "cli/output.h"
 #include "cli/signals.h"
-#include "cli/usage.h"
 #include "job/version.h"
 
 namespace orrery::cli {
 namespace {
+
+std::vector<std::string> flag_names(const CLI::App& command) {
+  std::vector<std::string> names;
+  for (const CLI::Option* option : command.get_options())
+    for (const std::string& name : option->get_lnames()) names.push_back("--" + name);
+  return names;
+}
+
+std::vector<std::string> command_names(const CLI::App& command) {
+  std::vector<std::string> names;
+  for (const CLI::App* sub : command.get_subcommands([](const CLI::App* sub) { return !sub->get_group().empty(); }))
+    names.push_back(sub->get_name());
+  return names;
+}
+
+/// Options that commands with --set had, and what to write instead.
+constexpr std::pair<const char*, const char*> kRemoved[] = {
+    {"--ocio", "--set color.config=FILE, relative to the scene file"},
+    {"--display", "--set color.display=NAME"},
+    {"--view", "--set color.view=NAME"},
+    {"--look", "--set color.look=NAME"},
+    {"--exposure", "--set color.exposure=STOPS"},
+    {"--seed", "--set render.seed=N"},
+    {"--max-depth", "--set render.max_depth=N"},
+    {"--accelerator", "--set render.accelerator=NAME"},
+    {"--isa", "the environment variable ORRERY_ISA=NAME"},
+    {"--log", "2>> FILE, after the command"},
+    {"--strict", "--stats FILE, whose key target_missed is empty if the target noise was reached"},
+    {"--fail-fast", "one command for each frame or scene"}};
+
+std::string unknown_flag(const std::string& flag, const CLI::App& command) {
+  for (const auto& [removed, instead] : kRemoved)
+    if (flag == removed && base::contains(flag_names(command), "--set"))
+      return fmt::format("{} was removed; use {}", flag, instead);
+  const std::string remedy = base::did_you_mean(flag, flag_names(command));
+  return fmt::format("unknown option {}{}", flag, remedy.empty() ? "" : "; " + remedy);
+}
+
+/// The message for a word in place of a command.
+std::string unknown_command(const std::string& word, const CLI::App& command) {
+  const std::vector<std::string> commands = command_names(command);
+  const std::string remedy = base::did_you_mean(word, commands);
+  if (!remedy.empty()) return fmt::format("unknown command {}; {}", word, remedy);
+  if (command.get_parent() == nullptr && word.ends_with(".toml"))
+    return fmt::format("unknown command {}; to render it: orrery render {} -o image.png", word, word);
+  return fmt::format("unknown command {}; use one of {}", word, base::joined(commands));
+}
+
+std::string unexpected(const std::string& word, const CLI::App& command) {
+  if (word.size() > 1 && word[0] == '-') return unknown_flag(word.substr(0, word.find('=')), command);
+  if (!command_names(command).empty()) return unknown_command(word, command);
+  return fmt::format("unexpected argument `{}`{}", word,
+                     base::contains(flag_names(command), "--output") ? "; name output files with -o" : "");
+}
+
+/// The first long option that the command does not have. Reported before other errors, since a mistyped option often
+/// causes them.
+std::string first_unknown_flag(const CLI::App& command, const std::vector<std::string>& words) {
+  const std::vector<std::string> names = flag_names(command);
+  for (const std::string& word : words) {
+    if (word == "--") break;
+    const std::string flag = word.substr(0, word.find('='));
+    if (flag.size() > 2 && flag.starts_with("--") && !base::contains(names, flag)) return flag;
+  }
+  return {};
+}
+
+/// The innermost command that argv names; the program itself if it names none.
+const CLI::App& innermost(const CLI::App& program) {
+  const auto chosen = program.get_subcommands();
+  return chosen.empty() ? program : innermost(*chosen.front());
+}
 
 std::string versions_text() {
   std::string out = fmt::format("orrery {}\n", job::program_version());
@@ -58,6 +131,7 @@ void add_commands(Command& program, Action& action) {
   add_develop(program, action);
   add_denoise(program, action);
   add_bake(program, action);
+  add_documents(program, action);
 }
 
 /// Prints the text of --help or --version.
@@ -69,8 +143,10 @@ int print_success(const CLI::App& program, const CLI::Success& success) {
 }
 
 int print_usage_error(const CLI::App& program, const CLI::ParseError& error, const std::vector<std::string>& words) {
-  std::fprintf(stderr, "orrery: %s\nTry %s --help.\n", usage_message(program, error, words).c_str(),
-               full_name(innermost(program)).c_str());
+  std::string name = innermost(program).get_name();
+  for (const CLI::App* outer = innermost(program).get_parent(); outer != nullptr; outer = outer->get_parent())
+    name = outer->get_name() + " " + name;
+  std::fprintf(stderr, "orrery: %s\nTry %s --help.\n", usage_message(program, error, words).c_str(), name.c_str());
   return base::exit_status(base::ErrorKind::kUsage);
 }
 
@@ -94,6 +170,32 @@ int parse_and_act(int argc, const char* const* argv) {
 }
 
 }  // namespace
+
+std::string option_without_value(const std::vector<std::string>& words) {
+  for (const std::string& word : words) {
+    if (word == "--") break;
+    if (word.starts_with("--") && word.find('=') == word.size() - 1) return word.substr(0, word.size() - 1);
+  }
+  return {};
+}
+
+std::string usage_message(const CLI::App& program, const CLI::ParseError& error,
+                          const std::vector<std::string>& words) {
+  const CLI::App& command = innermost(program);
+  if (const std::string flag = first_unknown_flag(command, words); !flag.empty()) return unknown_flag(flag, command);
+  const std::vector<std::string> left = command.remaining();
+  if (!left.empty()) return unexpected(left.front(), command);
+  if (const auto commands = command_names(command); !commands.empty())
+    return "no command given; use one of " + base::joined(commands);
+  const std::string said = error.what();
+  if (dynamic_cast<const CLI::ArgumentMismatch*>(&error) != nullptr)
+    return said.substr(0, said.find(':')) + " needs a value";
+  // Options check their values before conversion, so only flags fail here: "Could not convert: --quiet = ...".
+  if (dynamic_cast<const CLI::ConversionError*>(&error) != nullptr)
+    if (const std::size_t name = said.find('-'); name != std::string::npos)
+      return said.substr(name, said.find(' ', name) - name) + " takes no value";
+  return said;
+}
 
 int run(int argc, const char* const* argv) {
   prepare_signals();

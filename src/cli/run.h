@@ -1,11 +1,30 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <string>
+#include <vector>
+
+namespace CLI {
+class App;
+class ParseError;
+}  // namespace CLI
+
 namespace orrery::cli {
 
 /// The whole program: parses argv, runs the command, prints errors.
 ///
 /// Result     the exit status; see base/exit_status.h
 int run(int argc, const char* const* argv);
+
+/// The first option that is written as `--name=`, without a value, as happens with an unset variable; empty if there is
+/// none. The parser would take the next word as its value.
+///
+/// `words`    argv without the program's name
+std::string option_without_value(const std::vector<std::string>& words);
+
+/// The message for a wrong command line: what is wrong and what to type instead.
+///
+/// Domain     `words` are argv without the program's name; parsing them in `program` threw `error`
+std::string usage_message(const CLI::App& program, const CLI::ParseError& error, const std::vector<std::string>& words);
 
 }  // namespace orrery::cli

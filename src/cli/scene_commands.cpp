@@ -15,9 +15,8 @@
 #include "base/file_name.h"
 #include "base/frames.h"
 #include "cli/commands.h"
-#include "cli/option_checks.h"
-#include "cli/output.h"
-#include "cli/scene_options.h"
+#include "cli/messages.h"
+#include "cli/options.h"
 #include "format/read_scene.h"
 #include "job/prepared_scene.h"
 #include "load/load_scene.h"
@@ -157,16 +156,22 @@ int check(const CheckOptions& options) {
 void add_info(Command& program, Action& action) {
   const auto options = std::make_shared<InfoOptions>();
   Command& command = *program.add_subcommand("info", "Print the contents of a scene or of a data file");
-  command.add_option("FILE", options->file, "Scene file, *.toml, or data file")->required()->type_name("FILE");
+  command.add_option("FILE", options->file, "FILE", "Scene file, *.toml, or data file")->required();
   options->overrides.add_to(command);
   options->overrides.add_frame_to(command);
-  command.add_option("--component", options->component, "HDF5: particle type, N of PartTypeN")
-      ->check(whole_number(0, 1000))
-      ->type_name("N");
+  command.add_option("--component", options->component, "N", "HDF5: particle type, N of PartTypeN")
+      ->check(whole_number(0, 1000));
   command.add_flag("--measure", options->measure,
                    "Measure the time saved by skipping unused features (takes a few seconds)");
-  auto* json = command.add_flag("--json", options->json, "Print JSON, with all settings");
+  auto* json = command.add_flag("--json", options->json, "Print JSON, with all settings")
+                   ->details("Schema orrery.info/1, for data files orrery.data/1.");
   command.add_flag("--settings", options->settings, "Print every setting, its value and its origin")->excludes(json);
+  command.details(
+      "Of a scene: its contents, memory estimate, required and unused features, emitters and how they and the "
+      "background are sampled, available layers, unused columns of data files, and a warning if the chosen precision "
+      "is insufficient. A file whose name does not end in .toml is a data file, of which it prints format, number of "
+      "frames, box, biological assemblies and the columns of a frame: type, smallest and largest finite value, number "
+      "of NaN, up to eight distinct strings. Roles are the columns that plot and convert use by default.");
   command.footer(
       "Examples:\n"
       "  orrery info scenes/book/final.toml\n"
@@ -178,11 +183,18 @@ void add_info(Command& program, Action& action) {
 void add_check(Command& program, Action& action) {
   const auto options = std::make_shared<CheckOptions>();
   Command& command = *program.add_subcommand("check", "Read and validate scenes without rendering");
-  command.add_option("SCENE", options->scenes, "Scene files")->required()->type_name("FILE")->take_all();
+  command.add_option("SCENE", options->scenes, "FILE", "Scene files")->required()->take_all();
   options->overrides.add_to(command);
-  command.add_option("--frames", options->frames, "Frames to check, e.g. 1-48, 1-48x2 or 1,3,7-9; default: 1")
-      ->type_name("RANGE");
+  command.add_option("--frames", options->frames, "RANGE", "Frames to check, e.g. 1-48, 1-48x2 or 1,3,7-9; default: 1")
+      ->details(
+          "The values of animated keys must be in range, and the data files and background image of each frame must "
+          "exist. Errors that several frames have in common are printed once.");
   command.add_flag("-q,--quiet", options->quiet, "Print nothing about valid scenes");
+  command.details(
+      "A scene that it accepts is also accepted by orrery render, which may still reject its own options. A scene that "
+      "needs more than the free memory of this machine gives a warning, since another machine may render it. All "
+      "scenes are checked; the exit status is that of the worst. At most 100 errors of a scene are printed, and their "
+      "total number.");
   command.footer(
       "Examples:\n"
       "  orrery check scenes/book/*.toml\n"

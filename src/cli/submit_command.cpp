@@ -5,10 +5,7 @@
 #include "base/error.h"
 #include "base/frames.h"
 #include "cli/commands.h"
-#include "cli/display_options.h"
-#include "cli/option_checks.h"
-#include "cli/output.h"
-#include "cli/picture_options.h"
+#include "cli/messages.h"
 #include "cli/render_options.h"
 #include "farm/submit.h"
 
@@ -42,8 +39,8 @@ void pass_arguments_on(const SubmitOptions& options, farm::Submission& submissio
     if (option.heading() == kJobOptions) continue;
     const std::vector<std::string> words = option.arguments();
     const bool is_split = submission.shards > 1;
-    const bool is_of_images = (option.heading() == kImageOptions && option.name() != "--denoise") ||
-                              option.heading() == kDisplayOptions || option.name() == "--stats";
+    const bool is_of_images =
+        (option.heading() == kImageOptions && option.name() != "--denoise") || option.name() == "--stats";
     if (is_split && has_option(*options.merge, option.name())) append(submission.merge_arguments, words);
     if (!is_split || !is_of_images) append(submission.render_arguments, words);
   }
@@ -70,21 +67,19 @@ int submit(SubmitOptions& options) {
 void add_job_options(Command& command, SubmitOptions& options) {
   const OptionGroup group(command, kJobOptions);
   farm::Submission& s = options.submission;
-  command.add_option("SCENE", options.scene_file, "Scene file")->required()->type_name("FILE");
+  command.add_option("SCENE", options.scene_file, "FILE", "Scene file")->required();
   command.add_flag("--slurm", options.slurm, "Write a shell script that calls sbatch");
   command.add_flag("--openjd", options.openjd, "Write an Open Job Description template (jobtemplate-2023-09)");
   command.add_flag("--opencue", options.opencue, "Write an OpenCue job specification (XML, cjsl-1.12)");
-  options.parallel =
-      command
-          .add_option("--parallel", s.jobs_at_a_time, "Write a shell script that calls GNU parallel, N tasks at a time")
-          ->transform(whole_number(1, kMaxThreads))
-          ->type_name("N");
-  command.add_option("--frames", s.frames_text, "Frames to render, e.g. 1-48, 1-48x2 or 1,3,7-9")->type_name("RANGE");
-  command.add_option("--shards", s.shards, "Number of shards per frame, merged at the end; default: 1")
-      ->transform(whole_number(1, 1000))
-      ->type_name("N");
-  command.add_option("--program", s.program, "orrery executable on the render nodes; default: orrery")
-      ->type_name("FILE");
+  options.parallel = command
+                         .add_option("--parallel", s.jobs_at_a_time, "N",
+                                     "Write a shell script that calls GNU parallel, N tasks at a time")
+                         ->transform(whole_number(1, kMaxThreads));
+  command.add_option("--frames", s.frames_text, "RANGE", "Frames to render, e.g. 1-48, 1-48x2 or 1,3,7-9");
+  command.add_option("--shards", s.shards, "N", "Number of shards per frame, merged at the end; default: 1")
+      ->details("Not with --noise, --time and --deep.")
+      ->transform(whole_number(1, 1000));
+  command.add_option("--program", s.program, "FILE", "orrery executable on the render nodes; default: orrery");
   s.program = "orrery";
 }
 
@@ -95,9 +90,14 @@ void add_submit(Command& program, Action& action) {
   Command& command = *program.add_subcommand(
       "submit", "Write a render-farm job (Slurm, OpenJD, OpenCue, GNU parallel) to standard output");
   options->command = &command;
-  options->merge = &program.subcommand("merge");
+  options->merge = &*std::find_if(program.subcommands().begin(), program.subcommands().end(),
+                                  [](const Command& other) { return other.name() == "merge"; });
   add_job_options(command, *options);
   add_render_options(command, options->render);
+  command.details(
+      "The job renders and merges the frames of a scene. Its tasks get the options of orrery render as typed; with "
+      "--shards, the merge gets those that describe the images, and --stats. Names with control characters, or that "
+      "are not UTF-8, are refused.");
   command.footer(
       "All other options are those of orrery render; the tasks get them as typed.\n"
       "\n"

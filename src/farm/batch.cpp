@@ -64,7 +64,6 @@ std::vector<job::Job> jobs_of(const Batch& batch) {
   common.files = std::make_shared<base::FileSet>();
   if (frames.size() > 1) common.prepared = std::make_shared<job::PreparedScene>(true);
   base::FileSet& files = *common.files;
-  if (!batch.log.empty()) files.add_output(batch.log, "--log");
   if (!batch.preview.empty()) files.add_output(batch.preview, "--preview");
   for (const job::OutputFile& other : batch.others) files.add_output(other.path, other.role);
   for (const fs::path& scene : batch.scenes)
@@ -84,7 +83,7 @@ std::vector<job::Job> jobs_of(const Batch& batch) {
   }
   // A single job checks its scene's files when it reads the scene. Here, another job or the caller could overwrite them
   // before that.
-  if (jobs.size() > 1 || !batch.log.empty() || !batch.others.empty())
+  if (jobs.size() > 1 || !batch.others.empty())
     for (const fs::path& scene : batch.scenes) {
       load::SceneSource source = common.scene;
       source.file = scene;
@@ -102,7 +101,7 @@ BatchReport run_batch(const Batch& batch, const std::vector<job::Job>& jobs) {
   BatchReport report;
   report.jobs = jobs.size();
   for (std::size_t i = 0; i < jobs.size(); ++i) {
-    if (batch.on_begin) batch.on_begin(jobs[i], i, jobs.size());
+    if (batch.on_begin) batch.on_begin(i, jobs.size());
     try {
       const job::JobReport done = job::run_job(jobs[i]);
       ++(done.was_skipped ? report.skipped : report.rendered);

@@ -18,12 +18,11 @@ struct Batch {
   job::Job job;  ///< the settings that all jobs share; its file names have patterns for the frame and the scene
   std::vector<std::filesystem::path> scenes;
   std::vector<int> frames;              ///< empty: one still image per scene
-  std::filesystem::path log;            ///< file that the caller writes messages to; empty: none
   std::filesystem::path preview;        ///< file that the caller writes previews to; empty: none
   std::vector<job::OutputFile> others;  ///< more files that the caller writes
   bool keep_going = false;              ///< continue after a job that fails
 
-  std::function<void(const job::Job&, std::size_t index, std::size_t count)> on_begin;
+  std::function<void(std::size_t index, std::size_t count)> on_begin;
   std::function<void(const job::Job&, const job::JobReport&)> on_end;
   std::function<void(const job::Job&, const base::Error&)> on_failure;
 };

@@ -91,7 +91,7 @@ SoftBox facing(Vec3d center, Vec3d target, double width, double height, double r
   return {center, side * (width / 2), math::cross(normal, side) * (height / 2), normal, radiance};
 }
 
-// Metres. The values are documented in docs/orrery.1.
+// Metres. The values are documented in the manual (cli/generate_command.cpp).
 constexpr double kFloor = -1.2, kCeiling = 2.4, kWall = 3;
 constexpr double kFloorAlbedo = 0.3, kWallAlbedo = 0.08;
 /// Radiance at the edge of a soft box, relative to its centre: the cloth is illuminated from behind the centre.

@@ -140,9 +140,9 @@ TEST_F(BatchSubmit, ScriptsAreValidShellAndCallTheGivenProgram) {
 
 TEST_F(BatchSubmit, PassesOptionsOnAsTyped) {
   const std::string text = submit(
-      "-o s.exr -o s.png --stats s.json --time 90s --bits 16 --exposure -1.5 --disk-limit 8G --multipart "
+      "-o s.exr -o s.png --stats s.json --time 90s --bits 16 --disk-limit 8G --multipart "
       "--compression dwaa:45 --type float --samples 9 --set camera.vfov=30 --memory-limit 4G --parallel 1");
-  EXPECT_NE(text.find("render good.toml --progress none -q -t \"$threads\" -o s.exr -o s.png --exposure=-1.5 --bits 16 "
+  EXPECT_NE(text.find("render good.toml --progress none -q -t \"$threads\" -o s.exr -o s.png --bits 16 "
                       "--type float --compression dwaa:45 --multipart --disk-limit 8G --set camera.vfov=30 --samples 9 "
                       "--time 90s --memory-limit 4G --stats s.json --resume"),
             std::string::npos)

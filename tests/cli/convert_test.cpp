@@ -232,7 +232,7 @@ TEST_F(CliConvert, ColorMapsAreInputsOfAllCommands) {
   write("map.txt", "0 0 255\n255 0 0\n");
   write("a.csv", "x,y,z,q\n0,0,0,1\n1,0,0,2\n");
   const std::string plot = "plot a.csv -o a.ppm --width 8 --height 4 --samples 1 -q --color-by q --map ./map.txt ";
-  for (const char* output : {"--stats map.txt", "--save-scene map.txt", "--legend map.txt", "--log map.txt"})
+  for (const char* output : {"--stats map.txt", "--save-scene map.txt", "--legend map.txt"})
     EXPECT_EQ(run(plot + output).status, 2) << output;
   ASSERT_EQ(run(plot + "--save-scene s.toml").status, 0);
   EXPECT_EQ(run("render s.toml -o b.ppm --stats map.txt").status, 2);
@@ -243,9 +243,11 @@ TEST_F(CliConvert, ColorMapsAreInputsOfAllCommands) {
 TEST_F(CliConvert, SavedScenesHaveTheSettingsOfTheCommandLine) {
   write("a.csv", "x,y,z,q\n0,0,0,1\n1,0,0,2\n");
   const std::string size = " --width 16 --height 9 --samples 4 -q";
-  ASSERT_EQ(run("plot a.csv -o a.ppm --set camera.width=5 --set render.seed=7 --exposure 1 --save-scene s.toml" + size)
-                .status,
-            0);
+  ASSERT_EQ(
+      run("plot a.csv -o a.ppm --set camera.width=5 --set render.seed=7 --set color.exposure=1 --save-scene s.toml" +
+          size)
+          .status,
+      0);
   ASSERT_EQ(run("render s.toml -o b.ppm -q").status, 0);
   EXPECT_TRUE(text_of(folder_ / "a.ppm") == text_of(folder_ / "b.ppm"));
   ASSERT_EQ(run("plot a.csv -o c.ppm" + size).status, 0);
@@ -267,21 +269,21 @@ TEST_F(CliConvert, PlotsUseTheDefaultViewOfAConfigWithoutTheirOwn) {
   write("a.csv", "x,y,z,q\n0,0,0,1\n1,0,0,2\n");
   const std::string plot = "plot a.csv -o a.ppm --color-by q --width 16 --height 9 --samples 1 --legend l.svg ";
   const std::string choice = "plot: display view film: the default; the OCIO config has no view Un-tone-mapped";
-  for (const char* config : {"--ocio my.ocio", "--set color.config=my.ocio", "--ocio my.ocio --save-scene s.toml"}) {
+  for (const char* config : {"--set color.config=my.ocio", "--set color.config=my.ocio --save-scene s.toml"}) {
     const Outcome r = run(plot + config);
     EXPECT_EQ(r.status, 0) << config << r.err;
     EXPECT_TRUE(contains(r.err, choice)) << config << r.err;
   }
   EXPECT_TRUE(contains(text_of(folder_ / "s.toml"), "view = \"film\""));
-  for (const char* config :
-       {"", "--ocio my.ocio --display full", "--ocio my.ocio --view other", "--ocio my.ocio --set color.view=other"}) {
+  for (const char* config : {"", "--set color.config=my.ocio --set color.display=full",
+                             "--set color.config=my.ocio --set color.view=other"}) {
     const Outcome r = run(plot + config);
     EXPECT_EQ(r.status, 0) << config << r.err;
     EXPECT_FALSE(contains(r.err, "display view")) << config << r.err;
   }
-  for (const char* option : {"--view", "--display"})
-    EXPECT_TRUE(contains(run("plot a.csv -o a.ppm --ocio my.ocio " + std::string(option) + " none").err,
-                         std::string(option) + ": the OCIO config (my.ocio) has no "));
+  for (const std::string key : {"color.view", "color.display"})
+    EXPECT_TRUE(contains(run("plot a.csv -o a.ppm --set color.config=my.ocio --set " + key + "=none").err,
+                         key + ": the OCIO config (my.ocio) has no "));
 }
 
 /// The scene of a plot is not a file: its lines mean nothing to the user.

@@ -35,12 +35,12 @@ const MessageCase kCases[] = {
     {"render good.toml -o a.png -t many", 2,
      "orrery: --threads: must be an integer from 1 to 4096, not `many`\n"
      "Try orrery render --help.\n"},
-    {"render good.toml -o a.png --exposure bright", 2,
+    {"develop a.exr -o a.png --exposure bright", 2,
      "orrery: --exposure: must be a number from -100 to 100, not `bright`\n"
-     "Try orrery render --help.\n"},
-    {"render good.toml -o a.png --exposure", 2,
+     "Try orrery develop --help.\n"},
+    {"develop a.exr -o a.png --exposure", 2,
      "orrery: --exposure needs a value\n"
-     "Try orrery render --help.\n"},
+     "Try orrery develop --help.\n"},
     {"render good.toml -o a.png --progress jsno", 2,
      "orrery: --progress: unknown value `jsno`; did you mean `json`?\n"
      "Try orrery render --help.\n"},

@@ -58,7 +58,7 @@ TEST_F(CliPreview, TheImageHasTheSameBits) {
 }
 
 TEST_F(CliPreview, TheFileIsTheImageInTheEnd) {
-  for (const char* options : {"", "--noise 0.05", "--exposure 1 --display \"Gamma 2.0 Rec.709\""}) {
+  for (const char* options : {"", "--noise 0.05", "--set color.exposure=1 --set color.display=\"Gamma 2.0 Rec.709\""}) {
     ASSERT_EQ(render("a.png", std::string("--preview p.png ") + options).status, 0);
     EXPECT_EQ(run("compare a.png p.png --fail-above max=0").status, 0) << options;
   }
@@ -100,7 +100,7 @@ TEST_F(CliPreview, RejectsBadRequestsBeforeAnyFileIsTouched) {
             "`foo` is not a preview; write tev, tev:HOST:PORT, or the name"},
            {"render good.toml -o a.png --preview a.png", 2, "are the same file"},
            {"render good.toml -o a.png --preview none/p.png", 73, "directory none does not exist"},
-           {"render good.toml -o a.exr --preview p.png --view Foo", 2, "Foo"},
+           {"render good.toml -o a.exr --preview p.png --set color.view=Foo", 65, "Foo"},
            {"render good.toml -o a.png --preview terminal", 2, "`terminal` is not a preview"},
            {"plot cloud.csv -o a.png --radius 1 --legend p.png --preview p.png", 2, "are the same file"}}) {
     const Outcome outcome = run(arguments);

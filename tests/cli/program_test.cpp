@@ -84,8 +84,8 @@ TEST_F(CliProgram, UsageErrorExits2WithASuggestion) {
   EXPECT_EQ(run("render good.toml -o a.png --threads 0").status, 2);
   EXPECT_EQ(run("render good.toml -o a.png", "ORRERY_ISA=mmx").status, 2);
   EXPECT_EQ(run("render good.toml -o a.jpg --bits 16").status, 2);
-  r = run("render good.toml -o a.png --view Filmik --display sRGB");
-  EXPECT_EQ(r.status, 2);
+  r = run("render good.toml -o a.png --set color.view=Filmik --set color.display=sRGB");
+  EXPECT_EQ(r.status, 65);
   EXPECT_TRUE(contains(r.err, "Un-tone-mapped")) << r.err;
   EXPECT_EQ(file_count(), 0);
 }
@@ -166,12 +166,11 @@ TEST_F(CliProgram, OneKeyIsSetOnce) {
 }
 
 TEST_F(CliProgram, OptionsWithoutEffectAreNamed) {
-  EXPECT_TRUE(contains(run("render good.toml -o a.exr --exposure 3 --bits 16").err,
-                       "warning: --exposure, --bits have no effect: the display transform applies to PNG, TIFF, JPEG "
-                       "and PPM, and none is written\n"));
+  EXPECT_TRUE(contains(run("render good.toml -o a.exr --bits 16").err,
+                       "warning: --bits has no effect: the bits are those of PNG and TIFF, and none is written\n"));
   EXPECT_TRUE(contains(run("render good.toml -o a.png --type float --multipart").err,
                        "warning: --type, --multipart have no effect"));
-  EXPECT_FALSE(contains(run("render good.toml -o a.exr -o a.png --exposure 3 --type float").err, "no effect"));
+  EXPECT_FALSE(contains(run("render good.toml -o a.exr -o a.png --bits 16 --type float").err, "no effect"));
 }
 
 TEST_F(CliProgram, InfoPrintsJson) {
@@ -208,7 +207,8 @@ TEST_F(CliProgram, ReproducibleFilesAreByteIdentical) {
 }
 
 TEST_F(CliProgram, DevelopMatchesRender) {
-  ASSERT_EQ(run("render good.toml -o a.exr -o a.ppm -q --type float --display 'Gamma 2.0 Rec.709'").status, 0);
+  ASSERT_EQ(run("render good.toml -o a.exr -o a.ppm -q --type float --set color.display='Gamma 2.0 Rec.709'").status,
+            0);
   ASSERT_EQ(run("develop a.exr -o b.ppm --display 'Gamma 2.0 Rec.709'").status, 0);
   EXPECT_TRUE(text_of(folder_ / "a.ppm") == text_of(folder_ / "b.ppm"));
   EXPECT_EQ(run("develop a.exr -o b.exr").status, 2);
@@ -249,8 +249,8 @@ TEST_F(CliProgram, GeneratedEnvironmentsAreTheSameEveryTime) {
 
 TEST_F(CliProgram, InvalidOcioConfigExits65AndAMissingOne66) {
   write("broken.ocio", "not a config");
-  EXPECT_EQ(run("render good.toml -o a.png --ocio broken.ocio").status, 65);
-  EXPECT_EQ(run("render good.toml -o a.png --ocio nowhere.ocio").status, 66);
+  EXPECT_EQ(run("render good.toml -o a.png --set color.config=broken.ocio").status, 65);
+  EXPECT_EQ(run("render good.toml -o a.png --set color.config=nowhere.ocio").status, 66);
   EXPECT_EQ(run("render good.toml -o a.png -q", "OCIO=").status, 0);
 }
 

@@ -184,14 +184,27 @@ TEST_F(CliValidation, SceneMustBeARegularFile) {
   expect_same(".", "", 66, "orrery: cannot open .: it is a directory\n");
 }
 
-TEST_F(CliValidation, InvalidOptionsAreNamedUsageErrors) {
-  const std::string render = "render good.toml -q -o a.png ";
-  EXPECT_EQ(run(render + "--view Filmik").err.rfind("orrery: --view: the OCIO config (built-in) has no view", 0), 0u);
-  EXPECT_EQ(run(render + "--view Filmik").status, 2);
-  EXPECT_EQ(run(render + "--display sGRB").status, 2);
-  const Outcome missing = run(render + "--ocio none.ocio");
+TEST_F(CliValidation, InvalidDisplayOptionsAreNamedUsageErrors) {
+  ASSERT_EQ(run("render good.toml -q -o a.exr").status, 0);
+  const std::string develop = "develop a.exr -o a.png ";
+  EXPECT_EQ(run(develop + "--view Filmik").err.rfind("orrery: the OCIO config (built-in) has no view", 0), 0u);
+  EXPECT_EQ(run(develop + "--view Filmik").status, 2);
+  EXPECT_EQ(run(develop + "--display sGRB").status, 2);
+  const Outcome missing = run(develop + "--ocio none.ocio");
   EXPECT_EQ(missing.status, 66);
-  EXPECT_EQ(missing.err, "orrery: --ocio: cannot open none.ocio: No such file or directory\n");
+  EXPECT_EQ(missing.err, "orrery: cannot open none.ocio: No such file or directory\n");
+}
+
+TEST_F(CliValidation, RemovedOptionsNameWhatReplacesThem) {
+  const Outcome view = run("render good.toml -o a.png --view Raw");
+  EXPECT_EQ(view.status, 2);
+  EXPECT_EQ(view.err, "orrery: --view was removed; use --set color.view=NAME\nTry orrery render --help.\n");
+  for (const char* option : {"--ocio=a", "--display=a", "--look=a", "--exposure=1", "--seed=1", "--max-depth=1",
+                             "--accelerator=list", "--isa=avx2", "--log=a", "--strict", "--fail-fast"}) {
+    const Outcome r = run(std::string("render good.toml -o a.png ") + option);
+    EXPECT_EQ(r.status, 2) << option;
+    EXPECT_TRUE(contains(r.err, " was removed; use ")) << r.err;
+  }
 }
 
 TEST_F(CliValidation, OcioVariableIsIgnoredForExrOutput) {
@@ -316,7 +329,7 @@ TEST_F(CliValidation, FaultsOfABackgroundImageAreWarnings) {
 TEST_F(CliValidation, ABackgroundImageIsNotOverwritten) {
   write("a.toml", std::string(kGoodScene) + kImageBackground + "\"sky.exr\"\n");
   const std::string before = text_of(folder_ / "sky.exr");
-  for (const char* frames : {"", " --frames 1", " --log a.log"}) {
+  for (const char* frames : {"", " --frames 1"}) {
     const Outcome r = run(std::string("render a.toml -q -o sky.exr") + frames);
     EXPECT_EQ(r.status, 2);
     EXPECT_TRUE(contains(r.err, "would overwrite sky.exr (background image)")) << r.err;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "cli/option_checks.h"
+#include "cli/arguments.h"
 
 #include <gtest/gtest.h>
 
@@ -9,18 +9,18 @@ namespace {
 /// The message of a check; empty: the value is valid.
 std::string verdict(const Check& check, std::string value) { return check(value); }
 
-TEST(CliOptionChecks, OneOfSuggestsTheClosestName) {
+TEST(CliArguments, OneOfSuggestsTheClosestName) {
   const Check check = one_of({"half", "float"});
   EXPECT_EQ(verdict(check, "float"), "");
   EXPECT_EQ(verdict(check, "flaot"), "unknown value `flaot`; did you mean `float`?");
   EXPECT_EQ(verdict(check, "integer"), "unknown value `integer`; use one of half, float");
 }
 
-TEST(CliOptionChecks, OneOfSuggestsNoNumbers) {
+TEST(CliArguments, OneOfSuggestsNoNumbers) {
   EXPECT_EQ(verdict(one_of({"8", "16"}), "12"), "unknown value `12`; use one of 8, 16");
 }
 
-TEST(CliOptionChecks, WholeNumbersHaveLimitsAndNoTrailingText) {
+TEST(CliArguments, WholeNumbersHaveLimitsAndNoTrailingText) {
   const Check check = whole_number(1, 20);
   EXPECT_EQ(verdict(check, "1"), "");
   EXPECT_EQ(verdict(check, "20"), "");
@@ -28,20 +28,20 @@ TEST(CliOptionChecks, WholeNumbersHaveLimitsAndNoTrailingText) {
     EXPECT_EQ(verdict(check, wrong), std::string("must be an integer from 1 to 20, not `") + wrong + "`");
 }
 
-TEST(CliOptionChecks, WholeNumbersAreDecimal) {
+TEST(CliArguments, WholeNumbersAreDecimal) {
   std::string value = "010";
   EXPECT_EQ(whole_number(1, 20)(value), "");
   EXPECT_EQ(value, "10");
 }
 
-TEST(CliOptionChecks, RealNumbersAreFinite) {
+TEST(CliArguments, RealNumbersAreFinite) {
   const Check check = real_number(-100, 100);
   for (const char* right : {"0", "-100", "+1.5", "1e2", ".5"}) EXPECT_EQ(verdict(check, right), "") << right;
   for (const char* wrong : {"nan", "inf", "100.1", "abc", "", "+", "+-1", "1,5"})
     EXPECT_EQ(verdict(check, wrong), std::string("must be a number from -100 to 100, not `") + wrong + "`");
 }
 
-TEST(CliOptionChecks, SizesAreBytesWithAUnit) {
+TEST(CliArguments, SizesAreBytesWithAUnit) {
   for (const auto& [text, bytes] :
        {std::pair{"1K", "1024"}, {"512M", "536870912"}, {"1.5G", "1610612736"}, {"2T", "2199023255552"}}) {
     std::string value = text;
@@ -53,7 +53,7 @@ TEST(CliOptionChecks, SizesAreBytesWithAUnit) {
               std::string("must be a size with a unit, e.g. 512M or 1.5G, not `") + wrong + "`");
 }
 
-TEST(CliOptionChecks, TimesAreSecondsWithUnits) {
+TEST(CliArguments, TimesAreSecondsWithUnits) {
   for (const auto& [text, seconds] : {std::pair{"90s", "90"},
                                       {"5m", "300"},
                                       {"1.5h", "5400"},

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "cli/scene_options.h"
+#include "cli/options.h"
 
 #include <gtest/gtest.h>
 #include <CLI/CLI.hpp>
@@ -26,35 +26,35 @@ Texts overrides_of(const std::vector<const char*>& words) {
   return texts;
 }
 
-TEST(CliSceneOptions, NoOptionsGiveNoOverrides) { EXPECT_TRUE(overrides_of({}).empty()); }
+TEST(CliOptions, NoOptionsGiveNoOverrides) { EXPECT_TRUE(overrides_of({}).empty()); }
 
-TEST(CliSceneOptions, EveryShortFormSetsItsKey) {
+TEST(CliOptions, EveryShortFormSetsItsKey) {
   EXPECT_EQ(overrides_of({"--samples", "1", "--width", "2", "--height", "3", "--precision", "fast"}),
             (Texts{"image.width=2", "image.height=3", "render.samples=1", "render.precision=\"fast\""}));
 }
 
-TEST(CliSceneOptions, SetComesAfterShortForms) {
+TEST(CliOptions, SetComesAfterShortForms) {
   EXPECT_EQ(overrides_of({"--set", "image.width=9", "--set", "camera.vfov=30", "--samples", "1"}),
             (Texts{"render.samples=1", "image.width=9", "camera.vfov=30"}));
 }
 
-TEST(CliSceneOptions, AKeyIsNotSetTwiceByDifferentOptions) {
+TEST(CliOptions, AKeyIsNotSetTwiceByDifferentOptions) {
   for (const char* text : {"render.samples=9", "render={samples=9}", " render . samples = 9", "\"render\".samples=9",
                            "render={\"s\\u0061mples\"=9}"})
     EXPECT_THROW(overrides_of({"--set", text, "--samples", "1"}), base::Error) << text;
 }
 
-TEST(CliSceneOptions, TheLastShortFormCounts) {
+TEST(CliOptions, TheLastShortFormCounts) {
   EXPECT_EQ(overrides_of({"--samples", "1", "--samples", "2"}), (Texts{"render.samples=2"}));
 }
 
-TEST(CliSceneOptions, AnEmptyValueIsAnErrorExceptForLayers) {
+TEST(CliOptions, AnEmptyValueIsAnErrorExceptForLayers) {
   for (const char* option : {"--samples", "--precision"})
     EXPECT_THROW(overrides_of({option, ""}), CLI::ValidationError) << option;
   EXPECT_EQ(overrides_of({"--layers", ""}), (Texts{"output.layers=[]"}));
 }
 
-TEST(CliSceneOptions, LayersAreSeparatedByCommas) {
+TEST(CliOptions, LayersAreSeparatedByCommas) {
   EXPECT_EQ(overrides_of({"--layers", "Z,denoise.albedo"}), (Texts{"output.layers=[\"Z\", \"denoise.albedo\"]"}));
 }
 

@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "cli/usage.h"
+#include "cli/run.h"
 
 #include <gtest/gtest.h>
+#include <CLI/CLI.hpp>
 
 #include "cli/arguments.h"
 
@@ -9,18 +10,18 @@ namespace orrery::cli {
 namespace {
 
 /// A program with commands like orrery's.
-class CliUsage : public testing::Test {
+class CliRun : public testing::Test {
  protected:
-  CliUsage() {
+  CliRun() {
     commands_.require_subcommand();
     Command& render = *commands_.add_subcommand("render", "");
-    render.add_option("SCENE", scene_, "")->required();
-    render.add_option("-o,--output", outputs_, "")->required()->repeatable();
-    render.add_option("--samples", samples_, "");
+    render.add_option("SCENE", scene_, "", "")->required();
+    render.add_option("-o,--output", outputs_, "", "")->required()->repeatable();
+    render.add_option("--samples", samples_, "", "");
     render.add_flag("-q,--quiet", quiet_, "");
     Command& generate = *commands_.add_subcommand("generate", "");
     generate.require_subcommand();
-    generate.add_subcommand("final", "")->add_option("--seed", samples_, "");
+    generate.add_subcommand("final", "")->add_option("--seed", samples_, "", "");
     generate.add_subcommand("cloud", "");
   }
 
@@ -43,24 +44,24 @@ class CliUsage : public testing::Test {
   bool quiet_ = false;
 };
 
-TEST_F(CliUsage, ValidCommandLinesHaveNoMessage) {
+TEST_F(CliRun, ValidCommandLinesHaveNoMessage) {
   EXPECT_EQ(message({"render", "a.toml", "-o", "a.png", "--samples", "3"}), "");
   EXPECT_EQ(message({"generate", "final", "--seed=3"}), "");
 }
 
-TEST_F(CliUsage, ARepeatableOptionTakesOneValueEachTime) {
+TEST_F(CliRun, ARepeatableOptionTakesOneValueEachTime) {
   EXPECT_EQ(message({"render", "-o", "a.png", "-o", "b.png", "a.toml"}), "");
   EXPECT_EQ(outputs_, (std::vector<std::string>{"a.png", "b.png"}));
   EXPECT_EQ(scene_, "a.toml");
 }
 
-TEST_F(CliUsage, AnEqualsSignNeedsAValue) {
+TEST_F(CliRun, AnEqualsSignNeedsAValue) {
   EXPECT_EQ(option_without_value({"render", "a.toml", "--samples=", "-o", "a.png"}), "--samples");
   EXPECT_EQ(option_without_value({"render", "a.toml", "--samples=1", "--set", "camera.vfov=", "-q"}), "");
   EXPECT_EQ(option_without_value({"render", "--", "--samples="}), "");
 }
 
-TEST_F(CliUsage, UnknownOptionsGetASuggestion) {
+TEST_F(CliRun, UnknownOptionsGetASuggestion) {
   EXPECT_EQ(message({"render", "a.toml", "-o", "a.png", "--samlpes", "3"}),
             "unknown option --samlpes; did you mean `--samples`?");
   EXPECT_EQ(message({"render", "a.toml", "-o", "a.png", "--samlpes=3"}),
@@ -69,26 +70,26 @@ TEST_F(CliUsage, UnknownOptionsGetASuggestion) {
   EXPECT_EQ(message({"render", "a.toml", "-o", "a.png", "-x"}), "unknown option -x");
 }
 
-TEST_F(CliUsage, AnUnknownOptionIsReportedBeforeMissingOnes) {
+TEST_F(CliRun, AnUnknownOptionIsReportedBeforeMissingOnes) {
   EXPECT_EQ(message({"render", "--ouptut", "a.png", "a.toml"}), "unknown option --ouptut; did you mean `--output`?");
 }
 
-TEST_F(CliUsage, OptionsBelongToTheInnermostCommand) {
+TEST_F(CliRun, OptionsBelongToTheInnermostCommand) {
   EXPECT_EQ(message({"generate", "final", "--sede", "3"}), "unknown option --sede; did you mean `--seed`?");
   EXPECT_EQ(message({"generate", "cloud", "--sede", "3"}), "unknown option --sede");
 }
 
-TEST_F(CliUsage, UnknownCommandsGetASuggestion) {
+TEST_F(CliRun, UnknownCommandsGetASuggestion) {
   EXPECT_EQ(message({"rendr", "a.toml"}), "unknown command rendr; did you mean `render`?");
   EXPECT_EQ(message({"paint", "a.toml"}), "unknown command paint; use one of render, generate");
   EXPECT_EQ(message({"generate", "fianl"}), "unknown command fianl; did you mean `final`?");
 }
 
-TEST_F(CliUsage, ASceneWithoutACommandShowsHowToRenderIt) {
+TEST_F(CliRun, ASceneWithoutACommandShowsHowToRenderIt) {
   EXPECT_EQ(message({"a.toml"}), "unknown command a.toml; to render it: orrery render a.toml -o image.png");
 }
 
-TEST_F(CliUsage, MissingArgumentsAreNamed) {
+TEST_F(CliRun, MissingArgumentsAreNamed) {
   EXPECT_EQ(message({}), "no command given; use one of render, generate");
   EXPECT_EQ(message({"generate"}), "no command given; use one of final, cloud");
   EXPECT_EQ(message({"render"}), "SCENE is required");
@@ -96,17 +97,24 @@ TEST_F(CliUsage, MissingArgumentsAreNamed) {
   EXPECT_EQ(message({"render", "a.toml", "-o", "a.png", "--samples"}), "--samples needs a value");
 }
 
-TEST_F(CliUsage, UnexpectedArgumentsAreNamed) {
+TEST_F(CliRun, UnexpectedArgumentsAreNamed) {
   EXPECT_EQ(message({"render", "a.toml", "-o", "a.png", "b.png"}),
             "unexpected argument `b.png`; name output files with -o");
   EXPECT_EQ(message({"generate", "cloud", "b.png"}), "unexpected argument `b.png`");
   EXPECT_EQ(message({"render", "a.toml", "-o", "a.png", "--quiet=maybe"}), "--quiet takes no value");
 }
 
-TEST_F(CliUsage, FullNamesOfCommandsAreAsTyped) {
-  EXPECT_EQ(full_name(program_), "orrery");
-  EXPECT_EQ(message({"generate", "final"}), "");
-  EXPECT_EQ(full_name(innermost(program_)), "orrery generate final");
+TEST_F(CliRun, FullNamesOfCommandsAreAsTyped) {
+  EXPECT_EQ(commands_.full_name(), "orrery");
+  EXPECT_EQ(commands_.subcommands()[1].subcommands()[0].full_name(), "orrery generate final");
+}
+
+TEST_F(CliRun, RemovedOptionsNameWhatReplacesThem) {
+  std::vector<std::string> settings;
+  Command& check = *commands_.add_subcommand("check", "");
+  check.add_option("--set", settings, "KEY=VALUE", "");
+  EXPECT_EQ(message({"check", "--seed", "3"}), "--seed was removed; use --set render.seed=N");
+  EXPECT_EQ(message({"generate", "cloud", "--strict"}), "unknown option --strict") << "it never had it";
 }
 
 }  // namespace

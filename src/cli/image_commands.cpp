@@ -1,0 +1,153 @@
+// SPDX-License-Identifier: Apache-2.0
+// The commands that work on image files and display transforms: develop, denoise and bake.
+#include <memory>
+#include <string>
+
+#include <fmt/core.h>
+
+#include "app/bake_file.h"
+#include "app/denoise_file.h"
+#include "app/develop_file.h"
+#include "base/diagnostic.h"
+#include "base/text.h"
+#include "cli/commands.h"
+#include "cli/messages.h"
+#include "cli/options.h"
+#include "cli/signals.h"
+#include "display/settings.h"
+
+namespace orrery::cli {
+namespace {
+
+struct DevelopOptions {
+  app::Development development;
+  bool quiet = false;
+};
+
+int develop(const DevelopOptions& options) {
+  end_on_signals();
+  const app::DevelopReport report = app::develop_file(options.development);
+  if (options.quiet) return 0;
+  for (const std::string& warning : report.display.warnings) print_message(base::warning_line(warning));
+  if (const std::uint64_t bad = report.bad_values.nan + report.bad_values.infinite; bad > 0)
+    print_message(base::warning_line(
+        fmt::format("{} values of {} are not finite and were written as 0", bad, options.development.input.string())));
+  return 0;
+}
+
+struct DenoiseOptions {
+  app::Denoising denoising;
+  bool quiet = false;
+};
+
+std::string text_of(const app::Denoising& denoising, const app::DenoisedFile& done) {
+  const denoise::Report& report = done.report;
+  std::string out =
+      fmt::format("wrote {}: beauty and {} light layers\n", denoising.output.string(), report.layers.size());
+  if (done.written.had_attributes)
+    out += base::warning_line(
+        fmt::format("{} was denoised already and has been filtered again", denoising.input.string()));
+  if (!report.missing.empty())
+    out += base::warning_line(
+        fmt::format("{} lacks the layers {}: {}; render with --layers halves for the best result",
+                    denoising.input.string(), base::joined(report.missing),
+                    report.has_guides ? "noise was estimated from the beauty" : "only the beauty guided the filter"));
+  if (report.bad_pixels > 0)
+    out += base::warning_line(
+        fmt::format("{} pixels have no samples, or values that are not finite or too large; they were not changed",
+                    report.bad_pixels));
+  if (!done.written.other_parts.empty())
+    out +=
+        base::warning_line(fmt::format("the parts {} have separate channels R, G and B and were copied unchanged; to "
+                                       "denoise them, save them as separate files",
+                                       base::joined(done.written.other_parts)));
+  if (done.written.clamped > 0)
+    out += base::warning_line(fmt::format("{} values were clamped to the range of half", done.written.clamped));
+  return out;
+}
+
+int denoise(const DenoiseOptions& options) {
+  end_on_signals();
+  const app::DenoisedFile done = app::denoise_file(options.denoising);
+  if (!options.quiet) print_message(text_of(options.denoising, done));
+  return 0;
+}
+
+/// Smaller cubes are too coarse for a view; other programs do not read larger ones.
+constexpr std::uint64_t kSmallestCube = 2, kLargestCube = 129;
+
+struct BakeOptions {
+  display::Settings display;
+  std::filesystem::path output;
+  int size = display::kDefaultCubeSize;
+};
+
+}  // namespace
+
+void add_develop(Command& program, Action& action) {
+  const auto options = std::make_shared<DevelopOptions>();
+  app::Development& development = options->development;
+  development.display.working_space.clear();
+  Command& command = *program.add_subcommand("develop", "Apply an OCIO display transform to an EXR or HDR image");
+  command.add_option("IN", development.input, "FILE", "Scene-linear image: EXR or HDR")->required();
+  command
+      .add_option("-o,--output", development.outputs, "FILE", "File to write: PNG, TIFF, JPEG or PPM; can be repeated")
+      ->required()
+      ->repeatable();
+  add_display_options(command, development.display, false);
+  add_bits_option(command, development.bits);
+  command
+      .add_option("--space", development.display.working_space, "NAME",
+                  "Colour space of the input; default: from its header, otherwise lin_rec709")
+      ->details("The header's is colorInteropID.");
+  command.add_flag("-q,--quiet", options->quiet, "Print only errors");
+  command.footer(
+      "Examples:\n"
+      "  orrery develop final.exr -o final.png --exposure 1\n"
+      "  orrery develop final.exr -o book.tif --bits 16 --display \"Gamma 2.0 Rec.709\"");
+  command.callback([options, &action] { action = [options] { return develop(*options); }; });
+}
+
+void add_denoise(Command& program, Action& action) {
+  const auto options = std::make_shared<DenoiseOptions>();
+  Command& command = *program.add_subcommand("denoise", "Denoise an EXR image and its light layers");
+  command.add_option("IN", options->denoising.input, "FILE", "EXR image; best rendered with --layers halves")
+      ->required();
+  command.add_option("-o,--output", options->denoising.output, "FILE", "EXR file to write")->required();
+  add_threads_option(command, options->denoising.threads);
+  command.add_flag("-q,--quiet", options->quiet, "Print only errors");
+  command.details(
+      "The light layers are filtered with the same weights, so that they still add up to the beauty. Other channels, "
+      "parts, attributes and pixel types are kept. Layers that the image lacks are reported.");
+  command.footer(
+      "Examples:\n"
+      "  orrery render scene.toml -o noisy.exr --samples 32 --layers halves,light_groups\n"
+      "  orrery denoise noisy.exr -o clean.exr");
+  command.callback([options, &action] { action = [options] { return denoise(*options); }; });
+}
+
+void add_bake(Command& program, Action& action) {
+  const auto options = std::make_shared<BakeOptions>();
+  Command& command = *program.add_subcommand("bake", "Write a display transform as a look-up table for other programs");
+  command
+      .add_option("-o,--output", options->output, "FILE",
+                  "File to write: .cube (sampled 3D LUT) or .clf (exact if CLF supports every op of the transform)")
+      ->required();
+  add_display_options(command, options->display, false);
+  command.add_option("--space", options->display.working_space, "NAME", "Input colour space; default: lin_rec709");
+  command.add_option("--size", options->size, "N", "3D LUT grid points per axis; default: 65")
+      ->transform(whole_number(kSmallestCube, kLargestCube));
+  command.footer(
+      "Examples:\n"
+      "  orrery bake -o film.cube --view \"ACES 1.0 SDR Video\"\n"
+      "  orrery bake -o book.clf --display \"Gamma 2.0 Rec.709\"");
+  command.callback([options, &action] {
+    action = [options] {
+      end_on_signals();
+      app::bake_file(options->display, options->size, options->output);
+      return 0;
+    };
+  });
+}
+
+}  // namespace orrery::cli

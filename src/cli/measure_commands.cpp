@@ -1,0 +1,146 @@
+// SPDX-License-Identifier: Apache-2.0
+// The commands that measure on a scene: bench and study.
+#include <cstdint>
+#include <cstdio>
+#include <memory>
+
+#include <fmt/core.h>
+
+#include "base/error.h"
+#include "base/file_name.h"
+#include "base/output_file.h"
+#include "cli/commands.h"
+#include "cli/messages.h"
+#include "cli/options.h"
+#include "cli/progress.h"
+#include "cli/signals.h"
+#include "measure/bench_scene.h"
+#include "measure/study.h"
+
+namespace orrery::cli {
+namespace {
+
+ProgressStyle style_of(bool quiet) { return quiet ? ProgressStyle::kNone : ProgressStyle::kAuto; }
+
+constexpr std::uint64_t kMaxRounds = 1000;
+constexpr double kMaxSeconds = 3600;  // of one measurement
+
+struct BenchOptions {
+  measure::BenchRequest request;
+  SceneOptions scene;
+  bool json = false, quiet = false;
+};
+
+int bench(BenchOptions& options) {
+  measure::BenchRequest& request = options.request;
+  request.scene.overrides = options.scene.overrides();
+  request.scene.frame = options.scene.frame();
+  request.cancel = &stop_on_signals();
+  ProgressPrinter printer(style_of(options.quiet), stderr);
+  request.on_progress = [&](int done, int total) {
+    printer.update({static_cast<std::uint64_t>(done), static_cast<std::uint64_t>(total), 0,
+                    fmt::format("measurement {} of {}", done, total)});
+  };
+  const measure::Benchmark found = measure::bench_scene(request);
+  printer.finish();
+  print_result(options.json ? measure::benchmark_json(found) : measure::benchmark_text(found));
+  return 0;
+}
+
+struct StudyOptions {
+  measure::Request request;
+  SceneOptions scene;
+  bool json = false, quiet = false;
+};
+
+void check_report_name(const std::filesystem::path& file) {
+  if (base::extension(file) != ".html" && base::extension(file) != ".htm")
+    throw base::Error(base::ErrorKind::kUsage,
+                      file.string() + ": the report is an HTML file; name it .html, or print numbers with --json");
+}
+
+int study(StudyOptions& options) {
+  measure::Request& request = options.request;
+  request.scene.overrides = options.scene.overrides();
+  request.scene.frame = options.scene.frame();
+  request.cancel = &stop_on_signals();
+  ProgressPrinter printer(style_of(options.quiet), stderr);
+  request.on_progress = [&](const std::string& what, double fraction) {
+    constexpr std::uint64_t kSteps = 1000;
+    printer.update({static_cast<std::uint64_t>(fraction * kSteps), kSteps, 0, what});
+  };
+  if (!request.report.empty()) check_report_name(request.report);
+  const measure::Study found = measure::run_study(request);
+  printer.finish();
+  if (!request.report.empty()) base::write_text_file(request.report, measure::study_html(found));
+  print_result(options.json ? measure::study_json(found) : measure::study_text(found));
+  return 0;
+}
+
+}  // namespace
+
+void add_bench(Command& program, Action& action) {
+  const auto options = std::make_shared<BenchOptions>();
+  Command& command =
+      *program.add_subcommand("bench", "Benchmark a scene in each precision, with Embree and with a list of spheres");
+  command.add_option("SCENE", options->request.scene.file, "FILE", "Scene file")->required();
+  options->scene.add_to(command, SceneOptions::Short::kSize);
+  options->scene.add_frame_to(command);
+  add_threads_option(command, options->request.threads, "1");
+  command.add_option("--rounds", options->request.rounds, "N", "Repetitions per case; default: 7")
+      ->transform(whole_number(1, kMaxRounds));
+  command
+      .add_option("--seconds", options->request.seconds, "SECONDS",
+                  "Minimum duration of each repetition, in seconds; default: 0.25")
+      ->check(real_number(0.001, kMaxSeconds));
+  command.add_flag("--json", options->json, "Print JSON")->details("Schema orrery.bench/1.");
+  command.add_flag("-q,--quiet", options->quiet, "Do not show progress");
+  command.details(
+      "Lists of spheres are skipped if they would take too long. Each round measures all cases; results are the ratios "
+      "to \"embree exact\" of the same round. With one thread, it also prints the fraction of time spent on ray "
+      "tracing alone, and the cost of each feature that the scene lacks.");
+  command.footer(
+      "Samples, precision, accelerator and layers of the scene have no effect. Larger images are reduced to about "
+      "5,184 "
+      "pixels.\n"
+      "Examples:\n"
+      "  orrery bench scenes/book/final.toml\n"
+      "  orrery bench cloud.toml --threads 8 --rounds 15 --json");
+  command.callback([options, &action] { action = [options] { return bench(*options); }; });
+}
+
+void add_study(Command& program, Action& action) {
+  const auto options = std::make_shared<StudyOptions>();
+  Command& command = *program.add_subcommand(
+      "study", "Measure the trade-off between render time and error on a scene, and recommend settings");
+  command.add_option("SCENE", options->request.scene.file, "FILE", "Scene file")->required();
+  command
+      .add_option("-o,--output", options->request.report, "FILE",
+                  "Write a report: a self-contained HTML file with plots and images")
+      ->details("Its name ends in .html.");
+  options->scene.add_to(command);
+  options->scene.add_frame_to(command);
+  command
+      .add_option("--budget", options->request.budget_s, "TIME",
+                  "Time budget of the study, e.g. 90s or 5m; default: 2m")
+      ->details(
+          "Measurements that it does not allow are skipped and listed. A budget that does not allow a reference and "
+          "two choices is an error.")
+      ->transform(duration());
+  command.add_option("--noise", options->request.noise, "X", "Target noise of the recommendation; default: 0.01")
+      ->transform(real_number(1e-4, 1));
+  add_threads_option(command, options->request.threads);
+  command.add_flag("--json", options->json, "Print JSON")->details("Schema orrery.study/1.");
+  command.add_flag("-q,--quiet", options->quiet, "Do not show progress");
+  command.details(
+      "Renders a reference, then varies the settings that affect this scene (samples, sampler, --noise, precision, "
+      "Russian roulette, depth, Fresnel model, accelerator, file options), and recommends a command, which it has "
+      "tried at the scene's full size. docs/trade.md explains the table.");
+  command.footer(
+      "Examples:\n"
+      "  orrery study scenes/book/final.toml --budget 5m -o report.html\n"
+      "  orrery study cloud.toml --noise 0.02 --json");
+  command.callback([options, &action] { action = [options] { return study(*options); }; });
+}
+
+}  // namespace orrery::cli

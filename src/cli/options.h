@@ -1,0 +1,108 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <deque>
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "cli/arguments.h"
+#include "display/forward.h"
+#include "format/overrides.h"
+#include "job/forward.h"
+#include "plot/data_options.h"
+
+namespace orrery::cli {
+
+// Options that several commands share. The variables that they write to must not move until the command line is parsed.
+
+/// Headings in the help.
+inline constexpr const char* kImageOptions = "Image options";
+inline constexpr const char* kDisplayOptions = "Display options";
+
+/// The options that override scene keys: --set, and short forms of frequent keys.
+class SceneOptions {
+ public:
+  /// Which short forms a command has: those that have an effect.
+  enum class Short { kAll, kSize };
+
+  /// Adds the options to a command.
+  ///
+  /// Domain     called once; this must not move, and `command` must exist, until the last call of overrides()
+  void add_to(Command& command, Short forms = Short::kAll);
+
+  /// All overrides, short forms first, so that --set wins.
+  format::Overrides overrides() const;
+
+  /// Adds --frame, for a command that uses one frame.
+  void add_frame_to(Command& command);
+
+  /// The frame of --frame; by default the frame of a render without --frames.
+  ///
+  /// Errors     base::Error(kUsage) if --frame is not a single frame
+  int frame() const;
+
+ private:
+  struct ShortForm {
+    const char* name;  ///< "--samples"
+    const char* key;
+    std::string value;
+    Option* flag;
+    bool is_list;  ///< comma-separated words
+  };
+  std::vector<std::string> set_;
+  std::string frame_;
+  std::deque<ShortForm> short_forms_;  ///< a deque: the parser keeps pointers to the values
+};
+
+/// Adds the options of the display transform, for commands that have no --set.
+///
+/// `has_scene`  the defaults are those of a scene
+void add_display_options(Command& command, display::Settings& settings, bool has_scene);
+
+/// Adds --bits.
+void add_bits_option(Command& command, int& bits);
+
+/// The options that select a job's image files and their formats.
+class PictureOptions {
+ public:
+  /// Adds the options to a command.
+  ///
+  /// Domain     called once; neither this nor `job` moves until the command line is parsed
+  void add_to(Command& command, job::Job& job);
+
+  /// Returns a warning for each kind of option that affects none of the files, one per line.
+  std::string unused_options(const job::Job& job) const;
+
+  /// Converts the options that are not members of a job.
+  ///
+  /// Errors     base::Error(kUsage) for a file with an unknown extension
+  void finish(job::Job& job) const;
+
+ private:
+  std::vector<std::filesystem::path> files_;
+  std::string type_ = "half";
+};
+
+/// Adds -t, --threads.
+///
+/// `otherwise`  the default, in the help
+void add_threads_option(Command& command, int& threads, const char* otherwise = "all CPUs available to the process");
+
+/// Arguments of the data options that need further parsing.
+struct DataArguments {
+  std::string frame, frames, radius, range, replicate, component;
+  std::vector<std::string> select, slice;
+  const Option* map = nullptr;
+};
+
+/// Adds FILE and the options that all commands on data files share. Values go to `data`, or to `arguments` and then to
+/// `data` by read_data_options().
+void add_data_options(Command& command, DataArguments& arguments, plot::DataOptions& data);
+
+/// Sets the members of `data` from the parsed options.
+///
+/// Errors     base::Error(kUsage)
+void read_data_options(const DataArguments& arguments, plot::DataOptions& data);
+
+}  // namespace orrery::cli
