@@ -23,9 +23,7 @@
 #include "job/text.h"
 #include "job/version.h"
 #include "metrics/color_view.h"
-#include "metrics/false_color.h"
-#include "metrics/flip.h"
-#include "metrics/ssim.h"
+#include "metrics/perceptual.h"
 #include "render/tile_pool.h"
 #include "render/tile_renderer.h"
 

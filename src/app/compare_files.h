@@ -8,8 +8,7 @@
 #include <vector>
 
 #include "film/picture.h"
-#include "metrics/pixel_errors.h"
-#include "metrics/z_test.h"
+#include "metrics/errors.h"
 
 namespace orrery::app {
 

@@ -12,7 +12,6 @@
 #include "cli/options.h"
 #include "cli/signals.h"
 #include "plot/convert.h"
-#include "plot/converted_file.h"
 
 namespace orrery::cli {
 namespace {

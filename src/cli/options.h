@@ -10,7 +10,7 @@
 #include "display/forward.h"
 #include "format/overrides.h"
 #include "job/forward.h"
-#include "plot/data_options.h"
+#include "plot/data_frames.h"
 
 namespace orrery::cli {
 

@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-#include <algorithm>
 #include <chrono>
 #include <memory>
-#include <optional>
 #include <string>
 #include <vector>
 
@@ -15,33 +13,26 @@
 #include "base/file_name.h"
 #include "base/file_set.h"
 #include "base/frames.h"
-#include "base/image_limits.h"
 #include "base/output_file.h"
 #include "base/stop_point.h"
 #include "cli/commands.h"
 #include "cli/messages.h"
 #include "cli/render_options.h"
 #include "cli/signals.h"
-#include "format/write_tree.h"
 #include "format/written_text.h"
 #include "image/library.h"
 #include "job/check_job.h"
 #include "job/job_files.h"
 #include "job/job_report.h"
 #include "job/statistics.h"
-#include "load/load_scene.h"
 #include "load/loaded_scene.h"
 #include "load/scene_files.h"
-#include "load/working_space.h"
 #include "plot/plot.h"
 #include "plot/write_legend.h"
-#include "preview/target.h"
+#include "preview/preview.h"
 
 namespace orrery::cli {
 namespace {
-
-/// Noise of a plot unless the command line says otherwise.
-constexpr double kNoise = 0.02;
 
 struct PlotArguments {
   RenderOptions render;
@@ -51,30 +42,6 @@ struct PlotArguments {
   std::filesystem::path save_scene, legend;
   bool force = false;
 };
-
-/// A side of the image, which the camera must know. An invalid one is reported when the scene is read.
-int side_of(const format::Overrides& overrides, const char* key, int otherwise) {
-  return static_cast<int>(std::clamp<std::int64_t>(overrides.integer(key).value_or(otherwise), 1, base::kLargestSide));
-}
-
-/// A provisional scene with only the overrides of tables that every scene has, validated.
-///
-/// `develops` see load::SceneRequest
-load::LoadedScene settings_of(const job::Job& job, const PlotArguments& arguments, const format::Overrides& overrides,
-                              bool develops) {
-  load::SceneRequest request{job.scene, {}, develops};
-  request.source.file = arguments.save_scene.empty() ? arguments.plot.file : arguments.save_scene;
-  request.source.text = std::make_shared<const std::string>();
-  request.source.typed_lines = 0;
-  request.source.overrides = {};
-  for (const format::Override& override : overrides) {
-    const std::string table = override.values.empty() ? "" : override.values.front().key;  // all keys are of one table
-    const std::string name = table.substr(0, table.find('.'));
-    if (override.fault || name == "color" || name == "image" || name == "output" || name == "render")
-      request.source.overrides.add(override);
-  }
-  return load::load_scene(request);
-}
 
 /// The files that plot writes in addition to those of a render.
 std::vector<job::OutputFile> own_outputs(const PlotArguments& arguments) {
@@ -86,7 +53,7 @@ std::vector<job::OutputFile> own_outputs(const PlotArguments& arguments) {
 
 /// Checks early what would otherwise fail after all frames have been read: names and formats of outputs, layers, colour
 /// names.
-void check_request(const PlotArguments& arguments, const format::Overrides& overrides, const std::vector<int>& frames) {
+void check_request(const PlotArguments& arguments, const std::vector<int>& frames) {
   farm::Batch batch = arguments.render.batch;
   batch.scenes = {arguments.plot.file};
   batch.frames = frames;
@@ -96,19 +63,9 @@ void check_request(const PlotArguments& arguments, const format::Overrides& over
   job.scene.text = std::make_shared<const std::string>();
   job.scene.has_file = false;
   for (const job::Job& one : farm::jobs_of(batch)) job::check_request(one);
-  job.scene.overrides = overrides;
-  job::check_layers(job, settings_of(job, arguments, overrides, job.outputs.has_display_format()).read.scene);
+  job.scene.overrides = arguments.plot.overrides;
+  job::check_layers(job, plot::settings_of(arguments.plot, job.outputs.has_display_format()).read.scene);
   image::load();
-}
-
-/// The choices that are not made by plot::make_plot().
-void add_choices(const job::Job& job, const plot::PlotOptions& plot, const format::Overrides& overrides,
-                 plot::PlotScene& made) {
-  if (plot.style == plot::Style::kFlat && !job.sampling.noise && !job.sampling.seconds &&
-      !overrides.sets("render.samples"))
-    made.choices.emplace_back("samples 100: without shading there is hardly any noise");
-  if (job.outputs.has_display_format() && plot.display.view.empty() && made.view == plot::kPlainView)
-    made.choices.emplace_back(fmt::format("view transform {}: colours match the colour map", made.view));
 }
 
 void print_choices(const plot::PlotScene& made, const PlotArguments& arguments) {
@@ -117,41 +74,6 @@ void print_choices(const plot::PlotScene& made, const PlotArguments& arguments) 
   for (const std::string& choice : made.choices) text += fmt::format("plot: {}\n", choice);
   for (const std::string& warning : made.warnings) text += base::warning_line(warning);
   print_message(text);
-}
-
-/// The scene with the settings of the command line applied, so that rendering it does not need them again.
-std::string saved_text(const std::string& text, const format::Overrides& overrides) {
-  format::Overrides settings;
-  for (const format::Override& override : overrides) {
-    const auto is_of_plot = [](const format::KeyValue& set) {  // make_plot() handles these two
-      return set.key == "image.width" || set.key == "image.height";
-    };
-    if (!std::all_of(override.values.begin(), override.values.end(), is_of_plot)) settings.add(override);
-  }
-  if (settings.empty()) return text;
-  const auto same = [](const std::string& file) { return file; };
-  return fmt::format("{}\n\n{}", text.substr(0, text.find('\n')), format::merged_text("plot", text, settings, same));
-}
-
-/// The vertical field of view if the overrides select a perspective camera, also by a field of view alone. An invalid
-/// one is reported when the scene is read.
-std::optional<double> vfov_of(const format::Overrides& overrides) {
-  const std::optional<std::string> projection = overrides.string("camera.projection");
-  const std::optional<double> vfov = overrides.number("camera.vfov");
-  if (projection != "perspective" && (projection || !vfov)) return {};
-  return vfov && *vfov > 0 && *vfov < 180 ? *vfov : scene::Camera().vfov;
-}
-
-/// The display transform that the command line selects.
-display::Settings display_of(const format::Overrides& overrides, const std::filesystem::path& scene_file) {
-  display::Settings out;
-  scene::Color color;
-  color.config = overrides.string("color.config").value_or("");
-  out.config = load::config_of(scene_file, color);
-  out.display = overrides.string("color.display").value_or("");
-  out.view = overrides.string("color.view").value_or("");
-  out.look = overrides.string("color.look").value_or("");
-  return out;
 }
 
 /// The statistics file of the first frame; empty: none.
@@ -167,7 +89,7 @@ void check_outputs(const PlotArguments& arguments) {
   for (const int frame : plot.frames.empty() ? std::vector<int>{1} : plot.frames)
     files.add_input(base::input_at_frame({}, plot.file.string(), frame), "data file");
   if (plot.points.color.has_map_file()) files.add_input(plot.points.color.map, "colour map");
-  load::add_ocio_configs(plot.display.config, files);
+  load::add_ocio_configs(plot::display_of(plot).config, files);
   for (const job::OutputFile& output : own_outputs(arguments)) {
     files.add_output(output.path, output.role);
     base::check_creatable(output.path);
@@ -184,13 +106,11 @@ void check_outputs(const PlotArguments& arguments) {
 }
 
 /// Reads the data and makes a scene. If that fails or is stopped, writes the statistics.
-plot::PlotScene prepare(const PlotArguments& arguments, const format::Overrides& overrides,
-                        const std::filesystem::path& folder) {
+plot::PlotScene prepare(const PlotArguments& arguments) {
   const auto begin = std::chrono::steady_clock::now();
   const base::StopScope scope(arguments.render.batch.job.hooks.cancel);
   try {
-    return plot::make_plot(arguments.plot, folder,
-                           [&](const std::vector<int>& frames) { check_request(arguments, overrides, frames); });
+    return plot::make_plot(arguments.plot, [&](const std::vector<int>& frames) { check_request(arguments, frames); });
   } catch (const base::Error& error) {
     job::JobReport report;
     report.phases.prepare_s = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
@@ -207,51 +127,38 @@ int run_plot(PlotArguments& arguments) {
                              arguments.plot.file.string()));
   RenderOptions& render = arguments.render;
   plot::PlotOptions& plot = arguments.plot;
-  const format::Overrides overrides = render.scene.overrides();
-  plot.width = side_of(overrides, "image.width", plot.width);
-  plot.height = side_of(overrides, "image.height", plot.height);
-  read_data_options(arguments.data, plot);
-  plot.has_size = overrides.sets("image.width") || overrides.sets("image.height");
-  plot.has_style = !arguments.style.empty();
-  plot.style = arguments.style == "ambient" ? plot::Style::kAmbient
-               : arguments.style == "flat"  ? plot::Style::kFlat
-               : arguments.style == "night" ? plot::Style::kNight
-                                            : plot::Style::kStudio;
-  plot.is_turntable = overrides.number("animation.turntable").value_or(0) != 0;
-  plot.vfov = vfov_of(overrides);
-  plot.memory_limit = render.batch.job.resources.memory_limit > 0 ? render.batch.job.resources.memory_limit
-                                                                  : base::available_memory().value_or(0);
-  const bool saves = !arguments.save_scene.empty();
-  const std::filesystem::path scene_file = saves ? arguments.save_scene : plot.file;
-  render.picture.finish(render.batch.job);
   job::Job& job = render.batch.job;
-  plot.display = display_of(overrides, scene_file);
+  const bool saves = !arguments.save_scene.empty();
+  render.picture.finish(job);
+  read_data_options(arguments.data, plot);
+  plot.style = plot::style_of(arguments.style);
+  plot.overrides = render.scene.overrides();
+  plot.scene_file = saves ? arguments.save_scene : plot.file;
+  plot.has_target = job.sampling.noise || job.sampling.seconds;
+  plot.develops = job.outputs.has_display_format();
+  plot.memory_limit =
+      job.resources.memory_limit > 0 ? job.resources.memory_limit : base::available_memory().value_or(0);
   check_outputs(arguments);
   image::start_loading();
   const auto begin = std::chrono::steady_clock::now();
-  plot::PlotScene made = prepare(arguments, overrides, scene_file.parent_path());
-  render.batch.frames = made.frames;
+  plot::PlotScene made = prepare(arguments);
   job.prepare_s = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
-  add_choices(job, plot, overrides, made);
-  if (!job.sampling.noise && !job.sampling.seconds && !overrides.sets("render.samples") &&
-      plot.style != plot::Style::kFlat) {
-    job.sampling.noise = kNoise;
-    made.choices.push_back(fmt::format("noise {}: --noise, --time or --samples change it", kNoise));
-  }
+  if (made.noise) job.sampling.noise = *made.noise;
   made.choices.push_back(
       fmt::format("prepared in {:.1f} s: read {} to fit the view and the colours", job.prepare_s,
                   made.frames.size() > 1 ? std::to_string(made.frames.size()) + " frames" : "the file"));
   print_choices(made, arguments);
   const auto text =
-      std::make_shared<const std::string>(saves ? format::marked_text(saved_text(made.text, overrides)) : made.text);
+      std::make_shared<const std::string>(saves ? format::marked_text(plot::saved_text(plot, made)) : made.text);
   job.scene.text = text;
   if (!saves) job.scene.typed_lines = 0;
   job.scene.has_file = false;
-  render.batch.scenes = {scene_file};
+  render.batch.frames = made.frames;
+  render.batch.scenes = {plot.scene_file};
   render.batch.others = own_outputs(arguments);
   render.before_files = [&] {
     if (!arguments.legend.empty()) {
-      display::Settings display = settings_of(job, arguments, overrides, true).display;
+      display::Settings display = plot::settings_of(plot, true).display;
       display.view = made.view;
       plot::write_legend(arguments.legend, made.legend, display);
     }
@@ -277,7 +184,7 @@ void add_view_options(Command& command, const std::shared_ptr<PlotArguments>& ar
       ->details(
           "studio: a key light from the upper left of the camera, and white light from all directions. night: a lamp "
           "and a dark sky.")
-      ->choices({"studio", "ambient", "flat", "night"});
+      ->choices(plot::style_names());
   command.add_flag("--allow-empty", arguments->plot.allow_empty,
                    "Render the background alone if --select or --slice leaves nothing; default: an error");
   command.add_flag("--ground", arguments->plot.ground, "Add a ground that receives shadows");

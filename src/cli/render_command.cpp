@@ -28,7 +28,6 @@
 #include "job/job_report.h"
 #include "job/provenance.h"
 #include "preview/preview.h"
-#include "preview/target.h"
 #include "render/progress.h"
 
 namespace orrery::cli {

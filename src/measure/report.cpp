@@ -12,13 +12,15 @@
 #include "display/develop.h"
 #include "display/settings.h"
 #include "image/write.h"
-#include "measure/report_page.h"
 #include "measure/study.h"
-#include "measure/temp_dir.h"
-#include "metrics/false_color.h"
-#include "metrics/pixel_errors.h"
+#include "measure/temp_files.h"
+#include "metrics/color_view.h"
+#include "metrics/errors.h"
 
 namespace orrery::measure {
+
+extern const char* const kReportPage;  // report_page.cpp.in
+
 namespace {
 
 using base::append;

@@ -17,13 +17,12 @@
 #include "base/frames.h"
 #include "base/text.h"
 #include "particles/write_table.h"
-#include "plot/converted_file.h"
 #include "plot/data_frames.h"
-#include "plot/loaded_frame.h"
 #include "plot/view.h"
 #include "points/color_map.h"
 
 namespace orrery::plot {
+
 namespace {
 
 using Bytes = std::vector<std::uint8_t>;

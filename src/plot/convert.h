@@ -1,14 +1,25 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <cstddef>
 #include <filesystem>
 #include <functional>
+#include <string>
+#include <vector>
 
-#include "plot/data_options.h"
+#include "base/diagnostic.h"
+#include "plot/data_frames.h"
 
 namespace orrery::plot {
 
-struct ConvertedFile;
+/// A file that convert() has written.
+struct ConvertedFile {
+  std::filesystem::path file;
+  std::size_t spheres = 0;
+  std::vector<std::string> columns;
+  std::vector<std::string> notes;  ///< what was omitted, and why
+  std::vector<base::Diagnostic> warnings;
+};
 
 struct ConvertOptions : DataOptions {
   std::filesystem::path output;  ///< .ply, .xyz, .npy or .csv; with a frame pattern if there are several frames

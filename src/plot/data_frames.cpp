@@ -10,8 +10,6 @@
 #include "base/error.h"
 #include "base/frames.h"
 #include "data/data_file.h"
-#include "plot/data_options.h"
-#include "plot/loaded_frame.h"
 #include "points/color_map.h"
 #include "points/derived.h"
 #include "points/load_points.h"
@@ -20,6 +18,7 @@
 #include "points/spacing.h"
 
 namespace orrery::plot {
+
 namespace {
 
 /// Colour map of numbers, and of categories.

@@ -8,11 +8,14 @@
 #include <fmt/core.h>
 
 #include "base/error.h"
+#include "base/image_limits.h"
 #include "base/text.h"
 #include "data/data_file.h"
 #include "display/look_up.h"
+#include "format/write_tree.h"
+#include "load/load_scene.h"
+#include "load/working_space.h"
 #include "plot/data_frames.h"
-#include "plot/loaded_frame.h"
 #include "plot/scene_text.h"
 #include "plot/view.h"
 #include "points/color_map.h"
@@ -22,6 +25,23 @@ namespace orrery::plot {
 namespace {
 
 using scene::number_text;
+
+/// Noise of a plot unless the user limits samples, noise or time.
+constexpr double kNoise = 0.02;
+
+/// A side of the image, which the camera must know. An invalid one is reported when the scene is read.
+int side_of(const format::Overrides& overrides, const char* key, int otherwise) {
+  return static_cast<int>(std::clamp<std::int64_t>(overrides.integer(key).value_or(otherwise), 1, base::kLargestSide));
+}
+
+/// The vertical field of view if the overrides select a perspective camera, also by a field of view alone. An invalid
+/// one is reported when the scene is read.
+std::optional<double> vfov_of(const format::Overrides& overrides) {
+  const std::optional<std::string> projection = overrides.string("camera.projection");
+  const std::optional<double> vfov = overrides.number("camera.vfov");
+  if (projection != "perspective" && (projection || !vfov)) return {};
+  return vfov && *vfov > 0 && *vfov < 180 ? *vfov : scene::Camera().vfov;
+}
 
 /// Scenes are TOML, which is UTF-8.
 void require_utf8(const std::string& text) {
@@ -36,8 +56,15 @@ void require_utf8(const std::string& text) {
 /// A points table of the scene as its author would write it, completed step by step.
 class PlotMaker {
  public:
-  PlotMaker(const PlotOptions& options, const std::filesystem::path& folder)
-      : options_(options), data_(options, folder), info_(data_.info()) {
+  explicit PlotMaker(const PlotOptions& options)
+      : options_(options),
+        data_(options, options.scene_file.parent_path()),
+        info_(data_.info()),
+        width_(side_of(options.overrides, "image.width", 1920)),
+        height_(side_of(options.overrides, "image.height", 1080)),
+        vfov_(vfov_of(options.overrides)),
+        is_turntable_(options.overrides.number("animation.turntable").value_or(0) != 0) {
+    const std::filesystem::path folder = options.scene_file.parent_path();
     out_.points = options.points;
     out_.points.material_column = "";  // the scene of a plot has one material
     out_.points.file = folder.empty() ? options.file : std::filesystem::proximate(options.file, folder);
@@ -70,21 +97,22 @@ class PlotMaker {
     for (const auto& plane : options_.slices) slice(plane, axes, out_.points);
     // A camera that looks along the up axis orbits around the vertical of its image.
     const bool is_vertical = math::length(math::cross(up, axes.back)) < kSmallestSine;
-    const math::Vec3d pole = options_.is_turntable && !is_vertical ? up : axes.up;
-    ViewExtent extent(options_.is_turntable ? turned(axes, pole) : axes);
+    const math::Vec3d pole = is_turntable_ && !is_vertical ? up : axes.up;
+    ViewExtent extent(is_turntable_ ? turned(axes, pole) : axes);
     visit_frames(extent, up);
     if (extent.is_empty()) report_empty();
-    if (options_.is_turntable && !extent.is_empty()) extent = orbit(axes, extent.center(), pole);
-    const double aspect = static_cast<double>(options_.width) / options_.height;
-    scene::Camera camera = options_.vfov ? extent.perspective_camera(aspect, *options_.vfov) : extent.camera(aspect);
+    if (is_turntable_ && !extent.is_empty()) extent = orbit(axes, extent.center(), pole);
+    const double aspect = static_cast<double>(width_) / height_;
+    scene::Camera camera = vfov_ ? extent.perspective_camera(aspect, *vfov_) : extent.camera(aspect);
     camera.up = pole;
     chose(fmt::format("view {}, {}", options_.look_from,
-                      options_.vfov ? fmt::format("vertical field of view {}", number_text(*options_.vfov))
-                                    : number_text(rounded(*camera.width)) + " wide"),
+                      vfov_ ? fmt::format("vertical field of view {}", number_text(*vfov_))
+                            : number_text(rounded(*camera.width)) + " wide"),
           fmt::format("fitted to the spheres{}{}", out_.frames.size() > 1 ? " of all frames" : "",
-                      options_.is_turntable ? " and the whole orbit" : ""));
+                      is_turntable_ ? " and the whole orbit" : ""));
     choose_display_view();
-    PlotParts parts{options_, out_.points, camera, out_.view, axes, extent.center(), extent.radius(), {}};
+    PlotParts parts{options_,  width_, height_,         out_.points,     camera,
+                    out_.view, axes,   extent.center(), extent.radius(), {}};
     if (options_.ground && !extent.is_empty()) {
       parts.ground = ground_below(lowest_, up, extent);
       if (hides_view(*parts.ground, camera, aspect)) {
@@ -93,10 +121,12 @@ class PlotMaker {
               fmt::format("it would hide the spheres from {}; look from further above", options_.look_from));
       }
     }
-    if (!options_.has_style)
-      chose("style studio", "a key light from the upper left, and white light from all directions");
-    if (!options_.has_size)
-      chose(fmt::format("size {} x {}", options_.width, options_.height), "--width and --height change it");
+    if (!options_.style) chose("style studio", "a key light from the upper left, and white light from all directions");
+    if (!options_.overrides.sets("image.width") && !options_.overrides.sets("image.height"))
+      chose(fmt::format("size {} x {}", width_, height_), "--width and --height change it");
+    choose_samples();
+    if (options_.develops && display_of(options_).view.empty() && out_.view == kPlainView)
+      chose(fmt::format("view transform {}", out_.view), "colours match the colour map");
     out_.text = scene_text(parts);
     return std::move(out_);
   }
@@ -222,11 +252,19 @@ class PlotMaker {
 
   /// A view without tone mapping, which preserves the colours of the colour map.
   void choose_display_view() {
-    out_.view = options_.display.view;
+    const display::Settings display = display_of(options_);
+    out_.view = display.view;
     if (!out_.view.empty()) return;
-    out_.view = display::view_or_default(options_.display, kPlainView);
+    out_.view = display::view_or_default(display, kPlainView);
     if (out_.view != kPlainView)
       chose("display view " + out_.view, std::string("the default; the OCIO config has no view ") + kPlainView);
+  }
+
+  void choose_samples() {
+    if (options_.has_target || options_.overrides.sets("render.samples")) return;
+    if (options_.style == Style::kFlat) return chose("samples 100", "without shading there is hardly any noise");
+    out_.noise = kNoise;
+    chose(fmt::format("noise {}", kNoise), "--noise, --time or --samples change it");
   }
 
   /// Reads all frames once, so that the view contains all of them and a single range of the colour map avoids flicker.
@@ -282,6 +320,9 @@ class PlotMaker {
   const PlotOptions& options_;
   DataFrames data_;
   const data::FrameInfo& info_;
+  int width_, height_;          ///< px
+  std::optional<double> vfov_;  ///< degrees: a perspective camera; otherwise orthographic
+  bool is_turntable_;           ///< the camera orbits around the up axis
   double lowest_ =
       std::numeric_limits<double>::infinity();  ///< lowest point of all spheres along the up axis, scene units
   PlotScene out_;
@@ -289,11 +330,62 @@ class PlotMaker {
 
 }  // namespace
 
-PlotScene make_plot(const PlotOptions& options, const std::filesystem::path& folder,
-                    const std::function<void(const std::vector<int>& frames)>& check) {
-  PlotMaker maker(options, folder);
+const std::vector<std::string>& style_names() {
+  static const std::vector<std::string> names = {"studio", "ambient", "flat", "night"};
+  return names;
+}
+
+std::optional<Style> style_of(const std::string& name) {
+  if (name.empty()) return {};
+  return static_cast<Style>(std::find(style_names().begin(), style_names().end(), name) - style_names().begin());
+}
+
+PlotScene make_plot(const PlotOptions& options, const std::function<void(const std::vector<int>& frames)>& check) {
+  PlotMaker maker(options);
   if (check) check(maker.frames());
   return maker.run();
+}
+
+display::Settings display_of(const PlotOptions& options) {
+  const format::Overrides& overrides = options.overrides;
+  display::Settings out;
+  scene::Color color;
+  color.config = overrides.string("color.config").value_or("");
+  out.config = load::config_of(options.scene_file, color);
+  out.display = overrides.string("color.display").value_or("");
+  out.view = overrides.string("color.view").value_or("");
+  out.look = overrides.string("color.look").value_or("");
+  return out;
+}
+
+load::LoadedScene settings_of(const PlotOptions& options, bool develops) {
+  load::SceneRequest request;
+  request.develops = develops;
+  request.source.file = options.scene_file;
+  request.source.text = std::make_shared<const std::string>();
+  request.source.typed_lines = 0;
+  request.source.has_file = false;
+  for (const format::Override& override : options.overrides) {
+    const std::string table = override.values.empty() ? "" : override.values.front().key;  // all keys are of one table
+    const std::string name = table.substr(0, table.find('.'));
+    if (override.fault || name == "color" || name == "image" || name == "output" || name == "render")
+      request.source.overrides.add(override);
+  }
+  return load::load_scene(request);
+}
+
+std::string saved_text(const PlotOptions& options, const PlotScene& made) {
+  format::Overrides settings;
+  for (const format::Override& override : options.overrides) {
+    const auto is_of_plot = [](const format::KeyValue& set) {  // make_plot() handles these two
+      return set.key == "image.width" || set.key == "image.height";
+    };
+    if (!std::all_of(override.values.begin(), override.values.end(), is_of_plot)) settings.add(override);
+  }
+  if (settings.empty()) return made.text;
+  const auto same = [](const std::string& file) { return file; };
+  return fmt::format("{}\n\n{}", made.text.substr(0, made.text.find('\n')),
+                     format::merged_text("plot", made.text, settings, same));
 }
 
 }  // namespace orrery::plot

@@ -8,7 +8,9 @@
 #include <vector>
 
 #include "display/settings.h"
-#include "plot/data_options.h"
+#include "format/overrides.h"
+#include "load/loaded_scene.h"
+#include "plot/data_frames.h"
 #include "plot/write_legend.h"
 #include "scene/scene.h"
 
@@ -17,18 +19,25 @@ namespace orrery::plot {
 
 enum class Style { kStudio, kAmbient, kFlat, kNight };
 
+/// Names of the styles, in the order of the enumerators.
+const std::vector<std::string>& style_names();
+
+/// The style with this name; none for an empty name.
+///
+/// Domain     empty, or one of style_names()
+std::optional<Style> style_of(const std::string& name);
+
 struct PlotOptions : DataOptions {
   std::string look_from = "iso";  ///< "iso", "+x" .. "-z", or "azimuth,elevation" in degrees
   std::string up;                 ///< "x", "y" or "z"; empty: depends on the format
-  Style style = Style::kStudio;
-  bool has_style = false;  ///< the user set `style`
+  std::optional<Style> style;     ///< default: kStudio
   bool ground = false;
-  int width = 1920, height = 1080;  ///< px
-  display::Settings display;        ///< display transform of the images; an empty view is chosen
-  bool has_size = false;            ///< the user set `width` or `height`
-  std::optional<double> vfov = {};  ///< degrees: a perspective camera; default: orthographic
-  bool is_turntable = false;        ///< the camera orbits around the up axis
-  bool allow_empty = false;         ///< a selection or a slice may leave nothing
+  bool allow_empty = false;          ///< a selection or a slice may leave nothing
+  bool has_target = false;           ///< the user limits noise or time
+  bool develops = false;             ///< an image has a display format
+  std::filesystem::path scene_file;  ///< paths in the scene, and the OCIO config, are relative to its folder
+  /// Keys that the user has set. They are not part of the scene's text, but size, camera and display view follow them.
+  format::Overrides overrides;
 };
 
 /// The view that reproduces the colours of the colour map, if the OCIO config defines it.
@@ -41,18 +50,28 @@ struct PlotScene {
   std::vector<int> frames;  ///< frames to render; empty: one still image
   scene::Points points;     ///< keys of the scene's points
   LegendColors legend;
-  std::string view;  ///< view of the display
+  std::string view;                  ///< view of the display
+  std::optional<double> noise = {};  ///< target noise, unless the user limits samples, noise or time
 };
 
 /// Reads the data and writes a scene for it.
 ///
-/// `folder`   folder of the scene file; paths in the scene are relative to it
 /// `check`    called with PlotScene::frames before any row is read, so that an invalid request fails early
 /// Errors     base::Error: those of points::load_points() and particles::open(); kBadData with its errors, and if a
 ///            selection or a slice leaves nothing; kUsage for an invalid view, and for options without effect; those of
 ///            `check`
 /// Cost       reads every frame once, to fit the camera and the colour map; twice for a turntable
-PlotScene make_plot(const PlotOptions& options, const std::filesystem::path& folder,
-                    const std::function<void(const std::vector<int>& frames)>& check = {});
+PlotScene make_plot(const PlotOptions& options, const std::function<void(const std::vector<int>& frames)>& check = {});
+
+/// The display transform that the user has set.
+display::Settings display_of(const PlotOptions& options);
+
+/// A provisional scene with only the overrides of tables that every scene has, validated.
+///
+/// `develops` see load::SceneRequest
+load::LoadedScene settings_of(const PlotOptions& options, bool develops);
+
+/// The scene with the overrides applied, so that rendering it does not need them again.
+std::string saved_text(const PlotOptions& options, const PlotScene& made);
 
 }  // namespace orrery::plot

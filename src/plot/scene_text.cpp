@@ -135,7 +135,7 @@ std::string ground_text(const Ground& ground) {
 
 std::string scene_text(const PlotParts& parts) {
   const PlotOptions& options = parts.options;
-  const Lighting& light = lighting_of(options.style);
+  const Lighting& light = lighting_of(options.style.value_or(Style::kStudio));
   std::string out = fmt::format(
       "# Written by orrery plot for {}\n"
       "\n"
@@ -148,8 +148,7 @@ std::string scene_text(const PlotParts& parts) {
       "[background]\n"
       "type = \"constant\"\n"
       "color = {}\n",
-      string_text(options.file.filename().string()), options.width, options.height, camera_text(parts),
-      light.background);
+      string_text(options.file.filename().string()), parts.width, parts.height, camera_text(parts), light.background);
   if (light.backdrop != nullptr) out += fmt::format("backdrop = {}\n", light.backdrop);
   if (options.style == Style::kFlat) out += "\n[render]\nshading = \"flat\"\n";
   out += fmt::format(

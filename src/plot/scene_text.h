@@ -13,6 +13,7 @@ struct PlotOptions;
 /// The parts of the scene of a plot.
 struct PlotParts {
   const PlotOptions& options;
+  int width, height;  ///< px
   const scene::Points& points;
   const scene::Camera& camera;
   const std::string& view;       ///< view of the display

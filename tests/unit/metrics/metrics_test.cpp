@@ -7,12 +7,9 @@
 #include <numbers>
 #include <random>
 
-#include "metrics/convolve.h"
-#include "metrics/false_color.h"
-#include "metrics/flip.h"
-#include "metrics/pixel_errors.h"
-#include "metrics/ssim.h"
-#include "metrics/z_test.h"
+#include "metrics/color_view.h"
+#include "metrics/errors.h"
+#include "metrics/perceptual.h"
 
 namespace orrery::metrics {
 namespace {

@@ -42,7 +42,10 @@ class PlotPlot : public testing::Test {
     support::write_bytes(folder_ / name, text);
     options.file = folder_ / name;
   }
-  void make() { made = make_plot(options, folder_.path()); }
+  void make() {
+    options.scene_file = folder_ / "scene.toml";
+    made = make_plot(options);
+  }
   void make(const std::string& name, const std::string& text) {
     write(name, text);
     make();
@@ -73,6 +76,12 @@ class PlotPlot : public testing::Test {
     return "no error";
   }
 
+  /// Sets a key, which replaces all overrides.
+  void set(const std::string& setting) {
+    options.overrides = {};
+    options.overrides.add(setting);
+  }
+
   PlotOptions options;
   PlotScene made;
   support::TempDir folder_;
@@ -87,7 +96,8 @@ TEST_F(PlotPlot, DefaultsWithoutRadiusAndColor) {
             "up z: customary for simulations and scans\n"
             "view iso, 20.8 wide: fitted to the spheres\n"
             "style studio: a key light from the upper left, and white light from all directions\n"
-            "size 1920 x 1080: --width and --height change it\n");
+            "size 1920 x 1080: --width and --height change it\n"
+            "noise 0.02: --noise, --time or --samples change it\n");
   const scene::Scene scene = read();
   ASSERT_EQ(scene.points.size(), 1u);
   EXPECT_EQ(scene.points[0].file, "a.csv") << "relative to the scene file";
@@ -107,8 +117,7 @@ TEST_F(PlotPlot, DefaultsWithoutRadiusAndColor) {
 
 TEST_F(PlotPlot, TheCameraOfTheSceneSeesAllSpheres) {
   for (const auto& [width, height] : {std::pair{480, 270}, {100, 1000}}) {
-    options.width = width;
-    options.height = height;
+    set("image={width=" + std::to_string(width) + ",height=" + std::to_string(height) + "}");
     make("a.csv", kCorners);
     const scene::Scene scene = read();
     const Vec3d back = math::normalized(scene.camera.look_from - scene.camera.look_at);
@@ -569,7 +578,7 @@ TEST_F(PlotPlot, TheMeanOfASphereInTheStudioIsItsColor) {
 }
 
 TEST_F(PlotPlot, APerspectiveCameraIsFitted) {
-  options.vfov = 30;
+  set("camera.vfov=30");
   make("a.csv", kCorners);
   EXPECT_EQ(choices().find(" wide"), std::string::npos) << choices();
   const scene::Scene scene = read();
@@ -593,11 +602,11 @@ TEST_F(PlotPlot, ATurntableFitsTheWholeOrbitAndAllFrames) {
   std::string rod = "x,y,z,radius\n";
   for (int i = -20; i <= 20; ++i) rod += std::to_string(i) + ",0,0,1\n";
   write("a.csv", rod);
-  options.is_turntable = true;
   for (const char* view : {"+x", "90,30", "iso", "+z", "0,-40"})
     for (const bool is_perspective : {false, true}) {
       options.look_from = view;
-      options.vfov = is_perspective ? std::optional(40.0) : std::nullopt;
+      set("animation.turntable=8");
+      if (is_perspective) options.overrides.add("camera.vfov=40");
       options.frames = {1, 2, 3, 4, 5, 6, 7, 8};
       make();
       scene::Scene turning = read();
@@ -637,12 +646,13 @@ TEST_F(PlotPlot, TheGroundIsOmittedIfItWouldHideTheSpheres) {
   for (const char* view : {"iso", "+z", "30,20", "0,90", "200,10"}) EXPECT_TRUE(has_ground(view)) << view;
   for (const char* view : {"-z", "30,-20", "-y", "+x", "0,0", "90,-0.001"}) EXPECT_FALSE(has_ground(view)) << view;
   // The lower corners of a tall image would be below the ground.
-  options.height = 20 * options.width;
+  set("image={width=16,height=320}");
   EXPECT_FALSE(has_ground("30,20"));
 }
 
 TEST_F(PlotPlot, WithoutLookOptionsTheirDefaultsArePrinted) {
-  options.has_style = options.has_size = true;
+  options.style = Style::kStudio;
+  set("image.width=16");
   make("a.csv", kCorners);
   EXPECT_EQ(choices().find("style"), std::string::npos) << choices();
   EXPECT_EQ(choices().find("size"), std::string::npos) << choices();
@@ -686,7 +696,7 @@ TEST_F(PlotPlot, FramesAreKnownBeforeAnyIsRead) {
     throw base::Error(base::ErrorKind::kUsage, "checked");
   };
   try {
-    make_plot(options, folder_.path(), check);
+    make_plot(options, check);
     FAIL() << "no error";
   } catch (const base::Error& e) {
     EXPECT_STREQ(e.what(), "checked");
@@ -702,7 +712,8 @@ TEST_F(PlotPlot, FileNamesCannotAddLines) {
 TEST_F(PlotPlot, PathsAreRelativeToTheScene) {
   write("a.csv", kCorners);
   std::filesystem::create_directory(folder_ / "scenes");
-  made = make_plot(options, folder_ / "scenes");
+  options.scene_file = folder_ / "scenes/scene.toml";
+  made = make_plot(options);
   EXPECT_EQ(made.points.file, "../a.csv");
 }
 

@@ -8,8 +8,8 @@
 #include "film/partial.h"
 #include "film/rendered_pixels.h"
 #include "kernel/pixel_place.h"
-#include "preview/canvas.h"
-#include "preview/png.h"
+#include "preview/file_sink.h"
+#include "preview/sink.h"
 
 namespace orrery::preview {
 

@@ -5,7 +5,7 @@
 #include <stdexcept>
 #include <string>
 
-#include "preview/png.h"
+#include "preview/file_sink.h"
 
 namespace orrery::preview {
 

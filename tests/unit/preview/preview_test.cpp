@@ -3,16 +3,116 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <memory>
+#include <string>
+#include <utility>
+
 #include "base/error.h"
 #include "display/develop.h"
 #include "film/picture.h"
 #include "film/rendered_pixels.h"
 #include "preview/file_sink.h"
+#include "preview/tev.h"
 #include "support/temp_dir.h"
 #include "unit/preview/pictures.h"
 #include "unit/preview/png_bytes.h"
 
 namespace orrery::preview {
+
+namespace {
+
+/// Runs a render of 100 s in steps of 50 ms; returns the number of updates and their total cost.
+std::pair<int, double> simulated(double interval_s, int threads, double cost_s) {
+  Pacing pacing(interval_s);
+  int updates = 0;
+  for (int step = 1; step <= 2000; ++step) {
+    const double now = 0.05 * step;
+    if (!pacing.is_due(now, threads * now)) continue;
+    pacing.updated(now, cost_s);
+    ++updates;
+  }
+  return {updates, updates * cost_s};
+}
+
+TEST(PreviewPacing, UpdatesOncePerInterval) { EXPECT_NEAR(simulated(1, 2, 1e-4).first, 100, 5); }
+
+TEST(PreviewPacing, ExpensiveUpdatesAreLessFrequent) {
+  for (const int threads : {1, 2, 64})
+    for (const double cost : {0.01, 0.1, 0.4}) {
+      const double limit = kShareOfTime * threads * 100;
+      EXPECT_LE(simulated(0.5, threads, cost).second, std::max(limit * 1.0001, cost)) << threads << " " << cost;
+      EXPECT_GE(simulated(0.5, threads, cost).first, 1);
+    }
+  EXPECT_NEAR(simulated(0.5, 1, 0.1).second, kShareOfTime * 100, 0.101);
+}
+
+TEST(PreviewPacing, TimeBetweenUpdatesCounts) {
+  Pacing pacing(1);
+  EXPECT_FALSE(pacing.is_due(0.9, 0.9));
+  EXPECT_TRUE(pacing.is_due(1.1, 1.1));
+  pacing.spend(0.05);
+  EXPECT_FALSE(pacing.is_due(100, 0.9 * 0.05 / kShareOfTime));
+  EXPECT_TRUE(pacing.is_due(100, 1.1 * 0.05 / kShareOfTime));
+}
+
+}  // namespace
+
+namespace {
+
+TEST(PreviewTarget, TevListensOnLoopbackUnlessAHostIsGiven) {
+  const auto address = [](const std::string& text) {
+    const Target target = parse_target(text);
+    EXPECT_EQ(target.kind, TargetKind::kTev);
+    return target.host + " " + target.port;
+  };
+  EXPECT_EQ(address("tev"), "127.0.0.1 14158");
+  EXPECT_EQ(address("tev:desk"), "desk 14158");
+  EXPECT_EQ(address("tev:desk:9000"), "desk 9000");
+  EXPECT_EQ(address("tev:[::1]:9000"), "::1 9000");
+  EXPECT_EQ(address("tev:[::1]"), "::1 14158");
+}
+
+TEST(PreviewTarget, KnowsPngFiles) {
+  EXPECT_EQ(parse_target("out/p.PNG").file, "out/p.PNG");
+  EXPECT_EQ(parse_target("tev.png").kind, TargetKind::kFile);
+  EXPECT_EQ(parse_target("tev:9000.png").kind, TargetKind::kFile);
+}
+
+TEST(PreviewTarget, MakesTheSinkOfItsKind) {
+  const auto sink_of = [](const Target& target) { return make_sink(target, {}); };
+  EXPECT_EQ(sink_of({}), nullptr);
+  const std::unique_ptr<Sink> file = sink_of(parse_target("p.png"));
+  EXPECT_NE(dynamic_cast<const FileSink*>(file.get()), nullptr);
+  const std::unique_ptr<Sink> tev = sink_of(parse_target("tev"));
+  EXPECT_NE(dynamic_cast<const TevSink*>(tev.get()), nullptr);
+}
+
+TEST(PreviewTarget, AFramePatternIsNotAPreview) {
+  try {
+    parse_target("p.##.png");
+    ADD_FAILURE();
+  } catch (const base::Error& error) {
+    EXPECT_EQ(error.kind(), base::ErrorKind::kUsage);
+    EXPECT_NE(std::string(error.what()).find("frame pattern"), std::string::npos);
+  }
+}
+
+TEST(PreviewTarget, RejectsEverythingElse) {
+  for (const char* text : {"", "terminal", "p.exr", "tev:", "tev::9000", "tev:desk:", "tev:desk:0", "tev:desk:65536",
+                           "tev:desk:9x", "tev:::1", "tev:[::1", "tev:[::1]9", "tev2"}) {
+    try {
+      parse_target(text);
+      ADD_FAILURE() << text;
+    } catch (const base::Error& error) {
+      EXPECT_EQ(error.kind(), base::ErrorKind::kUsage) << text;
+      EXPECT_NE(std::string(error.what()).find("write tev, tev:HOST:PORT, or the name"), std::string::npos) << text;
+    }
+  }
+}
+
+}  // namespace
+
 namespace {
 
 display::Settings settings() {
@@ -76,4 +176,5 @@ TEST(PreviewPreview, EndsWithoutAnImage) {
 }
 
 }  // namespace
+
 }  // namespace orrery::preview

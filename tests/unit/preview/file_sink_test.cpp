@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "preview/png.h"
+#include "preview/file_sink.h"
 
 #include <gtest/gtest.h>
 
@@ -7,6 +7,7 @@
 #include "unit/preview/png_bytes.h"
 
 namespace orrery::preview {
+
 namespace {
 
 TEST(PreviewPng, HoldsTheBitmapWithRightChecksums) {
@@ -21,4 +22,5 @@ TEST(PreviewPng, HoldsTheBitmapWithRightChecksums) {
 }
 
 }  // namespace
+
 }  // namespace orrery::preview

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "preview/canvas.h"
+#include "preview/sink.h"
 
 #include <algorithm>
 
@@ -8,6 +8,7 @@
 #include "film/rendered_pixels.h"
 
 namespace orrery::preview {
+
 namespace {
 
 std::size_t cells_of(int pixels) { return static_cast<std::size_t>((pixels + Canvas::kSide - 1) / Canvas::kSide); }

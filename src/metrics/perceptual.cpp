@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "metrics/flip.h"
+#include "metrics/perceptual.h"
 
 #include <algorithm>
 #include <array>
@@ -8,9 +8,80 @@
 #include <numbers>
 
 #include "metrics/color_view.h"
-#include "metrics/convolve.h"
 
 namespace orrery::metrics {
+
+Taps taps_of(int radius, const std::function<double(double)>& shape) {
+  double sum = 0;
+  for (int x = -radius; x <= radius; ++x) sum += shape(x);
+  Taps taps;
+  for (int x = -radius; x <= radius; ++x) taps.push_back(static_cast<float>(shape(x) / sum));
+  return taps;
+}
+
+Taps gaussian_taps(int radius, double sigma) {
+  return taps_of(radius, [sigma](double x) { return std::exp(-x * x / (2 * sigma * sigma)); });
+}
+
+Map convolved(const Map& map, const Taps& along_x, const Taps& along_y) {
+  const int w = map.width, h = map.height;
+  const int rx = static_cast<int>(along_x.size()) / 2, ry = static_cast<int>(along_y.size()) / 2;
+  const auto row = [w](auto& values, int y) { return values.data() + static_cast<std::ptrdiff_t>(y) * w; };
+  Map between{w, h, std::vector<float>(map.values.size())}, out{w, h, std::vector<float>(map.values.size())};
+  std::vector<float> padded(static_cast<std::size_t>(w + 2 * rx));
+  for (int y = 0; y < h; ++y) {
+    const float* const from = row(map.values, y);
+    for (int x = -rx; x < w + rx; ++x) padded[static_cast<std::size_t>(x + rx)] = from[std::clamp(x, 0, w - 1)];
+    float* const to = row(between.values, y);
+    // One tap over a whole row at a time, which the compiler vectorizes.
+    for (std::size_t k = 0; k < along_x.size(); ++k)
+      for (int x = 0; x < w; ++x) to[x] += along_x[k] * padded[static_cast<std::size_t>(x) + k];
+  }
+  for (int y = 0; y < h; ++y) {
+    float* const to = row(out.values, y);
+    for (int k = -ry; k <= ry; ++k) {
+      const float* const from = row(between.values, std::clamp(y + k, 0, h - 1));
+      const float tap = along_y[static_cast<std::size_t>(k + ry)];
+      for (int x = 0; x < w; ++x) to[x] += tap * from[x];
+    }
+  }
+  return out;
+}
+
+namespace {
+
+Map luma(const ColorView& v) {
+  Map out{v.width, v.height, std::vector<float>(v.pixels())};
+  for (std::size_t i = 0; i < out.values.size(); ++i)
+    out.values[i] = 0.299f * v.channel[0][i] + 0.587f * v.channel[1][i] + 0.114f * v.channel[2][i];
+  return out;
+}
+
+Map product(const Map& a, const Map& b) {
+  Map out = a;
+  for (std::size_t i = 0; i < out.values.size(); ++i) out.values[i] *= b.values[i];
+  return out;
+}
+
+}  // namespace
+
+double ssim(const ColorView& picture, const ColorView& reference) {
+  constexpr double kC1 = 0.01 * 0.01, kC2 = 0.03 * 0.03;
+  const Taps taps = gaussian_taps(5, 1.5);
+  const auto mean = [&](const Map& m) { return convolved(m, taps, taps); };
+  const Map a = luma(picture), b = luma(reference);
+  const Map mean_a = mean(a), mean_b = mean(b), aa = mean(product(a, a)), bb = mean(product(b, b)),
+            ab = mean(product(a, b));
+  double sum = 0;
+  for (std::size_t i = 0; i < a.values.size(); ++i) {
+    const double x = static_cast<double>(mean_a.values[i]), y = static_cast<double>(mean_b.values[i]);
+    const double var_a = static_cast<double>(aa.values[i]) - x * x, var_b = static_cast<double>(bb.values[i]) - y * y;
+    const double covariance = static_cast<double>(ab.values[i]) - x * y;
+    sum += (2 * x * y + kC1) * (2 * covariance + kC2) / ((x * x + y * y + kC1) * (var_a + var_b + kC2));
+  }
+  return sum / static_cast<double>(a.values.size());
+}
+
 namespace {
 
 using Color = std::array<float, 3>;

@@ -1,21 +1,41 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "measure/file_axis.h"
+#include "measure/temp_files.h"
 
+#include <cerrno>
 #include <chrono>
+#include <cstdlib>
+#include <cstring>
 #include <filesystem>
+#include <string>
+#include <system_error>
 
 #include <fmt/core.h>
 
+#include "base/error.h"
 #include "image/exr_options.h"
 #include "image/header.h"
-
 #include "image/read.h"
 #include "image/write.h"
 #include "measure/study.h"
-#include "measure/temp_dir.h"
-#include "metrics/pixel_errors.h"
+#include "metrics/errors.h"
 
 namespace orrery::measure {
+
+TempDir::TempDir() {
+  std::error_code failed;
+  const std::filesystem::path parent = std::filesystem::temp_directory_path(failed);
+  std::string name = ((failed ? std::filesystem::path("/tmp") : parent) / "orrery-study-XXXXXX").string();
+  if (::mkdtemp(name.data()) == nullptr)
+    throw base::Error(
+        base::ErrorKind::kCannotCreate,
+        fmt::format("{}: {}; set $TMPDIR to another folder for temporary files", name, std::strerror(errno)));
+  path_ = name;
+}
+
+TempDir::~TempDir() {
+  std::error_code ignored;  // destructors cannot report errors
+  std::filesystem::remove_all(path_, ignored);
+}
 
 std::vector<FilePoint> measure_file_axis(const film::Picture& picture) {
   const TempDir scratch;

@@ -1,17 +1,182 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "preview/tev_sink.h"
+#include "preview/tev.h"
+
+#include <netdb.h>
+#include <poll.h>
+#include <unistd.h>
 
 #include <algorithm>
+#include <bit>
+#include <cerrno>
+#include <cstdint>
+#include <cstring>
 #include <utility>
 
 #include <fmt/core.h>
 
 #include "base/diagnostic.h"
 #include "display/picture_info.h"
-#include "preview/canvas.h"
-#include "preview/tev_packets.h"
+#include "preview/sink.h"
 
 namespace orrery::preview {
+
+namespace {
+
+constexpr char kCreateImage = 4, kUpdateImageV3 = 6;
+constexpr const char* kChannels[] = {"R", "G", "B"};
+constexpr std::int32_t kChannelCount = 3;
+
+/// A packet: its length in bytes, including these four, its type and its payload; numbers are little-endian.
+class Packet {
+ public:
+  explicit Packet(char type) : bytes_(4, '\0') { bytes_ += type; }
+
+  void add(bool flag) { bytes_ += flag ? '\1' : '\0'; }
+  void add(const std::string& text) { bytes_.append(text.c_str(), text.size() + 1); }
+  void add(std::int32_t number) { add_bytes(static_cast<std::uint32_t>(number), 4); }
+  void add(std::int64_t number) { add_bytes(static_cast<std::uint64_t>(number), 8); }
+  void add(const std::vector<float>& values) {
+    if constexpr (std::endian::native == std::endian::little) {
+      bytes_.append(reinterpret_cast<const char*>(values.data()), values.size() * sizeof(float));
+    } else {
+      for (const float v : values) add_bytes(std::bit_cast<std::uint32_t>(v), 4);
+    }
+  }
+  void add_channels() {
+    for (const char* const name : kChannels) add(std::string(name));
+  }
+  void reserve(std::size_t size) { bytes_.reserve(size); }
+
+  std::string finished() {
+    for (std::size_t i = 0; i < 4; ++i) bytes_[i] = static_cast<char>(bytes_.size() >> (8 * i) & 0xff);
+    return std::move(bytes_);
+  }
+
+ private:
+  void add_bytes(std::uint64_t number, int count) {
+    for (int i = 0; i < count; ++i) bytes_ += static_cast<char>(number >> (8 * i) & 0xff);
+  }
+
+  std::string bytes_;
+};
+
+}  // namespace
+
+std::string tev_create(const std::string& name, int width, int height, bool grabs_focus) {
+  Packet packet(kCreateImage);
+  packet.add(grabs_focus);
+  packet.add(name);
+  packet.add(static_cast<std::int32_t>(width));
+  packet.add(static_cast<std::int32_t>(height));
+  packet.add(kChannelCount);
+  packet.add_channels();
+  return packet.finished();
+}
+
+std::string tev_update(const std::string& name, int x, int y, int width, int height, const std::vector<float>& rgb) {
+  constexpr std::size_t kHeader = 128;
+  Packet packet(kUpdateImageV3);
+  packet.reserve(kHeader + name.size() + rgb.size() * sizeof(float));
+  packet.add(false);  // does not grab the focus
+  packet.add(name);
+  packet.add(kChannelCount);
+  packet.add_channels();
+  for (const int number : {x, y, width, height}) packet.add(static_cast<std::int32_t>(number));
+  for (std::int64_t offset = 0; offset < kChannelCount; ++offset) packet.add(offset);
+  for (int channel = 0; channel < kChannelCount; ++channel) packet.add(std::int64_t{kChannelCount});  // stride
+  packet.add(rgb);
+  return packet.finished();
+}
+
+Connection::Connection(const std::string& host, const std::string& port) {
+  addrinfo hints{}, *found = nullptr;
+  hints.ai_family = AF_UNSPEC;
+  hints.ai_socktype = SOCK_STREAM;
+  hints.ai_flags = AI_NUMERICSERV;
+  const int error = getaddrinfo(host.c_str(), port.c_str(), &hints, &found);
+  if (error != 0) {
+    reason_ = gai_strerror(error);
+    return;
+  }
+  for (const addrinfo* a = found; a != nullptr; a = a->ai_next) {
+    Address address{a->ai_family, a->ai_addrlen, {}};
+    std::memcpy(&address.storage, a->ai_addr, a->ai_addrlen);
+    addresses_.push_back(address);
+  }
+  freeaddrinfo(found);
+}
+
+Connection::~Connection() {
+  if (socket_ >= 0) ::close(socket_);
+}
+
+void Connection::open() {
+  if (state_ != State::kClosed) return;
+  next_ = 0;
+  try_next();
+}
+
+void Connection::try_next() {
+  while (next_ < addresses_.size()) {
+    const Address& address = addresses_[next_++];
+    socket_ = ::socket(address.family, SOCK_STREAM | SOCK_NONBLOCK | SOCK_CLOEXEC, 0);
+    if (socket_ < 0) {
+      close(std::strerror(errno));
+      continue;
+    }
+    if (::connect(socket_, reinterpret_cast<const sockaddr*>(&address.storage), address.size) == 0) {
+      state_ = State::kOpen;
+      return;
+    }
+    if (errno == EINPROGRESS) {
+      state_ = State::kConnecting;
+      return;
+    }
+    close(std::strerror(errno));
+  }
+}
+
+void Connection::check() {
+  if (state_ == State::kConnecting) {
+    pollfd writable{socket_, POLLOUT, 0};
+    if (::poll(&writable, 1, 0) <= 0) return;
+    int error = 0;
+    socklen_t size = sizeof(error);
+    getsockopt(socket_, SOL_SOCKET, SO_ERROR, &error, &size);
+    if (error == 0) {
+      state_ = State::kOpen;
+      return;
+    }
+    close(std::strerror(error));
+    try_next();
+  } else if (state_ == State::kOpen) {
+    char ignored[256];
+    const ssize_t count = ::recv(socket_, ignored, sizeof(ignored), MSG_DONTWAIT);
+    if (count == 0) close("the viewer has closed the connection");
+    if (count < 0 && errno != EAGAIN && errno != EWOULDBLOCK && errno != EINTR) close(std::strerror(errno));
+  }
+}
+
+std::size_t Connection::send(const char* bytes, std::size_t count) {
+  if (state_ != State::kOpen) return 0;
+  const ssize_t sent = ::send(socket_, bytes, count, MSG_DONTWAIT | MSG_NOSIGNAL);
+  if (sent >= 0) return static_cast<std::size_t>(sent);
+  if (errno != EAGAIN && errno != EWOULDBLOCK && errno != EINTR) close(std::strerror(errno));
+  return 0;
+}
+
+void Connection::wait(int milliseconds) const {
+  pollfd writable{socket_, POLLOUT, 0};
+  ::poll(&writable, 1, milliseconds);
+}
+
+void Connection::close(const std::string& reason) {
+  if (socket_ >= 0) ::close(socket_);
+  socket_ = -1;
+  state_ = State::kClosed;
+  reason_ = reason;
+}
+
 namespace {
 
 using namespace std::chrono_literals;

@@ -3,10 +3,32 @@
 
 #include <cstddef>
 #include <functional>
+#include <vector>
 
 #include "metrics/color_view.h"
 
 namespace orrery::metrics {
+
+/// A one-dimensional kernel of 2 * radius + 1 taps.
+using Taps = std::vector<float>;
+
+/// Samples `shape` at -radius .. radius and normalizes the taps to a sum of 1.
+Taps taps_of(int radius, const std::function<double(double)>& shape);
+
+/// A Gaussian kernel, normalized to a sum of 1.
+///
+/// Units      `radius` and `sigma` in pixels
+Taps gaussian_taps(int radius, double sigma);
+
+/// Convolves a map with a separable kernel. The edge pixels are extended beyond the border.
+Map convolved(const Map& map, const Taps& along_x, const Taps& along_y);
+
+/// The mean structural similarity (SSIM) of the luma of two display-encoded images.
+///
+/// Domain     values 0..1; views of the same size, with channels
+/// Result     1 for identical images
+/// Reference  wang2004: 11 x 11 Gaussian window, sigma 1.5, K1 = 0.01, K2 = 0.03; edge pixels extended past the border
+double ssim(const ColorView& picture, const ColorView& reference);
 
 /// Pixels per degree of visual angle for a display 3840 pixels and 0.7 m wide, viewed from 0.7 m.
 inline constexpr double kPixelsPerDegree = 67.0206433;

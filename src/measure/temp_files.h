@@ -2,6 +2,9 @@
 #pragma once
 
 #include <filesystem>
+#include <vector>
+
+#include "film/forward.h"
 
 namespace orrery::measure {
 
@@ -21,5 +24,12 @@ class TempDir {
  private:
   std::filesystem::path path_;
 };
+
+struct FilePoint;
+
+/// Measures size, write time and error of an image as EXR, in half and float with each compression.
+///
+/// Errors     base::Error: kCannotCreate, kIo
+std::vector<FilePoint> measure_file_axis(const film::Picture& picture);
 
 }  // namespace orrery::measure
