@@ -9,7 +9,6 @@
 
 #include "accel/box_frame.h"
 #include "base/huge_pages.h"
-#include "base/packed_array.h"
 #include "kernel/sphere_array.h"
 
 namespace orrery::accel {

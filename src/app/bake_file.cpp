@@ -4,7 +4,6 @@
 #include "base/atomic_file.h"
 #include "base/error.h"
 #include "base/file_name.h"
-#include "base/output_file.h"
 #include "display/settings.h"
 #include "load/scene_files.h"
 

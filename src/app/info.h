@@ -7,7 +7,7 @@
 #include <utility>
 #include <vector>
 
-#include "base/diagnostic.h"
+#include "base/error.h"
 #include "job/forward.h"
 #include "job/memory.h"
 #include "load/forward.h"

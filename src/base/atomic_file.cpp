@@ -10,16 +10,20 @@
 #include <atomic>
 #include <cerrno>
 #include <climits>
+#include <cstddef>
 #include <cstring>
 #include <random>
 #include <string>
 #include <string_view>
 
-#include "base/file_error.h"
+#include "base/error.h"
 #include "base/file_name.h"
 
 namespace orrery::base {
 namespace {
+
+/// An OutputFile writes its buffer when it holds this many bytes.
+constexpr std::size_t kBufferBytes = std::size_t{1} << 20;
 
 /// File names that a signal handler must unlink; in static memory because a handler must not allocate.
 struct Slot {
@@ -173,6 +177,42 @@ void AtomicFile::commit() {
 void AtomicFile::commit_unsynced() {
   if (::rename(temporary_.c_str(), target_.c_str()) != 0) fail_to_write(path_, errno);
   committed_ = true;
+}
+
+OutputFile::OutputFile(const std::filesystem::path& path)
+    : path_(path), file_(path), descriptor_(::open(file_.temporary().c_str(), O_WRONLY | O_TRUNC | O_CLOEXEC)) {}
+
+OutputFile::~OutputFile() {
+  if (descriptor_ >= 0) ::close(descriptor_);
+}
+
+void OutputFile::flush() {
+  if (buffer_.size() >= kBufferBytes) write();
+}
+
+void OutputFile::write() {
+  std::string_view left = buffer_;
+  while (!left.empty()) {
+    const ssize_t written = ::write(descriptor_, left.data(), left.size());
+    if (written < 0 && errno == EINTR) continue;
+    if (written < 0) fail_to_write(path_, errno);
+    left.remove_prefix(static_cast<std::size_t>(written));
+  }
+  buffer_.clear();
+}
+
+void OutputFile::finish(bool synced) {
+  write();
+  const int status = ::close(descriptor_);
+  descriptor_ = -1;
+  if (status != 0) fail_to_write(path_, errno);
+  synced ? file_.commit() : file_.commit_unsynced();
+}
+
+void write_text_file(const std::filesystem::path& path, std::string_view text, bool synced) {
+  OutputFile file(path);
+  file.buffer() = text;
+  file.finish(synced);
 }
 
 void remove_unfinished_files() noexcept {

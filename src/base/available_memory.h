@@ -18,4 +18,9 @@ std::optional<std::uint64_t> available_memory(const std::filesystem::path& root 
 /// Returns freed memory to the operating system. The C library keeps that of arrays of up to 32 MiB.
 void release_freed_memory();
 
+/// The CPUs that the quotas of the process's control groups grant, rounded up; empty if there is no quota.
+///
+/// Reference  the kernel's documentation of control groups: cpu.max of version 2, cpu.cfs_quota_us of version 1
+std::optional<int> granted_cpus(const std::filesystem::path& root = "/");
+
 }  // namespace orrery::base

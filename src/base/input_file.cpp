@@ -9,7 +9,7 @@
 #include <cstring>
 #include <string>
 
-#include "base/file_error.h"
+#include "base/error.h"
 
 namespace orrery::base {
 

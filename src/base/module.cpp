@@ -9,7 +9,6 @@
 #include "base/error.h"
 
 namespace orrery::base {
-
 namespace {
 
 std::filesystem::path& module_folder() {

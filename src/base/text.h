@@ -50,4 +50,10 @@ bool contains(const std::vector<std::string>& names, std::string_view name);
 /// Joins names with commas: "a, b, c".
 std::string joined(const std::vector<std::string>& names);
 
+/// Encodes bytes in base64 with padding and without line breaks.
+///
+/// Result     4 characters for every 3 bytes, rounded up
+/// Reference  rfc4648, section 4
+std::string base64(std::string_view bytes);
+
 }  // namespace orrery::base

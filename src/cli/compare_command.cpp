@@ -10,7 +10,6 @@
 
 #include "app/compare_files.h"
 #include "app/compared_channels.h"
-#include "base/diagnostic.h"
 #include "base/error.h"
 #include "base/text.h"
 #include "cli/commands.h"

@@ -8,7 +8,7 @@
 #include "app/bake_file.h"
 #include "app/denoise_file.h"
 #include "app/develop_file.h"
-#include "base/diagnostic.h"
+#include "base/error.h"
 #include "base/text.h"
 #include "cli/commands.h"
 #include "cli/messages.h"

@@ -6,9 +6,9 @@
 
 #include <fmt/core.h>
 
+#include "base/atomic_file.h"
 #include "base/error.h"
 #include "base/file_name.h"
-#include "base/output_file.h"
 #include "cli/commands.h"
 #include "cli/messages.h"
 #include "cli/options.h"

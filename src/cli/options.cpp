@@ -8,7 +8,6 @@
 
 #include <fmt/core.h>
 
-#include "base/diagnostic.h"
 #include "base/error.h"
 #include "base/frames.h"
 #include "base/text.h"

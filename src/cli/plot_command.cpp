@@ -8,12 +8,11 @@
 
 #include "base/atomic_file.h"
 #include "base/available_memory.h"
-#include "base/diagnostic.h"
 #include "base/error.h"
 #include "base/file_name.h"
 #include "base/file_set.h"
 #include "base/frames.h"
-#include "base/output_file.h"
+#include "base/image_limits.h"
 #include "base/stop_point.h"
 #include "cli/commands.h"
 #include "cli/messages.h"

@@ -11,7 +11,6 @@
 #include <fmt/core.h>
 
 #include "base/atomic_file.h"
-#include "base/diagnostic.h"
 #include "base/error.h"
 #include "base/file_name.h"
 #include "base/frames.h"

@@ -10,7 +10,6 @@
 
 #include "app/data_info.h"
 #include "app/info.h"
-#include "base/diagnostic.h"
 #include "base/error.h"
 #include "base/file_name.h"
 #include "base/frames.h"

@@ -9,7 +9,7 @@
 #include <utility>
 #include <vector>
 
-#include "base/packed_array.h"
+#include "base/huge_pages.h"
 #include "kernel/lobe.h"
 
 namespace orrery::film {

@@ -10,8 +10,7 @@
 #include <utility>
 #include <vector>
 
-#include "base/diagnostic.h"
-#include "base/file_error.h"
+#include "base/error.h"
 #include "format/source_text.h"
 
 namespace orrery::format {

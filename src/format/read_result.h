@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "base/diagnostic.h"
+#include "base/error.h"
 #include "scene/scene.h"
 
 namespace orrery::format {

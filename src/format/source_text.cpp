@@ -11,7 +11,7 @@
 
 #include <fmt/core.h>
 
-#include "base/file_error.h"
+#include "base/error.h"
 #include "base/file_name.h"
 #include "base/input_file.h"
 #include "particles/open.h"

@@ -9,7 +9,7 @@
 #include <string_view>
 #include <vector>
 
-#include "base/diagnostic.h"
+#include "base/error.h"
 #include "format/overrides.h"
 
 namespace orrery::format {

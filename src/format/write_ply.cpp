@@ -11,7 +11,7 @@
 
 #include <fmt/core.h>
 
-#include "base/output_file.h"
+#include "base/atomic_file.h"
 
 namespace orrery::format {
 namespace {

@@ -7,8 +7,8 @@
 
 #include <fmt/core.h>
 
+#include "base/atomic_file.h"
 #include "base/error.h"
-#include "base/output_file.h"
 #include "format/write_ply.h"
 #include "format/written_text.h"
 #include "scene/animation.h"

@@ -3,7 +3,6 @@
 
 #include <fmt/core.h>
 #include "base/error.h"
-
 #include "film/picture.h"
 #include "image/format.h"
 #include "image/header.h"

@@ -5,7 +5,7 @@
 #include <functional>
 #include <string>
 
-#include "base/diagnostic.h"
+#include "base/error.h"
 #include "display/forward.h"
 #include "film/forward.h"
 #include "render/forward.h"

@@ -8,7 +8,7 @@
 
 #include <fmt/core.h>
 
-#include "base/control_group.h"
+#include "base/available_memory.h"
 #include "base/error.h"
 #include "base/text.h"
 #include "kernel/isa.h"

@@ -5,8 +5,8 @@
 
 #include <fmt/core.h>
 
+#include "base/atomic_file.h"
 #include "base/file_name.h"
-#include "base/output_file.h"
 #include "film/cryptomatte.h"
 #include "image/format.h"
 #include "job/layers.h"

@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-#include "base/diagnostic.h"
+#include "base/error.h"
 #include "film/partial.h"
 #include "job/shard_file.h"
 

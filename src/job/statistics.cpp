@@ -5,7 +5,7 @@
 
 #include <nlohmann/json.hpp>
 
-#include "base/output_file.h"
+#include "base/atomic_file.h"
 #include "film/picture.h"
 #include "job/job_report.h"
 #include "job/text.h"

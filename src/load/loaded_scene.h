@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "base/diagnostic.h"
+#include "base/error.h"
 #include "display/settings.h"
 #include "format/read_result.h"
 #include "load/load_textures.h"

@@ -7,7 +7,6 @@
 
 #include <nlohmann/json.hpp>
 
-#include "base/base64.h"
 #include "base/text.h"
 #include "display/develop.h"
 #include "display/settings.h"

@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "base/output_file.h"
+#include "base/atomic_file.h"
 #include "data/table.h"
 
 namespace orrery::particles {

@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-#include "base/diagnostic.h"
+#include "base/error.h"
 #include "plot/data_frames.h"
 
 namespace orrery::plot {

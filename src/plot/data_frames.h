@@ -9,7 +9,7 @@
 #include <utility>
 #include <vector>
 
-#include "base/diagnostic.h"
+#include "base/error.h"
 #include "data/forward.h"
 #include "data/table.h"
 #include "points/open_data.h"

@@ -9,9 +9,9 @@
 
 #include <fmt/core.h>
 
+#include "base/atomic_file.h"
 #include "base/error.h"
 #include "base/file_name.h"
-#include "base/output_file.h"
 #include "display/develop.h"
 #include "display/settings.h"
 #include "film/picture.h"

@@ -7,7 +7,6 @@
 #include <utility>
 #include <vector>
 
-#include "base/diagnostic.h"
 #include "base/error.h"
 #include "points/selection.h"
 

@@ -11,7 +11,7 @@
 
 #include <zlib.h>
 
-#include "base/output_file.h"
+#include "base/atomic_file.h"
 #include "display/develop.h"
 #include "display/picture_info.h"
 #include "preview/sink.h"

@@ -11,7 +11,6 @@
 #include <pthread.h>
 #include <time.h>
 
-#include "base/diagnostic.h"
 #include "base/error.h"
 #include "base/file_name.h"
 #include "base/frames.h"

@@ -14,7 +14,7 @@
 
 #include <fmt/core.h>
 
-#include "base/diagnostic.h"
+#include "base/error.h"
 #include "display/picture_info.h"
 #include "preview/sink.h"
 

@@ -22,7 +22,7 @@
 #include <utility>
 #include <vector>
 
-#include "base/file_error.h"
+#include "base/error.h"
 #include "base/module.h"
 #include "display/settings.h"
 #include "film/picture.h"

@@ -16,7 +16,7 @@
 #include <utility>
 #include <vector>
 
-#include "base/diagnostic.h"
+#include "base/error.h"
 #include "job/rendering.h"
 #include "python/arrays.h"
 #include "python/picture.h"

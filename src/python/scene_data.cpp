@@ -12,11 +12,11 @@
 
 #include <fmt/core.h>
 
-#include "base/file_error.h"
+#include "base/atomic_file.h"
+#include "base/error.h"
 #include "base/file_set.h"
 #include "base/hash.h"
 #include "base/input_file.h"
-#include "base/output_file.h"
 #include "base/text.h"
 #include "data/table_file.h"
 #include "format/named_files.h"

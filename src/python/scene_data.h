@@ -8,7 +8,7 @@
 #include <string>
 #include <vector>
 
-#include "base/diagnostic.h"
+#include "base/error.h"
 #include "data/forward.h"
 #include "load/scene_source.h"
 

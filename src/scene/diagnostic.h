@@ -3,7 +3,6 @@
 
 #include <string>
 
-#include "base/diagnostic.h"
 #include "base/error.h"
 
 namespace orrery::scene {

@@ -10,7 +10,6 @@
 
 #include <fmt/core.h>
 
-#include "base/diagnostic.h"
 #include "base/error.h"
 
 #include "base/stop_point.h"

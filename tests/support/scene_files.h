@@ -7,7 +7,6 @@
 #include <utility>
 #include <vector>
 
-#include "base/diagnostic.h"
 #include "base/error.h"
 #include "format/read_result.h"
 #include "format/read_scene.h"

@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "base/atomic_file.h"
-#include "base/output_file.h"
 
 #include <fcntl.h>
 #include <gtest/gtest.h>

@@ -3,6 +3,8 @@
 
 #include <gtest/gtest.h>
 
+#include <string>
+
 namespace orrery::base {
 namespace {
 
@@ -71,6 +73,21 @@ TEST(BaseText, PrintableTextIsUtf8WithoutControlCharacters) {
   for (const char* text : {"\n", "a\tb", "\x1B[2J", "\x7F", "\xC2\x85", "\xFF", "\xC3", "\xC0\x80", "\xED\xA0\x80",
                            "\xEF\xBF\xBF", "\xF4\x90\x80\x80"})
     EXPECT_FALSE(is_printable(text)) << text;
+}
+
+TEST(BaseText, EncodesTheTestVectorsOfRfc4648) {
+  EXPECT_EQ(base64(""), "");
+  EXPECT_EQ(base64("f"), "Zg==");
+  EXPECT_EQ(base64("fo"), "Zm8=");
+  EXPECT_EQ(base64("foo"), "Zm9v");
+  EXPECT_EQ(base64("foob"), "Zm9vYg==");
+  EXPECT_EQ(base64("fooba"), "Zm9vYmE=");
+  EXPECT_EQ(base64("foobar"), "Zm9vYmFy");
+}
+
+TEST(BaseText, EncodesBytesAbove127AndZero) {
+  EXPECT_EQ(base64(std::string("\xff\xfe\x00\x80", 4)), "//4AgA==");
+  EXPECT_EQ(base64("\xfb\xef\xbe"), "++++");
 }
 
 }  // namespace

@@ -5,7 +5,7 @@
 
 #include <limits>
 
-#include "base/diagnostic.h"
+#include "base/error.h"
 #include "scene/diagnostic.h"
 #include "scene/scene.h"
 #include "scene/texture.h"

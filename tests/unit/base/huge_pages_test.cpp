@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "base/packed_array.h"
+#include "base/huge_pages.h"
 
 #include <gtest/gtest.h>
 
@@ -9,7 +9,7 @@
 namespace orrery::base {
 namespace {
 
-TEST(BasePackedArray, TakesAsManyBytesAsTheLargestValueNeeds) {
+TEST(BaseHugePages, TakesAsManyBytesAsTheLargestValueNeeds) {
   const auto bytes_of_hundred = [](std::uint32_t largest) { return PackedArray(100, largest).bytes(); };
   EXPECT_EQ(bytes_of_hundred(255), 103u);
   EXPECT_EQ(bytes_of_hundred(256), 202u);
@@ -20,7 +20,7 @@ TEST(BasePackedArray, TakesAsManyBytesAsTheLargestValueNeeds) {
   EXPECT_EQ(bytes_of_hundred(0xFFFFFFFF), 400u);
 }
 
-TEST(BasePackedArray, HoldsEveryValueWithoutTouchingItsNeighbours) {
+TEST(BaseHugePages, HoldsEveryValueWithoutTouchingItsNeighbours) {
   std::mt19937 random(1);
   for (const std::uint32_t largest : {0u, 200u, 255u, 256u, 65535u, 70'000u, 0xFFFFFFu, 0x1000000u, 0xFFFFFFFFu}) {
     PackedArray packed(1000, largest);
@@ -35,7 +35,7 @@ TEST(BasePackedArray, HoldsEveryValueWithoutTouchingItsNeighbours) {
   }
 }
 
-TEST(BasePackedArray, MayBeEmpty) {
+TEST(BaseHugePages, MayBeEmpty) {
   EXPECT_EQ(PackedArray().size(), 0u);
   EXPECT_EQ(PackedArray(0, 7).size(), 0u);
 }

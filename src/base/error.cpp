@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "base/diagnostic.h"
+#include "base/error.h"
 
 #include <algorithm>
 #include <string_view>
