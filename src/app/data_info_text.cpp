@@ -9,7 +9,7 @@
 #include "app/data_info.h"
 #include "base/file_name.h"
 #include "base/text.h"
-#include "job/text.h"
+#include "job/statistics.h"
 #include "points/derived.h"
 
 namespace orrery::app {

@@ -11,7 +11,7 @@
 #include "image/format.h"
 #include "image/header.h"
 #include "image/library.h"
-#include "job/machine.h"
+#include "job/resources.h"
 #include "job/version.h"
 
 namespace orrery::app {

@@ -7,7 +7,6 @@
 #include "image/format.h"
 #include "image/read.h"
 #include "image/write.h"
-#include "job/display_writer.h"
 #include "job/outputs.h"
 #include "job/version.h"
 #include "load/scene_files.h"

@@ -15,7 +15,7 @@
 #include "format/read_result.h"
 #include "job/layers.h"
 #include "job/prepared_scene.h"
-#include "job/text.h"
+#include "job/statistics.h"
 #include "kernel/isa.h"
 #include "load/load_scene.h"
 #include "load/load_textures.h"

@@ -9,7 +9,7 @@
 
 #include "base/error.h"
 #include "job/forward.h"
-#include "job/memory.h"
+#include "job/resources.h"
 #include "load/forward.h"
 #include "load/loaded_map.h"
 

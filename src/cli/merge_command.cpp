@@ -9,8 +9,7 @@
 #include "cli/render_options.h"
 #include "cli/signals.h"
 #include "job/job.h"
-#include "job/job_report.h"
-#include "job/merge_shards.h"
+#include "job/shards.h"
 
 namespace orrery::cli {
 namespace {

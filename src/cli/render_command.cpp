@@ -24,8 +24,8 @@
 #include "film/partial.h"
 #include "film/picture.h"
 #include "film/rendered_pixels.h"
-#include "job/job_report.h"
-#include "job/provenance.h"
+#include "job/checkpoint.h"
+#include "job/job.h"
 #include "preview/preview.h"
 #include "render/progress.h"
 

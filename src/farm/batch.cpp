@@ -4,8 +4,8 @@
 #include <fmt/core.h>
 
 #include "base/frames.h"
-#include "job/job_files.h"
-#include "job/job_report.h"
+#include "job/check_job.h"
+#include "job/job.h"
 #include "job/prepared_scene.h"
 #include "load/scene_files.h"
 

@@ -8,8 +8,8 @@
 #include <vector>
 
 #include "base/error.h"
+#include "job/check_job.h"
 #include "job/job.h"
-#include "job/job_files.h"
 
 namespace orrery::farm {
 

@@ -8,9 +8,9 @@
 #include "compile/compiled_scene.h"
 #include "image/exr_options.h"
 #include "image/format.h"
+#include "job/checkpoint.h"
 #include "job/job.h"
-#include "job/job_files.h"
-#include "job/machine.h"
+#include "load/scene_files.h"
 #include "scene/scene.h"
 
 namespace orrery::job {
@@ -27,6 +27,26 @@ void check_shard(const Job& job) {
 }
 
 }  // namespace
+
+std::vector<OutputFile> outputs_of(const Job& job) {
+  std::vector<OutputFile> out;
+  for (const ImageFile& output : job.outputs.images) out.push_back({output.path, "-o"});
+  if (!job.outputs.deep.empty()) out.push_back({job.outputs.deep, "--deep"});
+  if (!job.outputs.statistics.empty()) out.push_back({job.outputs.statistics, "--stats"});
+  if (job.merge.shards.empty() && job.keep == nullptr)
+    out.push_back({checkpoint_file(job.outputs.images.front().path), "checkpoint"});
+  return out;
+}
+
+void add_job_files(const Job& job, base::FileSet& files, const std::string& owner) {
+  if (job.scene.has_file) files.add_input(job.scene.file, "scene");
+  for (const ShardFile& shard : job.merge.shards) files.add_input(shard.file, "shard");
+  load::add_ocio_configs(job.outputs.display.config, files);
+  for (const OutputFile& output : outputs_of(job)) files.add_output(output.path, output.role + owner);
+  if (is_shard(job)) return;
+  for (const std::filesystem::path& manifest : possible_manifest_files(job.outputs))
+    files.add_output(manifest, "Cryptomatte manifest" + owner);
+}
 
 void check_request(const Job& job) {
   check_bits(job.outputs.images, job.outputs.bits);
@@ -47,15 +67,12 @@ void check_layers(const Job& job, const scene::Scene& scene) {
     throw base::Error(base::ErrorKind::kUsage, "no output can hold the requested layers; add -o FILE.exr");
 }
 
-void check_samples(const Job& job, const compile::CompiledScene& compiled) {
+void check_scene(const Job& job, const compile::CompiledScene& compiled) {
   if (job.sampling.sample_end > static_cast<std::uint32_t>(compiled.samples))
     throw base::Error(
         base::ErrorKind::kUsage,
         fmt::format("--sample-range {}:{} exceeds the scene's {} samples; raise them with --samples {}",
                     job.sampling.sample_begin, job.sampling.sample_end, compiled.samples, job.sampling.sample_end));
-}
-
-void check_sizes(const Job& job, const compile::CompiledScene& compiled) {
   for (const ImageFile& output : job.outputs.images) image::check_size(output.path, compiled.width, compiled.height);
 }
 

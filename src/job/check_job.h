@@ -1,12 +1,33 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "base/file_set.h"
 #include "compile/forward.h"
 #include "scene/forward.h"
 
 namespace orrery::job {
 
 struct Job;
+
+/// A file that a job writes, and its role.
+struct OutputFile {
+  std::filesystem::path path;
+  std::string role;  ///< "-o", "--stats", "checkpoint"
+};
+
+/// All files that a job writes, except Cryptomatte manifests, which only some scenes have.
+std::vector<OutputFile> outputs_of(const Job& job);
+
+/// Adds the files that a job reads and writes according to its command line. The names of Cryptomatte manifests are
+/// reserved for every EXR image, because the scene has not been read yet.
+///
+/// `owner`    appended to roles in messages about several scenes: " of shot.toml"
+/// Errors     base::Error(kUsage) for an output that is an input or another output
+void add_job_files(const Job& job, base::FileSet& files, const std::string& owner = {});
 
 /// Checks everything in a request that does not depend on the scene: formats, bit depths, whether files can be created,
 /// compression, instruction set.
@@ -19,14 +40,10 @@ void check_request(const Job& job);
 /// Errors     base::Error(kUsage)
 void check_layers(const Job& job, const scene::Scene& scene);
 
-/// Checks that --sample-range A:B is within the scene's sample count.
+/// Checks that --sample-range A:B is within the scene's sample count, and that the formats of the image files support
+/// an image of this size.
 ///
 /// Errors     base::Error(kUsage)
-void check_samples(const Job& job, const compile::CompiledScene& compiled);
-
-/// Checks that the formats of the image files support an image of this size.
-///
-/// Errors     base::Error(kUsage)
-void check_sizes(const Job& job, const compile::CompiledScene& compiled);
+void check_scene(const Job& job, const compile::CompiledScene& compiled);
 
 }  // namespace orrery::job

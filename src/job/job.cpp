@@ -10,43 +10,35 @@
 
 #include "base/atomic_file.h"
 #include "base/available_memory.h"
-#include "base/error.h"
 #include "base/stop_point.h"
 #include "base/text.h"
-#include "compile/compile.h"
 #include "compile/compiled_scene.h"
-#include "compile/environment.h"
 #include "denoise/denoise.h"
 #include "display/picture_info.h"
 #include "film/layer_film.h"
 #include "film/partial.h"
 #include "format/read_result.h"
+#include "image/exr_options.h"
 #include "image/format.h"
 #include "image/library.h"
 #include "image/partial_file.h"
 #include "job/check_job.h"
 #include "job/checkpoint.h"
-#include "job/disk_space.h"
-#include "job/job_files.h"
-#include "job/job_report.h"
 #include "job/layers.h"
-#include "job/machine.h"
-#include "job/make_picture.h"
-#include "job/matte_manifest.h"
-#include "job/memory.h"
 #include "job/picture_header.h"
 #include "job/prepared_scene.h"
-#include "job/provenance.h"
 #include "job/rendering.h"
+#include "job/shards.h"
 #include "job/statistics.h"
 #include "job/version.h"
-#include "job/write_outputs.h"
 #include "load/load_scene.h"
 #include "load/loaded_scene.h"
 #include "load/scene_files.h"
+#include "render/render.h"
 #include "render/result.h"
 #include "render/settings.h"
 #include "scene/layers.h"
+#include "scene/scene.h"
 
 namespace orrery::job {
 namespace {
@@ -65,53 +57,8 @@ class Stopwatch {
   std::chrono::steady_clock::time_point last_ = std::chrono::steady_clock::now();
 };
 
-void stop_if_cancelled(const Job& job) {
-  if (job.hooks.cancel != nullptr && job.hooks.cancel->load(std::memory_order_relaxed)) stop_job();
-}
-
-void warn(const Job& job, const base::Diagnostic& diagnostic) {
-  if (job.hooks.on_warning) job.hooks.on_warning(diagnostic);
-}
-
-/// Loads the scene and checks it against the job's output formats.
-const load::LoadedScene& load(const Job& job, PreparedScene& prepared, JobReport& report) {
-  const bool writes_display_format = job.outputs.has_display_format();
-  load::SceneRequest request{job.scene, job.outputs.display, writes_display_format || job.hooks.develops_pixels};
-  request.memory_limit = job.resources.memory_limit;
-  const load::LoadedScene& loaded = prepared.load(std::move(request));
-  for (const base::Diagnostic& warning : loaded.warnings) warn(job, warning);
-  if (writes_display_format) {
-    report.display = *loaded.choice;
-    require_bits(report.display, job.outputs);
-  }
-  return loaded;
-}
-
-/// The layers that an output of the job holds; others are not computed.
-Layers layers_for(const Job& job, const scene::Scene& scene, const compile::CompiledScene& compiled) {
-  Layers layers = choose_layers(scene, compiled);
-  layers.request.deep = !job.outputs.deep.empty();
-  layers.request.halves = layers.request.halves || job.denoise;
-  image::check_lossless(film::planes_of(layers.request), job.outputs.exr);
-  check_layers(job, scene);
-  if (job.outputs.has_exr() || job.keep != nullptr) return layers;
-  Layers none;
-  none.request.coverage = layers.request.coverage;
-  none.request.deep = layers.request.deep;
-  none.request.halves = job.denoise;
-  return none;
-}
-
-void count_bad_values(const film::Picture& picture, JobReport& report) {
-  for (const film::Plane& plane : picture.planes) {
-    if (film::is_half(plane.name)) continue;  // NaN without samples
-    const film::BadValues bad = film::count_bad_values(plane);
-    if (!bad.any()) continue;
-    report.bad_values += bad;
-    const std::string layer = plane.layer().empty() ? "beauty" : plane.layer();
-    if (report.bad_layers.empty() || report.bad_layers.back().first != layer) report.bad_layers.push_back({layer, {}});
-    report.bad_layers.back().second += bad;
-  }
+[[noreturn]] void stop_job(const std::string& remedy = "") {
+  throw base::Error(base::ErrorKind::kStopped, "stopped; no image was written" + remedy);
 }
 
 std::string missed_target(const Job& job, const render::Statistics& statistics) {
@@ -127,151 +74,296 @@ std::string missed_target(const Job& job, const render::Statistics& statistics) 
   return out;
 }
 
-render::Settings settings_of(const Job& job, const scene::Scene& scene, const film::LayerRequest& layers) {
-  render::Settings out;
-  out.threads = job.resources.threads > 0 ? job.resources.threads : default_threads();
-  if (scene.render.traversal == scene::Traversal::kPacket) out.traversal = accel::Traversal::kPacket;
-  if (scene.render.traversal == scene::Traversal::kSingle) out.traversal = accel::Traversal::kSingle;
-  out.layers = layers;
-  out.on_progress = job.hooks.on_progress;
-  out.on_build = job.hooks.on_build;
-  out.on_pixels = job.hooks.on_pixels;
-  out.cancel = job.hooks.cancel;
-  return out;
-}
+/// One run of a job. The methods are in the order in which run() calls them.
+class Run {
+ public:
+  /// `report`   receives what is known so far, also if the job fails
+  Run(const Job& job, base::FileSet& files, JobReport& report)
+      : job_(job),
+        files_(files),
+        report_(report),
+        prepared_(job.prepared ? job.prepared : std::make_shared<PreparedScene>()) {}
 
-/// Denoises the image, and removes the halves unless the scene requests them.
-void denoise_picture(const Job& job, const scene::Scene& scene, int threads, film::Picture& picture) {
-  if (!denoise::denoise(picture, threads).missing.empty())
-    warn(job, base::file_diagnostic(base::Severity::kWarning, job.scene.file.string(),
-                                    "the noise cannot be measured, because one half of the samples is missing; the "
-                                    "image is hardly denoised",
-                                    "render at least 2 samples per pixel"));
-  if (job.hooks.on_denoised) job.hooks.on_denoised(picture);
-  if (!base::contains(scene::requested_layers(scene), scene::kHalvesLayer)) denoise::remove_halves(picture);
-}
+  void run() {
+    load();
+    report_.phases.read_s = watch_.lap();
+    stop_if_cancelled();
 
-/// The header of the finished image.
-image::Header finished_header(const Job& job, const format::ReadResult& read, const compile::CompiledScene& compiled,
-                              const JobReport& report, bool reproducible) {
-  image::Header header = picture_header(read, compiled, report, reproducible);
-  if (job.denoise) header.attributes.push_back({denoise::kAttribute, "orrery " + program_version()});
-  return header;
-}
+    prepare();
+    if (report_.was_skipped) return;
+    report_.phases.compile_s = watch_.lap();
+    stop_if_cancelled();
 
-/// Keeps the image in memory instead of writing files.
-void keep(const Job& job, const format::ReadResult& read, const compile::CompiledScene& compiled, const Layers& layers,
-          const image::Provenance& provenance, const display::Settings& display, const base::FileSet& files,
-          film::Picture picture, const JobReport& report) {
-  Rendering& out = *job.keep;
-  out.job = job;
-  out.job.hooks = {};
-  out.job.keep = nullptr;
-  out.job.scene.open_data = {};
-  out.picture = std::move(picture);
-  out.header = finished_header(job, read, compiled, report, false);
-  out.reproducible_header = finished_header(job, read, compiled, report, true);
-  out.mattes = layers.mattes;
-  out.display = display;
-  out.provenance = provenance;
-  out.report = report;
-  out.files = files;
-}
-
-/// Ends a job whose image could not be written: writes a checkpoint, so that the samples are not lost.
-[[noreturn]] void save_samples(const base::Error& error, const film::Partial& partial, Checkpoint& checkpoint,
-                               JobReport& report) {
-  try {
-    checkpoint.write(partial);
-  } catch (const base::Error& also) {
-    throw base::Error(error.kind(),
-                      fmt::format("{}; the checkpoint cannot be written, either: {}", error.what(), also.what()));
+    begin();
+    render::Result result = is_merge() ? merge() : render();
+    finish(result);
+    write(result);
+    checkpoint_->finish(result.partial && !is_kept() ? &*result.partial : nullptr);
+    report_.phases.write_s = watch_.lap();
   }
-  report.checkpoint = checkpoint.file();
-  throw base::Error(error.kind(),
-                    fmt::format("{}; {} holds the samples; when the problem is fixed, continue with --resume",
-                                error.what(), checkpoint.file().string()));
-}
 
-/// Read, check, compile, render or merge, develop, write.
-void run_phases(const Job& job, base::FileSet& files, JobReport& report) {
-  Stopwatch watch, total;
-  report.phases.prepare_s = job.prepare_s;
-  const std::shared_ptr<PreparedScene> prepared = job.prepared ? job.prepared : std::make_shared<PreparedScene>();
-  if (job.keep == nullptr) image::start_loading();
-  const load::LoadedScene& loaded = load(job, *prepared, report);
-  const format::ReadResult& read = loaded.read;
-  const display::Settings& display = loaded.display;
-  load::add_scene_files(job.scene.file, read.scene, files);
-  report.phases.read_s = watch.lap();
-  stop_if_cancelled(job);
-
-  const compile::CompiledScene& compiled = prepared->compile(job.resources.memory_limit);
-  check_samples(job, compiled);
-  check_sizes(job, compiled);
-  const Layers layers = layers_for(job, read.scene, compiled);
-  for (const auto& manifest : manifest_files(layers.mattes, job.outputs)) base::check_creatable(manifest);
-  const image::Provenance provenance = provenance_of(job, read, compiled, prepared->hashes(), layers);
-  const std::string stamp = stamp_of(job, provenance, display, report.display);
-  report.scene_hash = provenance.at("sceneHash");
-  report.was_skipped = job.skip_existing && is_up_to_date(job, compiled, provenance, stamp);
-  if (report.was_skipped) return;
-  require_disk_space(job.outputs, is_shard(job), image_size(compiled.width, compiled.height, layers.request),
-                     job.resources.disk_limit);
-  const MemoryNeeds needs =
-      memory_needs(compiled, layers.request, job.sampling.is_adaptive(), prepared->has_accelerator());
-  require_memory(estimate_memory(needs), job.resources.memory_limit, held_memory(needs));
-  report.hosts = {provenance.at("host")};
-  report.width = compiled.width;
-  report.height = compiled.height;
-  report.spheres = compiled.spheres.size();
-  report.phases.compile_s = watch.lap();
-  stop_if_cancelled(job);
-
-  const render::Settings settings = settings_of(job, read.scene, layers.request);
-  if (job.hooks.on_start && job.merge.shards.empty())
-    job.hooks.on_start(
-        {job.scene.file.filename().string(), compiled.width, compiled.height, compiled.pixel_aspect, display});
-  if (job.keep == nullptr) image::set_threads(settings.threads);  // fails now if the library cannot be loaded
-  const auto write_sums = [&](const std::filesystem::path& file, const film::Partial& partial) {
-    image::write_partial(file, preview(compiled, partial),
-                         picture_header(read, compiled, report, job.outputs.reproducible), provenance, partial);
-  };
-  const std::filesystem::path checkpoint_path =
-      job.keep == nullptr ? checkpoint_file(job.outputs.images.front().path) : std::filesystem::path();
-  Checkpoint checkpoint(checkpoint_path, job.checkpoint, job.hooks, provenance, write_sums);
-  render::Result result = job.merge.shards.empty()
-                              ? render_job(job, *prepared, compiled, settings, checkpoint, total.lap(), report)
-                              : merge_job(job, compiled, settings, provenance, report);
-  report.render = result.statistics;
-  const double made_s = watch.lap();
-  if (!job.merge.shards.empty()) report.phases.finish_s = made_s;
-
-  report.target_missed = missed_target(job, result.statistics);
-  if (job.denoise && !is_shard(job)) {
-    denoise_picture(job, read.scene, settings.threads, result.picture);
-    report.phases.denoise_s = watch.lap();
+ private:
+  bool is_merge() const { return !job_.merge.shards.empty(); }
+  /// True if the image stays in memory, and no file is written.
+  bool is_kept() const { return job_.keep != nullptr; }
+  const load::LoadedScene& loaded() const { return prepared_->loaded(); }
+  const scene::Scene& scene() const { return loaded().read.scene; }
+  const compile::CompiledScene& compiled() const { return prepared_->compiled(); }
+  bool is_cancelled() const {
+    return job_.hooks.cancel != nullptr && job_.hooks.cancel->load(std::memory_order_relaxed);
   }
-  count_bad_values(result.picture, report);
-  if (job.keep != nullptr) {
-    keep(job, read, compiled, layers, provenance, display, files, std::move(result.picture), report);
-  } else if (is_shard(job)) {
-    write_sums(job.outputs.images.front().path, *result.partial);
-  } else {
-    image::Header header = finished_header(job, read, compiled, report, job.outputs.reproducible);
-    header.stamp = stamp;
-    const int bits = job.outputs.bits != 0 ? job.outputs.bits : report.display.default_bits();
+  void stop_if_cancelled() const {
+    if (is_cancelled()) stop_job();
+  }
+  void warn(const base::Diagnostic& diagnostic) const {
+    if (job_.hooks.on_warning) job_.hooks.on_warning(diagnostic);
+  }
+
+  /// Reads the scene, and checks it against the output formats.
+  void load() {
+    report_.phases.prepare_s = job_.prepare_s;
+    if (!is_kept()) image::start_loading();
+    const bool writes_display_format = job_.outputs.has_display_format();
+    load::SceneRequest request{job_.scene, job_.outputs.display, writes_display_format || job_.hooks.develops_pixels};
+    request.memory_limit = job_.resources.memory_limit;
+    prepared_->load(std::move(request));
+    for (const base::Diagnostic& warning : loaded().warnings) warn(warning);
+    if (writes_display_format) {
+      report_.display = *loaded().choice;
+      require_bits(report_.display, job_.outputs);
+    }
+    load::add_scene_files(job_.scene.file, scene(), files_);
+  }
+
+  /// Compiles the scene, and checks everything that can be known before rendering.
+  void prepare() {
+    prepared_->compile(job_.resources.memory_limit);
+    check_scene(job_, compiled());
+    choose_layers();
+    for (const auto& manifest : manifest_files(layers_.mattes, job_.outputs)) base::check_creatable(manifest);
+    provenance_ = provenance_of(job_, loaded().read, compiled(), prepared_->hashes(), layers_);
+    stamp_ = stamp_of(job_, provenance_, loaded().display, report_.display);
+    report_.scene_hash = provenance_.at("sceneHash");
+    report_.was_skipped = job_.skip_existing && is_up_to_date(job_, compiled(), provenance_, stamp_);
+    if (report_.was_skipped) return;
+    require_disk_space(job_.outputs, is_shard(job_), image_size(compiled().width, compiled().height, layers_.request),
+                       job_.resources.disk_limit);
+    const MemoryNeeds needs =
+        memory_needs(compiled(), layers_.request, job_.sampling.is_adaptive(), prepared_->has_accelerator());
+    require_memory(estimate_memory(needs), job_.resources.memory_limit, held_memory(needs));
+    report_.hosts = {provenance_.at("host")};
+    report_.width = compiled().width;
+    report_.height = compiled().height;
+    report_.spheres = compiled().spheres.size();
+  }
+
+  /// The layers that an output of the job holds; others are not computed.
+  void choose_layers() {
+    layers_ = job::choose_layers(scene(), compiled());
+    film::LayerRequest& request = layers_.request;
+    request.deep = !job_.outputs.deep.empty();
+    request.halves = request.halves || job_.denoise;
+    image::check_lossless(film::planes_of(request), job_.outputs.exr);
+    check_layers(job_, scene());
+    if (job_.outputs.has_exr() || is_kept()) return;
+    Layers none;
+    none.request.coverage = request.coverage;
+    none.request.deep = request.deep;
+    none.request.halves = job_.denoise;
+    layers_ = std::move(none);
+  }
+
+  /// Opens what rendering needs.
+  void begin() {
+    settings_.threads = job_.resources.threads > 0 ? job_.resources.threads : default_threads();
+    if (scene().render.traversal == scene::Traversal::kPacket) settings_.traversal = accel::Traversal::kPacket;
+    if (scene().render.traversal == scene::Traversal::kSingle) settings_.traversal = accel::Traversal::kSingle;
+    settings_.layers = layers_.request;
+    settings_.on_progress = job_.hooks.on_progress;
+    settings_.on_pixels = job_.hooks.on_pixels;
+    settings_.cancel = job_.hooks.cancel;
+    if (job_.hooks.on_start && !is_merge())
+      job_.hooks.on_start({job_.scene.file.filename().string(), compiled().width, compiled().height,
+                           compiled().pixel_aspect, loaded().display});
+    if (!is_kept()) image::set_threads(settings_.threads);  // fails now if the library cannot be loaded
+    checkpoint_.emplace(is_kept() ? std::filesystem::path() : checkpoint_file(job_.outputs.images.front().path),
+                        job_.checkpoint, job_.hooks, provenance_,
+                        [this](const auto& file, const film::Partial& partial) { write_sums(file, partial); });
+  }
+
+  /// Renders, resuming from the checkpoint if there is one, and writes a checkpoint if stopped.
+  render::Result render() {
+    settings_.sampling = job_.sampling;
+    settings_.sampling.spend(since_begin_.lap());
+    settings_.sampling.unlimited = !is_limited(job_);
+    settings_.snapshot_is_due = [&] { return checkpoint_->is_due(); };
+    settings_.on_snapshot = [&](const film::Partial& partial) { checkpoint_->write_snapshot(partial); };
+    std::optional<film::Partial> from = checkpoint_->load(compiled().width, compiled().height);
+    report_.was_resumed = from.has_value();
+    if (from && !is_of_this_render(*from))
+      throw base::Error(base::ErrorKind::kBadData,
+                        checkpoint_->file().string() +
+                            " contains sums that do not match its header; delete it, or render "
+                            "without --resume to start again");
+    accel::Accel* const accel = build();
+    settings_.sampling.spend(report_.phases.build_s);
+    render::Result result;
+    if (accel != nullptr) result = render::render(compiled(), *accel, settings_, std::move(from));
+    result.statistics.build_s = report_.phases.build_s;
+    report_.render = result.statistics;
+    report_.phases.render_s = result.statistics.render_s;
+    report_.phases.finish_s = result.statistics.finish_s;
+    if (!result.completed) stop(result);
+    watch_.lap();
+    return result;
+  }
+
+  /// True if a render can continue from these sums; they may differ from their header if the file is damaged.
+  bool is_of_this_render(const film::Partial& from) const {
+    return from.is_adaptive() == settings_.sampling.is_adaptive() &&
+           from.layers.empty() != settings_.layers.records() && from.halves.empty() != settings_.layers.guides() &&
+           from.has_known_spheres(compiled().spheres.size());
+  }
+
+  /// Builds the BVH, unless the prepared scene has one.
+  ///
+  /// Result     null if the job was cancelled meanwhile
+  accel::Accel* build() {
+    const bool is_built = prepared_->has_accelerator();
+    Stopwatch watch;
+    accel::Accel* accel = nullptr;
     try {
-      report.written = write_outputs(job.outputs, display, bits, result.picture, header, layers.mattes);
-      if (!job.outputs.deep.empty()) image::write_deep(job.outputs.deep, result.deep, result.picture, header);
+      accel = &prepared_->accelerator(settings_.threads, [this](double fraction) {
+        if (job_.hooks.on_build) job_.hooks.on_build(fraction);
+        return !is_cancelled();
+      });
     } catch (const base::Error& error) {
-      if (!result.partial) throw;  // of a merge: the shards still exist
-      save_samples(error, *result.partial, checkpoint, report);
+      if (error.kind() != base::ErrorKind::kStopped) throw;
+    }
+    if (!is_built) report_.phases.build_s = watch.lap();
+    return accel;
+  }
+
+  /// Ends a cancelled job; its samples go to a checkpoint.
+  [[noreturn]] void stop(const render::Result& result) {
+    const std::string file = checkpoint_->file().string();
+    if (!result.partial || is_kept())
+      stop_job(report_.was_resumed ? fmt::format("; {} still holds the samples of the earlier run", file) : "");
+    checkpoint_->write(*result.partial);
+    report_.checkpoint = checkpoint_->file();
+    stop_job(fmt::format("; {} holds the samples so far; continue with --resume", file));
+  }
+
+  render::Result merge() {
+    render::Result result = merge_shards(job_, compiled(), settings_, provenance_, report_);
+    report_.phases.finish_s = watch_.lap();
+    return result;
+  }
+
+  /// Denoises the image, and counts bad values before a display transform can hide them.
+  void finish(render::Result& result) {
+    report_.render = result.statistics;
+    report_.target_missed = missed_target(job_, result.statistics);
+    if (job_.denoise && !is_shard(job_)) {
+      denoise_picture(result.picture);
+      report_.phases.denoise_s = watch_.lap();
+    }
+    for (const film::Plane& plane : result.picture.planes) {
+      if (film::is_half(plane.name)) continue;  // NaN without samples
+      const film::BadValues bad = film::count_bad_values(plane);
+      if (!bad.any()) continue;
+      report_.bad_values += bad;
+      const std::string layer = plane.layer().empty() ? "beauty" : plane.layer();
+      auto& layers = report_.bad_layers;
+      if (layers.empty() || layers.back().first != layer) layers.push_back({layer, {}});
+      layers.back().second += bad;
     }
   }
-  checkpoint.finish(result.partial && job.keep == nullptr ? &*result.partial : nullptr);
-  report.phases.write_s = watch.lap();
-}
+
+  /// Denoises the image, and removes the halves unless the scene requests them.
+  void denoise_picture(film::Picture& picture) const {
+    if (!denoise::denoise(picture, settings_.threads).missing.empty())
+      warn(base::file_diagnostic(base::Severity::kWarning, job_.scene.file.string(),
+                                 "the noise cannot be measured, because one half of the samples is missing; the image "
+                                 "is hardly denoised",
+                                 "render at least 2 samples per pixel"));
+    if (job_.hooks.on_denoised) job_.hooks.on_denoised(picture);
+    if (!base::contains(scene::requested_layers(scene()), scene::kHalvesLayer)) denoise::remove_halves(picture);
+  }
+
+  void write(render::Result& result) {
+    if (is_kept()) return keep(std::move(result.picture));
+    if (is_shard(job_)) return write_sums(job_.outputs.images.front().path, *result.partial);
+    image::Header own = header(job_.outputs.reproducible);
+    own.stamp = stamp_;
+    const int bits = job_.outputs.bits != 0 ? job_.outputs.bits : report_.display.default_bits();
+    try {
+      report_.written = write_outputs(job_.outputs, loaded().display, bits, result.picture, own, layers_.mattes);
+      if (!job_.outputs.deep.empty()) image::write_deep(job_.outputs.deep, result.deep, result.picture, own);
+    } catch (const base::Error& error) {
+      if (!result.partial) throw;  // of a merge: the shards still exist
+      save_samples(error, *result.partial);
+    }
+  }
+
+  /// Keeps the image in memory.
+  void keep(film::Picture picture) const {
+    Rendering& out = *job_.keep;
+    out.job = job_;
+    out.job.hooks = {};
+    out.job.keep = nullptr;
+    out.job.scene.open_data = {};
+    out.picture = std::move(picture);
+    out.header = header(false);
+    out.reproducible_header = header(true);
+    out.mattes = layers_.mattes;
+    out.display = loaded().display;
+    out.provenance = provenance_;
+    out.report = report_;
+    out.files = files_;
+  }
+
+  /// The header of the finished image.
+  image::Header header(bool reproducible) const {
+    image::Header out = picture_header(loaded().read, compiled(), report_, reproducible);
+    if (job_.denoise) out.attributes.push_back({denoise::kAttribute, "orrery " + program_version()});
+    return out;
+  }
+
+  /// Writes a shard or a checkpoint, with the beauty as a preview.
+  void write_sums(const std::filesystem::path& file, const film::Partial& partial) const {
+    image::write_partial(file, render::finished(compiled(), {}, partial, 1).picture,
+                         picture_header(loaded().read, compiled(), report_, job_.outputs.reproducible), provenance_,
+                         partial);
+  }
+
+  /// Ends a job whose image could not be written: writes a checkpoint, so that the samples are not lost.
+  [[noreturn]] void save_samples(const base::Error& error, const film::Partial& partial) {
+    const std::string file = checkpoint_->file().string();
+    try {
+      checkpoint_->write(partial);
+    } catch (const base::Error& also) {
+      throw base::Error(error.kind(),
+                        fmt::format("{}; the checkpoint cannot be written, either: {}", error.what(), also.what()));
+    }
+    report_.checkpoint = checkpoint_->file();
+    throw base::Error(
+        error.kind(),
+        fmt::format("{}; {} holds the samples; when the problem is fixed, continue with --resume", error.what(), file));
+  }
+
+  const Job& job_;
+  base::FileSet& files_;
+  JobReport& report_;
+  std::shared_ptr<PreparedScene> prepared_;
+  Layers layers_;
+  image::Provenance provenance_;  ///< what the sums depend on
+  std::string stamp_;             ///< what the images depend on
+  render::Settings settings_;
+  std::optional<Checkpoint> checkpoint_;
+  Stopwatch watch_;  ///< of the phases
+  Stopwatch since_begin_;
+};
 
 /// True if a failure may be written to the statistics file. It may not if the request is invalid, since the error may
 /// concern this very file, nor if the scene reads the file, which is known only after parsing it.
@@ -299,7 +391,7 @@ JobReport run_job(const Job& job) {
   JobReport report;
   const base::StopScope scope(job.hooks.cancel);
   try {
-    run_phases(job, files, report);
+    Run(job, files, report).run();
   } catch (const base::Error& error) {
     if (may_report(job, report, error, files)) write_failure(job.outputs.statistics, report, error);
     throw;

@@ -1,32 +1,45 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include <cstdint>
+#include <atomic>
+#include <cstddef>
 #include <filesystem>
+#include <functional>
 #include <memory>
-#include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
+#include "base/error.h"
 #include "base/file_set.h"
-#include "job/checkpoint.h"
-#include "job/hooks.h"
+#include "display/forward.h"
+#include "display/settings.h"
+#include "film/picture.h"
+#include "image/provenance.h"
+#include "image/write.h"
 #include "job/outputs.h"
-#include "job/shard_file.h"
+#include "job/resources.h"
 #include "load/scene_source.h"
+#include "render/progress.h"
 #include "render/sampling_limits.h"
+#include "render/statistics.h"
 
 namespace orrery::job {
 
-struct JobReport;
 class PreparedScene;
+struct Rendering;
 
-/// Limits on the job's use of the machine.
-struct Resources {
-  int threads = 0;                 ///< 0: default_threads()
-  std::uint64_t memory_limit = 0;  ///< bytes; 0: the free memory
-  std::uint64_t disk_limit = 0;    ///< bytes per file system; 0: its free space
-  std::string isa;                 ///< best instruction set to use, "avx2"; empty: see choose_isa()
+/// When checkpoints are written and read.
+struct CheckpointSettings {
+  bool resume = false;    ///< continue from the checkpoint if it exists
+  bool keep = false;      ///< keep a checkpoint of the finished render, from which one with more samples can continue
+  double interval_s = 0;  ///< 0: only when the job is stopped
+};
+
+/// An EXR with a shard of an image, and its provenance.
+struct ShardFile {
+  std::filesystem::path file;
+  image::Provenance provenance;
 };
 
 /// The shards that a job merges instead of rendering.
@@ -35,7 +48,21 @@ struct MergeSettings {
   bool allow_missing = false;
 };
 
-struct Rendering;
+/// Callbacks by which a job reports to its caller, and flags by which the caller controls it. Every member may be
+/// empty.
+struct Hooks {
+  std::function<void(const render::Progress&)> on_progress;   ///< see render::Settings
+  std::function<void(double fraction)> on_build;              ///< called with the progress of the BVH build, 0..1
+  std::function<void(const display::PictureInfo&)> on_start;  ///< called before rendering starts
+  /// See render::Settings. Not called for a merge.
+  std::function<void(const film::Partial&, const film::RenderedPixels&)> on_pixels;
+  std::function<void(const film::Picture&)> on_denoised;  ///< receives the denoised image
+  bool develops_pixels = false;  ///< `on_pixels` applies the display transform, so its names must be checked
+  std::function<void(const base::Diagnostic&)> on_warning;
+  std::function<void(const std::string&)> on_note;  ///< receives replies to requests that were made by a signal
+  const std::atomic<bool>* cancel = nullptr;        ///< true stops the job
+  std::atomic<bool>* snapshot = nullptr;            ///< true requests a checkpoint; the job resets it to false
+};
 
 /// A request to `orrery render` or `orrery merge`.
 struct Job {
@@ -63,7 +90,38 @@ bool is_limited(const Job& job);
 /// True if the output is a shard, not an image.
 inline bool is_shard(const Job& job) { return job.as_shard || job.sampling.is_partial(); }
 
-/// Renders a scene to files, or merges shards: read, check, compile, render or merge, develop, write.
+/// Seconds by phase.
+struct Phases {
+  double prepare_s = 0;  ///< Job::prepare_s: before the job, once for all jobs of a batch
+  double read_s = 0, compile_s = 0, build_s = 0, render_s = 0;
+  double denoise_s = 0;  ///< with Job::denoise
+  double finish_s = 0;   ///< from sums to the finished image and its layers; for a merge, includes reading the shards
+  double write_s = 0;
+
+  /// Of the job.
+  double total_s() const { return read_s + compile_s + build_s + render_s + denoise_s + finish_s + write_s; }
+};
+
+/// Result of a job.
+struct JobReport {
+  render::Statistics render;
+  Phases phases;
+  film::BadValues bad_values;  ///< bad values of the image, before any display transform
+  std::vector<std::pair<std::string, film::BadValues>> bad_layers;  ///< layers with bad values
+  image::WriteReport written;                                       ///< values changed to fit the files
+  int width = 0, height = 0;                                        ///< px
+  std::string target_missed;  ///< "noise 0.013 instead of 0.01: the time budget ended"; empty: the target was met
+  std::size_t spheres = 0;
+  std::string scene_hash;
+  display::Choice display;           ///< if a display format was written
+  std::filesystem::path checkpoint;  ///< written because the job was stopped; empty: none
+  bool was_resumed = false;          ///< from a checkpoint
+  std::string missing;               ///< samples that no merged shard has, as text; empty: none
+  std::vector<std::string> hosts;    ///< machines that rendered the image
+  bool was_skipped = false;          ///< its files existed and were up to date
+};
+
+/// Renders a scene to files, or merges shards: load, prepare, render or merge, finish, write.
 ///
 /// A shard is an EXR of exact sums; so is the checkpoint of a stopped job. A resumed job gives the same bits as one
 /// that was never stopped. No output replaces an input, including the scene's points files and OCIO configs.

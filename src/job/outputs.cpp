@@ -3,7 +3,15 @@
 
 #include <algorithm>
 
+#include <fmt/core.h>
+
 #include "base/error.h"
+#include "display/develop.h"
+#include "display/settings.h"
+#include "image/exr_options.h"
+#include "image/format.h"
+#include "image/header.h"
+#include "image/write.h"
 
 namespace orrery::job {
 
@@ -26,6 +34,59 @@ bool Outputs::has_exr() const {
 
 bool Outputs::has_display_format() const {
   return std::any_of(images.begin(), images.end(), [](const ImageFile& i) { return is_display_format(i.format); });
+}
+
+void DisplayWriter::write(const std::filesystem::path& file, const std::string& software, const std::string& stamp) {
+  const bool keeps_alpha = picture_.is_transparent && image::holds_alpha(image::format_of(file));
+  std::optional<film::EncodedPicture>& developed = keeps_alpha ? with_alpha_ : over_black_;
+  if (!developed)
+    developed = display::develop(picture_, settings_, bits_, false,
+                                 keeps_alpha ? display::Alpha::kStraight : display::Alpha::kOverBlack);
+  image::write_encoded(file, *developed, software, stamp);
+}
+
+void require_bits(const display::Choice& display, const Outputs& outputs) {
+  for (const ImageFile& output : outputs.images) {
+    if (display.is_hdr && image::is_display_format(output.format) && image::max_bits(output.format) < 16)
+      throw base::Error(base::ErrorKind::kUsage,
+                        fmt::format("{} holds 8 bits per channel, too few for display {}; PNG and TIFF hold 16",
+                                    output.path.string(), display.display));
+  }
+}
+
+image::WriteReport write_outputs(const Outputs& outputs, const display::Settings& display, int bits,
+                                 const film::Picture& picture, const image::Header& header,
+                                 const std::vector<MatteNames>& mattes) {
+  DisplayWriter developed(picture, display, bits);
+  image::WriteReport report;
+  const auto add = [&](const image::WriteReport& one) {
+    report.clamped += one.clamped;
+    report.not_finite += one.not_finite;
+  };
+  const auto write = [&](const std::filesystem::path& output, image::Format format) {
+    if (image::is_display_format(format)) {
+      developed.write(output, header.software, header.stamp);
+    } else if (format == image::Format::kHdr) {
+      add(image::write_hdr(output, picture));
+    } else {
+      image::Header own = header;
+      own.matte_attributes = matte_attributes(mattes, output);
+      write_manifests(mattes, output);  // first, so that no image refers to a missing file
+      add(image::write_exr(output, picture, own, outputs.exr));
+    }
+  };
+  std::vector<base::Error> errors;
+  for (const auto& [output, format] : outputs.images) {
+    try {
+      write(output, format);
+    } catch (const base::Error& error) {
+      errors.push_back(error);
+    }
+  }
+  if (errors.empty()) return report;
+  std::string text = errors.front().what();
+  for (std::size_t i = 1; i < errors.size(); ++i) text += std::string("; ") + errors[i].what();
+  throw base::Error(errors.front().kind(), text);
 }
 
 }  // namespace orrery::job

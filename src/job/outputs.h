@@ -2,12 +2,19 @@
 #pragma once
 
 #include <filesystem>
+#include <optional>
+#include <string>
 #include <utility>
 #include <vector>
 
+#include "display/forward.h"
 #include "display/settings.h"
+#include "film/forward.h"
+#include "film/picture.h"
 #include "image/exr_options.h"
 #include "image/format.h"
+#include "image/forward.h"
+#include "job/layers.h"
 
 namespace orrery::job {
 
@@ -47,6 +54,41 @@ struct Outputs {
   bool has_exr() const;
   /// True if an image needs a display transform.
   bool has_display_format() const;
+};
+
+/// Checks that the display formats among the outputs have enough bits per channel for the display.
+///
+/// Errors     base::Error(kUsage)
+void require_bits(const display::Choice& display, const Outputs& outputs);
+
+/// Writes the files of an image, and the manifests of its mattes.
+///
+/// `bits`     bits per channel of display formats
+/// Errors     base::Error: kCannotCreate, kIo; those of display::develop
+image::WriteReport write_outputs(const Outputs& outputs, const display::Settings& display, int bits,
+                                 const film::Picture& picture, const image::Header& header,
+                                 const std::vector<MatteNames>& mattes);
+
+/// Writes one image to display formats. The display transform runs once for all files with the same channels. PNG and
+/// TIFF keep the alpha of a transparent image.
+class DisplayWriter {
+ public:
+  /// Prepares an image for display formats; write() applies the display transform on first use.
+  ///
+  /// Domain     the arguments outlive this; bits 8 or 16
+  DisplayWriter(const film::Picture& picture, const display::Settings& settings, int bits)
+      : picture_(picture), settings_(settings), bits_(bits) {}
+
+  /// Writes a file in the display format of its extension.
+  ///
+  /// Errors     those of display::develop and image::write_encoded
+  void write(const std::filesystem::path& file, const std::string& software, const std::string& stamp = {});
+
+ private:
+  const film::Picture& picture_;
+  const display::Settings& settings_;
+  int bits_;
+  std::optional<film::EncodedPicture> over_black_, with_alpha_;
 };
 
 }  // namespace orrery::job

@@ -46,6 +46,10 @@ class PreparedScene {
   /// Errors     those of render::build
   accel::Accel& accelerator(int threads, const accel::BuildMonitor& monitor);
 
+  /// Results of the last load() and compile().
+  const load::LoadedScene& loaded() const { return *loaded_; }
+  const compile::CompiledScene& compiled() const { return compiled_; }
+
   bool has_accelerator() const { return accel_ != nullptr; }
 
   /// The hashes of the compiled scene.

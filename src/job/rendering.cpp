@@ -9,9 +9,9 @@
 #include "film/partial.h"
 #include "image/format.h"
 #include "job/check_job.h"
-#include "job/matte_manifest.h"
-#include "job/provenance.h"
-#include "job/write_outputs.h"
+#include "job/checkpoint.h"
+#include "job/layers.h"
+#include "job/outputs.h"
 #include "load/scene_files.h"
 
 namespace orrery::job {

@@ -10,7 +10,6 @@
 #include "image/header.h"
 #include "image/provenance.h"
 #include "job/job.h"
-#include "job/job_report.h"
 #include "job/layers.h"
 
 namespace orrery::job {

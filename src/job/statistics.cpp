@@ -7,8 +7,7 @@
 
 #include "base/atomic_file.h"
 #include "film/picture.h"
-#include "job/job_report.h"
-#include "job/text.h"
+#include "job/job.h"
 #include "job/version.h"
 
 namespace orrery::job {
@@ -93,6 +92,10 @@ void write_failure(const std::filesystem::path& file, const JobReport& report, c
     write_statistics(file, report, {stopped ? "stopped" : "failed", base::exit_status(error.kind()), error.what()});
   } catch (const base::Error&) {
   }
+}
+
+std::string json_text(const nlohmann::json& value) {
+  return value.dump(2, ' ', false, nlohmann::json::error_handler_t::replace) + "\n";
 }
 
 }  // namespace orrery::job

@@ -2,7 +2,7 @@
 #include <nlohmann/json.hpp>
 
 #include "base/text.h"
-#include "job/text.h"
+#include "job/statistics.h"
 #include "measure/bench_scene.h"
 
 namespace orrery::measure {

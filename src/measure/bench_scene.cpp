@@ -16,7 +16,7 @@
 #include "compile/compile.h"
 #include "compile/compiled_scene.h"
 #include "format/read_result.h"
-#include "job/machine.h"
+#include "job/resources.h"
 #include "job/scene_hash.h"
 #include "kernel/ray_packet.h"
 #include "kernel/render_tile.h"

@@ -20,8 +20,7 @@
 #include "compile/environment.h"
 #include "format/read_result.h"
 #include "job/layers.h"
-#include "job/machine.h"
-#include "job/memory.h"
+#include "job/resources.h"
 #include "job/scene_hash.h"
 #include "job/version.h"
 #include "load/load_scene.h"
@@ -166,14 +165,9 @@ class Runner {
     small.scene = read_.scene;
     small.closing = read_.closing;
     load::reduce_picture(small, pixels);
-    const CompiledScene view = compile::compile(small.scene, small.closing ? &*small.closing : nullptr);
-    compiled.camera = view.camera;
-    compiled.camera_motion = view.camera_motion;
-    compiled.width = view.width;
-    compiled.height = view.height;
-    compiled.window_x = compiled.window_y = 0;
-    compiled.frame_width = view.width;
-    compiled.frame_height = view.height;
+    scene::Parts changed;
+    changed.view = true;
+    compile::update(small.scene, small.closing ? &*small.closing : nullptr, changed, compiled);
   }
 
   /// Seeds of the study: 0 and 1 for the two renders of each choice, 2 and 3 for those of the reference. Studies with

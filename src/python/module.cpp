@@ -27,7 +27,6 @@
 #include "display/settings.h"
 #include "film/picture.h"
 #include "job/job.h"
-#include "job/job_report.h"
 #include "job/prepared_scene.h"
 #include "job/version.h"
 #include "plot/view.h"

@@ -8,7 +8,7 @@
 #include "display/develop.h"
 #include "display/settings.h"
 #include "film/picture.h"
-#include "job/job_report.h"
+#include "job/job.h"
 #include "job/outputs.h"
 #include "job/rendering.h"
 #include "python/arrays.h"

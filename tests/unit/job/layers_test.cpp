@@ -13,7 +13,6 @@
 #include "compile/compiled_scene.h"
 #include "film/cryptomatte.h"
 #include "film/layer_film.h"
-#include "job/matte_manifest.h"
 #include "job/outputs.h"
 #include "scene/layers.h"
 #include "scene/limits.h"

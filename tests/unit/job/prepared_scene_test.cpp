@@ -19,7 +19,7 @@
 namespace orrery::job {
 namespace {
 
-const char* const kScene = R"(
+const char* const kPreparedScene = R"(
 image = { width = 24, height = 16 }
 render = { samples = 2 }
 background = { type = "constant", color = [0.3, 0.4, 0.5] }
@@ -107,7 +107,7 @@ class JobPreparedScene : public testing::Test {
   JobPreparedScene() {
     write_data(0);
     job_.scene.file = folder_ / "scene.toml";
-    job_.scene.text = std::make_shared<const std::string>(kScene);
+    job_.scene.text = std::make_shared<const std::string>(kPreparedScene);
     job_.resources.threads = 1;
   }
 

@@ -2,10 +2,11 @@
 #include "job/statistics.h"
 
 #include <gtest/gtest.h>
-
 #include <nlohmann/json.hpp>
 
-#include "job/job_report.h"
+#include <regex>
+
+#include "job/job.h"
 #include "job/version.h"
 
 namespace orrery::job {
@@ -48,6 +49,19 @@ TEST(JobStatistics, PeakMemoryIsInBytes) {
   // The test program has more than 1 MiB, and no test machine has 1 PiB.
   EXPECT_GT(peak_memory(), std::size_t{1} << 20);
   EXPECT_LT(peak_memory(), std::size_t{1} << 50);
+}
+
+TEST(JobStatistics, JsonAcceptsFileNamesThatAreNotUtf8) {
+  const std::string text = json_text({{"file", "a\xff.toml"}});
+  EXPECT_EQ(text, "{\n  \"file\": \"a\xEF\xBF\xBD.toml\"\n}\n");
+}
+
+TEST(JobStatistics, EveryLibraryHasOne) {
+  const std::regex version(R"(\d+(\.\d+)+.*)");
+  EXPECT_TRUE(std::regex_match(program_version(), version)) << program_version();
+  EXPECT_EQ(library_versions().size(), 8u);
+  for (const auto& [name, text] : library_versions())
+    EXPECT_TRUE(std::regex_match(text, version)) << name << ' ' << text;
 }
 
 }  // namespace

@@ -13,7 +13,6 @@
 #include "compile/compiled_scene.h"
 #include "data/data_file.h"
 #include "job/job.h"
-#include "job/job_report.h"
 #include "job/scene_hash.h"
 #include "particles/open.h"
 #include "particles/write_table.h"

@@ -1,7 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
+#include <filesystem>
+#include <map>
 #include <string>
 
 #include "compile/forward.h"
@@ -9,6 +12,28 @@
 #include "scene/forward.h"
 
 namespace orrery::job {
+
+struct Outputs;
+
+/// Limits on the job's use of the machine.
+struct Resources {
+  int threads = 0;                 ///< 0: default_threads()
+  std::uint64_t memory_limit = 0;  ///< bytes; 0: the free memory
+  std::uint64_t disk_limit = 0;    ///< bytes per file system; 0: its free space
+  std::string isa;                 ///< best instruction set to use, "avx2"; empty: see choose_isa()
+};
+
+/// Default thread count: the minimum of the affinity mask's CPUs, the CPU quotas of the process's control groups,
+/// SLURM_CPUS_PER_TASK and CUE_THREADS. A variable that is not a positive integer is ignored.
+///
+/// Domain     see base::control_groups
+int default_threads(const std::filesystem::path& root = "/");
+
+/// Limits kernel and accelerators to this instruction set; empty: that of the environment variable ORRERY_ISA, which is
+/// for tests and comparisons, or else the best available.
+///
+/// Errors     base::Error(kUsage) if the program or the processor lacks it; the message lists the available ones
+void choose_isa(const std::string& name = {});
 
 /// Estimated peak memory of a render, in bytes, computed without building anything.
 struct MemoryEstimate {
@@ -62,5 +87,30 @@ void require_memory(const MemoryEstimate& needed, std::uint64_t limit, std::uint
 /// `limit`    bytes; 0: base::available_memory()
 /// Errors     base::Error(kNoMemory) with the needed and the allowed size
 void require_memory_to_compile(const scene::Scene& scene, std::uint64_t limit);
+
+/// Properties of an image that determine the size of its files.
+struct ImageSize {
+  int width_px = 0, height_px = 0;
+  // In addition to R, G, B, A:
+  std::size_t half_planes = 0;   ///< half unless the file is float
+  std::size_t float_planes = 0;  ///< always float
+  std::size_t light_groups = 0;  ///< light groups with separate sums in a shard
+};
+
+ImageSize image_size(int width_px, int height_px, const film::LayerRequest& layers);
+
+/// Estimates the bytes that a job writes to each folder, with compression as measured for noisy images.
+///
+/// `is_shard` EXR outputs are shards, not images
+/// Precision  test JobDiskSpace.TheEstimateIsNearTheFiles
+std::map<std::filesystem::path, double> estimate_disk_space(const Outputs& outputs, bool is_shard,
+                                                            const ImageSize& size);
+
+/// Checks that a job's files fit on the disk. Files that will be replaced do not count as free space, since they exist
+/// until then.
+///
+/// `limit`    bytes per folder that replace the free space; 0: the free space
+/// Errors     base::Error(kCannotCreate) with the needed and the allowed size
+void require_disk_space(const Outputs& outputs, bool is_shard, const ImageSize& size, std::uint64_t limit);
 
 }  // namespace orrery::job

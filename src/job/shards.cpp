@@ -1,12 +1,17 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "job/merge_shards.h"
+#include "job/shards.h"
 
 #include <algorithm>
 #include <charconv>
+#include <cstdint>
+#include <filesystem>
+#include <functional>
 #include <map>
 #include <set>
 #include <sstream>
+#include <string>
 #include <utility>
+#include <vector>
 
 #include <fmt/core.h>
 
@@ -15,11 +20,15 @@
 #include "base/frames.h"
 #include "base/stop_point.h"
 #include "base/text.h"
+#include "compile/compiled_scene.h"
+#include "film/partial.h"
 #include "image/partial_file.h"
 #include "job/checkpoint.h"
 #include "job/job.h"
-#include "job/provenance.h"
+#include "render/render.h"
+#include "render/result.h"
 #include "render/sampling_limits.h"
+#include "render/settings.h"
 
 namespace orrery::job {
 namespace {
@@ -107,10 +116,96 @@ std::string missing_shards(const std::vector<ShardFile>& shards) {
   return missing.empty() ? "" : "there is no shard with " + base::joined(missing);
 }
 
+/// Adds the sums of a job's shards, and reports which samples are missing and which machines rendered the others.
+film::Partial sum_of_shards(const Job& job, const compile::CompiledScene& compiled, JobReport& report) {
+  const bool allow_missing = job.merge.allow_missing;
+  const auto samples = static_cast<std::uint32_t>(compiled.samples);
+  std::vector<ShardFile> shards = job.merge.shards;
+  std::stable_sort(shards.begin(), shards.end(), [](const ShardFile& a, const ShardFile& b) {
+    return sample_range(a.provenance).begin < sample_range(b.provenance).begin;
+  });
+  film::Partial sum(compiled.width, compiled.height);
+  Coverage coverage(sum.pixel_count(), compiled.width);
+  std::vector<base::Diagnostic> diagnostics, left_out;
+  std::set<std::string> hosts;
+  const base::StopPoint stop;
+  for (std::size_t i = 0; i < shards.size(); ++i) {
+    stop.check();
+    image::PartialFile file;
+    try {
+      file = image::read_partial(shards[i].file, compiled.width, compiled.height);
+    } catch (const base::Error& error) {
+      if (!allow_missing || error.kind() != ErrorKind::kBadData) throw;
+      left_out.push_back(as_left_out(error_in(shards[i].file, error.what())));
+      continue;
+    }
+    const film::Partial& shard = file.partial;
+    const SampleRange range = sample_range(shards[i].provenance);
+    const auto wrong = [&](std::string text, std::string remedy = {}) {
+      diagnostics.push_back(error_in(shards[i].file, std::move(text), std::move(remedy)));
+    };
+    const std::uint32_t most = *std::max_element(shard.counts.begin(), shard.counts.end());
+    if (shard.is_adaptive()) {
+      wrong("holds the sums of adaptive sampling, contrary to its header");
+    } else if (!shard.has_known_spheres(compiled.spheres.size()) || range.end > samples) {
+      wrong("has spheres or samples that its scene does not have");
+    } else if (most > range.end - range.begin) {
+      wrong("has more samples than its header declares");
+    } else if (!allow_missing && !is_finished(file)) {
+      wrong("is unfinished: its render was stopped", "finish it with --resume, or add --allow-missing");
+    } else if (const std::string overlap = coverage.add(shards, i, range.begin, shard.counts); !overlap.empty()) {
+      wrong(overlap, "remove one of them");
+    } else {
+      sum.add(shard);
+      hosts.insert(shards[i].provenance.count("host") > 0 ? shards[i].provenance.at("host") : "");
+    }
+  }
+  if (left_out.size() == shards.size()) diagnostics = left_out;
+  if (!diagnostics.empty()) refuse(ErrorKind::kBadData, std::move(diagnostics));
+  report.hosts.assign(hosts.begin(), hosts.end());
+  report.missing = coverage.missing(samples);
+  if (!report.missing.empty() && !allow_missing) {
+    const std::string absent = missing_shards(shards);
+    refuse(ErrorKind::kBadData, {error_in("the shards", report.missing + " are in no shard",
+                                          absent.empty() ? "render them, or add --allow-missing" : absent)});
+  }
+  if (job.hooks.on_warning)
+    for (const base::Diagnostic& diagnostic : left_out) job.hooks.on_warning(diagnostic);
+  return sum;
+}
+
+/// Requires that a shard has these properties of the scene.
+void require_same(const Job& job, const image::Provenance& provenance, const std::vector<std::string>& keys) {
+  const ShardFile& first = job.merge.shards.front();
+  if (const std::string wrong = difference(first.provenance, provenance, keys); !wrong.empty())
+    throw base::Error(ErrorKind::kBadData,
+                      fmt::format("{} has {} as {}; the scene has changed, or --scene names another one",
+                                  first.file.string(), wrong, job.scene.file.string()));
+}
+
+/// Requires that the sums have the layers of the image, and removes others.
+void take_layers(const Job& job, const film::LayerRequest& layers, const image::Provenance& provenance,
+                 film::Partial& sum) {
+  const auto fail = [](const std::string& text) { throw base::Error(ErrorKind::kBadData, text); };
+  if (job.denoise && sum.halves.empty())
+    fail("the shards have no halves to denoise from; render them with --denoise or --layers halves");
+  if (job.outputs.has_exr()) {  // other formats do not hold the layers that the shards may have
+    if (!sum.halves.empty() && !layers.guides())
+      fail("the shards were rendered with --denoise; merge them with --denoise");
+    require_same(job, provenance, {"layers"});
+  }
+  if (!layers.records()) sum.layers.clear();
+  if (!layers.guides()) sum.halves.clear();
+  if ((layers.records() && sum.layers.empty()) || (layers.guides() && sum.halves.empty()))
+    fail("the shards were rendered without the requested layers");
+}
+
 }  // namespace
 
 std::vector<ShardFile> read_shards(const std::vector<std::filesystem::path>& files,
                                    const std::function<void(const base::Diagnostic&)>& on_left_out) {
+  // The values that all shards of an image share.
+  static const std::vector<std::string> keys = {"version", "sceneHash", "noise", "time", "layers"};
   std::vector<ShardFile> shards;
   std::vector<base::Diagnostic> diagnostics, left_out;
   bool only_missing = true;
@@ -129,7 +224,7 @@ std::vector<ShardFile> read_shards(const std::vector<std::filesystem::path>& fil
     const ShardFile& shard = shards.back();
     const SampleRange range = sample_range(shard.provenance);
     const render::PixelShard pixels = pixel_shard(shard.provenance);
-    std::string wrong = difference(shard.provenance, shards.front().provenance, keys_of_shards());
+    std::string wrong = difference(shard.provenance, shards.front().provenance, keys);
     if (!wrong.empty()) {
       wrong = fmt::format("has {} as {}", wrong, shards.front().file.string());
     } else if (range.begin >= range.end || pixels.count < 1 || pixels.index < 0 || pixels.index >= pixels.count) {
@@ -165,66 +260,22 @@ void take_scene(const ShardFile& shard, Job& job) {
     job.outputs.statistics = base::with_frame(job.outputs.statistics.string(), job.scene.frame);
 }
 
-MergedShards merge_shards(std::vector<ShardFile> shards, int width_px, int height_px, std::uint32_t samples,
-                          std::size_t spheres, bool allow_missing) {
-  std::stable_sort(shards.begin(), shards.end(), [](const ShardFile& a, const ShardFile& b) {
-    return sample_range(a.provenance).begin < sample_range(b.provenance).begin;
-  });
-  MergedShards out;
-  out.partial = film::Partial(width_px, height_px);
-  Coverage coverage(out.partial.pixel_count(), width_px);
-  std::vector<base::Diagnostic> diagnostics;
-  std::set<std::string> hosts;
-  const base::StopPoint stop;
-  for (std::size_t i = 0; i < shards.size(); ++i) {
-    stop.check();
-    image::PartialFile file;
-    try {
-      file = image::read_partial(shards[i].file, width_px, height_px);
-    } catch (const base::Error& error) {
-      if (!allow_missing || error.kind() != ErrorKind::kBadData) throw;
-      out.left_out.push_back(as_left_out(error_in(shards[i].file, error.what())));
-      continue;
-    }
-    const film::Partial& shard = file.partial;
-    const SampleRange range = sample_range(shards[i].provenance);
-    const auto wrong = [&](std::string text, std::string remedy = {}) {
-      diagnostics.push_back(error_in(shards[i].file, std::move(text), std::move(remedy)));
-    };
-    if (shard.is_adaptive()) {
-      wrong("holds the sums of adaptive sampling, contrary to its header");
-      continue;
-    }
-    if (!shard.has_known_spheres(spheres) || range.end > samples) {
-      wrong("has spheres or samples that its scene does not have");
-      continue;
-    }
-    const std::uint32_t most = *std::max_element(shard.counts.begin(), shard.counts.end());
-    if (most > range.end - range.begin) {
-      wrong("has more samples than its header declares");
-      continue;
-    }
-    if (!allow_missing && !is_finished(file)) {
-      wrong("is unfinished: its render was stopped", "finish it with --resume, or add --allow-missing");
-      continue;
-    }
-    if (const std::string overlap = coverage.add(shards, i, range.begin, shard.counts); !overlap.empty()) {
-      wrong(overlap, "remove one of them");
-      continue;
-    }
-    out.partial.add(shard);
-    hosts.insert(shards[i].provenance.count("host") > 0 ? shards[i].provenance.at("host") : "");
-  }
-  if (out.left_out.size() == shards.size()) diagnostics = out.left_out;
-  if (!diagnostics.empty()) refuse(ErrorKind::kBadData, std::move(diagnostics));
-  out.hosts.assign(hosts.begin(), hosts.end());
-  out.missing = coverage.missing(samples);
-  if (!out.missing.empty() && !allow_missing) {
-    const std::string absent = missing_shards(shards);
-    refuse(ErrorKind::kBadData, {error_in("the shards", out.missing + " are in no shard",
-                                          absent.empty() ? "render them, or add --allow-missing" : absent)});
-  }
-  return out;
+render::Result merge_shards(const Job& job, const compile::CompiledScene& compiled, const render::Settings& settings,
+                            const image::Provenance& provenance, JobReport& report) {
+  require_same(job, provenance, {"version", "sceneHash"});
+  film::Partial sum = sum_of_shards(job, compiled, report);
+  take_layers(job, settings.layers, provenance, sum);
+  render::Result result = render::finished(compiled, settings.layers, sum, settings.threads);
+  const auto [fewest, most] = std::minmax_element(sum.counts.begin(), sum.counts.end());
+  result.statistics = {};
+  result.statistics.min_samples = *fewest;
+  result.statistics.max_samples = *most;
+  result.statistics.paths = sum.work.paths;
+  result.statistics.rays = sum.work.rays;
+  result.statistics.bad_samples = sum.work.bad_samples;
+  result.statistics.render_s = sum.work.seconds;
+  result.statistics.ended_by = "samples";
+  return result;
 }
 
 }  // namespace orrery::job

@@ -1,9 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "job/memory.h"
-
-#include <fmt/core.h>
+#include "job/resources.h"
 
 #include <algorithm>
+#include <charconv>
+#include <cstdint>
+#include <cstdlib>
+#include <cstring>
+#include <string>
+
+#include <fmt/core.h>
 
 #include "accel/accel.h"
 #include "base/available_memory.h"
@@ -14,11 +19,26 @@
 #include "film/layer_film.h"
 #include "film/layer_pixel.h"
 #include "film/layers.h"
+#include "image/exr_options.h"
+#include "image/format.h"
+#include "job/outputs.h"
+#include "kernel/isa.h"
 #include "kernel/pixel_sum.h"
+#include "render/render.h"
 #include "scene/scene.h"
 
 namespace orrery::job {
 namespace {
+
+/// Threads that a scheduler grants; 0 if the variable is unset or not a positive integer.
+int granted_by(const char* variable) {
+  const char* const text = std::getenv(variable);
+  if (text == nullptr) return 0;
+  int granted = 0;
+  const char* const end = text + std::strlen(text);
+  const auto [stopped, error] = std::from_chars(text, end, granted);
+  return error == std::errc() && stopped == end ? std::max(granted, 0) : 0;
+}
 
 using base::bytes_text;
 
@@ -68,7 +88,57 @@ void require(std::uint64_t needed, const std::string& text, std::uint64_t limit,
   throw base::Error(base::ErrorKind::kNoMemory, text + ", and " + rest);
 }
 
+// Measured on the book's final scene, 480 x 270, at 4 samples per pixel, and rounded up: noise compresses worst.
+
+/// Compressed size of an EXR channel as a fraction of its size in memory.
+double compressed_fraction(const std::string& compression, bool is_float) {
+  if (compression == "none") return 1;
+  if (compression == "rle") return is_float ? 0.9 : 0.65;
+  if (compression.rfind("dwa", 0) == 0) return 0.3;
+  return is_float ? 0.7 : 0.5;
+}
+
+/// Bytes per pixel: of a shard with its preview, of the layers of a shard, of a light group in it, of deep samples. A
+/// light group with light in one lobe per pixel takes 39 bytes.
+constexpr double kShardBytes = 27, kShardLayerBytes = 130, kShardLightGroupBytes = 40, kDeepBytes = 24;
+
+double bytes_per_pixel(const Outputs& outputs, bool is_shard, image::Format format, const ImageSize& size) {
+  const image::ExrOptions& exr = outputs.exr;
+  if (format != image::Format::kExr) {
+    const image::FormatInfo& info = image::info_of(format);
+    return outputs.bits == 16 ? info.bytes_per_pixel_16 : info.bytes_per_pixel;
+  }
+  if (is_shard)
+    return kShardBytes + (size.half_planes + size.float_planes > 0 ? kShardLayerBytes : 0) +
+           kShardLightGroupBytes * static_cast<double>(size.light_groups);
+  return static_cast<double>(4 + size.half_planes) * (exr.as_float ? 4 : 2) *
+             compressed_fraction(exr.compression, exr.as_float) +
+         static_cast<double>(size.float_planes) * 4 * compressed_fraction(exr.compression, true);
+}
+
+std::filesystem::path folder_of(const std::filesystem::path& file) {
+  return file.has_parent_path() ? file.parent_path() : ".";
+}
+
 }  // namespace
+
+int default_threads(const std::filesystem::path& root) {
+  int threads = std::max(1, render::available_threads());
+  if (const auto granted = base::granted_cpus(root)) threads = std::min(threads, *granted);
+  for (const char* variable : {"SLURM_CPUS_PER_TASK", "CUE_THREADS"})
+    if (const int granted = granted_by(variable); granted > 0) threads = std::min(threads, granted);
+  return threads;
+}
+
+void choose_isa(const std::string& name) {
+  const char* const of_environment = std::getenv("ORRERY_ISA");
+  const bool is_of_environment = name.empty() && of_environment != nullptr;
+  const std::string isa = is_of_environment ? of_environment : name;
+  if (kernel::limit_isa(isa)) return;
+  throw base::Error(base::ErrorKind::kUsage,
+                    fmt::format("{}instruction set {} is not available; this processor and program have {}",
+                                is_of_environment ? "$ORRERY_ISA: " : "", isa, base::joined(kernel::available_isas())));
+}
 
 MemoryEstimate estimate_memory(const MemoryNeeds& needs) {
   // Image; sample count and target count; with layers, the sums of their pixel; with adaptive sampling, a second sum
@@ -131,6 +201,43 @@ void require_memory_to_compile(const scene::Scene& scene, std::uint64_t limit) {
   for (const scene::Points& points : scene.points) loaded += points.bytes();
   const std::uint64_t needed = loaded + compile::SphereStore::bytes_of(scene.points);
   require(needed, "the spheres need about " + bytes_text(needed) + " while they are compiled", limit, loaded);
+}
+
+ImageSize image_size(int width_px, int height_px, const film::LayerRequest& layers) {
+  ImageSize size;
+  size.width_px = width_px;
+  size.height_px = height_px;
+  for (const film::Plane& plane : film::planes_of(layers))
+    ++(plane.kind == film::PlaneKind::kData ? size.float_planes : size.half_planes);
+  size.light_groups = layers.light_groups ? layers.groups.size() : 0;
+  return size;
+}
+
+std::map<std::filesystem::path, double> estimate_disk_space(const Outputs& outputs, bool is_shard,
+                                                            const ImageSize& size) {
+  const double pixels = static_cast<double>(size.width_px) * size.height_px;
+  std::map<std::filesystem::path, double> needed;
+  for (const auto& [file, format] : outputs.images)
+    needed[folder_of(file)] += pixels * bytes_per_pixel(outputs, is_shard, format, size);
+  if (!outputs.deep.empty()) needed[folder_of(outputs.deep)] += pixels * kDeepBytes;
+  return needed;
+}
+
+void require_disk_space(const Outputs& outputs, bool is_shard, const ImageSize& size, std::uint64_t limit) {
+  for (const auto& [folder, bytes] : estimate_disk_space(outputs, is_shard, size)) {
+    std::error_code failed;
+    const std::filesystem::space_info space = std::filesystem::space(folder, failed);
+    const std::uint64_t allowed = limit > 0 ? limit : space.available;
+    if ((failed && limit == 0) || static_cast<double>(allowed) >= bytes) continue;
+    const std::string need = base::bytes_text(static_cast<std::uint64_t>(bytes));
+    throw base::Error(
+        base::ErrorKind::kCannotCreate,
+        limit > 0
+            ? fmt::format("the images need about {}, but --disk-limit allows only {}; raise the limit", need,
+                          base::bytes_text(allowed))
+            : fmt::format("the images need about {}, and {} has {} free; free some, or override with --disk-limit",
+                          need, folder.string(), base::bytes_text(allowed)));
+  }
 }
 
 }  // namespace orrery::job

@@ -1,19 +1,20 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include <cstdint>
 #include <filesystem>
 #include <functional>
-#include <string>
 #include <vector>
 
 #include "base/error.h"
-#include "film/partial.h"
-#include "job/shard_file.h"
+#include "compile/forward.h"
+#include "image/provenance.h"
+#include "render/forward.h"
 
 namespace orrery::job {
 
 struct Job;
+struct JobReport;
+struct ShardFile;
 
 /// Reads the provenance of shards and checks that they belong to one image.
 ///
@@ -28,22 +29,14 @@ std::vector<ShardFile> read_shards(const std::vector<std::filesystem::path>& fil
 /// in the names of its outputs.
 void take_scene(const ShardFile& shard, Job& job);
 
-/// The sum of all shards.
-struct MergedShards {
-  film::Partial partial;
-  std::string missing;                     ///< as text; empty: each pixel has all its samples
-  std::vector<std::string> hosts;          ///< machines that rendered the shards, without duplicates
-  std::vector<base::Diagnostic> left_out;  ///< damaged shards
-};
-
-/// Adds shards, one at a time in memory. The sums equal those of a single render, whatever the order of the files.
+/// Merges the shards of a job instead of rendering: adds their sums, one shard at a time in memory. The sums equal
+/// those of a single render, whatever the order of the files.
 ///
-/// `samples`  per pixel of the whole image
-/// `spheres`  in the scene
-/// `allow_missing`  accepts missing samples and skips shards with unreadable sums
-/// Domain     `shards` is a result of read_shards
-/// Errors     base::Error(kBadData) naming files that overlap, are unfinished or of another size, and missing samples
-MergedShards merge_shards(std::vector<ShardFile> shards, int width_px, int height_px, std::uint32_t samples,
-                          std::size_t spheres, bool allow_missing);
+/// `settings` threads and layers
+/// Domain     the shards are a result of read_shards
+/// Errors     base::Error(kBadData) if the scene has changed since, or naming shards that overlap, are unfinished or of
+///            another size, and missing samples
+render::Result merge_shards(const Job& job, const compile::CompiledScene& compiled, const render::Settings& settings,
+                            const image::Provenance& provenance, JobReport& report);
 
 }  // namespace orrery::job

@@ -1,18 +1,67 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "job/memory.h"
+#include "job/resources.h"
 
 #include <gtest/gtest.h>
+
+#include <cstdlib>
 
 #include "base/available_memory.h"
 #include "base/error.h"
 #include "compile/compile.h"
 #include "compile/compiled_scene.h"
 #include "film/layer_pixel.h"
+#include "film/layers.h"
+#include "generate/generate.h"
+#include "generate/generate_files.h"
+#include "job/job.h"
 #include "job/layers.h"
+#include "render/render.h"
 #include "scene/scene.h"
+#include "support/temp_dir.h"
 
 namespace orrery::job {
 namespace {
+
+class JobMachine : public testing::Test {
+ protected:
+  JobMachine() { TearDown(); }
+  void TearDown() override {
+    ::unsetenv("SLURM_CPUS_PER_TASK");
+    ::unsetenv("CUE_THREADS");
+  }
+  const int all_ = render::available_threads();
+};
+
+TEST_F(JobMachine, DefaultIsTheAffinityMask) { EXPECT_EQ(default_threads(), all_); }
+
+TEST_F(JobMachine, SchedulersLimitTheDefault) {
+  ::setenv("SLURM_CPUS_PER_TASK", "1", 1);
+  EXPECT_EQ(default_threads(), 1);
+  ::unsetenv("SLURM_CPUS_PER_TASK");
+  ::setenv("CUE_THREADS", "1", 1);
+  EXPECT_EQ(default_threads(), 1);
+}
+
+TEST_F(JobMachine, QuotasOfControlGroupsLimitTheDefault) {
+  const support::TempDir root;
+  std::filesystem::create_directories(root / "proc/self");
+  std::filesystem::create_directories(root / "sys/fs/cgroup");
+  support::write_bytes(root / "proc/self/cgroup", "0::/\n");
+  support::write_bytes(root / "sys/fs/cgroup/cpu.max", "50000 100000\n");
+  EXPECT_EQ(default_threads(root.path()), 1);
+}
+
+TEST_F(JobMachine, SchedulersCannotExceedTheAffinityMask) {
+  ::setenv("SLURM_CPUS_PER_TASK", "100000", 1);
+  EXPECT_EQ(default_threads(), all_);
+}
+
+TEST_F(JobMachine, InvalidVariablesAreIgnored) {
+  for (const char* text : {"", "abc", "0", "-1", "1x", "99999999999999999999"}) {
+    ::setenv("SLURM_CPUS_PER_TASK", text, 1);
+    EXPECT_EQ(default_threads(), all_) << text;
+  }
+}
 
 constexpr std::uint64_t kMega = 1 << 20;
 
@@ -180,6 +229,80 @@ TEST(JobMemoryEstimate, RejectsWhatDoesNotFitWithTheEstimate) {
     EXPECT_NE(std::string(error.what()).find("needs about 139.2 MiB"), std::string::npos) << error.what();
     EXPECT_NE(std::string(error.what()).find("--memory-limit"), std::string::npos) << error.what();
   }
+}
+
+class JobDiskSpace : public testing::Test {
+ protected:
+  JobDiskSpace() {
+    generate::generate_final({}, folder_ / "final.toml");
+    job_.scene.file = folder_ / "final.toml";
+    job_.scene.overrides = {"image.width=200", "image.height=112", "render.samples=4"};
+  }
+
+  /// Ratio of the estimated to the actual size of a file.
+  double ratio(const std::string& name, const film::LayerRequest& layers = {}) {
+    job_.outputs.images = {folder_ / name};
+    run_job(job_);
+    const auto needed = estimate_disk_space(job_.outputs, is_shard(job_), image_size(200, 112, layers));
+    EXPECT_EQ(needed.size(), 1u);
+    return needed.begin()->second / static_cast<double>(std::filesystem::file_size(folder_ / name));
+  }
+
+  support::TempDir folder_;
+  Job job_;
+};
+
+TEST_F(JobDiskSpace, TheEstimateIsNearTheFiles) {
+  for (const char* name : {"a.exr", "a.hdr", "a.png", "a.tif", "a.jpg", "a.ppm"}) {
+    const double r = ratio(name);
+    EXPECT_GT(r, 0.8) << name;  // the header is a large part of so small a file
+    EXPECT_LT(r, 1.6) << name;
+  }
+  for (const char* compression : {"none", "rle", "zip", "piz", "dwaa"}) {
+    job_.outputs.exr.compression = compression;
+    EXPECT_GT(ratio("b.exr"), 0.8) << compression;
+    EXPECT_LT(ratio("b.exr"), 1.6) << compression;
+  }
+  job_.outputs.exr.compression = "zips";
+  job_.sampling.sample_end = 2;
+  EXPECT_GT(ratio("shard.exr"), 0.8);
+  EXPECT_LT(ratio("shard.exr"), 1.6);
+}
+
+TEST_F(JobDiskSpace, LayersIncreaseTheEstimate) {
+  job_.scene.overrides.add("output.layers=[\"Z\", \"N\", \"variance\"]");
+  film::LayerRequest layers;
+  layers.z = layers.normal = layers.variance = true;
+  EXPECT_GT(ratio("a.exr", layers), 0.8);
+  EXPECT_LT(ratio("b.exr", layers), 2);  // distances compress better than noise
+}
+
+/// The light of one group, which is the whole image.
+TEST_F(JobDiskSpace, LightGroupsIncreaseTheEstimate) {
+  job_.scene.overrides.add("output.layers=[\"light_groups\"]");
+  film::LayerRequest layers;
+  layers.light_groups = true;
+  layers.groups = {{"default", false, true}};
+  EXPECT_EQ(image_size(200, 112, layers).half_planes, 24u);
+  EXPECT_GT(ratio("a.exr", layers), 0.8);
+  EXPECT_LT(ratio("a.exr", layers), 3);  // in most pixels most lobes are black
+  job_.sampling.sample_end = 2;
+  EXPECT_GT(ratio("shard.exr", layers), 0.8);
+  EXPECT_LT(ratio("shard.exr", layers), 5);  // there are no other layers
+}
+
+TEST_F(JobDiskSpace, ALimitReplacesTheFreeSpace) {
+  Outputs outputs;
+  outputs.images = {folder_ / "a.exr"};
+  const ImageSize size{65536, 65536, 0};  // 16 GiB
+  try {
+    require_disk_space(outputs, false, size, std::uint64_t{1} << 30);
+    ADD_FAILURE() << "no error";
+  } catch (const base::Error& error) {
+    EXPECT_EQ(error.kind(), base::ErrorKind::kCannotCreate);
+    EXPECT_NE(std::string(error.what()).find("--disk-limit allows"), std::string::npos) << error.what();
+  }
+  EXPECT_NO_THROW(require_disk_space(outputs, false, size, std::uint64_t{1} << 50)) << "whoever gives a limit insists";
 }
 
 }  // namespace
