@@ -3,7 +3,7 @@
 
 #include <vector>
 
-#include "denoise/plane_values.h"
+#include "denoise/planes.h"
 
 namespace orrery::denoise {
 

@@ -8,6 +8,7 @@
 #include <set>
 
 #include "film/layers.h"
+#include "film/light_cells.h"
 
 namespace orrery::denoise {
 namespace {
@@ -88,17 +89,14 @@ void round_to_sum(std::vector<double>& cells, float beauty, bool is_complete) {
   if (sum > whole || (is_complete && sum > 0))
     for (double& cell : cells) cell *= whole / sum;
   if (sum == 0 && is_complete) cells.front() = whole;
-  const double last_bit = std::ldexp(1.0, std::ilogb(whole) - 23), units = whole / last_bit;
   const auto is_lit = [](double cell) { return cell != 0; };
   const auto last = std::find_if(cells.rbegin(), cells.rend(), is_lit);
-  double so_far = 0;
+  const bool has_rest = is_complete && last != cells.rend();
+  film::ExactParts parts(whole);
   sum = 0;
   for (double& cell : cells) {
     sum += cell;
-    double next = std::clamp(std::nearbyint(sum / last_bit), so_far, units);
-    if (is_complete && last != cells.rend() && &cell >= &*last) next = units;
-    cell = sign * (next - so_far) * last_bit;
-    so_far = next;
+    cell = sign * (has_rest && &cell >= &*last ? parts.rest() : parts.next(sum, true));
   }
 }
 

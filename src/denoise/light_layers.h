@@ -33,8 +33,8 @@ LightLayers find_light_layers(const film::Picture& picture);
 /// Returns whether the cells add up to the beauty in all pixels with finite values, within half precision.
 bool are_complete(const film::Picture& picture, const LightLayers& layers);
 
-/// Rounds the filtered cells of a pixel so that they add up bit for bit in single precision, in any order, as
-/// film::LightCells does: each is a multiple of the beauty's last bit. None is negative unless the beauty is.
+/// Rounds the filtered cells of a pixel so that they add up bit for bit (film::ExactParts). None is negative unless the
+/// beauty is.
 ///
 /// `cells`        in: filtered values. out: rounded
 /// `beauty`       filtered

@@ -6,7 +6,7 @@
 #include <cstddef>
 #include <vector>
 
-#include "denoise/plane_values.h"
+#include "denoise/planes.h"
 
 namespace orrery::denoise {
 

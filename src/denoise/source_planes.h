@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "denoise/outliers.h"
-#include "denoise/plane_values.h"
+#include "denoise/planes.h"
 #include "denoise/tile_filter.h"
 #include "film/picture.h"
 

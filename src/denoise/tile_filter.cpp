@@ -1,5 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
+// Compiled once per instruction set.
 #include "denoise/tile_filter.h"
+
+#include <array>
+#include <cstddef>
 
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "denoise/tile_filter.cpp"
@@ -7,8 +11,271 @@
 // After foreach_target:
 #include <hwy/highway.h>
 
-#include "denoise/tile_filter-inl.h"
 #include "math/dispatch.h"
+
+HWY_BEFORE_NAMESPACE();
+namespace orrery::denoise::HWY_NAMESPACE {
+namespace {
+
+namespace hn = hwy::HWY_NAMESPACE;
+using D = hn::ScalableTag<float>;
+using V = hn::Vec<D>;
+
+// Products and sums are not fused: otherwise, SSE4 would give different bits than AVX2.
+HWY_INLINE V add_product(V sum, V a, V b) { return hn::Add(sum, hn::Mul(a, b)); }
+
+/// (1 - x)^4 for x in 0..1, and 0 beyond: like exp(-4 x), with compact support.
+HWY_INLINE V bump(D d, V x) {
+  const V rest = hn::Max(hn::Zero(d), hn::Sub(hn::Set(d, 1.0F), hn::Max(hn::Zero(d), x)));
+  const V squared = hn::Mul(rest, rest);
+  return hn::Mul(squared, squared);
+}
+
+inline constexpr int kHaloWidth = kTileWidth + 2 * kPatchRadius, kHaloHeight = kTileHeight + 2 * kPatchRadius;
+inline constexpr std::size_t kDistanceStride = kHaloWidth + kMaxLanes;
+
+/// Squared difference of each pixel of the tile, and of its halo, to the pixel at an offset, in units of the variance.
+///
+/// The product of the differences in two independent halves is an unbiased estimate of the squared difference. Without
+/// halves, the expected contribution of noise is subtracted. The variance is twice the smaller of the two pixels', so
+/// that a pixel with little noise, for instance in a shadow, takes no light from a different, noisy neighbour.
+///
+/// Negative products, which are pure noise, are clamped: a single large one would cancel the differences of the whole
+/// patch.
+template <bool kHalves>
+HWY_INLINE void pixel_distances(const WeightSource& source, int x0, int y0, int dx, int dy, float* out) {
+  const D d;
+  constexpr float kMinNoise = 1e-30F, kMaxDistance = 1e6F, kMinDistance = -3;
+  for (int row = 0; row < kHaloHeight; ++row) {
+    const int y = y0 + row - kPatchRadius;
+    for (int column = 0; column < kHaloWidth; column += static_cast<int>(hn::Lanes(d))) {
+      const int x = x0 + column - kPatchRadius;
+      const V here = hn::LoadU(d, source.variance->at(x, y));
+      const V there = hn::LoadU(d, source.variance->at(x + dx, y + dy));
+      const V smaller = hn::Min(here, there);
+      V difference = kHalves ? hn::Zero(d) : hn::Neg(hn::Add(here, smaller));
+      for (const ComparedChannel& channel : source.compared) {
+        const auto step = [&](const PaddedPlane& plane) {
+          return hn::Sub(hn::LoadU(d, plane.at(x, y)), hn::LoadU(d, plane.at(x + dx, y + dy)));
+        };
+        const V a = step(*channel.a);
+        difference = add_product(difference, a, kHalves ? step(*channel.b) : a);
+      }
+      const V noise = add_product(hn::Set(d, kMinNoise), hn::Set(d, 2.0F), smaller);
+      const V distance =
+          hn::Min(hn::Set(d, kMaxDistance), hn::Max(hn::Set(d, kMinDistance), hn::Div(difference, noise)));
+      hn::StoreU(distance, d, out + static_cast<std::size_t>(row) * kDistanceStride + column);
+    }
+  }
+}
+
+/// Sums the distances over the patch of each pixel.
+HWY_INLINE void patch_sums(const float* distances, float* columns, TilePixels& out) {
+  const D d;
+  const auto lanes = static_cast<int>(hn::Lanes(d));
+  for (int y = 0; y < kTileHeight; ++y) {
+    for (int x = 0; x < kHaloWidth; x += lanes) {
+      const float* const from = distances + static_cast<std::size_t>(y) * kDistanceStride + x;
+      V sum = hn::LoadU(d, from);
+      for (std::size_t i = 1; i <= 2 * kPatchRadius; ++i) sum = hn::Add(sum, hn::LoadU(d, from + i * kDistanceStride));
+      hn::StoreU(sum, d, columns + x);
+    }
+    for (int x = 0; x < kTileWidth; x += lanes) {
+      V sum = hn::LoadU(d, columns + x);
+      for (int i = 1; i <= 2 * kPatchRadius; ++i) sum = hn::Add(sum, hn::LoadU(d, columns + x + i));
+      hn::Store(sum, d, out.data() + y * kTileWidth + x);
+    }
+  }
+}
+
+/// Converts the summed distances between each pixel of the tile and its neighbour at an offset to similarities.
+HWY_INLINE void similarities(const WeightSource& source, int x0, int y0, int dx, int dy, TilePixels& sums) {
+  const D d;
+  constexpr float kPatchPixels = (2 * kPatchRadius + 1) * (2 * kPatchRadius + 1);
+  const V scale = hn::Set(d, 1.0F / (kPatchPixels * source.tolerance));
+  for (int row = 0; row < kTileHeight; ++row) {
+    for (int column = 0; column < kTileWidth; column += static_cast<int>(hn::Lanes(d))) {
+      const int x = x0 + column, y = y0 + row;
+      float* const at = sums.data() + row * kTileWidth + column;
+      V weight = bump(d, hn::Mul(hn::Load(d, at), scale));
+      if (!source.guides.empty()) {
+        const V here = hn::LoadU(d, source.guide_variance->at(x, y));
+        const V there = hn::LoadU(d, source.guide_variance->at(x + dx, y + dy));
+        V guide_distance = hn::Neg(hn::Add(here, hn::Min(here, there)));
+        for (const PaddedPlane* guide : source.guides) {
+          const V step = hn::Sub(hn::LoadU(d, guide->at(x, y)), hn::LoadU(d, guide->at(x + dx, y + dy)));
+          guide_distance = add_product(guide_distance, step, step);
+        }
+        weight = hn::Mul(weight, bump(d, guide_distance));
+      }
+      hn::Store(hn::Mul(weight, hn::LoadU(d, source.valid->at(x + dx, y + dy))), d, at);
+    }
+  }
+}
+
+inline constexpr std::size_t kUnknowns = kGuides + 1;
+inline constexpr std::size_t kEntries = kUnknowns * (kUnknowns + 1) / 2;
+
+/// Added to the mean squares of albedo, normal and inverse depth in the regression: guides that vary less than this are
+/// ignored.
+inline constexpr float kRidges[kGuides] = {1e-2F, 1e-2F, 1e-2F, 2e-2F, 2e-2F, 2e-2F, 3e-4F};
+/// Lower bound of divisors, so that pixels without valid neighbours do not divide by 0.
+inline constexpr float kTiny = 1e-12F;
+
+/// Calls `f(index, dx, dy)` for all neighbours.
+template <class F>
+HWY_INLINE void each_offset(int radius, F f) {
+  std::size_t i = 0;
+  for (int dy = -radius; dy <= radius; ++dy)
+    for (int dx = -radius; dx <= radius; ++dx) f(i++, dx, dy);
+}
+
+/// Solves M z = (1, 0, ..., 0) for a symmetric positive definite M by Cholesky factorisation.
+///
+/// `m`        lower triangle of M, row by row; overwritten
+HWY_INLINE void solve_first(D d, V (&m)[kEntries], V (&z)[kUnknowns]) {
+  const auto at = [&m](std::size_t row, std::size_t column) -> V& { return m[row * (row + 1) / 2 + column]; };
+  V inverse[kUnknowns];
+  for (std::size_t j = 0; j < kUnknowns; ++j) {
+    for (std::size_t k = 0; k < j; ++k) at(j, j) = hn::Sub(at(j, j), hn::Mul(at(j, k), at(j, k)));
+    inverse[j] = hn::Div(hn::Set(d, 1.0F), hn::Sqrt(hn::Max(at(j, j), hn::Set(d, kTiny))));
+    for (std::size_t i = j + 1; i < kUnknowns; ++i) {
+      for (std::size_t k = 0; k < j; ++k) at(i, j) = hn::Sub(at(i, j), hn::Mul(at(i, k), at(j, k)));
+      at(i, j) = hn::Mul(at(i, j), inverse[j]);
+    }
+  }
+  for (std::size_t i = 0; i < kUnknowns; ++i) {
+    z[i] = i == 0 ? hn::Set(d, 1.0F) : hn::Zero(d);
+    for (std::size_t k = 0; k < i; ++k) z[i] = hn::Sub(z[i], hn::Mul(at(i, k), z[k]));
+    z[i] = hn::Mul(z[i], inverse[i]);
+  }
+  for (std::size_t i = kUnknowns; i-- > 0;) {
+    for (std::size_t k = i + 1; k < kUnknowns; ++k) z[i] = hn::Sub(z[i], hn::Mul(at(k, i), z[k]));
+    z[i] = hn::Mul(z[i], inverse[i]);
+  }
+}
+
+/// Normalizes the similarities of a vector of pixels to a sum of 1.
+HWY_INLINE void normalize(int radius, std::size_t at, TileWeights& weights) {
+  const D d;
+  V sum = hn::Zero(d);
+  each_offset(radius, [&](std::size_t i, int, int) { sum = hn::Add(sum, hn::Load(d, weights[i].data() + at)); });
+  const V scale = hn::Div(hn::Set(d, 1.0F), hn::Max(sum, hn::Set(d, kTiny)));
+  each_offset(radius, [&](std::size_t i, int, int) {
+    float* const weight = weights[i].data() + at;
+    hn::Store(hn::Mul(hn::Load(d, weight), scale), d, weight);
+  });
+}
+
+/// Replaces the similarities of a vector of pixels by the weights of a regression.
+///
+/// The value at the pixel of the linear function of the guides that fits the neighbours best is z X^T W y, where X
+/// holds the neighbours' guides relative to the pixel's, W the similarities, y the values, and X^T W X z = (1, 0, ...,
+/// 0). The weights z X^T W do not depend on y: one matrix serves all layers.
+HWY_INLINE void regress(const WeightSource& source, int x, int y, std::size_t at, TileWeights& weights) {
+  const D d;
+  V center[kGuides], m[kEntries], z[kUnknowns];
+  const auto relative = [&](std::size_t guide, int dx, int dy) {
+    return hn::Sub(hn::LoadU(d, source.guides[guide]->at(x + dx, y + dy)), center[guide]);
+  };
+  for (std::size_t g = 0; g < kGuides; ++g) center[g] = hn::LoadU(d, source.guides[g]->at(x, y));
+  for (V& v : m) v = hn::Zero(d);
+  each_offset(source.radius, [&](std::size_t i, int dx, int dy) {
+    const V similarity = hn::Load(d, weights[i].data() + at);
+    V guides[kGuides];
+    for (std::size_t g = 0; g < kGuides; ++g) guides[g] = relative(g, dx, dy);
+    m[0] = hn::Add(m[0], similarity);
+    std::size_t entry = 1;
+    for (std::size_t row = 0; row < kGuides; ++row) {
+      const V weighted = hn::Mul(similarity, guides[row]);
+      m[entry] = hn::Add(m[entry], weighted);
+      ++entry;
+      for (std::size_t column = 0; column <= row; ++column, ++entry)
+        m[entry] = add_product(m[entry], weighted, guides[column]);
+    }
+  });
+  const V total = hn::Max(m[0], hn::Set(d, kTiny));
+  for (std::size_t i = 1; i < kUnknowns; ++i)
+    m[i * (i + 1) / 2 + i] = add_product(m[i * (i + 1) / 2 + i], hn::Set(d, kRidges[i - 1]), total);
+  solve_first(d, m, z);
+
+  const V of_total = hn::Div(hn::Set(d, 1.0F), total);
+  V fit[3], mean[3];
+  for (std::size_t c = 0; c < 3; ++c) fit[c] = mean[c] = hn::Zero(d);
+  HWY_ALIGN float means[kOffsets][kMaxLanes];
+  each_offset(source.radius, [&](std::size_t i, int dx, int dy) {
+    float* const weight = weights[i].data() + at;
+    V factor = z[0];
+    for (std::size_t g = 0; g < kGuides; ++g) factor = add_product(factor, z[g + 1], relative(g, dx, dy));
+    const V similarity = hn::Load(d, weight);
+    const V of_fit = hn::Mul(similarity, factor), of_mean = hn::Mul(similarity, of_total);
+    hn::Store(of_fit, d, weight);
+    hn::Store(of_mean, d, means[i]);
+    for (std::size_t c = 0; c < 3; ++c) {
+      const V value = hn::LoadU(d, source.target[c]->at(x + dx, y + dy));
+      fit[c] = add_product(fit[c], of_fit, value);
+      mean[c] = add_product(mean[c], of_mean, value);
+    }
+  });
+  // The largest blend factor from the weighted mean to the regression at which no channel is negative.
+  const V one = hn::Set(d, 1.0F);
+  V fraction = one;
+  for (std::size_t c = 0; c < 3; ++c) {
+    const V limit = hn::Div(mean[c], hn::Max(hn::Sub(mean[c], fit[c]), hn::Set(d, 1e-30F)));
+    fraction = hn::IfThenElse(hn::Lt(fit[c], hn::Zero(d)), hn::Min(fraction, limit), fraction);
+  }
+  fraction = hn::Max(fraction, hn::Zero(d));
+  if (hn::AllTrue(d, hn::Ge(fraction, one))) return;
+  each_offset(source.radius, [&](std::size_t i, int, int) {
+    float* const weight = weights[i].data() + at;
+    const V of_mean = hn::Load(d, means[i]), of_fit = hn::Load(d, weight);
+    const V blend = add_product(of_mean, fraction, hn::Sub(of_fit, of_mean));
+    hn::Store(hn::IfThenElse(hn::Lt(fraction, one), blend, of_fit), d, weight);
+  });
+}
+
+}  // namespace
+
+void compute_tile_weights(const WeightSource& source, int x, int y, TileScratch& scratch, TileWeights& out) {
+  out.resize(static_cast<std::size_t>((2 * source.radius + 1) * (2 * source.radius + 1)));
+  scratch.distances.resize(kDistanceStride * kHaloHeight);
+  scratch.columns.resize(kDistanceStride);
+  const bool has_halves = source.compared.front().a != source.compared.front().b;
+  each_offset(source.radius, [&](std::size_t i, int dx, int dy) {
+    (has_halves ? pixel_distances<true> : pixel_distances<false>)(source, x, y, dx, dy, scratch.distances.data());
+    patch_sums(scratch.distances.data(), scratch.columns.data(), out[i]);
+    similarities(source, x, y, dx, dy, out[i]);
+  });
+  for (int row = 0; row < kTileHeight; ++row) {
+    for (int column = 0; column < kTileWidth; column += static_cast<int>(hn::Lanes(D()))) {
+      const auto at = static_cast<std::size_t>(row * kTileWidth + column);
+      if (source.has_regression) {
+        regress(source, x + column, y + row, at, out);
+      } else {
+        normalize(source.radius, at, out);
+      }
+    }
+  }
+}
+
+void apply_tile_weights(const TileWeights& weights, int radius, const PaddedPlane& plane, int x, int y,
+                        TilePixels& out) {
+  const D d;
+  for (int row = 0; row < kTileHeight; ++row) {
+    for (int column = 0; column < kTileWidth; column += static_cast<int>(hn::Lanes(d))) {
+      const auto at = static_cast<std::size_t>(row * kTileWidth + column);
+      V sum = hn::Zero(d);
+      each_offset(radius, [&](std::size_t i, int dx, int dy) {
+        const V value = hn::LoadU(d, plane.at(x + column + dx, y + row + dy));
+        sum = add_product(sum, hn::Load(d, weights[i].data() + at), value);
+      });
+      hn::Store(sum, d, out.data() + at);
+    }
+  }
+}
+
+}  // namespace orrery::denoise::HWY_NAMESPACE
+HWY_AFTER_NAMESPACE();
 
 #if HWY_ONCE
 namespace orrery::denoise {

@@ -23,13 +23,11 @@ LightCells::LightCells(const LayerRequest& request, const LayerPixel& pixel, con
   for (std::size_t c = 0; c < 3; ++c) divide(request, pixel, beauty, c);
 }
 
-/// Rounds the cumulative sums of the cells, not the cells, so that the errors do not add up. All groups of one lobe
-/// precede those of the next: the lobes then have the same bits with and without groups.
+/// All groups of one lobe precede those of the next: the lobes then have the same bits with and without groups.
 void LightCells::divide(const LayerRequest& request, const LayerPixel& pixel, const kernel::PixelSum& beauty,
                         std::size_t c) {
   const auto whole = math::in_single_precision(mean(beauty.rgb[c], beauty.weight));
   if (whole == 0) return;
-  const double last_bit = std::ldexp(1.0, std::ilogb(whole) - 23);
   Int128 total = 0, all = 0;
   for (const auto& sum : pixel.light) {
     total += sum[c];
@@ -45,9 +43,8 @@ void LightCells::divide(const LayerRequest& request, const LayerPixel& pixel, co
   }
   // A path's radiance is the rounded sum of its events; the difference is spread over the cells in proportion.
   const double excess = mean(beauty.rgb[c] - total, beauty.weight);
-  const double units = whole / last_bit;
+  ExactParts parts(whole);
   Int128 sum = 0, seen = 0;
-  double so_far = 0;
   for (std::size_t lobe = 0; lobe < kLobes; ++lobe) {
     for (std::size_t group = 0; group < groups_; ++group) {
       const std::size_t i = group * kLobes + lobe;
@@ -55,11 +52,9 @@ void LightCells::divide(const LayerRequest& request, const LayerPixel& pixel, co
       sum += pixel.light[i][c];
       seen += magnitude(pixel.light[i][c]);
       const double share = static_cast<double>(seen) / static_cast<double>(all);
-      double next = std::nearbyint((mean(sum, beauty.weight) + excess * share) / last_bit);
-      if (total == all) next = std::clamp(next, so_far, units);  // `excess` is rounded; no cell must become negative
-      if (seen == all) next = units;
-      cell(group, lobe, c) = (next - so_far) * last_bit;
-      so_far = next;
+      // `excess` is rounded; no cell must become negative if no event is.
+      cell(group, lobe, c) =
+          seen == all ? parts.rest() : parts.next(mean(sum, beauty.weight) + excess * share, total == all);
     }
   }
 }

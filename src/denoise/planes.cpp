@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "denoise/plane_values.h"
+#include "denoise/planes.h"
 
 namespace orrery::denoise {
 

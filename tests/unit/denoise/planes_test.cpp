@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "denoise/plane_values.h"
+#include "denoise/planes.h"
 
 #include <gtest/gtest.h>
 
@@ -19,7 +19,7 @@ Values random_values(unsigned seed) {
   return out;
 }
 
-TEST(DenoisePlaneValues, WindowMeansRepeatTheEdge) {
+TEST(DenoisePlanes, WindowMeansRepeatTheEdge) {
   const Values in = random_values(1);
   for (const int radius : {0, 1, 3}) {
     const Values means = window_means(in, kFrame, radius);
@@ -33,7 +33,7 @@ TEST(DenoisePlaneValues, WindowMeansRepeatTheEdge) {
   }
 }
 
-TEST(DenoisePlaneValues, VarianceOfHalvesIsThatOfTheirMeanAndAddsUpOverPlanes) {
+TEST(DenoisePlanes, VarianceOfHalvesIsThatOfTheirMeanAndAddsUpOverPlanes) {
   constexpr Frame kLarge{200, 100};
   std::mt19937 random(2);
   std::normal_distribution<float> normal(1, 0.5F);
@@ -49,14 +49,14 @@ TEST(DenoisePlaneValues, VarianceOfHalvesIsThatOfTheirMeanAndAddsUpOverPlanes) {
   EXPECT_NEAR(sum / static_cast<double>(kLarge.pixels()), 1.25, 0.03);
 }
 
-TEST(DenoisePlaneValues, VarianceCountsPixelsUpToALimit) {
+TEST(DenoisePlanes, VarianceCountsPixelsUpToALimit) {
   Values a(kFrame.pixels()), b = a;
   const Values limits(kFrame.pixels(), 3);
   a[kFrame.at(4, 3)] = 1000;
   EXPECT_FLOAT_EQ(variance_of({{&a, &b}}, kFrame, 1, &limits)[kFrame.at(5, 3)], 1);
 }
 
-TEST(DenoisePlaneValues, TheLeastValueAroundAPixel) {
+TEST(DenoisePlanes, TheLeastValueAroundAPixel) {
   Values in(kFrame.pixels(), 5);
   in[kFrame.at(3, 3)] = 1;
   const Values out = least_around(in, kFrame, 2);
@@ -67,7 +67,7 @@ TEST(DenoisePlaneValues, TheLeastValueAroundAPixel) {
   EXPECT_EQ(out[kFrame.at(4, 4)], 5);
 }
 
-TEST(DenoisePlaneValues, APixelIsScaledWithItsRepetitions) {
+TEST(DenoisePlanes, APixelIsScaledWithItsRepetitions) {
   const Values in = random_values(3);
   for (const std::size_t pixel : {kFrame.at(0, 0), kFrame.at(kFrame.width - 1, 2), kFrame.at(4, 3)}) {
     PaddedPlane plane = padded(in, kFrame);
@@ -81,7 +81,7 @@ TEST(DenoisePlaneValues, APixelIsScaledWithItsRepetitions) {
   }
 }
 
-TEST(DenoisePlaneValues, PaddedPlanesRepeatTheEdgeAndAreFinite) {
+TEST(DenoisePlanes, PaddedPlanesRepeatTheEdgeAndAreFinite) {
   Values in = random_values(3);
   in[kFrame.at(4, 2)] = std::numeric_limits<float>::quiet_NaN();
   in[kFrame.at(8, 5)] = std::numeric_limits<float>::infinity();
