@@ -14,7 +14,6 @@
 #include "base/error.h"
 #include "base/file_set.h"
 #include "base/text.h"
-#include "image/exr_options.h"
 #include "image/format.h"
 #include "image/header.h"
 #include "image/read.h"

@@ -14,7 +14,6 @@
 #include "format/write_scene.h"
 #include "format/written_text.h"
 #include "generate/generate.h"
-#include "image/exr_options.h"
 #include "image/format.h"
 #include "image/header.h"
 #include "image/write.h"

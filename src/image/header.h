@@ -2,6 +2,7 @@
 #pragma once
 
 #include <array>
+#include <map>
 #include <optional>
 #include <string>
 #include <variant>
@@ -35,5 +36,8 @@ struct Header {
       matte_attributes;    ///< Cryptomatte metadata; written to the first part and to the parts of the mattes
   std::string stamp = {};  ///< hash of everything that determines the image; see kStampName
 };
+
+/// Origin of a checkpoint or shard as name-value pairs, e.g. "sceneHash" = "0123456789abcdef".
+using Provenance = std::map<std::string, std::string>;
 
 }  // namespace orrery::image

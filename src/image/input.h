@@ -1,11 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include <OpenImageIO/imageio.h>
-
 #include <filesystem>
 #include <memory>
 #include <string>
+
+#include <OpenImageIO/imageio.h>
+
+#include "image/format.h"
 
 namespace orrery::image {
 
@@ -23,16 +25,14 @@ std::string first_message(const std::string& text);
 /// Errors     base::Error(kBadData) if it is out of range or the pixels are deep
 void check_spec(const std::filesystem::path& file, const OIIO::ImageSpec& spec);
 
-/// Number of rows to decode at a time.
-int row_step(const OIIO::ImageSpec& spec);
-
 /// An open image file, and one part of it.
 struct Input {
   std::unique_ptr<OIIO::ImageInput> in;
   OIIO::ImageSpec spec;
   int part = 0;
 
-  int row_step() const { return image::row_step(spec); }
+  /// Number of rows to decode at a time.
+  int row_step() const;
   /// Decodes rows begin..end of a channel range; false if that fails.
   bool decode(int begin, int end, int first_channel, int end_channel, OIIO::TypeDesc type, void* out) const;
   /// The reason why decoding failed.
@@ -46,5 +46,13 @@ enum class Alpha { kPremultiplied, kAsInFile };
 ///
 /// Errors     as read()
 Input open_input(const std::filesystem::path& file, Alpha alpha = Alpha::kPremultiplied);
+
+/// Looks for damage that the libraries do not report, or report on standard error: PNG files that are truncated or
+/// whose checksums do not match, and truncated JPEG files, whose missing rows libjpeg fills with grey. Pixels are not
+/// decoded.
+///
+/// Result     what is wrong; empty if nothing was found, for other formats, and for a file whose format does not match
+///            its name
+std::string damage_of(const std::filesystem::path& file, Format format);
 
 }  // namespace orrery::image

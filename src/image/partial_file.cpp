@@ -15,7 +15,6 @@
 
 #include "base/error.h"
 #include "film/partial_words.h"
-#include "image/digest.h"
 #include "image/exr_spec.h"
 #include "image/header.h"
 #include "image/library.h"

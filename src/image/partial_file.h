@@ -4,7 +4,7 @@
 #include <filesystem>
 
 #include "film/partial.h"
-#include "image/provenance.h"
+#include "image/header.h"
 
 namespace orrery::image {
 

@@ -2,17 +2,24 @@
 #include "image/read.h"
 
 #include <algorithm>
+#include <cstddef>
 #include <new>
 #include <stdexcept>
 #include <string>
 #include <utility>
+#include <vector>
 
+#include <OpenImageIO/deepdata.h>
+#include <OpenImageIO/imageio.h>
 #include <fmt/core.h>
 
 #include "base/error.h"
+#include "base/input_file.h"
 #include "base/text.h"
 #include "image/format.h"
+#include "image/header.h"
 #include "image/input.h"
+#include "image/library.h"
 
 namespace orrery::image {
 namespace {
@@ -43,7 +50,28 @@ std::string decode_rows(const Input& input, int begin, int end, std::vector<floa
   return {};
 }
 
-/// Appends a row of the display window to every plane.
+/// Decodes the rows of the display window from the top, a few at a time, and calls `take(y, row)` for each; the row is
+/// null outside the data window.
+///
+/// `decode`   decodes rows begin..end of the data window, and returns a pointer to the first
+template <class Decode, class Take>
+void each_row(const Input& input, std::size_t values_per_row, Decode decode, Take take) {
+  const ImageSpec& spec = input.spec;
+  const int full_end = spec.full_y + spec.full_height, data_end = spec.y + spec.height;
+  int y = spec.full_y;
+  const auto take_empty = [&](int end) {
+    for (; y < std::min(end, full_end); ++y) take(y, nullptr);
+  };
+  take_empty(spec.y);
+  for (int begin = spec.y; begin < std::min(data_end, full_end); begin += input.row_step()) {
+    const int end = std::min(begin + input.row_step(), data_end);
+    const float* const rows = decode(begin, end);
+    for (; y < std::min(end, full_end); ++y) take(y, rows + static_cast<std::size_t>(y - begin) * values_per_row);
+  }
+  take_empty(full_end);
+}
+
+/// Appends a row of the display window to every plane; without a row, zeros.
 void append_row(const ImageSpec& spec, const float* row, film::Picture& picture) {
   const auto channels = static_cast<std::size_t>(spec.nchannels);
   const int begin = std::max(spec.x, spec.full_x);
@@ -52,7 +80,7 @@ void append_row(const ImageSpec& spec, const float* row, film::Picture& picture)
     std::vector<float>& values = picture.planes[c].values;
     const std::size_t start = values.size();
     values.resize(start + static_cast<std::size_t>(picture.width));
-    for (int x = begin; x < end; ++x)
+    for (int x = begin; x < end && row != nullptr; ++x)
       values[start + static_cast<std::size_t>(x - spec.full_x)] =
           row[static_cast<std::size_t>(x - spec.x) * channels + c];
   }
@@ -84,22 +112,13 @@ film::Picture decode_all(const std::filesystem::path& file, const Input& input, 
   picture.is_transparent =
       std::string(spec.get_string_attribute("orrery/settings")).find(kTransparent) != std::string::npos;
   for (const std::string& name : spec.channelnames) picture.planes.push_back({name, {}});
-  const auto append_empty = [&](int rows) {
-    const std::size_t more = static_cast<std::size_t>(std::max(rows, 0)) * static_cast<std::size_t>(picture.width);
-    for (film::Plane& plane : picture.planes) plane.values.resize(plane.values.size() + more);
-  };
-  const int full_end = spec.full_y + spec.full_height, data_end = spec.y + spec.height;
-  append_empty(std::min(spec.y, full_end) - spec.full_y);
-  const int step = input.row_step();
-  const std::size_t row_values = static_cast<std::size_t>(spec.width) * static_cast<std::size_t>(spec.nchannels);
   std::vector<float> rows;
-  for (int begin = spec.y; begin < std::min(data_end, full_end); begin += step) {
-    const int end = std::min(begin + step, data_end);
+  const auto decode = [&](int begin, int end) {
     if (const std::string wrong = decode_rows(input, begin, end, rows); !wrong.empty()) fail_to_read(file, wrong);
-    for (int y = std::max(begin, spec.full_y); y < std::min(end, full_end); ++y)
-      append_row(spec, &rows[static_cast<std::size_t>(y - begin) * row_values], picture);
-  }
-  append_empty(full_end - std::max(data_end, spec.full_y));
+    return rows.data();
+  };
+  each_row(input, static_cast<std::size_t>(spec.width) * static_cast<std::size_t>(spec.nchannels), decode,
+           [&](int, const float* row) { append_row(spec, row, picture); });
   return picture;
 }
 
@@ -120,6 +139,74 @@ void add_other_parts(const std::filesystem::path& file, Input& input, std::uint6
   }
 }
 
+/// Positions of R, G and B among the channels.
+using Channels = std::array<int, 3>;
+
+Channels channels_of(const std::filesystem::path& file, const OIIO::ImageSpec& spec) {
+  const std::vector<std::string>& names = spec.channelnames;
+  const auto index = [&](const char* name) {
+    const auto found = std::find(names.begin(), names.end(), name);
+    return found == names.end() ? -1 : static_cast<int>(found - names.begin());
+  };
+  const Channels rgb = {index("R"), index("G"), index("B")};
+  if (*std::min_element(rgb.begin(), rgb.end()) >= 0) return rgb;
+  if (names.size() == 1) return {0, 0, 0};
+  const int grey = index("Y");
+  if (names.size() == 2 && grey >= 0 && index("A") >= 0) return {grey, grey, grey};
+  fail_to_read(file, "it has no channels R, G and B; it has " + base::joined(names));
+}
+
+/// The format that the file's extension selects; empty if unknown.
+std::optional<Format> known_format(const std::filesystem::path& file) {
+  try {
+    return format_of(file);
+  } catch (const base::Error&) {
+    return {};
+  }
+}
+
+Input open_map(const std::filesystem::path& file, MapFormats formats) {
+  base::require_readable(file);
+  const std::optional<Format> format = known_format(file);
+  if (formats == MapFormats::kSceneLinear && (!format || is_display_format(*format)))
+    fail_to_read(file, "an environment map must be an exr or hdr file");
+  if (!format) fail_to_read(file, "a texture must be an exr, hdr, png, tiff, jpeg or ppm file");
+  return open_input(file, Alpha::kAsInFile);
+}
+
+/// The names with which OpenImageIO reports a file as scene-linear by assumption, without a declaration in the file.
+bool is_assumed(const std::string& color_space) {
+  static const std::vector<std::string> names = {"Linear",   "linear",     "scene_linear",
+                                                 "lin_srgb", "lin_rec709", "lin_rec709_scene"};
+  return std::find(names.begin(), names.end(), color_space) != names.end();
+}
+
+/// Decodes all pixels of a part, which may be deep; false if that fails.
+bool decodes(const Input& input) {
+  const ImageSpec& spec = input.spec;
+  std::vector<float> rows;
+  for (int y = spec.y; y < spec.y + spec.height; y += input.row_step()) {
+    const int end = std::min(y + input.row_step(), spec.y + spec.height);
+    if (spec.deep) {
+      OIIO::DeepData deep;
+      if (!input.in->read_native_deep_scanlines(input.part, 0, y, end, 0, 0, spec.nchannels, deep)) return false;
+      continue;
+    }
+    rows.resize(static_cast<std::size_t>(end - y) * static_cast<std::size_t>(spec.width) *
+                static_cast<std::size_t>(spec.nchannels));
+    if (!input.decode(y, end, 0, spec.nchannels, TypeDesc::FLOAT, rows.data())) return false;
+  }
+  return true;
+}
+
+/// The stamp in a file's attributes; formats without custom attributes have it in their description.
+std::string stamp_in(const ImageSpec& spec) {
+  const std::string own = spec.get_string_attribute(kStampName);
+  if (!own.empty()) return own;
+  const std::string text = spec.get_string_attribute("ImageDescription"), begin = std::string(kStampName) + " ";
+  return text.rfind(begin, 0) == 0 ? text.substr(begin.size()) : "";
+}
+
 }  // namespace
 
 film::Picture read(const std::filesystem::path& file, Parts parts, std::uint64_t memory_limit) {
@@ -136,6 +223,76 @@ film::Picture read(const std::filesystem::path& file, Parts parts, std::uint64_t
   } catch (const std::length_error&) {
     fail_for_memory(file);
   }
+}
+
+MapHeader read_map_header(const std::filesystem::path& file, MapFormats formats) {
+  const Input input = open_map(file, formats);
+  const OIIO::ImageSpec& spec = input.spec;
+  channels_of(file, spec);
+  MapHeader out{spec.full_width, spec.full_height};
+  out.is_padded = spec.x > spec.full_x || spec.x + spec.width < spec.full_x + spec.full_width || spec.y > spec.full_y ||
+                  spec.y + spec.height < spec.full_y + spec.full_height;
+  out.color_interop_id = std::string(spec.get_string_attribute("colorInteropID"));
+  out.color_space = std::string(spec.get_string_attribute("oiio:ColorSpace"));
+  out.is_half = spec.format == TypeDesc::HALF;
+  out.is_encoded = is_display_format(*known_format(file)) && spec.format != TypeDesc::FLOAT;
+  // For integers, the name that OpenImageIO reports is an assumption as well.
+  if (out.is_encoded || is_assumed(out.color_space)) out.color_space.clear();
+  std::array<float, 8> chromaticities;
+  if (spec.getattribute("chromaticities", TypeDesc(TypeDesc::FLOAT, 8), chromaticities.data()))
+    out.chromaticities = chromaticities;
+  return out;
+}
+
+void read_map(const std::filesystem::path& file, const std::function<void(int row, float* rgb)>& take,
+              MapFormats formats) {
+  const Input input = open_map(file, formats);
+  const OIIO::ImageSpec& spec = input.spec;
+  const Channels channels = channels_of(file, spec);
+  const auto [first, last] = std::minmax_element(channels.begin(), channels.end());
+  const auto stored = static_cast<std::size_t>(*last - *first + 1);
+  const std::size_t row_values = static_cast<std::size_t>(spec.width) * stored;
+  const int begin_x = std::max(spec.x, spec.full_x),
+            end_x = std::min(spec.x + spec.width, spec.full_x + spec.full_width);
+  std::vector<float> rows, rgb(3 * static_cast<std::size_t>(spec.full_width));
+  const auto decode = [&](int begin, int end) {
+    rows.resize(static_cast<std::size_t>(end - begin) * row_values);
+    if (!input.decode(begin, end, *first, *last + 1, TypeDesc::FLOAT, rows.data()))
+      fail_to_read(file, input.error_message());
+    return rows.data();
+  };
+  each_row(input, row_values, decode, [&](int y, const float* row) {
+    std::fill(rgb.begin(), rgb.end(), 0.0F);
+    for (int x = begin_x; x < end_x && row != nullptr; ++x)
+      for (std::size_t c = 0; c < 3; ++c)
+        rgb[3 * static_cast<std::size_t>(x - spec.full_x) + c] =
+            row[static_cast<std::size_t>(x - spec.x) * stored + static_cast<std::size_t>(channels[c] - *first)];
+    take(y - spec.full_y, rgb.data());
+  });
+  input.in->geterror();  // OpenImageIO prints messages that are not fetched
+}
+
+std::string verified_stamp(const std::filesystem::path& file) {
+  prepare_library();
+  std::error_code ignored;
+  if (!std::filesystem::is_regular_file(file, ignored)) return {};
+  if (!damage_of(file, format_of(file)).empty()) return {};
+  Input input{OIIO::ImageInput::open(file.string()), {}, 0};
+  if (!input.in) {
+    OIIO::geterror();  // OpenImageIO prints messages that are not fetched
+    return {};
+  }
+  std::string stamp = stamp_in(input.in->spec());
+  try {
+    for (; input.in->seek_subimage(input.part, 0) && !stamp.empty(); ++input.part) {
+      input.spec = input.in->spec();
+      if (input.spec.tile_width != 0 || !decodes(input)) stamp.clear();
+    }
+  } catch (const std::bad_alloc&) {
+    stamp.clear();
+  }
+  input.in->geterror();
+  return stamp;
 }
 
 }  // namespace orrery::image

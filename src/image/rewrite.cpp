@@ -53,34 +53,33 @@ std::size_t offset_of(const ImageSpec& spec, int channel) {
   return offset;
 }
 
-/// Decodes a part in its own types. Memory grows with the decoded rows, so that a damaged header cannot exhaust it.
-NativePart read_part(const std::filesystem::path& file, const Input& input, int part) {
-  NativePart out{input.in->spec(part), {}};
+/// Decodes the part of an input in its own types. Memory grows with the decoded rows, so that a damaged header cannot
+/// exhaust it.
+NativePart read_part(const std::filesystem::path& file, const Input& input) {
+  NativePart out{input.spec, {}};
   const ImageSpec& spec = out.spec;
   const std::size_t row_bytes = spec.pixel_bytes(true) * static_cast<std::size_t>(spec.width);
-  const int step = row_step(spec), last = spec.y + spec.height;
-  for (int y = spec.y; y < last; y += step) {
-    const int end = std::min(y + step, last);
+  const int last = spec.y + spec.height;
+  for (int y = spec.y; y < last; y += input.row_step()) {
+    const int end = std::min(y + input.row_step(), last);
     const std::size_t at = out.bytes.size();
     out.bytes.resize(at + row_bytes * static_cast<std::size_t>(end - y));
-    const bool good = spec.tile_width == 0 ? input.in->read_scanlines(part, 0, y, end, 0, 0, spec.nchannels,
-                                                                      TypeDesc::UNKNOWN, &out.bytes[at])
-                                           : input.in->read_tiles(part, 0, spec.x, spec.x + spec.width, y, end, 0, 1, 0,
-                                                                  spec.nchannels, TypeDesc::UNKNOWN, &out.bytes[at]);
-    if (!good) fail_to_read(file, input.error_message());
+    if (!input.decode(y, end, 0, spec.nchannels, TypeDesc::UNKNOWN, &out.bytes[at]))
+      fail_to_read(file, input.error_message());
   }
   return out;
 }
 
 std::vector<NativePart> read_parts(const std::filesystem::path& file) {
-  const Input input = open_input(file);
+  Input input = open_input(file);
   std::vector<NativePart> parts;
-  for (int part = 0; input.in->seek_subimage(part, 0); ++part) {
-    check_spec(file, input.in->spec());
-    for (const OIIO::ParamValue& attribute : input.in->spec().extra_attribs)
+  for (; input.in->seek_subimage(input.part, 0); ++input.part) {
+    input.spec = input.in->spec();
+    check_spec(file, input.spec);
+    for (const OIIO::ParamValue& attribute : input.spec.extra_attribs)
       if (std::string(attribute.name()).starts_with(kPartialPrefix))
         fail_to_read(file, "it is a shard or a checkpoint; merge the shards first");
-    parts.push_back(read_part(file, input, part));
+    parts.push_back(read_part(file, input));
   }
   input.in->geterror();  // of the part after the last
   return parts;

@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include <OpenImageIO/imageio.h>
-
 #include <filesystem>
 #include <optional>
 #include <string>
 #include <vector>
+
+#include <OpenImageIO/imageio.h>
 
 namespace orrery::image {
 
@@ -21,12 +21,17 @@ struct WholePart {
 /// Writes an image file with OpenImageIO: to a temporary file with every write checked, read back, synced and renamed.
 ///
 /// Domain     `format` is OpenImageIO's format name; `type` is the type of the pixels; more than one part only if the
-///            format supports it; `with_digest` appends a digest (image/digest.h)
+///            format supports it; `with_digest` appends a digest
 /// Errors     base::Error: kCannotCreate, kIo; an existing file is then unchanged
 void write_whole(const std::filesystem::path& file, const std::string& format, OIIO::TypeDesc type,
                  const std::vector<WholePart>& parts, bool with_digest = false);
 
 /// Keeps OpenImageIO from writing the current date and time into the file.
 void leave_out_date(OIIO::ImageSpec& spec);
+
+/// Checks the digest of a file.
+///
+/// Errors     base::Error: kMissingInput if the file cannot be opened, kBadData if it has no digest or a wrong one
+void require_digest(const std::filesystem::path& file);
 
 }  // namespace orrery::image

@@ -6,7 +6,6 @@
 #include "base/atomic_file.h"
 #include "base/error.h"
 #include "compile/compiled_scene.h"
-#include "image/exr_options.h"
 #include "image/format.h"
 #include "job/checkpoint.h"
 #include "job/job.h"

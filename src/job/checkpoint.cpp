@@ -21,7 +21,7 @@
 #include "film/partial.h"
 #include "format/read_result.h"
 #include "image/partial_file.h"
-#include "image/verify.h"
+#include "image/read.h"
 #include "job/job.h"
 #include "job/layers.h"
 #include "job/picture_header.h"

@@ -14,7 +14,7 @@
 #include "film/forward.h"
 #include "format/forward.h"
 #include "image/forward.h"
-#include "image/provenance.h"
+#include "image/header.h"
 #include "render/forward.h"
 
 namespace orrery::job {

@@ -18,7 +18,6 @@
 #include "film/layer_film.h"
 #include "film/partial.h"
 #include "format/read_result.h"
-#include "image/exr_options.h"
 #include "image/format.h"
 #include "image/library.h"
 #include "image/partial_file.h"

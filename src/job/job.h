@@ -15,7 +15,7 @@
 #include "display/forward.h"
 #include "display/settings.h"
 #include "film/picture.h"
-#include "image/provenance.h"
+#include "image/header.h"
 #include "image/write.h"
 #include "job/outputs.h"
 #include "job/resources.h"

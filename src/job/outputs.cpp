@@ -8,7 +8,6 @@
 #include "base/error.h"
 #include "display/develop.h"
 #include "display/settings.h"
-#include "image/exr_options.h"
 #include "image/format.h"
 #include "image/header.h"
 #include "image/write.h"

@@ -11,7 +11,6 @@
 #include "display/settings.h"
 #include "film/forward.h"
 #include "film/picture.h"
-#include "image/exr_options.h"
 #include "image/format.h"
 #include "image/forward.h"
 #include "job/layers.h"

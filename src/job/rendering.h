@@ -8,7 +8,6 @@
 #include "film/picture.h"
 #include "image/forward.h"
 #include "image/header.h"
-#include "image/provenance.h"
 #include "job/job.h"
 #include "job/layers.h"
 

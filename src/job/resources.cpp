@@ -19,7 +19,6 @@
 #include "film/layer_film.h"
 #include "film/layer_pixel.h"
 #include "film/layers.h"
-#include "image/exr_options.h"
 #include "image/format.h"
 #include "job/outputs.h"
 #include "kernel/isa.h"

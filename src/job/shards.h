@@ -7,7 +7,7 @@
 
 #include "base/error.h"
 #include "compile/forward.h"
-#include "image/provenance.h"
+#include "image/header.h"
 #include "render/forward.h"
 
 namespace orrery::job {

@@ -14,7 +14,7 @@
 #include "compile/environment.h"
 #include "compile/mip_map.h"
 #include "display/color_space.h"
-#include "image/read_map.h"
+#include "image/read.h"
 #include "load/loaded_map.h"
 #include "scene/environment_image.h"
 

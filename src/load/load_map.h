@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "compile/forward.h"
-#include "image/read_map.h"
+#include "image/read.h"
 #include "load/forward.h"
 #include "scene/limits.h"
 

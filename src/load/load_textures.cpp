@@ -7,7 +7,7 @@
 #include <fmt/core.h>
 
 #include "base/input_file.h"
-#include "image/read_map.h"
+#include "image/read.h"
 #include "load/load_map.h"
 #include "scene/scene.h"
 #include "scene/textures.h"

@@ -12,7 +12,7 @@
 #include <fmt/core.h>
 
 #include "base/error.h"
-#include "image/exr_options.h"
+#include "image/format.h"
 #include "image/header.h"
 #include "image/read.h"
 #include "image/write.h"

@@ -4,9 +4,7 @@
 #include "image/library.h"
 #include "image/partial_file.h"
 #include "image/read.h"
-#include "image/read_map.h"
 #include "image/rewrite.h"
-#include "image/verify.h"
 #include "image/write.h"
 
 namespace orrery::image {

@@ -5,7 +5,7 @@
 #include <future>
 
 #include "base/module.h"
-#include "image/exr_options.h"
+#include "image/format.h"
 #include "image/header.h"
 #include "image/module/functions.h"
 

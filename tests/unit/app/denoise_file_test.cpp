@@ -10,7 +10,7 @@
 #include <random>
 
 #include "base/error.h"
-#include "image/exr_options.h"
+#include "image/format.h"
 #include "image/header.h"
 #include "image/read.h"
 #include "image/write.h"

@@ -6,7 +6,7 @@
 #include <cstdlib>
 
 #include "base/error.h"
-#include "image/exr_options.h"
+#include "image/format.h"
 #include "image/header.h"
 #include "image/read.h"
 #include "image/write.h"

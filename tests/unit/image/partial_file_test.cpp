@@ -7,7 +7,7 @@
 
 #include "base/error.h"
 #include "film/partial_words.h"
-#include "image/exr_options.h"
+#include "image/format.h"
 #include "image/header.h"
 #include "image/read.h"
 #include "image/write.h"

@@ -5,7 +5,7 @@
 #include <csignal>
 #include <functional>
 
-#include "image/exr_options.h"
+#include "image/format.h"
 #include "image/header.h"
 #include "image/read.h"
 #include "image/write.h"

@@ -8,7 +8,7 @@
 #include <cstdlib>
 #include <limits>
 
-#include "image/exr_options.h"
+#include "image/format.h"
 #include "image/header.h"
 #include "image/library.h"
 #include "image/read.h"

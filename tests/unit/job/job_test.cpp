@@ -14,7 +14,7 @@
 #include <nlohmann/json.hpp>
 
 #include "base/error.h"
-#include "image/exr_options.h"
+#include "image/format.h"
 #include "image/header.h"
 #include "image/partial_file.h"
 #include "image/read.h"
