@@ -19,7 +19,6 @@
 #include "cli/progress.h"
 #include "cli/render_options.h"
 #include "cli/signals.h"
-#include "display/picture_info.h"
 #include "display/settings.h"
 #include "film/partial.h"
 #include "film/picture.h"

@@ -2,7 +2,6 @@
 #include "display/bake.h"
 
 #include <algorithm>
-#include <charconv>
 #include <cmath>
 #include <sstream>
 #include <vector>
@@ -10,7 +9,6 @@
 #include <fmt/core.h>
 
 #include "display/settings.h"
-
 #include "display/view.h"
 
 namespace orrery::display {
@@ -38,19 +36,8 @@ double place_of(double light) {
   return std::log(scaled + 1) / std::log(brightest / darkest);
 }
 
-void add_number(std::string& out, double v) {
-  char text[32];
-  const auto end = std::to_chars(text, text + sizeof(text), static_cast<float>(v), std::chars_format::fixed, 7).ptr;
-  out.append(text, end);
-}
-
-void add_row(std::string& out, double r, double g, double b) {
-  add_number(out, r);
-  out += ' ';
-  add_number(out, g);
-  out += ' ';
-  add_number(out, b);
-  out += '\n';
+std::string row_text(double r, double g, double b) {
+  return fmt::format("{:.7f} {:.7f} {:.7f}\n", static_cast<float>(r), static_cast<float>(g), static_cast<float>(b));
 }
 
 std::string title(const View& view, const Settings& settings) {
@@ -127,12 +114,11 @@ std::string clf_text(const ocio::GroupTransformRcPtr& group, const std::string& 
 std::string bake_cube(const Settings& settings, int size) {
   const View view = find_view(settings);
   const Tables tables = tabulated(view, settings, size);
-  std::string out = fmt::format("# {}\nLUT_1D_SIZE {}\nLUT_1D_INPUT_RANGE 0.0 ", title(view, settings), kShaperSize);
-  add_number(out, 1 / tables.scale);
-  out += fmt::format("\nLUT_3D_SIZE {}\n", size);
-  for (const double v : tables.shaper) add_row(out, v, v, v);
+  std::string out = fmt::format("# {}\nLUT_1D_SIZE {}\nLUT_1D_INPUT_RANGE 0.0 {:.7f}\nLUT_3D_SIZE {}\n",
+                                title(view, settings), kShaperSize, static_cast<float>(1 / tables.scale), size);
+  for (const double v : tables.shaper) out += row_text(v, v, v);
   for (std::size_t i = 0; i < tables.cube.size(); i += 3)
-    add_row(out, tables.cube[i], tables.cube[i + 1], tables.cube[i + 2]);
+    out += row_text(tables.cube[i], tables.cube[i + 1], tables.cube[i + 2]);
   return out;
 }
 

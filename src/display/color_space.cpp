@@ -7,8 +7,7 @@
 #include <fmt/core.h>
 
 #include "base/error.h"
-#include "display/find_color_space.h"
-#include "display/names.h"
+#include "display/config.h"
 
 namespace orrery::display {
 namespace {
@@ -43,6 +42,17 @@ const Entry* entry_of(const std::string& name) {
   return nullptr;
 }
 
+/// The conversion between two spaces of a config.
+ocio::ConstCPUProcessorRcPtr processor_of(const Config& source, const std::string& from, const std::string& to) {
+  try {
+    // Lossless, since the default optimization replaces curves by LUTs.
+    return source.config->getProcessor(from.c_str(), to.c_str())->getOptimizedCPUProcessor(ocio::OPTIMIZATION_LOSSLESS);
+  } catch (const ocio::Exception& error) {
+    throw base::Error(base::ErrorKind::kBadData,
+                      fmt::format("the OCIO config {} cannot be used: {}", source.source, error.what()));
+  }
+}
+
 }  // namespace
 
 std::string find_color_space(const Config& config, const std::string& name) {
@@ -74,36 +84,22 @@ std::string find_scene_linear(const Config& config, const std::string& name) {
 void convert_colors(const std::string& config_file, const std::string& from, const std::string& to,
                     std::vector<std::array<double, 3>>& colors) {
   const Config source = load_config(config_file);
-  try {
-    const ocio::ConstCPUProcessorRcPtr processor =
-        source.config->getProcessor(find_scene_linear(source, from).c_str(), find_scene_linear(source, to).c_str())
-            ->getOptimizedCPUProcessor(ocio::OPTIMIZATION_LOSSLESS);
-    for (std::array<double, 3>& color : colors) {
-      float rgb[3] = {static_cast<float>(color[0]), static_cast<float>(color[1]), static_cast<float>(color[2])};
-      processor->applyRGB(rgb);
-      for (std::size_t k = 0; k < 3; ++k) color[k] = static_cast<double>(rgb[k]);
-    }
-  } catch (const ocio::Exception& error) {
-    throw base::Error(base::ErrorKind::kBadData,
-                      fmt::format("the OCIO config {} cannot be used: {}", source.source, error.what()));
+  const auto processor = processor_of(source, find_scene_linear(source, from), find_scene_linear(source, to));
+  for (std::array<double, 3>& color : colors) {
+    float rgb[3] = {static_cast<float>(color[0]), static_cast<float>(color[1]), static_cast<float>(color[2])};
+    processor->applyRGB(rgb);
+    for (std::size_t k = 0; k < 3; ++k) color[k] = static_cast<double>(rgb[k]);
   }
 }
 
 PixelConversion pixel_conversion(const std::string& config_file, const std::string& from, const std::string& to) {
   if (from == to || (known_space(from) != nullptr && known_space(from) == known_space(to))) return {};
   const Config source = load_config(config_file);
-  try {
-    const ocio::ConstCPUProcessorRcPtr processor =
-        source.config->getProcessor(find_color_space(source, from).c_str(), find_scene_linear(source, to).c_str())
-            ->getOptimizedCPUProcessor(ocio::OPTIMIZATION_LOSSLESS);
-    return [processor](float* rgb, std::size_t pixels) {
-      ocio::PackedImageDesc image(rgb, static_cast<long>(pixels), 1, 3);
-      processor->apply(image);
-    };
-  } catch (const ocio::Exception& error) {
-    throw base::Error(base::ErrorKind::kBadData,
-                      fmt::format("the OCIO config {} cannot be used: {}", source.source, error.what()));
-  }
+  const auto processor = processor_of(source, find_color_space(source, from), find_scene_linear(source, to));
+  return [processor](float* rgb, std::size_t pixels) {
+    ocio::PackedImageDesc image(rgb, static_cast<long>(pixels), 1, 3);
+    processor->apply(image);
+  };
 }
 
 const KnownSpace* known_space(const std::array<float, 8>& chromaticities) {

@@ -3,7 +3,7 @@
 
 #include <utility>
 
-#include "display/find_color_space.h"
+#include "display/config.h"
 #include "display/settings.h"
 #include "display/view.h"
 

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <filesystem>
 #include <optional>
 #include <string>
 #include <vector>
@@ -39,5 +40,22 @@ struct Choice {
 ///            invalid config, kUsage for an unknown display, view, look or colour space (the message suggests similar
 ///            names), and for an exposure that is not finite
 Choice choose(const Settings& settings);
+
+/// The files that load_config() may open: the given config and the one in $OCIO, if they are files.
+std::vector<std::filesystem::path> config_files(const std::string& config);
+
+/// The LUT files that any transform of a config refers to.
+///
+/// Result     files that exist; empty if the config cannot be loaded, which load_config() reports
+/// Cost       loads the config, but not the LUTs
+std::vector<std::filesystem::path> table_files(const std::filesystem::path& config);
+
+/// Properties of an image that is about to be rendered.
+struct PictureInfo {
+  std::string name;           ///< name of the scene file
+  int width = 0, height = 0;  ///< px
+  double pixel_aspect = 1;    ///< pixel width / height
+  Settings display;           ///< from the command line and the scene
+};
 
 }  // namespace orrery::display

@@ -9,8 +9,6 @@
 #include "base/error.h"
 #include "base/text.h"
 #include "display/config.h"
-#include "display/find_color_space.h"
-#include "display/names.h"
 #include "display/settings.h"
 
 namespace orrery::display {

@@ -14,7 +14,7 @@
 #include "base/text.h"
 #include "compile/compiled_scene.h"
 #include "denoise/denoise.h"
-#include "display/picture_info.h"
+#include "display/settings.h"
 #include "film/layer_film.h"
 #include "film/partial.h"
 #include "format/read_result.h"

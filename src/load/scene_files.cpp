@@ -3,7 +3,7 @@
 
 #include "base/file_set.h"
 #include "base/frames.h"
-#include "display/config_files.h"
+#include "display/settings.h"
 #include "format/named_files.h"
 #include "load/scene_source.h"
 #include "load/working_space.h"

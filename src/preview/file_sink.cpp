@@ -13,7 +13,7 @@
 
 #include "base/atomic_file.h"
 #include "display/develop.h"
-#include "display/picture_info.h"
+#include "display/settings.h"
 #include "preview/sink.h"
 
 namespace orrery::preview {

@@ -9,7 +9,7 @@
 #include <string>
 #include <thread>
 
-#include "display/picture_info.h"
+#include "display/settings.h"
 #include "preview/sink.h"
 
 namespace orrery::preview {

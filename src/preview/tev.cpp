@@ -15,7 +15,7 @@
 #include <fmt/core.h>
 
 #include "base/error.h"
-#include "display/picture_info.h"
+#include "display/settings.h"
 #include "preview/sink.h"
 
 namespace orrery::preview {

@@ -10,7 +10,6 @@
 #include "base/error.h"
 #include "base/text.h"
 #include "display/builtin_config.h"
-#include "display/config_files.h"
 #include "display/develop.h"
 #include "display/look_up.h"
 #include "display/settings.h"
