@@ -5,8 +5,6 @@
 
 #include <mutex>
 
-#include <fmt/core.h>
-
 namespace orrery::image {
 namespace {
 
@@ -34,11 +32,6 @@ void load() {}
 void set_threads(int count) {
   prepare_library();
   use_threads(count);
-}
-
-std::string oiio_version() {
-  const int v = OIIO::openimageio_version();
-  return fmt::format("{}.{}.{}", v / 10000, v / 100 % 100, v % 100);
 }
 
 }  // namespace orrery::image

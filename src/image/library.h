@@ -23,7 +23,4 @@ void load();
 /// Domain     count >= 1
 void set_threads(int count);
 
-/// The version of the loaded OpenImageIO library.
-std::string oiio_version();
-
 }  // namespace orrery::image

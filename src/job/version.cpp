@@ -7,7 +7,6 @@
 #include "accel/accel.h"
 #include "display/develop.h"
 #include "format/read_scene.h"
-#include "image/library.h"
 #include "image/write.h"
 #include "kernel/isa.h"
 #include "render/render.h"
@@ -19,7 +18,7 @@ std::string program_version() { return ORRERY_VERSION; }
 std::vector<std::pair<std::string, std::string>> library_versions() {
   return {{"Embree", accel::embree_version()},
           {"oneTBB", render::tbb_version()},
-          {"OpenImageIO", image::oiio_version()},
+          {"OpenImageIO", ORRERY_OIIO_VERSION},
           {"OpenColorIO", display::ocio_version()},
           {"Highway", kernel::highway_version()},
           {"toml++", format::toml_version()},

@@ -114,7 +114,7 @@ TEST_F(CliStartup, OnlyCommandsWithImagesLoadOpenImageIO) {
     EXPECT_EQ(loaded.find("orrery-particles"), std::string::npos) << words;
     return loaded.find("libOpenImageIO") != std::string::npos;
   };
-  for (const char* words : {"--help", "info good.toml", "check good.toml", "generate final -o final.toml",
+  for (const char* words : {"--help", "--version", "info good.toml", "check good.toml", "generate final -o final.toml",
                             "submit good.toml -o a.####.exr --frames 1-2 --slurm"})
     EXPECT_FALSE(loads_it(words)) << words;
   EXPECT_TRUE(loads_it("render good.toml -o a.exr -q"));

@@ -13,7 +13,6 @@ namespace orrery::image {
 /// call.
 struct Functions {
   decltype(&image::set_threads) set_threads;
-  decltype(&image::oiio_version) oiio_version;
   decltype(&image::read) read;
   decltype(&image::read_map_header) read_map_header;
   decltype(&image::read_map) read_map;

@@ -25,8 +25,6 @@ void load() { module(); }
 
 void set_threads(int count) { module().set_threads(count); }
 
-std::string oiio_version() { return module().oiio_version(); }
-
 film::Picture read(const std::filesystem::path& file, Parts parts, std::uint64_t memory_limit) {
   return module().read(file, parts, memory_limit);
 }
