@@ -296,11 +296,14 @@ void Command::footer(const std::string& text) {
   app_->footer(text);
 }
 
-void Command::callback(std::function<void()> function) {
-  app_->callback([this, function = std::move(function)] {
-    for (const Option& option : options_) option.require_one();
-    function();
-  });
+void Command::action(std::function<int()> run) { action_ = std::move(run); }
+
+int Command::run() const {
+  const auto named =
+      std::find_if(subcommands_.begin(), subcommands_.end(), [](const Command& c) { return c.app_->parsed(); });
+  if (named != subcommands_.end()) return named->run();
+  for (const Option& option : options_) option.require_one();
+  return action_();
 }
 
 OptionGroup::OptionGroup(Command& command, const std::string& heading)

@@ -142,9 +142,10 @@ class Command {
   void heading(const std::string& text);
   /// Sets the text below the options in the help.
   void footer(const std::string& text);
-  /// Calls the function after parsing, if the command line names this command. Options that were given twice are
-  /// refused before.
-  void callback(std::function<void()> function);
+  /// Sets what the command does; `run` returns the exit status.
+  void action(std::function<int()> run);
+  /// Runs the command that the command line named, after refusing options that were given twice. Of the program.
+  int run() const;
 
  private:
   friend class OptionGroup;
@@ -155,6 +156,7 @@ class Command {
   CLI::App* app_;
   std::string heading_, footer_;
   const char* details_ = "";
+  std::function<int()> action_;
   std::deque<Option> options_;
   std::deque<Command> subcommands_;
 };

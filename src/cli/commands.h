@@ -1,35 +1,28 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include <functional>
-
 #include "cli/arguments.h"
 
 namespace orrery::cli {
 
-/// Runs a command after argv is parsed. Prints results to stdout and messages to stderr; throws base::Error.
-///
-/// Result     the exit status
-using Action = std::function<int()>;
+// Each of these functions adds one command to the program. Commands print results to stdout and messages to stderr, and
+// throw base::Error.
 
-/// Adds one command to the program. Parsing sets `action` if argv names the command.
-///
-/// Domain     `action` outlives the parsing
-void add_render(Command& program, Action& action);
-void add_plot(Command& program, Action& action);
-void add_merge(Command& program, Action& action);
-void add_submit(Command& program, Action& action);
-void add_check(Command& program, Action& action);
-void add_info(Command& program, Action& action);
-void add_compare(Command& program, Action& action);
-void add_bench(Command& program, Action& action);
-void add_study(Command& program, Action& action);
-void add_generate(Command& program, Action& action);
-void add_convert(Command& program, Action& action);
-void add_develop(Command& program, Action& action);
-void add_denoise(Command& program, Action& action);
-void add_bake(Command& program, Action& action);
+void add_render(Command& program);
+void add_plot(Command& program);
+void add_merge(Command& program);
+void add_submit(Command& program);
+void add_check(Command& program);
+void add_info(Command& program);
+void add_compare(Command& program);
+void add_bench(Command& program);
+void add_study(Command& program);
+void add_generate(Command& program);
+void add_convert(Command& program);
+void add_develop(Command& program);
+void add_denoise(Command& program);
+void add_bake(Command& program);
 /// The hidden command that prints the manual page and shell completions, for the build. Added last.
-void add_documents(Command& program, Action& action);
+void add_documents(Command& program);
 
 }  // namespace orrery::cli

@@ -94,7 +94,7 @@ int compare(const CompareOptions& options) {
 
 }  // namespace
 
-void add_compare(Command& program, Action& action) {
+void add_compare(Command& program) {
   const auto options = std::make_shared<CompareOptions>();
   Command& command = *program.add_subcommand("compare", "Compare two images with error metrics");
   command.add_option("A", options->picture, "FILE", "Image to compare")->required();
@@ -133,7 +133,7 @@ void add_compare(Command& program, Action& action) {
       "  orrery compare fast.exr exact.exr\n"
       "  orrery compare new.exr reference.exr --quiet --fail-above rmse=0.001 --fail-above max=0.1\n"
       "  orrery compare adaptive.exr reference.exr --heat heat.png --flip flip.png");
-  command.callback([options, &action] { action = [options] { return compare(*options); }; });
+  command.action([options] { return compare(*options); });
 }
 
 }  // namespace orrery::cli

@@ -49,7 +49,7 @@ int run_convert(ConvertArguments& arguments) {
 
 }  // namespace
 
-void add_convert(Command& program, Action& action) {
+void add_convert(Command& program) {
   const auto arguments = std::make_shared<ConvertArguments>();
   Command& command = *program.add_subcommand("convert", "Write the spheres of a data file as PLY, XYZ, NPY or CSV");
   plot::ConvertOptions& convert = arguments->convert;
@@ -69,7 +69,7 @@ void add_convert(Command& program, Action& action) {
       "  orrery convert melt.dump -o melt.ply --select 'type == 2' --radius 0.5\n"
       "  orrery convert 1m4x.pdb -o virus.npy --assembly 1 --element-radii vdw\n"
       "  orrery convert pour.dump -o pour.####.ply --frames all --color-by speed --map viridis");
-  command.callback([arguments, &action] { action = [arguments] { return run_convert(*arguments); }; });
+  command.action([arguments] { return run_convert(*arguments); });
 }
 
 }  // namespace orrery::cli

@@ -255,7 +255,7 @@ std::string replaced(std::string text, const std::string& what, const std::strin
 
 }  // namespace
 
-void add_documents(Command& program, Action& action) {
+void add_documents(Command& program) {
   struct Arguments {
     std::string kind;
     std::filesystem::path page;
@@ -267,22 +267,20 @@ void add_documents(Command& program, Action& action) {
       ->choices({"man", "bash", "zsh", "fish"})
       ->required();
   command.add_option("PAGE", arguments->page, "FILE", "Manual page without the commands");
-  command.callback([arguments, &program, &action] {
-    action = [arguments, &program] {
-      const std::string& kind = arguments->kind;
-      if (kind == "man") {
-        const std::vector<const Command*> commands = leaves_of(program);
-        std::ifstream in(arguments->page);
-        const std::string text(std::istreambuf_iterator<char>(in), {});
-        const std::string page = replaced(text, "@SYNOPSIS@\n", mdoc_synopsis(commands));
-        print_result(replaced(page, "@COMMANDS@\n", mdoc_commands(commands)));
-      } else {
-        print_result(kind == "bash"  ? bash_completion(program)
-                     : kind == "zsh" ? zsh_completion(program)
-                                     : fish_completion(program));
-      }
-      return 0;
-    };
+  command.action([arguments, &program] {
+    const std::string& kind = arguments->kind;
+    if (kind == "man") {
+      const std::vector<const Command*> commands = leaves_of(program);
+      std::ifstream in(arguments->page);
+      const std::string text(std::istreambuf_iterator<char>(in), {});
+      const std::string page = replaced(text, "@SYNOPSIS@\n", mdoc_synopsis(commands));
+      print_result(replaced(page, "@COMMANDS@\n", mdoc_commands(commands)));
+    } else {
+      print_result(kind == "bash"  ? bash_completion(program)
+                   : kind == "zsh" ? zsh_completion(program)
+                                   : fish_completion(program));
+    }
+    return 0;
   });
 }
 

@@ -32,23 +32,35 @@ struct GenerateOptions {
 
 constexpr std::uint64_t kMaxSeed = std::numeric_limits<std::uint64_t>::max();
 
-/// Adds the option that other commands have for scripts.
-void add_quiet(Command& command, GenerateOptions& options) {
+/// Adds the options of all generators. None prints anything but errors; -q is the option that other commands have.
+void add_common(Command& command, GenerateOptions& options, const char* what) {
+  command.add_option("-o,--output", options.output, "FILE", what)->required();
   command.add_flag("-q,--quiet", options.quiet, "Print only errors, which is the default");
 }
 
-/// Adds the options of all scene generators.
-void add_common(Command& command, GenerateOptions& options, std::uint64_t& seed) {
-  command.add_option("-o,--output", options.output, "FILE", "Scene file to write")->required();
+void add_scene_options(Command& command, GenerateOptions& options) {
+  add_common(command, options, "Scene file to write");
   command.add_flag("--force", options.force, "Replace a scene file that was edited, or not written by orrery")
       ->details("Without it, the exit status is 73.");
+}
+
+void add_seed(Command& command, std::uint64_t& seed) {
   command.add_option("--seed", seed, "N", "Random seed; default: 1")->transform(whole_number(0, kMaxSeed));
 }
 
-void add_final(Command& generate, const std::shared_ptr<GenerateOptions>& options, Action& action) {
+void add_map_options(Command& command, GenerateOptions& options) {
+  add_common(command, options, "EXR file to write");
+  command
+      .add_option("--width", options.width, "PX",
+                  "Image width in pixels, a multiple of 4; the height is half of it; default: " +
+                      std::to_string(generate::kEnvironmentWidth))
+      ->transform(whole_number(generate::kSmallestEnvironment, generate::kLargestEnvironment));
+}
+
+void add_final(Command& generate, const std::shared_ptr<GenerateOptions>& options) {
   Command& command = *generate.add_subcommand("final", "The random final scene of Ray Tracing in One Weekend");
-  add_common(command, *options, options->final_scene.seed);
-  add_quiet(command, *options);
+  add_scene_options(command, *options);
+  add_seed(command, options->final_scene.seed);
   command
       .add_option("--grid", options->final_scene.grid, "N",
                   "Grid cells from the centre to the edge, 0 to 1000; default: 11")
@@ -63,20 +75,18 @@ void add_final(Command& generate, const std::shared_ptr<GenerateOptions>& option
       "Examples:\n"
       "  orrery generate final -o final.toml --seed 7\n"
       "  orrery generate final --moving -o bouncing.toml");
-  command.callback([options, &action] {
-    action = [options] {
-      end_on_signals();
-      generate::generate_final(options->final_scene, options->output, options->force);
-      return 0;
-    };
+  command.action([options] {
+    end_on_signals();
+    generate::generate_final(options->final_scene, options->output, options->force);
+    return 0;
   });
 }
 
-void add_cloud(Command& generate, const std::shared_ptr<GenerateOptions>& options, Action& action) {
+void add_cloud(Command& generate, const std::shared_ptr<GenerateOptions>& options) {
   Command& command =
       *generate.add_subcommand("cloud", "A cloud of small spheres: a scene file and a PLY file next to it");
-  add_common(command, *options, options->cloud.seed);
-  add_quiet(command, *options);
+  add_scene_options(command, *options);
+  add_seed(command, options->cloud.seed);
   command.add_option("--count", options->cloud.count, "N", "Number of spheres; default: 1000")
       ->transform(whole_number(1, generate::kLargestCloud));
   command
@@ -85,12 +95,10 @@ void add_cloud(Command& generate, const std::shared_ptr<GenerateOptions>& option
       ->check(real_number(0, generate::kLargestCloudRadius));
   command.details("An existing PLY file is replaced only if orrery wrote it; otherwise the exit status is 73.");
   command.footer("Example:\n  orrery generate cloud -o cloud.toml --count 1000000");
-  command.callback([options, &action] {
-    action = [options] {
-      end_on_signals();
-      generate::generate_cloud(options->cloud, options->output, options->force);
-      return 0;
-    };
+  command.action([options] {
+    end_on_signals();
+    generate::generate_cloud(options->cloud, options->output, options->force);
+    return 0;
   });
 }
 
@@ -120,17 +128,11 @@ void add_sky_options(Command& command, GenerateOptions& options) {
   command.add_flag("--no-sun", options.no_sun, "Omit the sun's disc");
 }
 
-void add_env(Command& generate, const std::shared_ptr<GenerateOptions>& options, Action& action) {
+void add_env(Command& generate, const std::shared_ptr<GenerateOptions>& options) {
   Command& command =
       *generate.add_subcommand("env", "A latitude-longitude environment map: a photo studio, or daylight");
   command.add_option("KIND", options->environment, "NAME", "studio or sky")->required()->choices({"studio", "sky"});
-  command.add_option("-o,--output", options->output, "FILE", "EXR file to write")->required();
-  add_quiet(command, *options);
-  command
-      .add_option("--width", options->width, "PX",
-                  "Image width in pixels, a multiple of 4; the height is half of it; default: " +
-                      std::to_string(generate::kEnvironmentWidth))
-      ->transform(whole_number(generate::kSmallestEnvironment, generate::kLargestEnvironment));
+  add_map_options(command, *options);
   add_sky_options(command, *options);
   command.details(
       "Scene-linear Rec.709, for a background of type image. studio: a photo studio around a ball at the origin, for "
@@ -142,56 +144,44 @@ void add_env(Command& generate, const std::shared_ptr<GenerateOptions>& options,
       "Examples:\n"
       "  orrery generate env studio -o studio.exr\n"
       "  orrery generate env sky -o evening.exr --sun-elevation 4 --sun-azimuth -60");
-  command.callback([options, &command, &action] {
+  command.action([options, &command] {
     const std::vector<std::string> of_sky = command.arguments(kSkyHeading);
-    if (options->environment != "sky" && !of_sky.empty())
-      throw base::Error(base::ErrorKind::kUsage, of_sky.front() + " is an option of `sky`");
-    action = [options] {
-      end_on_signals();
-      if (options->environment == "studio") {
-        generate::generate_studio(options->width, options->output);
-        return 0;
-      }
-      options->sky.sun = !options->no_sun;
-      options->sky.ground_albedo = math::Vec3d{1, 1, 1} * options->ground_albedo;
-      generate::generate_sky(options->sky, options->width, options->output);
+    if (options->environment != "sky" && !of_sky.empty()) base::refuse(of_sky.front() + " is an option of `sky`");
+    end_on_signals();
+    if (options->environment == "studio") {
+      generate::generate_studio(options->width, options->output);
       return 0;
-    };
+    }
+    options->sky.sun = !options->no_sun;
+    options->sky.ground_albedo = math::Vec3d{1, 1, 1} * options->ground_albedo;
+    generate::generate_sky(options->sky, options->width, options->output);
+    return 0;
   });
 }
 
-void add_planet(Command& generate, const std::shared_ptr<GenerateOptions>& options, Action& action) {
+void add_planet(Command& generate, const std::shared_ptr<GenerateOptions>& options) {
   Command& command = *generate.add_subcommand("planet", "A planet map for textures: continents, ice and clouds");
-  command.add_option("-o,--output", options->output, "FILE", "EXR file to write")->required();
-  add_quiet(command, *options);
-  command.add_option("--seed", options->planet_seed, "N", "Random seed; default: 1")
-      ->transform(whole_number(0, kMaxSeed));
-  command
-      .add_option("--width", options->width, "PX",
-                  "Image width in pixels, a multiple of 4; the height is half of it; default: " +
-                      std::to_string(generate::kEnvironmentWidth))
-      ->transform(whole_number(generate::kSmallestEnvironment, generate::kLargestEnvironment));
+  add_map_options(command, *options);
+  add_seed(command, options->planet_seed);
   command.details("The map holds reflectance, scene-linear Rec.709, for textures of type image.");
   command.footer("Example:\n  orrery generate planet -o planet.exr --width 2048");
-  command.callback([options, &action] {
-    action = [options] {
-      end_on_signals();
-      generate::generate_planet(options->planet_seed, options->width, options->output);
-      return 0;
-    };
+  command.action([options] {
+    end_on_signals();
+    generate::generate_planet(options->planet_seed, options->width, options->output);
+    return 0;
   });
 }
 
 }  // namespace
 
-void add_generate(Command& program, Action& action) {
+void add_generate(Command& program) {
   const auto options = std::make_shared<GenerateOptions>();
   Command& command = *program.add_subcommand("generate", "Generate a scene file, an environment map or a texture");
   command.require_subcommand();
-  add_final(command, options, action);
-  add_cloud(command, options, action);
-  add_env(command, options, action);
-  add_planet(command, options, action);
+  add_final(command, options);
+  add_cloud(command, options);
+  add_env(command, options);
+  add_planet(command, options);
   command.footer(
       "Examples:\n"
       "  orrery generate final -o final.toml --seed 7\n"

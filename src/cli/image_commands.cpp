@@ -82,9 +82,15 @@ struct BakeOptions {
   int size = display::kDefaultCubeSize;
 };
 
+int bake(const BakeOptions& options) {
+  end_on_signals();
+  app::bake_file(options.display, options.size, options.output);
+  return 0;
+}
+
 }  // namespace
 
-void add_develop(Command& program, Action& action) {
+void add_develop(Command& program) {
   const auto options = std::make_shared<DevelopOptions>();
   app::Development& development = options->development;
   development.display.working_space.clear();
@@ -105,10 +111,10 @@ void add_develop(Command& program, Action& action) {
       "Examples:\n"
       "  orrery develop final.exr -o final.png --exposure 1\n"
       "  orrery develop final.exr -o book.tif --bits 16 --display \"Gamma 2.0 Rec.709\"");
-  command.callback([options, &action] { action = [options] { return develop(*options); }; });
+  command.action([options] { return develop(*options); });
 }
 
-void add_denoise(Command& program, Action& action) {
+void add_denoise(Command& program) {
   const auto options = std::make_shared<DenoiseOptions>();
   Command& command = *program.add_subcommand("denoise", "Denoise an EXR image and its light layers");
   command.add_option("IN", options->denoising.input, "FILE", "EXR image; best rendered with --layers halves")
@@ -123,10 +129,10 @@ void add_denoise(Command& program, Action& action) {
       "Examples:\n"
       "  orrery render scene.toml -o noisy.exr --samples 32 --layers halves,light_groups\n"
       "  orrery denoise noisy.exr -o clean.exr");
-  command.callback([options, &action] { action = [options] { return denoise(*options); }; });
+  command.action([options] { return denoise(*options); });
 }
 
-void add_bake(Command& program, Action& action) {
+void add_bake(Command& program) {
   const auto options = std::make_shared<BakeOptions>();
   Command& command = *program.add_subcommand("bake", "Write a display transform as a look-up table for other programs");
   command
@@ -141,13 +147,7 @@ void add_bake(Command& program, Action& action) {
       "Examples:\n"
       "  orrery bake -o film.cube --view \"ACES 1.0 SDR Video\"\n"
       "  orrery bake -o book.clf --display \"Gamma 2.0 Rec.709\"");
-  command.callback([options, &action] {
-    action = [options] {
-      end_on_signals();
-      app::bake_file(options->display, options->size, options->output);
-      return 0;
-    };
-  });
+  command.action([options] { return bake(*options); });
 }
 
 }  // namespace orrery::cli

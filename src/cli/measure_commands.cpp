@@ -79,7 +79,7 @@ int study(StudyOptions& options) {
 
 }  // namespace
 
-void add_bench(Command& program, Action& action) {
+void add_bench(Command& program) {
   const auto options = std::make_shared<BenchOptions>();
   Command& command =
       *program.add_subcommand("bench", "Benchmark a scene in each precision, with Embree and with a list of spheres");
@@ -106,10 +106,10 @@ void add_bench(Command& program, Action& action) {
       "Examples:\n"
       "  orrery bench scenes/book/final.toml\n"
       "  orrery bench cloud.toml --threads 8 --rounds 15 --json");
-  command.callback([options, &action] { action = [options] { return bench(*options); }; });
+  command.action([options] { return bench(*options); });
 }
 
-void add_study(Command& program, Action& action) {
+void add_study(Command& program) {
   const auto options = std::make_shared<StudyOptions>();
   Command& command = *program.add_subcommand(
       "study", "Measure the trade-off between render time and error on a scene, and recommend settings");
@@ -140,7 +140,7 @@ void add_study(Command& program, Action& action) {
       "Examples:\n"
       "  orrery study scenes/book/final.toml --budget 5m -o report.html\n"
       "  orrery study cloud.toml --noise 0.02 --json");
-  command.callback([options, &action] { action = [options] { return study(*options); }; });
+  command.action([options] { return study(*options); });
 }
 
 }  // namespace orrery::cli

@@ -38,7 +38,7 @@ int merge(MergeOptions& options) {
 
 }  // namespace
 
-void add_merge(Command& program, Action& action) {
+void add_merge(Command& program) {
   const auto options = std::make_shared<MergeOptions>();
   Command& command = *program.add_subcommand("merge", "Merge shards of an image");
   command
@@ -67,7 +67,7 @@ void add_merge(Command& program, Action& action) {
       "Examples:\n"
       "  orrery merge shard.*.exr -o final.exr -o final.png\n"
       "  orrery merge shard.1.exr shard.3.exr -o preview.png --allow-missing");
-  command.callback([options, &action] { action = [options] { return merge(*options); }; });
+  command.action([options] { return merge(*options); });
 }
 
 }  // namespace orrery::cli

@@ -190,7 +190,7 @@ void add_view_options(Command& command, const std::shared_ptr<PlotArguments>& ar
 
 }  // namespace
 
-void add_plot(Command& program, Action& action) {
+void add_plot(Command& program) {
   const auto arguments = std::make_shared<PlotArguments>();
   Command& command = *program.add_subcommand("plot", "Render a particle data file");
   add_data_options(command, arguments->data, arguments->plot);
@@ -219,7 +219,7 @@ void add_plot(Command& program, Action& action) {
       "  orrery plot 1m4x.pdb -o virus.png --assembly 1\n"
       "  orrery plot grains.dump -o pour.####.png --frames all --color-by vz --range -2:0\n"
       "  orrery plot scan.las -o scan.exr --color-by rgb");
-  command.callback([arguments, &action] { action = [arguments] { return run_plot(*arguments); }; });
+  command.action([arguments] { return run_plot(*arguments); });
 }
 
 }  // namespace orrery::cli

@@ -293,7 +293,7 @@ void add_render_options(Command& command, RenderOptions& options) {
   command.add_flag("-v,--verbose", options.verbose, "Also print the time of each phase");
 }
 
-void add_render(Command& program, Action& action) {
+void add_render(Command& program) {
   const auto options = std::make_shared<RenderOptions>();
   Command& command = *program.add_subcommand("render", "Render a scene to image files");
   command
@@ -326,7 +326,7 @@ void add_render(Command& program, Action& action) {
       "  orrery render shot.toml -o shot.####.exr --frames 1-240 --resume --skip-existing\n"
       "  orrery render shot.toml -o shard.2.exr --sample-range 100:200\n"
       "  orrery render scene.toml -o book.png --set color.display=\"Gamma 2.0 Rec.709\"");
-  command.callback([options, &action] { action = [options] { return run_render(*options); }; });
+  command.action([options] { return run_render(*options); });
 }
 
 }  // namespace orrery::cli

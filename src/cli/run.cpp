@@ -111,27 +111,27 @@ void configure(CLI::App& program) {
   program.footer("orrery COMMAND --help lists the options of a command, with examples.");
 }
 
-void add_commands(Command& program, Action& action) {
+void add_commands(Command& program) {
   program.heading("Render");
-  add_render(program, action);
-  add_plot(program, action);
-  add_merge(program, action);
-  add_submit(program, action);
+  add_render(program);
+  add_plot(program);
+  add_merge(program);
+  add_submit(program);
   program.heading("Inspect");
-  add_check(program, action);
-  add_info(program, action);
-  add_compare(program, action);
+  add_check(program);
+  add_info(program);
+  add_compare(program);
   program.heading("Measure");
-  add_bench(program, action);
-  add_study(program, action);
+  add_bench(program);
+  add_study(program);
   program.heading("Scenes and data");
-  add_generate(program, action);
-  add_convert(program, action);
+  add_generate(program);
+  add_convert(program);
   program.heading("Images");
-  add_develop(program, action);
-  add_denoise(program, action);
-  add_bake(program, action);
-  add_documents(program, action);
+  add_develop(program);
+  add_denoise(program);
+  add_bake(program);
+  add_documents(program);
 }
 
 /// Prints the text of --help or --version.
@@ -157,8 +157,7 @@ int parse_and_act(int argc, const char* const* argv) {
   CLI::App program("orrery is a path tracer for scenes made of spheres.", "orrery");
   configure(program);
   Command commands(program);
-  Action action;
-  add_commands(commands, action);
+  add_commands(commands);
   try {
     program.parse(argc, argv);
   } catch (const CLI::Success& success) {
@@ -166,7 +165,7 @@ int parse_and_act(int argc, const char* const* argv) {
   } catch (const CLI::ParseError& error) {
     return print_usage_error(program, error, words);
   }
-  return action();
+  return commands.run();
 }
 
 }  // namespace

@@ -152,7 +152,7 @@ int check(const CheckOptions& options) {
 
 }  // namespace
 
-void add_info(Command& program, Action& action) {
+void add_info(Command& program) {
   const auto options = std::make_shared<InfoOptions>();
   Command& command = *program.add_subcommand("info", "Print the contents of a scene or of a data file");
   command.add_option("FILE", options->file, "FILE", "Scene file, *.toml, or data file")->required();
@@ -176,10 +176,10 @@ void add_info(Command& program, Action& action) {
       "  orrery info scenes/book/final.toml\n"
       "  orrery info scene.toml --settings --set camera.vfov=30\n"
       "  orrery info melt.dump --frame 2");
-  command.callback([options, &action] { action = [options] { return info(*options); }; });
+  command.action([options] { return info(*options); });
 }
 
-void add_check(Command& program, Action& action) {
+void add_check(Command& program) {
   const auto options = std::make_shared<CheckOptions>();
   Command& command = *program.add_subcommand("check", "Read and validate scenes without rendering");
   command.add_option("SCENE", options->scenes, "FILE", "Scene files")->required()->take_all();
@@ -198,7 +198,7 @@ void add_check(Command& program, Action& action) {
       "Examples:\n"
       "  orrery check scenes/book/*.toml\n"
       "  orrery check shot.toml --frames 1-240");
-  command.callback([options, &action] { action = [options] { return check(*options); }; });
+  command.action([options] { return check(*options); });
 }
 
 }  // namespace orrery::cli

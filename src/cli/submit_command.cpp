@@ -85,7 +85,7 @@ void add_job_options(Command& command, SubmitOptions& options) {
 
 }  // namespace
 
-void add_submit(Command& program, Action& action) {
+void add_submit(Command& program) {
   const auto options = std::make_shared<SubmitOptions>();
   Command& command = *program.add_subcommand(
       "submit", "Write a render-farm job (Slurm, OpenJD, OpenCue, GNU parallel) to standard output");
@@ -104,7 +104,7 @@ void add_submit(Command& program, Action& action) {
       "Examples:\n"
       "  orrery submit shot.toml -o shot.####.exr --frames 1-240 --shards 4 --slurm > shot.sh; sh shot.sh\n"
       "  orrery submit shot.toml -o shot.####.png --frames 1-48 --parallel 2 | sh");
-  command.callback([options, &action] { action = [options] { return submit(*options); }; });
+  command.action([options] { return submit(*options); });
 }
 
 }  // namespace orrery::cli
