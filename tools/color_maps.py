@@ -150,7 +150,7 @@ HEADER = """\
 // fast: BSD 3-clause License, Copyright (c) Kitware Inc. cividis: BSD 2-clause License with a clause on the name,
 // Copyright (c) 2017, Battelle Memorial Institute. tab10: BSD 3-clause License, Copyright (c) University of Washington
 // Interactive Data Lab (Vega). viridis, magma, inferno, plasma, coolwarm: CC0. okabe-ito: published for general use.
-#include "points/color_map_tables.h"
+#include "points/color_map.h"
 
 // clang-format off
 namespace orrery::points {

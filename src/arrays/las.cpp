@@ -11,8 +11,8 @@
 #include "arrays/readers.h"
 #include "data/byte_source.h"
 #include "data/faults.h"
+#include "data/frames.h"
 #include "data/records.h"
-#include "data/single_frame.h"
 
 // Reference  asprs2019, which includes the point formats of earlier versions
 namespace orrery::arrays {

@@ -3,8 +3,8 @@
 
 #include <memory>
 
+#include "data/byte_source.h"
 #include "data/data_file.h"
-#include "data/forward.h"
 
 /// One function per format, which recognises a file by its signature and opens it. Used only by particles::open().
 namespace orrery::arrays {

@@ -82,7 +82,41 @@ class ByteSource {
   bool is_in_memory_ = false;
 };
 
+/// The bytes of a file, shared by its readers.
+using Bytes = std::shared_ptr<const ByteSource>;
+
 /// Returns whether a file begins like one that open() decompresses.
 bool is_compressed(std::string_view head);
+
+/// Reads the members of a ZIP archive one after another.
+class ZipReader {
+ public:
+  /// Starts before the first member.
+  ///
+  /// Domain     `bytes` outlives this object
+  explicit ZipReader(const ByteSource& bytes);
+  ~ZipReader();
+  ZipReader(const ZipReader&) = delete;
+  ZipReader& operator=(const ZipReader&) = delete;
+
+  /// Advances to the next member; false at the end.
+  ///
+  /// Errors     base::Error(kBadData) if the archive is damaged
+  bool next();
+  /// Returns the name of the member.
+  const std::string& name() const { return name_; }
+  /// Reads the next bytes of the member, fewer than `count` only at its end.
+  ///
+  /// Errors     as for next()
+  /// Cost       memory for the bytes that exist, not for `count`
+  ByteBlocks read(std::uint64_t count);
+  /// The same as text, for the header of a member.
+  std::string read_text(std::size_t count);
+
+ private:
+  struct State;
+  std::unique_ptr<State> state_;
+  std::string name_;
+};
 
 }  // namespace orrery::data

@@ -1,9 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 #include <filesystem>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "base/error.h"
@@ -34,5 +36,11 @@ class Faults {
   std::vector<base::Diagnostic> diagnostics_;
   std::uint64_t many_ = 0;
 };
+
+/// Quotes a word of a file for a message; a long one is truncated: `word`.
+inline std::string quoted_word(std::string_view word) {
+  constexpr std::size_t kLongestShown = 40;
+  return "`" + std::string(word.substr(0, kLongestShown)) + (word.size() > kLongestShown ? "..." : "") + "`";
+}
 
 }  // namespace orrery::data

@@ -15,6 +15,7 @@
 #include "data/faults.h"
 
 namespace orrery::data {
+
 namespace {
 
 /// Bytes read at a time: large enough for the system call, small enough for the second-level cache.

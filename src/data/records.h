@@ -1,16 +1,95 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <algorithm>
+#include <bit>
+#include <cstddef>
 #include <cstdint>
+#include <cstring>
 #include <string>
 #include <vector>
 
 #include "data/byte_source.h"
 #include "data/faults.h"
-#include "data/number_type.h"
 #include "data/table.h"
 
 namespace orrery::data {
+
+/// The types of numbers in binary files.
+enum class NumberType { kInt8, kUint8, kInt16, kUint16, kInt32, kUint32, kInt64, kUint64, kFloat32, kFloat64 };
+
+/// Calls `visit(T{})` with the C++ type of a number type.
+template <class Visit>
+constexpr auto with_type(NumberType type, Visit visit) {
+  switch (type) {
+    case NumberType::kInt8: return visit(std::int8_t{});
+    case NumberType::kUint8: return visit(std::uint8_t{});
+    case NumberType::kInt16: return visit(std::int16_t{});
+    case NumberType::kUint16: return visit(std::uint16_t{});
+    case NumberType::kInt32: return visit(std::int32_t{});
+    case NumberType::kUint32: return visit(std::uint32_t{});
+    case NumberType::kInt64: return visit(std::int64_t{});
+    case NumberType::kUint64: return visit(std::uint64_t{});
+    case NumberType::kFloat32: return visit(float{});
+    case NumberType::kFloat64: break;
+  }
+  return visit(double{});
+}
+
+/// Returns the size of a number, bytes.
+constexpr std::size_t size_of(NumberType type) {
+  return with_type(type, [](auto number) { return sizeof(number); });
+}
+
+/// Returns the column type that stores such numbers: the same type, or the next larger one that represents all of them.
+/// Unsigned 64-bit integers become int64.
+constexpr ColumnType column_type(NumberType type) {
+  switch (type) {
+    case NumberType::kUint8: return ColumnType::kUint8;
+    case NumberType::kUint16: return ColumnType::kUint16;
+    case NumberType::kInt8:
+    case NumberType::kInt16:
+    case NumberType::kInt32: return ColumnType::kInt32;
+    case NumberType::kUint32:
+    case NumberType::kInt64:
+    case NumberType::kUint64: return ColumnType::kInt64;
+    case NumberType::kFloat32: return ColumnType::kFloat32;
+    case NumberType::kFloat64: break;
+  }
+  return ColumnType::kFloat64;
+}
+
+/// Returns an empty column of a type.
+inline Values empty_values(ColumnType type) {
+  switch (type) {
+    case ColumnType::kFloat64: break;
+    case ColumnType::kFloat32: return std::vector<float>();
+    case ColumnType::kInt64: return std::vector<std::int64_t>();
+    case ColumnType::kInt32: return std::vector<std::int32_t>();
+    case ColumnType::kUint16: return std::vector<std::uint16_t>();
+    case ColumnType::kUint8: return std::vector<std::uint8_t>();
+    case ColumnType::kText: return Words();
+  }
+  return std::vector<double>();
+}
+
+/// Loads a number of either byte order.
+template <class T>
+T load(const char* from, bool is_big_endian) {
+  char bytes[sizeof(T)];
+  std::memcpy(bytes, from, sizeof(T));
+  if (is_big_endian != (std::endian::native == std::endian::big)) std::reverse(bytes, bytes + sizeof(T));
+  T value;
+  std::memcpy(&value, bytes, sizeof(T));
+  return value;
+}
+
+/// Stores a number in either byte order.
+template <class T>
+void store(T value, char* to, bool is_big_endian) {
+  std::memcpy(to, &value, sizeof(T));
+  if (is_big_endian != (std::endian::native == std::endian::big)) std::reverse(to, to + sizeof(T));
+}
 
 /// A number in each record of a binary file.
 struct RecordField {

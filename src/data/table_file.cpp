@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <utility>
 
-#include "data/customary.h"
+#include "data/columns.h"
 #include "data/faults.h"
 
 namespace orrery::data {

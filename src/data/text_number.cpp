@@ -10,8 +10,6 @@
 #include <string_view>
 #include <system_error>
 
-#include "data/text_rows.h"
-
 namespace orrery::data {
 namespace {
 
@@ -113,6 +111,13 @@ bool parse_number(std::string_view word, double& value) {
   std::memcpy(padded, word.data(), word.size());
   std::memset(padded + word.size(), '\n', kTextPadding);
   return scan_number(padded, value) == padded + word.size();
+}
+
+bool parse_integer(std::string_view word, std::int64_t& value) {
+  if (word.starts_with('+') && !word.starts_with("+-")) word.remove_prefix(1);
+  const char* const end = word.data() + word.size();
+  const auto result = std::from_chars(word.data(), end, value);
+  return result.ec == std::errc{} && result.ptr == end;
 }
 
 }  // namespace orrery::data

@@ -5,6 +5,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <cstring>
+#include <string_view>
 
 /// Fast parsing of numbers in text. The text must be followed by kTextPadding bytes that belong to no number, because
 /// the parser does not check for its end.
@@ -113,5 +114,15 @@ inline const char* scan_integer(const char* at, std::int64_t& value) {
   value = static_cast<std::int64_t>(is_negative ? 0 - magnitude : magnitude);
   return end;
 }
+
+/// Parses a word as a number, as read_text_rows() does.
+///
+/// Result     false unless the whole word is a number
+bool parse_number(std::string_view word, double& value);
+
+/// Parses a word as an integer.
+///
+/// Result     false unless the whole word is an integer
+bool parse_integer(std::string_view word, std::int64_t& value);
 
 }  // namespace orrery::data

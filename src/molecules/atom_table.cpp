@@ -3,6 +3,11 @@
 
 #include <algorithm>
 
+#include <fmt/core.h>
+
+#include "base/error.h"
+#include "base/text.h"
+
 namespace orrery::molecules {
 
 using namespace data;  // NOLINT(google-build-using-namespace)
@@ -90,6 +95,32 @@ Table AtomTable::table(const std::vector<std::string>& columns) const {
     if (name == "occupancy") table.columns.push_back({name, occupancies_});
   }
   return table;
+}
+
+void require_parse_memory(const std::filesystem::path& file, std::uint64_t bytes, double factor, std::uint64_t held,
+                          std::uint64_t limit) {
+  const double need = static_cast<double>(bytes) * factor + static_cast<double>(held);
+  if (limit == 0 || need <= static_cast<double>(limit)) return;
+  throw base::Error(base::ErrorKind::kNoMemory,
+                    file.string() + ": " + base::bytes_text(bytes) + " of atoms need about " +
+                        base::bytes_text(static_cast<std::uint64_t>(need)) + " while they are read; " +
+                        base::bytes_text(limit) + " are available; read the file on a machine with more memory");
+}
+
+void require_text(const data::ByteSource& bytes, data::Faults& faults) {
+  constexpr std::size_t kBlock = std::size_t{1} << 20;
+  const auto is_control = [](char c) {
+    return (static_cast<unsigned char>(c) < 0x20 && (c < '\t' || c > '\r')) || c == 0x7f;
+  };
+  std::uint64_t line = 1;
+  for (std::uint64_t at = 0; at < bytes.size(); at += kBlock) {
+    const std::string block = bytes.text(at, kBlock);
+    const auto bad = std::find_if(block.begin(), block.end(), is_control);
+    line += static_cast<std::uint64_t>(std::count(block.begin(), bad, '\n'));
+    if (bad != block.end())
+      faults.fail(line, fmt::format("binary data: a byte of value {}", static_cast<unsigned char>(*bad)),
+                  "the file is damaged; download or write it again");
+  }
 }
 
 }  // namespace orrery::molecules

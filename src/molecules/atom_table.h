@@ -3,12 +3,15 @@
 
 #include <array>
 #include <cstdint>
+#include <filesystem>
 #include <string>
 #include <tuple>
 #include <unordered_map>
 #include <vector>
 
+#include "data/byte_source.h"
 #include "data/dictionary.h"
+#include "data/faults.h"
 #include "data/table.h"
 
 namespace orrery::molecules {
@@ -64,5 +67,18 @@ class AtomTable {
   std::array<Texts, 7> texts_;
   std::unordered_map<std::string, std::size_t> alternates_;  ///< rows of atoms with alternate locations
 };
+
+/// Checks whether there is enough memory to parse all atoms of a text file at once.
+///
+/// `bytes`    size of the text
+/// `factor`   bytes of memory per byte of text, as measured
+/// `held`     bytes that the file takes in memory already
+/// `limit`    bytes; 0: none
+/// Errors     base::Error(kNoMemory) with the needed size
+void require_parse_memory(const std::filesystem::path& file, std::uint64_t bytes, double factor, std::uint64_t held,
+                          std::uint64_t limit);
+
+/// Throws an error at the first control character: a file with binary data would lose atoms.
+void require_text(const data::ByteSource& bytes, data::Faults& faults);
 
 }  // namespace orrery::molecules

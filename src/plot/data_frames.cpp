@@ -14,7 +14,6 @@
 #include "points/derived.h"
 #include "points/load_points.h"
 #include "points/selection.h"
-#include "points/source_rows.h"
 #include "points/spacing.h"
 
 namespace orrery::plot {

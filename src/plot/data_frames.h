@@ -10,10 +10,10 @@
 #include <vector>
 
 #include "base/error.h"
-#include "data/forward.h"
+#include "data/data_file.h"
 #include "data/table.h"
+#include "points/load_points.h"
 #include "points/open_data.h"
-#include "points/source_rows.h"
 #include "scene/forward.h"
 #include "scene/scene.h"
 

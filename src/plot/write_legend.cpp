@@ -18,7 +18,6 @@
 #include "image/format.h"
 #include "image/write.h"
 #include "points/legend.h"
-#include "points/legend_image.h"
 
 namespace orrery::plot {
 namespace {

@@ -2,12 +2,21 @@
 #include "points/color_map.h"
 
 #include <algorithm>
+#include <charconv>
 #include <cmath>
+#include <fstream>
 #include <iterator>
+#include <string>
 
-#include "points/color_map_tables.h"
+#include <fmt/core.h>
+
+#include "base/error.h"
+#include "base/input_file.h"
+#include "base/text.h"
+#include "data/faults.h"
 
 namespace orrery::points {
+
 namespace {
 
 std::vector<ColorMap> make_maps() {
@@ -39,6 +48,118 @@ double srgb_from_linear(double light) {
 }
 
 double linear_component(double code) { return code <= 0.04045 ? code / 12.92 : std::pow((code + 0.055) / 1.055, 2.4); }
+
+/// Maximum number of colours. Longer files are not colour maps.
+constexpr std::size_t kMaxColors = 65'536;
+/// Maximum size of a file: 128 bytes per row.
+constexpr std::size_t kMaxBytes = kMaxColors * 128;
+
+constexpr const char* kForms = "a line is `r g b`, `t r g b` or `#rrggbb`";
+
+bool is_separator(char c) { return c == ' ' || c == '\t' || c == ',' || c == '\r'; }
+
+std::vector<std::string_view> words_of(std::string_view line) {
+  std::vector<std::string_view> words;
+  for (std::size_t i = 0; i < line.size();) {
+    const std::size_t begin = i;
+    while (i < line.size() && !is_separator(line[i])) ++i;
+    if (i > begin) words.push_back(line.substr(begin, i - begin));
+    while (i < line.size() && is_separator(line[i])) ++i;
+  }
+  return words;
+}
+
+/// Parses "#rrggbb" to 0..255. False if it is not a colour.
+bool parse_hex(std::string_view word, Vec3d& color) {
+  unsigned code = 0;
+  if (word.size() != 7) return false;
+  const auto [end, status] = std::from_chars(word.data() + 1, word.data() + 7, code, 16);
+  if (status != std::errc() || end != word.data() + 7) return false;
+  color = {static_cast<double>(code >> 16 & 255u), static_cast<double>(code >> 8 & 255u),
+           static_cast<double>(code & 255u)};
+  return true;
+}
+
+bool parse_numbers(const std::vector<std::string_view>& words, std::vector<double>& numbers) {
+  numbers.resize(words.size());
+  for (std::size_t i = 0; i < words.size(); ++i) {
+    const char* last = words[i].data() + words[i].size();
+    const auto [end, status] = std::from_chars(words[i].data(), last, numbers[i]);
+    if (status != std::errc() || end != last || !std::isfinite(numbers[i])) return false;
+  }
+  return true;
+}
+
+/// Collects the rows of a file. The first row determines its form.
+class Reader {
+ public:
+  explicit Reader(data::Faults& faults) : faults_(faults) {}
+
+  void add(std::uint64_t line, std::string_view text) {
+    const std::vector<std::string_view> words = words_of(text);
+    if (words.empty()) return;
+    Vec3d color;
+    if (words[0][0] == '#') {
+      if (words.size() > 1 || !parse_hex(words[0], color)) return;  // a comment
+      add_row(line, kHex, static_cast<double>(rows_.size()), color);
+      return;
+    }
+    std::vector<double> numbers;
+    if (!parse_numbers(words, numbers)) {
+      faults_.add_of_many(line, std::string("not a colour: ") + kForms);
+    } else if (words.size() == 3) {
+      add_row(line, 3, static_cast<double>(rows_.size()), {numbers[0], numbers[1], numbers[2]});
+    } else if (words.size() == 4) {
+      add_row(line, 4, numbers[0], {numbers[1], numbers[2], numbers[3]});
+    } else {
+      faults_.add_of_many(line, fmt::format("{} numbers; {}", words.size(), kForms));
+    }
+  }
+
+  ColorMap take(std::string name) {
+    faults_.raise_if_any();
+    if (rows_.size() < 2) faults_.fail(0, "fewer than 2 colours", kForms);
+    double largest = 0;
+    for (const Row& row : rows_) largest = std::max({largest, row.color.x, row.color.y, row.color.z});
+    const double scale = form_ == kHex || largest > 1 ? 255 : 1;
+    ColorMap map{std::move(name), false, {}};
+    const double first = rows_.front().t, span = rows_.back().t - first;
+    if (!std::isfinite(span)) faults_.fail(0, "range of t is too large");
+    for (const Row& row : rows_) {
+      const double t = (row.t - first) / span;
+      // Positions so close that they are equal after scaling: the last one counts.
+      if (!map.knots.empty() && !(t > map.knots.back().t)) map.knots.pop_back();
+      map.knots.push_back({t, row.color / scale});
+    }
+    return map;
+  }
+
+ private:
+  struct Row {
+    double t;
+    Vec3d color;
+  };
+  static constexpr std::size_t kHex = 1;  ///< as words per row
+
+  void add_row(std::uint64_t line, std::size_t form, double t, Vec3d color) {
+    if (rows_.size() == kMaxColors) faults_.fail(line, fmt::format("more than {} colours", kMaxColors));
+    if (form_ == 0) form_ = form;
+    const bool is_out_of_range =
+        std::min({color.x, color.y, color.z}) < 0 || std::max({color.x, color.y, color.z}) > 255;
+    if (form != form_) {
+      faults_.add_of_many(line, "not in the form of the first row");
+    } else if (is_out_of_range) {
+      faults_.add_of_many(line, "colour is out of range: 0 to 1, or 0 to 255");
+    } else if (!rows_.empty() && !(t > rows_.back().t)) {
+      faults_.add_of_many(line, "t does not ascend");
+    }
+    rows_.push_back({t, color});
+  }
+
+  data::Faults& faults_;
+  std::size_t form_ = 0;  ///< words per row; 0: no row yet
+  std::vector<Row> rows_;
+};
 
 }  // namespace
 
@@ -86,6 +207,27 @@ Vec3d linear_from_srgb(Vec3d srgb) {
 
 Vec3d srgb_from_linear(Vec3d linear) {
   return {srgb_from_linear(linear.x), srgb_from_linear(linear.y), srgb_from_linear(linear.z)};
+}
+
+ColorMap read_color_map(const std::filesystem::path& file) {
+  base::require_readable(file);
+  data::Faults faults(file);
+  std::ifstream in(file, std::ios::binary);
+  std::string text(kMaxBytes + 1, '\0');
+  in.read(text.data(), static_cast<std::streamsize>(text.size()));
+  if (in.bad()) throw base::Error(base::ErrorKind::kIo, "cannot read " + file.string());
+  text.resize(static_cast<std::size_t>(in.gcount()));
+  if (text.size() > kMaxBytes) faults.fail(0, "file is larger than " + base::bytes_text(kMaxBytes), kForms);
+
+  Reader reader(faults);
+  std::string_view rest = text;
+  if (rest.substr(0, 3) == "\xEF\xBB\xBF") rest.remove_prefix(3);
+  for (std::uint64_t line = 1; !rest.empty(); ++line) {
+    const std::size_t end = std::min(rest.find('\n'), rest.size());
+    reader.add(line, rest.substr(0, end));
+    rest.remove_prefix(std::min(end + 1, rest.size()));
+  }
+  return reader.take(file.filename().string());
 }
 
 }  // namespace orrery::points

@@ -2,7 +2,9 @@
 #pragma once
 
 #include <cstddef>
+#include <cstdint>
 #include <filesystem>
+#include <span>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -61,5 +63,24 @@ Vec3d srgb_from_linear(Vec3d linear);
 /// Result     a continuous map, named after the file
 /// Errors     base::Error: kMissingInput, kIo; kBadData with the lines
 ColorMap read_color_map(const std::filesystem::path& file);
+
+/// A knot of a colour map: index in its published table of 256 entries, and display-referred sRGB.
+struct ColorMapRow {
+  std::uint8_t index;
+  double r, g, b;
+};
+
+struct ContinuousTable {
+  const char* name;
+  std::span<const ColorMapRow> rows;
+};
+
+struct CategoricalTable {
+  const char* name;
+  std::span<const std::uint32_t> colors;  ///< 0xRRGGBB
+};
+
+extern const std::span<const ContinuousTable> kContinuousTables;
+extern const std::span<const CategoricalTable> kCategoricalTables;
 
 }  // namespace orrery::points

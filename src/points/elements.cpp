@@ -4,7 +4,7 @@
 #include <cstddef>
 #include <iterator>
 
-#include "data/elements.h"
+#include "data/columns.h"
 
 namespace orrery::points {
 namespace {

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <cstddef>
 #include <optional>
 #include <string>
 #include <vector>
@@ -37,5 +38,34 @@ double share_of(double value, const Legend& legend);
 ///
 /// Domain     at least one colour; a size of at least 1 x 1
 std::vector<Srgb8> bar_pixels(const std::vector<Srgb8>& bar, int width_px, int height_px);
+
+struct Tick {
+  double value = 0;
+  std::string label;
+};
+
+/// Returns ticks at multiples of 1, 2 or 5 times a power of ten in a range, with as many digits as distinguish them.
+/// All labels are fixed ("0.25"), or, if the range reaches 1e6 or is below 1e-3, scientific with a common exponent
+/// ("0.5e-7").
+///
+/// Domain     finite ends in any order
+/// Result     4 to 11 ascending ticks; one if the ends are equal or too close to be distinguished; the ends if their
+///            difference is not finite
+std::vector<Tick> nice_ticks(double first, double last);
+
+/// Maximum number of patches in legend_image(): few programs could open a larger image.
+inline constexpr std::size_t kMaxImagePatches = 500;
+
+/// An image in display-referred sRGB.
+struct LegendImage {
+  int width = 0, height = 0;  ///< px
+  std::vector<Srgb8> pixels;  ///< row by row from the top
+};
+
+/// Returns the legend of legend_svg() as pixels, with text in a built-in ASCII font. Other characters are shown as
+/// question marks; long strings are truncated.
+///
+/// Domain     at most kMaxImagePatches patches
+LegendImage legend_image(const Legend& legend);
 
 }  // namespace orrery::points

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "points/legend_image.h"
+#include "points/legend.h"
 
 #include <algorithm>
 #include <cmath>
@@ -9,7 +9,6 @@
 #include <string_view>
 
 #include "base/file_name.h"
-#include "points/ticks.h"
 
 namespace orrery::points {
 namespace {

@@ -14,22 +14,20 @@
 #include "base/error.h"
 #include "data/data_file.h"
 #include "particles/open.h"
-#include "points/color_source.h"
 #include "points/copies.h"
 #include "points/derived.h"
-#include "points/id_order.h"
 #include "points/point_colors.h"
 #include "points/point_radii.h"
 #include "points/read_memory.h"
 #include "points/rows.h"
 #include "points/selection.h"
-#include "points/source_rows.h"
 #include "points/valid_spheres.h"
 #include "scene/limits.h"
 #include "scene/validate.h"
 #include "scene/value_text.h"
 
 namespace orrery::points {
+
 namespace {
 
 using data::Vec3d;

@@ -9,13 +9,19 @@
 #include <string>
 #include <vector>
 
+#include "data/table.h"
 #include "points/open_data.h"
 #include "scene/diagnostic.h"
 #include "scene/forward.h"
 
 namespace orrery::points {
 
-struct SourceRows;
+/// The data from which spheres were made.
+struct SourceRows {
+  data::FrameInfo info;             ///< description of the frame
+  data::Table table;                ///< all columns of the frame
+  std::vector<std::uint32_t> rows;  ///< row of each sphere; copies of a particle have the same one
+};
 
 struct LoadRequest {
   std::filesystem::path file;      ///< the data file

@@ -5,7 +5,7 @@
 #include <functional>
 #include <memory>
 
-#include "data/forward.h"
+#include "data/data_file.h"
 
 namespace orrery::points {
 

@@ -11,7 +11,6 @@
 #include "base/text.h"
 #include "data/table.h"
 #include "points/color_map.h"
-#include "points/color_source.h"
 #include "points/elements.h"
 #include "points/rows.h"
 #include "scene/value_text.h"

@@ -8,14 +8,23 @@
 #include <string>
 #include <vector>
 
-#include "data/forward.h"
+#include "data/table.h"
+#include "points/color_map.h"
 #include "scene/scene.h"
 
 namespace orrery::points {
 
+/// How the colours of a file's spheres are determined: one of the alternatives of scene::PointsColor.
+struct ColorSource {
+  enum class Kind { kNone, kMap, kElement, kType, kRgb };
+  Kind kind = Kind::kNone;
+  std::vector<std::string> columns;  ///< columns to read
+  double rgb_maximum = 255;
+  std::optional<ColorMap> map;
+};
+
 class KeyFaults;
 class Rows;
-struct ColorSource;
 
 /// Colours of spheres: a palette and one index per sphere.
 struct PointColors {

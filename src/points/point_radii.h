@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "data/forward.h"
+#include "data/table.h"
 #include "scene/forward.h"
 
 namespace orrery::points {

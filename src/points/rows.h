@@ -14,7 +14,6 @@
 #include "data/table.h"
 #include "scene/diagnostic.h"
 
-/// The rows of a table that become spheres, and access to their values. Used only within this room.
 namespace orrery::points {
 
 /// Selected rows of a table, in the order of the spheres.
@@ -100,5 +99,12 @@ bool require_column(const data::FrameInfo& info, const std::string& name, bool i
 
 /// Returns "x, y, z, ... (3 more)".
 std::string column_names(const data::FrameInfo& info);
+
+/// Returns rows ascending by particle id; rows with equal ids keep their order, and those without an id are last.
+///
+/// `selected`  ascending; empty: all rows
+/// `repeated`  receives the number of rows with the same id as the preceding row in this order
+/// Cost        one pass if the ids ascend, or are 1 to N in any order; else a sort
+Rows rows_by_id(const data::Column& ids, std::vector<std::uint32_t> selected, std::size_t& repeated);
 
 }  // namespace orrery::points

@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "base/error.h"
-#include "data/forward.h"
+#include "data/data_file.h"
 #include "load/scene_source.h"
 
 namespace orrery::python {

@@ -16,6 +16,7 @@
 #include "base/error.h"
 #include "data/byte_source.h"
 #include "data/faults.h"
+#include "data/text_number.h"
 #include "support/temp_dir.h"
 
 namespace orrery::data {

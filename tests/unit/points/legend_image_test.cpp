@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "points/legend_image.h"
+#include "points/legend.h"
 
 #include <gtest/gtest.h>
 

@@ -12,7 +12,6 @@
 #include "points/open_data.h"
 #include "points/point_radii.h"
 #include "points/read_memory.h"
-#include "points/source_rows.h"
 #include "points_file.h"
 #include "scene/scene.h"
 #include "scene/validate.h"

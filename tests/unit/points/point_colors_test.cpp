@@ -10,7 +10,6 @@
 
 #include "base/error.h"
 #include "points/color_map.h"
-#include "points/color_source.h"
 #include "points/elements.h"
 #include "points_file.h"
 

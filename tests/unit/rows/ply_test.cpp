@@ -4,6 +4,8 @@
 #include <cstdlib>
 #include <filesystem>
 #include <string>
+#include <utility>
+#include <vector>
 
 #include "data/data_file.h"
 #include "support/data_file_test.h"
@@ -48,6 +50,64 @@ TEST_F(RowsPly, AsciiNumbersAreFloat64OrInt64) {
   EXPECT_EQ(numbers(table, "red"), (std::vector<double>{7, 255}));
   EXPECT_EQ(file->read(0, {"red", "y"}).columns[0].name, "red");
   EXPECT_EQ(numbers(file->read(0, {"red", "y"}), "y"), (std::vector<double>{2, 5}));
+}
+
+TEST_F(RowsPly, HeadersMayHaveCommentsTabsAndOtherLineEnds) {
+  const std::string text =
+      "ply\r\ncomment made by hand\nformat binary_big_endian 1.0\nobj_info x\nelement vertex 1\nproperty float x\n"
+      "property  double\ty\nproperty short z\nproperty list uchar int neighbours\nelement face 0\nend_header\n";
+  const Table table = read(text + number_bytes(0.5F, true) + number_bytes(0.1, true) +
+                           number_bytes(std::int16_t{-3}, true) + '\1' + number_bytes(std::int32_t{7}, true));
+  EXPECT_EQ(numbers(table, "x"), std::vector<double>{0.5});
+  EXPECT_EQ(numbers(table, "y"), std::vector<double>{0.1});
+  EXPECT_EQ(numbers(table, "z"), std::vector<double>{-3});
+}
+
+TEST_F(RowsPly, TypesHaveTheirSizes) {
+  const std::pair<const char*, std::size_t> types[] = {{"char", 1},  {"int8", 1},    {"uchar", 1},  {"uint8", 1},
+                                                       {"short", 2}, {"int16", 2},   {"ushort", 2}, {"uint16", 2},
+                                                       {"int", 4},   {"int32", 4},   {"uint", 4},   {"uint32", 4},
+                                                       {"float", 4}, {"float32", 4}, {"double", 8}, {"float64", 8}};
+  for (const auto& [name, size] : types) {
+    const std::string begin =
+        header("binary_little_endian", std::string("element vertex 1\n") + kXyz + "property " + name + " p\n");
+    EXPECT_EQ(faults(begin + std::string(12 + size, '\0')), "") << name;
+    EXPECT_NE(faults(begin + std::string(11 + size, '\0')), "") << name;
+    EXPECT_NE(faults(begin + std::string(13 + size, '\0')), "") << name;
+  }
+}
+
+TEST_F(RowsPly, FaultsOfTheHeaderHaveTheirLine) {
+  const std::string begin = "ply\nformat ascii 1.0\n";
+  EXPECT_EQ(faults("ply\nend_header\n"), "2: the header has no format line\n");
+  EXPECT_EQ(faults("ply\nformat ascii\n"), "2: a format line must be `format ENCODING 1.0`\n");
+  EXPECT_EQ(faults("ply\nformat text 1.0\n"),
+            "2: unknown encoding; allowed are ascii, binary_little_endian, binary_big_endian\n");
+  EXPECT_EQ(faults("ply\nformat ascii 2.0\n"), "2: unsupported format version `2.0`; supported is 1.0\n");
+  EXPECT_EQ(faults(begin + "format ascii 1.0\n"), "3: duplicate format line\n");
+  EXPECT_EQ(faults(begin + "element vertex\n"), "3: an element line must be `element NAME COUNT`\n");
+  for (const char* count : {"-1", "1.5", "many", "18446744073709551616"})
+    EXPECT_EQ(faults(begin + "element vertex " + count + "\n"),
+              "3: the count of an element must be a non-negative integer\n")
+        << count;
+  EXPECT_EQ(faults(begin + "element a 1\nelement a 1\n"), "4: duplicate element `a`\n");
+  EXPECT_EQ(faults(begin + "property float x\n"), "3: property before the first element\n");
+  EXPECT_EQ(faults(begin + "element a 1\nproperty float\n"), "4: a property line must be `property TYPE NAME`\n");
+  EXPECT_EQ(faults(begin + "element a 1\nproperty half x\n"),
+            "4: unknown type; allowed are char .. double, int8 .. float64\n");
+  EXPECT_EQ(faults(begin + "element a 1\nproperty list half int x\n"), "4: unknown type of the list length\n");
+  EXPECT_EQ(faults(begin + "element a 1\nproperty int x\nproperty float x\n"), "5: duplicate property `x`\n");
+  EXPECT_EQ(faults(begin + "texture a\n"), "3: unknown keyword in the header\n");
+  EXPECT_EQ(faults(begin + "element a 1\n"), "4: the header has no end_header\n");
+}
+
+TEST_F(RowsPly, TheLengthOfTheHeaderIsLimited) {
+  constexpr std::size_t kLongest = std::size_t{1} << 20;
+  std::string text = "ply\nformat ascii 1.0\n";
+  const std::string end = "end_header\n";
+  text += "comment " + std::string(kLongest - text.size() - end.size() - 9, 'x') + "\n";
+  EXPECT_EQ(faults(text + end), "there is no element `vertex`\n") << "the maximum length";
+  EXPECT_EQ(faults(text + "\n" + end), "5: the header exceeds the limit of 1048576 bytes\n");
 }
 
 TEST_F(RowsPly, BinaryColumnsKeepTheirTypesInBothByteOrders) {

@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <gtest/gtest.h>
 
+#include <array>
 #include <string>
 #include <vector>
 
 #include "data/data_file.h"
 #include "particles/open.h"
-#include "rows/xyz_comment.h"
 #include "support/data_file_test.h"
 #include "support/data_tables.h"
 #include "support/shared_data.h"
@@ -133,23 +133,23 @@ TEST_F(RowsXyz, ExtendedFilesAreRecognisedByTheirContent) {
   EXPECT_EQ(particles::open(folder_ / "frame")->format(), Format::kXyz);
 }
 
-TEST(RowsXyzComment, ValuesMayBeQuotedInManyWays) {
-  const XyzValues values =
-      xyz_values(R"(a=1 flag b = "two words" c={old form} d=[[1,2],[3,4]] "quoted key"='x' e="a \"b\"" f= g=2 )");
-  EXPECT_EQ(values.at("a"), "1");
-  EXPECT_EQ(values.at("flag"), "");
-  EXPECT_EQ(values.at("b"), "two words");
-  EXPECT_EQ(values.at("c"), "old form");
-  EXPECT_EQ(values.at("d"), "[1,2],[3,4]");
-  EXPECT_EQ(values.at("quoted key"), "x");
-  EXPECT_EQ(values.at("e"), "a \"b\"");
-  for (const char* const odd : {"=", "= =", "a=\"", "{", "a=[[", "\"", "a={b", "= \"", "\\", "a=\"\\"}) xyz_values(odd);
+TEST_F(RowsXyz, ValuesMayBeQuotedInManyWays) {
+  const std::string columns = "species:S:1:pos:R:3";
+  for (const std::string& comment :
+       {"flag Properties=" + columns + " step=7", "Properties = \"" + columns + "\" e=\"a \\\"b\\\"\" step='7'",
+        "Properties={" + columns + "} Step={7} f= g=2 ", "Properties=[" + columns + "] d=[[1,2],[3,4]] step=[7]",
+        "\"Properties\"='" + columns + "' \"quoted key\"='x' 'step'=\"7\""}) {
+    const FrameInfo info = open("1\n" + comment + "\nH 1 2 3\n")->describe(0);
+    EXPECT_EQ(support::columns_text(info), "species:text x:float64 y:float64 z:float64") << comment;
+    EXPECT_EQ(info.step, 7) << comment;
+  }
+  for (const char* const odd : {"=", "= =", "a=\"", "{", "a=[[", "\"", "a={b", "= \"", "\\", "a=\"\\"})
+    EXPECT_EQ(errors(std::string("1\n") + odd + "\nH 1 2 3\n"), "") << odd;
 }
 
-TEST(RowsXyzComment, LatticeMayBeNested) {
-  Faults faults("a.xyz");
-  const XyzValues values = xyz_values("Lattice=[[1,2,3], [4,5,6], [7,8,9]] pbc=[T, F, T]");
-  const Box box = xyz_box(values, 2, faults).value();
+TEST_F(RowsXyz, LatticeMayBeNested) {
+  const Box box =
+      open("1\nLattice=[[1,2,3], [4,5,6], [7,8,9]] pbc=[T, F, T] Properties=pos:R:3\n1 2 3\n")->describe(0).box.value();
   EXPECT_EQ(box.edges[1].x, 4);
   EXPECT_EQ(box.edges[2].z, 9);
   EXPECT_EQ(box.periodic, (std::array<bool, 3>{true, false, true}));

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "data/text_frames.h"
+#include "data/frames.h"
 
 #include <limits>
 #include <variant>
