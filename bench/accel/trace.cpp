@@ -21,21 +21,21 @@ using kernel::Precision;
 enum class Rays { kCamera, kBounced };
 enum class Method { kEmbree, kList };
 
-template <class Packet>
-std::vector<Packet>& choose(render::RecordedRays<Packet>& rays, Rays which) {
+template <class T>
+std::vector<kernel::RayPacket<T>>& choose(render::RecordedRays<T>& rays, Rays which) {
   return which == Rays::kCamera ? rays.camera : rays.secondary;
 }
 
 /// One packet per iteration.
-template <class Packet>
+template <class T>
 void trace(benchmark::State& state, std::uint64_t spheres, Precision precision, Rays which, Method method) {
-  auto& work = workload<Packet>(spheres, precision);
+  auto& work = workload<T>(spheres, precision);
   auto& packets = choose(work.rays, which);
   const kernel::Tracer tracer = (method == Method::kEmbree ? work.embree : work.list)->tracer();
   std::int64_t rays = 0;
   std::size_t next = 0;
   for (auto _ : state) {
-    Packet& packet = packets[next];
+    kernel::RayPacket<T>& packet = packets[next];
     kernel::reset_hits(packet);
     kernel::trace(tracer, packet);
     rays += packet.count;
@@ -45,9 +45,9 @@ void trace(benchmark::State& state, std::uint64_t spheres, Precision precision, 
 }
 
 /// The rays of the recorded packets as single rays.
-std::vector<baseline::Ray> single_rays(const std::vector<kernel::RayPacket>& packets) {
+std::vector<baseline::Ray> single_rays(const std::vector<kernel::RayPacket<double>>& packets) {
   std::vector<baseline::Ray> rays;
-  for (const kernel::RayPacket& p : packets) {
+  for (const kernel::RayPacket<double>& p : packets) {
     for (int i = 0; i < p.count; ++i)
       rays.push_back({{p.origin[0][i], p.origin[1][i], p.origin[2][i]},
                       {p.direction[0][i], p.direction[1][i], p.direction[2][i]}});
@@ -57,7 +57,7 @@ std::vector<baseline::Ray> single_rays(const std::vector<kernel::RayPacket>& pac
 
 /// One ray per iteration, through the book's list of virtual objects or Embree's sphere points.
 void trace_baseline(benchmark::State& state, std::uint64_t spheres, Rays which, baseline::Spheres how) {
-  auto& work = workload<kernel::RayPacket>(spheres, Precision::kExact);
+  auto& work = workload<double>(spheres, Precision::kExact);
   const baseline::Program program(work.scene, how);
   const std::vector<baseline::Ray> rays = single_rays(choose(work.rays, which));
   std::size_t next = 0;
@@ -72,7 +72,7 @@ void trace_baseline(benchmark::State& state, std::uint64_t spheres, Rays which, 
 }
 
 void register_trace(const std::string& name, std::uint64_t spheres, Precision precision, Rays which, Method method) {
-  const auto run = precision == Precision::kFast ? trace<kernel::RayPacketFast> : trace<kernel::RayPacket>;
+  const auto run = precision == Precision::kFast ? trace<float> : trace<double>;
   benchmark::RegisterBenchmark(name.c_str(), run, spheres, precision, which, method);
 }
 

@@ -3,8 +3,7 @@
 
 #include <cmath>
 
-#include "accel/embree_compat.h"
-#include "accel/owned_scene.h"
+#include "accel/embree_api.h"
 
 namespace orrery::bench::baseline {
 namespace {
@@ -32,7 +31,7 @@ class NativePoints final : public Hittable {
     query.hit.geomID = RTC_INVALID_GEOMETRY_ID;
     accel::EmbreeContext context;
     accel::init(context);
-    accel::intersect(scene_.get(), context, query);
+    accel::query(scene_.get(), context, query);
     if (query.hit.geomID == RTC_INVALID_GEOMETRY_ID) return false;
 
     const PlacedSphere& sphere = spheres_[query.hit.primID];

@@ -19,21 +19,14 @@ constexpr std::size_t kSpheres = 64;
 /// Packets whose hit points are computed in one iteration.
 constexpr std::size_t kPackets = 16;
 
-template <class Packet>
-using ScalarOf = std::remove_cvref_t<decltype(Packet::distance[0])>;
-
-IntersectFunctions<kernel::RayPacket, double> functions_for(const kernel::RayPacket*, Precision p, Lanes l) {
-  return intersect_double(p, l);
-}
-IntersectFunctions<kernel::RayPacketFast, float> functions_for(const kernel::RayPacketFast*, Precision, Lanes l) {
-  return intersect_float(l);
-}
+IntersectFunctions<double> functions_for(double, Precision p, Lanes l) { return intersect_double(p, l); }
+IntersectFunctions<float> functions_for(float, Precision, Lanes l) { return intersect_float(l); }
 
 /// Full packets of sixteen secondary rays each, from the book's final scene.
-template <class Packet>
-std::vector<Packet> full_packets(const Workload<Packet>& work) {
-  std::vector<Packet> full;
-  for (const Packet& packet : work.rays.secondary) {
+template <class T>
+std::vector<kernel::RayPacket<T>> full_packets(const Workload<T>& work) {
+  std::vector<kernel::RayPacket<T>> full;
+  for (const kernel::RayPacket<T>& packet : work.rays.secondary) {
     if (packet.count == kernel::kPacketSize) full.push_back(packet);
     if (full.size() == kPackets) break;
   }
@@ -41,8 +34,8 @@ std::vector<Packet> full_packets(const Workload<Packet>& work) {
 }
 
 /// The sphere that each ray has hit; an arbitrary sphere for rays that missed.
-template <class Packet, class T = ScalarOf<Packet>>
-SphereLanes<T> spheres_of(const compile::CompiledScene& compiled, const Packet& packet) {
+template <class T>
+SphereLanes<T> spheres_of(const compile::CompiledScene& compiled, const kernel::RayPacket<T>& packet) {
   SphereLanes<T> out;
   for (int i = 0; i < kernel::kPacketSize; ++i) {
     const bool none = packet.hit[i] == kernel::kNoSphere;
@@ -55,11 +48,11 @@ SphereLanes<T> spheres_of(const compile::CompiledScene& compiled, const Packet& 
   return out;
 }
 
-template <class Packet>
+template <class T>
 void closest_distance(benchmark::State& state, Precision precision, Lanes lanes) {
-  auto& work = workload<Packet>(0, precision);
-  const auto functions = functions_for(static_cast<const Packet*>(nullptr), precision, lanes);
-  Packet packet = full_packets(work).front();
+  auto& work = workload<T>(0, precision);
+  const auto functions = functions_for(T(), precision, lanes);
+  kernel::RayPacket<T> packet = full_packets(work).front();
   for (auto _ : state) {
     kernel::reset_hits(packet);
     functions.closest_distance(packet, work.compiled.spheres.view().plain, kSpheres);
@@ -68,14 +61,14 @@ void closest_distance(benchmark::State& state, Precision precision, Lanes lanes)
   state.SetItemsProcessed(state.iterations() * static_cast<std::int64_t>(kSpheres) * kernel::kPacketSize);
 }
 
-template <class Packet>
+template <class T>
 void hit_point(benchmark::State& state, Precision precision, Lanes lanes) {
-  auto& work = workload<Packet>(0, precision);
-  const auto functions = functions_for(static_cast<const Packet*>(nullptr), precision, lanes);
-  const std::vector<Packet> packets = full_packets(work);
-  std::vector<SphereLanes<ScalarOf<Packet>>> spheres;
-  for (const Packet& packet : packets) spheres.push_back(spheres_of(work.compiled, packet));
-  PointLanes<ScalarOf<Packet>> out;
+  auto& work = workload<T>(0, precision);
+  const auto functions = functions_for(T(), precision, lanes);
+  const std::vector<kernel::RayPacket<T>> packets = full_packets(work);
+  std::vector<SphereLanes<T>> spheres;
+  for (const auto& packet : packets) spheres.push_back(spheres_of(work.compiled, packet));
+  PointLanes<T> out;
   for (auto _ : state) {
     for (std::size_t i = 0; i < packets.size(); ++i) {
       functions.hit_point(packets[i], spheres[i], out);
@@ -91,11 +84,9 @@ void hit_point(benchmark::State& state, Precision precision, Lanes lanes) {
       const bool fast = precision == Precision::kFast;
       const std::string end = "/" + name_of(precision) + (lanes == Lanes::kOne ? "/one_lane" : "/all_lanes");
       benchmark::RegisterBenchmark(("kernel/intersect/nearest" + end).c_str(),
-                                   fast ? closest_distance<kernel::RayPacketFast> : closest_distance<kernel::RayPacket>,
-                                   precision, lanes);
+                                   fast ? closest_distance<float> : closest_distance<double>, precision, lanes);
       benchmark::RegisterBenchmark(("kernel/intersect/hit_point" + end).c_str(),
-                                   fast ? hit_point<kernel::RayPacketFast> : hit_point<kernel::RayPacket>, precision,
-                                   lanes);
+                                   fast ? hit_point<float> : hit_point<double>, precision, lanes);
     }
   }
   return true;

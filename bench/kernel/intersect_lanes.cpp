@@ -61,40 +61,43 @@ using All = hn::ScalableTag<double>;
 using OneFloat = hn::FixedTag<float, 1>;
 using AllFloat = hn::ScalableTag<float>;
 using kernel::RayPacket;
-using kernel::RayPacketFast;
 using kernel::Sphere;
 
-void nearest_exact_one(RayPacket& p, const Sphere* s, std::size_t n) {
+void nearest_exact_one(RayPacket<double>& p, const Sphere* s, std::size_t n) {
   nearest_of_all<One, Precision::kExact>(p, s, n);
 }
-void nearest_exact_all(RayPacket& p, const Sphere* s, std::size_t n) {
+void nearest_exact_all(RayPacket<double>& p, const Sphere* s, std::size_t n) {
   nearest_of_all<All, Precision::kExact>(p, s, n);
 }
-void nearest_book_one(RayPacket& p, const Sphere* s, std::size_t n) { nearest_of_all<One, Precision::kBook>(p, s, n); }
-void nearest_book_all(RayPacket& p, const Sphere* s, std::size_t n) { nearest_of_all<All, Precision::kBook>(p, s, n); }
-void nearest_fast_one(RayPacketFast& p, const Sphere* s, std::size_t n) {
+void nearest_book_one(RayPacket<double>& p, const Sphere* s, std::size_t n) {
+  nearest_of_all<One, Precision::kBook>(p, s, n);
+}
+void nearest_book_all(RayPacket<double>& p, const Sphere* s, std::size_t n) {
+  nearest_of_all<All, Precision::kBook>(p, s, n);
+}
+void nearest_fast_one(RayPacket<float>& p, const Sphere* s, std::size_t n) {
   nearest_of_all<OneFloat, Precision::kFast>(p, s, n);
 }
-void nearest_fast_all(RayPacketFast& p, const Sphere* s, std::size_t n) {
+void nearest_fast_all(RayPacket<float>& p, const Sphere* s, std::size_t n) {
   nearest_of_all<AllFloat, Precision::kFast>(p, s, n);
 }
 
-void point_exact_one(const RayPacket& p, const SphereLanes<double>& s, PointLanes<double>& o) {
+void point_exact_one(const RayPacket<double>& p, const SphereLanes<double>& s, PointLanes<double>& o) {
   all_hit_points<One, Precision::kExact>(p, s, o);
 }
-void point_exact_all(const RayPacket& p, const SphereLanes<double>& s, PointLanes<double>& o) {
+void point_exact_all(const RayPacket<double>& p, const SphereLanes<double>& s, PointLanes<double>& o) {
   all_hit_points<All, Precision::kExact>(p, s, o);
 }
-void point_book_one(const RayPacket& p, const SphereLanes<double>& s, PointLanes<double>& o) {
+void point_book_one(const RayPacket<double>& p, const SphereLanes<double>& s, PointLanes<double>& o) {
   all_hit_points<One, Precision::kBook>(p, s, o);
 }
-void point_book_all(const RayPacket& p, const SphereLanes<double>& s, PointLanes<double>& o) {
+void point_book_all(const RayPacket<double>& p, const SphereLanes<double>& s, PointLanes<double>& o) {
   all_hit_points<All, Precision::kBook>(p, s, o);
 }
-void point_fast_one(const RayPacketFast& p, const SphereLanes<float>& s, PointLanes<float>& o) {
+void point_fast_one(const RayPacket<float>& p, const SphereLanes<float>& s, PointLanes<float>& o) {
   all_hit_points<OneFloat, Precision::kFast>(p, s, o);
 }
-void point_fast_all(const RayPacketFast& p, const SphereLanes<float>& s, PointLanes<float>& o) {
+void point_fast_all(const RayPacket<float>& p, const SphereLanes<float>& s, PointLanes<float>& o) {
   all_hit_points<AllFloat, Precision::kFast>(p, s, o);
 }
 
@@ -117,7 +120,7 @@ HWY_EXPORT(point_book_all);
 HWY_EXPORT(point_fast_one);
 HWY_EXPORT(point_fast_all);
 
-IntersectDouble intersect_double(kernel::Precision precision, kernel::Lanes lanes) {
+IntersectFunctions<double> intersect_double(kernel::Precision precision, kernel::Lanes lanes) {
   const bool one = lanes == kernel::Lanes::kOne;
   if (precision == kernel::Precision::kBook) {
     if (one) return {ORRERY_BEST(nearest_book_one), ORRERY_BEST(point_book_one)};
@@ -127,7 +130,7 @@ IntersectDouble intersect_double(kernel::Precision precision, kernel::Lanes lane
   return {ORRERY_BEST(nearest_exact_all), ORRERY_BEST(point_exact_all)};
 }
 
-IntersectFloat intersect_float(kernel::Lanes lanes) {
+IntersectFunctions<float> intersect_float(kernel::Lanes lanes) {
   if (lanes == kernel::Lanes::kOne) return {ORRERY_BEST(nearest_fast_one), ORRERY_BEST(point_fast_one)};
   return {ORRERY_BEST(nearest_fast_all), ORRERY_BEST(point_fast_all)};
 }

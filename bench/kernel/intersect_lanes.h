@@ -24,22 +24,19 @@ struct alignas(64) PointLanes {
 };
 
 /// The kernel's intersection code instantiated on its own, without traversal or shading. Packets must be full.
-template <class Packet, class T>
+template <class T>
 struct IntersectFunctions {
   /// Intersects all rays with each sphere in turn, and sets distance and hit as a traversal does.
-  void (*closest_distance)(Packet& packet, const kernel::Sphere* spheres, std::size_t count);
+  void (*closest_distance)(kernel::RayPacket<T>& packet, const kernel::Sphere* spheres, std::size_t count);
 
   /// Computes each ray's hit point on its own sphere, packet.hit, at packet.distance.
-  void (*hit_point)(const Packet& packet, const SphereLanes<T>& spheres, PointLanes<T>& out);
+  void (*hit_point)(const kernel::RayPacket<T>& packet, const SphereLanes<T>& spheres, PointLanes<T>& out);
 };
 
-using IntersectDouble = IntersectFunctions<kernel::RayPacket, double>;
-using IntersectFloat = IntersectFunctions<kernel::RayPacketFast, float>;
-
 /// Domain     kExact or kBook
-IntersectDouble intersect_double(kernel::Precision precision, kernel::Lanes lanes);
+IntersectFunctions<double> intersect_double(kernel::Precision precision, kernel::Lanes lanes);
 
 /// For the precision `fast`.
-IntersectFloat intersect_float(kernel::Lanes lanes);
+IntersectFunctions<float> intersect_float(kernel::Lanes lanes);
 
 }  // namespace orrery::bench

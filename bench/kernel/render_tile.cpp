@@ -17,9 +17,9 @@ namespace {
 
 using kernel::Precision;
 
-template <class Packet>
+template <class T>
 void run(benchmark::State& state, Precision precision, kernel::RenderTile render) {
-  auto& work = workload<Packet>(0, precision);
+  auto& work = workload<T>(0, precision);
   std::vector<kernel::PixelSum> sums(std::size_t{kRecordedWidth} * kRecordedHeight);
   const auto stream = std::make_unique<kernel::PathStream>();
   const kernel::Tracer tracer = work.embree->tracer();
@@ -40,14 +40,13 @@ void run(benchmark::State& state, Precision precision, kernel::RenderTile render
     benchmark::RegisterBenchmark((std::string("kernel/render_tile/") + name).c_str(), function)
         ->Unit(benchmark::kMillisecond);
   };
-  add("exact/one_lane", [](benchmark::State& state) {
-    run<kernel::RayPacket>(state, Precision::kExact, test::one_lane_tile_function());
-  });
+  add("exact/one_lane",
+      [](benchmark::State& state) { run<double>(state, Precision::kExact, test::one_lane_tile_function()); });
   add("exact/all_lanes", [](benchmark::State& state) {
-    run<kernel::RayPacket>(state, Precision::kExact, kernel::render_tile_function({}, Precision::kExact, false));
+    run<double>(state, Precision::kExact, kernel::render_tile_function({}, Precision::kExact, false));
   });
   add("fast/all_lanes", [](benchmark::State& state) {
-    run<kernel::RayPacketFast>(state, Precision::kFast, kernel::render_tile_function({}, Precision::kFast, false));
+    run<float>(state, Precision::kFast, kernel::render_tile_function({}, Precision::kFast, false));
   });
   return true;
 }();

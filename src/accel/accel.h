@@ -2,7 +2,6 @@
 #pragma once
 
 #include <cstddef>
-#include <cstdint>
 #include <functional>
 #include <memory>
 #include <string>
@@ -10,6 +9,7 @@
 #include "accel/traversal.h"
 #include "kernel/forward.h"
 #include "kernel/precision.h"
+#include "kernel/ray_packet.h"
 
 namespace orrery::accel {
 
@@ -21,11 +21,15 @@ class Accel {
  public:
   virtual ~Accel() = default;
 
-  /// The queries that the kernel calls; valid during the lifetime of this Accel.
-  virtual kernel::Tracer tracer() const noexcept = 0;
+  /// The queries that the kernel calls, with this traversal; valid during the lifetime of this Accel. Lists have only
+  /// one traversal.
+  virtual kernel::Tracer tracer(Traversal traversal) const noexcept = 0;
+  kernel::Tracer tracer() const noexcept { return tracer(Traversal::kPacket); }
 
-  /// Sets the traversal. Must not be called while rays are traced. Lists ignore it.
-  virtual void use(Traversals) noexcept {}
+  /// The queries of one thread, which uses the traversals that it has measured to be faster.
+  ///
+  /// Domain     the traversals outlive the result
+  virtual kernel::Tracer thread_tracer(ThreadTraversals& traversals) const noexcept;
 
   /// For example "embree 3.13.5" or "list".
   virtual std::string name() const = 0;
@@ -33,16 +37,6 @@ class Accel {
   /// Allocated bytes, where known.
   virtual std::size_t bytes() const noexcept = 0;
 };
-
-/// The naive list: intersects each ray with each sphere in turn, with one lane. For comparison.
-///
-/// Domain     the view's spheres outlive the result
-std::unique_ptr<Accel> make_list(const kernel::SceneView& scene, kernel::Precision precision);
-
-/// The naive list with one ray per lane: the baseline that a BVH has to beat. For comparison.
-///
-/// Domain     the view's spheres outlive the result
-std::unique_ptr<Accel> make_simd_list(const kernel::SceneView& scene, kernel::Precision precision);
 
 /// Receives the progress of a build, 0..1, on any of its threads. Returns false to cancel the build.
 using BuildMonitor = std::function<bool(double fraction)>;
@@ -57,7 +51,7 @@ inline constexpr std::size_t kNoBvh = ~std::size_t{0};
 
 /// Spheres as Embree user geometry.
 ///
-/// Domain     the view's spheres outlive the result
+/// Domain     the view's spheres outlive the result; precision is exact or fast
 /// Errors     base::Error(kInternal) if Embree fails or would drop a sphere, kStopped if the monitor cancelled
 ///            the build
 std::unique_ptr<Accel> make_embree(const kernel::SceneView& scene, kernel::Precision precision,
@@ -67,14 +61,26 @@ std::unique_ptr<Accel> make_embree(const kernel::SceneView& scene, kernel::Preci
 /// instead of Embree's hundred.
 std::size_t spheres_in_bvh(const kernel::SceneView& scene);
 
+/// Embree's version, for example "3.13.5".
+std::string embree_version();
+
+// For comparison:
+
+/// The naive list: intersects each ray with each sphere in turn, with one lane.
+///
+/// Domain     the view's spheres outlive the result
+std::unique_ptr<Accel> make_list(const kernel::SceneView& scene, kernel::Precision precision);
+
+/// The naive list with one ray per lane: the baseline that a BVH has to beat.
+///
+/// Domain     the view's spheres outlive the result; precision is exact or fast
+std::unique_ptr<Accel> make_simd_list(const kernel::SceneView& scene, kernel::Precision precision);
+
 /// Embree's built-in sphere points, traced one ray at a time in float, as in a renderer without its own intersection.
-/// Traces float packets only. Hits are Embree's, not the kernel's, so no image is rendered with them. For comparison.
+/// Traces float packets only. Hits are Embree's, not the kernel's, so no image is rendered with them.
 ///
 /// Domain     at least one sphere; coordinates representable as float
 /// Errors     base::Error(kInternal) if Embree fails
 std::unique_ptr<Accel> make_native_points(const kernel::SceneView& scene);
-
-/// Embree's version, for example "3.13.5".
-std::string embree_version();
 
 }  // namespace orrery::accel

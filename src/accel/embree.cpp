@@ -9,12 +9,9 @@
 #include <vector>
 
 #include "accel/accel.h"
-#include "accel/duplicates.h"
-#include "accel/embree_query.h"
 #include "accel/embree_scene.h"
-#include "accel/owned_scene.h"
-#include "accel/size_classes.h"
 #include "accel/sphere_bvh.h"
+#include "accel/sphere_classes.h"
 #include "base/error.h"
 #include "base/stop_point.h"
 #include "kernel/scene_view.h"
@@ -96,10 +93,16 @@ class Embree final : public Accel {
       bvh_ = SphereBvh(scene_.bounded, std::move(ids), scene_.frame, part_of(monitor, 0, end));
     }
     build(primitives, part_of(monitor, share(bvh_.count), 1));
+    packets_.scene = singles_.scene = &scene_;
   }
 
-  kernel::Tracer tracer() const noexcept override { return functions_.tracer_of(scene_); }
-  void use(Traversals traversals) noexcept override { scene_.traversals = traversals; }
+  kernel::Tracer tracer(Traversal traversal) const noexcept override {
+    return functions_.tracer_of(traversal == Traversal::kPacket ? packets_ : singles_);
+  }
+  kernel::Tracer thread_tracer(ThreadTraversals& traversals) const noexcept override {
+    traversals.scene = &scene_;
+    return functions_.tracer_of(traversals);
+  }
   std::string name() const override { return "embree " + embree_.version(); }
   std::size_t bytes() const noexcept override { return embree_.bytes() + bvh_.bytes(); }
 
@@ -135,6 +138,7 @@ class Embree final : public Accel {
     }
     if (ids.size() - giants.size() < threshold) return {};
     std::erase_if(ids, [&](std::uint32_t id) { return view.spheres[id].radius > limit; });
+    if (threshold > 1 && is_small_layer(view.spheres, ids)) return {};
     scene_.singles = std::move(giants);
     scene_.has_bvh = true;
     return ids;
@@ -179,35 +183,14 @@ class Embree final : public Accel {
 
   EmbreeFunctions functions_;
   EmbreeScene scene_;
+  ThreadTraversals packets_{Traversal::kPacket}, singles_{Traversal::kSingle};
   SphereBvh bvh_;
   OwnedScene embree_;
 };
 
-/// Treats every sphere as an outlier, without a BVH.
-class SimdList final : public Accel {
- public:
-  SimdList(const kernel::SceneView& view, kernel::Precision precision)
-      : functions_(embree_functions(precision, view.moving_count > 0)) {
-    scene_.spheres = view.spheres;
-    scene_.motion = view.motion;
-    scene_.moving_count = view.moving_count;
-    scene_.outliers = complement_of(duplicates(view, precision), view.sphere_count);
-  }
-
-  kernel::Tracer tracer() const noexcept override { return functions_.tracer_of(scene_); }
-  std::string name() const override { return "SIMD list"; }
-  std::size_t bytes() const noexcept override { return scene_.outliers.size() * sizeof(scene_.outliers[0]); }
-
- private:
-  EmbreeFunctions functions_;
-  EmbreeScene scene_;
-};
-
 }  // namespace
 
-std::unique_ptr<Accel> make_simd_list(const kernel::SceneView& scene, kernel::Precision precision) {
-  return std::make_unique<SimdList>(scene, precision);
-}
+kernel::Tracer Accel::thread_tracer(ThreadTraversals&) const noexcept { return tracer(); }
 
 std::unique_ptr<Accel> make_embree(const kernel::SceneView& scene, kernel::Precision precision,
                                    const BuildMonitor& monitor, std::size_t threshold) {

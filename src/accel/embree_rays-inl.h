@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Conversion of a packet's rays to Embree's layout. Compiled once per instruction set.
+// Rays in Embree's layout, and their hits. Compiled once per instruction set.
 #if defined(ORRERY_ACCEL_EMBREE_RAYS_INL_H_) == defined(HWY_TARGET_TOGGLE)
 #ifdef ORRERY_ACCEL_EMBREE_RAYS_INL_H_
 #undef ORRERY_ACCEL_EMBREE_RAYS_INL_H_
@@ -12,16 +12,15 @@
 #include <algorithm>
 #include <cstddef>
 #include <limits>
-#include <type_traits>
 
-#include "accel/accel.h"
-#include "accel/box_ray-inl.h"
-#include "accel/embree_query.h"
 #include "accel/embree_scene.h"
 #include "kernel/intersect-inl.h"
 
 HWY_BEFORE_NAMESPACE();
 namespace orrery::accel::HWY_NAMESPACE {
+
+namespace hn = hwy::HWY_NAMESPACE;
+namespace k = kernel::HWY_NAMESPACE;
 
 /// Rays per Embree packet: the number of floats in a register.
 constexpr int kWidth = static_cast<int>(hn::MaxLanes(hn::ScalableTag<float>()));
@@ -29,8 +28,42 @@ constexpr int kWidth = static_cast<int>(hn::MaxLanes(hn::ScalableTag<float>()));
 /// Embree's packet of rays without hits.
 using EmbreeShadowRays = std::conditional_t<kWidth == 16, RTCRay16, std::conditional_t<kWidth == 8, RTCRay8, RTCRay4>>;
 
-template <class Packet>
-using DistanceOf = std::remove_cvref_t<decltype(Packet::distance[0])>;
+/// Rays in box space, advanced to the sphere that encloses all boxes.
+template <class D>
+struct BoxRays {
+  math::HWY_NAMESPACE::Vec3<hn::Vec<D>> origin;
+  hn::Vec<D> start;     ///< distance by which each ray was advanced, box space
+  hn::Mask<D> reaches;  ///< false: the ray misses all boxes
+};
+
+/// Transforms rays to box space. Rays from far away would lose their float precision to the distance, so they are first
+/// advanced, in the packet's precision, to the sphere that encloses all boxes.
+///
+/// Domain     unit directions
+template <class D>
+HWY_INLINE BoxRays<D> to_box_space(D d, const k::Rays<D>& ray, const BoxFrame& frame) {
+  using T = hn::TFromD<D>;
+  using namespace math::HWY_NAMESPACE;  // NOLINT(google-build-using-namespace)
+  const auto scale = hn::Set(d, static_cast<T>(frame.scale));
+  const auto middle = set3(d, frame.middle);
+  const auto away = ray.origin - middle;
+  const auto away_low = difference_error(ray.origin, middle, away) + ray.origin_low;
+  const auto origin = away * scale;
+  const auto low = away_low * scale;
+  const auto zero = hn::Zero(d);
+  const auto all = zero == zero;
+  const auto reach = hn::Set(d, static_cast<T>(frame.reach));
+  const auto outside = dot(origin, origin) > reach * reach;
+  if (hn::AllFalse(d, outside)) return {origin + low, zero, all};
+
+  const auto closest = hn::Neg(dot(origin, ray.direction));
+  const auto passing = mul_add(ray.direction, closest, origin) + low;
+  // The margin covers the rounding of `passing` for a ray from 1e12 reaches away, in single precision from 1e6.
+  const auto nearest_square = reach * reach * hn::Set(d, static_cast<T>(sizeof(T) == 8 ? 1.001 : 1.1));
+  const auto misses = hn::Or(dot(passing, passing) > nearest_square, closest < zero);
+  const auto start = hn::IfThenElseZero(outside, hn::Max(closest - reach, zero));
+  return {mul_add(ray.direction, start, origin) + low, start, hn::Not(hn::And(outside, misses))};
+}
 
 /// Converts distances along rays to Embree's tfar, rounded up so that boxes of other spheres at the same distance are
 /// still entered. Distances beyond the range of float become infinite.
@@ -43,18 +76,16 @@ HWY_INLINE hn::Vec<D> far_limits(D d, hn::Vec<D> distance, double scale, hn::Vec
          hn::Set(d, static_cast<T>(std::numeric_limits<float>::min()));
 }
 
-/// The closest hits so far.
-template <class D>
-struct ClosestHit {
+/// The results of a packet's rays so far, from lane `first` on: closest hits, or occlusion.
+template <class D, class Packet, bool kIsShadow = Packet::kIsShadow>
+struct Found {
   hn::Vec<D> distance;
   hn::Vec<k::IdTag<D>> ids;
   hn::Mask<D> is_new;  ///< lanes whose hit has changed since load()
 
-  template <class Packet>
-  static HWY_INLINE ClosestHit load(D d, const Packet& packet, int first) {
+  static HWY_INLINE Found load(D d, const Packet& packet, int first) {
     return {hn::Load(d, packet.distance + first), hn::Load(k::IdTag<D>(), packet.hit + first), hn::FirstN(d, 0)};
   }
-  template <class Packet>
   HWY_INLINE void store(D d, Packet& packet, int first) const {
     hn::Store(distance, d, packet.distance + first);
     hn::Store(ids, k::IdTag<D>(), packet.hit + first);
@@ -67,7 +98,45 @@ struct ClosestHit {
     ids = hn::IfThenElse(hn::RebindMask(k::IdTag<D>(), nearer), found_ids, ids);
     is_new = hn::Or(is_new, nearer);
   }
+  /// Embree's tfar in the lanes with hits, which are lanes `v` on of the query.
+  HWY_INLINE hn::Vec<D> limit(D d, const EmbreeQuery<Packet>& query, int v) const {
+    return far_limits(d, distance, query.scene->frame.scale, hn::Load(d, query.start + v));
+  }
 };
+
+template <class D, class Packet>
+struct Found<D, Packet, true> {
+  hn::Vec<D> distance;  ///< maximum
+  hn::Vec<k::IdTag<D>> targets, occluded;
+  hn::Mask<D> is_new;
+
+  static HWY_INLINE Found load(D d, const Packet& packet, int first) {
+    const k::IdTag<D> du;
+    return {hn::Load(d, packet.distance + first), hn::Load(du, packet.target + first),
+            hn::Load(du, packet.occluded + first), hn::FirstN(d, 0)};
+  }
+  HWY_INLINE void store(D, Packet& packet, int first) const {
+    hn::Store(occluded, k::IdTag<D>(), packet.occluded + first);
+  }
+  HWY_INLINE void take(D d, const k::Distances<D>& found, hn::Vec<k::IdTag<D>> found_ids, hn::Mask<D> lanes) {
+    const k::IdTag<D> du;
+    const auto is_target = hn::RebindMask(d, targets == found_ids);
+    const auto hits = hn::And(hn::And(hn::AndNot(is_target, lanes), found.mask), found.value < distance);
+    occluded = hn::Or(occluded, hn::VecFromMask(du, hn::RebindMask(du, hits)));
+    is_new = hn::Or(is_new, hits);
+  }
+  HWY_INLINE hn::Vec<D> limit(D d, const EmbreeQuery<Packet>&, int) const {
+    return hn::Set(d, -std::numeric_limits<hn::TFromD<D>>::infinity());
+  }
+};
+
+/// Intersects rays with spheres, one per lane.
+template <kernel::Precision kPrecision, class D, class Packet>
+HWY_INLINE void intersect(D d, const k::Rays<D>& ray, const k::Spheres<D>& spheres, hn::Vec<k::IdTag<D>> ids,
+                          hn::Mask<D> lanes, Found<D, Packet>& found) {
+  const auto is_self = hn::RebindMask(d, ray.self == ids);
+  found.take(d, k::closest_distance<D, kPrecision>(d, ray, spheres, is_self), ids, lanes);
+}
 
 /// Stores lanes as floats.
 template <class D>
@@ -87,6 +156,21 @@ HWY_INLINE unsigned bits_of(D d, hn::Mask<D> mask) {
   std::uint8_t bytes[8] = {};
   hn::StoreMaskBits(d, mask, bytes);
   return static_cast<unsigned>(bytes[0]) | static_cast<unsigned>(bytes[1]) << 8;
+}
+
+/// Converts one bit per lane to a mask.
+template <class D>
+HWY_INLINE hn::Mask<D> mask_of(D d, unsigned lanes) {
+  const hn::RebindToUnsigned<D> du;
+  using U = hn::TFromD<decltype(du)>;
+  const auto bit = hn::Shl(hn::Set(du, U{1}), hn::Iota(du, 0));
+  return hn::RebindMask(d, hn::TestBit(hn::Set(du, U{lanes}), bit));
+}
+
+/// Calls f(i) for each bit i that is set, in ascending order.
+template <class F>
+HWY_INLINE void each_bit(unsigned bits, F f) {
+  for (; bits != 0; bits &= bits - 1) f(static_cast<int>(hwy::Num0BitsBelowLS1Bit_Nonzero32(bits)));
 }
 
 /// Converts Embree's valid flags to a mask.
@@ -126,6 +210,16 @@ HWY_INLINE void store_float_lanes(D d, hn::Vec<D> value, hn::Mask<D> lanes, floa
   }
 }
 
+/// Sets Embree's hits to none. Its callbacks leave them so.
+template <class Rays>
+HWY_INLINE void reset_hits(Rays& rays) {
+  if constexpr (requires { rays.hit.geomID[0]; }) {
+    for (int i = 0; i < kWidth; ++i) rays.hit.geomID[i] = rays.hit.instID[0][i] = RTC_INVALID_GEOMETRY_ID;
+  } else if constexpr (requires { rays.hit; }) {
+    rays.hit.geomID = rays.hit.instID[0] = RTC_INVALID_GEOMETRY_ID;
+  }
+}
+
 /// Sets the members that are the same in all queries.
 template <class EmbreeRay>
 HWY_INLINE void set_constants(EmbreeRay& rays) {
@@ -140,11 +234,9 @@ HWY_INLINE void set_constants(EmbreeRay& rays) {
 
 /// Sets Embree's rays to rays `first` .. of the query's packet in box space, and which of them can hit a box before
 /// their maximum distance.
-///
-/// Domain     kUnit: directions are unit
-template <bool kUnit, bool kMoves, class Packet, class EmbreeRay>
+template <bool kMoves, class Packet, class EmbreeRay>
 HWY_INLINE void set_rays(EmbreeQuery<Packet>& query, EmbreeRay& rays, int* valid) {
-  const hn::ScalableTag<DistanceOf<Packet>> d;
+  const hn::ScalableTag<typename Packet::Number> d;
   const int step = static_cast<int>(hn::Lanes(d));
   const Packet& packet = *query.packet;
   const EmbreeScene& scene = *query.scene;
@@ -152,7 +244,7 @@ HWY_INLINE void set_rays(EmbreeQuery<Packet>& query, EmbreeRay& rays, int* valid
     const int first = query.first + v;
     auto ray = k::load_rays(d, packet, first);
     auto distance = hn::Load(d, packet.distance + first);
-    if constexpr (!kUnit) {
+    if constexpr (Packet::kIsShadow) {  // directions of any length
       const auto per_length = hn::Sqrt(ray.inverse_square);
       ray.direction = ray.direction * per_length;
       distance = distance / per_length;
@@ -172,6 +264,10 @@ HWY_INLINE void set_rays(EmbreeQuery<Packet>& query, EmbreeRay& rays, int* valid
     const auto active = hn::FirstN(d, static_cast<std::size_t>(std::max(0, packet.count - first)));
     const auto lanes = hn::And(hn::And(active, box.reaches), limit > hn::Zero(d));
     hn::StoreU(flags_of(d, lanes), hn::Rebind<std::int32_t, decltype(d)>(), valid + v);
+  }
+  if constexpr (Packet::kIsShadow) {
+    for (int i = 0; i < kWidth; ++i)
+      if (packet.occluded[query.first + i] != 0) valid[i] = 0;
   }
 }
 

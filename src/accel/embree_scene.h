@@ -5,8 +5,10 @@
 #include <vector>
 
 #include "accel/box_frame.h"
-#include "accel/embree_compat.h"
+#include "accel/embree_api.h"
 #include "accel/traversal.h"
+#include "kernel/precision.h"
+#include "kernel/ray_packet.h"
 #include "kernel/sphere_array.h"
 
 namespace orrery::accel {
@@ -28,14 +30,15 @@ struct EmbreeScene {
   std::vector<std::uint32_t> duplicates;  ///< ascending ids of spheres that are never hit: their boxes are empty
   /// If there is a SphereBvh: ascending ids of the static spheres outside it, one primitive each.
   std::vector<std::uint32_t> singles;
-  bool has_bvh = false;  ///< `traversals` applies to the SphereBvh
+  bool has_bvh = false;  ///< the traversal is that of the SphereBvh; Embree receives packets
   /// Whether Embree hands packets to its callbacks as they are. Otherwise, as with an Embree that was built or opened
   /// for narrower vectors than this program uses, it divides them, and even traces rays that are not valid.
   bool has_packets = false;
-  Traversals traversals;
 
-  /// Whether Embree receives packets, with this choice for its traversal.
-  bool by_packets(Traversal chosen) const noexcept { return has_packets && (has_bvh || chosen == Traversal::kPacket); }
+  /// Whether Embree receives packets, with this traversal.
+  bool by_packets(Traversal traversal) const noexcept {
+    return has_packets && (has_bvh || traversal == Traversal::kPacket);
+  }
 
   /// The sphere of a primitive: ids count all spheres, primitives only those that are not outliers.
   std::uint32_t sphere_id(std::uint32_t geometry, std::uint32_t primitive) const noexcept {
@@ -45,5 +48,39 @@ struct EmbreeScene {
     return primitive;
   }
 };
+
+/// One call into Embree with some lanes of a packet. Embree passes the context to the callback, which finds the packet
+/// through it and stores the result in the packet, in the packet's precision. Embree's hit record is not used.
+template <class Packet>
+struct EmbreeQuery {
+  EmbreeContext context;  // first member, so that Embree's pointer to it points to the query
+  const EmbreeScene* scene;
+  Packet* packet;
+  Traversal traversal;
+  int first;     ///< packet lane that corresponds to Embree's lane 0
+  int lane = 0;  ///< of a ray that is traced alone: its distance from the first lane of its register
+  /// Distance by which each ray was advanced, indexed by Embree's lane, box space.
+  alignas(64) typename Packet::Number start[kernel::kPacketSize];
+};
+
+/// Callbacks and tracer, instantiated for the instruction set of this processor, for one precision, and with or without
+/// motion.
+struct EmbreeFunctions {
+  RTCIntersectFunctionN intersect = nullptr;
+  RTCOccludedFunctionN occluded = nullptr;
+  RTCIntersectFunctionN intersect_bvh = nullptr;  ///< for a geometry whose user data is a SphereBvh
+  RTCOccludedFunctionN occluded_by_bvh = nullptr;
+  int width = 0;          ///< rays per packet handed to Embree
+  kernel::Tracer tracer;  ///< `self` is to be set: ThreadTraversals whose `scene` is an EmbreeScene
+
+  kernel::Tracer tracer_of(const ThreadTraversals& traversals) const noexcept {
+    kernel::Tracer t = tracer;
+    t.self = &traversals;
+    return t;
+  }
+};
+
+/// Domain     precision is exact or fast
+EmbreeFunctions embree_functions(kernel::Precision precision, bool moves);
 
 }  // namespace orrery::accel

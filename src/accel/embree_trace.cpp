@@ -1,6 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
-// Closest hits of packets by Embree, and its callback for each sphere. Compiled once per instruction set.
-#include <algorithm>
+// Queries of packets by Embree, and its callbacks. Compiled once per instruction set.
+//
+// Closest hits and occlusion are the same functions: a packet's type says which of the two it is traced for.
+#include <ctime>
+#include <type_traits>
 
 #include "accel/embree_scene.h"
 
@@ -10,164 +13,232 @@
 // After foreach_target:
 #include <hwy/highway.h>
 
-#include "accel/embree_rays-inl.h"
+#include "accel/packet_traversal-inl.h"
+#include "accel/ray_traversal-inl.h"
 #include "math/dispatch.h"
 
 HWY_BEFORE_NAMESPACE();
 namespace orrery::accel::HWY_NAMESPACE {
 
-using EmbreeRays =
-    std::conditional_t<kWidth == 16, RTCRayHit16, std::conditional_t<kWidth == 8, RTCRayHit8, RTCRayHit4>>;
+template <class Packet>
+using EmbreePacket = std::conditional_t<
+    Packet::kIsShadow, EmbreeShadowRays,
+    std::conditional_t<kWidth == 16, RTCRayHit16, std::conditional_t<kWidth == 8, RTCRayHit8, RTCRayHit4>>>;
+template <class Packet>
+using EmbreeRay = std::conditional_t<Packet::kIsShadow, RTCRay, RTCRayHit>;
 
-/// Intersects rays, one per lane, with one sphere.
-template <class D, kernel::Precision kPrecision>
-HWY_INLINE void intersect_sphere(D d, const k::Rays<D>& ray, const k::Spheres<D>& sphere, std::uint32_t id,
-                                 hn::Mask<D> lanes, ClosestHit<D>& closest) {
-  const auto ids = hn::Set(k::IdTag<D>(), static_cast<hn::TFromD<k::IdTag<D>>>(id));
-  const auto is_self = hn::RebindMask(d, ray.self == ids);
-  closest.take(d, k::closest_distance<D, kPrecision>(d, ray, sphere, is_self), ids, lanes);
+/// The rays of an Embree packet or ray that may also have hits.
+template <class Rays>
+HWY_INLINE auto& rays_of(Rays& rays) {
+  if constexpr (requires { rays.hit; }) {
+    return rays.ray;
+  } else {
+    return rays;
+  }
 }
 
-/// Embree's callback for one ray.
-template <class Packet, kernel::Precision kPrecision, bool kMoves>
-void intersect_single(const RTCIntersectFunctionNArguments* arguments, const EmbreeQuery<Packet>& query) {
-  using D = hn::FixedTag<DistanceOf<Packet>, 1>;
-  const D d;
-  const EmbreeScene& scene = *query.scene;
+/// The rays that Embree passes to a callback.
+HWY_INLINE RTCRayN* rays_of(const RTCIntersectFunctionNArguments& arguments) {
+  return RTCRayHitN_RayN(arguments.rayhit, arguments.N);
+}
+HWY_INLINE RTCRayN* rays_of(const RTCOccludedFunctionNArguments& arguments) { return arguments.ray; }
+
+/// Tests Embree's rays from `v` on against a sphere. D has one lane for a ray that Embree traverses alone.
+template <kernel::Precision kPrecision, bool kMoves, class D, class Packet, class Arguments>
+HWY_INLINE void test_sphere(D d, const EmbreeQuery<Packet>& query, const Arguments& arguments, std::uint32_t id,
+                            int v) {
+  const hn::Rebind<std::int32_t, D> di;
+  const k::IdTag<D> du;
+  const auto flags = hn::LoadU(di, arguments.valid + v);
+  if (hn::AllFalse(di, flags < hn::Zero(di))) return;
   Packet& packet = *query.packet;
-  const std::uint32_t id = scene.sphere_id(kMoves ? arguments->geomID : 0, arguments->primID);
-  auto closest = ClosestHit<D>::load(d, packet, query.first);
-  intersect_sphere<D, kPrecision>(d, k::load_rays(d, packet, query.first),
-                                  k::sphere_at<kMoves>(d, scene, id, packet, query.first), id, hn::FirstN(d, 1),
-                                  closest);
-  if (hn::AllFalse(d, closest.is_new)) {
-    arguments->valid[0] = 0;
+  const int first = query.first + v;
+  auto found = Found<D, Packet>::load(d, packet, first);
+  intersect<kPrecision>(d, k::load_rays(d, packet, first), k::sphere_at<kMoves>(d, *query.scene, id, packet, first),
+                        hn::Set(du, static_cast<hn::TFromD<decltype(du)>>(id)), is_valid(d, flags), found);
+  // After an occlusion test, Embree ignores the flags.
+  if (hn::AllFalse(d, found.is_new)) {
+    if (!Packet::kIsShadow) hn::StoreU(hn::Zero(di), di, arguments.valid + v);
     return;
   }
-  closest.store(d, packet, query.first);
-  const auto limit = far_limits(d, closest.distance, scene.frame.scale, hn::Load(d, query.start));
-  RTCRayN_tfar(RTCRayHitN_RayN(arguments->rayhit, 1), 1, 0) = static_cast<float>(hn::GetLane(limit));
+  found.store(d, packet, first);
+  store_float_lanes(d, found.limit(d, query, v), found.is_new, &RTCRayN_tfar(rays_of(arguments), arguments.N, 0) + v);
+  if (!Packet::kIsShadow) hn::StoreU(flags_of(d, found.is_new), di, arguments.valid + v);
 }
 
-/// Embree's callback: intersects some rays of the query with one sphere.
-template <class Packet, kernel::Precision kPrecision, bool kMoves>
-void intersect(const RTCIntersectFunctionNArguments* arguments) {
-  using T = DistanceOf<Packet>;
-  using D = hn::ScalableTag<T>;
-  const D d;
-  const hn::Rebind<std::int32_t, D> di;
-  auto& query = *reinterpret_cast<EmbreeQuery<Packet>*>(arguments->context);
-  if (arguments->N == 1) return intersect_single<Packet, kPrecision, kMoves>(arguments, query);
-  const EmbreeScene& scene = *query.scene;
-  Packet& packet = *query.packet;
-  const std::uint32_t id = scene.sphere_id(kMoves ? arguments->geomID : 0, arguments->primID);
-  const int n = static_cast<int>(arguments->N), step = static_cast<int>(hn::Lanes(d));
-  float* const to_limit = &RTCRayN_tfar(RTCRayHitN_RayN(arguments->rayhit, arguments->N), arguments->N, 0);
-  for (int v = 0; v < n; v += step) {
-    const auto flags = hn::LoadU(di, arguments->valid + v);
-    if (hn::AllFalse(di, flags < hn::Zero(di))) continue;
-    const auto valid = is_valid(d, flags);
-    const int first = query.first + v;
-    const auto ray = k::load_rays(d, packet, first);
-    auto closest = ClosestHit<D>::load(d, packet, first);
-    intersect_sphere<D, kPrecision>(d, ray, k::sphere_at<kMoves>(d, scene, id, packet, first), id, valid, closest);
-    if (hn::AllFalse(d, closest.is_new)) {
-      hn::StoreU(hn::Zero(di), di, arguments->valid + v);
-      continue;
-    }
-    closest.store(d, packet, first);
-    const auto limit = far_limits(d, closest.distance, scene.frame.scale, hn::Load(d, query.start + v));
-    store_float_lanes(d, limit, closest.is_new, to_limit + v);
-    hn::StoreU(flags_of(d, closest.is_new), di, arguments->valid + v);
+/// Embree's callback for a sphere that is a primitive.
+template <class Packet, kernel::Precision kPrecision, bool kMoves, class Arguments>
+void at_sphere(const Arguments* arguments) {
+  using T = typename Packet::Number;
+  const auto& query = *reinterpret_cast<const EmbreeQuery<Packet>*>(arguments->context);
+  const std::uint32_t id = query.scene->sphere_id(kMoves ? arguments->geomID : 0, arguments->primID);
+  if (arguments->N == 1) {
+    test_sphere<kPrecision, kMoves>(hn::FixedTag<T, 1>(), query, *arguments, id, 0);
+    return;
+  }
+  const hn::ScalableTag<T> d;
+  for (int v = 0; v < static_cast<int>(arguments->N); v += static_cast<int>(hn::Lanes(d)))
+    test_sphere<kPrecision, kMoves>(d, query, *arguments, id, v);
+}
+
+/// Traces valid rays through a SphereBvh.
+///
+/// `limits`   out: per lane, the distance beyond which nothing was searched
+/// Result     lanes with a new hit, as bits
+template <class Packet, kernel::Precision kPrecision>
+HWY_INLINE unsigned traverse(const SphereBvh& bvh, const EmbreeQuery<Packet>& query, const int* valid, RTCRayN* rays,
+                             float (&limits)[kWidth]) {
+  return query.traversal == Traversal::kSingle
+             ? traverse_by_rays<Packet, kPrecision>(bvh, query, valid, rays, limits)
+             : PacketTraversal<Packet, kPrecision>(bvh, query, valid, rays).trace(limits);
+}
+
+/// Traces a ray that Embree traverses alone, in its lane of an otherwise empty packet.
+template <class Packet, kernel::Precision kPrecision>
+unsigned traverse_alone(const SphereBvh& bvh, const EmbreeQuery<Packet>& query, RTCRayN* ray, float (&limits)[kWidth]) {
+  const auto lane = static_cast<unsigned>(query.lane);
+  EmbreeQuery<Packet> all = query;
+  all.first -= query.lane;
+  all.start[lane] = query.start[0];
+  EmbreeShadowRays rays{};
+  rays.org_x[lane] = RTCRayN_org_x(ray, 1, 0);
+  rays.org_y[lane] = RTCRayN_org_y(ray, 1, 0);
+  rays.org_z[lane] = RTCRayN_org_z(ray, 1, 0);
+  rays.dir_x[lane] = RTCRayN_dir_x(ray, 1, 0);
+  rays.dir_y[lane] = RTCRayN_dir_y(ray, 1, 0);
+  rays.dir_z[lane] = RTCRayN_dir_z(ray, 1, 0);
+  rays.tfar[lane] = RTCRayN_tfar(ray, 1, 0);
+  alignas(64) int valid[kWidth] = {};
+  valid[lane] = -1;
+  const unsigned hits =
+      traverse<Packet, kPrecision>(bvh, all, valid, reinterpret_cast<RTCRayN*>(&rays), limits) >> lane;
+  limits[0] = limits[lane];
+  return hits;
+}
+
+/// Embree's callback for a SphereBvh.
+template <class Packet, kernel::Precision kPrecision, class Arguments>
+void at_bvh(const Arguments* arguments) {
+  const auto& query = *reinterpret_cast<const EmbreeQuery<Packet>*>(arguments->context);
+  const auto& bvh = *static_cast<const SphereBvh*>(arguments->geometryUserPtr);
+  RTCRayN* const rays = rays_of(*arguments);
+  float limits[kWidth];
+  const unsigned hits = arguments->N == 1 ? traverse_alone<Packet, kPrecision>(bvh, query, rays, limits)
+                                          : traverse<Packet, kPrecision>(bvh, query, arguments->valid, rays, limits);
+  for (unsigned i = 0; i < arguments->N; ++i) {
+    const bool is_new = (hits >> i & 1u) != 0;
+    if (!Packet::kIsShadow) arguments->valid[i] = is_new ? -1 : 0;
+    if (is_new) RTCRayN_tfar(rays, arguments->N, i) = limits[i];
   }
 }
 
-/// Traces rays of a packet one by one.
+/// Traces the valid rays of an Embree packet one by one.
 template <class Packet>
-HWY_INLINE void trace_one_by_one(const int* valid, const EmbreeRays& rays, EmbreeQuery<Packet>& query) {
+HWY_INLINE void trace_one_by_one(const int* valid, const EmbreePacket<Packet>& rays, EmbreeQuery<Packet>& query) {
   const int first = query.first;
-  alignas(64) DistanceOf<Packet> start[kWidth];
+  alignas(64) typename Packet::Number start[kWidth];
   std::copy_n(query.start, kWidth, start);
-  RTCRayHit ray;
-  ray.hit.geomID = RTC_INVALID_GEOMETRY_ID;
-  ray.hit.instID[0] = RTC_INVALID_GEOMETRY_ID;
+  EmbreeRay<Packet> ray;
+  reset_hits(ray);
   for (int i = 0; i < kWidth; ++i) {
     if (valid[i] == 0) continue;
-    ray.ray = one_ray(rays.ray, i);
+    rays_of(ray) = one_ray(rays_of(rays), i);
     query.first = first + i;
     query.lane = i;
     query.start[0] = start[i];
-    accel::intersect(query.scene->scene, query.context, ray);
+    accel::query(query.scene->scene, query.context, ray);
   }
 }
 
-/// Traces a packet: the outliers, then the BVH.
-template <class Packet, kernel::Precision kPrecision, bool kMoves>
-void trace(const void* self, Packet& packet) {
-  using T = DistanceOf<Packet>;
-  using D = hn::ScalableTag<T>;
-  const D d;
-  const int step = static_cast<int>(hn::Lanes(d));
-  const auto& scene = *static_cast<const EmbreeScene*>(self);
-  for (int v = 0; !scene.outliers.empty() && v < packet.count; v += step) {
-    const auto ray = k::load_rays(d, packet, v);
-    const auto lanes = hn::FirstN(d, static_cast<std::size_t>(packet.count - v));
-    auto closest = ClosestHit<D>::load(d, packet, v);
-    for (const std::uint32_t id : scene.outliers)
-      intersect_sphere<D, kPrecision>(d, ray, k::sphere_at<kMoves>(d, scene, id, packet, v), id, lanes, closest);
-    closest.store(d, packet, v);
-  }
-  if (scene.scene == nullptr) return;
-  const bool from_camera = packet.self[0] == kernel::kNoSphere;
-  const Traversal traversal = from_camera ? scene.traversals.camera : scene.traversals.secondary;
-
+/// Traces a packet through Embree's scene.
+template <bool kMoves, class Packet>
+HWY_INLINE void trace_embree(const EmbreeScene& scene, Traversal traversal, Packet& packet) {
   EmbreeQuery<Packet> query;
   init(query.context);
   query.scene = &scene;
   query.packet = &packet;
-  EmbreeRays rays;
-  set_constants(rays.ray);
-  for (int i = 0; i < kWidth; ++i) {
-    rays.hit.geomID[i] = RTC_INVALID_GEOMETRY_ID;
-    rays.hit.instID[0][i] = RTC_INVALID_GEOMETRY_ID;
-  }
+  query.traversal = traversal;
+  EmbreePacket<Packet> rays;
+  set_constants(rays_of(rays));
+  reset_hits(rays);
   alignas(64) int valid[kWidth];
   for (int first = 0; first < packet.count; first += kWidth) {
     query.first = first;
-    set_rays<true, kMoves>(query, rays.ray, valid);
+    set_rays<kMoves>(query, rays_of(rays), valid);
     if (scene.by_packets(traversal)) {
-      accel::intersect(valid, scene.scene, query.context, rays);
+      accel::query(valid, scene.scene, query.context, rays);
     } else {
       trace_one_by_one(valid, rays, query);
     }
   }
 }
 
-template <bool kMoves>
-EmbreeFunctions instance(kernel::Precision precision) {
-  using kernel::Precision, kernel::RayPacket, kernel::RayPacketFast;
-  EmbreeFunctions f;
-  f.tracer.target = HWY_TARGET;
-  f.width = kWidth;
-  switch (precision) {
-    case Precision::kExact:
-      f.intersect = intersect<RayPacket, Precision::kExact, kMoves>;
-      f.tracer.trace = trace<RayPacket, Precision::kExact, kMoves>;
-      break;
-    case Precision::kBook:
-      f.intersect = intersect<RayPacket, Precision::kBook, kMoves>;
-      f.tracer.trace = trace<RayPacket, Precision::kBook, kMoves>;
-      break;
-    case Precision::kFast:
-      f.intersect = intersect<RayPacketFast, Precision::kFast, kMoves>;
-      f.tracer.trace_fast = trace<RayPacketFast, Precision::kFast, kMoves>;
-      break;
+/// CPU time of this thread: not that of others which interrupt it.
+inline double thread_seconds() {
+  timespec now{};
+  clock_gettime(CLOCK_THREAD_CPUTIME_ID, &now);
+  return static_cast<double>(now.tv_sec) + 1e-9 * static_cast<double>(now.tv_nsec);
+}
+
+template <class Packet>
+HWY_INLINE TraversalChoice& choice_for(const ThreadTraversals& traversals, const Packet& packet) {
+  if constexpr (Packet::kIsShadow) {
+    return traversals.shadow;
+  } else {
+    return packet.self[0] == kernel::kNoSphere ? traversals.camera : traversals.secondary;
   }
+}
+
+/// Traces a packet: the outliers, then Embree's scene.
+///
+/// `self`     ThreadTraversals
+template <class Packet, kernel::Precision kPrecision, bool kMoves>
+void trace(const void* self, void* memory) {
+  const hn::ScalableTag<typename Packet::Number> d;
+  using D = std::remove_const_t<decltype(d)>;
+  const k::IdTag<D> du;
+  const auto& traversals = *static_cast<const ThreadTraversals*>(self);
+  const auto& scene = *static_cast<const EmbreeScene*>(traversals.scene);
+  auto& packet = *static_cast<Packet*>(memory);
+  if constexpr (Packet::kIsShadow) std::fill_n(packet.occluded, kernel::kPacketSize, 0);
+  for (int v = 0; !scene.outliers.empty() && v < packet.count; v += static_cast<int>(hn::Lanes(d))) {
+    const auto ray = k::load_rays(d, packet, v);
+    const auto lanes = hn::FirstN(d, static_cast<std::size_t>(packet.count - v));
+    auto found = Found<D, Packet>::load(d, packet, v);
+    for (const std::uint32_t id : scene.outliers)
+      intersect<kPrecision>(d, ray, k::sphere_at<kMoves>(d, scene, id, packet, v),
+                            hn::Set(du, static_cast<typename Packet::Id>(id)), lanes, found);
+    found.store(d, packet, v);
+  }
+  if (scene.scene == nullptr) return;
+  TraversalChoice& choice = choice_for(traversals, packet);
+  const bool is_timed = !choice.is_made();
+  const double begin = is_timed ? thread_seconds() : 0;
+  trace_embree<kMoves>(scene, choice.next(), packet);
+  if (is_timed) choice.add(packet.count, thread_seconds() - begin);
+}
+
+template <kernel::Precision kPrecision, bool kMoves>
+EmbreeFunctions instance() {
+  using T = std::conditional_t<kPrecision == kernel::Precision::kFast, float, double>;
+  using Rays = kernel::RayPacket<T>;
+  using ShadowRays = kernel::ShadowPacket<T>;
+  EmbreeFunctions f;
+  f.width = kWidth;
+  f.intersect = at_sphere<Rays, kPrecision, kMoves>;
+  f.occluded = at_sphere<ShadowRays, kPrecision, kMoves>;
+  f.intersect_bvh = at_bvh<Rays, kPrecision>;
+  f.occluded_by_bvh = at_bvh<ShadowRays, kPrecision>;
+  f.tracer.trace = trace<Rays, kPrecision, kMoves>;
+  f.tracer.occlude = trace<ShadowRays, kPrecision, kMoves>;
+  f.tracer.target = HWY_TARGET;
   return f;
 }
 
 EmbreeFunctions functions(kernel::Precision precision, bool moves) {
-  return moves ? instance<true>(precision) : instance<false>(precision);
+  using enum kernel::Precision;
+  if (precision == kFast) return moves ? instance<kFast, true>() : instance<kFast, false>();
+  return moves ? instance<kExact, true>() : instance<kExact, false>();
 }
 
 }  // namespace orrery::accel::HWY_NAMESPACE
@@ -179,10 +250,7 @@ namespace orrery::accel {
 HWY_EXPORT(functions);
 
 EmbreeFunctions embree_functions(kernel::Precision precision, bool moves) {
-  EmbreeFunctions all = ORRERY_BEST(functions)(precision, moves);
-  add_occlusion_functions(all, precision, moves);
-  add_bvh_functions(all, precision);
-  return all;
+  return ORRERY_BEST(functions)(precision, moves);
 }
 
 }  // namespace orrery::accel

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "accel/accel.h"
-#include "accel/duplicates.h"
+#include "accel/sphere_classes.h"
 
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "accel/list.cpp"
@@ -34,12 +34,17 @@ namespace orrery::accel::HWY_NAMESPACE {
 
 namespace hn = hwy::HWY_NAMESPACE;
 
-template <class T, kernel::Precision kPrecision, bool kMoves, class Packet>
-void trace_list(const void* self, Packet& packet) {
+/// Traces each ray of a packet, or tests it for occlusion, by a loop over all spheres.
+template <class Packet, kernel::Precision kPrecision, bool kMoves>
+void trace_list(const void* self, void* memory) {
   namespace k = kernel::HWY_NAMESPACE;
+  using T = typename Packet::Number;
+  using Id = typename Packet::Id;
   using D = hn::FixedTag<T, 1>;
   const D d;
   const auto& [scene, duplicates] = *static_cast<const DistinctSpheres*>(self);
+  auto& packet = *static_cast<Packet*>(memory);
+  if constexpr (Packet::kIsShadow) std::fill_n(packet.occluded, kernel::kPacketSize, Id{0});
   for (int i = 0; i < packet.count; ++i) {
     const auto ray = k::load_rays(d, packet, i);
     std::size_t id = 0;
@@ -51,60 +56,44 @@ void trace_list(const void* self, Packet& packet) {
         if (hn::AllFalse(d, found.mask)) continue;
         const T distance = hn::GetLane(found.value);
         if (distance >= packet.distance[i]) continue;  // ids ascend, so at equal distance the smaller id was first
-        packet.distance[i] = distance;
-        packet.hit[i] = static_cast<std::remove_reference_t<decltype(packet.hit[0])>>(id);
+        if constexpr (Packet::kIsShadow) {
+          if (packet.target[i] == id) continue;
+          packet.occluded[i] = static_cast<Id>(~Id{0});
+          return true;
+        } else {
+          packet.distance[i] = distance;
+          packet.hit[i] = static_cast<Id>(id);
+        }
       }
+      return false;
     };
+    bool is_occluded = false;
     for (const std::uint32_t duplicate : duplicates) {
-      trace_up_to(duplicate);
-      ++id;
+      is_occluded = is_occluded || trace_up_to(duplicate);
+      id = std::size_t{duplicate} + 1;
     }
-    trace_up_to(scene.sphere_count);
+    if (!is_occluded) trace_up_to(scene.sphere_count);
   }
 }
 
-template <class T, kernel::Precision kPrecision, bool kMoves, class Packet>
-void occlude_list(const void* self, Packet& packet) {
-  namespace k = kernel::HWY_NAMESPACE;
-  using D = hn::FixedTag<T, 1>;
-  const D d;
-  using Id = std::remove_reference_t<decltype(packet.occluded[0])>;
-  const auto& [scene, duplicates] = *static_cast<const DistinctSpheres*>(self);
-  std::fill_n(packet.occluded, kernel::kPacketSize, Id{0});
-  for (int i = 0; i < packet.count; ++i) {
-    const auto ray = k::load_rays(d, packet, i);
-    auto duplicate = duplicates.begin();
-    for (std::size_t id = 0; id < scene.sphere_count && packet.occluded[i] == 0; ++id) {
-      if (duplicate != duplicates.end() && *duplicate == id) {
-        ++duplicate;
-        continue;
-      }
-      if (packet.target[i] == id) continue;
-      const auto is_self = packet.self[i] == id ? hn::FirstN(d, 1) : hn::FirstN(d, 0);
-      const auto found = k::closest_distance<D, kPrecision>(
-          d, ray, k::sphere_at<kMoves>(d, scene, static_cast<std::uint32_t>(id), packet, i), is_self);
-      if (!hn::AllFalse(d, found.mask) && hn::GetLane(found.value) < packet.distance[i])
-        packet.occluded[i] = static_cast<Id>(~Id{0});
-    }
-  }
-}
-
-template <bool kMoves>
-kernel::Tracer instance(kernel::Precision precision) {
-  using kernel::Precision, kernel::RayPacket, kernel::RayPacketFast, kernel::ShadowPacket, kernel::ShadowPacketFast;
+template <kernel::Precision kPrecision, bool kMoves>
+kernel::Tracer list_instance() {
+  using T = std::conditional_t<kPrecision == kernel::Precision::kFast, float, double>;
   kernel::Tracer t;
+  t.trace = trace_list<kernel::RayPacket<T>, kPrecision, kMoves>;
+  t.occlude = trace_list<kernel::ShadowPacket<T>, kPrecision, kMoves>;
   t.target = HWY_TARGET;
-  t.trace = precision == Precision::kBook ? trace_list<double, Precision::kBook, kMoves, RayPacket>
-                                          : trace_list<double, Precision::kExact, kMoves, RayPacket>;
-  t.trace_fast = trace_list<float, Precision::kFast, kMoves, RayPacketFast>;
-  t.occlude = precision == Precision::kBook ? occlude_list<double, Precision::kBook, kMoves, ShadowPacket>
-                                            : occlude_list<double, Precision::kExact, kMoves, ShadowPacket>;
-  t.occlude_fast = occlude_list<float, Precision::kFast, kMoves, ShadowPacketFast>;
   return t;
 }
 
 kernel::Tracer list_tracer(kernel::Precision precision, bool moves) {
-  return moves ? instance<true>(precision) : instance<false>(precision);
+  using enum kernel::Precision;
+  switch (precision) {
+    case kExact: return moves ? list_instance<kExact, true>() : list_instance<kExact, false>();
+    case kFast: return moves ? list_instance<kFast, true>() : list_instance<kFast, false>();
+    case kBook: return moves ? list_instance<kBook, true>() : list_instance<kBook, false>();
+  }
+  return {};
 }
 
 }  // namespace orrery::accel::HWY_NAMESPACE
@@ -121,7 +110,7 @@ class List final : public Accel {
   List(const kernel::SceneView& view, kernel::Precision precision)
       : scene_{view, duplicates(view, precision)}, precision_(precision) {}
 
-  kernel::Tracer tracer() const noexcept override {
+  kernel::Tracer tracer(Traversal) const noexcept override {
     kernel::Tracer t = ORRERY_BEST(list_tracer)(precision_, scene_.view.moving_count > 0);
     t.self = &scene_;
     return t;

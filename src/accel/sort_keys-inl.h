@@ -28,12 +28,6 @@ HWY_INLINE hn::Vec<hn::RebindToSigned<D>> keys_of(D, hn::Vec<D> distance, hn::Ve
   return hn::Or(hn::AndNot(hn::Set(di, kReplaced), hn::BitCast(di, distance)), index);
 }
 
-/// Calls f(i) for each bit i that is set, in ascending order.
-template <class F>
-HWY_INLINE void each_bit(unsigned bits, F f) {
-  for (; bits != 0; bits &= bits - 1) f(static_cast<int>(hwy::Num0BitsBelowLS1Bit_Nonzero32(bits)));
-}
-
 /// AVX-512 moves the chosen lanes of a vector to its front in one instruction; elsewhere a loop over the few chosen
 /// lanes is faster.
 constexpr bool kHasCompress = HWY_TARGET <= HWY_AVX3;

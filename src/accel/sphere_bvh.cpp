@@ -16,7 +16,6 @@
 #include <span>
 #include <utility>
 
-#include "accel/sphere_sort.h"
 #include "base/stop_point.h"
 #include "math/single.h"
 

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Shared code of the traversals of a SphereBvh. Compiled once per instruction set.
+// What the traversals of a SphereBvh share: references, prefetching, and the tests of leaves. Compiled once per
+// instruction set.
 #if defined(ORRERY_ACCEL_SPHERE_BVH_RAYS_INL_H_) == defined(HWY_TARGET_TOGGLE)
 #ifdef ORRERY_ACCEL_SPHERE_BVH_RAYS_INL_H_
 #undef ORRERY_ACCEL_SPHERE_BVH_RAYS_INL_H_
@@ -15,7 +16,6 @@
 
 #include "accel/embree_rays-inl.h"
 #include "accel/sphere_bvh.h"
-#include "kernel/precision.h"
 #include "kernel/sphere_array.h"
 
 HWY_BEFORE_NAMESPACE();
@@ -117,11 +117,45 @@ HWY_INLINE RadiusBounds radii_of(const SphereBvh& bvh, std::uint32_t leaf, int f
   return {most, most - step};
 }
 
-/// The distance beyond which a hit is certain, in box space: the book's arithmetic ignores nearby hits.
-template <kernel::Precision kPrecision>
-HWY_INLINE float shortest_certain(const SphereBvh& bvh, const BoxFrame& frame) {
-  if (kPrecision != kernel::Precision::kBook) return 0;
-  return static_cast<float>(kernel::kBookShortestDistance * frame.scale) * kLonger + bvh.padding;
+/// How rays pass spheres, a pair per lane.
+template <class D>
+struct Passing {
+  hn::Vec<D> along;          ///< distance along the ray of the point that is closest to the centre
+  hn::Vec<D> offset_square;  ///< squared distance of the centre from the ray, rounded up
+};
+
+/// `to_center`  from the ray's origin to the sphere's decoded centre
+template <class D>
+HWY_INLINE Passing<D> passing(D d, const k::Vec3<hn::Vec<D>>& to_center, const k::Vec3<hn::Vec<D>>& direction) {
+  const auto along = k::dot(to_center, direction);
+  const auto offset = k::neg_mul_add(direction, along, to_center);
+  return {along, k::dot(offset, offset) * hn::Set(d, kGrowth)};
+}
+
+/// Whether a ray may hit a sphere before its limit.
+///
+/// `outer`    the largest radius that the sphere may have, plus margin_of()
+template <class D>
+HWY_INLINE hn::Mask<D> may_hit(D d, const Passing<D>& p, hn::Vec<D> outer, hn::Vec<D> limit) {
+  return hn::And(hn::And(p.offset_square <= outer * outer * hn::Set(d, kGrowth), p.along + outer >= hn::Zero(d)),
+                 p.along - outer <= limit);
+}
+
+/// An upper bound of a hit's distance, or `limit` if that is less or no hit is certain.
+///
+/// `inner`    the smallest radius that the sphere may have, minus the margin
+/// `begin`    a lower bound of the distance
+template <class D>
+HWY_INLINE hn::Vec<D> certain_limit(D d, const Passing<D>& p, hn::Vec<D> inner, hn::Vec<D> begin, hn::Vec<D> margin,
+                                    hn::Vec<D> limit) {
+  const auto zero = hn::Zero(d);
+  const auto deep = hn::NegMulAdd(p.offset_square, hn::Set(d, kGrowth), inner * inner);
+  const auto pierced = hn::And(inner > zero, hn::And(deep > zero, begin > zero));
+  // Slightly below the root, so that the distance is overestimated. The error of the approximate reciprocal square
+  // root is below 2^-11; it differs between processors, but does not affect the image.
+  const auto root = deep * hn::ApproximateReciprocalSqrt(hn::Max(deep, hn::Set(d, 0x1p-100F)));
+  const auto certain = (hn::NegMulAdd(root, hn::Set(d, 1 - 0x1p-10F), p.along) + margin) * hn::Set(d, kLonger);
+  return hn::Min(limit, hn::IfThenElse(pierced, certain, limit));
 }
 
 }  // namespace orrery::accel::HWY_NAMESPACE

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "accel/sphere_sort.h"
+#include "accel/sphere_bvh.h"
 
 #include <hwy/highway.h>
 #include <tbb/parallel_invoke.h>

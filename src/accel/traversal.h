@@ -11,9 +11,50 @@ enum class Traversal : std::uint8_t {
   kSingle,  ///< each ray separately
 };
 
-/// The traversal of camera rays and that of scattered rays.
-struct Traversals {
-  Traversal camera = Traversal::kPacket, secondary = Traversal::kPacket;
+/// The traversal of one thread's rays of one kind: the faster one. The first packets alternate between the traversals
+/// and are timed.
+class TraversalChoice {
+ public:
+  /// `packets`  number of packets that are timed
+  explicit TraversalChoice(int packets) noexcept : packets_left_(packets) {}
+  /// Chosen without measurements.
+  explicit TraversalChoice(Traversal traversal) noexcept : next_(traversal) {}
+
+  bool is_made() const noexcept { return packets_left_ == 0; }
+  /// The traversal of the next packet.
+  Traversal next() const noexcept { return next_; }
+  /// Adds the measurement of a packet that was traced by next().
+  void add(int rays, double seconds) noexcept {
+    measured_[index(next_)].rays += rays;
+    measured_[index(next_)].seconds += seconds;
+    next_ = --packets_left_ > 0 ? (next_ == Traversal::kPacket ? Traversal::kSingle : Traversal::kPacket) : faster();
+  }
+
+ private:
+  struct Measured {
+    double rays = 0, seconds = 0;
+  };
+  static int index(Traversal traversal) noexcept { return static_cast<int>(traversal); }
+  Traversal faster() const noexcept {
+    const Measured &packet = measured_[index(Traversal::kPacket)], &single = measured_[index(Traversal::kSingle)];
+    return single.seconds * packet.rays < packet.seconds * single.rays ? Traversal::kSingle : Traversal::kPacket;
+  }
+
+  Traversal next_ = Traversal::kPacket;
+  int packets_left_ = 0;
+  Measured measured_[2];
+};
+
+/// The traversals of one thread's rays. Camera rays and secondary rays are measured separately, since the latter visit
+/// other nodes than their neighbours; the numbers of packets are those of a few hundred pixels and of a few streams of
+/// paths, and take milliseconds.
+struct ThreadTraversals {
+  ThreadTraversals() = default;
+  /// All rays by this traversal, without measurements.
+  explicit ThreadTraversals(Traversal traversal) : camera(traversal), secondary(traversal), shadow(traversal) {}
+
+  const void* scene = nullptr;  ///< set by the Accel
+  mutable TraversalChoice camera{256}, secondary{1024}, shadow{1024};
 };
 
 }  // namespace orrery::accel

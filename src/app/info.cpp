@@ -22,7 +22,6 @@
 #include "load/loaded_scene.h"
 #include "measure/bench_scene.h"
 #include "measure/feature_cost.h"
-#include "render/traversals.h"
 #include "scene/layers.h"
 #include "scene/schema.h"
 #include "scene/textures.h"
@@ -158,7 +157,9 @@ SceneInfo scene_info(const load::SceneRequest& request, job::PreparedScene& prep
     if (s.key == "render.accelerator") info.accelerator = scene::unquoted(s.value);
   }
   info.isa = kernel::isa_name();
-  info.traversal = render::planned_traversal(compiled);
+  info.traversal = compiled.accelerator == compile::Accelerator::kList || compiled.spheres.empty()
+                       ? "list"
+                       : "packet or single, the faster in the first rays";
   job::MemoryNeeds needs = job::memory_needs(compiled, layers);
   if (loaded.background) {
     needs.background = loaded.background->bytes;

@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include <cstdint>
-
 /// Declarations of the room's types, for headers that only name them.
 namespace orrery::kernel {
 
@@ -19,9 +17,7 @@ struct Tile;
 struct TileCounts;
 struct Tracer;
 
-template <class T, class Id>
-struct RayPacketOf;
-using RayPacket = RayPacketOf<double, std::uint64_t>;
-using RayPacketFast = RayPacketOf<float, std::uint32_t>;
+template <class T>
+struct RayPacket;
 
 }  // namespace orrery::kernel

@@ -24,7 +24,7 @@ using namespace math::HWY_NAMESPACE;  // NOLINT(google-build-using-namespace): S
 template <class D>
 using IdTag = hn::RebindToUnsigned<D>;
 
-/// One ray per lane; see RaysOf.
+/// One ray per lane; see PacketRays.
 template <class D>
 struct Rays {
   using V = hn::Vec<D>;

@@ -26,7 +26,7 @@ namespace orrery::kernel::HWY_NAMESPACE {
 template <class D>
 struct Vertex {
   using V = hn::Vec<D>;
-  Vec3<V> origin, origin_low;            ///< the point, as in RaysOf
+  Vec3<V> origin, origin_low;            ///< the point, as in PacketRays
   Vec3<V> normal;                        ///< unit, on the side that is lit
   RayCone<V> cone{};                     ///< of rays to lights; only in scenes with ray cones
   const hn::TFromD<D>* times = nullptr;  ///< times of the paths; null: nothing moves

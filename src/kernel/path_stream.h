@@ -2,7 +2,6 @@
 #pragma once
 
 #include <cstddef>
-#include <cstdint>
 #include <new>
 
 #include "kernel/ray_packet.h"
@@ -15,8 +14,9 @@ inline constexpr int kStreamSize = 1024;
 /// Shadow rays that wait until they fill a packet, and the light that they carry if they are not occluded.
 ///
 /// The arrays are padded, because whole vectors are stored at their ends.
-template <class T, class Id>
+template <class T>
 struct alignas(64) ShadowStreamOf {
+  using Id = IdOf<T>;
   static constexpr int kCapacity = 3 * kPacketSize;
   T base[3][kCapacity];       ///< centre of the sphere that the ray leaves
   T offset[3][kCapacity];     ///< from that centre to the ray's origin
@@ -30,29 +30,31 @@ struct alignas(64) ShadowStreamOf {
   Id history[kCapacity];      ///< only in loops that record paths
   Id group[kCapacity];        ///< light group; only in loops that record paths
   int count = 0;
-  ShadowPacketOf<T, Id> packet;  ///< the rays being traced
+  ShadowPacket<T> packet;  ///< the rays being traced
 };
 
 /// State of paths that gain radiance at their vertices.
 ///
 /// A path's radiance is stored at its index within the batch and deposited when all paths of the batch have ended, so
 /// that a bad value removes the path's weight only once.
-template <class T, class Id>
+template <class T>
 struct alignas(64) LitPathsOf {
+  using Id = IdOf<T>;
   static constexpr int kCapacity = kStreamSize + kPacketSize;
   Id path[kCapacity];        ///< index within the batch of each path of the stream
   T pdf[kCapacity];          ///< density of the direction of each path of the stream, per steradian; infinite: delta
   T radiance[3][kCapacity];  ///< by index within the batch
   Id pixel[kCapacity];       ///< by index within the batch
   Id sample[kCapacity];      ///< by index within the batch
-  ShadowStreamOf<T, Id> shadow;
+  ShadowStreamOf<T> shadow;
 };
 
 /// The state of a tile's paths between two vertices, as a structure of arrays.
 ///
 /// Whole vectors are read and written at the ends of the arrays, hence the capacity for one more packet.
-template <class T, class Id>
+template <class T>
 struct alignas(64) PathStreamOf {
+  using Id = IdOf<T>;
   static constexpr int kCapacity = kStreamSize + kPacketSize;
   T base[3][kCapacity];        ///< centre of the sphere that the ray leaves
   T offset[3][kCapacity];      ///< from that centre to the ray's origin
@@ -61,20 +63,20 @@ struct alignas(64) PathStreamOf {
   Id self[kCapacity];          ///< sphere that the ray leaves
   Id pixel[kCapacity];         ///< y << 16 | x
   Id sample[kCapacity];
-  Id history[kCapacity];      ///< only in loops that record paths; see record-inl.h
-  RayPacketOf<T, Id> packet;  ///< the rays being traced
-  LitPathsOf<T, Id> lit;      ///< only in full loops
-  T cone[3][kCapacity];       ///< only in full loops, if the scene has ray cones; see cone-inl.h
+  Id history[kCapacity];  ///< only in loops that record paths; see record-inl.h
+  RayPacket<T> packet;    ///< the rays being traced
+  LitPathsOf<T> lit;      ///< only in full loops
+  T cone[3][kCapacity];   ///< only in full loops, if the scene has ray cones; see cone-inl.h
 };
 
 /// Memory for the paths of a tile, in any precision.
 struct alignas(64) PathStream {
-  std::byte bytes[sizeof(PathStreamOf<double, std::uint64_t>)];
+  std::byte bytes[sizeof(PathStreamOf<double>)];
 
   /// The stream of a loop, uninitialized.
-  template <class T, class Id>
-  PathStreamOf<T, Id>& as() noexcept {
-    return *new (bytes) PathStreamOf<T, Id>;
+  template <class T>
+  PathStreamOf<T>& as() noexcept {
+    return *new (bytes) PathStreamOf<T>;
   }
 };
 

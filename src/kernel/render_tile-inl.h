@@ -19,9 +19,6 @@
 HWY_BEFORE_NAMESPACE();
 namespace orrery::kernel::HWY_NAMESPACE {
 
-template <class T>
-using IdFor = hwy::MakeUnsigned<T>;
-
 /// Enumerates a tile's paths: all samples of a pixel, then the next pixel, so that the rays of a packet are coherent.
 class PathCounter {
  public:
@@ -53,7 +50,7 @@ HWY_INLINE void load_camera_rays(D d, const SceneView& scene, PathCounter& count
                                  Carried& carried) {
   const Features features = features_of<kLoop>(scene);
   using T = hn::TFromD<D>;
-  using Id = IdFor<T>;
+  using Id = IdOf<T>;
   const IdTag<D> du;
   for (int i = 0; i < count; ++i) counter.take(carried.pixel[i], carried.sample[i]);
   for (int i = count; i < kPacketSize; ++i) {  // pads the packet, since whole vectors are computed
@@ -138,8 +135,8 @@ template <class D, Loop kLoop>
 TileCounts render_tile(const SceneView& scene, const Tracer& tracer, const Tile& tile, PathStream& memory) {
   const D d;
   using T = hn::TFromD<D>;
-  auto& stream = memory.as<T, IdFor<T>>();
-  PathPayload<T, IdFor<T>> carried;
+  auto& stream = memory.as<T>();
+  PathPayload<T> carried;
   TileCounts counts;
   counts.target = HWY_TARGET;
   const std::int64_t weight = scene.filter.weight(tile.sample_begin, tile.sample_end);

@@ -42,8 +42,9 @@ HWY_INLINE Features features_of(const SceneView& scene) {
 }
 
 /// Path state of a packet's rays other than their geometry, in the packet's lane order.
-template <class T, class Id>
+template <class T>
 struct alignas(64) PathPayload {
+  using Id = IdOf<T>;
   T throughput[3][kPacketSize];
   Id pixel[kPacketSize];
   Id sample[kPacketSize];
@@ -104,7 +105,7 @@ class Shader {
   using Id = hn::TFromD<IdTag<D>>;
   using V = hn::Vec<D>;
   using Ids = hn::Vec<IdTag<D>>;
-  using Stream = PathStreamOf<T, Id>;
+  using Stream = PathStreamOf<T>;
 
  public:
   HWY_INLINE Shader(const SceneView& scene, const Tile& tile, std::uint32_t depth, Stream& stream, TileCounts& counts)
@@ -119,7 +120,7 @@ class Shader {
   /// in `stream.lit`) and appends the surviving paths to the stream.
   ///
   /// Result     number of paths in the stream; `alive` is their number before the call
-  HWY_INLINE int shade(const PathPayload<T, Id>& carried, int alive) {
+  HWY_INLINE int shade(const PathPayload<T>& carried, int alive) {
     const bool ends = scene_.shading == Shading::kPath && depth_ + 1 >= scene_.max_depth;
     for (int v = 0; v < stream_.packet.count; v += static_cast<int>(hn::Lanes(d))) {
       const Arrivals<D> at = arrive(carried, v);
@@ -146,7 +147,7 @@ class Shader {
   static constexpr IdTag<D> du{};
 
   /// Loads a vector of rays and paths.
-  HWY_INLINE Arrivals<D> arrive(const PathPayload<T, Id>& carried, int v) const {
+  HWY_INLINE Arrivals<D> arrive(const PathPayload<T>& carried, int v) const {
     const auto& packet = stream_.packet;
     Arrivals<D> at;
     const auto active = hn::FirstN(d, static_cast<std::size_t>(packet.count - v));

@@ -113,7 +113,7 @@ class Subject {
     const accel::Accel& with = accel(c);
     if (c.precision == Precision::kFast) return seconds_a_path(with, fast_rays(with));
     auto& rays = rays_[c.precision];
-    if (rays.paths == 0) rays = render::record_rays(compiled_.view(), with, c.precision, recorded_rows());
+    if (rays.paths == 0) rays = render::record_rays<double>(compiled_.view(), with, c.precision, recorded_rows());
     return seconds_a_path(with, rays);
   }
 
@@ -123,7 +123,7 @@ class Subject {
     fast.precision = Precision::kFast;
     fast.features = required_;
     prepare(fast);
-    accel::Accel& with = accel(fast);
+    const accel::Accel& with = accel(fast);
     return TracingBench(compiled_.view(), fast_rays(with), with_lists);
   }
 
@@ -141,8 +141,9 @@ class Subject {
     return rows;
   }
 
-  render::RecordedRays<kernel::RayPacketFast>& fast_rays(const accel::Accel& with) {
-    if (fast_rays_.paths == 0) fast_rays_ = render::record_rays_fast(compiled_.view(), with, recorded_rows());
+  render::RecordedRays<float>& fast_rays(const accel::Accel& with) {
+    if (fast_rays_.paths == 0)
+      fast_rays_ = render::record_rays<float>(compiled_.view(), with, Precision::kFast, recorded_rows());
     return fast_rays_;
   }
 
@@ -154,7 +155,7 @@ class Subject {
     compile::update_lights(compiled_);
   }
 
-  accel::Accel& accel(const Case& c) {
+  const accel::Accel& accel(const Case& c) {
     auto& built = accels_[{c.tracer, c.precision}];
     if (!built)
       built = c.tracer == Tracer::kSimdList ? accel::make_simd_list(compiled_.view(), c.precision)
@@ -162,8 +163,8 @@ class Subject {
     return *built;
   }
 
-  template <class Packet>
-  static double seconds_a_path(const accel::Accel& with, render::RecordedRays<Packet>& rays) {
+  template <class T>
+  static double seconds_a_path(const accel::Accel& with, render::RecordedRays<T>& rays) {
     const double seconds =
         render::trace_again(with.tracer(), rays.camera) + render::trace_again(with.tracer(), rays.secondary);
     return seconds / static_cast<double>(rays.paths);
@@ -174,8 +175,8 @@ class Subject {
   kernel::Features required_;
   kernel::DirectLighting direct_lighting_;
   std::map<std::pair<Tracer, Precision>, std::unique_ptr<accel::Accel>> accels_;
-  std::map<Precision, render::RecordedRays<kernel::RayPacket>> rays_;
-  render::RecordedRays<kernel::RayPacketFast> fast_rays_;
+  std::map<Precision, render::RecordedRays<double>> rays_;
+  render::RecordedRays<float> fast_rays_;
 };
 
 bool lists_are_affordable(const compile::CompiledScene& compiled) {

@@ -11,14 +11,13 @@
 
 namespace orrery::measure {
 
-TracingBench::TracingBench(const kernel::SceneView& view, render::RecordedRays<kernel::RayPacketFast>& rays,
-                           bool with_list)
+TracingBench::TracingBench(const kernel::SceneView& view, render::RecordedRays<float>& rays, bool with_list)
     : points_(accel::make_native_points(view)), rays_(rays) {
   const AlternativeAccelerator other = alternative_accelerator(view);
   by_count_ = accel::make_embree(view, kernel::Precision::kFast);
   other_ = accel::make_embree(view, kernel::Precision::kFast, {}, other.bvh_threshold);
   for (const auto* packets : {&rays_.camera, &rays_.secondary})
-    for (const kernel::RayPacketFast& packet : *packets) ray_count_ += packet.count;
+    for (const kernel::RayPacket<float>& packet : *packets) ray_count_ += packet.count;
   methods_ = {{"packets", by_count_.get(), accel::Traversal::kPacket, {}},
               {"single rays", by_count_.get(), accel::Traversal::kSingle, {}},
               {other.name + ", packets", other_.get(), accel::Traversal::kPacket, {}},
@@ -32,8 +31,7 @@ TracingBench::TracingBench(const kernel::SceneView& view, render::RecordedRays<k
 void TracingBench::measure(int round) {
   for (std::size_t i = 0; i < methods_.size(); ++i) {
     Method& method = methods_[(i + static_cast<std::size_t>(round)) % methods_.size()];
-    method.accel->use({method.traversal, method.traversal});
-    const kernel::Tracer tracer = method.accel->tracer();
+    const kernel::Tracer tracer = method.accel->tracer(method.traversal);
     method.rays_per_s.push_back(
         ray_count_ / (render::trace_again(tracer, rays_.camera) + render::trace_again(tracer, rays_.secondary)));
   }

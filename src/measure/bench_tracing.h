@@ -21,7 +21,7 @@ class TracingBench {
   /// Builds the remaining accelerators.
   ///
   /// Domain     the view and the rays outlive this; at least one sphere
-  TracingBench(const kernel::SceneView& view, render::RecordedRays<kernel::RayPacketFast>& rays, bool with_list);
+  TracingBench(const kernel::SceneView& view, render::RecordedRays<float>& rays, bool with_list);
 
   /// Measures every method once. Each round starts with a different one.
   void measure(int round);
@@ -31,14 +31,14 @@ class TracingBench {
  private:
   struct Method {
     std::string name;
-    accel::Accel* accel;
+    const accel::Accel* accel;
     accel::Traversal traversal;
     std::vector<double> rays_per_s;
   };
 
   std::unique_ptr<accel::Accel> by_count_;  ///< the structure that the number of spheres decides
   std::unique_ptr<accel::Accel> other_, points_, list_;
-  render::RecordedRays<kernel::RayPacketFast>& rays_;
+  render::RecordedRays<float>& rays_;
   double ray_count_ = 0;
   std::vector<Method> methods_;
 };

@@ -10,7 +10,7 @@ struct Result;
 struct Settings;
 struct Statistics;
 
-template <class Packet>
+template <class T>
 struct RecordedRays;
 
 }  // namespace orrery::render

@@ -31,7 +31,6 @@
 #include "render/settings.h"
 #include "render/tile_pool.h"
 #include "render/tile_renderer.h"
-#include "render/traversals.h"
 
 namespace orrery::render {
 namespace {
@@ -80,8 +79,9 @@ std::unique_ptr<accel::Accel> build(const compile::CompiledScene& compiled, int 
                                     const accel::BuildMonitor& monitor) {
   std::unique_ptr<accel::Accel> accel;
   TilePool(threads).execute([&] {
-    accel = compiled.accelerator == compile::Accelerator::kList ? accel::make_list(compiled.view(), compiled.precision)
-                                                                : build_embree(compiled, monitor);
+    accel = compiled.accelerator == compile::Accelerator::kList
+                ? accel::make_list(compiled.view(), compiled.precision)
+                : accel::make_embree(compiled.view(), compiled.precision, monitor);
   });
   return accel;
 }
@@ -119,11 +119,11 @@ Result finished(const compile::CompiledScene& compiled, const film::LayerRequest
   return result;
 }
 
-Result render(const compile::CompiledScene& compiled, accel::Accel& accel, const Settings& settings) {
+Result render(const compile::CompiledScene& compiled, const accel::Accel& accel, const Settings& settings) {
   return render(compiled, accel, settings, std::nullopt);
 }
 
-Result render(const compile::CompiledScene& compiled, accel::Accel& accel, const Settings& settings,
+Result render(const compile::CompiledScene& compiled, const accel::Accel& accel, const Settings& settings,
               std::optional<film::Partial> from) {
   Statistics statistics;
   statistics.threads = threads_of(settings);
@@ -134,15 +134,13 @@ Result render(const compile::CompiledScene& compiled, accel::Accel& accel, const
   const std::vector<bool> owned = pixels_of(settings.sampling.shard, compiled.width, compiled.height);
   const auto pixels = static_cast<std::uint64_t>(std::count(owned.begin(), owned.end(), true));
   ProgressReporter progress(settings, samples_of(compiled, settings) * pixels, state.work);
-  const accel::Traversals traversals = choose_traversals(compiled, accel, settings.traversal);
-  accel.use(traversals);
-  statistics.traversal = name_of(traversals);
   TilePool pool(statistics.threads);
-  const TileRenderer render_tile(compiled, accel, settings.layers, settings.sampling.is_adaptive());
+  const TileRenderer render_tile(compiled, accel, settings);
   const bool completed = settings.sampling.is_adaptive()
                              ? render_adaptively(compiled, settings, render_tile, pool, progress, state, statistics)
                              : render_progressively(compiled, settings, render_tile, pool, progress, state, statistics);
   state.work = work_so_far(state.work, pool, progress);
+  statistics.traversal = compiled.accelerator == compile::Accelerator::kList ? "list" : pool.traversals();
   const std::int64_t target = pool.counts().target;
   statistics.isa = target != 0 ? kernel::isa_name(target) : kernel::isa_name();  // 0: there was nothing left to do
   statistics.render_s = state.work.seconds;

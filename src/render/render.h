@@ -30,8 +30,8 @@ std::unique_ptr<accel::Accel> build(const compile::CompiledScene& compiled, int 
 ///
 /// `from`     a partial of the same scene and settings to resume from; empty: none
 /// Result     completed == false if stopped by `cancel`; build_s is 0
-Result render(const compile::CompiledScene& compiled, accel::Accel& accel, const Settings& settings);
-Result render(const compile::CompiledScene& compiled, accel::Accel& accel, const Settings& settings,
+Result render(const compile::CompiledScene& compiled, const accel::Accel& accel, const Settings& settings);
+Result render(const compile::CompiledScene& compiled, const accel::Accel& accel, const Settings& settings,
               std::optional<film::Partial> from);
 
 /// Builds the accelerator and renders an image.

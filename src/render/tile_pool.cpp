@@ -61,4 +61,19 @@ kernel::TileCounts TilePool::counts() const {
   return sum;
 }
 
+std::string TilePool::traversals() const {
+  using accel::ThreadTraversals, accel::Traversal, accel::TraversalChoice;
+  const auto name_of = [this](TraversalChoice ThreadTraversals::*kind) -> std::string {
+    bool by_packets = false, single = false;
+    for (const TileWorker& worker : impl_->workers) {
+      const TraversalChoice& choice = worker.traversals.*kind;
+      by_packets |= !choice.is_made() || choice.next() == Traversal::kPacket;
+      single |= !choice.is_made() || choice.next() == Traversal::kSingle;
+    }
+    return !single ? "packet" : !by_packets ? "single" : "both";
+  };
+  const std::string camera = name_of(&ThreadTraversals::camera), secondary = name_of(&ThreadTraversals::secondary);
+  return camera == secondary ? camera : camera + ", secondary " + secondary;
+}
+
 }  // namespace orrery::render

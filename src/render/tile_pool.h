@@ -4,7 +4,7 @@
 #include <cstddef>
 #include <functional>
 #include <memory>
-#include <vector>
+#include <string>
 
 #include "kernel/forward.h"
 
@@ -29,6 +29,10 @@ class TilePool {
 
   /// Counts of all tiles so far.
   kernel::TileCounts counts() const;
+
+  /// The traversals of camera rays, and of secondary rays if different: "packet", "single", or "both" if threads differ
+  /// or are still measuring. For example "packet, secondary single".
+  std::string traversals() const;
 
  private:
   struct Impl;

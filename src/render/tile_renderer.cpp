@@ -9,6 +9,7 @@
 #include "film/layer_pixel.h"
 #include "film/layers.h"
 #include "film/partial.h"
+#include "render/settings.h"
 
 namespace orrery::render {
 namespace {
@@ -55,16 +56,16 @@ void LightEventBuffer::grow(kernel::LightEvents& events) {
   self.end = self.storage_.data() + self.storage_.size();
 }
 
-TileRenderer::TileRenderer(const compile::CompiledScene& compiled, const accel::Accel& accel,
-                           const film::LayerRequest& request, bool is_adaptive)
+TileRenderer::TileRenderer(const compile::CompiledScene& compiled, const accel::Accel& accel, const Settings& settings)
     : view_(compiled.view()),
-      tracer_(accel.tracer()),
-      request_(request),
+      accel_(accel),
+      traversal_(settings.traversal),
+      request_(settings.layers),
       // Each half of a low-discrepancy sequence is a sequence in its own right.
-      second_half_(is_adaptive ? kernel::Sampler::kSecondHalf
-                               : std::max(1U, static_cast<std::uint32_t>(compiled.samples) / 2)) {
-  if (request.coverage) view_.background_visible = false;
-  render_ = kernel::render_tile_function(view_.features, compiled.precision, request.any());
+      second_half_(settings.sampling.is_adaptive() ? kernel::Sampler::kSecondHalf
+                                                   : std::max(1U, static_cast<std::uint32_t>(compiled.samples) / 2)) {
+  if (request_.coverage) view_.background_visible = false;
+  render_ = kernel::render_tile_function(view_.features, compiled.precision, request_.any());
 }
 
 void TileRenderer::operator()(const kernel::Tile& tile, TileWorker& worker, film::Partial& image) const {
@@ -83,8 +84,11 @@ void TileRenderer::operator()(const kernel::Tile& tile, TileWorker& worker, film
 }
 
 void TileRenderer::trace(const kernel::Tile& tile, TileWorker& worker) const {
-  if (!worker.stream) worker.stream = std::make_unique<kernel::PathStream>();
-  const kernel::TileCounts counts = render_(view_, tracer_, tile, *worker.stream);
+  if (!worker.stream) {
+    worker.stream = std::make_unique<kernel::PathStream>();
+    if (traversal_) worker.traversals = accel::ThreadTraversals(*traversal_);
+  }
+  const kernel::TileCounts counts = render_(view_, accel_.thread_tracer(worker.traversals), tile, *worker.stream);
   worker.counts.rays += counts.rays;
   worker.counts.bad_samples += counts.bad_samples;
   worker.counts.target = counts.target;

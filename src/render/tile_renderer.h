@@ -3,9 +3,10 @@
 
 #include <cstdint>
 #include <memory>
+#include <optional>
 #include <vector>
 
-#include "accel/forward.h"
+#include "accel/accel.h"
 #include "compile/forward.h"
 #include "film/forward.h"
 #include "kernel/guide_sum.h"
@@ -17,6 +18,8 @@
 #include "kernel/scene_view.h"
 
 namespace orrery::render {
+
+struct Settings;
 
 /// A growing buffer of a tile's light events.
 class LightEventBuffer : public kernel::LightEvents {
@@ -33,6 +36,7 @@ class LightEventBuffer : public kernel::LightEvents {
 /// Buffers of one thread, so that the kernel's loop does not allocate.
 struct TileWorker {
   std::unique_ptr<kernel::PathStream> stream;
+  accel::ThreadTraversals traversals;
   std::vector<kernel::PathRecord> records;
   std::vector<kernel::PixelSum> light;   ///< sums of a tile's pixels
   std::vector<kernel::GuideSum> guides;  ///< guides of a tile's pixels
@@ -43,12 +47,11 @@ struct TileWorker {
 /// Renders tiles in the scene's precision and adds their paths to the layers, if there are any.
 class TileRenderer {
  public:
-  /// Selects the kernel's instance for the scene.
+  /// Selects the kernel's instance for the scene. In adaptive sampling, samples from Sampler::kSecondHalf on are the
+  /// second half.
   ///
-  /// `is_adaptive`  samples from Sampler::kSecondHalf on are the second half
   /// Domain     all arguments outlive this
-  TileRenderer(const compile::CompiledScene& compiled, const accel::Accel& accel, const film::LayerRequest& request,
-               bool is_adaptive = false);
+  TileRenderer(const compile::CompiledScene& compiled, const accel::Accel& accel, const Settings& settings);
 
   /// Renders one tile, and adds its paths to the layers and halves of the image.
   void operator()(const kernel::Tile& tile, TileWorker& worker, film::Partial& image) const;
@@ -60,7 +63,8 @@ class TileRenderer {
   void trace_records(const kernel::Tile& tile, TileWorker& worker, film::Partial& image) const;
 
   kernel::SceneView view_;
-  kernel::Tracer tracer_;
+  const accel::Accel& accel_;
+  const std::optional<accel::Traversal> traversal_;
   const film::LayerRequest& request_;
   std::uint32_t second_half_;  ///< first sample of the second half
   kernel::RenderTile render_ = nullptr;

@@ -164,7 +164,7 @@ struct Truth {
 };
 
 template <class Real>
-Truth truth(const Case& c, const kernel::RayPacket& p, int lane) {
+Truth truth(const Case& c, const kernel::RayPacket<double>& p, int lane) {
   using Vec = Vec3Of<Real>;
   const Vec origin = Vec{p.origin[0][lane], p.origin[1][lane], p.origin[2][lane]} +
                      Vec{p.origin_low[0][lane], p.origin_low[1][lane], p.origin_low[2][lane]};
@@ -219,7 +219,7 @@ Tally run(const Regime& regime, kernel::Precision precision, int rays) {
   Tally tally;
   for (int done = 0; done < rays; done += kPacketSize) {
     Case cases[kPacketSize];
-    kernel::RayPacket packet;
+    kernel::RayPacket<double> packet;
     kernel::Sphere spheres[kPacketSize];
     std::uint64_t ids[kPacketSize] = {};
     for (int i = 0; i < kPacketSize; ++i) {
@@ -320,7 +320,7 @@ TEST(Extremes, RaysAcrossNarrowGapsHit) {
       // Far from the origin doubles cannot represent the gap, so only the rounded positions are tested.
       if (offset > 0 && gap != 0) continue;
       for (int i = 0; i < 20000; i += kPacketSize) {
-        kernel::RayPacket packet;
+        kernel::RayPacket<double> packet;
         kernel::Sphere spheres[kPacketSize];
         std::uint64_t ids[kPacketSize] = {};
         bool outside[kPacketSize];

@@ -69,7 +69,8 @@ inline void normalize(double (&d)[3]) {
 }
 
 /// A ray that is tangent to a sphere at one of the six places where it touches its box, or a little inside.
-inline void graze_pole(Random& random, const Scene& scene, const Sphere& s, kernel::RayPacket& packet, int lane) {
+inline void graze_pole(Random& random, const Scene& scene, const Sphere& s, kernel::RayPacket<double>& packet,
+                       int lane) {
   const int axis = static_cast<int>(random.uniform(0, 3)), across = (axis + 1) % 3, other = (axis + 2) % 3;
   const double turn = random.coin() ? 0 : random.uniform(0, 6.28);
   double direction[3] = {0, 0, 0}, base[3] = {s.x, s.y, s.z};
@@ -81,7 +82,7 @@ inline void graze_pole(Random& random, const Scene& scene, const Sphere& s, kern
 }
 
 /// Half of the rays aim at places where boxes and spheres part: poles, rims, corners of boxes.
-inline void aim(Random& random, const Scene& scene, kernel::RayPacket& packet, int lane) {
+inline void aim(Random& random, const Scene& scene, kernel::RayPacket<double>& packet, int lane) {
   const auto pick = [&] {
     return static_cast<std::size_t>(random.uniform(0, static_cast<double>(scene.spheres.size())));
   };
@@ -126,7 +127,7 @@ inline void aim(Random& random, const Scene& scene, kernel::RayPacket& packet, i
 }
 
 /// Moves a ray's origin back along it, as far as a thousand times the camera's distance.
-inline void step_back(Random& random, const Scene& scene, kernel::RayPacket& packet, int lane) {
+inline void step_back(Random& random, const Scene& scene, kernel::RayPacket<double>& packet, int lane) {
   const double by = scene.camera_distance * std::exp(random.uniform(0, 7));
   double base[3], direction[3];
   for (int i = 0; i < 3; ++i) {

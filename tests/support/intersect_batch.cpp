@@ -17,7 +17,8 @@ namespace hn = hwy::HWY_NAMESPACE;
 namespace k = kernel::HWY_NAMESPACE;
 
 template <class D, kernel::Precision kPrecision>
-void run(const kernel::RayPacket& packet, const kernel::Sphere* spheres, const std::uint64_t* ids, Intersections& out) {
+void run(const kernel::RayPacket<double>& packet, const kernel::Sphere* spheres, const std::uint64_t* ids,
+         Intersections& out) {
   const D d;
   const k::IdTag<D> du;
   for (int v = 0; v < kernel::kPacketSize; v += static_cast<int>(hn::Lanes(d))) {
@@ -47,17 +48,17 @@ void run(const kernel::RayPacket& packet, const kernel::Sphere* spheres, const s
 using One = hn::FixedTag<double, 1>;
 using All = hn::ScalableTag<double>;
 
-void exact_one(const kernel::RayPacket& p, const kernel::Sphere* s, const std::uint64_t* i, Intersections& o) {
+void exact_one(const kernel::RayPacket<double>& p, const kernel::Sphere* s, const std::uint64_t* i, Intersections& o) {
   run<One, kernel::Precision::kExact>(p, s, i, o);
 }
-void exact_all(const kernel::RayPacket& p, const kernel::Sphere* s, const std::uint64_t* i, Intersections& o) {
+void exact_all(const kernel::RayPacket<double>& p, const kernel::Sphere* s, const std::uint64_t* i, Intersections& o) {
   run<All, kernel::Precision::kExact>(p, s, i, o);
 }
-void book_all(const kernel::RayPacket& p, const kernel::Sphere* s, const std::uint64_t* i, Intersections& o) {
+void book_all(const kernel::RayPacket<double>& p, const kernel::Sphere* s, const std::uint64_t* i, Intersections& o) {
   run<All, kernel::Precision::kBook>(p, s, i, o);
 }
 
-void set_lane(kernel::RayPacket& p, int lane, const double* base, const double* offset, const double* direction,
+void set_lane(kernel::RayPacket<double>& p, int lane, const double* base, const double* offset, const double* direction,
               std::uint64_t self) {
   const One d;
   const auto b = k::set3(d, base), o = k::set3(d, offset), w = k::set3(d, direction);
@@ -87,7 +88,7 @@ HWY_EXPORT(exact_all);
 HWY_EXPORT(book_all);
 HWY_EXPORT(set_lane);
 
-Intersections intersect_batch(kernel::Precision precision, kernel::Lanes lanes, const kernel::RayPacket& packet,
+Intersections intersect_batch(kernel::Precision precision, kernel::Lanes lanes, const kernel::RayPacket<double>& packet,
                               const kernel::Sphere* spheres, const std::uint64_t* ids) {
   Intersections out;
   if (precision == kernel::Precision::kBook) {
@@ -100,7 +101,7 @@ Intersections intersect_batch(kernel::Precision precision, kernel::Lanes lanes, 
   return out;
 }
 
-void set_ray(kernel::RayPacket& packet, int lane, const double (&base)[3], const double (&offset)[3],
+void set_ray(kernel::RayPacket<double>& packet, int lane, const double (&base)[3], const double (&offset)[3],
              const double (&direction)[3], std::uint64_t self) {
   ORRERY_BEST(set_lane)(packet, lane, base, offset, direction, self);
 }

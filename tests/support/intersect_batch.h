@@ -20,11 +20,11 @@ struct Intersections {
 /// Intersects lane i with spheres[i], whose id is ids[i].
 ///
 /// Domain     origin_low, inverse_square and self of the packet are set as by the renderer (see set_ray)
-Intersections intersect_batch(kernel::Precision precision, kernel::Lanes lanes, const kernel::RayPacket& packet,
+Intersections intersect_batch(kernel::Precision precision, kernel::Lanes lanes, const kernel::RayPacket<double>& packet,
                               const kernel::Sphere* spheres, const std::uint64_t* ids);
 
 /// Sets a lane to a ray with origin base + offset, with the renderer's arithmetic.
-void set_ray(kernel::RayPacket& packet, int lane, const double (&base)[3], const double (&offset)[3],
+void set_ray(kernel::RayPacket<double>& packet, int lane, const double (&base)[3], const double (&offset)[3],
              const double (&direction)[3], std::uint64_t self);
 
 }  // namespace orrery::test

@@ -54,11 +54,10 @@ Differences differences(const Scene& scene, const Way& way, long ray_count) {
   view.sphere_materials = materials.data();
   view.sphere_count = scene.spheres.size();
   const auto list = make_list(view, kernel::Precision::kExact), other = way.make(view, kernel::Precision::kExact);
-  other->use({way.traversal, way.traversal});
   Random random;
   Differences found;
   for (; found.rays < ray_count; found.rays += kPacketSize) {
-    kernel::RayPacket a;
+    kernel::RayPacket<double> a;
     a.count = kPacketSize;
     for (int lane = 0; lane < kPacketSize; ++lane) {
       aim(random, scene, a, lane);
@@ -67,9 +66,9 @@ Differences differences(const Scene& scene, const Way& way, long ray_count) {
       a.distance[lane] = std::numeric_limits<double>::max();
       a.hit[lane] = kNoSphere;
     }
-    kernel::RayPacket b = a;
-    list->tracer().trace(list->tracer().self, a);
-    other->tracer().trace(other->tracer().self, b);
+    kernel::RayPacket<double> b = a;
+    kernel::trace(list->tracer(), a);
+    kernel::trace(other->tracer(way.traversal), b);
     for (int lane = 0; lane < kPacketSize; ++lane) {
       const bool hit = a.hit[lane] != kNoSphere;
       found.hits += hit;
@@ -92,7 +91,7 @@ TEST(AccelAccel, EmbreeAndListFindTheSameHits) {
       kernel::SceneView view;
       view.spheres = all[0].spheres.data();
       view.sphere_count = 1;
-      for (const auto precision : {kernel::Precision::kExact, kernel::Precision::kFast, kernel::Precision::kBook}) {
+      for (const auto precision : {kernel::Precision::kExact, kernel::Precision::kFast}) {
         EXPECT_EQ(kernel::isa_name(way.make(view, precision)->tracer().target), isa) << way.name;
         EXPECT_EQ(kernel::isa_name(make_list(view, precision)->tracer().target), isa);
       }
@@ -156,18 +155,17 @@ TEST(AccelAccel, CompactSpheresAreHitAsPlainOnes) {
       compact.spheres = spheres.array();
       const auto list = make_list(plain, kernel::Precision::kExact),
                  other = way.make(compact, kernel::Precision::kExact);
-      other->use({way.traversal, way.traversal});
       const Scene rounded{scene.name, spheres.plain, scene.camera_distance};
       Random random;
       int different = 0;
       for (int i = 0; i < 200; ++i) {
-        kernel::RayPacket a;
+        kernel::RayPacket<double> a;
         a.count = kPacketSize;
         for (int lane = 0; lane < kPacketSize; ++lane) aim(random, rounded, a, lane);
         reset_hits(a);
-        kernel::RayPacket b = a;
+        kernel::RayPacket<double> b = a;
         kernel::trace(list->tracer(), a);
-        kernel::trace(other->tracer(), b);
+        kernel::trace(other->tracer(way.traversal), b);
         for (int lane = 0; lane < kPacketSize; ++lane)
           different += a.hit[lane] != b.hit[lane] || (a.hit[lane] != kNoSphere && a.distance[lane] != b.distance[lane]);
       }
@@ -205,16 +203,15 @@ TEST(AccelAccel, PacketsCanBePartlyFilled) {
   view.sphere_count = 2;
   for (const Way& way : kWaysBesideTheList) {
     const auto embree = way.make(view, kernel::Precision::kExact);
-    embree->use({way.traversal, way.traversal});
     for (int count = 1; count <= kPacketSize; ++count) {
-      kernel::RayPacket p;
+      kernel::RayPacket<double> p;
       p.count = count;
       for (int lane = 0; lane < kPacketSize; ++lane) {
         test::set_ray(p, lane, {0, 0, 0}, {0, 0, 0}, {0, 0, -1}, kNoSphere);
         p.distance[lane] = std::numeric_limits<double>::max();
         p.hit[lane] = kNoSphere;
       }
-      embree->tracer().trace(embree->tracer().self, p);
+      kernel::trace(embree->tracer(way.traversal), p);
       for (int lane = 0; lane < kPacketSize; ++lane) {
         EXPECT_EQ(p.hit[lane], lane < count ? 0u : std::uint64_t{kNoSphere}) << count;
         if (lane < count) {
@@ -234,7 +231,7 @@ TEST(AccelAccel, NativePointsFindTheSameSpheres) {
   Random random;
   int hits = 0, different = 0;
   for (int i = 0; i < 1000; ++i) {
-    kernel::RayPacketFast a{};
+    kernel::RayPacket<float> a{};
     a.count = kPacketSize;
     for (int lane = 0; lane < kPacketSize; ++lane) {
       a.origin[2][lane] = 5;
@@ -246,9 +243,9 @@ TEST(AccelAccel, NativePointsFindTheSameSpheres) {
       a.distance[lane] = std::numeric_limits<float>::max();
       a.hit[lane] = kNoSphere;
     }
-    kernel::RayPacketFast b = a;
-    points->tracer().trace_fast(points->tracer().self, a);
-    embree->tracer().trace_fast(embree->tracer().self, b);
+    kernel::RayPacket<float> b = a;
+    kernel::trace(points->tracer(), a);
+    kernel::trace(embree->tracer(), b);
     for (int lane = 0; lane < kPacketSize; ++lane) {
       hits += b.hit[lane] != kNoSphere;
       different += a.hit[lane] != b.hit[lane];
@@ -264,7 +261,7 @@ TEST(AccelAccel, TangentHitsCountAndTheRayOriginDoesNot) {
   view.spheres = spheres.data();
   view.sphere_count = 1;
   const auto list = make_list(view, kernel::Precision::kExact);
-  kernel::RayPacket p;
+  kernel::RayPacket<double> p;
   p.count = 2;
   test::set_ray(p, 0, {0, 0, 5}, {0, 0, 0}, {0, 0, -1}, kNoSphere);  // tangent at the world origin
   test::set_ray(p, 1, {0, 2, 0}, {0, 0, 0}, {0, 1, 0}, kNoSphere);   // starts on the surface, pointing outward
@@ -272,7 +269,7 @@ TEST(AccelAccel, TangentHitsCountAndTheRayOriginDoesNot) {
     p.distance[lane] = std::numeric_limits<double>::max();
     p.hit[lane] = kNoSphere;
   }
-  list->tracer().trace(list->tracer().self, p);
+  kernel::trace(list->tracer(), p);
   EXPECT_EQ(p.hit[0], 0u);
   EXPECT_EQ(p.distance[0], 5);
   EXPECT_EQ(p.hit[1], std::uint64_t{kNoSphere});

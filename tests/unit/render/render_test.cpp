@@ -5,6 +5,7 @@
 
 #include <atomic>
 #include <cmath>
+#include <optional>
 #include <random>
 
 #include "compile/compile.h"
@@ -23,10 +24,12 @@ using math::Vec3d;
 using test::everything;
 using test::with_lamps;
 
-std::vector<float> pixels(const scene::Scene& scene, int threads = 0) {
+std::vector<float> pixels(const scene::Scene& scene, int threads = 0,
+                          std::optional<accel::Traversal> traversal = std::nullopt) {
   const compile::CompiledScene compiled = compile::compile(scene);
   Settings settings;
   settings.threads = threads;
+  settings.traversal = traversal;
   const Result result = render(compiled, settings);
   EXPECT_TRUE(result.completed);
   EXPECT_EQ(result.statistics.bad_samples, 0u);
@@ -43,6 +46,25 @@ TEST(RenderRender, ListAndEmbreeGiveTheSameBits) {
       EXPECT_EQ(pixels(s), embree) << static_cast<int>(precision);
     }
   }
+}
+
+TEST(RenderRender, TraversalsGiveTheSameBits) {
+  for (const auto precision : {scene::Precision::kExact, scene::Precision::kFast})
+    for (scene::Scene s : {everything(), with_lamps(everything())}) {
+      s.render.precision = precision;
+      const auto measured = pixels(s);
+      EXPECT_EQ(pixels(s, 0, accel::Traversal::kPacket), measured) << static_cast<int>(precision);
+      EXPECT_EQ(pixels(s, 0, accel::Traversal::kSingle), measured) << static_cast<int>(precision);
+    }
+}
+
+TEST(RenderRender, ARequestedTraversalIsUsed) {
+  const compile::CompiledScene compiled = compile::compile(everything());
+  Settings settings;
+  settings.traversal = accel::Traversal::kSingle;
+  EXPECT_EQ(render(compiled, settings).statistics.traversal, "single");
+  settings.traversal = accel::Traversal::kPacket;
+  EXPECT_EQ(render(compiled, settings).statistics.traversal, "packet");
 }
 
 /// Far from the world's origin, `fast` rounds spheres by more than boxes are padded: boxes must enclose rounded

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 // The steps of one ray through a SphereBvh. Compiled once per instruction set.
-#if defined(ORRERY_ACCEL_SINGLE_RAY_INL_H_) == defined(HWY_TARGET_TOGGLE)
-#ifdef ORRERY_ACCEL_SINGLE_RAY_INL_H_
-#undef ORRERY_ACCEL_SINGLE_RAY_INL_H_
+#if defined(ORRERY_ACCEL_RAY_STEPS_INL_H_) == defined(HWY_TARGET_TOGGLE)
+#ifdef ORRERY_ACCEL_RAY_STEPS_INL_H_
+#undef ORRERY_ACCEL_RAY_STEPS_INL_H_
 #else
-#define ORRERY_ACCEL_SINGLE_RAY_INL_H_
+#define ORRERY_ACCEL_RAY_STEPS_INL_H_
 #endif
 
 #include <hwy/highway.h>
@@ -134,77 +134,62 @@ template <bool kShadows>
 HWY_INLINE bool test_spheres(const SphereBvh& bvh, std::uint32_t index, std::uint32_t target, SingleRay& ray) {
   const ChildTag d;
   const SphereBvh::Leaf& leaf = bvh.leaves[index];
-  const auto set = [&](float x) { return hn::Set(d, x); };
-  const auto step = set(leaf.step);
-  const auto margin = set(margin_of(bvh, leaf));
-  const auto limit = set(ray.limit), zero = hn::Zero(d), growth = set(kGrowth);
-  const auto infinite = set(std::numeric_limits<float>::infinity());
-  const auto dx = set(ray.direction[0]), dy = set(ray.direction[1]), dz = set(ray.direction[2]);
-  const auto ox = set(leaf.origin[0] - ray.origin[0]), oy = set(leaf.origin[1] - ray.origin[1]),
-             oz = set(leaf.origin[2] - ray.origin[2]);
+  const auto set3 = [&](float x, float y, float z) {
+    return k::Vec3<hn::Vec<ChildTag>>{hn::Set(d, x), hn::Set(d, y), hn::Set(d, z)};
+  };
+  const auto step = hn::Set(d, leaf.step), margin = hn::Set(d, margin_of(bvh, leaf)), limit = hn::Set(d, ray.limit);
+  const auto infinite = hn::Set(d, std::numeric_limits<float>::infinity());
+  const auto direction = set3(ray.direction[0], ray.direction[1], ray.direction[2]);
+  const auto origin =
+      set3(leaf.origin[0] - ray.origin[0], leaf.origin[1] - ray.origin[1], leaf.origin[2] - ray.origin[2]);
   const hn::RebindToUnsigned<ChildTag> du;
   const auto is_target = [&](int v) { return hn::RebindMask(d, hn::LoadU(du, leaf.ids + v) == hn::Set(du, target)); };
   const bool is_last = index == bvh.last_leaf;
   bool any = false;
   for (int v = 0; v < static_cast<int>(SphereBvh::kArity); v += kChildLanes) {
-    const auto x = hn::MulAdd(from_bytes(leaf.center[0] + v), step, ox);
-    const auto y = hn::MulAdd(from_bytes(leaf.center[1] + v), step, oy);
-    const auto z = hn::MulAdd(from_bytes(leaf.center[2] + v), step, oz);
-    const auto along = hn::MulAdd(x, dx, hn::MulAdd(y, dy, z * dz));
-    const auto px = hn::NegMulAdd(along, dx, x), py = hn::NegMulAdd(along, dy, y), pz = hn::NegMulAdd(along, dz, z);
-    const auto offset_square = hn::MulAdd(px, px, hn::MulAdd(py, py, pz * pz)) * growth;
-    const auto outer = radii_of(bvh, index, v).most + margin;
-    auto may_hit =
-        hn::And(hn::And(offset_square <= outer * outer * growth, along + outer >= zero), along - outer <= limit);
+    const k::Vec3<hn::Vec<ChildTag>> codes = {from_bytes(leaf.center[0] + v), from_bytes(leaf.center[1] + v),
+                                              from_bytes(leaf.center[2] + v)};
+    const auto passed = passing(d, k::mul_add(codes, step, origin), direction);
+    auto hit = may_hit(d, passed, radii_of(bvh, index, v).most + margin, limit);
     if (is_last)
-      may_hit = hn::And(may_hit, hn::Iota(d, static_cast<float>(v)) < set(static_cast<float>(bvh.count_in(index))));
-    if (kShadows) may_hit = hn::AndNot(is_target(v), may_hit);
-    hn::Store(along, d, ray.along + v);
-    hn::Store(hn::IfThenElse(may_hit, offset_square, infinite), d, ray.offset_square + v);
-    any |= !hn::AllFalse(d, may_hit);
+      hit = hn::And(hit, hn::Iota(d, static_cast<float>(v)) < hn::Set(d, static_cast<float>(bvh.count_in(index))));
+    if (kShadows) hit = hn::AndNot(is_target(v), hit);
+    hn::Store(passed.along, d, ray.along + v);
+    hn::Store(hn::IfThenElse(hit, passed.offset_square, infinite), d, ray.offset_square + v);
+    any |= !hn::AllFalse(d, hit);
   }
   return any;
 }
 
 /// Adds the spheres that test_spheres() has found to a ray's candidates. Shortens the ray to spheres that it certainly
 /// hits.
-///
-/// `shortest`  hits nearer than this are not certain, box space
-HWY_INLINE void add_candidates(const SphereBvh& bvh, std::uint32_t index, float shortest, SingleRay& ray) {
+HWY_INLINE void add_candidates(const SphereBvh& bvh, std::uint32_t index, SingleRay& ray) {
   const ChildTag d;
   const hn::RebindToUnsigned<ChildTag> du;
   const SphereBvh::Leaf& leaf = bvh.leaves[index];
-  const auto set = [&](float x) { return hn::Set(d, x); };
-  const auto margin = set(margin_of(bvh, leaf)), zero = hn::Zero(d), growth = set(kGrowth);
-  const auto infinite = set(std::numeric_limits<float>::infinity());
+  const auto margin = hn::Set(d, margin_of(bvh, leaf));
+  const auto infinite = hn::Set(d, std::numeric_limits<float>::infinity());
   int count = ray.candidates;
-  auto nearest = set(ray.limit);
+  auto nearest = hn::Set(d, ray.limit);
   for (int v = 0; v < static_cast<int>(SphereBvh::kArity); v += kChildLanes) {
-    const auto along = hn::Load(d, ray.along + v), offset_square = hn::Load(d, ray.offset_square + v);
+    const Passing<ChildTag> passed = {hn::Load(d, ray.along + v), hn::Load(d, ray.offset_square + v)};
     const RadiusBounds radii = radii_of(bvh, index, v);
-    const auto begin = along - (radii.most + margin);
-    const auto may_hit = offset_square < infinite;
-    const auto distance = hn::Max(begin, zero);
+    const auto begin = passed.along - (radii.most + margin);
+    const auto hit = passed.offset_square < infinite;
+    const auto distance = hn::Max(begin, hn::Zero(d));
     if constexpr (kHasCompress) {
-      hn::StoreU(hn::Compress(distance, may_hit), d, ray.at + count);
-      hn::StoreU(hn::Compress(hn::LoadU(du, leaf.ids + v), hn::RebindMask(du, may_hit)), du, ray.candidate + count);
-      count += static_cast<int>(hn::CountTrue(d, may_hit));
+      hn::StoreU(hn::Compress(distance, hit), d, ray.at + count);
+      hn::StoreU(hn::Compress(hn::LoadU(du, leaf.ids + v), hn::RebindMask(du, hit)), du, ray.candidate + count);
+      count += static_cast<int>(hn::CountTrue(d, hit));
     } else {
       alignas(64) float distances[SphereBvh::kArity];
       hn::Store(distance, d, distances);
-      each_bit(bits_of(d, may_hit), [&](int i) {
+      each_bit(bits_of(d, hit), [&](int i) {
         ray.at[count] = distances[i];
         ray.candidate[count++] = leaf.ids[v + i];
       });
     }
-    const auto inner = radii.least - margin;
-    const auto deep = hn::NegMulAdd(offset_square, growth, inner * inner);  // negative where there is no candidate
-    const auto pierced = hn::And(inner > zero, hn::And(deep > zero, begin > set(shortest)));
-    // Slightly below the root, so that the distance is overestimated. The error of the approximate reciprocal square
-    // root is below 2^-11; it differs between processors, but does not affect the image.
-    const auto root = deep * hn::ApproximateReciprocalSqrt(hn::Max(deep, set(0x1p-100F)));
-    const auto certain = (hn::NegMulAdd(root, set(1 - 0x1p-10F), along) + margin) * set(kLonger);
-    nearest = hn::Min(nearest, hn::IfThenElse(pierced, certain, nearest));
+    nearest = certain_limit(d, passed, radii.least - margin, begin, margin, nearest);
   }
   ray.candidates = count;
   ray.limit = hn::GetLane(hn::MinOfLanes(d, nearest));

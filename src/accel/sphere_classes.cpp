@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "accel/size_classes.h"
+#include "accel/sphere_classes.h"
 
 #include <algorithm>
 #include <cstddef>
@@ -8,7 +8,9 @@
 #include "accel/accel.h"
 #include "accel/box_frame.h"
 #include "accel/sphere_bvh.h"
+#include "base/duplicates.h"
 #include "base/stop_point.h"
+#include "kernel/coincidence.h"
 #include "kernel/isa.h"
 #include "kernel/scene_view.h"
 
@@ -26,7 +28,25 @@ constexpr double kOutlierRatio = 4;
 /// around them.
 constexpr double kGiantRatio = 16;
 
+/// A layer is this many times as wide as it is thick, in both directions.
+constexpr double kLayerRatio = 10;
+/// Layers of more spheres are not small.
+constexpr std::size_t kMaxInSmallLayer = 100'000;
+
 }  // namespace
+
+std::vector<std::uint32_t> duplicates(const kernel::SceneView& scene, kernel::Precision precision) {
+  if (kernel::is_distinct(scene, precision)) return {};
+  const auto place = [&](std::size_t id) { return kernel::coincidence_key<4>(scene, id, precision); };
+  const auto path = [&](std::size_t id) { return kernel::coincidence_key<8>(scene, id, precision); };
+  const std::vector<base::Duplicate> found = scene.moving_count > 0
+                                                 ? base::find_duplicates<8>(scene.sphere_count, path)
+                                                 : base::find_duplicates<4>(scene.sphere_count, place);
+  std::vector<std::uint32_t> ids;
+  ids.reserve(found.size());
+  for (const base::Duplicate& r : found) ids.push_back(static_cast<std::uint32_t>(r.index));
+  return ids;
+}
 
 std::vector<std::uint32_t> complement_of(const std::vector<std::uint32_t>& without, std::size_t count) {
   std::vector<std::uint32_t> rest;
@@ -89,6 +109,23 @@ double giant_radius(const kernel::SceneView& view) {
   return kGiantRatio * *middle;
 }
 
+bool is_small_layer(const kernel::SphereArray& spheres, const std::vector<std::uint32_t>& ids) {
+  if (ids.size() > kMaxInSmallLayer) return false;
+  const kernel::Sphere first = spheres[ids[0]];
+  double lower[3] = {first.x, first.y, first.z}, extent[3] = {0, 0, 0};
+  for (const std::uint32_t id : ids) {
+    const kernel::Sphere s = spheres[id];
+    const double center[3] = {s.x, s.y, s.z};
+    for (int k = 0; k < 3; ++k) {
+      const double upper = std::max(lower[k] + extent[k], center[k]);
+      lower[k] = std::min(lower[k], center[k]);
+      extent[k] = upper - lower[k];
+    }
+  }
+  std::sort(extent, extent + 3);
+  return kLayerRatio * extent[0] < extent[1];
+}
+
 std::size_t bvh_threshold() {
   // Measured in clouds and crystals (docs/benchmarks.md). A register of AVX-512 holds a bound of all children of a
   // node.
@@ -100,8 +137,14 @@ std::size_t spheres_in_bvh(const kernel::SceneView& scene) {
   if (scene.sphere_count - scene.moving_count < least) return 0;
   const double limit = giant_radius(scene);
   std::size_t count = 0;
-  for (std::size_t id = scene.moving_count; id < scene.sphere_count; ++id) count += scene.spheres[id].radius <= limit;
-  return count < least || count > SphereBvh::kMaxSpheres ? 0 : count;
+  std::vector<std::uint32_t> ids;  // enough of them to recognise a small layer
+  for (std::size_t id = scene.moving_count; id < scene.sphere_count; ++id) {
+    if (scene.spheres[id].radius > limit) continue;
+    ++count;
+    if (ids.size() <= kMaxInSmallLayer) ids.push_back(static_cast<std::uint32_t>(id));
+  }
+  const bool fits = count >= least && count <= SphereBvh::kMaxSpheres;
+  return fits && !is_small_layer(scene.spheres, ids) ? count : 0;
 }
 
 }  // namespace orrery::accel

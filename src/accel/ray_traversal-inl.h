@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
-// Single-ray traversal of a SphereBvh, with the rays of a packet interleaved. Compiled once per instruction set.
-#if defined(ORRERY_ACCEL_SINGLE_RAYS_INL_H_) == defined(HWY_TARGET_TOGGLE)
-#ifdef ORRERY_ACCEL_SINGLE_RAYS_INL_H_
-#undef ORRERY_ACCEL_SINGLE_RAYS_INL_H_
+// Traversal of a SphereBvh by single rays, those of a packet interleaved. Compiled once per instruction set.
+#if defined(ORRERY_ACCEL_RAY_TRAVERSAL_INL_H_) == defined(HWY_TARGET_TOGGLE)
+#ifdef ORRERY_ACCEL_RAY_TRAVERSAL_INL_H_
+#undef ORRERY_ACCEL_RAY_TRAVERSAL_INL_H_
 #else
-#define ORRERY_ACCEL_SINGLE_RAYS_INL_H_
+#define ORRERY_ACCEL_RAY_TRAVERSAL_INL_H_
 #endif
 
 #include <hwy/cache_control.h>
@@ -13,8 +13,9 @@
 #include <cstddef>
 #include <cstdint>
 #include <limits>
+#include <type_traits>
 
-#include "accel/single_ray-inl.h"
+#include "accel/ray_steps-inl.h"
 #include "kernel/gather_spheres-inl.h"
 
 HWY_BEFORE_NAMESPACE();
@@ -48,10 +49,9 @@ HWY_INLINE bool order_candidates(SingleRay& ray) {
 /// Result     lanes with a new hit, as bits
 template <class Packet, kernel::Precision kPrecision>
 HWY_INLINE unsigned intersect_candidates(const EmbreeQuery<Packet>& query, unsigned lanes, SingleRay* rays) {
-  using D = hn::ScalableTag<DistanceOf<Packet>>;
-  using Id = hn::TFromD<k::IdTag<D>>;
-  const D d;
-  constexpr bool kShadows = requires(Packet p) { p.occluded; };
+  using Id = typename Packet::Id;
+  const hn::ScalableTag<typename Packet::Number> d;
+  using D = std::remove_const_t<decltype(d)>;
   const k::IdTag<D> du;
   constexpr int kStep = static_cast<int>(hn::MaxLanes(D()));
   Packet& packet = *query.packet;
@@ -63,8 +63,7 @@ HWY_INLINE unsigned intersect_candidates(const EmbreeQuery<Packet>& query, unsig
     if (rest == 0) continue;
     const int first = query.first + v;
     const auto ray = k::load_rays(d, packet, first);
-    ClosestHit<D> closest;
-    if constexpr (!kShadows) closest = ClosestHit<D>::load(d, packet, first);
+    auto found = Found<D, Packet>::load(d, packet, first);
     while (rest != 0) {
       HWY_ALIGN Id ids[kStep];
       hn::Store(hn::Set(du, static_cast<Id>(kernel::kNoSphere)), du, ids);
@@ -86,28 +85,17 @@ HWY_INLINE unsigned intersect_candidates(const EmbreeQuery<Packet>& query, unsig
       k::gather_spheres(
           d, scene.spheres, [&](std::size_t i) { return ids[i] == kernel::kNoSphere ? any : ids[i]; }, row);
       const k::Spheres<D> sphere{{row[0], row[1], row[2]}, row[3]};
-      const auto found = k::closest_distance<D, kPrecision>(d, ray, sphere, hn::RebindMask(d, ray.self == spheres));
-      unsigned hits = 0;
-      if constexpr (kShadows) {
-        hits = bits_of(d, hn::And(hn::And(found.mask, active), found.value < hn::Load(d, packet.distance + first)));
-        each_bit(hits, [&](int i) {
-          packet.occluded[first + i] = static_cast<Id>(~Id{0});
-          rays[v + i].limit = -1;
-        });
-        rest &= ~(hits << v);
-      } else {
-        closest.is_new = hn::FirstN(d, 0);
-        closest.take(d, found, spheres, active);
-        hits = bits_of(d, closest.is_new);
-        if (hits != 0) {
-          alignas(64) float limits[hn::MaxLanes(hn::ScalableTag<float>())];
-          store_float(d, far_limits(d, closest.distance, scene.frame.scale, hn::Load(d, query.start + v)), limits);
-          each_bit(hits, [&](int i) { rays[v + i].limit = limits[i]; });
-        }
-      }
+      found.is_new = hn::FirstN(d, 0);
+      intersect<kPrecision>(d, ray, sphere, spheres, active, found);
+      const unsigned hits = bits_of(d, found.is_new);
+      if (hits == 0) continue;
+      alignas(64) float limits[kWidth];
+      store_float(d, found.limit(d, query, v), limits);
+      each_bit(hits, [&](int i) { rays[v + i].limit = limits[i]; });
+      if (Packet::kIsShadow) rest &= ~(hits << v);
       changed |= hits << v;
     }
-    if constexpr (!kShadows) closest.store(d, packet, first);
+    found.store(d, packet, first);
   }
   return changed;
 }
@@ -120,9 +108,7 @@ HWY_INLINE unsigned intersect_candidates(const EmbreeQuery<Packet>& query, unsig
 template <class Packet, kernel::Precision kPrecision>
 HWY_INLINE unsigned trace_rays(const SphereBvh& bvh, const EmbreeQuery<Packet>& query, unsigned lanes,
                                SingleRay* rays) {
-  constexpr bool kShadows = requires(Packet p) { p.occluded; };
   const EmbreeScene& scene = *query.scene;
-  const float shortest = shortest_certain<kPrecision>(bvh, scene.frame);
   const Prefetcher prefetcher(bvh, scene.spheres);
   // Rays grouped by the kind of what they visit next: kWidth bits per kind.
   std::uint64_t queue = 0;
@@ -161,13 +147,13 @@ HWY_INLINE unsigned trace_rays(const SphereBvh& bvh, const EmbreeQuery<Packet>& 
     each_bit(at_leaves, [&](int i) {
       SingleRay& ray = rays[i];
       std::uint32_t target = kernel::kNoSphere;
-      if constexpr (kShadows) target = static_cast<std::uint32_t>(query.packet->target[query.first + i]);
-      const bool any = test_spheres<kShadows>(bvh, ray.what[--ray.waiting] & kIndexMask, target, ray);
+      if constexpr (Packet::kIsShadow) target = static_cast<std::uint32_t>(query.packet->target[query.first + i]);
+      const bool any = test_spheres<Packet::kIsShadow>(bvh, ray.what[--ray.waiting] & kIndexMask, target, ray);
       found |= static_cast<unsigned>(any) << i;
     });
     each_bit(found, [&](int i) {
       SingleRay& ray = rays[i];
-      add_candidates(bvh, ray.what[ray.waiting] & kIndexMask, shortest, ray);
+      add_candidates(bvh, ray.what[ray.waiting] & kIndexMask, ray);
       full = full || ray.candidates > kMaxCandidates - static_cast<int>(SphereBvh::kArity);
       prefetcher.prefetch_sphere(ray.candidate[ray.candidates - 1]);
     });
@@ -187,8 +173,8 @@ HWY_INLINE unsigned trace_rays(const SphereBvh& bvh, const EmbreeQuery<Packet>& 
 /// `limits`   out: per lane, the distance beyond which nothing was searched
 /// Result     lanes with a new hit, as bits
 template <class Packet, kernel::Precision kPrecision>
-HWY_INLINE unsigned trace_single(const SphereBvh& bvh, const EmbreeQuery<Packet>& query, const int* valid,
-                                 RTCRayN* rays, float (&limits)[kWidth]) {
+HWY_INLINE unsigned traverse_by_rays(const SphereBvh& bvh, const EmbreeQuery<Packet>& query, const int* valid,
+                                     RTCRayN* rays, float (&limits)[kWidth]) {
   const hn::ScalableTag<float> d;
   const hn::RebindToUnsigned<decltype(d)> du;
   SingleRay states[kWidth];

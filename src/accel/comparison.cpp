@@ -1,14 +1,38 @@
 // SPDX-License-Identifier: Apache-2.0
+// Accelerators with which `orrery bench` and tests compare Embree; the list of the book is in list.cpp.
 #include <memory>
 
 #include "accel/accel.h"
-#include "accel/embree_compat.h"
-#include "accel/owned_scene.h"
+#include "accel/embree_api.h"
+#include "accel/embree_scene.h"
+#include "accel/sphere_classes.h"
 #include "kernel/ray_packet.h"
 #include "kernel/scene_view.h"
 
 namespace orrery::accel {
 namespace {
+
+/// Treats every sphere as an outlier, without a BVH.
+class SimdList final : public Accel {
+ public:
+  SimdList(const kernel::SceneView& view, kernel::Precision precision)
+      : functions_(embree_functions(precision, view.moving_count > 0)) {
+    scene_.spheres = view.spheres;
+    scene_.motion = view.motion;
+    scene_.moving_count = view.moving_count;
+    scene_.outliers = complement_of(duplicates(view, precision), view.sphere_count);
+    traversals_.scene = &scene_;
+  }
+
+  kernel::Tracer tracer(Traversal) const noexcept override { return functions_.tracer_of(traversals_); }
+  std::string name() const override { return "SIMD list"; }
+  std::size_t bytes() const noexcept override { return scene_.outliers.size() * sizeof(scene_.outliers[0]); }
+
+ private:
+  EmbreeFunctions functions_;
+  EmbreeScene scene_;
+  ThreadTraversals traversals_{Traversal::kPacket};
+};
 
 /// Minimum hit distance, as a multiple of the direction's length: without root exclusion a ray would hit the sphere
 /// that it leaves.
@@ -30,29 +54,31 @@ RTCRay one_ray(const Packet& packet, int lane) {
   return ray;
 }
 
-void trace_points(const void* self, kernel::RayPacketFast& packet) {
+void trace_points(const void* self, void* memory) {
   const auto scene = static_cast<RTCScene>(const_cast<void*>(self));
+  auto& packet = *static_cast<kernel::RayPacket<float>*>(memory);
   EmbreeContext context;
   init(context);
   for (int i = 0; i < packet.count; ++i) {
-    RTCRayHit query{};
-    query.ray = one_ray(packet, i);
-    query.hit.geomID = RTC_INVALID_GEOMETRY_ID;
-    intersect(scene, context, query);
-    if (query.hit.geomID == RTC_INVALID_GEOMETRY_ID) continue;
-    packet.distance[i] = query.ray.tfar;
-    packet.hit[i] = query.hit.primID;
+    RTCRayHit ray{};
+    ray.ray = one_ray(packet, i);
+    ray.hit.geomID = RTC_INVALID_GEOMETRY_ID;
+    query(scene, context, ray);
+    if (ray.hit.geomID == RTC_INVALID_GEOMETRY_ID) continue;
+    packet.distance[i] = ray.ray.tfar;
+    packet.hit[i] = ray.hit.primID;
   }
 }
 
 /// Ignores `target`: without an id test, the maximum distance must exclude the light.
-void occlude_points(const void* self, kernel::ShadowPacketFast& packet) {
+void occlude_points(const void* self, void* memory) {
   const auto scene = static_cast<RTCScene>(const_cast<void*>(self));
+  auto& packet = *static_cast<kernel::ShadowPacket<float>*>(memory);
   EmbreeContext context;
   init(context);
   for (int i = 0; i < packet.count; ++i) {
     RTCRay ray = one_ray(packet, i);
-    occluded(scene, context, ray);
+    query(scene, context, ray);
     packet.occluded[i] = ray.tfar < 0 ? ~0u : 0;
   }
 }
@@ -63,10 +89,10 @@ class NativePoints final : public Accel {
     build_sphere_points(scene_, view.sphere_count, [&](std::size_t i) { return view.spheres[i]; });
   }
 
-  kernel::Tracer tracer() const noexcept override {
+  kernel::Tracer tracer(Traversal) const noexcept override {
     kernel::Tracer t;
-    t.trace_fast = trace_points;
-    t.occlude_fast = occlude_points;
+    t.trace = trace_points;
+    t.occlude = occlude_points;
     t.self = scene_.get();
     return t;
   }
@@ -78,6 +104,10 @@ class NativePoints final : public Accel {
 };
 
 }  // namespace
+
+std::unique_ptr<Accel> make_simd_list(const kernel::SceneView& scene, kernel::Precision precision) {
+  return std::make_unique<SimdList>(scene, precision);
+}
 
 std::unique_ptr<Accel> make_native_points(const kernel::SceneView& scene) {
   return std::make_unique<NativePoints>(scene);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "accel/owned_scene.h"
+#include "accel/embree_api.h"
 
 #include <algorithm>
 #include <string>
