@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Operates the report's controls as a reader would and stores the results in data-result, which browser.sh reads.
+// Operates the report's controls as a reader would and stores the results in data-result, which browser.py reads.
 (async () => {
   "use strict";
   const at = id => document.getElementById(id);

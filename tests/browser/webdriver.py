@@ -1,0 +1,131 @@
+# SPDX-License-Identifier: Apache-2.0
+"""The part of the WebDriver protocol that the browser tests use, over chromedriver and without other packages."""
+import base64
+import json
+import shutil
+import socket
+import subprocess
+import sys
+import time
+import urllib.error
+import urllib.request
+
+ELEMENT = "element-6066-11e4-a52e-4f735466cecf"  # the key of elements in answers, from the specification
+
+
+def exit_if_missing():
+    """Skips the test if there is no browser."""
+    if not shutil.which("chromium") or not shutil.which("chromedriver"):
+        print("chromium or chromedriver is not installed; apt-get install chromium chromium-driver")
+        sys.exit(77)
+
+
+def free_port():
+    with socket.socket() as server:
+        server.bind(("127.0.0.1", 0))
+        return server.getsockname()[1]
+
+
+class Browser:
+    """A headless Chromium whose page has this size, in CSS pixels."""
+
+    def __init__(self, width=1400, height=900, dark=False):
+        self._port = free_port()
+        self._driver = subprocess.Popen(["chromedriver", f"--port={self._port}", "--silent"],
+                                        stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
+        arguments = ["--headless=new", "--no-sandbox", "--disable-gpu", "--disable-dev-shm-usage"]
+        capabilities = {"alwaysMatch": {"goog:chromeOptions": {"args": arguments},
+                                        "goog:loggingPrefs": {"browser": "ALL"}}}
+        for _ in range(600):  # until the driver listens
+            try:
+                self._session = self._call("POST", "/session", {"capabilities": capabilities})["sessionId"]
+                break
+            except (ConnectionError, urllib.error.URLError):
+                time.sleep(0.1)
+        else:
+            self._driver.kill()
+            raise RuntimeError("chromedriver does not answer")
+        # Windows cannot be as narrow as that of a phone.
+        self._devtools("Emulation.setDeviceMetricsOverride", width=width, height=height, deviceScaleFactor=1, mobile=False)
+        scheme = {"name": "prefers-color-scheme", "value": "dark" if dark else "light"}
+        self._devtools("Emulation.setEmulatedMedia", features=[scheme])
+
+    def _devtools(self, command, **parameters):
+        self._request("POST", "/goog/cdp/execute", {"cmd": command, "params": parameters})
+
+    def close(self):
+        try:
+            self._request("DELETE", "")
+        finally:
+            self._driver.terminate()
+            self._driver.wait()
+
+    def _call(self, method, path, body=None):
+        data = None if body is None else json.dumps(body).encode()
+        request = urllib.request.Request(f"http://127.0.0.1:{self._port}{path}", data=data, method=method,
+                                         headers={"Content-Type": "application/json"})
+        with urllib.request.urlopen(request, timeout=300) as answer:
+            return json.load(answer)["value"]
+
+    def _request(self, method, path, body=None):
+        return self._call(method, f"/session/{self._session}{path}", body)
+
+    def open(self, url):
+        self._request("POST", "/url", {"url": url})
+
+    def run(self, script, *arguments):
+        """Runs JavaScript and returns its result."""
+        return self._request("POST", "/execute/sync", {"script": script, "args": list(arguments)})
+
+    def wait(self, script, *arguments, tries=3000):
+        """Runs JavaScript until its result is true, and returns it. `tries` 0.1 s apart end a test that hangs."""
+        for _ in range(tries):
+            if result := self.run(script, *arguments):
+                return result
+            time.sleep(0.1)
+        raise AssertionError(f"never true: {script}")
+
+    def act(self, *sources):
+        self._request("POST", "/actions", {"actions": list(sources)})
+
+    def drag(self, start, end, steps=8, button=0, key=None, release=True):
+        """Drags the mouse from one position in the window to another."""
+        moves = [{"type": "pointerMove", "duration": 30, "x": round(start[0] + (end[0] - start[0]) * i / steps),
+                  "y": round(start[1] + (end[1] - start[1]) * i / steps)} for i in range(steps + 1)]
+        actions = [moves[0], {"type": "pointerDown", "button": button}, *moves[1:]]
+        if release:
+            actions.append({"type": "pointerUp", "button": button})
+        sources = [{"type": "pointer", "id": "mouse", "parameters": {"pointerType": "mouse"}, "actions": actions}]
+        if key:
+            held = [{"type": "keyDown", "value": key}, *[{"type": "pause"}] * len(actions), {"type": "keyUp", "value": key}]
+            sources[0]["actions"] = [{"type": "pause"}, *actions]
+            sources.append({"type": "key", "id": "keys", "actions": held})
+        self.act(*sources)
+
+    def wheel(self, x, y, delta):
+        self.act({"type": "wheel", "id": "wheel",
+                  "actions": [{"type": "scroll", "x": x, "y": y, "deltaX": 0, "deltaY": delta}]})
+
+    def keys(self, text):
+        actions = [action for c in text for action in ({"type": "keyDown", "value": c}, {"type": "keyUp", "value": c})]
+        self.act({"type": "key", "id": "keys", "actions": actions})
+
+    def screenshot(self, file):
+        with open(file, "wb") as out:
+            out.write(base64.b64decode(self._request("GET", "/screenshot")))
+
+    def errors(self):
+        """Messages of the browser's console that are errors."""
+        return [entry["message"] for entry in self._request("POST", "/se/log", {"type": "browser"})
+                if entry["level"] == "SEVERE"]
+
+    def new_tab(self):
+        handle = self._request("POST", "/window/new", {"type": "tab"})["handle"]
+        self._request("POST", "/window", {"handle": handle})
+        return handle
+
+    def tabs(self):
+        return self._request("GET", "/window/handles")
+
+    def switch(self, handle):
+        self._request("POST", "/window", {"handle": handle})
