@@ -45,7 +45,7 @@ HWY_INLINE void all_hit_points(const Packet& packet, const SphereLanes<T>& spher
     const k::Spheres<D> sphere{k::load3(d, spheres.center[0] + v, spheres.center[1] + v, spheres.center[2] + v),
                                hn::Load(d, spheres.radius + v)};
     const auto is_self = hn::RebindMask(d, hn::Load(du, packet.hit + v) == ray.self);
-    const auto hit = k::hit_point<D, kPrecision>(d, ray, sphere, is_self, hn::Load(d, packet.distance + v));
+    const auto hit = k::hit_point<D, kPrecision>(ray, sphere, is_self, hn::Load(d, packet.distance + v));
     const auto store = [&](const auto& value, auto& to) {
       hn::Store(value.x, d, to[0] + v);
       hn::Store(value.y, d, to[1] + v);

@@ -6,7 +6,7 @@
 #include <limits>
 
 #include "base/stop_point.h"
-#include "math/single.h"
+#include "math/scalar.h"
 
 namespace orrery::accel {
 namespace {
@@ -18,7 +18,8 @@ using math::rounded_up;
 /// origin, direction, reciprocal and box in Embree's slab test; 2^-20 is the next power of two.
 constexpr double kPadding = 0x1p-20;
 
-/// Bound on a ray origin's distance from the centre on each axis, in units of `reach` (box_ray): sqrt(2), rounded up.
+/// Bound on a ray origin's distance from the centre on each axis, in units of `reach` (to_box_space): sqrt(2), rounded
+/// up.
 constexpr double kFarthestStart = 1.5;
 
 }  // namespace

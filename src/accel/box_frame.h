@@ -5,8 +5,8 @@
 #include <cstdint>
 #include <vector>
 
-#include "kernel/sphere_array.h"
-#include "math/single.h"
+#include "kernel/sphere.h"
+#include "math/scalar.h"
 
 namespace orrery::accel {
 

@@ -9,7 +9,7 @@
 #include "accel/traversal.h"
 #include "kernel/precision.h"
 #include "kernel/ray_packet.h"
-#include "kernel/sphere_array.h"
+#include "kernel/sphere.h"
 
 namespace orrery::accel {
 

@@ -81,40 +81,27 @@ void at_sphere(const Arguments* arguments) {
     test_sphere<kPrecision, kMoves>(d, query, *arguments, id, v);
 }
 
-/// Traces valid rays through a SphereBvh.
-///
-/// `limits`   out: per lane, the distance beyond which nothing was searched
-/// Result     lanes with a new hit, as bits
-template <class Packet, kernel::Precision kPrecision>
-HWY_INLINE unsigned traverse(const SphereBvh& bvh, const EmbreeQuery<Packet>& query, const int* valid, RTCRayN* rays,
-                             float (&limits)[kWidth]) {
-  return query.traversal == Traversal::kSingle
-             ? traverse_by_rays<Packet, kPrecision>(bvh, query, valid, rays, limits)
-             : PacketTraversal<Packet, kPrecision>(bvh, query, valid, rays).trace(limits);
-}
-
-/// Traces a ray that Embree traverses alone, in its lane of an otherwise empty packet.
-template <class Packet, kernel::Precision kPrecision>
-unsigned traverse_alone(const SphereBvh& bvh, const EmbreeQuery<Packet>& query, RTCRayN* ray, float (&limits)[kWidth]) {
-  const auto lane = static_cast<unsigned>(query.lane);
-  EmbreeQuery<Packet> all = query;
-  all.first -= query.lane;
-  all.start[lane] = query.start[0];
+/// A ray that Embree traverses alone, in its lane of an otherwise empty packet.
+template <class Packet>
+struct LoneRay {
+  EmbreeQuery<Packet> query;
   EmbreeShadowRays rays{};
-  rays.org_x[lane] = RTCRayN_org_x(ray, 1, 0);
-  rays.org_y[lane] = RTCRayN_org_y(ray, 1, 0);
-  rays.org_z[lane] = RTCRayN_org_z(ray, 1, 0);
-  rays.dir_x[lane] = RTCRayN_dir_x(ray, 1, 0);
-  rays.dir_y[lane] = RTCRayN_dir_y(ray, 1, 0);
-  rays.dir_z[lane] = RTCRayN_dir_z(ray, 1, 0);
-  rays.tfar[lane] = RTCRayN_tfar(ray, 1, 0);
   alignas(64) int valid[kWidth] = {};
-  valid[lane] = -1;
-  const unsigned hits =
-      traverse<Packet, kPrecision>(bvh, all, valid, reinterpret_cast<RTCRayN*>(&rays), limits) >> lane;
-  limits[0] = limits[lane];
-  return hits;
-}
+
+  LoneRay(const EmbreeQuery<Packet>& of_ray, RTCRayN* ray) : query(of_ray) {
+    const auto lane = static_cast<unsigned>(of_ray.lane);
+    query.first -= of_ray.lane;
+    query.start[lane] = of_ray.start[0];
+    rays.org_x[lane] = RTCRayN_org_x(ray, 1, 0);
+    rays.org_y[lane] = RTCRayN_org_y(ray, 1, 0);
+    rays.org_z[lane] = RTCRayN_org_z(ray, 1, 0);
+    rays.dir_x[lane] = RTCRayN_dir_x(ray, 1, 0);
+    rays.dir_y[lane] = RTCRayN_dir_y(ray, 1, 0);
+    rays.dir_z[lane] = RTCRayN_dir_z(ray, 1, 0);
+    rays.tfar[lane] = RTCRayN_tfar(ray, 1, 0);
+    valid[lane] = -1;
+  }
+};
 
 /// Embree's callback for a SphereBvh.
 template <class Packet, kernel::Precision kPrecision, class Arguments>
@@ -122,13 +109,25 @@ void at_bvh(const Arguments* arguments) {
   const auto& query = *reinterpret_cast<const EmbreeQuery<Packet>*>(arguments->context);
   const auto& bvh = *static_cast<const SphereBvh*>(arguments->geometryUserPtr);
   RTCRayN* const rays = rays_of(*arguments);
-  float limits[kWidth];
-  const unsigned hits = arguments->N == 1 ? traverse_alone<Packet, kPrecision>(bvh, query, rays, limits)
-                                          : traverse<Packet, kPrecision>(bvh, query, arguments->valid, rays, limits);
+  float limits[kWidth];  // per lane, the distance beyond which nothing was searched
+  const auto traverse = [&](const EmbreeQuery<Packet>& all, const int* valid, RTCRayN* of_all) {
+    return all.traversal == Traversal::kSingle
+               ? traverse_by_rays<Packet, kPrecision>(bvh, all, valid, of_all, limits)
+               : PacketTraversal<Packet, kPrecision>(bvh, all, valid, of_all).trace(limits);
+  };
+  const bool is_alone = arguments->N == 1;
+  const unsigned first = is_alone ? static_cast<unsigned>(query.lane) : 0;
+  unsigned hits = 0;
+  if (is_alone) {
+    LoneRay<Packet> alone(query, rays);
+    hits = traverse(alone.query, alone.valid, reinterpret_cast<RTCRayN*>(&alone.rays));
+  } else {
+    hits = traverse(query, arguments->valid, rays);
+  }
   for (unsigned i = 0; i < arguments->N; ++i) {
-    const bool is_new = (hits >> i & 1u) != 0;
+    const bool is_new = (hits >> (first + i) & 1u) != 0;
     if (!Packet::kIsShadow) arguments->valid[i] = is_new ? -1 : 0;
-    if (is_new) RTCRayN_tfar(rays, arguments->N, i) = limits[i];
+    if (is_new) RTCRayN_tfar(rays, arguments->N, i) = limits[first + i];
   }
 }
 
@@ -147,29 +146,6 @@ HWY_INLINE void trace_one_by_one(const int* valid, const EmbreePacket<Packet>& r
     query.lane = i;
     query.start[0] = start[i];
     accel::query(query.scene->scene, query.context, ray);
-  }
-}
-
-/// Traces a packet through Embree's scene.
-template <bool kMoves, class Packet>
-HWY_INLINE void trace_embree(const EmbreeScene& scene, Traversal traversal, Packet& packet) {
-  EmbreeQuery<Packet> query;
-  init(query.context);
-  query.scene = &scene;
-  query.packet = &packet;
-  query.traversal = traversal;
-  EmbreePacket<Packet> rays;
-  set_constants(rays_of(rays));
-  reset_hits(rays);
-  alignas(64) int valid[kWidth];
-  for (int first = 0; first < packet.count; first += kWidth) {
-    query.first = first;
-    set_rays<kMoves>(query, rays_of(rays), valid);
-    if (scene.by_packets(traversal)) {
-      accel::query(valid, scene.scene, query.context, rays);
-    } else {
-      trace_one_by_one(valid, rays, query);
-    }
   }
 }
 
@@ -211,10 +187,28 @@ void trace(const void* self, void* memory) {
     found.store(d, packet, v);
   }
   if (scene.scene == nullptr) return;
+
   TraversalChoice& choice = choice_for(traversals, packet);
   const bool is_timed = !choice.is_made();
   const double begin = is_timed ? thread_seconds() : 0;
-  trace_embree<kMoves>(scene, choice.next(), packet);
+  EmbreeQuery<Packet> query;
+  init(query.context);
+  query.scene = &scene;
+  query.packet = &packet;
+  query.traversal = choice.next();
+  EmbreePacket<Packet> rays;
+  set_constants(rays_of(rays));
+  reset_hits(rays);
+  alignas(64) int valid[kWidth];
+  for (int first = 0; first < packet.count; first += kWidth) {
+    query.first = first;
+    set_rays<kMoves>(query, rays_of(rays), valid);
+    if (scene.by_packets(query.traversal)) {
+      accel::query(valid, scene.scene, query.context, rays);
+    } else {
+      trace_one_by_one(valid, rays, query);
+    }
+  }
   if (is_timed) choice.add(packet.count, thread_seconds() - begin);
 }
 

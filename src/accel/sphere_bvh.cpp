@@ -17,7 +17,7 @@
 #include <utility>
 
 #include "base/stop_point.h"
-#include "math/single.h"
+#include "math/scalar.h"
 
 namespace orrery::accel {
 namespace {

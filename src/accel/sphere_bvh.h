@@ -11,7 +11,7 @@
 
 #include "accel/box_frame.h"
 #include "base/huge_pages.h"
-#include "kernel/sphere_array.h"
+#include "kernel/sphere.h"
 
 namespace orrery::accel {
 

@@ -16,7 +16,7 @@
 
 #include "accel/embree_rays-inl.h"
 #include "accel/sphere_bvh.h"
-#include "kernel/sphere_array.h"
+#include "kernel/sphere.h"
 
 HWY_BEFORE_NAMESPACE();
 namespace orrery::accel::HWY_NAMESPACE {

@@ -23,8 +23,7 @@
 #include "job/version.h"
 #include "metrics/color_view.h"
 #include "metrics/perceptual.h"
-#include "render/tile_pool.h"
-#include "render/tile_renderer.h"
+#include "render/tiles.h"
 
 namespace orrery::app {
 namespace {

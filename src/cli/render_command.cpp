@@ -22,11 +22,10 @@
 #include "display/settings.h"
 #include "film/partial.h"
 #include "film/picture.h"
-#include "film/rendered_pixels.h"
 #include "job/checkpoint.h"
 #include "job/job.h"
 #include "preview/preview.h"
-#include "render/progress.h"
+#include "render/settings.h"
 
 namespace orrery::cli {
 namespace {

@@ -5,7 +5,7 @@
 #include <cmath>
 #include <numbers>
 
-#include "math/exponential.h"
+#include "math/scalar.h"
 
 namespace orrery::compile {
 namespace {

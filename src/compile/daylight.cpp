@@ -9,7 +9,7 @@
 
 #include "compile/atmosphere.h"
 #include "compile/scattering.h"
-#include "math/trigonometry.h"
+#include "math/scalar.h"
 #include "scene/scene.h"
 
 namespace orrery::compile {

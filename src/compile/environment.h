@@ -5,7 +5,6 @@
 #include <memory>
 #include <vector>
 
-#include "kernel/environment.h"
 #include "kernel/lights.h"
 #include "scene/forward.h"
 

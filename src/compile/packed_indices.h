@@ -5,7 +5,7 @@
 #include <cstdint>
 #include <vector>
 
-#include "kernel/index_array.h"
+#include "kernel/sphere.h"
 
 namespace orrery::compile {
 

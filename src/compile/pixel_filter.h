@@ -3,7 +3,7 @@
 
 #include <vector>
 
-#include "kernel/pixel_filter.h"
+#include "kernel/camera.h"
 #include "scene/forward.h"
 
 namespace orrery::compile {

@@ -5,8 +5,7 @@
 #include <cmath>
 #include <numbers>
 
-#include "math/exponential.h"
-#include "math/trigonometry.h"
+#include "math/scalar.h"
 
 namespace orrery::compile {
 namespace {

@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "base/huge_pages.h"
-#include "kernel/sphere_array.h"
+#include "kernel/sphere.h"
 #include "scene/forward.h"
 
 namespace orrery::compile {

@@ -6,8 +6,8 @@
 #include <memory>
 #include <vector>
 
-#include "kernel/environment.h"
-#include "kernel/texture.h"
+#include "kernel/lights.h"
+#include "kernel/material.h"
 #include "math/vec3.h"
 #include "scene/forward.h"
 

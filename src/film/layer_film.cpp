@@ -28,7 +28,7 @@ double variance_of_one(Int128 sum, Int128 squares, double n) {
 
 /// The squared standard error of the pixel's mean radiance.
 ///
-/// The number of paths with negative weight is deterministic (kernel/pixel_filter.h), so the paths of each sign are a
+/// The number of paths with negative weight is deterministic (kernel::PixelFilter), so the paths of each sign are a
 /// separate stratum with its own variance. A single negative path has no sample variance and uses the positive one.
 float variance(const LayerPixel& p, int c, Int128 sum) {
   const std::int64_t negative = (p.paths - p.lit) / 2, positive = p.paths - negative;

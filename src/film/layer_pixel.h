@@ -7,7 +7,6 @@
 #include <vector>
 
 #include "kernel/forward.h"
-#include "kernel/guide_sum.h"
 #include "kernel/pixel_sum.h"
 #include "kernel/sphere.h"
 

@@ -10,7 +10,7 @@
 #include <vector>
 
 #include "base/huge_pages.h"
-#include "kernel/lobe.h"
+#include "kernel/path_record.h"
 
 namespace orrery::film {
 

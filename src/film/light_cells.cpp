@@ -6,7 +6,7 @@
 
 #include "film/layer_pixel.h"
 #include "film/layers.h"
-#include "math/single.h"
+#include "math/scalar.h"
 
 namespace orrery::film {
 namespace {

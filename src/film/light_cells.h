@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "kernel/forward.h"
-#include "kernel/lobe.h"
+#include "kernel/path_record.h"
 
 namespace orrery::film {
 

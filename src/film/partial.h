@@ -3,10 +3,12 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <span>
 #include <vector>
 
 #include "film/film.h"
 #include "film/layer_pixel.h"
+#include "kernel/pixel_sum.h"
 
 namespace orrery::film {
 
@@ -57,6 +59,24 @@ struct Partial {
   std::vector<LayerPixel> layers;  ///< empty unless LayerRequest::records()
   std::vector<Halves> halves;      ///< empty unless LayerRequest::guides()
   RenderWork work;
+};
+
+/// Serializes a partial render to 32-bit words: a header, then a plane over all pixels for each word of each per-pixel
+/// number, or a single value if it is the same for all pixels.
+std::vector<std::uint32_t> to_words(const Partial& partial);
+
+/// Deserializes the result of to_words(). Words after the end are ignored as padding.
+///
+/// Domain     any words; sphere indices in layers are not checked against a scene
+/// Errors     base::Error(kBadData) if the words are not a partial render of this size
+Partial from_words(const std::vector<std::uint32_t>& words, int width_px, int height_px);
+
+/// Pixels that have received samples.
+///
+/// Domain     `pixels` is relative to x, y and inside the rectangle
+struct RenderedPixels {
+  int x = 0, y = 0, width = 0, height = 0;  ///< px, a rectangle around the pixels
+  std::span<const kernel::PixelPlace> pixels = {};
 };
 
 }  // namespace orrery::film

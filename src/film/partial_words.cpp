@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "film/partial_words.h"
+#include "film/partial.h"
 
 #include <algorithm>
 #include <bit>
@@ -12,7 +12,6 @@
 #include "film/film.h"
 #include "film/layer_pixel.h"
 #include "film/layers.h"
-#include "film/partial.h"
 
 namespace orrery::film {
 namespace {

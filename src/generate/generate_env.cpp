@@ -11,7 +11,7 @@
 #include "compile/daylight.h"
 #include "film/picture.h"
 #include "generate/generate.h"
-#include "math/trigonometry.h"
+#include "math/scalar.h"
 #include "scene/limits.h"
 #include "scene/scene.h"
 #include "scene/value_text.h"

@@ -27,7 +27,7 @@
 #include "job/picture_header.h"
 #include "job/scene_hash.h"
 #include "job/version.h"
-#include "render/sampling_limits.h"
+#include "render/settings.h"
 
 namespace orrery::job {
 namespace {

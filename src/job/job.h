@@ -20,9 +20,8 @@
 #include "job/outputs.h"
 #include "job/resources.h"
 #include "load/scene_source.h"
-#include "render/progress.h"
-#include "render/sampling_limits.h"
-#include "render/statistics.h"
+#include "render/result.h"
+#include "render/settings.h"
 
 namespace orrery::job {
 

@@ -27,7 +27,6 @@
 #include "job/job.h"
 #include "render/render.h"
 #include "render/result.h"
-#include "render/sampling_limits.h"
 #include "render/settings.h"
 
 namespace orrery::job {

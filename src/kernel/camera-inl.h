@@ -93,21 +93,20 @@ HWY_INLINE CameraVectors<V> moved(const CameraVectors<V>& a, const CameraVectors
 template <class D, class V = hn::Vec<D>>
 HWY_INLINE CameraRay<V> camera_ray(D d, const SceneView& scene, const CameraVectors<V>& camera, V pixel_x, V pixel_y,
                                    const Four<V>& random) {
-  using T = hn::TFromD<D>;
-  const V x = pixel_x - hn::Set(d, static_cast<T>(scene.camera.half_width)) + random.v[0];
-  const V y = pixel_y - hn::Set(d, static_cast<T>(scene.camera.half_height)) + random.v[1];
+  const V x = pixel_x - scene.camera.half_width + random.v[0];
+  const V y = pixel_y - scene.camera.half_height + random.v[1];
   if (scene.camera.is_orthographic) {
     const auto film = mul_add(camera.down, y, camera.right * x);
-    if (!scene.features.lens) return {film, normalized(d, camera.forward)};
+    if (!scene.features.lens) return {film, normalized(camera.forward)};
     const auto lens = sample_unit_disc(d, random.v[2], random.v[3]);
     const auto on_lens = mul_add(camera.lens_u, lens.x, camera.lens_v * lens.y);
-    return {film + on_lens, normalized(d, camera.forward - on_lens)};
+    return {film + on_lens, normalized(camera.forward - on_lens)};
   }
   const auto to_focus = mul_add(camera.down, y, mul_add(camera.right, x, camera.forward));
-  if (!scene.features.lens) return {{hn::Zero(d), hn::Zero(d), hn::Zero(d)}, normalized(d, to_focus)};
+  if (!scene.features.lens) return {{hn::Zero(d), hn::Zero(d), hn::Zero(d)}, normalized(to_focus)};
   const auto lens = sample_unit_disc(d, random.v[2], random.v[3]);
   const auto offset = mul_add(camera.lens_u, lens.x, camera.lens_v * lens.y);
-  return {offset, normalized(d, to_focus - offset)};
+  return {offset, normalized(to_focus - offset)};
 }
 
 }  // namespace orrery::kernel::HWY_NAMESPACE

@@ -2,7 +2,7 @@
 #include "kernel/coincidence.h"
 
 #include "kernel/scene_view.h"
-#include "math/single.h"
+#include "math/scalar.h"
 
 namespace orrery::kernel {
 

@@ -9,9 +9,10 @@
 
 #include <hwy/highway.h>
 
+#include <array>
+#include <cstddef>
 #include <cstdint>
 
-#include "kernel/compaction.h"
 #include "kernel/intersect-inl.h"
 
 HWY_BEFORE_NAMESPACE();
@@ -25,6 +26,21 @@ HWY_INLINE void each_lane(D d, hn::Mask<D> lanes, Do what) {
   for (unsigned bits = bytes[0] | unsigned{bytes[1]} << 8; bits != 0; bits &= bits - 1)
     what(static_cast<int>(hwy::Num0BitsBelowLS1Bit_Nonzero32(bits)));
 }
+
+/// For each lane mask, the permutation that moves the set lanes to the front. The remaining entries are unspecified.
+template <class Index, std::size_t kLanes>
+constexpr auto make_compaction_table() {
+  std::array<std::array<Index, kLanes>, (std::size_t{1} << kLanes)> table{};
+  for (std::size_t set = 0; set < table.size(); ++set) {
+    std::size_t to = 0;
+    for (std::size_t lane = 0; lane < kLanes; ++lane)
+      if ((set >> lane & 1) != 0) table[set][to++] = static_cast<Index>(lane);
+  }
+  return table;
+}
+
+template <class Index, std::size_t kLanes>
+alignas(64) inline constexpr auto kCompaction = make_compaction_table<Index, kLanes>();
 
 /// Stores selected lanes of vectors contiguously. May overwrite a whole vector's length from the destination.
 ///

@@ -30,11 +30,11 @@ struct RayCone {
 
   /// The squared width at a distance along the ray.
   HWY_INLINE V width2_at(V distance) const {
-    return hn::MulAdd(distance, hn::MulAdd(distance, slope2, mixed + mixed), width2);
+    return mul_add(distance, mul_add(distance, slope2, mixed + mixed), width2);
   }
   /// The cone of the same rays, measured from a point at a distance along the ray.
   HWY_INLINE RayCone advanced(V distance) const {
-    return {width2_at(distance), hn::MulAdd(distance, slope2, mixed), slope2};
+    return {width2_at(distance), mul_add(distance, slope2, mixed), slope2};
   }
 };
 
@@ -45,23 +45,22 @@ struct RayCone {
 template <class D, class V = hn::Vec<D>>
 HWY_INLINE RayCone<V> camera_cone(D d, const SceneView& scene, const CameraVectors<V>& camera, const Vec3<V>& direction,
                                   double width) {
-  using T = hn::TFromD<D>;
-  const V fraction2 = hn::Set(d, static_cast<T>(width * width)), zero = hn::Zero(d);
+  const V fraction2 = set(d, width * width), zero = hn::Zero(d);
   const V forward2 = dot(camera.forward, camera.forward), along = dot(direction, camera.forward);
   const V cosine2 = along * along / forward2;
-  const V pixel2 = hn::Min(dot(camera.right, camera.right), dot(camera.down, camera.down)) * fraction2 * cosine2;
+  const V pixel2 = min(dot(camera.right, camera.right), dot(camera.down, camera.down)) * fraction2 * cosine2;
   RayCone<V> cone{zero, zero, zero};
   const V inverse_distance = along / forward2;  // to the focus plane
   if (scene.features.lens) {
     // Rays through different points of the lens intersect in the focus plane.
-    cone.width2 = dot(camera.lens_u, camera.lens_u) * hn::Set(d, T(4)) * fraction2 * cosine2;
-    cone.mixed = hn::Neg(cone.width2 * inverse_distance);
+    cone.width2 = dot(camera.lens_u, camera.lens_u) * 4 * fraction2 * cosine2;
+    cone.mixed = -(cone.width2 * inverse_distance);
     cone.slope2 = cone.width2 * (inverse_distance * inverse_distance);
   }
   if (scene.camera.is_orthographic) {
     cone.width2 = cone.width2 + pixel2;
   } else {
-    cone.slope2 = hn::MulAdd(pixel2, inverse_distance * inverse_distance, cone.slope2);
+    cone.slope2 = mul_add(pixel2, inverse_distance * inverse_distance, cone.slope2);
   }
   return cone;
 }
@@ -71,8 +70,7 @@ HWY_INLINE RayCone<V> camera_cone(D d, const SceneView& scene, const CameraVecto
 /// `width`      as a fraction of the lobe, whose angle is twice the fuzz
 template <class D, class V = hn::Vec<D>>
 HWY_INLINE V lobe_slope2(D d, const Surface<D>& at, double width) {
-  using T = hn::TFromD<D>;
-  const V slope = hn::IfThenElse(is_specular(d, at), at.fuzz, hn::Set(d, T(1))) * hn::Set(d, static_cast<T>(2 * width));
+  const V slope = select(is_specular(d, at), at.fuzz, 1) * (2 * width);
   return slope * slope;
 }
 
@@ -89,16 +87,14 @@ HWY_INLINE V lobe_slope2(D d, const Surface<D>& at, double width) {
 template <class D, class V = hn::Vec<D>>
 HWY_INLINE RayCone<V> scattered_cone(D d, const RayCone<V>& cone, const Surface<D>& at, V radius,
                                      const Vec3<V>& direction, double width) {
-  using T = hn::TFromD<D>;
-  const V one = hn::Set(d, T(1));
   const auto specular = is_specular(d, at);
-  const V cos_leaving = dot(direction, at.normal), cos_arriving = hn::Neg(dot(at.direction, at.normal));
-  const V a = hn::IfThenElseZero(specular, hn::IfThenElse(cos_leaving < hn::Zero(d), at.eta, one));
-  const V b = hn::IfThenElseZero(specular, hn::MulAdd(a, cos_arriving, cos_leaving));
-  const V bend = b / hn::IfThenElse(at.from_outside, radius, hn::Neg(radius));  // slope per distance
+  const V cos_leaving = dot(direction, at.normal), cos_arriving = -dot(at.direction, at.normal);
+  const V a = hn::IfThenElseZero(specular, select(cos_leaving < 0, at.eta, 1));
+  const V b = hn::IfThenElseZero(specular, mul_add(a, cos_arriving, cos_leaving));
+  const V bend = b / select(at.from_outside, radius, -radius);  // slope per distance
   const V bent = bend * cone.width2, kept = a * cone.mixed;
   return {cone.width2, kept + bent,
-          hn::MulAdd(a * a, cone.slope2, hn::MulAdd(bend, bent + (kept + kept), lobe_slope2(d, at, width)))};
+          mul_add(a * a, cone.slope2, mul_add(bend, bent + (kept + kept), lobe_slope2(d, at, width)))};
 }
 
 }  // namespace orrery::kernel::HWY_NAMESPACE

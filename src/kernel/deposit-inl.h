@@ -28,7 +28,7 @@ HWY_INLINE PixelSum& sum_of(std::uint64_t pixel, const SceneView& scene, const T
 /// Domain     |value| < 4
 HWY_INLINE void store_fixed_point(hn::ScalableTag<double> d, hn::Vec<hn::ScalableTag<double>> value, std::int64_t* to) {
   const hn::RebindToSigned<decltype(d)> di;
-  hn::Store(hn::ConvertTo(di, value * hn::Set(d, 0x1p60)), di, to);
+  hn::Store(hn::ConvertTo(di, value * 0x1p60), di, to);
 }
 HWY_INLINE void store_fixed_point(hn::ScalableTag<float> d, hn::Vec<hn::ScalableTag<float>> value, std::int64_t* to) {
   const hn::ScalableTag<double> wide;
@@ -47,14 +47,14 @@ HWY_INLINE void deposit(D d, hn::Mask<D> lanes, const Vec3<hn::Vec<D>>& light, h
   // Other instruction sets convert lanes one by one.
   if constexpr (HWY_TARGET <= HWY_AVX3 && hn::MaxLanes(D()) > 1) {
     // Compared one by one, since the maximum of a NaN and a number may be the number.
-    const auto converts = [&](hn::Vec<D> v) { return hn::Abs(v) < hn::Set(d, T(4)); };
+    const auto converts = [&](hn::Vec<D> v) { return hn::Abs(v) < 4; };
     const auto all_convert = hn::And(hn::And(converts(light.x), converts(light.y)), converts(light.z));
     if (scene.filter.negative_share == 0 && hn::AllFalse(d, hn::AndNot(all_convert, lanes))) {
       HWY_ALIGN std::int64_t rgb[3][hn::MaxLanes(D())];
       store_fixed_point(d, light.x, rgb[0]);
       store_fixed_point(d, light.y, rgb[1]);
       store_fixed_point(d, light.z, rgb[2]);
-      const auto is_black = hn::Max(hn::Max(hn::Abs(light.x), hn::Abs(light.y)), hn::Abs(light.z)) == hn::Zero(d);
+      const auto is_black = max(max(hn::Abs(light.x), hn::Abs(light.y)), hn::Abs(light.z)) == 0;
       each_lane(d, hn::AndNot(is_black, lanes), [&](int i) {
         PixelSum& sum = sum_of(pixel[i], scene, tile);
         for (int k = 0; k < 3; ++k) sum.rgb[k] += rgb[k][i];

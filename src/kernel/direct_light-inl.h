@@ -32,10 +32,9 @@ namespace orrery::kernel::HWY_NAMESPACE {
 // Reference: veach1995.
 
 /// The weight of albedo times radiance for light samples: x / (1 + x^2), and x if only lights are sampled.
-template <class D, class V = hn::Vec<D>>
-HWY_INLINE V light_sample_factor(D d, DirectLighting mode, V x) {
-  const V one = hn::Set(d, hn::TFromD<D>(1));
-  return mode == DirectLighting::kLight ? x : one / (x + one / x);
+template <class V>
+HWY_INLINE V light_sample_factor(DirectLighting mode, V x) {
+  return mode == DirectLighting::kLight ? x : 1 / (x + 1 / x);
 }
 
 /// The weight of light that a BSDF sample finds: 1 / (1 + 1 / x^2), and 0 if only lights are sampled.
@@ -43,9 +42,9 @@ HWY_INLINE V light_sample_factor(D d, DirectLighting mode, V x) {
 /// `inverse`  1 / x; 0 where light sampling cannot find the light
 template <class D, class V = hn::Vec<D>>
 HWY_INLINE V bsdf_sample_weight(D d, DirectLighting mode, V inverse) {
-  const V zero = hn::Zero(d), one = hn::Set(d, hn::TFromD<D>(1));
-  if (mode == DirectLighting::kLight) return hn::IfThenElse(inverse > zero, zero, one);
-  return one / hn::MulAdd(inverse, inverse, one);
+  const V one = set(d, 1);
+  if (mode == DirectLighting::kLight) return select(inverse > 0, 0, one);
+  return 1 / mul_add(inverse, inverse, 1);
 }
 
 /// Radiance and light group of emitters, one per lane.
@@ -96,14 +95,13 @@ inline bool chooses_light(const SceneView& scene) {
 /// `pdf`      density of the direction; infinite for delta materials
 template <class D, class V = hn::Vec<D>>
 HWY_NOINLINE Vec3<V> weighted_environment(D d, const SceneView& scene, Vec3<V> direction, V pdf) {
-  using T = hn::TFromD<D>;
   const Environment& environment = *scene.environment;
   const auto at = environment_footprint(d, environment, direction);
   const auto radiance = radiance_of(d, environment, at);
   if (scene.direct_lighting == DirectLighting::kBsdf || !environment.is_sampled) return radiance;
-  const V light_pdf = pdf_of(d, environment, at) * hn::Set(d, static_cast<T>(environment_share(scene)));
+  const V light_pdf = pdf_of(d, environment, at) * environment_share(scene);
   // Rounding may make both densities 0.
-  const V inverse = hn::IfThenElseZero(light_pdf > hn::Zero(d), light_pdf / pdf);
+  const V inverse = hn::IfThenElseZero(light_pdf > 0, light_pdf / pdf);
   return radiance * bsdf_sample_weight(d, scene.direct_lighting, inverse);
 }
 
@@ -114,15 +112,14 @@ HWY_NOINLINE Vec3<V> weighted_environment(D d, const SceneView& scene, Vec3<V> d
 template <class D, class V = hn::Vec<D>>
 HWY_NOINLINE V emitter_weight(D d, const SceneView& scene, const Vertex<D>& at, hn::Vec<IdTag<D>> hits, V pdf) {
   using T = hn::TFromD<D>;
-  const V one = hn::Set(d, T(1));
+  const V one = set(d, 1);
   if (scene.direct_lighting == DirectLighting::kBsdf || scene.lights.count == 0) return one;
   const auto sphere = load_spheres(d, scene, hits, at.times);
-  const auto cone = subtended_cone(d, to_center(at, sphere.center), sphere.radius);
-  const V probability =
-      choice_probability(d, scene, at, hits) * hn::Set(d, static_cast<T>(1 - environment_share(scene)));
-  const auto can_sample = hn::And(hn::And(cone.distance > sphere.radius, probability > hn::Zero(d)),
-                                  pdf < hn::Set(d, std::numeric_limits<T>::infinity()));
-  const V inverse = hn::IfThenElseZero(can_sample, probability / (pdf * solid_angle(d, cone.one_minus_cos)));
+  const auto cone = subtended_cone(to_center(at, sphere.center), sphere.radius);
+  const V probability = choice_probability(d, scene, at, hits) * (1 - environment_share(scene));
+  const auto can_sample =
+      hn::And(hn::And(cone.distance > sphere.radius, probability > 0), pdf < (std::numeric_limits<T>::infinity()));
+  const V inverse = hn::IfThenElseZero(can_sample, probability / (pdf * solid_angle(cone.one_minus_cos)));
   return bsdf_sample_weight(d, scene.direct_lighting, inverse);
 }
 
@@ -145,11 +142,11 @@ struct LightSample {
 /// `random`   two numbers for the point, two for the choice
 template <class D, class V = hn::Vec<D>>
 HWY_NOINLINE LightSample<D> sample_emitter(D d, const SceneView& scene, const Vertex<D>& at, const Four<V>& random) {
-  const V one = hn::Set(d, hn::TFromD<D>(1));
+  const V one = set(d, 1);
   const auto chosen = choose_light(d, scene, at, random.v[2], random.v[3]);
   const auto light = load_spheres(d, scene, chosen.spheres, at.times);
   const auto to = to_center(at, light.center);
-  const auto cone = subtended_cone(d, to, light.radius);
+  const auto cone = subtended_cone(to, light.radius);
   const auto point = sample_visible_sphere(d, to, cone, random.v[0], random.v[1]);
   auto source = emitted(d, scene, chosen.spheres, hn::FirstN(d, hn::Lanes(d)));
   if (scene.textures != nullptr) {
@@ -162,7 +159,7 @@ HWY_NOINLINE LightSample<D> sample_emitter(D d, const SceneView& scene, const Ve
   return {point.direction,
           mul_add(point.normal, light.radius, to),
           one,
-          solid_angle(d, cone.one_minus_cos),
+          solid_angle(cone.one_minus_cos),
           hn::IfThenElseZero(cone.distance > light.radius, chosen.probability),
           source.radiance,
           chosen.spheres,
@@ -173,27 +170,20 @@ HWY_NOINLINE LightSample<D> sample_emitter(D d, const SceneView& scene, const Ve
 template <class D, class V = hn::Vec<D>>
 HWY_NOINLINE LightSample<D> sample_background(D d, const Environment& environment, V u, V v) {
   using T = hn::TFromD<D>;
-  using Id = hn::TFromD<IdTag<D>>;
   const IdTag<D> du;
   const auto sample = sample_environment(d, environment, u, v);
-  return {sample.direction,
-          sample.direction,
-          hn::Set(d, std::numeric_limits<T>::max()),
-          sample.inverse_pdf,
-          hn::Set(d, T(1)),
-          sample.radiance,
-          hn::Set(du, static_cast<Id>(kNoSphere)),
-          hn::Set(du, static_cast<Id>(environment.light_group))};
+  return {
+      sample.direction, sample.direction,   hn::Set(d, std::numeric_limits<T>::max()), sample.inverse_pdf, set(d, 1),
+      sample.radiance,  set(du, kNoSphere), set(du, environment.light_group)};
 }
 
 /// Samples the environment or an emitter at each vertex.
 template <class D, class V = hn::Vec<D>>
 HWY_NOINLINE LightSample<D> sample_light(D d, const SceneView& scene, const Vertex<D>& at, const Four<V>& random) {
-  using T = hn::TFromD<D>;
   const double share = environment_share(scene);
   if (share == 1) return sample_background(d, *scene.environment, random.v[0], random.v[1]);
   if (share == 0) return sample_emitter(d, scene, at, random);
-  const V to_background = hn::Set(d, static_cast<T>(share)), to_emitter = hn::Set(d, static_cast<T>(1 - share));
+  const V to_background = set(d, share), to_emitter = set(d, 1 - share);
   const auto is_background = random.v[2] < to_background;
   const V rest = hn::IfThenElseZero(hn::Not(is_background), (random.v[2] - to_background) / to_emitter);
   const auto sky = sample_background(d, *scene.environment, random.v[0], random.v[1]);
@@ -201,19 +191,18 @@ HWY_NOINLINE LightSample<D> sample_light(D d, const SceneView& scene, const Vert
   const auto ids = hn::RebindMask(IdTag<D>(), is_background);
   return {select(is_background, sky.direction, lamp.direction),
           select(is_background, sky.reach, lamp.reach),
-          hn::IfThenElse(is_background, sky.distance, lamp.distance),
-          hn::IfThenElse(is_background, sky.inverse_pdf, lamp.inverse_pdf),
-          hn::IfThenElse(is_background, to_background, lamp.probability * to_emitter),
+          select(is_background, sky.distance, lamp.distance),
+          select(is_background, sky.inverse_pdf, lamp.inverse_pdf),
+          select(is_background, to_background, lamp.probability * to_emitter),
           select(is_background, sky.radiance, lamp.radiance),
-          hn::IfThenElse(ids, sky.target, lamp.target),
-          hn::IfThenElse(ids, sky.group, lamp.group)};
+          select(ids, sky.target, lamp.target),
+          select(ids, sky.group, lamp.group)};
 }
 
 /// Traces the last packet of shadow rays in the stream and adds the unoccluded light to its paths.
 template <class D, bool kRecords, class Lit>
 HWY_INLINE void trace_shadow_packet(D d, const SceneView& scene, const Tracer& tracer, const Tile& tile, Lit& lit,
                                     TileCounts& counts) {
-  using T = hn::TFromD<D>;
   using Id = hn::TFromD<IdTag<D>>;
   const IdTag<D> du;
   auto& shadow = lit.shadow;
@@ -221,7 +210,6 @@ HWY_INLINE void trace_shadow_packet(D d, const SceneView& scene, const Tracer& t
   packet.count = std::min(shadow.count, kPacketSize);
   shadow.count -= packet.count;
   const int step = static_cast<int>(hn::Lanes(d));
-  const auto one = hn::Set(d, T(1));
   for (int v = 0; v < packet.count; v += step) {
     const int i = shadow.count + v;
     const auto at = [&](const auto& component) {
@@ -234,18 +222,18 @@ HWY_INLINE void trace_shadow_packet(D d, const SceneView& scene, const Tracer& t
     store3(d, sum_error(base, offset, origin), packet.origin_low, v);
     store3(d, offset, packet.offset, v);
     store3(d, direction, packet.direction, v);
-    hn::Store(one / dot(direction, direction), d, packet.inverse_square + v);
+    hn::Store(1 / dot(direction, direction), d, packet.inverse_square + v);
     hn::Store(hn::LoadU(d, shadow.distance + i), d, packet.distance + v);
     hn::Store(hn::LoadU(du, shadow.self + i), du, packet.self + v);
     hn::Store(hn::LoadU(du, shadow.target + i), du, packet.target + v);
     if (scene.features.motion) hn::Store(hn::LoadU(d, shadow.time + i), d, packet.time + v);
   }
   counts.rays += static_cast<std::uint64_t>(packet.count);
-  occlude(tracer, packet);
+  tracer.occlude(tracer.self, &packet);
   for (int v = 0; v < packet.count; v += step) {
     const int i = shadow.count + v;
     const auto active = hn::FirstN(d, static_cast<std::size_t>(packet.count - v));
-    const auto is_free = hn::RebindMask(d, hn::Load(du, packet.occluded + v) == hn::Zero(du));
+    const auto is_free = hn::RebindMask(d, hn::Load(du, packet.occluded + v) == 0);
     const auto lanes = hn::And(active, is_free);
     if (hn::AllFalse(d, lanes)) continue;
     const Vec3<hn::Vec<D>> light{hn::LoadU(d, shadow.light[0] + i), hn::LoadU(d, shadow.light[1] + i),

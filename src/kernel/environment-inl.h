@@ -12,9 +12,9 @@
 #include <cstddef>
 #include <utility>
 
-#include "kernel/environment.h"
 #include "kernel/gather-inl.h"
 #include "kernel/lat_long-inl.h"
+#include "kernel/lights.h"
 #include "math/functions-inl.h"
 #include "math/vec3-inl.h"
 
@@ -24,10 +24,9 @@ namespace orrery::kernel::HWY_NAMESPACE {
 /// The sampling weight of texels.
 template <class D, class V = hn::Vec<D>>
 HWY_INLINE V texel_weight(D d, const Environment& env, const V (&rgb)[4]) {
-  using T = hn::TFromD<D>;
-  const V scale = hn::Set(d, static_cast<T>(env.weight_scale));
-  const V below = hn::MulAdd(rgb[2], scale, hn::Set(d, static_cast<T>(-env.weight_offset)));
-  return hn::Max(hn::MulAdd(rgb[0], scale, hn::MulAdd(rgb[1], scale, below)), hn::Zero(d));
+  const V scale = set(d, env.weight_scale);
+  const V below = mul_add(rgb[2], scale, -env.weight_offset);
+  return max(mul_add(rgb[0], scale, mul_add(rgb[1], scale, below)), 0);
 }
 
 /// The texels around each lane's direction, and the direction's position between their centres.
@@ -41,9 +40,8 @@ struct EnvironmentFootprint : TexelQuad<D> {
 /// cosine would round to 1.
 template <class D, class V = hn::Vec<D>>
 HWY_INLINE hn::Mask<D> is_in_sun(D d, const Environment& env, const Vec3<V>& direction) {
-  using T = hn::TFromD<D>;
   const auto between = direction - set3(d, env.sun);
-  return dot(between, between) <= hn::Set(d, static_cast<T>(2 * env.sun_one_minus_cos));
+  return dot(between, between) <= (2 * env.sun_one_minus_cos);
 }
 
 /// Loads the texels around directions.
@@ -54,8 +52,8 @@ template <class D, class V = hn::Vec<D>>
 HWY_INLINE EnvironmentFootprint<D> environment_footprint(D d, const Environment& env, const Vec3<V>& direction) {
   using T = hn::TFromD<D>;
   constexpr std::size_t kMax = hn::MaxLanes(D());
-  const V zero = hn::Zero(d), one = hn::Set(d, T(1));
-  const V width = hn::Set(d, static_cast<T>(env.width)), height = hn::Set(d, static_cast<T>(env.height));
+  const V zero = hn::Zero(d);
+  const V width = set(d, env.width), height = set(d, env.height);
   const auto position = map_position(d, env.turn, direction);
   EnvironmentFootprint<D> out{load_texels(d, position, width, height,
                                           [&](std::size_t, std::size_t row, std::size_t column) {
@@ -67,18 +65,18 @@ HWY_INLINE EnvironmentFootprint<D> environment_footprint(D d, const Environment&
 
   if (env.map_density > 0) {
     HWY_ALIGN T cell_row[kMax], versine[kMax], row_width[kMax];
-    hn::Store(hn::Min(out.lower_row, height), d, cell_row);
+    hn::Store(min(out.lower_row, height), d, cell_row);
     for (std::size_t i = 0; i < hn::Lanes(d); ++i) {
       const EnvironmentRow& row = env.rows[static_cast<std::size_t>(cell_row[i])];
       versine[i] = static_cast<T>(row.versine);
       row_width[i] = static_cast<T>(row.width);
     }
     const V extent = hn::Load(d, row_width);
-    const V tall = one + hn::Abs(direction.y);
+    const V tall = 1 + hn::Abs(direction.y);
     // Relative to the pole of the row's half of the map.
-    const V from_pole = hn::IfThenElse(extent * direction.y > zero, position.radius2 / tall, tall);
+    const V from_pole = select(extent * direction.y > 0, position.radius2 / tall, tall);
     const V t = (from_pole - hn::Load(d, versine)) / extent;
-    out.cosine_down = hn::Min(hn::Max(t, zero), one);
+    out.cosine_down = min(max(t, 0), 1);
   }
   return out;
 }
@@ -86,8 +84,7 @@ HWY_INLINE EnvironmentFootprint<D> environment_footprint(D d, const Environment&
 /// The radiance of footprints: bilinear between the centres of the texels, plus the sun.
 template <class D, class V = hn::Vec<D>>
 HWY_INLINE Vec3<V> radiance_of(D d, const Environment& env, const EnvironmentFootprint<D>& at) {
-  using T = hn::TFromD<D>;
-  const V scale = hn::Set(d, static_cast<T>(env.scale));
+  const V scale = set(d, env.scale);
   const Vec3<V> map = interpolated(d, static_cast<const TexelQuad<D>&>(at)) * scale;
   if (!env.has_sun) return map;
   return select(at.is_in_sun, map + set3(d, env.sun_radiance), map);
@@ -96,14 +93,13 @@ HWY_INLINE Vec3<V> radiance_of(D d, const Environment& env, const EnvironmentFoo
 /// The density of sample_environment at footprints.
 template <class D, class V = hn::Vec<D>>
 HWY_INLINE V pdf_of(D d, const Environment& env, const EnvironmentFootprint<D>& at) {
-  using T = hn::TFromD<D>;
   V pdf = hn::Zero(d);
   if (env.map_density > 0) {
     const V upper = interpolated(d, texel_weight(d, env, at.texel[0]), texel_weight(d, env, at.texel[1]), at.right);
     const V lower = interpolated(d, texel_weight(d, env, at.texel[2]), texel_weight(d, env, at.texel[3]), at.right);
-    pdf = interpolated(d, upper, lower, at.cosine_down) * hn::Set(d, static_cast<T>(env.map_density));
+    pdf = interpolated(d, upper, lower, at.cosine_down) * env.map_density;
   }
-  if (env.has_sun) pdf = pdf + hn::IfThenElseZero(at.is_in_sun, hn::Set(d, static_cast<T>(env.sun_density)));
+  if (env.has_sun) pdf = pdf + hn::IfThenElseZero(at.is_in_sun, set(d, env.sun_density));
   return pdf;
 }
 
@@ -132,15 +128,13 @@ struct Split {
   hn::Vec<D> rest;
 };
 template <class D, class V = hn::Vec<D>>
-HWY_INLINE Split<D> split(D d, V first, V second, V u) {
-  using T = hn::TFromD<D>;
-  const V zero = hn::Zero(d), one = hn::Set(d, T(1));
+HWY_INLINE Split<D> split(D, V first, V second, V u) {
   const V at = u * (first + second);
   // A part with zero weight is never chosen, even with rounding errors.
-  const auto beyond = hn::And(at >= first, second > zero);
-  const V chosen = hn::IfThenElse(beyond, second, first);
-  const V rest = hn::IfThenElse(beyond, at - first, at) / hn::IfThenElse(chosen > zero, chosen, one);
-  return {beyond, hn::Min(rest, one)};
+  const auto beyond = hn::And(at >= first, second > 0);
+  const V chosen = select(beyond, second, first);
+  const V rest = select(beyond, at - first, at) / select(chosen > 0, chosen, 1);
+  return {beyond, min(rest, 1)};
 }
 
 /// Samples 0..1 with a density that is linear from `a` at 0 to `b` at 1.
@@ -148,9 +142,8 @@ HWY_INLINE Split<D> split(D d, V first, V second, V u) {
 /// Precision  uses the numerically stable form of the inverse
 template <class D, class V = hn::Vec<D>>
 HWY_INLINE V sample_linear(D d, V a, V b, V u) {
-  using T = hn::TFromD<D>;
   const V divisor = a + hn::Sqrt(interpolated(d, a * a, b * b, u));
-  return hn::IfThenElse(divisor > hn::Zero(d), hn::Min(u * (a + b) / divisor, hn::Set(d, T(1))), u);
+  return select(divisor > 0, min(u * (a + b) / divisor, 1), u);
 }
 
 /// Samples the map: selects a cell by descending the sums, where each step splits the rows and then the columns, and
@@ -159,17 +152,17 @@ template <class D, class V = hn::Vec<D>>
 HWY_INLINE Vec3<V> sample_map(D d, const Environment& env, V u, V v) {
   using T = hn::TFromD<D>;
   constexpr std::size_t kMax = hn::MaxLanes(D());
-  const V zero = hn::Zero(d), one = hn::Set(d, T(1)), two = hn::Set(d, T(2)), half = hn::Set(d, static_cast<T>(0.5));
+  const V zero = hn::Zero(d), one = set(d, 1), two = set(d, 2), half = set(d, 0.5);
   V column = zero, row = zero;
   HWY_ALIGN T columns[kMax], rows[kMax];
   const auto descend = [&](V upper_left, V upper_right, V lower_left, V lower_right) {
     const auto vertical = split(d, upper_left + upper_right, lower_left + lower_right, v);
-    const auto horizontal = split(d, hn::IfThenElse(vertical.second, lower_left, upper_left),
-                                  hn::IfThenElse(vertical.second, lower_right, upper_right), u);
+    const auto horizontal =
+        split(d, select(vertical.second, lower_left, upper_left), select(vertical.second, lower_right, upper_right), u);
     v = vertical.rest;
     u = horizontal.rest;
-    column = hn::MulAdd(column, two, hn::IfThenElseZero(horizontal.second, one));
-    row = hn::MulAdd(row, two, hn::IfThenElseZero(vertical.second, one));
+    column = mul_add(column, two, hn::IfThenElseZero(horizontal.second, one));
+    row = mul_add(row, two, hn::IfThenElseZero(vertical.second, one));
     hn::Store(column, d, columns);
     hn::Store(row, d, rows);
     return std::pair{vertical.second, horizontal.second};
@@ -215,7 +208,7 @@ HWY_INLINE Vec3<V> sample_map(D d, const Environment& env, V u, V v) {
     }
   }
   const V extents[2] = {hn::Load(d, extent[0]), hn::Load(d, extent[1])};
-  const auto has_right = hn::MulAdd(column, two, one) < hn::Set(d, static_cast<T>(env.width));
+  const auto has_right = mul_add(column, two, one) < env.width;
   const auto cell = [&](std::size_t y, std::size_t x) {
     return ((weight[y][x] + weight[y][x + 1]) + (weight[y + 1][x] + weight[y + 1][x + 1])) * hn::Abs(extents[y]);
   };
@@ -225,27 +218,26 @@ HWY_INLINE Vec3<V> sample_map(D d, const Environment& env, V u, V v) {
   V corner[2][2];
   for (std::size_t y = 0; y < 2; ++y)
     for (std::size_t x = 0; x < 2; ++x)
-      corner[y][x] = hn::IfThenElse(is_lower, hn::IfThenElse(is_right, weight[y + 1][x + 1], weight[y + 1][x]),
-                                    hn::IfThenElse(is_right, weight[y][x + 1], weight[y][x]));
+      corner[y][x] = select(is_lower, select(is_right, weight[y + 1][x + 1], weight[y + 1][x]),
+                            select(is_right, weight[y][x + 1], weight[y][x]));
   const V down = sample_linear(d, corner[0][0] + corner[0][1], corner[1][0] + corner[1][1], v);
   const V right = sample_linear(d, interpolated(d, corner[0][0], corner[1][0], down),
                                 interpolated(d, corner[0][1], corner[1][1], down), u);
 
-  const V row_width = hn::IfThenElse(is_lower, extents[1], extents[0]);
-  const V begin = hn::IfThenElse(is_lower, hn::Load(d, versine[1]), hn::Load(d, versine[0]));
-  const V from_pole = hn::Max(hn::MulAdd(row_width, down, begin), zero);
+  const V row_width = select(is_lower, extents[1], extents[0]);
+  const V begin = select(is_lower, hn::Load(d, versine[1]), hn::Load(d, versine[0]));
+  const V from_pole = max(mul_add(row_width, down, begin), zero);
   const V sine = hn::Sqrt(from_pole * (two - from_pole));
-  const V across = (column + half + right) / hn::Set(d, static_cast<T>(env.width));
-  const auto turn = sin_cos_turn(d, whole_turns_removed((half + hn::Set(d, static_cast<T>(env.turn))) - across));
-  return {turn.sin * sine, hn::IfThenElse(row_width < zero, from_pole - one, one - from_pole), turn.cos * sine};
+  const V across = (column + half + right) / env.width;
+  const auto turn = sin_cos_turn(d, whole_turns_removed((half + env.turn) - across));
+  return {turn.sin * sine, select(row_width < zero, from_pole - one, one - from_pole), turn.cos * sine};
 }
 
 /// Samples the sun's cone uniformly.
 template <class D, class V = hn::Vec<D>>
 HWY_INLINE Vec3<V> sample_sun(D d, const Environment& env, V u, V v) {
-  using T = hn::TFromD<D>;
-  const V versine = u * hn::Set(d, static_cast<T>(env.sun_one_minus_cos));
-  const V sine = hn::Sqrt(versine * (hn::Set(d, T(2)) - versine));
+  const V versine = u * env.sun_one_minus_cos;
+  const V sine = hn::Sqrt(versine * (2 - versine));
   const auto turn = sin_cos_turn(d, v);
   const auto axis = set3(d, env.sun);
   return mul_add(set3(d, env.sun_tangent), sine * turn.cos,
@@ -267,12 +259,10 @@ struct EnvironmentSample {
 /// Domain     env.is_sampled
 template <class D, class V = hn::Vec<D>>
 HWY_INLINE EnvironmentSample<V> sample_environment(D d, const Environment& env, V u, V v) {
-  using T = hn::TFromD<D>;
-  const V zero = hn::Zero(d), one = hn::Set(d, T(1));
-  const V share = hn::Set(d, static_cast<T>(env.sun_probability));
+  const V share = set(d, env.sun_probability);
   EnvironmentSample<V> out;
   if (env.map_density > 0) {
-    const auto to_sun = split(d, one - share, share, u);
+    const auto to_sun = split(d, 1 - share, share, u);
     out.direction = sample_map(d, env, to_sun.rest, v);
     if (env.sun_probability > 0)
       out.direction = select(to_sun.second, sample_sun(d, env, to_sun.rest, v), out.direction);
@@ -281,9 +271,9 @@ HWY_INLINE EnvironmentSample<V> sample_environment(D d, const Environment& env, 
   }
   const auto at = environment_footprint(d, env, out.direction);
   const V pdf = pdf_of(d, env, at);
-  const auto good = pdf > zero;
+  const auto good = pdf > 0;
   out.radiance = radiance_of(d, env, at);
-  out.inverse_pdf = hn::IfThenElseZero(good, one / hn::IfThenElse(good, pdf, one));
+  out.inverse_pdf = hn::IfThenElseZero(good, 1 / select(good, pdf, 1));
   return out;
 }
 

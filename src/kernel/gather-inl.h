@@ -12,10 +12,13 @@
 #include <cstddef>
 #include <type_traits>
 
+#include "math/lanes-inl.h"
+
 HWY_BEFORE_NAMESPACE();
 namespace orrery::kernel::HWY_NAMESPACE {
 
 namespace hn = hwy::HWY_NAMESPACE;
+using namespace math::HWY_NAMESPACE;  // NOLINT(google-build-using-namespace): SIMD vectors of another room
 
 #if HWY_MAX_BYTES >= 32
 
@@ -105,7 +108,7 @@ HWY_INLINE void transpose_rows(D d, RowOfLane row_of_lane, hn::Vec<D> (&out)[4])
 template <class D, class RowOfLane>
 HWY_INLINE void gather4(D d, RowOfLane row_of_lane, hn::Vec<D> (&out)[4]) {
   if constexpr (hn::MaxLanes(D()) == 1) {
-    for (int k = 0; k < 4; ++k) out[k] = hn::Set(d, static_cast<hn::TFromD<D>>(row_of_lane(0)[k]));
+    for (int k = 0; k < 4; ++k) out[k] = set(d, row_of_lane(0)[k]);
   } else {
     transpose_rows(d, row_of_lane, out);
   }

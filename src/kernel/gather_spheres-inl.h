@@ -12,7 +12,7 @@
 #include <cstddef>
 
 #include "kernel/gather-inl.h"
-#include "kernel/sphere_array.h"
+#include "kernel/sphere.h"
 
 HWY_BEFORE_NAMESPACE();
 namespace orrery::kernel::HWY_NAMESPACE {

@@ -56,9 +56,7 @@ struct Spheres {
 
 template <class D>
 HWY_INLINE Spheres<D> broadcast(D d, const Sphere& s) {
-  using T = hn::TFromD<D>;
-  return {{hn::Set(d, static_cast<T>(s.x)), hn::Set(d, static_cast<T>(s.y)), hn::Set(d, static_cast<T>(s.z))},
-          hn::Set(d, static_cast<T>(s.radius))};
+  return {{set(d, s.x), set(d, s.y), set(d, s.z)}, set(d, s.radius)};
 }
 
 /// A sphere at the times of a packet's rays from `first` on.
@@ -70,7 +68,7 @@ HWY_INLINE Spheres<D> sphere_at(D d, const Scene& scene, std::uint32_t id, const
   if (!kMoves || id >= scene.moving_count) return at_opening;
   const auto change = broadcast(d, scene.motion[id]);
   const auto time = hn::Load(d, packet.time + first);
-  return {mul_add(change.center, time, at_opening.center), hn::MulAdd(change.radius, time, at_opening.radius)};
+  return {mul_add(change.center, time, at_opening.center), mul_add(change.radius, time, at_opening.radius)};
 }
 
 /// The chord along which a ray's line passes through a sphere.
@@ -84,9 +82,8 @@ struct Chord {
 
 template <class D, class V = hn::Vec<D>>
 HWY_INLINE V discriminant(const V& radius, const Vec3<V>& to_center) {
-  return hn::NegMulAdd(
-      to_center.z, to_center.z,
-      hn::NegMulAdd(to_center.y, to_center.y, hn::NegMulAdd(to_center.x, to_center.x, radius * radius)));
+  return neg_mul_add(to_center.z, to_center.z,
+                     neg_mul_add(to_center.y, to_center.y, neg_mul_add(to_center.x, to_center.x, radius * radius)));
 }
 
 /// The chord in perpendicular form: only differences are squared, so no large terms cancel.
@@ -139,8 +136,8 @@ template <class D>
 HWY_INLINE hn::Mask<D> may_intersect(D d, const Rays<D>& ray, const Spheres<D>& sphere, const Chord<D>& plain) {
   const auto to_sphere = sphere.center - ray.origin;
   const auto reach = dot(to_sphere, to_sphere) + dot(sphere.center, sphere.center);
-  const auto margin = hn::Set(d, static_cast<hn::TFromD<D>>(0x1p-45));
-  return hn::MulAdd(reach, margin, plain.discriminant) >= hn::Zero(d);
+  const auto margin = set(d, 0x1p-45);
+  return mul_add(reach, margin, plain.discriminant) >= 0;
 }
 
 /// Distances along rays, as multiples of their directions' lengths; valid in the lanes of `mask`.
@@ -157,7 +154,6 @@ struct Distances {
 /// distance is strictly positive.
 template <class D, Precision kPrecision>
 HWY_INLINE Distances<D> closest_distance(D d, const Rays<D>& ray, const Spheres<D>& sphere, hn::Mask<D> is_self) {
-  using T = hn::TFromD<D>;
   const auto zero = hn::Zero(d);
   if constexpr (kPrecision == Precision::kBook) {
     const auto oc = ray.origin - sphere.center;
@@ -165,14 +161,14 @@ HWY_INLINE Distances<D> closest_distance(D d, const Rays<D>& ray, const Spheres<
     const auto half_b = dot(oc, ray.direction);
     const auto c = dot(oc, oc) - sphere.radius * sphere.radius;
     const auto discriminant = half_b * half_b - a * c;
-    const auto hits = discriminant >= zero;
+    const auto hits = discriminant >= 0;
     if (hn::MaxLanes(D()) == 1 && hn::AllFalse(d, hits)) return {zero, hits};
-    const auto root = hn::Sqrt(hn::Max(discriminant, zero));
+    const auto root = hn::Sqrt(max(discriminant, 0));
     // In multiples of the direction's length, which is 1 except for shadow rays.
-    const auto t_min = hn::Set(d, static_cast<T>(kBookShortestDistance)) * hn::Sqrt(ray.inverse_square);
-    const auto entry = (hn::Neg(half_b) - root) / a;
+    const auto t_min = kBookShortestDistance * hn::Sqrt(ray.inverse_square);
+    const auto entry = (-half_b - root) / a;
     const auto exit = (root - half_b) / a;
-    const auto t = hn::IfThenElse(entry >= t_min, entry, exit);
+    const auto t = select(entry >= t_min, entry, exit);
     return {t, hn::And(hits, t >= t_min)};
   } else {
     auto c = plain_chord(ray, sphere);
@@ -182,15 +178,15 @@ HWY_INLINE Distances<D> closest_distance(D d, const Rays<D>& ray, const Spheres<
         return {zero, is_self};
       c = compensated(ray, sphere, c);
     }
-    const auto hits = hn::Or(is_self, c.discriminant >= zero);
+    const auto hits = hn::Or(is_self, c.discriminant >= 0);
     // In the naive list a ray misses nearly all spheres, and the root costs as much as everything before it.
     if (hn::MaxLanes(D()) == 1 && hn::AllFalse(d, hits)) return {zero, hits};
-    const auto half = hn::Sqrt(hn::Max(c.discriminant, zero) * ray.inverse_square);
+    const auto half = hn::Sqrt(max(c.discriminant, 0) * ray.inverse_square);
     const auto entry = c.middle - half;
     const auto exit = c.middle + half;
-    const auto other_end = dot(ray.direction, ray.offset) * ray.inverse_square * hn::Set(d, static_cast<T>(-2));
-    const auto t = hn::IfThenElse(is_self, other_end, hn::IfThenElse(entry > zero, entry, exit));
-    return {t, hn::And(hits, t > zero)};
+    const auto other_end = dot(ray.direction, ray.offset) * ray.inverse_square * -2;
+    const auto t = select(is_self, other_end, select(entry > 0, entry, exit));
+    return {t, hn::And(hits, t > 0)};
   }
 }
 
@@ -204,33 +200,31 @@ struct HitPoint {
 /// Refines the distance to the other end of the chord for a ray that starts on the sphere: removes the component of
 /// to_center along the ray, as `compensated` does for other spheres.
 template <class D, Precision kPrecision>
-HWY_INLINE hn::Vec<D> own_distance(D d, const Rays<D>& ray, hn::Vec<D> distance) {
+HWY_INLINE hn::Vec<D> own_distance(const Rays<D>& ray, hn::Vec<D> distance) {
   if constexpr (kPrecision != Precision::kExact) return distance;
-  using T = hn::TFromD<D>;
-  const auto middle = mul_add(ray.direction, distance * hn::Set(d, static_cast<T>(0.5)), ray.offset);
+  const auto middle = mul_add(ray.direction, distance * 0.5, ray.offset);
   const auto rest = dot(middle, ray.direction) * ray.inverse_square;
-  return hn::NegMulAdd(rest, hn::Set(d, static_cast<T>(2)), distance);
+  return neg_mul_add(rest, 2, distance);
 }
 
 /// The hit point at a distance that `closest_distance` returned.
 ///
 /// Domain     lanes whose rays hit this sphere
 template <class D, Precision kPrecision>
-HWY_INLINE HitPoint<hn::Vec<D>> hit_point(D d, const Rays<D>& ray, const Spheres<D>& sphere, hn::Mask<D> is_self,
+HWY_INLINE HitPoint<hn::Vec<D>> hit_point(const Rays<D>& ray, const Spheres<D>& sphere, hn::Mask<D> is_self,
                                           hn::Vec<D> distance) {
-  const auto zero = hn::Zero(d), one = hn::Set(d, static_cast<hn::TFromD<D>>(1));
   if constexpr (kPrecision == Precision::kBook) {
     const auto m = mul_add(ray.direction, distance, ray.origin) - sphere.center;
-    return {m, m * (one / sphere.radius)};
+    return {m, m * (1 / sphere.radius)};
   } else {
     const auto c = chord<D, kPrecision == Precision::kExact>(ray, sphere);
-    const auto half = hn::Sqrt(hn::Max(c.discriminant, zero) * ray.inverse_square);
-    const auto along = hn::IfThenElse(c.middle - half > zero, hn::Neg(half), half);
+    const auto half = hn::Sqrt(max(c.discriminant, 0) * ray.inverse_square);
+    const auto along = select(c.middle - half > 0, -half, half);
     const auto other = mul_add(ray.direction, along, negated(c.to_center));
-    const auto own = mul_add(ray.direction, own_distance<D, kPrecision>(d, ray, distance), ray.offset);
+    const auto own = mul_add(ray.direction, own_distance<D, kPrecision>(ray, distance), ray.offset);
     const auto m = select(is_self, own, other);
     const auto length = hn::Sqrt(dot(m, m));
-    return {m * (sphere.radius / length), m * (one / length)};
+    return {m * (sphere.radius / length), m * (1 / length)};
   }
 }
 

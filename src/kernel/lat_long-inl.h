@@ -25,7 +25,7 @@ using namespace math::HWY_NAMESPACE;  // NOLINT(google-build-using-namespace): S
 /// Returns a + (b - a) s, which is not negative if a and b are not.
 template <class D, class V = hn::Vec<D>>
 HWY_INLINE V interpolated(D, V a, V b, V s) {
-  return hn::MulAdd(b - a, s, a);
+  return mul_add(b - a, s, a);
 }
 
 /// Returns the fractional part x - floor(x), within 0..1: an angle in turns.
@@ -46,12 +46,11 @@ struct MapPosition {
 /// Space      world, unit
 template <class D, class V = hn::Vec<D>>
 HWY_INLINE MapPosition<V> map_position(D d, double turn, const Vec3<V>& direction) {
-  using T = hn::TFromD<D>;
-  const V half = hn::Set(d, static_cast<T>(0.5));
-  const V radius2 = hn::MulAdd(direction.x, direction.x, direction.z * direction.z);
+  const V half = set(d, 0.5);
+  const V radius2 = mul_add(direction.x, direction.x, direction.z * direction.z);
   const V longitude = atan2_turn(d, direction.x, direction.z);
   const V colatitude = atan2_turn(d, hn::Sqrt(radius2), direction.y);  // 0..1/2
-  return {whole_turns_removed((half - longitude) + hn::Set(d, static_cast<T>(turn))), colatitude + colatitude, radius2};
+  return {whole_turns_removed((half - longitude) + turn), colatitude + colatitude, radius2};
 }
 
 /// The four texels around a position on each lane's map, and the position between their centres.
@@ -72,9 +71,9 @@ template <class D, class TexelAt, class V = hn::Vec<D>>
 HWY_INLINE TexelQuad<D> load_texels(D d, const MapPosition<V>& at, V width, V height, TexelAt texel_at) {
   using T = hn::TFromD<D>;
   constexpr std::size_t kMax = hn::MaxLanes(D());
-  const V zero = hn::Zero(d), one = hn::Set(d, T(1)), half = hn::Set(d, static_cast<T>(0.5));
-  const V across = hn::MulAdd(at.across, width, hn::Neg(half));
-  const V down = hn::MulAdd(at.down, height, hn::Neg(half));
+  const V zero = hn::Zero(d), one = set(d, 1), half = set(d, 0.5);
+  const V across = mul_add(at.across, width, -half);
+  const V down = mul_add(at.down, height, -half);
   const V column = hn::Floor(across), above = hn::Floor(down);
   TexelQuad<D> out;
   out.right = across - column;
@@ -82,15 +81,13 @@ HWY_INLINE TexelQuad<D> load_texels(D d, const MapPosition<V>& at, V width, V he
 
   HWY_ALIGN T left[kMax], right[kMax], upper[kMax], lower[kMax];
   // False for NaN, which must not become an index.
-  const auto usable =
-      hn::And(hn::And(across >= hn::Neg(one), across <= width), hn::And(down >= hn::Neg(one), down <= height));
+  const auto usable = hn::And(hn::And(across >= -one, across <= width), hn::And(down >= -one, down <= height));
   const V next = column + one;
   out.lower_row = hn::IfThenElseZero(usable, above + one);
-  hn::Store(hn::IfThenElseZero(usable, hn::IfThenElse(column < zero, width - one, hn::Min(column, width - one))), d,
-            left);
+  hn::Store(hn::IfThenElseZero(usable, select(column < zero, width - one, min(column, width - one))), d, left);
   hn::Store(hn::IfThenElseZero(hn::And(usable, next < width), next), d, right);
-  hn::Store(hn::IfThenElseZero(usable, hn::Min(hn::Max(above, zero), height - one)), d, upper);
-  hn::Store(hn::Min(out.lower_row, height - one), d, lower);
+  hn::Store(hn::IfThenElseZero(usable, min(max(above, zero), height - one)), d, upper);
+  hn::Store(min(out.lower_row, height - one), d, lower);
   const auto texel = [&](const T(&row)[kMax], const T(&column_of)[kMax], std::size_t i) {
     return texel_at(i, static_cast<std::size_t>(row[i]), static_cast<std::size_t>(column_of[i]));
   };

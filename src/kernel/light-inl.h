@@ -33,10 +33,10 @@ struct Vertex {
 };
 
 /// The normal at the origin of rays that leave spheres, on the side on which they leave.
-template <class D, class V = hn::Vec<D>>
-HWY_INLINE Vec3<V> normal_along(D d, const Vec3<V>& offset, const Vec3<V>& direction) {
-  const auto unit = normalized(d, offset);
-  return select(dot(direction, offset) < hn::Zero(d), negated(unit), unit);
+template <class V>
+HWY_INLINE Vec3<V> normal_along(const Vec3<V>& offset, const Vec3<V>& direction) {
+  const auto unit = normalized(offset);
+  return select(dot(direction, offset) < 0, negated(unit), unit);
 }
 
 /// The vector from a vertex to sphere centres.
@@ -72,7 +72,6 @@ class LightNodes {
   HWY_INLINE hn::Vec<D> importance(D d, const Vertex<D>& at) const {
     using T = hn::TFromD<D>;
     using V = hn::Vec<D>;
-    const V zero = hn::Zero(d), one = hn::Set(d, T(1));
     V sphere[4];
     gather4(
         d, [&](std::size_t i) { return node_[i]->center; }, sphere);
@@ -80,15 +79,14 @@ class LightNodes {
     for (std::size_t i = 0; i < hn::Lanes(d); ++i) power[i] = power_of<T>(*node_[i]);
     const V radius = sphere[3];
     const Vec3<V> to = to_center<D>(at, {sphere[0], sphere[1], sphere[2]});
-    const auto cone = subtended_cone(d, to, radius);
+    const auto cone = subtended_cone(to, radius);
     const V cos_center = dot(to, at.normal) / cone.distance;
-    const V sin_center = hn::Sqrt(hn::Max(hn::NegMulAdd(cos_center, cos_center, one), zero));
+    const V sin_center = hn::Sqrt(max(neg_mul_add(cos_center, cos_center, 1), 0));
     // cos(max(angle to the centre - half apex angle, 0))
-    const V nearest =
-        hn::IfThenElse(cos_center > cone.cos, one, hn::MulAdd(cos_center, cone.cos, sin_center * cone.sin));
+    const V nearest = select(cos_center > cone.cos, 1, mul_add(cos_center, cone.cos, sin_center * cone.sin));
     const auto outside = cone.distance > radius;
-    const V cosine = hn::IfThenElse(outside, hn::Max(nearest, zero), one);
-    const V distance = hn::Max(cone.distance, radius);
+    const V cosine = select(outside, max(nearest, 0), 1);
+    const V distance = max(cone.distance, radius);
     return hn::Load(d, power) * cosine / (distance * distance);
   }
 
@@ -116,7 +114,7 @@ HWY_INLINE hn::Vec<D> descend(D d, const SceneView& scene, const Vertex<D>& at, 
   using T = hn::TFromD<D>;
   using V = hn::Vec<D>;
   constexpr std::size_t kMax = hn::MaxLanes(D());
-  const V zero = hn::Zero(d), one = hn::Set(d, T(1));
+  const V one = set(d, 1);
   const Lights& lights = scene.lights;
   for (std::size_t i = 0; i < hn::Lanes(d); ++i) range[i] = {0, lights.count};
   V probability = one;
@@ -138,14 +136,14 @@ HWY_INLINE hn::Vec<D> descend(D d, const SceneView& scene, const Vertex<D>& at, 
         right.set_any(i, scene);
       }
     }
-    const auto inner = hn::Load(d, is_inner) != zero;
+    const auto inner = hn::Load(d, is_inner) != 0;
     const V of_left = left.importance(d, at);
     const V whole = of_left + right.importance(d, at);
-    const V share = hn::IfThenElseZero(whole > zero, of_left / whole);
+    const V share = hn::IfThenElseZero(whole > 0, of_left / whole);
     const auto go_left = next(share, inner, range, level);
     // If nothing is important, both probabilities are 0.
-    const V other = hn::IfThenElseZero(whole > zero, one - share);
-    probability = hn::IfThenElse(inner, probability * hn::IfThenElse(go_left, share, other), probability);
+    const V other = hn::IfThenElseZero(whole > 0, 1 - share);
+    probability = select(inner, probability * select(go_left, share, other), probability);
     hn::Store(hn::IfThenElseZero(go_left, one), d, goes_left);
     for (std::size_t i = 0; i < hn::Lanes(d); ++i) {
       if (range[i].end - range[i].begin <= 1) continue;
@@ -163,27 +161,25 @@ template <class D, class Visit>
 HWY_INLINE void for_each_light(D d, const SceneView& scene, const Vertex<D>& at, Visit visit) {
   using T = hn::TFromD<D>;
   using V = hn::Vec<D>;
-  const V zero = hn::Zero(d), one = hn::Set(d, T(1));
   for (std::uint32_t i = 0; i < scene.lights.count; ++i) {
     const LightNode& node = scene.lights.nodes[i];
-    const V radius = hn::Set(d, static_cast<T>(node.radius)), radius2 = radius * radius;
+    const V radius = set(d, node.radius), radius2 = radius * radius;
     const Vec3<V> to = to_center<D>(at, set3(d, node.center));
     const V distance2 = dot(to, to);
-    const V inverse2 = one / hn::Max(distance2, radius2);
+    const V inverse2 = 1 / max(distance2, radius2);
     const V inverse = hn::Sqrt(inverse2);
     const V cosine = dot(to, at.normal) * inverse,
             sin = radius * inverse;  // cosine to the centre; sine of half the apex angle
-    const V above = hn::Max(cosine + sin, zero);
-    const V cut = above * above * (distance2 * inverse) * hn::Set(d, static_cast<T>(0.25 / node.radius));
-    const V visible = hn::IfThenElse(cosine < sin, cut, cosine);
-    visit(i, hn::Set(d, power_of<T>(node)) * inverse2 * hn::IfThenElse(distance2 > radius2, visible, one));
+    const V above = max(cosine + sin, 0);
+    const V cut = above * above * (distance2 * inverse) * (0.25 / node.radius);
+    const V visible = select(cosine < sin, cut, cosine);
+    visit(i, (power_of<T>(node)) * inverse2 * select(distance2 > radius2, visible, 1));
   }
 }
 
 /// Chooses from a short list of emitters by importance.
 template <class D, class V = hn::Vec<D>>
 HWY_INLINE ChosenLights<D> choose_from_few(D d, const SceneView& scene, const Vertex<D>& at, V u) {
-  using Id = hn::TFromD<IdTag<D>>;
   const IdTag<D> du;
   const V zero = hn::Zero(d);
   V of_light[Lights::kFew];
@@ -195,15 +191,14 @@ HWY_INLINE ChosenLights<D> choose_from_few(D d, const SceneView& scene, const Ve
   // The last emitter with non-zero importance for which the sum of the preceding ones does not exceed u.
   const V target = u * whole;
   V before = zero, chosen = zero;
-  auto spheres = hn::Set(du, static_cast<Id>(scene.lights.spheres[0]));
+  auto spheres = set(du, scene.lights.spheres[0]);
   for (std::uint32_t i = 0; i < scene.lights.count; ++i) {
-    const auto reached = hn::And(of_light[i] > zero, before <= target);
-    chosen = hn::IfThenElse(reached, of_light[i], chosen);
-    spheres =
-        hn::IfThenElse(hn::RebindMask(du, reached), hn::Set(du, static_cast<Id>(scene.lights.spheres[i])), spheres);
+    const auto reached = hn::And(of_light[i] > 0, before <= target);
+    chosen = select(reached, of_light[i], chosen);
+    spheres = select(hn::RebindMask(du, reached), scene.lights.spheres[i], spheres);
     before = before + of_light[i];
   }
-  return {spheres, hn::IfThenElseZero(whole > zero, chosen / whole)};
+  return {spheres, hn::IfThenElseZero(whole > 0, chosen / whole)};
 }
 
 /// Number of levels of the light tree per random number, since each choice consumes bits.
@@ -218,15 +213,15 @@ template <class D, class V = hn::Vec<D>>
 HWY_INLINE ChosenLights<D> choose_light(D d, const SceneView& scene, const Vertex<D>& at, V u, V fresh) {
   using Id = hn::TFromD<IdTag<D>>;
   constexpr std::size_t kMax = hn::MaxLanes(D());
-  const V one = hn::Set(d, hn::TFromD<D>(1));
+  const V one = set(d, 1);
   if (scene.lights.count == 1) return {hn::Set(IdTag<D>(), static_cast<Id>(scene.lights.spheres[0])), one};
   if (scene.lights.few()) return choose_from_few(d, scene, at, u);
   LightRange range[kMax];
   const V probability = descend(d, scene, at, range, [&](V share, hn::Mask<D> inner, const auto&, int level) {
     if (level == kLevelsPerNumber) u = fresh;
     const auto go_left = u < share;
-    const V rescaled = hn::IfThenElse(go_left, u / share, (u - share) / (one - share));
-    u = hn::IfThenElse(inner, rescaled, u);
+    const V rescaled = select(go_left, u / share, (u - share) / (1 - share));
+    u = select(inner, rescaled, u);
     return go_left;
   });
   HWY_ALIGN Id ids[kMax];
@@ -241,15 +236,15 @@ HWY_INLINE V choice_probability(D d, const SceneView& scene, const Vertex<D>& at
   using T = hn::TFromD<D>;
   using Id = hn::TFromD<IdTag<D>>;
   constexpr std::size_t kMax = hn::MaxLanes(D());
-  if (scene.lights.count == 1) return hn::Set(d, T(1));
+  if (scene.lights.count == 1) return set(d, 1);
   if (scene.lights.few()) {
     V whole = hn::Zero(d), chosen = hn::Zero(d);
     for_each_light(d, scene, at, [&](std::uint32_t i, V value) {
       const auto is_it = spheres == hn::Set(IdTag<D>(), static_cast<Id>(scene.lights.spheres[i]));
-      chosen = hn::IfThenElse(hn::RebindMask(d, is_it), value, chosen);
+      chosen = select(hn::RebindMask(d, is_it), value, chosen);
       whole = whole + value;
     });
-    return hn::IfThenElseZero(whole > hn::Zero(d), chosen / whole);
+    return hn::IfThenElseZero(whole > 0, chosen / whole);
   }
   HWY_ALIGN Id ids[kMax];
   HWY_ALIGN T goes_left[kMax];
@@ -258,7 +253,7 @@ HWY_INLINE V choice_probability(D d, const SceneView& scene, const Vertex<D>& at
   return descend(d, scene, at, range, [&](V, hn::Mask<D>, const auto& ranges, int) {
     for (std::size_t i = 0; i < hn::Lanes(d); ++i)
       goes_left[i] = scene.lights.leaf(static_cast<std::uint32_t>(ids[i])) < Lights::middle(ranges[i]) ? T(1) : T(0);
-    return hn::Load(d, goes_left) != hn::Zero(d);
+    return hn::Load(d, goes_left) != 0;
   });
 }
 

@@ -24,4 +24,55 @@ struct Material {
 static_assert(offsetof(Material, fuzz) == offsetof(Material, albedo) + 3 * sizeof(double));
 static_assert(offsetof(Material, r0) == offsetof(Material, eta) + 2 * sizeof(double));
 
+enum class TextureKind : std::uint32_t { kChecker, kNoise, kTurbulence, kMarble, kImage };
+
+/// Number of gradient vectors of the noise; a power of two.
+inline constexpr std::uint32_t kGradients = 256;
+
+/// Octaves of turbulence, as in the book.
+inline constexpr int kOctaves = 7;
+
+/// Texels of a latitude-longitude image at one resolution, in the layout of Environment.
+struct TextureLevel {
+  const float* texels = nullptr;  ///< R, G, B; rows from the top; one more float at the end can be read
+  std::uint32_t width = 0;        ///< texels
+  std::uint32_t height = 0;       ///< texels
+};
+
+/// Non-owning view of an image texture for the kernel.
+struct TextureImage {
+  static constexpr std::size_t kMaxLevels = 13;
+
+  TextureLevel
+      levels[kMaxLevels];  ///< the mip map: the image, then each level about half as wide and high as the one before
+  std::uint32_t level_count = 0;
+  double turn = 0;  ///< rotation about +y, turns, 0..1
+};
+
+/// Non-owning view of a compiled texture.
+///
+/// Solid textures (all but images) are functions of the point in world space with values t in 0..1, and their colour is
+/// low + (high - low) t. An image is a function of the direction from the sphere's centre, and its colour is the
+/// interpolated texel times `high`.
+///
+/// Reference  shirley2024b
+struct Texture {
+  TextureKind kind = TextureKind::kChecker;
+  std::uint32_t seed = 0;               ///< seed of the noise
+  double scale = 1;                     ///< checker: edge of a cell, scene units; noise: lattice cells per scene unit
+  double low[3] = {0, 0, 0};            ///< checker: colour of even cells
+  double high[3] = {1, 1, 1};           ///< checker: colour of odd cells
+  const double* gradients = nullptr;    ///< noise: kGradients unit vectors of four doubles, the last one unused
+  const TextureImage* image = nullptr;  ///< appears mirrored from the sphere's centre
+};
+
+/// The textures that replace constants of a material: indices into SceneView::textures.
+struct MaterialTextures {
+  static constexpr std::uint32_t kNone = 0xffffffffu;
+
+  std::uint32_t albedo = kNone;
+  std::uint32_t fuzz = kNone;      ///< texture whose red channel is the fuzz
+  std::uint32_t radiance = kNone;  ///< texture of an emitter's radiance, including exposure
+};
+
 }  // namespace orrery::kernel

@@ -13,8 +13,8 @@
 #include <cstdint>
 
 #include "kernel/gather-inl.h"
+#include "kernel/material.h"
 #include "kernel/random-inl.h"
-#include "kernel/texture.h"
 #include "math/functions-inl.h"
 #include "math/vec3-inl.h"
 
@@ -41,16 +41,16 @@ template <class D>
 HWY_INLINE hn::Vec<hn::RebindToUnsigned<D>> lattice_cell(D d, hn::Vec<D> whole) {
   using T = hn::TFromD<D>;
   const hn::RebindToUnsigned<D> du;
-  const auto periods = whole * hn::Set(d, static_cast<T>(1.0 / kLatticePeriod));
-  const auto period = hn::Set(d, static_cast<T>(kLatticePeriod));
-  const auto mask = hn::Set(du, static_cast<hn::TFromD<decltype(du)>>(kLatticePeriod - 1));
+  const auto periods = whole * (1.0 / kLatticePeriod);
+  const auto period = set(d, kLatticePeriod);
+  const auto mask = set(du, kLatticePeriod - 1);
   if constexpr (sizeof(T) == 8) {
-    const auto rest = hn::NegMulAdd(hn::Floor(periods), period, whole);
-    return hn::And(hn::BitCast(du, rest + hn::Set(d, 0x1p52)), mask);  // the low bits of 2^52 + n are n
+    const auto rest = neg_mul_add(hn::Floor(periods), period, whole);
+    return hn::And(hn::BitCast(du, rest + 0x1p52), mask);  // the low bits of 2^52 + n are n
   } else {
     // Towards zero: floats do not hold 2^31 - 1.
     const hn::RebindToSigned<D> di;
-    const auto rest = hn::NegMulAdd(hn::Trunc(periods), period, whole);
+    const auto rest = neg_mul_add(hn::Trunc(periods), period, whole);
     return hn::And(hn::BitCast(du, hn::ConvertTo(di, rest)), mask);
   }
 }
@@ -61,12 +61,12 @@ template <class D, class V = hn::Vec<D>>
 HWY_INLINE LatticePoint<D> lattice_point(D d, const Vec3<V>& base, const Vec3<V>& rest, V frequency) {
   LatticePoint<D> out;
   const hn::RebindToUnsigned<D> du;
-  const auto mask = hn::Set(du, static_cast<hn::TFromD<decltype(du)>>(kLatticePeriod - 1));
+  const auto mask = set(du, kLatticePeriod - 1);
   const auto along = [&](int axis, V from, V to) {
     const V product = from * frequency;
     const V lost = math::HWY_NAMESPACE::product_error(d, from, frequency, product);
     const V whole = hn::Floor(product);
-    const V beyond = hn::MulAdd(to, frequency, (product - whole) + lost);
+    const V beyond = mul_add(to, frequency, (product - whole) + lost);
     const V more = hn::Floor(beyond);
     out.cell[axis] = hn::And(lattice_cell(d, whole) + lattice_cell(d, more), mask);
     out.part[axis] = beyond - more;
@@ -80,7 +80,7 @@ HWY_INLINE LatticePoint<D> lattice_point(D d, const Vec3<V>& base, const Vec3<V>
 template <class D>
 HWY_INLINE void double_frequency(D d, LatticePoint<D>& at) {
   const hn::RebindToUnsigned<D> du;
-  const auto mask = hn::Set(du, static_cast<hn::TFromD<decltype(du)>>(kLatticePeriod - 1));
+  const auto mask = set(du, kLatticePeriod - 1);
   for (int k = 0; k < 3; ++k) {
     const auto twice = at.part[k] + at.part[k];
     const auto more = hn::Floor(twice);
@@ -111,14 +111,13 @@ HWY_INLINE V scrambled(DU du, V x) {
 /// Reference  perlin1985; shirley2024b, "Perlin Noise"
 template <class D, class V = hn::Vec<D>>
 HWY_NOINLINE V gradient_noise(D d, const Texture& texture, const LatticePoint<D>& at) {
-  using T = hn::TFromD<D>;
   using Id = hn::TFromD<hn::RebindToUnsigned<D>>;
   const hn::RebindToUnsigned<D> du;
-  const V one = hn::Set(d, T(1)), two = hn::Set(d, T(2)), three = hn::Set(d, T(3));
-  const auto mask = hn::Set(du, static_cast<Id>(kLatticePeriod - 1)), step = hn::Set(du, Id{1});
+  const V one = set(d, 1), two = set(d, 2), three = set(d, 3);
+  const auto mask = set(du, kLatticePeriod - 1), step = hn::Set(du, Id{1});
   V weight[3][2];
   for (int k = 0; k < 3; ++k) {
-    weight[k][1] = at.part[k] * at.part[k] * hn::NegMulAdd(two, at.part[k], three);
+    weight[k][1] = at.part[k] * at.part[k] * neg_mul_add(two, at.part[k], three);
     weight[k][0] = one - weight[k][1];
   }
   const auto corner = [&](int axis, unsigned side) {
@@ -128,19 +127,19 @@ HWY_NOINLINE V gradient_noise(D d, const Texture& texture, const LatticePoint<D>
   V sum = hn::Zero(d);
   HWY_ALIGN Id row[hn::MaxLanes(D())];
   for (unsigned z = 0; z < 2; ++z) {
-    const auto hash_z = scrambled(du, hn::Xor(corner(2, z), hn::Set(du, static_cast<Id>(texture.seed))));
+    const auto hash_z = scrambled(du, hn::Xor(corner(2, z), set(du, texture.seed)));
     for (unsigned y = 0; y < 2; ++y) {
       const auto hash_yz = scrambled(du, hn::Xor(hash_z, corner(1, y)));
       const V weight_yz = weight[2][z] * weight[1][y];
       for (unsigned x = 0; x < 2; ++x) {
         const auto hash = scrambled(du, hn::Xor(hash_yz, corner(0, x)));
-        hn::Store(hn::And(hash, hn::Set(du, static_cast<Id>(kGradients - 1))), du, row);
+        hn::Store(hn::And(hash, set(du, kGradients - 1)), du, row);
         V gradient[4];
         gather4(
             d, [&](std::size_t i) { return texture.gradients + 4 * static_cast<std::size_t>(row[i]); }, gradient);
-        const V slope = hn::MulAdd(gradient[2], from_corner(2, z),
-                                   hn::MulAdd(gradient[1], from_corner(1, y), gradient[0] * from_corner(0, x)));
-        sum = hn::MulAdd(weight_yz * weight[0][x], slope, sum);
+        const V slope = mul_add(gradient[2], from_corner(2, z),
+                                mul_add(gradient[1], from_corner(1, y), gradient[0] * from_corner(0, x)));
+        sum = mul_add(weight_yz * weight[0][x], slope, sum);
       }
     }
   }
@@ -157,7 +156,7 @@ HWY_INLINE V turbulence(D d, const Texture& texture, LatticePoint<D> at) {
   V sum = hn::Zero(d);
   T weight = 1;
   for (int octave = 0; octave < kOctaves; ++octave) {
-    sum = hn::MulAdd(gradient_noise(d, texture, at), hn::Set(d, weight), sum);
+    sum = mul_add(gradient_noise(d, texture, at), weight, sum);
     weight *= static_cast<T>(0.5);
     double_frequency(d, at);
   }

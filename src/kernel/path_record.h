@@ -3,11 +3,25 @@
 
 #include <cstdint>
 
-#include "kernel/lobe.h"
 #include "kernel/sphere.h"
 #include "math/vec3.h"
 
 namespace orrery::kernel {
+
+/// Classification of light paths by the first scattering event seen from the camera, and by whether the light reached
+/// that surface straight from its source (direct) or from another surface (indirect). Light that only passes through
+/// glass counts as direct.
+enum class Lobe : std::uint8_t {
+  kBackground,  ///< no surface: the camera sees the source itself
+  kDiffuseDirect,
+  kDiffuseIndirect,
+  kSpecularDirect,
+  kSpecularIndirect,
+  kTransmissionDirect,
+  kTransmissionIndirect,
+  kEmission,  ///< no surface but the emitter's own: the camera sees it directly
+};
+inline constexpr int kLobes = 8;
 
 /// Data of one path for all layers except the beauty and the denoiser guides. Computed only for tiles that request
 /// records. For a path without a first hit, only `sphere` and `light` are set.

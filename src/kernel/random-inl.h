@@ -15,6 +15,7 @@ HWY_BEFORE_NAMESPACE();
 namespace orrery::kernel::HWY_NAMESPACE {
 
 namespace hn = hwy::HWY_NAMESPACE;
+using namespace math::HWY_NAMESPACE;  // NOLINT(google-build-using-namespace): SIMD vectors of another room
 
 /// A 64-bit product. In 64-bit lanes each half is in the low 32 bits.
 template <class V>
@@ -71,10 +72,10 @@ HWY_INLINE hn::Vec<D> to_unit(D d, hn::Vec<hn::RebindToUnsigned<D>> bits) {
   const hn::RebindToUnsigned<D> du;
   if constexpr (sizeof(hn::TFromD<D>) == 8) {
     const auto low = hn::And(bits, hn::Set(du, 0xffffffffu));
-    return hn::MulAdd(math::HWY_NAMESPACE::to_real(d, low), hn::Set(d, 0x1p-32), hn::Set(d, 0x1p-33));
+    return mul_add(math::HWY_NAMESPACE::to_real(d, low), 0x1p-32, 0x1p-33);
   } else {
     const auto whole = math::HWY_NAMESPACE::to_real(d, hn::ShiftRight<9>(bits));
-    return hn::MulAdd(whole, hn::Set(d, 0x1p-23f), hn::Set(d, 0x1p-24f));
+    return mul_add(whole, 0x1p-23f, 0x1p-24f);
   }
 }
 

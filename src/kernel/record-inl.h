@@ -13,8 +13,8 @@
 #include <type_traits>
 
 #include "kernel/compaction-inl.h"
-#include "kernel/guide_sum.h"
 #include "kernel/path_record.h"
+#include "kernel/pixel_sum.h"
 #include "kernel/render_tile.h"
 #include "kernel/scatter-inl.h"
 
@@ -133,11 +133,10 @@ class Recorder {
   /// Adds the reciprocal distances of first hits to the tile's sums.
   HWY_INLINE void inverse_depth(D d, hn::Mask<D> hit, V distance) {
     if (!kRecords || tile_.guides == nullptr || hn::AllFalse(d, hit)) return;
-    const auto set = [d](double x) { return hn::Set(d, static_cast<hn::TFromD<D>>(x)); };
-    const V inverse = hn::Min(set(1) / distance, set(kLargestInverseDepth));
+    const V inverse = min(1 / distance, kLargestInverseDepth);
     if (GuideSum* const sum = common_sum(d, hit)) {
       // Splits the fixed-point number into two parts, so that sums over the lanes are exact.
-      const V scaled = inverse * set(0x1p20), high = hn::Trunc(scaled), low = hn::Trunc((scaled - high) * set(0x1p40));
+      const V scaled = inverse * 0x1p20, high = hn::Trunc(scaled), low = hn::Trunc((scaled - high) * 0x1p40);
       sum->inverse_depth += static_cast<Int128>(total(d, hit, high)) * (std::int64_t{1} << 40) + total(d, hit, low);
       return;
     }
@@ -172,9 +171,9 @@ class Recorder {
   };
   /// Converts guides to integers in units of kGuideUnit, clamped to 32 bits.
   static HWY_INLINE Vec3<V> in_guide_units(D d, const Vec3<V>& v) {
-    const auto limit = hn::Set(d, static_cast<hn::TFromD<D>>(1.75));
-    const auto units = hn::Set(d, static_cast<hn::TFromD<D>>(1 / kGuideUnit));
-    const auto convert = [&](V x) { return hn::Trunc(hn::Max(hn::Neg(limit), hn::Min(x, limit)) * units); };
+    const auto limit = set(d, 1.75);
+    const auto units = set(d, 1 / kGuideUnit);
+    const auto convert = [&](V x) { return hn::Trunc(max(-limit, min(x, limit)) * units); };
     return {convert(v.x), convert(v.y), convert(v.z)};
   }
   /// The sum over some lanes.
@@ -237,8 +236,7 @@ template <class D>
 HWY_INLINE hn::Vec<IdTag<D>> continued(D d, hn::Vec<IdTag<D>> history, const Surface<D>& at,
                                        const Vec3<hn::Vec<D>>& direction, std::uint32_t depth, bool has_lobes) {
   const IdTag<D> du;
-  using Id = hn::TFromD<decltype(du)>;
-  const auto ids = [&](unsigned v) { return hn::Set(du, static_cast<Id>(v)); };
+  const auto ids = [&](unsigned v) { return set(du, v); };
   const auto where = [&](hn::Mask<D> lanes, hn::Vec<IdTag<D>> then) {
     return hn::IfThenElseZero(hn::RebindMask(du, lanes), then);
   };
@@ -251,9 +249,8 @@ HWY_INLINE hn::Vec<IdTag<D>> continued(D d, hn::Vec<IdTag<D>> history, const Sur
     const auto indirect = hn::Or(hn::And(history, ids(kIndirectBit)), where(hn::Not(through), ids(kIndirectBit)));
     return hn::Or(hn::Or(lobe, indirect), delta);
   }
-  const auto lobe =
-      hn::IfThenElse(hn::RebindMask(du, passes), ids(kTransmission),
-                     hn::IfThenElse(hn::RebindMask(du, is_specular(d, at)), ids(kSpecular), ids(kDiffuse)));
+  const auto lobe = select(hn::RebindMask(du, passes), ids(kTransmission),
+                           select(hn::RebindMask(du, is_specular(d, at)), ids(kSpecular), ids(kDiffuse)));
   return hn::Or(lobe, delta);
 }
 

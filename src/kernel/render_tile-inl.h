@@ -58,14 +58,14 @@ HWY_INLINE void load_camera_rays(D d, const SceneView& scene, PathCounter& count
     carried.sample[i] = carried.sample[0];
   }
   packet.count = count;
-  const auto one = hn::Set(d, T(1));
+  const auto one = set(d, 1);
   for (int v = 0; v < kPacketSize; v += static_cast<int>(hn::Lanes(d))) {
     const auto pixels = hn::Load(du, carried.pixel + v);
     const auto samples = hn::Load(du, carried.sample + v);
     auto random = random_at_vertex(d, scene.sampler, pixels, samples, 0, features.lens);
     if (scene.filter.above != nullptr) filter_place(d, scene.filter, samples, random);
     const auto place = [&](hn::Vec<IdTag<D>> at, std::uint32_t begin) {
-      return to_real(d, hn::And(at - hn::Set(du, static_cast<Id>(begin)), hn::Set(du, Id{0xffff})));
+      return to_real(d, hn::And(at - begin, hn::Set(du, Id{0xffff})));
     };
     const auto x = place(pixels, scene.window_x);
     const auto y = place(hn::template ShiftRight<16>(pixels), scene.window_y);
@@ -83,9 +83,9 @@ HWY_INLINE void load_camera_rays(D d, const SceneView& scene, PathCounter& count
     store(ray.offset, packet.offset);
     store(ray.direction, packet.direction);
     store(Vec3<hn::Vec<D>>{one, one, one}, carried.throughput);
-    hn::Store(one / dot(ray.direction, ray.direction), d, packet.inverse_square + v);
-    hn::Store(hn::Set(du, static_cast<Id>(kNoSphere)), du, packet.self + v);
-    if (kLoop.records) hn::Store(hn::Set(du, static_cast<Id>(kOnlyDeltaBit)), du, carried.history + v);
+    hn::Store(1 / dot(ray.direction, ray.direction), d, packet.inverse_square + v);
+    hn::Store(set(du, kNoSphere), du, packet.self + v);
+    if (kLoop.records) hn::Store(set(du, kOnlyDeltaBit), du, carried.history + v);
     if (features.extended && scene.cone_width > 0) {
       const auto cone = camera_cone(d, scene, camera, ray.direction, scene.cone_width);
       store(Vec3<hn::Vec<D>>{cone.width2, cone.mixed, cone.slope2}, carried.cone);
@@ -98,11 +98,9 @@ template <class D, Loop kLoop, class Stream, class Carried>
 HWY_INLINE void load_secondary_rays(D d, const SceneView& scene, Stream& stream, int first, int count,
                                     Carried& carried) {
   const Features features = features_of<kLoop>(scene);
-  using T = hn::TFromD<D>;
   const IdTag<D> du;
   auto& packet = stream.packet;
   packet.count = count;
-  const auto one = hn::Set(d, T(1));
   for (int v = 0; v < count; v += static_cast<int>(hn::Lanes(d))) {
     const int i = first + v;
     const auto at = [&](const auto& component) {
@@ -117,7 +115,7 @@ HWY_INLINE void load_secondary_rays(D d, const SceneView& scene, Stream& stream,
     store(offset, packet.offset);
     store(direction, packet.direction);
     store(at(stream.throughput), carried.throughput);
-    hn::Store(one / dot(direction, direction), d, packet.inverse_square + v);
+    hn::Store(1 / dot(direction, direction), d, packet.inverse_square + v);
     hn::Store(hn::LoadU(du, stream.self + i), du, packet.self + v);
     const auto pixels = hn::LoadU(du, stream.pixel + i), samples = hn::LoadU(du, stream.sample + i);
     hn::Store(pixels, du, carried.pixel + v);
@@ -156,7 +154,7 @@ TileCounts render_tile(const SceneView& scene, const Tracer& tracer, const Tile&
   const auto trace_and_shade = [&](std::uint32_t depth, int alive) {
     reset_hits(stream.packet);
     counts.rays += static_cast<std::uint64_t>(stream.packet.count);
-    trace(tracer, stream.packet);
+    tracer.trace(tracer.self, &stream.packet);
     alive = Shader<D, kLoop>(scene, tile, depth, stream, counts).shade(carried, alive);
     trace_shadows(kPacketSize);
     return alive;

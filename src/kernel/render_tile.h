@@ -4,7 +4,7 @@
 #include <cstdint>
 
 #include "kernel/forward.h"
-#include "kernel/pixel_place.h"
+#include "kernel/pixel_sum.h"
 #include "kernel/precision.h"
 
 namespace orrery::kernel {

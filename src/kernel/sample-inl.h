@@ -21,11 +21,9 @@ using namespace math::HWY_NAMESPACE;  // NOLINT(google-build-using-namespace): S
 /// A point on the unit sphere, uniform by area.
 template <class D, class V = hn::Vec<D>>
 HWY_INLINE Vec3<V> sample_unit_sphere(D d, V u, V v) {
-  using T = hn::TFromD<D>;
-  const V one = hn::Set(d, T(1));
-  const V radius = hn::Sqrt(u * (one - u)) * hn::Set(d, T(2));  // radius of the circle at height 1 - 2u
+  const V radius = hn::Sqrt(u * (1 - u)) * 2;  // radius of the circle at height 1 - 2u
   const auto turn = sin_cos_turn(d, v);
-  return {radius * turn.cos, radius * turn.sin, one - (u + u)};
+  return {radius * turn.cos, radius * turn.sin, 1 - (u + u)};
 }
 
 /// A point on the unit disc, uniform by area.
@@ -49,13 +47,12 @@ struct Frame {
 };
 template <class D, class V = hn::Vec<D>>
 HWY_INLINE Frame<V> frame_around(D d, const Vec3<V>& axis) {
-  using T = hn::TFromD<D>;
-  const V one = hn::Set(d, T(1));
+  const V one = set(d, 1);
   const V sign = hn::CopySign(one, axis.z);
-  const V a = hn::Neg(one / (sign + axis.z));
+  const V a = -(1 / (sign + axis.z));
   const V b = axis.x * axis.y * a;
-  return {{hn::MulAdd(sign * axis.x, axis.x * a, one), sign * b, hn::Neg(sign * axis.x)},
-          {b, hn::MulAdd(axis.y, axis.y * a, sign), hn::Neg(axis.y)}};
+  return {{mul_add(sign * axis.x, axis.x * a, 1), sign * b, -(sign * axis.x)},
+          {b, mul_add(axis.y, axis.y * a, sign), -axis.y}};
 }
 
 /// The cone that a sphere subtends from a point outside.
@@ -70,19 +67,18 @@ struct SubtendedCone {
 ///
 /// Domain     distance > radius
 /// Precision  1 - cos from sin^2 / (1 + cos), and cos from the difference (distance - radius) (distance + radius)
-template <class D, class V = hn::Vec<D>>
-HWY_INLINE SubtendedCone<V> subtended_cone(D d, const Vec3<V>& to_center, V radius) {
-  const V one = hn::Set(d, hn::TFromD<D>(1));
+template <class V>
+HWY_INLINE SubtendedCone<V> subtended_cone(const Vec3<V>& to_center, V radius) {
   const V distance = hn::Sqrt(dot(to_center, to_center));
   const V sin = radius / distance;
-  const V cos = hn::Sqrt(hn::Max((distance - radius) * (distance + radius), hn::Zero(d))) / distance;
-  return {distance, sin, cos, sin * sin / (one + cos)};
+  const V cos = hn::Sqrt(max((distance - radius) * (distance + radius), 0)) / distance;
+  return {distance, sin, cos, sin * sin / (1 + cos)};
 }
 
 /// The solid angle of a cone with this 1 - cos, in steradians.
-template <class D, class V = hn::Vec<D>>
-HWY_INLINE V solid_angle(D d, V one_minus_cos) {
-  return one_minus_cos * hn::Set(d, static_cast<hn::TFromD<D>>(6.283185307179586476925));
+template <class V>
+HWY_INLINE V solid_angle(V one_minus_cos) {
+  return one_minus_cos * 6.283185307179586476925;
 }
 
 /// Points of a sphere that are visible from outside, uniform by solid angle.
@@ -99,17 +95,16 @@ struct SphereSample {
 template <class D, class V = hn::Vec<D>>
 HWY_INLINE SphereSample<V> sample_visible_sphere(D d, const Vec3<V>& to_center, const SubtendedCone<V>& cone, V u,
                                                  V v) {
-  using T = hn::TFromD<D>;
-  const V zero = hn::Zero(d), one = hn::Set(d, T(1)), two = hn::Set(d, T(2));
+  const V zero = hn::Zero(d), one = set(d, 1), two = set(d, 2);
   const V versine = u * cone.one_minus_cos;
   const V cos = one - versine;
   // sin^2 of the direction's angle divided by sin^2 of the rim's: sin^2 of the angle of incidence on the sphere.
   const V incidence2 = u * (two - versine) / (one + cone.cos);
   const V sin_incidence = hn::Sqrt(incidence2);
-  const V cos_incidence = hn::Sqrt(hn::Max(one - incidence2, zero));
+  const V cos_incidence = hn::Sqrt(max(one - incidence2, zero));
   const V sin = cone.sin * sin_incidence;
-  const V sin_center = sin_incidence * hn::NegMulAdd(cone.sin, cos_incidence, cos);
-  const V cos_center = hn::MulAdd(cos_incidence, cos, cone.sin * incidence2);
+  const V sin_center = sin_incidence * neg_mul_add(cone.sin, cos_incidence, cos);
+  const V cos_center = mul_add(cos_incidence, cos, cone.sin * incidence2);
   const Vec3<V> axis = to_center * (one / cone.distance);
   const auto frame = frame_around(d, axis);
   const auto turn = sin_cos_turn(d, v);

@@ -9,8 +9,8 @@
 
 #include <hwy/highway.h>
 
+#include "kernel/camera.h"
 #include "kernel/random-inl.h"
-#include "kernel/sampler.h"
 #include "kernel/sobol-inl.h"
 
 HWY_BEFORE_NAMESPACE();
@@ -117,14 +117,13 @@ HWY_INLINE Four<hn::Vec<D>> second_random_at_vertex(D d, const Sampler& sampler,
 template <class D>
 HWY_INLINE hn::Vec<D> time_of_path(D d, const Sampler& sampler, hn::Vec<hn::RebindToUnsigned<D>> pixel,
                                    hn::Vec<hn::RebindToUnsigned<D>> sample) {
-  using T = hn::TFromD<D>;
   constexpr std::uint32_t kVertex = 0xfffffffe;  // above all vertices
   const hn::RebindToUnsigned<D> du;
   const auto bits = sampler.kind == SamplerKind::kIndependent
                         ? independent_at_vertex(du, sampler.seed, pixel, sample, kVertex)
                         : sobol_at_vertex(du, sampler, pixel, sample, kVertex, kSobolTimeOrder, false);
   const auto u = to_unit(d, bits.v[0]);
-  return hn::Floor(u * hn::Set(d, T(0x1p24))) * hn::Set(d, T(0x1p-24));
+  return hn::Floor(u * 0x1p24) * 0x1p-24;
 }
 
 }  // namespace orrery::kernel::HWY_NAMESPACE

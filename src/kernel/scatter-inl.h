@@ -33,13 +33,13 @@ struct Surface {
 
   /// Whether a direction points to the side that the ray came from. This is the test of the next intersection (the sign
   /// of direction . offset), so no ray starts on the wrong side of its sphere.
-  HWY_INLINE hn::Mask<D> same_side(D d, const Vec3<V>& w) const {
+  HWY_INLINE hn::Mask<D> same_side(const Vec3<V>& w) const {
     const auto outward = dot(w, offset);
-    return hn::Or(hn::And(from_outside, outward > hn::Zero(d)), hn::AndNot(from_outside, outward < hn::Zero(d)));
+    return hn::Or(hn::And(from_outside, outward > 0), hn::AndNot(from_outside, outward < 0));
   }
-  HWY_INLINE hn::Mask<D> other_side(D d, const Vec3<V>& w) const {
+  HWY_INLINE hn::Mask<D> other_side(const Vec3<V>& w) const {
     const auto outward = dot(w, offset);
-    return hn::Or(hn::And(from_outside, outward < hn::Zero(d)), hn::AndNot(from_outside, outward > hn::Zero(d)));
+    return hn::Or(hn::And(from_outside, outward < 0), hn::AndNot(from_outside, outward > 0));
   }
 };
 
@@ -55,8 +55,7 @@ inline constexpr double kTwoPi = 6.283185307179586476925;
 /// Mask of the lanes whose kind is `kind`. Kinds are stored at the width of sphere ids.
 template <class D, class E>
 HWY_INLINE hn::Mask<D> is_kind(D d, hn::Vec<IdTag<D>> kinds, E kind) {
-  const IdTag<D> du;
-  return hn::RebindMask(d, kinds == hn::Set(du, static_cast<hn::TFromD<decltype(du)>>(kind)));
+  return hn::RebindMask(d, kinds == kind);
 }
 
 /// Lanes whose material scatters around the mirror direction or the refracted one, with an angle of twice the fuzz.
@@ -69,7 +68,7 @@ HWY_INLINE hn::Mask<D> is_specular(D d, const Surface<D>& at) {
 /// Lanes whose material is delta: a perfect mirror or a dielectric. See pdf_bsdf.
 template <class D>
 HWY_INLINE hn::Mask<D> is_delta(D d, const Surface<D>& at) {
-  const auto mirror = hn::And(is_kind(d, at.kind, MaterialKind::kMetal), at.fuzz == hn::Zero(d));
+  const auto mirror = hn::And(is_kind(d, at.kind, MaterialKind::kMetal), at.fuzz == 0);
   return hn::Or(mirror, is_kind(d, at.kind, MaterialKind::kDielectric));
 }
 
@@ -78,30 +77,29 @@ HWY_INLINE hn::Mask<D> is_delta(D d, const Surface<D>& at) {
 /// Space      w unit
 template <class D, class V = hn::Vec<D>>
 HWY_INLINE hn::Mask<D> is_transmitted(D d, const Surface<D>& at, const Vec3<V>& w) {
-  return hn::AndNot(at.same_side(d, w), is_kind(d, at.kind, MaterialKind::kDielectric));
+  return hn::AndNot(at.same_side(w), is_kind(d, at.kind, MaterialKind::kDielectric));
 }
 
 /// Samples the cosine-weighted hemisphere: the normal plus a point of the unit sphere, normalized.
 template <class D>
-HWY_INLINE Vec3<hn::Vec<D>> sample_lambertian(D d, const Surface<D>& at, const Vec3<hn::Vec<D>>& on_sphere) {
-  const auto w = normalized(d, at.normal + on_sphere);
+HWY_INLINE Vec3<hn::Vec<D>> sample_lambertian(const Surface<D>& at, const Vec3<hn::Vec<D>>& on_sphere) {
+  const auto w = normalized(at.normal + on_sphere);
   // If the two cancel, any direction will do.
-  return select(at.same_side(d, w), w, at.normal);
+  return select(at.same_side(w), w, at.normal);
 }
 
 /// Samples the hemisphere uniformly.
 template <class D>
-HWY_INLINE Vec3<hn::Vec<D>> sample_hemisphere(D d, const Surface<D>& at, const Vec3<hn::Vec<D>>& on_sphere) {
-  const auto w = select(at.same_side(d, on_sphere), on_sphere, negated(on_sphere));
-  return select(at.same_side(d, w), w, at.normal);
+HWY_INLINE Vec3<hn::Vec<D>> sample_hemisphere(const Surface<D>& at, const Vec3<hn::Vec<D>>& on_sphere) {
+  const auto w = select(at.same_side(on_sphere), on_sphere, negated(on_sphere));
+  return select(at.same_side(w), w, at.normal);
 }
 
 /// The unit mirror direction of the arriving ray.
 template <class D>
-HWY_INLINE Vec3<hn::Vec<D>> reflected(D d, const Surface<D>& at) {
-  using T = hn::TFromD<D>;
-  const auto w = normalized(d, neg_mul_add(at.normal, dot(at.direction, at.normal) * hn::Set(d, T(2)), at.direction));
-  return select(at.same_side(d, w), w, at.normal);
+HWY_INLINE Vec3<hn::Vec<D>> reflected(const Surface<D>& at) {
+  const auto w = normalized(neg_mul_add(at.normal, dot(at.direction, at.normal) * 2, at.direction));
+  return select(at.same_side(w), w, at.normal);
 }
 
 /// Samples fuzzy reflection: the direction to a point on the sphere of radius `fuzz` around the tip of the unit mirror
@@ -111,27 +109,25 @@ HWY_INLINE Vec3<hn::Vec<D>> reflected(D d, const Surface<D>& at) {
 ///
 /// Reference  shirley2024, "Fuzzy Reflection"
 template <class D, class V = hn::Vec<D>>
-HWY_INLINE BsdfSample<D> sample_metal(D d, const Surface<D>& at, const Vec3<V>& on_sphere) {
-  const auto mirror = reflected(d, at);
-  const auto w = normalized(d, mul_add(on_sphere, at.fuzz, mirror));
-  const auto sharp = at.fuzz == hn::Zero(d);
-  return {select(sharp, mirror, w), hn::Or(sharp, at.same_side(d, w))};
+HWY_INLINE BsdfSample<D> sample_metal(const Surface<D>& at, const Vec3<V>& on_sphere) {
+  const auto mirror = reflected(at);
+  const auto w = normalized(mul_add(on_sphere, at.fuzz, mirror));
+  const auto sharp = at.fuzz == 0;
+  return {select(sharp, mirror, w), hn::Or(sharp, at.same_side(w))};
 }
 
 /// The Fresnel reflectance according to the material's model.
 template <class D, class V = hn::Vec<D>>
 HWY_INLINE V reflectance(D d, const Surface<D>& at, V cos_arriving, V cos_leaving) {
-  using T = hn::TFromD<D>;
-  const V one = hn::Set(d, T(1));
   // As in the book, Schlick's approximation uses the cosine of the arriving ray on both sides.
-  const V x = one - cos_arriving;
+  const V x = 1 - cos_arriving;
   const V x2 = x * x;
-  const V schlick = hn::MulAdd(one - at.r0, x2 * x2 * x, at.r0);
+  const V schlick = mul_add(1 - at.r0, x2 * x2 * x, at.r0);
   const V s = (at.eta * cos_arriving - cos_leaving) / (at.eta * cos_arriving + cos_leaving);
   const V p = (cos_arriving - at.eta * cos_leaving) / (cos_arriving + at.eta * cos_leaving);
-  const V exact = hn::MulAdd(s, s, p * p) * hn::Set(d, static_cast<T>(0.5));
-  return hn::IfThenElse(is_kind(d, at.fresnel, FresnelKind::kExact), exact,
-                        hn::IfThenElseZero(is_kind(d, at.fresnel, FresnelKind::kSchlick), schlick));
+  const V exact = mul_add(s, s, p * p) * 0.5;
+  return select(is_kind(d, at.fresnel, FresnelKind::kExact), exact,
+                hn::IfThenElseZero(is_kind(d, at.fresnel, FresnelKind::kSchlick), schlick));
 }
 
 /// The direction that a smooth dielectric refracts to, and whether and how much it reflects.
@@ -145,15 +141,12 @@ struct Refraction {
 /// Uses the form of Snell's law with cos^2, which does not cancel near an index ratio of one.
 template <class D, class V = hn::Vec<D>>
 HWY_INLINE Refraction<D> refraction(D d, const Surface<D>& at) {
-  using T = hn::TFromD<D>;
-  const V zero = hn::Zero(d), one = hn::Set(d, T(1));
-  const V cos_arriving = hn::Min(hn::Neg(dot(at.direction, at.normal)), one);
+  const V cos_arriving = min(-dot(at.direction, at.normal), 1);
   const V cos2 = cos_arriving * cos_arriving;
-  const V leaving2 = hn::MulAdd((one - at.eta) * (one + at.eta), one - cos2, cos2);
-  const V cos_leaving = hn::Sqrt(hn::Max(leaving2, zero));
-  const auto w = normalized(d, at.direction * at.eta + at.normal * (at.eta * cos_arriving - cos_leaving));
-  return {select(at.other_side(d, w), w, negated(at.normal)), reflectance(d, at, cos_arriving, cos_leaving),
-          leaving2 < zero};
+  const V leaving2 = mul_add((1 - at.eta) * (1 + at.eta), 1 - cos2, cos2);
+  const V cos_leaving = hn::Sqrt(max(leaving2, 0));
+  const auto w = normalized(at.direction * at.eta + at.normal * (at.eta * cos_arriving - cos_leaving));
+  return {select(at.other_side(w), w, negated(at.normal)), reflectance(d, at, cos_arriving, cos_leaving), leaving2 < 0};
 }
 
 /// Samples a smooth dielectric: reflects if u is below the reflectance, else refracts.
@@ -161,24 +154,22 @@ template <class D, class V = hn::Vec<D>>
 HWY_INLINE Vec3<V> sample_dielectric(D d, const Surface<D>& at, V u) {
   const auto glass = refraction(d, at);
   const auto reflects = hn::Or(glass.is_total, u < glass.reflectance);
-  return select(reflects, reflected(d, at), glass.direction);
+  return select(reflects, reflected(at), glass.direction);
 }
 
 /// Samples a rough dielectric: the direction of a smooth one, perturbed like that of a fuzzy metal. Directions on the
 /// wrong side of the surface are absorbed.
 template <class D, class V = hn::Vec<D>>
 HWY_INLINE BsdfSample<D> sample_rough_dielectric(D d, const Surface<D>& at, V u, V v) {
-  using T = hn::TFromD<D>;
-  const V one = hn::Set(d, T(1));
   const auto glass = refraction(d, at);
-  const V share = hn::IfThenElse(glass.is_total, one, glass.reflectance);
+  const V share = select(glass.is_total, 1, glass.reflectance);
   const auto reflects = u < share;
   // Rescales u to be uniform in 0..1 again.
-  const V rest = hn::IfThenElse(reflects, u, u - share) / hn::IfThenElse(reflects, share, one - share);
-  const auto axis = select(reflects, reflected(d, at), glass.direction);
-  const auto w = normalized(d, mul_add(sample_unit_sphere(d, hn::Min(rest, one), v), at.fuzz, axis));
-  const auto sharp = at.fuzz == hn::Zero(d);
-  const auto same_side = at.same_side(d, w), other_side = at.other_side(d, w);
+  const V rest = select(reflects, u, u - share) / select(reflects, share, 1 - share);
+  const auto axis = select(reflects, reflected(at), glass.direction);
+  const auto w = normalized(mul_add(sample_unit_sphere(d, min(rest, 1), v), at.fuzz, axis));
+  const auto sharp = at.fuzz == 0;
+  const auto same_side = at.same_side(w), other_side = at.other_side(w);
   const auto stays = hn::Or(hn::And(reflects, same_side), hn::AndNot(reflects, other_side));
   return {select(sharp, axis, w), hn::Or(sharp, stays)};
 }
@@ -189,12 +180,12 @@ HWY_INLINE BsdfSample<D> sample_bsdf(D d, const Features& features, const Surfac
   BsdfSample<D> out{at.normal, hn::FirstN(d, hn::Lanes(d))};
   const Vec3<V> on_sphere = sample_unit_sphere(d, random.v[0], random.v[1]);
   const auto among = [&](MaterialKind kind) { return is_kind(d, at.kind, kind); };
-  out.direction = select(among(MaterialKind::kLambertian), sample_lambertian(d, at, on_sphere), out.direction);
+  out.direction = select(among(MaterialKind::kLambertian), sample_lambertian(at, on_sphere), out.direction);
   if (features.hemisphere)
-    out.direction = select(among(MaterialKind::kHemisphere), sample_hemisphere(d, at, on_sphere), out.direction);
+    out.direction = select(among(MaterialKind::kHemisphere), sample_hemisphere(at, on_sphere), out.direction);
   const auto metal = among(MaterialKind::kMetal);
   if (!hn::AllFalse(d, metal)) {
-    const auto sampled = sample_metal(d, at, on_sphere);
+    const auto sampled = sample_metal(at, on_sphere);
     out.direction = select(metal, sampled.direction, out.direction);
     out.alive = hn::Or(hn::AndNot(metal, out.alive), hn::And(metal, sampled.alive));
   }
@@ -221,14 +212,12 @@ HWY_INLINE BsdfSample<D> sample_bsdf(D d, const Features& features, const Surfac
 /// Precision  s^2 from the difference of the two unit vectors, since 1 - c^2 cancels for small fuzz
 template <class D, class V = hn::Vec<D>>
 HWY_INLINE V pdf_metal(D d, const Surface<D>& at, const Vec3<V>& w) {
-  using T = hn::TFromD<D>;
-  const V zero = hn::Zero(d), one = hn::Set(d, T(1));
-  const auto between = w - reflected(d, at);
+  const auto between = w - reflected(at);
   const V versine_twice = dot(between, between);  // 2 - 2c
-  const V s2 = versine_twice * hn::NegMulAdd(versine_twice, hn::Set(d, static_cast<T>(0.25)), one);
-  const V rest = hn::NegMulAdd(at.fuzz, at.fuzz, s2);  // s^2 - f^2, negative inside the cone
-  const auto inside = hn::And(rest < zero, versine_twice < hn::Set(d, T(2)));
-  const V density = (one - s2 - rest) / (at.fuzz * hn::Sqrt(hn::Neg(rest)) * hn::Set(d, static_cast<T>(kTwoPi)));
+  const V s2 = versine_twice * neg_mul_add(versine_twice, set(d, 0.25), 1);
+  const V rest = neg_mul_add(at.fuzz, at.fuzz, s2);  // s^2 - f^2, negative inside the cone
+  const auto inside = hn::And(rest < 0, versine_twice < 2);
+  const V density = (1 - s2 - rest) / (at.fuzz * hn::Sqrt(-rest) * kTwoPi);
   return hn::IfThenElseZero(inside, density);
 }
 
@@ -239,15 +228,13 @@ HWY_INLINE V pdf_metal(D d, const Surface<D>& at, const Vec3<V>& w) {
 /// Space      w unit
 template <class D, class V = hn::Vec<D>>
 HWY_INLINE V pdf_bsdf(D d, const Features& features, const Surface<D>& at, const Vec3<V>& w) {
-  using T = hn::TFromD<D>;
   const auto among = [&](MaterialKind kind) { return is_kind(d, at.kind, kind); };
-  const V cosine = hn::Max(dot(w, at.normal), hn::Zero(d));
-  V pdf = hn::IfThenElseZero(among(MaterialKind::kLambertian), cosine * hn::Set(d, static_cast<T>(2 / kTwoPi)));
-  if (features.hemisphere)
-    pdf = hn::IfThenElse(among(MaterialKind::kHemisphere), hn::Set(d, static_cast<T>(1 / kTwoPi)), pdf);
+  const V cosine = max(dot(w, at.normal), 0);
+  V pdf = hn::IfThenElseZero(among(MaterialKind::kLambertian), cosine * (2 / kTwoPi));
+  if (features.hemisphere) pdf = select(among(MaterialKind::kHemisphere), 1 / kTwoPi, pdf);
   const auto metal = among(MaterialKind::kMetal);
-  if (!hn::AllFalse(d, metal)) pdf = hn::IfThenElse(metal, pdf_metal(d, at, w), pdf);
-  return hn::IfThenElseZero(at.same_side(d, w), pdf);
+  if (!hn::AllFalse(d, metal)) pdf = select(metal, pdf_metal(d, at, w), pdf);
+  return hn::IfThenElseZero(at.same_side(w), pdf);
 }
 
 /// The BSDF times the cosine to the normal. For every material that is not delta this is albedo * pdf_bsdf; for delta

@@ -6,15 +6,10 @@
 #include <cstdint>
 
 #include "kernel/camera.h"
-#include "kernel/environment.h"
-#include "kernel/index_array.h"
 #include "kernel/lights.h"
 #include "kernel/material.h"
-#include "kernel/pixel_filter.h"
-#include "kernel/pixel_place.h"
-#include "kernel/sampler.h"
-#include "kernel/sphere_array.h"
-#include "kernel/texture.h"
+#include "kernel/pixel_sum.h"
+#include "kernel/sphere.h"
 #include "math/vec3.h"
 
 namespace orrery::kernel {

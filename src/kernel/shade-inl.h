@@ -56,12 +56,11 @@ struct alignas(64) PathPayload {
 
 template <class D, class V = hn::Vec<D>>
 HWY_INLINE Vec3<V> background(D d, const Background& sky, bool has_gradient, const Vec3<V>& direction) {
-  using T = hn::TFromD<D>;
   const auto bottom = set3(d, sky.bottom);
   if (!has_gradient) return bottom;
-  const V half = hn::Set(d, static_cast<T>(0.5));
-  const V a = hn::MulAdd(direction.y, half, half);
-  const V one_minus_a = hn::Set(d, T(1)) - a;
+  const V half = set(d, 0.5);
+  const V a = mul_add(direction.y, half, half);
+  const V one_minus_a = 1 - a;
   return mul_add(set3(d, sky.top), a, bottom * one_minus_a);
 }
 
@@ -69,12 +68,11 @@ HWY_INLINE Vec3<V> background(D d, const Background& sky, bool has_gradient, con
 /// the others by their survival probability, which keeps the estimate unbiased.
 ///
 /// Reference  arvo1990
-template <class D, class V = hn::Vec<D>>
-HWY_INLINE hn::Mask<D> survives_roulette(D d, V u, Vec3<V>& throughput) {
-  using T = hn::TFromD<D>;
+template <class V>
+HWY_INLINE auto survives_roulette(V u, Vec3<V>& throughput) {
   const V brightest = max(throughput);
-  const V chance = hn::Min(brightest * hn::Set(d, static_cast<T>(kRouletteGain)), hn::Set(d, T(1)));
-  const auto stronger = hn::Set(d, hn::TFromD<D>(1)) / chance;
+  const V chance = min(brightest * kRouletteGain, 1);
+  const auto stronger = 1 / chance;
   const auto survives = u < chance;
   throughput = {throughput.x * stronger, throughput.y * stronger, throughput.z * stronger};
   return survives;
@@ -102,7 +100,6 @@ struct Arrivals {
 template <class D, Loop kLoop>
 class Shader {
   using T = hn::TFromD<D>;
-  using Id = hn::TFromD<IdTag<D>>;
   using V = hn::Vec<D>;
   using Ids = hn::Vec<IdTag<D>>;
   using Stream = PathStreamOf<T>;
@@ -152,7 +149,7 @@ class Shader {
     Arrivals<D> at;
     const auto active = hn::FirstN(d, static_cast<std::size_t>(packet.count - v));
     at.hits = hn::Load(du, packet.hit + v);
-    at.hit = hn::AndNot(hn::RebindMask(d, at.hits == hn::Set(du, static_cast<Id>(kNoSphere))), active);
+    at.hit = hn::AndNot(hn::RebindMask(d, at.hits == kNoSphere), active);
     at.missed = hn::AndNot(at.hit, active);
     at.ray = load_rays(d, packet, v);
     at.distance = hn::Load(d, packet.distance + v);
@@ -186,16 +183,16 @@ class Shader {
     } else if (features_.lit && scene_.environment != nullptr) {
       radiance = depth_ == 0 ? environment_radiance(d, *scene_.environment, at.ray.direction)
                              : weighted_environment(d, scene_, at.ray.direction, at.pdf);
-      groups = hn::Set(du, static_cast<Id>(scene_.environment->light_group));
+      groups = set(du, scene_.environment->light_group);
     } else {
       radiance = background(d, scene_.background, features_.sky, at.ray.direction);
     }
     const Vec3<V> light = radiance * at.throughput;
     add(at, at.missed, light, groups, Lobe::kBackground);
     if (kLoop.records) {
-      const V one = hn::Set(d, T(1)), zero = hn::Zero(d);
-      recorder(at).guide(d, hn::And(at.missed, guided(at)),
-                         {hn::Min(light.x, one), hn::Min(light.y, one), hn::Min(light.z, one)}, {zero, zero, zero});
+      const V zero = hn::Zero(d);
+      recorder(at).guide(d, hn::And(at.missed, guided(at)), {min(light.x, 1), min(light.y, 1), min(light.z, 1)},
+                         {zero, zero, zero});
     }
   }
 
@@ -203,8 +200,7 @@ class Shader {
   HWY_INLINE void emit(const Arrivals<D>& at) {
     if (scene_.emission == nullptr || scene_.shading != Shading::kPath) return;
     auto source = emitted(d, scene_, at.hits, at.hit);
-    const V zero = hn::Zero(d);
-    const auto dark = hn::And(hn::And(source.radiance.x == zero, source.radiance.y == zero), source.radiance.z == zero);
+    const auto dark = hn::And(hn::And(source.radiance.x == 0, source.radiance.y == 0), source.radiance.z == 0);
     const auto shines = hn::AndNot(dark, at.hit);
     if (hn::AllFalse(d, shines)) return;
     if (features_.extended && scene_.textures != nullptr)
@@ -212,7 +208,7 @@ class Shader {
                                                               at.cone.width2, at.times, source.radiance);
     if (depth_ > 0) {
       const Vertex<D> origin{
-          at.ray.origin, at.ray.origin_low, normal_along(d, at.ray.offset, at.ray.direction), {}, at.times};
+          at.ray.origin, at.ray.origin_low, normal_along(at.ray.offset, at.ray.direction), {}, at.times};
       source.radiance = source.radiance * emitter_weight(d, scene_, origin, at.hits, at.pdf);
     }
     add(at, shines, source.radiance * at.throughput, source.group, Lobe::kEmission);
@@ -245,7 +241,7 @@ class Shader {
 
   /// Ends paths at the hits with the color of a shading other than kPath.
   HWY_INLINE void show(const Arrivals<D>& at, const Lookup<D>& look) {
-    const V half = hn::Set(d, static_cast<T>(0.5));
+    const V half = set(d, 0.5);
     const bool flat = scene_.shading == Shading::kFlat;
     add(at, at.hit, flat ? look.albedo : mul_add(look.surface.normal, half, {half, half, half}), hn::Zero(du),
         Lobe::kBackground);
@@ -261,15 +257,14 @@ class Shader {
         second_random_at_vertex(d, scene_.sampler, at.pixels, at.samples, depth_ + 1, chooses_light(scene_));
     const Vec3<V>& center = look.sphere.center;
     const auto origin = center + surface.offset;
-    const auto unit = normalized(d, surface.offset);
+    const auto unit = normalized(surface.offset);
     Vertex<D> vertex{origin, sum_error(center, surface.offset, origin),
                      select(surface.from_outside, unit, negated(unit)), at.cone, at.times};
     if (has_cones()) vertex.cone = {at.cone.width2, hn::Zero(d), lobe_slope2(d, surface, scene_.cone_width)};
     const auto sample = sample_light(d, scene_, vertex, random);
     const V pdf = pdf_bsdf(d, features_, surface, sample.direction);
-    const V factor = light_sample_factor(d, scene_.direct_lighting, pdf * sample.inverse_pdf / sample.probability);
-    const V zero = hn::Zero(d);
-    const auto lanes = hn::And(scatters, hn::And(sample.probability > zero, factor > zero));
+    const V factor = light_sample_factor(scene_.direct_lighting, pdf * sample.inverse_pdf / sample.probability);
+    const auto lanes = hn::And(scatters, hn::And(sample.probability > 0, factor > 0));
     if (hn::AllFalse(d, lanes)) return;
 
     auto& shadow = stream_.lit.shadow;
@@ -302,7 +297,7 @@ class Shader {
     Vec3<V> throughput = tinted;
     auto survives = hn::And(at.hit, scattered.alive);
     if (features_.lit) survives = hn::AndNot(is_kind(d, surface.kind, MaterialKind::kEmitter), survives);
-    if (plays_roulette) survives = hn::And(survives, survives_roulette(d, random.v[2], throughput));
+    if (plays_roulette) survives = hn::And(survives, survives_roulette(random.v[2], throughput));
     const Compactor<D> compactor(d, survives);
     compactor.store3(d, look.sphere.center, stream_.base, alive);
     compactor.store3(d, surface.offset, stream_.offset, alive);
@@ -315,7 +310,7 @@ class Shader {
     if (features_.lit) {
       const V delta = hn::Set(d, std::numeric_limits<T>::infinity());
       const V pdf = pdf_bsdf(d, features_, surface, scattered.direction);
-      compactor.store(d, hn::IfThenElse(has_pdf(at, look), pdf, delta), stream_.lit.pdf + alive);
+      compactor.store(d, select(has_pdf(at, look), pdf, delta), stream_.lit.pdf + alive);
     }
     if (has_cones()) {
       const auto cone = scattered_cone(d, at.cone, surface, look.sphere.radius, scattered.direction, scene_.cone_width);
@@ -344,7 +339,7 @@ class Shader {
   }
   /// Paths that only delta materials have scattered: their next surface or background is their guide.
   HWY_INLINE hn::Mask<D> guided(const Arrivals<D>& at) const {
-    const auto only_delta = hn::Set(du, static_cast<Id>(kOnlyDeltaBit));
+    const auto only_delta = set(du, kOnlyDeltaBit);
     return hn::RebindMask(d, hn::And(at.history, only_delta) == only_delta);
   }
   HWY_INLINE Ids history_after(const Arrivals<D>& at, const Surface<D>& surface, const Vec3<V>& direction) const {

@@ -1,7 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
+#include <cstring>
+#include <limits>
 
 namespace orrery::kernel {
 
@@ -15,5 +18,65 @@ struct alignas(32) Sphere {
 
 /// Id that denotes no sphere, for camera rays and for rays that hit nothing.
 inline constexpr std::uint32_t kNoSphere = 0xffffffffu;
+
+/// Non-owning view of unsigned integers of 0, 1, 2 or 4 bytes each.
+///
+/// Reading an element loads four bytes from its start, so three bytes after the last element must be readable.
+struct IndexArray {
+  const unsigned char* data = nullptr;
+  std::uint32_t stride = 0;  ///< bytes; 0: all are equal, and stored in four bytes
+  std::uint32_t mask = 0;    ///< mask of the bits that belong to an element
+
+  IndexArray() = default;
+  IndexArray(const unsigned char* bytes, std::uint32_t bytes_each)
+      : data(bytes), stride(bytes_each), mask(bytes_each % 4 == 0 ? 0xffffffffu : (1u << 8 * bytes_each) - 1) {}
+  IndexArray(const std::uint32_t* elements)  // NOLINT(google-explicit-constructor): implicit view of an array
+      : IndexArray(reinterpret_cast<const unsigned char*>(elements), sizeof(std::uint32_t)) {}
+
+  std::uint32_t operator[](std::size_t i) const noexcept {
+    std::uint32_t element = 0;
+    std::memcpy(&element, data + i * stride, sizeof(element));
+    return element & mask;
+  }
+};
+
+/// Non-owning view of the spheres of a scene.
+///
+/// The first spheres are stored in full. The others may be compact if that is lossless: centres in single precision,
+/// and a single radius for all, one per sphere, or one per sphere from a palette. The kernel reads each centre as a
+/// vector of four floats.
+struct SphereArray {
+  const Sphere* plain = nullptr;
+  std::size_t plain_count = std::numeric_limits<std::size_t>::max();  ///< number of spheres in `plain`, the first ones
+  const float* centers = nullptr;                ///< x, y, z of the others, plus one element of padding
+  const float* radii = nullptr;                  ///< radii of the others; null: from the palette
+  const std::uint8_t* radius_indices = nullptr;  ///< palette indices of the others; null: the first radius for all
+  const double* radius_palette = nullptr;
+
+  SphereArray() = default;
+  SphereArray(const Sphere* spheres)
+      : plain(spheres) {}  // NOLINT(google-explicit-constructor): implicit view of an array
+
+  Sphere operator[](std::size_t id) const noexcept {
+    if (id < plain_count) return plain[id];
+    const std::size_t i = id - plain_count;
+    return {static_cast<double>(centers[3 * i]), static_cast<double>(centers[3 * i + 1]),
+            static_cast<double>(centers[3 * i + 2]), radius_of_compact(i)};
+  }
+
+  /// The radius of a compact sphere.
+  double radius_of_compact(std::size_t i) const noexcept {
+    return radii != nullptr ? static_cast<double>(radii[i])
+                            : radius_palette[radius_indices != nullptr ? radius_indices[i] : 0];
+  }
+
+  /// The address of a sphere's centre, for prefetching.
+  const void* address(std::size_t id) const noexcept {
+    return id < plain_count ? static_cast<const void*>(plain + id)
+                            : static_cast<const void*>(centers + 3 * (id - plain_count));
+  }
+
+  bool all_plain() const noexcept { return centers == nullptr; }
+};
 
 }  // namespace orrery::kernel

@@ -44,7 +44,7 @@ HWY_INLINE Spheres<D> load_spheres(D d, const SceneView& scene, const hn::TFromD
       d, [&](std::size_t i) { return &(id[i] < scene.moving_count ? scene.motion[id[i]] : kAtRest).x; }, change);
   const auto time = hn::Load(d, times);
   return {mul_add(Vec3<hn::Vec<D>>{change[0], change[1], change[2]}, time, at_opening.center),
-          hn::MulAdd(change[3], time, at_opening.radius)};
+          mul_add(change[3], time, at_opening.radius)};
 }
 
 /// Stores ids from which spheres can be loaded: those of the hits, and the last sphere, which is compact if any is, in
@@ -53,7 +53,7 @@ template <class D>
 HWY_INLINE void store_loadable(D, const SceneView& scene, hn::Vec<IdTag<D>> hits, hn::TFromD<IdTag<D>>* id) {
   const IdTag<D> du;
   static_assert(kNoSphere == ~std::uint32_t{0});
-  hn::Store(hn::Min(hits, hn::Set(du, static_cast<hn::TFromD<IdTag<D>>>(scene.sphere_count - 1))), du, id);
+  hn::Store(min(hits, static_cast<hn::TFromD<IdTag<D>>>(scene.sphere_count - 1)), du, id);
 }
 
 /// Loads the spheres of the hits; lanes without a hit get the last one.
@@ -106,12 +106,12 @@ HWY_INLINE Lookup<D> reach_surface(D d, const SceneView& scene, const Rays<D>& r
   Surface<D>& surface = at.surface;
   const auto is_self = hn::RebindMask(d, hits == ray.self);
   surface.direction = ray.direction;
-  const auto point = hit_point<D, kPrecision>(d, ray, at.sphere, is_self, distance);
+  const auto point = hit_point<D, kPrecision>(ray, at.sphere, is_self, distance);
   surface.offset = point.offset;
-  surface.from_outside = dot(ray.direction, surface.offset) < hn::Zero(d);
+  surface.from_outside = dot(ray.direction, surface.offset) < 0;
   surface.normal = select(surface.from_outside, point.outward, negated(point.outward));
-  surface.eta = hn::IfThenElse(surface.from_outside, at.eta_outside, at.eta_inside);
-  surface.r0 = hn::IfThenElse(surface.from_outside, at.r0_outside, at.r0_inside);
+  surface.eta = select(surface.from_outside, at.eta_outside, at.eta_inside);
+  surface.r0 = select(surface.from_outside, at.r0_outside, at.r0_inside);
   return at;
 }
 

@@ -33,7 +33,7 @@ struct TextureIndices {
     HWY_ALIGN hn::TFromD<IdTag<D>> id[kMax];
     HWY_ALIGN T is_set[kMax];
     hn::Store(spheres, IdTag<D>(), id);
-    hn::Store(hn::IfThenElseZero(lanes, hn::Set(d, T(1))), d, is_set);
+    hn::Store(hn::IfThenElseZero(lanes, set(d, 1)), d, is_set);
     for (std::size_t i = 0; i < hn::Lanes(d); ++i) {
       const MaterialTextures of =
           is_set[i] != T(0) ? scene.material_textures[scene.sphere_materials[id[i]]] : MaterialTextures{};
@@ -98,7 +98,7 @@ HWY_NOINLINE Vec3<V> textured_radiance(D d, const SceneView& scene, Rays<D> ray,
   const TextureIndices<D> index(d, scene, hits, lanes);
   if (!index.has_radiance) return radiance;
   const auto sphere = load_spheres(d, scene, hits, times);
-  const auto at = hit_point<D, kPrecision>(d, ray, sphere, hn::RebindMask(d, hits == ray.self), distance);
+  const auto at = hit_point<D, kPrecision>(ray, sphere, hn::RebindMask(d, hits == ray.self), distance);
   const auto point = texture_point<D, kPrecision>(d, ray, sphere, at.offset, at.outward, distance,
                                                   width2 / (sphere.radius * sphere.radius));
   return replaced_by_textures(d, scene.textures, index.radiance, point, radiance);

@@ -11,6 +11,8 @@
 
 #include <array>
 
+#include "math/lanes-inl.h"
+
 HWY_BEFORE_NAMESPACE();
 namespace orrery::math::HWY_NAMESPACE {
 
@@ -55,7 +57,7 @@ HWY_INLINE V product_error(D d, V a, V b, V product) {
   return hn::MulSub(a, b, product);
 #else
   using T = hn::TFromD<D>;
-  const V splitter = hn::Set(d, static_cast<T>(sizeof(T) == 8 ? 0x1p27 + 1 : 0x1p12 + 1));
+  const V splitter = set(d, sizeof(T) == 8 ? 0x1p27 + 1 : 0x1p12 + 1);
   const V scaled_a = a * splitter, scaled_b = b * splitter;
   const V high_a = scaled_a - (scaled_a - a), low_a = a - high_a;
   const V high_b = scaled_b - (scaled_b - b), low_b = b - high_b;
@@ -76,25 +78,25 @@ template <class D, class V = hn::Vec<D>>
 HWY_INLINE SinCos<V> sin_cos_turn(D d, V u) {
   using T = hn::TFromD<D>;
   // Range reduction to the nearest multiple of 90 degrees: the remainder is exact and at most an eighth of a turn.
-  const V quarters = u * hn::Set(d, T(4));
+  const V quarters = u * 4;
   const V q = hn::Round(quarters);
   const V r = quarters - q;
   const V r2 = r * r;
   constexpr std::size_t kTerms = sizeof(T) == 8 ? 9 : 5;
-  V s = hn::Set(d, static_cast<T>(kSinQuarter[kTerms - 1]));
-  V c = hn::Set(d, static_cast<T>(kCosQuarter[kTerms - 1]));
+  V s = set(d, kSinQuarter[kTerms - 1]);
+  V c = set(d, kCosQuarter[kTerms - 1]);
   HWY_UNROLL(8)
   for (std::size_t i = 1; i < kTerms; ++i) {
-    s = hn::MulAdd(s, r2, hn::Set(d, static_cast<T>(kSinQuarter[kTerms - 1 - i])));
-    c = hn::MulAdd(c, r2, hn::Set(d, static_cast<T>(kCosQuarter[kTerms - 1 - i])));
+    s = mul_add(s, r2, kSinQuarter[kTerms - 1 - i]);
+    c = mul_add(c, r2, kCosQuarter[kTerms - 1 - i]);
   }
   s = s * r;
-  const auto is1 = q == hn::Set(d, T(1)), is2 = q == hn::Set(d, T(2)), is3 = q == hn::Set(d, T(3));
+  const auto is1 = q == 1, is2 = q == 2, is3 = q == 3;
   const auto odd = hn::Or(is1, is3);
-  const V sin_magnitude = hn::IfThenElse(odd, c, s);
-  const V cos_magnitude = hn::IfThenElse(odd, s, c);
-  return {hn::IfThenElse(hn::Or(is2, is3), hn::Neg(sin_magnitude), sin_magnitude),
-          hn::IfThenElse(hn::Or(is1, is2), hn::Neg(cos_magnitude), cos_magnitude)};
+  const V sin_magnitude = select(odd, c, s);
+  const V cos_magnitude = select(odd, s, c);
+  return {select(hn::Or(is2, is3), -sin_magnitude, sin_magnitude),
+          select(hn::Or(is1, is2), -cos_magnitude, cos_magnitude)};
 }
 
 /// Returns the angle of the point (x, y) from the x axis towards the y axis, in turns; 0 for the origin.
@@ -106,29 +108,26 @@ HWY_INLINE SinCos<V> sin_cos_turn(D d, V u) {
 template <class D, class V = hn::Vec<D>>
 HWY_INLINE V atan2_turn(D d, V y, V x) {
   using T = hn::TFromD<D>;
-  const V zero = hn::Zero(d);
   const V across = hn::Abs(x), up = hn::Abs(y);
   const auto steep = up > across;
-  const V a = hn::IfThenElse(steep, across, up), b = hn::IfThenElse(steep, up, across);
+  const V a = select(steep, across, up), b = select(steep, up, across);
   // The nearest multiple of a sixteenth of a turn is subtracted before the division, by the addition theorem of the
   // tangent. The rest is at most a 32nd of a turn, where the series converges fast.
   constexpr double kTan16 = 0.41421356237309504880, kTan32 = 0.19891236737965800691, kTan3of32 = 0.66817863791929891999;
-  const auto is1 = a > b * hn::Set(d, static_cast<T>(kTan32)), is2 = a > b * hn::Set(d, static_cast<T>(kTan3of32));
-  const V c = hn::IfThenElse(is2, hn::Set(d, T(1)), hn::IfThenElseZero(is1, hn::Set(d, static_cast<T>(kTan16))));
-  const V base = hn::IfThenElse(is2, hn::Set(d, static_cast<T>(0.125)),
-                                hn::IfThenElseZero(is1, hn::Set(d, static_cast<T>(0.0625))));
-  const V divisor = hn::MulAdd(c, a, b);
-  const V r = hn::NegMulAdd(c, b, a) / hn::IfThenElse(divisor == zero, hn::Set(d, T(1)), divisor);
+  const auto is1 = a > b * kTan32, is2 = a > b * kTan3of32;
+  const V c = select(is2, 1, hn::IfThenElseZero(is1, set(d, kTan16)));
+  const V base = select(is2, 0.125, hn::IfThenElseZero(is1, set(d, 0.0625)));
+  const V divisor = mul_add(c, a, b);
+  const V r = neg_mul_add(c, b, a) / select(divisor == 0, 1, divisor);
   const V r2 = r * r;
   constexpr std::size_t kTerms = sizeof(T) == 8 ? 11 : 5;
-  V series = hn::Set(d, static_cast<T>(kAtanTurn[kTerms - 1]));
+  V series = set(d, kAtanTurn[kTerms - 1]);
   HWY_UNROLL(10)
-  for (std::size_t i = 1; i < kTerms; ++i)
-    series = hn::MulAdd(series, r2, hn::Set(d, static_cast<T>(kAtanTurn[kTerms - 1 - i])));
-  V turn = hn::MulAdd(series, r, base);
-  turn = hn::IfThenElse(steep, hn::Set(d, static_cast<T>(0.25)) - turn, turn);
-  turn = hn::IfThenElse(x < zero, hn::Set(d, static_cast<T>(0.5)) - turn, turn);
-  return hn::IfThenElse(y < zero, hn::Neg(turn), turn);
+  for (std::size_t i = 1; i < kTerms; ++i) series = mul_add(series, r2, kAtanTurn[kTerms - 1 - i]);
+  V turn = mul_add(series, r, base);
+  turn = select(steep, 0.25 - turn, turn);
+  turn = select(x < 0, 0.5 - turn, turn);
+  return select(y < 0, -turn, turn);
 }
 
 /// Converts an integer below 2^31 (2^52 in 64-bit lanes) to floating point; exact in double, rounded in float.
@@ -137,7 +136,7 @@ HWY_INLINE hn::Vec<D> to_real(D d, U bits) {
   if constexpr (sizeof(hn::TFromD<D>) == 8) {
     // The low bits of 2^52 + n are n: no instruction set below AVX-512 converts 64-bit integers.
     const hn::RebindToUnsigned<D> du;
-    return hn::BitCast(d, hn::Or(bits, hn::Set(du, 0x4330000000000000u))) - hn::Set(d, 0x1p52);
+    return hn::BitCast(d, hn::Or(bits, hn::Set(du, 0x4330000000000000u))) - 0x1p52;
   } else {
     const hn::RebindToSigned<D> di;
     return hn::ConvertTo(d, hn::BitCast(di, bits));

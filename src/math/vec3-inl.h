@@ -11,6 +11,8 @@
 
 #include <cstddef>
 
+#include "math/lanes-inl.h"
+
 HWY_BEFORE_NAMESPACE();
 namespace orrery::math::HWY_NAMESPACE {
 
@@ -42,34 +44,34 @@ HWY_INLINE Vec3<V> operator*(const Vec3<V>& a, const Vec3<V>& b) {
 /// Returns the largest component.
 template <class V>
 HWY_INLINE V max(const Vec3<V>& a) {
-  return hn::Max(a.x, hn::Max(a.y, a.z));
+  return max(a.x, max(a.y, a.z));
 }
 template <class V>
 HWY_INLINE V dot(const Vec3<V>& a, const Vec3<V>& b) {
-  return hn::MulAdd(a.z, b.z, hn::MulAdd(a.y, b.y, a.x * b.x));
+  return mul_add(a.z, b.z, mul_add(a.y, b.y, a.x * b.x));
 }
 /// Returns a s + b; each component is rounded once, except without fused multiply-add (SSE4).
 template <class V>
 HWY_INLINE Vec3<V> mul_add(const Vec3<V>& a, V s, const Vec3<V>& b) {
-  return {hn::MulAdd(a.x, s, b.x), hn::MulAdd(a.y, s, b.y), hn::MulAdd(a.z, s, b.z)};
+  return {mul_add(a.x, s, b.x), mul_add(a.y, s, b.y), mul_add(a.z, s, b.z)};
 }
 /// Returns b - a s; rounded as by mul_add().
 template <class V>
 HWY_INLINE Vec3<V> neg_mul_add(const Vec3<V>& a, V s, const Vec3<V>& b) {
-  return {hn::NegMulAdd(a.x, s, b.x), hn::NegMulAdd(a.y, s, b.y), hn::NegMulAdd(a.z, s, b.z)};
+  return {neg_mul_add(a.x, s, b.x), neg_mul_add(a.y, s, b.y), neg_mul_add(a.z, s, b.z)};
 }
 template <class V>
 HWY_INLINE Vec3<V> negated(const Vec3<V>& a) {
-  return {hn::Neg(a.x), hn::Neg(a.y), hn::Neg(a.z)};
+  return {-a.x, -a.y, -a.z};
 }
 template <class M, class V>
 HWY_INLINE Vec3<V> select(M mask, const Vec3<V>& yes, const Vec3<V>& no) {
-  return {hn::IfThenElse(mask, yes.x, no.x), hn::IfThenElse(mask, yes.y, no.y), hn::IfThenElse(mask, yes.z, no.z)};
+  return {select(mask, yes.x, no.x), select(mask, yes.y, no.y), select(mask, yes.z, no.z)};
 }
 /// Returns unit vectors; NaN in lanes whose vector is zero. Callers rely on comparisons with NaN being false.
-template <class D, class V>
-HWY_INLINE Vec3<V> normalized(D d, const Vec3<V>& a) {
-  return a * (hn::Set(d, static_cast<hn::TFromD<D>>(1)) / hn::Sqrt(dot(a, a)));
+template <class V>
+HWY_INLINE Vec3<V> normalized(const Vec3<V>& a) {
+  return a * (1 / hn::Sqrt(dot(a, a)));
 }
 template <class D, class T>
 HWY_INLINE Vec3<hn::Vec<D>> load3(D d, const T* x, const T* y, const T* z) {
@@ -83,15 +85,11 @@ HWY_INLINE void store3(D d, const Vec3<hn::Vec<D>>& v, T (&to)[3][kSize], int at
 }
 template <class D, class T>
 HWY_INLINE Vec3<hn::Vec<D>> set3(D d, const T* v) {
-  using F = hn::TFromD<D>;
-  return {hn::Set(d, static_cast<F>(v[0])), hn::Set(d, static_cast<F>(v[1])), hn::Set(d, static_cast<F>(v[2]))};
+  return {set(d, v[0]), set(d, v[1]), set(d, v[2])};
 }
 template <class D, class V>
 requires requires(const V& v) { v.x + v.y + v.z; }
-HWY_INLINE Vec3<hn::Vec<D>> set3(D d, const V& v) {
-  using F = hn::TFromD<D>;
-  return {hn::Set(d, static_cast<F>(v.x)), hn::Set(d, static_cast<F>(v.y)), hn::Set(d, static_cast<F>(v.z))};
-}
+HWY_INLINE Vec3<hn::Vec<D>> set3(D d, const V& v) { return {set(d, v.x), set(d, v.y), set(d, v.z)}; }
 
 /// Returns the rounding error of a - b rounded to `difference`: difference + result equals a - b exactly.
 ///

@@ -15,7 +15,6 @@
 #include "measure/study_renderer.h"
 #include "render/result.h"
 #include "render/settings.h"
-#include "render/statistics.h"
 
 namespace orrery::measure {
 namespace {

@@ -10,7 +10,7 @@
 #include <fmt/core.h>
 
 #include "base/text.h"
-#include "math/single.h"
+#include "math/scalar.h"
 #include "points/rows.h"
 #include "scene/number_array.h"
 #include "scene/scene.h"

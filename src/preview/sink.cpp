@@ -5,7 +5,6 @@
 
 #include "film/partial.h"
 #include "film/picture.h"
-#include "film/rendered_pixels.h"
 
 namespace orrery::preview {
 

@@ -20,7 +20,7 @@
 #include "job/rendering.h"
 #include "python/arrays.h"
 #include "python/picture.h"
-#include "render/progress.h"
+#include "render/settings.h"
 
 namespace py = pybind11;
 

@@ -11,15 +11,13 @@
 #include "film/display_error.h"
 #include "film/partial.h"
 #include "render/allocation.h"
-#include "render/light_guide.h"
 #include "render/noise_estimate.h"
-#include "render/progress_reporter.h"
+#include "render/pixel_statistics.h"
 #include "render/progressive_sampling.h"
+#include "render/result.h"
 #include "render/settings.h"
 #include "render/small_emitters.h"
-#include "render/statistics.h"
-#include "render/tile_pool.h"
-#include "render/tile_renderer.h"
+#include "render/tiles.h"
 
 namespace orrery::render {
 namespace {

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cstddef>
 
 namespace orrery::render {
 namespace {
@@ -80,13 +81,6 @@ std::vector<float> sums_down_columns(const std::vector<float>& rows, int width, 
 }
 
 }  // namespace
-
-PixelStatistics::PixelStatistics(int width_px, int height_px)
-    : width(width_px),
-      height(height_px),
-      samples(static_cast<std::size_t>(width_px) * static_cast<std::size_t>(height_px)),
-      light(samples.size()),
-      variance(samples.size()) {}
 
 std::vector<PixelBlock> blocks_of(int width_px, int height_px) {
   std::vector<PixelBlock> out;

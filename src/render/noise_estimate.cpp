@@ -9,8 +9,7 @@
 #include "film/display_error.h"
 #include "render/light_guide.h"
 #include "render/small_emitters.h"
-#include "render/tile_pool.h"
-#include "render/tile_renderer.h"
+#include "render/tiles.h"
 
 namespace orrery::render {
 namespace {
@@ -23,8 +22,8 @@ constexpr double kMinEffectiveCount = 3;
 /// Errors are sparse if effectively less than one pixel in kSparse makes up the mean.
 constexpr double kSparse = 64;
 
-/// Side of a cell, px. Windows larger than kWideReach are 3 x 3 and 9 x 9 cells around the pixel's own.
-constexpr int kCell = 16;
+/// Side of a patch, px. Windows larger than kWideReach are 3 x 3 and 9 x 9 patches around the pixel's own.
+constexpr int kPatch = 16;
 
 /// Lower bound of a pixel's error as a fraction of the image's without its small emitters, so that a pixel unlike its
 /// neighbours is never abandoned.
@@ -70,19 +69,19 @@ class CrossValidatedErrors {
 
   explicit CrossValidatedErrors(const PixelStatistics& s)
       : s_(s),
-        across_((s.width + kCell - 1) / kCell),
-        down_((s.height + kCell - 1) / kCell),
+        across_((s.width + kPatch - 1) / kPatch),
+        down_((s.height + kPatch - 1) / kPatch),
         values_(s.samples.size()),
-        cells_(static_cast<std::size_t>(across_) * static_cast<std::size_t>(down_)),
-        wide_(cells_.size()) {}
+        patches_(static_cast<std::size_t>(across_) * static_cast<std::size_t>(down_)),
+        wide_(patches_.size()) {}
 
-  /// Computes the errors of a block, whose sides are whole cells except at the image's border. Pixels with small
-  /// emitters do not count in sums of cells, because it is known that other pixels have no such errors.
+  /// Computes the errors of a block, whose sides are whole patches except at the image's border. Pixels with small
+  /// emitters do not count in sums of patches, because it is known that other pixels have no such errors.
   ///
   /// `guide`    radiance of the block's pixels; empty: the block is noiseless
   void fill(const PixelBlock& b, const std::vector<float>& guide, int excluded_class) {
-    for (int y = b.y; y < b.y + b.height; y += kCell)
-      for (int x = b.x; x < b.x + b.width; x += kCell) cell(x / kCell, y / kCell) = {};
+    for (int y = b.y; y < b.y + b.height; y += kPatch)
+      for (int x = b.x; x < b.x + b.width; x += kPatch) patch(x / kPatch, y / kPatch) = {};
     std::size_t i = 0;
     for (int y = b.y; y < b.y + b.height; ++y) {
       for (int x = b.x; x < b.x + b.width; ++x, ++i) {
@@ -92,7 +91,7 @@ class CrossValidatedErrors {
             is_excluded || guide.empty() ? 0 : relative(s_.variance[at] * static_cast<float>(s_.samples[at]), guide[i]);
         if (is_excluded || s_.has_small_emitters(at)) continue;
         const auto v = static_cast<double>(values_[at]);
-        Sums& c = cell(x / kCell, y / kCell);
+        Sums& c = patch(x / kPatch, y / kPatch);
         c.sum += v;
         c.squares += v * v;
         ++c.count;
@@ -100,21 +99,21 @@ class CrossValidatedErrors {
     }
   }
 
-  /// Adds up the windows of cells of a row of cells; after the errors of all blocks are computed.
+  /// Adds up the windows of patches of a row of patches; after the errors of all blocks are computed.
   void add_up_windows(int row) {
     for (int x = 0; x < across_; ++x) {
       const auto at = static_cast<std::size_t>(row * across_ + x);
-      wide_[at] = of_cells(x, row, 1);
-      if (!wide_[at].is_enough()) wide_[at] = of_cells(x, row, 4);
+      wide_[at] = of_patches(x, row, 1);
+      if (!wide_[at].is_enough()) wide_[at] = of_patches(x, row, 4);
     }
   }
-  int cell_rows() const { return down_; }
+  int patch_rows() const { return down_; }
 
   /// The mean around a pixel of the excluded class, over the smallest window in which enough pixels contribute. If a
   /// few pixels of a wide window contribute nearly all of its error, any pixel may be another one, so the wide mean is
   /// a lower bound.
   float around(int x, int y) const {
-    const Sums& wide = wide_[static_cast<std::size_t>(y / kCell * across_ + x / kCell)];
+    const Sums& wide = wide_[static_cast<std::size_t>(y / kPatch * across_ + x / kPatch)];
     if (wide.sum == 0) return 0;
     Sums narrow = within(x, y, kReach);
     if (!narrow.is_enough()) narrow = within(x, y, kWideReach);
@@ -123,7 +122,7 @@ class CrossValidatedErrors {
   }
 
  private:
-  Sums& cell(int x, int y) { return cells_[static_cast<std::size_t>(y * across_ + x)]; }
+  Sums& patch(int x, int y) { return patches_[static_cast<std::size_t>(y * across_ + x)]; }
 
   Sums within(int x, int y, int reach) const {
     float sum = 0, squares = 0;
@@ -140,12 +139,12 @@ class CrossValidatedErrors {
     return {static_cast<double>(sum), static_cast<double>(squares), count};
   }
 
-  /// Sums of the cells within `reach` cells of a cell.
-  Sums of_cells(int x, int y, int reach) const {
+  /// Sums of the patches within `reach` patches of a patch.
+  Sums of_patches(int x, int y, int reach) const {
     Sums out;
     for (int v = std::max(y - reach, 0); v <= std::min(y + reach, down_ - 1); ++v) {
       for (int u = std::max(x - reach, 0); u <= std::min(x + reach, across_ - 1); ++u) {
-        const Sums& c = cells_[static_cast<std::size_t>(v * across_ + u)];
+        const Sums& c = patches_[static_cast<std::size_t>(v * across_ + u)];
         out.sum += c.sum;
         out.squares += c.squares;
         out.count += c.count;
@@ -155,9 +154,9 @@ class CrossValidatedErrors {
   }
 
   const PixelStatistics& s_;
-  int across_, down_;  ///< cells
+  int across_, down_;  ///< patches
   std::vector<float> values_;
-  std::vector<Sums> cells_, wide_;  ///< sums of cells, and of the windows around them
+  std::vector<Sums> patches_, wide_;  ///< sums of patches, and of the windows around them
 };
 
 /// Whether a pixel's neighbours have found enough light, or can be trusted to be black.
@@ -267,7 +266,7 @@ std::vector<float> errors_of_one_sample(const PixelStatistics& s, const NoiseEst
     run(pool, blocks.size(), [&](std::size_t i) {
       errors.fill(blocks[i], noiseless[i] != 0 ? std::vector<float>() : guide.of(blocks[i]), own);
     });
-    run(pool, static_cast<std::size_t>(errors.cell_rows()),
+    run(pool, static_cast<std::size_t>(errors.patch_rows()),
         [&](std::size_t row) { errors.add_up_windows(static_cast<int>(row)); });
     run(pool, blocks.size(), [&](std::size_t i) {
       const PixelBlock& b = blocks[i];

@@ -3,20 +3,16 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 #include <vector>
 
 #include "compile/compiled_scene.h"
 #include "film/film.h"
 #include "film/partial.h"
-#include "film/rendered_pixels.h"
 #include "kernel/render_tile.h"
-#include "render/progress_reporter.h"
 #include "render/render.h"
-#include "render/sampling_limits.h"
 #include "render/settings.h"
-#include "render/statistics.h"
-#include "render/tile_pool.h"
-#include "render/tile_renderer.h"
+#include "render/tiles.h"
 
 namespace orrery::render {
 namespace {
@@ -39,6 +35,39 @@ int side_for(std::uint32_t samples) {
 }
 
 }  // namespace
+
+ProgressReporter::ProgressReporter(const Settings& settings, std::uint64_t total, const film::RenderWork& before)
+    : settings_(settings), seconds_before_(before.seconds), done_(before.paths), total_(total) {}
+
+double ProgressReporter::seconds() const {
+  if (settings_.clock) return seconds_before_ + settings_.clock(done());
+  return seconds_before_ + std::chrono::duration<double>(Clock::now() - start_).count();
+}
+
+void ProgressReporter::expect(std::uint64_t total, std::string goal) {
+  const std::lock_guard lock(mutex_);
+  total_ = std::max(total, done());
+  goal_ = std::move(goal);
+}
+
+void ProgressReporter::add(std::uint64_t samples) {
+  const std::uint64_t done = done_.fetch_add(samples, std::memory_order_relaxed) + samples;
+  if (!settings_.on_progress) return;
+  const std::unique_lock lock(mutex_, std::try_to_lock);
+  if (!lock.owns_lock()) return;  // another thread is reporting
+  const double now = seconds();
+  double fraction = static_cast<double>(done) / static_cast<double>(std::max<std::uint64_t>(total_, 1));
+  if (!goal_.empty() && settings_.sampling.seconds > 0)
+    fraction = std::max(fraction, std::min(now / settings_.sampling.seconds, 0.99));
+  const int percent = static_cast<int>(std::min(fraction, 1.0) * 100);
+  if (now - last_ < kInterval && percent == last_percent_ && done < total_) return;
+  last_ = now;
+  last_percent_ = percent;
+  if (goal_.empty()) return settings_.on_progress({done, total_, now, goal_});
+  max_reported_ = std::min(std::max(max_reported_, fraction), 1.0);
+  const auto total = max_reported_ >= 1 ? done : static_cast<std::uint64_t>(static_cast<double>(done) / max_reported_);
+  settings_.on_progress({done, std::max(total, done), now, goal_});
+}
 
 bool ProgressiveSampling::run(int side, const OnPixel& on_pixel) {
   const auto cancelled = [&] {
@@ -110,25 +139,21 @@ void ProgressiveSampling::render_square(int x0, int y0, int side, const OnPixel&
     const bool are_all = count == tile.width * tile.height;
     tile.chosen = are_all ? nullptr : group.pixels.data();
     tile.chosen_count = count;
-    render_group(tile, group.have, group.want, worker);
+    const auto render = [&](film::Film& film, std::uint32_t first) {
+      tile.sample_begin = first + group.have;
+      tile.sample_end = first + group.want;
+      tile.sums = film.at(x0, y0);
+      render_tile_(tile, worker, state_);
+      progress_.add(tile.path_count());
+    };
+    render(state_.film, state_.is_adaptive() ? 0 : settings_.sampling.sample_begin);
+    if (state_.is_adaptive()) render(state_.second, Sampler::kSecondHalf);
     for (const kernel::PixelPlace p : group.pixels) {
       state_.counts[at(p)] = group.want;
       if (on_pixel) on_pixel(x0 + p.x, y0 + p.y);
     }
     if (settings_.on_pixels) settings_.on_pixels(state_, {x0, y0, tile.width, tile.height, group.pixels});
   }
-}
-
-void ProgressiveSampling::render_group(kernel::Tile& tile, std::uint32_t have, std::uint32_t want, TileWorker& worker) {
-  const auto render = [&](film::Film& film, std::uint32_t first) {
-    tile.sample_begin = first + have;
-    tile.sample_end = first + want;
-    tile.sums = film.at(tile.x, tile.y);
-    render_tile_(tile, worker, state_);
-    progress_.add(tile.path_count());
-  };
-  render(state_.film, state_.is_adaptive() ? 0 : settings_.sampling.sample_begin);
-  if (state_.is_adaptive()) render(state_.second, Sampler::kSecondHalf);
 }
 
 film::RenderWork work_so_far(const film::RenderWork& before, const TilePool& pool, const ProgressReporter& progress) {

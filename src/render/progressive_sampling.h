@@ -1,24 +1,63 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <atomic>
+#include <chrono>
 #include <cstddef>
 #include <cstdint>
 #include <functional>
+#include <mutex>
+#include <string>
 #include <vector>
 
 #include "compile/forward.h"
 #include "film/forward.h"
 #include "kernel/forward.h"
-#include "kernel/pixel_place.h"
+#include "kernel/pixel_sum.h"
 
 namespace orrery::render {
 
-class ProgressReporter;
 class TilePool;
 class TileRenderer;
 struct Settings;
 struct Statistics;
 struct TileWorker;
+
+/// Reports progress to the caller, on the rendering threads: at each whole percent, and at most ten times a second in
+/// between.
+class ProgressReporter {
+ public:
+  /// Starts the clock.
+  ///
+  /// `total`    expected number of samples to render
+  /// `before`   work of earlier runs
+  ProgressReporter(const Settings& settings, std::uint64_t total, const film::RenderWork& before);
+
+  /// Counts rendered samples.
+  void add(std::uint64_t samples);
+
+  /// Updates the estimated total of samples and what will end the render. Only between iterations. Reported progress
+  /// never decreases.
+  void expect(std::uint64_t total, std::string goal);
+
+  /// Rendering time, including earlier runs.
+  double seconds() const;
+  std::uint64_t done() const { return done_.load(std::memory_order_relaxed); }
+
+ private:
+  using Clock = std::chrono::steady_clock;
+  static constexpr double kInterval = 0.1;  // seconds
+  const Settings& settings_;
+  double seconds_before_;
+  std::atomic<std::uint64_t> done_;
+  std::mutex mutex_;  // guards the members below
+  std::uint64_t total_;
+  std::string goal_;
+  double max_reported_ = 0;  ///< 0..1
+  double last_ = 0;          ///< time of the last report, seconds
+  int last_percent_ = -1;    ///< last reported
+  Clock::time_point start_ = Clock::now();
+};
 
 /// Renders pixels up to their target sample counts, on all threads. Can be stopped at any time without losing samples.
 class ProgressiveSampling {
@@ -43,7 +82,6 @@ class ProgressiveSampling {
   /// Upper left corners of the squares with pixels below their goals.
   std::vector<kernel::PixelPlace> unfinished_squares(int side) const;
   void render_square(int x0, int y0, int side, const OnPixel& on_pixel, TileWorker& worker);
-  void render_group(kernel::Tile& tile, std::uint32_t have, std::uint32_t want, TileWorker& worker);
 
   const Settings& settings_;
   const TileRenderer& render_tile_;

@@ -5,7 +5,7 @@
 #include <cstdint>
 #include <vector>
 
-#include "accel/forward.h"
+#include "accel/accel.h"
 #include "kernel/forward.h"
 #include "kernel/precision.h"
 #include "kernel/ray_packet.h"

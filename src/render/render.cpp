@@ -14,23 +14,16 @@
 #include <utility>
 #include <vector>
 
-#include "accel/accel.h"
 #include "base/error.h"
 #include "compile/compiled_scene.h"
 #include "film/film.h"
 #include "film/layer_film.h"
 #include "film/layers.h"
 #include "film/partial.h"
-#include "film/rendered_pixels.h"
 #include "kernel/isa.h"
 #include "render/adaptive_sampling.h"
-#include "render/progress_reporter.h"
 #include "render/progressive_sampling.h"
-#include "render/result.h"
-#include "render/sampling_limits.h"
-#include "render/settings.h"
-#include "render/tile_pool.h"
-#include "render/tile_renderer.h"
+#include "render/tiles.h"
 
 namespace orrery::render {
 namespace {
@@ -119,10 +112,6 @@ Result finished(const compile::CompiledScene& compiled, const film::LayerRequest
   return result;
 }
 
-Result render(const compile::CompiledScene& compiled, const accel::Accel& accel, const Settings& settings) {
-  return render(compiled, accel, settings, std::nullopt);
-}
-
 Result render(const compile::CompiledScene& compiled, const accel::Accel& accel, const Settings& settings,
               std::optional<film::Partial> from) {
   Statistics statistics;
@@ -156,10 +145,6 @@ Result render(const compile::CompiledScene& compiled, const accel::Accel& accel,
   statistics.finish_s = seconds_since(rendered);
   result.statistics = std::move(statistics);
   return result;
-}
-
-Result render(const compile::CompiledScene& compiled, const Settings& settings) {
-  return render(compiled, settings, std::nullopt);
 }
 
 Result render(const compile::CompiledScene& compiled, const Settings& settings, std::optional<film::Partial> from) {

@@ -2,19 +2,17 @@
 #pragma once
 
 #include <cstdint>
-#include <functional>
 #include <memory>
 #include <optional>
 #include <string>
 
 #include "accel/accel.h"
 #include "compile/forward.h"
-#include "film/forward.h"
+#include "film/partial.h"
+#include "render/result.h"
+#include "render/settings.h"
 
 namespace orrery::render {
-
-struct Result;
-struct Settings;
 
 /// The number of processors in the process's affinity mask.
 int available_threads();
@@ -30,9 +28,8 @@ std::unique_ptr<accel::Accel> build(const compile::CompiledScene& compiled, int 
 ///
 /// `from`     a partial of the same scene and settings to resume from; empty: none
 /// Result     completed == false if stopped by `cancel`; build_s is 0
-Result render(const compile::CompiledScene& compiled, const accel::Accel& accel, const Settings& settings);
 Result render(const compile::CompiledScene& compiled, const accel::Accel& accel, const Settings& settings,
-              std::optional<film::Partial> from);
+              std::optional<film::Partial> from = std::nullopt);
 
 /// Builds the accelerator and renders an image.
 ///
@@ -40,8 +37,8 @@ Result render(const compile::CompiledScene& compiled, const accel::Accel& accel,
 ///
 /// Result     completed == false if stopped by `cancel`
 /// Errors     base::Error(kInternal) if the accelerator cannot be built
-Result render(const compile::CompiledScene& compiled, const Settings& settings);
-Result render(const compile::CompiledScene& compiled, const Settings& settings, std::optional<film::Partial> from);
+Result render(const compile::CompiledScene& compiled, const Settings& settings,
+              std::optional<film::Partial> from = std::nullopt);
 
 /// The number of samples per pixel that the settings request.
 std::uint32_t samples_of(const compile::CompiledScene& compiled, const Settings& settings);

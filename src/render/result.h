@@ -1,13 +1,34 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <cstdint>
 #include <optional>
+#include <string>
 
 #include "film/partial.h"
 #include "film/picture.h"
-#include "render/statistics.h"
 
 namespace orrery::render {
+
+/// Statistics of a render.
+struct Statistics {
+  std::uint64_t paths = 0;
+  std::uint64_t rays = 0;
+  std::uint64_t bad_samples = 0;  ///< not finite or too large; excluded from their pixel's mean
+  double build_s = 0;             ///< building the acceleration structure
+  double render_s = 0;
+  double finish_s = 0;      ///< from sums to the finished image and its layers
+  std::string isa;          ///< the kernel's instruction set, e.g. "avx2"
+  std::string accelerator;  ///< e.g. "embree 3.13.5" or "list"
+  std::string traversal;  ///< traversal of camera rays, and of secondary rays if different: "packet, secondary single"
+  int threads = 0;
+  std::uint64_t min_samples = 0, max_samples = 0;  ///< per pixel
+  /// Adaptive sampling only: the expected noise of the image, and its upper confidence bound, which is compared with
+  /// the target.
+  std::optional<double> expected_noise, noise;
+  std::uint64_t unreliable_pixels = 0;  ///< pixels around which too few paths found light for these estimates
+  std::string ended_by;                 ///< "samples", "noise" or "time"
+};
 
 /// Result of a render.
 struct Result {

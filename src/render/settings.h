@@ -1,19 +1,62 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <algorithm>
 #include <atomic>
 #include <cstdint>
 #include <functional>
 #include <optional>
+#include <string>
+#include <vector>
 
 #include "accel/traversal.h"
 #include "film/forward.h"
 #include "film/layers.h"
-#include "render/sampling_limits.h"
 
 namespace orrery::render {
 
-struct Progress;
+/// A shard of an image's pixels. Squares are assigned round-robin, so that neighbouring ones, which cost about the
+/// same, go to different shards.
+struct PixelShard {
+  int index = 0;  ///< from 0
+  int count = 1;  ///< number of shards
+};
+
+/// Side of the squares, px.
+inline constexpr int kShardSide = 16;
+
+/// Mask of the pixels that belong to a shard, in row-major order. The shards of one count partition the image.
+std::vector<bool> pixels_of(const PixelShard& shard, int width_px, int height_px);
+
+/// Which samples are rendered, and when adaptive sampling stops.
+struct SamplingLimits {
+  /// Target noise, as film/display_error.h measures it: samples go where they reduce the image's error most, until it
+  /// is this low. 0: every pixel gets the scene's samples.
+  double noise = 0;
+  double seconds = 0;      ///< time budget for adaptive sampling; 0: none
+  bool unlimited = false;  ///< with noise or seconds: more samples per pixel than the scene's are allowed
+  /// Range of each pixel's samples. The sums of disjoint ranges add up to those of one render. end 0: all samples.
+  std::uint32_t sample_begin = 0, sample_end = 0;
+  PixelShard shard;  ///< only these pixels
+
+  /// True if the pixels are sampled adaptively.
+  bool is_adaptive() const { return noise > 0 || seconds > 0; }
+  /// Subtracts elapsed time from the time budget, if there is one.
+  void spend(double used_s) {
+    constexpr double kShortest = 1e-3;  // 0 would be no limit
+    if (seconds > 0) seconds = std::max(seconds - used_s, kShortest);
+  }
+  /// True if these are not all samples of all pixels.
+  bool is_partial() const { return sample_end > 0 || shard.count > 1; }
+};
+
+/// Progress of a render.
+struct Progress {
+  std::uint64_t samples_done = 0;
+  std::uint64_t samples_total = 0;
+  double seconds = 0;     ///< render time so far, excluding the BVH build
+  std::string goal = {};  ///< the limit that will end the render, as text; empty: the sample count
+};
 
 /// Settings of a render that are not part of the scene.
 struct Settings {

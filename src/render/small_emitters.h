@@ -4,7 +4,7 @@
 #include <vector>
 
 #include "kernel/forward.h"
-#include "render/light_guide.h"
+#include "render/pixel_statistics.h"
 
 namespace orrery::render {
 

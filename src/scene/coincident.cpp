@@ -7,7 +7,7 @@
 #include <fmt/core.h>
 
 #include "base/duplicates.h"
-#include "math/single.h"
+#include "math/scalar.h"
 #include "scene/validate.h"
 
 namespace orrery::scene {

@@ -9,7 +9,7 @@
 #include <iterator>
 #include <vector>
 
-#include "math/single.h"
+#include "math/scalar.h"
 #include "math/vec3.h"
 
 namespace orrery::scene {

@@ -33,7 +33,7 @@ void run(const kernel::RayPacket<double>& packet, const kernel::Sphere* spheres,
     const k::Spheres<D> sphere{k::load3(d, s[0] + v, s[1] + v, s[2] + v), hn::Load(d, s[3] + v)};
     const auto is_self = hn::RebindMask(d, hn::LoadU(du, ids + v) == ray.self);
     const auto found = k::closest_distance<D, kPrecision>(d, ray, sphere, is_self);
-    const auto offset = k::hit_point<D, kPrecision>(d, ray, sphere, is_self, found.value).offset;
+    const auto offset = k::hit_point<D, kPrecision>(ray, sphere, is_self, found.value).offset;
     alignas(64) double hit[kernel::kPacketSize];
     hn::Store(hn::IfThenElseZero(found.mask, hn::Set(d, 1.0)), d, hit + v);
     hn::StoreU(found.value, d, out.distance + v);

@@ -29,9 +29,9 @@ k::Vertex<D> vertex(D d, math::Vec3d point, math::Vec3d normal) {
 VisiblePoint sample_point(math::Vec3d center, double radius, double u, double v) {
   const D d;
   const auto to = all_lanes(d, center);
-  const auto cone = k::subtended_cone(d, to, hn::Set(d, radius));
+  const auto cone = k::subtended_cone(to, hn::Set(d, radius));
   const auto sample = k::sample_visible_sphere(d, to, cone, hn::Set(d, u), hn::Set(d, v));
-  return {first_lane(sample.direction), first_lane(sample.normal), hn::GetLane(k::solid_angle(d, cone.one_minus_cos))};
+  return {first_lane(sample.direction), first_lane(sample.normal), hn::GetLane(k::solid_angle(cone.one_minus_cos))};
 }
 
 Choice choose(const kernel::SceneView& scene, math::Vec3d point, math::Vec3d normal, double u, double fresh) {

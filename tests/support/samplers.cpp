@@ -25,11 +25,11 @@ k::Vec3<hn::Vec<D>> sample(D d, Shape shape, const k::Four<hn::Vec<D>>& u) {
   at.direction = k::negated(at.normal);
   at.from_outside = hn::FirstN(d, hn::Lanes(d));
   switch (shape) {
-    case Shape::kLambertian: return k::sample_lambertian(d, at, k::sample_unit_sphere(d, u.v[0], u.v[1]));
-    case Shape::kHemisphere: return k::sample_hemisphere(d, at, k::sample_unit_sphere(d, u.v[0], u.v[1]));
+    case Shape::kLambertian: return k::sample_lambertian(at, k::sample_unit_sphere(d, u.v[0], u.v[1]));
+    case Shape::kHemisphere: return k::sample_hemisphere(at, k::sample_unit_sphere(d, u.v[0], u.v[1]));
     case Shape::kFuzzyMetal:
       at.fuzz = hn::Set(d, kFuzz);
-      return k::sample_metal(d, at, k::sample_unit_sphere(d, u.v[0], u.v[1])).direction;
+      return k::sample_metal(at, k::sample_unit_sphere(d, u.v[0], u.v[1])).direction;
     case Shape::kDisc: {
       const auto p = k::sample_unit_disc(d, u.v[2], u.v[3]);
       return {p.x, p.y, hn::Zero(d)};

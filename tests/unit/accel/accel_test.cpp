@@ -16,7 +16,7 @@
 
 #include "base/error.h"
 #include "kernel/isa.h"
-#include "math/single.h"
+#include "math/scalar.h"
 #include "support/accel_rays.h"
 #include "support/accelerators.h"
 #include "support/intersect_batch.h"
@@ -171,6 +171,20 @@ TEST(AccelAccel, CompactSpheresAreHitAsPlainOnes) {
       }
       EXPECT_EQ(different, 0) << scene.name << ", " << way.name;
     }
+}
+
+TEST(AccelAccel, ThinLayersOfFewSpheresHaveNoBvhOfTheirOwn) {
+  if (bvh_threshold() > 50'000) GTEST_SKIP() << "needs AVX-512";
+  Random random;
+  std::vector<Sphere> spheres = scattered(random, 50'000, 100, 0.1, 0);
+  kernel::SceneView view;
+  view.spheres = spheres.data();
+  view.sphere_count = spheres.size();
+  EXPECT_EQ(spheres_in_bvh(view), spheres.size());
+  const std::size_t bytes = make_embree(view, kernel::Precision::kExact)->bytes();
+  for (Sphere& s : spheres) s.y *= 0.05;
+  EXPECT_EQ(spheres_in_bvh(view), 0u);
+  EXPECT_GT(make_embree(view, kernel::Precision::kExact)->bytes(), 2 * bytes);
 }
 
 TEST(AccelAccel, BuildReportsProgressAndCanBeStopped) {

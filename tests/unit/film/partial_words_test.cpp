@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "film/partial_words.h"
+#include "film/partial.h"
 
 #include <gtest/gtest.h>
 
@@ -9,7 +9,6 @@
 #include "base/error.h"
 #include "film/film.h"
 #include "film/layer_pixel.h"
-#include "film/partial.h"
 #include "kernel/path_record.h"
 
 namespace orrery::film {

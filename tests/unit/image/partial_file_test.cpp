@@ -6,7 +6,7 @@
 #include <random>
 
 #include "base/error.h"
-#include "film/partial_words.h"
+#include "film/partial.h"
 #include "image/format.h"
 #include "image/header.h"
 #include "image/read.h"

@@ -19,7 +19,7 @@
 #include "image/partial_file.h"
 #include "image/read.h"
 #include "job/shards.h"
-#include "render/progress.h"
+#include "render/settings.h"
 #include "support/exr_file.h"
 #include "support/temp_dir.h"
 

@@ -47,7 +47,7 @@ void scatter_case(ScatterCase& c) {
   at.r0 = hn::Set(d, c.r0);
   at.fresnel = at.kind = hn::Set(IdTag<std::remove_const_t<D>>(), static_cast<std::uint64_t>(c.fresnel));
   math::set(c.glass, test::HWY_NAMESPACE::first_lane(sample_dielectric(d, at, hn::Set(d, c.u))));
-  const auto metal = sample_metal(d, at, set3(d, c.on_sphere));
+  const auto metal = sample_metal(at, set3(d, c.on_sphere));
   math::set(c.metal, test::HWY_NAMESPACE::first_lane(metal.direction));
   c.metal_alive = !hn::AllFalse(d, metal.alive);
   const double sin_leaving = c.eta * arriving[0];

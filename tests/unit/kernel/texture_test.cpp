@@ -64,7 +64,7 @@ void look_all(D d, const Texture& texture, std::vector<TextureLook>& looks) {
     const auto no = hn::FirstN(d, 0);
     const auto hit = closest_distance<D, kPrecision>(d, ray, sphere, no);
     if (hn::AllFalse(d, hit.mask)) continue;
-    const auto at = hit_point<D, kPrecision>(d, ray, sphere, no, hit.value);
+    const auto at = hit_point<D, kPrecision>(ray, sphere, no, hit.value);
     const auto point = texture_point<D, kPrecision>(d, ray, sphere, at.offset, at.outward, hit.value, zero);
     const auto color = texture_color(d, texture, point);
     look.distance = static_cast<double>(hn::GetLane(hit.value));

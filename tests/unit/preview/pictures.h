@@ -6,8 +6,7 @@
 #include <vector>
 
 #include "film/partial.h"
-#include "film/rendered_pixels.h"
-#include "kernel/pixel_place.h"
+#include "kernel/pixel_sum.h"
 #include "preview/file_sink.h"
 #include "preview/sink.h"
 

@@ -10,8 +10,8 @@
 
 #include "base/error.h"
 #include "display/develop.h"
+#include "film/partial.h"
 #include "film/picture.h"
-#include "film/rendered_pixels.h"
 #include "preview/file_sink.h"
 #include "preview/tev.h"
 #include "support/temp_dir.h"

@@ -9,8 +9,7 @@
 
 #include "film/film.h"
 #include "film/partial.h"
-#include "film/rendered_pixels.h"
-#include "kernel/pixel_place.h"
+#include "kernel/pixel_sum.h"
 #include "unit/preview/pictures.h"
 
 namespace orrery::preview {

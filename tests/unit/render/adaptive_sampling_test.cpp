@@ -12,7 +12,6 @@
 #include "film/display_error.h"
 #include "film/partial.h"
 #include "film/picture.h"
-#include "render/progress.h"
 #include "render/render.h"
 #include "render/result.h"
 #include "render/settings.h"

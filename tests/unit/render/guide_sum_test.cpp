@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "kernel/guide_sum.h"
+#include "kernel/pixel_sum.h"
 
 #include <gtest/gtest.h>
 

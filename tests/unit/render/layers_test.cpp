@@ -15,7 +15,6 @@
 #include "kernel/isa.h"
 #include "render/render.h"
 #include "render/result.h"
-#include "render/sampling_limits.h"
 #include "render/settings.h"
 #include "support/add_matte.h"
 #include "support/everything.h"

@@ -16,7 +16,7 @@
 #include "compile/compiled_scene.h"
 #include "film/layer_pixel.h"
 #include "film/layers.h"
-#include "render/tile_renderer.h"
+#include "render/tiles.h"
 #include "support/everything.h"
 
 namespace orrery::render {

@@ -6,8 +6,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "render/tile_pool.h"
-#include "render/tile_renderer.h"
+#include "render/tiles.h"
 #include "support/pixel_statistics.h"
 
 namespace orrery::render {

@@ -10,7 +10,6 @@
 
 #include "compile/compile.h"
 #include "compile/compiled_scene.h"
-#include "render/progress.h"
 #include "render/result.h"
 #include "render/settings.h"
 #include "support/everything.h"

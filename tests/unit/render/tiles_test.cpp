@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "render/tile_pool.h"
+#include "render/tiles.h"
 
 #include <gtest/gtest.h>
 
@@ -8,12 +8,10 @@
 #include <set>
 #include <thread>
 
-#include "render/tile_renderer.h"
-
 namespace orrery::render {
 namespace {
 
-TEST(RenderTilePool, AllocationFailureInAnyThreadReachesTheCaller) {
+TEST(RenderTiles, AllocationFailureInAnyThreadReachesTheCaller) {
   TilePool pool(3);
   const auto fail = [](std::size_t i, TileWorker&) {
     if (i == 77) throw std::bad_alloc();
@@ -21,7 +19,7 @@ TEST(RenderTilePool, AllocationFailureInAnyThreadReachesTheCaller) {
   EXPECT_THROW(pool.run(100, fail, [] { return false; }), std::bad_alloc);
 }
 
-TEST(RenderTilePool, UsesAtMostTheGivenNumberOfThreads) {
+TEST(RenderTiles, UsesAtMostTheGivenNumberOfThreads) {
   TilePool pool(2);
   std::mutex mutex;
   std::set<std::thread::id> threads;

@@ -1,18 +1,34 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "math/single.h"
+#include "math/scalar.h"
 
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <vector>
 
 namespace orrery::math {
 namespace {
 
+TEST(MathScalar, ExponentialMatchesTheLongDoubleFunction) {
+  EXPECT_EQ(exp_nonpositive(0), 1);
+  EXPECT_EQ(exp_nonpositive(-0.0), 1);
+  for (int i = 1; i <= 100000; ++i) {
+    const double x = -700.0 * i / 100000 * i / 100000;
+    const long double expected = std::exp(static_cast<long double>(x));
+    ASSERT_NEAR(static_cast<double>(exp_nonpositive(x) / expected), 1, 1e-15) << x;
+  }
+}
+
+TEST(MathScalar, ExponentialStaysAtTheLimitBelowTheDomain) {
+  EXPECT_EQ(exp_nonpositive(-1e300), exp_nonpositive(-700));
+  EXPECT_GT(exp_nonpositive(-700), 0);
+}
+
 struct Numbers {
   double x, y, z, w;
 };
 
-TEST(MathSingle, RoundsAllNumbersOfALoop) {
+TEST(MathScalar, RoundsAllNumbersOfALoop) {
   for (int count = 1; count < 20; ++count) {
     std::vector<Numbers> numbers;
     for (int i = 0; i < count; ++i) numbers.push_back({i + 0.1, i + 0.2, i + 0.3, i + 0.4});

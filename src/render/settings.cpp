@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "render/sampling_limits.h"
+#include "render/settings.h"
 
 #include <cstddef>
 

@@ -1,19 +1,20 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
+#include <functional>
 #include <memory>
 #include <optional>
+#include <string>
 #include <vector>
 
 #include "accel/accel.h"
 #include "compile/forward.h"
 #include "film/forward.h"
-#include "kernel/guide_sum.h"
 #include "kernel/path_record.h"
 #include "kernel/path_stream.h"
 #include "kernel/pixel_sum.h"
-#include "kernel/ray_packet.h"
 #include "kernel/render_tile.h"
 #include "kernel/scene_view.h"
 
@@ -44,6 +45,33 @@ struct TileWorker {
   kernel::TileCounts counts;
 };
 
+/// A thread pool for tiles, with buffers that each thread keeps from tile to tile.
+class TilePool {
+ public:
+  explicit TilePool(int threads);
+  ~TilePool();
+
+  /// Calls `work(i, worker)` for i = 0 .. count - 1, in any order and on all threads, until `shall_stop` returns true.
+  ///
+  /// Result     false if some calls were skipped
+  bool run(std::size_t count, const std::function<void(std::size_t i, TileWorker& worker)>& work,
+           const std::function<bool()>& shall_stop);
+
+  /// Runs `work` within the pool, so that its parallel loops use these threads.
+  void execute(const std::function<void()>& work);
+
+  /// Counts of all tiles so far.
+  kernel::TileCounts counts() const;
+
+  /// The traversals of camera rays, and of secondary rays if different: "packet", "single", or "both" if threads differ
+  /// or are still measuring. For example "packet, secondary single".
+  std::string traversals() const;
+
+ private:
+  struct Impl;
+  std::unique_ptr<Impl> impl_;
+};
+
 /// Renders tiles in the scene's precision and adds their paths to the layers, if there are any.
 class TileRenderer {
  public:
@@ -57,10 +85,13 @@ class TileRenderer {
   void operator()(const kernel::Tile& tile, TileWorker& worker, film::Partial& image) const;
 
  private:
-  void trace(const kernel::Tile& tile, TileWorker& worker) const;
-  /// Renders samples of one half into separate sums.
-  void trace_half(const kernel::Tile& tile, TileWorker& worker, film::Partial& image) const;
-  void trace_records(const kernel::Tile& tile, TileWorker& worker, film::Partial& image) const;
+  /// Gives a tile the buffers that the layers need.
+  void attach_buffers(kernel::Tile& tile, TileWorker& worker) const;
+  /// Adds the records and light events of a tile to its layers.
+  void add_records(const kernel::Tile& tile, const TileWorker& worker, film::Partial& image) const;
+  /// Adds a tile of one half to the sums and to that half of the image.
+  void add_half(const kernel::Tile& tile, const kernel::Tile& part, const TileWorker& worker,
+                film::Partial& image) const;
 
   kernel::SceneView view_;
   const accel::Accel& accel_;

@@ -4,14 +4,37 @@
 #include <bit>
 #include <cmath>
 #include <cstdint>
+#include <limits>
 
 namespace orrery::math {
+
+/// Rounds to single precision.
+///
+/// GCC 12 removes the conversions to float and back where it vectorizes them in pairs, as in `for (Vec3d& p : points) p
+/// = {rounded(p.x), rounded(p.y), rounded(p.z)}`. Values that pass through inline assembly are not vectorized.
+inline double in_single_precision(double x) noexcept {
+  auto single = static_cast<float>(x);
+  __asm__("" : "+x"(single));
+  return static_cast<double>(single);
+}
+
+/// The largest single-precision number that is not above x.
+inline float rounded_down(double x) noexcept {
+  const auto f = static_cast<float>(x);
+  return static_cast<double>(f) > x ? std::nextafter(f, -std::numeric_limits<float>::infinity()) : f;
+}
+/// The smallest single-precision number that is not below x.
+inline float rounded_up(double x) noexcept { return -rounded_down(-x); }
+
+// Sine and cosine of an angle in radians, rounded from long double, so that they do not depend on the math library.
+inline double sine(double angle) { return static_cast<double>(std::sin(static_cast<long double>(angle))); }
+inline double cosine(double angle) { return static_cast<double>(std::cos(static_cast<long double>(angle))); }
 
 /// Returns e^x, computed with IEEE arithmetic only, for results that must not depend on the math library. Compilers can
 /// vectorise loops over it.
 ///
 /// Domain     x <= 0; below -700, e^-700
-/// Precision  1e-15 relative; test MathExponential.MatchesTheLongDoubleFunction
+/// Precision  1e-15 relative; test MathScalar.ExponentialMatchesTheLongDoubleFunction
 constexpr double exp_nonpositive(double x) {
   constexpr double kLog2E = 1.44269504088896340736;
   constexpr double kLn2High = 0x1.62e42fefp-1, kLn2Low = 0x1.473de6af278edp-34;  // the product with k is exact

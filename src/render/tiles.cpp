@@ -1,0 +1,212 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "render/tiles.h"
+
+#include <tbb/blocked_range.h>
+#include <tbb/enumerable_thread_specific.h>
+#include <tbb/global_control.h>
+#include <tbb/info.h>
+#include <tbb/parallel_for.h>
+#include <tbb/task_arena.h>
+
+#include <algorithm>
+#include <atomic>
+#include <cfenv>
+
+#include "compile/compiled_scene.h"
+#include "film/layer_pixel.h"
+#include "film/layers.h"
+#include "film/partial.h"
+#include "render/settings.h"
+
+namespace orrery::render {
+namespace {
+
+/// Maximum path records that a thread holds at a time: half a megabyte, which stays in the L2 cache.
+constexpr std::uint32_t kMaxRecords = 4096;
+
+/// Sets the default floating-point environment (rounding, exception masks, flush-to-zero) and restores the host's on
+/// destruction, so that the image does not depend on it.
+class DefaultRounding {
+ public:
+  DefaultRounding() {
+    std::fegetenv(&before_);
+    std::fesetenv(FE_DFL_ENV);
+  }
+  ~DefaultRounding() { std::fesetenv(&before_); }
+  DefaultRounding(const DefaultRounding&) = delete;
+  DefaultRounding& operator=(const DefaultRounding&) = delete;
+
+ private:
+  std::fenv_t before_;
+};
+
+/// Index of a tile's pixel within the image.
+std::size_t index_of(const film::Partial& image, const kernel::Tile& tile, kernel::PixelPlace at) {
+  return static_cast<std::size_t>(tile.y + at.y) * static_cast<std::size_t>(image.film.width()) +
+         static_cast<std::size_t>(tile.x + at.x);
+}
+
+}  // namespace
+
+void LightEventBuffer::reset(std::size_t paths) {
+  storage_.resize(std::max(storage_.size(), paths + kernel::kPacketSize));
+  next = storage_.data();
+  end = next + storage_.size();
+  make_room = grow;
+}
+
+void LightEventBuffer::grow(kernel::LightEvents& events) {
+  auto& self = static_cast<LightEventBuffer&>(events);
+  const auto used = self.next - self.storage_.data();
+  self.storage_.resize(2 * self.storage_.size());
+  self.next = self.storage_.data() + used;
+  self.end = self.storage_.data() + self.storage_.size();
+}
+
+struct TilePool::Impl {
+  // Raises the limit if necessary: by default TBB uses no more threads than processors. The smallest limit applies to
+  // all renders of the process, so renders with fewer threads must not set one.
+  std::optional<tbb::global_control> limit;
+  tbb::task_arena arena;
+  tbb::enumerable_thread_specific<TileWorker> workers;
+
+  explicit Impl(int threads) : arena(threads) {
+    if (threads > tbb::info::default_concurrency())
+      limit.emplace(tbb::global_control::max_allowed_parallelism, static_cast<std::size_t>(threads));
+  }
+};
+
+TilePool::TilePool(int threads) : impl_(std::make_unique<Impl>(threads)) {}
+TilePool::~TilePool() = default;
+
+bool TilePool::run(std::size_t count, const std::function<void(std::size_t, TileWorker&)>& work,
+                   const std::function<bool()>& shall_stop) {
+  std::atomic<std::size_t> left{count};
+  impl_->arena.execute([&] {
+    tbb::parallel_for(
+        tbb::blocked_range<std::size_t>(0, count, 1),
+        [&](const tbb::blocked_range<std::size_t>& range) {
+          for (std::size_t i = range.begin(); i < range.end() && !shall_stop(); ++i) {
+            work(i, impl_->workers.local());
+            left.fetch_sub(1, std::memory_order_relaxed);
+          }
+        },
+        tbb::simple_partitioner());
+  });
+  return left == 0;
+}
+
+void TilePool::execute(const std::function<void()>& work) { impl_->arena.execute(work); }
+
+kernel::TileCounts TilePool::counts() const {
+  kernel::TileCounts sum;
+  for (const TileWorker& worker : impl_->workers) {
+    sum.rays += worker.counts.rays;
+    sum.bad_samples += worker.counts.bad_samples;
+    if (worker.counts.target != 0) sum.target = worker.counts.target;
+  }
+  return sum;
+}
+
+std::string TilePool::traversals() const {
+  using accel::ThreadTraversals, accel::Traversal, accel::TraversalChoice;
+  const auto name_of = [this](TraversalChoice ThreadTraversals::*kind) -> std::string {
+    bool by_packets = false, single = false;
+    for (const TileWorker& worker : impl_->workers) {
+      const TraversalChoice& choice = worker.traversals.*kind;
+      by_packets |= !choice.is_made() || choice.next() == Traversal::kPacket;
+      single |= !choice.is_made() || choice.next() == Traversal::kSingle;
+    }
+    return !single ? "packet" : !by_packets ? "single" : "both";
+  };
+  const std::string camera = name_of(&ThreadTraversals::camera), secondary = name_of(&ThreadTraversals::secondary);
+  return camera == secondary ? camera : camera + ", secondary " + secondary;
+}
+
+TileRenderer::TileRenderer(const compile::CompiledScene& compiled, const accel::Accel& accel, const Settings& settings)
+    : view_(compiled.view()),
+      accel_(accel),
+      traversal_(settings.traversal),
+      request_(settings.layers),
+      // Each half of a low-discrepancy sequence is a sequence in its own right.
+      second_half_(settings.sampling.is_adaptive() ? kernel::Sampler::kSecondHalf
+                                                   : std::max(1U, static_cast<std::uint32_t>(compiled.samples) / 2)) {
+  if (request_.coverage) view_.background_visible = false;
+  render_ = kernel::render_tile_function(view_.features, compiled.precision, request_.any());
+}
+
+void TileRenderer::operator()(const kernel::Tile& tile, TileWorker& worker, film::Partial& image) const {
+  const DefaultRounding rounding;
+  if (!worker.stream) {
+    worker.stream = std::make_unique<kernel::PathStream>();
+    if (traversal_) worker.traversals = accel::ThreadTraversals(*traversal_);
+  }
+  const kernel::Tracer tracer = accel_.thread_tracer(worker.traversals);
+  const auto pixels = static_cast<std::uint32_t>(tile.width) * static_cast<std::uint32_t>(tile.height);
+  const std::uint32_t most = request_.records() ? std::max(1u, kMaxRecords / pixels) : ~0u;
+  const std::uint32_t middle =
+      request_.guides() ? std::clamp(second_half_, tile.sample_begin, tile.sample_end) : tile.sample_end;
+  kernel::Tile part = tile;
+  for (std::uint32_t begin = tile.sample_begin; begin < tile.sample_end; begin = part.sample_end) {
+    part.sample_begin = begin;
+    part.sample_end = begin + std::min(most, (begin < middle ? middle : tile.sample_end) - begin);
+    attach_buffers(part, worker);
+    const kernel::TileCounts counts = render_(view_, tracer, part, *worker.stream);
+    worker.counts.rays += counts.rays;
+    worker.counts.bad_samples += counts.bad_samples;
+    worker.counts.target = counts.target;
+    if (request_.records()) add_records(part, worker, image);
+    if (request_.guides()) add_half(tile, part, worker, image);
+  }
+}
+
+void TileRenderer::attach_buffers(kernel::Tile& tile, TileWorker& worker) const {
+  const auto pixels = static_cast<std::size_t>(tile.width) * static_cast<std::size_t>(tile.height);
+  if (request_.guides()) {
+    worker.light.assign(pixels, {});
+    worker.guides.assign(pixels, {});
+    tile.sums = worker.light.data();
+    tile.guides = worker.guides.data();
+    tile.row_stride = tile.width;
+  }
+  if (!request_.records()) return;
+  worker.records.resize(pixels * (tile.sample_end - tile.sample_begin));
+  tile.records = worker.records.data();
+  tile.record_light = request_.paths_light();
+  tile.record_hits = request_.path_records();
+  if (!request_.lights()) return;
+  worker.events.reset(worker.records.size());
+  tile.events = &worker.events;
+}
+
+void TileRenderer::add_half(const kernel::Tile& tile, const kernel::Tile& part, const TileWorker& worker,
+                            film::Partial& image) const {
+  const std::size_t half = part.sample_begin < second_half_ ? 0 : 1;
+  for (int i = 0; i < tile.pixel_count(); ++i) {
+    const kernel::PixelPlace at = tile.pixel(i);
+    const auto within = static_cast<std::size_t>(at.y * tile.width + at.x);
+    tile.sums[at.y * tile.row_stride + at.x] += worker.light[within];
+    image.halves[index_of(image, tile, at)][half] += {worker.light[within], worker.guides[within]};
+  }
+}
+
+void TileRenderer::add_records(const kernel::Tile& tile, const TileWorker& worker, film::Partial& image) const {
+  const std::uint32_t samples = tile.sample_end - tile.sample_begin;
+  for (int i = 0; request_.path_records() && i < tile.pixel_count(); ++i) {
+    const kernel::PixelPlace at = tile.pixel(i);
+    const auto within = static_cast<std::size_t>(at.y * tile.width + at.x);
+    film::LayerPixel& pixel = image.layers[index_of(image, tile, at)];
+    const kernel::PathRecord* record = tile.records + within * samples;
+    for (std::uint32_t s = tile.sample_begin; s < tile.sample_end; ++s)
+      pixel.add(request_, view_, *record++, view_.filter.weight(s, std::uint64_t{s} + 1));
+  }
+  if (tile.events == nullptr) return;
+  for (const kernel::LightEvent* event = worker.events.begin(); event != worker.events.next; ++event) {
+    const auto within = static_cast<int>(event->path / samples);
+    const std::uint64_t s = tile.sample_begin + event->path % samples;
+    film::LayerPixel& pixel = image.layers[index_of(image, tile, {within % tile.width, within / tile.width})];
+    pixel.add(request_, tile.records[event->path], *event, view_.filter.weight(s, s + 1));
+  }
+}
+
+}  // namespace orrery::render
