@@ -21,6 +21,7 @@ namespace orrery::accel::HWY_NAMESPACE {
 
 namespace hn = hwy::HWY_NAMESPACE;
 namespace k = kernel::HWY_NAMESPACE;
+using namespace math::HWY_NAMESPACE;  // NOLINT(google-build-using-namespace): SIMD vectors of another room
 
 /// Rays per Embree packet: the number of floats in a register.
 constexpr int kWidth = static_cast<int>(hn::MaxLanes(hn::ScalableTag<float>()));
@@ -43,8 +44,7 @@ struct BoxRays {
 template <class D>
 HWY_INLINE BoxRays<D> to_box_space(D d, const k::Rays<D>& ray, const BoxFrame& frame) {
   using T = hn::TFromD<D>;
-  using namespace math::HWY_NAMESPACE;  // NOLINT(google-build-using-namespace)
-  const auto scale = hn::Set(d, static_cast<T>(frame.scale));
+  const auto scale = set(d, frame.scale);
   const auto middle = set3(d, frame.middle);
   const auto away = ray.origin - middle;
   const auto away_low = difference_error(ray.origin, middle, away) + ray.origin_low;
@@ -52,28 +52,27 @@ HWY_INLINE BoxRays<D> to_box_space(D d, const k::Rays<D>& ray, const BoxFrame& f
   const auto low = away_low * scale;
   const auto zero = hn::Zero(d);
   const auto all = zero == zero;
-  const auto reach = hn::Set(d, static_cast<T>(frame.reach));
+  const auto reach = set(d, frame.reach);
   const auto outside = dot(origin, origin) > reach * reach;
   if (hn::AllFalse(d, outside)) return {origin + low, zero, all};
 
-  const auto closest = hn::Neg(dot(origin, ray.direction));
+  const auto closest = -dot(origin, ray.direction);
   const auto passing = mul_add(ray.direction, closest, origin) + low;
   // The margin covers the rounding of `passing` for a ray from 1e12 reaches away, in single precision from 1e6.
-  const auto nearest_square = reach * reach * hn::Set(d, static_cast<T>(sizeof(T) == 8 ? 1.001 : 1.1));
-  const auto misses = hn::Or(dot(passing, passing) > nearest_square, closest < zero);
-  const auto start = hn::IfThenElseZero(outside, hn::Max(closest - reach, zero));
+  const auto nearest_square = reach * reach * (sizeof(T) == 8 ? 1.001 : 1.1);
+  const auto misses = hn::Or(dot(passing, passing) > nearest_square, closest < 0);
+  const auto start = hn::IfThenElseZero(outside, max(closest - reach, 0));
   return {mul_add(ray.direction, start, origin) + low, start, hn::Not(hn::And(outside, misses))};
 }
 
 /// Converts distances along rays to Embree's tfar, rounded up so that boxes of other spheres at the same distance are
 /// still entered. Distances beyond the range of float become infinite.
 template <class D>
-HWY_INLINE hn::Vec<D> far_limits(D d, hn::Vec<D> distance, double scale, hn::Vec<D> start) {
+HWY_INLINE hn::Vec<D> far_limits(D, hn::Vec<D> distance, double scale, hn::Vec<D> start) {
   using T = hn::TFromD<D>;
   constexpr T kUlp = sizeof(T) == 8 ? T(0x1p-50) : T(0x1p-21);
-  const auto at = distance * hn::Set(d, static_cast<T>(scale));
-  return (hn::MulAdd(at, hn::Set(d, kUlp), at) - start) * hn::Set(d, static_cast<T>(1 + 0x1p-20)) +
-         hn::Set(d, static_cast<T>(std::numeric_limits<float>::min()));
+  const auto at = distance * scale;
+  return (mul_add(at, kUlp, at) - start) * (1 + 0x1p-20) + std::numeric_limits<float>::min();
 }
 
 /// The results of a packet's rays so far, from lane `first` on: closest hits, or occlusion.
@@ -94,8 +93,8 @@ struct Found {
   HWY_INLINE void take(D d, const k::Distances<D>& found, hn::Vec<k::IdTag<D>> found_ids, hn::Mask<D> lanes) {
     const auto same_place = hn::And(found.value == distance, hn::RebindMask(d, ids > found_ids));
     const auto nearer = hn::And(hn::And(lanes, found.mask), hn::Or(found.value < distance, same_place));
-    distance = hn::IfThenElse(nearer, found.value, distance);
-    ids = hn::IfThenElse(hn::RebindMask(k::IdTag<D>(), nearer), found_ids, ids);
+    distance = select(nearer, found.value, distance);
+    ids = select(hn::RebindMask(k::IdTag<D>(), nearer), found_ids, ids);
     is_new = hn::Or(is_new, nearer);
   }
   /// Embree's tfar in the lanes with hits, which are lanes `v` on of the query.
@@ -202,9 +201,8 @@ HWY_INLINE hn::Vec<hn::Rebind<std::int32_t, D>> flags_of(D, hn::Mask<D> mask) {
 template <class D>
 HWY_INLINE void store_float_lanes(D d, hn::Vec<D> value, hn::Mask<D> lanes, float* to) {
   const hn::Rebind<float, D> df;
-  const hn::Rebind<std::int32_t, D> di;
   if constexpr (sizeof(hn::TFromD<D>) == 8) {
-    hn::BlendedStore(hn::DemoteTo(df, value), hn::RebindMask(df, flags_of(d, lanes) < hn::Zero(di)), df, to);
+    hn::BlendedStore(hn::DemoteTo(df, value), hn::RebindMask(df, flags_of(d, lanes) < 0), df, to);
   } else {
     hn::BlendedStore(value, lanes, df, to);
   }
@@ -262,7 +260,7 @@ HWY_INLINE void set_rays(EmbreeQuery<Packet>& query, EmbreeRay& rays, int* valid
     hn::Store(box.start, d, query.start + v);
     // If a known hit is in front of all boxes, there is nothing to find, and Embree does not accept a negative limit.
     const auto active = hn::FirstN(d, static_cast<std::size_t>(std::max(0, packet.count - first)));
-    const auto lanes = hn::And(hn::And(active, box.reaches), limit > hn::Zero(d));
+    const auto lanes = hn::And(hn::And(active, box.reaches), limit > 0);
     hn::StoreU(flags_of(d, lanes), hn::Rebind<std::int32_t, decltype(d)>(), valid + v);
   }
   if constexpr (Packet::kIsShadow) {

@@ -42,19 +42,19 @@ class PacketTraversal {
     hn::Store(hn::LoadU(d_, &RTCRayN_tfar(rays, kWidth, 0)), d_, limit_);
     for (int k = 0; k < 3; ++k) {
       const auto x = hn::LoadU(d_, direction_[k]);
-      const auto inverse = one / hn::CopySign(hn::Max(hn::Abs(x), smallest), x);
+      const auto inverse = one / hn::CopySign(max(hn::Abs(x), smallest), x);
       hn::Store(inverse, d_, inverse_[k]);
-      hn::Store(hn::Neg(hn::LoadU(d_, origin_[k]) * inverse), d_, shift_[k]);
+      hn::Store(-(hn::LoadU(d_, origin_[k]) * inverse), d_, shift_[k]);
     }
     for (int i = 0; i < kWidth; ++i) lanes_ |= valid[i] != 0 ? 1u << i : 0u;
     const auto active = mask_of(d_, lanes_);
     const auto infinite = hn::Set(d_, std::numeric_limits<float>::infinity());
-    const auto least = [&](auto v) { return hn::GetLane(hn::MinOfLanes(d_, hn::IfThenElse(active, v, infinite))); };
+    const auto least = [&](auto v) { return hn::GetLane(hn::MinOfLanes(d_, select(active, v, infinite))); };
     for (int k = 0; k < 3; ++k) {
       const auto o = hn::LoadU(d_, origin_[k]), inverse = hn::Load(d_, inverse_[k]);
-      const float low = least(o), high = -least(hn::Neg(o));
+      const float low = least(o), high = -least(-o);
       least_inverse_[k] = least(inverse);
-      greatest_inverse_[k] = -least(hn::Neg(inverse));
+      greatest_inverse_[k] = -least(-inverse);
       const bool forward = least_inverse_[k] > 0;
       straddles_[k] = !forward && greatest_inverse_[k] > 0;
       near_[k] = forward ? 0 : 1;
@@ -97,10 +97,10 @@ class PacketTraversal {
       for (int k = 0; k < 3; ++k) {
         if (straddles_[k]) continue;
         const auto low = hn::Set(d, least_inverse_[k]), high = hn::Set(d, greatest_inverse_[k]);
-        const auto a = hn::Load(d, bound[near_[k]][k] + v) - hn::Set(d, near_origin_[k]);
-        const auto b = hn::Load(d, bound[1 - near_[k]][k] + v) - hn::Set(d, far_origin_[k]);
-        enter = hn::Max(enter, hn::Min(a * low, a * high));
-        leave = hn::Min(leave, hn::Max(b * low, b * high));
+        const auto a = hn::Load(d, bound[near_[k]][k] + v) - near_origin_[k];
+        const auto b = hn::Load(d, bound[1 - near_[k]][k] + v) - far_origin_[k];
+        enter = max(enter, min(a * low, a * high));
+        leave = min(leave, max(b * low, b * high));
       }
       bits |= bits_of(d, enter <= leave) << v;
     }
@@ -108,9 +108,7 @@ class PacketTraversal {
   }
 
   /// Lanes whose limit is not before a distance.
-  HWY_INLINE unsigned within(float distance) const {
-    return bits_of(d_, hn::Load(d_, limit_) >= hn::Set(d_, distance));
-  }
+  HWY_INLINE unsigned within(float distance) const { return bits_of(d_, hn::Load(d_, limit_) >= distance); }
 
   HWY_INLINE void visit_node(const SphereBvh::Node& node, unsigned lanes, PacketVisit* stack, int& waiting) const {
     alignas(64) float bound[2][3][SphereBvh::kArity];
@@ -118,9 +116,7 @@ class PacketTraversal {
     for (int side = 0; side < 2; ++side)
       for (int k = 0; k < 3; ++k)
         for (int v = 0; v < static_cast<int>(SphereBvh::kArity); v += kChildLanes)
-          hn::Store(
-              hn::MulAdd(from_bytes(node.bound[side][k] + v), hn::Set(dc, node.step[k]), hn::Set(dc, node.origin[k])),
-              dc, bound[side][k] + v);
+          hn::Store(mul_add(from_bytes(node.bound[side][k] + v), node.step[k], node.origin[k]), dc, bound[side][k] + v);
     hn::Vec<Wide> inverse[3], shift[3];
     for (int k = 0; k < 3; ++k) {
       inverse[k] = hn::Load(d_, inverse_[k]);
@@ -133,15 +129,15 @@ class PacketTraversal {
       const auto child = static_cast<std::uint32_t>(hwy::Num0BitsBelowLS1Bit_Nonzero32(rest));
       auto enter = zero, leave = limit;
       for (int k = 0; k < 3; ++k) {
-        const auto a = hn::MulAdd(hn::Set(d_, bound[0][k][child]), inverse[k], shift[k]);
-        const auto b = hn::MulAdd(hn::Set(d_, bound[1][k][child]), inverse[k], shift[k]);
-        enter = hn::Max(enter, hn::Min(a, b));
-        leave = hn::Min(leave, hn::Max(a, b));
+        const auto a = mul_add(bound[0][k][child], inverse[k], shift[k]);
+        const auto b = mul_add(bound[1][k][child], inverse[k], shift[k]);
+        enter = max(enter, min(a, b));
+        leave = min(leave, max(a, b));
       }
       const auto hits = enter <= leave;
       const unsigned entering = bits_of(d_, hits) & lanes;
       if (entering == 0) continue;
-      const float nearest = hn::GetLane(hn::MinOfLanes(d_, hn::IfThenElse(hits, enter, infinite)));
+      const float nearest = hn::GetLane(hn::MinOfLanes(d_, select(hits, enter, infinite)));
       insert(stack, begin, waiting, PacketVisit{nearest, node.first + child, entering});
     }
     if (waiting > 0) prefetcher_.prefetch(stack[waiting - 1].what);
@@ -159,7 +155,7 @@ class PacketTraversal {
       hn::Store(most, dc, outer + v);
       hn::Store(radii.least - margin, dc, inner + v);
       for (int k = 0; k < 3; ++k) {
-        const auto c = hn::MulAdd(from_bytes(leaf.center[k] + v), hn::Set(dc, leaf.step), hn::Set(dc, leaf.origin[k]));
+        const auto c = mul_add(from_bytes(leaf.center[k] + v), leaf.step, leaf.origin[k]);
         hn::Store(c, dc, center[k] + v);
         hn::Store(c - most, dc, bound[0][k] + v);
         hn::Store(c + most, dc, bound[1][k] + v);
@@ -176,9 +172,9 @@ class PacketTraversal {
       const std::uint32_t id = leaf.ids[i];
       const k::Vec3<hn::Vec<Wide>> at = {hn::Set(d_, center[0][i]), hn::Set(d_, center[1][i]),
                                          hn::Set(d_, center[2][i])};
-      const auto passed = passing(d_, at - origin, direction);
+      const auto passed = passing(at - origin, direction);
       const auto radius = hn::Set(d_, outer[i]);
-      auto hit = may_hit(d_, passed, radius, limit);
+      auto hit = may_hit(passed, radius, limit);
       unsigned hitting = bits_of(d_, hit) & lanes;
       if constexpr (Packet::kIsShadow) {
         each_bit(hitting, [&](int lane) {
@@ -188,9 +184,9 @@ class PacketTraversal {
       }
       if (hitting == 0) return;
       const auto begin = passed.along - radius;
-      const auto nearer = certain_limit(d_, passed, hn::Set(d_, inner[i]), begin, wide_margin, limit);
-      limit = hn::IfThenElse(hit, nearer, limit);
-      const float nearest = hn::GetLane(hn::MinOfLanes(d_, hn::IfThenElse(hit, begin, infinite)));
+      const auto nearer = certain_limit(passed, hn::Set(d_, inner[i]), begin, wide_margin, limit);
+      limit = select(hit, nearer, limit);
+      const float nearest = hn::GetLane(hn::MinOfLanes(d_, select(hit, begin, infinite)));
       prefetcher_.prefetch_sphere(id);
       insert(candidates_, 0, candidate_count_, PacketVisit{nearest, id, hitting});
     });

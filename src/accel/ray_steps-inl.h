@@ -60,8 +60,8 @@ HWY_INLINE hn::Vec<hn::FixedTag<std::int32_t, 4>> sorted4(hn::Vec<hn::FixedTag<s
   alignas(16) static constexpr std::int32_t kOdd[4] = {0, -1, 0, -1}, kUpper[4] = {0, 0, -1, -1},
                                             kMiddle[4] = {0, 2, 1, 3};
   const auto exchange = [&](auto other, const std::int32_t* to_min) {
-    const auto lower = hn::Load(d, to_min) < hn::Zero(d);
-    keys = hn::IfThenElse(lower, hn::Min(keys, other), hn::Max(keys, other));
+    const auto lower = hn::Load(d, to_min) < 0;
+    keys = select(lower, min(keys, other), max(keys, other));
   };
   exchange(hn::Shuffle2301(keys), kOdd);
   exchange(hn::Shuffle1032(keys), kUpper);
@@ -81,8 +81,8 @@ HWY_INLINE hn::Vec<hn::FixedTag<std::int32_t, 8>> sorted8(hn::Vec<hn::FixedTag<s
                                                             {0, 0, 0, 0, -1, -1, 0, 0},   {0, 0, -1, 0, -1, 0, -1, 0}};
   for (int layer = 0; layer < 6; ++layer) {
     const auto other = hn::TableLookupLanes(keys, hn::SetTableIndices(d, kOther[layer]));
-    const auto upper = hn::Load(d, kUpper[layer]) < hn::Zero(d);
-    keys = hn::IfThenElse(upper, hn::Min(keys, other), hn::Max(keys, other));
+    const auto upper = hn::Load(d, kUpper[layer]) < 0;
+    keys = select(upper, min(keys, other), max(keys, other));
   }
   return keys;
 }
@@ -153,15 +153,14 @@ HWY_INLINE void test_children(const SphereBvh::Node& node, SingleRay& ray, int e
   int count = 0;
   for (std::uint32_t v = 0; v < SphereBvh::kArity; v += kChildLanes) {
     const auto at = [&](std::uint32_t side, unsigned k) {
-      return hn::MulAdd(from_bytes(node.bound[0][0] + side + k * SphereBvh::kArity + v), hn::Set(d, scale[k]),
-                        hn::Set(d, shift[k]));
+      return mul_add(from_bytes(node.bound[0][0] + side + k * SphereBvh::kArity + v), scale[k], shift[k]);
     };
-    const auto begin = hn::Max(hn::Max(at(ray.near[0], 0), at(ray.near[1], 1)), hn::Max(at(ray.near[2], 2), zero));
-    const auto end = hn::Min(hn::Min(at(kOtherSide - ray.near[0], 0), at(kOtherSide - ray.near[1], 1)),
-                             hn::Min(at(kOtherSide - ray.near[2], 2), limit));
+    const auto begin = max(max(at(ray.near[0], 0), at(ray.near[1], 1)), max(at(ray.near[2], 2), zero));
+    const auto end = min(min(at(kOtherSide - ray.near[0], 0), at(kOtherSide - ray.near[1], 1)),
+                         min(at(kOtherSide - ray.near[2], 2), limit));
     const auto index = hn::Iota(di, static_cast<int>(v));
     auto hits = hn::RebindMask(di, begin <= end);
-    if constexpr (kExcept) hits = hn::And(hits, index != hn::Set(di, except));
+    if constexpr (kExcept) hits = hn::And(hits, index != except);
     count += store_chosen(di, keys_of<SphereBvh::kArity>(d, begin, index), hits, ray.keys + count);
   }
   ray.key_count = count;
@@ -194,7 +193,7 @@ HWY_INLINE void push_children(SingleRay& ray) {
 HWY_INLINE bool stays_in(const SphereBvh::Cell& cell, const SingleRay& ray) {
   const hn::FixedTag<float, 4> d;
   const auto begin = hn::Load(d, ray.origin);
-  const auto end = hn::MulAdd(hn::Load(d, ray.direction), hn::Set(d, ray.limit), begin);
+  const auto end = mul_add(hn::Load(d, ray.direction), ray.limit, begin);
   const auto lower = hn::LoadU(d, cell.lower), upper = hn::LoadU(d, cell.upper);
   // Also false for an infinite limit.
   return hn::AllTrue(d, hn::And(hn::And(begin >= lower, end >= lower), hn::And(begin <= upper, end <= upper)));
@@ -230,19 +229,18 @@ HWY_INLINE bool test_spheres(const SphereBvh& bvh, std::uint32_t index, std::uin
   const auto origin =
       set3(leaf.origin[0] - ray.origin[0], leaf.origin[1] - ray.origin[1], leaf.origin[2] - ray.origin[2]);
   const hn::RebindToUnsigned<ChildTag> du;
-  const auto is_target = [&](int v) { return hn::RebindMask(d, hn::LoadU(du, leaf.ids + v) == hn::Set(du, target)); };
+  const auto is_target = [&](int v) { return hn::RebindMask(d, hn::LoadU(du, leaf.ids + v) == target); };
   const bool is_last = index == bvh.last_leaf;
   bool any = false;
   for (int v = 0; v < static_cast<int>(SphereBvh::kArity); v += kChildLanes) {
     const k::Vec3<hn::Vec<ChildTag>> codes = {from_bytes(leaf.center[0] + v), from_bytes(leaf.center[1] + v),
                                               from_bytes(leaf.center[2] + v)};
-    const auto passed = passing(d, k::mul_add(codes, step, origin), direction);
-    auto hit = may_hit(d, passed, radii_of(bvh, index, v).most + margin, limit);
-    if (is_last)
-      hit = hn::And(hit, hn::Iota(d, static_cast<float>(v)) < hn::Set(d, static_cast<float>(bvh.count_in(index))));
+    const auto passed = passing(mul_add(codes, step, origin), direction);
+    auto hit = may_hit(passed, radii_of(bvh, index, v).most + margin, limit);
+    if (is_last) hit = hn::And(hit, hn::Iota(d, static_cast<float>(v)) < bvh.count_in(index));
     if (kShadows) hit = hn::AndNot(is_target(v), hit);
     hn::Store(passed.along, d, ray.along + v);
-    hn::Store(hn::IfThenElse(hit, passed.offset_square, infinite), d, ray.offset_square + v);
+    hn::Store(select(hit, passed.offset_square, infinite), d, ray.offset_square + v);
     any |= !hn::AllFalse(d, hit);
   }
   return any;
@@ -259,11 +257,11 @@ HWY_INLINE void add_candidates(const SphereBvh& bvh, std::uint32_t index, Single
   int count = ray.candidates;
   auto nearest = hn::Set(d, ray.limit);
   for (int v = 0; v < static_cast<int>(SphereBvh::kArity); v += kChildLanes) {
-    const Passing<ChildTag> passed = {hn::Load(d, ray.along + v), hn::Load(d, ray.offset_square + v)};
+    const Passing<hn::Vec<ChildTag>> passed = {hn::Load(d, ray.along + v), hn::Load(d, ray.offset_square + v)};
     const RadiusBounds radii = radii_of(bvh, index, v);
     const auto begin = passed.along - (radii.most + margin);
     const auto hit = passed.offset_square < infinite;
-    const auto distance = hn::Max(begin, hn::Zero(d));
+    const auto distance = max(begin, 0);
     if constexpr (kHasCompress) {
       hn::StoreU(hn::Compress(distance, hit), d, ray.at + count);
       hn::StoreU(hn::Compress(hn::LoadU(du, leaf.ids + v), hn::RebindMask(du, hit)), du, ray.candidate + count);
@@ -276,7 +274,7 @@ HWY_INLINE void add_candidates(const SphereBvh& bvh, std::uint32_t index, Single
         ray.candidate[count++] = leaf.ids[v + i];
       });
     }
-    nearest = certain_limit(d, passed, radii.least - margin, begin, margin, nearest);
+    nearest = certain_limit(passed, radii.least - margin, begin, margin, nearest);
   }
   ray.candidates = count;
   ray.limit = hn::GetLane(hn::MinOfLanes(d, nearest));

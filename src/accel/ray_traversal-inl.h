@@ -29,7 +29,7 @@ HWY_INLINE bool order_candidates(SingleRay& ray) {
     const hn::RebindToSigned<decltype(d)> di;
     const auto at = hn::LoadU(d, ray.at + from);
     const auto index = hn::Iota(di, from);
-    const auto within = hn::And(hn::RebindMask(di, at <= hn::Set(d, ray.limit)), index < hn::Set(di, ray.candidates));
+    const auto within = hn::And(hn::RebindMask(di, at <= ray.limit), index < ray.candidates);
     return store_chosen(di, keys_of<kMaxCandidates>(d, at, index), within, ray.keys + to);
   };
   int count = 0;
@@ -66,7 +66,7 @@ HWY_INLINE unsigned intersect_candidates(const EmbreeQuery<Packet>& query, unsig
     auto found = Found<D, Packet>::load(d, packet, first);
     while (rest != 0) {
       HWY_ALIGN Id ids[kStep];
-      hn::Store(hn::Set(du, static_cast<Id>(kernel::kNoSphere)), du, ids);
+      hn::Store(set(du, kernel::kNoSphere), du, ids);
       unsigned now = 0;
       each_bit(rest, [&](int i) {
         SingleRay& one = rays[i];
@@ -79,7 +79,7 @@ HWY_INLINE unsigned intersect_candidates(const EmbreeQuery<Packet>& query, unsig
       });
       if (now == 0) break;
       const auto spheres = hn::Load(du, ids);
-      const auto active = hn::RebindMask(d, spheres != hn::Set(du, static_cast<Id>(kernel::kNoSphere)));
+      const auto active = hn::RebindMask(d, spheres != kernel::kNoSphere);
       hn::Vec<D> row[4];
       const Id any = ids[static_cast<int>(hwy::Num0BitsBelowLS1Bit_Nonzero32(now)) - v];
       k::gather_spheres(
@@ -190,9 +190,9 @@ HWY_INLINE unsigned traverse_by_rays(const SphereBvh& bvh, const EmbreeQuery<Pac
   alignas(64) std::uint32_t near[3][kWidth];
   for (int k = 0; k < 3; ++k) {
     const auto x = hn::LoadU(d, direction[k]);
-    const auto one_over = hn::Set(d, 1.0F) / hn::CopySign(hn::Max(hn::Abs(x), hn::Set(d, kSmallestDirection)), x);
+    const auto one_over = 1.0F / hn::CopySign(max(hn::Abs(x), kSmallestDirection), x);
     hn::Store(one_over, d, inverse[k]);
-    hn::Store(hn::IfThenElseZero(hn::RebindMask(du, one_over < hn::Zero(d)), hn::Set(du, kOtherSide)), du, near[k]);
+    hn::Store(hn::IfThenElseZero(hn::RebindMask(du, one_over < 0), hn::Set(du, kOtherSide)), du, near[k]);
   }
   unsigned lanes = 0;
   for (int i = 0; i < kWidth; ++i) lanes |= valid[i] != 0 ? 1u << i : 0u;

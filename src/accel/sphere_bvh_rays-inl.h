@@ -118,44 +118,41 @@ HWY_INLINE RadiusBounds radii_of(const SphereBvh& bvh, std::uint32_t leaf, int f
 }
 
 /// How rays pass spheres, a pair per lane.
-template <class D>
+template <class V>
 struct Passing {
-  hn::Vec<D> along;          ///< distance along the ray of the point that is closest to the centre
-  hn::Vec<D> offset_square;  ///< squared distance of the centre from the ray, rounded up
+  V along;          ///< distance along the ray of the point that is closest to the centre
+  V offset_square;  ///< squared distance of the centre from the ray, rounded up
 };
 
 /// `to_center`  from the ray's origin to the sphere's decoded centre
-template <class D>
-HWY_INLINE Passing<D> passing(D d, const k::Vec3<hn::Vec<D>>& to_center, const k::Vec3<hn::Vec<D>>& direction) {
-  const auto along = k::dot(to_center, direction);
-  const auto offset = k::neg_mul_add(direction, along, to_center);
-  return {along, k::dot(offset, offset) * hn::Set(d, kGrowth)};
+template <class V>
+HWY_INLINE Passing<V> passing(const k::Vec3<V>& to_center, const k::Vec3<V>& direction) {
+  const V along = dot(to_center, direction);
+  const auto offset = neg_mul_add(direction, along, to_center);
+  return {along, dot(offset, offset) * kGrowth};
 }
 
 /// Whether a ray may hit a sphere before its limit.
 ///
 /// `outer`    the largest radius that the sphere may have, plus margin_of()
-template <class D>
-HWY_INLINE hn::Mask<D> may_hit(D d, const Passing<D>& p, hn::Vec<D> outer, hn::Vec<D> limit) {
-  return hn::And(hn::And(p.offset_square <= outer * outer * hn::Set(d, kGrowth), p.along + outer >= hn::Zero(d)),
-                 p.along - outer <= limit);
+template <class V>
+HWY_INLINE auto may_hit(const Passing<V>& p, V outer, V limit) {
+  return hn::And(hn::And(p.offset_square <= outer * outer * kGrowth, p.along + outer >= 0), p.along - outer <= limit);
 }
 
 /// An upper bound of a hit's distance, or `limit` if that is less or no hit is certain.
 ///
 /// `inner`    the smallest radius that the sphere may have, minus the margin
 /// `begin`    a lower bound of the distance
-template <class D>
-HWY_INLINE hn::Vec<D> certain_limit(D d, const Passing<D>& p, hn::Vec<D> inner, hn::Vec<D> begin, hn::Vec<D> margin,
-                                    hn::Vec<D> limit) {
-  const auto zero = hn::Zero(d);
-  const auto deep = hn::NegMulAdd(p.offset_square, hn::Set(d, kGrowth), inner * inner);
-  const auto pierced = hn::And(inner > zero, hn::And(deep > zero, begin > zero));
+template <class V>
+HWY_INLINE V certain_limit(const Passing<V>& p, V inner, V begin, V margin, V limit) {
+  const V deep = neg_mul_add(p.offset_square, kGrowth, inner * inner);
+  const auto pierced = hn::And(inner > 0, hn::And(deep > 0, begin > 0));
   // Slightly below the root, so that the distance is overestimated. The error of the approximate reciprocal square
   // root is below 2^-11; it differs between processors, but does not affect the image.
-  const auto root = deep * hn::ApproximateReciprocalSqrt(hn::Max(deep, hn::Set(d, 0x1p-100F)));
-  const auto certain = (hn::NegMulAdd(root, hn::Set(d, 1 - 0x1p-10F), p.along) + margin) * hn::Set(d, kLonger);
-  return hn::Min(limit, hn::IfThenElse(pierced, certain, limit));
+  const V root = deep * hn::ApproximateReciprocalSqrt(max(deep, 0x1p-100F));
+  const V certain = (neg_mul_add(root, 1 - 0x1p-10F, p.along) + margin) * kLonger;
+  return min(limit, select(pierced, certain, limit));
 }
 
 }  // namespace orrery::accel::HWY_NAMESPACE

@@ -125,7 +125,7 @@ HWY_INLINE void deposit_paths(D d, int count, const SceneView& scene, const Tile
   const IdTag<D> du;
   for (int i = 0; i < count; i += static_cast<int>(hn::Lanes(d))) {
     const auto active = hn::FirstN(d, static_cast<std::size_t>(count - i));
-    const auto light = load3(d, lit.radiance[0] + i, lit.radiance[1] + i, lit.radiance[2] + i);
+    const auto light = load3(d, lit.radiance, i);
     const auto pixels = hn::Load(du, lit.pixel + i), samples = hn::Load(du, lit.sample + i);
     deposit(d, active, light, pixels, samples, scene, tile, counts);
     Recorder<D, kRecords>(scene, tile, pixels, samples).light(d, active, light);

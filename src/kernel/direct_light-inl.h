@@ -118,7 +118,7 @@ HWY_NOINLINE V emitter_weight(D d, const SceneView& scene, const Vertex<D>& at, 
   const auto cone = subtended_cone(to_center(at, sphere.center), sphere.radius);
   const V probability = choice_probability(d, scene, at, hits) * (1 - environment_share(scene));
   const auto can_sample =
-      hn::And(hn::And(cone.distance > sphere.radius, probability > 0), pdf < (std::numeric_limits<T>::infinity()));
+      hn::And(hn::And(cone.distance > sphere.radius, probability > 0), pdf < std::numeric_limits<T>::infinity());
   const V inverse = hn::IfThenElseZero(can_sample, probability / (pdf * solid_angle(cone.one_minus_cos)));
   return bsdf_sample_weight(d, scene.direct_lighting, inverse);
 }
@@ -212,11 +212,8 @@ HWY_INLINE void trace_shadow_packet(D d, const SceneView& scene, const Tracer& t
   const int step = static_cast<int>(hn::Lanes(d));
   for (int v = 0; v < packet.count; v += step) {
     const int i = shadow.count + v;
-    const auto at = [&](const auto& component) {
-      return Vec3<hn::Vec<D>>{hn::LoadU(d, component[0] + i), hn::LoadU(d, component[1] + i),
-                              hn::LoadU(d, component[2] + i)};
-    };
-    const auto base = at(shadow.base), offset = at(shadow.offset), direction = at(shadow.direction);
+    const auto base = loadu3(d, shadow.base, i), offset = loadu3(d, shadow.offset, i);
+    const auto direction = loadu3(d, shadow.direction, i);
     const auto origin = base + offset;
     store3(d, origin, packet.origin, v);
     store3(d, sum_error(base, offset, origin), packet.origin_low, v);
@@ -236,8 +233,7 @@ HWY_INLINE void trace_shadow_packet(D d, const SceneView& scene, const Tracer& t
     const auto is_free = hn::RebindMask(d, hn::Load(du, packet.occluded + v) == 0);
     const auto lanes = hn::And(active, is_free);
     if (hn::AllFalse(d, lanes)) continue;
-    const Vec3<hn::Vec<D>> light{hn::LoadU(d, shadow.light[0] + i), hn::LoadU(d, shadow.light[1] + i),
-                                 hn::LoadU(d, shadow.light[2] + i)};
+    const auto light = loadu3(d, shadow.light, i);
     const auto paths = hn::LoadU(du, shadow.path + i);
     gain(d, lanes, light, paths, lit);
     if (!kRecords || !tile.record_light) continue;

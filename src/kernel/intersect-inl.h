@@ -36,9 +36,7 @@ struct Rays {
 /// Loads the rays of a packet from `first` on.
 template <class D, class Packet>
 HWY_INLINE Rays<D> load_rays(D d, const Packet& p, int first) {
-  const auto at = [&](const auto& component) {
-    return load3(d, component[0] + first, component[1] + first, component[2] + first);
-  };
+  const auto at = [&](const auto& component) { return load3(d, component, first); };
   return {at(p.origin),
           at(p.origin_low),
           at(p.offset),

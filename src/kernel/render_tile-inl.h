@@ -103,10 +103,7 @@ HWY_INLINE void load_secondary_rays(D d, const SceneView& scene, Stream& stream,
   packet.count = count;
   for (int v = 0; v < count; v += static_cast<int>(hn::Lanes(d))) {
     const int i = first + v;
-    const auto at = [&](const auto& component) {
-      return Vec3<hn::Vec<D>>{hn::LoadU(d, component[0] + i), hn::LoadU(d, component[1] + i),
-                              hn::LoadU(d, component[2] + i)};
-    };
+    const auto at = [&](const auto& component) { return loadu3(d, component, i); };
     const auto store = [&](const auto& value, auto& to) { store3(d, value, to, v); };
     const auto base = at(stream.base), offset = at(stream.offset), direction = at(stream.direction);
     const auto origin = base + offset;

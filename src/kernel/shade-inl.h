@@ -156,7 +156,7 @@ class Shader {
     if (features_.motion) at.times = packet.time + v;
     at.pixels = hn::Load(du, carried.pixel + v);
     at.samples = hn::Load(du, carried.sample + v);
-    at.throughput = load3(d, carried.throughput[0] + v, carried.throughput[1] + v, carried.throughput[2] + v);
+    at.throughput = load3(d, carried.throughput, v);
     if (kLoop.records) {
       at.history = hn::Load(du, carried.history + v);
       if (depth_ == 0) recorder(at).begin(d, active, at.missed);
@@ -167,7 +167,7 @@ class Shader {
     }
     at.cone = {hn::Zero(d), hn::Zero(d), hn::Zero(d)};
     if (has_cones()) {
-      const auto moments = load3(d, carried.cone[0] + v, carried.cone[1] + v, carried.cone[2] + v);
+      const auto moments = load3(d, carried.cone, v);
       at.cone = RayCone<V>{moments.x, moments.y, moments.z}.advanced(at.distance);
     }
     return at;

@@ -78,6 +78,15 @@ HWY_INLINE Vec3<hn::Vec<D>> load3(D d, const T* x, const T* y, const T* z) {
   return {hn::Load(d, x), hn::Load(d, y), hn::Load(d, z)};
 }
 template <class D, class T, std::size_t kSize>
+HWY_INLINE Vec3<hn::Vec<D>> load3(D d, const T (&from)[3][kSize], int at) {
+  return load3(d, from[0] + at, from[1] + at, from[2] + at);
+}
+/// Loads from any index; load3() and store3() need that of a whole vector.
+template <class D, class T, std::size_t kSize>
+HWY_INLINE Vec3<hn::Vec<D>> loadu3(D d, const T (&from)[3][kSize], int at) {
+  return {hn::LoadU(d, from[0] + at), hn::LoadU(d, from[1] + at), hn::LoadU(d, from[2] + at)};
+}
+template <class D, class T, std::size_t kSize>
 HWY_INLINE void store3(D d, const Vec3<hn::Vec<D>>& v, T (&to)[3][kSize], int at) {
   hn::Store(v.x, d, to[0] + at);
   hn::Store(v.y, d, to[1] + at);
