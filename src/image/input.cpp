@@ -129,6 +129,9 @@ std::string damage_of_jpeg(std::istream& in) {
   return is_closed ? "" : kTruncated;
 }
 
+/// Returns the first line of OpenImageIO's messages about an image. It names the cause; the others are consequences.
+std::string first_message(const std::string& text) { return text.substr(0, text.find('\n')); }
+
 }  // namespace
 
 void fail_to_read(const std::filesystem::path& file, const std::string& reason) {
@@ -155,8 +158,6 @@ bool Input::decode(int begin, int end, int first_channel, int end_channel, OIIO:
   if (spec.tile_width == 0) return in->read_scanlines(part, 0, begin, end, 0, first_channel, end_channel, type, out);
   return in->read_tiles(part, 0, spec.x, spec.x + spec.width, begin, end, 0, 1, first_channel, end_channel, type, out);
 }
-
-std::string first_message(const std::string& text) { return text.substr(0, text.find('\n')); }
 
 std::string Input::error_message() const {
   const std::string text = first_message(in->geterror());

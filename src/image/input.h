@@ -17,9 +17,6 @@ namespace orrery::image {
 /// Throws base::Error(kNoMemory) for an image whose pixels do not fit into memory.
 [[noreturn]] void fail_for_memory(const std::filesystem::path& file);
 
-/// Returns the first line of OpenImageIO's messages about an image. It names the cause; the others are consequences.
-std::string first_message(const std::string& text);
-
 /// Checks the size in the header of an image or part.
 ///
 /// Errors     base::Error(kBadData) if it is out of range or the pixels are deep

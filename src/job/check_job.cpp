@@ -1,6 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "job/check_job.h"
 
+#include <filesystem>
+#include <string>
+#include <vector>
+
 #include <fmt/core.h>
 
 #include "base/atomic_file.h"
@@ -15,6 +19,17 @@
 namespace orrery::job {
 namespace {
 
+/// All files that a job writes, except Cryptomatte manifests, which only some scenes have.
+std::vector<OutputFile> outputs_of(const Job& job) {
+  std::vector<OutputFile> out;
+  for (const ImageFile& output : job.outputs.images) out.push_back({output.path, "-o"});
+  if (!job.outputs.deep.empty()) out.push_back({job.outputs.deep, "--deep"});
+  if (!job.outputs.statistics.empty()) out.push_back({job.outputs.statistics, "--stats"});
+  if (job.merge.shards.empty() && job.keep == nullptr)
+    out.push_back({checkpoint_file(job.outputs.images.front().path), "checkpoint"});
+  return out;
+}
+
 /// A shard holds sums only; images are made from all shards together.
 void check_shard(const Job& job) {
   const auto refuse = [](const std::string& text) { throw base::Error(base::ErrorKind::kUsage, text); };
@@ -26,16 +41,6 @@ void check_shard(const Job& job) {
 }
 
 }  // namespace
-
-std::vector<OutputFile> outputs_of(const Job& job) {
-  std::vector<OutputFile> out;
-  for (const ImageFile& output : job.outputs.images) out.push_back({output.path, "-o"});
-  if (!job.outputs.deep.empty()) out.push_back({job.outputs.deep, "--deep"});
-  if (!job.outputs.statistics.empty()) out.push_back({job.outputs.statistics, "--stats"});
-  if (job.merge.shards.empty() && job.keep == nullptr)
-    out.push_back({checkpoint_file(job.outputs.images.front().path), "checkpoint"});
-  return out;
-}
 
 void add_job_files(const Job& job, base::FileSet& files, const std::string& owner) {
   if (job.scene.has_file) files.add_input(job.scene.file, "scene");

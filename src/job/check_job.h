@@ -3,7 +3,6 @@
 
 #include <filesystem>
 #include <string>
-#include <vector>
 
 #include "base/file_set.h"
 #include "compile/forward.h"
@@ -18,9 +17,6 @@ struct OutputFile {
   std::filesystem::path path;
   std::string role;  ///< "-o", "--stats", "checkpoint"
 };
-
-/// All files that a job writes, except Cryptomatte manifests, which only some scenes have.
-std::vector<OutputFile> outputs_of(const Job& job);
 
 /// Adds the files that a job reads and writes according to its command line. The names of Cryptomatte manifests are
 /// reserved for every EXR image, because the scene has not been read yet.

@@ -41,9 +41,6 @@ std::string stamp_of(const Job& job, const image::Provenance& provenance, const 
 /// `keys`     the keys to compare
 std::string difference(const image::Provenance& a, const image::Provenance& b, const std::vector<std::string>& keys);
 
-/// Describes why a job cannot continue from a checkpoint; empty: it can. It can have more samples than the checkpoint.
-std::string difference_of_checkpoint(const image::Provenance& checkpoint, const image::Provenance& job);
-
 /// True if every pixel of a shard has all samples of the shard's range.
 bool is_finished(const image::PartialFile& shard);
 

@@ -145,8 +145,7 @@ class Run {
     report_.scene_hash = provenance_.at("sceneHash");
     report_.was_skipped = job_.skip_existing && is_up_to_date(job_, compiled(), provenance_, stamp_);
     if (report_.was_skipped) return;
-    require_disk_space(job_.outputs, is_shard(job_), image_size(compiled().width, compiled().height, layers_.request),
-                       job_.resources.disk_limit);
+    require_disk_space(job_, compiled().width, compiled().height, layers_.request);
     const MemoryNeeds needs =
         memory_needs(compiled(), layers_.request, job_.sampling.is_adaptive(), prepared_->has_accelerator());
     require_memory(estimate_memory(needs), job_.resources.memory_limit, held_memory(needs));

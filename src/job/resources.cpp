@@ -20,7 +20,7 @@
 #include "film/layer_pixel.h"
 #include "film/layers.h"
 #include "image/format.h"
-#include "job/outputs.h"
+#include "job/job.h"
 #include "kernel/isa.h"
 #include "kernel/pixel_sum.h"
 #include "render/render.h"
@@ -101,18 +101,21 @@ double compressed_fraction(const std::string& compression, bool is_float) {
 /// light group with light in one lobe per pixel takes 39 bytes.
 constexpr double kShardBytes = 27, kShardLayerBytes = 130, kShardLightGroupBytes = 40, kDeepBytes = 24;
 
-double bytes_per_pixel(const Outputs& outputs, bool is_shard, image::Format format, const ImageSize& size) {
-  const image::ExrOptions& exr = outputs.exr;
+double bytes_per_pixel(const Job& job, image::Format format, const film::LayerRequest& layers) {
+  const image::ExrOptions& exr = job.outputs.exr;
   if (format != image::Format::kExr) {
     const image::FormatInfo& info = image::info_of(format);
-    return outputs.bits == 16 ? info.bytes_per_pixel_16 : info.bytes_per_pixel;
+    return job.outputs.bits == 16 ? info.bytes_per_pixel_16 : info.bytes_per_pixel;
   }
-  if (is_shard)
-    return kShardBytes + (size.half_planes + size.float_planes > 0 ? kShardLayerBytes : 0) +
-           kShardLightGroupBytes * static_cast<double>(size.light_groups);
-  return static_cast<double>(4 + size.half_planes) * (exr.as_float ? 4 : 2) *
-             compressed_fraction(exr.compression, exr.as_float) +
-         static_cast<double>(size.float_planes) * 4 * compressed_fraction(exr.compression, true);
+  const std::vector<film::Plane> planes = film::planes_of(layers);
+  if (is_shard(job))
+    return kShardBytes + (planes.empty() ? 0 : kShardLayerBytes) +
+           (layers.light_groups ? kShardLightGroupBytes * static_cast<double>(layers.groups.size()) : 0);
+  const double as_float = 4 * compressed_fraction(exr.compression, true);
+  const double as_stored = exr.as_float ? as_float : 2 * compressed_fraction(exr.compression, false);
+  double bytes = 4 * as_stored;  // R, G, B, A
+  for (const film::Plane& plane : planes) bytes += plane.kind == film::PlaneKind::kData ? as_float : as_stored;
+  return bytes;
 }
 
 std::filesystem::path folder_of(const std::filesystem::path& file) {
@@ -202,28 +205,19 @@ void require_memory_to_compile(const scene::Scene& scene, std::uint64_t limit) {
   require(needed, "the spheres need about " + bytes_text(needed) + " while they are compiled", limit, loaded);
 }
 
-ImageSize image_size(int width_px, int height_px, const film::LayerRequest& layers) {
-  ImageSize size;
-  size.width_px = width_px;
-  size.height_px = height_px;
-  for (const film::Plane& plane : film::planes_of(layers))
-    ++(plane.kind == film::PlaneKind::kData ? size.float_planes : size.half_planes);
-  size.light_groups = layers.light_groups ? layers.groups.size() : 0;
-  return size;
-}
-
-std::map<std::filesystem::path, double> estimate_disk_space(const Outputs& outputs, bool is_shard,
-                                                            const ImageSize& size) {
-  const double pixels = static_cast<double>(size.width_px) * size.height_px;
+std::map<std::filesystem::path, double> estimate_disk_space(const Job& job, int width_px, int height_px,
+                                                            const film::LayerRequest& layers) {
+  const double pixels = static_cast<double>(width_px) * height_px;
   std::map<std::filesystem::path, double> needed;
-  for (const auto& [file, format] : outputs.images)
-    needed[folder_of(file)] += pixels * bytes_per_pixel(outputs, is_shard, format, size);
-  if (!outputs.deep.empty()) needed[folder_of(outputs.deep)] += pixels * kDeepBytes;
+  for (const auto& [file, format] : job.outputs.images)
+    needed[folder_of(file)] += pixels * bytes_per_pixel(job, format, layers);
+  if (!job.outputs.deep.empty()) needed[folder_of(job.outputs.deep)] += pixels * kDeepBytes;
   return needed;
 }
 
-void require_disk_space(const Outputs& outputs, bool is_shard, const ImageSize& size, std::uint64_t limit) {
-  for (const auto& [folder, bytes] : estimate_disk_space(outputs, is_shard, size)) {
+void require_disk_space(const Job& job, int width_px, int height_px, const film::LayerRequest& layers) {
+  const std::uint64_t limit = job.resources.disk_limit;
+  for (const auto& [folder, bytes] : estimate_disk_space(job, width_px, height_px, layers)) {
     std::error_code failed;
     const std::filesystem::space_info space = std::filesystem::space(folder, failed);
     const std::uint64_t allowed = limit > 0 ? limit : space.available;

@@ -243,7 +243,7 @@ class JobDiskSpace : public testing::Test {
   double ratio(const std::string& name, const film::LayerRequest& layers = {}) {
     job_.outputs.images = {folder_ / name};
     run_job(job_);
-    const auto needed = estimate_disk_space(job_.outputs, is_shard(job_), image_size(200, 112, layers));
+    const auto needed = estimate_disk_space(job_, 200, 112, layers);
     EXPECT_EQ(needed.size(), 1u);
     return needed.begin()->second / static_cast<double>(std::filesystem::file_size(folder_ / name));
   }
@@ -283,7 +283,6 @@ TEST_F(JobDiskSpace, LightGroupsIncreaseTheEstimate) {
   film::LayerRequest layers;
   layers.light_groups = true;
   layers.groups = {{"default", false, true}};
-  EXPECT_EQ(image_size(200, 112, layers).half_planes, 24u);
   EXPECT_GT(ratio("a.exr", layers), 0.8);
   EXPECT_LT(ratio("a.exr", layers), 3);  // in most pixels most lobes are black
   job_.sampling.sample_end = 2;
@@ -292,17 +291,18 @@ TEST_F(JobDiskSpace, LightGroupsIncreaseTheEstimate) {
 }
 
 TEST_F(JobDiskSpace, ALimitReplacesTheFreeSpace) {
-  Outputs outputs;
-  outputs.images = {folder_ / "a.exr"};
-  const ImageSize size{65536, 65536, 0};  // 16 GiB
+  job_.outputs.images = {folder_ / "a.exr"};
+  job_.resources.disk_limit = std::uint64_t{1} << 30;
+  const auto require = [&] { require_disk_space(job_, 65536, 65536, {}); };  // 16 GiB
   try {
-    require_disk_space(outputs, false, size, std::uint64_t{1} << 30);
+    require();
     ADD_FAILURE() << "no error";
   } catch (const base::Error& error) {
     EXPECT_EQ(error.kind(), base::ErrorKind::kCannotCreate);
     EXPECT_NE(std::string(error.what()).find("--disk-limit allows"), std::string::npos) << error.what();
   }
-  EXPECT_NO_THROW(require_disk_space(outputs, false, size, std::uint64_t{1} << 50)) << "whoever gives a limit insists";
+  job_.resources.disk_limit = std::uint64_t{1} << 50;
+  EXPECT_NO_THROW(require()) << "whoever gives a limit insists";
 }
 
 }  // namespace
