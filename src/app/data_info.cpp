@@ -71,7 +71,7 @@ DataInfo data_info(const DataInfoRequest& request) {
   const std::unique_ptr<data::DataFile> file = particles::open(request.file, options);
   DataInfo info;
   info.file = request.file;
-  info.format = file->format();
+  info.format = file->format;
   info.frames = file->frame_count();
   info.frame = request.frame;
   if (request.frame < 1 || request.frame > info.frames)

@@ -37,7 +37,7 @@ struct ColumnSummary {
 /// Properties of one frame of a data file.
 struct DataInfo {
   std::filesystem::path file;
-  data::Format format = data::Format::kCsv;
+  const char* format = "";  ///< see data::DataFile
   int frames = 1;
   int frame = 1;
   data::FrameInfo described;  ///< includes the columns that are computed from others

@@ -170,9 +170,8 @@ nlohmann::json json_of(const ColumnSummary& summary) {
 
 std::string data_info_text(const DataInfo& info) {
   const data::FrameInfo& frame = info.described;
-  std::string out =
-      fmt::format("file        {}\nformat      {}\nframe       {} of {}", base::printable(info.file.string()),
-                  data::format_name(info.format), info.frame, info.frames);
+  std::string out = fmt::format("file        {}\nformat      {}\nframe       {} of {}",
+                                base::printable(info.file.string()), info.format, info.frame, info.frames);
   if (frame.step) out += ", step " + number_text(*frame.step);
   out += '\n';
   if (!frame.title.empty()) out += fmt::format("title       {}\n", shortened(frame.title, kLongestTitle));
@@ -202,7 +201,7 @@ std::string data_info_json(const DataInfo& info) {
            {"periodic", frame.box->periodic}};
   return job::json_text({{"schema", "orrery.data/1"},
                          {"file", info.file.string()},
-                         {"format", data::format_name(info.format)},
+                         {"format", info.format},
                          {"frames", info.frames},
                          {"frame", info.frame},
                          {"step", frame.step ? json(*frame.step) : json()},

@@ -202,7 +202,6 @@ class GsdReader final : public DataFile {
     if (file_.frame_count() == 0) fail("the file has no frames");
   }
 
-  Format format() const override { return Format::kGsd; }
   int frame_count() override { return static_cast<int>(file_.frame_count()); }
   FrameInfo describe(int frame) override;
   std::uint64_t memory() const override { return file_.memory(); }
@@ -370,12 +369,14 @@ Table GsdReader::read(int index, const std::vector<std::string>& columns) {
   return table;
 }
 
-}  // namespace
-
 bool is_gsd(const Signature& signature) { return signature.head.starts_with("\xdf\x65\xdf\x65\xdf\x65\xdf\x65"); }
 
 std::unique_ptr<DataFile> open_gsd(const Bytes& bytes, const OpenOptions&) {
   return std::make_unique<GsdReader>(bytes);
 }
+
+}  // namespace
+
+const FormatReader kGsd = {"GSD", is_gsd, open_gsd};
 
 }  // namespace orrery::arrays

@@ -293,7 +293,6 @@ class SnapshotReader final : public DataFile {
  public:
   SnapshotReader(const std::filesystem::path& file, const OpenOptions& options);
 
-  Format format() const override { return Format::kHdf5; }
   int frame_count() override { return 1; }
   FrameInfo describe(int) override { return info_; }
   Table read(int frame, const std::vector<std::string>& columns) override;
@@ -339,6 +338,7 @@ SnapshotReader::SnapshotReader(const std::filesystem::path& file, const OpenOpti
     parts_.push_back({file, {}, {}});
   for (Part& part : parts_) count_rows(part);
   choose_type(options.component, header);
+  info_.has_components = true;
   if (header) info_.box = box_of(header);
   list_columns();
 }
@@ -484,8 +484,6 @@ Table SnapshotReader::read(int, const std::vector<std::string>& columns) {
   return table;
 }
 
-}  // namespace
-
 bool is_hdf5(const Signature& signature) {
   using namespace std::string_view_literals;
   // The signature may follow a user block.
@@ -499,5 +497,9 @@ std::unique_ptr<DataFile> open_hdf5(const Bytes& bytes, const OpenOptions& optio
     fail(bytes->file(), "a compressed HDF5 file cannot be read", "decompress it first, e.g. with `gunzip`");
   return std::make_unique<SnapshotReader>(bytes->file(), options);
 }
+
+}  // namespace
+
+const FormatReader kHdf5 = {"HDF5", is_hdf5, open_hdf5};
 
 }  // namespace orrery::arrays

@@ -157,7 +157,7 @@ std::vector<LasColumn> columns_of(const LasHeader& header) {
 
 class LasFile final : public SingleFrame {
  public:
-  explicit LasFile(const Bytes& bytes) : SingleFrame(data::Format::kLas, bytes) {
+  explicit LasFile(const Bytes& bytes) : SingleFrame(bytes) {
     Faults faults(bytes->file());
     header_ = parse_header(*bytes, faults);
     columns_ = columns_of(header_);
@@ -240,10 +240,12 @@ class LasFile final : public SingleFrame {
   bool colors_are_described_ = false;
 };
 
-}  // namespace
-
 bool is_las(const Signature& signature) { return signature.head.starts_with(kLasSignature); }
 
 std::unique_ptr<DataFile> open_las(const Bytes& bytes, const OpenOptions&) { return std::make_unique<LasFile>(bytes); }
+
+}  // namespace
+
+const FormatReader kLas = {"LAS", is_las, open_las};
 
 }  // namespace orrery::arrays

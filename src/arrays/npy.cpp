@@ -35,7 +35,7 @@ void check_shape(const NpyHeader& header, Faults& faults) {
 
 class NpyFile final : public SingleFrame {
  public:
-  explicit NpyFile(const Bytes& bytes) : SingleFrame(data::Format::kNpy, bytes) {
+  explicit NpyFile(const Bytes& bytes) : SingleFrame(bytes) {
     Faults faults(bytes->file());
     NpyHeader header;
     if (const std::string fault = parse_npy_header(bytes->text(0, kLongestNpyHeader), header); !fault.empty())
@@ -59,9 +59,7 @@ class NpyFile final : public SingleFrame {
   Table read(int, const std::vector<std::string>& names) override {
     Faults faults(bytes_->file());
     std::vector<NpyColumn> columns;
-    for (const std::string& name : names)
-      columns.push_back(
-          *std::find_if(columns_.begin(), columns_.end(), [&](const NpyColumn& c) { return c.name == name; }));
+    for (const std::string& name : names) columns.push_back(*find_named(columns_, name));
     Table table;
     table.rows = static_cast<std::size_t>(info_.rows);
     table.columns = read_npy_columns(*bytes_, info_.rows, columns, faults);
@@ -125,7 +123,7 @@ bool has_positions(const Member& member) {
 
 class NpzFile final : public SingleFrame {
  public:
-  NpzFile(const Bytes& bytes, std::uint64_t limit) : SingleFrame(data::Format::kNpz, bytes), limit_(limit) {
+  NpzFile(const Bytes& bytes, std::uint64_t limit) : SingleFrame(bytes), limit_(limit) {
     Faults faults(bytes->file());
     for (ZipReader zip(*bytes); zip.next();) {
       members_.push_back(described(zip));
@@ -219,8 +217,6 @@ class NpzFile final : public SingleFrame {
   std::vector<Member> members_;  ///< all members of the archive, in its order
 };
 
-}  // namespace
-
 bool is_npy(const Signature& signature) { return has_npy_signature(signature.head); }
 
 std::unique_ptr<DataFile> open_npy(const Bytes& bytes, const OpenOptions&) { return std::make_unique<NpyFile>(bytes); }
@@ -237,5 +233,10 @@ bool is_npz(const Signature& signature) {
 std::unique_ptr<DataFile> open_npz(const Bytes& bytes, const OpenOptions& options) {
   return std::make_unique<NpzFile>(bytes, options.decompressed_limit);
 }
+
+}  // namespace
+
+const FormatReader kNpy = {"NPY", is_npy, open_npy};
+const FormatReader kNpz = {"NPZ", is_npz, open_npz};
 
 }  // namespace orrery::arrays

@@ -468,7 +468,7 @@ std::optional<NumberType> vtk_number_type(std::string_view name) {
 
 class VtkFile final : public SingleFrame {
  public:
-  VtkFile(const Bytes& bytes, std::uint64_t limit) : SingleFrame(data::Format::kVtk, bytes), document_(bytes, limit) {
+  VtkFile(const Bytes& bytes, std::uint64_t limit) : SingleFrame(bytes), document_(bytes, limit) {
     for (const pugi::xml_node piece : document_.data().children("Piece")) add_piece(piece);
     if (pieces_.empty()) describe_no_points();
     for (std::size_t i = 0; i < arrays_.size(); ++i) add_columns(i);
@@ -486,11 +486,8 @@ class VtkFile final : public SingleFrame {
   Table read(int, const std::vector<std::string>& names) override {
     Table table;
     table.rows = static_cast<std::size_t>(info_.rows);
-    for (const std::string& name : names) {
-      const auto info =
-          std::find_if(info_.columns.begin(), info_.columns.end(), [&](const ColumnInfo& c) { return c.name == name; });
-      table.columns.push_back({name, empty_values(info->type)});
-    }
+    for (const std::string& name : names)
+      table.columns.push_back({name, empty_values(find_named(info_.columns, name)->type)});
     Faults faults(bytes_->file());
     for (std::size_t a = 0; a < arrays_.size(); ++a) {
       std::vector<RecordField> fields;
@@ -599,8 +596,6 @@ class VtkFile final : public SingleFrame {
 
 constexpr std::string_view kLegacy = "# vtk DataFile";
 
-}  // namespace
-
 bool is_vtk(const Signature& signature) {
   const std::string& head = signature.head;
   return head.starts_with(kLegacy) || (head.find_first_not_of(" \t\r\n\xEF\xBB\xBF") == head.find('<') &&
@@ -613,5 +608,9 @@ std::unique_ptr<DataFile> open_vtk(const Bytes& bytes, const OpenOptions& option
         .fail(0, "the legacy format of VTK is not supported", "save the points as a .vtp file with ParaView");
   return std::make_unique<VtkFile>(bytes, options.decompressed_limit);
 }
+
+}  // namespace
+
+const FormatReader kVtk = {"VTK", is_vtk, open_vtk};
 
 }  // namespace orrery::arrays

@@ -146,10 +146,6 @@ std::string UniqueNames::add(const std::string& name) {
   return out;
 }
 
-bool has_column(const std::vector<ColumnInfo>& columns, std::string_view name) {
-  return std::any_of(columns.begin(), columns.end(), [name](const ColumnInfo& c) { return c.name == name; });
-}
-
 std::string listed(const std::vector<ColumnInfo>& columns) {
   constexpr std::size_t kMaxListed = 30;
   std::string out;

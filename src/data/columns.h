@@ -70,7 +70,9 @@ class UniqueNames {
 };
 
 /// Returns whether a column exists.
-bool has_column(const std::vector<ColumnInfo>& columns, std::string_view name);
+inline bool has_column(const std::vector<ColumnInfo>& columns, std::string_view name) {
+  return find_named(columns, name) != nullptr;
+}
 
 /// Returns the names of columns for messages, shortened if there are many: "a, b, c, ... (200 in all)".
 std::string listed(const std::vector<ColumnInfo>& columns);

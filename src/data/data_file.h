@@ -10,18 +10,10 @@
 #include <string>
 #include <vector>
 
+#include "data/byte_source.h"
 #include "data/table.h"
 
 namespace orrery::data {
-
-enum class Format { kLammpsDump, kLammpsData, kXyz, kPdb, kMmcif, kPly, kCsv, kNpy, kNpz, kLas, kGsd, kHdf5, kVtk };
-
-/// The name of a format, for messages.
-constexpr const char* format_name(Format format) {
-  constexpr const char* kNames[] = {"LAMMPS dump", "LAMMPS data", "XYZ", "PDB", "mmCIF", "PLY", "CSV",
-                                    "NPY",         "NPZ",         "LAS", "GSD", "HDF5",  "VTK"};
-  return kNames[static_cast<std::size_t>(format)];
-}
 
 struct OpenOptions {
   std::optional<int> component = {};  ///< HDF5: particle type, N of /PartTypeN; default: the only one that is not empty
@@ -44,7 +36,8 @@ class DataFile {
  public:
   virtual ~DataFile() = default;
 
-  virtual Format format() const = 0;
+  /// Name of the format, for messages: "LAMMPS dump".
+  const char* format = "";
 
   /// Returns the number of frames, at least 1; models of a PDB file are frames. May scan the file once.
   ///
@@ -73,6 +66,13 @@ class DataFile {
 struct Signature {
   std::string head;       ///< up to 64 KiB, decompressed
   std::string extension;  ///< lower case, without ".gz", ".zst": ".xyz"; may be empty
+};
+
+/// A format that is read.
+struct FormatReader {
+  const char* name;
+  bool (*recognises)(const Signature& signature);
+  std::unique_ptr<DataFile> (*open)(const Bytes& bytes, const OpenOptions& options);
 };
 
 }  // namespace orrery::data

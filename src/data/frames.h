@@ -20,9 +20,8 @@ namespace orrery::data {
 /// A file with one frame, which is described when it is opened.
 class SingleFrame : public DataFile {
  public:
-  SingleFrame(data::Format format, Bytes bytes) : bytes_(std::move(bytes)), format_(format) {}
+  explicit SingleFrame(Bytes bytes) : bytes_(std::move(bytes)) {}
 
-  Format format() const final { return format_; }
   int frame_count() final { return 1; }
   FrameInfo describe(int) override { return info_; }
   std::uint64_t memory() const override { return bytes_->memory(); }
@@ -37,9 +36,6 @@ class SingleFrame : public DataFile {
 
   Bytes bytes_;
   FrameInfo info_;
-
- private:
-  data::Format format_;
 };
 
 /// A text file of frames, each a header and a number of rows. Frames are located on demand.

@@ -20,6 +20,14 @@ namespace orrery::data {
 
 using math::Vec3d;
 
+/// Returns the first of some items with a name; null if there is none.
+template <class Item>
+const Item* find_named(const std::vector<Item>& items, std::string_view name) {
+  for (const Item& item : items)
+    if (item.name == name) return &item;
+  return nullptr;
+}
+
 /// A text column. Each distinct string is stored once.
 struct Words {
   std::vector<std::string> words;    ///< distinct, in order of first appearance
@@ -170,9 +178,13 @@ struct FrameInfo {
   Roles roles;
   std::optional<Box> box;
   std::vector<Assembly> assemblies;
-  std::optional<double> step;  ///< time step, or the frame number in the file
-  std::string title;           ///< comment or title of the file; may be empty
-  bool z_up = true;            ///< convention of the format
+  std::optional<double> step;   ///< time step, or the frame number in the file
+  std::string title;            ///< comment or title of the file; may be empty
+  bool z_up = true;             ///< convention of the format
+  bool has_components = false;  ///< OpenOptions::component selects one of several sets of particles
+  /// The file may have been made for a scene: a column may number its materials, and a radius below 0 is a hollow
+  /// sphere.
+  bool may_be_of_scene = false;
 };
 
 /// Columns of a frame. Rows are in file order.
@@ -181,11 +193,7 @@ struct Table {
   std::vector<Column> columns;
 
   /// Returns a column; null if there is none.
-  const Column* find(std::string_view name) const {
-    for (const Column& column : columns)
-      if (column.name == name) return &column;
-    return nullptr;
-  }
+  const Column* find(std::string_view name) const { return find_named(columns, name); }
 };
 
 }  // namespace orrery::data

@@ -17,13 +17,12 @@ class TableFile : public DataFile {
     for (const Column& column : table_->columns) info_.columns.push_back({column.name, column.type()});
     Faults faults(name);
     info_.roles = required_roles(info_.columns, faults);
-  }
-
-  Format format() const override {
     const bool has_strings = std::any_of(info_.columns.begin(), info_.columns.end(),
                                          [](const ColumnInfo& c) { return c.type == ColumnType::kText; });
-    return has_strings ? Format::kNpy : Format::kPly;
+    format = has_strings ? "NPY" : "PLY";
+    info_.may_be_of_scene = !has_strings;
   }
+
   int frame_count() override { return 1; }
   FrameInfo describe(int) override { return info_; }
   Table read(int, const std::vector<std::string>& columns) override {

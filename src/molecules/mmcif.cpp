@@ -193,7 +193,6 @@ class MmcifReader final : public DataFile {
  public:
   MmcifReader(const Bytes& bytes, const OpenOptions& options);
 
-  Format format() const override { return Format::kMmcif; }
   int frame_count() override { return static_cast<int>(models_.size()); }
   FrameInfo describe(int frame) override;
   std::uint64_t memory() const override {
@@ -305,8 +304,6 @@ FrameInfo MmcifReader::describe(int frame) {
   return info;
 }
 
-}  // namespace
-
 bool is_mmcif(const Signature& signature) {
   std::string_view text = signature.head;
   // Removes the next word, and the comments before it.
@@ -330,5 +327,9 @@ bool is_mmcif(const Signature& signature) {
 std::unique_ptr<DataFile> open_mmcif(const Bytes& bytes, const OpenOptions& options) {
   return std::make_unique<MmcifReader>(bytes, options);
 }
+
+}  // namespace
+
+const FormatReader kMmcif = {"mmCIF", is_mmcif, open_mmcif};
 
 }  // namespace orrery::molecules

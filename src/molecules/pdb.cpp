@@ -272,7 +272,6 @@ class PdbReader final : public DataFile {
   PdbReader(const Bytes& bytes, const OpenOptions& options)
       : bytes_(bytes), index_(index_pdb(*bytes)), memory_limit_(options.memory_limit) {}
 
-  Format format() const override { return Format::kPdb; }
   int frame_count() override { return static_cast<int>(index_.models.size()); }
 
   std::uint64_t memory() const override { return bytes_->memory() + atoms_.memory(); }
@@ -377,8 +376,6 @@ void PdbReader::load(int frame) {
   loaded_ = frame;
 }
 
-}  // namespace
-
 bool is_pdb(const Signature& signature) {
   // Its columns are not those of PDB: a charge and a radius.
   if (signature.head.empty() || signature.extension == ".pqr") return false;
@@ -400,5 +397,9 @@ bool is_pdb(const Signature& signature) {
 std::unique_ptr<DataFile> open_pdb(const Bytes& bytes, const OpenOptions& options) {
   return std::make_unique<PdbReader>(bytes, options);
 }
+
+}  // namespace
+
+const FormatReader kPdb = {"PDB", is_pdb, open_pdb};
 
 }  // namespace orrery::molecules

@@ -92,32 +92,19 @@ void refuse_encoding(const ByteSource& bytes, std::string_view head) {
               fmt::format("convert it: tr '\\r' '\\n' < {} > NEW", name));
 }
 
-struct Reader {
-  bool (*recognises)(const Signature&);
-  std::unique_ptr<DataFile> (*open)(const Bytes&, const OpenOptions&);
-};
-
-constexpr Reader kBinary[] = {
-    {rows::is_ply, rows::open_ply},     {arrays::is_hdf5, arrays::open_hdf5}, {arrays::is_gsd, arrays::open_gsd},
-    {arrays::is_las, arrays::open_las}, {arrays::is_npy, arrays::open_npy},   {arrays::is_npz, arrays::open_npz},
-    {arrays::is_vtk, arrays::open_vtk},
-};
+constexpr const FormatReader* kBinary[] = {&rows::kPly,   &arrays::kHdf5, &arrays::kGsd, &arrays::kLas,
+                                           &arrays::kNpy, &arrays::kNpz,  &arrays::kVtk};
 /// The extension of CSV comes before signatures that are words, which may also be in a table.
-constexpr Reader kText[] = {
-    {rows::is_lammps_dump, rows::open_lammps_dump},
-    {rows::has_csv_extension, rows::open_csv},
-    {molecules::is_mmcif, molecules::open_mmcif},
-    {molecules::is_pdb, molecules::open_pdb},
-    {rows::is_xyz, rows::open_xyz},
-    {rows::is_lammps_data, rows::open_lammps_data},
-    {rows::is_csv, rows::open_csv},
+constexpr const FormatReader* kText[] = {
+    &rows::kLammpsDump, &rows::kNamedCsv,   &molecules::kMmcif, &molecules::kPdb,
+    &rows::kXyz,        &rows::kLammpsData, &rows::kCsv,
 };
 
 /// Returns the first reader that recognises a file; null if there is none.
-const Reader* find(std::span<const Reader> readers, const Signature& signature) {
+const FormatReader* find(std::span<const FormatReader* const> readers, const Signature& signature) {
   const auto at =
-      std::find_if(readers.begin(), readers.end(), [&](const Reader& reader) { return reader.recognises(signature); });
-  return at == readers.end() ? nullptr : &*at;
+      std::find_if(readers.begin(), readers.end(), [&](const FormatReader* r) { return r->recognises(signature); });
+  return at == readers.end() ? nullptr : *at;
 }
 
 }  // namespace
@@ -126,10 +113,15 @@ std::unique_ptr<DataFile> open(const std::filesystem::path& file, const OpenOpti
   refuse_folder(file);
   const Bytes bytes = ByteSource::open(file, options.decompressed_limit);
   const Signature signature{bytes->text(0, kHeadBytes), extension_of(file)};
-  if (const Reader* const reader = find(kBinary, signature)) return reader->open(bytes, options);
-  refuse_encoding(*bytes, signature.head);
-  if (const Reader* const reader = find(kText, signature)) return reader->open(bytes, options);
-  refuse(*bytes, signature);
+  const FormatReader* reader = find(kBinary, signature);
+  if (reader == nullptr) {
+    refuse_encoding(*bytes, signature.head);
+    reader = find(kText, signature);
+  }
+  if (reader == nullptr) refuse(*bytes, signature);
+  std::unique_ptr<DataFile> out = reader->open(bytes, options);
+  out->format = reader->name;
+  return out;
 }
 
 bool is_data_file(const std::filesystem::path& file, std::string_view head) {

@@ -24,16 +24,11 @@ namespace {
 constexpr const char* kMap = "fast";
 constexpr const char* kCategoricalMap = "tab10";
 
-const data::ColumnInfo* find_column(const data::FrameInfo& info, const std::string& name) {
-  const auto at = std::find_if(info.columns.begin(), info.columns.end(), [&](const auto& c) { return c.name == name; });
-  return at == info.columns.end() ? nullptr : &*at;
-}
-
 /// Frames of larger files are not counted for a message: that would read the whole file.
 constexpr std::uintmax_t kMaxCountedBytes = std::uintmax_t{2} << 30;
 
 bool is_text(const data::FrameInfo& info, const std::string& name) {
-  const data::ColumnInfo* const column = find_column(info, name);
+  const data::ColumnInfo* const column = data::find_named(info.columns, name);
   return column != nullptr && column->type == data::ColumnType::kText;
 }
 
@@ -46,12 +41,12 @@ DataFrames::DataFrames(const DataOptions& options, const std::filesystem::path& 
   open_options.limit_memory(options.memory_limit);
   const int first = all().front();
   file_ = open_(file_of(first), open_options);
-  if (options.points.component && file_->format() != data::Format::kHdf5)
-    base::refuse(fmt::format("--component: {} is {}; only HDF5 files have components", file_of(first).string(),
-                             data::format_name(file_->format())));
   const int frame = options.points.frame ? *options.points.frame : is_sequence_ ? 1 : first;
   if (frame > 1 && frame <= file_->frame_count()) described_ = frame;  // load() reports frames that do not exist
   info_ = file_->describe(described_ - 1);
+  if (options.points.component && !info_.has_components)
+    base::refuse(
+        fmt::format("--component: {} is {}; only HDF5 files have components", file_of(first).string(), file_->format));
   points::add_derived_columns(info_);
   require_frames();
   if (!options.all_frames) return;
@@ -64,7 +59,7 @@ DataFrames::DataFrames(const DataOptions& options, const std::filesystem::path& 
 
 DataFrames::~DataFrames() = default;
 
-data::Format DataFrames::format() const { return file_->format(); }
+const char* DataFrames::format() const { return file_->format; }
 
 std::optional<int> DataFrames::frame_count() const {
   if (is_sequence_) return 1;
@@ -166,7 +161,7 @@ bool choose_color(const DataOptions& options, const std::string& color_by, const
                   scene::PointsColor& color) {
   const data::Roles& roles = info.roles;
   if (color_by == "none") return false;
-  if (color_by == "rgb" && find_column(info, "rgb") == nullptr) {
+  if (color_by == "rgb" && data::find_named(info.columns, "rgb") == nullptr) {
     color.rgb = true;
     return false;
   }

@@ -50,7 +50,7 @@ class DataFrames {
   DataFrames(const DataOptions& options, const std::filesystem::path& folder);
   ~DataFrames();
 
-  data::Format format() const;
+  const char* format() const;
   /// Description of the first frame, including derived columns.
   const data::FrameInfo& info() const { return info_; }
   /// Number of that frame in the file, from 1.

@@ -83,7 +83,7 @@ class PlotMaker {
   PlotScene run() {
     const int frame = data_.described_frame();
     const std::string which = frame > 1 ? fmt::format(" in frame {}", frame) : "";
-    chose(data::format_name(data_.format()), fmt::format("{} particles{}", info_.rows, which));
+    chose(data_.format(), fmt::format("{} particles{}", info_.rows, which));
     choose_frame();
     // Determining the radius from the spacing requires reading the file, so the colour options are checked first.
     const std::vector<std::string> color_choices = choose_color();

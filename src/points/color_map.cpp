@@ -14,6 +14,7 @@
 #include "base/input_file.h"
 #include "base/text.h"
 #include "data/faults.h"
+#include "data/table.h"
 
 namespace orrery::points {
 
@@ -163,10 +164,7 @@ class Reader {
 
 }  // namespace
 
-const ColorMap* find_color_map(std::string_view name) {
-  const auto found = std::find_if(maps().begin(), maps().end(), [&](const ColorMap& map) { return map.name == name; });
-  return found == maps().end() ? nullptr : &*found;
-}
+const ColorMap* find_color_map(std::string_view name) { return data::find_named(maps(), name); }
 
 const std::vector<std::string>& color_map_names() {
   static const std::vector<std::string> names = [] {

@@ -62,11 +62,9 @@ double largest_coordinate(const std::vector<Copy>& copies, const Transform& plac
 }
 
 const data::Assembly* find_assembly(const data::FrameInfo& info, const std::string& name, KeyFaults& faults) {
+  if (const data::Assembly* const found = data::find_named(info.assemblies, name)) return found;
   std::vector<std::string> names;
-  for (const data::Assembly& a : info.assemblies) {
-    if (a.name == name) return &a;
-    names.push_back(a.name);
-  }
+  for (const data::Assembly& a : info.assemblies) names.push_back(a.name);
   faults.error(".assembly", fmt::format("the file has no assembly {}; it has {}", name,
                                         names.empty() ? std::string("none") : base::joined(names)));
   return nullptr;

@@ -34,15 +34,13 @@ std::vector<std::string> velocity_of(const data::FrameInfo& info) {
 }  // namespace
 
 void add_derived_columns(data::FrameInfo& info) {
-  const bool has_speed =
-      std::any_of(info.columns.begin(), info.columns.end(), [](const auto& c) { return c.name == kSpeed; });
-  if (!has_speed && !velocity_of(info).empty()) info.columns.push_back({kSpeed, data::ColumnType::kFloat64, true});
+  if (data::find_named(info.columns, kSpeed) == nullptr && !velocity_of(info).empty())
+    info.columns.push_back({kSpeed, data::ColumnType::kFloat64, true});
 }
 
 std::vector<std::string> sources_of(const data::FrameInfo& info, const std::string& column) {
-  const bool is_derived = std::any_of(info.columns.begin(), info.columns.end(),
-                                      [&](const auto& c) { return c.name == column && c.is_derived; });
-  return is_derived ? velocity_of(info) : std::vector<std::string>();
+  const data::ColumnInfo* const known = data::find_named(info.columns, column);
+  return known != nullptr && known->is_derived ? velocity_of(info) : std::vector<std::string>();
 }
 
 void compute_speed(const std::vector<std::string>& sources, data::Table& table) {

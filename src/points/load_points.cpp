@@ -12,6 +12,7 @@
 #include <fmt/core.h>
 
 #include "base/error.h"
+#include "data/columns.h"
 #include "data/data_file.h"
 #include "particles/open.h"
 #include "points/copies.h"
@@ -63,10 +64,10 @@ class Loader {
 
   std::vector<scene::SceneDiagnostic> run() {
     file_ = open(request_, points_);
-    if (points_.component && file_->format() != data::Format::kHdf5)
-      faults_.warning(".component", "has no effect: only HDF5 files have components");
     if (const std::optional<int> frame = choose_frame()) {
       info_ = file_->describe(*frame);
+      if (points_.component && !info_.has_components)
+        faults_.warning(".component", "has no effect: only HDF5 files have components");
       add_derived_columns(info_);
       plan();
       if (!faults_.has_errors()) load(*frame);
@@ -117,9 +118,8 @@ class Loader {
     if (std::any_of(copies_.begin(), copies_.end(), [](const Copy& c) { return c.chains != nullptr; }))
       need(info_.roles.chain);
     if (points_.unwrap) plan_unwrap();
-    if (file_->format() == data::Format::kPly)
-      for (const data::ColumnInfo& column : info_.columns)
-        if (column.name == points_.material_column) need(material_ = column.name);
+    if (info_.may_be_of_scene && data::has_column(info_.columns, points_.material_column))
+      need(material_ = points_.material_column);
     if (request_.source != nullptr)
       for (const data::ColumnInfo& column : info_.columns)
         if (!column.is_derived) need(column.name);
@@ -191,7 +191,7 @@ class Loader {
     if (faults_.has_errors()) return;
     // A radius below 0 makes hollow glass, in a scene or in a PLY file that was made for one. In other data it is an
     // error that the image would not show.
-    const bool may_be_hollow = radius_.kind == RadiusSource::Kind::kValue || file_->format() == data::Format::kPly;
+    const bool may_be_hollow = radius_.kind == RadiusSource::Kind::kValue || info_.may_be_of_scene;
     keep_valid(points_, may_be_hollow, rows, centers, radii, faults_);
     if (faults_.has_errors()) return;
     Labels chains;

@@ -30,9 +30,8 @@ struct OpenFile {
 /// A file that stays open when this is destroyed.
 class SharedFile final : public data::DataFile {
  public:
-  explicit SharedFile(std::shared_ptr<data::DataFile> file) : file_(std::move(file)) {}
+  explicit SharedFile(std::shared_ptr<data::DataFile> file) : file_(std::move(file)) { format = file_->format; }
 
-  data::Format format() const override { return file_->format(); }
   int frame_count() override { return file_->frame_count(); }
   data::FrameInfo describe(int frame) override { return file_->describe(frame); }
   data::Table read(int frame, const std::vector<std::string>& columns) override { return file_->read(frame, columns); }

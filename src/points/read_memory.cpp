@@ -22,9 +22,8 @@ bool fits_single(data::ColumnType type) {
 }  // namespace
 
 data::ColumnType type_of(const data::FrameInfo& info, const std::string& column) {
-  for (const data::ColumnInfo& known : info.columns)
-    if (known.name == column) return known.type;
-  return data::ColumnType::kFloat64;
+  const data::ColumnInfo* const known = data::find_named(info.columns, column);
+  return known != nullptr ? known->type : data::ColumnType::kFloat64;
 }
 
 std::uint64_t bytes_per_sphere(const data::FrameInfo& info, const scene::Points& points, const RadiusSource& radius,

@@ -157,14 +157,13 @@ std::string column_names(const data::FrameInfo& info) {
 
 bool require_column(const data::FrameInfo& info, const std::string& name, bool is_number, const std::string& part,
                     KeyFaults& faults) {
-  std::vector<std::string> names;
-  for (const data::ColumnInfo& c : info.columns) {
-    names.push_back(c.name);
-    if (c.name != name) continue;
-    if (!is_number || c.type != data::ColumnType::kText) return true;
+  if (const data::ColumnInfo* const found = data::find_named(info.columns, name)) {
+    if (!is_number || found->type != data::ColumnType::kText) return true;
     faults.error(part, fmt::format("column `{}` is text; it must be a number", name));
     return false;
   }
+  std::vector<std::string> names;
+  for (const data::ColumnInfo& c : info.columns) names.push_back(c.name);
   const std::string suggestion = base::did_you_mean(name, names);
   faults.error(part, fmt::format("the file has no column `{}`; {}its columns are {}", name,
                                  suggestion.empty() ? "" : suggestion + " ", column_names(info)));

@@ -246,7 +246,7 @@ bool has_decimal_comma(std::string word) {
 
 class CsvFile final : public SingleFrame {
  public:
-  explicit CsvFile(const Bytes& bytes) : SingleFrame(data::Format::kCsv, bytes), shape_(csv_shape(*bytes)) {
+  explicit CsvFile(const Bytes& bytes) : SingleFrame(bytes), shape_(csv_shape(*bytes)) {
     Faults faults(bytes->file());
     if (shape_.columns.empty()) faults.fail(0, "the file has no rows");
     if (shape_.columns.size() > kMaxColumns)
@@ -375,8 +375,6 @@ class CsvFile final : public SingleFrame {
   std::optional<Equatorial> equatorial_;
 };
 
-}  // namespace
-
 bool has_csv_extension(const Signature& signature) {
   return signature.extension == ".csv" || signature.extension == ".tsv" || signature.extension == ".tab";
 }
@@ -393,5 +391,10 @@ bool is_csv(const Signature& signature) {
 }
 
 std::unique_ptr<DataFile> open_csv(const Bytes& bytes, const OpenOptions&) { return std::make_unique<CsvFile>(bytes); }
+
+}  // namespace
+
+const FormatReader kCsv = {"CSV", is_csv, open_csv};
+const FormatReader kNamedCsv = {"CSV", has_csv_extension, open_csv};
 
 }  // namespace orrery::rows

@@ -275,8 +275,6 @@ class LammpsDump final : public TextFrames {
  public:
   explicit LammpsDump(const Bytes& bytes) : TextFrames(bytes) {}
 
-  Format format() const override { return Format::kLammpsDump; }
-
   FrameInfo describe(int frame) override {
     FrameInfo info = described(header(frame).first);
     if (!info.roles.element.empty()) settle_element(names(), info.roles);
@@ -519,7 +517,6 @@ class LammpsData final : public DataFile {
  public:
   explicit LammpsData(Bytes bytes) : bytes_(std::move(bytes)), info_(DataHeader(*bytes_, layout_).read()) {}
 
-  Format format() const override { return Format::kLammpsData; }
   int frame_count() override { return 1; }
   FrameInfo describe(int) override { return info_; }
   std::uint64_t memory() const override { return bytes_->memory(); }
@@ -559,8 +556,6 @@ class LammpsData final : public DataFile {
   FrameInfo info_;
 };
 
-}  // namespace
-
 bool is_lammps_dump(const Signature& signature) {
   return signature.head.starts_with("ITEM:") || is_binary(signature.head);
 }
@@ -590,5 +585,10 @@ bool is_lammps_data(const Signature& signature) {
 std::unique_ptr<DataFile> open_lammps_data(const Bytes& bytes, const OpenOptions&) {
   return std::make_unique<LammpsData>(bytes);
 }
+
+}  // namespace
+
+const FormatReader kLammpsDump = {"LAMMPS dump", is_lammps_dump, open_lammps_dump};
+const FormatReader kLammpsData = {"LAMMPS data", is_lammps_data, open_lammps_data};
 
 }  // namespace orrery::rows

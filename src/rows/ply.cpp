@@ -81,11 +81,6 @@ bool parse_type(std::string_view word, NumberType& type) {
   return false;
 }
 
-template <class Named>
-bool is_named(const std::vector<Named>& list, const std::string& name) {
-  return std::any_of(list.begin(), list.end(), [&](const Named& n) { return n.name == name; });
-}
-
 std::string parse_format(const std::vector<std::string_view>& words, PlyHeader& header) {
   if (words.size() != 3) return "a format line must be `format ENCODING 1.0`";
   if (words[2] != "1.0") return fmt::format("unsupported format version `{}`; supported is 1.0", words[2]);
@@ -109,7 +104,7 @@ std::string parse_element(const std::vector<std::string_view>& words, int line, 
   const auto [end, error] = std::from_chars(words[2].data(), words[2].data() + words[2].size(), element.count);
   if (error != std::errc() || end != words[2].data() + words[2].size())
     return "the count of an element must be a non-negative integer";
-  if (is_named(header.elements, element.name)) return fmt::format("duplicate element `{}`", element.name);
+  if (find_named(header.elements, element.name) != nullptr) return fmt::format("duplicate element `{}`", element.name);
   header.elements.push_back(element);
   return {};
 }
@@ -123,7 +118,7 @@ std::string parse_property(const std::vector<std::string_view>& words, PlyHeader
   if (!parse_type(words[words.size() - 2], property.type))
     return "unknown type; allowed are char .. double, int8 .. float64";
   property.name = words.back();
-  if (is_named(header.elements.back().properties, property.name))
+  if (find_named(header.elements.back().properties, property.name) != nullptr)
     return fmt::format("duplicate property `{}`", property.name);
   if (header.elements.back().properties.size() == kMaxColumns)
     return fmt::format("more than {} properties of an element", kMaxColumns);
@@ -411,15 +406,14 @@ bool is_float(NumberType type) { return type == NumberType::kFloat32 || type == 
 /// The columns of a `vertex` element: all properties but lists.
 class PlyFile final : public SingleFrame {
  public:
-  explicit PlyFile(const Bytes& bytes) : SingleFrame(data::Format::kPly, bytes) {
+  explicit PlyFile(const Bytes& bytes) : SingleFrame(bytes) {
     Faults faults(bytes->file());
     int line = 0;
     if (const std::string fault = parse_ply_header(bytes->text(0, kLongestHeader + 1), header_, line); !fault.empty())
       faults.fail(static_cast<std::uint64_t>(line), fault);
-    const auto vertex = std::find_if(header_.elements.begin(), header_.elements.end(),
-                                     [](const PlyElement& e) { return e.name == "vertex"; });
-    if (vertex == header_.elements.end()) faults.fail(0, "there is no element `vertex`");
-    vertex_ = static_cast<std::size_t>(vertex - header_.elements.begin());
+    const PlyElement* const vertex = find_named(header_.elements, "vertex");
+    if (vertex == nullptr) faults.fail(0, "there is no element `vertex`");
+    vertex_ = static_cast<std::size_t>(vertex - header_.elements.data());
     std::uint64_t left = bytes->size() - header_.bytes;
     for (const PlyElement& element : header_.elements) {
       check_count(faults, element, header_, left);
@@ -433,8 +427,7 @@ class PlyFile final : public SingleFrame {
     std::vector<std::size_t> wanted;  // indices of properties
     for (const std::string& name : names) {
       const auto& all = vertex().properties;
-      wanted.push_back(static_cast<std::size_t>(
-          std::find_if(all.begin(), all.end(), [&](const PlyProperty& p) { return p.name == name; }) - all.begin()));
+      wanted.push_back(static_cast<std::size_t>(find_named(all, name) - all.data()));
     }
     std::vector<Values> values = !has_plain_rows() ? read_rows(wanted, faults)
                                  : is_ascii()      ? read_lines(wanted, faults)
@@ -463,6 +456,7 @@ class PlyFile final : public SingleFrame {
         info_.columns.push_back({property.name, type_of(property)});
       }
     info_.rows = vertex().count;
+    info_.may_be_of_scene = true;
     info_.roles = required_roles(declared, faults);
   }
 
@@ -583,12 +577,14 @@ class PlyFile final : public SingleFrame {
   std::size_t vertex_ = 0;  ///< index of the element
 };
 
-}  // namespace
-
 bool is_ply(const Signature& signature) {
   return signature.head.starts_with("ply\n") || signature.head.starts_with("ply\r\n");
 }
 
 std::unique_ptr<DataFile> open_ply(const Bytes& bytes, const OpenOptions&) { return std::make_unique<PlyFile>(bytes); }
+
+}  // namespace
+
+const FormatReader kPly = {"PLY", is_ply, open_ply};
 
 }  // namespace orrery::rows

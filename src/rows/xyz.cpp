@@ -324,8 +324,6 @@ class Xyz final : public TextFrames {
  public:
   explicit Xyz(const Bytes& bytes) : TextFrames(bytes) {}
 
-  Format format() const override { return Format::kXyz; }
-
   FrameInfo describe(int number) override { return header(number).info; }
 
   Table read(int number, const std::vector<std::string>& columns) override {
@@ -388,8 +386,6 @@ class Xyz final : public TextFrames {
   }
 };
 
-}  // namespace
-
 bool is_xyz(const Signature& signature) {
   const std::string_view head = signature.head;
   const std::size_t first = head.find_first_not_of(" \t\r\n");
@@ -403,5 +399,9 @@ bool is_xyz(const Signature& signature) {
 }
 
 std::unique_ptr<DataFile> open_xyz(const Bytes& bytes, const OpenOptions&) { return std::make_unique<Xyz>(bytes); }
+
+}  // namespace
+
+const FormatReader kXyz = {"XYZ", is_xyz, open_xyz};
 
 }  // namespace orrery::rows

@@ -122,7 +122,7 @@ class ArraysGsd : public testing::Test {
 TEST_F(ArraysGsd, FrameHasItsOwnChunks) {
   for (const unsigned version : {1U, 2U}) {
     const auto file = opened(three_frames().file(version));
-    EXPECT_EQ(file->format(), Format::kGsd);
+    EXPECT_STREQ(file->format, "GSD");
     EXPECT_EQ(file->frame_count(), 3);
     const Table table = file->read(0, {"x", "z", "diameter", "type", "image[2]"});
     EXPECT_EQ(table.rows, 2U);

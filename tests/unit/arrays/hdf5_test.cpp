@@ -114,7 +114,7 @@ TEST_F(ArraysHdf5, ColumnsKeepTheirStoredTypes) {
     s.dataset<float>("PartType4/Cube", H5T_IEEE_F32LE, H5T_NATIVE_FLOAT, {2, 1, 1}, {1, 2});
   }
   const auto file = opened();
-  EXPECT_EQ(file->format(), Format::kHdf5);
+  EXPECT_STREQ(file->format, "HDF5");
   EXPECT_EQ(file->frame_count(), 1);
   const FrameInfo info = file->describe(0);
   EXPECT_EQ(info.rows, 2U);

@@ -75,7 +75,7 @@ TEST_F(ArraysLas, CoordinatesAreScaledAndOffset) {
   las.offset = {1000, -1, 0.25};
   las.points = record(20, 123, -3, 7, 400) + record(20, 2147483647, -2147483647 - 1, 0, 65535);
   const auto file = open(las);
-  EXPECT_EQ(file->format(), Format::kLas);
+  EXPECT_STREQ(file->format, "LAS");
   const FrameInfo info = file->describe(0);
   EXPECT_EQ(info.rows, 2u);
   EXPECT_TRUE(info.z_up);

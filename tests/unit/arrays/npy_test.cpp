@@ -35,7 +35,7 @@ class ArraysNpy : public testing::Test {
 
 TEST_F(ArraysNpy, ThreeColumnsArePositionsAndAFourthIsTheRadius) {
   const auto three = open(npy_bytes("'<f8'", false, "(2, 3)", sequence<double>({1, 2, 3, 4, 5, 6})));
-  EXPECT_EQ(three->format(), Format::kNpy);
+  EXPECT_STREQ(three->format, "NPY");
   EXPECT_EQ(support::columns_text(three->describe(0)), "x:float64 y:float64 z:float64");
   EXPECT_EQ(three->describe(0).rows, 2u);
   EXPECT_EQ(three->describe(0).roles.radius, "");

@@ -71,7 +71,7 @@ TEST_F(ArraysNpz, MembersAreColumns) {
                            {"notes.txt", "hello"}};
   for (const char* compression : {"store", "deflate"}) {
     const auto file = open(members, compression);
-    EXPECT_EQ(file->format(), Format::kNpz);
+    EXPECT_STREQ(file->format, "NPZ");
     const FrameInfo info = file->describe(0);
     EXPECT_EQ(info.rows, 2u);
     EXPECT_EQ(support::columns_text(info),
@@ -102,7 +102,7 @@ TEST_F(ArraysNpz, CoordinatesInSeparateArraysOrInAStructuredArray) {
 
 TEST_F(ArraysNpz, AnArchiveIsRecognisedWithoutItsExtension) {
   support::write_bytes(folder_ / "snapshot.dat", zip({{"pos.npy", kPositions}}, "deflate"));
-  EXPECT_EQ(particles::open(folder_ / "snapshot.dat")->format(), Format::kNpz);
+  EXPECT_STREQ(particles::open(folder_ / "snapshot.dat")->format, "NPZ");
 }
 
 TEST_F(ArraysNpz, ASecondArrayOfPositionsHasNumberedColumns) {

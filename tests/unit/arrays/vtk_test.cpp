@@ -87,7 +87,7 @@ TEST_F(ArraysVtk, AsciiArraysKeepTheirTypes) {
                            ascii("UInt8", "RGB", 3, "1 2 3 4 5 255") +
                            "<DataArray type=\"String\" Name=\"s\" format=\"ascii\">65 0 66 0</DataArray>";
   const auto file = open(root("", poly(piece(2, kPoints, data))));
-  EXPECT_EQ(file->format(), Format::kVtk);
+  EXPECT_STREQ(file->format, "VTK");
   const FrameInfo info = file->describe(0);
   EXPECT_EQ(support::columns_text(info),
             "x:float32 y:float32 z:float32 radius:float64 type:int32 a:uint16 vel[1]:float32 vel[2]:float32 "

@@ -54,7 +54,7 @@ class MoleculesMmcif : public support::DataFileTest {
 TEST_F(MoleculesMmcif, ReadsTheColumnsOfAtoms) {
   const auto file = open("# comment\ndata_1ABC\n_struct.title 'A virus''s coat'\n" + kLoop + kCarbon +
                          "HETATM 2 ZN \"ZN'\" ? ZN B 0 0.25 -1 0.50 ? . Y 1\n#\n_other.item 1\n");
-  EXPECT_EQ(file->format(), Format::kMmcif);
+  EXPECT_STREQ(file->format, "mmCIF");
   EXPECT_EQ(file->frame_count(), 1);
   const FrameInfo info = file->describe(0);
   EXPECT_EQ(info.rows, 2U);

@@ -40,7 +40,7 @@ using Strings = std::vector<std::string>;
 TEST_F(MoleculesPdb, ReadsTheColumnsOfAtoms) {
   const auto file = open("TITLE     A SMALL ONE\n" + atom(" CA", "ALA", 'B', -3, {1.5, -2.25, 1000.125}, " C") +
                          "TER\nHETATM99999 ZN    ZN C9999    -999.999 999.999   0.000  0.50 99.99          ZN\nEND\n");
-  EXPECT_EQ(file->format(), Format::kPdb);
+  EXPECT_STREQ(file->format, "PDB");
   EXPECT_EQ(file->frame_count(), 1);
   const FrameInfo info = file->describe(0);
   EXPECT_EQ(info.rows, 2U);

@@ -40,7 +40,6 @@ class ClaimsRows final : public data::DataFile {
  public:
   ClaimsRows(std::unique_ptr<data::DataFile> file, std::uint64_t rows) : file_(std::move(file)), rows_(rows) {}
 
-  data::Format format() const override { return file_->format(); }
   int frame_count() override { return file_->frame_count(); }
   data::FrameInfo describe(int frame) override {
     data::FrameInfo info = file_->describe(frame);
@@ -526,7 +525,6 @@ class HeavyFile final : public data::DataFile {
  public:
   explicit HeavyFile(std::unique_ptr<data::DataFile> file) : file_(std::move(file)) {}
 
-  data::Format format() const override { return file_->format(); }
   int frame_count() override { return file_->frame_count(); }
   data::FrameInfo describe(int frame) override { return file_->describe(frame); }
   data::Table read(int frame, const std::vector<std::string>& columns) override { return file_->read(frame, columns); }

@@ -54,7 +54,7 @@ TEST_F(RowsLammpsData, ColumnsFollowFromTheStyle) {
     for (const bool has_images : {false, true}) {
       const std::string row = std::string(c.row) + (has_images ? " 0 -1 1\n" : "\n");
       const auto file = open(kHead + "Atoms  #  " + c.style + "\n\n" + row + row + "\nVelocities\n\n1 0 0 0\n");
-      EXPECT_EQ(file->format(), Format::kLammpsData);
+      EXPECT_STREQ(file->format, "LAMMPS data");
       const FrameInfo info = file->describe(0);
       EXPECT_EQ(info.roles.image[0], has_images ? "ix" : "");
       const Table table = file->read(0, column_names(info));

@@ -49,7 +49,7 @@ TEST_F(RowsLammpsDump, ReadsColumnsWithTheirTypesAndRoles) {
   const auto file = open("ITEM: UNITS\nlj\nITEM: TIME\n0.5\n" + kFrameHead + kBox +
                          "ITEM: ATOMS id type element x y z radius c_stress[1] ix iy iz \n"
                          "2 1 Na 0.5 1 3 0.25 -1e-3 0 -1 1 \n1 2 Cl 1 2 4 0.5 nan 0 0 0 \n");
-  EXPECT_EQ(file->format(), Format::kLammpsDump);
+  EXPECT_STREQ(file->format, "LAMMPS dump");
   EXPECT_EQ(file->frame_count(), 1);
   const FrameInfo info = file->describe(0);
   EXPECT_EQ(info.rows, 2u);

@@ -42,7 +42,7 @@ class RowsPly : public support::DataFileTest {
 TEST_F(RowsPly, AsciiNumbersAreFloat64OrInt64) {
   const auto file = open(header("ascii", std::string("element vertex 2\n") + kXyzr + "property uchar red\n") +
                          "1 2 .3 0.5 7\r\n\n-4e2 +5 .25 -1 255");
-  EXPECT_EQ(file->format(), Format::kPly);
+  EXPECT_STREQ(file->format, "PLY");
   EXPECT_EQ(support::columns_text(file->describe(0)), "x:float64 y:float64 z:float64 radius:float64 red:int64");
   const Table table = support::read_table(*file);
   EXPECT_EQ(numbers(table, "x"), (std::vector<double>{1, -400}));

@@ -33,7 +33,7 @@ class RowsXyz : public support::DataFileTest {
 
 TEST_F(RowsXyz, PlainFilesHaveElementsAndPositions) {
   const auto file = open("2\nwater\nH 1 2 3\nO\t-1.5 0 1e1 rest\n\n");
-  EXPECT_EQ(file->format(), Format::kXyz);
+  EXPECT_STREQ(file->format, "XYZ");
   EXPECT_EQ(file->frame_count(), 1);
   const FrameInfo info = file->describe(0);
   EXPECT_EQ(info.title, "water");
@@ -130,7 +130,7 @@ TEST_F(RowsXyz, RolesHaveTheTypeThatTheyNeed) {
 
 TEST_F(RowsXyz, ExtendedFilesAreRecognisedByTheirContent) {
   support::write_bytes(folder_ / "frame", "1\nProperties=species:S:1:pos:R:3\nH 0 0 0\n");
-  EXPECT_EQ(particles::open(folder_ / "frame")->format(), Format::kXyz);
+  EXPECT_STREQ(particles::open(folder_ / "frame")->format, "XYZ");
 }
 
 TEST_F(RowsXyz, ValuesMayBeQuotedInManyWays) {
