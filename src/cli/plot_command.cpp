@@ -149,6 +149,7 @@ int run_plot(PlotArguments& arguments) {
   const auto text =
       std::make_shared<const std::string>(saves ? format::marked_text(plot::saved_text(plot, made)) : made.text);
   job.scene.text = text;
+  job.scene.open_data = made.open_data;
   if (!saves) job.scene.typed_lines = 0;
   job.scene.has_file = false;
   render.batch.frames = made.frames;

@@ -20,6 +20,9 @@ struct OpenOptions {
   /// Maximum size of decompressed data, bytes. They are kept in memory while they are read.
   std::uint64_t decompressed_limit = std::uint64_t{16} << 30;
 
+  /// Maximum size of a plain file of which a copy is kept in memory, bytes: each byte is then read only once.
+  std::uint64_t kept_limit = 0;
+
   /// PDB, mmCIF: maximum memory for parsing the atoms, bytes; 0: no limit.
   std::uint64_t memory_limit = 0;
 

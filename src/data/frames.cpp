@@ -2,6 +2,7 @@
 #include "data/frames.h"
 
 #include <limits>
+#include <utility>
 #include <variant>
 
 #include <fmt/core.h>
@@ -52,16 +53,22 @@ const std::vector<std::string>& TextFrames::names() {
   return *names_;
 }
 
-void TextFrames::require_end(TextCursor rows_end, std::uint64_t count_line) const {
+void TextFrames::require_end(std::uint64_t rows, TextCursor::Place rows_end, std::uint64_t count_line) {
+  if (left_ > 0 && rows == end_.offset()) {  // saves the search for the next frame from reading the rows again
+    end_ = TextCursor(*bytes_, rows_end);
+    left_ = 0;
+  }
+  TextCursor cursor(*bytes_, rows_end);
   std::string line;
-  if (!rows_end.next_filled(line) || begins_frame(line)) return;
+  if (!cursor.next_filled(line) || begins_frame(line)) return;
   Faults(bytes_->file())
-      .fail(rows_end.line() - 1, fmt::format("more rows than line {} declares", count_line),
+      .fail(cursor.line() - 1, fmt::format("more rows than line {} declares", count_line),
             "correct the number of atoms, or remove the rows");
 }
 
 /// Result     false if there are no more frames
 bool TextFrames::add_frame() {
+  end_.skip(std::exchange(left_, 0));
   std::string line;
   TextCursor ahead(*bytes_, end_.place());
   if (!ahead.next_filled(line)) {
@@ -72,7 +79,7 @@ bool TextFrames::add_frame() {
     Faults(bytes_->file()).fail(ahead.line(), "too many frames");
   const TextCursor::Place place = end_.place();
   // A frame with too few rows is reported when it is read: those before it are usable.
-  end_.skip(skip_header(end_));
+  left_ = skip_header(end_);
   frames_.push_back(place);
   return true;
 }

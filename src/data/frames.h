@@ -67,8 +67,10 @@ class TextFrames : public DataFile {
 
   /// Checks that the rows of a frame are followed by another frame or by the end of the file.
   ///
-  /// `rows_end`   place after the rows `count_line` the line that declares their number
-  void require_end(TextCursor rows_end, std::uint64_t count_line) const;
+  /// `rows`         offset of the rows
+  /// `rows_end`     place after them
+  /// `count_line`   the line that declares their number
+  void require_end(std::uint64_t rows, TextCursor::Place rows_end, std::uint64_t count_line);
 
  private:
   /// Reads a header, and returns the number of rows.
@@ -81,7 +83,8 @@ class TextFrames : public DataFile {
 
   Bytes bytes_;
   std::vector<TextCursor::Place> frames_;  ///< frames found so far
-  TextCursor end_;                         ///< position after the last of them
+  TextCursor end_;                         ///< position after the last of them, or at its rows
+  std::uint64_t left_ = 0;                 ///< number of rows that `end_` has yet to skip
   std::optional<std::vector<std::string>> names_;
 };
 

@@ -111,7 +111,7 @@ const FormatReader* find(std::span<const FormatReader* const> readers, const Sig
 
 std::unique_ptr<DataFile> open(const std::filesystem::path& file, const OpenOptions& options) {
   refuse_folder(file);
-  const Bytes bytes = ByteSource::open(file, options.decompressed_limit);
+  const Bytes bytes = ByteSource::open(file, options.decompressed_limit, options.kept_limit);
   const Signature signature{bytes->text(0, kHeadBytes), extension_of(file)};
   const FormatReader* reader = find(kBinary, signature);
   if (reader == nullptr) {

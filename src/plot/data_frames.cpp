@@ -39,6 +39,9 @@ DataFrames::DataFrames(const DataOptions& options, const std::filesystem::path& 
   data::OpenOptions open_options;
   open_options.component = options.points.component;
   open_options.limit_memory(options.memory_limit);
+  // The file is read to measure it, to fit the view, and to render it.
+  constexpr std::uint64_t kMaxShare = 8;
+  open_options.kept_limit = options.memory_limit / kMaxShare;
   const int first = all().front();
   file_ = open_(file_of(first), open_options);
   const int frame = options.points.frame ? *options.points.frame : is_sequence_ ? 1 : first;

@@ -51,6 +51,8 @@ class DataFrames {
   ~DataFrames();
 
   const char* format() const;
+  /// Opens data files: those that are open are not opened again.
+  const points::OpenData& open_data() const { return open_; }
   /// Description of the first frame, including derived columns.
   const data::FrameInfo& info() const { return info_; }
   /// Number of that frame in the file, from 1.

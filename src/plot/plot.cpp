@@ -128,6 +128,8 @@ class PlotMaker {
     if (options_.develops && display_of(options_).view.empty() && out_.view == kPlainView)
       chose(fmt::format("view transform {}", out_.view), "colours match the colour map");
     out_.text = scene_text(parts);
+    // A still image is made of one frame, whose file need not stay open.
+    out_.open_data = out_.frames.empty() ? points::handed_over(data_.open_data()) : data_.open_data();
     return std::move(out_);
   }
 

@@ -52,6 +52,7 @@ struct PlotScene {
   LegendColors legend;
   std::string view;                  ///< view of the display
   std::optional<double> noise = {};  ///< target noise, unless the user limits samples, noise or time
+  points::OpenData open_data;        ///< opens the data file for the render without reading it again
 };
 
 /// Reads the data and writes a scene for it.

@@ -6,6 +6,7 @@
 #include <string>
 #include <utility>
 
+#include "base/input_file.h"
 #include "data/data_file.h"
 #include "particles/open.h"
 
@@ -16,15 +17,10 @@ namespace {
 constexpr std::size_t kMaxOpen = 4;
 
 struct OpenFile {
-  std::filesystem::path path;
+  std::string name;     ///< absolute path
+  std::string version;  ///< see base::file_version
   std::optional<int> component;
-  std::uintmax_t size = 0;
-  std::filesystem::file_time_type time;
   std::shared_ptr<data::DataFile> file;
-
-  bool is_same(const OpenFile& other) const {
-    return path == other.path && component == other.component && size == other.size && time == other.time;
-  }
 };
 
 /// A file that stays open when this is destroyed.
@@ -46,21 +42,31 @@ class SharedFile final : public data::DataFile {
 OpenData open_once() {
   return [open = std::make_shared<std::vector<OpenFile>>()](const std::filesystem::path& path,
                                                             const data::OpenOptions& options) {
-    std::error_code ignored;
-    OpenFile wanted{path, options.component, std::filesystem::file_size(path, ignored),
-                    std::filesystem::last_write_time(path, ignored), nullptr};
-    const auto found = std::find_if(open->begin(), open->end(), [&](const OpenFile& o) { return o.is_same(wanted); });
+    const std::string name = std::filesystem::absolute(path).lexically_normal().string();
+    OpenFile wanted{name, base::file_version(name), options.component, nullptr};
+    const auto found = std::find_if(open->begin(), open->end(), [&](const OpenFile& o) {
+      return o.version == wanted.version && o.component == wanted.component;
+    });
     if (found != open->end()) {
       wanted = std::move(*found);
       open->erase(found);
     } else {
       // Closed first: decompressed data take memory.
-      std::erase_if(*open, [&](const OpenFile& o) { return o.path == path; });
+      std::erase_if(*open, [&](const OpenFile& o) { return o.name == name; });
       if (open->size() == kMaxOpen) open->erase(open->begin());
       wanted.file = particles::open(path, options);
     }
     open->push_back(std::move(wanted));
     return std::make_unique<SharedFile>(open->back().file);
+  };
+}
+
+OpenData handed_over(OpenData open) {
+  return [open = std::make_shared<OpenData>(std::move(open))](const std::filesystem::path& path,
+                                                              const data::OpenOptions& options) {
+    std::unique_ptr<data::DataFile> file = (*open)(path, options);
+    *open = open_once();
+    return file;
   };
 }
 

@@ -20,4 +20,7 @@ using OpenData = std::function<std::unique_ptr<data::DataFile>(const std::filesy
 /// Errors     those of particles::open()
 OpenData open_once();
 
+/// Returns a function that opens a file by `open`, but only the first time: the file is closed after its first use.
+OpenData handed_over(OpenData open);
+
 }  // namespace orrery::points

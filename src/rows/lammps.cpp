@@ -299,7 +299,7 @@ class LammpsDump final : public TextFrames {
     }
     Faults faults(bytes().file());
     TextTable text = read_text_rows(bytes(), layout, faults);
-    require_end(TextCursor(bytes(), {text.end, layout.first_line + text.rows}), frame.rows_line);
+    require_end(layout.begin, {text.end, layout.first_line + text.rows}, frame.rows_line);
     return taken(columns, frame, std::move(text));
   }
 

@@ -344,7 +344,7 @@ class Xyz final : public TextFrames {
       layout.columns.pop_back();
     Faults faults(bytes().file());
     TextTable text = read_text_rows(bytes(), layout, faults);
-    require_end(TextCursor(bytes(), {text.end, layout.first_line + text.rows}), header.count_line);
+    require_end(layout.begin, {text.end, layout.first_line + text.rows}, header.count_line);
     Table table;
     table.rows = text.rows;
     for (std::size_t c = 0; c < layout.columns.size(); ++c)
