@@ -11,7 +11,7 @@
 
 #include "base/available_memory.h"
 #include "base/error.h"
-#include "particles/open.h"
+#include "formats/open.h"
 #include "points/derived.h"
 
 namespace orrery::app {
@@ -68,7 +68,7 @@ DataInfo data_info(const DataInfoRequest& request) {
   data::OpenOptions options;
   options.component = request.component;
   options.limit_memory(base::available_memory().value_or(0));
-  const std::unique_ptr<data::DataFile> file = particles::open(request.file, options);
+  const std::unique_ptr<data::DataFile> file = formats::open(request.file, options);
   DataInfo info;
   info.file = request.file;
   info.format = file->format;

@@ -14,7 +14,7 @@
 #include "base/error.h"
 #include "base/file_name.h"
 #include "base/input_file.h"
-#include "particles/open.h"
+#include "formats/open.h"
 
 namespace orrery::format {
 
@@ -124,7 +124,7 @@ base::Diagnostic SourceText::diagnostic(base::Severity severity, const Place& pl
 }
 
 void refuse_data_file(const std::filesystem::path& file, std::string_view text) {
-  if (base::extension(file) != ".toml" && particles::is_data_file(file, text))
+  if (base::extension(file) != ".toml" && formats::is_data_file(file, text))
     base::refuse(fmt::format("{0} is a data file, not a scene; render it: orrery plot {0} -o IMAGE", file.string()));
 }
 

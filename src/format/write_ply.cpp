@@ -25,7 +25,7 @@ void append_bytes(std::string& out, T value) {
   out.append(bytes, sizeof(T));
 }
 
-/// The header up to the comment that names the writer, as in particles::write_table.
+/// The header up to the comment that names the writer, as in formats::write_table.
 std::string header_begin(std::string_view writer) {
   return fmt::format("ply\nformat binary_little_endian 1.0\ncomment made by {}\n", writer);
 }

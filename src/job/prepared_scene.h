@@ -64,7 +64,7 @@ class PreparedScene {
   std::string isa_;                      ///< instruction set that accel_ was built for
   base::Hash sphere_hash_;
   SceneHashes hashes_;
-  points::OpenData open_data_;  ///< empty: particles::open
+  points::OpenData open_data_;  ///< empty: formats::open
   bool is_complete_ = false;    ///< loaded and compiled
 };
 

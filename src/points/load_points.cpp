@@ -14,7 +14,7 @@
 #include "base/error.h"
 #include "data/columns.h"
 #include "data/data_file.h"
-#include "particles/open.h"
+#include "formats/open.h"
 #include "points/copies.h"
 #include "points/derived.h"
 #include "points/point_colors.h"
@@ -41,7 +41,7 @@ std::unique_ptr<data::DataFile> open(const LoadRequest& request, const scene::Po
   options.component = points.component;
   options.limit_memory(request.memory_limit);
   return request.open && !points.is_sequence ? request.open(request.file, options)
-                                             : particles::open(request.file, options);
+                                             : formats::open(request.file, options);
 }
 
 /// The requested frame, from 1; before the file is opened.

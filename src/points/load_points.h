@@ -31,7 +31,7 @@ struct LoadRequest {
   std::size_t materials = 0;       ///< number of materials of the scene
   SourceRows* source = nullptr;    ///< if not null, receives the rows of the spheres
   std::uint64_t memory_limit = 0;  ///< maximum memory of the spheres, bytes; 0: no limit
-  OpenData open = {};              ///< replaces particles::open(), except in a sequence of files
+  OpenData open = {};              ///< replaces formats::open(), except in a sequence of files
 };
 
 /// Reads the spheres of a data file into `points` according to its keys: selects rows, determines radii and colours,
@@ -40,14 +40,14 @@ struct LoadRequest {
 ///
 /// Result     diagnostics about keys of the scene file: unknown columns, missing radii, selections that match nothing;
 ///            `points` has no spheres if one of them is an error
-/// Errors     base::Error: those of particles::open and data::DataFile; kNoMemory
+/// Errors     base::Error: those of formats::open and data::DataFile; kNoMemory
 /// Cost       one read of the needed columns, or of all columns for `source`
 std::vector<scene::SceneDiagnostic> load_points(const LoadRequest& request, scene::Points& points);
 
 /// Returns the frame of the file, from 1, that load_points() would read.
 ///
 /// Result     beyond the last frame if the file does not have the requested one
-/// Errors     those of particles::open
+/// Errors     those of formats::open
 /// Cost       opens the file if it may have several frames; counting them may read all of it
 int chosen_frame(const LoadRequest& request, const scene::Points& points);
 

@@ -8,7 +8,7 @@
 
 #include "base/input_file.h"
 #include "data/data_file.h"
-#include "particles/open.h"
+#include "formats/open.h"
 
 namespace orrery::points {
 namespace {
@@ -54,7 +54,7 @@ OpenData open_once() {
       // Closed first: decompressed data take memory.
       std::erase_if(*open, [&](const OpenFile& o) { return o.name == name; });
       if (open->size() == kMaxOpen) open->erase(open->begin());
-      wanted.file = particles::open(path, options);
+      wanted.file = formats::open(path, options);
     }
     open->push_back(std::move(wanted));
     return std::make_unique<SharedFile>(open->back().file);

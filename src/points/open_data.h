@@ -9,7 +9,7 @@
 
 namespace orrery::points {
 
-/// Opens a data file, as particles::open() does.
+/// Opens a data file, as formats::open() does.
 using OpenData = std::function<std::unique_ptr<data::DataFile>(const std::filesystem::path&, const data::OpenOptions&)>;
 
 /// Returns a function that opens data files for several frames. It keeps the most recent files open, so that each frame
@@ -17,7 +17,7 @@ using OpenData = std::function<std::unique_ptr<data::DataFile>(const std::filesy
 /// is reopened.
 ///
 /// Result     not thread-safe; copies share the open files
-/// Errors     those of particles::open()
+/// Errors     those of formats::open()
 OpenData open_once();
 
 /// Returns a function that opens a file by `open`, but only the first time: the file is closed after its first use.

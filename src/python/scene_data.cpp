@@ -24,11 +24,11 @@
 #include "format/source_text.h"
 #include "format/write_ply.h"
 #include "format/write_tree.h"
+#include "formats/open.h"
+#include "formats/write_table.h"
 #include "load/load_scene.h"
 #include "load/loaded_scene.h"
 #include "load/scene_files.h"
-#include "particles/open.h"
-#include "particles/write_table.h"
 
 namespace orrery::python {
 namespace {
@@ -124,7 +124,7 @@ load::SceneSource SceneData::source() const {
   };
   out.open_data = [find](const fs::path& path, const data::OpenOptions& options) {
     const auto* const own = find(path);
-    return own != nullptr ? data::open_table(own->first, own->second) : particles::open(path, options);
+    return own != nullptr ? data::open_table(own->first, own->second) : formats::open(path, options);
   };
   out.data_version = [find](const fs::path& path) {
     const auto* const own = find(path);
@@ -179,7 +179,7 @@ void save(const SceneData& scene, const fs::path& file) {
   };
   const std::string text = format::merged_text(scene.file, scene.text, source.overrides, renamed);
   for (const auto& [name, table] : scene.tables)
-    static_cast<void>(particles::write_table(folder / table_file_name(file, name, *table), *table, kWriter));
+    static_cast<void>(formats::write_table(folder / table_file_name(file, name, *table), *table, kWriter));
   base::write_text_file(file, text);
 }
 

@@ -32,7 +32,7 @@ must_match("the program's package" "${fields}" "Package: orrery\n" "Depends: [^\
 run(files dpkg-deb --contents ${program})
 must_match("the program's package" "${files}" "/usr/bin/orrery\n"
            "/usr/libexec/orrery/orrery-program\n" "/usr/libexec/orrery/orrery-image\\.so\n"
-           "/usr/libexec/orrery/orrery-particles\\.so\n" "/usr/share/doc/orrery/copyright\n"
+           "/usr/libexec/orrery/orrery-formats\\.so\n" "/usr/share/doc/orrery/copyright\n"
            "/usr/share/man/man1/orrery\\.1\n" "/bash-completion/completions/orrery\n"
            "/zsh/vendor-completions/_orrery\n" "/fish/vendor_completions\\.d/orrery\\.fish\n")
 if(files MATCHES "\\.(a|h|cmake)\n")

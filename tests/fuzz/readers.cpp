@@ -16,8 +16,8 @@
 #include "format/read_result.h"
 #include "format/read_scene.h"
 #include "format/write_scene.h"
+#include "formats/open.h"
 #include "load/load_scene.h"
-#include "particles/open.h"
 #include "points/color_map.h"
 #include "points/load_points.h"
 #include "points/selection.h"
@@ -174,7 +174,7 @@ std::unique_ptr<data::DataFile> open_data(const std::filesystem::path& folder, c
     file = folder / name;
     write(file, bytes);
     try {
-      return particles::open(file, options);
+      return formats::open(file, options);
     } catch (const base::Error& error) {
       const bool is_unknown = !error.diagnostics().empty() && error.diagnostics()[0].text == "unknown file format";
       if (!is_unknown || file.extension() == ".csv") throw;

@@ -10,7 +10,7 @@
 
 #include "base/error.h"
 #include "data/data_file.h"
-#include "particles/open.h"
+#include "formats/open.h"
 #include "support/temp_dir.h"
 
 namespace orrery::support {
@@ -25,7 +25,7 @@ class DataFileTest : public testing::Test {
     write_bytes(folder_ / name_, content);
     return folder_ / name_;
   }
-  std::unique_ptr<data::DataFile> open(const std::string& content) { return particles::open(write(content)); }
+  std::unique_ptr<data::DataFile> open(const std::string& content) { return formats::open(write(content)); }
 
   /// The first diagnostic of opening the file and reading x; empty if there is none.
   base::Diagnostic error_of(const std::string& content) {

@@ -14,7 +14,7 @@
 
 #include "base/error.h"
 #include "data/data_file.h"
-#include "particles/open.h"
+#include "formats/open.h"
 #include "support/temp_dir.h"
 
 namespace orrery::support {
@@ -39,7 +39,7 @@ inline std::vector<std::string> column_names(const data::FrameInfo& info) {
 inline data::Table read_table(data::DataFile& file, int frame = 0) {
   return file.read(frame, column_names(file.describe(frame)));
 }
-inline data::Table read_table(const std::filesystem::path& file) { return read_table(*particles::open(file)); }
+inline data::Table read_table(const std::filesystem::path& file) { return read_table(*formats::open(file)); }
 
 /// The numbers of a column; fails if there is none.
 inline std::vector<double> numbers(const data::Table& table, std::string_view name) {
@@ -83,7 +83,7 @@ inline std::string columns_text(const data::FrameInfo& info) {
 inline std::string data_errors(const std::filesystem::path& file) {
   std::string all;
   try {
-    const auto opened = particles::open(file);
+    const auto opened = formats::open(file);
     for (int frame = 0; frame < opened->frame_count(); ++frame) read_table(*opened, frame);
   } catch (const base::Error& error) {
     EXPECT_EQ(error.kind(), base::ErrorKind::kBadData) << error.what();
@@ -100,7 +100,7 @@ inline std::string data_errors(const std::filesystem::path& file) {
 inline std::string read_faults(const std::filesystem::path& file, const data::OpenOptions& options = {}) {
   std::string out;
   try {
-    read_table(*particles::open(file, options));
+    read_table(*formats::open(file, options));
   } catch (const base::Error& error) {
     EXPECT_EQ(error.kind(), base::ErrorKind::kBadData) << error.what();
     for (const base::Diagnostic& d : error.diagnostics())

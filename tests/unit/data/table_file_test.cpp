@@ -8,8 +8,8 @@
 #include <vector>
 
 #include "base/error.h"
-#include "particles/open.h"
-#include "particles/write_table.h"
+#include "formats/open.h"
+#include "formats/write_table.h"
 #include "support/temp_dir.h"
 
 namespace orrery::data {
@@ -41,8 +41,8 @@ TEST(DataTableFile, DescribesAndReadsLikeThePlyFileOfTheTable) {
   const std::vector<float> xyz = {1, 2, 3, 4, 5, 6};
   const std::shared_ptr<const Table> table = views_of(xyz);
   support::TempDir folder;
-  EXPECT_TRUE(particles::write_table(folder / "a.ply", *table).empty());
-  const std::unique_ptr<DataFile> memory = open_table("a", table), file = particles::open(folder / "a.ply");
+  EXPECT_TRUE(formats::write_table(folder / "a.ply", *table).empty());
+  const std::unique_ptr<DataFile> memory = open_table("a", table), file = formats::open(folder / "a.ply");
   EXPECT_STREQ(memory->format, file->format);
   EXPECT_EQ(memory->frame_count(), 1);
   const FrameInfo a = memory->describe(0), b = file->describe(0);

@@ -1,0 +1,156 @@
+// SPDX-License-Identifier: Apache-2.0
+// gemmi's grammar of CIF with our own actions: gemmi's document would store every value of the file as a string.
+#include "formats/cif_rows.h"
+
+#include <algorithm>
+#include <gemmi/cif.hpp>
+
+#include "base/text.h"
+#include "data/faults.h"
+
+namespace orrery::formats {
+
+using namespace data;  // NOLINT(google-build-using-namespace)
+
+namespace {
+
+namespace rules = gemmi::cif::rules;
+namespace pegtl = tao::pegtl;
+
+/// A place in a row of a table.
+struct Slot {
+  std::size_t table = 0, item = 0;
+  bool is_wanted = false;
+};
+
+class RowReader {
+ public:
+  RowReader(std::vector<CifTable> tables, Faults& faults) : tables_(std::move(tables)), faults_(faults) {
+    for (const CifTable& table : tables_) rows_.emplace_back(table.items.size());
+    has_items_.resize(tables_.size());
+  }
+
+  void begin_loop() {
+    loop_.clear();
+    column_ = 0;
+  }
+  void add_loop_tag(const std::string& tag) { loop_.push_back(slot_of(tag)); }
+  void add_loop_value(const std::string& value, std::uint64_t line) {
+    const Slot slot = loop_[column_];
+    if (slot.is_wanted) rows_[slot.table][slot.item] = gemmi::cif::as_string(value);
+    if (++column_ < loop_.size()) return;
+    column_ = 0;
+    const auto wanted = std::find_if(loop_.begin(), loop_.end(), [](const Slot& s) { return s.is_wanted; });
+    if (wanted != loop_.end()) finish_row(wanted->table, line);
+  }
+  void end_loop(std::uint64_t line) {
+    if (column_ != 0) faults_.fail(line, "the last row of the table is incomplete");
+  }
+
+  void set_tag(const std::string& tag) { item_ = slot_of(tag); }
+  void set_value(const std::string& value, std::uint64_t line) {
+    if (!item_.is_wanted) return;
+    rows_[item_.table][item_.item] = gemmi::cif::as_string(value);
+    has_items_[item_.table] = true;
+    last_line_ = line;
+  }
+  /// Ends the tables that are given as single items: each has one row.
+  void end_block() {
+    for (std::size_t i = 0; i < tables_.size(); ++i)
+      if (has_items_[i]) finish_row(i, last_line_);
+    std::fill(has_items_.begin(), has_items_.end(), false);
+  }
+
+ private:
+  Slot slot_of(const std::string& name) const {
+    const std::string tag = base::lower(name);
+    for (std::size_t t = 0; t < tables_.size(); ++t) {
+      if (tag.rfind(tables_[t].category, 0) != 0) continue;
+      const auto& items = tables_[t].items;
+      const auto item = std::find(items.begin(), items.end(), tag.substr(tables_[t].category.size()));
+      if (item != items.end()) return {t, static_cast<std::size_t>(item - items.begin()), true};
+    }
+    return {};
+  }
+  void finish_row(std::size_t table, std::uint64_t line) {
+    tables_[table].take(rows_[table], line);
+    for (std::string& value : rows_[table]) value.clear();
+  }
+
+  std::vector<CifTable> tables_;
+  Faults& faults_;
+  std::vector<std::vector<std::string>> rows_;  ///< the current row of each table
+  std::vector<bool> has_items_;                 ///< the row was given as single items
+  std::vector<Slot> loop_;                      ///< one per column of the current loop
+  std::size_t column_ = 0;
+  Slot item_;
+  std::uint64_t last_line_ = 0;
+};
+
+template <typename Rule>
+struct Action : pegtl::nothing<Rule> {};
+
+template <>
+struct Action<rules::datablockname> {
+  template <typename Input>
+  static void apply(const Input&, RowReader& reader) {
+    reader.end_block();
+  }
+};
+template <>
+struct Action<rules::str_loop> {
+  template <typename Input>
+  static void apply(const Input&, RowReader& reader) {
+    reader.begin_loop();
+  }
+};
+template <>
+struct Action<rules::loop_tag> {
+  template <typename Input>
+  static void apply(const Input& in, RowReader& reader) {
+    reader.add_loop_tag(in.string());
+  }
+};
+template <>
+struct Action<rules::loop_value> {
+  template <typename Input>
+  static void apply(const Input& in, RowReader& reader) {
+    reader.add_loop_value(in.string(), in.iterator().line);
+  }
+};
+template <>
+struct Action<rules::loop> {
+  template <typename Input>
+  static void apply(const Input& in, RowReader& reader) {
+    reader.end_loop(in.iterator().line);
+  }
+};
+template <>
+struct Action<rules::item_tag> {
+  template <typename Input>
+  static void apply(const Input& in, RowReader& reader) {
+    reader.set_tag(in.string());
+  }
+};
+template <>
+struct Action<rules::item_value> {
+  template <typename Input>
+  static void apply(const Input& in, RowReader& reader) {
+    reader.set_value(in.string(), in.iterator().line);
+  }
+};
+
+}  // namespace
+
+void read_cif(const std::string& text, std::vector<CifTable> tables, Faults& faults) {
+  RowReader reader(std::move(tables), faults);
+  pegtl::memory_input<> in(text.data(), text.size(), "");
+  try {
+    pegtl::parse<rules::file, Action, gemmi::cif::Errors>(in, reader);
+  } catch (const pegtl::parse_error& error) {
+    faults.fail(error.positions().front().line, "CIF syntax: " + std::string(error.message()));
+  }
+  reader.end_block();
+}
+
+}  // namespace orrery::formats

@@ -1,0 +1,121 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <gtest/gtest.h>
+
+#include <string>
+#include <vector>
+
+#include "data/data_file.h"
+#include "formats/open.h"
+#include "support/data_file_test.h"
+#include "support/data_tables.h"
+#include "support/shared_data.h"
+#include "support/temp_dir.h"
+
+namespace orrery::formats {
+
+using namespace data;  // NOLINT(google-build-using-namespace)
+
+namespace {
+
+using support::column_names;
+using support::data_errors;
+using support::numbers;
+using support::texts;
+using Numbers = std::vector<double>;
+
+const std::string kHead =
+    "a title\n\n2 atoms # comment\n1 bonds\n2 atom types\n-1 3 xlo xhi\n0 5 ylo yhi\n1 7 zlo zhi\n\nMasses\n\n1 12\n2 "
+    "1\n\n";
+
+class FormatsLammpsData : public support::DataFileTest {
+ protected:
+  FormatsLammpsData() : DataFileTest("a.lmp") {}
+  std::string errors(const std::string& text) { return data_errors(write(text)); }
+};
+
+TEST_F(FormatsLammpsData, ColumnsFollowFromTheStyle) {
+  struct Case {
+    const char* style;
+    const char* row;
+    Numbers xyz;
+  };
+  const Case cases[] = {
+      {"atomic", "4 2 0.5 1 2", {0.5, 1, 2}},
+      {"charge", "4 2 -1.5 0.5 1 2", {0.5, 1, 2}},
+      {"molecular", "4 9 2 0.5 1 2", {0.5, 1, 2}},
+      {"bond", "4 9 2 0.5 1 2", {0.5, 1, 2}},
+      {"angle", "4 9 2 0.5 1 2", {0.5, 1, 2}},
+      {"full", "4 9 2 -1.5 0.5 1 2", {0.5, 1, 2}},
+      {"sphere", "4 2 1.25 7 0.5 1 2", {0.5, 1, 2}},
+      {"bpm/sphere", "4 9 2 1.25 7 0.5 1 2", {0.5, 1, 2}},
+      {"dipole", "4 2 -1.5 0.5 1 2 9 9 9", {0.5, 1, 2}},
+  };
+  for (const Case& c : cases)
+    for (const bool has_images : {false, true}) {
+      const std::string row = std::string(c.row) + (has_images ? " 0 -1 1\n" : "\n");
+      const auto file = open(kHead + "Atoms  #  " + c.style + "\n\n" + row + row + "\nVelocities\n\n1 0 0 0\n");
+      EXPECT_STREQ(file->format, "LAMMPS data");
+      const FrameInfo info = file->describe(0);
+      EXPECT_EQ(info.roles.image[0], has_images ? "ix" : "");
+      const Table table = file->read(0, column_names(info));
+      ASSERT_EQ(table.rows, 2u) << c.style;
+      EXPECT_EQ(numbers(table, "id"), (Numbers{4, 4}));
+      EXPECT_EQ(numbers(table, "type"), (Numbers{2, 2}));
+      const char* const axes[] = {"x", "y", "z"};
+      for (std::size_t i = 0; i < 3; ++i) EXPECT_EQ(numbers(table, axes[i])[1], c.xyz[i]) << c.style;
+      if (has_images)
+        EXPECT_EQ(numbers(table, "iy"), (Numbers{-1, -1}));
+      else
+        EXPECT_EQ(table.find("iy"), nullptr);
+      if (!info.roles.radius.empty()) {
+        EXPECT_EQ(numbers(table, info.roles.radius)[0] * info.roles.radius_scale, 0.625);
+      }
+      EXPECT_EQ(info.roles.radius.empty(), std::string(c.style).find("sphere") == std::string::npos);
+    }
+}
+
+TEST_F(FormatsLammpsData, BoxAndTitleAreRead) {
+  const FrameInfo info = open(kHead + "0.5 -1 2 xy xz yz\nAtoms # atomic\n\n1 1 0 0 0\n2 1 0 0 0\n")->describe(0);
+  EXPECT_EQ(info.title, "a title");
+  const Box box = info.box.value();
+  EXPECT_EQ(box.origin.z, 1);
+  EXPECT_EQ(box.edges[0].x, 4);
+  EXPECT_EQ(box.edges[1].x, 0.5);
+  EXPECT_EQ(box.edges[2].x, -1);
+  EXPECT_EQ(box.edges[2].y, 2);
+  EXPECT_EQ(box.edges[2].z, 6);
+}
+
+TEST_F(FormatsLammpsData, TypesMayBeLabels) {
+  const auto file = open("\n2 atoms\n\nAtom Type Labels\n\n1 C\n2 H\n\nAtoms # atomic\n\n1 C 0 0 0\n2 H 0 0 0 # x\n");
+  EXPECT_EQ(texts(file->read(0, {"type"}), "type"), (std::vector<std::string>{"C", "H"}));
+}
+
+TEST_F(FormatsLammpsData, StyleIsNotGuessed) {
+  EXPECT_EQ(errors(kHead + "Atoms\n\n1 1 0 0 0 0 0\n2 1 0 0 0 0 0\n"),
+            "15: the section \"Atoms\" does not name its style, which determines the meaning of its columns\n");
+  EXPECT_EQ(errors(kHead + "Atoms # body\n\n1 1 0 0 0 0 0\n"), "15: atom style \"body\" is not supported\n");
+}
+
+TEST_F(FormatsLammpsData, ErrorsHaveLines) {
+  const std::string atoms = "Atoms # atomic\n\n";
+  EXPECT_EQ(errors(kHead + atoms + "1 1 0 0 0\n2 1 0 0\n"), "18: has 4 values, not 5\n");
+  EXPECT_EQ(errors(kHead + atoms + "1 1 0 0 0\n"), "18: the file ends after 1 of 2 rows\n");
+  EXPECT_EQ(errors(kHead + atoms + "1 1 0 0 0\n2 1 0 0 0\n3 1 0 0 0\n"), "19: more rows than 2 atoms\n");
+  EXPECT_EQ(errors(kHead), "0: no section \"Atoms\"\n");
+  EXPECT_EQ(errors("\n2 atoms\n0 x xlo xhi\n"), "3: 'x' is not a number\n");
+  EXPECT_EQ(errors("\n2 atoms\n1 0 xlo xhi\n"), "3: a lower bound of the box exceeds the upper bound\n");
+}
+
+TEST_F(FormatsLammpsData, ReadsFilesOfOtherPrograms) {
+  const auto folder = support::shared_data() / "lammps-data";
+  if (!std::filesystem::exists(folder)) GTEST_SKIP() << "no " << folder;
+  for (const auto& entry : std::filesystem::directory_iterator(folder)) EXPECT_EQ(data_errors(entry.path()), "");
+  const auto file = formats::open(folder / "molid.lmp");
+  EXPECT_EQ(numbers(file->read(0, {"mol", "x"}), "x")[2], 8.506);
+  EXPECT_EQ(formats::open(folder / "triclinic-2.lmp")->describe(0).box->edges[2].x, -8);
+  EXPECT_EQ(formats::open(folder / "triclinic-1.lmp")->read(0, {"x"}).rows, 0u);
+}
+
+}  // namespace
+}  // namespace orrery::formats
