@@ -49,6 +49,11 @@ std::vector<job::OutputFile> own_outputs(const PlotArguments& arguments) {
   return out;
 }
 
+/// The PNG of --preview; empty: none.
+std::filesystem::path preview_file(const PlotArguments& arguments) {
+  return preview::parse_target(arguments.render.preview).file;
+}
+
 /// Checks early what would otherwise fail after all frames have been read: names and formats of outputs, layers, colour
 /// names.
 void check_request(const PlotArguments& arguments, const std::vector<int>& frames) {
@@ -56,7 +61,7 @@ void check_request(const PlotArguments& arguments, const std::vector<int>& frame
   batch.scenes = {arguments.plot.file};
   batch.frames = frames;
   batch.others = own_outputs(arguments);
-  if (!arguments.render.preview.empty()) batch.preview = preview::parse_target(arguments.render.preview).file;
+  if (const auto file = preview_file(arguments); !file.empty()) batch.others.push_back({file, "--preview"});
   job::Job& job = batch.job;
   job.scene.text = std::make_shared<const std::string>();
   job.scene.has_file = false;
@@ -97,9 +102,7 @@ void check_outputs(const PlotArguments& arguments) {
     files.add_output(stats, "--stats");
     base::check_creatable(stats);
   }
-  if (!arguments.render.preview.empty())
-    if (const auto file = preview::parse_target(arguments.render.preview).file; !file.empty())
-      files.add_output(file, "--preview");
+  if (const auto file = preview_file(arguments); !file.empty()) files.add_output(file, "--preview");
   for (const job::ImageFile& image : arguments.render.batch.job.outputs.images) files.add_output(image.path, "-o");
 }
 

@@ -156,14 +156,42 @@ void add_summary(std::string& out, const job::Job& job, const job::JobReport& re
     out += fmt::format("display {}, view {}, OCIO config {}\n", display.display, display.view, display.config);
 }
 
-/// Prints the summary of a batch. Returns the exit status of the first failure, or 0.
-int print_summary(const farm::BatchReport& report, bool quiet) {
-  std::string text = fmt::format("{} of {} rendered, {} skipped, {} failed\n", report.rendered, report.jobs,
-                                 report.skipped, report.failures.size());
-  for (const farm::BatchReport::Failure& failure : report.failures)
-    text += fmt::format("failed: {}: {}\n", failure.name, failure.error.what());
-  if (!quiet || !report.failures.empty()) print_message(text);
-  return report.failures.empty() ? 0 : base::exit_status(report.failures.front().error.kind());
+/// Runs the jobs one after another. If one of several fails, prints the error and continues.
+///
+/// Result     the exit status: that of the first failure, or 0
+/// Errors     kStopped if a job was stopped; that of a single job
+int run_jobs(const std::vector<job::Job>& jobs, const RenderOptions& options, ProgressPrinter& printer,
+             BatchProgress& progress) {
+  const bool is_many = jobs.size() > 1;
+  const auto name_of = [&](const job::Job& job) {
+    const std::string scene = job.scene.file.string();
+    return options.batch.frames.empty() ? scene : fmt::format("frame {} of {}", job.scene.frame, scene);
+  };
+  std::size_t rendered = 0, skipped = 0;
+  int status = 0;
+  std::string failures;
+  for (std::size_t i = 0; i < jobs.size(); ++i) {
+    progress.begin(i, jobs.size());
+    try {
+      const job::JobReport report = job::run_job(jobs[i]);
+      ++(report.was_skipped ? skipped : rendered);
+      if (!is_many) printer.finish();
+      if (options.quiet) continue;
+      printer.note(report.was_skipped ? fmt::format("skipped {}: its files are up to date\n", name_of(jobs[i]))
+                                      : report_text(jobs[i], report, {options.verbose, is_many}));
+      if (!report.target_missed.empty()) printer.note(base::warning_line(report.target_missed));
+    } catch (const base::Error& error) {
+      if (!is_many || error.kind() == base::ErrorKind::kStopped) throw;
+      printer.note(error_text(error));
+      failures += fmt::format("failed: {}: {}\n", name_of(jobs[i]), error.what());
+      if (status == 0) status = base::exit_status(error.kind());
+    }
+  }
+  printer.finish();
+  if (is_many && (!options.quiet || status != 0))
+    print_message(fmt::format("{} of {} rendered, {} skipped, {} failed\n{}", rendered, jobs.size(), skipped,
+                              jobs.size() - rendered - skipped, failures));
+  return status;
 }
 
 }  // namespace
@@ -190,13 +218,13 @@ int run_render(RenderOptions& options) {
   options.picture.finish(job);
   read_shard(options, job);
   if (!options.frames.empty()) batch.frames = base::parse_frames(options.frames);
-  const bool is_many = batch.scenes.size() * std::max<std::size_t>(batch.frames.size(), 1) > 1;
-  batch.keep_going = is_many;
   job.hooks.cancel = &stop_on_signals();
   job.hooks.snapshot = &snapshot_request();
-  const preview::Target target = options.preview.empty() ? preview::Target() : preview::parse_target(options.preview);
-  batch.preview = target.file;
-  if (!target.file.empty()) base::check_creatable(target.file);
+  const preview::Target target = preview::parse_target(options.preview);
+  if (!target.file.empty()) {
+    batch.others.push_back({target.file, "--preview"});
+    base::check_creatable(target.file);
+  }
   ProgressPrinter printer(style_of(options), stderr);
   BatchProgress progress(printer);
   job.hooks.on_progress = [&](const render::Progress& p) { progress.update(p); };
@@ -208,23 +236,10 @@ int run_render(RenderOptions& options) {
   if (const std::string unused = options.picture.unused_options(job); !unused.empty()) note(unused);
   job.hooks.on_note = [&](const std::string& text) { note(text + "\n"); };
   const auto preview = start_preview(target, note, job.hooks);
-  batch.on_begin = [&](std::size_t index, std::size_t count) { progress.begin(index, count); };
-  batch.on_end = [&](const job::Job& one, const job::JobReport& report) {
-    if (!is_many) printer.finish();
-    const std::string text = report.was_skipped
-                                 ? fmt::format("skipped {}: its files are up to date\n", farm::job_name(batch, one))
-                                 : report_text(one, report, {options.verbose, is_many});
-    note(text);
-    if (!report.target_missed.empty()) note(base::warning_line(report.target_missed));
-  };
-  batch.on_failure = [&](const job::Job&, const base::Error& error) { printer.note(error_text(error)); };
   const std::vector<job::Job> jobs = farm::jobs_of(batch);
   // Only now is it known that no output is an input.
   if (options.before_files) options.before_files();
-  const farm::BatchReport report = farm::run_batch(batch, jobs);
-  if (preview) preview->end();
-  printer.finish();
-  return is_many ? print_summary(report, options.quiet) : 0;
+  return run_jobs(jobs, options, printer, progress);
 }
 
 void add_render_options(Command& command, RenderOptions& options) {
@@ -284,8 +299,7 @@ void add_render_options(Command& command, RenderOptions& options) {
           "tev gets scene-linear pixels, by default at 127.0.0.1, port 14158; the PNG is rewritten every second, "
           "through the display transform. It takes at most 1 % of the render time, unless the render is very short, "
           "and the image has the same bits. A viewer that cannot be reached, hangs or disconnects is no error. "
-          "docs/output.md describes what is shown.")
-      ->check([](std::string& text) { return std::string(text.empty() ? "must not be empty" : ""); });
+          "docs/output.md describes what is shown.");
   command.add_option("--stats", options.batch.job.outputs.statistics, "FILE", "Write statistics of the render as JSON")
       ->details("docs/statistics.md lists the keys.");
   command.add_flag("-q,--quiet", options.quiet, "Print only errors");

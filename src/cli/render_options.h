@@ -30,7 +30,7 @@ void begin_messages(const RenderOptions& options);
 /// Renders the scenes and frames of a batch.
 ///
 /// Result     the exit status
-/// Errors     those of farm::jobs_of and farm::run_batch
+/// Errors     those of farm::jobs_of and job::run_job
 int run_render(RenderOptions& options);
 
 /// Optional contents of the summary of a render, in addition to files, samples and render time.

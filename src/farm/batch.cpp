@@ -3,6 +3,7 @@
 
 #include <fmt/core.h>
 
+#include "base/error.h"
 #include "base/frames.h"
 #include "job/check_job.h"
 #include "job/job.h"
@@ -64,7 +65,6 @@ std::vector<job::Job> jobs_of(const Batch& batch) {
   common.files = std::make_shared<base::FileSet>();
   if (frames.size() > 1) common.prepared = std::make_shared<job::PreparedScene>(true);
   base::FileSet& files = *common.files;
-  if (!batch.preview.empty()) files.add_output(batch.preview, "--preview");
   for (const job::OutputFile& other : batch.others) files.add_output(other.path, other.role);
   for (const fs::path& scene : batch.scenes)
     if (common.scene.has_file && !files.add_input(scene, "scene")) base::refuse(scene.string() + " is given twice");
@@ -90,29 +90,6 @@ std::vector<job::Job> jobs_of(const Batch& batch) {
       add_readable_files(source, frames, files);
     }
   return jobs;
-}
-
-std::string job_name(const Batch& batch, const job::Job& job) {
-  const std::string scene = job.scene.file.string();
-  return batch.frames.empty() ? scene : fmt::format("frame {} of {}", job.scene.frame, scene);
-}
-
-BatchReport run_batch(const Batch& batch, const std::vector<job::Job>& jobs) {
-  BatchReport report;
-  report.jobs = jobs.size();
-  for (std::size_t i = 0; i < jobs.size(); ++i) {
-    if (batch.on_begin) batch.on_begin(i, jobs.size());
-    try {
-      const job::JobReport done = job::run_job(jobs[i]);
-      ++(done.was_skipped ? report.skipped : report.rendered);
-      if (batch.on_end) batch.on_end(jobs[i], done);
-    } catch (const base::Error& error) {
-      if (!batch.keep_going || error.kind() == base::ErrorKind::kStopped) throw;
-      if (batch.on_failure) batch.on_failure(jobs[i], error);
-      report.failures.push_back({job_name(batch, jobs[i]), error});
-    }
-  }
-  return report;
 }
 
 }  // namespace orrery::farm

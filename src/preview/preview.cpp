@@ -56,6 +56,7 @@ Target tev_at(const std::string& address) {
 }  // namespace
 
 Target parse_target(const std::string& text) {
+  if (text.empty()) return {};
   if (text == "tev") return {TargetKind::kTev, kTevHost, kTevPort, {}};
   if (base::has_frame_pattern(text))
     throw base::Error(

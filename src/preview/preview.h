@@ -62,7 +62,7 @@ struct Target {
 inline constexpr const char* kTevHost = "127.0.0.1";
 inline constexpr const char* kTevPort = "14158";
 
-/// Parses the value of --preview: tev, tev:HOST, tev:HOST:PORT, tev:[IPV6]:PORT, or the name of a PNG.
+/// Parses the value of --preview: empty, tev, tev:HOST, tev:HOST:PORT, tev:[IPV6]:PORT, or the name of a PNG.
 ///
 /// Errors     base::Error(kUsage)
 Target parse_target(const std::string& text);

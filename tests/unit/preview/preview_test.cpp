@@ -75,6 +75,7 @@ TEST(PreviewTarget, TevListensOnLoopbackUnlessAHostIsGiven) {
 
 TEST(PreviewTarget, KnowsPngFiles) {
   EXPECT_EQ(parse_target("out/p.PNG").file, "out/p.PNG");
+  EXPECT_EQ(parse_target("").kind, TargetKind::kNone);
   EXPECT_EQ(parse_target("tev.png").kind, TargetKind::kFile);
   EXPECT_EQ(parse_target("tev:9000.png").kind, TargetKind::kFile);
 }
@@ -99,7 +100,7 @@ TEST(PreviewTarget, AFramePatternIsNotAPreview) {
 }
 
 TEST(PreviewTarget, RejectsEverythingElse) {
-  for (const char* text : {"", "terminal", "p.exr", "tev:", "tev::9000", "tev:desk:", "tev:desk:0", "tev:desk:65536",
+  for (const char* text : {"terminal", "p.exr", "tev:", "tev::9000", "tev:desk:", "tev:desk:0", "tev:desk:65536",
                            "tev:desk:9x", "tev:::1", "tev:[::1", "tev:[::1]9", "tev2"}) {
     try {
       parse_target(text);
