@@ -6,7 +6,7 @@
 #   ./test.sh
 #   ./test.sh -L unit
 #   ./test.sh -R Camera
-#   GTEST_FILTER='AppInfo.*' ./test.sh -R unit_app
+#   GTEST_FILTER='Info.*' ./test.sh -R unit_info
 #
 # Tests write their files to $TMPDIR if set, otherwise to /dev/shm if it has 2 GB of free space, otherwise to /tmp. On a disk
 # that syncs every write some tests take twenty times as long.

@@ -8,14 +8,14 @@
 
 #include <fmt/core.h>
 
-#include "app/compare_files.h"
-#include "app/compared_channels.h"
 #include "base/error.h"
 #include "base/text.h"
 #include "cli/commands.h"
 #include "cli/messages.h"
 #include "cli/options.h"
 #include "cli/signals.h"
+#include "compare/compare_files.h"
+#include "compare/compared_channels.h"
 
 namespace orrery::cli {
 namespace {
@@ -33,7 +33,7 @@ struct CompareOptions {
   std::filesystem::path picture, reference;
   std::vector<std::string> limits;
   std::string layer;
-  app::ComparisonPictures pictures;
+  compare::ComparisonPictures pictures;
   int threads = 0;
   bool json = false, quiet = false;
 };
@@ -49,7 +49,7 @@ Limit limit_of(const std::string& text) {
   const auto [stopped, error] = std::from_chars(text.data() + equals + 1, end, limit.value);
   if (error != std::errc() || stopped != end || !(limit.value >= 0))
     throw wrong("the value must be a number, 0 or more");
-  const std::vector<std::string>& known = app::limitable_metrics();
+  const std::vector<std::string>& known = compare::limitable_metrics();
   if (limit.metric == "psnr" || limit.metric == "ssim")
     throw wrong(limit.metric + " decreases with the error; limit rmse or flip instead");
   if (std::find(known.begin(), known.end(), limit.metric) == known.end()) {
@@ -59,11 +59,11 @@ Limit limit_of(const std::string& text) {
   return limit;
 }
 
-void warn_of_layers(const CompareOptions& options, const app::Comparison& found) {
+void warn_of_layers(const CompareOptions& options, const compare::Comparison& found) {
   if (options.quiet) return;
   const auto warn = [](const std::vector<std::string>& channels, const std::filesystem::path& file) {
     if (!channels.empty())
-      print_message(base::warning_line(fmt::format("only in {}: {}", file.string(), app::channels_text(channels))));
+      print_message(base::warning_line(fmt::format("only in {}: {}", file.string(), compare::channels_text(channels))));
   };
   warn(found.only_in_picture, options.picture);
   warn(found.only_in_reference, options.reference);
@@ -73,10 +73,10 @@ int compare(const CompareOptions& options) {
   end_on_signals();
   std::vector<Limit> limits;
   for (const std::string& text : options.limits) limits.push_back(limit_of(text));
-  const app::Comparison found =
-      app::compare_files(options.picture, options.reference, options.layer, options.pictures, options.threads);
+  const compare::Comparison found =
+      compare::compare_files(options.picture, options.reference, options.layer, options.pictures, options.threads);
   if (!found.only_in_picture.empty() || !found.only_in_reference.empty()) warn_of_layers(options, found);
-  if (!options.quiet) print_result(options.json ? app::comparison_json(found) : app::comparison_text(found));
+  if (!options.quiet) print_result(options.json ? compare::comparison_json(found) : compare::comparison_text(found));
   int status = 0;
   for (const Limit& limit : limits) {
     const double value = found.metric(limit.metric);

@@ -5,9 +5,6 @@
 
 #include <fmt/core.h>
 
-#include "app/bake_file.h"
-#include "app/denoise_file.h"
-#include "app/develop_file.h"
 #include "base/error.h"
 #include "base/text.h"
 #include "cli/commands.h"
@@ -15,18 +12,21 @@
 #include "cli/options.h"
 #include "cli/signals.h"
 #include "display/settings.h"
+#include "job/bake_file.h"
+#include "job/denoise_file.h"
+#include "job/develop_file.h"
 
 namespace orrery::cli {
 namespace {
 
 struct DevelopOptions {
-  app::Development development;
+  job::Development development;
   bool quiet = false;
 };
 
 int develop(const DevelopOptions& options) {
   end_on_signals();
-  const app::DevelopReport report = app::develop_file(options.development);
+  const job::DevelopReport report = job::develop_file(options.development);
   if (options.quiet) return 0;
   for (const std::string& warning : report.display.warnings) print_message(base::warning_line(warning));
   if (const std::uint64_t bad = report.bad_values.nan + report.bad_values.infinite; bad > 0)
@@ -36,11 +36,11 @@ int develop(const DevelopOptions& options) {
 }
 
 struct DenoiseOptions {
-  app::Denoising denoising;
+  job::Denoising denoising;
   bool quiet = false;
 };
 
-std::string text_of(const app::Denoising& denoising, const app::DenoisedFile& done) {
+std::string text_of(const job::Denoising& denoising, const job::DenoisedFile& done) {
   const denoise::Report& report = done.report;
   std::string out =
       fmt::format("wrote {}: beauty and {} light layers\n", denoising.output.string(), report.layers.size());
@@ -68,7 +68,7 @@ std::string text_of(const app::Denoising& denoising, const app::DenoisedFile& do
 
 int denoise(const DenoiseOptions& options) {
   end_on_signals();
-  const app::DenoisedFile done = app::denoise_file(options.denoising);
+  const job::DenoisedFile done = job::denoise_file(options.denoising);
   if (!options.quiet) print_message(text_of(options.denoising, done));
   return 0;
 }
@@ -84,7 +84,7 @@ struct BakeOptions {
 
 int bake(const BakeOptions& options) {
   end_on_signals();
-  app::bake_file(options.display, options.size, options.output);
+  job::bake_file(options.display, options.size, options.output);
   return 0;
 }
 
@@ -92,7 +92,7 @@ int bake(const BakeOptions& options) {
 
 void add_develop(Command& program) {
   const auto options = std::make_shared<DevelopOptions>();
-  app::Development& development = options->development;
+  job::Development& development = options->development;
   development.display.working_space.clear();
   Command& command = *program.add_subcommand("develop", "Apply an OCIO display transform to an EXR or HDR image");
   command.add_option("IN", development.input, "FILE", "Scene-linear image: EXR or HDR")->required();

@@ -14,8 +14,8 @@
 #include "cli/options.h"
 #include "cli/progress.h"
 #include "cli/signals.h"
-#include "measure/bench_scene.h"
-#include "measure/study.h"
+#include "study/bench_scene.h"
+#include "study/study.h"
 
 namespace orrery::cli {
 namespace {
@@ -26,13 +26,13 @@ constexpr std::uint64_t kMaxRounds = 1000;
 constexpr double kMaxSeconds = 3600;  // of one measurement
 
 struct BenchOptions {
-  measure::BenchRequest request;
+  study::BenchRequest request;
   SceneOptions scene;
   bool json = false, quiet = false;
 };
 
 int bench(BenchOptions& options) {
-  measure::BenchRequest& request = options.request;
+  study::BenchRequest& request = options.request;
   request.scene.overrides = options.scene.overrides();
   request.scene.frame = options.scene.frame();
   request.cancel = &stop_on_signals();
@@ -41,14 +41,14 @@ int bench(BenchOptions& options) {
     printer.update({static_cast<std::uint64_t>(done), static_cast<std::uint64_t>(total), 0,
                     fmt::format("measurement {} of {}", done, total)});
   };
-  const measure::Benchmark found = measure::bench_scene(request);
+  const study::Benchmark found = study::bench_scene(request);
   printer.finish();
-  print_result(options.json ? measure::benchmark_json(found) : measure::benchmark_text(found));
+  print_result(options.json ? study::benchmark_json(found) : study::benchmark_text(found));
   return 0;
 }
 
 struct StudyOptions {
-  measure::Request request;
+  study::Request request;
   SceneOptions scene;
   bool json = false, quiet = false;
 };
@@ -60,7 +60,7 @@ void check_report_name(const std::filesystem::path& file) {
 }
 
 int study(StudyOptions& options) {
-  measure::Request& request = options.request;
+  study::Request& request = options.request;
   request.scene.overrides = options.scene.overrides();
   request.scene.frame = options.scene.frame();
   request.cancel = &stop_on_signals();
@@ -70,10 +70,10 @@ int study(StudyOptions& options) {
     printer.update({static_cast<std::uint64_t>(fraction * kSteps), kSteps, 0, what});
   };
   if (!request.report.empty()) check_report_name(request.report);
-  const measure::Study found = measure::run_study(request);
+  const study::Study found = study::run_study(request);
   printer.finish();
-  if (!request.report.empty()) base::write_text_file(request.report, measure::study_html(found));
-  print_result(options.json ? measure::study_json(found) : measure::study_text(found));
+  if (!request.report.empty()) base::write_text_file(request.report, study::study_html(found));
+  print_result(options.json ? study::study_json(found) : study::study_text(found));
   return 0;
 }
 

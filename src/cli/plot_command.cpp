@@ -57,7 +57,7 @@ std::filesystem::path preview_file(const PlotArguments& arguments) {
 /// Checks early what would otherwise fail after all frames have been read: names and formats of outputs, layers, colour
 /// names.
 void check_request(const PlotArguments& arguments, const std::vector<int>& frames) {
-  farm::Batch batch = arguments.render.batch;
+  job::Batch batch = arguments.render.batch;
   batch.scenes = {arguments.plot.file};
   batch.frames = frames;
   batch.others = own_outputs(arguments);
@@ -65,7 +65,7 @@ void check_request(const PlotArguments& arguments, const std::vector<int>& frame
   job::Job& job = batch.job;
   job.scene.text = std::make_shared<const std::string>();
   job.scene.has_file = false;
-  for (const job::Job& one : farm::jobs_of(batch)) job::check_request(one);
+  for (const job::Job& one : job::jobs_of(batch)) job::check_request(one);
   job.scene.overrides = arguments.plot.overrides;
   job::check_layers(job, plot::settings_of(arguments.plot, job.outputs.has_display_format()).read.scene);
   image::load();

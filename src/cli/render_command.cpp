@@ -209,7 +209,7 @@ void begin_messages(const RenderOptions& options) {
 
 int run_render(RenderOptions& options) {
   begin_messages(options);
-  farm::Batch& batch = options.batch;
+  job::Batch& batch = options.batch;
   job::Job& job = batch.job;
   for (std::size_t i = 1; i < batch.scenes.size(); ++i)
     if (base::extension(batch.scenes[i]) != ".toml")
@@ -236,7 +236,7 @@ int run_render(RenderOptions& options) {
   if (const std::string unused = options.picture.unused_options(job); !unused.empty()) note(unused);
   job.hooks.on_note = [&](const std::string& text) { note(text + "\n"); };
   const auto preview = start_preview(target, note, job.hooks);
-  const std::vector<job::Job> jobs = farm::jobs_of(batch);
+  const std::vector<job::Job> jobs = job::jobs_of(batch);
   // Only now is it known that no output is an input.
   if (options.before_files) options.before_files();
   return run_jobs(jobs, options, printer, progress);

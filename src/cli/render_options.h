@@ -5,13 +5,13 @@
 #include <string>
 
 #include "cli/options.h"
-#include "farm/batch.h"
+#include "job/batch.h"
 
 namespace orrery::cli {
 
 /// The options of a command that renders.
 struct RenderOptions {
-  farm::Batch batch;
+  job::Batch batch;
   SceneOptions scene;
   PictureOptions picture;
   std::string preview, progress = "auto", sample_range, shard, frames;
@@ -30,7 +30,7 @@ void begin_messages(const RenderOptions& options);
 /// Renders the scenes and frames of a batch.
 ///
 /// Result     the exit status
-/// Errors     those of farm::jobs_of and job::run_job
+/// Errors     those of job::jobs_of and job::run_job
 int run_render(RenderOptions& options);
 
 /// Optional contents of the summary of a render, in addition to files, samples and render time.

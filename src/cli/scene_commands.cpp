@@ -8,8 +8,6 @@
 
 #include <fmt/core.h>
 
-#include "app/data_info.h"
-#include "app/info.h"
 #include "base/error.h"
 #include "base/file_name.h"
 #include "base/frames.h"
@@ -17,6 +15,8 @@
 #include "cli/messages.h"
 #include "cli/options.h"
 #include "format/read_scene.h"
+#include "info/data_info.h"
+#include "info/info.h"
 #include "job/prepared_scene.h"
 #include "load/load_scene.h"
 
@@ -37,7 +37,7 @@ struct CheckOptions {
   bool quiet = false;
 };
 
-std::string warnings_text(const app::SceneInfo& info) {
+std::string warnings_text(const info::SceneInfo& info) {
   std::string out;
   for (const base::Diagnostic& warning : info.warnings) out += base::formatted(warning);
   return out;
@@ -55,12 +55,12 @@ int data_info(const InfoOptions& options) {
   refuse_option(options.measure, "--measure", options, kKind);
   for (const format::Override& override : options.overrides.overrides())
     refuse_option(true, override.option, options, kKind);
-  app::DataInfoRequest request;
+  info::DataInfoRequest request;
   request.file = options.file;
   request.frame = options.overrides.frame();
   if (!options.component.empty()) request.component = integer_of(options.component);
-  const app::DataInfo found = app::data_info(request);
-  print_result(options.json ? app::data_info_json(found) : app::data_info_text(found));
+  const info::DataInfo found = info::data_info(request);
+  print_result(options.json ? info::data_info_json(found) : info::data_info_text(found));
   return 0;
 }
 
@@ -71,17 +71,17 @@ int info(const InfoOptions& options) {
   request.source.file = options.file;
   request.source.overrides = options.overrides.overrides();
   request.source.frame = options.overrides.frame();
-  app::SceneInfo found = app::scene_info(request);
-  if (options.measure) app::measure_savings(request, found);
+  info::SceneInfo found = info::scene_info(request);
+  if (options.measure) info::measure_savings(request, found);
   std::fputs(warnings_text(found).c_str(), stderr);
-  print_result(options.json       ? app::info_json(found)
-               : options.settings ? app::settings_text(found)
-                                  : app::info_text(found));
+  print_result(options.json       ? info::info_json(found)
+               : options.settings ? info::settings_text(found)
+                                  : info::info_text(found));
   return 0;
 }
 
 /// Warning if the scene exceeds this machine's free memory; not an error, since it may be rendered on another machine.
-std::string memory_warning(const app::SceneInfo& info) {
+std::string memory_warning(const info::SceneInfo& info) {
   try {
     job::require_memory(info.memory, 0);
     return {};
@@ -100,7 +100,7 @@ class FrameChecks {
     for (const int frame : frames) {
       request_.source.frame = frame;
       try {
-        const app::SceneInfo info = app::scene_info(request_, prepared_);
+        const info::SceneInfo info = info::scene_info(request_, prepared_);
         print_once(warnings_text(info) + memory_warning(info));
       } catch (const base::Error& error) {
         if (status_ == 0) status_ = base::exit_status(error.kind());

@@ -7,7 +7,7 @@
 #include "cli/commands.h"
 #include "cli/messages.h"
 #include "cli/render_options.h"
-#include "farm/submit.h"
+#include "submit/submit.h"
 
 namespace orrery::cli {
 namespace {
@@ -17,7 +17,7 @@ constexpr const char* kJobOptions = "Job options";
 
 struct SubmitOptions {
   RenderOptions render;
-  farm::Submission submission;
+  submit::Submission submission;
   std::filesystem::path scene_file;
   bool slurm = false, openjd = false, opencue = false;
   const Option* parallel = nullptr;
@@ -31,7 +31,7 @@ bool has_option(const Command& command, const std::string& name) {
 
 /// Passes the arguments of `render` on as typed. With shards, the merge gets those that it has, and the renders get all
 /// but those that describe the images.
-void pass_arguments_on(const SubmitOptions& options, farm::Submission& submission) {
+void pass_arguments_on(const SubmitOptions& options, submit::Submission& submission) {
   const auto append = [](std::vector<std::string>& out, const std::vector<std::string>& words) {
     out.insert(out.end(), words.begin(), words.end());
   };
@@ -47,7 +47,7 @@ void pass_arguments_on(const SubmitOptions& options, farm::Submission& submissio
 }
 
 int submit(SubmitOptions& options) {
-  farm::Submission& s = options.submission;
+  submit::Submission& s = options.submission;
   s.batch = options.render.batch;
   s.batch.scenes = {options.scene_file};
   s.batch.job.scene.overrides = options.render.scene.overrides();
@@ -56,17 +56,17 @@ int submit(SubmitOptions& options) {
   if (options.slurm + options.openjd + options.opencue + static_cast<int>(options.parallel->count()) != 1)
     base::refuse("specify one of --slurm, --openjd, --opencue and --parallel N");
   pass_arguments_on(options, s);
-  s.engine = options.slurm     ? farm::Engine::kSlurm
-             : options.openjd  ? farm::Engine::kOpenJd
-             : options.opencue ? farm::Engine::kOpenCue
-                               : farm::Engine::kParallel;
-  print_result(farm::submission_text(s));
+  s.engine = options.slurm     ? submit::Engine::kSlurm
+             : options.openjd  ? submit::Engine::kOpenJd
+             : options.opencue ? submit::Engine::kOpenCue
+                               : submit::Engine::kParallel;
+  print_result(submit::submission_text(s));
   return 0;
 }
 
 void add_job_options(Command& command, SubmitOptions& options) {
   const OptionGroup group(command, kJobOptions);
-  farm::Submission& s = options.submission;
+  submit::Submission& s = options.submission;
   command.add_option("SCENE", options.scene_file, "FILE", "Scene file")->required();
   command.add_flag("--slurm", options.slurm, "Write a shell script that calls sbatch");
   command.add_flag("--openjd", options.openjd, "Write an Open Job Description template (jobtemplate-2023-09)");

@@ -1,0 +1,324 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "compare/compare_files.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include <nlohmann/json.hpp>
+
+#include <fmt/core.h>
+
+#include "base/atomic_file.h"
+#include "base/available_memory.h"
+#include "base/error.h"
+#include "base/file_set.h"
+#include "base/text.h"
+#include "compare/color_view.h"
+#include "compare/compared_channels.h"
+#include "compare/perceptual.h"
+#include "image/format.h"
+#include "image/header.h"
+#include "image/read.h"
+#include "image/write.h"
+#include "job/resources.h"
+#include "job/statistics.h"
+#include "job/version.h"
+#include "render/tiles.h"
+
+namespace orrery::compare {
+namespace {
+
+std::string size_text(const film::Picture& picture) { return fmt::format("{} x {}", picture.width, picture.height); }
+
+base::Error bad_data(const std::string& text) { return {base::ErrorKind::kBadData, text}; }
+
+void count_differing(const film::Picture& picture, const film::Picture& reference, const std::string& layer,
+                     Comparison& out) {
+  for (const film::Plane& plane : picture.planes) {
+    const film::Plane* const other = reference.find(plane.name);
+    if (other == nullptr) {
+      out.only_in_picture.push_back(plane.name);
+      continue;
+    }
+    if (!is_of_layer(plane, layer)) continue;
+    out.values += plane.values.size();
+    for (std::size_t i = 0; i < plane.values.size(); ++i)
+      if (plane.values[i] != other->values[i] && !(std::isnan(plane.values[i]) && std::isnan(other->values[i])))
+        ++out.differing;
+  }
+  for (const film::Plane& plane : reference.planes)
+    if (picture.find(plane.name) == nullptr) out.only_in_reference.push_back(plane.name);
+}
+
+/// sRGB-encoded values of an image without exposure, for metrics that need display-encoded input.
+struct Codes {
+  std::vector<float> values[3];
+  ColorView view;
+
+  Codes(const ColorView& from, Encoding encoding) : view(from) {
+    for (int c = 0; c < 3; ++c) {
+      values[c].assign(from.channel[c], from.channel[c] + from.pixels());
+      for (float& v : values[c]) {
+        v = std::isfinite(v) ? std::clamp(v, 0.0f, 1.0f) : 0.0f;
+        if (encoding == Encoding::kLight) v = srgb_encoded(v);
+      }
+      view.channel[c] = values[c].data();
+    }
+  }
+};
+
+/// The image with non-finite values replaced by 0, since filters would spread them.
+struct Finite {
+  std::vector<float> values[3];
+  ColorView view;
+
+  explicit Finite(const ColorView& from) : view(from) {
+    for (int c = 0; c < 3; ++c) {
+      values[c].assign(from.channel[c], from.channel[c] + from.pixels());
+      for (float& v : values[c])
+        if (!std::isfinite(v)) v = 0;
+      view.channel[c] = values[c].data();
+    }
+  }
+};
+
+film::Picture difference_picture(const ComparedChannels& c, bool for_display) {
+  film::Picture out;
+  out.width = c.picture.width;
+  out.height = c.picture.height;
+  const char* const names[3] = {"R", "G", "B"};
+  for (int k = 0; k < 3; ++k) {
+    film::Plane plane{names[k], std::vector<float>(c.picture.pixels())};
+    for (std::size_t i = 0; i < plane.values.size(); ++i) {
+      const bool is_excluded = !c.excluded.empty() && c.excluded[i];
+      const float d = is_excluded ? 0 : c.picture.channel[k][i] - c.reference.channel[k][i];
+      plane.values[i] = for_display ? 0.5f + d / 2 : d;
+    }
+    plane.kind = film::PlaneKind::kVector;  // negative values are valid
+    out.planes.push_back(std::move(plane));
+  }
+  return out;
+}
+
+/// A ForEach that runs on this many threads of the task scheduler.
+ForEach on_threads(int threads) {
+  return [threads](std::size_t count, const std::function<void(std::size_t)>& work) {
+    render::TilePool(threads > 0 ? threads : job::default_threads())
+        .run(
+            count, [&](std::size_t i, render::TileWorker&) { work(i); }, [] { return false; });
+  };
+}
+
+void write_codes(const std::filesystem::path& file, const film::Picture& codes) {
+  image::write_encoded(file, encoded(codes), job::program_version());
+}
+
+void write_numbers(const std::filesystem::path& file, const film::Picture& numbers) {
+  if (image::format_of(file) == image::Format::kHdr)
+    throw base::Error(base::ErrorKind::kUsage, file.string() + " cannot hold negative values; use EXR");
+  image::ExrOptions options;
+  options.as_float = true;
+  image::write_exr(file, numbers, {}, options);
+}
+
+void write_map(const std::filesystem::path& file, const Map& map, double full) {
+  if (file.empty()) return;
+  if (image::is_display_format(image::format_of(file))) {
+    write_codes(file, false_color(map, full));
+  } else {
+    write_numbers(file, grey(map));
+  }
+}
+
+/// Checks the output files before work begins: known formats, creatable, distinct from the inputs and each other.
+void check_files(const std::filesystem::path& picture, const std::filesystem::path& reference,
+                 const ComparisonPictures& pictures) {
+  base::FileSet files;
+  files.add_input(picture, "image");
+  files.add_input(reference, "image");
+  const std::pair<const std::filesystem::path&, const char*> outputs[] = {
+      {pictures.difference, "--difference"}, {pictures.heat, "--heat"}, {pictures.flip, "--flip"}};
+  for (const auto& [file, role] : outputs) {
+    if (file.empty()) continue;
+    image::format_of(file);
+    files.add_output(file, role);
+    base::check_creatable(file);
+  }
+}
+
+}  // namespace
+
+const std::vector<std::string>& limitable_metrics() {
+  static const std::vector<std::string> names = {"rmse", "relmse", "mae", "max", "display", "flip", "bias", "z"};
+  return names;
+}
+
+double Comparison::metric(const std::string& name) const {
+  if (name == "rmse") return errors.rmse;
+  if (name == "relmse") return errors.relative_mse;
+  if (name == "mae") return errors.mae;
+  if (name == "max") return errors.max;
+  if (name == "display") return errors.display;
+  if (name == "bias") return std::abs(errors.bias);
+  if (name == "flip" && flip) return *flip;
+  if (name == "z" && z_test) return std::abs(z_test->largest_z);
+  throw base::Error(base::ErrorKind::kUsage,
+                    fmt::format("--fail-above {}: not available for these images; {}", name,
+                                name == "z" ? "render with --layers variance" : "it covers colours only"));
+}
+
+Comparison compare(const film::Picture& picture, const film::Picture& reference, Encoding encoding,
+                   const std::string& layer, int threads) {
+  if (picture.width != reference.width || picture.height != reference.height)
+    throw bad_data(fmt::format("images of different sizes cannot be compared: {} and {}", size_text(picture),
+                               size_text(reference)));
+  Comparison out;
+  out.width = picture.width;
+  out.height = picture.height;
+  count_differing(picture, reference, layer, out);
+  const ComparedChannels c = compared_channels(picture, reference, layer);
+  out.channels = c.names;
+  out.is_matte = c.is_matte;
+  out.no_hit = c.no_hit;
+  out.no_hit_in_one = c.no_hit_in_one;
+  out.errors = pixel_errors(c.picture, c.reference, c.excluded);
+  if (out.errors.values == 0 && out.errors.not_finite + out.no_hit_in_one > 0)
+    throw bad_data(
+        fmt::format("nothing to compare: no value of {} is finite and a hit in both images", base::joined(c.names)));
+  out.display_map = display_error_map(c.picture, c.reference, c.excluded);
+  if (!layer.empty() || c.names.size() < 3) return out;
+  const Codes code_a(c.picture, encoding), code_b(c.reference, encoding);
+  out.ssim = ssim(code_a.view, code_b.view);
+  out.flip_map = encoding == Encoding::kDisplay ? flip(code_a.view, code_b.view)
+                                                : hdr_flip(Finite(c.picture).view, Finite(c.reference).view,
+                                                           kPixelsPerDegree, on_threads(threads));
+  out.flip = out.flip_map.mean();
+  out.z_test = z_test(c.picture, color_of(picture, "variance"), c.reference, color_of(reference, "variance"));
+  return out;
+}
+
+Comparison compare_files(const std::filesystem::path& picture, const std::filesystem::path& reference,
+                         const std::string& layer, const ComparisonPictures& pictures, int threads) {
+  const bool developed = image::is_display_format(image::format_of(picture));
+  if (developed != image::is_display_format(image::format_of(reference))) {
+    const auto& linear = developed ? reference : picture;
+    throw base::Error(base::ErrorKind::kUsage,
+                      fmt::format("{} is scene-linear, but the other image is display-encoded; develop it first: "
+                                  "orrery develop {} -o developed.png",
+                                  linear.string(), linear.string()));
+  }
+  check_files(picture, reference, pictures);
+  if (!layer.empty() && !pictures.flip.empty())
+    throw base::Error(base::ErrorKind::kUsage, "--flip covers colours only; remove --layer");
+  const auto read = [](const std::filesystem::path& file) {
+    return image::read(file, image::Parts::kAll, base::available_memory().value_or(0));
+  };
+  const film::Picture a = read(picture), b = read(reference);
+  for (const auto& file : {pictures.difference, pictures.heat, pictures.flip})
+    if (!file.empty()) image::check_size(file, a.width, a.height);
+  Comparison out = compare(a, b, developed ? Encoding::kDisplay : Encoding::kLight, layer, threads);
+  if (!pictures.difference.empty()) {
+    const ComparedChannels channels = compared_channels(a, b, layer);
+    if (image::is_display_format(image::format_of(pictures.difference))) {
+      write_codes(pictures.difference, difference_picture(channels, true));
+    } else {
+      write_numbers(pictures.difference, difference_picture(channels, false));
+    }
+  }
+  write_map(pictures.heat, out.display_map, kFalseColorMax);
+  write_map(pictures.flip, out.flip_map, 1);
+  return out;
+}
+
+std::string comparison_text(const Comparison& c) {
+  std::string out;
+  const PixelErrors& e = c.errors;
+  base::append(out, "images      %d x %d, channels %s\n", c.width, c.height, base::joined(c.channels).c_str());
+  if (c.is_matte)
+    base::append(out, "matte       %.6g of the coverage belongs to different objects; errors are of this fraction\n",
+                 e.mae);
+  base::append(out, "rmse        %.6g\n", e.rmse);
+  base::append(out, "relmse      %.6g\n", e.relative_mse);
+  base::append(out, "mae         %.6g\n", e.mae);
+  base::append(out, "max         %.6g", e.max);
+  if (e.max_channel >= 0)
+    base::append(out, " in %s at %d, %d",
+                 c.channels[std::min(static_cast<std::size_t>(e.max_channel), c.channels.size() - 1)].c_str(), e.max_x,
+                 e.max_y);
+  if (std::isfinite(e.psnr_db())) {
+    base::append(out, "\npsnr        %.2f dB\n", e.psnr_db());
+  } else {
+    out += "\npsnr        infinite\n";
+  }
+  base::append(out, "display     %.6g relative display error, as in --noise\n", e.display);
+  base::append(out, "bias        %+.3g of the mean\n", e.bias);
+  if (c.ssim) base::append(out, "ssim        %.6g\n", *c.ssim);
+  if (c.flip) base::append(out, "flip        %.6g\n", *c.flip);
+  if (c.z_test) {
+    const ZTest& z = *c.z_test;
+    base::append(out, "noise       rmse %.6g explained by the variances, %.6g unexplained\n", z.noise, z.bias);
+    base::append(out, "mean bias   %+.3g relative, standard error %.2g\n", z.mean_bias, z.mean_bias_error);
+    base::append(out, "z-test      %s: %d of %d blocks of %d px exceed |z| = %.2f; maximum %+.2f in %s at %d, %d\n",
+                 z.differ() ? "the images differ by more than noise" : "no difference but noise", z.rejected, z.tests,
+                 kTestedSide, z.critical_z, z.largest_z, c.channels[static_cast<std::size_t>(z.channel)].c_str(), z.x,
+                 z.y);
+  }
+  base::append(out, "differing   %llu of %llu values\n", static_cast<unsigned long long>(c.differing),
+               static_cast<unsigned long long>(c.values));
+  if (c.no_hit > 0)
+    base::append(out, "left out    %llu pixels without a hit, %llu of them in one image only\n",
+                 static_cast<unsigned long long>(c.no_hit), static_cast<unsigned long long>(c.no_hit_in_one));
+  if (e.not_finite > 0)
+    base::append(out, "left out    %llu non-finite values\n", static_cast<unsigned long long>(e.not_finite));
+  return out;
+}
+
+std::string comparison_json(const Comparison& c) {
+  using nlohmann::json;
+  const PixelErrors& e = c.errors;
+  json out = {{"schema", "orrery.compare/2"},
+              {"width", c.width},
+              {"height", c.height},
+              {"channels", c.channels},
+              {"rmse", e.rmse},
+              {"relmse", e.relative_mse},
+              {"mae", e.mae},
+              {"max", e.max},
+              {"max_at", nullptr},
+              {"psnr_db", nullptr},
+              {"display", e.display},
+              {"bias", e.bias},
+              {"ssim", nullptr},
+              {"flip", nullptr},
+              {"z_test", nullptr},
+              {"values", c.values},
+              {"differing", c.differing},
+              {"not_finite", e.not_finite},
+              {"no_hit", c.no_hit},
+              {"no_hit_in_one", c.no_hit_in_one},
+              {"only_in_a", c.only_in_picture},
+              {"only_in_b", c.only_in_reference}};
+  if (e.max_channel >= 0)
+    out["max_at"] = {{"channel", c.channels[std::min(static_cast<std::size_t>(e.max_channel), c.channels.size() - 1)]},
+                     {"x", e.max_x},
+                     {"y", e.max_y}};
+  if (std::isfinite(e.psnr_db())) out["psnr_db"] = e.psnr_db();
+  if (c.ssim) out["ssim"] = *c.ssim;
+  if (c.flip) out["flip"] = *c.flip;
+  if (c.z_test) {
+    const ZTest& z = *c.z_test;
+    out["z_test"] = {{"tests", z.tests},
+                     {"rejected", z.rejected},
+                     {"critical_z", z.critical_z},
+                     {"largest_z", z.largest_z},
+                     {"at", {{"channel", c.channels[static_cast<std::size_t>(z.channel)]}, {"x", z.x}, {"y", z.y}}},
+                     {"family_wise_error", kFamilyWiseError},
+                     {"noise_rmse", z.noise},
+                     {"bias_rmse", z.bias},
+                     {"mean_bias", z.mean_bias},
+                     {"mean_bias_error", z.mean_bias_error}};
+  }
+  return job::json_text(out);
+}
+
+}  // namespace orrery::compare

@@ -1,0 +1,73 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "compare/errors.h"
+#include "film/picture.h"
+
+namespace orrery::compare {
+
+/// Whether an image is scene-linear or display-encoded.
+enum class Encoding : std::uint8_t { kLight, kDisplay };
+
+/// Differences between an image and a reference.
+struct Comparison {
+  int width = 0, height = 0;          ///< px
+  std::vector<std::string> channels;  ///< channels that `errors` covers
+  PixelErrors errors;
+  std::optional<double> ssim;   ///< colours only
+  std::optional<double> flip;   ///< mean of flip_map; HDR-FLIP if scene-linear; colours only
+  std::optional<ZTest> z_test;  ///< set if the image has a layer `variance`
+  std::uint64_t values = 0,
+                differing = 0;                  ///< values in common channels of the layer, and how many differ
+  bool is_matte = false;                        ///< `errors` compares ComparedChannels::shares
+  std::uint64_t no_hit = 0, no_hit_in_one = 0;  ///< skipped pixels, as in ComparedChannels
+  std::vector<std::string> only_in_picture, only_in_reference;  ///< channels missing in the other image
+
+  Map flip_map, display_map;  ///< per-pixel FLIP and display error
+
+  /// Returns a metric, given its name in `--fail-above`.
+  ///
+  /// Domain     one of limitable_metrics()
+  /// Errors     base::Error(kUsage) if these images do not have the metric
+  double metric(const std::string& name) const;
+};
+
+/// The metrics that `--fail-above` accepts: those that grow with the difference.
+const std::vector<std::string>& limitable_metrics();
+
+/// Compares R, G, B, or the channels of another layer, which must be in both images. Without a layer, `differing`
+/// counts the values of all channels.
+///
+/// Domain     `layer` empty: the beauty; `threads` 0: default_threads()
+/// Errors     base::Error(kBadData) if sizes differ, the channels are not in both images, or no value can be compared
+Comparison compare(const film::Picture& picture, const film::Picture& reference, Encoding encoding,
+                   const std::string& layer = {}, int threads = 0);
+
+/// Paths of the difference images to write. An empty path writes no image.
+struct ComparisonPictures {
+  std::filesystem::path difference, heat, flip;
+};
+
+/// Compares two image files, and writes difference images.
+///
+/// Scene-linear formats store the difference itself; display formats store mid-grey plus half the difference. The heat
+/// map shows the display error in false colours up to kFalseColorMax, the FLIP map up to 1; scene-linear
+/// formats hold the values.
+///
+/// Errors     those of compare, image::read and image::write; base::Error(kUsage) if one file is scene-linear and the
+///            other display-encoded
+Comparison compare_files(const std::filesystem::path& picture, const std::filesystem::path& reference,
+                         const std::string& layer, const ComparisonPictures& pictures, int threads = 0);
+
+/// A comparison as text.
+std::string comparison_text(const Comparison& comparison);
+/// A comparison as JSON, schema "orrery.compare/2"; metrics that do not apply are null.
+std::string comparison_json(const Comparison& comparison);
+
+}  // namespace orrery::compare

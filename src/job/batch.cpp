@@ -1,0 +1,95 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "job/batch.h"
+
+#include <fmt/core.h>
+
+#include "base/error.h"
+#include "base/frames.h"
+#include "job/check_job.h"
+#include "job/job.h"
+#include "job/prepared_scene.h"
+#include "load/scene_files.h"
+
+namespace orrery::job {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr const char* kScenePattern = "{scene}";
+
+bool has_scene_pattern(const std::string& name) { return name.find(kScenePattern) != std::string::npos; }
+
+std::string with_scene(std::string name, const std::string& stem) {
+  const std::string pattern = kScenePattern;
+  for (std::size_t at = name.find(pattern); at != std::string::npos; at = name.find(pattern, at + stem.size()))
+    name.replace(at, pattern.size(), stem);
+  return name;
+}
+
+/// All output names that the user chose.
+std::vector<fs::path*> names_of(Job& job) {
+  std::vector<fs::path*> names;
+  for (ImageFile& output : job.outputs.images) names.push_back(&output.path);
+  if (!job.outputs.deep.empty()) names.push_back(&job.outputs.deep);
+  if (!job.outputs.statistics.empty()) names.push_back(&job.outputs.statistics);
+  return names;
+}
+
+void check_name(const Batch& batch, const std::string& name) {
+  const bool has_pattern = base::has_frame_pattern(name);
+  if (batch.frames.size() > 1 && !has_pattern)
+    base::refuse_one_name(name, batch.frames.size(), "shot.####.exr or shot.%04d.exr");
+  if (batch.frames.empty() && has_pattern)
+    base::refuse(name + " has a frame pattern; select frames with --frames, e.g. --frames 1-48");
+  if (batch.scenes.size() > 1 && !has_scene_pattern(name))
+    base::refuse(fmt::format("{} is one name for {} scenes; add a scene pattern, e.g. {{scene}}.png", name,
+                             batch.scenes.size()));
+}
+
+/// Adds the files that a scene names, if it can be parsed. Otherwise its job reports the errors.
+void add_readable_files(const load::SceneSource& scene, const std::vector<int>& frames, base::FileSet& files) {
+  try {
+    load::add_named_files(scene, frames, files);
+  } catch (const base::Error& error) {
+    if (error.kind() == base::ErrorKind::kUsage) throw;
+  }
+}
+
+}  // namespace
+
+std::vector<Job> jobs_of(const Batch& batch) {
+  Job common = batch.job;
+  for (const fs::path* name : names_of(common)) check_name(batch, name->string());
+  const std::vector<int> frames = batch.frames.empty() ? std::vector<int>{load::SceneSource().frame} : batch.frames;
+  std::vector<Job> jobs;
+  common.files = std::make_shared<base::FileSet>();
+  if (frames.size() > 1) common.prepared = std::make_shared<PreparedScene>(true);
+  base::FileSet& files = *common.files;
+  for (const OutputFile& other : batch.others) files.add_output(other.path, other.role);
+  for (const fs::path& scene : batch.scenes)
+    if (common.scene.has_file && !files.add_input(scene, "scene")) base::refuse(scene.string() + " is given twice");
+  for (const fs::path& scene : batch.scenes) {
+    for (const int frame : frames) {
+      Job job = common;
+      job.scene.file = scene;
+      job.scene.frame = frame;
+      for (fs::path* name : names_of(job)) {
+        std::string text = with_scene(name->string(), scene.stem().string());
+        *name = batch.frames.empty() ? text : base::with_frame(text, frame);
+      }
+      add_job_files(job, files, batch.scenes.size() > 1 ? " of " + scene.string() : "");
+      jobs.push_back(std::move(job));
+    }
+  }
+  // A single job checks its scene's files when it reads the scene. Here, another job or the caller could overwrite them
+  // before that.
+  if (jobs.size() > 1 || !batch.others.empty())
+    for (const fs::path& scene : batch.scenes) {
+      load::SceneSource source = common.scene;
+      source.file = scene;
+      add_readable_files(source, frames, files);
+    }
+  return jobs;
+}
+
+}  // namespace orrery::job

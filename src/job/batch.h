@@ -1,0 +1,27 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <filesystem>
+#include <vector>
+
+#include "job/check_job.h"
+#include "job/job.h"
+
+namespace orrery::job {
+
+/// Frames and scenes to render with one command.
+struct Batch {
+  Job job;  ///< the settings that all jobs share; its file names have patterns for the frame and the scene
+  std::vector<std::filesystem::path> scenes;
+  std::vector<int> frames;         ///< empty: one still image per scene
+  std::vector<OutputFile> others;  ///< files that the caller writes
+};
+
+/// Creates one job per frame and scene. In file names, replaces `####` and `%04d` by the frame, and `{scene}` by the
+/// scene's file name without its extension. The jobs share one set of files, which detects conflicts between them.
+///
+/// Errors     base::Error(kUsage) if a file would be written twice, if an output is an input, or if a name lacks a
+///            needed pattern or has a frame pattern without frames
+std::vector<Job> jobs_of(const Batch& batch);
+
+}  // namespace orrery::job

@@ -1,0 +1,54 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "job/develop_file.h"
+
+#include "base/atomic_file.h"
+#include "base/available_memory.h"
+#include "base/error.h"
+#include "image/format.h"
+#include "image/read.h"
+#include "image/write.h"
+#include "job/outputs.h"
+#include "job/version.h"
+#include "load/scene_files.h"
+
+namespace orrery::job {
+namespace {
+
+void check_kinds(const Development& development) {
+  for (const auto& output : development.outputs)
+    if (!image::is_display_format(image::format_of(output)))
+      throw base::Error(base::ErrorKind::kUsage,
+                        output.string() + " has a scene-linear format; write png, tiff, jpg or ppm");
+  if (image::is_display_format(image::format_of(development.input)))
+    throw base::Error(base::ErrorKind::kUsage,
+                      development.input.string() + " is already display-encoded; the input must be exr or hdr");
+}
+
+}  // namespace
+
+DevelopReport develop_file(const Development& development) {
+  check_kinds(development);
+  check_bits(image_files(development.outputs), development.bits);
+  base::FileSet files;
+  files.add_input(development.input, "image");
+  load::add_ocio_configs(development.display.config, files);
+  for (const auto& output : development.outputs) {
+    files.add_output(output, "-o");
+    base::check_creatable(output);
+  }
+  DevelopReport report;
+  const film::Picture picture =
+      image::read(development.input, image::Parts::kFirst, base::available_memory().value_or(0));
+  for (const auto& output : development.outputs) image::check_size(output, picture.width, picture.height);
+  display::Settings display = development.display;
+  if (display.working_space.empty()) display.working_space = picture.color_interop_id;
+  if (display.working_space.empty()) display.working_space = "lin_rec709";
+  report.display = display::choose(display);
+  for (const char* name : {"R", "G", "B"})  // no other plane is developed
+    if (const film::Plane* plane = picture.find(name)) report.bad_values += film::count_bad_values(*plane);
+  DisplayWriter developed(picture, display, development.bits != 0 ? development.bits : report.display.default_bits());
+  for (const auto& output : development.outputs) developed.write(output, "orrery " + program_version());
+  return report;
+}
+
+}  // namespace orrery::job

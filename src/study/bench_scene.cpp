@@ -1,0 +1,324 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "study/bench_scene.h"
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <memory>
+#include <optional>
+#include <utility>
+
+#include <fmt/core.h>
+
+#include "base/error.h"
+#include "base/stop_point.h"
+#include "base/text.h"
+#include "compile/compile.h"
+#include "compile/compiled_scene.h"
+#include "format/read_result.h"
+#include "job/resources.h"
+#include "job/scene_hash.h"
+#include "kernel/ray_packet.h"
+#include "kernel/render_tile.h"
+#include "load/load_scene.h"
+#include "load/loaded_scene.h"
+#include "load/reduced_picture.h"
+#include "render/recorded_rays.h"
+#include "render/render.h"
+#include "render/result.h"
+#include "render/settings.h"
+#include "study/bench_build.h"
+#include "study/bench_tracing.h"
+#include "study/feature_cost.h"
+
+namespace orrery::study {
+namespace {
+
+using compile::Precision;
+
+/// Number of pixels of the rendered image: small enough for the list, with many samples per pixel as in final renders.
+constexpr double kPixels = 96 * 54;
+
+/// Every kRecordedRows-th row is recorded: about ten thousand paths, so that the recorded rays fit into the caches.
+constexpr int kRecordedRows = 4;
+
+/// Lists are skipped if the naive one would take longer than this for one sample per pixel.
+constexpr double kLongestListSeconds = 10;
+/// Ray-sphere tests per second of the one-lane kernel.
+constexpr double kListTests = 1e8;
+
+constexpr double kMaxSamples = 1 << 20;
+
+enum class Tracer { kEmbree, kList, kSimdList };
+
+struct Case {
+  std::string name;
+  Tracer tracer = Tracer::kEmbree;
+  Precision precision = Precision::kExact;
+  kernel::Features features;
+  std::optional<accel::Traversal> traversal;
+  bool samples_lights = true;  ///< false: direct_lighting = "bsdf"
+  int samples = 1;
+  std::vector<double> paths_per_s, tracing;
+};
+
+const std::vector<std::pair<const char*, bool kernel::Features::*>>& known_features() {
+  static const std::vector<std::pair<const char*, bool kernel::Features::*>> known = {
+      {"thin lens", &kernel::Features::lens},
+      {"hemisphere", &kernel::Features::hemisphere},
+      {"gradient sky", &kernel::Features::sky},
+      {"lights", &kernel::Features::lit},
+      {"textures", &kernel::Features::extended}};
+  return known;
+}
+
+/// The compiled scene at the reduced image size.
+compile::CompiledScene reduced_scene(const BenchRequest& request) {
+  load::SceneRequest load;
+  load.source = request.scene;
+  format::ReadResult read = std::move(load::load_scene(load).read);
+  load::reduce_picture(read, kPixels);
+  return compile::compile(read.scene, read.closing ? &*read.closing : nullptr);
+}
+
+/// The scene under test with its accelerators and recorded rays.
+class Subject {
+ public:
+  explicit Subject(const BenchRequest& request)
+      : request_(request),
+        compiled_(reduced_scene(request)),
+        required_(compiled_.features),
+        direct_lighting_(compiled_.direct_lighting) {}
+
+  const compile::CompiledScene& compiled() const { return compiled_; }
+  /// The features that the scene requires; compiled() has those of the last case.
+  const kernel::Features& required() const { return required_; }
+
+  /// Renders a case once.
+  render::Statistics run(const Case& c) {
+    prepare(c);
+    compiled_.samples = c.samples;
+    render::Settings settings;
+    settings.threads = request_.threads;
+    settings.traversal = c.traversal;
+    settings.cancel = request_.cancel;
+    const render::Result result = render::render(compiled_, accel(c), settings);
+    if (!result.completed) throw base::Error(base::ErrorKind::kStopped, "stopped; nothing was measured");
+    return result.statistics;
+  }
+
+  /// Seconds per path for tracing its recorded rays without camera, shading and accumulation.
+  double trace_alone(const Case& c) {
+    prepare(c);
+    const accel::Accel& with = accel(c);
+    if (c.precision == Precision::kFast) return seconds_a_path(with, fast_rays(with));
+    auto& rays = rays_[c.precision];
+    if (rays.paths == 0) rays = render::record_rays<double>(compiled_.view(), with, c.precision, recorded_rows());
+    return seconds_a_path(with, rays);
+  }
+
+  /// The benchmark of closest-hit queries in `fast`.
+  TracingBench tracing_bench(bool with_lists) {
+    Case fast;
+    fast.precision = Precision::kFast;
+    fast.features = required_;
+    prepare(fast);
+    const accel::Accel& with = accel(fast);
+    return TracingBench(compiled_.view(), fast_rays(with), with_lists);
+  }
+
+ private:
+  std::vector<kernel::Tile> recorded_rows() const {
+    std::vector<kernel::Tile> rows;
+    for (int y = 0; y < compiled_.height; y += kRecordedRows) {
+      kernel::Tile row;
+      row.y = y;
+      row.width = compiled_.width;
+      row.height = 1;
+      row.sample_end = kernel::kPacketSize;
+      rows.push_back(row);
+    }
+    return rows;
+  }
+
+  render::RecordedRays<float>& fast_rays(const accel::Accel& with) {
+    if (fast_rays_.paths == 0)
+      fast_rays_ = render::record_rays<float>(compiled_.view(), with, Precision::kFast, recorded_rows());
+    return fast_rays_;
+  }
+
+  void prepare(const Case& c) {
+    compiled_.accelerator = c.tracer == Tracer::kEmbree ? compile::Accelerator::kEmbree : compile::Accelerator::kList;
+    compiled_.precision = c.precision;
+    compiled_.features = c.features;
+    compiled_.direct_lighting = c.samples_lights ? direct_lighting_ : kernel::DirectLighting::kBsdf;
+    compile::update_lights(compiled_);
+  }
+
+  const accel::Accel& accel(const Case& c) {
+    auto& built = accels_[{c.tracer, c.precision}];
+    if (!built)
+      built = c.tracer == Tracer::kSimdList ? accel::make_simd_list(compiled_.view(), c.precision)
+                                            : render::build(compiled_, render::available_threads());
+    return *built;
+  }
+
+  template <class T>
+  static double seconds_a_path(const accel::Accel& with, render::RecordedRays<T>& rays) {
+    const double seconds =
+        render::trace_again(with.tracer(), rays.camera) + render::trace_again(with.tracer(), rays.secondary);
+    return seconds / static_cast<double>(rays.paths);
+  }
+
+  const BenchRequest& request_;
+  compile::CompiledScene compiled_;
+  kernel::Features required_;
+  kernel::DirectLighting direct_lighting_;
+  std::map<std::pair<Tracer, Precision>, std::unique_ptr<accel::Accel>> accels_;
+  std::map<Precision, render::RecordedRays<double>> rays_;
+  render::RecordedRays<float> fast_rays_;
+};
+
+bool lists_are_affordable(const compile::CompiledScene& compiled) {
+  return 3.0 * compiled.width * compiled.height * static_cast<double>(compiled.spheres.size()) / kListTests <=
+         kLongestListSeconds;
+}
+
+std::vector<Case> cases_of(const compile::CompiledScene& compiled, Benchmark& out) {
+  std::vector<Case> cases;
+  const std::pair<const char*, Precision> precisions[] = {{"exact", Precision::kExact}, {"fast", Precision::kFast}};
+  for (const auto& [name, precision] : precisions)
+    cases.push_back(
+        {std::string("embree ") + name, Tracer::kEmbree, precision, compiled.features, std::nullopt, true, 1, {}, {}});
+  for (const auto& [name, traversal] :
+       {std::pair{"exact packet", accel::Traversal::kPacket}, std::pair{"exact single", accel::Traversal::kSingle}})
+    cases.push_back({name, Tracer::kEmbree, Precision::kExact, compiled.features, traversal, true, 1, {}, {}});
+  if (compiled.features.lit && compiled.direct_lighting != kernel::DirectLighting::kBsdf) {
+    cases.push_back(cases.front());
+    cases.back().name = "exact bsdf";
+    cases.back().samples_lights = false;
+  }
+  if (!lists_are_affordable(compiled)) {
+    out.left_out.push_back(fmt::format("lists: with this many spheres one sample per pixel would take more than {} s",
+                                       static_cast<int>(kLongestListSeconds)));
+    return cases;
+  }
+  for (const auto& [name, accelerator] :
+       {std::pair{"SIMD list ", Tracer::kSimdList}, std::pair{"list ", Tracer::kList}})
+    for (const auto& [suffix, precision] : precisions)
+      cases.push_back(
+          {std::string(name) + suffix, accelerator, precision, compiled.features, std::nullopt, true, 1, {}, {}});
+  cases.push_back({"list book", Tracer::kList, Precision::kBook, compiled.features, std::nullopt, true, 1, {}, {}});
+  return cases;
+}
+
+std::vector<Case> feature_cases_of(const compile::CompiledScene& compiled) {
+  std::vector<Case> cases;
+  if (compiled.shading != kernel::Shading::kPath) return cases;
+  for (const auto& [name, feature] : known_features()) {
+    if (compiled.features.*feature) continue;
+    cases.push_back({name, Tracer::kEmbree, Precision::kExact, compiled.features, std::nullopt, true, 1, {}, {}});
+    cases.back().features.*feature = true;
+  }
+  return cases;
+}
+
+/// Increases the sample count of a case until a render takes at least half of `seconds`.
+void calibrate(Subject& subject, Case& c, double seconds) {
+  for (;;) {
+    const double took = std::max(subject.run(c).render_s, 1e-6);
+    if (took >= seconds / 2 || c.samples >= kMaxSamples) return;
+    // The step is limited, since the first render includes warm-up.
+    const double factor = std::clamp(seconds / took, 2.0, 64.0);
+    c.samples = static_cast<int>(std::min(c.samples * factor, kMaxSamples));
+  }
+}
+
+/// Renders every case once, records its speed, and calls `then` with the case and its statistics.
+template <class Then>
+void measure_all(Subject& subject, std::vector<Case>& cases, int round, Then then) {
+  for (std::size_t i = 0; i < cases.size(); ++i) {
+    // Each round starts with a different case.
+    Case& c = cases[(i + static_cast<std::size_t>(round)) % cases.size()];
+    const render::Statistics did = subject.run(c);
+    c.paths_per_s.push_back(static_cast<double>(did.paths) / did.render_s);
+    then(c, did);
+  }
+}
+
+BenchCase result_of(const Case& c, const std::vector<double>& reference) {
+  std::vector<double> ratios;
+  for (std::size_t i = 0; i < reference.size(); ++i) ratios.push_back(c.paths_per_s[i] / reference[i]);
+  BenchCase out{c.name, quartiles(c.paths_per_s), quartiles(ratios), {}};
+  if (!c.tracing.empty()) out.tracing = quartiles(c.tracing);
+  return out;
+}
+
+}  // namespace
+
+std::vector<FeatureCost> bench_features(const BenchRequest& request) {
+  job::choose_isa();
+  Subject subject(request);
+  const compile::CompiledScene& compiled = subject.compiled();
+  std::vector<Case> cases = {Case{}};
+  cases[0].features = compiled.features;
+  for (Case& c : feature_cases_of(compiled)) cases.push_back(std::move(c));
+  for (Case& c : cases) calibrate(subject, c, request.seconds);
+  for (int round = 0; round < request.rounds; ++round) measure_all(subject, cases, round, [](Case&, const auto&) {});
+  std::vector<FeatureCost> out;
+  for (const auto& [name, feature] : known_features()) {
+    FeatureCost& cost = out.emplace_back(FeatureCost{name, subject.required().*feature, 0});
+    for (const Case& c : cases)
+      if (c.name == name) cost.saves = 1 - result_of(c, cases[0].paths_per_s).ratio.median;
+  }
+  return out;
+}
+
+Benchmark bench_scene(const BenchRequest& request) {
+  const base::StopScope scope(request.cancel);
+  job::choose_isa();
+  Subject subject(request);
+  const compile::CompiledScene& compiled = subject.compiled();
+  Benchmark out;
+  out.scene_hash = job::scene_hash(compiled);
+  out.spheres = compiled.spheres.size();
+  out.width = compiled.width;
+  out.height = compiled.height;
+  out.threads = request.threads;
+  out.rounds = request.rounds;
+
+  std::vector<Case> cases = cases_of(compiled, out);
+  const std::size_t case_count = cases.size();
+  for (Case& c : feature_cases_of(compiled)) cases.push_back(std::move(c));
+  std::optional<TracingBench> tracing;
+  if (request.threads == 1 && !compiled.spheres.empty())
+    tracing.emplace(subject.tracing_bench(lists_are_affordable(compiled)));
+  const int total = static_cast<int>(cases.size()) * (request.rounds + 1);
+  int done = 0;
+  const auto report_progress = [&] {
+    ++done;
+    if (request.on_progress) request.on_progress(done, total);
+  };
+  for (Case& c : cases) {
+    calibrate(subject, c, request.seconds);
+    report_progress();
+  }
+  for (int round = 0; round < request.rounds; ++round) {
+    measure_all(subject, cases, round, [&](Case& c, const render::Statistics& did) {
+      if (c.tracer == Tracer::kEmbree && request.threads == 1 && &c < &cases[case_count])
+        c.tracing.push_back(subject.trace_alone(c) * c.paths_per_s.back());
+      if (&c == &cases[0]) out.rays_per_path = static_cast<double>(did.rays) / static_cast<double>(did.paths);
+      if (c.tracer == Tracer::kEmbree) out.accelerator = did.accelerator;
+      out.isa = did.isa;
+      report_progress();
+    });
+    if (tracing) tracing->measure(round);
+  }
+  if (tracing) out.tracing = tracing->results();
+  if (!compiled.spheres.empty()) out.builds = bench_builds(compiled.view(), request.rounds);
+  for (std::size_t i = 0; i < cases.size(); ++i)
+    (i < case_count ? out.cases : out.features).push_back(result_of(cases[i], cases[0].paths_per_s));
+  return out;
+}
+
+}  // namespace orrery::study

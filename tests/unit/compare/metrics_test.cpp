@@ -1,0 +1,320 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <numbers>
+#include <random>
+
+#include "compare/color_view.h"
+#include "compare/errors.h"
+#include "compare/perceptual.h"
+
+namespace orrery::compare {
+namespace {
+
+/// An image that owns its values, with its view.
+struct Own {
+  std::vector<float> values[3];
+  ColorView view;
+
+  template <class F>
+  Own(int width, int height, F f) : view{width, height, {}} {
+    for (int c = 0; c < 3; ++c) {
+      for (int y = 0; y < height; ++y)
+        for (int x = 0; x < width; ++x) values[c].push_back(static_cast<float>(f(x, y, c)));
+      view.channel[c] = values[c].data();
+    }
+  }
+  Own(const Own&) = delete;
+  Own& operator=(const Own&) = delete;
+};
+
+Own flat(float r, float g, float b) {
+  return Own(24, 16, [=](int, int, int c) { return c == 0 ? r : c == 1 ? g : b; });
+}
+
+TEST(ComparePixelErrors, MatchTheirDefinitions) {
+  const Own a(2, 2, [](int x, int y, int c) { return c == 1 && x == 0 && y == 1 ? 1.0 : 0.5; });
+  const Own b = flat(0, 0, 0);
+  const Own half(2, 2, [](int, int, int) { return 0.5; });
+  const PixelErrors e = pixel_errors(a.view, half.view);
+  EXPECT_DOUBLE_EQ(e.rmse, std::sqrt(0.25 / 12));
+  EXPECT_DOUBLE_EQ(e.mae, 0.5 / 12);
+  EXPECT_DOUBLE_EQ(e.relative_mse, 0.25 / (0.25 + kRelativeFloor) / 12);
+  EXPECT_DOUBLE_EQ(e.bias, 0.5 / 6);
+  EXPECT_DOUBLE_EQ(e.psnr_db(), -10 * std::log10(0.25 / 12));
+  // One pixel of four. Its mean squared error is 0.25 / 3, relative to (2 * 0.5)^2.
+  EXPECT_NEAR(e.display, std::sqrt(0.25 / 3 / (4 * 0.25) / 4), 1e-7);
+  EXPECT_EQ(e.max, 0.5);
+  EXPECT_EQ(e.max_channel, 1);
+  EXPECT_EQ(e.max_x, 0);
+  EXPECT_EQ(e.max_y, 1);
+}
+
+TEST(ComparePixelErrors, RelativeErrorsUseTheReference) {
+  const Own one(1, 1, [](int, int, int) { return 1; }), ten(1, 1, [](int, int, int) { return 10; });
+  EXPECT_DOUBLE_EQ(pixel_errors(one.view, ten.view).relative_mse, 81 / 100.01);
+  EXPECT_DOUBLE_EQ(pixel_errors(ten.view, one.view).relative_mse, 81 / 1.01);
+  EXPECT_DOUBLE_EQ(pixel_errors(ten.view, one.view).display, 4.5);
+}
+
+TEST(ComparePixelErrors, NonFiniteValuesAreSkippedAndCounted) {
+  Own a(2, 1, [](int, int, int) { return 0.5; });
+  const Own b(2, 1, [](int, int, int) { return 0.5; });
+  a.values[0][0] = std::nanf("");
+  a.values[1][1] = INFINITY;
+  const PixelErrors e = pixel_errors(a.view, b.view);
+  EXPECT_EQ(e.not_finite, 2u);
+  EXPECT_EQ(e.rmse, 0);
+  EXPECT_EQ(e.display, 0);
+}
+
+TEST(CompareConvolve, SumsOverTheKernelAndExtendsTheEdge) {
+  const Map spot{5, 4, {0, 0, 0, 0, 0, 0, 0, 8, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 3}};
+  const Map out = convolved(spot, {0.25f, 0.5f, 0.25f}, {0, 0.5f, 0.5f});
+  EXPECT_EQ(out.values[2], 2.0f);  // the 8 below: 0.5 * 0.5 * 8
+  EXPECT_EQ(out.values[1], 1.0f);
+  EXPECT_EQ(out.values[19], 2.25f);  // 0.5 + 0.25 along the row, 0.5 + 0.5 along the column
+}
+
+TEST(CompareSsim, IsOneForEqualImagesAndMatchesTheFormulaForFlatOnes) {
+  std::mt19937 random(5);
+  std::uniform_real_distribution<float> u(0, 1);
+  const Own noise(24, 16, [&](int, int, int) { return u(random); }),
+      other(24, 16, [&](int, int, int) { return u(random); });
+  EXPECT_DOUBLE_EQ(ssim(noise.view, noise.view), 1);
+  EXPECT_LT(ssim(noise.view, other.view), 0.3);
+  const Own a = flat(0.5f, 0.5f, 0.5f), b = flat(0.25f, 0.25f, 0.25f);
+  const double c1 = 1e-4;  // without structure only the term of the means remains
+  EXPECT_NEAR(ssim(a.view, b.view), (2 * 0.5 * 0.25 + c1) / (0.25 + 0.0625 + c1), 1e-4);
+}
+
+/// Reference implementation of FLIP: two-dimensional kernels in double, as in the paper.
+class SlowFlip {
+ public:
+  SlowFlip(const ColorView& a, const ColorView& b) : w_(a.width), h_(a.height), a_(look(a)), b_(look(b)) {}
+
+  double at(int x, int y) const {
+    const auto i = static_cast<std::size_t>(y * w_ + x);
+    const auto hyab = [](const std::array<double, 3>& p, const std::array<double, 3>& q) {
+      return std::abs(p[0] - q[0]) + std::sqrt((p[1] - q[1]) * (p[1] - q[1]) + (p[2] - q[2]) * (p[2] - q[2]));
+    };
+    const double farthest = std::pow(hyab(lab({0, 1, 0}), lab({0, 0, 1})), 0.7);
+    const double d = std::pow(hyab(a_.lab[i], b_.lab[i]), 0.7), knee = 0.4 * farthest;
+    const double color = d < knee ? 0.95 * d / knee : 0.95 + 0.05 * (d - knee) / (farthest - knee);
+    const double feature = std::max(std::abs(a_.edge[i] - b_.edge[i]), std::abs(a_.point[i] - b_.point[i]));
+    return std::pow(color, 1 - std::sqrt(feature / std::numbers::sqrt2));
+  }
+
+ private:
+  using Triple = std::array<double, 3>;
+  struct Look {
+    std::vector<Triple> lab;
+    std::vector<double> edge, point;
+  };
+  int w_, h_;
+  Look a_, b_;
+
+  static Triple xyz(const Triple& c) {
+    return {(10135552 * c[0] + 8788810 * c[1] + 4435075 * c[2]) / 24577794 / 0.950428545,
+            (2613072 * c[0] + 8788810 * c[1] + 887015 * c[2]) / 12288897,
+            (1425312 * c[0] + 8788810 * c[1] + 70074185 * c[2]) / 73733382 / 1.088900371};
+  }
+  static Triple lab(const Triple& light) {
+    Triple t = xyz(light);
+    for (double& v : t) v = v > std::pow(6.0 / 29, 3) ? std::cbrt(v) : v * 841 / 108 + 4.0 / 29;
+    const double l = 116 * t[1] - 16;
+    return {l, 5 * l * (t[0] - t[1]), 2 * l * (t[1] - t[2])};
+  }
+  template <class Kernel, class Value>
+  double filtered(int x, int y, int radius, Kernel kernel, Value value) const {
+    double sum = 0;
+    for (int dy = -radius; dy <= radius; ++dy)
+      for (int dx = -radius; dx <= radius; ++dx)
+        sum += kernel(dx, dy) * value(std::clamp(x + dx, 0, w_ - 1), std::clamp(y + dy, 0, h_ - 1));
+    return sum;
+  }
+  Look look(const ColorView& codes) const {
+    const double ppd = kPixelsPerDegree, pi = std::numbers::pi;
+    std::vector<Triple> opponent;
+    for (std::size_t i = 0; i < codes.pixels(); ++i) {
+      Triple light;
+      for (std::size_t c = 0; c < 3; ++c) {
+        const double v = static_cast<double>(codes.channel[c][i]);
+        light[c] = v <= 0.04045 ? v / 12.92 : std::pow((v + 0.055) / 1.055, 2.4);
+      }
+      const Triple t = xyz(light);
+      opponent.push_back({116 * t[1] - 16, 500 * (t[0] - t[1]), 200 * (t[1] - t[2])});
+    }
+    const int radius = static_cast<int>(std::ceil(3 * std::sqrt(0.04 / (2 * pi * pi)) * ppd));
+    const double b[3] = {0.0047, 0.0053, 0.04};
+    const auto eye = [&](std::size_t c, int dx, int dy) {
+      const double r2 = (dx * dx + dy * dy) / (ppd * ppd);
+      if (c < 2) return std::exp(-pi * pi * r2 / b[c]);
+      return 34.1 * std::sqrt(pi / 0.04) * std::exp(-pi * pi * r2 / 0.04) +
+             13.5 * std::sqrt(pi / 0.025) * std::exp(-pi * pi * r2 / 0.025);
+    };
+    double sums[3] = {};
+    for (std::size_t c = 0; c < 3; ++c)
+      for (int dy = -radius; dy <= radius; ++dy)
+        for (int dx = -radius; dx <= radius; ++dx) sums[c] += eye(c, dx, dy);
+    const double sigma = 0.041 * ppd;
+    const int reach = static_cast<int>(std::ceil(3 * sigma));
+    const auto edge = [&](int dx, int dy) { return -dx * std::exp(-(dx * dx + dy * dy) / (2 * sigma * sigma)); };
+    const auto point = [&](int dx, int dy) {
+      return (dx * dx / (sigma * sigma) - 1) * std::exp(-(dx * dx + dy * dy) / (2 * sigma * sigma));
+    };
+    const auto strength = [&](auto kernel, int x, int y) {
+      double positive = 0, negative = 0;
+      for (int dy = -reach; dy <= reach; ++dy)
+        for (int dx = -reach; dx <= reach; ++dx) (kernel(dx, dy) > 0 ? positive : negative) += std::abs(kernel(dx, dy));
+      const auto balanced = [&](int dx, int dy) {
+        const double k = kernel(dx, dy);
+        return k / (k > 0 ? positive : negative);
+      };
+      const auto value = [&](int px, int py) {
+        return (opponent[static_cast<std::size_t>(py * w_ + px)][0] + 16) / 116;
+      };
+      return std::hypot(filtered(x, y, reach, balanced, value),
+                        filtered(
+                            x, y, reach, [&](int dx, int dy) { return balanced(dy, dx); }, value));
+    };
+    Look out;
+    for (int y = 0; y < h_; ++y) {
+      for (int x = 0; x < w_; ++x) {
+        Triple o;
+        for (std::size_t c = 0; c < 3; ++c)
+          o[c] = filtered(
+              x, y, radius, [&](int dx, int dy) { return eye(c, dx, dy) / sums[c]; },
+              [&](int px, int py) { return opponent[static_cast<std::size_t>(py * w_ + px)][c]; });
+        const double n = (o[0] + 16) / 116;
+        const double tx = (n + o[1] / 500) * 0.950428545, tz = (n - o[2] / 200) * 1.088900371;
+        Triple light = {3.241003275 * tx - 1.537398934 * n - 0.498615861 * tz,
+                        -0.969224334 * tx + 1.875930071 * n + 0.041554224 * tz,
+                        0.055639423 * tx - 0.204011202 * n + 1.057148933 * tz};
+        for (double& v : light) v = std::clamp(v, 0.0, 1.0);
+        out.lab.push_back(lab(light));
+        out.edge.push_back(strength(edge, x, y));
+        out.point.push_back(strength(point, x, y));
+      }
+    }
+    return out;
+  }
+};
+
+TEST(CompareFlip, MatchesThePapersFormula) {
+  std::mt19937 random(7);
+  std::uniform_real_distribution<float> u(0, 1);
+  const Own a(20, 14,
+              [&](int x, int, int c) { return 0.1 + 0.03 * x + 0.1 * c + 0.2 * static_cast<double>(u(random)); });
+  const Own b(20, 14,
+              [&](int, int y, int c) { return 0.9 - 0.04 * y - 0.1 * c + 0.1 * static_cast<double>(u(random)); });
+  const SlowFlip slow(a.view, b.view);
+  const Map fast = flip(a.view, b.view);
+  for (int y = 0; y < 14; y += 3)
+    for (int x = 0; x < 20; x += 2)
+      EXPECT_NEAR(static_cast<double>(fast.values[static_cast<std::size_t>(y * 20 + x)]), slow.at(x, y), 2e-4);
+}
+
+TEST(CompareFlip, MatchesThePaperForBlackAndWhite) {
+  // By hand: a lightness difference of 100 against the distance 203.3 of Hunt-adjusted green and blue, both to the 0.7.
+  EXPECT_NEAR(flip(flat(0, 0, 0).view, flat(1, 1, 1).view).mean(), 0.9674, 5e-4);
+  EXPECT_EQ(flip(flat(0.3f, 0.4f, 0.5f).view, flat(0.3f, 0.4f, 0.5f).view).mean(), 0);
+}
+
+TEST(CompareHdrFlip, TakesTheMaximumOverTheExposures) {
+  // The lower half is a hundredth as bright as the upper: at the exposure for the upper half it is black.
+  const auto scene = [](double dark) { return Own(24, 16, [dark](int, int y, int) { return y < 8 ? 50.0 : dark; }); };
+  const Own a = scene(0.5), b = scene(0.4), c = scene(0.5);
+  EXPECT_EQ(hdr_flip(a.view, c.view).mean(), 0);
+  const Map map = hdr_flip(b.view, a.view);
+  EXPECT_GT(map.values[12 * 24 + 12], 0.04f);
+  EXPECT_LT(map.values[1 * 24 + 12], 0.02f);
+  // The metric is independent of the scale of radiance.
+  const Own a1000(24, 16, [](int, int y, int) { return 1000 * (y < 8 ? 50.0 : 0.5); });
+  const Own b1000(24, 16, [](int, int y, int) { return 1000 * (y < 8 ? 50.0 : 0.4); });
+  EXPECT_NEAR(hdr_flip(b1000.view, a1000.view).mean(), map.mean(), 1e-5);
+}
+
+TEST(CompareHdrFlip, RunsExposuresWithForEachInAnyOrder) {
+  const Own a(24, 16, [](int x, int y, int c) { return (x + 1) * (y + 1) * 0.1 + c; });
+  const Own b(24, 16, [](int x, int y, int c) { return (x + 2) * (y + 1) * 0.1 + c; });
+  std::size_t calls = 0;
+  const ForEach backwards = [&](std::size_t count, const std::function<void(std::size_t)>& work) {
+    for (std::size_t i = count; i-- > 0; ++calls) work(i);
+  };
+  EXPECT_EQ(hdr_flip(a.view, b.view, kPixelsPerDegree, backwards).values, hdr_flip(a.view, b.view).values);
+  EXPECT_GT(calls, 1u);
+}
+
+TEST(ComparePixelErrors, ExcludedPixelsDoNotCount) {
+  const Own a(2, 1, [](int x, int, int) { return x == 0 ? 1e30 : 3.0; });
+  const Own b(2, 1, [](int, int, int) { return 2.0; });
+  const PixelErrors e = pixel_errors(a.view, b.view, {true, false});
+  EXPECT_EQ(e.values, 3u);
+  EXPECT_EQ(e.rmse, 1);
+  EXPECT_EQ(e.max, 1);
+  EXPECT_EQ(e.display, 0.25) << "half of the relative error of the second pixel";
+  EXPECT_EQ(display_error_map(a.view, b.view, {true, false}).values[0], 0);
+}
+
+TEST(CompareZTest, QuantilesMatchTables) {
+  EXPECT_NEAR(two_sided_quantile(0.05), 1.959964, 1e-6);
+  EXPECT_NEAR(two_sided_quantile(0.01), 2.575829, 1e-6);
+  EXPECT_NEAR(two_sided_quantile(1e-6), 4.891638, 1e-6);
+}
+
+TEST(CompareZTest, FalsePositivesAreRareAndBiasIsDetected) {
+  std::mt19937 random(11);
+  std::normal_distribution<float> normal(0, 0.1f);
+  const Own variance(48, 48, [](int, int, int) { return 0.01; }), zero(48, 48, [](int, int, int) { return 0.5; });
+  int alarms = 0;
+  for (int i = 0; i < 500; ++i) {
+    const Own noisy(48, 48, [&](int, int, int) { return 0.5f + normal(random); });
+    alarms += z_test(noisy.view, variance.view, zero.view, {48, 48, {}})->differ();
+  }
+  EXPECT_LE(alarms, 15);  // expected: 5 of 500; more than 15 with a probability of about 1e-4
+  const Own biased(48, 48, [&](int x, int y, int c) {
+    return 0.5f + normal(random) + (c == 2 && x >= 16 && x < 32 && y >= 32 ? 0.05f : 0.0f);
+  });
+  const ZTest z = *z_test(biased.view, variance.view, zero.view, {48, 48, {}});
+  EXPECT_EQ(z.tests, 27);
+  EXPECT_EQ(z.rejected, 1);
+  EXPECT_EQ(z.channel, 2);
+  EXPECT_EQ(z.x, 16);
+  EXPECT_EQ(z.y, 32);
+  EXPECT_NEAR(z.noise, 0.1, 1e-6);
+  EXPECT_NEAR(z.mean_bias_error, 0.1 / std::sqrt(3 * 48.0 * 48) / 0.5, 1e-6);
+  EXPECT_FALSE(z_test(biased.view, {48, 48, {}}, zero.view, variance.view));
+}
+
+/// Without variance no noise explains a difference, except the rounding of half-precision files.
+TEST(CompareZTest, BlocksWithoutVarianceMustBeEqual) {
+  const Own none(48, 48, [](int, int, int) { return 0.0; }), grey(48, 48, [](int, int, int) { return 0.5; });
+  const auto test = [&](double corner) {
+    const Own other(48, 48, [=](int x, int y, int) { return x < 16 && y < 16 ? corner : 0.5; });
+    return *z_test(other.view, none.view, grey.view, none.view);
+  };
+  EXPECT_FALSE(test(0.5).differ());
+  EXPECT_FALSE(test(0.5002).differ());
+  const ZTest darker = test(0.4);
+  EXPECT_TRUE(darker.differ());
+  EXPECT_EQ(darker.rejected, 3) << "in each channel";
+  EXPECT_EQ(darker.largest_z, -kCertainZ);
+  EXPECT_FALSE(test(0).differ()) << "black: perhaps no path has found light yet";
+  const Own noisy(48, 48, [](int x, int y, int) { return (x + y) % 3 == 0 ? 1.2 : 0.0; });
+  EXPECT_FALSE(z_test(noisy.view, none.view, grey.view, none.view)->differ())
+      << "one sample has noise, but no variance";
+}
+
+TEST(CompareFalseColor, GoesFromBlackToPaleYellow) {
+  const film::Picture p = false_color({3, 1, {0, 0.05f, 7}}, 0.1);
+  EXPECT_LT(p.find("R")->values[0], 0.01f);
+  EXPECT_NEAR(p.find("R")->values[1], 0.716, 1e-3);
+  EXPECT_NEAR(p.find("G")->values[2], 0.991, 1e-3);
+}
+
+}  // namespace
+}  // namespace orrery::compare

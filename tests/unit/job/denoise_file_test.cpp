@@ -1,0 +1,140 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "job/denoise_file.h"
+
+#include <gtest/gtest.h>
+
+#include <cstdint>
+#include <fstream>
+#include <iterator>
+#include <limits>
+#include <random>
+
+#include "base/error.h"
+#include "image/format.h"
+#include "image/header.h"
+#include "image/read.h"
+#include "image/write.h"
+#include "support/temp_dir.h"
+
+namespace orrery::job {
+namespace {
+
+class JobDenoiseFile : public testing::Test {
+ protected:
+  JobDenoiseFile() {
+    std::mt19937 random(1);
+    std::uniform_real_distribution<float> value(0.25F, 0.75F);
+    picture_ = {40, 20, {}};
+    for (const char* name : {"R", "G", "B", "A", "Z", "CryptoObject00.R"}) {
+      film::Plane plane{name, std::vector<float>(800)};
+      for (float& v : plane.values) v = value(random);
+      if (plane.name == "Z" || plane.name[0] == 'C') plane.kind = film::PlaneKind::kData;
+      picture_.planes.push_back(std::move(plane));
+    }
+    denoising_ = {folder_ / "in.exr", folder_ / "out.exr", 2};
+  }
+
+  void write(bool multipart = false, bool as_float = false) {
+    image::Header header;
+    header.stamp = "of the noisy image";
+    header.attributes = {{"orrery/seed", "7"}};
+    image::write_exr(denoising_.input, picture_, header, {as_float, "zips", multipart});
+  }
+  std::string bytes(const std::filesystem::path& file) {
+    std::ifstream in(file, std::ios::binary);
+    return {std::istreambuf_iterator<char>(in), {}};
+  }
+  base::ErrorKind kind_of_error() {
+    try {
+      denoise_file(denoising_);
+    } catch (const base::Error& error) {
+      return error.kind();
+    }
+    ADD_FAILURE() << "no error";
+    return base::ErrorKind::kInternal;
+  }
+
+  support::TempDir folder_;
+  film::Picture picture_;
+  Denoising denoising_;
+};
+
+TEST_F(JobDenoiseFile, ChangesOnlyTheLight) {
+  for (const bool multipart : {false, true}) {
+    write(multipart);
+    denoise_file(denoising_);
+    const film::Picture before = image::read(denoising_.input), after = image::read(denoising_.output);
+    ASSERT_EQ(before.planes.size(), after.planes.size());
+    for (std::size_t i = 0; i < before.planes.size(); ++i) {
+      EXPECT_EQ(before.planes[i].name, after.planes[i].name);
+      const std::string& name = before.planes[i].name;
+      const bool is_filtered = name == "R" || name == "G" || name == "B" || name == "A";
+      EXPECT_EQ(before.planes[i].values != after.planes[i].values, is_filtered) << name;
+    }
+    const std::string out = bytes(denoising_.output);
+    EXPECT_EQ(out.find("of the noisy image"), std::string::npos) << "the stamp no longer describes the pixels";
+    EXPECT_NE(out.find("orrery/seed"), std::string::npos);
+    EXPECT_NE(out.find("orrery/denoised"), std::string::npos);
+    EXPECT_EQ(out.find("CryptoObject") != std::string::npos, true) << "other parts are kept";
+  }
+}
+
+TEST_F(JobDenoiseFile, TheSameFileGivesTheSameBytes) {
+  write();
+  denoise_file(denoising_);
+  const std::string first = bytes(denoising_.output);
+  denoising_.threads = 1;
+  denoise_file(denoising_);
+  EXPECT_EQ(bytes(denoising_.output), first);
+}
+
+TEST_F(JobDenoiseFile, BeautyAloneReportsWhatIsMissing) {
+  write();
+  EXPECT_FALSE(denoise_file(denoising_).report.missing.empty());
+}
+
+TEST_F(JobDenoiseFile, NeverReplacesItsInput) {
+  write();
+  const std::string before = bytes(denoising_.input);
+  denoising_.output = denoising_.input;
+  EXPECT_EQ(kind_of_error(), base::ErrorKind::kUsage);
+  std::filesystem::create_hard_link(denoising_.input, folder_ / "link.exr");
+  denoising_.output = folder_ / "link.exr";
+  EXPECT_EQ(kind_of_error(), base::ErrorKind::kUsage);
+  EXPECT_EQ(bytes(denoising_.input), before);
+}
+
+TEST_F(JobDenoiseFile, RejectsFilesThatAreNotImages) {
+  EXPECT_EQ(kind_of_error(), base::ErrorKind::kMissingInput);
+  denoising_.output = folder_ / "out.png";
+  EXPECT_EQ(kind_of_error(), base::ErrorKind::kUsage);
+  denoising_.output = folder_ / "out.exr";
+  std::ofstream(denoising_.input) << "no EXR";
+  EXPECT_EQ(kind_of_error(), base::ErrorKind::kBadData);
+  write();
+  std::filesystem::resize_file(denoising_.input, std::filesystem::file_size(denoising_.input) / 2);
+  EXPECT_EQ(kind_of_error(), base::ErrorKind::kBadData);
+  picture_.planes.erase(picture_.planes.begin());
+  write();
+  EXPECT_EQ(kind_of_error(), base::ErrorKind::kBadData) << "no channel R";
+  EXPECT_FALSE(std::filesystem::exists(denoising_.output));
+}
+
+TEST_F(JobDenoiseFile, DamagedFilesNeverCrash) {
+  write();
+  const std::string good = bytes(denoising_.input);
+  std::mt19937 random(5);
+  for (int n = 0; n < 60; ++n) {
+    std::string bad = good;
+    for (int k = 0; k < 4; ++k) bad[random() % (n < 40 ? 600 : bad.size())] = static_cast<char>(random());
+    std::ofstream(denoising_.input, std::ios::binary) << bad;
+    try {
+      denoise_file(denoising_);
+    } catch (const base::Error& error) {
+      EXPECT_TRUE(error.kind() == base::ErrorKind::kBadData || error.kind() == base::ErrorKind::kIo) << error.what();
+    }
+  }
+}
+
+}  // namespace
+}  // namespace orrery::job
