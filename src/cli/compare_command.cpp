@@ -15,7 +15,6 @@
 #include "cli/options.h"
 #include "cli/signals.h"
 #include "compare/compare_files.h"
-#include "compare/compared_channels.h"
 
 namespace orrery::cli {
 namespace {

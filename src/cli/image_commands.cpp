@@ -12,9 +12,7 @@
 #include "cli/options.h"
 #include "cli/signals.h"
 #include "display/settings.h"
-#include "job/bake_file.h"
-#include "job/denoise_file.h"
-#include "job/develop_file.h"
+#include "job/image_files.h"
 
 namespace orrery::cli {
 namespace {

@@ -14,7 +14,7 @@
 #include "cli/options.h"
 #include "cli/progress.h"
 #include "cli/signals.h"
-#include "study/bench_scene.h"
+#include "study/bench.h"
 #include "study/study.h"
 
 namespace orrery::cli {

@@ -14,7 +14,6 @@
 #include "base/file_set.h"
 #include "base/text.h"
 #include "compare/color_view.h"
-#include "compare/compared_channels.h"
 #include "compare/perceptual.h"
 #include "image/format.h"
 #include "image/header.h"

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "compare/compared_channels.h"
+#include "compare/compare_files.h"
 
 #include <algorithm>
 #include <cctype>

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "base/error.h"
+#include "compile/forward.h"
 #include "job/forward.h"
 #include "job/resources.h"
 #include "load/forward.h"
@@ -78,6 +79,13 @@ SceneInfo scene_info(const load::SceneRequest& request, job::PreparedScene& prep
 ///
 /// Errors     those of bench_features
 void measure_savings(const load::SceneRequest& request, SceneInfo& info);
+
+/// Returns warnings about visible errors of the chosen precision, estimated from the scene's ratios of distance to
+/// radius.
+///
+/// Result     one sentence per error with its size; empty for precision exact
+/// Precision  orders of magnitude, from the error terms of docs/numerics.md
+std::vector<std::string> precision_advice(const compile::CompiledScene& compiled);
 
 /// The properties as text.
 std::string info_text(const SceneInfo& info);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "info/precision_advice.h"
+#include "info/info.h"
 
 #include <algorithm>
 #include <cmath>

@@ -3,7 +3,7 @@
 
 #include "base/text.h"
 #include "job/statistics.h"
-#include "study/bench_scene.h"
+#include "study/bench.h"
 
 namespace orrery::study {
 namespace {

@@ -11,7 +11,7 @@
 
 #include "film/picture.h"
 #include "load/scene_source.h"
-#include "study/feature_cost.h"
+#include "study/bench.h"
 
 namespace orrery::study {
 

@@ -9,7 +9,6 @@
 #include <nlohmann/json.hpp>
 
 #include "base/error.h"
-#include "compare/compared_channels.h"
 #include "image/format.h"
 #include "image/header.h"
 #include "image/read.h"

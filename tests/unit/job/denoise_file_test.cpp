@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "job/denoise_file.h"
+#include "job/image_files.h"
 
 #include <gtest/gtest.h>
 

@@ -1,17 +1,28 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "job/develop_file.h"
+#include "job/image_files.h"
+
+#include <string>
+
+#include <fmt/core.h>
 
 #include "base/atomic_file.h"
 #include "base/available_memory.h"
 #include "base/error.h"
+#include "base/file_name.h"
+#include "base/file_set.h"
+#include "display/settings.h"
 #include "image/format.h"
+#include "image/header.h"
+#include "image/library.h"
 #include "image/read.h"
 #include "image/write.h"
 #include "job/outputs.h"
+#include "job/resources.h"
 #include "job/version.h"
 #include "load/scene_files.h"
 
 namespace orrery::job {
+
 namespace {
 
 void check_kinds(const Development& development) {
@@ -49,6 +60,43 @@ DevelopReport develop_file(const Development& development) {
   DisplayWriter developed(picture, display, development.bits != 0 ? development.bits : report.display.default_bits());
   for (const auto& output : development.outputs) developed.write(output, "orrery " + program_version());
   return report;
+}
+
+DenoisedFile denoise_file(const Denoising& denoising) {
+  for (const std::filesystem::path& file : {denoising.input, denoising.output})
+    if (image::format_of(file) != image::Format::kExr)
+      throw base::Error(base::ErrorKind::kUsage,
+                        file.string() + " is not an EXR file; denoising needs scene-linear EXR");
+  base::FileSet files;
+  files.add_input(denoising.input, "image");
+  files.add_output(denoising.output, "-o");
+  base::check_creatable(denoising.output);
+  const int threads = denoising.threads > 0 ? denoising.threads : default_threads();
+  image::set_threads(threads);
+  DenoisedFile out;
+  const auto edit = [&](film::Picture& picture) {
+    for (const char* channel : {"R", "G", "B"})
+      if (picture.find(channel) == nullptr)
+        throw base::Error(base::ErrorKind::kBadData,
+                          fmt::format("{} has no half or float channel {}", denoising.input.string(), channel));
+    out.report = denoise::denoise(picture, threads);
+    return std::vector<image::Attribute>{{denoise::kAttribute, "orrery " + program_version()}};
+  };
+  out.written = image::rewrite_exr(denoising.input, denoising.output, edit);
+  return out;
+}
+
+void bake_file(const display::Settings& display, int cube_size, const std::filesystem::path& file) {
+  const std::string extension = base::extension(file);
+  if (extension != ".cube" && extension != ".clf")
+    throw base::Error(base::ErrorKind::kUsage,
+                      file.string() + " is not a display transform file; use the extension .cube or .clf");
+  base::FileSet files;
+  load::add_ocio_configs(display.config, files);
+  files.add_output(file, "-o");
+  base::check_creatable(file);
+  base::write_text_file(
+      file, extension == ".cube" ? display::bake_cube(display, cube_size) : display::bake_clf(display, cube_size));
 }
 
 }  // namespace orrery::job

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "study/bench_scene.h"
+#include "study/bench.h"
 
 #include <algorithm>
 #include <cmath>
@@ -27,11 +27,10 @@
 #include "render/render.h"
 #include "render/result.h"
 #include "render/settings.h"
-#include "study/bench_build.h"
-#include "study/bench_tracing.h"
-#include "study/feature_cost.h"
+#include "study/bench_parts.h"
 
 namespace orrery::study {
+
 namespace {
 
 using compile::Precision;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "study/bench_scene.h"
+#include "study/bench.h"
 
 #include <gtest/gtest.h>
 
@@ -11,7 +11,6 @@
 
 #include "base/error.h"
 #include "kernel/isa.h"
-#include "study/feature_cost.h"
 #include "support/temp_dir.h"
 
 namespace orrery::study {

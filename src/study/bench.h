@@ -10,9 +10,13 @@
 #include <vector>
 
 #include "load/scene_source.h"
-#include "study/quartiles.h"
 
 namespace orrery::study {
+
+/// Lower quartile, median and upper quartile.
+struct Quartiles {
+  double low = 0, median = 0, high = 0;
+};
 
 /// Scene and protocol of a benchmark.
 struct BenchRequest {
@@ -71,5 +75,18 @@ Benchmark bench_scene(const BenchRequest& request);
 std::string benchmark_text(const Benchmark& benchmark);
 /// A benchmark as JSON, schema "orrery.bench/1".
 std::string benchmark_json(const Benchmark& benchmark);
+
+/// The cost of an optional kernel feature.
+struct FeatureCost {
+  std::string name;       ///< "thin lens"
+  bool required = false;  ///< the scene needs it
+  double saves = 0;       ///< if not required: fraction of the time with the feature that omitting it saves, median
+};
+
+/// Measures the cost of each kernel feature that the scene lacks, in embree exact at a reduced size.
+///
+/// Result     all features; those that the scene requires are not measured
+/// Errors     those of bench_scene
+std::vector<FeatureCost> bench_features(const BenchRequest& request);
 
 }  // namespace orrery::study
