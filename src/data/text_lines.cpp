@@ -154,11 +154,6 @@ std::uint64_t TextCursor::skip(std::uint64_t count) {
   return skipped;
 }
 
-std::string_view trimmed(std::string_view text) {
-  const std::size_t begin = std::min(text.find_first_not_of(" \t\r"), text.size());
-  return text.substr(begin, text.find_last_not_of(" \t\r") + 1 - begin);
-}
-
 std::vector<std::string_view> words_of(std::string_view text, std::string_view separators) {
   std::vector<std::string_view> words;
   for (std::size_t at = 0; at < text.size();) {

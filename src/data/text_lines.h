@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <algorithm>
 #include <cstddef>
 #include <cstdint>
 #include <memory>
@@ -116,7 +117,10 @@ class TextCursor {
 };
 
 /// Removes white space at both ends of a string.
-std::string_view trimmed(std::string_view text);
+inline std::string_view trimmed(std::string_view text) {
+  const std::size_t begin = std::min(text.find_first_not_of(" \t\r"), text.size());
+  return text.substr(begin, text.find_last_not_of(" \t\r") + 1 - begin);
+}
 
 /// Splits a string into words separated by any of these characters.
 std::vector<std::string_view> words_of(std::string_view text, std::string_view separators = " \t\r");
