@@ -18,7 +18,7 @@
 #include "cli/messages.h"
 #include "cli/render_options.h"
 #include "cli/signals.h"
-#include "format/written_text.h"
+#include "format/write_scene.h"
 #include "image/library.h"
 #include "job/check_job.h"
 #include "job/job.h"

@@ -179,6 +179,22 @@ std::optional<Value> read_words(ReadState& state, const toml::node& node, const 
   return good ? std::optional<Value>(words) : std::nullopt;
 }
 
+/// Reads a table from particle types to numbers or colours: `type = { 1 = 0.5, 2 = 0.7 }`. Each fault drops a type.
+template <class T>
+std::optional<Value> read_types(ReadState& state, const toml::node& node, const std::string& name, ValueType type,
+                                const scene::Range& range) {
+  const toml::table* const entries = node.as_table();
+  if (entries == nullptr) {
+    state.error(place_of(node), name + " must be a table", "write e.g. type = { 1 = 0.5, 2 = 0.7 }");
+    return {};
+  }
+  std::vector<std::pair<std::string, T>> types;
+  for (const auto& [key, value] : *entries)
+    if (const auto read = read_value(state, value, fmt::format("{}.{}", name, key.str()), type, range, {}))
+      types.emplace_back(std::string(key.str()), std::get<T>(*read));
+  return types;
+}
+
 }  // namespace
 
 std::optional<Value> read_value(ReadState& state, const toml::node& node, const std::string& name, ValueType type,
@@ -199,6 +215,8 @@ std::optional<Value> read_value(ReadState& state, const toml::node& node, const 
     case ValueType::kName:
       if (const toml::value<std::int64_t>* number = node.as_integer()) return std::to_string(number->get());
       return read_text(state, node, name, {});
+    case ValueType::kNumbersByType: return read_types<double>(state, node, name, ValueType::kNumber, range);
+    case ValueType::kColorsByType: return read_types<math::Vec3d>(state, node, name, ValueType::kVector, range);
   }
   return {};
 }

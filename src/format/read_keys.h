@@ -2,7 +2,6 @@
 #pragma once
 
 #include <algorithm>
-#include <filesystem>
 #include <optional>
 #include <set>
 #include <string>
@@ -17,8 +16,6 @@ namespace orrery::format {
 
 /// State while a tree is read: its source text and the diagnostics so far.
 struct ReadState {
-  std::filesystem::path folder;  ///< that of the scene file
-  int frame = 1;
   SourceText source;
   Diagnostics diagnostics;
   std::set<std::string> unread;  ///< full names of keys that kept their defaults because of an error

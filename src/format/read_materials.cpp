@@ -7,7 +7,6 @@
 
 #include <fmt/core.h>
 
-#include "base/frames.h"
 #include "base/text.h"
 #include "format/read_keys.h"
 #include "scene/texture.h"
@@ -24,58 +23,38 @@ std::string other_type_with(const std::string& key) {
   return owners.empty() ? "" : fmt::format("`{}` belongs to {}", key, base::joined(owners));
 }
 
-/// Reports the keys that no material type has, for a material of unknown type.
-void report_keys_of_no_type(ReadState& state, const toml::table& table, const std::string& full_name) {
-  std::vector<std::string> known = {"type"};
-  for (const scene::MaterialType& type : scene::material_types())
+/// Reads the type of a table whose keys depend on it, a material or a texture. If it is missing or unknown, reports
+/// that and the keys that no type has, and returns null.
+template <class Type>
+const Type* read_type(ReadState& state, const toml::table& table, const std::string& full_name, const char* type_key,
+                      const std::vector<Type>& types) {
+  std::vector<std::string> names, keys = {type_key};
+  for (const Type& type : types) {
+    names.push_back(type.name);
     for (const auto& key : type.keys)
-      if (std::find(known.begin(), known.end(), key.name) == known.end()) known.push_back(key.name);
-  for (const auto& [key, node] : table)
-    if (std::find(known.begin(), known.end(), key.str()) == known.end())
-      report_unknown_key(state, key, full_name, known);
-}
-
-/// Reads the type of [material.NAME]; null, and an error is reported, if it is missing or unknown.
-const scene::MaterialType* read_type(ReadState& state, const toml::table& table, const std::string& full_name) {
-  std::vector<std::string> names;
-  for (const scene::MaterialType& type : scene::material_types()) names.push_back(type.name);
-  const toml::node* node = table.get("type");
-  if (node == nullptr) {
-    state.error(place_of(table), full_name + " needs `type`", "one of " + base::joined(names));
-    return nullptr;
+      if (!base::contains(keys, key.name)) keys.push_back(key.name);
   }
-  const auto name = read_value(state, *node, full_name + ".type", scene::ValueType::kChoice, {}, names);
-  if (!name) return nullptr;
-  for (const scene::MaterialType& type : scene::material_types())
-    if (type.name == std::get<std::string>(*name)) return &type;
-  return nullptr;
+  const toml::node* node = table.get(type_key);
+  const auto name = node == nullptr ? std::nullopt
+                                    : read_value(state, *node, fmt::format("{}.{}", full_name, type_key),
+                                                 scene::ValueType::kChoice, {}, names);
+  if (node == nullptr)
+    state.error(place_of(table), fmt::format("{} needs `{}`", full_name, type_key), "one of " + base::joined(names));
+  if (!name) report_unknown_keys(state, table, full_name, keys);
+  const auto named = [&](const Type& type) { return name && type.name == std::get<std::string>(*name); };
+  const auto found = std::find_if(types.begin(), types.end(), named);
+  return found == types.end() ? nullptr : &*found;
 }
 
 /// Reads a texture, the value of a material's key; null, and an error is reported, if its type is missing or unknown.
 scene::TextureSlot read_texture(ReadState& state, const toml::table& table, const std::string& full_name,
                                 const std::vector<scene::TextureTypeKeys>& types) {
-  std::vector<std::string> names, all_keys = {"texture"};
-  for (const scene::TextureTypeKeys& type : types) {
-    names.push_back(type.name);
-    for (const auto& key : type.keys) all_keys.push_back(key.name);
-  }
-  const toml::node* node = table.get("texture");
-  if (node == nullptr) {
-    state.error(place_of(table), full_name + " needs `texture`", "one of " + base::joined(names));
-    report_unknown_keys(state, table, full_name, all_keys);
-    return nullptr;
-  }
-  const auto name = read_value(state, *node, full_name + ".texture", scene::ValueType::kChoice, {}, names);
-  if (!name) return nullptr;
-  for (const scene::TextureTypeKeys& type : types) {
-    if (type.name != std::get<std::string>(*name)) continue;
-    const auto texture = std::make_shared<scene::Texture>();
-    texture->type = type.type;
-    read_keys(state, table, full_name, type.keys, {"texture"}, *texture);
-    texture->file = base::input_at_frame(state.folder, texture->file.string(), state.frame);
-    return texture;
-  }
-  return nullptr;
+  const scene::TextureTypeKeys* const type = read_type(state, table, full_name, "texture", types);
+  if (type == nullptr) return nullptr;
+  const auto texture = std::make_shared<scene::Texture>();
+  texture->type = type->type;
+  read_keys(state, table, full_name, type->keys, {"texture"}, *texture);
+  return texture;
 }
 
 /// Reads the keys whose values are tables as textures. Their names are added to `also`.
@@ -93,8 +72,8 @@ void read_textures(ReadState& state, const toml::table& table, const std::string
 
 void read_material(ReadState& state, const toml::table& table, scene::Material& material) {
   const std::string full_name = "material." + material.name;
-  const scene::MaterialType* type = read_type(state, table, full_name);
-  if (type == nullptr) return report_keys_of_no_type(state, table, full_name);
+  const scene::MaterialType* type = read_type(state, table, full_name, "type", scene::material_types());
+  if (type == nullptr) return;
   std::vector<std::string> known = {"type"};
   for (const auto& key : type->keys) known.push_back(key.name);
   std::vector<std::string> also = {"type"};  // and keys of other types, which are reported here with the types' names

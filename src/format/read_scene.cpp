@@ -19,6 +19,7 @@
 #include "scene/animation.h"
 #include "scene/diagnostic.h"
 #include "scene/limits.h"
+#include "scene/named_files.h"
 #include "scene/validate.h"
 
 namespace orrery::format {
@@ -122,40 +123,17 @@ void add_problem(ReadState& state, const toml::table& root, const std::string& f
   state.add(diagnostic.severity, node != nullptr ? place_of(*node) : Place{file, 0, 0, 1}, text, {}, diagnostic.kind);
 }
 
-/// Reads a table from particle types to numbers or colours: `radius = { type = { 1 = 0.5, 2 = 0.7 } }`.
-template <class T>
-void read_types(ReadState& state, const toml::table& table, const std::string& table_name, const std::string& name,
-                scene::ValueType type, scene::Range range, std::vector<std::pair<std::string, T>>& types) {
-  const toml::node* const node = node_at(table, name);
-  if (node == nullptr) return;
-  const std::string full_name = fmt::format("{}.{}", table_name, name);
-  const toml::table* const entries = node->as_table();
-  if (entries == nullptr) {
-    state.error(place_of(*node), full_name + " must be a table", "write e.g. type = { 1 = 0.5, 2 = 0.7 }");
-    return;
-  }
-  for (const auto& [key, value] : *entries) {
-    const auto read = read_value(state, value, fmt::format("{}.{}", full_name, key.str()), type, range, {});
-    if (read) types.emplace_back(std::string(key.str()), std::get<T>(*read));
-  }
-}
-
-void read_points(ReadState& state, const toml::table& root, const MaterialIndex& index, scene::Scene& scene) {
+void read_points(ReadState& state, const toml::table& root, const std::filesystem::path& folder,
+                 const MaterialIndex& index, scene::Scene& scene) {
   const toml::array* list = tables_under(state, root, "points");
   if (list == nullptr) return;
   for (std::size_t i = 0; i < list->size(); ++i) {
     const toml::table& table = *list->get(i)->as_table();
     const std::string full_name = fmt::format("points[{}]", i);
     scene::Points points;
-    read_keys(state, table, full_name, scene::points_keys(), {"material", "radius.type", "color.type"}, points);
-    read_types(state, table, full_name, "radius.type", scene::ValueType::kNumber,
-               {scene::kSmallestRadius, scene::kLargestLength}, points.radius.types);
-    read_types(state, table, full_name, "color.type", scene::ValueType::kVector, {0, 1}, points.color.types);
+    read_keys(state, table, full_name, scene::points_keys(), {"material"}, points);
     points.material = read_material_name(state, table, full_name, scene, index);
-    if (state.unread.count(full_name + ".file") == 0) {
-      points.is_sequence = base::is_sequence(state.folder / points.file);
-      points.file = base::input_at_frame(state.folder, points.file.string(), state.frame);
-    }
+    points.is_sequence = base::is_sequence(folder / points.file);
     scene.points.push_back(std::move(points));
   }
 }
@@ -173,6 +151,13 @@ std::vector<scene::SceneDiagnostic> errors_at_close(const scene::Scene& opening,
     return std::any_of(known.begin(), known.end(), [&](const auto& k) { return k.key == d.key && k.text == d.text; });
   });
   return found;
+}
+
+/// Replaces the names of sequences of files by those of their files at a frame.
+void choose_files(const std::filesystem::path& folder, int frame, scene::Scene& scene) {
+  scene::rename_files(scene, [&](const scene::NamedFile& file) {
+    return file.role->has_frames ? base::input_at_frame(folder, file.name, frame) : file.name;
+  });
 }
 
 /// Poses the scene at the frame; with motion blur, at shutter open and at shutter close.
@@ -263,8 +248,6 @@ SceneReader::SceneReader(const std::filesystem::path& file, const Overrides& ove
   State& state = *state_;
   const std::string text = options.text ? *options.text : read_file(file, kLargestSceneFile);
   state.file = file.string();
-  state.folder = file.parent_path();
-  state.frame = options.frame;
   state.root = parse_tree(state.file, text, overrides, state.source, state.diagnostics);
   const toml::table& root = state.root;
   if (root.empty() && state.diagnostics.has_errors()) {
@@ -275,7 +258,6 @@ SceneReader::SceneReader(const std::filesystem::path& file, const Overrides& ove
   scene::Scene& scene = state.result.scene;
   report_unknown_tables(state, root);
   read_single_tables(state, root, scene);
-  scene.background.file = base::input_at_frame(state.folder, scene.background.file.string(), options.frame);
   read_materials(state, root, scene.materials);
   MaterialIndex index;
   for (const scene::Material& material : scene.materials)
@@ -283,8 +265,13 @@ SceneReader::SceneReader(const std::filesystem::path& file, const Overrides& ove
   read_spheres(state, root, index, scene);
   if (const toml::array* keys = tables_under(state, root, "key")) read_tracks(state, *keys, scene);
   warn_of_animated_overrides(state, overrides, scene);
-  if (!state.diagnostics.has_errors()) pose(state, root, state.file, options.frame, state.result);
-  read_points(state, root, index, scene);
+  const std::filesystem::path folder = file.parent_path();
+  if (options.frame) {
+    choose_files(folder, *options.frame, scene);
+    if (!state.diagnostics.has_errors()) pose(state, root, state.file, *options.frame, state.result);
+  }
+  read_points(state, root, folder, index, scene);
+  if (options.frame) choose_files(folder, *options.frame, scene);
 }
 
 SceneReader::~SceneReader() = default;
@@ -336,6 +323,11 @@ ReadResult read_scene(const std::filesystem::path& file, const Overrides& overri
   reader.add(scene::validate(reader.scene()));
   reader.add(scene::warn_of_coincident(reader.scene(), closing ? &*closing : nullptr));
   return reader.finish();
+}
+
+scene::Scene authored_scene(const std::filesystem::path& file, const Overrides& overrides,
+                            std::shared_ptr<const std::string> text) {
+  return std::move(SceneReader(file, overrides, {std::move(text), std::nullopt}).scene());
 }
 
 std::string toml_version() { return fmt::format("{}.{}.{}", TOML_LIB_MAJOR, TOML_LIB_MINOR, TOML_LIB_PATCH); }

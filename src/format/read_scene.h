@@ -20,7 +20,9 @@ inline constexpr int kFirstFrame = 1;
 
 struct ReadOptions {
   std::shared_ptr<const std::string> text = {};  ///< text of the scene; null: read the file
-  int frame = kFirstFrame;              ///< selects the values of animated keys, and the files and frames of data
+  /// Selects the values of animated keys, and the files and frames of data. Empty: the scene as authored, in which
+  /// animated keys have their own values and files their frame patterns.
+  std::optional<int> frame = kFirstFrame;
   std::optional<int> typed_lines = {};  ///< see SourceText::add
 };
 
@@ -72,6 +74,14 @@ class SceneReader {
 /// Errors     those of SceneReader
 ReadResult read_scene(const std::filesystem::path& file, const Overrides& overrides = {},
                       const ReadOptions& options = {});
+
+/// Returns the scene as authored, without checks: keys that cannot be read have their defaults. For the files that it
+/// names, and for writing it again.
+///
+/// `text`     text of the scene; null: read the file
+/// Errors     base::Error(kBadData) for invalid TOML; kMissingInput, kIo
+scene::Scene authored_scene(const std::filesystem::path& file, const Overrides& overrides = {},
+                            std::shared_ptr<const std::string> text = {});
 
 /// Returns the version of toml++.
 std::string toml_version();

@@ -105,13 +105,7 @@ std::vector<Entry> in_order(const toml::table& table) {
   return out;
 }
 
-std::string toml_text(const toml::key& key) {
-  const std::string name(key.str());
-  const bool is_bare = !name.empty() && std::all_of(name.begin(), name.end(), [](char c) {
-    return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') || c == '_' || c == '-';
-  });
-  return is_bare ? name : scene::string_text(name);
-}
+std::string toml_text(const toml::key& key) { return scene::key_text(std::string(key.str())); }
 
 std::string toml_text(const toml::node& node) {
   std::string out;

@@ -2,15 +2,18 @@
 #include "format/write_scene.h"
 
 #include <algorithm>
+#include <fstream>
+#include <iterator>
 #include <set>
 #include <sstream>
+#include <utility>
 
 #include <fmt/core.h>
 
 #include "base/atomic_file.h"
 #include "base/error.h"
+#include "base/hash.h"
 #include "format/write_ply.h"
-#include "format/written_text.h"
 #include "scene/animation.h"
 #include "scene/schema.h"
 #include "scene/texture.h"
@@ -23,10 +26,7 @@ using scene::number_text;
 using scene::string_text;
 using scene::vector_text;
 
-bool is_bare_key(const std::string& name) {
-  return !name.empty() && name.find_first_not_of("ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789_-") ==
-                              std::string::npos;
-}
+constexpr const char* kMark = "# Written by orrery, which replaces it only if unchanged: checksum ";
 
 void add_comment(std::string& out, const std::string& comment) {
   std::istringstream lines(comment);
@@ -39,34 +39,69 @@ void add_comment(std::string& out, const std::string& comment) {
   if (!comment.empty()) out += '\n';
 }
 
-void add_tables(std::string& out, const scene::Scene& scene) {
-  const scene::Scene defaults;
-  for (const scene::Table& table : scene::tables()) {
-    std::string body;
-    for (const auto& key : table.keys)
-      if (key.text(scene) != key.text(defaults)) body += fmt::format("{} = {}\n", key.name, key.text(scene));
-    if (!body.empty()) out += fmt::format("[{}]\n{}\n", table.name, body);
+/// The keys of a table that differ from their defaults, as in a scene file.
+using KeyTexts = std::vector<std::pair<std::string, std::string>>;
+
+std::string inline_table(const KeyTexts& keys) {
+  std::string out;
+  for (const auto& [name, text] : keys) out += fmt::format("{}{} = {}", out.empty() ? "" : ", ", name, text);
+  return fmt::format("{{ {} }}", out);
+}
+
+/// Puts keys with dotted names into inline tables: `radius.column` becomes `radius = { column = ... }`. A key that has
+/// a value itself excludes those in its table, as `radius` does.
+KeyTexts nested(const KeyTexts& keys) {
+  KeyTexts out;
+  std::set<std::string> done;
+  for (const auto& [name, text] : keys) {
+    const std::string table = name.substr(0, name.find('.'));
+    if (!done.insert(table).second) continue;
+    if (table == name) {
+      out.emplace_back(name, text);
+      continue;
+    }
+    KeyTexts inner;
+    for (const auto& [other, value] : keys)
+      if (other.starts_with(table + ".")) inner.emplace_back(other.substr(table.size() + 1), value);
+    out.emplace_back(table, inline_table(inner));
   }
+  return out;
+}
+
+template <class Target>
+KeyTexts texts_of(const std::vector<scene::Key<Target>>& keys, const Target& target, const Target& defaults) {
+  KeyTexts out;
+  for (const auto& key : keys)
+    if (const std::string text = key.text(target); key.required || text != key.text(defaults))
+      out.emplace_back(key.name, text);
+  return nested(out);
+}
+
+void add_table(std::string& out, const std::string& header, const KeyTexts& keys) {
+  if (keys.empty()) return;
+  out += header + '\n';
+  for (const auto& [name, text] : keys) out += fmt::format("{} = {}\n", name, text);
+  out += '\n';
 }
 
 /// Returns a texture as an inline table.
 std::string texture_text(const scene::Texture& texture, scene::TextureUse use) {
   const scene::TextureTypeKeys& type = scene::texture_types(use)[static_cast<std::size_t>(texture.type)];
-  std::string out = "{ texture = " + string_text(type.name);
-  for (const auto& key : type.keys)
-    if (key.required || key.text(texture) != key.text(scene::Texture{}))
-      out += fmt::format(", {} = {}", key.name, key.text(texture));
-  return out + " }";
+  KeyTexts keys = texts_of(type.keys, texture, {});
+  keys.emplace(keys.begin(), "texture", string_text(type.name));
+  return inline_table(keys);
 }
 
-/// Returns the value of a material's key: a texture or a constant; empty if it is the default.
-std::string value_text(const scene::MaterialType& type, const scene::Key<scene::MaterialModel>& key,
-                       const scene::MaterialModel& model) {
+std::string material_text(const scene::MaterialModel& model) {
+  const scene::MaterialType& type = scene::material_types()[model.index()];
+  KeyTexts keys = texts_of(type.keys, model, type.model);
   for (const scene::TexturedKey& textured : type.textured)
-    if (textured.name == key.name)
-      if (const scene::TextureSlot texture = textured.get(model)) return texture_text(*texture, textured.use);
-  const bool is_default = !key.required && key.text(model) == key.text(type.model);
-  return is_default ? "" : key.text(model);
+    if (const scene::TextureSlot texture = textured.get(model)) {
+      std::erase_if(keys, [&](const auto& key) { return key.first == textured.name; });
+      keys.emplace_back(textured.name, texture_text(*texture, textured.use));
+    }
+  keys.emplace(keys.begin(), "type", string_text(type.name));
+  return inline_table(keys);
 }
 
 /// Writes one line per material: a scene may have as many materials as spheres.
@@ -77,13 +112,7 @@ void add_materials(std::string& out, const std::vector<scene::Material>& materia
   for (const scene::Material& material : materials) {
     if (!names.insert(material.name).second)
       throw base::Error(base::ErrorKind::kInternal, "cannot write a scene with two materials named " + material.name);
-    const scene::MaterialType& type = scene::material_types()[material.model.index()];
-    out += fmt::format("{} = {{ type = {}", is_bare_key(material.name) ? material.name : string_text(material.name),
-                       string_text(type.name));
-    for (const auto& key : type.keys)
-      if (const std::string value = value_text(type, key, material.model); !value.empty())
-        out += fmt::format(", {} = {}", key.name, value);
-    out += " }\n";
+    out += fmt::format("{} = {}\n", scene::key_text(material.name), material_text(material.model));
   }
   out += '\n';
 }
@@ -118,26 +147,38 @@ const std::string& material_name(const scene::Scene& scene, std::uint32_t materi
 std::string scene_text(const scene::Scene& scene, const std::string& comment) {
   std::string out;
   add_comment(out, comment);
-  add_tables(out, scene);
+  const scene::Scene defaults;
+  for (const scene::Table& table : scene::tables())
+    add_table(out, fmt::format("[{}]", table.name), texts_of(table.keys, scene, defaults));
   add_materials(out, scene.materials);
-  for (const scene::Sphere& sphere : scene.spheres) {
-    out += "[[sphere]]\n";
-    if (!sphere.name.empty()) out += fmt::format("name = {}\n", string_text(sphere.name));
-    if (!sphere.group.empty()) out += fmt::format("group = {}\n", string_text(sphere.group));
-    out += fmt::format("center = {}\nradius = {}\nmaterial = {}\n\n", vector_text(sphere.center),
-                       number_text(sphere.radius), string_text(material_name(scene, sphere.material)));
-  }
+  const auto add = [&](const char* header, KeyTexts keys, std::uint32_t material) {
+    keys.emplace_back("material", string_text(material_name(scene, material)));
+    add_table(out, header, keys);
+  };
+  for (const scene::Sphere& sphere : scene.spheres)
+    add("[[sphere]]", texts_of(scene::sphere_keys(), sphere, {}), sphere.material);
   add_tracks(out, scene);
-  for (const scene::Points& points : scene.points) {
-    out += fmt::format("[[points]]\nfile = {}\nmaterial = {}\n", string_text(points.file.string()),
-                       string_text(material_name(scene, points.material)));
-    if (!points.name.empty()) out += fmt::format("name = {}\n", string_text(points.name));
-    if (!points.group.empty()) out += fmt::format("group = {}\n", string_text(points.group));
-    if (points.radius.value) out += fmt::format("radius = {}\n", number_text(*points.radius.value));
-    out += '\n';
-  }
+  for (const scene::Points& points : scene.points)
+    add("[[points]]", texts_of(scene::points_keys(), points, {}), points.material);
   if (!out.empty()) out.pop_back();  // the blank line after the last block
   return out;
+}
+
+std::string marked_text(const std::string& text) { return fmt::format("{}{}\n{}", kMark, base::text_hash(text), text); }
+
+void check_unedited(const std::filesystem::path& file) {
+  std::error_code ignored;
+  if (!std::filesystem::exists(file, ignored)) return;
+  std::ifstream in(file, std::ios::binary);
+  std::string mark;
+  std::getline(in, mark);
+  const bool is_ours = mark.starts_with(kMark);
+  const std::string text = is_ours ? std::string(std::istreambuf_iterator<char>(in), {}) : "";
+  if (is_ours && fmt::format("{}\n{}", mark, text) == marked_text(text)) return;
+  throw base::Error(base::ErrorKind::kCannotCreate,
+                    fmt::format("cannot create {}: the existing file was {}; choose another name, or replace it with "
+                                "--force",
+                                file.string(), is_ours ? "edited since orrery wrote it" : "not written by orrery"));
 }
 
 void write_scene(const scene::Scene& scene, const std::string& comment, const std::filesystem::path& file) {

@@ -12,7 +12,6 @@
 #include "film/picture.h"
 #include "format/write_ply.h"
 #include "format/write_scene.h"
-#include "format/written_text.h"
 #include "generate/generate.h"
 #include "image/format.h"
 #include "image/header.h"

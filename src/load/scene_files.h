@@ -11,15 +11,17 @@
 
 namespace orrery::load {
 
-/// Adds the files that a scene references at these frames. Parses the scene file without reading points files.
+/// Adds the files that a scene references at these frames. Reads the scene file, but no other file.
 ///
-/// Errors     those of add_scene_files and format::named_files
+/// Errors     those of add_scene_files and format::authored_scene
 void add_named_files(const SceneSource& scene, const std::vector<int>& frames, base::FileSet& files);
 
-/// Adds the files that a loaded scene references.
+/// Adds the files that a scene references.
 ///
+/// `frames`   of sequences of files; a scene that was read at a frame has none
 /// Errors     base::Error(kUsage) if one is an output
-void add_scene_files(const std::filesystem::path& scene_file, const scene::Scene& scene, base::FileSet& files);
+void add_scene_files(const std::filesystem::path& scene_file, const scene::Scene& scene, base::FileSet& files,
+                     const std::vector<int>& frames = {});
 
 /// Adds an OCIO config, from --ocio or a scene, and the config in $OCIO, if they are files, and their LUT files.
 ///

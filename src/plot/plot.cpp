@@ -12,7 +12,8 @@
 #include "base/text.h"
 #include "data/data_file.h"
 #include "display/look_up.h"
-#include "format/write_tree.h"
+#include "format/read_scene.h"
+#include "format/write_scene.h"
 #include "load/load_scene.h"
 #include "load/working_space.h"
 #include "plot/data_frames.h"
@@ -385,9 +386,9 @@ std::string saved_text(const PlotOptions& options, const PlotScene& made) {
     if (!std::all_of(override.values.begin(), override.values.end(), is_of_plot)) settings.add(override);
   }
   if (settings.empty()) return made.text;
-  const auto same = [](const std::string& file) { return file; };
-  return fmt::format("{}\n\n{}", made.text.substr(0, made.text.find('\n')),
-                     format::merged_text("plot", made.text, settings, same));
+  format::SceneReader reader("plot", settings, {std::make_shared<const std::string>(made.text), std::nullopt});
+  if (reader.has_errors()) return made.text;  // reported when the scene is rendered
+  return format::scene_text(reader.scene(), made.text.substr(2, made.text.find('\n') - 2));
 }
 
 }  // namespace orrery::plot

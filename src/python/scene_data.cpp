@@ -19,16 +19,17 @@
 #include "base/input_file.h"
 #include "base/text.h"
 #include "data/table_file.h"
-#include "format/named_files.h"
 #include "format/read_result.h"
+#include "format/read_scene.h"
 #include "format/source_text.h"
 #include "format/write_ply.h"
-#include "format/write_tree.h"
+#include "format/write_scene.h"
 #include "formats/open.h"
 #include "formats/write_table.h"
 #include "load/load_scene.h"
 #include "load/loaded_scene.h"
 #include "load/scene_files.h"
+#include "scene/named_files.h"
 
 namespace orrery::python {
 namespace {
@@ -58,7 +59,8 @@ std::string table_file_name(const fs::path& scene_file, const std::string& name,
 bool is_saved_data(const fs::path& file, const fs::path& scene_file) {
   if (file.extension() == ".ply") return format::is_ply_of(kWriter, file);
   try {
-    return base::contains(format::named_files(scene_file, {}).points, file.filename().string());
+    const std::vector<scene::Points> points = format::authored_scene(scene_file).points;
+    return std::any_of(points.begin(), points.end(), [&](const auto& p) { return p.file == file.filename(); });
   } catch (const base::Error&) {
     return false;
   }
@@ -135,7 +137,7 @@ load::SceneSource SceneData::source() const {
 
 std::string read_scene_text(const fs::path& file) {
   std::string text = format::read_file(file, format::kLargestSceneFile);
-  static_cast<void>(format::named_files(file, {}, &text));
+  static_cast<void>(format::authored_scene(file, {}, std::make_shared<const std::string>(text)));
   return text;
 }
 
@@ -145,6 +147,12 @@ std::vector<base::Diagnostic> check(const SceneData& scene) {
   load::SceneRequest request;
   request.source = scene.source();
   return load::load_scene(request).warnings;
+}
+
+double aspect(const SceneData& scene) {
+  const load::SceneSource source = scene.source();
+  const scene::Image image = format::authored_scene(source.file, source.overrides, source.text).image;
+  return image.pixel_aspect * image.width / image.height;
 }
 
 double largest_radius(const SceneData& scene, std::uint64_t memory_limit) {
@@ -172,12 +180,13 @@ void save(const SceneData& scene, const fs::path& file) {
     files.add_output(data, "points file");
     check_data_file(data, file);
   }
-  const auto renamed = [&](const std::string& name) {
-    const auto table = scene.tables.find(name);
-    return table != scene.tables.end() ? table_file_name(file, name, *table->second)
-                                       : moved(name, scene.file.parent_path(), folder);
-  };
-  const std::string text = format::merged_text(scene.file, scene.text, source.overrides, renamed);
+  scene::Scene saved = format::authored_scene(source.file, source.overrides, source.text);
+  scene::rename_files(saved, [&](const scene::NamedFile& named) {
+    const auto table = scene.tables.find(named.name);
+    return table != scene.tables.end() ? table_file_name(file, named.name, *table->second)
+                                       : moved(named.name, scene.file.parent_path(), folder);
+  });
+  const std::string text = format::scene_text(saved, {});
   for (const auto& [name, table] : scene.tables)
     static_cast<void>(formats::write_table(folder / table_file_name(file, name, *table), *table, kWriter));
   base::write_text_file(file, text);

@@ -41,6 +41,11 @@ std::string read_scene_text(const std::filesystem::path& file);
 /// Errors     those of format::read_scene
 void check_keys(const SceneData& scene);
 
+/// Returns the width of the image divided by its height, as displayed. Keys that cannot be read have their defaults.
+///
+/// Errors     those of format::authored_scene
+double aspect(const SceneData& scene);
+
 /// Checks everything that a render would reject.
 ///
 /// Result     warnings

@@ -62,12 +62,7 @@ void compare_spheres(const std::vector<Sphere>& before, const std::vector<Sphere
 
 void compare_points(const Points& before, const Points& after, Parts& parts) {
   compare(points_keys(), Part::kGeometry, before, after, parts);
-  if (before.radius.types != after.radius.types) parts.add(Part::kGeometry);
-  const auto is_same_color = [](const auto& a, const auto& b) { return a.first == b.first && a.second == b.second; };
-  if (!std::equal(before.color.types.begin(), before.color.types.end(), after.color.types.begin(),
-                  after.color.types.end(), is_same_color) ||
-      before.material != after.material)
-    parts.add(Part::kAssignment);
+  if (before.material != after.material) parts.add(Part::kAssignment);
 }
 
 void compare_scenes(const Scene& before, const Scene& after, Parts& parts) {

@@ -3,6 +3,8 @@
 #pragma once
 
 #include <cstdint>
+#include <filesystem>
+#include <functional>
 #include <optional>
 #include <string>
 #include <type_traits>
@@ -11,7 +13,6 @@
 
 #include "scene/limits.h"
 #include "scene/schema.h"
-#include "scene/value_text.h"
 
 namespace orrery::scene {
 
@@ -29,76 +30,93 @@ struct KeyDoc {
   const char* cost = "";
 };
 
-template <class T>
-struct WithoutOptional {
-  using Type = T;
-};
-template <class T>
-struct WithoutOptional<std::optional<T>> {
-  using Type = T;
-};
+/// A member of a member of a target: in(&Scene::camera, &Camera::vfov).
+template <class Target, class Table, class Member>
+auto in(Table Target::*table, Member Table::*member) {
+  return [table, member](Target& target) -> Member& { return target.*table.*member; };
+}
 
-/// Builds a key for the member that `at` returns a reference to; `at` does not modify its target.
-template <class Target, class At, class Text>
-Key<Target> key_of(const char* name, ValueType type, Range range, const KeyDoc& about, At at, Text text) {
+/// The value of a member, and the member set to a value. An optional member may have none.
+template <class T>
+std::optional<Value> value_of(const T& member) {
+  if constexpr (std::is_same_v<T, bool>)
+    return member;
+  else if constexpr (std::is_integral_v<T>)
+    return std::int64_t{member};
+  else if constexpr (std::is_same_v<T, std::filesystem::path>)
+    return member.string();
+  else
+    return member;
+}
+template <class T>
+std::optional<Value> value_of(const std::optional<T>& member) {
+  return member ? value_of(*member) : std::nullopt;
+}
+template <class T>
+void assign(T& member, const Value& value) {
+  if constexpr (std::is_same_v<T, bool>)
+    member = std::get<bool>(value);
+  else if constexpr (std::is_integral_v<T>)
+    member = static_cast<T>(std::get<std::int64_t>(value));
+  else if constexpr (std::is_same_v<T, std::filesystem::path>)
+    member = std::get<std::string>(value);
+  else
+    member = std::get<T>(value);
+}
+template <class T>
+void assign(std::optional<T>& member, const Value& value) {
+  assign(member.emplace(), value);
+}
+
+/// Builds a key for the member that `at` returns a reference to; `at` is a function that does not modify its target, or
+/// a pointer to a member.
+template <class Target, class At>
+Key<Target> key_of(const char* name, ValueType type, Range range, const KeyDoc& about, At at,
+                   std::vector<std::string> choices = {}) {
   return {name,
           type,
           range,
-          {},
+          std::move(choices),
           about.unit,
           about.doc,
           about.cost,
-          false,
-          [at](Target& t, const Value& v) {
-            using Member = typename WithoutOptional<std::remove_reference_t<decltype(at(t))>>::Type;
-            if constexpr (std::is_integral_v<Member>) {
-              at(t) = static_cast<Member>(std::get<std::int64_t>(v));
-            } else if constexpr (std::is_constructible_v<Member, std::string>) {
-              at(t) = std::get<std::string>(v);
-            } else {
-              at(t) = std::get<Member>(v);
-            }
-          },
-          [at, text](const Target& t) { return text(at(const_cast<Target&>(t))); }};
+          [at](Target& t, const Value& v) { assign(std::invoke(at, t), v); },
+          [at](const Target& t) { return value_of(std::invoke(at, const_cast<Target&>(t))); }};
 }
 template <class Target, class At>
 Key<Target> integer(const char* name, Range range, const KeyDoc& about, At at) {
-  return key_of<Target>(name, ValueType::kInteger, range, about, at, [](auto x) { return std::to_string(x); });
+  return key_of<Target>(name, ValueType::kInteger, range, about, at);
 }
 template <class Target, class At>
 Key<Target> number(const char* name, Range range, const KeyDoc& about, At at) {
-  return key_of<Target>(name, ValueType::kNumber, range, about, at, number_text);
+  return key_of<Target>(name, ValueType::kNumber, range, about, at);
 }
 template <class Target, class At>
 Key<Target> vector(const char* name, Range range, const KeyDoc& about, At at) {
-  return key_of<Target>(name, ValueType::kVector, range, about, at, vector_text);
+  return key_of<Target>(name, ValueType::kVector, range, about, at);
+}
+template <class Target, class At>
+Key<Target> interval(const char* name, Range range, const KeyDoc& about, At at) {
+  return key_of<Target>(name, ValueType::kInterval, range, about, at);
 }
 template <class Target, class At>
 Key<Target> text(const char* name, const KeyDoc& about, At at) {
-  return key_of<Target>(name, ValueType::kText, {}, about, at, string_text);
+  return key_of<Target>(name, ValueType::kText, {}, about, at);
 }
 template <class Target, class At>
 Key<Target> boolean(const char* name, const KeyDoc& about, At at) {
-  return {name,
-          ValueType::kBoolean,
-          {},
-          {},
-          about.unit,
-          about.doc,
-          about.cost,
-          false,
-          [at](Target& t, const Value& v) { at(t) = std::get<bool>(v); },
-          [at](const Target& t) -> std::string { return at(const_cast<Target&>(t)) ? "true" : "false"; }};
+  return key_of<Target>(name, ValueType::kBoolean, {}, about, at);
 }
-/// Builds a key for an optional number; `otherwise` describes its default.
+/// Builds a key for the name of a file.
 template <class Target, class At>
-Key<Target> optional_number(const char* name, Range range, const KeyDoc& about, const char* otherwise, At at) {
-  return key_of<Target>(name, ValueType::kNumber, range, about, at,
-                        [otherwise](const auto& x) { return x ? number_text(*x) : std::string(otherwise); });
+Key<Target> file(const char* name, const FileRole& role, const KeyDoc& about, At at) {
+  Key<Target> key = text<Target>(name, about, at);
+  key.file = &role;
+  return key;
 }
 /// Builds a key for an enumeration; `choices` are in enumerator order.
 template <class Target, class At>
-Key<Target> choice(const char* name, std::vector<std::string> choices, const KeyDoc& about, At at) {
+Key<Target> choice(const char* name, const std::vector<std::string>& choices, const KeyDoc& about, At at) {
   return {name,
           ValueType::kChoice,
           {},
@@ -106,69 +124,25 @@ Key<Target> choice(const char* name, std::vector<std::string> choices, const Key
           about.unit,
           about.doc,
           about.cost,
-          false,
           [at, choices](Target& t, const Value& v) {
-            using Enum = std::remove_reference_t<decltype(at(t))>;
+            auto& member = std::invoke(at, t);
             for (std::size_t i = 0; i < choices.size(); ++i)
-              if (choices[i] == std::get<std::string>(v)) at(t) = static_cast<Enum>(i);
+              if (choices[i] == std::get<std::string>(v)) member = static_cast<std::decay_t<decltype(member)>>(i);
           },
-          [at, choices](const Target& t) {
-            return string_text(choices[static_cast<std::size_t>(at(const_cast<Target&>(t)))]);
+          [at, choices](const Target& t) -> std::optional<Value> {
+            return choices[static_cast<std::size_t>(std::invoke(at, const_cast<Target&>(t)))];
           }};
 }
 /// Builds a key for one of several words, stored as a string; empty: none.
 template <class Target, class At>
 Key<Target> choice_of_text(const char* name, std::vector<std::string> choices, const KeyDoc& about, At at) {
-  Key<Target> key = key_of<Target>(name, ValueType::kChoice, {}, about, at, string_text);
-  key.choices = std::move(choices);
-  return key;
+  return key_of<Target>(name, ValueType::kChoice, {}, about, at, std::move(choices));
 }
-/// Builds a key for an optional window; `otherwise` describes its default.
-template <class Target, class At>
-Key<Target> optional_window(const char* name, const KeyDoc& about, const char* otherwise, At at) {
-  Key<Target> key;
-  key.name = name;
-  key.type = ValueType::kWindow;
-  key.required = false;
-  key.range = {0, kLargestSide};
-  key.unit = about.unit;
-  key.doc = about.doc;
-  key.cost = about.cost;
-  key.set = [at](Target& t, const Value& v) { at(t) = std::get<Window>(v); };
-  key.text = [at, otherwise](const Target& t) -> std::string {
-    const std::optional<Window>& w = at(const_cast<Target&>(t));
-    return w ? window_text(*w) : otherwise;
-  };
-  return key;
-}
-/// Builds a key for an optional integer; `otherwise` describes its default.
-template <class Target, class At>
-Key<Target> optional_integer(const char* name, Range range, const KeyDoc& about, const char* otherwise, At at) {
-  return key_of<Target>(name, ValueType::kInteger, range, about, at,
-                        [otherwise](const auto& x) { return x ? std::to_string(*x) : std::string(otherwise); });
-}
-/// Builds a key for an optional vector; `otherwise` describes its default.
-template <class Target, class At>
-Key<Target> optional_vector(const char* name, Range range, const KeyDoc& about, const char* otherwise, At at) {
-  return key_of<Target>(name, ValueType::kVector, range, about, at,
-                        [otherwise](const auto& x) { return x ? vector_text(*x) : std::string(otherwise); });
-}
-/// Builds a key for an optional interval; `otherwise` describes its default.
-template <class Target, class At>
-Key<Target> optional_interval(const char* name, Range range, const KeyDoc& about, const char* otherwise, At at) {
-  return key_of<Target>(name, ValueType::kInterval, range, about, at,
-                        [otherwise](const auto& x) { return x ? interval_text(*x) : std::string(otherwise); });
-}
-/// Builds a key for a string or an integer.
-template <class Target, class At>
-Key<Target> name_or_number(const char* name, const KeyDoc& about, At at) {
-  return key_of<Target>(name, ValueType::kName, {}, about, at, string_text);
-}
-/// Builds a key for a list of choices in any order.
-template <class Target, class At>
-Key<Target> choices(const char* name, std::vector<std::string> choices, const KeyDoc& about, At at) {
-  Key<Target> key = key_of<Target>(name, ValueType::kChoices, {}, about, at, list_text);
-  key.choices = std::move(choices);
+
+/// States the default of a key that may have no value.
+template <class Target>
+Key<Target> otherwise(const char* text, Key<Target> key) {
+  key.otherwise = text;
   return key;
 }
 /// Sets what a key changes, if that differs from its table.

@@ -30,6 +30,8 @@ const char* type_name(const Key<Target>& key) {
     case ValueType::kBoolean: return "boolean";
     case ValueType::kInterval: return "[low, high]";
     case ValueType::kName: return "string or integer";
+    case ValueType::kNumbersByType: return "table of numbers";
+    case ValueType::kColorsByType: return "table of [r, g, b]";
   }
   return "";
 }
@@ -39,9 +41,11 @@ std::string range_text(const Key<Target>& key) {
   switch (key.type) {
     case ValueType::kInteger:
       return fmt::format("{}..{}", static_cast<std::int64_t>(key.range.from), static_cast<std::int64_t>(key.range.to));
-    case ValueType::kNumber: return key.range.text();
+    case ValueType::kNumber:
+    case ValueType::kNumbersByType: return key.range.text();
     case ValueType::kWindow: return "inside the image";
-    case ValueType::kVector: return "each " + key.range.text();
+    case ValueType::kVector:
+    case ValueType::kColorsByType: return "each " + key.range.text();
     case ValueType::kText:
     case ValueType::kName: return "any";
     case ValueType::kInterval: return "low below high";
@@ -60,7 +64,7 @@ template <class Target>
 std::string row(const Key<Target>& key, const Target& defaults) {
   const auto or_dash = [](const std::string& text) { return text.empty() ? std::string("-") : text; };
   std::string standard = key.required ? "**required**" : key.text(defaults);
-  if (standard == "\"\"") standard = "none";
+  if (standard == "\"\"" || standard == "{}") standard = "none";
   std::string out = fmt::format("| `{}` | {} | {} | {}", key.name, type_name(key), range_text(key), or_dash(key.unit));
   return fmt::format("{} | {} | {} | {} |\n", out, standard, key.doc, or_dash(key.cost));
 }

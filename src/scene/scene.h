@@ -157,14 +157,18 @@ struct Interval {
   double low = 0, high = 1;
 };
 
+/// Numbers or colours by particle type, in the order of the types' names.
+using NumbersByType = std::vector<std::pair<std::string, double>>;
+using ColorsByType = std::vector<std::pair<std::string, Vec3d>>;
+
 /// Radii of the spheres of a points file, set by one of `value`, `column`, `element` and `types`; if none is set, those
 /// in the file.
 struct PointsRadius {
-  std::optional<double> value;                        ///< radius of every sphere, scene units
-  std::string column;                                 ///< name of a column
-  std::string element;                                ///< "vdw", "covalent" or "ball"
-  std::vector<std::pair<std::string, double>> types;  ///< radii by particle type, scene units
-  double scale = 1;                                   ///< multiplies column and element radii
+  std::optional<double> value;  ///< radius of every sphere, scene units
+  std::string column;           ///< name of a column
+  std::string element;          ///< "vdw", "covalent" or "ball"
+  NumbersByType types;          ///< scene units
+  double scale = 1;             ///< multiplies column and element radii
 };
 
 /// Colours of the spheres of a points file, set by one of `column`, `element`, `types` and `rgb`; if none is set, those
@@ -175,8 +179,8 @@ struct PointsColor {
   std::optional<Interval> range;   ///< range of the column's values; default: that of the selected spheres
   Vec3d nan_color{0.5, 0.5, 0.5};  ///< colour of NaN values
   std::string element;             ///< "jmol"
-  std::vector<std::pair<std::string, Vec3d>> types;  ///< by particle type
-  bool rgb = false;                                  ///< the file's colours
+  ColorsByType types;
+  bool rgb = false;  ///< the file's colours
 
   bool is_set() const { return !column.empty() || !element.empty() || !types.empty() || rgb; }
   /// True if `map` is a file: names of colour maps contain neither dots nor slashes.

@@ -20,21 +20,22 @@ Table image_table() {
   return {
       "image",
       Part::kView,
-      {integer<S>("width", {1, kLargestSide}, {"px", "Image width", cost}, [](S& s) -> int& { return s.image.width; }),
-       integer<S>("height", {1, kLargestSide}, {"px", "Image height", cost},
-                  [](S& s) -> int& { return s.image.height; }),
+      {integer<S>("width", {1, kLargestSide}, {"px", "Image width", cost}, in(&S::image, &Image::width)),
+       integer<S>("height", {1, kLargestSide}, {"px", "Image height", cost}, in(&S::image, &Image::height)),
        number<S>("pixel_aspect", {0.1, 10}, {"", "Pixel width divided by pixel height on the display"},
-                 [](S& s) -> double& { return s.image.pixel_aspect; }),
-       optional_window<S>(
-           "crop",
-           {"px",
-            "Crop window (EXR data window) in pixels from the top left of the image, as [x, y, width, height]. Its "
-            "pixels are identical to those of the full image, bit for bit. Cannot be combined with `overscan`"},
-           "the whole image", [](S& s) -> std::optional<Window>& { return s.image.crop; }),
+                 in(&S::image, &Image::pixel_aspect)),
+       otherwise(
+           "the whole image",
+           key_of<S>(
+               "crop", ValueType::kWindow, {0, kLargestSide},
+               {"px",
+                "Crop window (EXR data window) in pixels from the top left of the image, as [x, y, width, height]. Its "
+                "pixels are identical to those of the full image, bit for bit. Cannot be combined with `overscan`"},
+               in(&S::image, &Image::crop))),
        integer<S>(
            "overscan", {0, kWidestOverscan},
            {"px", "Rows and columns to render beyond each edge of the image. Cannot be combined with `crop`", cost},
-           [](S& s) -> int& { return s.image.overscan; })}};
+           in(&S::image, &Image::overscan))}};
 }
 
 Table camera_table() {
@@ -45,48 +46,47 @@ Table camera_table() {
                  {"",
                   "`perspective`: rays start at `look_from`. `orthographic`: parallel rays start on the plane through "
                   "`look_from`; what is behind this plane is not visible"},
-                 [](S& s) -> Projection& { return s.camera.projection; }),
+                 in(&S::camera, &Camera::projection)),
        vector<S>("look_from", kAnyLength, {"scene units", "Camera position. May be inside a sphere"},
-                 [](S& s) -> Vec3d& { return s.camera.look_from; }),
+                 in(&S::camera, &Camera::look_from)),
        vector<S>("look_at", kAnyLength, {"scene units", "Point at the centre of the image"},
-                 [](S& s) -> Vec3d& { return s.camera.look_at; }),
+                 in(&S::camera, &Camera::look_at)),
        vector<S>("up", kAnyLength,
                  {"any length", "Up direction of the image. Must not be parallel to the view direction"},
-                 [](S& s) -> Vec3d& { return s.camera.up; }),
+                 in(&S::camera, &Camera::up)),
        number<S>("vfov", {0, 180, true, true}, {"degrees", "Perspective: vertical field of view"},
-                 [](S& s) -> double& { return s.camera.vfov; }),
-       optional_number<S>("width", kLength, {"scene units", "Orthographic: width of the image"},
-                          "none; required for orthographic",
-                          [](S& s) -> std::optional<double>& { return s.camera.width; }),
+                 in(&S::camera, &Camera::vfov)),
+       otherwise("none; required for orthographic",
+                 number<S>("width", kLength, {"scene units", "Orthographic: width of the image"},
+                           in(&S::camera, &Camera::width))),
        number<S>(
            "defocus_angle", {0, 180, false, true},
            {"degrees", "Apex angle of the cone from a point in focus to the rim of the lens. 0 is a pinhole camera",
             "Above 0: one lens sample per path"},
-           [](S& s) -> double& { return s.camera.defocus_angle; }),
-       optional_number<S>("focus_distance", kLength, {"scene units", "Distance from the camera to the focus plane"},
-                          "distance to look_at",
-                          [](S& s) -> std::optional<double>& { return s.camera.focus_distance; }),
+           in(&S::camera, &Camera::defocus_angle)),
+       otherwise("distance to look_at",
+                 number<S>("focus_distance", kLength, {"scene units", "Distance from the camera to the focus plane"},
+                           in(&S::camera, &Camera::focus_distance))),
        number<S>("shutter_open", {-kLongestShutter, kLongestShutter},
-                 {"frames", "Shutter opening time, relative to the frame"},
-                 [](S& s) -> double& { return s.camera.shutter_open; }),
+                 {"frames", "Shutter opening time, relative to the frame"}, in(&S::camera, &Camera::shutter_open)),
        number<S>("shutter_close", {-kLongestShutter, kLongestShutter},
                  {"frames",
                   "Shutter closing time, relative to the frame. If later than `shutter_open`, camera and spheres "
                   "that move during the interval are motion-blurred",
                   "Only if something moves: one extra random dimension per path, and motion-blurred bounds"},
-                 [](S& s) -> double& { return s.camera.shutter_close; })}};
+                 in(&S::camera, &Camera::shutter_close))}};
 }
 
 Table animation_table() {
   return {"animation",
           Part::kOutput,
           {number<S>("fps", {0.001, 1000}, {"frames per second", "Frame rate, written to the EXR header"},
-                     [](S& s) -> double& { return s.animation.fps; }),
+                     in(&S::animation, &Animation::fps)),
            number<S>("turntable", {-kMaxFrame, kMaxFrame},
                      {"frames",
                       "Number of frames per orbit of the camera around `look_at`, about `up`. The camera is at "
                       "`look_from` in frame 1 and moves to its right; negative values: to its left. 0: no orbit"},
-                     [](S& s) -> double& { return s.animation.turntable; })}};
+                     in(&S::animation, &Animation::turntable))}};
 }
 
 Table background_table() {
@@ -99,59 +99,57 @@ Table background_table() {
                   "`gradient`: from `bottom` to `top`, linear in the y component of the unit ray direction. "
                   "`constant`: `color`. `image`: the latitude-longitude map in `file`. `sky`: daylight, computed from "
                   "the scattering of sunlight in the atmosphere; see [Daylight](#daylight)"},
-                 [](S& s) -> BackgroundType& { return s.background.type; }),
+                 in(&S::background, &Background::type)),
        vector<S>("bottom", kLight, {unit, "Gradient: radiance from straight below"},
-                 [](S& s) -> Vec3d& { return s.background.bottom; }),
-       vector<S>("top", kLight, {unit, "Gradient: radiance from straight above"},
-                 [](S& s) -> Vec3d& { return s.background.top; }),
+                 in(&S::background, &Background::bottom)),
+       vector<S>("top", kLight, {unit, "Gradient: radiance from straight above"}, in(&S::background, &Background::top)),
        vector<S>("color", kLight, {unit, "Constant: radiance from every direction"},
-                 [](S& s) -> Vec3d& { return s.background.color; }),
+                 in(&S::background, &Background::color)),
        integer<S>("alpha", {0, 1},
                   {"", "1: the background is opaque. 0: the image is transparent where only the background is visible",
                    "0: costs as much as one layer"},
-                  [](S& s) -> int& { return s.background.alpha; }),
-       optional_vector<S>("backdrop", kLight,
-                          {unit,
-                           "Radiance that camera rays see in place of the background. It illuminates nothing; "
-                           "reflections and refractions still see the background"},
-                          "camera rays see the background",
-                          [](S& s) -> std::optional<Vec3d>& { return s.background.backdrop; }),
-       text<S>("file",
+                  in(&S::background, &Background::alpha)),
+       otherwise("camera rays see the background",
+                 vector<S>("backdrop", kLight,
+                           {unit,
+                            "Radiance that camera rays see in place of the background. It illuminates nothing; "
+                            "reflections and refractions still see the background"},
+                           in(&S::background, &Background::backdrop))),
+       file<S>("file", kBackgroundFile,
                {"",
                 "Image: EXR or HDR file, relative to the scene file, with the poles at +y and -y, +z at the centre and "
                 "+x halfway to the left edge. May contain a frame pattern such as `####`",
                 "12 bytes per texel; 13.3 with `direct_lighting` other than `bsdf`"},
-               [](S& s) -> std::filesystem::path& { return s.background.file; }),
+               in(&S::background, &Background::file)),
        text<S>("color_space",
                {"",
                 "Image: colour space of `file`, if the file does not declare one. Any space of the OCIO config. "
                 "Default: `color.space`"},
-               [](S& s) -> std::string& { return s.background.color_space; }),
+               in(&S::background, &Background::color_space)),
        number<S>("rotation", {-kLargestRotation, kLargestRotation},
                  {"degrees", "Image and sky: rotation about +y; 90 turns +z to +x"},
-                 [](S& s) -> double& { return s.background.rotation; }),
+                 in(&S::background, &Background::rotation)),
        number<S>("exposure", {-kMaxStops, kMaxStops},
                  {"stops", "Image and sky: multiplies the radiance by 2 to this power. The product is at most 2^34"},
-                 [](S& s) -> double& { return s.background.exposure; }),
+                 in(&S::background, &Background::exposure)),
        text<S>("light_group", {"", "Image and sky: light group. Default: the group `default`"},
-               [](S& s) -> std::string& { return s.background.light_group; }),
+               in(&S::background, &Background::light_group)),
        boolean<S>(
            "visible",
            {"", "Image and sky: visible to the camera. If `false`, camera rays see black; reflections still see it"},
-           [](S& s) -> bool& { return s.background.visible; }),
+           in(&S::background, &Background::visible)),
        number<S>("sun_elevation", {-90, 90},
                  {"degrees", "Sky: angle from the horizon to the sun. Negative: the sun has set"},
-                 [](S& s) -> double& { return s.background.sun_elevation; }),
+                 in(&S::background, &Background::sun_elevation)),
        number<S>("sun_azimuth", {-kLargestRotation, kLargestRotation},
-                 {"degrees", "Sky: angle from +z to the sun; 90 is +x"},
-                 [](S& s) -> double& { return s.background.sun_azimuth; }),
+                 {"degrees", "Sky: angle from +z to the sun; 90 is +x"}, in(&S::background, &Background::sun_azimuth)),
        number<S>("turbidity", {kLowestTurbidity, kHighestTurbidity},
                  {"", "Sky: amount of haze. 1: pure air, 2: a clear day, 6: hazy"},
-                 [](S& s) -> double& { return s.background.turbidity; }),
+                 in(&S::background, &Background::turbidity)),
        vector<S>("ground_albedo", kUnit, {unit, "Sky: reflectance of the ground, which also brightens the sky"},
-                 [](S& s) -> Vec3d& { return s.background.ground_albedo; }),
+                 in(&S::background, &Background::ground_albedo)),
        boolean<S>("sun", {"", "Sky: includes the sun's disc, which is sampled as a separate light"},
-                  [](S& s) -> bool& { return s.background.sun; })}};
+                  in(&S::background, &Background::sun))}};
 }
 
 Table render_table() {
@@ -160,30 +158,29 @@ Table render_table() {
       Part::kView,
       {integer<S>("samples", {1, std::numeric_limits<std::int32_t>::max()},
                   {"per pixel", "Paths per pixel", "Time scales linearly; four times as many samples halve the noise"},
-                  [](S& s) -> int& { return s.render.samples; }),
+                  in(&S::render, &Render::samples)),
        integer<S>("max_depth", {1, kDeepestPath},
                   {"rays",
                    "Maximum number of rays per path, counted as in the book: the camera ray is the first. If the last "
                    "ray hits a sphere, only the sphere's emission counts",
                    "An upper bound only: most paths leave the scene earlier"},
-                  [](S& s) -> int& { return s.render.max_depth; }),
+                  in(&S::render, &Render::max_depth)),
        integer<S>("roulette_depth", {0, kDeepestPath},
                   {"scattering events",
                    "Scattering events before Russian roulette begins. It terminates paths with a probability that "
                    "grows as their throughput falls, and divides the throughput of survivors by their survival "
                    "probability; the result is unbiased. 0: no roulette",
                    "0: up to twice the render time, especially in dark scenes"},
-                  [](S& s) -> int& { return s.render.roulette_depth; }),
+                  in(&S::render, &Render::roulette_depth)),
        choice<S>("sampler", {"independent", "sobol", "blue-noise"},
                  {"",
                   "Sampler. `independent`: uncorrelated random numbers, as in the book. `sobol`: Owen-scrambled Sobol "
                   "sequence (low discrepancy). `blue-noise`: a Sobol sequence shared by neighbouring pixels, so that "
                   "their errors form blue noise",
                   "`sobol` and `blue-noise` need fewer samples for the same error"},
-                 [](S& s) -> Sampler& { return s.render.sampler; }),
+                 in(&S::render, &Render::sampler)),
        integer<S>("seed", {0, std::numeric_limits<std::uint32_t>::max()},
-                  {"", "Random seed. The same seed gives the same image, bit for bit"},
-                  [](S& s) -> std::uint32_t& { return s.render.seed; }),
+                  {"", "Random seed. The same seed gives the same image, bit for bit"}, in(&S::render, &Render::seed)),
        changes(Part::kGeometry,
                choice<S>("precision", {"exact", "fast", "book"},
                          {"",
@@ -191,11 +188,11 @@ Table render_table() {
                           "intersection formula with its minimum t, for comparison: sphere by sphere, without SIMD, "
                           "for any `accelerator`",
                           "`fast` trades accuracy for speed; the time of `book` grows with the number of spheres"},
-                         [](S& s) -> Precision& { return s.render.precision; })),
+                         in(&S::render, &Render::precision))),
        choice<S>("shading", {"path", "normal", "flat"},
                  {"", "`path`: path tracing. `normal`: surface normals as colours. `flat`: albedo without lighting",
                   "`normal` and `flat`: one ray per sample"},
-                 [](S& s) -> Shading& { return s.render.shading; }),
+                 in(&S::render, &Render::shading)),
        changes(
            Part::kGeometry,
            choice<S>(
@@ -204,14 +201,14 @@ Table render_table() {
                 "`embree`: Embree's BVH. `list`: each ray tests every sphere, for comparison. The image is the same, "
                 "bit for bit; in `fast` for static spheres up to 10,000 times the scene's size from the origin",
                 "`list`: time is proportional to the number of spheres"},
-               [](S& s) -> Accelerator& { return s.render.accelerator; })),
+               in(&S::render, &Render::accelerator))),
        choice<S>(
            "traversal", {"auto", "packet", "single"},
            {"",
             "Traversal of Embree's BVH, for comparison: by packets of rays, or ray by ray. `auto`: times both with "
             "rays of the scene and uses the faster. The image is the same, bit for bit",
             "-"},
-           [](S& s) -> Traversal& { return s.render.traversal; }),
+           in(&S::render, &Render::traversal)),
        changes(
            Part::kLook,
            choice<S>(
@@ -222,15 +219,15 @@ Table render_table() {
                 "mirrors and glass and inside emitters, where it is impossible",
                 "`mis` and `light`: one shadow ray per vertex on a diffuse material or fuzzy metal; none in scenes "
                 "without lights"},
-               [](S& s) -> DirectLighting& { return s.render.direct_lighting; })),
+               in(&S::render, &Render::direct_lighting))),
        choice<S>("filter", {"box", "gaussian", "blackman-harris", "mitchell"},
                  {"",
                   "Pixel filter. `box`: the area of the pixel, as in the book. `gaussian`, `blackman-harris`: softer. "
                   "`mitchell`: sharper, with negative lobes"},
-                 [](S& s) -> Filter& { return s.render.filter; }),
-       optional_number<S>("filter_width", {0, kWidestFilter, true, false}, {"px", "Full width of the filter"},
-                          "1 for box, 3 for gaussian and blackman-harris, 4 for mitchell",
-                          [](S& s) -> std::optional<double>& { return s.render.filter_width; })}};
+                 in(&S::render, &Render::filter)),
+       otherwise("1 for box, 3 for gaussian and blackman-harris, 4 for mitchell",
+                 number<S>("filter_width", {0, kWidestFilter, true, false}, {"px", "Full width of the filter"},
+                           in(&S::render, &Render::filter_width)))}};
 }
 
 Table output_table() {
@@ -239,21 +236,26 @@ Table output_table() {
   return {
       "output",
       Part::kOutput,
-      {choices<S>("layers", std::move(layers),
-                  {"",
-                   "Layers of EXR files in addition to the beauty image. `all`: every layer that the scene can have, "
-                   "except `halves`",
-                   "One layer adds about 20 % to the render time of a simple scene, all layers 70 %. Larger files"},
-                  [](S& s) -> std::vector<std::string>& { return s.output.layers; })}};
+      {key_of<S>("layers", ValueType::kChoices, {},
+                 {"",
+                  "Layers of EXR files in addition to the beauty image. `all`: every layer that the scene can have, "
+                  "except `halves`",
+                  "One layer adds about 20 % to the render time of a simple scene, all layers 70 %. Larger files"},
+                 in(&S::output, &Output::layers), std::move(layers))}};
 }
 
 }  // namespace
 
-std::string window_text(const Window& w) { return fmt::format("[{}, {}, {}, {}]", w.x, w.y, w.width, w.height); }
-
-std::string interval_text(const Interval& interval) {
-  return fmt::format("[{}, {}]", number_text(interval.low), number_text(interval.high));
-}
+const FileRole kPointsFile{"points file", true};
+const FileRole kColorMapFile{"colour map", false, [](const std::string& value) {
+                               PointsColor color;
+                               color.map = value;
+                               return color.has_map_file();
+                             }};
+const FileRole kBackgroundFile{"background image", true};
+const FileRole kTextureFile{"texture", true};
+const FileRole kOcioConfigFile{
+    "OCIO config", false, [](const std::string& value) { return !value.empty() && !value.starts_with("ocio://"); }};
 
 std::string Range::text() const {
   if (!from_open && !to_open) return fmt::format("{}..{}", number_text(from), number_text(to));
@@ -275,24 +277,23 @@ const std::vector<Table>& tables() {
             Part::kAssignment,
             text<S>("space",
                     {"", "Colour space of all colours in the scene file: any scene-linear space of the OCIO config"},
-                    [](S& s) -> std::string& { return s.color.space; })),
+                    in(&S::color, &Color::space))),
         changes(Part::kAssignment,
                 text<S>("working", {"", "Colour space for rendering and for EXR output. Default: `space`"},
-                        [](S& s) -> std::string& { return s.color.working; })),
+                        in(&S::color, &Color::working))),
         changes(
             Part::kAssignment,
-            text<S>(
-                "config",
+            file<S>(
+                "config", kOcioConfigFile,
                 {"",
                  "OCIO config, relative to the scene file. Default: `$OCIO`, or the built-in config if it is not set"},
-                [](S& s) -> std::filesystem::path& { return s.color.config; })),
+                in(&S::color, &Color::config))),
         text<S>("display", {"", "Display for PNG, TIFF, JPEG and PPM. Default: that of the config"},
-                [](S& s) -> std::string& { return s.color.display; }),
-        text<S>("view", {"", "View of the display. Default: that of the display"},
-                [](S& s) -> std::string& { return s.color.view; }),
-        text<S>("look", {"", "Look to apply before the view"}, [](S& s) -> std::string& { return s.color.look; }),
+                in(&S::color, &Color::display)),
+        text<S>("view", {"", "View of the display. Default: that of the display"}, in(&S::color, &Color::view)),
+        text<S>("look", {"", "Look to apply before the view"}, in(&S::color, &Color::look)),
         number<S>("exposure", {-kMaxStops, kMaxStops}, {"stops", "Exposure of display output. Does not affect EXR"},
-                  [](S& s) -> double& { return s.color.exposure; })}},
+                  in(&S::color, &Color::exposure))}},
       output_table(),
       animation_table()};
   return all;
@@ -300,17 +301,16 @@ const std::vector<Table>& tables() {
 
 const std::vector<Key<Sphere>>& sphere_keys() {
   static const std::vector<Key<Sphere>> keys = {
-      required(vector<Sphere>("center", kAnyLength, {"scene units", "Centre"},
-                              [](Sphere& s) -> Vec3d& { return s.center; })),
+      required(vector<Sphere>("center", kAnyLength, {"scene units", "Centre"}, &Sphere::center)),
       required(number<Sphere>(
           "radius", kAnyLength,
           {"scene units", "Radius. Must not be 0. If negative, the normal points inward, for hollow glass"},
-          [](Sphere& s) -> double& { return s.radius; })),
+          &Sphere::radius)),
       changes(Part::kOutput,
               text<Sphere>("name", {"", "Name in the CryptoObject matte. Default: `sphere.` and the index"},
-                           [](Sphere& s) -> std::string& { return s.name; })),
-      changes(Part::kOutput, text<Sphere>("group", {"", "CryptoGroup name; objects of a group share one matte"},
-                                          [](Sphere& s) -> std::string& { return s.group; }))};
+                           &Sphere::name)),
+      changes(Part::kOutput,
+              text<Sphere>("group", {"", "CryptoGroup name; objects of a group share one matte"}, &Sphere::group))};
   return keys;
 }
 

@@ -9,21 +9,26 @@
 #include <vector>
 
 #include "scene/changed_parts.h"
-#include "scene/value.h"
+#include "scene/value_text.h"
 
-/// The schema of scene files: the only description of all keys, used for reading, validation, `--set`, suggestions,
-/// `--settings` and the documentation. Defaults are the member initialisers in scene/scene.h.
+/// The schema of scene files: the description of all keys, used for reading, writing, validation, `--set`, suggestions,
+/// `--settings`, the files that a scene names and the documentation. Defaults are the member initialisers in
+/// scene/scene.h. Two keys are not in it, because they refer to a material by its name: `material` of [[sphere]] and
+/// [[points]].
 namespace orrery::scene {
 
 enum class TextureType;
 enum class TextureUse;
 struct Texture;
 
-/// Formats a window for a scene file: "[0, 0, 640, 360]".
-std::string window_text(const Window& window);
-
-/// Formats an interval for a scene file: "[0, 12]".
-std::string interval_text(const Interval& interval);
+/// What a file is to the scene that names it.
+struct FileRole {
+  const char* name;         ///< for messages
+  bool has_frames = false;  ///< the name may be a pattern for a sequence of files
+  /// Returns whether a value names a file; null: unless it is empty.
+  bool (*names_file)(const std::string& value) = nullptr;
+};
+extern const FileRole kPointsFile, kColorMapFile, kBackgroundFile, kTextureFile, kOcioConfigFile;
 
 /// One key of a table in a scene file. A dotted name is that of a key in a subtable: "radius.column" is `column` in
 /// `radius = { column = "diameter" }`.
@@ -36,10 +41,18 @@ struct Key {
   std::string unit;                  ///< may be empty
   std::string doc;                   ///< description, one line of Markdown
   std::string cost;                  ///< cost in time or memory; may be empty
-  bool required;
   std::function<void(Target&, const Value&)> set;
-  std::function<std::string(const Target&)> text;  ///< value as written in a scene file
-  std::optional<Part> part = {};                   ///< what the key changes; empty: as the other keys of its table
+  std::function<std::optional<Value>(const Target&)> get;  ///< nullopt: no value, as if the key were not in the file
+  bool required = false;
+  std::string otherwise = {};      ///< default of a key that may have no value, for the documentation
+  std::optional<Part> part = {};   ///< what the key changes; empty: as the other keys of its table
+  const FileRole* file = nullptr;  ///< the value is the name of a file
+
+  /// The value as written in a scene file.
+  std::string text(const Target& target) const {
+    const std::optional<Value> value = get(target);
+    return value ? value_text(*value) : otherwise;
+  }
 };
 
 /// A table that a scene has at most once; keys in documentation order.

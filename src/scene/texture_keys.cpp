@@ -24,14 +24,13 @@ Key<Texture> value(TextureUse use, const char* name, const char* doc, Vec3d Text
     return key;
   }
   const Range range = use == TextureUse::kRadiance ? kLight : kUnit;
-  return vector<Texture>(name, range, {"scene-linear", doc}, [member](Texture& t) -> Vec3d& { return t.*member; });
+  return vector<Texture>(name, range, {"scene-linear", doc}, member);
 }
 
 Keys noise_keys(TextureUse use, const char* scale) {
-  return {number<Texture>("scale", {kSmallestScale, kLargestScale}, {"per scene unit", scale},
-                          [](Texture& t) -> double& { return t.scale; }),
+  return {number<Texture>("scale", {kSmallestScale, kLargestScale}, {"per scene unit", scale}, &Texture::scale),
           integer<Texture>("seed", {0, std::numeric_limits<std::uint32_t>::max()}, {"", "Seed of the noise"},
-                           [](Texture& t) -> std::uint32_t& { return t.seed; }),
+                           &Texture::seed),
           value(use, "low", "Value where the pattern is 0", &Texture::low),
           value(use, "high", "Value where the pattern is 1", &Texture::high)};
 }
@@ -43,7 +42,7 @@ std::vector<TextureTypeKeys> make_texture_types(TextureUse use) {
        "3D checkerboard of cubes in world space, with a cube corner at the origin",
        TextureType::kChecker,
        {number<Texture>("scale", {kSmallestScale, kLargestScale}, {"scene units", "Edge length of the cubes"},
-                        [](Texture& t) -> double& { return t.scale; }),
+                        &Texture::scale),
         required(value(use, "even",
                        "Value of the cube between 0 and `scale` on each axis, and of all cubes of the same parity",
                        &Texture::low)),
@@ -57,27 +56,26 @@ std::vector<TextureTypeKeys> make_texture_types(TextureUse use) {
       {"image",
        "Latitude-longitude image mapped onto the sphere",
        TextureType::kImage,
-       {required(text<Texture>(
-            "file",
+       {required(file<Texture>(
+            "file", kTextureFile,
             {"",
              "Image file, relative to the scene file: EXR, HDR, PNG, JPEG, TIFF or PPM, with +y at the top, +x "
              "at the centre and +z halfway to the left edge. May contain a frame pattern such as `####`",
              "16 bytes per texel"},
-            [](Texture& t) -> std::filesystem::path& { return t.file; })),
+            &Texture::file)),
         text<Texture>("color_space",
                       {"",
                        "Colour space of `file`, if the file does not declare one. Default: `srgb_texture` for 8-bit "
                        "and 16-bit integers, else `color.space`. Ignored for number keys such as `fuzz`"},
-                      [](Texture& t) -> std::string& { return t.color_space; }),
+                      &Texture::color_space),
         number<Texture>("rotation", {-kLargestRotation, kLargestRotation},
-                        {"degrees", "Rotation about +y; 90 turns +z to +x"},
-                        [](Texture& t) -> double& { return t.rotation; }),
+                        {"degrees", "Rotation about +y; 90 turns +z to +x"}, &Texture::rotation),
         choice<Texture>("filter", {"mip", "bilinear"},
                         {"",
                          "`mip`: a mip map averages small texels over a sixteenth of a pixel or lobe. `bilinear`: "
                          "texels are interpolated, and averaged only by the samples",
                          "`bilinear`: up to three times the error at the same number of samples, without blur"},
-                        [](Texture& t) -> TextureFilter& { return t.filter; })}}};
+                        &Texture::filter)}}};
 }
 
 }  // namespace

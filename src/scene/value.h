@@ -11,9 +11,23 @@
 namespace orrery::scene {
 
 /// Value of a key in a scene file. A kName is a string or an integer and is stored as a string.
-using Value = std::variant<std::int64_t, double, Vec3d, std::string, std::vector<std::string>, Window, bool, Interval>;
+using Value = std::variant<std::int64_t, double, Vec3d, std::string, std::vector<std::string>, Window, bool, Interval,
+                           NumbersByType, ColorsByType>;
 
-enum class ValueType { kInteger, kNumber, kVector, kText, kChoice, kChoices, kWindow, kBoolean, kInterval, kName };
+enum class ValueType {
+  kInteger,
+  kNumber,
+  kVector,
+  kText,
+  kChoice,
+  kChoices,
+  kWindow,
+  kBoolean,
+  kInterval,
+  kName,
+  kNumbersByType,  ///< a table from particle types to numbers
+  kColorsByType,
+};
 
 /// Interval of allowed numbers, closed unless an end is marked open; for a vector it applies to each component.
 struct Range {

@@ -135,9 +135,11 @@ TEST_F(CliPlot, PerspectiveAndTurntableAreFitted) {
     return text_of(folder_ / "s.toml");
   };
   const std::string wide = scene("--set 'camera.projection=\"perspective\"'");
-  EXPECT_TRUE(contains(wide, "vfov = 90")) << wide;
-  EXPECT_FALSE(contains(wide, "\nwidth = 1 ")) << wide;
-  EXPECT_EQ(scene("--set camera.vfov=30"), scene("--set camera.vfov=30 --set 'camera.projection=\"perspective\"'"));
+  EXPECT_FALSE(contains(wide, "orthographic")) << wide;  // the defaults: perspective, 90 degrees
+  EXPECT_EQ(scene("--set camera.vfov=90"), wide);
+  const std::string narrow = scene("--set camera.vfov=30");
+  EXPECT_TRUE(contains(narrow, "vfov = 30")) << narrow;
+  EXPECT_EQ(scene("--set camera.vfov=30 --set 'camera.projection=\"perspective\"'"), narrow);
   EXPECT_FALSE(contains(scene("--set animation.turntable=0"), "up = [0.0, 0.0, 1.0]"));
   EXPECT_TRUE(contains(scene("--set animation.turntable=4"), "turntable = 4")) << text_of(folder_ / "s.toml");
 }

@@ -6,95 +6,234 @@
 #include <cmath>
 #include <memory>
 #include <random>
+#include <set>
 
+#include <fmt/core.h>
+
+#include "base/error.h"
+#include "scene/animation.h"
 #include "scene/schema.h"
-#include "scene/textures.h"
+#include "scene/texture.h"
 #include "support/scene_files.h"
 
 namespace orrery::format {
 namespace {
 
+using math::Vec3d;
+using scene::Value;
+using scene::ValueType;
 using support::SceneFiles;
 
-scene::TextureSlot texture(scene::TextureType type) {
-  scene::Texture out;
-  out.type = type;
-  out.scale = 1.0 / 3;
-  out.seed = 4000000000u;
-  out.low = {0.1, 0.1, 0.1};
-  out.high = {2.0 / 3, 2.0 / 3, 2.0 / 3};
-  out.file = "a \"b\".png";
-  out.rotation = -90;
-  return std::make_shared<const scene::Texture>(out);
+/// Makes scenes of random values, one of each key that the schema describes.
+class RandomScene {
+ public:
+  explicit RandomScene(std::uint64_t seed) : random_(seed) {}
+
+  scene::Scene make() {
+    scene::Scene s;
+    for (const scene::Table& table : scene::tables()) fill(table.keys, s);
+    for (std::size_t i = below(4); i < 4; ++i) s.materials.push_back({fmt::format("{}{}", word(), i), material()});
+    if (s.materials.empty()) s.materials.push_back({"a.b", scene::Dielectric{}});
+    for (std::size_t i = below(4); i < 4; ++i) {
+      scene::Sphere sphere;
+      fill_all(scene::sphere_keys(), sphere);
+      sphere.name = fmt::format("{}{}", word(), i);
+      sphere.material = static_cast<std::uint32_t>(below(s.materials.size()));
+      s.spheres.push_back(sphere);
+    }
+    for (std::size_t i = below(4); i < 3; ++i) {
+      scene::Points points;
+      fill(scene::points_keys(), points);
+      points.file = word() + ".ply";
+      points.material = static_cast<std::uint32_t>(below(s.materials.size()));
+      if (points.radius.value) points.radius = {*points.radius.value, "", "", {}};  // excludes the keys of its table
+      s.points.push_back(points);
+    }
+    for (const std::string& name : scene::animated_names(s))
+      if (const auto target = below(8) == 0 ? scene::find_animated(s, name) : std::nullopt)
+        s.tracks.push_back(track(name, *target));
+    return s;
+  }
+
+ private:
+  std::size_t below(std::size_t n) { return random_() % n; }
+
+  double number(const scene::Range& range) {
+    const double ends[] = {range.from, range.to, 0.0, -0.0, 1.0 / 3};
+    for (;;) {
+      const double u = std::uniform_real_distribution<double>(0, 1)(random_), at = ends[below(5)];
+      const double x = below(3) == 0   ? at
+                       : below(2) == 0 ? range.from + u * (range.to - range.from)
+                                       : std::ldexp(u - 0.5, static_cast<int>(below(100)) - 60);
+      if (range.contains(x)) return x;
+    }
+  }
+  Vec3d vector(const scene::Range& range) { return {number(range), number(range), number(range)}; }
+  std::string word() {
+    const char* const parts[] = {"a", "B", "7", " ", ".", "\"", "\\", "\n", "\x1b", "\xC3\xBC", "#", "=", "]", "'"};
+    std::string out = "w";
+    for (std::size_t i = below(6); i > 0; --i) out += parts[below(std::size(parts))];
+    return out;
+  }
+
+  template <class Target>
+  Value value(const scene::Key<Target>& key) {
+    switch (key.type) {
+      case ValueType::kInteger:
+        return std::uniform_int_distribution<std::int64_t>(static_cast<std::int64_t>(key.range.from),
+                                                           static_cast<std::int64_t>(key.range.to))(random_);
+      case ValueType::kNumber: return number(key.range);
+      case ValueType::kVector: return vector(key.range);
+      case ValueType::kText: return word();
+      case ValueType::kName: return below(2) == 0 ? word() : "12";
+      case ValueType::kInterval: {
+        const double low = number(key.range);
+        return scene::Interval{std::min(low, 0.5), std::max(low, 0.5) + 1};
+      }
+      case ValueType::kChoice: return key.choices[below(key.choices.size())];
+      case ValueType::kWindow: return scene::Window{1, 2, static_cast<int>(below(9)), 4};
+      case ValueType::kBoolean: return below(2) == 0;
+      case ValueType::kChoices: return std::vector<std::string>{key.choices.back(), key.choices.front()};
+      case ValueType::kNumbersByType:
+        return scene::NumbersByType{{"1", number(key.range)}, {word(), number(key.range)}};
+      case ValueType::kColorsByType: return scene::ColorsByType{{"1", vector(key.range)}, {word(), vector(key.range)}};
+    }
+    return {};
+  }
+  template <class Target>
+  void fill_all(const std::vector<scene::Key<Target>>& keys, Target& target) {
+    for (const auto& key : keys) key.set(target, value(key));
+  }
+  template <class Target>
+  void fill(const std::vector<scene::Key<Target>>& keys, Target& target) {
+    for (const auto& key : keys)
+      if (below(2) == 0) key.set(target, value(key));
+  }
+  scene::MaterialModel material() {
+    const scene::MaterialType& type = scene::material_types()[below(scene::material_types().size())];
+    scene::MaterialModel out = type.model;
+    fill(type.keys, out);
+    for (const scene::TexturedKey& key : type.textured) {
+      if (below(2) == 0) continue;
+      for (const auto& constant : type.keys)
+        if (constant.name == key.name) constant.set(out, constant.get(type.model).value());
+      const scene::TextureTypeKeys& keys = scene::texture_types(key.use)[below(5)];
+      scene::Texture texture;
+      texture.type = keys.type;
+      fill_all(keys.keys, texture);
+      key.at(out) = std::make_shared<const scene::Texture>(texture);
+    }
+    return out;
+  }
+  scene::Track track(const std::string& name, const scene::Animated& target) {
+    scene::Track out{name, static_cast<scene::Interpolation>(below(3)), {-1.5, 0.25, 1e5}, {}};
+    for (std::size_t i = 0; i < 3; ++i)
+      out.values.push_back(target.type == ValueType::kVector ? vector(target.range)
+                                                             : Vec3d{number(target.range), 0, 0});
+    return out;
+  }
+
+  std::mt19937_64 random_;
+};
+
+template <class Target>
+void expect_same(const std::vector<scene::Key<Target>>& keys, const Target& a, const Target& b) {
+  for (const auto& key : keys) EXPECT_EQ(key.text(a), key.text(b)) << key.name;
 }
 
-/// A scene without default values, with numbers of many decimals.
-scene::Scene odd_scene() {
-  scene::Scene s;
-  s.image = {17, 19};
-  s.camera = {{0.1, -0.0, 1e17}, {1.0 / 3, 2, 3}, {0, 0.2, 1}, 33.3, 0.7, 1e-20};
-  s.background = {scene::BackgroundType::kConstant, {0.1, 0.2, 0.3}, {4, 5, 6}, {7, 8, 9}};
-  s.render = {3, 4, 4000000000u, scene::Precision::kBook, scene::Shading::kFlat, scene::Accelerator::kList};
-  s.color.space = "a \"b\" \\ \xC3\xBC\n";
-  s.materials = {
-      {"z", scene::Lambertian{{0.1, 0.2, 1.0 / 3}}},
-      {"dark gold", scene::Metal{{0.4, 0.5, 0.6}, 1.0 / 7}},
-      {"", scene::Dielectric{1e-6, scene::Fresnel::kExact}},
-      {"a.b", scene::Hemisphere{{0, 0.5, 1}}},
-      {"checkered", scene::Lambertian{{0.5, 0.5, 0.5}, texture(scene::TextureType::kChecker)}},
-      {"map",
-       scene::Metal{{0.5, 0.5, 0.5}, 0, texture(scene::TextureType::kImage), texture(scene::TextureType::kMarble)}}};
-  s.spheres = {{{1, -2.5, 1e-300}, -1.0 / 3, 1, "left \"one\""}, {{1e18, 0, -0.0}, 1e-30, 3, ""}};
-  return s;
+void expect_same(const scene::Scene& a, const scene::Scene& b) {
+  for (const scene::Table& table : scene::tables()) expect_same(table.keys, a, b);
+  ASSERT_EQ(a.materials.size(), b.materials.size());
+  for (std::size_t i = 0; i < a.materials.size(); ++i) {
+    EXPECT_EQ(a.materials[i].name, b.materials[i].name);
+    ASSERT_EQ(a.materials[i].model.index(), b.materials[i].model.index());
+    const scene::MaterialType& type = scene::material_types()[a.materials[i].model.index()];
+    expect_same(type.keys, a.materials[i].model, b.materials[i].model);
+    for (const scene::TexturedKey& key : type.textured) {
+      const scene::TextureSlot from = key.get(a.materials[i].model), to = key.get(b.materials[i].model);
+      ASSERT_EQ(from == nullptr, to == nullptr);
+      if (from == nullptr) continue;
+      ASSERT_EQ(from->type, to->type);
+      expect_same(scene::texture_types(key.use)[static_cast<std::size_t>(from->type)].keys, *from, *to);
+    }
+  }
+  ASSERT_EQ(a.spheres.size(), b.spheres.size());
+  for (std::size_t i = 0; i < a.spheres.size(); ++i) {
+    expect_same(scene::sphere_keys(), a.spheres[i], b.spheres[i]);
+    EXPECT_EQ(a.spheres[i].material, b.spheres[i].material);
+  }
+  ASSERT_EQ(a.points.size(), b.points.size());
+  for (std::size_t i = 0; i < a.points.size(); ++i) {
+    expect_same(scene::points_keys(), a.points[i], b.points[i]);
+    EXPECT_EQ(a.points[i].material, b.points[i].material);
+  }
+  ASSERT_EQ(a.tracks.size(), b.tracks.size());
+  for (std::size_t i = 0; i < a.tracks.size(); ++i) {
+    EXPECT_EQ(a.tracks[i].target, b.tracks[i].target);
+    EXPECT_EQ(a.tracks[i].interpolation, b.tracks[i].interpolation);
+    EXPECT_EQ(a.tracks[i].frames, b.tracks[i].frames);
+    EXPECT_EQ(a.tracks[i].values, b.tracks[i].values);
+  }
 }
 
-TEST(FormatWriteScene, ReadsBackToTheSameScene) {
-  SceneFiles files;
-  const scene::Scene s = odd_scene();
-  const scene::Scene read = files.read(scene_text(s, "a comment")).scene;
-  for (const scene::Table& table : scene::tables())
-    for (const auto& key : table.keys) EXPECT_EQ(key.text(read), key.text(s)) << key.name;
-  ASSERT_EQ(read.materials.size(), s.materials.size());
-  for (std::size_t i = 0; i < s.materials.size(); ++i) {
-    EXPECT_EQ(read.materials[i].name, s.materials[i].name);
-    ASSERT_EQ(read.materials[i].model.index(), s.materials[i].model.index());
-    for (const auto& key : scene::material_types()[s.materials[i].model.index()].keys)
-      EXPECT_EQ(key.text(read.materials[i].model), key.text(s.materials[i].model)) << key.name;
+/// A scene file as authored; fails the test if the reader rejects it.
+scene::Scene read_authored(const std::string& text, const Overrides& overrides = {}) {
+  SceneReader reader("scene.toml", overrides, {std::make_shared<const std::string>(text), std::nullopt});
+  scene::Scene out = reader.scene();
+  try {
+    reader.finish();
+  } catch (const base::Error& error) {
+    ADD_FAILURE() << base::formatted(error.diagnostics().at(0)) << "\n" << text;
   }
-  const auto written = scene::textures(s), again = scene::textures(read);
-  ASSERT_EQ(again.size(), written.size());
-  for (std::size_t i = 0; i < written.size(); ++i) {
-    EXPECT_EQ(again[i].key, written[i].key);
-    ASSERT_EQ(again[i].texture->type, written[i].texture->type);
-    const auto& types = scene::texture_types(written[i].use);
-    for (const auto& key : types[static_cast<std::size_t>(written[i].texture->type)].keys)
-      EXPECT_EQ(key.text(*again[i].texture), key.text(*written[i].texture)) << key.name;
-  }
-  ASSERT_EQ(read.spheres.size(), s.spheres.size());
-  for (std::size_t i = 0; i < s.spheres.size(); ++i) {
-    EXPECT_EQ(read.spheres[i].center, s.spheres[i].center);
-    EXPECT_EQ(read.spheres[i].radius, s.spheres[i].radius);
-    EXPECT_EQ(read.spheres[i].material, s.spheres[i].material);
-    EXPECT_EQ(read.spheres[i].name, s.spheres[i].name);
-  }
-  EXPECT_TRUE(std::signbit(read.camera.look_from.y) && std::signbit(read.spheres[1].center.z)) << "-0 is not 0";
+  return out;
 }
 
-TEST(FormatWriteScene, RandomNumbersReadBackToTheSameBits) {
-  SceneFiles files;
-  std::mt19937_64 random(1);
-  std::uniform_real_distribution<double> mantissa(1, 2);
-  std::uniform_int_distribution<int> exponent(-90, 58);
-  scene::Scene s;
-  s.materials = {{"a", scene::Dielectric{}}};
-  const auto number = [&] { return std::ldexp(mantissa(random), exponent(random)); };
-  for (int i = 0; i < 2000; ++i) s.spheres.push_back({{number(), -number(), number()}, number(), 0, ""});
-  const scene::Scene read = files.read(scene_text(s, "")).scene;
-  ASSERT_EQ(read.spheres.size(), s.spheres.size());
-  for (std::size_t i = 0; i < s.spheres.size(); ++i) {
-    EXPECT_EQ(read.spheres[i].center, s.spheres[i].center);
-    EXPECT_EQ(read.spheres[i].radius, s.spheres[i].radius);
+TEST(FormatWriteScene, AnySceneReadsBackToTheSameScene) {
+  for (std::uint64_t seed = 0; seed < 300 && !testing::Test::HasFailure(); ++seed) {
+    const scene::Scene written = RandomScene(seed).make();
+    const std::string text = scene_text(written, "a comment");
+    expect_same(written, read_authored(text));
+    EXPECT_EQ(scene_text(read_authored(text), "a comment"), text);
   }
+}
+
+/// A scene file whose sequences and animated keys have values that depend on the frame.
+constexpr const char* kAuthored = R"(# a comment
+[camera]
+vfov = 12
+[background]
+type = "image"
+file = "sky.####.exr"
+[material]
+zinc = { type = "metal", albedo = [0.1, 0.30000000000000004, 1], fuzz = 1e-7 }
+[material."a b"]
+type = "lambertian"
+albedo = { texture = "image", file = "earth.%04d.png" }
+[[points]]
+file = "a.####.ply"
+material = "zinc"
+[[key]]
+target = "camera.vfov"
+frames = [1, 2]
+values = [30, 40.5]
+)";
+
+TEST(FormatWriteScene, AnAuthoredSceneKeepsWhatDependsOnTheFrame) {
+  const scene::Scene authored = read_authored(kAuthored);
+  EXPECT_EQ(authored.camera.vfov, 12);
+  const std::string text = scene_text(authored, {});
+  for (const char* kept : {"\"sky.####.exr\"", "\"earth.%04d.png\"", "\"a.####.ply\"", "vfov = 12", "[30, 40.5]"})
+    EXPECT_NE(text.find(kept), std::string::npos) << kept << "\n" << text;
+}
+
+TEST(FormatWriteScene, OverridesAreApplied) {
+  const scene::Scene written = read_authored(kAuthored, {"camera.vfov=30", "material.zinc.type=dielectric",
+                                                         "material.copper={type=\"metal\",albedo=[1,0,0]}"});
+  expect_same(written, read_authored(scene_text(written, {})));
+  EXPECT_EQ(written.camera.vfov, 30);
+  ASSERT_EQ(written.materials.size(), 3u);
+  EXPECT_EQ(written.materials[0].name, "zinc") << "points files count materials in the order of the file";
+  EXPECT_TRUE(std::holds_alternative<scene::Dielectric>(written.materials[0].model));
 }
 
 TEST(FormatWriteScene, DefaultsAreNotWritten) {
@@ -140,6 +279,44 @@ TEST(FormatWriteScene, MissingFolderIsCannotCreate) {
   } catch (const base::Error& error) {
     EXPECT_EQ(error.kind(), base::ErrorKind::kCannotCreate);
   }
+}
+
+/// The error of check_unedited() for a file of these bytes; empty: none.
+std::string refusal(const std::string& bytes) {
+  const support::TempDir folder;
+  support::write_bytes(folder / "a.toml", bytes);
+  try {
+    check_unedited(folder / "a.toml");
+  } catch (const base::Error& error) {
+    EXPECT_EQ(error.kind(), base::ErrorKind::kCannotCreate);
+    return error.what();
+  }
+  return "";
+}
+
+TEST(FormatWriteScene, AMarkedTextIsAComment) {
+  const std::string text = marked_text("[image]\n");
+  EXPECT_TRUE(text.starts_with("# Written by orrery")) << text;
+  EXPECT_TRUE(text.ends_with("\n[image]\n")) << text;
+  EXPECT_EQ(text, marked_text("[image]\n"));
+}
+
+TEST(FormatWriteScene, UneditedAndMissingFilesMayBeReplaced) {
+  EXPECT_EQ(refusal(marked_text("[image]\nwidth = 3\n")), "");
+  EXPECT_EQ(refusal(marked_text("")), "");
+  const support::TempDir folder;
+  EXPECT_NO_THROW(check_unedited(folder / "none.toml"));
+}
+
+TEST(FormatWriteScene, EditedAndForeignFilesMayNot) {
+  const std::string text = marked_text("[image]\nwidth = 3\n");
+  for (const std::string& edited : {text + "\n", text.substr(0, text.size() - 1), text + "# note\n"})
+    EXPECT_NE(refusal(edited).find("edited since orrery wrote it"), std::string::npos) << edited;
+  std::string digit = text;
+  digit[digit.find('\n') - 1] ^= 1;
+  EXPECT_NE(refusal(digit).find("edited since orrery wrote it"), std::string::npos) << digit;
+  for (const std::string& foreign : {std::string("[image]\nwidth = 3\n"), std::string(), "\n" + text})
+    EXPECT_NE(refusal(foreign).find("not written by orrery"), std::string::npos) << foreign;
 }
 
 }  // namespace
