@@ -237,6 +237,7 @@ void bind_scene(py::module_& m) {
           ReleaseGil())
       .def("check_keys", &check_keys)  // with the GIL: it takes microseconds
       .def("save", &save, ReleaseGil())
+      .def("aspect", &aspect, ReleaseGil())
       .def("largest_radius", &largest_radius, ReleaseGil())
       .def("render", &render_scene);
   // Pickled as its bytes, for processes on the same machine.

@@ -3,7 +3,6 @@
 
 import math
 import re
-import tomllib
 import warnings
 from collections.abc import Mapping
 from typing import NamedTuple
@@ -201,67 +200,44 @@ class Scene:
             number += 1
         return f"positions-{number}"
 
-    def _table(self, name):
-        """Returns the keys of a table such as "image", of the text and of the settings, as far as they are valid."""
+    def _vfov(self):
+        """Returns the vertical field of view that is set in place of a fitted camera's projection; None if it is not."""
         try:
-            table = _table_of(tomllib.loads(self._text).get(name))
-        except (tomllib.TOMLDecodeError, ValueError):
-            table = {}
-        for key, value in self._settings.items():
-            if isinstance(value, str) and (key == name or key.startswith(name + ".")):
-                try:
-                    value = tomllib.loads(f"value = {value}")["value"]
-                except (tomllib.TOMLDecodeError, ValueError):
-                    continue
-                if key == name:
-                    table = _table_of(value)
-                else:
-                    table[key[len(name) + 1 :]] = value
-        return table
-
-    def _aspect(self, width, height):
-        """Returns the width of the image divided by its height, as displayed; of keys that are not valid any number."""
-        image = self._table("image")
-        sides = width or image.get("width", 1200), height or image.get("height", 675), image.get("pixel_aspect", 1)
-        width, height, pixel = (n if _keys.is_number(n) and 0 < n < math.inf else 1 for n in sides)
-        return width / height * pixel
+            vfov = float(self._settings.get("camera.vfov", "nan"))
+        except ValueError:  # reported when the scene is read
+            vfov = math.nan
+        return vfov if 0 < vfov < 180 and "camera.projection" not in self._settings else None
 
     def _data(self, width=None, height=None, samples=None, frame=1, memory_limit=0):
         own = {"image.width": width, "image.height": height, "render.samples": samples}
-        aspect = self._aspect(width, height)
-        vfov = self._table("camera").get("vfov") if "camera.vfov" in self._settings else None
-        if not _keys.is_number(vfov) or not 0 < vfov < 180 or "camera.projection" in self._settings:
-            vfov = None
+        own = {key: _keys.toml_text(value) for key, value in own.items() if value is not None}
+        lines = self._text.count("\n") + 1 if self._is_file else 0
+        text = "\n".join([self._text, *self._tables])
 
-        def data(radius=0.0):
-            overrides = []
-            for key, value in self._settings.items():
-                if isinstance(value, _keys.Camera):
-                    value = _keys.toml_text(value.keys_for(aspect, radius, vfov))
-                overrides.append(f"{key}={value}")
-            overrides += [f"{key}={_keys.toml_text(value)}" for key, value in own.items() if value is not None]
-            lines = self._text.count("\n") + 1 if self._is_file else 0
-            text = "\n".join([self._text, *self._tables])
+        def data(camera):
+            settings = {**self._settings, "camera": camera} if camera else self._settings
+            overrides = [f"{key}={value}" for key, value in [*settings.items(), *own.items()]]
             out = _orrery.SceneData(self._file, self._is_file, text, lines, overrides, frame)
             for name, table in self._arrays.items():
                 out.add_table(name, _arrays.native(table))
             return out
 
         camera = self._settings.get("camera")
-        if not isinstance(camera, _keys.Camera) or not camera._completes_radius:
-            return data()
-        radius = self._uniform_radius()
-        return data(data().largest_radius(memory_limit) if radius is None else radius)
+        if not isinstance(camera, _keys.Camera):
+            return data(None)
+        unfitted = data(_keys.toml_text(camera.keys))
+        if camera._extent is None:
+            return unfitted
+        radius = self._uniform_radius() if camera._completes_radius else 0.0
+        if radius is None:
+            radius = unfitted.largest_radius(memory_limit)
+        return data(_keys.toml_text(camera.keys_for(unfitted.aspect(), radius, self._vfov())))
 
     def _uniform_radius(self):
         """Returns the largest radius of the points if it is known without reading them, or None."""
         if self._is_file or None in self._radii.values() or any(key.startswith("points") for key in self._settings):
             return None
         return max(self._radii.values(), default=0.0)
-
-
-def _table_of(value):
-    return dict(value) if isinstance(value, Mapping) else {}
 
 
 def _is_ordinary(center, radius, material, name, group):
