@@ -29,7 +29,7 @@
 #include "compile/compiled_scene.h"
 #include "film/display_error.h"
 #include "film/picture.h"
-#include "format/read_result.h"
+#include "format/read_scene.h"
 #include "load/load_scene.h"
 #include "render/render.h"
 #include "render/result.h"

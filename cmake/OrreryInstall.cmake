@@ -37,7 +37,7 @@ if(ORRERY_PYTHON)
     endif()
     install(TARGETS orrery_python LIBRARY DESTINATION ${CMAKE_MATCH_1}/orrery ${component})
     install(DIRECTORY src/python/orrery DESTINATION ${CMAKE_MATCH_1} ${component}
-            FILES_MATCHING PATTERN "*.py" PATTERN "*.pyi" PATTERN "py.typed")
+            FILES_MATCHING PATTERN "*.py" PATTERN "py.typed")
   endforeach()
   install(FILES LICENSE DESTINATION ${CMAKE_INSTALL_DATADIR}/doc/python3-orrery COMPONENT python_debian RENAME copyright
           EXCLUDE_FROM_ALL)

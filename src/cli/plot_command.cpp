@@ -23,7 +23,7 @@
 #include "job/check_job.h"
 #include "job/job.h"
 #include "job/statistics.h"
-#include "load/loaded_scene.h"
+#include "load/load_scene.h"
 #include "load/scene_files.h"
 #include "plot/plot.h"
 #include "plot/write_legend.h"

@@ -3,7 +3,7 @@
 
 #include "kernel/camera.h"
 #include "math/vec3.h"
-#include "scene/forward.h"
+#include "scene/scene.h"
 
 namespace orrery::compile {
 

@@ -3,7 +3,7 @@
 
 #include "compile/forward.h"
 #include "scene/changed_parts.h"
-#include "scene/forward.h"
+#include "scene/scene.h"
 
 namespace orrery::compile {
 

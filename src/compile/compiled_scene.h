@@ -11,7 +11,6 @@
 #include "compile/forward.h"
 #include "compile/light_tree.h"
 #include "compile/material_table.h"
-#include "compile/packed_indices.h"
 #include "compile/pixel_filter.h"
 #include "compile/sphere_store.h"
 #include "compile/textures.h"
@@ -19,7 +18,7 @@
 #include "kernel/scene_view.h"
 #include "math/vec3.h"
 #include "scene/accelerator.h"
-#include "scene/forward.h"
+#include "scene/scene.h"
 
 namespace orrery::compile {
 

@@ -2,7 +2,7 @@
 #pragma once
 
 #include "scene/environment_image.h"
-#include "scene/forward.h"
+#include "scene/scene.h"
 
 namespace orrery::compile {
 

@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "kernel/lights.h"
-#include "scene/forward.h"
+#include "scene/scene.h"
 
 namespace orrery::compile {
 

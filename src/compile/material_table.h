@@ -11,7 +11,7 @@
 
 #include "compile/forward.h"
 #include "math/vec3.h"
-#include "scene/forward.h"
+#include "scene/scene.h"
 
 namespace orrery::compile {
 

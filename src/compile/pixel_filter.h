@@ -5,6 +5,7 @@
 
 #include "kernel/camera.h"
 #include "scene/forward.h"
+#include "scene/scene.h"
 
 namespace orrery::compile {
 

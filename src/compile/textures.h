@@ -9,7 +9,7 @@
 #include "kernel/lights.h"
 #include "kernel/material.h"
 #include "math/vec3.h"
-#include "scene/forward.h"
+#include "scene/scene.h"
 
 namespace orrery::compile {
 

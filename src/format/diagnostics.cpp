@@ -1,9 +1,105 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "format/diagnostics.h"
 
+#include <algorithm>
+#include <utility>
+
 #include <fmt/core.h>
 
 namespace orrery::format {
+namespace {
+
+/// Lines per stored offset: in a file of empty lines, an offset per line would take eight times the size of the file.
+constexpr std::size_t kStride = 64;
+
+/// Maximum length of a quoted line, bytes: a line that wraps ten times is not helpful.
+constexpr std::size_t kLongestShown = 400;
+
+/// Returns the 0-based byte index of the `index`-th character; beyond the end if the line has fewer characters.
+std::size_t byte_of_character(std::string_view line, std::size_t index) {
+  std::size_t at = 0;
+  for (; at < line.size(); ++at) {
+    const bool begins = (static_cast<unsigned char>(line[at]) & 0xC0u) != 0x80u;
+    if (begins && index-- == 0) return at;
+  }
+  return at + index;
+}
+
+}  // namespace
+
+void SourceText::add(const std::string& name, std::string_view text, std::optional<int> typed_lines) {
+  texts_[name] = {std::string(text), typed_lines, {}};
+}
+
+std::string_view SourceText::line_of(const Text& text, int line) {
+  const std::string_view bytes = text.bytes;
+  if (text.begins.empty()) {
+    text.begins.push_back(0);
+    std::size_t count = 0;
+    for (std::size_t at = bytes.find('\n'); at != std::string_view::npos; at = bytes.find('\n', at + 1))
+      if (++count % kStride == 0) text.begins.push_back(at + 1);
+  }
+  const auto index = static_cast<std::size_t>(line) - 1;
+  if (line < 1 || index / kStride >= text.begins.size()) return {};
+  std::size_t begin = text.begins[index / kStride];
+  for (std::size_t i = 0; i < index % kStride; ++i) {
+    const std::size_t end = bytes.find('\n', begin);
+    if (end == std::string_view::npos) return {};
+    begin = end + 1;
+  }
+  std::string_view out = bytes.substr(begin, bytes.find('\n', begin) - begin);
+  if (!out.empty() && out.back() == '\r') out.remove_suffix(1);
+  return out;
+}
+
+/// Points into an override as it was typed, on one line.
+void SourceText::point_into(const Override& override, const Place& place, base::Diagnostic& diagnostic) {
+  std::string shown = override.option + ' ' + override.typed;
+  std::replace_if(
+      shown.begin(), shown.end(), [](char c) { return c == '\n' || c == '\r'; }, ' ');
+  const auto shown_byte = [&](int column) {
+    const std::size_t at = byte_of_character(override.toml, static_cast<std::size_t>(column) - 1);
+    const auto inserted = std::lower_bound(override.inserted.begin(), override.inserted.end(), at);
+    const std::size_t typed = at - static_cast<std::size_t>(inserted - override.inserted.begin());
+    return std::min(override.option.size() + 1 + typed, shown.size());
+  };
+  const std::size_t first = shown_byte(place.column);
+  diagnostic.column = static_cast<int>(first) + 1;
+  diagnostic.width = std::max(1, static_cast<int>(shown_byte(place.column + place.width) - first));
+  if (shown.size() <= kLongestShown) diagnostic.source_line = shown;
+}
+
+base::Diagnostic SourceText::diagnostic(base::Severity severity, const Place& place, std::string text,
+                                        std::string remedy) const {
+  base::Diagnostic out;
+  out.severity = severity;
+  out.text = std::move(text);
+  out.remedy = std::move(remedy);
+  if (place.text_name == kOverrideName && overrides_ != nullptr && place.line >= 1 &&
+      static_cast<std::size_t>(place.line) <= overrides_->size()) {
+    const Override& override = (*overrides_)[static_cast<std::size_t>(place.line) - 1];
+    out.file = override.option;
+    if (place.column >= 1) point_into(override, place, out);
+    return out;
+  }
+  out.file = place.text_name;
+  out.line = place.line;
+  out.column = place.column;
+  out.width = place.width;
+  const auto found = texts_.find(place.text_name);
+  if (found != texts_.end() && place.line > found->second.typed_lines.value_or(place.line)) {
+    out.line = out.column = 0;
+    return out;
+  }
+  if (found == texts_.end() || place.column < 1) return out;
+  const std::string_view line = line_of(found->second, place.line);
+  const auto begin = static_cast<std::size_t>(place.column) - 1;
+  const std::size_t first = byte_of_character(line, begin);
+  out.column = static_cast<int>(first) + 1;
+  out.width = static_cast<int>(byte_of_character(line, begin + static_cast<std::size_t>(place.width)) - first);
+  if (line.size() <= kLongestShown) out.source_line = line;
+  return out;
+}
 
 void Diagnostics::raise_errors(const std::string& file) const {
   if (errors_ == 0) return;

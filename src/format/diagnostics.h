@@ -6,14 +6,62 @@
 #include <map>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <tuple>
 #include <utility>
 #include <vector>
 
 #include "base/error.h"
-#include "format/source_text.h"
+#include "format/overrides.h"
 
 namespace orrery::format {
+
+/// Name of the text that consists of all overrides, one per line.
+inline constexpr const char* kOverrideName = "--set";
+
+/// A range of characters in one line of a text.
+///
+/// Units      characters, not bytes, as in the TOML library
+struct Place {
+  std::string text_name;  ///< name of the text; empty: none
+  int line = 0;           ///< 1-based; 0: none
+  int column = 0;         ///< 1-based
+  int width = 1;
+};
+
+/// The sources of a scene, the text of the file and the overrides, for quoting lines in diagnostics.
+class SourceText {
+ public:
+  /// Adds a text, or replaces the one of this name.
+  ///
+  /// `typed_lines`   number of lines at the beginning of the text that the user knows, if not all; a program wrote the
+  ///                 others, and diagnostics omit their location
+  void add(const std::string& name, std::string_view text, std::optional<int> typed_lines = {});
+
+  /// Makes the overrides the lines of kOverrideName.
+  ///
+  /// Domain     they exist as long as this
+  void set_overrides(const Overrides& overrides) { overrides_ = &overrides; }
+
+  /// Returns the option of a line of kOverrideName: "--set", "--samples".
+  const std::string& option_at(int line) const { return (*overrides_)[static_cast<std::size_t>(line) - 1].option; }
+
+  /// Returns a diagnostic with location and source line; for an override, that is the command line: "--samples 0".
+  base::Diagnostic diagnostic(base::Severity severity, const Place& place, std::string text,
+                              std::string remedy = {}) const;
+
+ private:
+  struct Text {
+    std::string bytes;
+    std::optional<int> typed_lines;
+    mutable std::vector<std::size_t> begins;  ///< offset of every kStride-th line; filled on first use
+  };
+  static std::string_view line_of(const Text& text, int line);
+  static void point_into(const Override& override, const Place& place, base::Diagnostic& diagnostic);
+
+  std::map<std::string, Text> texts_;
+  const Overrides* overrides_ = nullptr;
+};
 
 /// Maximum number of errors reported for one scene; a generated scene may have the same error in a million spheres.
 inline constexpr std::size_t kMaxErrors = 100;

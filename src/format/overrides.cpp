@@ -10,7 +10,6 @@
 
 #include <fmt/core.h>
 
-#include "format/key_depth.h"
 #include "format/toml_tree.h"
 
 namespace orrery::format {

@@ -76,4 +76,15 @@ void read_keys(ReadState& state, const toml::table& table, const std::string& ta
   }
 }
 
+/// Reads the [material.NAME] tables in the order of the file, which defines the material indices of points files.
+/// Materials that only overrides define follow. An invalid material keeps its name and index, so that spheres that use
+/// it cause no further errors.
+void read_materials(ReadState& state, const toml::table& root, std::vector<scene::Material>& materials);
+
+/// Reads the [[key]] tables into the tracks of a scene whose materials and spheres have been read.
+void read_tracks(ReadState& state, const toml::array& list, scene::Scene& scene);
+
+/// Reports the tracks whose values are out of range at a frame: cubic tracks may overshoot between their keys.
+void check_tracks(ReadState& state, const toml::array& list, const scene::Scene& scene, double frame);
+
 }  // namespace orrery::format

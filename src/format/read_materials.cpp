@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "format/read_materials.h"
+#include "format/read_keys.h"
 
 #include <algorithm>
 #include <memory>
@@ -8,7 +8,6 @@
 #include <fmt/core.h>
 
 #include "base/text.h"
-#include "format/read_keys.h"
 #include "scene/texture.h"
 
 namespace orrery::format {
@@ -88,43 +87,7 @@ void read_material(ReadState& state, const toml::table& table, scene::Material& 
   read_keys(state, table, full_name, type->keys, also, material.model);
 }
 
-/// Removes the keys of the file that only other types have, if an override has replaced the type.
-template <class Types>
-void drop_keys_of_old_type(toml::table& table, const char* type_key, const Types& types) {
-  const auto is_override = [](const toml::node& node) { return place_of(node).text_name == kOverrideName; };
-  const toml::node* const node = table.get(type_key);
-  if (node == nullptr || !is_override(*node)) return;
-  const auto has = [](const auto& type, const std::string& name) {
-    return std::any_of(type.keys.begin(), type.keys.end(), [&](const auto& key) { return key.name == name; });
-  };
-  const auto type = std::find_if(types.begin(), types.end(),
-                                 [&](const auto& one) { return one.name == node->value_or(std::string()); });
-  if (type == types.end()) return;
-  std::vector<std::string> old;
-  for (const auto& [key, value] : table)
-    if (const std::string name(key.str());
-        !is_override(value) && !has(*type, name) &&
-        std::any_of(types.begin(), types.end(), [&](const auto& other) { return has(other, name); }))
-      old.push_back(name);
-  for (const std::string& name : old) table.erase(name);
-}
-
 }  // namespace
-
-void drop_keys_of_old_types(toml::table& root) {
-  toml::table* const materials = root["material"].as_table();
-  if (materials == nullptr) return;
-  for (auto&& [name, node] : *materials) {
-    toml::table* const material = node.as_table();
-    if (material == nullptr) continue;
-    drop_keys_of_old_type(*material, "type", scene::material_types());
-    for (const scene::MaterialType& type : scene::material_types())
-      if ((*material)["type"].value_or(std::string()) == type.name)
-        for (const scene::TexturedKey& key : type.textured)
-          if (toml::table* const texture = (*material)[key.name].as_table())
-            drop_keys_of_old_type(*texture, "texture", scene::texture_types(key.use));
-  }
-}
 
 void read_materials(ReadState& state, const toml::table& root, std::vector<scene::Material>& materials) {
   const toml::node* node = root.get("material");

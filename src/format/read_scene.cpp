@@ -2,7 +2,11 @@
 #include "format/read_scene.h"
 
 #include <algorithm>
+#include <cerrno>
+#include <cstdio>
 #include <cstdlib>
+#include <cstring>
+#include <system_error>
 #include <tuple>
 #include <unordered_map>
 #include <utility>
@@ -10,12 +14,12 @@
 #include <fmt/core.h>
 
 #include "base/error.h"
+#include "base/file_name.h"
 #include "base/frames.h"
+#include "base/input_file.h"
 #include "format/overrides.h"
 #include "format/read_keys.h"
-#include "format/read_materials.h"
-#include "format/read_result.h"
-#include "format/read_tracks.h"
+#include "formats/open.h"
 #include "scene/animation.h"
 #include "scene/diagnostic.h"
 #include "scene/limits.h"
@@ -24,6 +28,17 @@
 
 namespace orrery::format {
 namespace {
+
+using File = std::unique_ptr<std::FILE, int (*)(std::FILE*)>;
+
+File opened(const std::filesystem::path& file) {
+  base::require_readable(file);
+  File in(std::fopen(file.c_str(), "rb"), &std::fclose);
+  if (!in)
+    throw base::FileError(base::ErrorKind::kMissingInput,
+                          fmt::format("cannot open {}: {}", file.string(), std::strerror(errno)), file, errno);
+  return in;
+}
 
 /// Material indices by name.
 using MaterialIndex = std::unordered_map<std::string, std::uint32_t>;
@@ -328,6 +343,36 @@ ReadResult read_scene(const std::filesystem::path& file, const Overrides& overri
 scene::Scene authored_scene(const std::filesystem::path& file, const Overrides& overrides,
                             std::shared_ptr<const std::string> text) {
   return std::move(SceneReader(file, overrides, {std::move(text), std::nullopt}).scene());
+}
+
+void refuse_data_file(const std::filesystem::path& file, std::string_view text) {
+  if (base::extension(file) != ".toml" && particles::is_data_file(file, text))
+    base::refuse(fmt::format("{0} is a data file, not a scene; render it: orrery plot {0} -o IMAGE", file.string()));
+}
+
+std::string read_file(const std::filesystem::path& file, std::uint64_t largest_bytes) {
+  char more[65536];
+  const File in = opened(file);
+  const auto too_large = [&](std::string_view head) {
+    refuse_data_file(file, head);
+    return base::Error(base::ErrorKind::kBadData,
+                       fmt::format("{} exceeds the limit of {} MiB", file.string(), largest_bytes >> 20));
+  };
+  std::error_code error;
+  const auto size = std::filesystem::file_size(file, error);
+  if (!error && size > largest_bytes) throw too_large({more, std::fread(more, 1, sizeof(more), in.get())});
+  std::string bytes;
+  bytes.resize(error ? 0 : static_cast<std::size_t>(size));
+  std::size_t got = std::fread(bytes.data(), 1, bytes.size(), in.get());
+  if (got < bytes.size()) bytes.resize(got);
+  // A file may have grown in the meantime, and files in /proc report a size of 0: read to the end.
+  while ((got = std::fread(more, 1, sizeof(more), in.get())) > 0) {
+    bytes.append(more, got);
+    if (bytes.size() > largest_bytes) throw too_large(bytes);
+  }
+  if (std::ferror(in.get()) != 0)
+    throw base::Error(base::ErrorKind::kIo, fmt::format("reading {} failed", file.string()));
+  return bytes;
 }
 
 std::string toml_version() { return fmt::format("{}.{}.{}", TOML_LIB_MAJOR, TOML_LIB_MINOR, TOML_LIB_PATCH); }

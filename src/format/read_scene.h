@@ -1,19 +1,39 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <cstdint>
 #include <filesystem>
 #include <memory>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "base/error.h"
 #include "format/overrides.h"
-#include "scene/forward.h"
+#include "scene/scene.h"
+
+namespace orrery::scene {
+struct SceneDiagnostic;
+}
 
 namespace orrery::format {
 
-struct ReadResult;
+/// The value of a key, and its origin.
+struct Setting {
+  std::string key;     ///< "camera.vfov"
+  std::string value;   ///< as written in a scene file
+  std::string origin;  ///< "default", "scene.toml:12", "--set", "--samples"
+};
+
+/// Result of reading a scene.
+struct ReadResult {
+  scene::Scene scene;
+  std::vector<base::Diagnostic> warnings;
+  std::vector<Setting> settings;  ///< all keys that a scene has at most once, in documentation order
+  /// The scene at shutter close, without points; `scene` is then the scene at shutter open. Empty without motion blur.
+  std::optional<scene::Scene> closing = {};
+};
 
 /// The frame that is read by default.
 inline constexpr int kFirstFrame = 1;
@@ -82,6 +102,18 @@ ReadResult read_scene(const std::filesystem::path& file, const Overrides& overri
 /// Errors     base::Error(kBadData) for invalid TOML; kMissingInput, kIo
 scene::Scene authored_scene(const std::filesystem::path& file, const Overrides& overrides = {},
                             std::shared_ptr<const std::string> text = {});
+
+/// Maximum size of a scene file, bytes: a million [[sphere]] tables. Larger scenes use points files.
+inline constexpr std::uint64_t kLargestSceneFile = 256u << 20;
+
+/// Throws base::Error(kUsage), which names the right command, if a text that is not a scene is a data file.
+void refuse_data_file(const std::filesystem::path& file, std::string_view text);
+
+/// Reads the text of a scene.
+///
+/// Errors     base::Error(kMissingInput) if it cannot be opened or is not a regular file, kBadData if it is larger than
+///            `largest_bytes`, kIo if reading fails; those of refuse_data_file()
+std::string read_file(const std::filesystem::path& file, std::uint64_t largest_bytes);
 
 /// Returns the version of toml++.
 std::string toml_version();

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "format/read_tracks.h"
+#include "format/read_keys.h"
 
 #include <algorithm>
 #include <cmath>
@@ -8,8 +8,6 @@
 #include <fmt/core.h>
 
 #include "base/text.h"
-#include "format/read_keys.h"
-
 #include "scene/animation.h"
 #include "scene/limits.h"
 #include "scene/value_text.h"

@@ -9,8 +9,8 @@
 
 #include <fmt/core.h>
 
-#include "format/key_depth.h"
-#include "format/read_materials.h"
+#include "scene/schema.h"
+#include "scene/texture.h"
 #include "scene/value_text.h"
 
 namespace orrery::format {
@@ -88,6 +88,99 @@ void apply_overrides(toml::table& root, const Overrides& overrides, const Source
   }
 }
 
+/// Position in a text, with line and column.
+class Cursor {
+ public:
+  explicit Cursor(std::string_view text) : text_(text) {}
+
+  bool at_end() const { return at_ >= text_.size(); }
+  char now() const { return text_[at_]; }
+  bool begins(std::string_view word) const { return text_.substr(at_, word.size()) == word; }
+  void step() {
+    if (text_[at_] == '\n') {
+      ++line_;
+      column_ = 1;
+    } else if ((static_cast<unsigned char>(text_[at_]) & 0xC0u) != 0x80u) {
+      ++column_;
+    }
+    ++at_;
+  }
+  void step(std::size_t count) {
+    for (; count > 0 && !at_end(); --count) step();
+  }
+  Place place() const { return {"", line_, column_, 1}; }
+
+ private:
+  std::string_view text_;
+  std::size_t at_ = 0;
+  int line_ = 1, column_ = 1;
+};
+
+void skip_comment(Cursor& cursor) {
+  while (!cursor.at_end() && cursor.now() != '\n') cursor.step();
+}
+
+/// Skips a TOML string of any of the four kinds. An unclosed string ends at the end of the line or of the text.
+void skip_string(Cursor& cursor) {
+  const char quote = cursor.now();
+  const bool escapes = quote == '"';
+  const std::string_view triple = escapes ? "\"\"\"" : "'''";
+  const bool is_long = cursor.begins(triple);
+  cursor.step(is_long ? 3 : 1);
+  while (!cursor.at_end()) {
+    if (escapes && cursor.now() == '\\') {
+      cursor.step(2);
+    } else if (is_long && cursor.begins(triple)) {
+      cursor.step(3);
+      // Up to two more quotes belong to the string.
+      for (int i = 0; i < 2 && !cursor.at_end() && cursor.now() == quote; ++i) cursor.step();
+      return;
+    } else if (!is_long && (cursor.now() == quote || cursor.now() == '\n')) {
+      cursor.step();
+      return;
+    } else {
+      cursor.step();
+    }
+  }
+}
+
+/// Removes the keys of the file that only other types have, if an override has replaced the type.
+template <class Types>
+void drop_keys_of_old_type(toml::table& table, const char* type_key, const Types& types) {
+  const auto is_override = [](const toml::node& node) { return place_of(node).text_name == kOverrideName; };
+  const toml::node* const node = table.get(type_key);
+  if (node == nullptr || !is_override(*node)) return;
+  const auto has = [](const auto& type, const std::string& name) {
+    return std::any_of(type.keys.begin(), type.keys.end(), [&](const auto& key) { return key.name == name; });
+  };
+  const auto type = std::find_if(types.begin(), types.end(),
+                                 [&](const auto& one) { return one.name == node->value_or(std::string()); });
+  if (type == types.end()) return;
+  std::vector<std::string> old;
+  for (const auto& [key, value] : table)
+    if (const std::string name(key.str());
+        !is_override(value) && !has(*type, name) &&
+        std::any_of(types.begin(), types.end(), [&](const auto& other) { return has(other, name); }))
+      old.push_back(name);
+  for (const std::string& name : old) table.erase(name);
+}
+
+/// Removes the keys of a material or texture that only its type in the file has, if an override has replaced the type.
+void drop_keys_of_old_types(toml::table& root) {
+  toml::table* const materials = root["material"].as_table();
+  if (materials == nullptr) return;
+  for (auto&& [name, node] : *materials) {
+    toml::table* const material = node.as_table();
+    if (material == nullptr) continue;
+    drop_keys_of_old_type(*material, "type", scene::material_types());
+    for (const scene::MaterialType& type : scene::material_types())
+      if ((*material)["type"].value_or(std::string()) == type.name)
+        for (const scene::TexturedKey& key : type.textured)
+          if (toml::table* const texture = (*material)[key.name].as_table())
+            drop_keys_of_old_type(*texture, "texture", scene::texture_types(key.use));
+  }
+}
+
 }  // namespace
 
 Place place_of(const toml::node& node) { return place_of_region(node.source()); }
@@ -138,6 +231,34 @@ Override::Fault fault_of(const toml::parse_error& error) {
     out.remedy = "remove one of them";
   }
   return out;
+}
+
+Place too_deep_key(std::string_view text) {
+  Cursor cursor(text);
+  // Keys are delimited by the other characters. Decimal points count as dots, too, which does no harm.
+  for (int parts = 1; !cursor.at_end();) {
+    switch (cursor.now()) {
+      case '#': skip_comment(cursor); break;
+      case '"':
+      case '\'': skip_string(cursor); break;
+      case '.':
+        if (++parts > kDeepestKey) return cursor.place();
+        cursor.step();
+        break;
+      case '=':
+      case ',':
+      case '[':
+      case ']':
+      case '{':
+      case '}':
+      case '\n':
+        parts = 1;
+        cursor.step();
+        break;
+      default: cursor.step();
+    }
+  }
+  return {};
 }
 
 toml::table parse_tree(const std::string& file_name, const std::string& text, const Overrides& overrides,

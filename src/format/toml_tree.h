@@ -4,11 +4,11 @@
 #include <toml++/toml.h>
 
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "format/diagnostics.h"
 #include "format/overrides.h"
-#include "format/source_text.h"
 
 namespace orrery::format {
 
@@ -33,6 +33,16 @@ std::string toml_text(const toml::node& node);
 
 /// Returns a parse error of the TOML library in our words.
 Override::Fault fault_of(const toml::parse_error& error);
+
+/// Maximum number of parts in a dotted key; scenes need three. The TOML library creates a table per part and destroys
+/// tables recursively, so that a key of ten thousand parts would overflow the stack.
+inline constexpr int kDeepestKey = 8;
+
+/// Finds the first key with more than kDeepestKey parts in a TOML text.
+///
+/// Domain     any bytes; after invalid TOML, where parsing stops, the result is meaningless
+/// Result     location of the first excess dot; line 0 if there is no such key; text_name is not set
+Place too_deep_key(std::string_view text);
 
 /// Parses the text of a scene file and applies the overrides; failures are added to `diagnostics`.
 ///

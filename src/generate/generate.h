@@ -6,7 +6,7 @@
 #include <optional>
 
 #include "film/forward.h"
-#include "scene/forward.h"
+#include "scene/scene.h"
 
 namespace orrery::generate {
 

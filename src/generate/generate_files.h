@@ -4,7 +4,7 @@
 #include <cstdint>
 #include <filesystem>
 
-#include "scene/forward.h"
+#include "scene/scene.h"
 
 namespace orrery::generate {
 

@@ -11,8 +11,8 @@
 #include "compile/forward.h"
 #include "job/forward.h"
 #include "job/resources.h"
-#include "load/forward.h"
-#include "load/loaded_map.h"
+#include "load/load_map.h"
+#include "load/load_scene.h"
 
 namespace orrery::info {
 

@@ -19,7 +19,7 @@
 #include "display/settings.h"
 #include "film/layer_film.h"
 #include "film/partial.h"
-#include "format/read_result.h"
+#include "format/read_scene.h"
 #include "image/partial_file.h"
 #include "image/read.h"
 #include "job/job.h"

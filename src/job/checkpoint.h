@@ -12,7 +12,7 @@
 #include "compile/forward.h"
 #include "display/forward.h"
 #include "film/forward.h"
-#include "format/forward.h"
+#include "format/read_scene.h"
 #include "image/forward.h"
 #include "image/header.h"
 #include "render/forward.h"

@@ -19,7 +19,8 @@
 #include "image/write.h"
 #include "job/outputs.h"
 #include "job/resources.h"
-#include "load/scene_source.h"
+#include "job/shards.h"
+#include "load/load_scene.h"
 #include "render/result.h"
 #include "render/settings.h"
 

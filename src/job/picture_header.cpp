@@ -11,7 +11,7 @@
 #include "compile/camera_basis.h"
 #include "compile/compiled_scene.h"
 #include "display/color_space.h"
-#include "format/read_result.h"
+#include "format/read_scene.h"
 #include "image/header.h"
 #include "job/job.h"
 #include "job/version.h"

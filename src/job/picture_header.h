@@ -5,7 +5,7 @@
 #include <string>
 
 #include "compile/forward.h"
-#include "format/forward.h"
+#include "format/read_scene.h"
 #include "image/forward.h"
 #include "scene/forward.h"
 

@@ -9,8 +9,7 @@
 #include "accel/accel.h"
 #include "compile/compiled_scene.h"
 #include "job/scene_hash.h"
-#include "load/forward.h"
-#include "load/loaded_scene.h"
+#include "load/load_scene.h"
 #include "points/open_data.h"
 
 namespace orrery::job {

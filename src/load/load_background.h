@@ -5,8 +5,8 @@
 #include <filesystem>
 #include <string>
 
-#include "load/loaded_map.h"
-#include "scene/forward.h"
+#include "load/load_map.h"
+#include "scene/scene.h"
 
 namespace orrery::load {
 

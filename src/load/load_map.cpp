@@ -11,11 +11,9 @@
 #include "base/available_memory.h"
 #include "base/error.h"
 #include "base/text.h"
-#include "compile/environment.h"
 #include "compile/mip_map.h"
 #include "display/color_space.h"
 #include "image/read.h"
-#include "load/loaded_map.h"
 #include "scene/environment_image.h"
 
 namespace orrery::load {

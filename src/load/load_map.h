@@ -9,7 +9,10 @@
 
 #include "compile/forward.h"
 #include "image/read.h"
-#include "load/forward.h"
+#include "load/load_scene.h"
+#include "compile/environment.h"
+#include "scene/diagnostic.h"
+#include "scene/environment_image.h"
 #include "scene/limits.h"
 
 namespace orrery::load {
@@ -30,6 +33,20 @@ struct MapRequest {
   std::uint64_t memory_limit = 0;              ///< bytes; 0: the free memory
   bool skips_large = false;                    ///< an image that does not fit into memory is a warning and is not read
 };
+
+/// A map that was read, and the properties of its file.
+struct LoadedMap {
+  std::string version;        ///< identifies the contents of the file and the conversion; empty: unknown
+  int width = 0, height = 0;  ///< texels
+  std::string color_space;    ///< colour space of the file; empty for data
+  std::uint64_t bytes = 0;    ///< estimated memory of the texels, and of their mip map or sampling tables
+  std::shared_ptr<const scene::EnvironmentImage> image;  ///< in the working space; null if it was not read
+  float brightest = 0;                                   ///< largest value of `image`, including the sun
+  std::vector<scene::SceneDiagnostic> diagnostics;       ///< errors and warnings, by key of the scene
+};
+
+/// An image background that was read, or a sky.
+using LoadedBackground = LoadedMap;
 
 /// Reads a map and converts it to the working space. The file is in the space that it declares (colorInteropID,
 /// chromaticities, or the name that OpenImageIO's tools write), else in that of `color_space`, else in sRGB for

@@ -2,6 +2,7 @@
 #include "load/load_scene.h"
 
 #include <algorithm>
+#include <cmath>
 #include <string>
 #include <utility>
 
@@ -11,11 +12,9 @@
 #include "base/error.h"
 #include "base/input_file.h"
 #include "display/look_up.h"
-#include "format/read_result.h"
 #include "format/read_scene.h"
 #include "load/load_background.h"
 #include "load/load_textures.h"
-#include "load/loaded_scene.h"
 #include "load/working_space.h"
 #include "points/load_points.h"
 #include "scene/validate.h"
@@ -347,5 +346,15 @@ LoadedScene load_scene(const SceneRequest& request, LoadedScene previous) {
 }
 
 format::ReadResult read_with_data(const SceneRequest& request) { return SceneLoader(request, {}).read_with_data(); }
+
+void reduce_picture(format::ReadResult& scene, double pixels) {
+  scene::Image& image = scene.scene.image;
+  const double scale = std::min(1.0, std::sqrt(pixels / (static_cast<double>(image.width) * image.height)));
+  image.crop.reset();
+  image.overscan = 0;
+  image.width = std::max(1, static_cast<int>(std::lround(image.width * scale)));
+  image.height = std::max(1, static_cast<int>(std::lround(image.height * scale)));
+  if (scene.closing) scene.closing->image = image;
+}
 
 }  // namespace orrery::load

@@ -2,15 +2,37 @@
 #pragma once
 
 #include <cstdint>
+#include <filesystem>
 #include <functional>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
 
+#include "base/error.h"
 #include "display/settings.h"
-#include "format/forward.h"
-#include "load/forward.h"
-#include "load/scene_source.h"
+#include "format/overrides.h"
+#include "format/read_scene.h"
+#include "load/load_map.h"
+#include "load/load_textures.h"
+#include "points/open_data.h"
 #include "scene/changed_parts.h"
+#include "scene/scene.h"
 
 namespace orrery::load {
+
+/// A scene as specified on the command line: file, overrides, and a frame of its animation.
+struct SceneSource {
+  std::filesystem::path file;
+  format::Overrides overrides;
+  int frame = 1;
+  std::shared_ptr<const std::string> text = {};  ///< text of the scene; null: read the file
+  bool has_file = true;                          ///< false: `file` is only a name
+  points::OpenData open_data = {};               ///< see points::LoadRequest
+  /// Identifies the contents of a data file; empty: base::file_version.
+  std::function<std::string(const std::filesystem::path&)> data_version = {};
+  std::optional<int> typed_lines = {};  ///< see format::ReadOptions
+};
 
 /// A scene to load, and the display transform of its images.
 struct SceneRequest {
@@ -22,6 +44,23 @@ struct SceneRequest {
   bool keeps_authored = false;          ///< fill LoadedScene::authored, for a later load
   /// Called before data or images are read that replace those of an earlier load, so that their memory is released.
   std::function<void(const scene::Parts& changed)> on_change = {};
+};
+
+/// A scene that is ready to be compiled, and what was determined while loading it.
+struct LoadedScene {
+  format::ReadResult read;                     ///< colours are in the working space
+  display::Settings display;                   ///< from the command line and the scene
+  std::optional<display::Choice> choice;       ///< if `develops`, or if a colour name is set
+  std::optional<LoadedBackground> background;  ///< image background or sky; the scene refers to its image
+  std::vector<LoadedTexture> textures;         ///< image textures; the scene refers to their images
+  std::vector<base::Diagnostic> warnings;
+
+  scene::Parts changed = scene::Parts::all();  ///< what differs from the previous load
+  // For the next load.
+  std::optional<scene::Scene> authored, authored_closing;  ///< the scene of the file, without spheres of points tables
+  std::string data_version;                                ///< identifies the contents of all data files
+  std::vector<scene::SceneDiagnostic> data_warnings, coincident;
+  std::vector<std::vector<math::Vec3d>> palettes;  ///< of the points tables, not yet in the working space
 };
 
 /// Reads a scene with its textures and its image background or sky, checks everything that a render would reject, and
@@ -44,5 +83,11 @@ LoadedScene load_scene(const SceneRequest& request, LoadedScene previous);
 ///
 /// Errors     those of load_scene(), except those about images and names in [color]
 format::ReadResult read_with_data(const SceneRequest& request);
+
+/// Reduces the resolution of a scene to at most this many pixels with the same view, at both shutter times. Drops crop
+/// and overscan.
+///
+/// Domain     pixels >= 1
+void reduce_picture(format::ReadResult& scene, double pixels);
 
 }  // namespace orrery::load

@@ -6,8 +6,8 @@
 #include <string>
 #include <vector>
 
-#include "load/loaded_map.h"
-#include "scene/forward.h"
+#include "load/load_map.h"
+#include "scene/scene.h"
 
 namespace orrery::load {
 

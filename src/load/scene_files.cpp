@@ -5,7 +5,7 @@
 #include "base/frames.h"
 #include "display/settings.h"
 #include "format/read_scene.h"
-#include "load/scene_source.h"
+#include "load/load_scene.h"
 #include "load/working_space.h"
 #include "scene/named_files.h"
 #include "scene/scene.h"

@@ -6,8 +6,8 @@
 #include <vector>
 
 #include "base/file_set.h"
-#include "load/forward.h"
-#include "scene/forward.h"
+#include "load/load_scene.h"
+#include "scene/scene.h"
 
 namespace orrery::load {
 

@@ -4,7 +4,7 @@
 #include <filesystem>
 #include <string>
 
-#include "scene/forward.h"
+#include "scene/scene.h"
 
 namespace orrery::load {
 

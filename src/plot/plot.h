@@ -9,7 +9,7 @@
 
 #include "display/settings.h"
 #include "format/overrides.h"
-#include "load/loaded_scene.h"
+#include "load/load_scene.h"
 #include "plot/data_frames.h"
 #include "plot/write_legend.h"
 #include "scene/scene.h"

@@ -10,7 +10,7 @@
 
 #include "base/error.h"
 #include "data/data_file.h"
-#include "load/scene_source.h"
+#include "load/load_scene.h"
 
 namespace orrery::python {
 

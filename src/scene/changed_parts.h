@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include "scene/forward.h"
+#include "scene/scene.h"
 
 namespace orrery::scene {
 

@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "scene/forward.h"
+#include "scene/scene.h"
 
 namespace orrery::scene {
 

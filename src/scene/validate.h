@@ -6,7 +6,8 @@
 #include <vector>
 
 #include "math/vec3.h"
-#include "scene/forward.h"
+#include "scene/diagnostic.h"
+#include "scene/scene.h"
 
 namespace orrery::scene {
 

@@ -9,7 +9,7 @@
 #include <string>
 #include <vector>
 
-#include "load/scene_source.h"
+#include "load/load_scene.h"
 
 namespace orrery::study {
 

@@ -10,7 +10,7 @@
 #include <vector>
 
 #include "film/picture.h"
-#include "load/scene_source.h"
+#include "load/load_scene.h"
 #include "study/bench.h"
 
 namespace orrery::study {

@@ -57,7 +57,7 @@ if(PYTHON)
              "Depends: [^\n]*python3-numpy" "Depends: [^\n]*libembree")
   run(files dpkg-deb --contents ${python})
   must_match("the Python package" "${files}" "/usr/lib/python3/dist-packages/orrery/__init__\\.py\n"
-             "/orrery/__init__\\.pyi\n" "/orrery/py\\.typed\n" "/orrery/_orrery\\.[^/]*\\.so\n"
+             "/orrery/py\\.typed\n" "/orrery/_orrery\\.[^/]*\\.so\n"
              "/usr/share/doc/python3-orrery/copyright\n")
   run(ignored dpkg-deb --extract ${program} ${WORK}/unpacked)
   run(ignored dpkg-deb --extract ${python} ${WORK}/unpacked)

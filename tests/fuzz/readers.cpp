@@ -13,7 +13,6 @@
 
 #include "base/error.h"
 #include "data/data_file.h"
-#include "format/read_result.h"
 #include "format/read_scene.h"
 #include "format/write_scene.h"
 #include "formats/open.h"

@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "base/error.h"
-#include "format/read_result.h"
+#include "format/read_scene.h"
 #include "generate/generate.h"
 #include "generate/generate_files.h"
 #include "support/read_scene_file.h"

@@ -10,7 +10,7 @@
 
 #include "compile/compile.h"
 #include "film/picture.h"
-#include "format/read_result.h"
+#include "format/read_scene.h"
 #include "image/render_scene.h"
 #include "math/vec3.h"
 #include "render/render.h"

@@ -14,7 +14,7 @@
 #include "compile/compile.h"
 #include "compile/compiled_scene.h"
 #include "film/picture.h"
-#include "format/read_result.h"
+#include "format/read_scene.h"
 #include "generate/generate.h"
 #include "image/render_scene.h"
 #include "render/render.h"

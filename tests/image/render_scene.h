@@ -8,7 +8,6 @@
 #include "compile/compile.h"
 #include "compile/compiled_scene.h"
 #include "film/picture.h"
-#include "format/read_result.h"
 #include "format/read_scene.h"
 #include "render/render.h"
 #include "render/result.h"

@@ -4,7 +4,7 @@
 #include <filesystem>
 #include <vector>
 
-#include "format/read_result.h"
+#include "format/read_scene.h"
 #include "load/load_scene.h"
 
 namespace orrery::support {

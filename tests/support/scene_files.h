@@ -8,7 +8,6 @@
 #include <vector>
 
 #include "base/error.h"
-#include "format/read_result.h"
 #include "format/read_scene.h"
 #include "support/temp_dir.h"
 

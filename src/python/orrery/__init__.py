@@ -66,6 +66,6 @@ __all__ = [
     "read_points",
 ]
 
-__version__ = _version()
+__version__: str = _version()
 
-color_maps = tuple(_color_map_names())
+color_maps: tuple[str, ...] = tuple(_color_map_names())

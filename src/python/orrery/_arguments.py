@@ -1,10 +1,18 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Checks of arguments. The extension module is called only with what it can convert."""
+"""Types and checks of arguments. The extension module is called only with what it can convert."""
 
 import operator
 import os
+from collections.abc import Mapping, Sequence
+from typing import Any
 
 import numpy as np
+from numpy.typing import NDArray
+
+Path = str | os.PathLike[str]
+Vector = Sequence[float] | NDArray[np.floating[Any]]
+Color = float | Vector
+Texture = Mapping[str, Any]
 
 
 def is_number(value):

@@ -1,15 +1,19 @@
 # SPDX-License-Identifier: Apache-2.0
 """Tables of a scene file as objects, and values of a scene file as text."""
 
+from __future__ import annotations
+
 import json
 import os
 import re
 from collections.abc import Iterable, Mapping
+from typing import Any, Literal
 
 import numpy as np
+from numpy.typing import ArrayLike
 
 from orrery import _arguments, _arrays
-from orrery._arguments import is_number
+from orrery._arguments import Color, Path, Texture, Vector, is_number
 from orrery._errors import Error
 from orrery._orrery import Extent, SceneData
 
@@ -69,7 +73,7 @@ def _color(value):
 class Keys:
     """A table of a scene file. Keys that are None have their defaults."""
 
-    def __init__(self, **keys):
+    def __init__(self, **keys: Any) -> None:
         self.keys = {key: value for key, value in keys.items() if value is not None}
 
     def __repr__(self):
@@ -82,13 +86,28 @@ class Camera(Keys):
     An orthographic camera has projection="orthographic" and a width.
     """
 
-    def __init__(self, look_from=None, look_at=None, *, vfov=None, up=None, **keys):
+    def __init__(
+        self,
+        look_from: Vector | None = None,
+        look_at: Vector | None = None,
+        *,
+        vfov: float | None = None,
+        up: Vector | None = None,
+        **keys: Any,
+    ) -> None:
         super().__init__(look_from=look_from, look_at=look_at, vfov=vfov, up=up, **keys)
         self._extent = None
         self._completes_radius = False
 
     @classmethod
-    def fit(cls, positions, radius=None, *, look_from="iso", up="z"):
+    def fit(
+        cls,
+        positions: ArrayLike,
+        radius: float | None = None,
+        *,
+        look_from: str = "iso",
+        up: Literal["x", "y", "z"] = "z",
+    ) -> Camera:
         """Returns a camera that sees spheres around all positions in an image of any size, with a margin of 5 %.
 
         It is orthographic, or a perspective camera if "camera.vfov" of the scene is set.
@@ -107,7 +126,7 @@ class Camera(Keys):
         camera.keys = camera.keys_for(16 / 9)
         return camera
 
-    def keys_for(self, aspect, radius=0.0, vfov=None):
+    def keys_for(self, aspect: float, radius: float = 0.0, vfov: float | None = None) -> dict[str, Any]:
         """Returns the keys for an image of this aspect ratio; only those of a fitted camera depend on the arguments.
 
         aspect  width divided by height, as displayed
@@ -124,28 +143,42 @@ class Camera(Keys):
 class Constant(Keys):
     """A background of one colour, linear; a number is a grey."""
 
-    def __init__(self, color=None, **keys):
+    def __init__(self, color: Color | None = None, **keys: Any) -> None:
         super().__init__(type="constant", color=_color(color), **keys)
 
 
 class Gradient(Keys):
     """A background between two linear colours: straight down and straight up."""
 
-    def __init__(self, bottom=None, top=None, **keys):
+    def __init__(self, bottom: Color | None = None, top: Color | None = None, **keys: Any) -> None:
         super().__init__(type="gradient", bottom=_color(bottom), top=_color(top), **keys)
 
 
 class Image(Keys):
     """An image background: a latitude-longitude map in an EXR or HDR file, rotated in degrees, exposed in stops."""
 
-    def __init__(self, file, *, rotation=None, exposure=None, **keys):
+    def __init__(
+        self,
+        file: Path,
+        *,
+        rotation: float | None = None,
+        exposure: float | None = None,
+        **keys: Any,
+    ) -> None:
         super().__init__(type="image", file=file, rotation=rotation, exposure=exposure, **keys)
 
 
 class Sky(Keys):
     """A daylight sky. Angles are in degrees; a turbidity of 1 is pure air."""
 
-    def __init__(self, sun_elevation=None, sun_azimuth=None, *, turbidity=None, **keys):
+    def __init__(
+        self,
+        sun_elevation: float | None = None,
+        sun_azimuth: float | None = None,
+        *,
+        turbidity: float | None = None,
+        **keys: Any,
+    ) -> None:
         super().__init__(
             type="sky", sun_elevation=sun_elevation, sun_azimuth=sun_azimuth, turbidity=turbidity, **keys
         )
@@ -154,33 +187,37 @@ class Sky(Keys):
 class Lambertian(Keys):
     """A diffuse material. Its albedo is linear: a number is a grey, a dict is a texture."""
 
-    def __init__(self, albedo=None, **keys):
+    def __init__(self, albedo: Color | Texture | None = None, **keys: Any) -> None:
         super().__init__(type="lambertian", albedo=_color(albedo), **keys)
 
 
 class Hemisphere(Keys):
     """The first diffuse material of the book "Ray Tracing in One Weekend"; its albedo may be a texture."""
 
-    def __init__(self, albedo=None, **keys):
+    def __init__(self, albedo: Color | Texture | None = None, **keys: Any) -> None:
         super().__init__(type="hemisphere", albedo=_color(albedo), **keys)
 
 
 class Metal(Keys):
     """A metal; its fuzz is from 0, a mirror, to 1. Albedo and fuzz may be textures."""
 
-    def __init__(self, albedo=None, fuzz=None, **keys):
+    def __init__(self, albedo: Color | Texture | None = None, fuzz: float | Texture | None = None, **keys: Any) -> None:
         super().__init__(type="metal", albedo=_color(albedo), fuzz=fuzz, **keys)
 
 
 class Dielectric(Keys):
     """Glass or water, by its index of refraction; its fuzz, a number or a texture, makes it rough."""
 
-    def __init__(self, ior=None, *, fuzz=None, **keys):
+    def __init__(self, ior: float | None = None, *, fuzz: float | Texture | None = None, **keys: Any) -> None:
         super().__init__(type="dielectric", ior=ior, fuzz=fuzz, **keys)
 
 
 class Emitter(Keys):
     """A light: emits the same linear radiance, which may be a texture, in all directions."""
 
-    def __init__(self, radiance=None, exposure=None, **keys):
+    def __init__(self, radiance: Color | Texture | None = None, exposure: float | None = None, **keys: Any) -> None:
         super().__init__(type="emitter", radiance=_color(radiance), exposure=exposure, **keys)
+
+
+Background = Constant | Gradient | Image | Sky
+Material = Lambertian | Hemisphere | Metal | Dielectric | Emitter

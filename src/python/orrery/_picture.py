@@ -1,10 +1,17 @@
 # SPDX-License-Identifier: Apache-2.0
 """Rendered images."""
 
+from __future__ import annotations
+
 import os
 import tempfile
+from typing import Any, Literal
+
+import numpy as np
+from numpy.typing import NDArray
 
 from orrery import _arguments, _orrery
+from orrery._arguments import Path
 
 
 def _display(display, view, look, exposure):
@@ -21,38 +28,38 @@ class Picture:
     (height, width), others (height, width, channels). picture["R"] and picture["N.X"] are single channels. Arrays remain valid after the picture is deleted.
     """
 
-    def __init__(self, native):
+    def __init__(self, native: Any) -> None:
         self._native = native
 
     def __repr__(self):
         return f"Picture({self.width} x {self.height}{''.join(', ' + layer for layer in self.layers)})"
 
     @property
-    def width(self):
+    def width(self) -> int:
         """Pixels."""
         return self._native.width
 
     @property
-    def height(self):
+    def height(self) -> int:
         """Pixels."""
         return self._native.height
 
     @property
-    def layers(self):
+    def layers(self) -> tuple[str, ...]:
         """Names of the layers other than the beauty."""
         return tuple(self._native.layers)
 
     @property
-    def beauty(self):
+    def beauty(self) -> NDArray[np.float32]:
         """Red, green, blue and alpha: shape (height, width, 4)."""
         return self._native.array("")
 
     @property
-    def statistics(self):
+    def statistics(self) -> dict[str, Any]:
         """Statistics of the render: spheres, paths, rays, samples, noise, threads, and seconds of its phases."""
         return self._native.statistics()
 
-    def __getitem__(self, name):
+    def __getitem__(self, name: str) -> NDArray[np.float32]:
         if not isinstance(name, str):
             raise TypeError(f"layers have names, not {name!r}; pixels are picture.beauty[row, column]")
         _arguments.text("name", name)
@@ -66,22 +73,22 @@ class Picture:
             return array if array.ndim == 2 else array[..., channels.index(channel)]
         raise KeyError(f"no layer `{name}`; the layers are {', '.join(self.layers) or 'none: set output.layers'}")
 
-    def __contains__(self, name):
+    def __contains__(self, name: str) -> bool:
         return name in self.layers
 
     def write(
         self,
-        *files,
-        bits=0,
-        type="half",
-        compression="",
-        multipart=False,
-        reproducible=False,
-        display=None,
-        view=None,
-        look=None,
-        exposure=None,
-    ):
+        *files: Path,
+        bits: Literal[0, 8, 16] = 0,
+        type: Literal["half", "float"] = "half",
+        compression: str = "",
+        multipart: bool = False,
+        reproducible: bool = False,
+        display: str | None = None,
+        view: str | None = None,
+        look: str | None = None,
+        exposure: float | None = None,
+    ) -> None:
         """Writes image files, the same files that `orrery render` writes. The extension selects the format.
 
         bits          per channel of PNG and TIFF: 8 or 16
@@ -104,7 +111,14 @@ class Picture:
             names, bits, settings, type == "float", compression, bool(multipart), bool(reproducible)
         )
 
-    def to_srgb8(self, *, display=None, view=None, look=None, exposure=None):
+    def to_srgb8(
+        self,
+        *,
+        display: str | None = None,
+        view: str | None = None,
+        look: str | None = None,
+        exposure: float | None = None,
+    ) -> NDArray[np.uint8]:
         """Returns the image for an sRGB display: uint8, shape (height, width, 3), or 4 with a transparent background.
 
         The values are those of a PNG. The display transform is the scene's; exposure is in stops.

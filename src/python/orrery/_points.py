@@ -1,18 +1,29 @@
 # SPDX-License-Identifier: Apache-2.0
 """Data files as arrays, and colours of points."""
 
+from __future__ import annotations
+
 import os
-from collections.abc import Mapping
+from collections.abc import Iterable, Iterator, Mapping, Sequence
+from typing import Any
 
 import numpy as np
+from numpy.typing import ArrayLike, NDArray
 
 from orrery import _arguments, _arrays, _keys, _orrery
+from orrery._arguments import Path, Vector
 
 
 class ColorMap:
     """Values and the colour map that shows them; see colormap()."""
 
-    def __init__(self, values, name, range, nan_color):
+    def __init__(
+        self,
+        values: NDArray[Any],
+        name: str,
+        range: Sequence[float] | None,
+        nan_color: Vector | None,
+    ) -> None:
         self.values = values
         self.name = name
         self.range = range
@@ -21,7 +32,7 @@ class ColorMap:
     def __repr__(self):
         return f"ColorMap({len(self.values)} values, {self.name!r}, range={self.range})"
 
-    def keys(self, column):
+    def keys(self, column: str) -> dict[str, Any]:
         """Returns the keys of [points.color]."""
         keys = {"column": column, "map": self.name}
         if self.range is not None:
@@ -31,7 +42,12 @@ class ColorMap:
         return keys
 
 
-def colormap(values, name="viridis", range=None, nan_color=None):
+def colormap(
+    values: ArrayLike,
+    name: Path = "viridis",
+    range: Sequence[float] | None = None,
+    nan_color: Vector | None = None,
+) -> ColorMap:
     """Returns colours for Scene.add_points(): one value per position, shown by a colour map.
 
     values     shape (n,): numbers, or strings, of which each has its own colour
@@ -52,22 +68,22 @@ def colormap(values, name="viridis", range=None, nan_color=None):
     return out
 
 
-class Points(Mapping):
+class Points(Mapping[str, Any]):
     """The columns of a data file by name, as arrays; strings are lists. See read_points()."""
 
-    def __init__(self, columns, described):
+    def __init__(self, columns: dict[str, Any], described: dict[str, Any]) -> None:
         self._columns = columns
         self._described = described
 
-    def __getitem__(self, column):
+    def __getitem__(self, column: str) -> Any:
         if column not in self._columns:
             raise KeyError(f"no column `{column}`; the columns are {', '.join(self._columns)}")
         return self._columns[column]
 
-    def __iter__(self):
+    def __iter__(self) -> Iterator[str]:
         return iter(self._columns)
 
-    def __len__(self):
+    def __len__(self) -> int:
         return len(self._columns)
 
     def __repr__(self):
@@ -75,12 +91,12 @@ class Points(Mapping):
         return f"Points({rows} rows: {', '.join(self._columns)})"
 
     @property
-    def positions(self):
+    def positions(self) -> NDArray[Any]:
         """Positions, shape (n, 3): a new array in the type of the file."""
         return np.stack([self[column] for column in self._described["position"]], axis=1)
 
     @property
-    def radius(self):
+    def radius(self) -> NDArray[Any] | None:
         """Radii, shape (n,); None if the file has none. Diameters are halved."""
         column, scale = self._described["radius"], self._described["radius_scale"]
         if column is None:
@@ -88,22 +104,22 @@ class Points(Mapping):
         return self[column] if scale == 1 else self[column] * scale
 
     @property
-    def frames(self):
+    def frames(self) -> int:
         """Number of frames of the file."""
         return self._described["frames"]
 
     @property
-    def step(self):
+    def step(self) -> float | None:
         """Time step or number of the frame; None if the file has none."""
         return self._described["step"]
 
     @property
-    def title(self):
+    def title(self) -> str:
         """Title or comment of the file."""
         return self._described["title"]
 
     @property
-    def box(self):
+    def box(self) -> tuple[NDArray[np.float64], NDArray[np.float64], NDArray[np.bool_]] | None:
         """Simulation box: origin (3,), edges (3, 3) by rows, and which are periodic; None if the file has none."""
         if self._described["box"] is None:
             return None
@@ -111,7 +127,13 @@ class Points(Mapping):
         return np.array(origin), np.array(edges), np.array(periodic)
 
 
-def read_points(file, *, frame=1, component=None, columns=None):
+def read_points(
+    file: Path,
+    *,
+    frame: int = 1,
+    component: int | None = None,
+    columns: Iterable[str] | None = None,
+) -> Points:
     """Reads a data file: LAMMPS, XYZ, PDB, mmCIF, PLY, CSV, NPY, NPZ, LAS, GSD, HDF5, VTK (docs/data.md).
 
     frame      number of the frame, from 1

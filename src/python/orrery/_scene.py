@@ -1,16 +1,21 @@
 # SPDX-License-Identifier: Apache-2.0
 """Scenes: the text of a scene file, settings that override it, and arrays in place of data files."""
 
+from __future__ import annotations
+
 import math
 import re
 import warnings
-from collections.abc import Mapping
-from typing import NamedTuple
+from collections.abc import Callable, Mapping
+from typing import Any, NamedTuple
 
 import numpy as np
+from numpy.typing import ArrayLike
 
 from orrery import _arguments, _arrays, _keys, _orrery
+from orrery._arguments import Path, Vector
 from orrery._errors import SceneWarning
+from orrery._keys import Background, Camera, Material
 from orrery._picture import Picture
 from orrery._points import ColorMap
 
@@ -30,7 +35,7 @@ class Progress(NamedTuple):
     goal: str
 
 
-def load(file):
+def load(file: Path) -> Scene:
     """Returns the scene in a file. Keys and data files are checked when it is rendered, saved or checked."""
     scene = Scene()
     scene._file = _arguments.path("file", file)
@@ -49,7 +54,12 @@ class Scene:
     Settings are checked when the scene is rendered, saved or checked. Arrays are not copied; they are read at the same time.
     """
 
-    def __init__(self, camera=None, background=None, materials=None):
+    def __init__(
+        self,
+        camera: Camera | None = None,
+        background: Background | None = None,
+        materials: Mapping[str, Material] | None = None,
+    ) -> None:
         self._file = "scene"
         self._is_file = False
         self._text = _NEW_SCENE  # of the scene file
@@ -69,7 +79,7 @@ class Scene:
     def __repr__(self):
         return f"Scene({self._file!r}, {len(self._settings)} settings, {len(self._arrays)} arrays of points)"
 
-    def set(self, key, value):
+    def set(self, key: str, value: Any) -> None:
         """Sets a key, as --set does: scene.set("camera.vfov", 30), scene.set("background", orrery.Constant(0)).
 
         A table, such as a Camera, replaces all keys of its name. None removes the setting.
@@ -85,11 +95,19 @@ class Scene:
             self._settings[key] = value
             self._parents.update(key[: dot.start()] for dot in re.finditer(r"\.", key))
 
-    def add_material(self, name, material):
+    def add_material(self, name: str, material: Material) -> None:
         """Adds a material, or replaces the one with this name."""
         self.set("material." + _keys.toml_text(name), material)
 
-    def add_sphere(self, center, radius, material="matte", *, name=None, group=None):
+    def add_sphere(
+        self,
+        center: Vector,
+        radius: float,
+        material: str = "matte",
+        *,
+        name: str | None = None,
+        group: str | None = None,
+    ) -> None:
         """Adds a sphere. A negative radius turns the normal inward, for hollow glass."""
         keys = {"center": center, "radius": radius, "material": material, "name": name, "group": group}
         text = _keys.table_text("sphere", keys)
@@ -97,7 +115,16 @@ class Scene:
             _keys.check_table("add_sphere()", text, material)
         self._tables.append(text)
 
-    def add_points(self, positions, radius=None, *, color=None, material="matte", columns=None, **keys):
+    def add_points(
+        self,
+        positions: ArrayLike,
+        radius: float | ArrayLike | Mapping[str, Any] | None = None,
+        *,
+        color: ColorMap | ArrayLike | Mapping[str, Any] | None = None,
+        material: str = "matte",
+        columns: Mapping[str, ArrayLike] | None = None,
+        **keys: Any,
+    ) -> None:
         """Adds a sphere per position.
 
         Keys and names are checked at once, values of arrays when the scene is rendered, saved or checked.
@@ -133,11 +160,11 @@ class Scene:
         is_one = _keys.is_number(value) and math.isfinite(value) and "transform" not in keys
         self._radii[name] = abs(float(value)) if is_one else None
 
-    def check(self):
+    def check(self) -> list[str]:
         """Reads the scene and checks everything that a render would reject. Returns the warnings."""
         return self._data().check()
 
-    def save(self, file):
+    def save(self, file: Path) -> None:
         """Writes a scene file, and next to it a PLY file for each add_points(), or an NPY file if that has strings.
 
         Both read back without loss. Comments of a loaded scene are not kept. No file that the scene reads is replaced.
@@ -146,18 +173,18 @@ class Scene:
 
     def render(
         self,
-        width=None,
-        height=None,
+        width: int | None = None,
+        height: int | None = None,
         *,
-        samples=None,
-        noise=None,
-        time=None,
-        threads=None,
-        frame=1,
-        memory_limit=None,
-        denoise=False,
-        on_progress=None,
-    ):
+        samples: int | None = None,
+        noise: float | None = None,
+        time: float | None = None,
+        threads: int | None = None,
+        frame: int = 1,
+        memory_limit: int | None = None,
+        denoise: bool = False,
+        on_progress: Callable[[Progress], object] | None = None,
+    ) -> Picture:
         """Renders the scene and returns a Picture, with the same bits as `orrery render`.
 
         width, height  pixels; by default the scene's

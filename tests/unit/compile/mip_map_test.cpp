@@ -30,7 +30,7 @@ double latitude_share(double a, double b, int height) {
 }
 
 /// The mean of a channel over the sphere.
-double mean_of(const EnvironmentImage& image, int channel) {
+double channel_mean(const EnvironmentImage& image, int channel) {
   double sum = 0;
   for (int y = 0; y < image.height(); ++y)
     for (int x = 0; x < image.width(); ++x)
@@ -78,7 +78,8 @@ TEST(CompileMipMap, LevelsKeepTheMeanOverTheSphere) {
     });
     add_mip_map(image);
     for (const EnvironmentImage& level : image.reduced)
-      for (int c = 0; c < 3; ++c) EXPECT_NEAR(mean_of(level, c) / mean_of(image, c), 1, 1e-6) << level.width();
+      for (int c = 0; c < 3; ++c)
+        EXPECT_NEAR(channel_mean(level, c) / channel_mean(image, c), 1, 1e-6) << level.width();
   }
 }
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "format/read_materials.h"
+#include "format/read_keys.h"
 
 #include <gtest/gtest.h>
 

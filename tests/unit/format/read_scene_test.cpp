@@ -10,7 +10,6 @@
 #include <utility>
 
 #include "format/diagnostics.h"
-#include "format/read_result.h"
 #include "scene/diagnostic.h"
 #include "support/scene_files.h"
 

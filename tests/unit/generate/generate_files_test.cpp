@@ -9,7 +9,7 @@
 #include <string>
 
 #include "base/error.h"
-#include "format/read_result.h"
+#include "format/read_scene.h"
 #include "format/write_scene.h"
 #include "generate/generate.h"
 #include "image/read.h"

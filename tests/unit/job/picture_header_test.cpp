@@ -9,7 +9,7 @@
 #include "compile/camera_basis.h"
 #include "compile/compile.h"
 #include "compile/compiled_scene.h"
-#include "format/read_result.h"
+#include "format/read_scene.h"
 #include "image/header.h"
 #include "job/job.h"
 #include "job/version.h"

@@ -9,7 +9,6 @@
 
 #include "base/error.h"
 #include "format/write_scene.h"
-#include "load/loaded_scene.h"
 #include "support/read_scene_file.h"
 #include "support/scene_files.h"
 #include "support/temp_dir.h"

@@ -9,7 +9,7 @@
 #include "base/error.h"
 #include "display/develop.h"
 #include "film/picture.h"
-#include "format/read_result.h"
+#include "format/read_scene.h"
 #include "load/load_scene.h"
 #include "plot/data_frames.h"
 #include "points/color_map.h"

@@ -14,7 +14,6 @@
 #include "compile/environment.h"
 #include "info/info.h"
 #include "load/load_scene.h"
-#include "load/loaded_scene.h"
 #include "study/axes.h"
 #include "support/everything.h"
 #include "support/lit_scenes.h"
