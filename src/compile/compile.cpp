@@ -10,13 +10,13 @@
 #include "base/stop_point.h"
 #include "compile/camera_basis.h"
 #include "compile/compiled_scene.h"
-#include "compile/daylight.h"
 #include "compile/environment.h"
 #include "compile/light_tree.h"
 #include "compile/material_table.h"
 #include "compile/pixel_filter.h"
 #include "kernel/sobol_columns.h"
 #include "scene/layers.h"
+#include "sky/daylight.h"
 
 namespace orrery::compile {
 namespace {
@@ -123,7 +123,7 @@ void set_background(const scene::Scene& scene, CompiledScene& compiled) {
   compiled.features.sky = false;
   std::shared_ptr<const scene::EnvironmentImage> image = from.image;
   if (!image && from.type == scene::BackgroundType::kSky)
-    image = std::make_shared<const scene::EnvironmentImage>(bake_sky(from));
+    image = std::make_shared<const scene::EnvironmentImage>(sky::bake_sky(from));
   if (image) {
     EnvironmentSettings settings;
     settings.rotation = from.rotation;

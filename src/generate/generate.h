@@ -78,7 +78,7 @@ inline constexpr int kEnvironmentWidth = 1024;
 /// Errors     base::Error(kUsage) for a width that is not a multiple of 4 in kSmallestEnvironment..kLargestEnvironment
 film::Picture make_studio(int width = kEnvironmentWidth);
 
-/// Returns a latitude-longitude image of the daylight sky of compile::bake_sky, including the sun's disc: texels hold
+/// Returns a latitude-longitude image of the daylight sky of sky::bake_sky, including the sun's disc: texels hold
 /// the mean over their area, so that the irradiance does not depend on the width.
 ///
 /// `sky`      the members that type = "sky" uses

@@ -8,13 +8,13 @@
 #include <fmt/core.h>
 
 #include "base/error.h"
-#include "compile/daylight.h"
 #include "film/picture.h"
 #include "generate/generate.h"
 #include "math/scalar.h"
 #include "scene/limits.h"
 #include "scene/scene.h"
 #include "scene/value_text.h"
+#include "sky/daylight.h"
 
 namespace orrery::generate {
 namespace {
@@ -233,7 +233,7 @@ film::Picture make_sky(const scene::Background& sky, int width) {
   check_range("sun azimuth", sky.sun_azimuth, -scene::kLargestRotation, scene::kLargestRotation);
   check_range("turbidity", sky.turbidity, scene::kLowestTurbidity, scene::kHighestTurbidity);
   check_range("ground albedo", sky.ground_albedo.x, 0, 1);
-  const scene::EnvironmentImage image = compile::bake_sky(sky, {width});
+  const scene::EnvironmentImage image = sky::bake_sky(sky, {width});
   film::Picture picture = picture_of(width);
   for (int y = 0; y < picture.height; ++y) {
     const float* from = image.row(y);

@@ -8,11 +8,11 @@
 
 #include "base/error.h"
 #include "base/input_file.h"
-#include "compile/daylight.h"
 #include "compile/environment.h"
 #include "display/color_space.h"
 #include "load/load_map.h"
 #include "scene/scene.h"
+#include "sky/daylight.h"
 
 namespace orrery::load {
 namespace {
@@ -66,7 +66,7 @@ LoadedBackground load_sky(const std::string& ocio_config, const scene::Scene& sc
   scene::Background background = scene.background;
   const math::Vec3d albedo = converted(to_sky, background.ground_albedo);
   background.ground_albedo = {std::min(albedo.x, 1.0), std::min(albedo.y, 1.0), std::min(albedo.z, 1.0)};
-  const auto image = std::make_shared<scene::EnvironmentImage>(compile::bake_sky(background));
+  const auto image = std::make_shared<scene::EnvironmentImage>(sky::bake_sky(background));
   if (to_working) {
     const auto width = static_cast<std::size_t>(image->width());
     for (int y = 0; y < image->height(); ++y) {

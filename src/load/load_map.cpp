@@ -11,10 +11,10 @@
 #include "base/available_memory.h"
 #include "base/error.h"
 #include "base/text.h"
-#include "compile/mip_map.h"
 #include "display/color_space.h"
 #include "image/read.h"
 #include "scene/environment_image.h"
+#include "sky/mip_map.h"
 
 namespace orrery::load {
 namespace {
@@ -41,7 +41,7 @@ class Loader {
       const image::MapHeader header = image::read_map_header(request_.file, request_.formats);
       out_.width = header.width;
       out_.height = header.height;
-      out_.bytes = request_.has_mip_map ? compile::mip_map_bytes(header.width, header.height)
+      out_.bytes = request_.has_mip_map ? sky::mip_map_bytes(header.width, header.height)
                                         : compile::environment_bytes(header.width, header.height, request_.sampling);
       if (header.width != 2 * header.height)
         warn(request_.file_key, fmt::format("{} x {} texels; a latitude-longitude map is twice as wide as high",
@@ -149,7 +149,7 @@ class Loader {
       }
     };
     image::read_map(request_.file, take, request_.formats);
-    if (request_.has_mip_map) compile::add_mip_map(*image);
+    if (request_.has_mip_map) sky::add_mip_map(*image);
     out_.image = image;
     if (replaced_.nan + replaced_.negative > 0)
       warn(request_.file_key,

@@ -13,17 +13,17 @@
 #include <numbers>
 #include <random>
 
-#include "compile/atmosphere.h"
-#include "compile/daylight.h"
 #include "scene/scene.h"
+#include "sky/atmosphere.h"
+#include "sky/daylight.h"
 
 namespace orrery::test {
 namespace {
 
-using compile::Densities;
-using compile::kBands;
-using compile::kGroundRadius;
 using math::Vec3d;
+using sky::Densities;
+using sky::kBands;
+using sky::kGroundRadius;
 
 constexpr double kPi = std::numbers::pi;
 
@@ -41,9 +41,9 @@ class SkyPaths {
       : air_(turbidity), albedo_(albedo), sun_(sun), random_(seed) {
     double sum = 0;
     for (std::size_t b = 0; b < kBands; ++b) {
-      compile::Spectrum one{};
+      sky::Spectrum one{};
       one[b] = 1;
-      up_to_[b] = sum += compile::luminance(compile::rgb_of(one));
+      up_to_[b] = sum += sky::luminance(sky::rgb_of(one));
     }
   }
 
@@ -67,8 +67,8 @@ class SkyPaths {
       const bool is_aerosol = event.kind == Event::kAerosol;
       if (is_aerosol) weight *= air_.aerosol_scattering[band_] / air_.aerosol[band_];
       const double toward_sun = math::dot(direction, sun_);
-      light += weight * (is_aerosol ? compile::aerosol_phase(toward_sun) : compile::molecular_phase(toward_sun)) *
-               sunlight(origin);
+      light +=
+          weight * (is_aerosol ? sky::aerosol_phase(toward_sun) : sky::molecular_phase(toward_sun)) * sunlight(origin);
       direction = turned(direction, is_aerosol ? aerosol_cosine() : molecular_cosine());
     }
   }
@@ -93,18 +93,18 @@ class SkyPaths {
     const double closest = radius * radius * (1 - sine * sine);
     const bool hits_ground = sine < 0 && closest < kGroundRadius * kGroundRadius;
     const double length = hits_ground ? -radius * sine - std::sqrt(kGroundRadius * kGroundRadius - closest)
-                                      : compile::distance_to_space(radius, sine);
+                                      : sky::distance_to_space(radius, sine);
     const auto altitude = [&](double t) {
       return std::max(std::sqrt(radius * radius + t * (2 * radius * sine + t)) - kGroundRadius, 0.0);
     };
     for (double start = 0; start < length; start += kStep) {
       const double end = std::min(start + kStep, length);
       const double lowest = altitude(std::clamp(-radius * sine, start, end));
-      Densities most = compile::densities(lowest);
+      Densities most = sky::densities(lowest);
       most.ozone = 1;
       const double bound = extinction(most);
       for (double t = start - std::log(1 - unit()) / bound; t < end; t -= std::log(1 - unit()) / bound) {
-        const Densities here = compile::densities(altitude(t));
+        const Densities here = sky::densities(altitude(t));
         const double molecules = here.molecules * air_.molecules[band_], choice = unit() * bound;
         if (choice >= extinction(here)) continue;
         const Vec3d position = origin + direction * t;
@@ -120,13 +120,13 @@ class SkyPaths {
   double sunlight(Vec3d origin) const {
     const double radius = std::max(math::length(origin), kGroundRadius), sine = math::dot(origin, sun_) / radius;
     if (sine < 0 && radius * radius * (1 - sine * sine) < kGroundRadius * kGroundRadius) return 0;
-    const double lowest = std::max(-radius * sine, 0.0), length = compile::distance_to_space(radius, sine);
+    const double lowest = std::max(-radius * sine, 0.0), length = sky::distance_to_space(radius, sine);
     Densities sum;
     const auto add = [&](double to) {
       constexpr int kSteps = 60;
       for (int i = 0; i < kSteps; ++i) {
         const double u = (i + 0.5) / kSteps, t = lowest + (to - lowest) * u * u * u;
-        sum = sum + compile::densities(math::length(origin + sun_ * t) - kGroundRadius) *
+        sum = sum + sky::densities(math::length(origin + sun_ * t) - kGroundRadius) *
                         (std::abs(to - lowest) * 3 * u * u / kSteps);
       }
     };
@@ -157,7 +157,7 @@ class SkyPaths {
     return math::normalized(u * (sine * std::cos(angle)) + v * (sine * std::sin(angle)) + axis * cosine);
   }
 
-  compile::Atmosphere air_;
+  sky::Atmosphere air_;
   double albedo_;
   Vec3d sun_;
   std::size_t band_ = 0;
@@ -185,7 +185,7 @@ TEST(StatisticalDaylight, MultipleScatteringMatchesRandomPaths) {
       background.sun_elevation = sun;
       background.turbidity = c.turbidity;
       background.ground_albedo = {c.albedo, c.albedo, c.albedo};
-      const scene::EnvironmentImage sky = compile::bake_sky(background, {256});
+      const scene::EnvironmentImage sky = sky::bake_sky(background, {256});
       std::printf("%4.0f %5.1f %5.0f   ", c.turbidity, c.albedo, sun);
       double relative_squares = 0;  // errors, as parts of what model and reference are expected to have
       for (const auto& at : kDirections) {
@@ -204,7 +204,7 @@ TEST(StatisticalDaylight, MultipleScatteringMatchesRandomPaths) {
         }
         const double mean = sum / paths, error = std::sqrt((squares / paths - mean * mean) / paths) / mean;
         const float* const texel = sky.row(y) + 3 * x;
-        const double found = compile::luminance({texel[0], texel[1], texel[2]}) / mean - 1;
+        const double found = sky::luminance({texel[0], texel[1], texel[2]}) / mean - 1;
         std::printf(" %+3.0f (%.1f)", 100 * found, 100 * error);
         EXPECT_LT(std::abs(found), 3 * c.expected + 4 * error) << c.turbidity << " " << sun << " " << at[0];
         weighted += found / (error * error);

@@ -7,9 +7,9 @@
 
 #include "compile/camera_basis.h"
 #include "compile/compiled_scene.h"
-#include "compile/daylight.h"
 #include "compile/environment.h"
 #include "scene/scene.h"
+#include "sky/daylight.h"
 
 namespace orrery::compile {
 namespace {
@@ -198,7 +198,7 @@ TEST(CompileCompile, SkiesAreBakedWithTheirSun) {
   EXPECT_EQ(view.scale, 2);
   EXPECT_NEAR(view.sun.x, std::sqrt(0.5), 1e-12);  // from +z, turned to +x
   EXPECT_NEAR(view.sun.y, std::sqrt(0.5), 1e-12);
-  EXPECT_NEAR(view.sun_radiance.y, 2 * bake_sky(s.background, {16}).sun.radiance.y, 1e-6 * view.sun_radiance.y);
+  EXPECT_NEAR(view.sun_radiance.y, 2 * sky::bake_sky(s.background, {16}).sun.radiance.y, 1e-6 * view.sun_radiance.y);
   s.background.sun = false;
   EXPECT_FALSE(compile(s).environment->view().has_sun);
 }

@@ -7,11 +7,11 @@
 #include <vector>
 
 #include "base/error.h"
-#include "compile/atmosphere.h"
-#include "compile/daylight.h"
 #include "film/picture.h"
 #include "generate/generate.h"
 #include "scene/scene.h"
+#include "sky/atmosphere.h"
+#include "sky/daylight.h"
 
 namespace orrery::generate {
 namespace {
@@ -92,18 +92,18 @@ TEST(GenerateEnv, StudioIsGrey) {
 // Irradiance of a surface that faces the sun, on which texels of the sun act as the disc does.
 TEST(GenerateEnv, SkyHasTheIrradianceOfSunAndSkyAtEveryWidth) {
   const auto toward_sun = [](const scene::EnvironmentImage& image) {
-    return compile::luminance(image.sun.radiance) * 2 * kPi * image.sun.one_minus_cos;
+    return sky::luminance(image.sun.radiance) * 2 * kPi * image.sun.one_minus_cos;
   };
   for (const double elevation : {89.9, 0.1}) {
     for (const int width : {16, 256}) {
       const scene::Background with = sky_at(elevation);
       scene::Background without = with;
       without.sun = false;
-      const scene::EnvironmentImage image = compile::bake_sky(with, {width});
+      const scene::EnvironmentImage image = sky::bake_sky(with, {width});
       const Vec3d normal = image.sun.direction;
       const Vec3d difference = irradiance(make_sky(with, width), normal) - irradiance(make_sky(without, width), normal);
       // At 16 px, the sun is up to 16 degrees from the centre of its texel.
-      EXPECT_NEAR(compile::luminance(difference) / toward_sun(image), 1, width == 16 ? 0.05 : 0.01)
+      EXPECT_NEAR(sky::luminance(difference) / toward_sun(image), 1, width == 16 ? 0.05 : 0.01)
           << elevation << " " << width;
     }
   }
@@ -111,7 +111,7 @@ TEST(GenerateEnv, SkyHasTheIrradianceOfSunAndSkyAtEveryWidth) {
 
 TEST(GenerateEnv, SkyIsTheModelAwayFromTheSun) {
   const film::Picture picture = make_sky(sky_at(30), 64);
-  const scene::EnvironmentImage image = compile::bake_sky(sky_at(30), {64});
+  const scene::EnvironmentImage image = sky::bake_sky(sky_at(30), {64});
   int different = 0;
   for (int y = 0; y < 32; ++y)
     for (int x = 0; x < 64; ++x)

@@ -11,10 +11,10 @@
 #include <vector>
 
 #include "compile/compile.h"
-#include "compile/mip_map.h"
 #include "render/render.h"
 #include "scene/environment_image.h"
 #include "scene/texture.h"
+#include "sky/mip_map.h"
 #include "support/plane_values.h"
 
 namespace orrery::render {
@@ -31,7 +31,7 @@ Image map(bool has_levels, bool is_random = false) {
       const float value = is_random ? static_cast<float>(random() % 2) : static_cast<float>((x + y) % 2);
       for (int c = 0; c < 3; ++c) out->row(y)[3 * x + c] = value;
     }
-  if (has_levels) compile::add_mip_map(*out);
+  if (has_levels) sky::add_mip_map(*out);
   return out;
 }
 

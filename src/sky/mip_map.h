@@ -5,7 +5,7 @@
 
 #include "scene/environment_image.h"
 
-namespace orrery::compile {
+namespace orrery::sky {
 
 /// Adds the levels of a mip map to an image texture: each has half the width and height of the one before, rounded
 /// down. A texel is the mean of those that it covers, by solid angle, so that all levels have the same mean over the
@@ -20,4 +20,4 @@ void add_mip_map(scene::EnvironmentImage& image);
 /// Returns the memory of an image of this size and its mip map, in bytes.
 std::uint64_t mip_map_bytes(int width, int height);
 
-}  // namespace orrery::compile
+}  // namespace orrery::sky

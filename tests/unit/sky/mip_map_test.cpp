@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "compile/mip_map.h"
+#include "sky/mip_map.h"
 
 #include <gtest/gtest.h>
 
@@ -11,7 +11,7 @@
 #include <random>
 #include <vector>
 
-namespace orrery::compile {
+namespace orrery::sky {
 namespace {
 
 using scene::EnvironmentImage;
@@ -38,7 +38,7 @@ double channel_mean(const EnvironmentImage& image, int channel) {
   return sum / image.width();
 }
 
-TEST(CompileMipMap, LevelsAreHalvedDownToSixteenRows) {
+TEST(SkyMipMap, LevelsAreHalvedDownToSixteenRows) {
   const auto sizes = [](int width, int height) {
     EnvironmentImage image = image_of(width, height, [](int, int, int) { return 0.5F; });
     add_mip_map(image);
@@ -58,7 +58,7 @@ TEST(CompileMipMap, LevelsAreHalvedDownToSixteenRows) {
   EXPECT_EQ(sizes(1, 3), (std::vector<int>{}));
 }
 
-TEST(CompileMipMap, ConstantImagesKeepTheirBits) {
+TEST(SkyMipMap, ConstantImagesKeepTheirBits) {
   for (const float value : {0.1F, 1.0F / 3, 1e-42F, 3e34F}) {
     EnvironmentImage image = image_of(331, 173, [&](int, int, int) { return value; });
     add_mip_map(image);
@@ -69,7 +69,7 @@ TEST(CompileMipMap, ConstantImagesKeepTheirBits) {
   }
 }
 
-TEST(CompileMipMap, LevelsKeepTheMeanOverTheSphere) {
+TEST(SkyMipMap, LevelsKeepTheMeanOverTheSphere) {
   std::mt19937 random{7};
   for (const int width : {512, 331}) {
     // Bright at the poles, so that weights by area of the map would be seen.
@@ -83,7 +83,7 @@ TEST(CompileMipMap, LevelsKeepTheMeanOverTheSphere) {
   }
 }
 
-TEST(CompileMipMap, TexelsAreMeansOfThoseThatTheyCover) {
+TEST(SkyMipMap, TexelsAreMeansOfThoseThatTheyCover) {
   // 65 columns become 32, each of 2 1/32; 34 rows become 17 pairs.
   EnvironmentImage image = image_of(65, 34, [](int x, int y, int c) {
     return c == 0 ? static_cast<float>(x) : c == 1 ? static_cast<float>(y % 2) : x == 64 ? 1.0F : 0.0F;
@@ -104,4 +104,4 @@ TEST(CompileMipMap, TexelsAreMeansOfThoseThatTheyCover) {
 }
 
 }  // namespace
-}  // namespace orrery::compile
+}  // namespace orrery::sky

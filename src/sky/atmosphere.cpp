@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "compile/atmosphere.h"
+#include "sky/atmosphere.h"
 
 #include <algorithm>
 #include <cmath>
@@ -7,7 +7,7 @@
 
 #include "math/scalar.h"
 
-namespace orrery::compile {
+namespace orrery::sky {
 namespace {
 
 using math::Vec3d;
@@ -229,4 +229,4 @@ Spectrum reflectance_of(Vec3d rgb) {
   return out;
 }
 
-}  // namespace orrery::compile
+}  // namespace orrery::sky

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "compile/daylight.h"
+#include "sky/daylight.h"
 
 #include <algorithm>
 #include <array>
@@ -7,12 +7,12 @@
 #include <numbers>
 #include <vector>
 
-#include "compile/atmosphere.h"
-#include "compile/scattering.h"
 #include "math/scalar.h"
 #include "scene/scene.h"
+#include "sky/atmosphere.h"
+#include "sky/scattering.h"
 
-namespace orrery::compile {
+namespace orrery::sky {
 namespace {
 
 using math::cosine;
@@ -159,4 +159,4 @@ scene::EnvironmentImage bake_sky(const scene::Background& background, const SkyQ
   return sky;
 }
 
-}  // namespace orrery::compile
+}  // namespace orrery::sky

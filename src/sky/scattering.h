@@ -3,9 +3,9 @@
 
 #include <vector>
 
-#include "compile/atmosphere.h"
+#include "sky/atmosphere.h"
 
-namespace orrery::compile {
+namespace orrery::sky {
 
 /// A ray through the atmosphere, to space or to the ground, in segments.
 struct Ray {
@@ -77,4 +77,4 @@ class Scattering {
   double lowest_sine_, highest_sine_;
 };
 
-}  // namespace orrery::compile
+}  // namespace orrery::sky

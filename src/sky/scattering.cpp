@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "compile/scattering.h"
+#include "sky/scattering.h"
 
 #include <algorithm>
 #include <cmath>
@@ -7,7 +7,7 @@
 
 #include "math/scalar.h"
 
-namespace orrery::compile {
+namespace orrery::sky {
 namespace {
 
 using math::cosine;
@@ -230,4 +230,4 @@ void Scattering::tabulate(const Spectrum& ground_albedo) {
   }
 }
 
-}  // namespace orrery::compile
+}  // namespace orrery::sky

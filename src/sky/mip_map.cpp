@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "compile/mip_map.h"
+#include "sky/mip_map.h"
 
 #include <algorithm>
 #include <cmath>
@@ -10,7 +10,7 @@
 
 #include "base/stop_point.h"
 
-namespace orrery::compile {
+namespace orrery::sky {
 namespace {
 
 constexpr int kMinHeight = 16, kMinWidth = 2 * kMinHeight;
@@ -88,4 +88,4 @@ std::uint64_t mip_map_bytes(int width, int height) {
   }
 }
 
-}  // namespace orrery::compile
+}  // namespace orrery::sky

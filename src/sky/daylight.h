@@ -4,7 +4,7 @@
 #include "scene/environment_image.h"
 #include "scene/scene.h"
 
-namespace orrery::compile {
+namespace orrery::sky {
 
 /// Accuracy of a sky. The defaults are measured in docs/decisions/0024-daylight-model.md.
 struct SkyQuality {
@@ -31,4 +31,4 @@ struct SkyQuality {
 /// Reference     hillaire2020, bruneton2017
 scene::EnvironmentImage bake_sky(const scene::Background& background, const SkyQuality& quality = {});
 
-}  // namespace orrery::compile
+}  // namespace orrery::sky

@@ -12,7 +12,7 @@
 /// Refraction, polarisation and clouds are not modelled.
 ///
 /// Reference  bruneton2017, hillaire2020
-namespace orrery::compile {
+namespace orrery::sky {
 
 inline constexpr double kGroundRadius = 6360e3;        ///< m
 inline constexpr double kAtmosphereThickness = 100e3;  ///< m
@@ -106,4 +106,4 @@ double luminance(math::Vec3d rgb);
 /// Returns a spectrum for the reflectance of a surface; constant for grey surfaces.
 Spectrum reflectance_of(math::Vec3d rgb);
 
-}  // namespace orrery::compile
+}  // namespace orrery::sky

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "compile/daylight.h"
+#include "sky/daylight.h"
 
 #include <gtest/gtest.h>
 
@@ -9,10 +9,10 @@
 #include <numbers>
 #include <vector>
 
-#include "compile/atmosphere.h"
 #include "scene/scene.h"
+#include "sky/atmosphere.h"
 
-namespace orrery::compile {
+namespace orrery::sky {
 namespace {
 
 using math::Vec3d;
@@ -66,7 +66,7 @@ Vec3d irradiance(const Sky& sky) {
 Vec3d direct(const Sky& sky) { return sky.sun.radiance * (2 * kPi * sky.sun.one_minus_cos); }
 
 // The luminance of the sun above the atmosphere is pi by definition. It is a little warmer than the white point.
-TEST(CompileDaylight, WithoutAtmosphereTheSkyIsBlackAndTheSunUnattenuated) {
+TEST(SkyDaylight, WithoutAtmosphereTheSkyIsBlackAndTheSunUnattenuated) {
   const Sky sky = bake_sky(at(30), {64, 1, 0});
   EXPECT_NEAR(sky.sun.one_minus_cos, 1 - std::cos(0.533 / 2 * kPi / 180), 1e-12);
   for (int y = 0; y < sky.height() / 2; ++y)
@@ -77,7 +77,7 @@ TEST(CompileDaylight, WithoutAtmosphereTheSkyIsBlackAndTheSunUnattenuated) {
   EXPECT_NEAR(luminance(texel(sky, 0, sky.height() - 1)), 0.2 * 0.5, 1e-5);  // albedo * sin(elevation)
 }
 
-TEST(CompileDaylight, TheSunIsWhereElevationAndAzimuthSay) {
+TEST(SkyDaylight, TheSunIsWhereElevationAndAzimuthSay) {
   const auto direction = [](double elevation, double azimuth) {
     return bake_sky(at(elevation, 3, azimuth), {2, 1, 0}).sun.direction;
   };
@@ -88,7 +88,7 @@ TEST(CompileDaylight, TheSunIsWhereElevationAndAzimuthSay) {
 }
 
 // Longitude decreases from pi at the left edge; the brightest texel is the one around the sun.
-TEST(CompileDaylight, TheSkyIsBrightestAroundTheSun) {
+TEST(SkyDaylight, TheSkyIsBrightestAroundTheSun) {
   for (const double azimuth : {-135.0, 80.0, 190.0}) {
     const Sky sky = small_sky(at(40, 3, azimuth));
     const std::vector<float> all = values(sky);
@@ -101,13 +101,13 @@ TEST(CompileDaylight, TheSkyIsBrightestAroundTheSun) {
   }
 }
 
-TEST(CompileDaylight, IsSymmetricAboutTheAzimuthOfTheSun) {
+TEST(SkyDaylight, IsSymmetricAboutTheAzimuthOfTheSun) {
   const Sky sky = small_sky(at(20));
   for (int y = 0; y < sky.height(); ++y)
     for (int x = 0; x < sky.width() / 2; ++x) ASSERT_EQ(texel(sky, x, y), texel(sky, sky.width() - 1 - x, y));
 }
 
-TEST(CompileDaylight, AzimuthRotatesTheImage) {
+TEST(SkyDaylight, AzimuthRotatesTheImage) {
   const Sky a = small_sky(at(20, 3, 0)), b = small_sky(at(20, 3, 90));
   for (int y = 0; y < a.height(); ++y) {
     for (int x = 0; x < a.width(); ++x) {
@@ -138,7 +138,7 @@ Vec3d thin_radiance(const Atmosphere& air, double sun_elevation, double azimuth)
   return rgb_of(out);
 }
 
-TEST(CompileDaylight, AThinAtmosphereScattersOnce) {
+TEST(SkyDaylight, AThinAtmosphereScattersOnce) {
   constexpr double kDensity = 1e-5;
   for (const double sun : {60.0, 10.0}) {
     for (const double azimuth : {10.0, 170.0}) {
@@ -153,7 +153,7 @@ TEST(CompileDaylight, AThinAtmosphereScattersOnce) {
   }
 }
 
-TEST(CompileDaylight, TabulatedColumnsMatchQuadrature) {
+TEST(SkyDaylight, TabulatedColumnsMatchQuadrature) {
   const ColumnTable columns;
   for (const double altitude : {0.0, 300.0, 5e3, 22e3, 60e3}) {
     const double radius = kGroundRadius + altitude;
@@ -177,7 +177,7 @@ TEST(CompileDaylight, TabulatedColumnsMatchQuadrature) {
   }
 }
 
-TEST(CompileDaylight, TheGroundReceivesNoMoreThanTheSunEmits) {
+TEST(SkyDaylight, TheGroundReceivesNoMoreThanTheSunEmits) {
   for (const double elevation : {90.0, 10.0}) {
     for (const double turbidity : {1.0, 10.0}) {
       for (const double albedo : {0.0, 1.0}) {
@@ -193,7 +193,7 @@ TEST(CompileDaylight, TheGroundReceivesNoMoreThanTheSunEmits) {
   }
 }
 
-TEST(CompileDaylight, TheGroundReflectsSunAndSky) {
+TEST(SkyDaylight, TheGroundReflectsSunAndSky) {
   const Sky sky = small_sky(at(30, 3, 0, 0.4));
   const Vec3d expected = (irradiance(sky) + direct(sky) * 0.5) * (0.4 / kPi);
   for (const double azimuth : {0.0, 120.0}) {
@@ -202,7 +202,7 @@ TEST(CompileDaylight, TheGroundReflectsSunAndSky) {
   }
 }
 
-TEST(CompileDaylight, NoonIsBlueAndSunsetRed) {
+TEST(SkyDaylight, NoonIsBlueAndSunsetRed) {
   const Sky noon = small_sky(at(60, 2)), sunset = small_sky(at(1, 2));
   EXPECT_GT(radiance(noon, 80, 180).z, 1.5 * radiance(noon, 80, 180).x);
   const auto redness = [](Vec3d c) { return c.x / c.z; };
@@ -210,7 +210,7 @@ TEST(CompileDaylight, NoonIsBlueAndSunsetRed) {
   EXPECT_GT(redness(radiance(sunset, 3, 0)), 3 * redness(radiance(noon, 3, 0)));
 }
 
-TEST(CompileDaylight, HazeBrightensAndWhitensTheSky) {
+TEST(SkyDaylight, HazeBrightensAndWhitensTheSky) {
   const Sky pure = small_sky(at(40, 1)), hazy = small_sky(at(40, 6));
   EXPECT_GT(luminance(irradiance(hazy)), 2 * luminance(irradiance(pure)));
   EXPECT_LT(luminance(direct(hazy)), luminance(direct(pure)));
@@ -218,7 +218,7 @@ TEST(CompileDaylight, HazeBrightensAndWhitensTheSky) {
   EXPECT_GT(blueness(radiance(pure, 80, 180)), 2 * blueness(radiance(hazy, 80, 180)));
 }
 
-TEST(CompileDaylight, TwilightIsDarkAndNightFinite) {
+TEST(SkyDaylight, TwilightIsDarkAndNightFinite) {
   double brighter = luminance(irradiance(small_sky(at(3))));
   for (const double elevation : {0.0, -6.0, -12.0, -18.0}) {
     const Sky sky = small_sky(at(elevation));
@@ -239,7 +239,7 @@ TEST(CompileDaylight, TwilightIsDarkAndNightFinite) {
   }
 }
 
-TEST(CompileDaylight, TheDiscSetsGradually) {
+TEST(SkyDaylight, TheDiscSetsGradually) {
   double previous = luminance(bake_sky(at(0.4, 1), {2}).sun.radiance);
   for (const double elevation : {0.2, 0.0, -0.2}) {
     const double now = luminance(bake_sky(at(elevation, 1), {2}).sun.radiance);
@@ -250,7 +250,7 @@ TEST(CompileDaylight, TheDiscSetsGradually) {
   EXPECT_EQ(bake_sky(at(-0.27, 1), {2}).sun.radiance, Vec3d());
 }
 
-TEST(CompileDaylight, WithoutTheSunTheSkyIsTheSame) {
+TEST(SkyDaylight, WithoutTheSunTheSkyIsTheSame) {
   scene::Background b = at(30);
   b.sun = false;
   const Sky without = small_sky(b), with = small_sky(at(30));
@@ -258,7 +258,7 @@ TEST(CompileDaylight, WithoutTheSunTheSkyIsTheSame) {
   EXPECT_EQ(values(without), values(with));
 }
 
-TEST(CompileDaylight, EveryValueOfTheSchemaGivesFiniteLight) {
+TEST(SkyDaylight, EveryValueOfTheSchemaGivesFiniteLight) {
   for (const double elevation : {-90.0, 0.0, 90.0}) {
     for (const double turbidity : {1.0, 10.0}) {
       for (const float value : values(bake_sky(at(elevation, turbidity, 360, 1), {16}))) {
@@ -271,7 +271,7 @@ TEST(CompileDaylight, EveryValueOfTheSchemaGivesFiniteLight) {
 
 // The illuminance of the sun above the atmosphere is 133.1 klx (astm-g173). Expected values are those of the clear sky
 // of ies1984, which has an illuminance of 127.5 klx above the atmosphere, and for the end of twilight those of ams2024.
-TEST(CompileDaylight, IlluminancesAreThoseOfAClearSky) {
+TEST(SkyDaylight, IlluminancesAreThoseOfAClearSky) {
   constexpr double kKilolux = 133.1 / kPi;
   std::printf(
       "sun elevation: direct normal, sky (clear sky of ies1984), klx; direct / sky, horizontal; zenith kcd/m2\n");
@@ -298,7 +298,7 @@ TEST(CompileDaylight, IlluminancesAreThoseOfAClearSky) {
   }
 }
 
-TEST(CompileDaylight, GreyReflectancesAreConstant) {
+TEST(SkyDaylight, GreyReflectancesAreConstant) {
   for (const double value : reflectance_of({0.3, 0.3, 0.3})) EXPECT_DOUBLE_EQ(value, 0.3);
   const Spectrum green = reflectance_of({0, 1, 0});
   EXPECT_EQ(green.front(), 0);
@@ -307,4 +307,4 @@ TEST(CompileDaylight, GreyReflectancesAreConstant) {
 }
 
 }  // namespace
-}  // namespace orrery::compile
+}  // namespace orrery::sky
