@@ -68,6 +68,12 @@ py::str str_of(const std::string& bytes) {
   return py::reinterpret_steal<py::str>(text);
 }
 
+py::list list_of(math::Vec3d v) {
+  py::list out;
+  for (const double x : {v.x, v.y, v.z}) out.append(x);
+  return out;
+}
+
 py::object array_of(data::Values values) {
   return std::visit(
       [](auto& all) -> py::object {

@@ -28,6 +28,9 @@ std::shared_ptr<const data::Table> table_of(const std::vector<NamedArray>& colum
 /// Returns a str. Bytes that are not valid UTF-8, as in older files and folders, are replaced.
 pybind11::str str_of(const std::string& bytes);
 
+/// Returns a list of three numbers.
+pybind11::list list_of(math::Vec3d v);
+
 /// Moves a column into a one-dimensional array without copying the numbers; strings become a list of str.
 pybind11::object array_of(data::Values values);
 
@@ -46,5 +49,9 @@ pybind11::array_t<T> view_of(const T* values, std::vector<pybind11::ssize_t> sha
 /// Domain     three columns of numbers
 /// Errors     base::Error(kBadData) if one of them is not finite
 void add_to_extent(const data::Table& positions, double radius, plot::ViewExtent& extent);
+
+/// Adds the function `read_points(file, frame, component, columns)`, which returns the columns of a data file as
+/// arrays, and their metadata.
+void bind_read_points(pybind11::module_& m);
 
 }  // namespace orrery::python

@@ -33,7 +33,6 @@
 #include "points/color_map.h"
 #include "python/arrays.h"
 #include "python/picture.h"
-#include "python/read_points.h"
 #include "python/render.h"
 #include "python/scene_data.h"
 #include "scene/scene.h"
@@ -179,12 +178,6 @@ py::dict statistics(const Picture& picture) {
   out["build_seconds"] = report.phases.build_s;
   out["render_seconds"] = report.phases.render_s;
   out["denoise_seconds"] = report.phases.denoise_s;
-  return out;
-}
-
-py::list list_of(math::Vec3d v) {
-  py::list out;
-  for (const double x : {v.x, v.y, v.z}) out.append(x);
   return out;
 }
 

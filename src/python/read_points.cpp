@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "python/read_points.h"
+#include "python/arrays.h"
 
 #include <pybind11/numpy.h>
 #include <pybind11/stl.h>
@@ -17,7 +17,6 @@
 #include "data/data_file.h"
 #include "formats/open.h"
 #include "points/derived.h"
-#include "python/arrays.h"
 
 namespace py = pybind11;
 
@@ -69,12 +68,6 @@ ReadPoints read(const std::filesystem::path& file, int frame, std::optional<int>
 
 py::object text_or_none(const std::string& text) { return text.empty() ? py::none() : py::object(str_of(text)); }
 
-py::list numbers(math::Vec3d v) {
-  py::list out;
-  for (const double x : {v.x, v.y, v.z}) out.append(x);
-  return out;
-}
-
 py::dict described(const data::FrameInfo& info, int frames) {
   py::dict out;
   out["frames"] = frames;
@@ -86,8 +79,8 @@ py::dict described(const data::FrameInfo& info, int frames) {
   out["box"] = py::none();
   if (info.box) {
     py::list edges;
-    for (const math::Vec3d edge : info.box->edges) edges.append(numbers(edge));
-    out["box"] = py::make_tuple(numbers(info.box->origin), edges, info.box->periodic);
+    for (const math::Vec3d edge : info.box->edges) edges.append(list_of(edge));
+    out["box"] = py::make_tuple(list_of(info.box->origin), edges, info.box->periodic);
   }
   return out;
 }
