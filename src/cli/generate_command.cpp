@@ -8,7 +8,6 @@
 #include "cli/commands.h"
 #include "cli/signals.h"
 #include "generate/generate.h"
-#include "generate/generate_files.h"
 #include "scene/limits.h"
 #include "scene/scene.h"
 #include "scene/value_text.h"

@@ -4,7 +4,6 @@
 #include <algorithm>
 #include <bit>
 #include <cmath>
-#include <limits>
 #include <memory>
 
 #include "base/stop_point.h"
@@ -26,30 +25,13 @@ using math::Vec3d;
 
 kernel::Sphere sphere_of(Vec3d center, double radius) { return {center.x, center.y, center.z, std::abs(radius)}; }
 
-Bounds bounds_of(const SphereStore& spheres) {
-  if (spheres.empty()) return {};
-  constexpr double kInfinity = std::numeric_limits<double>::infinity();
-  Bounds b{{kInfinity, kInfinity, kInfinity}, {-kInfinity, -kInfinity, -kInfinity}};
-  const base::StopPoint stop;
-  for (std::size_t i = 0; i < spheres.size(); ++i) {
-    stop.check(i);
-    const kernel::Sphere s = spheres[i];
-    b.lower = {std::min(b.lower.x, s.x - s.radius), std::min(b.lower.y, s.y - s.radius),
-               std::min(b.lower.z, s.z - s.radius)};
-    b.upper = {std::max(b.upper.x, s.x + s.radius), std::max(b.upper.y, s.y + s.radius),
-               std::max(b.upper.z, s.z + s.radius)};
-  }
-  return b;
-}
-
-/// Sets the spheres, and the material of each.
+/// Sets the spheres.
 void set_spheres(const scene::Scene& scene, CompiledScene& compiled) {
   compiled.spheres = {};
   for (const scene::Sphere& s : scene.spheres) compiled.spheres.push_back(sphere_of(s.center, s.radius));
   compiled.spheres.append(scene.points);
   compiled.points_sizes.clear();
   for (const scene::Points& points : scene.points) compiled.points_sizes.push_back(points.centers.size());
-  compiled.bounds = bounds_of(compiled.spheres);
   compiled.distinct_in = scene.distinct_in;
 }
 

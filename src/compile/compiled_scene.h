@@ -17,19 +17,12 @@
 #include "kernel/precision.h"
 #include "kernel/scene_view.h"
 #include "math/vec3.h"
-#include "scene/accelerator.h"
 #include "scene/scene.h"
 
 namespace orrery::compile {
 
 using kernel::Precision;
 using scene::Accelerator;
-
-/// Bounding box of all spheres; unspecified if there are none.
-struct Bounds {
-  math::Vec3d lower;
-  math::Vec3d upper;
-};
 
 /// A scene ready for rendering: flat arrays, camera basis, and the features that it requires.
 ///
@@ -57,7 +50,6 @@ struct CompiledScene {
   kernel::Shading shading = kernel::Shading::kPath;
   Precision precision = Precision::kExact;
   Accelerator accelerator = Accelerator::kEmbree;
-  Bounds bounds;
   std::optional<scene::Precision> distinct_in;  ///< see scene::Scene
   FilterTables filter;
   int width = 0;                                       ///< px, of the rendered window

@@ -5,10 +5,10 @@
 #include <bit>
 #include <cmath>
 #include <cstring>
+#include <limits>
 #include <utility>
 
 #include "base/stop_point.h"
-#include "math/vec3.h"
 #include "scene/number_array.h"
 #include "scene/scene.h"
 
@@ -137,6 +137,22 @@ void SphereStore::append(std::span<const scene::Points> sets) {
   }
   centers_.push_back(0);
   for (float& radius : radii_) radius = std::abs(radius);
+}
+
+Bounds bounds_of(const SphereStore& spheres) {
+  if (spheres.empty()) return {};
+  constexpr double kInfinity = std::numeric_limits<double>::infinity();
+  Bounds b{{kInfinity, kInfinity, kInfinity}, {-kInfinity, -kInfinity, -kInfinity}};
+  const base::StopPoint stop;
+  for (std::size_t i = 0; i < spheres.size(); ++i) {
+    stop.check(i);
+    const kernel::Sphere s = spheres[i];
+    b.lower = {std::min(b.lower.x, s.x - s.radius), std::min(b.lower.y, s.y - s.radius),
+               std::min(b.lower.z, s.z - s.radius)};
+    b.upper = {std::max(b.upper.x, s.x + s.radius), std::max(b.upper.y, s.y + s.radius),
+               std::max(b.upper.z, s.z + s.radius)};
+  }
+  return b;
 }
 
 }  // namespace orrery::compile

@@ -8,6 +8,7 @@
 
 #include "base/huge_pages.h"
 #include "kernel/sphere.h"
+#include "math/vec3.h"
 #include "scene/forward.h"
 #include "scene/scene.h"
 
@@ -79,5 +80,16 @@ class SphereStore {
   std::vector<std::uint8_t> radius_indices_;
   std::vector<double> radius_palette_;
 };
+
+/// An axis-aligned box.
+struct Bounds {
+  math::Vec3d lower;
+  math::Vec3d upper;
+};
+
+/// Returns the bounding box of all spheres; unspecified if there are none.
+///
+/// Errors     base::Error(kStopped) in a base::StopScope
+Bounds bounds_of(const SphereStore& spheres);
 
 }  // namespace orrery::compile

@@ -346,7 +346,7 @@ scene::Scene authored_scene(const std::filesystem::path& file, const Overrides& 
 }
 
 void refuse_data_file(const std::filesystem::path& file, std::string_view text) {
-  if (base::extension(file) != ".toml" && particles::is_data_file(file, text))
+  if (base::extension(file) != ".toml" && formats::is_data_file(file, text))
     base::refuse(fmt::format("{0} is a data file, not a scene; render it: orrery plot {0} -o IMAGE", file.string()));
 }
 

@@ -11,11 +11,8 @@
 
 #include "base/error.h"
 #include "format/overrides.h"
+#include "scene/diagnostic.h"
 #include "scene/scene.h"
-
-namespace orrery::scene {
-struct SceneDiagnostic;
-}
 
 namespace orrery::format {
 

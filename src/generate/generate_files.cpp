@@ -1,5 +1,4 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "generate/generate_files.h"
 
 #include <string>
 

@@ -9,7 +9,7 @@
 #include "base/error.h"
 #include "film/picture.h"
 #include "generate/generate.h"
-#include "generate/generate_noise.h"
+#include "generate/generate_random.h"
 
 namespace orrery::generate {
 namespace {

@@ -22,7 +22,7 @@
 #include "load/load_textures.h"
 #include "scene/layers.h"
 #include "scene/schema.h"
-#include "scene/textures.h"
+#include "scene/texture.h"
 #include "scene/value_text.h"
 #include "study/bench.h"
 
@@ -186,7 +186,7 @@ SceneInfo scene_info(const load::SceneRequest& request, job::PreparedScene& prep
   info.samples = compiled.samples;
   info.max_depth = static_cast<int>(compiled.max_depth);
   info.spheres = compiled.spheres.size();
-  const math::Vec3d low = compiled.bounds.lower, high = compiled.bounds.upper;
+  const auto [low, high] = compile::bounds_of(compiled.spheres);
   std::copy_n(std::array{low.x, low.y, low.z}.begin(), 3, info.lower);
   std::copy_n(std::array{high.x, high.y, high.z}.begin(), 3, info.upper);
   if (!compiled.spheres.empty()) {

@@ -12,8 +12,6 @@
 #include "base/error.h"
 #include "base/text.h"
 #include "display/color_space.h"
-#include "image/read.h"
-#include "scene/environment_image.h"
 #include "sky/mip_map.h"
 
 namespace orrery::load {

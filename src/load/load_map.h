@@ -7,10 +7,8 @@
 #include <string>
 #include <vector>
 
-#include "compile/forward.h"
-#include "image/read.h"
-#include "load/load_scene.h"
 #include "compile/environment.h"
+#include "image/read.h"
 #include "scene/diagnostic.h"
 #include "scene/environment_image.h"
 #include "scene/limits.h"

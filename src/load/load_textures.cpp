@@ -10,7 +10,7 @@
 #include "image/read.h"
 #include "load/load_map.h"
 #include "scene/scene.h"
-#include "scene/textures.h"
+#include "scene/texture.h"
 
 namespace orrery::load {
 namespace {

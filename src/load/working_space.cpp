@@ -8,7 +8,7 @@
 
 #include "display/color_space.h"
 #include "scene/scene.h"
-#include "scene/textures.h"
+#include "scene/texture.h"
 
 namespace orrery::load {
 namespace {

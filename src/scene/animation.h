@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-#include "scene/value.h"
+#include "scene/value_text.h"
 
 namespace orrery::scene {
 

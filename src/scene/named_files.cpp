@@ -3,7 +3,7 @@
 
 #include "scene/scene.h"
 #include "scene/schema.h"
-#include "scene/textures.h"
+#include "scene/texture.h"
 
 namespace orrery::scene {
 namespace {

@@ -12,7 +12,6 @@
 #include <vector>
 
 #include "math/vec3.h"
-#include "scene/accelerator.h"
 #include "scene/number_array.h"
 
 /// The authored scene: names, user units, nothing compiled.
@@ -83,6 +82,19 @@ struct Background {
   double turbidity = 2;       ///< sky: amount of haze; 1 is pure air
   Vec3d ground_albedo{0.2, 0.2, 0.2};
   bool sun = true;  ///< sky: includes the sun's disc
+};
+
+/// The data structure that finds the closest sphere along a ray. The image does not depend on it.
+enum class Accelerator {
+  kEmbree,  ///< a BVH
+  kList,    ///< a loop over all spheres
+};
+
+/// Order in which rays traverse Embree's BVH. The image does not depend on it.
+enum class Traversal {
+  kAuto,    ///< the faster one, in the first packets of each thread
+  kPacket,  ///< 16 rays together
+  kSingle,  ///< one ray after the other
 };
 
 enum class Precision { kExact, kFast, kBook };

@@ -96,4 +96,8 @@ const std::vector<MaterialType>& material_types();
 const std::vector<Key<Sphere>>& sphere_keys();
 const std::vector<Key<Points>>& points_keys();
 
+/// Returns the "Keys" section of docs/scene-format.md: Markdown tables of all keys with type, range, unit, default and
+/// cost, generated from the schema. A test compares the two.
+std::string reference_markdown();
+
 }  // namespace orrery::scene

@@ -4,7 +4,6 @@
 #include <sstream>
 
 #include <nlohmann/json.hpp>
-
 #include "cli/program.h"
 
 namespace orrery::test {

@@ -10,7 +10,6 @@
 #include "base/error.h"
 #include "format/read_scene.h"
 #include "generate/generate.h"
-#include "generate/generate_files.h"
 #include "support/read_scene_file.h"
 
 namespace orrery {

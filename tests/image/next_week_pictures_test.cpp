@@ -23,7 +23,7 @@
 #include "scene/environment_image.h"
 #include "scene/scene.h"
 #include "scene/schema.h"
-#include "scene/textures.h"
+#include "scene/texture.h"
 #include "support/read_scene_file.h"
 
 namespace orrery {

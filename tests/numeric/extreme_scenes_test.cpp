@@ -13,7 +13,6 @@
 #include "render/render.h"
 #include "render/result.h"
 #include "render/settings.h"
-#include "scene/accelerator.h"
 #include "scene/scene.h"
 
 namespace orrery::test {

@@ -12,7 +12,6 @@
 #include "film/layer_pixel.h"
 #include "film/layers.h"
 #include "generate/generate.h"
-#include "generate/generate_files.h"
 #include "job/job.h"
 #include "job/layers.h"
 #include "render/render.h"

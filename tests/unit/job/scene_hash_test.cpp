@@ -11,7 +11,6 @@
 #include "compile/compile.h"
 #include "compile/compiled_scene.h"
 #include "generate/generate.h"
-#include "scene/accelerator.h"
 #include "scene/environment_image.h"
 #include "scene/scene.h"
 

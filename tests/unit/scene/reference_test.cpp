@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "scene/reference.h"
+#include "scene/schema.h"
 
 #include <gtest/gtest.h>
 

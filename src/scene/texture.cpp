@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "scene/textures.h"
+#include "scene/texture.h"
 
 #include <algorithm>
 #include <memory>
