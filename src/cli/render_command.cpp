@@ -176,10 +176,15 @@ int run_jobs(const std::vector<job::Job>& jobs, const RenderOptions& options, Pr
       const job::JobReport report = job::run_job(jobs[i]);
       ++(report.was_skipped ? skipped : rendered);
       if (!is_many) printer.finish();
+      const bool misses = options.strict && !report.target_missed.empty();
+      if (misses) {
+        printer.note(fmt::format("orrery: {}\n", report.target_missed));
+        if (status == 0) status = base::exit_status(base::ErrorKind::kStopped);
+      }
       if (options.quiet) continue;
       printer.note(report.was_skipped ? fmt::format("skipped {}: its files are up to date\n", name_of(jobs[i]))
                                       : report_text(jobs[i], report, {options.verbose, is_many}));
-      if (!report.target_missed.empty()) printer.note(base::warning_line(report.target_missed));
+      if (!report.target_missed.empty() && !misses) printer.note(base::warning_line(report.target_missed));
     } catch (const base::Error& error) {
       if (!is_many || error.kind() == base::ErrorKind::kStopped) throw;
       printer.note(error_text(error));
@@ -275,6 +280,8 @@ void add_render_options(Command& command, RenderOptions& options) {
           "--samples, --noise and --time to be reached ends the render. With --noise or --time, the samples of the "
           "scene file are no limit; those of --samples or --set are.")
       ->transform(duration());
+  command.add_flag("--strict", options.strict,
+                   "Exit with status 75 if the target noise was not reached or could not be estimated");
   add_threads_option(command, options.batch.job.resources.threads);
   command
       .add_option("--memory-limit", options.batch.job.resources.memory_limit, "SIZE",

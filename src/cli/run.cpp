@@ -49,7 +49,6 @@ constexpr std::pair<const char*, const char*> kRemoved[] = {
     {"--accelerator", "--set render.accelerator=NAME"},
     {"--isa", "the environment variable ORRERY_ISA=NAME"},
     {"--log", "2>> FILE, after the command"},
-    {"--strict", "--stats FILE, whose key target_missed is empty if the target noise was reached"},
     {"--fail-fast", "one command for each frame or scene"}};
 
 std::string unknown_flag(const std::string& flag, const CLI::App& command) {

@@ -29,6 +29,11 @@ TEST_F(CliTrade, MissedTargetNoiseIsReported) {
   EXPECT_NE(r.err.find("warning: noise 0.00"), std::string::npos) << r.err;
   EXPECT_NE(r.err.find(" instead of 0.0001: the pixels that need more samples reached the limit\n"), std::string::npos);
   EXPECT_NE(stats()["target_missed"], "");
+  const Outcome strict = run("render good.toml -o b.exr --noise 0.0001 --samples 32 --strict -q");
+  EXPECT_EQ(strict.status, 75);
+  EXPECT_EQ(strict.err.rfind("orrery: noise 0.00", 0), 0u) << strict.err;
+  // The image is written nevertheless, with the same pixels.
+  EXPECT_EQ(run("compare a.exr b.exr --fail-above max=0 -q").status, 0);
 }
 
 TEST_F(CliTrade, PixelsWithoutNoiseEstimateAreReported) {
@@ -55,6 +60,7 @@ TEST_F(CliTrade, PixelsWithoutNoiseEstimateAreReported) {
   EXPECT_GT(s["unreliable_pixels"], 200);
   EXPECT_EQ(s["ended_by"], "samples");
   EXPECT_LE(s["noise_expected"], s["noise"]);
+  EXPECT_EQ(run("render dark.toml -o b.exr --noise 0.3 --samples 64 --strict -q").status, 75);
   EXPECT_NE(s["target_missed"], "");
 }
 

@@ -200,7 +200,7 @@ TEST_F(CliValidation, RemovedOptionsNameWhatReplacesThem) {
   EXPECT_EQ(view.status, 2);
   EXPECT_EQ(view.err, "orrery: --view was removed; use --set color.view=NAME\nTry orrery render --help.\n");
   for (const char* option : {"--ocio=a", "--display=a", "--look=a", "--exposure=1", "--seed=1", "--max-depth=1",
-                             "--accelerator=list", "--isa=avx2", "--log=a", "--strict", "--fail-fast"}) {
+                             "--accelerator=list", "--isa=avx2", "--log=a", "--fail-fast"}) {
     const Outcome r = run(std::string("render good.toml -o a.png ") + option);
     EXPECT_EQ(r.status, 2) << option;
     EXPECT_TRUE(contains(r.err, " was removed; use ")) << r.err;

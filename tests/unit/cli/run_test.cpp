@@ -114,7 +114,7 @@ TEST_F(CliRun, RemovedOptionsNameWhatReplacesThem) {
   Command& check = *commands_.add_subcommand("check", "");
   check.add_option("--set", settings, "KEY=VALUE", "");
   EXPECT_EQ(message({"check", "--seed", "3"}), "--seed was removed; use --set render.seed=N");
-  EXPECT_EQ(message({"generate", "cloud", "--strict"}), "unknown option --strict") << "it never had it";
+  EXPECT_EQ(message({"generate", "cloud", "--log"}), "unknown option --log") << "it never had it";
 }
 
 }  // namespace
