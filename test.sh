@@ -43,7 +43,7 @@ else
   printf 'Built in %s s, tested in %s s. The slowest tests:\n' "$build_seconds" $((SECONDS - begin))
   # Columns: name, number of runs, mean seconds.
   sed '/^---/,$d' "$root/build/Testing/Temporary/CTestCostData.txt" | sort -k3,3nr |
-    awk 'NR <= 10 { printf "%8.1f s  %s\n", $3, $1 }'
+    awk '$2 > 0 && ++n <= 10 { printf "%8.1f s  %s\n", $3, $1 }'
   sed -n '/^[0-9]*% tests passed/,$p' "$log"
 fi
 exit "$status"
