@@ -84,7 +84,7 @@ void refuse_encoding(const ByteSource& bytes, std::string_view head) {
     Faults(bytes.file())
         .fail(0, "the text is encoded in UTF-16", fmt::format("convert it: iconv -f UTF-16 -t UTF-8 {} > NEW", name));
   const std::size_t end = head.find_first_of("\r\n\0"sv);
-  if (end + 1 < head.size() && head[end] == '\r' && head[end + 1] != '\n')
+  if (end != std::string_view::npos && end + 1 < head.size() && head[end] == '\r' && head[end + 1] != '\n')
     Faults(bytes.file())
         .fail(0, "the lines end in CR only, as on the classic Mac OS",
               fmt::format("convert it: tr '\\r' '\\n' < {} > NEW", name));

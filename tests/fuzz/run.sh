@@ -45,10 +45,10 @@ mkdir -p "$build/corpus-$target" "$objects"
 # toml++ 3.3 declares code for some characters unreachable. As Debian compiles it, without assertions, it still handles
 # them correctly, which readers_test.cpp checks for each character. So exclude it from the sanitizers.
 echo 'src:*/toml\+\+/*' >"$build/not-ours.txt"
-flags=(-O1 -g -ffunction-sections "-fsanitize=address,undefined" -fno-sanitize-recover=all "-fsanitize-ignorelist=$build/not-ours.txt"
+flags=(-O1 -g "-fsanitize=address,undefined" -fno-sanitize-recover=all "-fsanitize-ignorelist=$build/not-ours.txt"
   -DNDEBUG -DTOML_HEADER_ONLY=1 -Isrc -Itests)
 [[ ! -d /usr/include/hdf5/serial ]] || flags+=(-isystem /usr/include/hdf5/serial)
-libraries=(-ltbb -larchive -lpugixml -lz)
+libraries=(-ltbb -larchive -lfmt -lpugixml -lz)
 for library in hdf5_serial hdf5 gemmi_cpp; do # as cmake/OrreryDependencies.cmake finds them
   ! compgen -G "/usr/lib/*/lib$library.so" >/dev/null || libraries+=("-l$library")
 done
@@ -65,10 +65,11 @@ compile() {
 }
 export -f compile
 export objects
-# The rooms that read data files. Functions of readers.h for other targets need more rooms, and are left out.
-printf '%s\0' tests/fuzz/readers.cpp src/{base,scene,format,data,formats,points}/*.cpp |
+# The rooms that read files, and of `load` what reads a scene with its data. Images and displays, which it could load as
+# well, are not linked: no target gets there.
+printf '%s\0' tests/fuzz/readers.cpp src/{base,scene,format,data,formats,points}/*.cpp src/load/load_scene.cpp |
   xargs -0 -P "$(nproc)" -I{} bash -c 'compile "$@"' - {} "${compiler[@]}" "${flags[@]}"
-"$clang" -std=c++20 "${flags[@]}" -fsanitize=fuzzer -Wl,--gc-sections -DFAULT="fault_with_${target/hdf5/data}" tests/fuzz/long_run.cpp \
-  "$objects"/*.o "${libraries[@]}" -o "$build/fuzz_$target"
+"$clang" -std=c++20 "${flags[@]}" -fsanitize=fuzzer -no-pie -Wl,--unresolved-symbols=ignore-in-object-files \
+  -DFAULT="fault_with_${target/hdf5/data}" tests/fuzz/long_run.cpp "$objects"/*.o "${libraries[@]}" -o "$build/fuzz_$target"
 exec "$build/fuzz_$target" -max_total_time="$seconds" -timeout=10 -rss_limit_mb=2048 -artifact_prefix="$build/" "${options[@]}" \
   "$build/corpus-$target" "${seeds[@]}"
