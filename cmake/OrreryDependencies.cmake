@@ -4,7 +4,7 @@
 # way.
 include(CMakeFindDependencyMacro)
 
-# Embree 4 if available, otherwise Embree 3.13; src/accel/embree_compat.h handles the differences. An installed orrery
+# Embree 4 if available, otherwise Embree 3.13; src/accel/embree_api.h handles the differences. An installed orrery
 # requires the version that it was built with.
 if(NOT DEFINED ORRERY_EMBREE_MAJOR)
   find_package(embree 4 CONFIG QUIET)

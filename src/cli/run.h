@@ -13,7 +13,7 @@ namespace orrery::cli {
 
 /// The whole program: parses argv, runs the command, prints errors.
 ///
-/// Result     the exit status; see base/exit_status.h
+/// Result     the exit status; see base::exit_status
 int run(int argc, const char* const* argv);
 
 /// The first option that is written as `--name=`, without a value, as happens with an unset variable; empty if there is
