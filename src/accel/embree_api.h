@@ -40,11 +40,11 @@ inline void init(EmbreeContext& context) { rtcInitRayQueryContext(&context); }
 inline void init(RTCIntersectArguments& arguments) { rtcInitIntersectArguments(&arguments); }
 inline void init(RTCOccludedArguments& arguments) { rtcInitOccludedArguments(&arguments); }
 
-/// Arguments of a query in Embree's order: those before and after the rays.
+/// Arguments of a query of closest hits, or of occlusion.
 template <class Rays>
 struct QueryArguments {
-  std::conditional_t < requires(Rays r) { r.hit; }
-  , RTCIntersectArguments, RTCOccludedArguments > arguments;
+  static constexpr bool kHasHits = requires(Rays rays) { rays.hit; };
+  std::conditional_t<kHasHits, RTCIntersectArguments, RTCOccludedArguments> arguments;
 
   explicit QueryArguments(EmbreeContext& context) {
     init(arguments);

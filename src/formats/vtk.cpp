@@ -31,8 +31,6 @@
 #include "formats/readers.h"
 
 // Reference  vtk-formats
-// Reference  vtk-formats
-// Reference  vtk-formats
 namespace orrery::formats {
 
 using namespace data;  // NOLINT(google-build-using-namespace)
