@@ -47,8 +47,8 @@ std::string did_you_mean(std::string_view wrong, const std::vector<std::string>&
 /// Returns whether a list contains a name.
 bool contains(const std::vector<std::string>& names, std::string_view name);
 
-/// Joins names with commas: "a, b, c".
-std::string joined(const std::vector<std::string>& names);
+/// Joins names: "a, b, c".
+std::string joined(const std::vector<std::string>& names, const char* separator = ", ");
 
 /// Encodes bytes in base64 with padding and without line breaks.
 ///

@@ -9,17 +9,12 @@
 
 #include <fmt/core.h>
 
+#include "base/text.h"
 #include "cli/commands.h"
 #include "cli/messages.h"
 
 namespace orrery::cli {
 namespace {
-
-std::string words_text(const std::vector<std::string>& words, const char* separator) {
-  std::string out;
-  for (const std::string& word : words) out += (out.empty() ? "" : separator) + word;
-  return out;
-}
 
 /// The commands that do something, e.g. `generate final` but not `generate`.
 std::vector<const Command*> leaves_of(const Command& command) {
@@ -133,18 +128,18 @@ std::string brief(const std::string& description) { return description.substr(0,
 std::string bash_completion(const Command& program) {
   std::string find, values;
   std::string words =
-      fmt::format("    '') words='{} --help --version' ;;\n", words_text(names_of(program.subcommands()), " "));
+      fmt::format("    '') words='{} --help --version' ;;\n", base::joined(names_of(program.subcommands()), " "));
   const auto add = [&](const std::string& outer, const Command& command) {
     const std::string name = outer.empty() ? command.name() : outer + " " + command.name();
     find += fmt::format("      '{} {}') command='{}' ;;\n", outer, command.name(), name);
-    std::string own = command.subcommands().empty() ? "--help" : words_text(names_of(command.subcommands()), " ");
+    std::string own = command.subcommands().empty() ? "--help" : base::joined(names_of(command.subcommands()), " ");
     for (const Option& option : command.options()) {
       const OptionText text = option.text();
       if (is_positional(text)) continue;
       own += " " + text.names.back();
       if (text.choices.empty()) continue;
       values += fmt::format("    '{} {}') COMPREPLY=($(compgen -W '{}' -- \"$current\")); return ;;\n", name,
-                            text.names.back(), words_text(text.choices, " "));
+                            text.names.back(), base::joined(text.choices, " "));
     }
     words += fmt::format("    '{}') words='{}' ;;\n", name, own);
   };
@@ -190,13 +185,13 @@ std::string zsh_arguments(const Command& command) {
   for (const Option& option : command.options()) {
     const OptionText text = option.text();
     const std::string values = text.choices.empty() ? (text.type == "FILE" ? "_files" : "")
-                                                    : fmt::format("({})", words_text(text.choices, " "));
+                                                    : fmt::format("({})", base::joined(text.choices, " "));
     if (is_positional(text)) {
       out += " " + quoted(fmt::format("{}:{}:{}", text.is_repeatable ? "*" : "", text.names.front(), values));
       continue;
     }
-    const std::string names = text.names.size() == 1 ? text.names.front() : "{" + words_text(text.names, ",") + "}";
-    const std::string alone = text.is_repeatable ? "*" : "(" + words_text(text.names, " ") + ")";
+    const std::string names = text.names.size() == 1 ? text.names.front() : "{" + base::joined(text.names, ",") + "}";
+    const std::string alone = text.is_repeatable ? "*" : "(" + base::joined(text.names, " ") + ")";
     out += fmt::format(" '{}'{}{}", alone, names,
                        quoted("[" + zsh_escaped(brief(text.description)) + "]" +
                               (text.type.empty() ? "" : fmt::format(":{}:{}", zsh_escaped(text.type), values))));
@@ -234,14 +229,14 @@ std::string fish_completion(const Command& program) {
       for (const std::string& name : text.names)
         out += name[1] == '-' ? " -l " + name.substr(2) : " -s " + name.substr(1);
       if (!text.type.empty()) out += text.type == "FILE" ? " -r" : " -x";
-      if (!text.choices.empty()) out += " -a " + quoted(words_text(text.choices, " "));
+      if (!text.choices.empty()) out += " -a " + quoted(base::joined(text.choices, " "));
       out += fmt::format(" -d {}\n", quoted(brief(text.description)));
     }
   };
   for (const Command& command : program.subcommands()) {
     if (command.is_hidden()) continue;
     add(command, "__fish_use_subcommand");
-    const std::string subs = words_text(names_of(command.subcommands()), " ");
+    const std::string subs = base::joined(names_of(command.subcommands()), " ");
     for (const Command& sub : command.subcommands())
       add(sub,
           fmt::format("__fish_seen_subcommand_from {}; and not __fish_seen_subcommand_from {}", command.name(), subs));
