@@ -122,8 +122,7 @@ TEST_F(FormatsHdf5, ColumnsKeepTheirStoredTypes) {
   EXPECT_EQ(info.roles.id, "ParticleIDs");
   ASSERT_TRUE(info.box);
   EXPECT_EQ(info.box->edges[2], (Vec3d{0, 0, 100}));
-  Strings names;
-  for (const ColumnInfo& column : info.columns) names.push_back(column.name);
+  const std::vector<std::string> names = support::column_names(info);
   EXPECT_EQ(names, (Strings{"x", "y", "z", "Count", "Flags", "Level", "Masses", "ParticleIDs", "Single",
                             "Velocities[1]", "Velocities[2]", "Velocities[3]", "Word"}));
   const Table table = file->read(0, names);

@@ -62,8 +62,7 @@ TEST_F(FormatsMmcif, ReadsTheColumnsOfAtoms) {
   EXPECT_EQ(info.roles.chain, "subchain");
   EXPECT_EQ(info.step, 1);
   EXPECT_FALSE(info.z_up);
-  Strings names;
-  for (const ColumnInfo& column : info.columns) names.push_back(column.name);
+  const std::vector<std::string> names = support::column_names(info);
   const Table table = file->read(0, names);
   ASSERT_EQ(table.columns.size(), names.size());
   for (std::size_t i = 0; i < names.size(); ++i) EXPECT_EQ(table.columns[i].type(), info.columns[i].type) << names[i];
