@@ -30,9 +30,9 @@ if [ -z "${TMPDIR:-}" ] && [ "$(stat -f -c %T /dev/shm 2>/dev/null)" = tmpfs ] &
   trap 'rm -rf "$TMPDIR"' EXIT
 fi
 log=$root/build/test.log
-# Without ctest's label summary the result is the last line.
+# A test that hangs is a failed test with a name. Without ctest's label summary the result is the last line.
 set -- --test-dir "$root/build" --no-tests=error --output-on-failure --no-label-summary --parallel "$(nproc)" \
-  --output-log "$log" "$@"
+  --timeout 900 --output-log "$log" "$@"
 say "Testing ..."
 begin=$SECONDS status=0
 if [ -t 1 ]; then

@@ -2,7 +2,9 @@
 """The part of the WebDriver protocol that the browser tests use, over chromedriver and without other packages."""
 import base64
 import json
+import os
 import shutil
+import signal
 import socket
 import subprocess
 import sys
@@ -10,7 +12,12 @@ import time
 import urllib.error
 import urllib.request
 
-ELEMENT = "element-6066-11e4-a52e-4f735466cecf"  # the key of elements in answers, from the specification
+# Nothing is asked from the network: there may be none.
+CAPABILITIES = {"alwaysMatch": {
+    "goog:chromeOptions": {"args": ["--headless=new", "--no-sandbox", "--disable-gpu", "--disable-dev-shm-usage",
+                                    "--no-first-run", "--disable-background-networking", "--disable-component-update",
+                                    "--disable-sync"]},
+    "goog:loggingPrefs": {"browser": "ALL"}}}
 
 
 def exit_if_missing():
@@ -31,20 +38,15 @@ class Browser:
 
     def __init__(self, width=1400, height=900, dark=False):
         self._port = free_port()
-        self._driver = subprocess.Popen(["chromedriver", f"--port={self._port}", "--silent"],
+        # A session of its own, so that the browser ends with its driver whatever happens to the driver.
+        self._driver = subprocess.Popen(["chromedriver", f"--port={self._port}", "--silent"], start_new_session=True,
                                         stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
-        arguments = ["--headless=new", "--no-sandbox", "--disable-gpu", "--disable-dev-shm-usage"]
-        capabilities = {"alwaysMatch": {"goog:chromeOptions": {"args": arguments},
-                                        "goog:loggingPrefs": {"browser": "ALL"}}}
-        for _ in range(600):  # until the driver listens
-            try:
-                self._session = self._call("POST", "/session", {"capabilities": capabilities})["sessionId"]
-                break
-            except (ConnectionError, urllib.error.URLError):
-                time.sleep(0.1)
-        else:
-            self._driver.kill()
-            raise RuntimeError("chromedriver does not answer")
+        try:
+            self._wait_for_driver()
+            self._session = self._call("POST", "/session", {"capabilities": CAPABILITIES})["sessionId"]
+        except Exception:
+            self._kill()
+            raise
         # Windows cannot be as narrow as that of a phone.
         self._devtools("Emulation.setDeviceMetricsOverride", width=width, height=height, deviceScaleFactor=1, mobile=False)
         scheme = {"name": "prefers-color-scheme", "value": "dark" if dark else "light"}
@@ -57,14 +59,28 @@ class Browser:
         try:
             self._request("DELETE", "")
         finally:
-            self._driver.terminate()
-            self._driver.wait()
+            self._kill()
+
+    def _wait_for_driver(self):
+        for _ in range(600):
+            try:
+                if self._call("GET", "/status")["ready"]:
+                    return
+            except urllib.error.HTTPError:
+                raise
+            except (ConnectionError, urllib.error.URLError):
+                time.sleep(0.1)
+        raise RuntimeError("chromedriver does not answer")
+
+    def _kill(self):
+        os.killpg(self._driver.pid, signal.SIGKILL)
+        self._driver.wait()
 
     def _call(self, method, path, body=None):
         data = None if body is None else json.dumps(body).encode()
         request = urllib.request.Request(f"http://127.0.0.1:{self._port}{path}", data=data, method=method,
                                          headers={"Content-Type": "application/json"})
-        with urllib.request.urlopen(request, timeout=300) as answer:
+        with urllib.request.urlopen(request, timeout=120) as answer:
             return json.load(answer)["value"]
 
     def _request(self, method, path, body=None):
