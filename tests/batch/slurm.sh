@@ -39,8 +39,8 @@ chmod 0400 cluster/keys/key
 munged --force --key-file="$folder/cluster/keys/key" --socket="$folder/cluster/keys/socket" \
   --pid-file="$folder/cluster/keys/munged.pid" --log-file="$folder/cluster/keys/log" --seed-file="$folder/cluster/keys/seed"
 
-# Ports derived from the process id, so that two clusters do not collide.
-port=$((20000 + $$ % 20000))
+# Ports derived from the process id, so that two clusters do not collide, and below those that the system assigns.
+port=$((20000 + $$ % 2500 * 5))
 cat > cluster/slurm.conf << END
 ClusterName=orrery
 SlurmctldHost=$host(127.0.0.1)
@@ -78,17 +78,23 @@ slurmctld
 for node in n0 n1 n2 n3; do slurmd -N "$node"; done
 
 wait_for() {  # seconds, what, command ...
-  left=$1
+  # By the clock: without its controller, a command of Slurm fails only after 9 seconds.
+  end=$(($(date +%s) + $1))
   what=$2
   shift 2
   until "$@"; do
-    left=$((left - 1))
-    [ "$left" -gt 0 ] || { echo "slurm: timed out waiting for $what"; sinfo -lN; squeue; tail -5 cluster/*.log; exit 1; }
+    if [ "$(date +%s)" -gt "$end" ]; then
+      echo "slurm: timed out waiting for $what"
+      tail -5 cluster/*.log
+      sinfo -lN
+      squeue
+      exit 1
+    fi
     sleep 1
   done
 }
 four_are_idle() { [ "$(sinfo --noheader --states=idle -o %D)" = 4 ]; }
-wait_for 600 "four nodes" four_are_idle
+wait_for 120 "four nodes" four_are_idle
 
 settings="--width 320 --height 180 --samples ${SAMPLES:-30} --set animation.turntable=48 --layers Z,CryptoObject --reproducible"
 cp "$scenes/book/final.toml" shot.toml
