@@ -167,6 +167,11 @@ void add_threads_option(Command& command, int& threads, const char* otherwise) {
       ->transform(whole_number(1, kMaxThreads));
 }
 
+void add_denoise_option(Command& command, job::Job& job) {
+  command.add_flag("--denoise", job.denoise, "Denoise the images; shards store the data for merge --denoise")
+      ->details("As orrery denoise does, before they are written.");
+}
+
 void PictureOptions::add_to(Command& command, job::Job& job) {
   const OptionGroup group(command, kImageOptions);
   command
@@ -191,8 +196,7 @@ void PictureOptions::add_to(Command& command, job::Job& job) {
       ->details(
           "The estimate assumes the compression of noisy images. A limit above the free space overrides the check.")
       ->transform(byte_size());
-  command.add_flag("--denoise", job.denoise, "Denoise the images; shards store the data for merge --denoise")
-      ->details("As orrery denoise does, before they are written.");
+  add_denoise_option(command, job);
   command
       .add_flag("--reproducible", job.outputs.reproducible,
                 "Omit run-dependent metadata (date, render time, accelerator, instruction set) from EXR headers")

@@ -11,6 +11,7 @@
 #include "format/overrides.h"
 #include "job/forward.h"
 #include "plot/data_frames.h"
+#include "plot/plot.h"
 
 namespace orrery::cli {
 
@@ -63,6 +64,9 @@ void add_display_options(Command& command, display::Settings& settings, bool has
 /// Adds --bits.
 void add_bits_option(Command& command, int& bits);
 
+/// Adds --denoise.
+void add_denoise_option(Command& command, job::Job& job);
+
 /// The options that select a job's image files and their formats.
 class PictureOptions {
  public:
@@ -99,6 +103,9 @@ struct DataArguments {
 /// Adds FILE and the options that all commands on data files share. Values go to `data`, or to `arguments` and then to
 /// `data` by read_data_options().
 void add_data_options(Command& command, DataArguments& arguments, plot::DataOptions& data);
+
+/// Adds the options of plot that select view and style.
+void add_look_options(Command& command, plot::PlotOptions& plot, std::string& style);
 
 /// Sets the members of `data` from the parsed options.
 ///

@@ -169,30 +169,28 @@ int run_plot(PlotArguments& arguments) {
   return run_render(render);
 }
 
-void add_view_options(Command& command, const std::shared_ptr<PlotArguments>& arguments) {
+}  // namespace
+
+void add_look_options(Command& command, plot::PlotOptions& plot, std::string& style) {
   const OptionGroup group(command, "Look options");
   command
-      .add_option("--look-from", arguments->plot.look_from, "VIEW",
+      .add_option("--look-from", plot.look_from, "VIEW",
                   "View: iso, +x, -x, +y, -y, +z, -z, or azimuth and elevation in degrees, e.g. 30,20; default: iso")
       ->details("iso: from 45 degrees to the right of the front and 35.26 degrees above.");
-  command
-      .add_option("--up", arguments->plot.up, "AXIS",
-                  "Axis that points up in the image; default: z, y for PDB and mmCIF")
+  command.add_option("--up", plot.up, "AXIS", "Axis that points up in the image; default: z, y for PDB and mmCIF")
       ->choices({"x", "y", "z"});
   command
       .add_option(
-          "--style", arguments->style, "STYLE",
+          "--style", style, "STYLE",
           "Look: studio, ambient (white light from all directions), flat (no shading) or night; default: studio")
       ->details(
           "studio: a key light from the upper left of the camera, and white light from all directions. night: a lamp "
           "and a dark sky.")
       ->choices(plot::style_names());
-  command.add_flag("--allow-empty", arguments->plot.allow_empty,
+  command.add_flag("--allow-empty", plot.allow_empty,
                    "Render the background alone if --select or --slice leaves nothing; default: an error");
-  command.add_flag("--ground", arguments->plot.ground, "Add a ground that receives shadows");
+  command.add_flag("--ground", plot.ground, "Add a ground that receives shadows");
 }
-
-}  // namespace
 
 void add_plot(Command& program) {
   const auto arguments = std::make_shared<PlotArguments>();
@@ -206,7 +204,7 @@ void add_plot(Command& program) {
           "--time or --samples gives the same pixels.");
   command.add_flag("--force", arguments->force,
                    "Let --save-scene replace a file that was edited, or not written by orrery");
-  add_view_options(command, arguments);
+  add_look_options(command, arguments->plot, arguments->style);
   add_render_options(command, arguments->render);
   command.details(
       "Writes a scene for the data, and renders it. Settings that the options leave open are chosen from the data and "

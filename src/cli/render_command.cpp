@@ -247,6 +247,30 @@ int run_render(RenderOptions& options) {
   return run_jobs(jobs, options, printer, progress);
 }
 
+void add_sampling_options(Command& command, job::Job& job) {
+  command.add_option("--noise", job.sampling.noise, "X", "Target noise (relative display error), e.g. 0.01")
+      ->details(
+          "The root mean square over the pixels of the standard error of the displayed value, relative to that value. "
+          "The render ends when an upper estimate of it reaches the target and enough paths have found light "
+          "everywhere. Samples go to the pixels where they reduce the noise most. A target that is missed is a "
+          "warning, and stated in --stats.")
+      ->transform(real_number(1e-6, 1));
+  command.add_option("--time", job.sampling.seconds, "TIME", "Time budget for adaptive sampling, e.g. 90s, 5m or 1.5h")
+      ->details(
+          "At least 0.01s. It includes reading the scene and building the BVH, but not writing files. The first of "
+          "--samples, --noise and --time to be reached ends the render. With --noise or --time, the samples of the "
+          "scene file are no limit; those of --samples or --set are.")
+      ->transform(duration());
+  add_threads_option(command, job.resources.threads);
+  command
+      .add_option("--memory-limit", job.resources.memory_limit, "SIZE",
+                  "Refuse to render if the estimated memory exceeds SIZE, e.g. 8G; default: free memory")
+      ->details(
+          "The check runs before anything is built; orrery info prints the estimate. Free memory is that of the "
+          "machine and of the control group.")
+      ->transform(byte_size());
+}
+
 void add_render_options(Command& command, RenderOptions& options) {
   options.picture.add_to(command, options.batch.job);
   command.add_option("--deep", options.batch.job.outputs.deep, "FILE",
@@ -264,32 +288,9 @@ void add_render_options(Command& command, RenderOptions& options) {
       ->transform(duration());
   command.add_flag("--keep-checkpoint", options.batch.job.checkpoint.keep,
                    "Keep a checkpoint of the finished render; with --resume, one with more samples continues from it");
-  command
-      .add_option("--noise", options.batch.job.sampling.noise, "X", "Target noise (relative display error), e.g. 0.01")
-      ->details(
-          "The root mean square over the pixels of the standard error of the displayed value, relative to that value. "
-          "The render ends when an upper estimate of it reaches the target and enough paths have found light "
-          "everywhere. Samples go to the pixels where they reduce the noise most. A target that is missed is a "
-          "warning, and stated in --stats.")
-      ->transform(real_number(1e-6, 1));
-  command
-      .add_option("--time", options.batch.job.sampling.seconds, "TIME",
-                  "Time budget for adaptive sampling, e.g. 90s, 5m or 1.5h")
-      ->details(
-          "At least 0.01s. It includes reading the scene and building the BVH, but not writing files. The first of "
-          "--samples, --noise and --time to be reached ends the render. With --noise or --time, the samples of the "
-          "scene file are no limit; those of --samples or --set are.")
-      ->transform(duration());
+  add_sampling_options(command, options.batch.job);
   command.add_flag("--strict", options.strict,
                    "Exit with status 75 if the target noise was not reached or could not be estimated");
-  add_threads_option(command, options.batch.job.resources.threads);
-  command
-      .add_option("--memory-limit", options.batch.job.resources.memory_limit, "SIZE",
-                  "Refuse to render if the estimated memory exceeds SIZE, e.g. 8G; default: free memory")
-      ->details(
-          "The check runs before anything is built; orrery info prints the estimate. Free memory is that of the "
-          "machine and of the control group.")
-      ->transform(byte_size());
   command
       .add_option("--progress", options.progress, "STYLE",
                   "Progress format: auto, bar, alf, openjd, arnold, json or none; default: auto")

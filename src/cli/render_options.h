@@ -19,6 +19,9 @@ struct RenderOptions {
   std::function<void()> before_files;  ///< called when all names are checked, before any file is written
 };
 
+/// Adds the options that say how well to render, and with what: --noise, --time, --threads, --memory-limit.
+void add_sampling_options(Command& command, job::Job& job);
+
 /// Adds the options of rendering, except those that name the scene, its frames and its shard.
 ///
 /// Domain     called once; `options` does not move until the command line is parsed

@@ -1,17 +1,22 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "image/encode_jpeg.h"
+#include "image/jpeg_bytes.h"
 
 #include <array>
 #include <csetjmp>
 #include <cstddef>
 #include <cstdio>  // jpeglib.h needs its types
+#include <functional>
 #include <memory>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 #include <jpeglib.h>
 // After jpeglib.h:
 #include <jerror.h>
+
+#include "base/error.h"
 
 // Declared in OpenImageIO/tiffutils.h, which includes a libtiff header that the OpenImageIO package does not depend on.
 OIIO_NAMESPACE_BEGIN
@@ -38,10 +43,13 @@ struct ErrorManager {
 
 void on_message(j_common_ptr) {}  // libjpeg would print warnings
 
-/// libjpeg destination that writes to a CheckedFile.
+/// Takes encoded bytes. Returns false if it fails.
+using Write = std::function<bool(const JOCTET* bytes, std::size_t count)>;
+
+/// libjpeg destination that passes the bytes on.
 struct Destination {
   jpeg_destination_mgr base;  // must be the first member, as above
-  CheckedFile* file;
+  Write write;
   std::array<JOCTET, std::size_t{1} << 16> buffer;
 };
 
@@ -57,15 +65,14 @@ void begin_buffer(j_compress_ptr info) {
 ///            then offers the same row for ever.
 boolean empty_buffer(j_compress_ptr info) {
   Destination& out = destination_of(info);
-  if (out.file->write(out.buffer.data(), out.buffer.size()) != out.buffer.size()) ERREXIT(info, JERR_FILE_WRITE);
+  if (!out.write(out.buffer.data(), out.buffer.size())) ERREXIT(info, JERR_FILE_WRITE);
   begin_buffer(info);
   return TRUE;
 }
 
 void end_buffer(j_compress_ptr info) {
   Destination& out = destination_of(info);
-  // CheckedFile keeps a failure until finish().
-  out.file->write(out.buffer.data(), out.buffer.size() - out.base.free_in_buffer);
+  out.write(out.buffer.data(), out.buffer.size() - out.base.free_in_buffer);
 }
 
 struct Encoder {
@@ -110,34 +117,37 @@ std::vector<Marker> markers_of(const OIIO::ImageSpec& spec) {
   return out;
 }
 
+struct Pixels {
+  int width, height;  ///< px
+  const std::uint8_t* codes;
+  int quality;
+  bool subsamples;  ///< colour has half the resolution
+};
+
 /// Runs libjpeg. Must not have local objects with destructors, since errors longjmp over this frame.
-void compress(jpeg_compress_struct& info, const OIIO::ImageSpec& spec, const std::uint8_t* pixels,
-              const std::vector<Marker>& markers) {
-  info.image_width = static_cast<JDIMENSION>(spec.width);
-  info.image_height = static_cast<JDIMENSION>(spec.height);
+void compress(jpeg_compress_struct& info, const Pixels& pixels, const std::vector<Marker>& markers) {
+  info.image_width = static_cast<JDIMENSION>(pixels.width);
+  info.image_height = static_cast<JDIMENSION>(pixels.height);
   info.input_components = 3;
   info.in_color_space = JCS_RGB;
   jpeg_set_defaults(&info);
-  jpeg_set_quality(&info, kJpegQuality, TRUE);
-  for (int c = 0; c < 3; ++c) info.comp_info[c].h_samp_factor = info.comp_info[c].v_samp_factor = 1;
+  jpeg_set_quality(&info, pixels.quality, TRUE);
+  if (!pixels.subsamples)
+    for (int c = 0; c < 3; ++c) info.comp_info[c].h_samp_factor = info.comp_info[c].v_samp_factor = 1;
   jpeg_start_compress(&info, TRUE);
   for (const Marker& marker : markers)
     jpeg_write_marker(&info, marker.number, reinterpret_cast<const JOCTET*>(marker.bytes.data()),
                       static_cast<unsigned>(marker.bytes.size()));
-  const std::size_t row_bytes = static_cast<std::size_t>(spec.width) * 3;
+  const std::size_t row_bytes = static_cast<std::size_t>(pixels.width) * 3;
   while (info.next_scanline < info.image_height) {
-    auto* row = const_cast<JSAMPROW>(pixels + info.next_scanline * row_bytes);  // libjpeg only reads it
+    auto* row = const_cast<JSAMPROW>(pixels.codes + info.next_scanline * row_bytes);  // libjpeg only reads it
     jpeg_write_scanlines(&info, &row, 1);
   }
   jpeg_finish_compress(&info);
 }
 
-}  // namespace
-
-std::string encode_jpeg(const OIIO::ImageSpec& spec, const std::uint8_t* pixels, CheckedFile& file) {
-  OIIO::ImageSpec described = spec;
-  if (spec.get_string_attribute("oiio:ColorSpace") == "sRGB") described.attribute("Exif:ColorSpace", 1);
-  const std::vector<Marker> markers = markers_of(described);
+/// Returns libjpeg's error message, or an empty string.
+std::string encode(const Pixels& pixels, const std::vector<Marker>& markers, Write write) {
   // On the heap: local variables modified between setjmp and longjmp would be indeterminate.
   const auto state = std::make_unique<Encoder>();
   state->info.err = jpeg_std_error(&state->errors.base);
@@ -146,14 +156,35 @@ std::string encode_jpeg(const OIIO::ImageSpec& spec, const std::uint8_t* pixels,
   state->destination.base.init_destination = begin_buffer;
   state->destination.base.empty_output_buffer = empty_buffer;
   state->destination.base.term_destination = end_buffer;
-  state->destination.file = &file;
+  state->destination.write = std::move(write);
   if (setjmp(state->errors.jump) == 0) {
     jpeg_create_compress(&state->info);
     state->info.dest = &state->destination.base;
-    compress(state->info, described, pixels, markers);
+    compress(state->info, pixels, markers);
   }
   jpeg_destroy_compress(&state->info);
   return state->errors.text;
+}
+
+}  // namespace
+
+std::string encode_jpeg(const OIIO::ImageSpec& spec, const std::uint8_t* pixels, CheckedFile& file) {
+  OIIO::ImageSpec described = spec;
+  if (spec.get_string_attribute("oiio:ColorSpace") == "sRGB") described.attribute("Exif:ColorSpace", 1);
+  // CheckedFile also keeps a failure until finish().
+  return encode({spec.width, spec.height, pixels, kJpegQuality, false}, markers_of(described),
+                [&file](const JOCTET* bytes, std::size_t count) { return file.write(bytes, count) == count; });
+}
+
+std::string jpeg_bytes(int width_px, int height_px, const std::uint8_t* codes, int quality) {
+  std::string out;
+  const std::string error =
+      encode({width_px, height_px, codes, quality, true}, {}, [&out](const JOCTET* bytes, std::size_t count) {
+        out.append(reinterpret_cast<const char*>(bytes), count);
+        return true;
+      });
+  if (!error.empty()) throw base::Error(base::ErrorKind::kInternal, "cannot encode JPEG: " + error);
+  return out;
 }
 
 }  // namespace orrery::image

@@ -50,6 +50,8 @@ class PreparedScene {
   const compile::CompiledScene& compiled() const { return compiled_; }
 
   bool has_accelerator() const { return accel_ != nullptr; }
+  /// The result of the last accelerator().
+  const accel::Accel& built() const { return *accel_; }
 
   /// The hashes of the compiled scene.
   const SceneHashes& hashes() const { return hashes_; }

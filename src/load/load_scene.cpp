@@ -36,6 +36,18 @@ display::Settings settings_of(const SceneRequest& request, const scene::Color& c
   return out;
 }
 
+/// What to read for a points table.
+points::LoadRequest request_for(const SceneSource& source, const scene::Scene& scene, std::size_t table) {
+  points::LoadRequest out;
+  out.folder = source.file.parent_path();
+  out.file = out.folder / scene.points[table].file;
+  out.key = fmt::format("points[{}]", table);
+  out.frame = source.frame;
+  out.materials = scene.materials.size();
+  out.open = source.open_data;
+  return out;
+}
+
 bool names_anything(const display::Settings& settings, const scene::Color& color) {
   const scene::Color defaults;
   return color.space != defaults.space || settings.working_space != color.space || !settings.config.empty() ||
@@ -180,16 +192,7 @@ class SceneLoader {
 
   bool has_new_data() const { return out_.changed.geometry || out_.changed.assignment; }
 
-  points::LoadRequest data_request(std::size_t index) const {
-    points::LoadRequest out;
-    out.folder = request_.source.file.parent_path();
-    out.file = out.folder / scene_.points[index].file;
-    out.key = fmt::format("points[{}]", index);
-    out.frame = request_.source.frame;
-    out.materials = scene_.materials.size();
-    out.open = request_.source.open_data;
-    return out;
-  }
+  points::LoadRequest data_request(std::size_t index) const { return request_for(request_.source, scene_, index); }
 
   /// Identifies the data files, their contents, and the frames that are read from them.
   std::string data_version() const {
@@ -346,6 +349,18 @@ LoadedScene load_scene(const SceneRequest& request, LoadedScene previous) {
 }
 
 format::ReadResult read_with_data(const SceneRequest& request) { return SceneLoader(request, {}).read_with_data(); }
+
+points::SourceRows read_source_rows(const SceneSource& source, const scene::Scene& scene, std::size_t table) {
+  points::SourceRows out;
+  points::LoadRequest request = request_for(source, scene, table);
+  request.memory_limit = base::available_memory().value_or(0);
+  request.source = &out;
+  scene::Points points = scene.points[table];
+  for (const scene::SceneDiagnostic& d : points::load_points(request, points))
+    if (d.severity == base::Severity::kError)
+      throw base::Error(d.kind, fmt::format("{}: {}", request.file.string(), d.text));
+  return out;
+}
 
 void reduce_picture(format::ReadResult& scene, double pixels) {
   scene::Image& image = scene.scene.image;

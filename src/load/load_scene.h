@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 #include <filesystem>
 #include <functional>
@@ -15,6 +16,7 @@
 #include "format/read_scene.h"
 #include "load/load_map.h"
 #include "load/load_textures.h"
+#include "points/load_points.h"
 #include "points/open_data.h"
 #include "scene/changed_parts.h"
 #include "scene/scene.h"
@@ -83,6 +85,12 @@ LoadedScene load_scene(const SceneRequest& request, LoadedScene previous);
 ///
 /// Errors     those of load_scene(), except those about images and names in [color]
 format::ReadResult read_with_data(const SceneRequest& request);
+
+/// Reads the data again from which the spheres of a points table were made.
+///
+/// `scene`    from load_scene(), with this source
+/// Errors     those of points::load_points; base::Error(kBadData) if its spheres can no longer be made
+points::SourceRows read_source_rows(const SceneSource& source, const scene::Scene& scene, std::size_t table);
 
 /// Reduces the resolution of a scene to at most this many pixels with the same view, at both shutter times. Drops crop
 /// and overscan.

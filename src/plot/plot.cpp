@@ -86,6 +86,8 @@ class PlotMaker {
     const std::string which = frame > 1 ? fmt::format(" in frame {}", frame) : "";
     chose(data_.format(), fmt::format("{} particles{}", info_.rows, which));
     choose_frame();
+    for (const data::ColumnInfo& column : info_.columns) out_.columns.push_back(column.name);
+    out_.frame_count = data_.frame_count();
     // Determining the radius from the spacing requires reading the file, so the colour options are checked first.
     const std::vector<std::string> color_choices = choose_color();
     choose_radius();

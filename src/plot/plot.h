@@ -51,6 +51,8 @@ struct PlotScene {
   scene::Points points;     ///< keys of the scene's points
   LegendColors legend;
   std::string view;                  ///< view of the display
+  std::vector<std::string> columns;  ///< columns of the data that can be colours
+  std::optional<int> frame_count;    ///< of the file; empty: unknown, since counting would read it
   std::optional<double> noise = {};  ///< target noise, unless the user limits samples, noise or time
   points::OpenData open_data;        ///< opens the data file for the render without reading it again
 };

@@ -101,6 +101,11 @@ void LegendColors::add(const scene::Points& frame) {
   if (std::find(frame.colors.begin(), frame.colors.end(), last) != frame.colors.end()) nan_color = frame.palette[last];
 }
 
+std::string legend_svg(const LegendColors& colors, const display::Settings& display) {
+  if (colors.labels.empty() && !colors.range) return {};
+  return points::legend_svg(legend_of(colors, display));
+}
+
 void write_legend(const std::filesystem::path& file, const LegendColors& colors, const display::Settings& display) {
   const points::Legend legend = legend_of(colors, display);
   if (base::extension(file) == ".svg") return base::write_text_file(file, points::legend_svg(legend));

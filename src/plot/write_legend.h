@@ -31,6 +31,12 @@ struct LegendColors {
   void add(const scene::Points& frame);
 };
 
+/// The legend of a plot's colours as SVG; empty if there are neither labels nor a colour map with a range.
+///
+/// `display`  see write_legend()
+/// Errors     those of display::develop
+std::string legend_svg(const LegendColors& colors, const display::Settings& display);
+
 /// Writes the legend of a plot's colours as SVG or as an image. Applies the display transform of the plot's images, so
 /// that the colours match.
 ///

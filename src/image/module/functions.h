@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include "image/jpeg_bytes.h"
 #include "image/library.h"
 #include "image/partial_file.h"
 #include "image/read.h"
@@ -12,6 +13,7 @@ namespace orrery::image {
 /// The public functions of this room that need OpenImageIO. They are in a module that the program loads on the first
 /// call.
 struct Functions {
+  decltype(&image::jpeg_bytes) jpeg_bytes;
   decltype(&image::set_threads) set_threads;
   decltype(&image::read) read;
   decltype(&image::read_map_header) read_map_header;

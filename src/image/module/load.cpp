@@ -23,6 +23,10 @@ void start_loading() { static const std::future<void> loading = std::async(std::
 
 void load() { module(); }
 
+std::string jpeg_bytes(int width_px, int height_px, const std::uint8_t* codes, int quality) {
+  return module().jpeg_bytes(width_px, height_px, codes, quality);
+}
+
 void set_threads(int count) { module().set_threads(count); }
 
 film::Picture read(const std::filesystem::path& file, Parts parts, std::uint64_t memory_limit) {
