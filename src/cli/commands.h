@@ -10,6 +10,7 @@ namespace orrery::cli {
 
 void add_render(Command& program);
 void add_plot(Command& program);
+void add_view(Command& program);
 void add_merge(Command& program);
 void add_submit(Command& program);
 void add_check(Command& program);

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "cli/run.h"
 
+#include <algorithm>
 #include <cstdio>
 #include <exception>
 #include <new>
@@ -114,6 +115,7 @@ void add_commands(Command& program) {
   program.heading("Render");
   add_render(program);
   add_plot(program);
+  add_view(program);
   add_merge(program);
   add_submit(program);
   program.heading("Inspect");
@@ -193,6 +195,23 @@ std::string usage_message(const CLI::App& program, const CLI::ParseError& error,
     if (const std::size_t name = said.find('-'); name != std::string::npos)
       return said.substr(name, said.find(' ', name) - name) + " takes no value";
   return said;
+}
+
+void parse_words(std::vector<std::string> words, const std::function<void(Command&)>& add_options,
+                 const std::function<void()>& use) {
+  CLI::App program("", "orrery view");
+  configure(program);
+  program.require_subcommand(0);
+  Command command(program);
+  add_options(command);
+  const std::vector<std::string> typed = words;
+  std::reverse(words.begin(), words.end());  // as CLI11 wants them
+  try {
+    program.parse(words);
+  } catch (const CLI::ParseError& error) {
+    base::refuse(usage_message(program, error, typed));
+  }
+  use();
 }
 
 int run(int argc, const char* const* argv) {

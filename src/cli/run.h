@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <functional>
 #include <string>
 #include <vector>
 
@@ -10,6 +11,8 @@ class ParseError;
 }  // namespace CLI
 
 namespace orrery::cli {
+
+class Command;
 
 /// The whole program: parses argv, runs the command, prints errors.
 ///
@@ -26,5 +29,12 @@ std::string option_without_value(const std::vector<std::string>& words);
 ///
 /// Domain     `words` are argv without the program's name; parsing them in `program` threw `error`
 std::string usage_message(const CLI::App& program, const CLI::ParseError& error, const std::vector<std::string>& words);
+
+/// Parses words as the arguments of a command with the options that `add_options` adds, and calls `use` while the
+/// command exists.
+///
+/// Errors     base::Error(kUsage); those of `use`
+void parse_words(std::vector<std::string> words, const std::function<void(Command&)>& add_options,
+                 const std::function<void()>& use);
 
 }  // namespace orrery::cli

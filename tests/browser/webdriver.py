@@ -38,7 +38,7 @@ class Browser:
 
     def __init__(self, width=1400, height=900, dark=False):
         self._port = free_port()
-        # A session of its own, so that the browser ends with its driver whatever happens to the driver.
+        # A separate session, so that the browser ends with its driver whatever happens to the driver.
         self._driver = subprocess.Popen(["chromedriver", f"--port={self._port}", "--silent"], start_new_session=True,
                                         stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
         try:
@@ -93,12 +93,16 @@ class Browser:
         """Runs JavaScript and returns its result."""
         return self._request("POST", "/execute/sync", {"script": script, "args": list(arguments)})
 
-    def wait(self, script, *arguments, tries=3000):
-        """Runs JavaScript until its result is true, and returns it. `tries` 0.1 s apart end a test that hangs."""
+    def run_async(self, script, *arguments):
+        """Runs JavaScript whose last argument is a function, and returns what that function is called with."""
+        return self._request("POST", "/execute/async", {"script": script, "args": list(arguments)})
+
+    def wait(self, script, *arguments, tries=3000, pause=0.1):
+        """Runs JavaScript until its result is true, and returns it. The number of tries ends a test that hangs."""
         for _ in range(tries):
             if result := self.run(script, *arguments):
                 return result
-            time.sleep(0.1)
+            time.sleep(pause)
         raise AssertionError(f"never true: {script}")
 
     def act(self, *sources):
@@ -117,6 +121,11 @@ class Browser:
             sources[0]["actions"] = [{"type": "pause"}, *actions]
             sources.append({"type": "key", "id": "keys", "actions": held})
         self.act(*sources)
+
+    def click(self, x, y, count=1):
+        press = [{"type": "pointerDown", "button": 0}, {"type": "pointerUp", "button": 0}] * count
+        self.act({"type": "pointer", "id": "mouse", "parameters": {"pointerType": "mouse"},
+                  "actions": [{"type": "pointerMove", "duration": 0, "x": x, "y": y}, *press]})
 
     def wheel(self, x, y, delta):
         self.act({"type": "wheel", "id": "wheel",
@@ -145,3 +154,6 @@ class Browser:
 
     def switch(self, handle):
         self._request("POST", "/window", {"handle": handle})
+
+    def enter_frame(self, index):
+        self._request("POST", "/frame", {"id": index})

@@ -22,6 +22,7 @@
 #include "points/selection.h"
 #include "scene/diagnostic.h"
 #include "scene/validate.h"
+#include "view/wish.h"
 
 namespace orrery::fuzz {
 namespace {
@@ -268,6 +269,23 @@ std::string fault_with_selection(const std::filesystem::path&, const std::string
         return std::all_of(mask.begin(), mask.end(), [](auto m) { return m <= 1; }) ? "" : "a mask other than 0 and 1";
       },
       false);
+}
+
+std::string fault_with_wish(const std::filesystem::path&, const std::string& bytes) {
+  view::Wish wish;
+  try {
+    wish = view::read_wish(bytes, [](const std::string& option) { return option == "--select" || option == "--set"; });
+  } catch (const base::Error& error) {
+    return error.kind() == base::ErrorKind::kUsage ? "" : "refused as another kind: " + std::string(error.what());
+  }
+  const std::vector<std::string> words = view::words_of({}, {wish.options, {}, false});
+  if (words.size() % 2 != 0) return "an option without a value";
+  for (std::size_t i = 0; i < words.size(); i += 2)
+    if (words[i] != "--select" && words[i] != "--set") return "an option that is no control";
+  if (!wish.camera) return "";
+  format::Overrides overrides;
+  for (const std::string& setting : view::camera_settings(*wish.camera)) overrides.add(setting);
+  return overrides.values().size() == 4 ? "" : "a camera of other keys";
 }
 
 std::string fault_with_color_map(const std::filesystem::path& folder, const std::string& bytes) {

@@ -22,4 +22,7 @@ std::string fault_with_color_map(const std::filesystem::path& folder, const std:
 /// As above for overrides, one per line.
 std::string fault_with_overrides(const std::filesystem::path& folder, const std::string& bytes);
 
+/// As above for the body of a request to `orrery view`, which becomes words of a command.
+std::string fault_with_wish(const std::filesystem::path& folder, const std::string& bytes);
+
 }  // namespace orrery::fuzz

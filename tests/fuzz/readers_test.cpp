@@ -170,6 +170,33 @@ std::vector<std::string> selection_words() {
           "-",   "+",    "*",     "/",    ",",  "\"", "'",   "`",     "x",    "z",        "type", "name",
           "'C'", "abs(", "sqrt(", "min(", "1",  " ",  "nan", "1e999", "\xff", "\xC3\xBC", "\n",   std::string(1, '\0')};
 }
+std::vector<std::string> wish_words() {
+  return {"{",
+          "}",
+          "[",
+          "]",
+          ":",
+          ",",
+          "\"options\"",
+          "\"camera\"",
+          "\"moves\"",
+          "true",
+          "null",
+          "\"--set\"",
+          "\"--select\"",
+          "\"size\"",
+          "\"up\"",
+          "1e999",
+          "-1e300",
+          "1e-320",
+          "\\u0000",
+          "\\ud800",
+          "\xff",
+          "\"a=1\\nb=2\"",
+          "0",
+          "[0,0,1]",
+          "\n"};
+}
 std::vector<std::string> color_map_words() {
   return {"#",   "#ff8000", "\n", "\r\n", " ",     ",",      "\t",           "0",   "1",     "0.5",
           "255", "256",     "-1", "nan",  "1e999", "1e-320", "\xEF\xBB\xBF", "inf", "1e308", std::string(1, '\0')};
@@ -200,6 +227,7 @@ TEST(FuzzReaders, CorpusPasses) {
     EXPECT_EQ(fault_with_overrides(folder.path(), seed), "");
   for (const std::string& seed : seeds_of(corpus() / "selection"))
     EXPECT_EQ(fault_with_selection(folder.path(), seed), "");
+  for (const std::string& seed : seeds_of(corpus() / "wish")) EXPECT_EQ(fault_with_wish(folder.path(), seed), "");
   for (const std::string& seed : seeds_of(corpus() / "color_map"))
     EXPECT_EQ(fault_with_color_map(folder.path(), seed), "");
 }
@@ -281,6 +309,11 @@ TEST(FuzzReaders, RandomBytesAsData) { expect_no_fault_with_noise(fault_with_dat
 TEST(FuzzReaders, MutatedSelections) {
   Mutator mutator(10, seeds_of(corpus() / "selection"), selection_words());
   expect_no_fault_with_mutants(fault_with_selection, mutator, 20000);
+}
+
+TEST(FuzzReaders, MutatedWishes) {
+  Mutator mutator(12, seeds_of(corpus() / "wish"), wish_words());
+  expect_no_fault_with_mutants(fault_with_wish, mutator, 20000);
 }
 
 TEST(FuzzReaders, MutatedColorMaps) {

@@ -2,7 +2,7 @@
 # SPDX-License-Identifier: Apache-2.0
 # Fuzzes the readers with libFuzzer under the address and undefined-behaviour sanitizers. Needs clang.
 #
-#   tests/fuzz/run.sh scene|ply|overrides|data|hdf5|selection|color_map [SECONDS=600] [FOLDER...] [libFuzzer options]
+#   tests/fuzz/run.sh scene|ply|overrides|data|hdf5|selection|color_map|wish [SECONDS=600] [FOLDER...] [libFuzzer options]
 #
 # FOLDER: additional seed files, for example damaged ones from the tests of other programs. They are not changed.
 #
@@ -14,7 +14,7 @@ cd "$(dirname "${BASH_SOURCE[0]}")/../.."
 
 target=${1:-}
 case "$target" in
-  scene | ply | selection | color_map) seeds=(tests/fuzz/corpus/"$target") ;;
+  scene | ply | selection | color_map | wish) seeds=(tests/fuzz/corpus/"$target") ;;
   overrides) seeds=(tests/fuzz/corpus/override) ;;
   hdf5) seeds=(tests/fuzz/corpus/data/hdf5) ;;
   data)
@@ -67,7 +67,7 @@ export -f compile
 export objects
 # The rooms that read files, and of `load` what reads a scene with its data. Images and displays, which it could load as
 # well, are not linked: no target gets there.
-printf '%s\0' tests/fuzz/readers.cpp src/{base,scene,format,data,formats,points}/*.cpp src/load/load_scene.cpp |
+printf '%s\0' tests/fuzz/readers.cpp src/{base,scene,format,data,formats,points}/*.cpp src/load/load_scene.cpp src/view/wish.cpp |
   xargs -0 -P "$(nproc)" -I{} bash -c 'compile "$@"' - {} "${compiler[@]}" "${flags[@]}"
 "$clang" -std=c++20 "${flags[@]}" -fsanitize=fuzzer -no-pie -Wl,--unresolved-symbols=ignore-in-object-files \
   -DFAULT="fault_with_${target/hdf5/data}" tests/fuzz/long_run.cpp "$objects"/*.o "${libraries[@]}" -o "$build/fuzz_$target"

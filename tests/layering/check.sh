@@ -20,7 +20,7 @@ awk -v src="$2" '
 
   BEGIN {
     FS = "|"
-    split("dlfcn.h fcntl.h malloc.h netdb.h poll.h pthread.h signal.h termios.h time.h unistd.h", p, " ")
+    split("dlfcn.h fcntl.h malloc.h netdb.h poll.h pthread.h signal.h spawn.h termios.h time.h unistd.h", p, " ")
     for (i in p) posix[p[i]] = 1
   }
   /^#/ { next }
@@ -45,7 +45,7 @@ awk -v src="$2" '
         } else if (prefix != "") {
           if (!((room, prefix) in allowed)) complain(file, room " may not use " header)
           else if (!((room, prefix) in shown)) internal[path] = header
-        } else if (header !~ /^(sys|linux)\// && (header ~ /\// || (header ~ /\.h/ && !(header in posix)))) {
+        } else if (header !~ /^(sys|linux|arpa|netinet)\// && (header ~ /\// || (header ~ /\.h/ && !(header in posix)))) {
           complain(file, header " belongs to a library that no room declares")
         }
       }

@@ -7,6 +7,7 @@
 #include <unistd.h>
 
 #include <cstdint>
+#include <fstream>
 #include <functional>
 
 namespace orrery::support {
@@ -31,6 +32,13 @@ inline std::uint64_t peak_memory(const std::function<void()>& run) {
   ::wait4(child, &status, 0, &used);
   EXPECT_EQ(status, 0);
   return static_cast<std::uint64_t>(used.ru_maxrss) * 1024;
+}
+
+/// The resident memory of this process now, bytes.
+inline std::uint64_t resident_memory() {
+  std::uint64_t pages = 0, resident = 0;
+  std::ifstream("/proc/self/statm") >> pages >> resident;
+  return resident * static_cast<std::uint64_t>(::sysconf(_SC_PAGESIZE));
 }
 
 }  // namespace orrery::support

@@ -1,0 +1,279 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <fcntl.h>
+#include <spawn.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <atomic>
+#include <chrono>
+#include <cstring>
+#include <memory>
+#include <set>
+#include <string>
+#include <thread>
+#include <utility>
+#include <vector>
+
+#include <fmt/core.h>
+
+#include "base/available_memory.h"
+#include "base/error.h"
+#include "base/file_name.h"
+#include "base/text.h"
+#include "cli/commands.h"
+#include "cli/messages.h"
+#include "cli/render_options.h"
+#include "cli/run.h"
+#include "cli/signals.h"
+#include "http/server.h"
+#include "image/library.h"
+#include "plot/plot.h"
+#include "plot/write_legend.h"
+#include "points/color_map.h"
+#include "view/site.h"
+#include "view/viewer.h"
+
+namespace orrery::cli {
+namespace {
+
+/// The options that say what is shown. Those of data files have no effect on scenes.
+struct ShownOptions {
+  plot::PlotOptions plot;
+  DataArguments data;
+  std::string style;
+  SceneOptions scene;
+  job::Job job;
+  const Command* command = nullptr;
+
+  void add_to(Command& parsed) {
+    command = &parsed;
+    add_data_options(parsed, data, plot);
+    add_look_options(parsed, plot, style);
+    scene.add_to(parsed);
+    add_sampling_options(parsed, job);
+    add_denoise_option(parsed, job);
+  }
+};
+
+struct ViewArguments {
+  ShownOptions shown;
+  std::string host = "127.0.0.1";
+  int port = 0;
+  bool opens = false, once = false;
+  std::vector<const Option*> own;  ///< those that are not part of `shown`
+};
+
+/// With --once, a page that is reloaded within this time has not been closed.
+constexpr std::chrono::seconds kGrace{30};
+
+bool is_scene(const std::filesystem::path& file) { return base::extension(file) == ".toml"; }
+
+/// The options as typed, without FILE.
+std::vector<std::string> words_of(const Command& command, const std::vector<const Option*>& without) {
+  std::vector<std::string> out;
+  for (const Option& option : command.options()) {
+    if (option.name().empty() || std::find(without.begin(), without.end(), &option) != without.end()) continue;
+    const std::vector<std::string> words = option.arguments();
+    out.insert(out.end(), words.begin(), words.end());
+  }
+  return out;
+}
+
+/// The files that options name besides FILE.
+std::set<std::string> files_of(const ShownOptions& shown) {
+  std::set<std::string> out = view::named_files(shown.scene.overrides());
+  if (shown.plot.points.color.has_map_file()) out.insert(shown.plot.points.color.map);
+  return out;
+}
+
+view::Subject scene_subject(const ShownOptions& shown) {
+  for (const Option& option : shown.command->options())
+    if (option.count() > 0 && (option.heading() == "Data options" || option.heading() == "Look options"))
+      base::refuse(fmt::format("{} is an option for data files; a scene has its keys: --set KEY=VALUE", option.name()));
+  view::Subject out;
+  out.job = shown.job;
+  out.job.scene.file = shown.plot.file;
+  out.job.scene.overrides = shown.scene.overrides();
+  return out;
+}
+
+view::Subject data_subject(ShownOptions& shown) {
+  plot::PlotOptions& plot = shown.plot;
+  if (!shown.data.frames.empty()) base::refuse("--frames: the page has a slider; --frame N selects the first one");
+  read_data_options(shown.data, plot);
+  plot.style = plot::style_of(shown.style);
+  plot.overrides = shown.scene.overrides();
+  plot.scene_file = plot.file;
+  plot.has_target = shown.job.sampling.noise || shown.job.sampling.seconds;
+  plot.develops = true;
+  plot.memory_limit =
+      shown.job.resources.memory_limit > 0 ? shown.job.resources.memory_limit : base::available_memory().value_or(0);
+  const plot::PlotScene made = plot::make_plot(plot);
+  view::Subject out;
+  out.job = shown.job;
+  out.job.scene.file = plot.file;
+  out.job.scene.text = std::make_shared<const std::string>(made.text);
+  out.job.scene.typed_lines = 0;
+  out.job.scene.has_file = false;
+  out.job.scene.overrides = plot.overrides;
+  if (made.noise) out.job.sampling.noise = *made.noise;
+  out.notes = made.choices;
+  for (const std::string& warning : made.warnings) out.notes.push_back("warning: " + warning);
+  out.columns = made.columns;
+  out.frame_count = made.frame_count;
+  const scene::PointsColor& color = made.points.color;
+  out.chosen["--map"] = color.map;
+  if (color.range) out.chosen["--range"] = fmt::format("{}:{}", color.range->low, color.range->high);
+  out.chosen["--style"] = plot::style_names()[static_cast<std::size_t>(plot.style.value_or(plot::Style::kStudio))];
+  display::Settings display = plot::settings_of(plot, true).display;
+  display.view = made.view;
+  out.legend = plot::legend_svg(made.legend, display);
+  return out;
+}
+
+/// What the page may set, for a kind of file.
+view::Controls controls_of(const std::filesystem::path& file) {
+  view::Controls out;
+  out.title = file.filename().string();
+  const std::string command =
+      fmt::format("orrery {} {}", is_scene(file) ? "render" : "plot", base::shell_quoted(file.string()));
+  const auto line = [command](const std::vector<std::string>& words, const char* rest) {
+    std::string text = command;
+    for (const std::string& word : words) text += " " + base::shell_quoted(word);
+    return text + rest;
+  };
+  out.command = [line](const std::vector<std::string>& words) { return line(words, " -o picture.png"); };
+  out.film = [line](const std::vector<std::string>& words) {
+    return line(words, " --set animation.turntable=120 --frames 1-120 -o film.####.png");
+  };
+  for (const char* option : {"--samples", "--noise", "--denoise", "--set", "--width", "--height"})
+    out.options[option] = {};
+  if (is_scene(file)) return out;
+  out.options["--color-by"] = {"none", "element", "type", "rgb"};
+  out.options["--map"] = points::color_map_names();
+  out.options["--style"] = plot::style_names();
+  for (const char* option : {"--ground", "--range", "--select", "--slice", "--radius-scale", "--frame"})
+    out.options[option] = {};
+  return out;
+}
+
+/// Moves the values of controls from words to a wish, from which the page can change them.
+view::Wish first_wish(std::vector<std::string>& words, const view::Controls& controls) {
+  view::Wish out;
+  std::vector<std::string> fixed;
+  for (std::size_t i = 0; i < words.size(); ++i) {
+    const std::size_t equals = words[i].find('=');
+    const bool is_joined = words[i].starts_with("--") && equals != std::string::npos;
+    const std::string option = is_joined ? words[i].substr(0, equals) : words[i];
+    if (controls.options.count(option) == 0) {
+      fixed.push_back(words[i]);
+      continue;
+    }
+    std::string& value = out.options[option];
+    if (!value.empty()) value += option == "--select" ? " && " : "\n";
+    const std::string one = view::is_flag(option) ? "on" : is_joined ? words[i].substr(equals + 1) : words[++i];
+    value += option == "--select" ? "(" + one + ")" : one;
+  }
+  if (controls.options.count("--style") > 0 && out.options.count("--width") + out.options.count("--height") == 0) {
+    out.options["--width"] = "960";
+    out.options["--height"] = "540";
+  }
+  words = std::move(fixed);
+  return out;
+}
+
+/// Opens an address in the user's browser, without waiting for it.
+void open_in_browser(const std::string& address) {
+  std::string command = "xdg-open", argument = address;
+  char* words[] = {command.data(), argument.data(), nullptr};
+  posix_spawn_file_actions_t actions;
+  posix_spawn_file_actions_init(&actions);
+  // Results are printed to stdout, and a browser is talkative.
+  posix_spawn_file_actions_addopen(&actions, STDOUT_FILENO, "/dev/null", O_WRONLY, 0);
+  posix_spawn_file_actions_addopen(&actions, STDERR_FILENO, "/dev/null", O_WRONLY, 0);
+  pid_t browser = 0;
+  const int error = posix_spawnp(&browser, command.c_str(), &actions, nullptr, words, environ);
+  posix_spawn_file_actions_destroy(&actions);
+  if (error != 0) {
+    print_message(fmt::format("orrery: --open: cannot start xdg-open: {}; open the address in a browser\n",
+                              std::strerror(error)));
+    return;
+  }
+  std::thread([browser] {
+    int status = 0;
+    if (waitpid(browser, &status, 0) == browser && status != 0)
+      print_message("orrery: --open: no browser was found; open the address in a browser\n");
+  }).detach();
+}
+
+int run_view(ViewArguments& arguments, const Command& command) {
+  const std::filesystem::path& file = arguments.shown.plot.file;
+  const std::set<std::string> allowed = files_of(arguments.shown);
+  const view::Controls controls = controls_of(file);
+  std::vector<std::string> fixed = words_of(command, arguments.own);
+  const view::Wish first = first_wish(fixed, controls);
+  const auto make = [&](std::vector<std::string> words) {
+    ShownOptions shown;
+    view::Subject subject;
+    words.insert(words.begin(), file.string());
+    parse_words(
+        words, [&](Command& parsed) { shown.add_to(parsed); },
+        [&] {
+          // The page may name no files but those what was given on the command line.
+          for (const std::string& name : files_of(shown))
+            if (allowed.count(name) == 0)
+              base::refuse(fmt::format("`{}` names a file; start orrery view with this option", name));
+          subject = is_scene(file) ? scene_subject(shown) : data_subject(shown);
+        });
+    return subject;
+  };
+  const std::atomic<bool>& stops = stop_on_signals();
+  image::start_loading();
+  view::Viewer viewer(make, fixed, first);
+  const std::string secret = view::random_secret();
+  view::Site site(viewer, controls, arguments.host, secret);
+  const auto server =
+      http::serve(arguments.host, arguments.port, [&](const http::Request& request) { return site.answer(request); });
+  site.set_port(server->port());
+  if (!arguments.host.starts_with("127."))
+    print_message(
+        fmt::format("orrery: warning: others can reach {}, and HTTP is not encrypted; SSH and 127.0.0.1 are "
+                    "safer\n",
+                    arguments.host));
+  const std::string address = fmt::format(
+      "http://{}:{}/?token={}", arguments.host == "0.0.0.0" ? "127.0.0.1" : arguments.host, server->port(), secret);
+  print_result(address + "\n");
+  if (arguments.opens) open_in_browser(address);
+  while (!stops && !(arguments.once && site.idle() > kGrace))
+    std::this_thread::sleep_for(std::chrono::milliseconds(50));
+  viewer.stop();
+  return 0;
+}
+
+}  // namespace
+
+void add_view(Command& program) {
+  const auto arguments = std::make_shared<ViewArguments>();
+  Command& command = *program.add_subcommand("view", "Look at a scene or a data file in a browser");
+  arguments->shown.add_to(command);
+  arguments->own = {
+      command.add_option("--port", arguments->port, "N", "Port to listen on; default: a free one")
+          ->transform(whole_number(1, 65535)),
+      command.add_option("--host", arguments->host, "ADDRESS",
+                         "IPv4 address to listen on; default: 127.0.0.1, which only this machine reaches"),
+      command.add_flag("--open", arguments->opens, "Open the page in the browser of this machine"),
+      command.add_flag("--once", arguments->once, "End when the page has been closed"),
+  };
+  command.details(
+      "Prints the address of a page and serves it until INT or TERM. The address contains a secret; only 127.0.0.1 is "
+      "served. On another machine: ssh -L PORT:127.0.0.1:PORT HOST, with --port PORT here. The page shows the command "
+      "that makes its picture. docs/view.md describes the page.");
+  command.footer(
+      "Examples:\n"
+      "  orrery view melt.dump --color-by speed\n"
+      "  orrery view scene.toml --port 8080");
+  command.action([arguments, &command] { return run_view(*arguments, command); });
+}
+
+}  // namespace orrery::cli

@@ -1,0 +1,14 @@
+// SPDX-License-Identifier: Apache-2.0
+// The program's side of the module: forwards the room's functions to the module and loads it on the first call, so that
+// only `orrery view` loads libmicrohttpd.
+#include "base/module.h"
+#include "http/module/functions.h"
+
+namespace orrery::http {
+
+std::unique_ptr<Server> serve(const std::string& address, int port, Handler handler) {
+  static const Functions& functions = *static_cast<const Functions*>(base::load_module("http"));
+  return functions.serve(address, port, std::move(handler));
+}
+
+}  // namespace orrery::http

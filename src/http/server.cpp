@@ -1,0 +1,136 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "http/server.h"
+
+#include <arpa/inet.h>
+#include <microhttpd.h>
+#include <netinet/in.h>
+
+#include <cerrno>
+#include <cstring>
+#include <exception>
+
+#include <fmt/core.h>
+
+#include "base/error.h"
+
+namespace orrery::http {
+namespace {
+
+constexpr unsigned kMaxConnections = 32;
+constexpr unsigned kIdleLimit_s = 60;                 // longer than any handler waits
+constexpr std::size_t kConnectionMemory = 32 * 1024;  // limits the header of a request
+
+/// A request that is being received.
+struct Exchange {
+  Request request;
+  bool is_too_large = false;
+};
+
+std::string field(MHD_Connection* connection, const char* name) {
+  const char* const value = MHD_lookup_connection_value(connection, MHD_HEADER_KIND, name);
+  return value != nullptr ? value : "";
+}
+
+MHD_Result add_argument(void* query, MHD_ValueKind, const char* name, const char* value) {
+  (*static_cast<std::map<std::string, std::string>*>(query))[name] = value != nullptr ? value : "";
+  return MHD_YES;
+}
+
+/// The memory of a body that is being sent.
+using Body = std::shared_ptr<const std::string>;
+
+ssize_t read_body(void* body, std::uint64_t at, char* buffer, std::size_t size) {
+  const std::string& text = **static_cast<Body*>(body);
+  if (at >= text.size()) return MHD_CONTENT_READER_END_OF_STREAM;
+  return static_cast<ssize_t>(text.copy(buffer, size, at));
+}
+
+void release_body(void* body) { delete static_cast<Body*>(body); }
+
+MHD_Result send(MHD_Connection* connection, const Response& response) {
+  constexpr std::size_t kBlock = 64 * 1024;
+  MHD_Response* const out = response.body && !response.body->empty()
+                                ? MHD_create_response_from_callback(response.body->size(), kBlock, read_body,
+                                                                    new Body(response.body), release_body)
+                                : MHD_create_response_from_buffer(0, nullptr, MHD_RESPMEM_PERSISTENT);
+  if (out == nullptr) return MHD_NO;
+  if (!response.type.empty()) MHD_add_response_header(out, "Content-Type", response.type.c_str());
+  for (const auto& [name, value] : response.fields) MHD_add_response_header(out, name.c_str(), value.c_str());
+  const MHD_Result result = MHD_queue_response(connection, static_cast<unsigned>(response.status), out);
+  MHD_destroy_response(out);
+  return result;
+}
+
+class MicroServer : public Server {
+ public:
+  MicroServer(const sockaddr_in& address, Handler handler) : handler_(std::move(handler)) {
+    daemon_ = MHD_start_daemon(MHD_USE_INTERNAL_POLLING_THREAD | MHD_USE_THREAD_PER_CONNECTION, 0, nullptr, nullptr,
+                               &MicroServer::receive, this, MHD_OPTION_SOCK_ADDR, &address, MHD_OPTION_CONNECTION_LIMIT,
+                               kMaxConnections, MHD_OPTION_CONNECTION_TIMEOUT, kIdleLimit_s,
+                               MHD_OPTION_CONNECTION_MEMORY_LIMIT, kConnectionMemory, MHD_OPTION_NOTIFY_COMPLETED,
+                               &MicroServer::forget, nullptr, MHD_OPTION_STRICT_FOR_CLIENT, 1, MHD_OPTION_END);
+    if (daemon_ == nullptr)
+      throw base::Error(
+          base::ErrorKind::kCannotCreate,
+          fmt::format("cannot listen on port {}: {}; choose another one with --port, or none for a free one",
+                      ntohs(address.sin_port), std::strerror(errno)));
+    const MHD_DaemonInfo* const info = MHD_get_daemon_info(daemon_, MHD_DAEMON_INFO_BIND_PORT);
+    port_ = info != nullptr && info->port != 0 ? info->port : ntohs(address.sin_port);
+  }
+  ~MicroServer() override { MHD_stop_daemon(daemon_); }
+
+  int port() const override { return port_; }
+
+ private:
+  static MHD_Result receive(void* self, MHD_Connection* connection, const char* url, const char* method, const char*,
+                            const char* data, std::size_t* size, void** state) {
+    if (*state == nullptr) {  // the header has been received
+      auto exchange = std::make_unique<Exchange>();
+      Request& request = exchange->request;
+      request.method = method;
+      request.path = url;
+      request.host = field(connection, MHD_HTTP_HEADER_HOST);
+      request.origin = field(connection, MHD_HTTP_HEADER_ORIGIN);
+      request.cookie = field(connection, MHD_HTTP_HEADER_COOKIE);
+      request.authorization = field(connection, MHD_HTTP_HEADER_AUTHORIZATION);
+      MHD_get_connection_values(connection, MHD_GET_ARGUMENT_KIND, add_argument, &request.query);
+      *state = exchange.release();
+      return MHD_YES;
+    }
+    auto& exchange = *static_cast<Exchange*>(*state);
+    if (*size > 0) {
+      exchange.is_too_large = exchange.is_too_large || exchange.request.body.size() + *size > kLargestBody;
+      if (!exchange.is_too_large) exchange.request.body.append(data, *size);
+      *size = 0;
+      return MHD_YES;
+    }
+    if (exchange.is_too_large) return send(connection, {413});
+    try {
+      return send(connection, static_cast<MicroServer*>(self)->handler_(exchange.request));
+    } catch (const std::exception&) {
+      return send(connection, {500});
+    }
+  }
+
+  static void forget(void*, MHD_Connection*, void** state, MHD_RequestTerminationCode) {
+    delete static_cast<Exchange*>(*state);
+    *state = nullptr;
+  }
+
+  Handler handler_;
+  MHD_Daemon* daemon_;
+  int port_;
+};
+
+}  // namespace
+
+std::unique_ptr<Server> serve(const std::string& address, int port, Handler handler) {
+  sockaddr_in at{};
+  at.sin_family = AF_INET;
+  at.sin_port = htons(static_cast<std::uint16_t>(port));
+  if (inet_pton(AF_INET, address.c_str(), &at.sin_addr) != 1)
+    base::refuse(fmt::format("--host: `{}` is not an IPv4 address, e.g. 127.0.0.1", address));
+  return std::make_unique<MicroServer>(at, std::move(handler));
+}
+
+}  // namespace orrery::http

@@ -1,0 +1,53 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstddef>
+#include <functional>
+#include <map>
+#include <memory>
+#include <string>
+#include <utility>
+#include <vector>
+
+namespace orrery::http {
+
+/// Largest body of a request, in bytes. A larger one is answered with 413.
+inline constexpr std::size_t kLargestBody = 64 * 1024;
+
+struct Request {
+  std::string method, path;                         ///< "GET", "/frame"
+  std::map<std::string, std::string> query;         ///< decoded; the last value of a repeated name
+  std::string host, origin, cookie, authorization;  ///< header fields as sent; empty: none
+  std::string body;
+};
+
+struct Response {
+  int status = 200;
+  std::string type = {};  ///< content type; empty: no body
+  /// Shared, because an image may be sent to several clients.
+  std::shared_ptr<const std::string> body = nullptr;
+  std::vector<std::pair<std::string, std::string>> fields = {};  ///< further header fields
+};
+
+/// Answers a request. Called on the thread of a connection; may wait. What it throws is answered with 500.
+using Handler = std::function<Response(const Request&)>;
+
+/// A running server. The destructor waits until no handler runs.
+class Server {
+ public:
+  Server() = default;
+  virtual ~Server() = default;
+  Server(const Server&) = delete;
+  Server& operator=(const Server&) = delete;
+
+  virtual int port() const = 0;
+};
+
+/// Starts to serve HTTP/1.1 on an IPv4 address. Each connection has a thread; the number and the idle time of
+/// connections are limited.
+///
+/// `port`     0: a free port
+/// Errors     base::Error: kUsage for an address that is not IPv4; kCannotCreate if the port is in use
+std::unique_ptr<Server> serve(const std::string& address, int port, Handler handler);
+
+}  // namespace orrery::http

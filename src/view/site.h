@@ -1,0 +1,68 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <atomic>
+#include <chrono>
+#include <cstdint>
+#include <functional>
+#include <map>
+#include <string>
+#include <vector>
+
+#include "http/server.h"
+#include "view/viewer.h"
+
+namespace orrery::view {
+
+/// What the page offers for a command.
+struct Controls {
+  std::string title;  ///< name of the file
+  /// What a user types to make the picture of these words, and a film of it, if there is a way.
+  std::function<std::string(const std::vector<std::string>&words)> command, film;
+  /// Options that the page may set, with the values among which it lets choose; none: any text.
+  std::map<std::string, std::vector<std::string>> options;
+};
+
+/// The page and what it requests, by HTTP.
+///
+/// A request is answered only if it carries the secret, as a cookie, in a header or in the address, and names this host
+/// by its address or a name of the loopback interface: pages of other sites cannot ask, not even with a DNS name of
+/// their own that they redirect. Nothing that a client sends is a name of a file.
+class Site {
+ public:
+  /// `host`     address that the server listens on
+  /// `secret`   at least 128 random bits, as text for an address
+  Site(Viewer& viewer, Controls controls, std::string host, std::string secret);
+
+  /// The port is known only when the server runs.
+  void set_port(int port) { port_ = port; }
+
+  http::Response answer(const http::Request& request);
+
+  /// Time since the last request that carried the secret; zero until there is one.
+  std::chrono::seconds idle() const;
+
+ private:
+  bool is_admitted(const http::Request& request) const;
+  std::string cookie_name() const;
+  http::Response page(const http::Request& request) const;
+  http::Response frame(const http::Request& request);
+  http::Response state() const;
+  http::Response pick(const http::Request& request);
+  http::Response change(const http::Request& request);
+  http::Response picture(const std::string& extension) const;
+  http::Response scene() const;
+
+  Viewer& viewer_;
+  const Controls controls_;
+  const std::string host_, secret_;
+  std::atomic<int> port_{0};
+  std::atomic<std::int64_t> last_request_s_{-1};
+};
+
+/// 128 random bits as text.
+///
+/// Errors     base::Error(kIo) if the system has no random numbers
+std::string random_secret();
+
+}  // namespace orrery::view

@@ -1,0 +1,393 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "view/viewer.h"
+
+#include <algorithm>
+#include <cmath>
+#include <new>
+#include <utility>
+#include <variant>
+
+#include <fmt/core.h>
+
+#include "base/error.h"
+#include "base/stop_point.h"
+#include "compile/compiled_scene.h"
+#include "data/table.h"
+#include "display/develop.h"
+#include "display/settings.h"
+#include "film/picture.h"
+#include "image/jpeg_bytes.h"
+#include "job/job.h"
+#include "preview/file_sink.h"
+#include "render/sphere_at.h"
+
+namespace orrery::view {
+namespace {
+
+using Clock = std::chrono::steady_clock;
+
+/// Time for a moving image, of which developing and encoding take a part.
+constexpr double kMovingTime_s = 0.045;
+constexpr int kNarrowestMoving = 160;  // px
+constexpr int kMovingDepth = 5;        // of paths
+constexpr std::chrono::milliseconds kRefresh{150};
+constexpr std::uint64_t kKeptSource = std::uint64_t{256} << 20;  ///< columns of picked particles, bytes
+constexpr int kMovingQuality = 60, kQuality = 85;                // of JPEG
+
+/// Text of an error with its diagnostics, a line each.
+std::string text_of(const base::Error& error) {
+  std::string out = error.what();
+  for (const base::Diagnostic& diagnostic : error.diagnostics())
+    out += "\n" + diagnostic.text + (diagnostic.remedy.empty() ? "" : "; " + diagnostic.remedy);
+  return out;
+}
+
+/// A value of a data file, as short as it can be without loss.
+std::string text_of(const data::Column& column, std::size_t row) {
+  return std::visit(
+      [row](const auto& values) {
+        if constexpr (requires { values.words; })
+          return values.words[values.index[row]];
+        else
+          return fmt::format("{}", values[row]);
+      },
+      column.values);
+}
+
+}  // namespace
+
+/// An image that is being rendered, and its development so far.
+struct Viewer::Live {
+  explicit Live(const display::PictureInfo& info)
+      : canvas(info.width, info.height),
+        develop(info.display),
+        codes(3 * static_cast<std::size_t>(info.width) * static_cast<std::size_t>(info.height)) {}
+
+  preview::Canvas canvas;
+  display::PixelDeveloper develop;
+  std::mutex mutex;  // guards what follows
+  std::vector<std::uint8_t> codes;
+  Clock::time_point next = Clock::now();
+  std::atomic<double> samples{0};  ///< per pixel
+  std::uint64_t wish = 0;
+};
+
+Viewer::Viewer(MakeSubject make, std::vector<std::string> fixed, Wish first)
+    : make_(std::move(make)), fixed_(std::move(fixed)), prepared_(std::make_shared<job::PreparedScene>(true)) {
+  state_.wish = std::move(first);
+  thread_ = std::thread([this] { run(); });
+}
+
+Viewer::~Viewer() {
+  stop();
+  thread_.join();
+}
+
+void Viewer::stop() {
+  const std::lock_guard lock(mutex_);
+  stops_ = true;
+  cancel_ = true;
+  changed_.notify_all();
+}
+
+std::uint64_t Viewer::ask(Wish wish) {
+  const std::lock_guard lock(mutex_);
+  const bool keeps_moving = moves_ && wish.options == state_.wish.options;
+  if (is_cancellable_ && !keeps_moving) cancel_ = true;  // moving images are completed, or none would be seen
+  state_.wish = std::move(wish);
+  ++state_.number;
+  changed_.notify_all();
+  return ++asked_;
+}
+
+State Viewer::state() const {
+  const std::lock_guard lock(mutex_);
+  State out = state_;
+  out.words = words_of(fixed_, state_.wish);
+  return out;
+}
+
+std::shared_ptr<const job::Rendering> Viewer::finished() const {
+  const std::lock_guard lock(mutex_);
+  return finished_;
+}
+
+Frame Viewer::frame(std::uint64_t after, std::chrono::milliseconds patience, std::optional<std::uint64_t> state) {
+  const Clock::time_point end = Clock::now() + patience;
+  std::unique_lock lock(mutex_);
+  while (!stops_ && frame_.number <= after && state.value_or(state_.number) == state_.number && Clock::now() < end) {
+    changed_.wait_until(lock, std::min(end, Clock::now() + kRefresh));
+    if (frame_.number > after || !live_) continue;
+    const std::shared_ptr<Live> live = live_;
+    lock.unlock();
+    refresh(*live);
+    lock.lock();
+  }
+  return frame_;
+}
+
+/// The data of a points table from which particles were picked last.
+struct Viewer::Source {
+  std::map<std::string, std::string> options;  ///< of the subject
+  std::size_t table = 0;
+  points::SourceRows rows;
+};
+
+std::optional<Picked> Viewer::pick(double x, double y) {
+  const std::shared_lock preparation(preparation_);
+  if (!is_prepared_) return {};
+  const compile::CompiledScene& compiled = prepared_->compiled();
+  const std::optional<std::uint32_t> id =
+      render::sphere_at(compiled, prepared_->built(), x * compiled.width, y * compiled.height);
+  if (!id) return {};
+  const scene::Scene& scene = prepared_->loaded().read.scene;
+  const kernel::Sphere sphere = compiled.spheres[*id];
+  Picked out;
+  out.center = {sphere.x, sphere.y, sphere.z};
+  out.radius = sphere.radius;
+  std::size_t index = *id;
+  if (index < scene.spheres.size()) {
+    const scene::Sphere& authored = scene.spheres[index];
+    out.title = fmt::format("sphere[{}]", index);
+    if (!authored.name.empty()) out.values.emplace_back("name", authored.name);
+    if (!authored.group.empty()) out.values.emplace_back("group", authored.group);
+    out.values.emplace_back("material", scene.materials[authored.material].name);
+    return out;
+  }
+  index -= scene.spheres.size();
+  std::size_t table = 0;
+  while (index >= compiled.points_sizes[table]) index -= compiled.points_sizes[table++];
+  const std::shared_ptr<const Source> source = source_of(scene, table);
+  if (index >= source->rows.rows.size())
+    throw base::Error(base::ErrorKind::kBadData, scene.points[table].file.string() + " has changed");
+  const std::uint32_t row = source->rows.rows[index];
+  out.title = fmt::format("row {} of {}", row + 1, scene.points[table].file.filename().string());
+  for (const data::Column& column : source->rows.table.columns)
+    out.values.emplace_back(column.name, text_of(column, row));
+  return out;
+}
+
+std::shared_ptr<const Viewer::Source> Viewer::source_of(const scene::Scene& scene, std::size_t table) {
+  std::map<std::string, std::string> options;
+  {
+    const std::lock_guard lock(mutex_);
+    options = state_.wish.options;
+  }
+  const std::lock_guard lock(picking_);
+  if (picked_from_ && picked_from_->options == options && picked_from_->table == table) return picked_from_;
+  picked_from_ = nullptr;
+  const auto source = std::make_shared<Source>();
+  source->options = std::move(options);
+  source->table = table;
+  source->rows = load::read_source_rows(source_, scene, table);
+  std::uint64_t bytes = 0;
+  for (const data::Column& column : source->rows.table.columns)
+    bytes += source->rows.table.rows * data::bytes_per_value(column.type());
+  if (bytes <= kKeptSource) picked_from_ = source;
+  return source;
+}
+
+/// Announces the end of a wish. Domain: mutex_ is locked
+void Viewer::set_served(std::uint64_t wish, const std::string& problem) {
+  state_.served = wish;
+  state_.problem = problem;
+  state_.activity.clear();
+  ++state_.number;
+  changed_.notify_all();
+}
+
+/// Publishes the image that is being rendered, if it has changed.
+void Viewer::refresh(Live& live) {
+  const std::lock_guard lock(live.mutex);
+  if (Clock::now() < live.next) return;
+  const std::vector<std::size_t> cells = live.canvas.take_changed();
+  if (cells.empty()) return;
+  const auto row_codes = 3 * static_cast<std::size_t>(live.canvas.width());
+  std::vector<float> rgb(3 * static_cast<std::size_t>(preview::Canvas::kSide));
+  for (const std::size_t index : cells) {
+    const preview::Cell cell = live.canvas.cell(index);
+    for (int y = cell.y; y < cell.y + cell.height; ++y) {
+      live.canvas.read(cell.x, y, cell.width, rgb.data());
+      live.develop(rgb.data(), static_cast<std::size_t>(cell.width),
+                   &live.codes[static_cast<std::size_t>(y) * row_codes + 3 * static_cast<std::size_t>(cell.x)]);
+    }
+  }
+  Frame frame;
+  frame.width = live.canvas.width();
+  frame.height = live.canvas.height();
+  frame.samples = live.samples;
+  frame.type = "image/jpeg";
+  frame.bytes =
+      std::make_shared<const std::string>(image::jpeg_bytes(frame.width, frame.height, live.codes.data(), kQuality));
+  live.next = Clock::now() + kRefresh;
+  const std::lock_guard own(mutex_);
+  if (live_.get() != &live) return;  // finished meanwhile
+  frame.number = frame_.number + 1;
+  frame.wish = live.wish;
+  frame_ = std::move(frame);
+  changed_.notify_all();
+}
+
+void Viewer::run() {
+  std::unique_lock lock(mutex_);
+  for (;;) {
+    changed_.wait(lock, [this] { return stops_ || asked_ != served_; });
+    if (stops_) return;
+    const Wish wish = state_.wish;
+    const std::uint64_t number = asked_;
+    moves_ = wish.moves;
+    cancel_ = false;
+    is_cancellable_ = false;
+    lock.unlock();
+    std::string problem;
+    bool was_stopped = false;
+    try {
+      serve(wish, number);
+    } catch (const base::Error& error) {
+      was_stopped = error.kind() == base::ErrorKind::kStopped;
+      if (!was_stopped) problem = text_of(error);
+    } catch (const std::bad_alloc&) {
+      problem = "out of memory";
+    }
+    lock.lock();
+    live_ = nullptr;
+    moves_ = false;
+    served_ = number;
+    if (was_stopped) continue;
+    if (!problem.empty()) set_served(number, problem);
+  }
+}
+
+void Viewer::serve(const Wish& wish, std::uint64_t number) {
+  if (made_options_ != wish.options) make_subject(wish);
+  render(wish, number);
+}
+
+void Viewer::make_subject(const Wish& wish) {
+  {
+    const std::lock_guard lock(mutex_);
+    is_cancellable_ = true;
+    state_.activity = "reading";
+    ++state_.number;
+    changed_.notify_all();
+  }
+  Wish without_camera = wish;
+  without_camera.camera.reset();
+  const base::StopScope scope(&cancel_);
+  Subject subject = make_(words_of(fixed_, without_camera));
+  made_options_ = wish.options;
+  const std::lock_guard lock(mutex_);
+  is_cancellable_ = false;
+  state_.subject = std::move(subject);
+}
+
+void Viewer::render(const Wish& wish, std::uint64_t number) {
+  job::Job job = state_.subject.job;  // written by this thread only
+  if (wish.camera)
+    for (const std::string& setting : camera_settings(*wish.camera)) job.scene.overrides.add(setting);
+  int width = 0, height = 0;
+  {
+    const std::lock_guard lock(mutex_);
+    width = state_.width;
+    height = state_.height;
+    finished_ = nullptr;
+  }
+  const bool moves = wish.moves && width > 0;
+  if (moves) {
+    const double pixels = std::max(pixels_per_second_ * kMovingTime_s, 1.0);
+    const double all = static_cast<double>(width) * static_cast<double>(height);
+    const double scale = std::clamp(std::sqrt(pixels / all), std::min(1.0, double{kNarrowestMoving} / width), 1.0);
+    const auto side = [scale](int full) { return std::max(1, static_cast<int>(std::lround(full * scale))); };
+    job.scene.overrides.add(fmt::format("image.width={}", side(width)));
+    job.scene.overrides.add(fmt::format("image.height={}", side(height)));
+    job.scene.overrides.add("render.samples=1");
+    if (prepared_depth_ > kMovingDepth) job.scene.overrides.add(fmt::format("render.max_depth={}", kMovingDepth));
+    job.sampling = {};
+    job.denoise = false;
+  }
+  std::unique_lock preparation(preparation_);
+  job.prepared = prepared_;
+  job.hooks = {};
+  job.hooks.cancel = &cancel_;
+  job.hooks.develops_pixels = true;
+  std::shared_ptr<Live> live;
+  double build_reported = -1;
+  job.hooks.on_build = [&](double fraction) {
+    if (fraction - build_reported < 0.05) return;
+    build_reported = fraction;
+    const std::lock_guard lock(mutex_);
+    state_.activity = fmt::format("building the BVH: {:.0f} %", 100 * fraction);
+    ++state_.number;
+    changed_.notify_all();
+  };
+  job.hooks.on_start = [&](const display::PictureInfo& info) {
+    if (!moves) {
+      live = std::make_shared<Live>(info);
+      live->wish = number;
+    }
+    is_prepared_ = true;
+    source_ = job.scene;
+    preparation.unlock();
+    const std::lock_guard lock(mutex_);
+    live_ = live;
+    is_cancellable_ = true;
+    if (!moves && asked_ != number) cancel_ = true;
+    state_.camera = prepared_->loaded().read.scene.camera;
+    if (!moves) {
+      prepared_depth_ = prepared_->loaded().read.scene.render.max_depth;
+      state_.width = info.width;
+      state_.height = info.height;
+    }
+    state_.activity.clear();
+    ++state_.number;
+    changed_.notify_all();
+  };
+  if (!moves) {
+    job.hooks.on_pixels = [&](const film::Partial& state, const film::RenderedPixels& rendered) {
+      live->canvas.write(state, rendered);
+    };
+    job.hooks.on_progress = [&](const render::Progress& progress) {
+      if (build_reported >= 0) {
+        build_reported = -1;
+        const std::lock_guard lock(mutex_);
+        state_.activity.clear();
+        ++state_.number;
+      }
+      live->samples = static_cast<double>(progress.samples_done) /
+                      (static_cast<double>(live->canvas.width()) * static_cast<double>(live->canvas.height()));
+    };
+  }
+  const auto rendering = std::make_shared<job::Rendering>();
+  job.keep = rendering.get();
+  is_prepared_ = false;
+  const Clock::time_point begin = Clock::now();
+  const job::JobReport report = job::run_job(job);
+
+  const film::EncodedPicture picture = display::develop(rendering->picture, rendering->display, 8);
+  const std::vector<std::uint8_t> codes(picture.values.begin(), picture.values.end());
+  Frame frame;
+  frame.width = picture.width;
+  frame.height = picture.height;
+  frame.samples = static_cast<double>(report.render.paths) /
+                  (static_cast<double>(picture.width) * static_cast<double>(picture.height));
+  frame.wish = number;
+  frame.is_finished = !moves;
+  frame.noise = report.render.noise;
+  frame.type = moves ? "image/jpeg" : "image/png";
+  frame.bytes = std::make_shared<const std::string>(
+      moves ? image::jpeg_bytes(picture.width, picture.height, codes.data(), kMovingQuality)
+            : preview::encode_png({picture.width, picture.height, codes}));
+  {
+    const std::lock_guard lock(mutex_);
+    live_ = nullptr;
+    if (!moves) finished_ = rendering;
+    frame.number = frame_.number + 1;
+    frame_ = std::move(frame);
+    set_served(number, "");
+  }
+  if (moves)
+    pixels_per_second_ = static_cast<double>(picture.width) * static_cast<double>(picture.height) /
+                         std::chrono::duration<double>(Clock::now() - begin).count();
+}
+
+}  // namespace orrery::view

@@ -1,0 +1,158 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <atomic>
+#include <chrono>
+#include <condition_variable>
+#include <cstdint>
+#include <functional>
+#include <map>
+#include <memory>
+#include <mutex>
+#include <optional>
+#include <shared_mutex>
+#include <string>
+#include <thread>
+#include <utility>
+#include <vector>
+
+#include "job/job.h"
+#include "job/prepared_scene.h"
+#include "job/rendering.h"
+#include "load/load_scene.h"
+#include "math/vec3.h"
+#include "preview/sink.h"
+#include "scene/scene.h"
+#include "view/wish.h"
+
+namespace orrery::view {
+
+/// What the words of a command line show.
+struct Subject {
+  job::Job job;                                    ///< scene and sampling; no outputs
+  std::vector<std::string> notes = {};             ///< choices and warnings, a line each
+  std::vector<std::string> columns = {};           ///< columns of a data file that can be colours
+  std::map<std::string, std::string> chosen = {};  ///< values of controls that the data decided, by option
+  std::optional<int> frame_count = 1;              ///< frames of a data file; empty: unknown
+  std::string legend = {};                         ///< SVG; empty: none
+};
+
+/// Makes the subject of a command line.
+///
+/// `words`    options and their values
+/// Errors     base::Error: what the command reports; kStopped in a base::StopScope
+using MakeSubject = std::function<Subject(const std::vector<std::string>& words)>;
+
+/// An image for clients.
+struct Frame {
+  std::uint64_t number = 0;  ///< 0: none yet
+  std::uint64_t wish = 0;    ///< number of the wish that it grants
+  std::shared_ptr<const std::string> bytes = nullptr;
+  std::string type = {};  ///< "image/jpeg"; "image/png" if it is finished
+  int width = 0, height = 0;
+  double samples = 0;                ///< mean over the pixels
+  std::optional<double> noise = {};  ///< of a finished image with a target noise
+  bool is_finished = false;
+};
+
+/// What the page shows besides the image.
+struct State {
+  std::uint64_t number = 0;  ///< changes with every other member
+  Wish wish;
+  Subject subject;
+  std::vector<std::string> words;       ///< of the command that makes this picture, without outputs
+  std::optional<scene::Camera> camera;  ///< of the scene that is shown
+  int width = 0, height = 0;            ///< of the finished image
+  std::uint64_t served = 0;             ///< number of the last wish that was granted, or refused as `problem` says
+  std::string activity;                 ///< "reading", "building the BVH: 40 %"; empty: rendering or finished
+  std::string problem;                  ///< why the last wish was not granted
+};
+
+/// A sphere that a client has chosen.
+struct Picked {
+  std::string title;  ///< "row 17 of melt.dump", "sphere[3]"
+  math::Vec3d center;
+  double radius = 0;
+  std::vector<std::pair<std::string, std::string>> values = {};  ///< columns of its row, or keys, and their values
+};
+
+/// Renders what clients want to see, on one thread, with one prepared scene.
+///
+/// While a wish moves, images are as large as can be rendered in kMovingTime and have one sample per pixel. The last
+/// wish is rendered completely; meanwhile, frame() returns what is finished so far.
+class Viewer {
+ public:
+  /// `fixed`    words of the command line that no control sets
+  Viewer(MakeSubject make, std::vector<std::string> fixed, Wish first);
+  /// Stops rendering.
+  ~Viewer();
+  Viewer(const Viewer&) = delete;
+  Viewer& operator=(const Viewer&) = delete;
+
+  /// Returns the number of the wish.
+  std::uint64_t ask(Wish wish);
+
+  /// The first frame with a larger number. Waits for it, but not longer than `patience`, nor when the state has another
+  /// number than `state`; then the number of the frame is not larger.
+  Frame frame(std::uint64_t after, std::chrono::milliseconds patience, std::optional<std::uint64_t> state = {});
+
+  /// The sphere that is visible at a point of the image.
+  ///
+  /// `x`, `y`   fractions of the image's width and height, from the upper left corner
+  /// Result     empty if the background is visible, or while a scene is prepared
+  /// Errors     those of load::read_source_rows
+  /// Cost       reads the data file, unless its columns take little memory and the particle before was of the same file
+  std::optional<Picked> pick(double x, double y);
+
+  State state() const;
+
+  /// The finished image; null while it is rendered.
+  std::shared_ptr<const job::Rendering> finished() const;
+
+  /// Lets all calls of frame() return.
+  void stop();
+
+ private:
+  struct Live;
+  struct Source;
+
+  void run();
+  void serve(const Wish& wish, std::uint64_t number);
+  void make_subject(const Wish& wish);
+  void render(const Wish& wish, std::uint64_t number);
+  void set_served(std::uint64_t wish, const std::string& problem);
+  void refresh(Live& live);
+  std::shared_ptr<const Source> source_of(const scene::Scene& scene, std::size_t table);
+
+  const MakeSubject make_;
+  const std::vector<std::string> fixed_;
+
+  mutable std::mutex mutex_;  // guards what follows
+  mutable std::condition_variable changed_;
+  State state_;
+  Frame frame_;
+  std::uint64_t asked_ = 1, served_ = 0;  ///< numbers of wishes
+  bool moves_ = false;                    ///< the wish that is rendered moves
+  /// The rendering thread does what may be interrupted. Otherwise it prepares the scene, which would be lost.
+  bool is_cancellable_ = false;
+  bool stops_ = false;
+  std::shared_ptr<Live> live_;  ///< the image that is rendered; null: none, or a moving one
+  std::shared_ptr<const job::Rendering> finished_;
+
+  std::atomic<bool> cancel_{false};
+  /// Held exclusively while `prepared_` changes, and shared while it is looked at.
+  std::shared_mutex preparation_;
+  bool is_prepared_ = false;  ///< guarded by preparation_
+  load::SceneSource source_;  ///< of the prepared scene; guarded by preparation_
+  std::mutex picking_;        ///< guards picked_from_
+  std::shared_ptr<const Source> picked_from_;
+
+  // Of the rendering thread.
+  std::optional<std::map<std::string, std::string>> made_options_;  ///< of the subject
+  std::shared_ptr<job::PreparedScene> prepared_;
+  double pixels_per_second_ = 1e6;  ///< of moving images
+  int prepared_depth_ = 0;          ///< render.max_depth of the scene
+  std::thread thread_;
+};
+
+}  // namespace orrery::view

@@ -1,0 +1,126 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "view/wish.h"
+
+#include <array>
+#include <cmath>
+#include <cstddef>
+#include <variant>
+
+#include <nlohmann/json.hpp>
+
+#include "base/error.h"
+#include "scene/limits.h"
+#include "scene/value_text.h"
+
+namespace orrery::view {
+namespace {
+
+constexpr std::size_t kLongestValue = 10000;  // of a control
+
+std::optional<math::Vec3d> read_vector(const nlohmann::json& value) {
+  if (!value.is_array() || value.size() != 3) return {};
+  std::array<double, 3> v{};
+  for (std::size_t i = 0; i < 3; ++i) {
+    if (!value[i].is_number()) return {};
+    v[i] = value[i].get<double>();
+    if (!std::isfinite(v[i]) || std::abs(v[i]) > scene::kLargestValue) return {};
+  }
+  return math::Vec3d{v[0], v[1], v[2]};
+}
+
+std::optional<scene::Camera> read_camera(const nlohmann::json& value) {
+  if (!value.is_object()) return {};
+  const auto at = [&](const char* key) { return value.contains(key) ? value[key] : nlohmann::json(); };
+  const auto from = read_vector(at("look_from")), to = read_vector(at("look_at")), up = read_vector(at("up"));
+  const nlohmann::json perspective = at("perspective"), size = at("size");
+  if (!from || !to || !up || !perspective.is_boolean() || !size.is_number()) return {};
+  const double number = size.get<double>();
+  if (!std::isfinite(number) || number <= 0) return {};
+  scene::Camera out;
+  out.look_from = *from;
+  out.look_at = *to;
+  out.up = *up;
+  out.projection = perspective.get<bool>() ? scene::Projection::kPerspective : scene::Projection::kOrthographic;
+  (perspective.get<bool>() ? out.vfov : out.width.emplace()) = number;
+  return out;
+}
+
+}  // namespace
+
+Wish read_wish(const std::string& json, const std::function<bool(const std::string& option)>& is_control) {
+  const nlohmann::json value = nlohmann::json::parse(json, nullptr, false);
+  if (!value.is_object()) base::refuse("the body must be a JSON object");
+  Wish out;
+  for (const auto& [key, member] : value.items()) {
+    if (key == "moves" && member.is_boolean()) {
+      out.moves = member.get<bool>();
+    } else if (key == "camera" && member.is_null()) {
+      continue;
+    } else if (key == "camera") {
+      out.camera = read_camera(member);
+      if (!out.camera) base::refuse("`camera` must have finite numbers");
+    } else if (key == "options" && member.is_object()) {
+      for (const auto& [option, setting] : member.items()) {
+        if (!is_control(option)) base::refuse("`options` must be those of the page");
+        if (!setting.is_string() || setting.get_ref<const std::string&>().size() > kLongestValue)
+          base::refuse("values of `options` must be short strings");
+        out.options[option] = setting.get<std::string>();
+      }
+    } else {
+      base::refuse("the body has an unknown member");
+    }
+  }
+  return out;
+}
+
+std::set<std::string> named_files(const format::Overrides& overrides) {
+  std::set<std::string> out;
+  for (const format::KeyValue& set : overrides.values()) {
+    const std::string key = set.key.substr(set.key.rfind('.') + 1);
+    const bool is_file = key == "file" || key == "config" || key == "map";
+    const bool may_hold_files =
+        std::holds_alternative<std::monostate>(set.value) && set.text.find('{') != std::string::npos;
+    if (is_file || may_hold_files) out.insert(set.text);
+  }
+  return out;
+}
+
+bool is_flag(const std::string& option) { return option == "--denoise" || option == "--ground"; }
+
+std::vector<std::string> camera_settings(const scene::Camera& camera) {
+  std::vector<std::string> out = {
+      "camera.look_from=" + scene::vector_text(camera.look_from),
+      "camera.look_at=" + scene::vector_text(camera.look_at),
+      "camera.up=" + scene::vector_text(camera.up),
+  };
+  if (camera.projection == scene::Projection::kPerspective)
+    out.push_back("camera.vfov=" + scene::number_text(camera.vfov));
+  else if (camera.width)
+    out.push_back("camera.width=" + scene::number_text(*camera.width));
+  return out;
+}
+
+std::vector<std::string> words_of(const std::vector<std::string>& fixed, const Wish& wish) {
+  std::vector<std::string> out = fixed;
+  const auto add = [&out](const std::string& option, const std::string& value) {
+    if (value.empty()) return;
+    out.push_back(option);
+    if (!is_flag(option)) out.push_back(value);
+  };
+  for (const auto& [option, value] : wish.options) {
+    if (option != "--set" && option != "--slice") {
+      add(option, value);
+      continue;
+    }
+    for (std::size_t begin = 0; begin < value.size();) {  // one for each line
+      const std::size_t end = std::min(value.find('\n', begin), value.size());
+      add(option, value.substr(begin, end - begin));
+      begin = end + 1;
+    }
+  }
+  if (wish.camera)
+    for (const std::string& setting : camera_settings(*wish.camera)) add("--set", setting);
+  return out;
+}
+
+}  // namespace orrery::view

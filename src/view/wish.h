@@ -1,0 +1,42 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <functional>
+#include <map>
+#include <optional>
+#include <set>
+#include <string>
+#include <vector>
+
+#include "format/overrides.h"
+#include "scene/scene.h"
+
+namespace orrery::view {
+
+/// What a client wants to see.
+struct Wish {
+  /// Values of controls, by option: "--color-by"; empty: not set. That of a flag is "on".
+  std::map<std::string, std::string> options = {};
+  std::optional<scene::Camera> camera = {};  ///< empty: that of the subject
+  bool moves = false;                        ///< soon followed by another one: speed counts, not quality
+};
+
+/// Reads a wish: a JSON object with `options`, `camera` and `moves`, each optional.
+///
+/// `is_control`  whether clients may set an option
+/// Errors        base::Error(kUsage), for anything else
+Wish read_wish(const std::string& json, const std::function<bool(const std::string& option)>& is_control);
+
+/// The files that settings may name. A page may set only those that were given on the command line.
+std::set<std::string> named_files(const format::Overrides& overrides);
+
+/// Whether a control is an option without a value.
+bool is_flag(const std::string& option);
+
+/// The settings, KEY=VALUE, that give a scene this camera.
+std::vector<std::string> camera_settings(const scene::Camera& camera);
+
+/// The words of a command: the fixed ones, the controls, and the camera.
+std::vector<std::string> words_of(const std::vector<std::string>& fixed, const Wish& wish);
+
+}  // namespace orrery::view

@@ -1,0 +1,223 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <fcntl.h>
+#include <signal.h>
+#include <unistd.h>
+
+#include <cstdlib>
+#include <random>
+#include <string>
+#include <vector>
+
+#include <nlohmann/json.hpp>
+
+#include "cli/program.h"
+#include "support/http_client.h"
+
+namespace orrery::test {
+namespace {
+
+using Json = nlohmann::json;
+
+/// A running `orrery view`, and a client of it.
+class Served {
+ public:
+  Served(const std::filesystem::path& folder, std::vector<const char*> words) {
+    words.insert(words.begin(), {"orrery", "view"});
+    words.push_back(nullptr);
+    int ends[2];
+    if (pipe2(ends, O_CLOEXEC) != 0) std::abort();
+    child_ = fork();
+    if (child_ == 0) {
+      const int messages = open((folder / ".err").c_str(), O_WRONLY | O_CREAT | O_TRUNC, 0600);
+      if (chdir(folder.c_str()) != 0) _exit(126);
+      dup2(ends[1], STDOUT_FILENO);
+      dup2(messages, STDERR_FILENO);
+      execv(ORRERY_PROGRAM, const_cast<char* const*>(words.data()));
+      _exit(127);
+    }
+    close(ends[1]);
+    for (char c = 0; read(ends[0], &c, 1) == 1 && c != '\n';) address_ += c;
+    close(ends[0]);
+    const std::size_t port = address_.find(":", 7), token = address_.find("token=");
+    if (port != std::string::npos) port_ = std::atoi(address_.c_str() + port + 1);
+    if (token != std::string::npos)
+      cookie_ = "Cookie: orrery" + std::to_string(port_) + "=" + address_.substr(token + 6) + "\r\n";
+  }
+  ~Served() {
+    if (child_ > 0) end(SIGKILL);
+  }
+  Served(const Served&) = delete;
+  Served& operator=(const Served&) = delete;
+
+  const std::string& address() const { return address_; }
+  int port() const { return port_; }
+
+  support::HttpAnswer get(const std::string& path) const { return support::http_request(port_, "GET", path, cookie_); }
+
+  /// Requests an image and waits until it is complete, or refused.
+  ///
+  /// Result     the state of the page
+  Json wish(const Json& wanted) const {
+    const support::HttpAnswer answer = support::http_request(port_, "POST", "/wish", cookie_, wanted.dump());
+    EXPECT_EQ(answer.status, 200) << answer.body;
+    const int number = Json::parse(answer.body)["wish"];
+    for (;;) {
+      const Json state = Json::parse(get("/state").body);
+      if (state["served"] >= number) return state;
+      get("/frame?after=1000000000&state=" + state["number"].dump());  // waits for another state
+    }
+  }
+
+  /// Ends the program. Result: exit status, or 128 + the signal that ended it
+  int end(int number) {
+    kill(child_, number);
+    return wait();
+  }
+  int wait() {
+    int status = 0;
+    waitpid(child_, &status, 0);
+    child_ = 0;
+    return WIFEXITED(status) ? WEXITSTATUS(status) : 128 + WTERMSIG(status);
+  }
+
+ private:
+  pid_t child_ = 0;
+  std::string address_, cookie_;
+  int port_ = 0;
+};
+
+class CliView : public ProgramTest {
+ protected:
+  void write_melt() {
+    std::string text;
+    for (int frame = 0; frame < 3; ++frame) {
+      text +=
+          "ITEM: TIMESTEP\n" + std::to_string(frame) +
+          "\nITEM: NUMBER OF ATOMS\n27\nITEM: BOX BOUNDS pp pp pp\n0 3\n0 3\n0 3\nITEM: ATOMS id type x y z speed\n";
+      for (int i = 0; i < 27; ++i)
+        text += std::to_string(i + 1) + " " + std::to_string(1 + i % 2) + " " + std::to_string(i % 3) + " " +
+                std::to_string(i / 3 % 3 + 0.1 * frame) + " " + std::to_string(i / 9) + " " +
+                std::to_string(i * frame) + "\n";
+    }
+    write("melt.dump", text);
+  }
+
+  /// Runs the command that the page shows. Result: its exit status
+  int run_shown(const Json& state) {
+    std::string command = state["command"];
+    EXPECT_EQ(command.substr(0, 7), "orrery ");
+    return run(command.substr(7) + " -q").status;
+  }
+
+  /// Expects that the command which the page shows makes the picture that it shows.
+  void expect_same_picture(const Served& view, const Json& state) {
+    ASSERT_EQ(run_shown(state), 0) << state["command"] << text_of(folder_ / ".err");
+    const support::HttpAnswer picture = view.get("/picture.png");
+    ASSERT_EQ(picture.status, 200) << picture.body;
+    write("page.png", picture.body);
+    const Outcome same = run("compare page.png picture.png --fail-above max=0");
+    EXPECT_EQ(same.status, 0) << state["command"] << same.out << same.err;
+  }
+};
+
+TEST_F(CliView, RandomWalksThroughTheControlsMakeThePictureOfTheCommand) {
+  write_melt();
+  const Served view(folder_, {"melt.dump", "--width", "48", "--height", "36", "--samples", "2"});
+  ASSERT_GT(view.port(), 0) << text_of(folder_ / ".err");
+  std::mt19937 random(1);
+  const auto choose = [&](const std::vector<std::string>& values) { return values[random() % values.size()]; };
+  const std::vector<std::pair<std::string, std::vector<std::string>>> controls = {
+      {"--color-by", {"", "speed", "type", "none", "no such column"}},
+      {"--map", {"", "magma", "fast"}},
+      {"--range", {"", "0:10", "5:1"}},
+      {"--style", {"", "night", "flat"}},
+      {"--select", {"", "type == 1", "z > 0 && \"x\" < 2", "type =="}},
+      {"--slice", {"", "z=1.5", "x=2\ny=2"}},
+      {"--radius-scale", {"", "0.5", "1.2"}},
+      {"--ground", {"", "on"}},
+      {"--denoise", {"", "on"}},
+      {"--frame", {"", "2", "3", "4"}},
+      {"--set", {"", "render.seed=7\nimage.overscan=0", "render.max_depth=3"}},
+  };
+  Json wanted = {{"options", {{"--width", "48"}, {"--height", "36"}, {"--samples", "2"}}}, {"moves", false}};
+  int pictures = 0, problems = 0;
+  while (pictures < 12 || problems < 3) {
+    const auto& [option, values] = controls[random() % controls.size()];
+    wanted["options"][option] = choose(values);
+    const Json shown = view.wish(wanted);
+    if (shown["problem"] != "") {
+      ++problems;
+      EXPECT_NE(run_shown(shown), 0) << shown["command"] << shown["problem"];
+      wanted["options"].erase(option);
+      continue;
+    }
+    ++pictures;
+    if (random() % 2 == 0) {  // a moved camera
+      wanted["camera"] = shown["camera"];
+      for (Json& x : wanted["camera"]["look_from"])
+        x = x.get<double>() + 0.3 * static_cast<double>(random() % 10) - 1.4;
+      wanted["moves"] = true;
+      view.wish(wanted);
+      wanted["moves"] = false;
+    }
+    expect_same_picture(view, view.wish(wanted));
+    if (HasFatalFailure()) return;
+  }
+}
+
+TEST_F(CliView, AScenesPictureIsThatOfTheCommand) {
+  const Served view(folder_, {"good.toml", "--set", "camera.look_from=[0.5, 0.25, 2]"});
+  const Json first = view.wish({{"options", {{"--set", "camera.look_from=[0.5, 0.25, 2]"}}}});
+  expect_same_picture(view, first);
+  expect_same_picture(view, view.wish({{"camera", first["camera"]}, {"options", {{"--samples", "3"}}}}));
+  // The scene that is saved makes it as well.
+  write("saved.toml", view.get("/scene.toml").body);
+  ASSERT_EQ(run("render saved.toml -o saved.png -q").status, 0);
+  EXPECT_EQ(run("compare saved.png picture.png --fail-above max=0").status, 0);
+}
+
+TEST_F(CliView, IntAndTermEndItWithStatus0) {
+  for (const int number : {SIGINT, SIGTERM}) {
+    Served view(folder_, {"good.toml", "--samples", "60000"});
+    ASSERT_EQ(view.get("/state").status, 200);
+    EXPECT_EQ(view.end(number), 0);
+    EXPECT_EQ(file_count(), 0);
+  }
+}
+
+TEST_F(CliView, APortInUseIsAnError) {
+  const Served view(folder_, {"good.toml"});
+  const Outcome second = run("view good.toml --port " + std::to_string(view.port()));
+  EXPECT_EQ(second.status, 73);
+  EXPECT_TRUE(contains(second.err, "--port")) << second.err;
+}
+
+TEST_F(CliView, OthersAreNotServed) {
+  const Served view(folder_, {"good.toml"});
+  EXPECT_EQ(support::http_request(view.port(), "GET", "/state").status, 403) << "without the secret";
+  EXPECT_EQ(view.get("/../good.toml").status, 404);
+  EXPECT_TRUE(contains(view.address(), "http://127.0.0.1:")) << view.address();
+}
+
+TEST_F(CliView, APageMayNotNameFiles) {
+  write("other.toml", "");
+  const Served view(folder_, {"good.toml"});
+  for (const char* setting : {"color.config=other.toml", "background={type=\"image\", file=\"other.toml\"}",
+                              "points=[{file=\"other.toml\"}]"}) {
+    const Json state = view.wish({{"options", {{"--set", setting}}}});
+    EXPECT_NE(state["problem"], "") << setting;
+    EXPECT_TRUE(contains(state["problem"], "start orrery view with this option")) << state["problem"];
+  }
+}
+
+TEST_F(CliView, FaultyOptionsAreErrorsInThePage) {
+  const Served view(folder_, {"missing.dump"});
+  const Json state = view.wish(Json::object());
+  EXPECT_TRUE(contains(state["problem"], "missing.dump")) << state["problem"];
+  EXPECT_EQ(run("view good.toml --port 70000").status, 2);
+  EXPECT_EQ(run("view good.toml --host nonsense").status, 2);
+  EXPECT_EQ(run("view").status, 2);
+}
+
+}  // namespace
+}  // namespace orrery::test

@@ -1,0 +1,216 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "view/viewer.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <filesystem>
+#include <fstream>
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "base/error.h"
+#include "film/picture.h"
+#include "job/job.h"
+#include "support/peak_memory.h"
+
+namespace orrery::view {
+namespace {
+
+using namespace std::chrono_literals;
+
+constexpr const char* kScene = R"(
+[image]
+width = 64
+height = 48
+[render]
+samples = 4
+[camera]
+look_from = [0, 0, 3]
+look_at = [0, 0, 0]
+[material.grey]
+type = "lambertian"
+albedo = [0.5, 0.5, 0.5]
+[[sphere]]
+center = [0, 0, 0]
+radius = 1
+material = "grey"
+)";
+
+/// The words are --set KEY=VALUE and --samples N.
+Subject subject_of(const std::vector<std::string>& words) {
+  Subject out;
+  out.job.scene.file = "scene.toml";
+  out.job.scene.text = std::make_shared<const std::string>(kScene);
+  out.job.scene.has_file = false;
+  for (std::size_t i = 0; i + 1 < words.size(); i += 2) {
+    if (words[i] == "--set")
+      out.job.scene.overrides.add(words[i + 1]);
+    else if (words[i] == "--samples")
+      out.job.scene.overrides.add_option("--samples", "render.samples", words[i + 1]);
+    else
+      base::refuse("unknown option " + words[i]);
+  }
+  return out;
+}
+
+scene::Camera camera_at(double x) {
+  scene::Camera out;
+  out.look_from = {x, 0, 3};
+  out.look_at = {0, 0, 0};
+  return out;
+}
+
+/// Waits for the finished image of the last wish, which differs from that of number `after`.
+Frame finished(Viewer& viewer, std::uint64_t after = 0) {
+  Frame frame = viewer.frame(after, 60s);
+  while (frame.number <= after || !frame.is_finished) frame = viewer.frame(std::max(frame.number, after), 60s);
+  return frame;
+}
+
+film::Picture rendered(const std::vector<std::string>& words) {
+  job::Job job = subject_of(words).job;
+  job::Rendering rendering;
+  job.keep = &rendering;
+  job::run_job(job);
+  return rendering.picture;
+}
+
+void expect_same(const film::Picture& a, const film::Picture& b) {
+  ASSERT_EQ(a.planes.size(), b.planes.size());
+  for (std::size_t i = 0; i < a.planes.size(); ++i) EXPECT_EQ(a.planes[i].values, b.planes[i].values);
+}
+
+TEST(ViewViewer, TheFinishedImageIsThatOfTheCommand) {
+  Viewer viewer(subject_of, {"--set", "render.seed=5"}, {});
+  const Frame first = finished(viewer);
+  EXPECT_EQ(first.type, "image/png");
+  expect_same(viewer.finished()->picture, rendered(viewer.state().words));
+  Wish wish;
+  wish.options["--samples"] = "9";
+  wish.camera = camera_at(1.0 / 3);
+  wish.moves = true;
+  viewer.ask(wish);
+  wish.moves = false;
+  viewer.ask(wish);
+  finished(viewer, first.number);
+  const std::vector<std::string> words = viewer.state().words;
+  EXPECT_EQ(words[0], "--set");
+  EXPECT_EQ(words[1], "render.seed=5");
+  EXPECT_EQ(words[3], "9");
+  expect_same(viewer.finished()->picture, rendered(words));
+}
+
+TEST(ViewViewer, AMovingImageIsShownBeforeTheNextWish) {
+  Viewer viewer(subject_of, {}, {});
+  Frame frame = finished(viewer);
+  for (int i = 1; i < 20; ++i) {
+    Wish wish;
+    wish.camera = camera_at(0.1 * i);
+    wish.moves = true;
+    viewer.ask(wish);
+    const Frame next = viewer.frame(frame.number, 60s);
+    EXPECT_GT(next.number, frame.number);
+    EXPECT_FALSE(next.is_finished);
+    EXPECT_EQ(next.samples, 1);
+    frame = next;
+  }
+  EXPECT_FALSE(viewer.finished()) << "there is no finished image of a scene that moves";
+}
+
+TEST(ViewViewer, AFaultyWishLeavesTheImageAndSaysWhy) {
+  Viewer viewer(subject_of, {}, {});
+  const Frame before = finished(viewer);
+  Wish wish;
+  wish.options["--set"] = "camera.vfov=500";
+  viewer.ask(wish);
+  while (viewer.state().problem.empty()) viewer.frame(before.number, 10ms);
+  EXPECT_NE(viewer.state().problem.find("camera.vfov"), std::string::npos) << viewer.state().problem;
+  EXPECT_EQ(viewer.frame(0, 0ms).number, before.number);
+  wish.options = {{"--nothing", "1"}};
+  viewer.ask(wish);
+  while (viewer.state().problem.find("--nothing") == std::string::npos) viewer.frame(before.number, 10ms);
+  const std::uint64_t number = viewer.ask({});
+  EXPECT_EQ(finished(viewer, before.number).wish, number);
+  while (viewer.state().served < number) viewer.frame(1000000, 10ms);
+  EXPECT_EQ(viewer.state().problem, "");
+}
+
+TEST(ViewViewer, ASphereIsPicked) {
+  Viewer viewer(subject_of, {}, {});
+  finished(viewer);
+  const std::optional<Picked> picked = viewer.pick(0.5, 0.5);
+  ASSERT_TRUE(picked);
+  EXPECT_EQ(picked->title, "sphere[0]");
+  EXPECT_EQ(picked->center, (math::Vec3d{0, 0, 0}));
+  EXPECT_EQ(picked->radius, 1);
+  EXPECT_EQ(picked->values, (std::vector<std::pair<std::string, std::string>>{{"material", "grey"}}));
+  EXPECT_FALSE(viewer.pick(0, 0)) << "the background";
+}
+
+TEST(ViewViewer, APickedParticleHasTheColumnsOfItsRow) {
+  const std::filesystem::path file = testing::TempDir() + "view_particles.xyz";
+  std::ofstream(file) << "3\nProperties=species:S:1:pos:R:3:charge:R:1\n"
+                         "He -2 0 0 0.1\nNe 0 0 0 -0.25\nAr 2 0 0 0.3\n";
+  const auto make = [&](const std::vector<std::string>& words) {
+    Subject out = subject_of(words);
+    out.job.scene.file = file.parent_path() / "scene.toml";
+    out.job.scene.text = std::make_shared<const std::string>(
+        std::string(kScene).substr(0, std::string(kScene).find("[[sphere]]")) + "[[points]]\nfile = \"" +
+        file.filename().string() + "\"\nmaterial = \"grey\"\nradius = 0.5\nselect = \"species != 'He'\"\n");
+    return out;
+  };
+  Viewer viewer(make, {}, {});
+  finished(viewer);
+  const std::optional<Picked> picked = viewer.pick(0.5, 0.5);
+  ASSERT_TRUE(picked) << viewer.state().problem;
+  EXPECT_EQ(picked->title, "row 2 of view_particles.xyz");
+  EXPECT_EQ(picked->center, (math::Vec3d{0, 0, 0}));
+  const std::vector<std::pair<std::string, std::string>> values = {
+      {"species", "Ne"}, {"x", "0"}, {"y", "0"}, {"z", "0"}, {"charge", "-0.25"}};
+  EXPECT_EQ(picked->values, values);
+  // The file is not needed again while nothing but the camera changes.
+  std::filesystem::remove(file);
+  EXPECT_TRUE(viewer.pick(0.5, 0.5));
+}
+
+TEST(ViewViewer, ARenderThatIsNotWantedAnyMoreStops) {
+  Viewer viewer(subject_of, {}, {{{"--samples", "100000000"}}, {}, false});
+  const Frame live = viewer.frame(0, 60s);
+  viewer.ask({});
+  finished(viewer, live.number);
+  EXPECT_EQ(viewer.state().problem, "");
+  viewer.ask({{{"--samples", "100000000"}}, {}, false});
+  viewer.frame(viewer.frame(0, 0ms).number, 60s);
+  // The destructor also stops it.
+}
+
+TEST(ViewViewer, LinesOfAControlAreSeparateSettings) {
+  Wish wish;
+  wish.options = {{"--set", "a=1\nb=2\n"}, {"--style", ""}};
+  EXPECT_EQ(words_of({"--frame", "3"}, wish),
+            (std::vector<std::string>{"--frame", "3", "--set", "a=1", "--set", "b=2"}));
+}
+
+TEST(ViewViewer, MemoryDoesNotGrowWithMoves) {
+  Viewer viewer(subject_of, {}, {});
+  Frame frame = finished(viewer);
+  const auto move = [&](int count) {
+    for (int i = 0; i < count; ++i) {
+      Wish wish;
+      wish.camera = camera_at(0.001 * i);
+      wish.moves = i % 100 != 99;
+      viewer.ask(wish);
+      if (i % 10 == 0) frame = viewer.frame(frame.number, 60s);
+    }
+  };
+  move(1000);
+  const std::uint64_t before = support::resident_memory();
+  move(10000);
+  EXPECT_LT(support::resident_memory(), before + (8u << 20));
+}
+
+}  // namespace
+}  // namespace orrery::view
