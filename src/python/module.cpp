@@ -35,6 +35,7 @@
 #include "python/picture.h"
 #include "python/render.h"
 #include "python/scene_data.h"
+#include "python/view.h"
 #include "scene/scene.h"
 
 namespace py = pybind11;
@@ -233,6 +234,12 @@ void bind_scene(py::module_& m) {
       .def("aspect", &aspect, ReleaseGil())
       .def("largest_radius", &largest_radius, ReleaseGil())
       .def("render", &render_scene);
+  py::class_<ScenePage>(m, "ScenePage")
+      .def(py::init<SceneData, const std::string&, std::map<std::string, std::string>, int, int, std::uint64_t>(),
+           ReleaseGil())
+      .def("address", &ScenePage::address)
+      .def("settings", &ScenePage::settings)
+      .def("close", &ScenePage::close, ReleaseGil());
   // Pickled as its bytes, for processes on the same machine.
   static_assert(std::is_trivially_copyable_v<plot::ViewExtent>);
   const auto bytes_of = [](const plot::ViewExtent& extent) {

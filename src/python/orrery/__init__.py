@@ -36,6 +36,7 @@ from orrery._orrery import version as _version
 from orrery._picture import Picture
 from orrery._points import ColorMap, Points, colormap, read_points
 from orrery._scene import Progress, Scene, load
+from orrery._view import View
 
 __all__ = [
     "Camera",
@@ -60,6 +61,7 @@ __all__ = [
     "SceneWarning",
     "Sky",
     "UsageError",
+    "View",
     "color_maps",
     "colormap",
     "load",

@@ -18,6 +18,7 @@ from orrery._errors import SceneWarning
 from orrery._keys import Background, Camera, Material
 from orrery._picture import Picture
 from orrery._points import ColorMap
+from orrery._view import View
 
 _NEW_SCENE = """[material.matte]
 type = "lambertian"
@@ -219,6 +220,43 @@ class Scene:
             warnings.warn(text.rstrip("\n"), SceneWarning, stacklevel=3)
 
         return Picture(data.render(self._prepared, *limits, threads, memory, "", bool(denoise), report if on_progress else None, warn))
+
+    def view(
+        self,
+        width: int | None = None,
+        height: int | None = None,
+        *,
+        samples: int | None = None,
+        noise: float | None = None,
+        threads: int | None = None,
+        frame: int = 1,
+        memory_limit: int | None = None,
+        denoise: bool = False,
+        port: int = 0,
+        page_height: int = 720,
+    ) -> View:
+        """Returns a View: a page in a browser in which the scene can be turned, as `orrery view` shows files.
+
+        port           of the page, on 127.0.0.1; 0: a free one
+        page_height    in a notebook, in pixels
+        others         as for render(); the page can change samples, noise, denoise and size
+
+        A notebook shows the page if the browser runs on the same machine, or reaches the port through a tunnel.
+        """
+        sizes = [None if n is None else _arguments.whole(name, n) for name, n in (("width", width), ("height", height))]
+        samples = None if samples is None else _arguments.whole("samples", samples)
+        noise = None if noise is None else _limit("noise", noise, 1e-6, 1)
+        threads = 0 if threads is None else _arguments.whole("threads", threads, 1, 1024)
+        memory = int(_limit("memory_limit", memory_limit, 1, 2**63))
+        data = self._data(*sizes, None, _arguments.whole("frame", frame), memory)
+        options = {"--width": sizes[0], "--height": sizes[1], "--samples": samples, "--noise": noise}
+        options = {name: repr(value) for name, value in options.items() if value is not None}
+        if denoise:
+            options["--denoise"] = "on"
+        port = _arguments.whole("port", port, 0, 65535)
+        page_height = _arguments.whole("page_height", page_height, 100, 10000)
+        page = _orrery.ScenePage(data, str(self._file), options, port, threads, memory)
+        return View(page, (dict(self._arrays), data), page_height)
 
     def _new_name(self):
         """Returns a name for arrays that the scene does not use for a file."""

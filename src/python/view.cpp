@@ -1,0 +1,120 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "python/view.h"
+
+#include <charconv>
+#include <cstddef>
+#include <utility>
+
+#include <fmt/core.h>
+
+#include "base/error.h"
+#include "view/wish.h"
+
+namespace orrery::python {
+namespace {
+
+double noise_of(const std::string& text) {
+  double out = 0;
+  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), out);
+  if (error != std::errc() || end != text.data() + text.size() || !(out >= 1e-6 && out <= 1))
+    base::refuse(fmt::format("--noise {}: must be a number from 0.000001 to 1", text));
+  return out;
+}
+
+/// The subject of the page's words.
+view::Subject subject_of(const SceneData& scene, const job::Job& job, const std::vector<std::string>& words) {
+  view::Subject out;
+  out.job = job;
+  out.job.scene = scene.source();
+  format::Overrides own;  // of the page
+  for (std::size_t i = 0; i < words.size(); ++i) {
+    const std::string& option = words[i];
+    if (option == "--denoise") {
+      out.job.denoise = true;
+      continue;
+    }
+    const std::string& value = words[++i];
+    if (option == "--noise") {
+      out.job.sampling.noise = noise_of(value);
+      continue;
+    }
+    for (format::Overrides* const overrides : {&own, &out.job.scene.overrides}) {
+      if (option == "--set")
+        overrides->add(value);
+      else
+        overrides->add_option(option, (option == "--samples" ? "render." : "image.") + option.substr(2), value);
+    }
+  }
+  if (!view::named_files(own).empty()) base::refuse("set files in Python: scene.set(...)");
+  return out;
+}
+
+/// A value of a scene file in Python.
+std::string python_value(const std::string& text) {
+  if (text == "true") return "True";
+  if (text == "false") return "False";
+  const bool is_literal = !text.empty() && std::string("+-.0123456789[\"'").find(text[0]) != std::string::npos;
+  return is_literal ? text : "\"" + text + "\"";
+}
+
+/// The statements that make the picture of the page's words.
+std::string statements(const std::vector<std::string>& words) {
+  std::string out, size, rest;
+  for (std::size_t i = 0; i < words.size(); ++i) {
+    const std::string& option = words[i];
+    if (option == "--denoise") {
+      rest += ", denoise=True";
+      continue;
+    }
+    const std::string& value = words[++i];
+    if (option == "--set") {
+      const std::size_t equals = value.find('=');
+      if (equals != std::string::npos)
+        out += fmt::format("scene.set(\"{}\", {})\n", value.substr(0, equals), python_value(value.substr(equals + 1)));
+    } else {
+      rest += fmt::format(", {}={}", option.substr(2), value);
+    }
+  }
+  return out + "scene.render(" + (rest.empty() ? rest : rest.substr(2)) + ")";
+}
+
+}  // namespace
+
+ScenePage::ScenePage(SceneData scene, const std::string& title, std::map<std::string, std::string> options, int port,
+                     int threads, std::uint64_t memory_limit) {
+  job::Job job;
+  job.resources.threads = threads;
+  job.resources.memory_limit = memory_limit;
+  viewer_ = std::make_unique<view::Viewer>(
+      [scene = std::move(scene), job](const std::vector<std::string>& words) { return subject_of(scene, job, words); },
+      std::vector<std::string>(), view::Wish{std::move(options)});
+  view::Controls controls;
+  controls.title = title;
+  controls.command = statements;
+  for (const char* option : {"--samples", "--noise", "--denoise", "--set", "--width", "--height"})
+    controls.options[option] = {};
+  const std::string secret = view::random_secret();
+  site_ = std::make_unique<view::Site>(*viewer_, std::move(controls), "127.0.0.1", secret);
+  server_ = http::serve("127.0.0.1", port, [this](const http::Request& request) { return site_->answer(request); });
+  site_->set_port(server_->port());
+  address_ = fmt::format("http://127.0.0.1:{}/?token={}", server_->port(), secret);
+}
+
+std::vector<std::string> ScenePage::settings() const {
+  std::vector<std::string> out;
+  if (!viewer_) return out;
+  const std::vector<std::string> words = viewer_->state().words;
+  for (std::size_t i = 0; i + 1 < words.size(); ++i)
+    if (words[i] == "--set") out.push_back(words[i + 1]);
+  return out;
+}
+
+void ScenePage::close() {
+  address_.clear();
+  if (viewer_) viewer_->stop();
+  server_.reset();
+  site_.reset();
+  viewer_.reset();
+}
+
+}  // namespace orrery::python
