@@ -276,6 +276,7 @@ http::Response Site::state() const {
               {"width", state.width},
               {"height", state.height},
               {"notes", state.subject.notes},
+              {"warnings", state.warnings},
               {"legend", state.subject.legend},
               {"activity", state.activity},
               {"problem", state.problem},

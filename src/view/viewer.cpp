@@ -310,6 +310,8 @@ void Viewer::render(const Wish& wish, std::uint64_t number) {
   job.hooks = {};
   job.hooks.cancel = &cancel_;
   job.hooks.develops_pixels = true;
+  std::vector<std::string> warnings;
+  job.hooks.on_warning = [&](const base::Diagnostic& warning) { warnings.push_back(base::formatted(warning)); };
   std::shared_ptr<Live> live;
   double build_reported = -1;
   job.hooks.on_build = [&](double fraction) {
@@ -332,6 +334,7 @@ void Viewer::render(const Wish& wish, std::uint64_t number) {
     live_ = live;
     is_cancellable_ = true;
     if (!moves && asked_ != number) cancel_ = true;
+    state_.warnings = warnings;
     state_.camera = prepared_->loaded().read.scene.camera;
     if (!moves) {
       prepared_depth_ = prepared_->loaded().read.scene.render.max_depth;
@@ -383,6 +386,7 @@ void Viewer::render(const Wish& wish, std::uint64_t number) {
     if (!moves) finished_ = rendering;
     frame.number = frame_.number + 1;
     frame_ = std::move(frame);
+    state_.warnings = std::move(warnings);  // more may have come while it was rendered
     set_served(number, "");
   }
   if (moves)

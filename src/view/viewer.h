@@ -66,6 +66,7 @@ struct State {
   std::uint64_t served = 0;             ///< number of the last wish that was granted, or refused as `problem` says
   std::string activity;                 ///< "reading", "building the BVH: 40 %"; empty: rendering or finished
   std::string problem;                  ///< why the last wish was not granted
+  std::vector<std::string> warnings;    ///< about the image that is shown
 };
 
 /// A sphere that a client has chosen.

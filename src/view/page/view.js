@@ -159,7 +159,7 @@ async function showState() {
   if (state.activity) $("status").textContent = state.activity;
   $("legend").hidden = state.legend === "";
   if (state.legend) $("legend").src = "data:image/svg+xml," + encodeURIComponent(state.legend);
-  $("notes").replaceChildren(...state.notes.map(note => {
+  $("notes").replaceChildren(...[...state.warnings, ...state.notes].map(note => {
     const item = document.createElement("li");
     item.textContent = note;
     return item;

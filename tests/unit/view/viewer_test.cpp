@@ -138,6 +138,16 @@ TEST(ViewViewer, AFaultyWishLeavesTheImageAndSaysWhy) {
   EXPECT_EQ(viewer.state().problem, "");
 }
 
+TEST(ViewViewer, WarningsAreThoseOfTheImage) {
+  Viewer viewer(subject_of, {}, {{{"--set", "camera.width=3"}}, {}, false});
+  finished(viewer);
+  ASSERT_EQ(viewer.state().warnings.size(), 1u);
+  EXPECT_NE(viewer.state().warnings[0].find("camera.width"), std::string::npos) << viewer.state().warnings[0];
+  const std::uint64_t number = viewer.ask({});
+  while (viewer.state().served < number) viewer.frame(1000000, 10ms);
+  EXPECT_EQ(viewer.state().warnings, std::vector<std::string>());
+}
+
 TEST(ViewViewer, ASphereIsPicked) {
   Viewer viewer(subject_of, {}, {});
   finished(viewer);
