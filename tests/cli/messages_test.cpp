@@ -13,7 +13,8 @@ struct MessageCase {
 
 const MessageCase kCases[] = {
     {"", 2,
-     "orrery: no command given; use one of render, plot, merge, submit, check, info, compare, bench, study, generate, "
+     "orrery: no command given; use one of render, plot, view, merge, submit, check, info, compare, bench, study, "
+     "generate, "
      "convert, develop, denoise, bake\n"
      "Try orrery --help.\n"},
     {"rendr good.toml", 2,
