@@ -29,7 +29,7 @@ using Clock = std::chrono::steady_clock;
 /// Time for a moving image, of which developing and encoding take a part.
 constexpr double kMovingTime_s = 0.045;
 constexpr int kNarrowestMoving = 160;  // px
-constexpr int kMovingDepth = 5;        // of paths
+constexpr int kMovingDepth = 4;        // of paths
 constexpr std::chrono::milliseconds kRefresh{150};
 constexpr std::uint64_t kKeptSource = std::uint64_t{256} << 20;  ///< columns of picked particles, bytes
 constexpr int kMovingQuality = 60, kQuality = 85;                // of JPEG
