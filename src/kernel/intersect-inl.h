@@ -95,25 +95,41 @@ HWY_INLINE Chord<D> plain_chord(const Rays<D>& ray, const Spheres<D>& sphere) {
   return {middle, discriminant<D>(sphere.radius, to_center), to_center};
 }
 
+/// Where a ray's line passes a point: the distance, as a multiple of the direction's length, and the vector to the
+/// point, which is perpendicular to the direction.
+template <class D>
+struct Passage {
+  hn::Vec<D> distance;
+  Vec3<hn::Vec<D>> to_point;
+};
+
+/// Refines a passage by what rounding lost of the vector from the ray's origin to the point, and projects once more.
+///
+/// `lost`     the vector to the point, minus the one from which the passage was computed
+template <class D>
+HWY_INLINE Passage<D> refined(const Rays<D>& ray, const Passage<D>& plain, const Vec3<hn::Vec<D>>& lost) {
+  auto to_point = plain.to_point + lost;
+#if !HWY_NATIVE_FMA
+  // The projection subtracted rounded products, which may be as large as the distance.
+  const auto product_error = [&](auto x) {
+    return math::HWY_NAMESPACE::product_error(D(), x, plain.distance, x * plain.distance);
+  };
+  const auto& along = ray.direction;
+  to_point = to_point - Vec3<hn::Vec<D>>{product_error(along.x), product_error(along.y), product_error(along.z)};
+#endif
+  // With a distant origin, the vector keeps a component along the ray; project it out once more.
+  const auto rest = dot(to_point, ray.direction) * ray.inverse_square;
+  return {plain.distance + rest, neg_mul_add(ray.direction, rest, to_point)};
+}
+
 /// Refines a plain chord with the rounding errors of the difference and of the projection, and a second projection.
 ///
 /// Precision  test Extremes.HitOrMissAndHitPointError, against MPFR
 template <class D>
 HWY_INLINE Chord<D> compensated(const Rays<D>& ray, const Spheres<D>& sphere, const Chord<D>& plain) {
   const auto lost = difference_error(sphere.center, ray.origin, sphere.center - ray.origin);
-  auto to_center = plain.to_center + (lost - ray.origin_low);
-#if !HWY_NATIVE_FMA
-  // The projection subtracted rounded products, which may be as large as the distance.
-  const auto product_error = [&](auto x) {
-    return math::HWY_NAMESPACE::product_error(D(), x, plain.middle, x * plain.middle);
-  };
-  const auto& along = ray.direction;
-  to_center = to_center - Vec3<hn::Vec<D>>{product_error(along.x), product_error(along.y), product_error(along.z)};
-#endif
-  // With a distant origin, to_center keeps a component along the ray; project it out once more.
-  const auto rest = dot(to_center, ray.direction) * ray.inverse_square;
-  to_center = neg_mul_add(ray.direction, rest, to_center);
-  return {plain.middle + rest, discriminant<D>(sphere.radius, to_center), to_center};
+  const auto at = refined<D>(ray, {plain.middle, plain.to_center}, lost - ray.origin_low);
+  return {at.distance, discriminant<D>(sphere.radius, at.to_point), at.to_point};
 }
 
 template <class D, bool kCompensated>

@@ -1,0 +1,52 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cmath>
+#include <cstddef>
+#include <cstdint>
+
+namespace orrery::kernel {
+
+/// A rod in the kernel's layout: all points within `radius` of the segment from a to b, in one cache line.
+///
+/// Rods are opaque. `compile` orders the ends, since exchanging them changes rounding.
+struct alignas(64) Rod {
+  double a[3] = {0, 0, 0};  ///< scene units
+  double radius = 1;        ///< scene units, > 0
+  double b[3] = {0, 0, 0};  ///< scene units; may equal a: the rod is then a sphere
+  double unused = 0;        ///< a row is gathered as twice four doubles
+};
+
+/// Non-owning view of the rods of a scene.
+///
+/// A rod has two ids, one for each half: those of rod i are `first_id + 2 i` on the half at a, and the next one on the
+/// half at b. Ids of rods follow those of spheres, so that a sphere wins a tie with a rod: a ray that leaves a rod
+/// through its end would otherwise hit a coincident sphere from inside.
+struct RodArray {
+  const Rod* rods = nullptr;
+  std::size_t count = 0;
+  const Rod* motion = nullptr;  ///< change of the first `moving_count` rods until the shutter closes
+  std::size_t moving_count = 0;
+  std::size_t first_id = 0;  ///< the number of spheres
+
+  bool empty() const noexcept { return count == 0; }
+  /// Whether the id of a hit is that of a rod.
+  bool contains(std::size_t id) const noexcept { return id >= first_id && id - first_id < 2 * count; }
+  std::size_t index(std::size_t id) const noexcept { return (id - first_id) / 2; }
+  std::uint32_t id(std::size_t rod) const noexcept { return static_cast<std::uint32_t>(first_id + 2 * rod); }
+
+  /// A rod at a time between 0 (shutter opens) and 1 (shutter closes), computed like in the kernel's loops.
+  Rod at(std::size_t rod, double time) const noexcept {
+    Rod out = rods[rod];
+    if (rod >= moving_count) return out;
+    const Rod& change = motion[rod];
+    for (int k = 0; k < 3; ++k) {
+      out.a[k] = std::fma(change.a[k], time, out.a[k]);
+      out.b[k] = std::fma(change.b[k], time, out.b[k]);
+    }
+    out.radius = std::fma(change.radius, time, out.radius);
+    return out;
+  }
+};
+
+}  // namespace orrery::kernel
