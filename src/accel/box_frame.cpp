@@ -25,7 +25,7 @@ constexpr double kFarthestStart = 1.5;
 }  // namespace
 
 BoxFrame::BoxFrame(const BoundedSpheres& spheres, const std::vector<std::uint32_t>& ids, const kernel::Sphere* motion,
-                   std::size_t moving_count) {
+                   std::size_t moving_count, const BoundedRods& rods) {
   const auto at_closing = [&](std::uint32_t id) {
     const kernel::Sphere s = spheres[id], change = motion[id];
     return kernel::Sphere{s.x + change.x, s.y + change.y, s.z + change.z, s.radius + change.radius};
@@ -37,7 +37,16 @@ BoxFrame::BoxFrame(const BoundedSpheres& spheres, const std::vector<std::uint32_
       f(spheres[id]);
       if (id < moving_count) f(at_closing(id));
     }
+    for (std::size_t i = 0; i < rods.rods.count; ++i) {
+      stop.check(i);
+      for (int step = 0; step < (i < rods.rods.moving_count ? 2 : 1); ++step) {
+        const kernel::Rod rod = rods.at(i, step);
+        f(kernel::Sphere{rod.a[0], rod.a[1], rod.a[2], rod.radius});
+        f(kernel::Sphere{rod.b[0], rod.b[1], rod.b[2], rod.radius});
+      }
+    }
   };
+  const bool moves = moving_count > 0 || rods.rods.moving_count > 0;
   double lower[3], upper[3];
   std::fill_n(lower, 3, std::numeric_limits<double>::infinity());
   std::fill_n(upper, 3, -std::numeric_limits<double>::infinity());
@@ -62,12 +71,26 @@ BoxFrame::BoxFrame(const BoundedSpheres& spheres, const std::vector<std::uint32_
   scale = std::ldexp(1.0, -std::ilogb(half));
   reach = half * scale * 1.8;  // sqrt(3) for the box's corners, plus room for the padding
   // Embree also interpolates motion-blurred bounds in single precision, which costs some more bits.
-  padding = kPadding * reach * kFarthestStart * (moving_count > 0 ? 2 : 1);
-  if (!spheres.in_single || moving_count == 0) return;
-  // The kernel rounds the interpolated sphere, whose coordinates are each the sum of two rounded numbers.
+  padding = kPadding * reach * kFarthestStart * (moves ? 2 : 1);
+  if (!spheres.in_single || !moves) return;
+  // The kernel rounds the interpolated sphere or rod, whose coordinates are each the sum of two rounded numbers.
   double largest = 0;
   for (int axis = 0; axis < 3; ++axis) largest = std::max({largest, std::abs(lower[axis]), std::abs(upper[axis])});
   padding += 0x1p-22 * largest * scale;
+}
+
+BoxFrame::Box BoxFrame::box(const kernel::Rod& rod, double from, double to) const noexcept {
+  const auto at = [&](double place) {
+    const auto coordinate = [&](int k) { return rod.a[k] + (rod.b[k] - rod.a[k]) * place; };
+    return box(kernel::Sphere{coordinate(0), coordinate(1), coordinate(2), rod.radius});
+  };
+  Box out = at(from);
+  const Box other = at(to);
+  for (int k = 0; k < 3; ++k) {
+    out.lower[k] = std::min(out.lower[k], other.lower[k]);
+    out.upper[k] = std::max(out.upper[k], other.upper[k]);
+  }
+  return out;
 }
 
 BoxFrame::Box BoxFrame::box(const kernel::Sphere& sphere) const noexcept {

@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <vector>
 
+#include "kernel/rod.h"
 #include "kernel/sphere.h"
 #include "math/scalar.h"
 
@@ -29,8 +30,38 @@ struct BoundedSpheres {
   }
 };
 
-/// The space of a single-precision BVH: the spheres recentred on the origin and scaled by a power of two to order one,
-/// so that neither the scene's position nor its size costs precision.
+/// Rods as the kernel intersects them, see BoundedSpheres.
+struct BoundedRods {
+  kernel::RodArray rods;
+  bool in_single = false;
+
+  /// A rod when the shutter opens (0) or closes (1).
+  kernel::Rod at(std::size_t rod, int step) const noexcept {
+    kernel::Rod out = in_single ? rounded(rods.rods[rod]) : rods.rods[rod];
+    if (step == 0 || rod >= rods.moving_count) return out;
+    const kernel::Rod change = in_single ? rounded(rods.motion[rod]) : rods.motion[rod];
+    for (int k = 0; k < 3; ++k) {
+      out.a[k] += change.a[k];
+      out.b[k] += change.b[k];
+    }
+    out.radius += change.radius;
+    return out;
+  }
+
+ private:
+  static kernel::Rod rounded(kernel::Rod rod) noexcept {
+    using math::in_single_precision;
+    for (int k = 0; k < 3; ++k) {
+      rod.a[k] = in_single_precision(rod.a[k]);
+      rod.b[k] = in_single_precision(rod.b[k]);
+    }
+    rod.radius = in_single_precision(rod.radius);
+    return rod;
+  }
+};
+
+/// The space of a single-precision BVH: spheres and rods recentred on the origin and scaled by a power of two to order
+/// one, so that neither the scene's position nor its size costs precision.
 ///
 /// Boxes are padded by the worst rounding error of rays and boxes in float, so no hit is lost. Boxes only select
 /// candidates; the hit itself is computed from the authored doubles.
@@ -38,18 +69,20 @@ class BoxFrame {
  public:
   BoxFrame() = default;
 
-  /// The frame of the spheres with these ids.
+  /// The frame of the spheres with these ids, and of all rods.
   ///
   /// `motion`   motion of the first moving_count spheres; the frame then encloses their whole motion
-  /// Domain     `ids` not empty
+  /// Domain     there are ids or rods
   BoxFrame(const BoundedSpheres& spheres, const std::vector<std::uint32_t>& ids, const kernel::Sphere* motion = nullptr,
-           std::size_t moving_count = 0);
+           std::size_t moving_count = 0, const BoundedRods& rods = {});
 
-  /// A sphere's padded bounding box.
+  /// A padded bounding box.
   struct Box {
     float lower[3], upper[3];
   };
   Box box(const kernel::Sphere& sphere) const noexcept;
+  /// The box of a rod between two fractions of its axis.
+  Box box(const kernel::Rod& rod, double from, double to) const noexcept;
 
   double middle[3] = {0, 0, 0};  ///< world space
   double scale = 1;              ///< box space = (world - middle) * scale; a power of two

@@ -12,14 +12,16 @@
 namespace orrery::accel {
 namespace {
 
-/// Treats every sphere as an outlier, without a BVH.
+/// Treats every sphere as an outlier, and lists every rod, without a BVH.
 class SimdList final : public Accel {
  public:
   SimdList(const kernel::SceneView& view, kernel::Precision precision)
-      : functions_(embree_functions(precision, view.moving_count > 0)) {
+      : functions_(embree_functions(precision, view.moving_count > 0 || view.rods.moving_count > 0)) {
     scene_.spheres = view.spheres;
     scene_.motion = view.motion;
     scene_.moving_count = view.moving_count;
+    scene_.rods = view.rods;
+    scene_.listed_rods = view.rods.count;
     scene_.outliers = complement_of(duplicates(view, precision), view.sphere_count);
     traversals_.scene = &scene_;
   }

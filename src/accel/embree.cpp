@@ -41,11 +41,38 @@ kernel::Sphere sphere_at_step(const EmbreeScene& scene, std::uint32_t id, unsign
   return {s.x + change.x, s.y + change.y, s.z + change.z, s.radius + change.radius};
 }
 
+/// Most primitives of a rod, and the extent of one across its longest axis in radii, above which it is divided. The box
+/// of a long diagonal is nearly empty; those of bonds, and of rods parallel to an axis, are not
+/// (measured: docs/decisions/0034-rods.md).
+constexpr double kMostPieces = 16, kPieceWidth = 12;
+
+/// Adds the primitives of a rod.
+void add_pieces(const kernel::Rod& rod, std::uint32_t id, std::vector<RodPiece>& pieces) {
+  double extent[3];
+  for (int k = 0; k < 3; ++k) extent[k] = std::abs(rod.b[k] - rod.a[k]);
+  std::sort(extent, extent + 3);
+  const double wanted = std::ceil(extent[1] / (kPieceWidth * rod.radius));
+  const auto count = static_cast<std::uint16_t>(std::clamp(wanted, 1.0, kMostPieces));
+  for (std::uint16_t i = 0; i < count; ++i) pieces.push_back({id, i, count});
+}
+
 struct BuildState {
   const EmbreeScene* scene;
   std::uint32_t geometry;
   std::atomic<std::uint64_t> refused{0};  ///< boxes that Embree would drop silently
 };
+
+void set_bounds(const BoxFrame::Box& box, BuildState& state, RTCBounds& out) {
+  out.lower_x = box.lower[0];
+  out.lower_y = box.lower[1];
+  out.lower_z = box.lower[2];
+  out.upper_x = box.upper[0];
+  out.upper_y = box.upper[1];
+  out.upper_z = box.upper[2];
+  for (int axis = 0; axis < 3; ++axis)
+    if (!(box.lower[axis] < box.upper[axis] && std::isfinite(box.lower[axis]) && std::isfinite(box.upper[axis])))
+      state.refused.fetch_add(1, std::memory_order_relaxed);
+}
 
 void sphere_bounds(const RTCBoundsFunctionArguments* arguments) {
   auto& state = *static_cast<BuildState*>(arguments->geometryUserPtr);
@@ -58,16 +85,18 @@ void sphere_bounds(const RTCBoundsFunctionArguments* arguments) {
     out.upper_x = out.upper_y = out.upper_z = -std::numeric_limits<float>::infinity();
     return;
   }
-  const BoxFrame::Box box = scene.frame.box(sphere_at_step(scene, id, arguments->timeStep));
-  out.lower_x = box.lower[0];
-  out.lower_y = box.lower[1];
-  out.lower_z = box.lower[2];
-  out.upper_x = box.upper[0];
-  out.upper_y = box.upper[1];
-  out.upper_z = box.upper[2];
-  for (int axis = 0; axis < 3; ++axis)
-    if (!(box.lower[axis] < box.upper[axis] && std::isfinite(box.lower[axis]) && std::isfinite(box.upper[axis])))
-      state.refused.fetch_add(1, std::memory_order_relaxed);
+  set_bounds(scene.frame.box(sphere_at_step(scene, id, arguments->timeStep)), state, out);
+}
+
+void rod_bounds(const RTCBoundsFunctionArguments* arguments) {
+  auto& state = *static_cast<BuildState*>(arguments->geometryUserPtr);
+  const auto& scene = *state.scene;
+  const RodPiece piece = scene.rod_pieces[arguments->primID];
+  const BoundedRods rods{scene.rods, scene.bounded.in_single};
+  const double count = piece.count;
+  set_bounds(scene.frame.box(rods.at(piece.rod, static_cast<int>(arguments->timeStep)), piece.index / count,
+                             (piece.index + 1) / count),
+             state, *arguments->bounds_o);
 }
 
 void bvh_bounds(const RTCBoundsFunctionArguments* arguments) {
@@ -79,14 +108,17 @@ class Embree final : public Accel {
  public:
   Embree(const kernel::SceneView& view, kernel::Precision precision, const BuildMonitor& monitor,
          std::size_t bvh_threshold)
-      : functions_(embree_functions(precision, view.moving_count > 0)), scene_(make_scene(view, precision)) {
+      : functions_(embree_functions(precision, view.moving_count > 0 || view.rods.moving_count > 0)),
+        scene_(make_scene(view, precision)) {
     std::vector<std::uint32_t> ids =
-        boxed(scene_, view.sphere_count);  // not empty: outliers are defined relative to other spheres
+        boxed(scene_, view.sphere_count);  // not empty without rods: outliers are defined relative to other spheres
     const std::size_t primitives = view.sphere_count - scene_.outliers.size();
-    const auto share = [primitives](std::size_t count) {
-      return static_cast<double>(count) / static_cast<double>(primitives);
+    for (std::uint32_t i = 0; i < view.rods.count; ++i) add_pieces(view.rods.rods[i], i, scene_.rod_pieces);
+    const auto share = [this, primitives](std::size_t count) {
+      return static_cast<double>(count) / static_cast<double>(primitives + scene_.rod_pieces.size());
     };
-    scene_.frame = BoxFrame(scene_.bounded, ids, view.motion, view.moving_count);
+    scene_.frame = BoxFrame(scene_.bounded, ids, view.motion, view.moving_count,
+                            BoundedRods{view.rods, precision == kernel::Precision::kFast});
     ids = take_for_bvh(view, std::move(ids), bvh_threshold);
     if (!ids.empty()) {
       const double end = share(ids.size());
@@ -104,7 +136,9 @@ class Embree final : public Accel {
     return functions_.tracer_of(traversals);
   }
   std::string name() const override { return "embree " + embree_.version(); }
-  std::size_t bytes() const noexcept override { return embree_.bytes() + bvh_.bytes(); }
+  std::size_t bytes() const noexcept override {
+    return embree_.bytes() + bvh_.bytes() + scene_.rod_pieces.size() * sizeof(RodPiece);
+  }
 
  private:
   static EmbreeScene make_scene(const kernel::SceneView& view, kernel::Precision precision) {
@@ -113,6 +147,7 @@ class Embree final : public Accel {
     scene.bounded = {view.spheres, precision == kernel::Precision::kFast};
     scene.motion = view.motion;
     scene.moving_count = view.moving_count;
+    scene.rods = view.rods;
     scene.duplicates = duplicates(view, precision);
     scene.outliers = find_outliers(view.spheres, view.sphere_count, scene.duplicates);
     const auto moving_outliers = std::lower_bound(scene.outliers.begin(), scene.outliers.end(), view.moving_count);
@@ -154,6 +189,9 @@ class Embree final : public Accel {
     const std::size_t rest = bvh_.empty() ? primitives - scene_.moving_primitives : scene_.singles.size();
     if (rest > 0) add_spheres(rest, 1, still);
     if (!bvh_.empty()) add_geometry(1, 1, &bvh_, bvh_bounds, functions_.intersect_bvh, functions_.occluded_by_bvh);
+    if (!scene_.rod_pieces.empty())
+      add_geometry(scene_.rod_pieces.size(), scene_.rods.moving_count > 0 ? 2 : 1, &still, rod_bounds,
+                   functions_.intersect_rods, functions_.occluded_by_rods);
     if (monitor)
       rtcSetSceneProgressMonitorFunction(
           embree_.get(),
@@ -163,7 +201,7 @@ class Embree final : public Accel {
     rtcSetSceneProgressMonitorFunction(embree_.get(), nullptr, nullptr);
     if (moving.refused + still.refused > 0)
       throw base::Error(base::ErrorKind::kInternal,
-                        "Embree would silently drop " + std::to_string(moving.refused + still.refused) + " spheres");
+                        "Embree would silently drop " + std::to_string(moving.refused + still.refused) + " primitives");
     scene_.scene = embree_.get();
     scene_.has_packets = embree_.has_packets_of(functions_.width);
   }
@@ -194,7 +232,8 @@ kernel::Tracer Accel::thread_tracer(ThreadTraversals&) const noexcept { return t
 
 std::unique_ptr<Accel> make_embree(const kernel::SceneView& scene, kernel::Precision precision,
                                    const BuildMonitor& monitor, std::size_t threshold) {
-  if (scene.sphere_count == 0) return make_list(scene, precision);  // there is nothing to build a BVH from
+  if (scene.sphere_count == 0 && scene.rods.empty())
+    return make_list(scene, precision);  // there is nothing to build a BVH from
   return std::make_unique<Embree>(scene, precision, monitor, std::max<std::size_t>(1, threshold));
 }
 

@@ -15,6 +15,7 @@
 
 #include "accel/embree_scene.h"
 #include "kernel/intersect-inl.h"
+#include "kernel/rod-inl.h"
 
 HWY_BEFORE_NAMESPACE();
 namespace orrery::accel::HWY_NAMESPACE {
@@ -135,6 +136,20 @@ HWY_INLINE void intersect(D d, const k::Rays<D>& ray, const k::Spheres<D>& spher
                           hn::Mask<D> lanes, Found<D, Packet>& found) {
   const auto is_self = hn::RebindMask(d, ray.self == ids);
   found.take(d, k::closest_distance<D, kPrecision>(d, ray, spheres, is_self), ids, lanes);
+}
+
+/// Intersects rays with a rod at the times of the rays.
+///
+/// `id`       of the rod's first half
+template <kernel::Precision kPrecision, class D, class Packet>
+HWY_INLINE void intersect_rod(D d, const k::Rays<D>& ray, const k::Rods<D>& rod, typename Packet::Id id,
+                              hn::Mask<D> lanes, Found<D, Packet>& found) {
+  const auto may = hn::And(lanes, k::may_hit(ray, rod));
+  if (hn::AllFalse(d, may)) return;
+  const k::IdTag<D> du;
+  const auto entry = k::closest_entry<D, kPrecision>(d, ray, rod);
+  const auto ids = hn::Set(du, id) + hn::IfThenElseZero(hn::RebindMask(du, entry.second_half), set(du, 1));
+  found.take(d, {entry.distance, entry.hits}, ids, may);
 }
 
 /// Stores lanes as floats.

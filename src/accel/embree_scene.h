@@ -13,6 +13,12 @@
 
 namespace orrery::accel {
 
+/// A primitive of a rod: a part of its length. All parts of a rod are tested as the whole rod.
+struct RodPiece {
+  std::uint32_t rod;
+  std::uint16_t index, count;
+};
+
 /// The data of a packet query: Embree's scene, and the spheres outside it.
 struct EmbreeScene {
   RTCScene scene = nullptr;  ///< null if every sphere is an outlier
@@ -23,6 +29,9 @@ struct EmbreeScene {
   /// Number of moving primitives. If not 0, they are Embree's geometry 0, with two time steps, and the others geometry
   /// 1; otherwise there is only one geometry.
   std::uint32_t moving_primitives = 0;
+  kernel::RodArray rods;
+  std::vector<RodPiece> rod_pieces;  ///< the primitives of the rods' geometry
+  std::size_t listed_rods = 0;       ///< the first rods, which every ray tests instead
   BoxFrame frame;
   /// Ascending ids of spheres so much larger than the rest that their boxes would enclose everything (a ground). Every
   /// ray tests them first, so that their hits limit the traversal.
@@ -68,6 +77,8 @@ struct EmbreeQuery {
 struct EmbreeFunctions {
   RTCIntersectFunctionN intersect = nullptr;
   RTCOccludedFunctionN occluded = nullptr;
+  RTCIntersectFunctionN intersect_rods = nullptr;
+  RTCOccludedFunctionN occluded_by_rods = nullptr;
   RTCIntersectFunctionN intersect_bvh = nullptr;  ///< for a geometry whose user data is a SphereBvh
   RTCOccludedFunctionN occluded_by_bvh = nullptr;
   int width = 0;          ///< rays per packet handed to Embree

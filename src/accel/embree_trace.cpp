@@ -43,19 +43,18 @@ HWY_INLINE RTCRayN* rays_of(const RTCIntersectFunctionNArguments& arguments) {
 }
 HWY_INLINE RTCRayN* rays_of(const RTCOccludedFunctionNArguments& arguments) { return arguments.ray; }
 
-/// Tests Embree's rays from `v` on against a sphere. D has one lane for a ray that Embree traverses alone.
-template <kernel::Precision kPrecision, bool kMoves, class D, class Packet, class Arguments>
-HWY_INLINE void test_sphere(D d, const EmbreeQuery<Packet>& query, const Arguments& arguments, std::uint32_t id,
-                            int v) {
+/// Tests Embree's rays from `v` on against a primitive. D has one lane for a ray that Embree traverses alone.
+///
+/// `test`     called as test(packet, first, lanes, found) for rays of the packet from `first` on
+template <class D, class Packet, class Arguments, class Test>
+HWY_INLINE void test_primitive(D d, const EmbreeQuery<Packet>& query, const Arguments& arguments, int v, Test test) {
   const hn::Rebind<std::int32_t, D> di;
-  const k::IdTag<D> du;
   const auto flags = hn::LoadU(di, arguments.valid + v);
   if (hn::AllFalse(di, flags < hn::Zero(di))) return;
   Packet& packet = *query.packet;
   const int first = query.first + v;
   auto found = Found<D, Packet>::load(d, packet, first);
-  intersect<kPrecision>(d, k::load_rays(d, packet, first), k::sphere_at<kMoves>(d, *query.scene, id, packet, first),
-                        hn::Set(du, static_cast<hn::TFromD<decltype(du)>>(id)), is_valid(d, flags), found);
+  test(packet, first, is_valid(d, flags), found);
   // After an occlusion test, Embree ignores the flags.
   if (hn::AllFalse(d, found.is_new)) {
     if (!Packet::kIsShadow) hn::StoreU(hn::Zero(di), di, arguments.valid + v);
@@ -66,19 +65,45 @@ HWY_INLINE void test_sphere(D d, const EmbreeQuery<Packet>& query, const Argumen
   if (!Packet::kIsShadow) hn::StoreU(flags_of(d, found.is_new), di, arguments.valid + v);
 }
 
-/// Embree's callback for a sphere that is a primitive.
-template <class Packet, kernel::Precision kPrecision, bool kMoves, class Arguments>
-void at_sphere(const Arguments* arguments) {
-  using T = typename Packet::Number;
-  const auto& query = *reinterpret_cast<const EmbreeQuery<Packet>*>(arguments->context);
-  const std::uint32_t id = query.scene->sphere_id(kMoves ? arguments->geomID : 0, arguments->primID);
-  if (arguments->N == 1) {
-    test_sphere<kPrecision, kMoves>(hn::FixedTag<T, 1>(), query, *arguments, id, 0);
+/// Calls test(d, v) for each vector of the rays that Embree passes to a callback.
+template <class T, class Arguments, class Test>
+HWY_INLINE void each_vector(const Arguments& arguments, Test test) {
+  if (arguments.N == 1) {
+    test(hn::FixedTag<T, 1>(), 0);
     return;
   }
   const hn::ScalableTag<T> d;
-  for (int v = 0; v < static_cast<int>(arguments->N); v += static_cast<int>(hn::Lanes(d)))
-    test_sphere<kPrecision, kMoves>(d, query, *arguments, id, v);
+  for (int v = 0; v < static_cast<int>(arguments.N); v += static_cast<int>(hn::Lanes(d))) test(d, v);
+}
+
+/// Embree's callback for a sphere that is a primitive.
+template <class Packet, kernel::Precision kPrecision, bool kMoves, class Arguments>
+void at_sphere(const Arguments* arguments) {
+  const auto& query = *reinterpret_cast<const EmbreeQuery<Packet>*>(arguments->context);
+  const std::uint32_t id = query.scene->sphere_id(kMoves ? arguments->geomID : 0, arguments->primID);
+  each_vector<typename Packet::Number>(*arguments, [&](auto d, int v) {
+    using D = decltype(d);
+    test_primitive(d, query, *arguments, v, [&](const Packet& packet, int first, hn::Mask<D> lanes, auto& found) {
+      const auto ids = hn::Set(k::IdTag<D>(), static_cast<typename Packet::Id>(id));
+      intersect<kPrecision>(d, k::load_rays(d, packet, first), k::sphere_at<kMoves>(d, *query.scene, id, packet, first),
+                            ids, lanes, found);
+    });
+  });
+}
+
+/// Embree's callback for a part of a rod.
+template <class Packet, kernel::Precision kPrecision, bool kMoves, class Arguments>
+void at_rod(const Arguments* arguments) {
+  const auto& query = *reinterpret_cast<const EmbreeQuery<Packet>*>(arguments->context);
+  const EmbreeScene& scene = *query.scene;
+  const std::size_t rod = scene.rod_pieces[arguments->primID].rod;
+  each_vector<typename Packet::Number>(*arguments, [&](auto d, int v) {
+    using D = decltype(d);
+    test_primitive(d, query, *arguments, v, [&](const Packet& packet, int first, hn::Mask<D> lanes, auto& found) {
+      intersect_rod<kPrecision>(d, k::load_rays(d, packet, first), k::rod_at<kMoves>(d, scene.rods, rod, packet, first),
+                                scene.rods.id(rod), lanes, found);
+    });
+  });
 }
 
 /// A ray that Embree traverses alone, in its lane of an otherwise empty packet.
@@ -165,6 +190,22 @@ HWY_INLINE TraversalChoice& choice_for(const ThreadTraversals& traversals, const
   }
 }
 
+/// Tests the rods that are not in Embree's scene.
+template <class Packet, kernel::Precision kPrecision, bool kMoves>
+HWY_NOINLINE void test_listed_rods(const EmbreeScene& scene, Packet& packet) {
+  const hn::ScalableTag<typename Packet::Number> d;
+  using D = std::remove_const_t<decltype(d)>;
+  for (int v = 0; v < packet.count; v += static_cast<int>(hn::Lanes(d))) {
+    const auto ray = k::load_rays(d, packet, v);
+    const auto lanes = hn::FirstN(d, static_cast<std::size_t>(packet.count - v));
+    auto found = Found<D, Packet>::load(d, packet, v);
+    for (std::size_t rod = 0; rod < scene.listed_rods; ++rod)
+      intersect_rod<kPrecision>(d, ray, k::rod_at<kMoves>(d, scene.rods, rod, packet, v), scene.rods.id(rod), lanes,
+                                found);
+    found.store(d, packet, v);
+  }
+}
+
 /// Traces a packet: the outliers, then Embree's scene.
 ///
 /// `self`     ThreadTraversals
@@ -186,6 +227,7 @@ void trace(const void* self, void* memory) {
                             hn::Set(du, static_cast<typename Packet::Id>(id)), lanes, found);
     found.store(d, packet, v);
   }
+  if (scene.listed_rods > 0) test_listed_rods<Packet, kPrecision, kMoves>(scene, packet);
   if (scene.scene == nullptr) return;
 
   TraversalChoice& choice = choice_for(traversals, packet);
@@ -221,6 +263,8 @@ EmbreeFunctions instance() {
   f.width = kWidth;
   f.intersect = at_sphere<Rays, kPrecision, kMoves>;
   f.occluded = at_sphere<ShadowRays, kPrecision, kMoves>;
+  f.intersect_rods = at_rod<Rays, kPrecision, kMoves>;
+  f.occluded_by_rods = at_rod<ShadowRays, kPrecision, kMoves>;
   f.intersect_bvh = at_bvh<Rays, kPrecision>;
   f.occluded_by_bvh = at_bvh<ShadowRays, kPrecision>;
   f.tracer.trace = trace<Rays, kPrecision, kMoves>;

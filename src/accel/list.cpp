@@ -13,6 +13,7 @@
 #include <type_traits>
 
 #include "kernel/intersect-inl.h"
+#include "kernel/rod-inl.h"
 #include "kernel/scene_view.h"
 #include "math/dispatch.h"
 
@@ -34,7 +35,7 @@ namespace orrery::accel::HWY_NAMESPACE {
 
 namespace hn = hwy::HWY_NAMESPACE;
 
-/// Traces each ray of a packet, or tests it for occlusion, by a loop over all spheres.
+/// Traces each ray of a packet, or tests it for occlusion, by a loop over all spheres, then all rods.
 template <class Packet, kernel::Precision kPrecision, bool kMoves>
 void trace_list(const void* self, void* memory) {
   namespace k = kernel::HWY_NAMESPACE;
@@ -72,7 +73,20 @@ void trace_list(const void* self, void* memory) {
       is_occluded = is_occluded || trace_up_to(duplicate);
       id = std::size_t{duplicate} + 1;
     }
-    if (!is_occluded) trace_up_to(scene.sphere_count);
+    if (!is_occluded) is_occluded = trace_up_to(scene.sphere_count);
+    for (std::size_t rod = 0; rod < scene.rods.count && !is_occluded; ++rod) {
+      const auto at = k::rod_at<kMoves>(d, scene.rods, rod, packet, i);
+      if (hn::AllFalse(d, k::may_hit(ray, at))) continue;
+      const auto entry = k::closest_entry<D, kPrecision>(d, ray, at);
+      if (hn::AllFalse(d, entry.hits) || hn::GetLane(entry.distance) >= packet.distance[i]) continue;
+      if constexpr (Packet::kIsShadow) {
+        packet.occluded[i] = static_cast<Id>(~Id{0});
+        is_occluded = true;
+      } else {
+        packet.distance[i] = hn::GetLane(entry.distance);
+        packet.hit[i] = static_cast<Id>(scene.rods.id(rod) + (hn::AllTrue(d, entry.second_half) ? 1 : 0));
+      }
+    }
   }
 }
 
@@ -111,7 +125,8 @@ class List final : public Accel {
       : scene_{view, duplicates(view, precision)}, precision_(precision) {}
 
   kernel::Tracer tracer(Traversal) const noexcept override {
-    kernel::Tracer t = ORRERY_BEST(list_tracer)(precision_, scene_.view.moving_count > 0);
+    kernel::Tracer t =
+        ORRERY_BEST(list_tracer)(precision_, scene_.view.moving_count > 0 || scene_.view.rods.moving_count > 0);
     t.self = &scene_;
     return t;
   }

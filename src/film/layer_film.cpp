@@ -167,7 +167,7 @@ void each_channel(const LayerRequest& r, const LayerPixel& p, const Halves& halv
   if (r.variance) vector("variance", "RGB", kData, [&](int c) { return variance(p, c, beauty.rgb[c]); });
   if (r.samples) f("samples", 'X', kData, static_cast<float>(p.paths));
   // Ids start at 1; 0 means no hit.
-  if (r.object_id) f("object_id", 'X', kData, hit ? static_cast<float>(p.sphere) + 1 : 0.0F);
+  if (r.object_id) f("object_id", 'X', kData, hit ? static_cast<float>(view.rods.object(p.sphere)) + 1 : 0.0F);
   if (r.material_id)
     f("material_id", 'X', kData, hit ? static_cast<float>(r.material_numbers[view.sphere_materials[p.sphere]]) : 0.0F);
   if (r.guide_albedo || r.guide_normal) {

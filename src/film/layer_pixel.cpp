@@ -52,7 +52,47 @@ struct Hit {
 
 Vec3d fma(Vec3d a, double s, Vec3d b) { return {std::fma(a.x, s, b.x), std::fma(a.y, s, b.y), std::fma(a.z, s, b.z)}; }
 
-Vec3d center_of(const kernel::Sphere& s) { return {s.x, s.y, s.z}; }
+/// The point to which a record's offset is added, at a shutter time.
+Vec3d base_of(const kernel::SceneView& scene, std::uint32_t id, double time) {
+  if (scene.rods.contains(id)) return vector_of(scene.rods.at(scene.rods.index(id), time).a);
+  const kernel::Sphere s = kernel::sphere_at(scene, id, time);
+  return {s.x, s.y, s.z};
+}
+
+/// A rod at a path's time, with a unit axis.
+struct HitRod {
+  Vec3d axis;  ///< 0 if the length is 0
+  double length, radius;
+
+  HitRod(const kernel::SceneView& scene, const PathRecord& path) {
+    const kernel::Rod rod = scene.rods.at(scene.rods.index(path.sphere), path.time);
+    axis = vector_of(rod.b) - vector_of(rod.a);
+    length = math::length(axis);
+    radius = rod.radius;
+    if (length > 0) axis = axis * (1 / length);
+  }
+
+  /// The vector from the closest point of the axis to a hit, from its offset from a.
+  Vec3d from_axis(Vec3d offset) const { return offset - axis * std::clamp(dot(offset, axis), 0.0, length); }
+
+  /// Distance from an entry to the exit along a unit direction.
+  ///
+  /// The distance at which the ray leaves the sphere around a point of the axis is a concave function of that point:
+  /// the exit is that of the infinite cylinder if it is between the ends, or else that of the sphere at the nearer end.
+  double chord(Vec3d offset, Vec3d direction) const {
+    const double along = dot(direction, axis), sine2 = 1 - along * along;
+    const auto exit_of = [&](Vec3d f, double square) {  // |f + t direction|^2 = radius^2, in this plane
+      const double half = dot(f, direction);
+      return (std::sqrt(std::max(half * half - square * (dot(f, f) - radius * radius), 0.0)) - half) / square;
+    };
+    const double entry = dot(offset, axis);
+    const double t = sine2 > 0 ? exit_of(offset - axis * entry, sine2) : std::numeric_limits<double>::infinity();
+    const double exit = entry + t * along;
+    if (exit > 0 && exit < length) return std::max(t, 0.0);
+    const bool at_b = exit >= length && length > 0;
+    return std::max(exit_of(at_b ? offset - axis * length : offset, 1), 0.0);
+  }
+};
 
 /// Origin and viewing direction of the camera at a shutter time.
 std::pair<Vec3d, Vec3d> camera_at(const kernel::SceneView& scene, double time) {
@@ -67,23 +107,35 @@ std::pair<Vec3d, Vec3d> camera_at(const kernel::SceneView& scene, double time) {
 /// False if a path's first hit is certainly not closer than this; cheaper than locating the hit.
 bool may_be_nearer(const kernel::SceneView& scene, const PathRecord& path, double than) {
   if (scene.camera.is_orthographic || scene.features.motion) return true;
-  const Vec3d from_camera = center_of(scene.spheres[path.sphere]) - vector_of(scene.camera.origin) + path.offset;
+  const Vec3d from_camera = base_of(scene, path.sphere, 0) - vector_of(scene.camera.origin) + path.offset;
   constexpr double kRounding = 1 + 0x1p-50;  // of both squares and the root
   return !(dot(from_camera, from_camera) > than * than * kRounding);
 }
 
 Hit locate(const kernel::SceneView& scene, const PathRecord& path) {
-  const Vec3d center = center_of(kernel::sphere_at(scene, path.sphere, path.time));
   const auto [origin, forward] = camera_at(scene, path.time);
-  const Vec3d from_camera = center - origin + path.offset;
+  const Vec3d from_camera = base_of(scene, path.sphere, path.time) - origin + path.offset;
   const double forward_length = length(forward);
   Hit hit{};
   hit.z = dot(from_camera, forward) / forward_length;
   hit.distance = scene.camera.is_orthographic ? hit.z : length(from_camera);
   // The far end of the chord. From inside the sphere the first hit is the exit.
-  const double chord = std::max(0.0, -2 * dot(path.direction, path.offset));
+  const double chord = scene.rods.contains(path.sphere) ? HitRod(scene, path).chord(path.offset, path.direction)
+                                                        : std::max(0.0, -2 * dot(path.direction, path.offset));
   hit.exit_z = hit.z + chord * dot(path.direction, forward) / forward_length;
   return hit;
+}
+
+/// The normal at a first hit, on the side of the camera.
+Vec3d normal_of(const kernel::SceneView& scene, const PathRecord& path) {
+  if (scene.rods.contains(path.sphere)) {
+    const HitRod rod(scene, path);
+    return rod.from_axis(path.offset) * (1 / rod.radius);
+  }
+  // Decided per ray, since the lens can straddle the surface.
+  const double along = dot(path.direction, path.offset);
+  const double radius = kernel::sphere_at(scene, path.sphere, path.time).radius;
+  return path.offset * (along > 0 ? -1 / radius : 1 / radius);
 }
 
 }  // namespace
@@ -126,18 +178,14 @@ void LayerPixel::add(const LayerRequest& request, const kernel::SceneView& scene
     }
   }
   if (request.normal) {
-    // Decided per ray, since the lens can straddle the surface.
-    const double along = dot(path.direction, path.offset);
-    const double radius = kernel::sphere_at(scene, path.sphere, path.time).radius;
-    const double outward = along > 0 ? -1 / radius : 1 / radius;
-    const Vec3d n = path.offset * outward;
+    const Vec3d n = normal_of(scene, path);
     add3(normal, std::array{n.x, n.y, n.z}, path_weight);
   }
   if (!is_candidate || !(hit.distance < depth)) return;
   depth = hit.distance;
   z = hit.z;
   sphere = path.sphere;
-  const Vec3d at = center_of(kernel::sphere_at(scene, path.sphere, path.time)) + path.offset;
+  const Vec3d at = base_of(scene, path.sphere, path.time) + path.offset;
   position[0] = at.x;
   position[1] = at.y;
   position[2] = at.z;

@@ -54,7 +54,7 @@ struct Emitted {
   hn::Vec<IdTag<D>> group;
 };
 
-/// Emission of the spheres in the lanes of `hit`; sphere 0 in the others.
+/// Emission of the spheres and rods in the lanes of `hit`; that of id 0 in the others.
 ///
 /// Domain     scene.emission is not null
 template <class D>
@@ -117,8 +117,9 @@ HWY_NOINLINE V emitter_weight(D d, const SceneView& scene, const Vertex<D>& at, 
   const auto sphere = load_spheres(d, scene, hits, at.times);
   const auto cone = subtended_cone(to_center(at, sphere.center), sphere.radius);
   const V probability = choice_probability(d, scene, at, hits) * (1 - environment_share(scene));
-  const auto can_sample =
+  auto can_sample =
       hn::And(hn::And(cone.distance > sphere.radius, probability > 0), pdf < std::numeric_limits<T>::infinity());
+  if (!scene.rods.empty()) can_sample = hn::AndNot(is_rod(d, scene, hits), can_sample);  // rods are not sampled
   const V inverse = hn::IfThenElseZero(can_sample, probability / (pdf * solid_angle(cone.one_minus_cos)));
   return bsdf_sample_weight(d, scene.direct_lighting, inverse);
 }

@@ -27,9 +27,9 @@ inline constexpr int kLobes = 8;
 /// records. For a path without a first hit, only `sphere` and `light` are set.
 struct PathRecord {
   double light[3] = {0, 0, 0};       ///< total radiance of the path, the sum of its light events; indexed by channel
-  math::Vec3d offset;                ///< first hit: from the sphere's centre to the point, scene units
+  math::Vec3d offset;                ///< first hit: from the sphere's centre, or end a of the rod, scene units
   math::Vec3d direction;             ///< direction of the camera ray that hit it, unit
-  std::uint32_t sphere = kNoSphere;  ///< first hit; kNoSphere: the background
+  std::uint32_t sphere = kNoSphere;  ///< first hit: id of a sphere or a half of a rod; kNoSphere: the background
   float albedo[3] = {0, 0, 0};       ///< at the first hit; only in scenes with features.extended
   double time = 0;                   ///< 0..1 within the shutter
 };

@@ -201,7 +201,7 @@ HWY_INLINE RodEntry<D> rod_entry(D d, const Rays<D>& ray, const Rods<D>& rod) {
 ///
 /// Two lines with the common normal w = d x u are |f.w| / |w| apart, f = a - o. With unit roundoff e, the rounding of
 /// u, w, f, and of the origin, changes f.w by less than 16 e (|f| + |o| + |a| + |b|) |d| |u|, and |o| <= |f| + |a|; the
-/// margin is at least twice that. Directions and axes so short that |w|^2 underflows pass.
+/// margin is at least twice that. Lanes in which |w|^2 underflows or the triple product overflows pass.
 template <class D>
 HWY_INLINE hn::Mask<D> may_hit(const Rays<D>& ray, const Rods<D>& rod) {
   using T = hn::TFromD<D>;
@@ -213,8 +213,8 @@ HWY_INLINE hn::Mask<D> may_hit(const Rays<D>& ray, const Rods<D>& rod) {
   const V normal2 = dot(normal, normal);
   const V reach = norm1(to_a) + norm1(rod.a) + norm1(rod.b) + rod.radius;
   const V slack = reach * (norm1(u) * norm1(ray.direction)) * kMargin;
-  const auto may = hn::Abs(dot(to_a, normal)) - slack <= rod.radius * hn::Sqrt(normal2);
-  return hn::Or(may, normal2 < std::numeric_limits<T>::min());
+  const auto misses = hn::Abs(dot(to_a, normal)) - slack > rod.radius * hn::Sqrt(normal2);  // false for NaN
+  return hn::Not(hn::And(misses, normal2 >= std::numeric_limits<T>::min()));
 }
 
 /// The entries of rays into rods beyond the rays' origins.

@@ -35,6 +35,9 @@ struct RodArray {
   std::size_t index(std::size_t id) const noexcept { return (id - first_id) / 2; }
   std::uint32_t id(std::size_t rod) const noexcept { return static_cast<std::uint32_t>(first_id + 2 * rod); }
 
+  /// The number of a hit's object: rods follow the spheres.
+  std::size_t object(std::size_t id) const noexcept { return contains(id) ? first_id + index(id) : id; }
+
   /// A rod at a time between 0 (shutter opens) and 1 (shutter closes), computed like in the kernel's loops.
   Rod at(std::size_t rod, double time) const noexcept {
     Rod out = rods[rod];

@@ -9,6 +9,7 @@
 #include "kernel/lights.h"
 #include "kernel/material.h"
 #include "kernel/pixel_sum.h"
+#include "kernel/rod.h"
 #include "kernel/sphere.h"
 #include "math/vec3.h"
 
@@ -39,6 +40,7 @@ struct Features {
   bool motion = false;      ///< camera or spheres move while the shutter is open
   bool lit = false;         ///< something emits, or is sampled: paths gain radiance at their vertices
   bool extended = false;    ///< textures or rough glass
+  bool rods = false;        ///< there are rods
 };
 
 /// Reciprocal of the throughput below which Russian roulette may end a path. Ending paths of higher throughput would
@@ -50,10 +52,11 @@ inline constexpr std::uint32_t kNoRoulette = 0xffffffffu;
 
 /// Non-owning view of the compiled scene for the kernel.
 struct SceneView {
-  SphereArray spheres;
-  IndexArray sphere_materials;  ///< one per sphere, index into `materials`
+  SphereArray spheres;          ///< at least one can be read, even if there are only rods
+  IndexArray sphere_materials;  ///< index into `materials` of each sphere, then of each half of each rod
   const Material* materials = nullptr;
   std::size_t sphere_count = 0;
+  RodArray rods;  ///< ids follow those of the spheres
   /// No two spheres coincide in double, or in single precision. False: not known.
   bool distinct = false, distinct_in_single = false;
   const Emission* emission = nullptr;  ///< one per material; null if nothing emits

@@ -30,14 +30,14 @@ namespace orrery::kernel::HWY_NAMESPACE {
 struct Loop {
   Precision precision = Precision::kExact;
   bool records = false;  ///< fills the tile's records, events and guides
-  bool full = false;     ///< renders all features; false: neither motion, lights nor textures and rough glass
+  bool full = false;     ///< renders all features; false: neither motion, lights, rods nor textures and rough glass
 };
 
 /// The features of a scene in this loop. In plain loops, those of full loops are false at compile time.
 template <Loop kLoop>
 HWY_INLINE Features features_of(const SceneView& scene) {
   Features features = scene.features;
-  if (!kLoop.full) features.motion = features.lit = features.extended = false;
+  if (!kLoop.full) features.motion = features.lit = features.extended = features.rods = false;
   return features;
 }
 
@@ -85,7 +85,7 @@ struct Arrivals {
   using Ids = hn::Vec<IdTag<D>>;
   hn::Mask<D> hit, missed;
   Rays<D> ray;
-  Ids hits;                              ///< ids of the spheres
+  Ids hits;                              ///< ids of spheres and halves of rods
   V distance;                            ///< of the hits
   const hn::TFromD<D>* times = nullptr;  ///< null: nothing moves
   Ids pixels, samples;
@@ -216,7 +216,7 @@ class Shader {
 
   /// Finds points, normals and materials of the hits.
   HWY_INLINE Lookup<D> surface(const Arrivals<D>& at) const {
-    auto look = reach_surface<D, kLoop.precision>(d, scene_, at.ray, at.hits, at.distance, at.times);
+    auto look = reach_surface<D, kLoop.precision>(d, scene_, features_.rods, at.ray, at.hits, at.distance, at.times);
     if (features_.extended && scene_.textures != nullptr) {
       const auto textured =
           textured_surface<D, kLoop.precision>(d, scene_, at.ray, at.hits, at.hit, at.distance, at.cone.width2, look);
@@ -232,7 +232,10 @@ class Shader {
   HWY_INLINE void record_surface(const Arrivals<D>& at, const Lookup<D>& look, const Vec3<V>& tinted) const {
     auto record = recorder(at);
     if (depth_ == 0) {
-      record.first_hit(d, at.hit, at.hits, look.surface.offset, at.ray.direction, at.times);
+      auto offset = look.surface.offset;
+      if (features_.rods && tile_.record_hits)
+        offset = recorded_offset(d, scene_, at.hits, at.times, look.sphere.center, offset);
+      record.first_hit(d, at.hit, at.hits, offset, at.ray.direction, at.times);
       if (features_.extended) record.albedo(d, at.hit, look.albedo);
       record.inverse_depth(d, at.hit, at.distance);
     }

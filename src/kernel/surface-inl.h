@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Spheres and materials of hits. Compiled once per instruction set.
+// Spheres, rods and materials of hits. Compiled once per instruction set.
 #if defined(ORRERY_KERNEL_SURFACE_INL_H_) == defined(HWY_TARGET_TOGGLE)
 #ifdef ORRERY_KERNEL_SURFACE_INL_H_
 #undef ORRERY_KERNEL_SURFACE_INL_H_
@@ -9,9 +9,13 @@
 
 #include <hwy/highway.h>
 
+#include <algorithm>
+#include <cstddef>
+
 #include "kernel/gather-inl.h"
 #include "kernel/gather_spheres-inl.h"
 #include "kernel/intersect-inl.h"
+#include "kernel/rod-inl.h"
 #include "kernel/scatter-inl.h"
 #include "kernel/scene_view.h"
 
@@ -47,34 +51,105 @@ HWY_INLINE Spheres<D> load_spheres(D d, const SceneView& scene, const hn::TFromD
           mul_add(change[3], time, at_opening.radius)};
 }
 
-/// Stores ids from which spheres can be loaded: those of the hits, and the last sphere, which is compact if any is, in
-/// lanes without a hit.
+/// Stores ids below `count`: those of the hits, and the last one in lanes without a hit, whose sphere is compact if any
+/// is. Lanes that hit rods get the last sphere if `count` is that of the spheres.
+///
+/// Domain     count > 0
 template <class D>
-HWY_INLINE void store_loadable(D, const SceneView& scene, hn::Vec<IdTag<D>> hits, hn::TFromD<IdTag<D>>* id) {
+HWY_INLINE void store_loadable(D, std::size_t count, hn::Vec<IdTag<D>> hits, hn::TFromD<IdTag<D>>* id) {
   const IdTag<D> du;
   static_assert(kNoSphere == ~std::uint32_t{0});
-  hn::Store(min(hits, static_cast<hn::TFromD<IdTag<D>>>(scene.sphere_count - 1)), du, id);
+  hn::Store(min(hits, static_cast<hn::TFromD<IdTag<D>>>(count - 1)), du, id);
 }
 
 /// Loads the spheres of the hits; lanes without a hit get the last one.
+///
+/// Domain     there are spheres
 template <class D>
 HWY_INLINE Spheres<D> load_spheres(D d, const SceneView& scene, hn::Vec<IdTag<D>> hits, const hn::TFromD<D>* times) {
   HWY_ALIGN hn::TFromD<IdTag<D>> id[hn::MaxLanes(D())];
-  store_loadable(d, scene, hits, id);
+  store_loadable(d, scene.sphere_count, hits, id);
   return load_spheres(d, scene, id, times);
 }
 
-/// Loads spheres and materials of the hits; lanes without a hit get those of the last sphere.
+/// Lanes that hit rods.
+template <class D>
+HWY_INLINE hn::Mask<D> is_rod(D d, const SceneView& scene, hn::Vec<IdTag<D>> hits) {
+  const auto is_sphere = hn::RebindMask(d, hits < scene.rods.first_id);
+  return hn::Not(hn::Or(is_sphere, hn::RebindMask(d, hits == kNoSphere)));
+}
+
+/// Loads the rods of the hits; lanes that hit no rod get the first one.
+///
+/// `times`    times of the rays; null: nothing moves
+/// Domain     there are rods
+template <class D>
+HWY_INLINE Rods<D> load_rods(D d, const SceneView& scene, hn::Vec<IdTag<D>> hits, const hn::TFromD<D>* times) {
+  const RodArray& rods = scene.rods;
+  const IdTag<D> du;
+  HWY_ALIGN hn::TFromD<IdTag<D>> index[hn::MaxLanes(D())];
+  const auto ids = hits - set(du, rods.first_id);
+  hn::Store(hn::IfThenElseZero(hn::RebindMask(du, is_rod(d, scene, hits)), hn::template ShiftRight<1>(ids)), du, index);
+  const auto gathered = [&](auto rod_of_lane) {
+    hn::Vec<D> a[4], b[4];
+    gather4(
+        d, [&](std::size_t i) { return rod_of_lane(i).a; }, a);
+    gather4(
+        d, [&](std::size_t i) { return rod_of_lane(i).b; }, b);
+    return Rods<D>{{a[0], a[1], a[2]}, {b[0], b[1], b[2]}, a[3]};
+  };
+  const auto at_opening = gathered([&](std::size_t i) -> const Rod& { return rods.rods[index[i]]; });
+  if (times == nullptr || rods.moving_count == 0) return at_opening;
+  static constexpr Rod kRodAtRest{{0, 0, 0}, 0, {0, 0, 0}, 0};
+  const auto change = gathered(
+      [&](std::size_t i) -> const Rod& { return index[i] < rods.moving_count ? rods.motion[index[i]] : kRodAtRest; });
+  return moved<D>(at_opening, change, hn::Load(d, times));
+}
+
+/// The points where rays have hit rods; undefined in other lanes.
+template <class D, Precision kPrecision>
+HWY_NOINLINE RodPoint<D> rod_hits(D d, const SceneView& scene, Rays<D> ray, hn::Vec<IdTag<D>> hits,
+                                  const hn::TFromD<D>* times) {
+  return rod_point<D, kPrecision>(d, ray, load_rods(d, scene, hits, times));
+}
+
+/// The vector from the centre of a sphere, or from end a of a rod, to a hit point; see PathRecord.
+///
+/// `center`, `offset`  of the sphere that was hit, or of the one that has the rod's place
+template <class D, class V = hn::Vec<D>>
+HWY_NOINLINE Vec3<V> recorded_offset(D d, const SceneView& scene, hn::Vec<IdTag<D>> hits, const hn::TFromD<D>* times,
+                                     Vec3<V> center, Vec3<V> offset) {
+  const auto rod = load_rods(d, scene, hits, times);
+  return select(is_rod(d, scene, hits), (center - rod.a) + offset, offset);
+}
+
+/// Replaces spheres and points in the lanes that hit rods.
+///
+/// Result     these lanes
+template <class D, Precision kPrecision>
+HWY_INLINE hn::Mask<D> reach_rods(D d, const SceneView& scene, const Rays<D>& ray, hn::Vec<IdTag<D>> hits,
+                                  const hn::TFromD<D>* times, Spheres<D>& sphere, HitPoint<hn::Vec<D>>& point) {
+  const auto lanes = is_rod(d, scene, hits);
+  if (hn::AllFalse(d, lanes)) return lanes;
+  const auto rod = rod_hits<D, kPrecision>(d, scene, ray, hits, times);
+  sphere = {select(lanes, rod.sphere.center, sphere.center), select(lanes, rod.sphere.radius, sphere.radius)};
+  point = {select(lanes, rod.point.offset, point.offset), select(lanes, rod.point.outward, point.outward)};
+  return lanes;
+}
+
+/// Loads spheres and materials of the hits; lanes without a hit get those of the last sphere, and lanes that hit rods
+/// its sphere.
 ///
 /// `times`    times of the rays; null: nothing moves
 template <class D>
-HWY_INLINE Lookup<D> look_up(D d, const SceneView& scene, hn::Vec<IdTag<D>> hits, const hn::TFromD<D>* times) {
+HWY_INLINE Lookup<D> look_up(D d, const SceneView& scene, bool has_rods, hn::Vec<IdTag<D>> hits,
+                             const hn::TFromD<D>* times) {
   using Id = hn::TFromD<IdTag<D>>;
   constexpr std::size_t kMax = hn::MaxLanes(D());
   const IdTag<D> du;
   HWY_ALIGN Id id[kMax], kind[kMax], fresnel[kMax];
   const Material* material[kMax];
-  store_loadable(d, scene, hits, id);
+  store_loadable(d, scene.sphere_count + (has_rods ? 2 * scene.rods.count : 0), hits, id);
   for (std::size_t i = 0; i < hn::Lanes(d); ++i) {
     material[i] = &scene.materials[scene.sphere_materials[id[i]]];
     kind[i] = static_cast<Id>(material[i]->kind);
@@ -85,6 +160,7 @@ HWY_INLINE Lookup<D> look_up(D d, const SceneView& scene, hn::Vec<IdTag<D>> hits
       d, [&](std::size_t i) { return material[i]->albedo; }, color);
   gather4(
       d, [&](std::size_t i) { return material[i]->eta; }, glass);
+  if (has_rods) store_loadable(d, std::max<std::size_t>(scene.sphere_count, 1), hits, id);
   Lookup<D> out;
   out.sphere = load_spheres(d, scene, id, times);
   out.albedo = {color[0], color[1], color[2]};
@@ -99,16 +175,22 @@ HWY_INLINE Lookup<D> look_up(D d, const SceneView& scene, hn::Vec<IdTag<D>> hits
 }
 
 /// Computes point, normal and side of every hit, and selects the material's constants for that side.
+///
+/// `has_rods`  false: all hits are spheres
 template <class D, Precision kPrecision>
-HWY_INLINE Lookup<D> reach_surface(D d, const SceneView& scene, const Rays<D>& ray, hn::Vec<IdTag<D>> hits,
-                                   hn::Vec<D> distance, const hn::TFromD<D>* times) {
-  Lookup<D> at = look_up(d, scene, hits, times);
+HWY_INLINE Lookup<D> reach_surface(D d, const SceneView& scene, bool has_rods, const Rays<D>& ray,
+                                   hn::Vec<IdTag<D>> hits, hn::Vec<D> distance, const hn::TFromD<D>* times) {
+  Lookup<D> at = look_up(d, scene, has_rods, hits, times);
   Surface<D>& surface = at.surface;
   const auto is_self = hn::RebindMask(d, hits == ray.self);
   surface.direction = ray.direction;
-  const auto point = hit_point<D, kPrecision>(ray, at.sphere, is_self, distance);
+  auto point = hit_point<D, kPrecision>(ray, at.sphere, is_self, distance);
+  surface.from_outside = dot(ray.direction, point.offset) < 0;
+  // Rods are hit from outside only; where a ray grazes one, the sign is that of a rounding error.
+  if (has_rods)
+    surface.from_outside =
+        hn::Or(reach_rods<D, kPrecision>(d, scene, ray, hits, times, at.sphere, point), surface.from_outside);
   surface.offset = point.offset;
-  surface.from_outside = dot(ray.direction, surface.offset) < 0;
   surface.normal = select(surface.from_outside, point.outward, negated(point.outward));
   surface.eta = select(surface.from_outside, at.eta_outside, at.eta_inside);
   surface.r0 = select(surface.from_outside, at.r0_outside, at.r0_inside);

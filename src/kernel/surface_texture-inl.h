@@ -97,8 +97,13 @@ HWY_NOINLINE Vec3<V> textured_radiance(D d, const SceneView& scene, Rays<D> ray,
                                        Vec3<V> radiance) {
   const TextureIndices<D> index(d, scene, hits, lanes);
   if (!index.has_radiance) return radiance;
-  const auto sphere = load_spheres(d, scene, hits, times);
-  const auto at = hit_point<D, kPrecision>(ray, sphere, hn::RebindMask(d, hits == ray.self), distance);
+  Spheres<D> sphere{};
+  HitPoint<V> at{};
+  if (scene.sphere_count > 0) {
+    sphere = load_spheres(d, scene, hits, times);
+    at = hit_point<D, kPrecision>(ray, sphere, hn::RebindMask(d, hits == ray.self), distance);
+  }
+  if (!scene.rods.empty()) reach_rods<D, kPrecision>(d, scene, ray, hits, times, sphere, at);
   const auto point = texture_point<D, kPrecision>(d, ray, sphere, at.offset, at.outward, distance,
                                                   width2 / (sphere.radius * sphere.radius));
   return replaced_by_textures(d, scene.textures, index.radiance, point, radiance);
