@@ -143,8 +143,9 @@ void add_summary(std::string& out, const job::Job& job, const job::JobReport& re
   out += '\n';
   if (!detail.is_verbose) return;
   if (r.accelerator.empty()) return;  // a merge
-  out += fmt::format("{} spheres, {}, {}, traversal {}, {} threads, {} rays; scene {}\n", report.spheres, r.accelerator,
-                     r.isa, r.traversal, r.threads, r.rays, report.scene_hash);
+  const std::string rods = report.rods > 0 ? fmt::format(", {} rod{}", report.rods, report.rods == 1 ? "" : "s") : "";
+  out += fmt::format("{} spheres{}, {}, {}, traversal {}, {} threads, {} rays; scene {}\n", report.spheres, rods,
+                     r.accelerator, r.isa, r.traversal, r.threads, r.rays, report.scene_hash);
   const job::Phases& p = report.phases;
   if (p.prepare_s > 0) out += fmt::format("prepare {:.3f} s\n", p.prepare_s);
   if (p.denoise_s > 0) out += fmt::format("denoise {:.3f} s\n", p.denoise_s);

@@ -5,6 +5,8 @@
 #include <bit>
 #include <cmath>
 #include <memory>
+#include <tuple>
+#include <utility>
 
 #include "base/stop_point.h"
 #include "compile/camera_basis.h"
@@ -25,6 +27,25 @@ using math::Vec3d;
 
 kernel::Sphere sphere_of(Vec3d center, double radius) { return {center.x, center.y, center.z, std::abs(radius)}; }
 
+/// Whether the ends of a rod are exchanged: they are put in order, since the order changes roundings.
+bool is_reversed(const scene::Rod& rod) {
+  return std::tie(rod.to.x, rod.to.y, rod.to.z) < std::tie(rod.from.x, rod.from.y, rod.from.z);
+}
+
+/// Sets the rods.
+void set_rods(const scene::Scene& scene, CompiledScene& compiled) {
+  compiled.rods.clear();
+  compiled.rods.reserve(scene.rods.size());
+  for (const scene::Rod& rod : scene.rods) {
+    const bool reversed = is_reversed(rod);
+    kernel::Rod out;
+    set(out.a, reversed ? rod.to : rod.from);
+    set(out.b, reversed ? rod.from : rod.to);
+    out.radius = rod.radius;
+    compiled.rods.push_back(out);
+  }
+}
+
 /// Sets the spheres.
 void set_spheres(const scene::Scene& scene, CompiledScene& compiled) {
   compiled.spheres = {};
@@ -35,11 +56,11 @@ void set_spheres(const scene::Scene& scene, CompiledScene& compiled) {
   compiled.distinct_in = scene.distinct_in;
 }
 
-/// Numbers the materials of the spheres.
+/// Numbers the materials of the spheres and of the halves of rods.
 void set_sphere_materials(const scene::Scene& scene, CompiledScene& compiled) {
   const base::StopPoint stop;
   compiled.sphere_materials = {};
-  compiled.sphere_materials.reserve(scene.sphere_count());
+  compiled.sphere_materials.reserve(scene.sphere_count() + 2 * scene.rods.size());
   compiled.material_sources.clear();
   MaterialTable table(scene, compiled.material_sources);
   for (const scene::Sphere& s : scene.spheres)
@@ -54,6 +75,11 @@ void set_sphere_materials(const scene::Scene& scene, CompiledScene& compiled) {
                                               ? table.index(material, inside_out)
                                               : table.colored_index(material, inside_out, p, points.colors[i]));
     }
+  }
+  for (const scene::Rod& rod : scene.rods) {
+    std::uint32_t halves[2] = {table.index(rod.materials[0], false), table.index(rod.materials[1], false)};
+    if (is_reversed(rod)) std::swap(halves[0], halves[1]);
+    for (const std::uint32_t half : halves) compiled.sphere_materials.push_back(half);
   }
 }
 
@@ -72,6 +98,25 @@ void set_sphere_motion(const scene::Scene& opening, const scene::Scene* closing,
   }
 }
 
+/// Sets the motion of rods from shutter open to shutter close. The ends are ordered as they are when it opens.
+void set_rod_motion(const scene::Scene& opening, const scene::Scene* closing, CompiledScene& compiled) {
+  compiled.rod_motion.clear();
+  if (closing == nullptr) return;
+  for (std::size_t i = opening.rods.size(); i-- > 0;) {
+    const scene::Rod &from = opening.rods[i], &to = closing->rods[i];
+    const Vec3d of_from = to.from - from.from, of_to = to.to - from.to;
+    const bool reversed = is_reversed(from);
+    kernel::Rod change;
+    set(change.a, reversed ? of_to : of_from);
+    set(change.b, reversed ? of_from : of_to);
+    change.radius = to.radius - from.radius;
+    const bool rests = of_from == Vec3d{0, 0, 0} && of_to == Vec3d{0, 0, 0} && change.radius == 0;
+    if (compiled.rod_motion.empty() && !rests)
+      compiled.rod_motion.resize(i + 1, kernel::Rod{{0, 0, 0}, 0, {0, 0, 0}, 0});
+    if (!rests) compiled.rod_motion[i] = change;
+  }
+}
+
 /// Sets the camera, and its motion from shutter open to shutter close.
 void set_camera(const scene::Scene& opening, const scene::Scene* closing, CompiledScene& compiled) {
   kernel::Features& features = compiled.features;
@@ -79,7 +124,7 @@ void set_camera(const scene::Scene& opening, const scene::Scene* closing, Compil
   const double scale = features.lens ? 1 : view_scale(opening.camera);
   compiled.camera = compile_camera(opening.camera, opening.image, scale);
   compiled.camera_motion = {};
-  features.motion = !compiled.motion.empty();
+  features.motion = !compiled.motion.empty() || !compiled.rod_motion.empty();
   if (closing == nullptr) return;
   const kernel::Camera last = compile_camera(closing->camera, closing->image, scale);
   kernel::Camera& change = compiled.camera_motion;
@@ -192,6 +237,9 @@ kernel::SceneView CompiledScene::view() const noexcept {
   v.sphere_materials = sphere_materials.view();
   v.materials = materials.data();
   v.sphere_count = spheres.size();
+  static constexpr kernel::Sphere kReadable;  // the kernel reads a sphere in lanes that hit a rod
+  if (spheres.empty()) v.spheres = &kReadable;
+  v.rods = {rods.data(), rods.size(), rod_motion.data(), rod_motion.size(), spheres.size()};
   v.emission = emission.empty() ? nullptr : emission.data();
   if (!textures.textures().empty()) {
     v.textures = textures.textures().data();
@@ -222,6 +270,24 @@ kernel::SceneView CompiledScene::view() const noexcept {
   return v;
 }
 
+Bounds bounds_of(const CompiledScene& scene) {
+  Bounds b = bounds_of(scene.spheres);
+  bool is_empty = scene.spheres.empty();
+  const auto add = [&](const double(&p)[3], double radius) {
+    const Vec3d at = math::vector_of(p), reach{radius, radius, radius}, low = at - reach, high = at + reach;
+    b.lower =
+        is_empty ? low : Vec3d{std::min(b.lower.x, low.x), std::min(b.lower.y, low.y), std::min(b.lower.z, low.z)};
+    b.upper =
+        is_empty ? high : Vec3d{std::max(b.upper.x, high.x), std::max(b.upper.y, high.y), std::max(b.upper.z, high.z)};
+    is_empty = false;
+  };
+  for (const kernel::Rod& rod : scene.rods) {
+    add(rod.a, rod.radius);
+    add(rod.b, rod.radius);
+  }
+  return b;
+}
+
 void update_lights(CompiledScene& scene) {
   const auto is_fast = [](Precision precision) { return precision == Precision::kFast; };
   const std::optional<Precision> built = scene.light_tree.precision;
@@ -249,6 +315,9 @@ void update(const scene::Scene& scene, const scene::Scene* closing, scene::Parts
     compiled.accelerator = compiled.precision == Precision::kBook ? Accelerator::kList : scene.render.accelerator;
     set_spheres(scene, compiled);
     set_sphere_motion(scene, closing, compiled);
+    set_rods(scene, compiled);
+    set_rod_motion(scene, closing, compiled);
+    compiled.features.rods = !compiled.rods.empty();
   }
   if (changed.geometry || changed.assignment) set_sphere_materials(scene, compiled);
   if (changed.geometry || changed.assignment || changed.look) {

@@ -27,11 +27,12 @@ using scene::Accelerator;
 /// A scene ready for rendering: flat arrays, camera basis, and the features that it requires.
 ///
 /// Spheres are in the order of the scene file, first the [[sphere]] tables, then each [[points]] file. The index of a
-/// sphere is its id in hits.
+/// sphere is its id in hits. The ids of rods follow, see kernel::RodArray.
 struct CompiledScene {
   SphereStore spheres;
   std::vector<std::size_t> points_sizes;         ///< number of spheres of each points table
-  PackedIndices sphere_materials;                ///< one per sphere, index into `materials`
+  std::vector<kernel::Rod> rods;                 ///< with ordered ends
+  PackedIndices sphere_materials;                ///< one per sphere, then two per rod, index into `materials`
   std::vector<MaterialSource> material_sources;  ///< one per material
   std::vector<kernel::Material> materials;
   std::vector<kernel::Emission> emission;  ///< one per material; empty if none emits
@@ -41,6 +42,7 @@ struct CompiledScene {
   std::vector<std::string> light_groups;  ///< names, indexed by Emission::group; the first is "", the default group
   std::vector<kernel::Sphere>
       motion;  ///< motion of the first motion.size() spheres, see kernel::SceneView; empty: none moves
+  std::vector<kernel::Rod> rod_motion;  ///< the same of the rods
   kernel::Camera camera;
   kernel::Camera camera_motion;
   kernel::Background background;
@@ -67,5 +69,10 @@ struct CompiledScene {
   /// Returns a view for the kernel; valid until this CompiledScene is modified or destroyed.
   kernel::SceneView view() const noexcept;
 };
+
+/// Returns the bounding box of all spheres and rods; unspecified if there are none.
+///
+/// Errors     base::Error(kStopped) in a base::StopScope
+Bounds bounds_of(const CompiledScene& scene);
 
 }  // namespace orrery::compile

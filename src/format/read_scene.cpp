@@ -2,6 +2,7 @@
 #include "format/read_scene.h"
 
 #include <algorithm>
+#include <array>
 #include <cerrno>
 #include <cstdio>
 #include <cstdlib>
@@ -69,18 +70,10 @@ void read_single_tables(ReadState& state, const toml::table& root, scene::Scene&
   }
 }
 
-/// Returns the index of the material that a sphere or a points file names; 0, and an error is reported, if it does not
-/// exist.
-std::uint32_t read_material_name(ReadState& state, const toml::table& table, const std::string& table_name,
-                                 const scene::Scene& scene, const MaterialIndex& index) {
-  const std::string full_name = table_name + ".material";
-  const toml::node* node = table.get("material");
-  if (node == nullptr) {
-    state.error(place_of(table), table_name + " needs `material`");
-    state.unread.insert(full_name);
-    return 0;
-  }
-  const auto value = read_value(state, *node, full_name, scene::ValueType::kText, {}, {});
+/// Returns the index of the material that a node names; 0, and an error is reported, if it does not exist.
+std::uint32_t material_named(ReadState& state, const toml::node& node, const std::string& full_name,
+                             const scene::Scene& scene, const MaterialIndex& index) {
+  const auto value = read_value(state, node, full_name, scene::ValueType::kText, {}, {});
   if (value) {
     if (const auto found = index.find(std::get<std::string>(*value)); found != index.end()) return found->second;
     const auto& name = std::get<std::string>(*value);
@@ -90,10 +83,48 @@ std::uint32_t read_material_name(ReadState& state, const toml::table& table, con
     std::string remedy = base::did_you_mean(name, names);
     if (remedy.empty() && names.empty()) remedy = "the scene defines no materials";
     if (remedy.empty() && names.size() <= kMaxNamed) remedy = "defined are " + base::joined(names);
-    state.error(place_of(*node), fmt::format("{} is \"{}\", which is not defined", full_name, name), remedy);
+    state.error(place_of(node), fmt::format("{} is \"{}\", which is not defined", full_name, name), remedy);
   }
   state.unread.insert(full_name);
   return 0;
+}
+
+/// Returns the node of the key `material`; null, and an error is reported, if there is none.
+const toml::node* material_node(ReadState& state, const toml::table& table, const std::string& table_name) {
+  const toml::node* const node = table.get("material");
+  if (node == nullptr) {
+    state.error(place_of(table), table_name + " needs `material`");
+    state.unread.insert(table_name + ".material");
+  }
+  return node;
+}
+
+/// Returns the index of the material that a sphere or a points file names.
+std::uint32_t read_material_name(ReadState& state, const toml::table& table, const std::string& table_name,
+                                 const scene::Scene& scene, const MaterialIndex& index) {
+  const toml::node* const node = material_node(state, table, table_name);
+  return node != nullptr ? material_named(state, *node, table_name + ".material", scene, index) : 0;
+}
+
+/// Returns the indices of the materials of a rod's halves, which may have one name for both.
+std::array<std::uint32_t, 2> read_rod_materials(ReadState& state, const toml::table& table,
+                                                const std::string& table_name, const scene::Scene& scene,
+                                                const MaterialIndex& index) {
+  const toml::node* const node = material_node(state, table, table_name);
+  if (node == nullptr) return {0, 0};
+  const std::string full_name = table_name + ".material";
+  const toml::array* const names = node->as_array();
+  if (names == nullptr) {
+    const std::uint32_t both = material_named(state, *node, full_name, scene, index);
+    return {both, both};
+  }
+  if (names->size() == 2)
+    return {material_named(state, *names->get(0), full_name + "[0]", scene, index),
+            material_named(state, *names->get(1), full_name + "[1]", scene, index)};
+  state.error(place_of(*node), fmt::format("{} has {} names", full_name, names->size()),
+              "write one name, or two: those of the halves at `from` and at `to`");
+  state.unread.insert(full_name);
+  return {0, 0};
 }
 
 void read_spheres(ReadState& state, const toml::table& root, const MaterialIndex& index, scene::Scene& scene) {
@@ -107,6 +138,20 @@ void read_spheres(ReadState& state, const toml::table& root, const MaterialIndex
     read_keys(state, table, full_name, scene::sphere_keys(), {"material"}, sphere);
     sphere.material = read_material_name(state, table, full_name, scene, index);
     scene.spheres.push_back(std::move(sphere));
+  }
+}
+
+void read_rods(ReadState& state, const toml::table& root, const MaterialIndex& index, scene::Scene& scene) {
+  const toml::array* list = tables_under(state, root, "rod");
+  if (list == nullptr) return;
+  scene.rods.reserve(list->size());
+  for (std::size_t i = 0; i < list->size(); ++i) {
+    const toml::table& table = *list->get(i)->as_table();
+    const std::string full_name = fmt::format("rod[{}]", i);
+    scene::Rod rod;
+    read_keys(state, table, full_name, scene::rod_keys(), {"material"}, rod);
+    rod.materials = read_rod_materials(state, table, full_name, scene, index);
+    scene.rods.push_back(std::move(rod));
   }
 }
 
@@ -153,12 +198,13 @@ void read_points(ReadState& state, const toml::table& root, const std::filesyste
   }
 }
 
-/// The errors of the pose at shutter close that the pose at shutter open does not have. Only camera and spheres move
-/// while the shutter is open.
+/// The errors of the pose at shutter close that the pose at shutter open does not have. Only camera, spheres and rods
+/// move while the shutter is open.
 std::vector<scene::SceneDiagnostic> errors_at_close(const scene::Scene& opening, const scene::Scene& closing) {
   std::vector<scene::SceneDiagnostic> found = scene::validate(closing);
   std::erase_if(found, [](const scene::SceneDiagnostic& d) {
-    return d.severity == base::Severity::kWarning || !(d.key.starts_with("camera.") || d.key.starts_with("sphere["));
+    return d.severity == base::Severity::kWarning ||
+           !(d.key.starts_with("camera.") || d.key.starts_with("sphere[") || d.key.starts_with("rod["));
   });
   if (found.empty()) return found;
   const std::vector<scene::SceneDiagnostic> known = scene::validate(opening);
@@ -199,15 +245,16 @@ void pose(ReadState& state, const toml::table& root, const std::string& file, in
     }
 }
 
-/// Whether an override sets what a track animates; the names of a sphere, by index and by name, are the same.
+/// Whether an override sets what a track animates; the names of a sphere or rod, by index and by name, are the same.
 bool sets_target(const Override& override, const scene::Track& track, const scene::Scene& scene) {
   if (override.sets(track.target)) return true;
-  const auto is_of_sphere = [](const KeyValue& set) { return set.key.starts_with("sphere"); };
-  if (std::none_of(override.values.begin(), override.values.end(), is_of_sphere))
+  const auto is_of_object = [](const KeyValue& set) {
+    return set.key.starts_with("sphere") || set.key.starts_with("rod");
+  };
+  if (std::none_of(override.values.begin(), override.values.end(), is_of_object))
     return false;  // names take time to find
-  const std::vector<std::size_t> spheres = scene::spheres_of_target(scene, track.target);
-  return spheres.size() == 1 &&
-         override.sets(fmt::format("sphere[{}]{}", spheres[0], track.target.substr(track.target.rfind('.'))));
+  const std::vector<std::string> targets = scene::indexed_targets(scene, track.target);
+  return targets.size() == 1 && override.sets(targets[0]);
 }
 
 /// A track replaces what an override sets.
@@ -223,7 +270,7 @@ void warn_of_animated_overrides(ReadState& state, const Overrides& overrides, co
 void report_unknown_tables(ReadState& state, const toml::table& root) {
   std::vector<std::string> known;
   for (const scene::Table& table : scene::tables()) known.push_back(table.name);
-  known.insert(known.end(), {"material", "sphere", "points", "key"});
+  known.insert(known.end(), {"material", "sphere", "points", "rod", "key"});
   for (const auto& [key, node] : root)
     if (std::find(known.begin(), known.end(), key.str()) == known.end())
       report_unknown_key(state, key, "the scene", known);
@@ -278,6 +325,7 @@ SceneReader::SceneReader(const std::filesystem::path& file, const Overrides& ove
   for (const scene::Material& material : scene.materials)
     index.emplace(material.name, static_cast<std::uint32_t>(index.size()));
   read_spheres(state, root, index, scene);
+  read_rods(state, root, index, scene);
   if (const toml::array* keys = tables_under(state, root, "key")) read_tracks(state, *keys, scene);
   warn_of_animated_overrides(state, overrides, scene);
   const std::filesystem::path folder = file.parent_path();

@@ -71,12 +71,11 @@ std::optional<scene::Animated> read_target(ReadState& state, const toml::table& 
   if (!value) return {};
   name = std::get<std::string>(*value);
   auto target = scene::find_animated(scene, name);
-  if (const auto spheres = scene::spheres_of_target(scene, name); spheres.size() > 1) {
-    const auto numbered = [&](std::size_t i) {
-      return fmt::format("sphere[{}]{}", spheres[i], name.substr(name.rfind('.')));
-    };
-    state.error(place_of(*node), fmt::format("{}.target: \"{}\" matches {} spheres", full_name, name, spheres.size()),
-                fmt::format("use an index, such as {} or {}", numbered(0), numbered(1)));
+  if (const auto all = scene::indexed_targets(scene, name); all.size() > 1) {
+    state.error(
+        place_of(*node),
+        fmt::format("{}.target: \"{}\" matches {} {}s", full_name, name, all.size(), name.substr(0, name.find('.'))),
+        fmt::format("use an index, such as {} or {}", all[0], all[1]));
     return {};
   }
   if (target) return target;
@@ -89,7 +88,8 @@ std::optional<scene::Animated> read_target(ReadState& state, const toml::table& 
   }
   std::string remedy = base::did_you_mean(name, names);
   if (remedy.empty())
-    remedy = "targets are numbers of camera, background, material.NAME, sphere.NAME and sphere[INDEX]";
+    remedy =
+        "targets are numbers of camera, background, material.NAME, sphere.NAME, sphere[INDEX], rod.NAME and rod[INDEX]";
   state.error(place_of(*node), fmt::format("{}.target: \"{}\" is not a number that can be animated", full_name, name),
               remedy);
   return {};

@@ -151,12 +151,20 @@ std::string scene_text(const scene::Scene& scene, const std::string& comment) {
   for (const scene::Table& table : scene::tables())
     add_table(out, fmt::format("[{}]", table.name), texts_of(table.keys, scene, defaults));
   add_materials(out, scene.materials);
+  const auto name_text = [&](std::uint32_t material) { return string_text(material_name(scene, material)); };
   const auto add = [&](const char* header, KeyTexts keys, std::uint32_t material) {
-    keys.emplace_back("material", string_text(material_name(scene, material)));
+    keys.emplace_back("material", name_text(material));
     add_table(out, header, keys);
   };
   for (const scene::Sphere& sphere : scene.spheres)
     add("[[sphere]]", texts_of(scene::sphere_keys(), sphere, {}), sphere.material);
+  for (const scene::Rod& rod : scene.rods) {
+    KeyTexts keys = texts_of(scene::rod_keys(), rod, {});
+    const auto [at_from, at_to] = rod.materials;
+    keys.emplace_back("material", at_from == at_to ? name_text(at_from)
+                                                   : fmt::format("[{}, {}]", name_text(at_from), name_text(at_to)));
+    add_table(out, "[[rod]]", keys);
+  }
   add_tracks(out, scene);
   for (const scene::Points& points : scene.points)
     add("[[points]]", texts_of(scene::points_keys(), points, {}), points.material);

@@ -52,7 +52,10 @@ std::uint64_t count_emitters(const compile::CompiledScene& compiled) {
   std::vector<std::uint32_t> ids;
   for (std::size_t i = 0; i < compiled.spheres.size(); ++i)
     if (shines[compiled.sphere_materials[i]]) ids.push_back(static_cast<std::uint32_t>(i));
-  return compile::without_coincident(compiled.view(), compiled.precision, std::move(ids)).size();
+  std::uint64_t rods = 0;
+  for (std::size_t i = compiled.spheres.size(); i < compiled.sphere_materials.size(); i += 2)
+    rods += shines[compiled.sphere_materials[i]] || shines[compiled.sphere_materials[i + 1]] ? 1 : 0;
+  return rods + compile::without_coincident(compiled.view(), compiled.precision, std::move(ids)).size();
 }
 
 /// Describes how light is sampled: "40 emitters; light and BSDF sampling; emitters by a light tree of 1.9 KiB". Empty
@@ -107,7 +110,7 @@ std::vector<Feature> features_of(const compile::CompiledScene& compiled, bool ha
           feature("image background", compiled.environment != nullptr, "no image: no texture lookups"),
           feature("textures", !compiled.textures.textures().empty(), "all materials are constant"),
           feature("motion blur", compiled.features.motion, "nothing moves while the shutter is open",
-                  "camera or spheres move while the shutter is open"),
+                  "camera, spheres or rods move while the shutter is open"),
           feature("lights", compiled.features.lit, "no emitters: no shadow rays"),
           feature("layers", has_layers, "none requested: paths are not recorded"),
           feature("light paths", compiled.shading == kernel::Shading::kPath, "render.shading uses the first hit only")};
@@ -186,16 +189,18 @@ SceneInfo scene_info(const load::SceneRequest& request, job::PreparedScene& prep
   info.samples = compiled.samples;
   info.max_depth = static_cast<int>(compiled.max_depth);
   info.spheres = compiled.spheres.size();
-  const auto [low, high] = compile::bounds_of(compiled.spheres);
+  info.rods = compiled.rods.size();
+  const auto [low, high] = compile::bounds_of(compiled);
   std::copy_n(std::array{low.x, low.y, low.z}.begin(), 3, info.lower);
   std::copy_n(std::array{high.x, high.y, high.z}.begin(), 3, info.upper);
-  if (!compiled.spheres.empty()) {
-    info.smallest_radius = info.largest_radius = compiled.spheres[0].radius;
-    for (std::size_t i = 0; i < compiled.spheres.size(); ++i) {
-      const double radius = compiled.spheres[i].radius;
+  if (info.spheres + info.rods > 0) {
+    info.smallest_radius = std::numeric_limits<double>::infinity();
+    const auto add_radius = [&](double radius) {
       info.smallest_radius = std::min(info.smallest_radius, radius);
       info.largest_radius = std::max(info.largest_radius, radius);
-    }
+    };
+    for (std::size_t i = 0; i < compiled.spheres.size(); ++i) add_radius(compiled.spheres[i].radius);
+    for (const kernel::Rod& rod : compiled.rods) add_radius(rod.radius);
   }
   info.materials = count_materials(compiled);
   info.emitters = count_emitters(compiled);
@@ -213,7 +218,7 @@ SceneInfo scene_info(const load::SceneRequest& request, job::PreparedScene& prep
     if (s.key == "render.accelerator") info.accelerator = scene::unquoted(s.value);
   }
   info.isa = kernel::isa_name();
-  info.traversal = compiled.accelerator == compile::Accelerator::kList || compiled.spheres.empty()
+  info.traversal = compiled.accelerator == compile::Accelerator::kList || info.spheres + info.rods == 0
                        ? "list"
                        : "packet or single, the faster in the first rays";
   job::MemoryNeeds needs = job::memory_needs(compiled, layers);
@@ -253,7 +258,8 @@ std::string info_text(const SceneInfo& info) {
   base::append(out, "image       %d x %d, %d samples per pixel, max depth %d\n", info.width, info.height, info.samples,
                info.max_depth);
   base::append(out, "spheres     %llu", static_cast<unsigned long long>(info.spheres));
-  if (info.spheres > 0)
+  if (info.rods > 0) base::append(out, "\nrods        %llu", static_cast<unsigned long long>(info.rods));
+  if (info.spheres + info.rods > 0)
     base::append(out, ", radius %g .. %g, from (%g, %g, %g) to (%g, %g, %g)", info.smallest_radius, info.largest_radius,
                  info.lower[0], info.lower[1], info.lower[2], info.upper[0], info.upper[1], info.upper[2]);
   out += info.materials.empty() ? "\nmaterials   none" : "\nmaterials  ";
@@ -332,6 +338,7 @@ std::string info_json(const SceneInfo& info) {
               {"samples", info.samples},
               {"max_depth", info.max_depth},
               {"spheres", info.spheres},
+              {"rods", info.rods},
               {"bounds", nullptr},
               {"radius", nullptr},
               {"materials", materials},
@@ -359,7 +366,7 @@ std::string info_json(const SceneInfo& info) {
                          {"width", info.background->width},
                          {"height", info.background->height},
                          {"color_space", info.background->color_space}};
-  if (info.spheres > 0) {
+  if (info.spheres + info.rods > 0) {
     out["bounds"] = {{"lower", info.lower}, {"upper", info.upper}};
     out["radius"] = {{"smallest", info.smallest_radius}, {"largest", info.largest_radius}};
   }

@@ -46,10 +46,11 @@ struct SceneInfo {
   int frame = 1;
   int width = 0, height = 0, samples = 0, max_depth = 0;
   std::uint64_t spheres = 0;
-  double lower[3] = {0, 0, 0}, upper[3] = {0, 0, 0};  ///< bounds, scene units; valid if spheres > 0
+  std::uint64_t rods = 0;
+  double lower[3] = {0, 0, 0}, upper[3] = {0, 0, 0};  ///< bounds, scene units; valid if there are spheres or rods
   double smallest_radius = 0, largest_radius = 0;
   std::vector<std::pair<std::string, std::uint64_t>> materials;  ///< number of compiled materials by type
-  std::uint64_t emitters = 0;                                    ///< spheres that emit; black ones do not
+  std::uint64_t emitters = 0;                                    ///< spheres and rods that emit; black ones do not
   std::string lights;                                            ///< emitters, background and how they are sampled
   std::vector<PointsInfo> points;
   std::vector<std::string> layers, available_layers;  ///< layers requested in [output], and all that the scene supports
@@ -89,7 +90,7 @@ std::vector<std::string> precision_advice(const compile::CompiledScene& compiled
 
 /// The properties as text.
 std::string info_text(const SceneInfo& info);
-/// The properties as JSON, schema "orrery.info/1"; bounds and radius are null without spheres.
+/// The properties as JSON, schema "orrery.info/1"; bounds and radius are null without spheres and rods.
 std::string info_json(const SceneInfo& info);
 /// Key, value and origin of every setting, in columns.
 std::string settings_text(const SceneInfo& info);

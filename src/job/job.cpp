@@ -152,6 +152,7 @@ class Run {
     report_.width = compiled().width;
     report_.height = compiled().height;
     report_.spheres = compiled().spheres.size();
+    report_.rods = compiled().rods.size();
   }
 
   /// The layers that an output of the job holds; others are not computed.
@@ -219,7 +220,7 @@ class Run {
   bool is_of_this_render(const film::Partial& from) const {
     return from.is_adaptive() == settings_.sampling.is_adaptive() &&
            from.layers.empty() != settings_.layers.records() && from.halves.empty() != settings_.layers.guides() &&
-           from.has_known_spheres(compiled().spheres.size());
+           from.has_known_spheres(compiled().sphere_materials.size());
   }
 
   /// Builds the BVH, unless the prepared scene has one.

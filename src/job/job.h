@@ -112,6 +112,7 @@ struct JobReport {
   int width = 0, height = 0;                                        ///< px
   std::string target_missed;  ///< "noise 0.013 instead of 0.01: the time budget ended"; empty: the target was met
   std::size_t spheres = 0;
+  std::size_t rods = 0;
   std::string scene_hash;
   display::Choice display;           ///< if a display format was written
   std::filesystem::path checkpoint;  ///< written because the job was stopped; empty: none

@@ -70,9 +70,10 @@ void add_mattes(const scene::Scene& scene, const compile::CompiledScene& compile
     for (const std::uint32_t material : authored)
       material_ids.push_back(materials.id_of(scene.materials[material].name));
 
-  const std::size_t blocks = scene.spheres.size() + scene.points.size();
-  const std::size_t most = std::min(compiled.spheres.size(), by_material ? blocks * material_ids.size() : blocks);
-  film::MatteClasses classes{{compiled.spheres.size(), static_cast<std::uint32_t>(most)}, {}};
+  const std::size_t ids_of_all = compiled.sphere_materials.size();
+  const std::size_t blocks = scene.spheres.size() + scene.points.size() + scene.rods.size();
+  const std::size_t most = std::min(ids_of_all, by_material ? blocks * material_ids.size() : blocks);
+  film::MatteClasses classes{{ids_of_all, static_cast<std::uint32_t>(most)}, {}};
   std::map<Ids, std::uint32_t> known;
   std::vector<Ids> ids;
   std::uint32_t sphere = 0, current = 0;
@@ -98,6 +99,10 @@ void add_mattes(const scene::Scene& scene, const compile::CompiledScene& compile
   for (std::size_t i = 0; i < scene.points.size(); ++i) {
     const scene::Points& p = scene.points[i];
     add(compiled.points_sizes[i], p.name.empty() ? p.file.stem().string() : p.name, p.group);
+  }
+  for (std::size_t i = 0; i < scene.rods.size(); ++i) {
+    const scene::Rod& r = scene.rods[i];
+    add(2, r.name.empty() ? "rod." + std::to_string(i) : r.name, r.group);
   }
 
   layers.request.matte_classes = std::make_shared<film::MatteClasses>(std::move(classes));

@@ -72,7 +72,7 @@ std::uint64_t bytes_of_sums(const MemoryNeeds& needs) {
 double expected_shares(const compile::CompiledScene& compiled, const film::LayerRequest& layers) {
   if (!layers.deep && layers.mattes.empty()) return 0;
   const double things =
-      static_cast<double>(layers.deep ? compiled.spheres.size() : layers.matte_classes->first_sphere.size());
+      static_cast<double>(layers.deep ? compiled.sphere_materials.size() : layers.matte_classes->first_sphere.size());
   const double pixels = static_cast<double>(compiled.width) * compiled.height;
   const double seen = 2 + things / pixels;
   return std::min({things + (layers.deep ? 1 : 0), static_cast<double>(compiled.samples), seen});
@@ -155,7 +155,7 @@ MemoryEstimate estimate_memory(const MemoryNeeds& needs) {
   m.textures = needs.textures;
   m.lights = needs.lights;
   m.accelerator = needs.embree ? needs.spheres_in_bvh * kBvhBytesPerSphere +
-                                     (needs.spheres - needs.spheres_in_bvh) * kAcceleratorBytesPerSphere
+                                     (needs.spheres - needs.spheres_in_bvh + needs.rods) * kAcceleratorBytesPerSphere
                                : 0;
   return m;
 }
@@ -166,9 +166,11 @@ MemoryNeeds memory_needs(const compile::CompiledScene& compiled, const film::Lay
   needs.width = compiled.width;
   needs.height = compiled.height;
   needs.spheres = compiled.spheres.size();
+  needs.rods = compiled.rods.size();
   needs.embree = compiled.accelerator == compile::Accelerator::kEmbree && !has_accelerator;
   if (needs.embree) needs.spheres_in_bvh = accel::spheres_in_bvh(compiled.view());
-  needs.sphere_bytes = compiled.spheres.bytes() + compiled.sphere_materials.bytes() +
+  needs.sphere_bytes = compiled.spheres.bytes() + compiled.rods.size() * sizeof(kernel::Rod) +
+                       compiled.sphere_materials.bytes() +
                        (layers.matte_classes ? layers.matte_classes->of_sphere.bytes() : 0);
   if (compiled.environment) needs.background = compiled.environment->bytes();
   needs.textures = compiled.textures.bytes();

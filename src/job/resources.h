@@ -47,17 +47,18 @@ struct MemoryNeeds {
   int width = 0, height = 0;         ///< px
   std::uint64_t spheres = 0;         ///< from tables and points files
   std::uint64_t spheres_in_bvh = 0;  ///< accel::spheres_in_bvh()
-  std::uint64_t sphere_bytes = 0;    ///< bytes of the compiled spheres and their material indices
-  std::uint64_t background = 0;      ///< bytes of an image background
-  std::uint64_t textures = 0;        ///< bytes of image textures
-  std::uint64_t lights = 0;          ///< compile::LightTree::bytes_of_build()
-  std::uint64_t layer_planes = 0;    ///< besides R, G, B, A
-  bool records = false;              ///< LayerRequest::records()
-  bool guides = false;               ///< LayerRequest::guides()
-  std::uint64_t light_cells = 0;     ///< LayerRequest::light_cells()
-  double shares = 0;                 ///< expected entries of film::LayerPixel::shares, mean over the pixels
-  bool embree = true;                ///< false: the list
-  bool is_adaptive = false;          ///< --noise or --time: a second sum and an error estimate per pixel
+  std::uint64_t rods = 0;
+  std::uint64_t sphere_bytes = 0;  ///< bytes of the compiled spheres and rods, and their material indices
+  std::uint64_t background = 0;    ///< bytes of an image background
+  std::uint64_t textures = 0;      ///< bytes of image textures
+  std::uint64_t lights = 0;        ///< compile::LightTree::bytes_of_build()
+  std::uint64_t layer_planes = 0;  ///< besides R, G, B, A
+  bool records = false;            ///< LayerRequest::records()
+  bool guides = false;             ///< LayerRequest::guides()
+  std::uint64_t light_cells = 0;   ///< LayerRequest::light_cells()
+  double shares = 0;               ///< expected entries of film::LayerPixel::shares, mean over the pixels
+  bool embree = true;              ///< false: the list
+  bool is_adaptive = false;        ///< --noise or --time: a second sum and an error estimate per pixel
 };
 
 /// Estimates memory for `info`, `study` and the check before a render.

@@ -88,6 +88,11 @@ Hash hash_of_spheres(const compile::CompiledScene& compiled) {
     stop.check(i);
     for (const kernel::Sphere s = compiled.spheres[i]; const double v : {s.x, s.y, s.z, s.radius}) hash.add(v);
   }
+  for (const kernel::Rod& r : compiled.rods) {
+    add_all(hash, r.a);
+    add_all(hash, r.b);
+    hash.add(r.radius);
+  }
   for (std::size_t i = 0; i < compiled.sphere_materials.size(); ++i) hash.add_bits(compiled.sphere_materials[i]);
   return hash;
 }
@@ -108,6 +113,11 @@ SceneHashes scene_hashes(const compile::CompiledScene& compiled, Hash hash) {
   if (compiled.features.motion) {
     for (const kernel::Sphere& s : compiled.motion)
       for (const double v : {s.x, s.y, s.z, s.radius}) hash.add(v);
+    for (const kernel::Rod& r : compiled.rod_motion) {
+      add_all(hash, r.a);
+      add_all(hash, r.b);
+      hash.add(r.radius);
+    }
     const kernel::Camera& m = compiled.camera_motion;
     for (const auto* v : {&m.origin, &m.forward, &m.right, &m.down, &m.lens_u, &m.lens_v}) add_all(hash, *v);
   }

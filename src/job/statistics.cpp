@@ -52,6 +52,7 @@ std::string statistics_json(const JobReport& report, const Outcome& outcome) {
               {"checkpoint", report.checkpoint.string()},
               {"hosts", report.hosts},
               {"spheres", report.spheres},
+              {"rods", report.rods},
               {"paths", r.paths},
               {"rays", r.rays},
               {"paths_per_second", per_second(r.paths)},

@@ -168,6 +168,7 @@ py::dict statistics(const Picture& picture) {
   const job::JobReport& report = picture.report();
   py::dict out;
   out["spheres"] = report.spheres;
+  out["rods"] = report.rods;
   out["paths"] = report.render.paths;
   out["rays"] = report.render.rays;
   out["fewest_samples"] = report.render.min_samples;

@@ -29,25 +29,28 @@ const Key<Target>* find_key(const std::vector<Key<Target>>& keys, const std::str
 
 const MaterialType& type_of(const Material& material) { return material_types()[material.model.index()]; }
 
-/// Returns the index of the sphere with this index ("3") or name.
-std::optional<std::size_t> find_sphere(const Scene& scene, const std::string& name, bool is_index) {
+/// Returns the index of the sphere or rod with this index ("3") or name.
+template <class Object>
+std::optional<std::size_t> find_object(const std::vector<Object>& objects, const std::string& name, bool is_index) {
   if (is_index) {
     std::size_t i = 0;
     const auto [end, error] = std::from_chars(name.data(), name.data() + name.size(), i);
-    const bool found = error == std::errc() && end == name.data() + name.size() && i < scene.spheres.size();
+    const bool found = error == std::errc() && end == name.data() + name.size() && i < objects.size();
     return found ? std::optional(i) : std::nullopt;
   }
-  for (std::size_t i = 0; i < scene.spheres.size(); ++i)
-    if (scene.spheres[i].name == name) return i;
+  for (std::size_t i = 0; i < objects.size(); ++i)
+    if (objects[i].name == name) return i;
   return {};
 }
 
-std::optional<Animated> animated_sphere(const Scene& scene, const std::string& name, bool is_index,
+template <class Object>
+std::optional<Animated> animated_object(const Scene& scene, std::vector<Object> Scene::*objects,
+                                        const std::vector<Key<Object>>& keys, const std::string& name, bool is_index,
                                         const std::string& key_name) {
-  const auto* key = find_key(sphere_keys(), key_name);
-  const std::optional<std::size_t> i = find_sphere(scene, name, is_index);
+  const auto* key = find_key(keys, key_name);
+  const std::optional<std::size_t> i = find_object(scene.*objects, name, is_index);
   if (key == nullptr || !i) return {};
-  return Animated{key->type, key->range, [key, i](Scene& s, const Value& v) { key->set(s.spheres[*i], v); }};
+  return Animated{key->type, key->range, [=](Scene& s, const Value& v) { key->set((s.*objects)[*i], v); }};
 }
 
 std::optional<Animated> animated_material(const Scene& scene, const std::string& name, const std::string& key_name) {
@@ -103,7 +106,10 @@ Vec3d rotated(Vec3d v, Vec3d axis, double turns) {
 std::optional<Animated> find_animated(const Scene& scene, const std::string& target) {
   const std::optional<TargetParts> parts = parts_of(target);
   if (!parts) return {};
-  if (parts->table == "sphere") return animated_sphere(scene, parts->name, parts->is_index, parts->key);
+  if (parts->table == "sphere")
+    return animated_object(scene, &Scene::spheres, sphere_keys(), parts->name, parts->is_index, parts->key);
+  if (parts->table == "rod")
+    return animated_object(scene, &Scene::rods, rod_keys(), parts->name, parts->is_index, parts->key);
   if (parts->table == "material" && !parts->is_index) return animated_material(scene, parts->name, parts->key);
   if (!parts->name.empty() || !is_singleton_table(parts->table)) return {};
   for (const Table& t : tables())
@@ -112,16 +118,17 @@ std::optional<Animated> find_animated(const Scene& scene, const std::string& tar
   return {};
 }
 
-std::vector<std::size_t> spheres_of_target(const Scene& scene, const std::string& target) {
+std::vector<std::string> indexed_targets(const Scene& scene, const std::string& target) {
   const std::optional<TargetParts> parts = parts_of(target);
-  std::vector<std::size_t> out;
-  if (!parts || parts->table != "sphere") return out;
-  if (parts->is_index) {
-    if (const auto i = find_sphere(scene, parts->name, true)) out.push_back(*i);
-    return out;
-  }
-  for (std::size_t i = 0; i < scene.spheres.size(); ++i)
-    if (scene.spheres[i].name == parts->name) out.push_back(i);
+  std::vector<std::string> out;
+  const auto add = [&](const auto& objects) {
+    const std::optional<std::size_t> indexed = parts->is_index ? find_object(objects, parts->name, true) : std::nullopt;
+    for (std::size_t i = 0; i < objects.size(); ++i)
+      if (parts->is_index ? i == indexed : objects[i].name == parts->name)
+        out.push_back(fmt::format("{}[{}].{}", parts->table, i, parts->key));
+  };
+  if (parts && parts->table == "sphere") add(scene.spheres);
+  if (parts && parts->table == "rod") add(scene.rods);
   return out;
 }
 
@@ -135,6 +142,8 @@ std::vector<std::string> animated_names(const Scene& scene) {
     if (is_singleton_table(table.name)) add(table.name, table.keys);
   for (const Sphere& sphere : scene.spheres)
     if (!sphere.name.empty()) add("sphere." + sphere.name, sphere_keys());
+  for (const Rod& rod : scene.rods)
+    if (!rod.name.empty()) add("rod." + rod.name, rod_keys());
   for (const Material& material : scene.materials) add("material." + material.name, type_of(material).keys);
   return names;
 }

@@ -19,15 +19,16 @@ struct Animated {
 };
 
 /// Finds the number or vector that a target names: "camera.look_from", "background.top", "sphere[3].center",
-/// "sphere.NAME.radius", "material.NAME.albedo".
+/// "sphere.NAME.radius", "rod[0].from", "material.NAME.albedo".
 ///
 /// Result     nullopt if the scene has no such target
 std::optional<Animated> find_animated(const Scene& scene, const std::string& target);
 
-/// Returns the indices of the spheres that a target matches; several if they share a name. Empty for other targets.
-std::vector<std::size_t> spheres_of_target(const Scene& scene, const std::string& target);
+/// Returns the targets by index, such as "sphere[3].radius", of the spheres or rods that a target matches; several if
+/// they share a name. Empty for other targets.
+std::vector<std::string> indexed_targets(const Scene& scene, const std::string& target);
 
-/// Returns all targets that find_animated accepts in this scene, except those with a sphere index.
+/// Returns all targets that find_animated accepts in this scene, except those with an index.
 std::vector<std::string> animated_names(const Scene& scene);
 
 /// Returns the names of the interpolations in scene files, in enumerator order.

@@ -60,6 +60,17 @@ void compare_spheres(const std::vector<Sphere>& before, const std::vector<Sphere
   }
 }
 
+/// The keys of [[rod]].
+void compare_rods(const std::vector<Rod>& before, const std::vector<Rod>& after, Parts& parts) {
+  if (before.size() != after.size()) return parts.add(Part::kGeometry);
+  for (std::size_t i = 0; i < before.size(); ++i) {
+    const Rod &a = before[i], &b = after[i];
+    parts.geometry = parts.geometry || !(a.from == b.from) || !(a.to == b.to) || a.radius != b.radius;
+    parts.assignment = parts.assignment || a.materials != b.materials;
+    parts.output = parts.output || a.name != b.name || a.group != b.group;
+  }
+}
+
 void compare_points(const Points& before, const Points& after, Parts& parts) {
   compare(points_keys(), Part::kGeometry, before, after, parts);
   if (before.material != after.material) parts.add(Part::kAssignment);
@@ -68,6 +79,7 @@ void compare_points(const Points& before, const Points& after, Parts& parts) {
 void compare_scenes(const Scene& before, const Scene& after, Parts& parts) {
   for (const Table& table : tables()) compare(table.keys, table.part, before, after, parts);
   compare_spheres(before.spheres, after.spheres, parts);
+  compare_rods(before.rods, after.rods, parts);
 }
 
 }  // namespace

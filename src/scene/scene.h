@@ -164,6 +164,16 @@ struct Sphere {
   std::string group = {};      ///< optional, for mattes: all objects of a group are one matte
 };
 
+/// A sphere swept along a segment. Opaque.
+struct Rod {
+  Vec3d from, to;     ///< ends of the segment; if they are equal, a sphere
+  double radius = 1;  ///< > 0
+  /// Of the half at `from` and of that at `to`: indices into Scene::materials.
+  std::array<std::uint32_t, 2> materials = {0, 0};
+  std::string name = {};   ///< optional, for mattes
+  std::string group = {};  ///< optional, for mattes
+};
+
 /// An interval of numbers.
 struct Interval {
   double low = 0, high = 1;
@@ -294,6 +304,7 @@ struct Scene {
   std::vector<Material> materials;
   std::vector<Sphere> spheres;
   std::vector<Points> points;
+  std::vector<Rod> rods;
   /// No two spheres coincide in this precision or a higher one. Empty: not known.
   std::optional<Precision> distinct_in = {};
 

@@ -314,4 +314,18 @@ const std::vector<Key<Sphere>>& sphere_keys() {
   return keys;
 }
 
+const std::vector<Key<Rod>>& rod_keys() {
+  static const std::vector<Key<Rod>> keys = {
+      required(vector<Rod>("from", kAnyLength, {"scene units", "One end of the axis"}, &Rod::from)),
+      required(vector<Rod>("to", kAnyLength,
+                           {"scene units", "The other end. May be the same point: the rod is then a sphere"},
+                           &Rod::to)),
+      required(number<Rod>("radius", kLength, {"scene units", "Radius"}, &Rod::radius)),
+      changes(Part::kOutput,
+              text<Rod>("name", {"", "Name in the CryptoObject matte. Default: `rod.` and the index"}, &Rod::name)),
+      changes(Part::kOutput,
+              text<Rod>("group", {"", "CryptoGroup name; objects of a group share one matte"}, &Rod::group))};
+  return keys;
+}
+
 }  // namespace orrery::scene

@@ -13,8 +13,8 @@
 
 /// The schema of scene files: the description of all keys, used for reading, writing, validation, `--set`, suggestions,
 /// `--settings`, the files that a scene names and the documentation. Defaults are the member initialisers in
-/// scene/scene.h. Two keys are not in it, because they refer to a material by its name: `material` of [[sphere]] and
-/// [[points]].
+/// scene/scene.h. Three keys are not in it, because they refer to materials by name: `material` of [[sphere]],
+/// [[points]] and [[rod]].
 namespace orrery::scene {
 
 enum class TextureType;
@@ -95,6 +95,8 @@ const std::vector<MaterialType>& material_types();
 /// Keys of [[sphere]] and [[points]], except `material`. They change the geometry, unless they say otherwise.
 const std::vector<Key<Sphere>>& sphere_keys();
 const std::vector<Key<Points>>& points_keys();
+/// Keys of [[rod]], except `material`.
+const std::vector<Key<Rod>>& rod_keys();
 
 /// Returns the "Keys" section of docs/scene-format.md: Markdown tables of all keys with type, range, unit, default and
 /// cost, generated from the schema. A test compares the two.

@@ -200,6 +200,39 @@ void check_spheres(const Scene& scene, DiagnosticList& diagnostics) {
   }
 }
 
+/// Returns what is wrong with the radius of a rod; empty if it is valid.
+std::string rod_radius_fault(double radius, Precision precision) {
+  if (!(radius > 0)) return fmt::format("radius is {}; must be in {}", number_text(radius), length_range());
+  return radius_fault(radius, precision);
+}
+
+std::string rod_material_fault(std::uint32_t material, const Scene& scene) {
+  if (const std::string fault = material_fault(material, scene); !fault.empty()) return fault;
+  if (!std::holds_alternative<Dielectric>(scene.materials[material].model)) return {};
+  return fmt::format(
+      "{} is a dielectric, but rods are opaque: a ray hits them from outside only; use another type of material, or "
+      "spheres",
+      string_text(scene.materials[material].name));
+}
+
+void check_rods(const Scene& scene, DiagnosticList& diagnostics) {
+  for (std::size_t i = 0; i < scene.rods.size(); ++i) {
+    const Rod& rod = scene.rods[i];
+    const std::string key = fmt::format("rod[{}]", i);
+    for (const auto& [name, end] : {std::pair{".from", rod.from}, {".to", rod.to}})
+      if (!in_domain(end))
+        diagnostics.error(key + name,
+                          fmt::format("{} is not finite or exceeds {}", vector_text(end), number_text(kLargestLength)));
+    if (const std::string fault = rod_radius_fault(rod.radius, scene.render.precision); !fault.empty())
+      diagnostics.error(key + ".radius", fault);
+    for (std::size_t half = 0; half < 2; ++half) {
+      if (half > 0 && rod.materials[1] == rod.materials[0]) continue;
+      if (const std::string fault = rod_material_fault(rod.materials[half], scene); !fault.empty())
+        diagnostics.error(key + ".material", fault);
+    }
+  }
+}
+
 void check_points(std::size_t number, const Scene& scene, DiagnosticList& diagnostics) {
   const Points& points = scene.points[number];
   const std::string key = fmt::format("points[{}]", number);
@@ -284,8 +317,13 @@ std::vector<SceneDiagnostic> validate(const Scene& scene) {
   check_shutter(scene.camera, diagnostics);
   check_spheres(scene, diagnostics);
   for (std::size_t p = 0; p < scene.points.size(); ++p) check_points(p, scene, diagnostics);
-  if (scene.sphere_count() > kMaxSpheres)
-    diagnostics.error("", fmt::format("has {} spheres; the maximum is {}", scene.sphere_count(), kMaxSpheres));
+  check_rods(scene, diagnostics);
+  if (scene.sphere_count() + 2 * scene.rods.size() > kMaxSpheres)
+    diagnostics.error("",
+                      scene.rods.empty()
+                          ? fmt::format("has {} spheres; the maximum is {}", scene.sphere_count(), kMaxSpheres)
+                          : fmt::format("has {} spheres and {} rods; the maximum is {}, in which a rod counts twice",
+                                        scene.sphere_count(), scene.rods.size(), kMaxSpheres));
   check_light_groups(scene, diagnostics);
   check_layers(scene, diagnostics);
   return diagnostics.take();

@@ -90,7 +90,7 @@ class Planner {
     };
     add_one("exact", compile::Precision::kExact, false);
     add_one("fast", compile::Precision::kFast, true);
-    if (compiled_.spheres.size() > kMaxListSpheres) {
+    if (compiled_.spheres.size() + compiled_.rods.size() > kMaxListSpheres) {
       out_.left_out.push_back("more than 5000 spheres: precision book is too slow");
       return;
     }
@@ -127,7 +127,7 @@ class Planner {
   }
 
   void roulette() {
-    if (compiled_.spheres.empty() || everything_is_white()) {
+    if (is_empty() || everything_is_white()) {
       out_.left_out.push_back("no absorption: no roulette axis");
       return;
     }
@@ -141,7 +141,7 @@ class Planner {
   }
 
   void depth() {
-    if (compiled_.spheres.empty()) {
+    if (is_empty()) {
       out_.left_out.push_back("no spheres: no depth axis");
       return;
     }
@@ -202,10 +202,13 @@ class Planner {
   }
 
   /// Time with the list of spheres relative to that with Embree.
-  double list_slowness() const { return 1 + static_cast<double>(compiled_.spheres.size()) / 12; }
+  bool is_empty() const { return compiled_.spheres.empty() && compiled_.rods.empty(); }
+  double list_slowness() const {
+    return 1 + static_cast<double>(compiled_.spheres.size() + compiled_.rods.size()) / 12;
+  }
 
   void accelerator() {
-    if (compiled_.spheres.empty()) {
+    if (is_empty()) {
       out_.left_out.push_back("no spheres: no accelerator axis");
       return;
     }
@@ -213,7 +216,7 @@ class Planner {
         accel::Traversal::kPacket;
     add("accelerator", "embree, single rays", flag(kTimed) + " --set render.traversal=single", kTimed).traversal =
         accel::Traversal::kSingle;
-    if (compiled_.spheres.size() > kMaxListSpheres) {
+    if (compiled_.spheres.size() + compiled_.rods.size() > kMaxListSpheres) {
       out_.left_out.push_back("more than 5000 spheres: the list is too slow");
       return;
     }

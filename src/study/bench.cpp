@@ -177,7 +177,8 @@ class Subject {
 };
 
 bool lists_are_affordable(const compile::CompiledScene& compiled) {
-  return 3.0 * compiled.width * compiled.height * static_cast<double>(compiled.spheres.size()) / kListTests <=
+  return 3.0 * compiled.width * compiled.height * static_cast<double>(compiled.spheres.size() + compiled.rods.size()) /
+             kListTests <=
          kLongestListSeconds;
 }
 
@@ -288,8 +289,10 @@ Benchmark bench_scene(const BenchRequest& request) {
   const std::size_t case_count = cases.size();
   for (Case& c : feature_cases_of(compiled)) cases.push_back(std::move(c));
   std::optional<TracingBench> tracing;
-  if (request.threads == 1 && !compiled.spheres.empty())
-    tracing.emplace(subject.tracing_bench(lists_are_affordable(compiled)));
+  // The accelerators that are compared with Embree know spheres only.
+  const bool compares = !compiled.spheres.empty() && compiled.rods.empty();
+  if (!compiled.rods.empty()) out.left_out.push_back("comparison of accelerators: the scene has rods");
+  if (request.threads == 1 && compares) tracing.emplace(subject.tracing_bench(lists_are_affordable(compiled)));
   const int total = static_cast<int>(cases.size()) * (request.rounds + 1);
   int done = 0;
   const auto report_progress = [&] {
@@ -312,7 +315,7 @@ Benchmark bench_scene(const BenchRequest& request) {
     if (tracing) tracing->measure(round);
   }
   if (tracing) out.tracing = tracing->results();
-  if (!compiled.spheres.empty()) out.builds = bench_builds(compiled.view(), request.rounds);
+  if (compares) out.builds = bench_builds(compiled.view(), request.rounds);
   for (std::size_t i = 0; i < cases.size(); ++i)
     (i < case_count ? out.cases : out.features).push_back(result_of(cases[i], cases[0].paths_per_s));
   return out;

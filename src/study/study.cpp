@@ -118,7 +118,9 @@ class Runner {
     denoise_needs_ = job::memory_needs(full_, layers);
     scene.spheres = {};
     scene.points = {};
+    scene.rods = {};
     if (read_.closing) read_.closing->spheres = {};
+    if (read_.closing) read_.closing->rods = {};
     read_s_ = elapsed();
     out_.scene_hash = job::scene_hash(full_);
     out_.scene_width = full_.width;

@@ -18,13 +18,16 @@ namespace orrery::study {
 
 struct Request;
 
-/// The spheres of a scene, lent to one CompiledScene at a time instead of copied, since there may be ten million.
+/// The spheres and rods of a scene, lent to one CompiledScene at a time instead of copied, since there may be ten
+/// million.
 class Spheres {
  public:
   /// Swaps the spheres with those of a compiled scene.
   void take_from(compile::CompiledScene& compiled) {
     std::swap(spheres_, compiled.spheres);
     std::swap(materials_, compiled.sphere_materials);
+    std::swap(rods_, compiled.rods);
+    std::swap(rod_motion_, compiled.rod_motion);
   }
 
   /// Lends the spheres to a compiled scene until the ScopedAttachment is destroyed.
@@ -43,6 +46,7 @@ class Spheres {
  private:
   compile::SphereStore spheres_;
   compile::PackedIndices materials_;
+  std::vector<kernel::Rod> rods_, rod_motion_;
 };
 
 /// Renders the images of a study and accumulates their render times.

@@ -47,21 +47,22 @@ def table_text(name, keys):
     return f"\n[[{name}]]\n" + "".join(lines)
 
 
-def check_table(call, text, material, file="", columns=None):
+def check_table(call, text, *materials, file="", columns=None):
     """Checks the keys of a table, and the names of columns, but no values of arrays.
 
-    call      name of the function, for messages
-    material  name of the material, which may be defined later
+    call       name of the function, for messages
+    materials  names of the materials, which may be defined later
     file      name of the columns in the text
     """
-    text = f"[material.{toml_text(str(material))}]\ntype = 'lambertian'\nalbedo = [0, 0, 0]\n{text}"
+    names = dict.fromkeys(map(str, materials))
+    text = "".join(f"[material.{toml_text(name)}]\ntype = 'lambertian'\nalbedo = [0, 0, 0]\n" for name in names) + text
     data = SceneData(call, False, text, 0, [], 1)
     if columns is not None:
         data.add_table(file, _arrays.native(columns, 0))
     try:
         data.check_keys()
     except Error as error:  # the index is another one in the scene
-        error.args = (re.sub(r" in (points|sphere)\[0\]|\b(points|sphere)\[0\]\.", "", str(error)),)
+        error.args = (re.sub(r" in (points|sphere|rod)\[0\]|\b(points|sphere|rod)\[0\]\.", "", str(error)),)
         raise
 
 

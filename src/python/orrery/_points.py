@@ -64,7 +64,7 @@ def colormap(
     out = ColorMap(array, name, range, nan_color)
     keys = {"file": "positions", "material": "matte", "radius": 1, "color": out.keys("x")}
     columns = dict.fromkeys("xyz", np.empty(0))
-    _keys.check_table("colormap()", _keys.table_text("points", keys), "matte", "positions", columns)
+    _keys.check_table("colormap()", _keys.table_text("points", keys), "matte", file="positions", columns=columns)
     return out
 
 

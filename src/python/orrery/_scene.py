@@ -6,7 +6,7 @@ from __future__ import annotations
 import math
 import re
 import warnings
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -64,7 +64,7 @@ class Scene:
         self._file = "scene"
         self._is_file = False
         self._text = _NEW_SCENE  # of the scene file
-        self._tables = []  # texts of [[sphere]] and [[points]] that were added to it
+        self._tables = []  # texts of [[sphere]], [[rod]] and [[points]] that were added to it
         self._settings = {}
         self._parents = set()  # keys of tables of which single keys are set
         self._arrays = {}
@@ -116,6 +116,22 @@ class Scene:
             _keys.check_table("add_sphere()", text, material)
         self._tables.append(text)
 
+    def add_rod(
+        self,
+        start: Vector,
+        end: Vector,
+        radius: float,
+        material: str | Sequence[str] = "matte",
+        *,
+        name: str | None = None,
+        group: str | None = None,
+    ) -> None:
+        """Adds a rod: a sphere swept along a segment. Two materials are those of the halves at start and at end."""
+        keys = {"from": start, "to": end, "radius": radius, "material": material, "name": name, "group": group}
+        text = _keys.table_text("rod", keys)
+        _keys.check_table("add_rod()", text, *([material] if isinstance(material, str) else material))
+        self._tables.append(text)
+
     def add_points(
         self,
         positions: ArrayLike,
@@ -154,7 +170,7 @@ class Scene:
         name = self._new_name()
         # Cryptomatte names spheres after their file, which is another one in a scene that was saved.
         text = _keys.table_text("points", {"file": name, "name": name, **keys})
-        _keys.check_table("add_points()", text, material, name, table)
+        _keys.check_table("add_points()", text, material, file=name, columns=table)
         self._tables.append(text)
         self._arrays[name] = table
         value = keys.get("radius")

@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <array>
 #include <filesystem>
 #include <memory>
 #include <string>
@@ -243,6 +244,70 @@ TEST(FormatReadScene, RequiredKeysOfASphere) {
             "    [[sphere]]\n    ^~~~~~~~~~\n"
             "scene.toml:1:1: error: sphere[0] needs `material`\n"
             "    [[sphere]]\n    ^~~~~~~~~~\n");
+}
+
+TEST(FormatReadScene, RodsHaveOneMaterialOrTwo) {
+  SceneFiles files;
+  const std::string materials =
+      "[material]\na = { type = \"lambertian\", albedo = [0, 0, 0] }\n"
+      "b = { type = \"emitter\", radiance = [1, 1, 1] }\n";
+  const scene::Scene s = files
+                             .read(materials + R"(
+[[rod]]
+from = [1, 2, 3]
+to = [4, 5, 6]
+radius = 0.5
+material = ["b", "a"]
+name = "bond"
+group = "bonds"
+[[rod]]
+from = [0, 0, 0]
+to = [0, 0, 0]
+radius = 1
+material = "b"
+)")
+                             .scene;
+  ASSERT_EQ(s.rods.size(), 2u);
+  EXPECT_EQ(s.rods[0].from, (Vec3d{1, 2, 3}));
+  EXPECT_EQ(s.rods[0].to, (Vec3d{4, 5, 6}));
+  EXPECT_EQ(s.rods[0].radius, 0.5);
+  EXPECT_EQ(s.rods[0].name, "bond");
+  EXPECT_EQ(s.rods[0].group, "bonds");
+  EXPECT_EQ(s.rods[0].materials, (std::array<std::uint32_t, 2>{1, 0}));
+  EXPECT_EQ(s.rods[1].materials, (std::array<std::uint32_t, 2>{1, 1}));
+}
+
+TEST(FormatReadScene, ErrorsOfRods) {
+  SceneFiles files;
+  EXPECT_EQ(files.diagnostics("[[rod]]\n"),
+            "scene.toml:1:1: error: rod[0] needs `from`\n    [[rod]]\n    ^~~~~~~\n"
+            "scene.toml:1:1: error: rod[0] needs `to`\n    [[rod]]\n    ^~~~~~~\n"
+            "scene.toml:1:1: error: rod[0] needs `radius`\n    [[rod]]\n    ^~~~~~~\n"
+            "scene.toml:1:1: error: rod[0] needs `material`\n    [[rod]]\n    ^~~~~~~\n");
+  const std::string good =
+      "[material.m]\ntype = \"lambertian\"\nalbedo = [0, 0, 0]\n"
+      "[material.glass]\ntype = \"dielectric\"\n";
+  const auto told = [&](const std::string& from, const std::string& radius, const std::string& material) {
+    return files.diagnostics(good + "[[rod]]\nfrom = " + from + "\nto = [0, 0, 0]\nradius = " + radius +
+                             "\nmaterial = " + material + "\n");
+  };
+  EXPECT_EQ(told("[0, 0, 0]", "1", "\"m\""), "");
+  const auto expect = [](const std::string& text, const std::string& part) {
+    EXPECT_TRUE(text.starts_with(part)) << text;
+  };
+  expect(told("[0, nan, 0]", "1", "\"m\""), "scene.toml:7:12: error: rod[0].from[1] is nan; must be in");
+  expect(told("[0, 0, 0]", "0", "\"m\""), "scene.toml:9:10: error: rod[0].radius is 0; must be in 1e-30..1e+18");
+  expect(told("[0, 0, 0]", "-1", "\"m\""), "scene.toml:9:10: error: rod[0].radius is -1; must be in 1e-30..1e+18");
+  expect(told("[0, 0, 0]", "1", "\"n\""),
+         "scene.toml:10:12: error: rod[0].material is \"n\", which is not defined; defined are m, glass");
+  expect(told("[0, 0, 0]", "1", "[\"m\", \"n\"]"),
+         "scene.toml:10:18: error: rod[0].material[1] is \"n\", which is not defined");
+  expect(told("[0, 0, 0]", "1", "[\"m\"]"),
+         "scene.toml:10:12: error: rod[0].material has 1 names; write one name, or two");
+  expect(told("[0, 0, 0]", "1", "3"), "scene.toml:10:12: error: rod[0].material");
+  expect(told("[0, 0, 0]", "1", "[\"m\", \"glass\"]"),
+         "scene.toml:10:12: error: rod[0].material: \"glass\" is a dielectric, but rods are opaque");
+  expect(files.diagnostics("rod = 3\n"), "scene.toml:1:7: error: `rod` must be an array of tables; write [[rod]]");
 }
 
 TEST(FormatReadScene, UndefinedMaterials) {

@@ -41,6 +41,13 @@ class RandomScene {
       sphere.material = static_cast<std::uint32_t>(below(s.materials.size()));
       s.spheres.push_back(sphere);
     }
+    for (std::size_t i = below(4); i < 4; ++i) {
+      scene::Rod rod;
+      fill_all(scene::rod_keys(), rod);
+      rod.name = fmt::format("{}{}", word(), i);
+      for (std::uint32_t& half : rod.materials) half = static_cast<std::uint32_t>(below(s.materials.size()));
+      s.rods.push_back(rod);
+    }
     for (std::size_t i = below(4); i < 3; ++i) {
       scene::Points points;
       fill(scene::points_keys(), points);
@@ -161,6 +168,11 @@ void expect_same(const scene::Scene& a, const scene::Scene& b) {
   for (std::size_t i = 0; i < a.spheres.size(); ++i) {
     expect_same(scene::sphere_keys(), a.spheres[i], b.spheres[i]);
     EXPECT_EQ(a.spheres[i].material, b.spheres[i].material);
+  }
+  ASSERT_EQ(a.rods.size(), b.rods.size());
+  for (std::size_t i = 0; i < a.rods.size(); ++i) {
+    expect_same(scene::rod_keys(), a.rods[i], b.rods[i]);
+    EXPECT_EQ(a.rods[i].materials, b.rods[i].materials);
   }
   ASSERT_EQ(a.points.size(), b.points.size());
   for (std::size_t i = 0; i < a.points.size(); ++i) {

@@ -72,6 +72,27 @@ TEST(JobLayers, ObjectsAreNamedAfterSpheresIndicesAndFiles) {
   for (std::uint32_t i = 0; i < 7; ++i) EXPECT_EQ(id_of(i), film::matte_id(wanted[i])) << i;
 }
 
+/// The two ids of a rod are those of its halves.
+TEST(JobLayers, RodsAreObjectsWithTwoMaterials) {
+  scene::Scene s = with_layers({"CryptoObject", "CryptoMaterial", "CryptoGroup"});
+  s.spheres.resize(1);
+  s.rods.resize(2);
+  s.rods[0].materials = {0, 1};
+  s.rods[0].to = {1, 0, 0};
+  s.rods[1].name = "bond";
+  s.rods[1].group = "bonds";
+  const Layers layers = layers_of(s);
+  const auto id_of = [&](std::size_t matte, std::uint32_t i) {
+    return layers.request.matte_id(layers.request.mattes[matte], i);
+  };
+  const std::string first = s.materials[0].name, second = s.materials[1].name;
+  const std::string objects[] = {"sphere.0", "rod.0", "rod.0", "bond", "bond"};
+  for (std::uint32_t i = 0; i < 5; ++i) EXPECT_EQ(id_of(0, i), film::matte_id(objects[i])) << i;
+  const std::string materials[] = {s.materials[s.spheres[0].material].name, first, second, first, first};
+  for (std::uint32_t i = 0; i < 5; ++i) EXPECT_EQ(id_of(1, i), film::matte_id(materials[i])) << i;
+  for (std::uint32_t i = 0; i < 5; ++i) EXPECT_EQ(id_of(2, i), i < 3 ? 0 : film::matte_id("bonds")) << i;
+}
+
 TEST(JobLayers, GroupsHoldOnlySpheresWithAGroup) {
   scene::Scene s = with_layers({"CryptoGroup"});
   s.spheres[1].group = "left";

@@ -48,6 +48,12 @@ center = [1, 0, 1]
 radius = -0.4
 material = "checked"
 
+[[rod]]
+from = [-1, 0, 1]
+to = [1, 0.5, 1]
+radius = 0.1
+material = ["ground", "checked"]
+
 [[points]]
 file = "cloud.csv"
 material = "ball"
@@ -90,6 +96,11 @@ const std::vector<const char*> kSettings = {
     "sphere[1].material=\"ball\"",
     "sphere[1].name=\"other\"",
     "sphere[2].radius=0.4",
+    "rod[0].radius=0.3",
+    "rod[0].to=[-1, 2, 0]",
+    "rod[0].material=\"lamp\"",
+    "rod[0].name=\"bond\"",
+    "rod=[]",
     "points[0].color.map=\"magma\"",
     "points[0].color.range=[0, 9]",
     "points[0].select=\"v > 1\"",
@@ -195,13 +206,15 @@ TEST_F(JobPreparedScene, TheAcceleratorOutlivesWhatDoesNotMoveSpheres) {
     return &prepared.accelerator(1, {});
   };
   const accel::Accel* const first = accelerator({});
-  for (const char* setting :
-       {"camera.vfov=20", "image.width=30", "render.samples=9", "material.ball.albedo=[1, 0, 0]",
-        "points[0].color.map=\"magma\"", "points[0].color.range=[0, 2]", "background.color=[1, 1, 1]",
-        "sphere[1].material=\"ball\"", "output.layers=[\"Z\"]", "color.exposure=2"}) {
+  for (const char* setting : {"camera.vfov=20", "image.width=30", "render.samples=9", "material.ball.albedo=[1, 0, 0]",
+                              "points[0].color.map=\"magma\"", "points[0].color.range=[0, 2]",
+                              "background.color=[1, 1, 1]", "sphere[1].material=\"ball\"",
+                              "rod[0].material=[\"ground\", \"lamp\"]", "output.layers=[\"Z\"]", "color.exposure=2"}) {
     EXPECT_TRUE(prepared.has_accelerator());
     EXPECT_EQ(accelerator({setting}), first) << setting;
   }
+  EXPECT_FALSE((set({"rod[0].radius=0.2"}), prepared.load({job_.scene, {}}), prepared.has_accelerator()));
+  accelerator({});
   accelerator({"sphere[0].radius=99"});
   EXPECT_FALSE((set({}), prepared.load({job_.scene, {}}), prepared.has_accelerator()));
 }

@@ -70,6 +70,39 @@ TEST(JobSceneHash, ChangesWithEverythingThatChangesTheImage) {
   }
 }
 
+TEST(JobSceneHash, ChangesWithRods) {
+  const auto with_rod = [] {
+    scene::Scene s = small_scene();
+    s.rods.resize(1);
+    s.rods[0].to = {1, 0, 0};
+    return s;
+  };
+  using Change = std::function<void(scene::Scene&)>;
+  const std::vector<Change> changes = {
+      [](scene::Scene&) {},
+      [](scene::Scene& s) { s.rods.clear(); },
+      [](scene::Scene& s) { s.rods.push_back(s.rods[0]); },
+      [](scene::Scene& s) { s.rods[0].from.y = 1e-12; },
+      [](scene::Scene& s) { s.rods[0].to.z = 1e-12; },
+      [](scene::Scene& s) { s.rods[0].radius = 2; },
+      [](scene::Scene& s) {
+        s.rods[0].materials = {0, 1};
+      },
+      [](scene::Scene& s) {
+        s.rods[0].materials = {1, 0};
+      },
+  };
+  std::set<std::string> hashes;
+  for (std::size_t i = 0; i < changes.size(); ++i) {
+    scene::Scene scene = with_rod();
+    changes[i](scene);
+    EXPECT_TRUE(hashes.insert(hash_of(scene)).second) << "change " << i << " is not seen";
+  }
+  scene::Scene reversed = with_rod();
+  std::swap(reversed.rods[0].from, reversed.rods[0].to);
+  EXPECT_EQ(hash_of(reversed), hash_of(with_rod())) << "the image is the same";
+}
+
 /// A scene with a lamp and an image background.
 scene::Scene lit_scene(float texel = 1) {
   scene::Scene s = small_scene();

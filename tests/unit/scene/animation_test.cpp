@@ -40,14 +40,34 @@ TEST(SceneAnimation, FindsTargetsByName) {
   Scene scene = test::everything();
   scene.spheres[2].name = "a ball. of sorts";
   scene.materials[3].name = "dotted.name";
+  scene.rods.resize(2);
+  scene.rods[1].name = "bond";
   for (const char* name :
        {"camera.vfov", "camera.look_from", "camera.focus_distance", "background.top", "sphere[0].center",
-        "sphere[7].radius", "sphere.a ball. of sorts.radius", "material.glass.ior", "material.dotted.name.fuzz"})
+        "sphere[7].radius", "sphere.a ball. of sorts.radius", "material.glass.ior", "material.dotted.name.fuzz",
+        "rod[0].from", "rod[1].radius", "rod.bond.to"})
     EXPECT_TRUE(find_animated(scene, name)) << name;
-  for (const char* name :
-       {"", ".", "camera", "camera.", "camera.nothing", "image.width", "render.samples", "sphere[8].radius",
-        "sphere[-1].radius", "sphere[0]", "sphere[0.center", "sphere.no.radius", "sphere[0].name",
-        "material.glass.albedo", "material.glass.fresnel", "material[0].albedo", "points[0].radius"})
+  for (const char* name : {"",
+                           ".",
+                           "camera",
+                           "camera.",
+                           "camera.nothing",
+                           "image.width",
+                           "render.samples",
+                           "sphere[8].radius",
+                           "sphere[-1].radius",
+                           "sphere[0]",
+                           "sphere[0.center",
+                           "sphere.no.radius",
+                           "sphere[0].name",
+                           "material.glass.albedo",
+                           "material.glass.fresnel",
+                           "material[0].albedo",
+                           "points[0].radius",
+                           "rod[2].from",
+                           "rod.no.radius",
+                           "rod[0].name",
+                           "rod.bond.center"})
     EXPECT_FALSE(find_animated(scene, name)) << name;
   for (const std::string& name : animated_names(scene)) EXPECT_TRUE(find_animated(scene, name)) << name;
 }

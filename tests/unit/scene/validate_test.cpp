@@ -38,6 +38,33 @@ using Told = std::vector<std::string>;
 
 TEST(SceneValidate, AnEmptySceneIsValid) { EXPECT_EQ(told({}), Told{}); }
 
+TEST(SceneValidate, Rods) {
+  Scene scene;
+  scene.materials = {{"grey", Lambertian{}}, {"glass", Dielectric{}}};
+  scene.rods.resize(1);
+  EXPECT_EQ(told(scene), Told{}) << "a rod of length 0";
+  Rod& rod = scene.rods[0];
+  rod.from.x = kNan;
+  rod.to.z = 2e18;
+  EXPECT_EQ(told(scene), (Told{"rod[0].from: [nan, 0, 0] is not finite or exceeds 1e+18",
+                               "rod[0].to: [0, 0, 2e+18] is not finite or exceeds 1e+18"}));
+  rod = {};
+  for (const double radius : {0.0, -1.0, kNan, kNotFinite, 1e-31, 1e19}) {
+    rod.radius = radius;
+    EXPECT_EQ(told(scene).size(), 1u) << radius;
+    EXPECT_TRUE(told(scene)[0].starts_with("rod[0].radius: radius is ")) << told(scene)[0];
+  }
+  rod.radius = 1e-19;
+  scene.render.precision = Precision::kFast;
+  EXPECT_EQ(told(scene).size(), 1u);
+  rod = {};
+  rod.materials = {0, 1};
+  EXPECT_EQ(told(scene), Told{"rod[0].material: \"glass\" is a dielectric, but rods are opaque: a ray hits them from "
+                              "outside only; use another type of material, or spheres"});
+  rod.materials = {2, 2};
+  EXPECT_EQ(told(scene), Told{"rod[0].material: there is no material with index 2; the scene has 2, counted from 0"});
+}
+
 TEST(SceneValidate, CropMustBeInsideTheFrame) {
   Scene scene;
   scene.image = {100, 50};
