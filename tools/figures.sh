@@ -5,7 +5,7 @@
 #
 #   tools/figures.sh           as many rays as in ./test.sh; takes one or two minutes
 #   tools/figures.sh --long    as in docs/numerics.md: 1e7 rays per regime, 1e9 in the furnace, 1e8 with Embree and with
-#                              the list, 1e9 vertices; takes half an hour or more
+#                              the list, 1e9 vertices; takes an hour or more
 set -euo pipefail
 root=$(cd "$(dirname "${BASH_SOURCE[0]}")/.." && pwd)
 build=${ORRERY_BUILD:-$root/build}
@@ -31,6 +31,8 @@ figure() {
 figure "hit or miss, hit point and distance against 113 and 320 bits" numeric/numeric 'Extremes.HitOrMissAndHitPointError'
 figure "the book's formula must fail the same test" numeric/numeric 'Extremes.BookFormulaFails'
 figure "grey furnace, radii 1e-12 .. 1e12: no self-intersection" numeric/numeric 'ExtremeScenes.GreySphereNeverHitsItself'
+figure "rods: hit or miss, hit point, normal and distance against 113 and 320 bits" numeric/numeric 'Rods.HitOrMissAndHitPointError'
+figure "grey furnaces of rods, alone and in contact: exactly one half" unit_render 'RenderRods.GreyRodsInAWhiteFurnaceAreHalf'
 figure "contacts at gaps of 1e-13 radii or more" numeric/numeric 'Extremes.RaysAcrossNarrowGapsHit'
 figure "points of textures, exact and fast" unit_kernel 'KernelTexture.CellsOfCheckers*:KernelTexture.LanesAndPrecisionsAgree'
 figure "white furnaces" numeric/numeric 'ExtremeScenes.*-*GreySphereNeverHitsItself'

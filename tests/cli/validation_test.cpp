@@ -60,6 +60,14 @@ const Broken kBroken[] = {
      "", 65,
      "key[0].target: \"sphere.b.radius\" matches 2 spheres; use an index, such as sphere[1].radius or "
      "sphere[2].radius"},
+    {"ARodOfGlass",
+     "[material.glass]\ntype = \"dielectric\"\n"
+     "[[rod]]\nfrom = [0, 0, 0]\nto = [1, 0, 0]\nradius = 1\nmaterial = [\"grey\", \"glass\"]\n",
+     "", 65, ":21:12: error: rod[0].material: \"glass\" is a dielectric, but rods are opaque"},
+    {"ARodThatShrinks",
+     "[camera]\nshutter_close = 1\n[[rod]]\nfrom = [0, 0, 0]\nto = [1, 0, 0]\nradius = 1\nmaterial = \"grey\"\n"
+     "[[key]]\ntarget = \"rod[0].radius\"\nframes = [1, 2]\nvalues = [1, 0]\n",
+     "", 65, "values is 0; must be in"},
     {"AValueOutsideItsRangeBetweenKeys",
      "[[key]]\ntarget = \"sphere[0].radius\"\ninterpolation = \"cubic\"\nframes = [-9, 0, 2, 3]\n"
      "values = [1e18, 1e18, 1e18, 1]\n",

@@ -172,6 +172,7 @@ INSTANTIATE_TEST_SUITE_P(, DeterminismProgram,
                                          StoredImage{"sky-and-lights.toml", 0xf3919d87a625abe6u},
                                          StoredImage{"textures.toml", 0xf986224e4a21d9f2u},
                                          StoredImage{"image-textures.toml", 0xfcae157c25f25d31u},
+                                         StoredImage{"rods.toml", 0xb41708b0cd007565u},
                                          StoredImage{"many.toml", 0x730984d601e00b28u}),
                          [](const auto& instance) {
                            std::string name = instance.param.scene;

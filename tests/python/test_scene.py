@@ -165,6 +165,26 @@ class Changes(FolderTest):
             scene.add_sphere((0, 0, object()), 1)
         self.assertEqual(beauty(scene), wanted)
 
+    def test_rods(self):
+        scene = small_scene(positions())
+        without = beauty(scene)
+        for arguments, text in (
+            (((0, 0, 0), (1, 0, 0), 0), r"^add_rod\(\): error: radius is 0; must be in"),
+            (((0, 0), (1, 0, 0), 1), "from must be three numbers"),
+            (((0, 0, 0), (0, 0, float("nan")), 1), r"to\[2\] is nan"),
+            (((0, 0, 0), (1, 0, 0), 1, 5), "material must be a string"),
+            (((0, 0, 0), (1, 0, 0), 1, ("a", "b", "c")), "material has 3 names"),
+        ):
+            with self.subTest(arguments=arguments), self.assertRaisesRegex(orrery.SceneError, text):
+                scene.add_rod(*arguments)
+        self.assertEqual(beauty(scene), without)
+        scene.add_material("glass", orrery.Dielectric(1.5))
+        scene.add_rod((0, 0, 0), (1, 0, 0), 0.2, ("matte", "glass"))
+        with self.assertRaisesRegex(orrery.SceneError, "\"glass\" is a dielectric, but rods are opaque"):
+            scene.check()
+        scene.add_material("glass", orrery.Metal(0.5))
+        self.assertNotEqual(beauty(scene), without)
+
     def test_a_material_may_be_added_later(self):
         scene = small_scene(positions(), material="gold")
         with self.assertRaisesRegex(orrery.SceneError, r"^scene: error: points\[0\].material is \"gold\", which is not defined"):
@@ -244,6 +264,7 @@ class Messages(FolderTest):
             lambda v: small_scene(p).add_material(v, v),
             lambda v: small_scene(p).add_sphere(v, 1),
             lambda v: small_scene(p).add_sphere((0, 0, 0), v, v, name=v, group=v),
+            lambda v: small_scene(p).add_rod(v, v, v, v, name=v, group=v),
             lambda v: small_scene(v),
             lambda v: small_scene(p, radius=v),
             lambda v: small_scene(p, color=v),

@@ -129,7 +129,7 @@ class Scene:
         """Adds a rod: a sphere swept along a segment. Two materials are those of the halves at start and at end."""
         keys = {"from": start, "to": end, "radius": radius, "material": material, "name": name, "group": group}
         text = _keys.table_text("rod", keys)
-        _keys.check_table("add_rod()", text, *([material] if isinstance(material, str) else material))
+        _keys.check_table("add_rod()", text, *(material if isinstance(material, (tuple, list)) else [material]))
         self._tables.append(text)
 
     def add_points(

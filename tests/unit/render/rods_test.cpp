@@ -2,7 +2,9 @@
 // Images of rods whose values are known.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
+#include <cstdlib>
 #include <functional>
 #include <limits>
 #include <random>
@@ -67,49 +69,61 @@ void each_way(scene::Scene s, const std::function<void(const scene::Scene&, cons
     }
 }
 
-/// Rods whose union is convex: a path that hits it leaves the scene with half of its light.
-std::vector<std::pair<std::string, std::vector<scene::Rod>>> convex_sets() {
+/// Rods and spheres whose union is convex: a path that hits it leaves the scene with half of its light.
+struct ConvexSet {
+  const char* name;
+  std::vector<scene::Rod> rods;
+  std::vector<Vec3d> spheres = {};  ///< of the same radius
+  /// Points between the ends of the whole are rounded, so that in single precision they are not on one line.
+  bool is_rounded = false;
+};
+
+std::vector<ConvexSet> convex_sets() {
   const Vec3d a{-1.5, -0.3, 0.2}, b{1.5, 0.6, -0.4};
   const auto at = [&](double s) { return a + (b - a) * s; };
-  std::vector<std::pair<std::string, std::vector<scene::Rod>>> sets;
   const double r = 0.35;
-  sets.push_back({"one", {rod(a, b, r)}});
-  sets.push_back({"straight", {rod(a, at(0.5), r), rod(at(0.5), at(0.75), r), rod(at(0.75), b, r)}});
-  sets.push_back({"overlapping", {rod(a, at(0.7), r), rod(at(0.3), b, r), rod(at(0.25), at(0.5), r)}});
-  sets.push_back({"duplicate", {rod(a, b, r), rod(a, b, r), rod(a, b, r)}});
-  sets.push_back({"reversed", {rod(a, b, r), rod(b, a, r)}});
-  return sets;
+  return {{"one", {rod(a, b, r)}},
+          {"in a row", {rod(a, at(0.5), r), rod(at(0.5), at(0.75), r), rod(at(0.75), b, r)}, {}, true},
+          {"overlapping", {rod(a, at(0.7), r), rod(at(0.3), b, r), rod(at(0.25), at(0.5), r)}, {}, true},
+          {"duplicate", {rod(a, b, r), rod(a, b, r), rod(a, b, r)}},
+          {"reversed", {rod(a, b, r), rod(b, a, r)}},
+          {"with spheres at the ends", {rod(a, b, r)}, {a, b}},
+          {"in a row with spheres", {rod(a, at(0.5), r), rod(at(0.5), b, r)}, {a, at(0.5), at(0.75), b}, true},
+          {"of length 0 in spheres", {rod(a, a, r)}, {a}}};
 }
 
+/// ORRERY_FURNACE_RAYS sets the number of paths of each image.
 TEST(RenderRods, GreyRodsInAWhiteFurnaceAreHalf) {
-  for (const auto& [name, rods] : convex_sets()) {
-    // Points between the ends of the whole are rounded: in single precision, and far away, they are not on one line.
-    for (const double offset : {0.0, 1e6}) {
+  const char* const wanted = std::getenv("ORRERY_FURNACE_RAYS");
+  for (const ConvexSet& set : convex_sets()) {
+    for (const double offset : {0.0, 1e6, 1e9}) {
+      const Vec3d moved{offset, -offset, offset};
       scene::Scene s = rod_furnace();
-      s.rods = rods;
-      s.camera.look_from = s.camera.look_from + Vec3d{offset, -offset, offset};
-      s.camera.look_at = s.camera.look_at + Vec3d{offset, -offset, offset};
-      const bool is_rounded = name == "straight" || name == "overlapping";
+      if (wanted != nullptr) s.render.samples = std::max(16, static_cast<int>(std::atof(wanted) / (24 * 16)));
+      s.camera.look_from = s.camera.look_from + moved;
+      s.camera.look_at = s.camera.look_at + moved;
+      s.rods = set.rods;
       for (scene::Rod& r : s.rods) {
-        r.from = r.from + Vec3d{offset, -offset, offset};
-        r.to = r.to + Vec3d{offset, -offset, offset};
+        r.from = r.from + moved;
+        r.to = r.to + moved;
       }
+      for (const Vec3d center : set.spheres) s.spheres.push_back({center + moved, set.rods[0].radius, 0, ""});
       each_way(s, [&](const scene::Scene& each, const std::string& way) {
-        if (each.render.precision == scene::Precision::kFast && (offset > 0 || is_rounded)) return;
+        // The book's spheres have acne, and single precision cannot represent the rods.
+        if (each.render.precision == scene::Precision::kBook && !set.spheres.empty()) return;
+        if (each.render.precision == scene::Precision::kFast && (offset > 0 || set.is_rounded)) return;
         Settings settings;
         settings.layers.coverage = true;
-        const auto picture = render(compile::compile(each), settings).picture;
-        const auto& planes = picture.planes;
+        const auto planes = render(compile::compile(each), settings).picture.planes;
         ASSERT_EQ(planes.size(), 4u);
         int covered = 0;
         for (std::size_t i = 0; i < planes[0].values.size(); ++i) {
           const float alpha = planes[3].values[i];
           covered += alpha == 1;
-          for (int k = 0; k < 3; ++k)
-            ASSERT_EQ(planes[static_cast<std::size_t>(k)].values[i], 0.5F * alpha)
-                << name << ", " << offset << ", " << way;
+          for (std::size_t k = 0; k < 3; ++k)
+            ASSERT_EQ(planes[k].values[i], 0.5F * alpha) << set.name << ", offset " << offset << ", " << way;
         }
-        EXPECT_GT(covered, 20) << name;
+        EXPECT_GT(covered, 4) << set.name;
       });
     }
   }
