@@ -43,6 +43,7 @@ done
 for name in glass defocus contrast; do
   picture "scenes/trade/$name.toml" "trade-$name" --samples 400
 done
+picture scenes/molecules/ethanol.toml molecules-ethanol --samples 1000
 for name in three-point thousand-lamps caustic eclipse-ground eclipse-space; do
   picture "scenes/light/$name.toml" "light-$name" --samples 1000
 done
