@@ -45,7 +45,7 @@ HWY_INLINE RTCRayN* rays_of(const RTCOccludedFunctionNArguments& arguments) { re
 
 /// Tests Embree's rays from `v` on against a primitive. D has one lane for a ray that Embree traverses alone.
 ///
-/// `test`     called as test(packet, first, lanes, found) for rays of the packet from `first` on
+/// `test`     called as test(d, packet, first, lanes, found) for rays of the packet from `first` on
 template <class D, class Packet, class Arguments, class Test>
 HWY_INLINE void test_primitive(D d, const EmbreeQuery<Packet>& query, const Arguments& arguments, int v, Test test) {
   const hn::Rebind<std::int32_t, D> di;
@@ -54,7 +54,7 @@ HWY_INLINE void test_primitive(D d, const EmbreeQuery<Packet>& query, const Argu
   Packet& packet = *query.packet;
   const int first = query.first + v;
   auto found = Found<D, Packet>::load(d, packet, first);
-  test(packet, first, is_valid(d, flags), found);
+  test(d, packet, first, is_valid(d, flags), found);
   // After an occlusion test, Embree ignores the flags.
   if (hn::AllFalse(d, found.is_new)) {
     if (!Packet::kIsShadow) hn::StoreU(hn::Zero(di), di, arguments.valid + v);
@@ -65,45 +65,43 @@ HWY_INLINE void test_primitive(D d, const EmbreeQuery<Packet>& query, const Argu
   if (!Packet::kIsShadow) hn::StoreU(flags_of(d, found.is_new), di, arguments.valid + v);
 }
 
-/// Calls test(d, v) for each vector of the rays that Embree passes to a callback.
-template <class T, class Arguments, class Test>
-HWY_INLINE void each_vector(const Arguments& arguments, Test test) {
-  if (arguments.N == 1) {
-    test(hn::FixedTag<T, 1>(), 0);
-    return;
-  }
-  const hn::ScalableTag<T> d;
-  for (int v = 0; v < static_cast<int>(arguments.N); v += static_cast<int>(hn::Lanes(d))) test(d, v);
-}
-
 /// Embree's callback for a sphere that is a primitive.
 template <class Packet, kernel::Precision kPrecision, bool kMoves, class Arguments>
 void at_sphere(const Arguments* arguments) {
+  using T = typename Packet::Number;
   const auto& query = *reinterpret_cast<const EmbreeQuery<Packet>*>(arguments->context);
   const std::uint32_t id = query.scene->sphere_id(kMoves ? arguments->geomID : 0, arguments->primID);
-  each_vector<typename Packet::Number>(*arguments, [&](auto d, int v) {
-    using D = decltype(d);
-    test_primitive(d, query, *arguments, v, [&](const Packet& packet, int first, hn::Mask<D> lanes, auto& found) {
-      const auto ids = hn::Set(k::IdTag<D>(), static_cast<typename Packet::Id>(id));
-      intersect<kPrecision>(d, k::load_rays(d, packet, first), k::sphere_at<kMoves>(d, *query.scene, id, packet, first),
-                            ids, lanes, found);
-    });
-  });
+  // Captured by value: the compiler would read a reference again after each store.
+  const auto test = [id, &scene = *query.scene](auto d, const Packet& packet, int first, auto lanes, auto& found) {
+    intersect<kPrecision>(d, k::load_rays(d, packet, first), k::sphere_at<kMoves>(d, scene, id, packet, first),
+                          hn::Set(k::IdTag<decltype(d)>(), static_cast<typename Packet::Id>(id)), lanes, found);
+  };
+  if (arguments->N == 1) {
+    test_primitive(hn::FixedTag<T, 1>(), query, *arguments, 0, test);
+    return;
+  }
+  const hn::ScalableTag<T> d;
+  for (int v = 0; v < static_cast<int>(arguments->N); v += static_cast<int>(hn::Lanes(d)))
+    test_primitive(d, query, *arguments, v, test);
 }
 
 /// Embree's callback for a part of a rod.
 template <class Packet, kernel::Precision kPrecision, bool kMoves, class Arguments>
 void at_rod(const Arguments* arguments) {
+  using T = typename Packet::Number;
   const auto& query = *reinterpret_cast<const EmbreeQuery<Packet>*>(arguments->context);
-  const EmbreeScene& scene = *query.scene;
-  const std::size_t rod = scene.rod_pieces[arguments->primID].rod;
-  each_vector<typename Packet::Number>(*arguments, [&](auto d, int v) {
-    using D = decltype(d);
-    test_primitive(d, query, *arguments, v, [&](const Packet& packet, int first, hn::Mask<D> lanes, auto& found) {
-      intersect_rod<kPrecision>(d, k::load_rays(d, packet, first), k::rod_at<kMoves>(d, scene.rods, rod, packet, first),
-                                scene.rods.id(rod), lanes, found);
-    });
-  });
+  const std::size_t rod = query.scene->rod_pieces[arguments->primID].rod;
+  const auto test = [rod, &rods = query.scene->rods](auto d, const Packet& packet, int first, auto lanes, auto& found) {
+    intersect_rod<kPrecision>(d, k::load_rays(d, packet, first), k::rod_at<kMoves>(d, rods, rod, packet, first),
+                              rods.id(rod), lanes, found);
+  };
+  if (arguments->N == 1) {
+    test_primitive(hn::FixedTag<T, 1>(), query, *arguments, 0, test);
+    return;
+  }
+  const hn::ScalableTag<T> d;
+  for (int v = 0; v < static_cast<int>(arguments->N); v += static_cast<int>(hn::Lanes(d)))
+    test_primitive(d, query, *arguments, v, test);
 }
 
 /// A ray that Embree traverses alone, in its lane of an otherwise empty packet.
