@@ -9,11 +9,12 @@
 
 namespace orrery::render {
 
-/// The sphere that is visible at a point of the image, when the shutter opens and without the blur of the lens.
+/// The sphere or the rod that is visible at a point of the image, when the shutter opens and without the blur of the
+/// lens.
 ///
 /// `accel`    of the spheres of `scene`
 /// `x`, `y`   px from the upper left corner of the rendered window
-/// Result     its id; empty if the background is visible
+/// Result     the id of a hit; empty if the background is visible
 std::optional<std::uint32_t> sphere_at(const compile::CompiledScene& scene, const accel::Accel& accel, double x,
                                        double y);
 

@@ -20,6 +20,7 @@
 #include "job/job.h"
 #include "preview/file_sink.h"
 #include "render/sphere_at.h"
+#include "scene/value_text.h"
 
 namespace orrery::view {
 namespace {
@@ -141,16 +142,29 @@ std::optional<Picked> Viewer::pick(double x, double y) {
       render::sphere_at(compiled, prepared_->built(), x * compiled.width, y * compiled.height);
   if (!id) return {};
   const scene::Scene& scene = prepared_->loaded().read.scene;
-  const kernel::Sphere sphere = compiled.spheres[*id];
   Picked out;
+  const auto add_names = [&out](const auto& authored) {
+    if (!authored.name.empty()) out.values.emplace_back("name", authored.name);
+    if (!authored.group.empty()) out.values.emplace_back("group", authored.group);
+  };
+  if (const kernel::RodArray rods = compiled.view().rods; rods.contains(*id)) {
+    const scene::Rod& rod = scene.rods[rods.index(*id)];
+    out.title = fmt::format("rod[{}]", rods.index(*id));
+    out.center = (rod.from + rod.to) * 0.5;
+    out.radius = rod.radius;
+    add_names(rod);
+    out.values.emplace_back("from", scene::vector_text(rod.from));
+    out.values.emplace_back("to", scene::vector_text(rod.to));
+    return out;
+  }
+  const kernel::Sphere sphere = compiled.spheres[*id];
   out.center = {sphere.x, sphere.y, sphere.z};
   out.radius = sphere.radius;
   std::size_t index = *id;
   if (index < scene.spheres.size()) {
     const scene::Sphere& authored = scene.spheres[index];
     out.title = fmt::format("sphere[{}]", index);
-    if (!authored.name.empty()) out.values.emplace_back("name", authored.name);
-    if (!authored.group.empty()) out.values.emplace_back("group", authored.group);
+    add_names(authored);
     out.values.emplace_back("material", scene.materials[authored.material].name);
     return out;
   }

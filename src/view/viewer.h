@@ -69,10 +69,10 @@ struct State {
   std::vector<std::string> warnings;    ///< about the image that is shown
 };
 
-/// A sphere that a client has chosen.
+/// A sphere or a rod that a client has chosen.
 struct Picked {
-  std::string title;  ///< "row 17 of melt.dump", "sphere[3]"
-  math::Vec3d center;
+  std::string title;   ///< "row 17 of melt.dump", "sphere[3]"
+  math::Vec3d center;  ///< scene units; the middle of a rod
   double radius = 0;
   std::vector<std::pair<std::string, std::string>> values = {};  ///< columns of its row, or keys, and their values
 };
@@ -97,7 +97,7 @@ class Viewer {
   /// number than `state`; then the number of the frame is not larger.
   Frame frame(std::uint64_t after, std::chrono::milliseconds patience, std::optional<std::uint64_t> state = {});
 
-  /// The sphere that is visible at a point of the image.
+  /// The sphere or the rod that is visible at a point of the image.
   ///
   /// `x`, `y`   fractions of the image's width and height, from the upper left corner
   /// Result     empty if the background is visible, or while a scene is prepared

@@ -160,6 +160,27 @@ TEST(ViewViewer, ASphereIsPicked) {
   EXPECT_FALSE(viewer.pick(0, 0)) << "the background";
 }
 
+TEST(ViewViewer, ARodIsPicked) {
+  const auto make = [](const std::vector<std::string>& words) {
+    Subject out = subject_of(words);
+    out.job.scene.text = std::make_shared<const std::string>(
+        std::string(kScene) +
+        "[[rod]]\nfrom = [-1, 0, 1.5]\nto = [1, 1, 1.5]\nradius = 0.3\nmaterial = \"grey\"\nname = \"bond\"\n");
+    return out;
+  };
+  Viewer viewer(make, {}, {});
+  finished(viewer);
+  ASSERT_EQ(viewer.state().problem, "");
+  const std::optional<Picked> picked = viewer.pick(0.5, 0.4);
+  ASSERT_TRUE(picked);
+  EXPECT_EQ(picked->title, "rod[0]");
+  EXPECT_EQ(picked->center, (math::Vec3d{0, 0.5, 1.5}));
+  EXPECT_EQ(picked->radius, 0.3);
+  const std::vector<std::pair<std::string, std::string>> values = {
+      {"name", "bond"}, {"from", "[-1, 0, 1.5]"}, {"to", "[1, 1, 1.5]"}};
+  EXPECT_EQ(picked->values, values);
+}
+
 TEST(ViewViewer, APickedParticleHasTheColumnsOfItsRow) {
   const std::filesystem::path file = testing::TempDir() + "view_particles.xyz";
   std::ofstream(file) << "3\nProperties=species:S:1:pos:R:3:charge:R:1\n"
