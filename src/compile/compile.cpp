@@ -2,6 +2,7 @@
 #include "compile/compile.h"
 
 #include <algorithm>
+#include <array>
 #include <bit>
 #include <cmath>
 #include <memory>
@@ -28,22 +29,34 @@ using math::Vec3d;
 kernel::Sphere sphere_of(Vec3d center, double radius) { return {center.x, center.y, center.z, std::abs(radius)}; }
 
 /// Whether the ends of a rod are exchanged: they are put in order, since the order changes roundings.
-bool is_reversed(const scene::Rod& rod) {
-  return std::tie(rod.to.x, rod.to.y, rod.to.z) < std::tie(rod.from.x, rod.from.y, rod.from.z);
+bool is_reversed(Vec3d from, Vec3d to) { return std::tie(to.x, to.y, to.z) < std::tie(from.x, from.y, from.z); }
+
+/// Calls f(from, to, radius, materials) for each rod: those of tables, then those of files.
+template <class F>
+void each_rod(const scene::Scene& scene, F f) {
+  for (const scene::Rod& rod : scene.rods) f(rod.from, rod.to, rod.radius, rod.materials);
+  const base::StopPoint stop;
+  for (const scene::RodFile& file : scene.rod_files)
+    for (std::size_t i = 0; i < file.from.size(); ++i) {
+      stop.check(i);
+      f(file.from[i], file.to[i], file.radii[i], file.materials);
+    }
 }
 
 /// Sets the rods.
 void set_rods(const scene::Scene& scene, CompiledScene& compiled) {
   compiled.rods.clear();
-  compiled.rods.reserve(scene.rods.size());
-  for (const scene::Rod& rod : scene.rods) {
-    const bool reversed = is_reversed(rod);
+  compiled.rods.reserve(scene.rod_count());
+  compiled.rod_file_sizes.clear();
+  for (const scene::RodFile& file : scene.rod_files) compiled.rod_file_sizes.push_back(file.from.size());
+  each_rod(scene, [&](Vec3d from, Vec3d to, double radius, const auto&) {
+    const bool reversed = is_reversed(from, to);
     kernel::Rod out;
-    set(out.a, reversed ? rod.to : rod.from);
-    set(out.b, reversed ? rod.from : rod.to);
-    out.radius = rod.radius;
+    set(out.a, reversed ? to : from);
+    set(out.b, reversed ? from : to);
+    out.radius = radius;
     compiled.rods.push_back(out);
-  }
+  });
 }
 
 /// Sets the spheres.
@@ -60,7 +73,7 @@ void set_spheres(const scene::Scene& scene, CompiledScene& compiled) {
 void set_sphere_materials(const scene::Scene& scene, CompiledScene& compiled) {
   const base::StopPoint stop;
   compiled.sphere_materials = {};
-  compiled.sphere_materials.reserve(scene.sphere_count() + 2 * scene.rods.size());
+  compiled.sphere_materials.reserve(scene.sphere_count() + 2 * scene.rod_count());
   compiled.material_sources.clear();
   MaterialTable table(scene, compiled.material_sources);
   for (const scene::Sphere& s : scene.spheres)
@@ -76,11 +89,11 @@ void set_sphere_materials(const scene::Scene& scene, CompiledScene& compiled) {
                                               : table.colored_index(material, inside_out, p, points.colors[i]));
     }
   }
-  for (const scene::Rod& rod : scene.rods) {
-    std::uint32_t halves[2] = {table.index(rod.materials[0], false), table.index(rod.materials[1], false)};
-    if (is_reversed(rod)) std::swap(halves[0], halves[1]);
+  each_rod(scene, [&](Vec3d from, Vec3d to, double, const std::array<std::uint32_t, 2>& of_halves) {
+    std::uint32_t halves[2] = {table.index(of_halves[0], false), table.index(of_halves[1], false)};
+    if (is_reversed(from, to)) std::swap(halves[0], halves[1]);
     for (const std::uint32_t half : halves) compiled.sphere_materials.push_back(half);
-  }
+  });
 }
 
 /// Sets the motion of [[sphere]] tables from shutter open to shutter close.
@@ -105,7 +118,7 @@ void set_rod_motion(const scene::Scene& opening, const scene::Scene* closing, Co
   for (std::size_t i = opening.rods.size(); i-- > 0;) {
     const scene::Rod &from = opening.rods[i], &to = closing->rods[i];
     const Vec3d of_from = to.from - from.from, of_to = to.to - from.to;
-    const bool reversed = is_reversed(from);
+    const bool reversed = is_reversed(from.from, from.to);
     kernel::Rod change;
     set(change.a, reversed ? of_to : of_from);
     set(change.b, reversed ? of_from : of_to);

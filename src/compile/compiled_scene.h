@@ -31,7 +31,8 @@ using scene::Accelerator;
 struct CompiledScene {
   SphereStore spheres;
   std::vector<std::size_t> points_sizes;         ///< number of spheres of each points table
-  std::vector<kernel::Rod> rods;                 ///< with ordered ends
+  std::vector<kernel::Rod> rods;                 ///< with ordered ends: [[rod]] tables, then each [[rods]] file
+  std::vector<std::size_t> rod_file_sizes;       ///< number of rods of each file
   PackedIndices sphere_materials;                ///< one per sphere, then two per rod, index into `materials`
   std::vector<MaterialSource> material_sources;  ///< one per material
   std::vector<kernel::Material> materials;

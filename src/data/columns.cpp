@@ -79,7 +79,8 @@ Roles customary_roles(const std::vector<ColumnInfo>& columns) {
                                   {"pos_x", "pos_y", "pos_z"},
                                   {"position_x", "position_y", "position_z"},
                                   {"points:0", "points:1", "points:2"},
-                                  {"points_0", "points_1", "points_2"}});
+                                  {"points_0", "points_1", "points_2"},
+                                  {"x0", "y0", "z0"}});  // the first ends of segments
   roles.radius = names.number({"radius", "scalar_radius"});
   const bool r_is_color = names.find({"g"}) != nullptr && names.find({"b"}) != nullptr;
   if (roles.radius.empty() && !r_is_color) roles.radius = names.number({"r"});

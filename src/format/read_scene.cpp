@@ -198,6 +198,19 @@ void read_points(ReadState& state, const toml::table& root, const std::filesyste
   }
 }
 
+void read_rod_files(ReadState& state, const toml::table& root, const MaterialIndex& index, scene::Scene& scene) {
+  const toml::array* list = tables_under(state, root, "rods");
+  if (list == nullptr) return;
+  for (std::size_t i = 0; i < list->size(); ++i) {
+    const toml::table& table = *list->get(i)->as_table();
+    const std::string full_name = fmt::format("rods[{}]", i);
+    scene::RodFile rods;
+    read_keys(state, table, full_name, scene::rod_file_keys(), {"material"}, rods);
+    rods.materials = read_rod_materials(state, table, full_name, scene, index);
+    scene.rod_files.push_back(std::move(rods));
+  }
+}
+
 /// The errors of the pose at shutter close that the pose at shutter open does not have. Only camera, spheres and rods
 /// move while the shutter is open.
 std::vector<scene::SceneDiagnostic> errors_at_close(const scene::Scene& opening, const scene::Scene& closing) {
@@ -270,7 +283,7 @@ void warn_of_animated_overrides(ReadState& state, const Overrides& overrides, co
 void report_unknown_tables(ReadState& state, const toml::table& root) {
   std::vector<std::string> known;
   for (const scene::Table& table : scene::tables()) known.push_back(table.name);
-  known.insert(known.end(), {"material", "sphere", "points", "rod", "key"});
+  known.insert(known.end(), {"material", "sphere", "points", "rod", "rods", "key"});
   for (const auto& [key, node] : root)
     if (std::find(known.begin(), known.end(), key.str()) == known.end())
       report_unknown_key(state, key, "the scene", known);
@@ -334,6 +347,7 @@ SceneReader::SceneReader(const std::filesystem::path& file, const Overrides& ove
     if (!state.diagnostics.has_errors()) pose(state, root, state.file, *options.frame, state.result);
   }
   read_points(state, root, folder, index, scene);
+  read_rod_files(state, root, index, scene);
   if (options.frame) choose_files(folder, *options.frame, scene);
 }
 

@@ -2,6 +2,7 @@
 #include "format/write_scene.h"
 
 #include <algorithm>
+#include <array>
 #include <fstream>
 #include <iterator>
 #include <set>
@@ -158,16 +159,18 @@ std::string scene_text(const scene::Scene& scene, const std::string& comment) {
   };
   for (const scene::Sphere& sphere : scene.spheres)
     add("[[sphere]]", texts_of(scene::sphere_keys(), sphere, {}), sphere.material);
-  for (const scene::Rod& rod : scene.rods) {
-    KeyTexts keys = texts_of(scene::rod_keys(), rod, {});
-    const auto [at_from, at_to] = rod.materials;
+  const auto add_rods = [&](const char* header, KeyTexts keys, const std::array<std::uint32_t, 2>& materials) {
+    const auto [at_from, at_to] = materials;
     keys.emplace_back("material", at_from == at_to ? name_text(at_from)
                                                    : fmt::format("[{}, {}]", name_text(at_from), name_text(at_to)));
-    add_table(out, "[[rod]]", keys);
-  }
+    add_table(out, header, keys);
+  };
+  for (const scene::Rod& rod : scene.rods) add_rods("[[rod]]", texts_of(scene::rod_keys(), rod, {}), rod.materials);
   add_tracks(out, scene);
   for (const scene::Points& points : scene.points)
     add("[[points]]", texts_of(scene::points_keys(), points, {}), points.material);
+  for (const scene::RodFile& rods : scene.rod_files)
+    add_rods("[[rods]]", texts_of(scene::rod_file_keys(), rods, {}), rods.materials);
   if (!out.empty()) out.pop_back();  // the blank line after the last block
   return out;
 }

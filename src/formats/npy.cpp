@@ -117,7 +117,7 @@ bool has_positions(const Member& member) {
   std::vector<ColumnInfo> columns;
   if (header.is_structured || header.shape.size() == 1 || header.shape[1] == 3)
     for (const NpyColumn& column : npy_columns(header, member.name, columns))
-      if (column.name == "x" || column.name == "X") return true;
+      if (column.name == "x" || column.name == "X" || column.name == "x0") return true;
   return false;
 }
 

@@ -71,7 +71,7 @@ void add_mattes(const scene::Scene& scene, const compile::CompiledScene& compile
       material_ids.push_back(materials.id_of(scene.materials[material].name));
 
   const std::size_t ids_of_all = compiled.sphere_materials.size();
-  const std::size_t blocks = scene.spheres.size() + scene.points.size() + scene.rods.size();
+  const std::size_t blocks = scene.spheres.size() + scene.points.size() + scene.rods.size() + scene.rod_files.size();
   const std::size_t most = std::min(ids_of_all, by_material ? blocks * material_ids.size() : blocks);
   film::MatteClasses classes{{ids_of_all, static_cast<std::uint32_t>(most)}, {}};
   std::map<Ids, std::uint32_t> known;
@@ -103,6 +103,10 @@ void add_mattes(const scene::Scene& scene, const compile::CompiledScene& compile
   for (std::size_t i = 0; i < scene.rods.size(); ++i) {
     const scene::Rod& r = scene.rods[i];
     add(2, r.name.empty() ? "rod." + std::to_string(i) : r.name, r.group);
+  }
+  for (std::size_t i = 0; i < scene.rod_files.size(); ++i) {
+    const scene::RodFile& r = scene.rod_files[i];
+    add(2 * compiled.rod_file_sizes[i], r.name.empty() ? r.file.stem().string() : r.name, r.group);
   }
 
   layers.request.matte_classes = std::make_shared<film::MatteClasses>(std::move(classes));

@@ -53,6 +53,7 @@ const compile::CompiledScene& PreparedScene::compile(std::uint64_t memory_limit)
     sphere_hash_ = hash_of_spheres(compiled_);
     // Keep no second copy of the spheres during the BVH build.
     for (scene::Points& points : read.scene.points) points.release_spheres();
+    for (scene::RodFile& rods : read.scene.rod_files) rods.release_rods();
     base::release_freed_memory();
   }
   hashes_ = scene_hashes(compiled_, sphere_hash_);

@@ -203,7 +203,9 @@ void require_memory(const MemoryEstimate& needed, std::uint64_t limit, std::uint
 void require_memory_to_compile(const scene::Scene& scene, std::uint64_t limit) {
   std::uint64_t loaded = 0;
   for (const scene::Points& points : scene.points) loaded += points.bytes();
-  const std::uint64_t needed = loaded + compile::SphereStore::bytes_of(scene.points);
+  for (const scene::RodFile& rods : scene.rod_files) loaded += rods.bytes();
+  const std::uint64_t needed =
+      loaded + compile::SphereStore::bytes_of(scene.points) + scene.rod_count() * sizeof(kernel::Rod);
   require(needed, "the spheres need about " + bytes_text(needed) + " while they are compiled", limit, loaded);
 }
 

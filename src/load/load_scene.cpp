@@ -17,6 +17,7 @@
 #include "load/load_textures.h"
 #include "load/working_space.h"
 #include "points/load_points.h"
+#include "points/load_rods.h"
 #include "scene/validate.h"
 
 namespace orrery::load {
@@ -212,6 +213,8 @@ class SceneLoader {
       out += fmt::format("{}\n{}\n", version_of(request.file), frame);
       if (points.color.has_map_file()) out += base::file_version(request.folder / points.color.map) + '\n';
     }
+    for (std::size_t i = 0; i < scene_.rod_files.size(); ++i)
+      if (reader_.is_read(fmt::format("rods[{}].file", i))) out += version_of(rods_request(i).file) + '\n';
     return out;
   }
 
@@ -239,6 +242,32 @@ class SceneLoader {
         reader_.add_file_error(data.key + ".file", error);
       }
       used += scene_.points[i].bytes();
+    }
+    load_rods(limit, used);
+  }
+
+  points::LoadRequest rods_request(std::size_t index) const {
+    points::LoadRequest out;
+    out.folder = request_.source.file.parent_path();
+    out.file = out.folder / scene_.rod_files[index].file;
+    out.key = fmt::format("rods[{}]", index);
+    return out;
+  }
+
+  void load_rods(std::uint64_t limit, std::uint64_t used) {
+    for (std::size_t i = 0; i < scene_.rod_files.size(); ++i) {
+      points::LoadRequest data = rods_request(i);
+      if (!reader_.is_read(data.key + ".file")) continue;
+      data.memory_limit = rest_of(limit, used);
+      try {
+        const std::vector<scene::SceneDiagnostic> found = points::load_rods(data, scene_.rod_files[i]);
+        reader_.add(found);
+        out_.data_warnings.insert(out_.data_warnings.end(), found.begin(), found.end());
+      } catch (const base::Error& error) {
+        if (error.kind() != base::ErrorKind::kBadData && error.kind() != base::ErrorKind::kMissingInput) throw;
+        reader_.add_file_error(data.key + ".file", error);
+      }
+      used += scene_.rod_files[i].bytes();
     }
   }
 

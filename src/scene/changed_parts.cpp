@@ -98,6 +98,15 @@ Parts changed_parts(const Scene& before, const Scene* closing_before, const Scen
   Parts parts;
   compare_scenes(before, after, parts);
   compare_materials(before.materials, after.materials, parts);
+  if (before.rod_files.size() != after.rod_files.size()) {
+    parts.add(Part::kGeometry);
+  } else {
+    for (std::size_t i = 0; i < before.rod_files.size(); ++i) {
+      const RodFile &a = before.rod_files[i], &b = after.rod_files[i];
+      compare(rod_file_keys(), Part::kGeometry, a, b, parts);
+      if (a.materials != b.materials) parts.add(Part::kAssignment);
+    }
+  }
   if (before.points.size() != after.points.size()) {
     parts.add(Part::kGeometry);
   } else {

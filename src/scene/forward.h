@@ -20,6 +20,7 @@ struct PointsColor;
 struct PointsRadius;
 struct PointsTransform;
 struct Render;
+struct RodFile;
 struct Scene;
 struct SceneDiagnostic;
 struct Texture;

@@ -112,11 +112,14 @@ std::string reference_markdown() {
   for (const auto& key : sphere_keys()) out += row(key, Sphere{});
   out += fmt::format("{}\n### [[points]]\n\n{}", material_row(), header());
   for (const auto& key : points_keys()) out += row(key, Points{});
+  const std::string halves =
+      "| `material` | string, or [string, string] | names of `[material.NAME]`, not of type `dielectric` | - | "
+      "**required** | Material; or those of the half at `from` and of the half at `to` | - |\n";
   out += fmt::format("{}\n### [[rod]]\n\n{}", material_row(), header());
   for (const auto& key : rod_keys()) out += row(key, Rod{});
-  return out +
-         "| `material` | string, or [string, string] | names of `[material.NAME]`, not of type `dielectric` | - | "
-         "**required** | Material; or those of the half at `from` and of the half at `to` | - |\n";
+  out += fmt::format("{}\n### [[rods]]\n\n{}", halves, header());
+  for (const auto& key : rod_file_keys()) out += row(key, RodFile{});
+  return out + halves;
 }
 
 }  // namespace orrery::scene

@@ -261,6 +261,26 @@ struct Points {
   }
 };
 
+/// Rods of a data file, one per row. Filled by points::load_rods.
+struct RodFile {
+  std::filesystem::path file;                       ///< as in the scene file, relative to it
+  std::optional<double> radius;                     ///< of all rods; default: those in the file
+  std::array<std::uint32_t, 2> materials = {0, 0};  ///< as of a Rod
+  std::string name = {};                            ///< optional, for mattes: all rods share it; default: the file name
+  std::string group = {};                           ///< optional, for mattes
+  PointArray from = {}, to = {};                    ///< ends
+  NumberArray radii = {};                           ///< one per rod
+
+  /// Bytes of the rods.
+  std::size_t bytes() const { return from.numbers().bytes() + to.numbers().bytes() + radii.bytes(); }
+  /// Frees the memory of the rods; keeps the keys.
+  void release_rods() {
+    from.clear();
+    to.clear();
+    radii.clear();
+  }
+};
+
 /// Contents of output files in addition to the beauty image.
 struct Output {
   std::vector<std::string> layers;  ///< names from the schema's choices
@@ -305,8 +325,16 @@ struct Scene {
   std::vector<Sphere> spheres;
   std::vector<Points> points;
   std::vector<Rod> rods;
+  std::vector<RodFile> rod_files;
   /// No two spheres coincide in this precision or a higher one. Empty: not known.
   std::optional<Precision> distinct_in = {};
+
+  /// Returns the number of rods in [[rod]] tables and in files.
+  std::size_t rod_count() const {
+    std::size_t count = rods.size();
+    for (const RodFile& file : rod_files) count += file.from.size();
+    return count;
+  }
 
   /// Returns the number of spheres in [[sphere]] tables and points files.
   std::size_t sphere_count() const {

@@ -247,6 +247,7 @@ Table output_table() {
 }  // namespace
 
 const FileRole kPointsFile{"points file", true};
+const FileRole kRodsFile{"file of rods", true};
 const FileRole kColorMapFile{"colour map", false, [](const std::string& value) {
                                PointsColor color;
                                color.map = value;
@@ -325,6 +326,26 @@ const std::vector<Key<Rod>>& rod_keys() {
               text<Rod>("name", {"", "Name in the CryptoObject matte. Default: `rod.` and the index"}, &Rod::name)),
       changes(Part::kOutput,
               text<Rod>("group", {"", "CryptoGroup name; objects of a group share one matte"}, &Rod::group))};
+  return keys;
+}
+
+const std::vector<Key<RodFile>>& rod_file_keys() {
+  static const std::vector<Key<RodFile>> keys = {
+      required(
+          file<RodFile>("file", kRodsFile,
+                        {"",
+                         "Data file, relative to the scene file, in a format of `[[points]]`, with columns `x0`, "
+                         "`y0`, `z0`, `x1`, `y1`, `z1` and `radius`: a rod per row. May contain a frame pattern such "
+                         "as `####`",
+                         "About 200 bytes per rod, with the BVH"},
+                        &RodFile::file)),
+      otherwise("as in the file",
+                number<RodFile>("radius", kLength, {"scene units", "Radius of all rods"}, &RodFile::radius)),
+      changes(Part::kOutput,
+              text<RodFile>("name", {"", "Name in the CryptoObject matte, shared by all rods. Default: the file name"},
+                            &RodFile::name)),
+      changes(Part::kOutput,
+              text<RodFile>("group", {"", "CryptoGroup name; objects of a group share one matte"}, &RodFile::group))};
   return keys;
 }
 

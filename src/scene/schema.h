@@ -13,8 +13,8 @@
 
 /// The schema of scene files: the description of all keys, used for reading, writing, validation, `--set`, suggestions,
 /// `--settings`, the files that a scene names and the documentation. Defaults are the member initialisers in
-/// scene/scene.h. Three keys are not in it, because they refer to materials by name: `material` of [[sphere]],
-/// [[points]] and [[rod]].
+/// scene/scene.h. Four keys are not in it, because they refer to materials by name: `material` of [[sphere]],
+/// [[points]], [[rod]] and [[rods]].
 namespace orrery::scene {
 
 enum class TextureType;
@@ -28,7 +28,7 @@ struct FileRole {
   /// Returns whether a value names a file; null: unless it is empty.
   bool (*names_file)(const std::string& value) = nullptr;
 };
-extern const FileRole kPointsFile, kColorMapFile, kBackgroundFile, kTextureFile, kOcioConfigFile;
+extern const FileRole kPointsFile, kRodsFile, kColorMapFile, kBackgroundFile, kTextureFile, kOcioConfigFile;
 
 /// One key of a table in a scene file. A dotted name is that of a key in a subtable: "radius.column" is `column` in
 /// `radius = { column = "diameter" }`.
@@ -95,8 +95,9 @@ const std::vector<MaterialType>& material_types();
 /// Keys of [[sphere]] and [[points]], except `material`. They change the geometry, unless they say otherwise.
 const std::vector<Key<Sphere>>& sphere_keys();
 const std::vector<Key<Points>>& points_keys();
-/// Keys of [[rod]], except `material`.
+/// Keys of [[rod]] and [[rods]], except `material`.
 const std::vector<Key<Rod>>& rod_keys();
+const std::vector<Key<RodFile>>& rod_file_keys();
 
 /// Returns the "Keys" section of docs/scene-format.md: Markdown tables of all keys with type, range, unit, default and
 /// cost, generated from the schema. A test compares the two.

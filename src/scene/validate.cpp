@@ -2,6 +2,7 @@
 #include "scene/validate.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstdint>
 #include <numbers>
@@ -215,21 +216,51 @@ std::string rod_material_fault(std::uint32_t material, const Scene& scene) {
       string_text(scene.materials[material].name));
 }
 
+/// Calls `report(key suffix, text)` for each fault of a rod's ends and radius.
+template <class Report>
+void check_rod(Vec3d from, Vec3d to, double radius, Precision precision, Report report) {
+  for (const auto& [name, end] : {std::pair{".from", from}, {".to", to}})
+    if (!in_domain(end))
+      report(name, fmt::format("{} is not finite or exceeds {}", vector_text(end), number_text(kLargestLength)));
+  if (const std::string fault = rod_radius_fault(radius, precision); !fault.empty()) report(".radius", fault);
+}
+
+void check_rod_materials(const std::string& key, const std::array<std::uint32_t, 2>& materials, const Scene& scene,
+                         DiagnosticList& diagnostics) {
+  for (std::size_t half = 0; half < 2; ++half) {
+    if (half > 0 && materials[1] == materials[0]) continue;
+    if (const std::string fault = rod_material_fault(materials[half], scene); !fault.empty())
+      diagnostics.error(key + ".material", fault);
+  }
+}
+
 void check_rods(const Scene& scene, DiagnosticList& diagnostics) {
   for (std::size_t i = 0; i < scene.rods.size(); ++i) {
     const Rod& rod = scene.rods[i];
     const std::string key = fmt::format("rod[{}]", i);
-    for (const auto& [name, end] : {std::pair{".from", rod.from}, {".to", rod.to}})
-      if (!in_domain(end))
-        diagnostics.error(key + name,
-                          fmt::format("{} is not finite or exceeds {}", vector_text(end), number_text(kLargestLength)));
-    if (const std::string fault = rod_radius_fault(rod.radius, scene.render.precision); !fault.empty())
-      diagnostics.error(key + ".radius", fault);
-    for (std::size_t half = 0; half < 2; ++half) {
-      if (half > 0 && rod.materials[1] == rod.materials[0]) continue;
-      if (const std::string fault = rod_material_fault(rod.materials[half], scene); !fault.empty())
-        diagnostics.error(key + ".material", fault);
+    check_rod(rod.from, rod.to, rod.radius, scene.render.precision,
+              [&](const char* part, std::string text) { diagnostics.error(key + part, std::move(text)); });
+    check_rod_materials(key, rod.materials, scene, diagnostics);
+  }
+  for (std::size_t f = 0; f < scene.rod_files.size(); ++f) {
+    const RodFile& rods = scene.rod_files[f];
+    const std::string key = fmt::format("rods[{}]", f);
+    check_rod_materials(key, rods.materials, scene, diagnostics);
+    std::size_t faults = 0;
+    const base::StopPoint stop;
+    for (std::size_t i = 0; i < rods.from.size(); ++i) {
+      stop.check(i);
+      check_rod(rods.from[i], rods.to[i], rods.radii[i], scene.render.precision,
+                [&](const char* part, std::string text) {
+                  if (++faults <= kMaxReported)
+                    diagnostics.error(
+                        key + ".file",
+                        fmt::format("row {} of {}: {}{}", i + 1, rods.file.string(),
+                                    part == std::string(".radius") ? "" : std::string(part).substr(1) + " ", text));
+                });
     }
+    if (faults > kMaxReported)
+      diagnostics.error(key + ".file", fmt::format("and {} more ({} in all)", faults - kMaxReported, faults));
   }
 }
 
@@ -318,12 +349,12 @@ std::vector<SceneDiagnostic> validate(const Scene& scene) {
   check_spheres(scene, diagnostics);
   for (std::size_t p = 0; p < scene.points.size(); ++p) check_points(p, scene, diagnostics);
   check_rods(scene, diagnostics);
-  if (scene.sphere_count() + 2 * scene.rods.size() > kMaxSpheres)
+  if (scene.sphere_count() + 2 * scene.rod_count() > kMaxSpheres)
     diagnostics.error("",
                       scene.rods.empty()
                           ? fmt::format("has {} spheres; the maximum is {}", scene.sphere_count(), kMaxSpheres)
                           : fmt::format("has {} spheres and {} rods; the maximum is {}, in which a rod counts twice",
-                                        scene.sphere_count(), scene.rods.size(), kMaxSpheres));
+                                        scene.sphere_count(), scene.rod_count(), kMaxSpheres));
   check_light_groups(scene, diagnostics);
   check_layers(scene, diagnostics);
   return diagnostics.take();

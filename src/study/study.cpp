@@ -119,6 +119,7 @@ class Runner {
     scene.spheres = {};
     scene.points = {};
     scene.rods = {};
+    scene.rod_files = {};
     if (read_.closing) read_.closing->spheres = {};
     if (read_.closing) read_.closing->rods = {};
     read_s_ = elapsed();

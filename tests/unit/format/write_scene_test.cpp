@@ -56,6 +56,13 @@ class RandomScene {
       if (points.radius.value) points.radius = {*points.radius.value, "", "", {}};  // excludes the keys of its table
       s.points.push_back(points);
     }
+    for (std::size_t i = below(4); i < 3; ++i) {
+      scene::RodFile rods;
+      fill(scene::rod_file_keys(), rods);
+      rods.file = word() + ".csv";
+      for (std::uint32_t& half : rods.materials) half = static_cast<std::uint32_t>(below(s.materials.size()));
+      s.rod_files.push_back(rods);
+    }
     for (const std::string& name : scene::animated_names(s))
       if (const auto target = below(8) == 0 ? scene::find_animated(s, name) : std::nullopt)
         s.tracks.push_back(track(name, *target));
@@ -168,6 +175,11 @@ void expect_same(const scene::Scene& a, const scene::Scene& b) {
   for (std::size_t i = 0; i < a.spheres.size(); ++i) {
     expect_same(scene::sphere_keys(), a.spheres[i], b.spheres[i]);
     EXPECT_EQ(a.spheres[i].material, b.spheres[i].material);
+  }
+  ASSERT_EQ(a.rod_files.size(), b.rod_files.size());
+  for (std::size_t i = 0; i < a.rod_files.size(); ++i) {
+    expect_same(scene::rod_file_keys(), a.rod_files[i], b.rod_files[i]);
+    EXPECT_EQ(a.rod_files[i].materials, b.rod_files[i].materials);
   }
   ASSERT_EQ(a.rods.size(), b.rods.size());
   for (std::size_t i = 0; i < a.rods.size(); ++i) {

@@ -81,13 +81,19 @@ TEST(JobLayers, RodsAreObjectsWithTwoMaterials) {
   s.rods[0].to = {1, 0, 0};
   s.rods[1].name = "bond";
   s.rods[1].group = "bonds";
+  scene::RodFile file;
+  file.file = "data/melt.csv";
+  file.from.resize(2);
+  file.to.resize(2);
+  file.radii.assign(2, 0.5);
+  s.rod_files = {file};
   const Layers layers = layers_of(s);
   const auto id_of = [&](std::size_t matte, std::uint32_t i) {
     return layers.request.matte_id(layers.request.mattes[matte], i);
   };
   const std::string first = s.materials[0].name, second = s.materials[1].name;
-  const std::string objects[] = {"sphere.0", "rod.0", "rod.0", "bond", "bond"};
-  for (std::uint32_t i = 0; i < 5; ++i) EXPECT_EQ(id_of(0, i), film::matte_id(objects[i])) << i;
+  const std::string objects[] = {"sphere.0", "rod.0", "rod.0", "bond", "bond", "melt", "melt", "melt", "melt"};
+  for (std::uint32_t i = 0; i < 9; ++i) EXPECT_EQ(id_of(0, i), film::matte_id(objects[i])) << i;
   const std::string materials[] = {s.materials[s.spheres[0].material].name, first, second, first, first};
   for (std::uint32_t i = 0; i < 5; ++i) EXPECT_EQ(id_of(1, i), film::matte_id(materials[i])) << i;
   for (std::uint32_t i = 0; i < 5; ++i) EXPECT_EQ(id_of(2, i), i < 3 ? 0 : film::matte_id("bonds")) << i;

@@ -54,6 +54,11 @@ to = [1, 0.5, 1]
 radius = 0.1
 material = ["ground", "checked"]
 
+[[rods]]
+file = "bonds.csv"
+radius = 0.05
+material = ["ball", "ground"]
+
 [[points]]
 file = "cloud.csv"
 material = "ball"
@@ -101,6 +106,9 @@ const std::vector<const char*> kSettings = {
     "rod[0].material=\"lamp\"",
     "rod[0].name=\"bond\"",
     "rod=[]",
+    "rods[0].radius=0.2",
+    "rods[0].material=\"checked\"",
+    "rods[0].group=\"bonds\"",
     "points[0].color.map=\"magma\"",
     "points[0].color.range=[0, 9]",
     "points[0].select=\"v > 1\"",
@@ -129,6 +137,8 @@ class JobPreparedScene : public testing::Test {
       rows +=
           std::to_string(i % 3 - 1) + "," + std::to_string(i / 3 % 3 - 1) + ",0," + std::to_string(i + version) + "\n";
     support::write_bytes(folder_ / "cloud.csv", rows);
+    support::write_bytes(folder_ / "bonds.csv",
+                         "x0,y0,z0,x1,y1,z1\n-1,-1,2,1,1,2\n0,0,2,0,1," + std::to_string(2 + version) + "\n");
     support::write_bytes(folder_ / "molecule.xyz", "2\nfirst\nO 0 0 2\nH 0.5 0 2\n2\nsecond\nO 0 1 2\nH 0.5 1 " +
                                                        std::to_string(2 + version) + "\n");
   }
@@ -206,10 +216,11 @@ TEST_F(JobPreparedScene, TheAcceleratorOutlivesWhatDoesNotMoveSpheres) {
     return &prepared.accelerator(1, {});
   };
   const accel::Accel* const first = accelerator({});
-  for (const char* setting : {"camera.vfov=20", "image.width=30", "render.samples=9", "material.ball.albedo=[1, 0, 0]",
-                              "points[0].color.map=\"magma\"", "points[0].color.range=[0, 2]",
-                              "background.color=[1, 1, 1]", "sphere[1].material=\"ball\"",
-                              "rod[0].material=[\"ground\", \"lamp\"]", "output.layers=[\"Z\"]", "color.exposure=2"}) {
+  for (const char* setting :
+       {"camera.vfov=20", "image.width=30", "render.samples=9", "material.ball.albedo=[1, 0, 0]",
+        "points[0].color.map=\"magma\"", "points[0].color.range=[0, 2]", "background.color=[1, 1, 1]",
+        "sphere[1].material=\"ball\"", "rod[0].material=[\"ground\", \"lamp\"]", "rods[0].material=\"lamp\"",
+        "output.layers=[\"Z\"]", "color.exposure=2"}) {
     EXPECT_TRUE(prepared.has_accelerator());
     EXPECT_EQ(accelerator({setting}), first) << setting;
   }

@@ -3,11 +3,14 @@
 
 #include <gtest/gtest.h>
 
+#include <cstring>
 #include <memory>
 #include <string>
 #include <vector>
 
 #include "base/error.h"
+#include "compile/compile.h"
+#include "compile/compiled_scene.h"
 #include "format/write_scene.h"
 #include "support/read_scene_file.h"
 #include "support/scene_files.h"
@@ -34,6 +37,71 @@ TEST(LoadScene, PointsFilesAreRelativeToTheScene) {
   EXPECT_EQ(read.scene.points[0].radii, (std::vector<double>{0.5, 0.25}));
   EXPECT_EQ(read.scene.points[0].materials, (std::vector<std::uint32_t>{1, 0}));
   EXPECT_EQ(read.scene.materials[1].name, "a");
+}
+
+/// Rods of a file are those of tables with the same numbers.
+TEST(LoadScene, RodsOfFilesAreThoseOfTables) {
+  SceneFiles files(read_scene_file);
+  files.add("bonds.csv", "x0,y0,z0,x1,y1,z1,radius\n1,2,3,0,1,0.1,0.5\n0,0,0,1,0,0,0.25\n");
+  const std::string materials =
+      "[material]\na = { type = \"lambertian\", albedo = [0, 0, 0] }\nb = { type = \"metal\", albedo = [1, 1, 1] }\n";
+  const auto from_file =
+      files.read(materials + "[[rods]]\nfile = \"bonds.csv\"\nmaterial = [\"b\", \"a\"]\nname = \"all\"\n").scene;
+  const auto from_tables = files
+                               .read(materials + R"(
+[[rod]]
+from = [1, 2, 3]
+to = [0, 1, 0.1]
+radius = 0.5
+material = ["b", "a"]
+[[rod]]
+from = [0, 0, 0]
+to = [1, 0, 0]
+radius = 0.25
+material = ["b", "a"]
+)")
+                               .scene;
+  ASSERT_EQ(from_file.rod_files.size(), 1u);
+  EXPECT_EQ(from_file.rod_files[0].name, "all");
+  EXPECT_EQ(from_file.rod_count(), 2u);
+  const compile::CompiledScene a = compile::compile(from_file), b = compile::compile(from_tables);
+  ASSERT_EQ(a.rods.size(), 2u);
+  EXPECT_EQ(std::memcmp(a.rods.data(), b.rods.data(), 2 * sizeof(kernel::Rod)), 0);
+  for (std::size_t i = 0; i < 4; ++i) EXPECT_EQ(a.sphere_materials[i], b.sphere_materials[i]) << i;
+  EXPECT_EQ(a.rod_file_sizes, std::vector<std::size_t>{2});
+  const auto one_radius =
+      files.read(materials + "[[rods]]\nfile = \"bonds.csv\"\nradius = 2\nmaterial = \"a\"\n").scene;
+  EXPECT_EQ(one_radius.rod_files[0].radii, (std::vector<double>{2, 2}));
+}
+
+TEST(LoadScene, ErrorsOfFilesOfRods) {
+  SceneFiles files(read_scene_file);
+  const auto told = [&](const std::string& data, const std::string& keys = "") {
+    files.add("bonds.csv", data);
+    return files.diagnostics(
+        "[material.a]\ntype = \"lambertian\"\nalbedo = [0, 0, 0]\n"
+        "[[rods]]\nfile = \"bonds.csv\"\nmaterial = \"a\"\n" +
+        keys);
+  };
+  const auto expect = [](const std::string& text, const std::string& part) {
+    EXPECT_NE(text.find(part), std::string::npos) << text;
+  };
+  EXPECT_EQ(told("x0,y0,z0,x1,y1,z1,radius\n1,2,3,0,1,0.1,0.5\n"), "");
+  expect(told("x0,y0,z0,x1,y1,radius\n1,2,3,0,1,0.1\n"),
+         "scene.toml:5:8: error: rods[0].file: bonds.csv has no column `z1`; rods need x0, y0, z0, x1, y1 and z1");
+  expect(told("x0,y0,z0,x1,y1,z1\n1,2,3,0,1,0.1\n"), "bonds.csv has no column `radius`; set `radius`");
+  EXPECT_EQ(told("x0,y0,z0,x1,y1,z1\n1,2,3,0,1,0.1\n", "radius = 1\n"), "");
+  expect(told("x0,y0,z0,x1,y1,z1,radius\n1,2,3,0,1,a,0.5\n"), "rods need numbers");
+  expect(told("x0,y0,z0,x1,y1,z1,radius\n1,2,3,0,1,0,0.5\n1,2,3,0,nan,0,0.5\n"),
+         "rods[0].file: row 2 of bonds.csv: to [0, nan, 0] is not finite");
+  expect(told("x0,y0,z0,x1,y1,z1,radius\n1,2,3,0,1,0,-0.5\n"), "row 1 of bonds.csv: radius is -0.5; must be in");
+  expect(told("x0,y0,z0,x1,y1,z1,radius\n1,2,3,0,1,0,0\n"), "row 1 of bonds.csv: radius is 0; must be in");
+  expect(told("x,y,z,radius\n1,2,3,0.5\n"), "bonds.csv has no column `x0`");
+  std::string many = "x0,y0,z0,x1,y1,z1,radius\n";
+  for (int i = 0; i < 100; ++i) many += "0,0,0,1,1,1,0\n";
+  expect(told(many), "more (100 in all)");
+  expect(told("x0,y0,z0,x1,y1,z1,radius\n1,2,3,0,1,0.1,0.5\n", "\n[[rods]]\nfile = \"bonds.csv\"\nmaterial = \"b\"\n"),
+         "rods[1].material is \"b\", which is not defined");
 }
 
 /// Spheres of earlier tables are still in memory when the next one is read.
