@@ -148,13 +148,22 @@ std::optional<Picked> Viewer::pick(double x, double y) {
     if (!authored.group.empty()) out.values.emplace_back("group", authored.group);
   };
   if (const kernel::RodArray rods = compiled.view().rods; rods.contains(*id)) {
-    const scene::Rod& rod = scene.rods[rods.index(*id)];
-    out.title = fmt::format("rod[{}]", rods.index(*id));
-    out.center = (rod.from + rod.to) * 0.5;
+    std::size_t index = rods.index(*id);
+    const kernel::Rod& rod = compiled.rods[index];
+    const math::Vec3d a{rod.a[0], rod.a[1], rod.a[2]}, b{rod.b[0], rod.b[1], rod.b[2]};
+    out.center = (a + b) * 0.5;
     out.radius = rod.radius;
-    add_names(rod);
-    out.values.emplace_back("from", scene::vector_text(rod.from));
-    out.values.emplace_back("to", scene::vector_text(rod.to));
+    if (index < scene.rods.size()) {
+      out.title = fmt::format("rod[{}]", index);
+      add_names(scene.rods[index]);
+    } else {
+      index -= scene.rods.size();
+      std::size_t file = 0;
+      while (index >= compiled.rod_file_sizes[file]) index -= compiled.rod_file_sizes[file++];
+      out.title = fmt::format("row {} of {}", index + 1, scene.rod_files[file].file.filename().string());
+      add_names(scene.rod_files[file]);
+    }
+    out.values.emplace_back("ends", scene::vector_text(a) + ", " + scene::vector_text(b));
     return out;
   }
   const kernel::Sphere sphere = compiled.spheres[*id];

@@ -176,8 +176,8 @@ TEST(ViewViewer, ARodIsPicked) {
   EXPECT_EQ(picked->title, "rod[0]");
   EXPECT_EQ(picked->center, (math::Vec3d{0, 0.5, 1.5}));
   EXPECT_EQ(picked->radius, 0.3);
-  const std::vector<std::pair<std::string, std::string>> values = {
-      {"name", "bond"}, {"from", "[-1, 0, 1.5]"}, {"to", "[1, 1, 1.5]"}};
+  const std::vector<std::pair<std::string, std::string>> values = {{"name", "bond"},
+                                                                   {"ends", "[-1, 0, 1.5], [1, 1, 1.5]"}};
   EXPECT_EQ(picked->values, values);
 }
 
