@@ -96,6 +96,18 @@ struct Arrivals {
   RayCone<V> cone;     ///< at the hits; only in scenes with ray cones
 };
 
+/// Records first hits in scenes with rods; see Recorder::first_hit. Not inlined, so that the loop costs the same
+/// without them.
+///
+/// `center`, `offset`  of the sphere that was hit, or of the one that has the rod's place
+template <class D, bool kRecords, class V = hn::Vec<D>>
+HWY_NOINLINE void record_first_hit(D d, const SceneView& scene, const Tile& tile, hn::Vec<IdTag<D>> pixels,
+                                   hn::Vec<IdTag<D>> samples, hn::Mask<D> hit, hn::Vec<IdTag<D>> hits, Vec3<V> center,
+                                   Vec3<V> offset, Vec3<V> direction, const hn::TFromD<D>* times) {
+  Recorder<D, kRecords>(scene, tile, pixels, samples)
+      .first_hit(d, hit, hits, recorded_offset(d, scene, hits, times, center, offset), direction, times);
+}
+
 /// Shades traced packets of one depth.
 template <class D, Loop kLoop>
 class Shader {
@@ -216,7 +228,9 @@ class Shader {
 
   /// Finds points, normals and materials of the hits.
   HWY_INLINE Lookup<D> surface(const Arrivals<D>& at) const {
-    auto look = reach_surface<D, kLoop.precision>(d, scene_, features_.rods, at.ray, at.hits, at.distance, at.times);
+    auto look = features_.rods
+                    ? reach_surface_or_rod<D, kLoop.precision>(d, scene_, at.ray, at.hits, at.distance, at.times)
+                    : reach_surface<D, kLoop.precision>(d, scene_, at.ray, at.hits, at.distance, at.times);
     if (features_.extended && scene_.textures != nullptr) {
       const auto textured =
           textured_surface<D, kLoop.precision>(d, scene_, at.ray, at.hits, at.hit, at.distance, at.cone.width2, look);
@@ -232,10 +246,11 @@ class Shader {
   HWY_INLINE void record_surface(const Arrivals<D>& at, const Lookup<D>& look, const Vec3<V>& tinted) const {
     auto record = recorder(at);
     if (depth_ == 0) {
-      auto offset = look.surface.offset;
-      if (features_.rods && tile_.record_hits)
-        offset = recorded_offset(d, scene_, at.hits, at.times, look.sphere.center, offset);
-      record.first_hit(d, at.hit, at.hits, offset, at.ray.direction, at.times);
+      if (features_.rods)
+        record_first_hit<D, kLoop.records>(d, scene_, tile_, at.pixels, at.samples, at.hit, at.hits, look.sphere.center,
+                                           look.surface.offset, at.ray.direction, at.times);
+      else
+        record.first_hit(d, at.hit, at.hits, look.surface.offset, at.ray.direction, at.times);
       if (features_.extended) record.albedo(d, at.hit, look.albedo);
       record.inverse_depth(d, at.hit, at.distance);
     }

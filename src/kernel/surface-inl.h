@@ -117,8 +117,8 @@ HWY_NOINLINE RodPoint<D> rod_hits(D d, const SceneView& scene, Rays<D> ray, hn::
 ///
 /// `center`, `offset`  of the sphere that was hit, or of the one that has the rod's place
 template <class D, class V = hn::Vec<D>>
-HWY_NOINLINE Vec3<V> recorded_offset(D d, const SceneView& scene, hn::Vec<IdTag<D>> hits, const hn::TFromD<D>* times,
-                                     Vec3<V> center, Vec3<V> offset) {
+HWY_INLINE Vec3<V> recorded_offset(D d, const SceneView& scene, hn::Vec<IdTag<D>> hits, const hn::TFromD<D>* times,
+                                   const Vec3<V>& center, const Vec3<V>& offset) {
   const auto rod = load_rods(d, scene, hits, times);
   return select(is_rod(d, scene, hits), (center - rod.a) + offset, offset);
 }
@@ -140,16 +140,16 @@ HWY_INLINE hn::Mask<D> reach_rods(D d, const SceneView& scene, const Rays<D>& ra
 /// Loads spheres and materials of the hits; lanes without a hit get those of the last sphere, and lanes that hit rods
 /// its sphere.
 ///
-/// `times`    times of the rays; null: nothing moves
-template <class D>
-HWY_INLINE Lookup<D> look_up(D d, const SceneView& scene, bool has_rods, hn::Vec<IdTag<D>> hits,
-                             const hn::TFromD<D>* times) {
+/// `kHasRods`  false: all hits are spheres
+/// `times`     times of the rays; null: nothing moves
+template <class D, bool kHasRods>
+HWY_INLINE Lookup<D> look_up(D d, const SceneView& scene, hn::Vec<IdTag<D>> hits, const hn::TFromD<D>* times) {
   using Id = hn::TFromD<IdTag<D>>;
   constexpr std::size_t kMax = hn::MaxLanes(D());
   const IdTag<D> du;
   HWY_ALIGN Id id[kMax], kind[kMax], fresnel[kMax];
   const Material* material[kMax];
-  store_loadable(d, scene.sphere_count + (has_rods ? 2 * scene.rods.count : 0), hits, id);
+  store_loadable(d, scene.sphere_count + (kHasRods ? 2 * scene.rods.count : 0), hits, id);
   for (std::size_t i = 0; i < hn::Lanes(d); ++i) {
     material[i] = &scene.materials[scene.sphere_materials[id[i]]];
     kind[i] = static_cast<Id>(material[i]->kind);
@@ -160,7 +160,7 @@ HWY_INLINE Lookup<D> look_up(D d, const SceneView& scene, bool has_rods, hn::Vec
       d, [&](std::size_t i) { return material[i]->albedo; }, color);
   gather4(
       d, [&](std::size_t i) { return material[i]->eta; }, glass);
-  if (has_rods) store_loadable(d, std::max<std::size_t>(scene.sphere_count, 1), hits, id);
+  if (kHasRods) store_loadable(d, std::max<std::size_t>(scene.sphere_count, 1), hits, id);
   Lookup<D> out;
   out.sphere = load_spheres(d, scene, id, times);
   out.albedo = {color[0], color[1], color[2]};
@@ -176,25 +176,33 @@ HWY_INLINE Lookup<D> look_up(D d, const SceneView& scene, bool has_rods, hn::Vec
 
 /// Computes point, normal and side of every hit, and selects the material's constants for that side.
 ///
-/// `has_rods`  false: all hits are spheres
-template <class D, Precision kPrecision>
-HWY_INLINE Lookup<D> reach_surface(D d, const SceneView& scene, bool has_rods, const Rays<D>& ray,
-                                   hn::Vec<IdTag<D>> hits, hn::Vec<D> distance, const hn::TFromD<D>* times) {
-  Lookup<D> at = look_up(d, scene, has_rods, hits, times);
+/// `kHasRods`  false: all hits are spheres
+template <class D, Precision kPrecision, bool kHasRods = false>
+HWY_INLINE Lookup<D> reach_surface(D d, const SceneView& scene, const Rays<D>& ray, hn::Vec<IdTag<D>> hits,
+                                   hn::Vec<D> distance, const hn::TFromD<D>* times) {
+  Lookup<D> at = look_up<D, kHasRods>(d, scene, hits, times);
   Surface<D>& surface = at.surface;
   const auto is_self = hn::RebindMask(d, hits == ray.self);
   surface.direction = ray.direction;
   auto point = hit_point<D, kPrecision>(ray, at.sphere, is_self, distance);
   surface.from_outside = dot(ray.direction, point.offset) < 0;
-  // Rods are hit from outside only; where a ray grazes one, the sign is that of a rounding error.
-  if (has_rods)
-    surface.from_outside =
-        hn::Or(reach_rods<D, kPrecision>(d, scene, ray, hits, times, at.sphere, point), surface.from_outside);
+  if constexpr (kHasRods) {
+    // Rods are hit from outside only; where a ray grazes one, the sign is that of a rounding error.
+    const auto is_entry = reach_rods<D, kPrecision>(d, scene, ray, hits, times, at.sphere, point);
+    surface.from_outside = hn::Or(is_entry, surface.from_outside);
+  }
   surface.offset = point.offset;
   surface.normal = select(surface.from_outside, point.outward, negated(point.outward));
   surface.eta = select(surface.from_outside, at.eta_outside, at.eta_inside);
   surface.r0 = select(surface.from_outside, at.r0_outside, at.r0_inside);
   return at;
+}
+
+/// The same in scenes with rods. Not inlined, so that the loop costs the same without them.
+template <class D, Precision kPrecision>
+HWY_NOINLINE Lookup<D> reach_surface_or_rod(D d, const SceneView& scene, Rays<D> ray, hn::Vec<IdTag<D>> hits,
+                                            hn::Vec<D> distance, const hn::TFromD<D>* times) {
+  return reach_surface<D, kPrecision, true>(d, scene, ray, hits, distance, times);
 }
 
 }  // namespace orrery::kernel::HWY_NAMESPACE
