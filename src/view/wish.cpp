@@ -10,6 +10,8 @@
 
 #include "base/error.h"
 #include "scene/limits.h"
+#include "scene/schema.h"
+#include "scene/texture.h"
 #include "scene/value_text.h"
 
 namespace orrery::view {
@@ -45,6 +47,24 @@ std::optional<scene::Camera> read_camera(const nlohmann::json& value) {
   return out;
 }
 
+std::string last_part(const std::string& key) { return key.substr(key.rfind('.') + 1); }
+
+/// "file", "config", "map": the last parts of all keys whose values may be names of files.
+std::set<std::string> last_parts_of_file_keys() {
+  std::set<std::string> out;
+  const auto add = [&out](const auto& keys) {
+    for (const auto& key : keys)
+      if (key.file != nullptr) out.insert(last_part(key.name));
+  };
+  for (const scene::Table& table : scene::tables()) add(table.keys);
+  for (const scene::TextureUse use :
+       {scene::TextureUse::kReflectance, scene::TextureUse::kRadiance, scene::TextureUse::kNumber})
+    for (const auto& type : scene::texture_types(use)) add(type.keys);
+  add(scene::points_keys());
+  add(scene::rod_file_keys());
+  return out;
+}
+
 }  // namespace
 
 Wish read_wish(const std::string& json, const std::function<bool(const std::string& option)>& is_control) {
@@ -74,10 +94,10 @@ Wish read_wish(const std::string& json, const std::function<bool(const std::stri
 }
 
 std::set<std::string> named_files(const format::Overrides& overrides) {
+  static const std::set<std::string> file_keys = last_parts_of_file_keys();
   std::set<std::string> out;
   for (const format::KeyValue& set : overrides.values()) {
-    const std::string key = set.key.substr(set.key.rfind('.') + 1);
-    const bool is_file = key == "file" || key == "config" || key == "map";
+    const bool is_file = file_keys.count(last_part(set.key)) > 0;
     const bool may_hold_files =
         std::holds_alternative<std::monostate>(set.value) && set.text.find('{') != std::string::npos;
     if (is_file || may_hold_files) out.insert(set.text);

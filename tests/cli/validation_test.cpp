@@ -63,7 +63,7 @@ const Broken kBroken[] = {
     {"ARodOfGlass",
      "[material.glass]\ntype = \"dielectric\"\n"
      "[[rod]]\nfrom = [0, 0, 0]\nto = [1, 0, 0]\nradius = 1\nmaterial = [\"grey\", \"glass\"]\n",
-     "", 65, ":21:12: error: rod[0].material: \"glass\" is a dielectric, but rods are opaque"},
+     "", 65, ":20:12: error: rod[0].material: \"glass\" is a dielectric, but rods are opaque"},
     {"ARodThatShrinks",
      "[camera]\nshutter_close = 1\n[[rod]]\nfrom = [0, 0, 0]\nto = [1, 0, 0]\nradius = 1\nmaterial = \"grey\"\n"
      "[[key]]\ntarget = \"rod[0].radius\"\nframes = [1, 2]\nvalues = [1, 0]\n",
