@@ -92,14 +92,14 @@ std::vector<ConvexSet> convex_sets() {
           {"of length 0 in spheres", {rod(a, a, r)}, {a}}};
 }
 
-/// ORRERY_FURNACE_RAYS sets the number of paths of each image.
+/// ORRERY_FURNACE_RAYS sets the number of paths of all images, about a hundred.
 TEST(RenderRods, GreyRodsInAWhiteFurnaceAreHalf) {
   const char* const wanted = std::getenv("ORRERY_FURNACE_RAYS");
   for (const ConvexSet& set : convex_sets()) {
     for (const double offset : {0.0, 1e6, 1e9}) {
       const Vec3d moved{offset, -offset, offset};
       scene::Scene s = rod_furnace();
-      if (wanted != nullptr) s.render.samples = std::max(16, static_cast<int>(std::atof(wanted) / (24 * 16)));
+      if (wanted != nullptr) s.render.samples = std::max(16, static_cast<int>(std::atof(wanted) / (24 * 16 * 100)));
       s.camera.look_from = s.camera.look_from + moved;
       s.camera.look_at = s.camera.look_at + moved;
       s.rods = set.rods;
