@@ -228,10 +228,10 @@ void PictureOptions::finish(job::Job& job) const {
   job.outputs.exr.as_float = type_ == "float";
 }
 
-void add_data_options(Command& command, DataArguments& arguments, plot::DataOptions& data) {
+void add_data_options(Command& command, DataArguments& arguments, plot::DataOptions& data, const std::string& kind) {
   command
       .add_option("FILE", data.file, "FILE",
-                  "Data file: LAMMPS, XYZ, PDB, mmCIF, PLY, CSV, NPY, NPZ, LAS, GSD, HDF5, VTK")
+                  kind + ": LAMMPS, XYZ, PDB, mmCIF, PLY, CSV, NPY, NPZ, LAS, GSD, HDF5, VTK")
       ->required();
   const OptionGroup group(command, "Data options");
   scene::Points& points = data.points;

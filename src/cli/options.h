@@ -102,7 +102,10 @@ struct DataArguments {
 
 /// Adds FILE and the options that all commands on data files share. Values go to `data`, or to `arguments` and then to
 /// `data` by read_data_options().
-void add_data_options(Command& command, DataArguments& arguments, plot::DataOptions& data);
+///
+/// `kind`     of FILE, in the help
+void add_data_options(Command& command, DataArguments& arguments, plot::DataOptions& data,
+                      const std::string& kind = "Data file");
 
 /// Adds the options of plot that select view and style.
 void add_look_options(Command& command, plot::PlotOptions& plot, std::string& style);

@@ -48,7 +48,7 @@ struct ShownOptions {
 
   void add_to(Command& parsed) {
     command = &parsed;
-    add_data_options(parsed, data, plot);
+    add_data_options(parsed, data, plot, "Scene file, or data file");
     add_look_options(parsed, plot, style);
     scene.add_to(parsed);
     add_sampling_options(parsed, job);
