@@ -135,8 +135,19 @@ struct Viewer::Source {
 };
 
 std::optional<Picked> Viewer::pick(double x, double y) {
-  const std::shared_lock preparation(preparation_);
-  if (!is_prepared_) return {};
+  {
+    const std::lock_guard lock(preparation_);
+    if (!is_prepared_) return {};
+    ++looks_;
+  }
+  struct End {
+    Viewer& viewer;
+    ~End() {
+      const std::lock_guard lock(viewer.preparation_);
+      --viewer.looks_;
+      viewer.looked_.notify_all();
+    }
+  } const end{*this};
   const compile::CompiledScene& compiled = prepared_->compiled();
   const std::optional<std::uint32_t> id =
       render::sphere_at(compiled, prepared_->built(), x * compiled.width, y * compiled.height);
@@ -328,7 +339,16 @@ void Viewer::render(const Wish& wish, std::uint64_t number) {
     job.sampling = {};
     job.denoise = false;
   }
-  std::unique_lock preparation(preparation_);
+  {
+    std::unique_lock lock(preparation_);
+    is_prepared_ = false;
+    looked_.wait(lock, [this] { return looks_ == 0; });
+    source_ = job.scene;
+  }
+  const auto set_prepared = [this] {
+    const std::lock_guard lock(preparation_);
+    is_prepared_ = true;
+  };
   job.prepared = prepared_;
   job.hooks = {};
   job.hooks.cancel = &cancel_;
@@ -350,9 +370,6 @@ void Viewer::render(const Wish& wish, std::uint64_t number) {
       live = std::make_shared<Live>(info);
       live->wish = number;
     }
-    is_prepared_ = true;
-    source_ = job.scene;
-    preparation.unlock();
     const std::lock_guard lock(mutex_);
     live_ = live;
     is_cancellable_ = true;
@@ -373,6 +390,7 @@ void Viewer::render(const Wish& wish, std::uint64_t number) {
       live->canvas.write(state, rendered);
     };
     job.hooks.on_progress = [&](const render::Progress& progress) {
+      set_prepared();  // there is no progress before the BVH has been built
       if (build_reported >= 0) {
         build_reported = -1;
         const std::lock_guard lock(mutex_);
@@ -385,9 +403,9 @@ void Viewer::render(const Wish& wish, std::uint64_t number) {
   }
   const auto rendering = std::make_shared<job::Rendering>();
   job.keep = rendering.get();
-  is_prepared_ = false;
   const Clock::time_point begin = Clock::now();
   const job::JobReport report = job::run_job(job);
+  set_prepared();
 
   const film::EncodedPicture picture = display::develop(rendering->picture, rendering->display, 8);
   const std::vector<std::uint8_t> codes(picture.values.begin(), picture.values.end());

