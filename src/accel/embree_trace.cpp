@@ -65,10 +65,22 @@ HWY_INLINE void test_primitive(D d, const EmbreeQuery<Packet>& query, const Argu
   if (!Packet::kIsShadow) hn::StoreU(flags_of(d, found.is_new), di, arguments.valid + v);
 }
 
+/// Tests all of Embree's rays against a primitive.
+template <class Packet, class Arguments, class Test>
+HWY_INLINE void test_all(const EmbreeQuery<Packet>& query, const Arguments& arguments, Test test) {
+  using T = typename Packet::Number;
+  if (arguments.N == 1) {
+    test_primitive(hn::FixedTag<T, 1>(), query, arguments, 0, test);
+    return;
+  }
+  const hn::ScalableTag<T> d;
+  for (int v = 0; v < static_cast<int>(arguments.N); v += static_cast<int>(hn::Lanes(d)))
+    test_primitive(d, query, arguments, v, test);
+}
+
 /// Embree's callback for a sphere that is a primitive.
 template <class Packet, kernel::Precision kPrecision, bool kMoves, class Arguments>
 void at_sphere(const Arguments* arguments) {
-  using T = typename Packet::Number;
   const auto& query = *reinterpret_cast<const EmbreeQuery<Packet>*>(arguments->context);
   const std::uint32_t id = query.scene->sphere_id(kMoves ? arguments->geomID : 0, arguments->primID);
   // Captured by value: the compiler would read a reference again after each store.
@@ -76,32 +88,19 @@ void at_sphere(const Arguments* arguments) {
     intersect<kPrecision>(d, k::load_rays(d, packet, first), k::sphere_at<kMoves>(d, scene, id, packet, first),
                           hn::Set(k::IdTag<decltype(d)>(), static_cast<typename Packet::Id>(id)), lanes, found);
   };
-  if (arguments->N == 1) {
-    test_primitive(hn::FixedTag<T, 1>(), query, *arguments, 0, test);
-    return;
-  }
-  const hn::ScalableTag<T> d;
-  for (int v = 0; v < static_cast<int>(arguments->N); v += static_cast<int>(hn::Lanes(d)))
-    test_primitive(d, query, *arguments, v, test);
+  test_all(query, *arguments, test);
 }
 
 /// Embree's callback for a part of a rod.
 template <class Packet, kernel::Precision kPrecision, bool kMoves, class Arguments>
 void at_rod(const Arguments* arguments) {
-  using T = typename Packet::Number;
   const auto& query = *reinterpret_cast<const EmbreeQuery<Packet>*>(arguments->context);
   const std::size_t rod = query.scene->rod_pieces[arguments->primID].rod;
   const auto test = [rod, &rods = query.scene->rods](auto d, const Packet& packet, int first, auto lanes, auto& found) {
     intersect_rod<kPrecision>(d, k::load_rays(d, packet, first), k::rod_at<kMoves>(d, rods, rod, packet, first),
                               rods.id(rod), lanes, found);
   };
-  if (arguments->N == 1) {
-    test_primitive(hn::FixedTag<T, 1>(), query, *arguments, 0, test);
-    return;
-  }
-  const hn::ScalableTag<T> d;
-  for (int v = 0; v < static_cast<int>(arguments->N); v += static_cast<int>(hn::Lanes(d)))
-    test_primitive(d, query, *arguments, v, test);
+  test_all(query, *arguments, test);
 }
 
 /// A ray that Embree traverses alone, in its lane of an otherwise empty packet.

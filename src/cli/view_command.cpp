@@ -220,7 +220,7 @@ int run_view(ViewArguments& arguments, const Command& command) {
     parse_words(
         words, [&](Command& parsed) { shown.add_to(parsed); },
         [&] {
-          // The page may name no files but those what was given on the command line.
+          // The page may name no files but those given on the command line.
           for (const std::string& name : files_of(shown))
             if (allowed.count(name) == 0)
               base::refuse(fmt::format("`{}` names a file; start orrery view with this option", name));

@@ -37,12 +37,17 @@ display::Settings settings_of(const SceneRequest& request, const scene::Color& c
   return out;
 }
 
-/// What to read for a points table.
-points::LoadRequest request_for(const SceneSource& source, const scene::Scene& scene, std::size_t table) {
+/// What to read for a table of the scene that names a data file.
+points::LoadRequest request_for(const SceneSource& source, const std::filesystem::path& file, std::string key) {
   points::LoadRequest out;
   out.folder = source.file.parent_path();
-  out.file = out.folder / scene.points[table].file;
-  out.key = fmt::format("points[{}]", table);
+  out.file = out.folder / file;
+  out.key = std::move(key);
+  return out;
+}
+
+points::LoadRequest points_request(const SceneSource& source, const scene::Scene& scene, std::size_t table) {
+  points::LoadRequest out = request_for(source, scene.points[table].file, fmt::format("points[{}]", table));
   out.frame = source.frame;
   out.materials = scene.materials.size();
   out.open = source.open_data;
@@ -193,7 +198,7 @@ class SceneLoader {
 
   bool has_new_data() const { return out_.changed.geometry || out_.changed.assignment; }
 
-  points::LoadRequest data_request(std::size_t index) const { return request_for(request_.source, scene_, index); }
+  points::LoadRequest data_request(std::size_t index) const { return points_request(request_.source, scene_, index); }
 
   /// Identifies the data files, their contents, and the frames that are read from them.
   std::string data_version() const {
@@ -247,11 +252,7 @@ class SceneLoader {
   }
 
   points::LoadRequest rods_request(std::size_t index) const {
-    points::LoadRequest out;
-    out.folder = request_.source.file.parent_path();
-    out.file = out.folder / scene_.rod_files[index].file;
-    out.key = fmt::format("rods[{}]", index);
-    return out;
+    return request_for(request_.source, scene_.rod_files[index].file, fmt::format("rods[{}]", index));
   }
 
   void load_rods(std::uint64_t limit, std::uint64_t used) {
@@ -381,7 +382,7 @@ format::ReadResult read_with_data(const SceneRequest& request) { return SceneLoa
 
 points::SourceRows read_source_rows(const SceneSource& source, const scene::Scene& scene, std::size_t table) {
   points::SourceRows out;
-  points::LoadRequest request = request_for(source, scene, table);
+  points::LoadRequest request = points_request(source, scene, table);
   request.memory_limit = base::available_memory().value_or(0);
   request.source = &out;
   scene::Points points = scene.points[table];

@@ -122,10 +122,13 @@ std::vector<std::string> indexed_targets(const Scene& scene, const std::string& 
   const std::optional<TargetParts> parts = parts_of(target);
   std::vector<std::string> out;
   const auto add = [&](const auto& objects) {
-    const std::optional<std::size_t> indexed = parts->is_index ? find_object(objects, parts->name, true) : std::nullopt;
+    const auto add_one = [&](std::size_t i) { out.push_back(fmt::format("{}[{}].{}", parts->table, i, parts->key)); };
+    if (parts->is_index) {
+      if (const auto i = find_object(objects, parts->name, true)) add_one(*i);
+      return;
+    }
     for (std::size_t i = 0; i < objects.size(); ++i)
-      if (parts->is_index ? i == indexed : objects[i].name == parts->name)
-        out.push_back(fmt::format("{}[{}].{}", parts->table, i, parts->key));
+      if (objects[i].name == parts->name) add_one(i);
   };
   if (parts && parts->table == "sphere") add(scene.spheres);
   if (parts && parts->table == "rod") add(scene.rods);

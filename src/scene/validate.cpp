@@ -351,7 +351,7 @@ std::vector<SceneDiagnostic> validate(const Scene& scene) {
   check_rods(scene, diagnostics);
   if (scene.sphere_count() + 2 * scene.rod_count() > kMaxSpheres)
     diagnostics.error("",
-                      scene.rods.empty()
+                      scene.rod_count() == 0
                           ? fmt::format("has {} spheres; the maximum is {}", scene.sphere_count(), kMaxSpheres)
                           : fmt::format("has {} spheres and {} rods; the maximum is {}, in which a rod counts twice",
                                         scene.sphere_count(), scene.rod_count(), kMaxSpheres));

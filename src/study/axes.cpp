@@ -201,8 +201,9 @@ class Planner {
     add_one("bsdf", kernel::DirectLighting::kBsdf);
   }
 
-  /// Time with the list of spheres relative to that with Embree.
   bool is_empty() const { return compiled_.spheres.empty() && compiled_.rods.empty(); }
+
+  /// Time with the list of spheres and rods relative to that with Embree.
   double list_slowness() const {
     return 1 + static_cast<double>(compiled_.spheres.size() + compiled_.rods.size()) / 12;
   }

@@ -7,6 +7,7 @@
 
 #include <nlohmann/json.hpp>
 
+#include "base/temp_dir.h"
 #include "base/text.h"
 #include "compare/color_view.h"
 #include "compare/errors.h"
@@ -14,7 +15,6 @@
 #include "display/settings.h"
 #include "image/write.h"
 #include "study/study.h"
-#include "study/temp_files.h"
 
 namespace orrery::study {
 
@@ -131,7 +131,7 @@ class Encoder {
     return "data:image/jpeg;base64," + base::base64(std::string(std::istreambuf_iterator<char>(in), {}));
   }
 
-  TempDir folder_;
+  base::TempDir folder_;
   double exposure_ = 0;
 };
 

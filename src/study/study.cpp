@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "study/study.h"
+#include "study/file_axis.h"
 
 #include <algorithm>
 #include <bit>
@@ -33,7 +34,6 @@
 #include "study/biases.h"
 #include "study/recommendation.h"
 #include "study/study_renderer.h"
-#include "study/temp_files.h"
 
 namespace orrery::study {
 namespace {

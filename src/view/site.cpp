@@ -17,7 +17,7 @@
 #include <nlohmann/json.hpp>
 
 #include "base/error.h"
-#include "base/text.h"
+#include "base/temp_dir.h"
 #include "format/read_scene.h"
 #include "format/write_scene.h"
 #include "job/rendering.h"
@@ -108,28 +108,6 @@ std::optional<T> number_of(const http::Request& request, const char* name) {
   return out;
 }
 
-/// A folder that is removed with its files.
-class TemporaryFolder {
- public:
-  TemporaryFolder() {
-    std::string name = (std::filesystem::temp_directory_path() / "orrery-view-XXXXXX").string();
-    if (mkdtemp(name.data()) == nullptr)
-      throw base::Error(base::ErrorKind::kCannotCreate, "cannot create a temporary folder");
-    path_ = name;
-  }
-  ~TemporaryFolder() {
-    std::error_code ignored;
-    std::filesystem::remove_all(path_, ignored);
-  }
-  TemporaryFolder(const TemporaryFolder&) = delete;
-  TemporaryFolder& operator=(const TemporaryFolder&) = delete;
-
-  const std::filesystem::path& path() const { return path_; }
-
- private:
-  std::filesystem::path path_;
-};
-
 }  // namespace
 
 std::string random_secret() {
@@ -151,7 +129,8 @@ std::chrono::seconds Site::idle() const {
          std::chrono::seconds(last);
 }
 
-bool Site::is_admitted(const http::Request& request) const {
+/// Whether a request names this host, and no other site made it.
+bool Site::is_for_us(const http::Request& request) const {
   // Behind a tunnel the port is another one.
   const std::size_t colon = request.host.rfind(':');
   if (colon == std::string::npos || colon + 1 == request.host.size() ||
@@ -159,9 +138,10 @@ bool Site::is_admitted(const http::Request& request) const {
     return false;
   const std::string name = request.host.substr(0, colon);
   if (name != "127.0.0.1" && name != "localhost" && name != "[::1]" && name != host_) return false;
-  if (!request.origin.empty() && request.origin != "http://" + request.host) return false;
-  // In a notebook, browsers may keep cookies from the page: it then sends the secret itself. Its files are not secret.
-  if (request.method == "GET" && file_of_page(request.path) != nullptr) return true;
+  return request.origin.empty() || request.origin == "http://" + request.host;
+}
+
+bool Site::has_secret(const http::Request& request) const {
   const auto token = request.query.find("token");
   return is_equal(request.authorization, "Bearer " + secret_) ||
          is_equal(cookie_of(request.cookie, cookie_name()), secret_) ||
@@ -174,7 +154,12 @@ std::string Site::cookie_name() const { return fmt::format("orrery{}", port_.loa
 http::Response Site::answer(const http::Request& request) {
   http::Response out;
   const bool is_post = request.path == "/wish";
-  if (!is_admitted(request)) {
+  const PageFile* const file = request.method == "GET" ? file_of_page(request.path) : nullptr;
+  if (is_for_us(request) && file != nullptr) {
+    // In a notebook, browsers may keep cookies from the page: it then sends the secret itself. Its files are not
+    // secret.
+    out = {200, file->type, std::make_shared<const std::string>(*file->text)};
+  } else if (!is_for_us(request) || !has_secret(request)) {
     out = text(403, "orrery view: open the address that the command printed");
   } else if (request.method != (is_post ? "POST" : "GET")) {
     out = text(405, "method not allowed");
@@ -210,8 +195,6 @@ http::Response Site::answer(const http::Request& request) {
 }
 
 http::Response Site::page(const http::Request& request) const {
-  if (const PageFile* const file = file_of_page(request.path))
-    return {200, file->type, std::make_shared<const std::string>(*file->text)};
   if (request.path != "/") return text(404, "not found");
   http::Response out{200, "text/html; charset=utf-8", std::make_shared<const std::string>(kPageHtml)};
   out.fields.emplace_back("Set-Cookie",
@@ -300,7 +283,7 @@ http::Response Site::change(const http::Request& request) {
 http::Response Site::picture(const std::string& extension) const {
   const std::shared_ptr<const job::Rendering> rendering = viewer_.finished();
   if (!rendering) return text(409, "the image is not finished yet");
-  const TemporaryFolder folder;
+  const base::TempDir folder;
   const std::filesystem::path file = folder.path() / ("picture" + extension);
   job::Outputs outputs;
   outputs.images = job::image_files({file});

@@ -43,7 +43,8 @@ class Site {
   std::chrono::seconds idle() const;
 
  private:
-  bool is_admitted(const http::Request& request) const;
+  bool is_for_us(const http::Request& request) const;
+  bool has_secret(const http::Request& request) const;
   std::string cookie_name() const;
   http::Response page(const http::Request& request) const;
   http::Response frame(const http::Request& request);

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <exception>
 #include <new>
 #include <utility>
 #include <variant>
@@ -96,8 +97,7 @@ std::uint64_t Viewer::ask(Wish wish) {
   const bool keeps_moving = moves_ && wish.options == state_.wish.options;
   if (is_cancellable_ && !keeps_moving) cancel_ = true;  // moving images are completed, or none would be seen
   state_.wish = std::move(wish);
-  ++state_.number;
-  changed_.notify_all();
+  announce();
   return ++asked_;
 }
 
@@ -129,7 +129,6 @@ Frame Viewer::frame(std::uint64_t after, std::chrono::milliseconds patience, std
 
 /// The data of a points table from which particles were picked last.
 struct Viewer::Source {
-  std::map<std::string, std::string> options;  ///< of the subject
   std::size_t table = 0;
   points::SourceRows rows;
 };
@@ -202,16 +201,10 @@ std::optional<Picked> Viewer::pick(double x, double y) {
 }
 
 std::shared_ptr<const Viewer::Source> Viewer::source_of(const scene::Scene& scene, std::size_t table) {
-  std::map<std::string, std::string> options;
-  {
-    const std::lock_guard lock(mutex_);
-    options = state_.wish.options;
-  }
   const std::lock_guard lock(picking_);
-  if (picked_from_ && picked_from_->options == options && picked_from_->table == table) return picked_from_;
+  if (picked_from_ && picked_from_->table == table) return picked_from_;
   picked_from_ = nullptr;
   const auto source = std::make_shared<Source>();
-  source->options = std::move(options);
   source->table = table;
   source->rows = load::read_source_rows(source_, scene, table);
   std::uint64_t bytes = 0;
@@ -221,13 +214,18 @@ std::shared_ptr<const Viewer::Source> Viewer::source_of(const scene::Scene& scen
   return source;
 }
 
+/// Lets all who wait look again at the state. Domain: mutex_ is locked
+void Viewer::announce() {
+  ++state_.number;
+  changed_.notify_all();
+}
+
 /// Announces the end of a wish. Domain: mutex_ is locked
 void Viewer::set_served(std::uint64_t wish, const std::string& problem) {
   state_.served = wish;
   state_.problem = problem;
   state_.activity.clear();
-  ++state_.number;
-  changed_.notify_all();
+  announce();
 }
 
 /// Publishes the image that is being rendered, if it has changed.
@@ -276,12 +274,15 @@ void Viewer::run() {
     std::string problem;
     bool was_stopped = false;
     try {
-      serve(wish, number);
+      if (made_options_ != wish.options) make_subject(wish);
+      render(wish, number);
     } catch (const base::Error& error) {
       was_stopped = error.kind() == base::ErrorKind::kStopped;
       if (!was_stopped) problem = text_of(error);
     } catch (const std::bad_alloc&) {
       problem = "out of memory";
+    } catch (const std::exception& error) {
+      problem = std::string("internal error: ") + error.what();
     }
     lock.lock();
     live_ = nullptr;
@@ -292,24 +293,19 @@ void Viewer::run() {
   }
 }
 
-void Viewer::serve(const Wish& wish, std::uint64_t number) {
-  if (made_options_ != wish.options) make_subject(wish);
-  render(wish, number);
-}
-
 void Viewer::make_subject(const Wish& wish) {
   {
     const std::lock_guard lock(mutex_);
     is_cancellable_ = true;
     state_.activity = "reading";
-    ++state_.number;
-    changed_.notify_all();
+    announce();
   }
   Wish without_camera = wish;
   without_camera.camera.reset();
   const base::StopScope scope(&cancel_);
   Subject subject = make_(words_of(fixed_, without_camera));
   made_options_ = wish.options;
+  is_new_subject_ = true;
   const std::lock_guard lock(mutex_);
   is_cancellable_ = false;
   state_.subject = std::move(subject);
@@ -344,6 +340,7 @@ void Viewer::render(const Wish& wish, std::uint64_t number) {
     is_prepared_ = false;
     looked_.wait(lock, [this] { return looks_ == 0; });
     source_ = job.scene;
+    if (std::exchange(is_new_subject_, false)) picked_from_ = nullptr;  // no pick is under way
   }
   const auto set_prepared = [this] {
     const std::lock_guard lock(preparation_);
@@ -362,8 +359,7 @@ void Viewer::render(const Wish& wish, std::uint64_t number) {
     build_reported = fraction;
     const std::lock_guard lock(mutex_);
     state_.activity = fmt::format("building the BVH: {:.0f} %", 100 * fraction);
-    ++state_.number;
-    changed_.notify_all();
+    announce();
   };
   job.hooks.on_start = [&](const display::PictureInfo& info) {
     if (!moves) {
@@ -382,8 +378,7 @@ void Viewer::render(const Wish& wish, std::uint64_t number) {
       state_.height = info.height;
     }
     state_.activity.clear();
-    ++state_.number;
-    changed_.notify_all();
+    announce();
   };
   if (!moves) {
     job.hooks.on_pixels = [&](const film::Partial& state, const film::RenderedPixels& rendered) {
@@ -395,7 +390,7 @@ void Viewer::render(const Wish& wish, std::uint64_t number) {
         build_reported = -1;
         const std::lock_guard lock(mutex_);
         state_.activity.clear();
-        ++state_.number;
+        announce();
       }
       live->samples = static_cast<double>(progress.samples_done) /
                       (static_cast<double>(live->canvas.width()) * static_cast<double>(live->canvas.height()));

@@ -117,9 +117,9 @@ class Viewer {
   struct Source;
 
   void run();
-  void serve(const Wish& wish, std::uint64_t number);
   void make_subject(const Wish& wish);
   void render(const Wish& wish, std::uint64_t number);
+  void announce();
   void set_served(std::uint64_t wish, const std::string& problem);
   void refresh(Live& live);
   std::shared_ptr<const Source> source_of(const scene::Scene& scene, std::size_t table);
@@ -150,6 +150,7 @@ class Viewer {
   std::shared_ptr<const Source> picked_from_;
 
   // Of the rendering thread.
+  bool is_new_subject_ = false;                                     ///< it has not been rendered yet
   std::optional<std::map<std::string, std::string>> made_options_;  ///< of the subject
   std::shared_ptr<job::PreparedScene> prepared_;
   double pixels_per_second_ = 1e6;  ///< of moving images

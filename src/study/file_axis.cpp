@@ -1,17 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "study/temp_files.h"
+#include "study/file_axis.h"
 
-#include <cerrno>
 #include <chrono>
-#include <cstdlib>
-#include <cstring>
 #include <filesystem>
 #include <string>
-#include <system_error>
 
 #include <fmt/core.h>
 
-#include "base/error.h"
+#include "base/temp_dir.h"
 #include "compare/errors.h"
 #include "image/format.h"
 #include "image/header.h"
@@ -21,24 +17,8 @@
 
 namespace orrery::study {
 
-TempDir::TempDir() {
-  std::error_code failed;
-  const std::filesystem::path parent = std::filesystem::temp_directory_path(failed);
-  std::string name = ((failed ? std::filesystem::path("/tmp") : parent) / "orrery-study-XXXXXX").string();
-  if (::mkdtemp(name.data()) == nullptr)
-    throw base::Error(
-        base::ErrorKind::kCannotCreate,
-        fmt::format("{}: {}; set $TMPDIR to another folder for temporary files", name, std::strerror(errno)));
-  path_ = name;
-}
-
-TempDir::~TempDir() {
-  std::error_code ignored;  // destructors cannot report errors
-  std::filesystem::remove_all(path_, ignored);
-}
-
 std::vector<FilePoint> measure_file_axis(const film::Picture& picture) {
-  const TempDir scratch;
+  const base::TempDir scratch;
   const std::filesystem::path file = scratch.path() / "picture.exr";
   std::vector<FilePoint> out;
   for (const bool as_float : {false, true}) {
