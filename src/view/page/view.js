@@ -159,11 +159,7 @@ async function showState() {
   if (state.activity) $("status").textContent = state.activity;
   $("legend").hidden = state.legend === "";
   if (state.legend) $("legend").src = "data:image/svg+xml," + encodeURIComponent(state.legend);
-  $("notes").replaceChildren(...[...state.warnings, ...state.notes].map(note => {
-    const item = document.createElement("li");
-    item.textContent = note;
-    return item;
-  }));
+  $("notes").replaceChildren(...[...state.warnings, ...state.notes].map(note => element("li", { textContent: note })));
   updateControls();
 }
 
@@ -364,7 +360,7 @@ for (const button of document.querySelectorAll("[data-axis]"))
 
 // ---- Particles ----------------------------------------------------------------------------------------------------
 
-// The sphere at a position of the pointer; null: none.
+// The sphere or rod at a position of the pointer; null: none.
 async function pick(event) {
   const box = canvas.getBoundingClientRect();
   const x = (event.clientX - box.left) / box.width, y = (event.clientY - box.top) / box.height;
@@ -402,8 +398,7 @@ async function copy(text, button) {
 }
 
 $("copy").addEventListener("click", () => copy(state.command, $("copy")));
-$("film").addEventListener("click", () =>
-  copy(state.film, $("film")));
+$("film").addEventListener("click", () => copy(state.film, $("film")));
 for (const id of ["png", "exr", "scene"]) {
   if (isFramed) $(id).href += `?token=${secret}`;
   $(id).addEventListener("click", event => { if ($(id).getAttribute("aria-disabled") === "true") event.preventDefault(); });
