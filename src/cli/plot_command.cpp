@@ -187,6 +187,11 @@ void add_look_options(Command& command, plot::PlotOptions& plot, std::string& st
           "studio: a key light from the upper left of the camera, and white light from all directions. night: a lamp "
           "and a dark sky.")
       ->choices(plot::style_names());
+  command
+      .add_option("--material", plot.material, "MATERIAL",
+                  "Material of the spheres: matte, plastic, metal or glass; default: matte")
+      ->details("plastic: matte with a soft highlight. metal: brushed. glass: clear, without colours.")
+      ->choices(plot::material_names());
   command.add_flag("--allow-empty", plot.allow_empty,
                    "Render the background alone if --select or --slice leaves nothing; default: an error");
   command.add_flag("--ground", plot.ground, "Add a ground that receives shadows");

@@ -126,6 +126,7 @@ view::Subject data_subject(ShownOptions& shown) {
   out.chosen["--map"] = color.map;
   if (color.range) out.chosen["--range"] = fmt::format("{}:{}", color.range->low, color.range->high);
   out.chosen["--style"] = plot::style_names()[static_cast<std::size_t>(plot.style.value_or(plot::Style::kStudio))];
+  out.chosen["--material"] = plot.material;
   display::Settings display = plot::settings_of(plot, true).display;
   display.view = made.view;
   out.legend = plot::legend_svg(made.legend, display);
@@ -153,6 +154,7 @@ view::Controls controls_of(const std::filesystem::path& file) {
   out.options["--color-by"] = {"none", "element", "type", "rgb"};
   out.options["--map"] = points::color_map_names();
   out.options["--style"] = plot::style_names();
+  out.options["--material"] = plot::material_names();
   for (const char* option : {"--ground", "--range", "--select", "--slice", "--radius-scale", "--frame"})
     out.options[option] = {};
   return out;

@@ -64,6 +64,15 @@ kernel::Material compile_model(const scene::Emitter&) {
   return out;
 }
 
+kernel::Material compile_model(const scene::Plastic& m) {
+  kernel::Material out;
+  out.kind = kernel::MaterialKind::kPlastic;
+  set(out.albedo, m.albedo);
+  out.r0[0] = out.r0[1] = normal_reflectance(m.ior);
+  out.fuzz = m.fuzz;
+  return out;
+}
+
 kernel::Emission emission_of(const scene::MaterialModel& model, CompiledScene& compiled) {
   const auto* emitter = std::get_if<scene::Emitter>(&model);
   if (emitter == nullptr) return {};
@@ -99,7 +108,8 @@ void set_textures(const scene::MaterialModel& model, CompiledScene& compiled, ke
       },
       model);
   store.add_material(out);
-  if (!store.textures().empty() || (material.kind == kernel::MaterialKind::kDielectric && material.fuzz > 0))
+  if (!store.textures().empty() || material.kind == kernel::MaterialKind::kPlastic ||
+      (material.kind == kernel::MaterialKind::kDielectric && material.fuzz > 0))
     compiled.features.extended = true;
 }
 

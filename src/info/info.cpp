@@ -106,6 +106,7 @@ std::vector<Feature> features_of(const compile::CompiledScene& compiled, bool ha
           feature("metal", of(kernel::MaterialKind::kMetal), "not used by any sphere"),
           feature("fuzz", some([](const kernel::Material& m) { return m.fuzz > 0; }), "no material has fuzz above 0"),
           feature("dielectric", of(kernel::MaterialKind::kDielectric), "no glass: no Fresnel term, no refraction"),
+          feature("plastic", of(kernel::MaterialKind::kPlastic), "not used by any sphere"),
           feature("gradient sky", compiled.features.sky, "no gradient: independent of direction"),
           feature("image background", compiled.environment != nullptr, "no image: no texture lookups"),
           feature("textures", !compiled.textures.textures().empty(), "all materials are constant"),
@@ -158,7 +159,7 @@ std::string points_text(const std::vector<PointsInfo>& points) {
 }
 
 std::vector<std::pair<std::string, std::uint64_t>> count_materials(const compile::CompiledScene& compiled) {
-  static constexpr std::array kNames = {"lambertian", "hemisphere", "metal", "dielectric", "emitter"};
+  static constexpr std::array kNames = {"lambertian", "hemisphere", "metal", "dielectric", "emitter", "plastic"};
   std::array<std::uint64_t, kNames.size()> counts{};
   for (const kernel::Material& m : compiled.materials) ++counts[static_cast<std::size_t>(m.kind)];
   std::vector<std::pair<std::string, std::uint64_t>> out;

@@ -28,7 +28,8 @@ namespace orrery::kernel::HWY_NAMESPACE {
 
 // Weights of the power heuristic in one variable: x is the density of BSDF sampling divided by that of light sampling.
 // The product of BSDF and cosine is albedo times the density, so a light sample contributes albedo * radiance * x, and
-// nothing is divided by a density. With the heuristic's weights, no sample exceeds albedo * radiance.
+// nothing is divided by a density. With the heuristic's weights, no sample exceeds albedo * radiance. Plastic has two
+// such products, of base and coat. Each has its own densities and weights, and one shadow ray serves both.
 // Reference: veach1995.
 
 /// The weight of albedo times radiance for light samples: x / (1 + x^2), and x if only lights are sampled.
@@ -244,8 +245,16 @@ HWY_INLINE void trace_shadow_packet(D d, const SceneView& scene, const Tracer& t
       sample[lane] = lit.sample[shadow.path[i + lane]];
     });
     Recorder<D, kRecords> record(scene, tile, hn::Load(du, pixel), hn::Load(du, sample));
-    record.event(d, lanes, light, hn::LoadU(du, shadow.history + i), hn::LoadU(du, shadow.group + i),
-                 Lobe::kEmission /* a surface has scattered it */);
+    const auto unscattered = Lobe::kEmission;  // never used: a surface has scattered the light
+    const auto history = hn::LoadU(du, shadow.history + i), group = hn::LoadU(du, shadow.group + i);
+    const auto in_coat = hn::And(lanes, hn::RebindMask(d, hn::And(history, set(du, kCoatBit)) != 0));
+    if (hn::AllFalse(d, in_coat)) {
+      record.event(d, lanes, light, history, group, unscattered);
+    } else {
+      const auto coat = masked(in_coat, loadu3(d, shadow.coat, i));
+      record.event(d, lanes, light - coat, history, group, unscattered);
+      record.event(d, in_coat, coat, hn::LoadU(du, shadow.coat_history + i), group, unscattered);
+    }
   }
 }
 

@@ -18,17 +18,19 @@ template <class T>
 struct alignas(64) ShadowStreamOf {
   using Id = IdOf<T>;
   static constexpr int kCapacity = 3 * kPacketSize;
-  T base[3][kCapacity];       ///< centre of the sphere that the ray leaves
-  T offset[3][kCapacity];     ///< from that centre to the ray's origin
-  T direction[3][kCapacity];  ///< to the light; of any length
-  T distance[kCapacity];      ///< maximum distance of an occluder, as a multiple of the direction's length
-  T time[kCapacity];          ///< 0..1 within the shutter; only if the scene moves
-  T light[3][kCapacity];      ///< radiance times throughput and weight
-  Id self[kCapacity];         ///< sphere that the ray leaves
-  Id target[kCapacity];       ///< the light, or kNoSphere
-  Id path[kCapacity];         ///< index into LitPathsOf
-  Id history[kCapacity];      ///< only in loops that record paths
-  Id group[kCapacity];        ///< light group; only in loops that record paths
+  T base[3][kCapacity];        ///< centre of the sphere that the ray leaves
+  T offset[3][kCapacity];      ///< from that centre to the ray's origin
+  T direction[3][kCapacity];   ///< to the light; of any length
+  T distance[kCapacity];       ///< maximum distance of an occluder, as a multiple of the direction's length
+  T time[kCapacity];           ///< 0..1 within the shutter; only if the scene moves
+  T light[3][kCapacity];       ///< radiance times throughput and weight
+  Id self[kCapacity];          ///< sphere that the ray leaves
+  Id target[kCapacity];        ///< the light, or kNoSphere
+  Id path[kCapacity];          ///< index into LitPathsOf
+  Id history[kCapacity];       ///< only in loops that record paths
+  Id group[kCapacity];         ///< light group; only in loops that record paths
+  T coat[3][kCapacity];        ///< part of `light` that a coat scatters; only if the history has kCoatBit
+  Id coat_history[kCapacity];  ///< history of that part
   int count = 0;
   ShadowPacket<T> packet;  ///< the rays being traced
 };

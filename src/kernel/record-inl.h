@@ -25,6 +25,7 @@ namespace orrery::kernel::HWY_NAMESPACE {
 inline constexpr unsigned kLobeBits = 3;      ///< a FirstLobe, or 0 before the first surface
 inline constexpr unsigned kOnlyDeltaBit = 4;  ///< only delta materials so far
 inline constexpr unsigned kIndirectBit = 8;   ///< scattered again, not counting transmission through glass
+inline constexpr unsigned kCoatBit = 16;      ///< shadow rays: a part of the light is scattered by a coat
 enum FirstLobe : unsigned { kDiffuse = 1, kSpecular = 2, kTransmission = 3 };
 
 /// Writes the records, events and guides of one vector of paths.

@@ -28,7 +28,7 @@ struct Surface {
   hn::Mask<D> from_outside;
   V fuzz;
   V eta;  ///< dielectric: index on the ray's side / index beyond
-  V r0;   ///< dielectric: Schlick's constant for this side
+  V r0;   ///< dielectric, plastic: Schlick's constant for this side
   hn::Vec<IdTag<D>> kind, fresnel;
 
   /// Whether a direction points to the side that the ray came from. This is the test of the next intersection (the sign
@@ -46,8 +46,9 @@ struct Surface {
 /// Sampled directions, one per lane.
 template <class D>
 struct BsdfSample {
-  Vec3<hn::Vec<D>> direction;  ///< unit
-  hn::Mask<D> alive;           ///< false: absorbed
+  Vec3<hn::Vec<D>> direction;                ///< unit
+  hn::Mask<D> alive;                         ///< false: absorbed
+  hn::Mask<D> in_coat = hn::FirstN(D(), 0);  ///< scattered by the coat of plastic
 };
 
 inline constexpr double kTwoPi = 6.283185307179586476925;
@@ -59,13 +60,14 @@ HWY_INLINE hn::Mask<D> is_kind(D d, hn::Vec<IdTag<D>> kinds, E kind) {
 }
 
 /// Lanes whose material scatters around the mirror direction or the refracted one, with an angle of twice the fuzz.
-/// Light from other materials is diffuse.
+/// Light from other materials is diffuse, and so is that from the base of plastic.
 template <class D>
 HWY_INLINE hn::Mask<D> is_specular(D d, const Surface<D>& at) {
   return hn::Or(is_kind(d, at.kind, MaterialKind::kMetal), is_kind(d, at.kind, MaterialKind::kDielectric));
 }
 
-/// Lanes whose material is delta: a perfect mirror or a dielectric. See pdf_bsdf.
+/// Lanes whose material is delta: a perfect mirror or a dielectric. See pdf_bsdf. Plastic is not, since its base is
+/// not.
 template <class D>
 HWY_INLINE hn::Mask<D> is_delta(D d, const Surface<D>& at) {
   const auto mirror = hn::And(is_kind(d, at.kind, MaterialKind::kMetal), at.fuzz == 0);
@@ -116,18 +118,25 @@ HWY_INLINE BsdfSample<D> sample_metal(const Surface<D>& at, const Vec3<V>& on_sp
   return {select(sharp, mirror, w), hn::Or(sharp, at.same_side(w))};
 }
 
+/// Schlick's approximation of the Fresnel reflectance.
+///
+/// Reference  schlick1994
+template <class V>
+HWY_INLINE V schlick(V r0, V cosine) {
+  const V x = 1 - cosine;
+  const V x2 = x * x;
+  return mul_add(1 - r0, x2 * x2 * x, r0);
+}
+
 /// The Fresnel reflectance according to the material's model.
 template <class D, class V = hn::Vec<D>>
 HWY_INLINE V reflectance(D d, const Surface<D>& at, V cos_arriving, V cos_leaving) {
-  // As in the book, Schlick's approximation uses the cosine of the arriving ray on both sides.
-  const V x = 1 - cos_arriving;
-  const V x2 = x * x;
-  const V schlick = mul_add(1 - at.r0, x2 * x2 * x, at.r0);
   const V s = (at.eta * cos_arriving - cos_leaving) / (at.eta * cos_arriving + cos_leaving);
   const V p = (cos_arriving - at.eta * cos_leaving) / (cos_arriving + at.eta * cos_leaving);
   const V exact = mul_add(s, s, p * p) * 0.5;
+  // As in the book, Schlick's approximation uses the cosine of the arriving ray on both sides.
   return select(is_kind(d, at.fresnel, FresnelKind::kExact), exact,
-                hn::IfThenElseZero(is_kind(d, at.fresnel, FresnelKind::kSchlick), schlick));
+                hn::IfThenElseZero(is_kind(d, at.fresnel, FresnelKind::kSchlick), schlick(at.r0, cos_arriving)));
 }
 
 /// The direction that a smooth dielectric refracts to, and whether and how much it reflects.
@@ -157,25 +166,80 @@ HWY_INLINE Vec3<V> sample_dielectric(D d, const Surface<D>& at, V u) {
   return select(reflects, reflected(at), glass.direction);
 }
 
+/// A choice between two events by a uniform number.
+template <class D>
+struct Choice {
+  hn::Mask<D> is_first;
+  hn::Vec<D> rest;  ///< the number rescaled to be uniform in 0..1 again
+};
+
+/// Chooses the first event if u is below its probability.
+template <class D, class V = hn::Vec<D>>
+HWY_INLINE Choice<D> choose(D, V u, V probability) {
+  const auto is_first = u < probability;
+  const V rest = select(is_first, u, u - probability) / select(is_first, probability, 1 - probability);
+  return {is_first, min(rest, 1)};
+}
+
 /// Samples a rough dielectric: the direction of a smooth one, perturbed like that of a fuzzy metal. Directions on the
 /// wrong side of the surface are absorbed.
 template <class D, class V = hn::Vec<D>>
 HWY_INLINE BsdfSample<D> sample_rough_dielectric(D d, const Surface<D>& at, V u, V v) {
   const auto glass = refraction(d, at);
-  const V share = select(glass.is_total, 1, glass.reflectance);
-  const auto reflects = u < share;
-  // Rescales u to be uniform in 0..1 again.
-  const V rest = select(reflects, u, u - share) / select(reflects, share, 1 - share);
-  const auto axis = select(reflects, reflected(at), glass.direction);
-  const auto w = normalized(mul_add(sample_unit_sphere(d, min(rest, 1), v), at.fuzz, axis));
+  const auto reflects = choose(d, u, select(glass.is_total, 1, glass.reflectance));
+  const auto axis = select(reflects.is_first, reflected(at), glass.direction);
+  const auto w = normalized(mul_add(sample_unit_sphere(d, reflects.rest, v), at.fuzz, axis));
   const auto sharp = at.fuzz == 0;
   const auto same_side = at.same_side(w), other_side = at.other_side(w);
-  const auto stays = hn::Or(hn::And(reflects, same_side), hn::AndNot(reflects, other_side));
+  const auto stays = hn::Or(hn::And(reflects.is_first, same_side), hn::AndNot(reflects.is_first, other_side));
   return {select(sharp, axis, w), hn::Or(sharp, stays)};
 }
 
-/// Samples every lane's BSDF with the first two random numbers of its vertex.
+/// Fuzz of a coat below which its lobe counts as delta: rounding of a float's direction would change the density by
+/// more than a percent, and light sampling would not find so narrow a lobe.
+inline constexpr double kSharpCoat = 1e-4;
+
+/// The probability that plastic scatters in its coat: the Fresnel reflectance at the angle of the arriving ray. The
+/// base scatters the rest, so that both together lose nothing.
+template <class D>
+HWY_INLINE hn::Vec<D> coat_share(const Surface<D>& at) {
+  return schlick(at.r0, max(min(-dot(at.direction, at.normal), 1), 0));
+}
+
+/// 1 - cos of the angle between the mirror direction and the rim of the coat's lobe. Its mean square sine is that of a
+/// fuzzy metal to first order in fuzz^2, 2/3 fuzz^2.
+template <class D>
+HWY_INLINE hn::Vec<D> rim_of_coat(const Surface<D>& at) {
+  return at.fuzz * at.fuzz * (5.0 / 3);
+}
+
+/// Samples the coat of plastic. With versine t = (1 - cos) of the angle to the mirror direction and that of the rim T,
+/// the density is 2 / (pi T) (1 - t / T)^3, which is smooth, unlike that of fuzzy metal: a highlight has no rim.
+/// Directions below the surface are mirrored to the side above it, so none is absorbed.
 template <class D, class V = hn::Vec<D>>
+HWY_INLINE Vec3<V> sample_coat(D d, const Surface<D>& at, V u, V v) {
+  const auto axis = reflected(at);
+  const V versine = (1 - hn::Sqrt(hn::Sqrt(u))) * rim_of_coat(at);
+  const V sine = hn::Sqrt(versine * (2 - versine));
+  const auto frame = frame_around(d, axis);
+  const auto turn = sin_cos_turn(d, v);
+  const auto w = mul_add(frame.x, sine * turn.cos, mul_add(frame.y, sine * turn.sin, axis * (1 - versine)));
+  const auto above = select(at.same_side(w), w, neg_mul_add(at.normal, dot(w, at.normal) * 2, w));
+  return select(at.same_side(above), above, at.normal);
+}
+
+/// Samples plastic: the coat with the probability coat_share, else the base, which scatters like a Lambertian surface.
+template <class D, class V = hn::Vec<D>>
+HWY_NOINLINE BsdfSample<D> sample_plastic(D d, Surface<D> at, V u, V v) {
+  const auto lobe = choose(d, u, coat_share(at));
+  const auto base = sample_lambertian(at, sample_unit_sphere(d, lobe.rest, v));
+  return {select(lobe.is_first, sample_coat(d, at, lobe.rest, v), base), hn::FirstN(d, hn::Lanes(d)), lobe.is_first};
+}
+
+/// Samples every lane's BSDF with the first two random numbers of its vertex.
+///
+/// `kPlastic` false: no lane hit plastic
+template <bool kPlastic, class D, class V = hn::Vec<D>>
 HWY_INLINE BsdfSample<D> sample_bsdf(D d, const Features& features, const Surface<D>& at, const Four<V>& random) {
   BsdfSample<D> out{at.normal, hn::FirstN(d, hn::Lanes(d))};
   const Vec3<V> on_sphere = sample_unit_sphere(d, random.v[0], random.v[1]);
@@ -198,6 +262,12 @@ HWY_INLINE BsdfSample<D> sample_bsdf(D d, const Features& features, const Surfac
     } else {
       out.direction = select(glass, sample_dielectric(d, at, random.v[0]), out.direction);
     }
+  }
+  if constexpr (kPlastic) {
+    const auto plastic = among(MaterialKind::kPlastic);
+    const auto sampled = sample_plastic(d, at, random.v[0], random.v[1]);
+    out.direction = select(plastic, sampled.direction, out.direction);
+    out.in_coat = hn::And(plastic, sampled.in_coat);
   }
   return out;
 }
@@ -223,10 +293,14 @@ HWY_INLINE V pdf_metal(D d, const Surface<D>& at, const Vec3<V>& w) {
 
 /// The density with which sample_bsdf chooses a direction, per steradian. Zero for delta materials (metal without fuzz,
 /// smooth dielectric). A rough dielectric counts as delta, so it is sampled by its BSDF alone. A fuzzy metal's density
-/// integrates to the fraction that is not absorbed.
+/// integrates to the fraction that is not absorbed. For plastic this is the density of the base, see pdf_coat.
 ///
+/// The BSDF times the cosine to the normal is albedo times this density, for every material that is not delta. Plastic
+/// adds the density of its coat.
+///
+/// `kPlastic` false: no lane hit plastic
 /// Space      w unit
-template <class D, class V = hn::Vec<D>>
+template <bool kPlastic, class D, class V = hn::Vec<D>>
 HWY_INLINE V pdf_bsdf(D d, const Features& features, const Surface<D>& at, const Vec3<V>& w) {
   const auto among = [&](MaterialKind kind) { return is_kind(d, at.kind, kind); };
   const V cosine = max(dot(w, at.normal), 0);
@@ -234,17 +308,32 @@ HWY_INLINE V pdf_bsdf(D d, const Features& features, const Surface<D>& at, const
   if (features.hemisphere) pdf = select(among(MaterialKind::kHemisphere), 1 / kTwoPi, pdf);
   const auto metal = among(MaterialKind::kMetal);
   if (!hn::AllFalse(d, metal)) pdf = select(metal, pdf_metal(d, at, w), pdf);
+  if constexpr (kPlastic) {
+    const V base = (1 - coat_share(at)) * (cosine * (2 / kTwoPi));
+    pdf = select(is_kind(d, at.kind, MaterialKind::kPlastic), base, pdf);
+  }
   return hn::IfThenElseZero(at.same_side(w), pdf);
 }
 
-/// The BSDF times the cosine to the normal. For every material that is not delta this is albedo * pdf_bsdf; for delta
-/// materials it is zero.
+/// The density with which sample_bsdf chooses the coat of plastic and a direction, per steradian. Zero for coats that
+/// are delta.
+///
+/// A direction has been sampled by itself, or below the surface as its mirror image; the distance of that image to the
+/// mirror direction is the one from the direction to the arriving ray's.
 ///
 /// Space      w unit
+/// Domain     all lanes may have any material, but the result is meaningful for plastic only
+/// Precision  1 - cos from the difference of the two unit vectors
 template <class D, class V = hn::Vec<D>>
-HWY_INLINE Vec3<V> evaluate_bsdf(D d, const Features& features, const Surface<D>& at, const Vec3<V>& albedo,
-                                 const Vec3<V>& w) {
-  return albedo * pdf_bsdf(d, features, at, w);
+HWY_NOINLINE V pdf_coat(Surface<D> at, Vec3<V> w) {
+  const V rim = rim_of_coat(at);
+  const auto lobe = [&](const Vec3<V>& between) {
+    const V rest = max(1 - dot(between, between) * 0.5 / rim, 0);
+    return rest * rest * rest;
+  };
+  const V sum = lobe(w - reflected(at)) + lobe(w - at.direction);
+  const auto has_density = hn::And(at.same_side(w), at.fuzz >= kSharpCoat);
+  return hn::IfThenElseZero(has_density, coat_share(at) * sum * (4 / kTwoPi) / rim);
 }
 
 }  // namespace orrery::kernel::HWY_NAMESPACE

@@ -39,7 +39,7 @@ struct Features {
   bool sky = false;         ///< the background depends on the direction
   bool motion = false;      ///< camera or spheres move while the shutter is open
   bool lit = false;         ///< something emits, or is sampled: paths gain radiance at their vertices
-  bool extended = false;    ///< textures or rough glass
+  bool extended = false;    ///< textures, rough glass or plastic
   bool rods = false;        ///< there are rods
 };
 

@@ -30,7 +30,8 @@ namespace orrery::kernel::HWY_NAMESPACE {
 struct Loop {
   Precision precision = Precision::kExact;
   bool records = false;  ///< fills the tile's records, events and guides
-  bool full = false;     ///< renders all features; false: neither motion, lights, rods nor textures and rough glass
+  bool full = false;  ///< renders all features; false: neither motion, lights, rods, textures, rough glass nor plastic
+  bool plastic = false;  ///< scatters vectors in which a lane hit plastic; full loops have such a part
 };
 
 /// The features of a scene in this loop. In plain loops, those of full loops are false at compile time.
@@ -108,6 +109,10 @@ HWY_NOINLINE void record_first_hit(D d, const SceneView& scene, const Tile& tile
       .first_hit(d, hit, hits, recorded_offset(d, scene, hits, times, center, offset), direction, times);
 }
 
+template <class D, Loop kLoop>
+int shade_plastic(const SceneView& scene, const Tile& tile, std::uint32_t depth, PathStreamOf<hn::TFromD<D>>& stream,
+                  TileCounts& counts, const PathPayload<hn::TFromD<D>>& carried, int v, int alive);
+
 /// Shades traced packets of one depth.
 template <class D, Loop kLoop>
 class Shader {
@@ -137,7 +142,7 @@ class Shader {
       if (hn::AllFalse(d, at.hit)) continue;
       if (features_.lit) emit(at);
       if (ends && !(kLoop.records && depth_ == 0)) continue;
-      const Lookup<D> look = surface(at);
+      Lookup<D> look = surface(at);
       const Vec3<V> tinted = at.throughput * look.albedo;
       if (kLoop.records) record_surface(at, look, tinted);
       if (ends) continue;
@@ -145,10 +150,29 @@ class Shader {
         show(at, look);
         continue;
       }
-      if (features_.lit && samples_lights(scene_)) light(at, look, tinted);
-      alive += scatter(at, look, tinted, alive);
+      if constexpr (kLoop.full) {
+        const auto plastic = is_kind(d, look.surface.kind, MaterialKind::kPlastic);
+        if (features_.extended && !hn::AllFalse(d, plastic)) {
+          alive += shade_plastic<D, kLoop>(scene_, tile_, depth_, stream_, counts_, carried, v, alive);
+          continue;
+        }
+      }
+      alive += scatter_and_light(at, look, tinted, alive);
     }
     return alive;
+  }
+
+  /// Samples lights and BSDFs at the hits of a vector in which a lane hit plastic; see shade_plastic().
+  HWY_INLINE int sample_plastic_hits(const PathPayload<T>& carried, int v, int alive) {
+    const Arrivals<D> at = arrive(carried, v);
+    Lookup<D> look = surface(at);
+    return scatter_and_light(at, look, at.throughput * look.albedo, alive);
+  }
+
+  /// Samples lights and BSDFs at hits; see scatter() and light().
+  HWY_INLINE int scatter_and_light(const Arrivals<D>& at, Lookup<D>& look, const Vec3<V>& tinted, int alive) {
+    if (features_.lit && samples_lights(scene_)) light(at, look, tinted);
+    return scatter(at, look, tinted, alive);
   }
 
  private:
@@ -280,9 +304,21 @@ class Shader {
                      select(surface.from_outside, unit, negated(unit)), at.cone, at.times};
     if (has_cones()) vertex.cone = {at.cone.width2, hn::Zero(d), lobe_slope2(d, surface, scene_.cone_width)};
     const auto sample = sample_light(d, scene_, vertex, random);
-    const V pdf = pdf_bsdf(d, features_, surface, sample.direction);
+    const V pdf = pdf_bsdf<kLoop.plastic>(d, features_, surface, sample.direction);
     const V factor = light_sample_factor(scene_.direct_lighting, pdf * sample.inverse_pdf / sample.probability);
-    const auto lanes = hn::And(scatters, hn::And(sample.probability > 0, factor > 0));
+    auto lanes = hn::And(scatters, hn::And(sample.probability > 0, factor > 0));
+    Vec3<V> arriving = sample.radiance * tinted * factor;
+    Vec3<V> coat = arriving;
+    auto in_coat = lanes;
+    if constexpr (kLoop.plastic) {
+      const V coat_factor = light_sample_factor(
+          scene_.direct_lighting, pdf_coat(surface, sample.direction) * sample.inverse_pdf / sample.probability);
+      in_coat = hn::And(hn::And(scatters, is_kind(d, surface.kind, MaterialKind::kPlastic)),
+                        hn::And(sample.probability > 0, coat_factor > 0));
+      coat = masked(in_coat, sample.radiance * at.throughput * coat_factor);
+      arriving = arriving + coat;
+      lanes = hn::Or(lanes, in_coat);
+    }
     if (hn::AllFalse(d, lanes)) return;
 
     auto& shadow = stream_.lit.shadow;
@@ -293,12 +329,20 @@ class Shader {
     compactor.store3(d, sample.reach, shadow.direction, n);
     compactor.store(d, sample.distance, shadow.distance + n);
     if (features_.motion) compactor.store(d, hn::Load(d, at.times), shadow.time + n);
-    compactor.store3(d, sample.radiance * tinted * factor, shadow.light, n);
+    compactor.store3(d, arriving, shadow.light, n);
     compactor.store_ids(d, at.hits, shadow.self + n);
     compactor.store_ids(d, sample.target, shadow.target + n);
     compactor.store_ids(d, at.paths, shadow.path + n);
     if (kLoop.records) {
-      compactor.store_ids(d, history_after(at, surface, surface.normal), shadow.history + n);
+      Ids history = history_after(at, surface, surface.normal);
+      if constexpr (kLoop.plastic) {
+        compactor.store3(d, coat, shadow.coat, n);
+        Surface<D> lobe = surface;
+        lobe.kind = lobe_kinds(surface, in_coat);
+        compactor.store_ids(d, history_after(at, lobe, surface.normal), shadow.coat_history + n);
+        history = hn::Or(history, hn::IfThenElseZero(hn::RebindMask(du, in_coat), set(du, kCoatBit)));
+      }
+      compactor.store_ids(d, history, shadow.history + n);
       compactor.store_ids(d, sample.group, shadow.group + n);
     }
     shadow.count += compactor.count();
@@ -307,12 +351,13 @@ class Shader {
   /// Samples the BSDF and appends the surviving paths to the stream.
   ///
   /// Result     their number
-  HWY_INLINE int scatter(const Arrivals<D>& at, const Lookup<D>& look, const Vec3<V>& tinted, int alive) {
+  HWY_INLINE int scatter(const Arrivals<D>& at, Lookup<D>& look, const Vec3<V>& tinted, int alive) {
     const Surface<D>& surface = look.surface;
     const bool plays_roulette = depth_ + 1 >= scene_.roulette_depth;
     const auto random = random_at_vertex(d, scene_.sampler, at.pixels, at.samples, depth_ + 1, plays_roulette);
-    const auto scattered = sample_bsdf(d, features_, surface, random);
+    const auto scattered = sample_bsdf<kLoop.plastic>(d, features_, surface, random);
     Vec3<V> throughput = tinted;
+    if constexpr (kLoop.plastic) throughput = select(scattered.in_coat, at.throughput, tinted);
     auto survives = hn::And(at.hit, scattered.alive);
     if (features_.lit) survives = hn::AndNot(is_kind(d, surface.kind, MaterialKind::kEmitter), survives);
     if (plays_roulette) survives = hn::And(survives, survives_roulette(random.v[2], throughput));
@@ -327,14 +372,26 @@ class Shader {
     if (kLoop.full) compactor.store_ids(d, at.paths, stream_.lit.path + alive);
     if (features_.lit) {
       const V delta = hn::Set(d, std::numeric_limits<T>::infinity());
-      const V pdf = pdf_bsdf(d, features_, surface, scattered.direction);
-      compactor.store(d, select(has_pdf(at, look), pdf, delta), stream_.lit.pdf + alive);
+      V pdf = select(has_pdf(at, look), pdf_bsdf<kLoop.plastic>(d, features_, surface, scattered.direction), delta);
+      if constexpr (kLoop.plastic) {
+        const V coat = select(surface.fuzz < kSharpCoat, delta, pdf_coat(surface, scattered.direction));
+        pdf = select(scattered.in_coat, coat, pdf);
+      }
+      compactor.store(d, pdf, stream_.lit.pdf + alive);
     }
+    if constexpr (kLoop.plastic) look.surface.kind = lobe_kinds(surface, scattered.in_coat);
     if (has_cones()) {
       const auto cone = scattered_cone(d, at.cone, surface, look.sphere.radius, scattered.direction, scene_.cone_width);
       compactor.store3(d, Vec3<V>{cone.width2, cone.mixed, cone.slope2}, stream_.cone, alive);
     }
-    if (kLoop.records) compactor.store_ids(d, history_after(at, surface, scattered.direction), stream_.history + alive);
+    if (kLoop.records) {
+      Ids history = history_after(at, surface, scattered.direction);
+      // The guide of plastic is its surface, even if the coat is delta.
+      if constexpr (kLoop.plastic)
+        history =
+            hn::AndNot(hn::IfThenElseZero(hn::RebindMask(du, scattered.in_coat), set(du, kOnlyDeltaBit)), history);
+      compactor.store_ids(d, history, stream_.history + alive);
+    }
     return compactor.count();
   }
 
@@ -363,6 +420,10 @@ class Shader {
   HWY_INLINE Ids history_after(const Arrivals<D>& at, const Surface<D>& surface, const Vec3<V>& direction) const {
     return continued(d, at.history, surface, direction, depth_, tile_.events != nullptr);
   }
+  /// Kinds of materials that scatter like the lobes: the coat of plastic, in some lanes, like metal.
+  static HWY_INLINE Ids lobe_kinds(const Surface<D>& surface, hn::Mask<D> in_coat) {
+    return select(hn::RebindMask(du, in_coat), set(du, MaterialKind::kMetal), surface.kind);
+  }
   HWY_INLINE bool has_cones() const { return features_.extended && scene_.cone_width > 0; }
   HWY_INLINE hn::Mask<D> has_pdf(const Arrivals<D>& at, const Lookup<D>& look) const {
     return hn::AndNot(is_delta(d, look.surface), at.hit);
@@ -375,6 +436,19 @@ class Shader {
   Stream& stream_;
   TileCounts& counts_;
 };
+
+/// Samples lights and BSDFs at hits of which some are on plastic. Neither inlined nor passed what the loop has computed
+/// of them, so that the loop costs the same without plastic.
+///
+/// `v`        the vector's first lane in the packet
+/// Result     number of paths appended to the stream
+template <class D, Loop kLoop>
+HWY_NOINLINE int shade_plastic(const SceneView& scene, const Tile& tile, std::uint32_t depth,
+                               PathStreamOf<hn::TFromD<D>>& stream, TileCounts& counts,
+                               const PathPayload<hn::TFromD<D>>& carried, int v, int alive) {
+  constexpr Loop kPlastic{kLoop.precision, kLoop.records, kLoop.full, true};
+  return Shader<D, kPlastic>(scene, tile, depth, stream, counts).sample_plastic_hits(carried, v, alive);
+}
 
 }  // namespace orrery::kernel::HWY_NAMESPACE
 HWY_AFTER_NAMESPACE();

@@ -68,6 +68,11 @@ template <class M, class V>
 HWY_INLINE Vec3<V> select(M mask, const Vec3<V>& yes, const Vec3<V>& no) {
   return {select(mask, yes.x, no.x), select(mask, yes.y, no.y), select(mask, yes.z, no.z)};
 }
+/// Returns the vectors of some lanes, and zero in the others.
+template <class M, class V>
+HWY_INLINE Vec3<V> masked(M mask, const Vec3<V>& v) {
+  return {hn::IfThenElseZero(mask, v.x), hn::IfThenElseZero(mask, v.y), hn::IfThenElseZero(mask, v.z)};
+}
 /// Returns unit vectors; NaN in lanes whose vector is zero. Callers rely on comparisons with NaN being false.
 template <class V>
 HWY_INLINE Vec3<V> normalized(const Vec3<V>& a) {

@@ -243,9 +243,19 @@ class PlotMaker {
     std::string by = options_.color_by;
     std::string why;
     std::vector<std::string> out;
+    const bool is_glass = options_.material == "glass";
+    if (is_glass && !by.empty() && by != "none")
+      base::refuse(fmt::format("--color-by {} has no effect: glass has no colour; use another --material", by));
     if (by.empty()) {
-      by = !roles.rgb[0].empty() ? "rgb" : !roles.element.empty() ? "element" : !roles.type.empty() ? "type" : "none";
-      why = by == "rgb" ? "the file's own" : by == "none" ? "light grey" : "the file has no colours";
+      by = is_glass                 ? "none"
+           : !roles.rgb[0].empty()  ? "rgb"
+           : !roles.element.empty() ? "element"
+           : !roles.type.empty()    ? "type"
+                                    : "none";
+      why = is_glass       ? "glass has none"
+            : by == "rgb"  ? "the file's own"
+            : by == "none" ? "light grey"
+                           : "the file has no colours";
       out.push_back(fmt::format("{}: {}", by == "none" ? "no colour" : "colour by " + by, why));
     }
     if (set_color(options_, by, info_, color))

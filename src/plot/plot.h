@@ -22,15 +22,19 @@ enum class Style { kStudio, kAmbient, kFlat, kNight };
 /// Names of the styles, in the order of the enumerators.
 const std::vector<std::string>& style_names();
 
+/// Materials of the spheres, by name.
+const std::vector<std::string>& material_names();
+
 /// The style with this name; none for an empty name.
 ///
 /// Domain     empty, or one of style_names()
 std::optional<Style> style_of(const std::string& name);
 
 struct PlotOptions : DataOptions {
-  std::string look_from = "iso";  ///< "iso", "+x" .. "-z", or "azimuth,elevation" in degrees
-  std::string up;                 ///< "x", "y" or "z"; empty: depends on the format
-  std::optional<Style> style;     ///< default: kStudio
+  std::string look_from = "iso";   ///< "iso", "+x" .. "-z", or "azimuth,elevation" in degrees
+  std::string up;                  ///< "x", "y" or "z"; empty: depends on the format
+  std::optional<Style> style;      ///< default: kStudio
+  std::string material = "matte";  ///< one of material_names()
   bool ground = false;
   bool allow_empty = false;          ///< a selection or a slice may leave nothing
   bool has_target = false;           ///< the user limits noise or time

@@ -51,7 +51,25 @@ scene::Sphere lamp_of(const PlotParts& parts, const Lighting& light) {
   return {parts.center + toward * (light.distance * parts.radius), light.radius * parts.radius};
 }
 
+/// Materials of the spheres. Colours replace the albedo.
+const std::vector<scene::Material>& sphere_materials() {
+  static const std::vector<scene::Material> all = {{"matte", scene::Lambertian{{0.8, 0.8, 0.8}}},
+                                                   {"plastic", scene::Plastic{{0.8, 0.8, 0.8}}},
+                                                   {"metal", scene::Metal{{0.8, 0.8, 0.8}, 0.3}},
+                                                   {"glass", scene::Dielectric{}}};
+  return all;
+}
+
 }  // namespace
+
+const std::vector<std::string>& material_names() {
+  static const std::vector<std::string> names = [] {
+    std::vector<std::string> out;
+    for (const scene::Material& material : sphere_materials()) out.push_back(material.name);
+    return out;
+  }();
+  return names;
+}
 
 std::string scene_text(const PlotParts& parts) {
   const PlotOptions& options = parts.options;
@@ -70,7 +88,9 @@ std::string scene_text(const PlotParts& parts) {
     scene.materials.push_back({name, model});
     return static_cast<std::uint32_t>(scene.materials.size() - 1);
   };
-  scene.points[0].material = material("matte", scene::Lambertian{{0.8, 0.8, 0.8}});
+  for (const scene::Material& of_spheres : sphere_materials())
+    if (of_spheres.name == options.material)
+      scene.points[0].material = material(options.material.c_str(), of_spheres.model);
   if (parts.ground)
     scene.spheres.push_back(
         {parts.ground->center, parts.ground->radius, material("ground", scene::Lambertian{light.ground}), "ground"});

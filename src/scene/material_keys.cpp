@@ -74,6 +74,26 @@ std::vector<MaterialType> make_material_types() {
         text<M>("light_group", {"", "Light group, for the layer `light_groups`. Default: the group `default`"},
                 in(&Emitter::light_group))},
        {of("radiance", TextureUse::kRadiance, in(&Emitter::radiance_texture))}},
+      {"plastic",
+       "Plastic or paint: a clear coat over a diffuse base",
+       Plastic{},
+       {required(vector<M>("albedo", kUnit,
+                           {"scene-linear",
+                            "Fraction of the light which reaches the base that is scattered, per colour channel; or a "
+                            "[texture](#textures)"},
+                           in(&Plastic::albedo))),
+        number<M>("ior", {1, 1e6},
+                  {"",
+                   "Refractive index of the coat. It sets how much the coat reflects, by Schlick's approximation: 0.04 "
+                   "at normal incidence for 1.5"},
+                  in(&Plastic::ior)),
+        number<M>("fuzz", kUnit,
+                  {"",
+                   "Roughness of the coat. Its highlights are as wide as those of metal with the same fuzz, but "
+                   "brightest in the middle. 0: smooth. Or a [texture](#textures)"},
+                  in(&Plastic::fuzz))},
+       {of("albedo", TextureUse::kReflectance, in(&Plastic::albedo_texture)),
+        of("fuzz", TextureUse::kNumber, in(&Plastic::fuzz_texture))}},
   };
 }
 

@@ -141,6 +141,15 @@ struct Dielectric {
   TextureSlot fuzz_texture = {};
 };
 
+/// A dielectric coat over a diffuse base.
+struct Plastic {
+  Vec3d albedo{0.5, 0.5, 0.5};  ///< of the base
+  double ior = 1.5;             ///< of the coat
+  double fuzz = 0.3;            ///< 0..1, roughness of the coat
+  TextureSlot albedo_texture = {};
+  TextureSlot fuzz_texture = {};
+};
+
 /// Emits the same radiance in all directions, on both sides, and reflects nothing.
 struct Emitter {
   Vec3d radiance{1, 1, 1};
@@ -149,7 +158,7 @@ struct Emitter {
   TextureSlot radiance_texture = {};
 };
 
-using MaterialModel = std::variant<Lambertian, Hemisphere, Metal, Dielectric, Emitter>;
+using MaterialModel = std::variant<Lambertian, Hemisphere, Metal, Dielectric, Emitter, Plastic>;
 
 struct Material {
   std::string name;

@@ -97,6 +97,8 @@ TEST_F(CliPlot, RequestsAreCheckedBeforeFramesAreRead) {
   expect_error(plot + "-o a.##.png", 2, "a.##.png has a frame pattern");
   expect_error(plot + "-o a.png --layers Z", 2, "no output can hold the requested layers");
   expect_error(plot + "-o a.png --bits 32", 2, "bits");
+  expect_error(plot + "-o a.png --material wood", 2, "wood");
+  expect_error(plot + "-o a.png --material glass --color-by type", 2, "glass has no colour");
   expect_error(plot + "-o a.png --set color.view=Rw", 65, "did you mean `Raw`?");
   expect_error(plot + "-o a.png --set render.samples=0", 65, "render.samples");
 }

@@ -64,6 +64,8 @@ const Broken kBroken[] = {
      "[material.glass]\ntype = \"dielectric\"\n"
      "[[rod]]\nfrom = [0, 0, 0]\nto = [1, 0, 0]\nradius = 1\nmaterial = [\"grey\", \"glass\"]\n",
      "", 65, ":20:12: error: rod[0].material: \"glass\" is a dielectric, but rods are opaque"},
+    {"APlasticOfAnIndexBelowOne", "[material.m]\ntype = \"plastic\"\nalbedo = [1, 1, 1]\nior = 0.9\n", "", 65,
+     ":17:7: error: material.m.ior is 0.9; must be in 1..1e+06"},
     {"ARodThatShrinks",
      "[camera]\nshutter_close = 1\n[[rod]]\nfrom = [0, 0, 0]\nto = [1, 0, 0]\nradius = 1\nmaterial = \"grey\"\n"
      "[[key]]\ntarget = \"rod[0].radius\"\nframes = [1, 2]\nvalues = [1, 0]\n",

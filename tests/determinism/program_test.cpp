@@ -173,6 +173,7 @@ INSTANTIATE_TEST_SUITE_P(, DeterminismProgram,
                                          StoredImage{"textures.toml", 0xf986224e4a21d9f2u},
                                          StoredImage{"image-textures.toml", 0xfcae157c25f25d31u},
                                          StoredImage{"rods.toml", 0xb41708b0cd007565u},
+                                         StoredImage{"plastic.toml", 0x534e526ad2d381a9u},
                                          StoredImage{"many.toml", 0x730984d601e00b28u}),
                          [](const auto& instance) {
                            std::string name = instance.param.scene;

@@ -72,7 +72,7 @@ class Annotations(unittest.TestCase):
             self.assertEqual(set(types), expected, name)
 
     def test_textures(self):
-        for name in ("Lambertian", "Hemisphere", "Metal", "Dielectric", "Emitter"):
+        for name in ("Lambertian", "Hemisphere", "Metal", "Dielectric", "Emitter", "Plastic"):
             types = typing.get_type_hints(getattr(orrery, name).__init__)
             found = {a: t for a, t in types.items() if a in ("albedo", "fuzz", "radiance")}
             self.assertTrue(found, name)

@@ -459,6 +459,7 @@ class Settings(FolderTest):
             orrery.Metal(0.5, 0.1),
             orrery.Dielectric(1.3, fresnel="exact"),
             orrery.Emitter(2, light_group="lamp"),
+            orrery.Plastic((0.2, 0.5, 0.5), ior=1.6, fuzz=0.1),
         ]
         for background in backgrounds:
             images = set()
@@ -485,6 +486,7 @@ class Settings(FolderTest):
             orrery.Metal(color, number),
             orrery.Dielectric(1.5, fuzz=number),
             orrery.Emitter({"texture": "marble", "scale": 4}),
+            orrery.Plastic(color, fuzz=number),
         ]
         for material in materials:
             scene = orrery.Scene(background=orrery.Gradient(), materials={"textured": material})

@@ -26,4 +26,11 @@ inline scene::Scene everything() {
   return s;
 }
 
+/// Replaces opaque materials of everything() by plastic, rough and smooth. Only full path loops render it.
+inline scene::Scene with_plastic(scene::Scene s) {
+  s.materials[0].model = scene::Plastic{{0.5, 0.6, 0.4}, 1.5, 0.3};
+  s.materials[3].model = scene::Plastic{{0.8, 0.6, 0.2}, 2, 0};
+  return s;
+}
+
 }  // namespace orrery::test

@@ -87,6 +87,12 @@ inline std::vector<NamedScene> lit_scenes(int width_px, int height_px) {
   add_lamp(metal, {1.5, 2.5, 1}, 0.5, {15, 15, 15});
   add_ball(metal, {1.6, 0.6, 0.5}, 0.6, scene::Metal{{0.9, 0.7, 0.5}, 0.3});
   add_ball(metal, {-1.6, 0.6, 0.5}, 0.6, scene::Metal{{0.8, 0.8, 0.8}, 1});
+  scene::Scene& plastic = add("plastic, smooth and rough");
+  plastic.materials[0].model = scene::Plastic{{0.5, 0.5, 0.5}, 1.5, 0.2};
+  plastic.materials[1].model = scene::Plastic{{0.7, 0.3, 0.2}, 1.5, 0};
+  add_lamp(plastic, {1.5, 2.5, 1}, 0.5, {15, 15, 15});
+  add_ball(plastic, {1.6, 0.6, 0.5}, 0.6, scene::Plastic{{0.2, 0.3, 0.7}, 2.5, 0.3});
+  add_ball(plastic, {-1.6, 0.6, 0.5}, 0.6, scene::Plastic{{0.1, 0.1, 0.1}, 1.5, 1});
   scene::Scene& inside = add("camera inside an emitter");
   add_lamp(inside, {0, 2, 6}, 8, {0.5, 0.4, 0.3});
   add_lamp(inside, {1.5, 2.5, 1}, 0.4, {10, 10, 10});

@@ -29,6 +29,7 @@ from orrery._keys import (
     Image,
     Lambertian,
     Metal,
+    Plastic,
     Sky,
 )
 from orrery._orrery import color_map_names as _color_map_names
@@ -54,6 +55,7 @@ __all__ = [
     "OutOfMemoryError",
     "OutputError",
     "Picture",
+    "Plastic",
     "Points",
     "Progress",
     "Scene",

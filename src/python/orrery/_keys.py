@@ -220,5 +220,19 @@ class Emitter(Keys):
         super().__init__(type="emitter", radiance=_color(radiance), exposure=exposure, **keys)
 
 
+class Plastic(Keys):
+    """A clear coat over a diffuse base. Albedo, of the base, and fuzz, of the coat, may be textures."""
+
+    def __init__(
+        self,
+        albedo: Color | Texture | None = None,
+        *,
+        ior: float | None = None,
+        fuzz: float | Texture | None = None,
+        **keys: Any,
+    ) -> None:
+        super().__init__(type="plastic", albedo=_color(albedo), ior=ior, fuzz=fuzz, **keys)
+
+
 Background = Constant | Gradient | Image | Sky
-Material = Lambertian | Hemisphere | Metal | Dielectric | Emitter
+Material = Lambertian | Hemisphere | Metal | Dielectric | Emitter | Plastic

@@ -178,6 +178,21 @@ TEST(CompileCompile, HemisphereFeatureIsSetOnlyIfUsed) {
   EXPECT_TRUE(compile(s).features.hemisphere);
 }
 
+TEST(CompileCompile, PlasticReflectsTheSameOnBothSides) {
+  scene::Scene s = one_of_each();
+  EXPECT_FALSE(compile(s).features.extended);
+  s.materials[1].model = scene::Plastic{{0.1, 0.2, 0.3}, 1.5, 0.4};
+  const CompiledScene out = compile(s);
+  EXPECT_TRUE(out.features.extended);
+  const kernel::Material& m = out.materials[0];
+  EXPECT_EQ(m.kind, kernel::MaterialKind::kPlastic);
+  EXPECT_EQ(m.albedo[2], 0.3);
+  EXPECT_EQ(m.fuzz, 0.4);
+  EXPECT_NEAR(m.r0[0], 0.04, 1e-15);
+  EXPECT_EQ(m.r0[1], m.r0[0]);
+  EXPECT_EQ(out.sphere_materials[3], out.sphere_materials[0]) << "a negative radius";
+}
+
 TEST(CompileCameraBasis, FocusesOnLookAtByDefault) {
   scene::Camera camera;
   camera.look_from = {3, 0, 4};

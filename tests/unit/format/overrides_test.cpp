@@ -290,13 +290,14 @@ TEST(FormatOverrides, ListsOfWordsNeedNoQuotes) {
 
 TEST(FormatOverrides, AreCheckedLikeTheFile) {
   EXPECT_EQ(told("material.gold.ior=1.5"),
-            "--set: error: unknown key `ior` in material.gold of type metal; `ior` belongs to dielectric");
+            "--set: error: unknown key `ior` in material.gold of type metal; `ior` belongs to dielectric, plastic");
   EXPECT_EQ(told("sphere[0].material=glod"),
             "--set: error: sphere[0].material is \"glod\", which is not defined; did you mean `gold`?");
   EXPECT_EQ(told("render.samples=1.5"), "--set: error: render.samples must be an integer, not a floating-point number");
   EXPECT_EQ(told("camera=3"), "--set: error: `camera` must be a table; write [camera]");
-  EXPECT_EQ(told("material.new.fuzz=0.5"),
-            "--set: error: material.new needs `type`; one of lambertian, hemisphere, metal, dielectric, emitter");
+  EXPECT_EQ(
+      told("material.new.fuzz=0.5"),
+      "--set: error: material.new needs `type`; one of lambertian, hemisphere, metal, dielectric, emitter, plastic");
 }
 
 TEST(FormatOverrides, InvalidOverridesAreReported) {

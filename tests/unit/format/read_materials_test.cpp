@@ -41,25 +41,25 @@ TEST(FormatReadMaterials, AKeyOfAnotherTypeNamesThatType) {
       files.diagnostics("[material.a]\ntype = \"lambertian\"\nalbedo = [1, 1, 1]\nfuzz = 0.5\n[material.b]\n"
                         "type = \"dielectric\"\nalbedo = [1, 1, 1]\n"),
       "scene.toml:4:1: error: unknown key `fuzz` in material.a of type lambertian; `fuzz` belongs to metal, "
-      "dielectric\n"
+      "dielectric, plastic\n"
       "    fuzz = 0.5\n"
       "    ^~~~\n"
       "scene.toml:7:1: error: unknown key `albedo` in material.b of type dielectric; `albedo` belongs to lambertian, "
-      "hemisphere, metal\n"
+      "hemisphere, metal, plastic\n"
       "    albedo = [1, 1, 1]\n"
       "    ^~~~~~\n");
 }
 
 TEST(FormatReadMaterials, WithoutATypeKeysAreCheckedAgainstAllTypes) {
   SceneFiles files;
-  EXPECT_EQ(
-      files.diagnostics("[material.a]\nalbedo = [1, 1, 1]\nfuz = 0.5\n"),
-      "scene.toml:1:1: error: material.a needs `type`; one of lambertian, hemisphere, metal, dielectric, emitter\n"
-      "    [material.a]\n"
-      "    ^~~~~~~~~~~~\n"
-      "scene.toml:3:1: error: unknown key `fuz` in material.a; did you mean `fuzz`?\n"
-      "    fuz = 0.5\n"
-      "    ^~~\n");
+  EXPECT_EQ(files.diagnostics("[material.a]\nalbedo = [1, 1, 1]\nfuz = 0.5\n"),
+            "scene.toml:1:1: error: material.a needs `type`; one of lambertian, hemisphere, metal, dielectric, "
+            "emitter, plastic\n"
+            "    [material.a]\n"
+            "    ^~~~~~~~~~~~\n"
+            "scene.toml:3:1: error: unknown key `fuz` in material.a; did you mean `fuzz`?\n"
+            "    fuz = 0.5\n"
+            "    ^~~\n");
 }
 
 TEST(FormatReadMaterials, RangesOfValuesAreChecked) {

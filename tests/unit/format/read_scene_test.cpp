@@ -367,7 +367,7 @@ TEST(FormatReadScene, OneMistakeIsReportedOnce) {
   EXPECT_EQ(files.diagnostics("[material.a]\ntype = \"metall\"\nalbedo = 3\n"
                               "[[sphere]]\ncenter = [0,0,0]\nradius = 1\nmaterial = \"a\"\n"),
             "scene.toml:2:8: error: material.a.type is \"metall\"; must be one of lambertian, hemisphere, metal, "
-            "dielectric, emitter; did you mean `metal`?\n"
+            "dielectric, emitter, plastic; did you mean `metal`?\n"
             "    type = \"metall\"\n"
             "           ^~~~~~~~\n");
 }

@@ -82,6 +82,11 @@ TEST_F(Info, ReportsRequiredAndOmittedFeatures) {
   EXPECT_TRUE(requires_(found, "gradient sky"));
   EXPECT_FALSE(requires_(found, "fuzz"));
   EXPECT_FALSE(requires_(found, "dielectric")) << "a material that no sphere uses";
+  EXPECT_FALSE(requires_(found, "plastic"));
+  const SceneInfo plastic = info(kScene, {"material.mirror.type=plastic"});
+  EXPECT_TRUE(requires_(plastic, "plastic"));
+  EXPECT_TRUE(requires_(plastic, "fuzz"));
+  EXPECT_NE(info_text(plastic).find("1 plastic"), std::string::npos) << info_text(plastic);
   const SceneInfo pinhole = info(kScene, {"camera.defocus_angle=0", "background.type=constant"});
   EXPECT_FALSE(requires_(pinhole, "thin lens"));
   EXPECT_FALSE(requires_(pinhole, "gradient sky"));

@@ -540,6 +540,35 @@ TEST_F(PlotPlot, StylesAndGround) {
   EXPECT_GT(math::dot(lamp.center - scene.camera.look_from, back), lamp.radius) << "behind the camera";
 }
 
+TEST_F(PlotPlot, TheMaterialOfTheSpheres) {
+  write("a.csv", "x,y,z,radius,q\n0,0,2,1,1\n0,0,7,1,2\n");
+  make();
+  EXPECT_TRUE(std::holds_alternative<scene::Lambertian>(read().materials[read().points[0].material].model));
+  for (const std::string& name : material_names()) {
+    options.material = name;
+    make();
+    const scene::Scene scene = read();
+    EXPECT_EQ(scene.materials[scene.points[0].material].name, name);
+    EXPECT_EQ(std::holds_alternative<scene::Plastic>(scene.materials[scene.points[0].material].model),
+              name == "plastic");
+  }
+}
+
+TEST_F(PlotPlot, GlassHasNoColor) {
+  write("a.csv", "x,y,z,radius,type\n0,0,2,1,1\n0,0,7,1,2\n");
+  options.material = "glass";
+  make();
+  EXPECT_FALSE(read().points[0].color.is_set());
+  EXPECT_NE(choices().find("no colour: glass has none"), std::string::npos) << choices();
+  options.color_by = "none";
+  make();
+  options.color_by = "type";
+  EXPECT_THROW(make(), base::Error);
+  options.material = "metal";
+  make();
+  EXPECT_TRUE(read().points[0].color.is_set());
+}
+
 /// The mean over the image of an unoccluded matte sphere: the mean over the visible normals of the irradiance from the
 /// lamp and the background, by quadrature.
 TEST_F(PlotPlot, TheMeanOfASphereInTheStudioIsItsColor) {

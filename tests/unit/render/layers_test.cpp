@@ -18,6 +18,7 @@
 #include "render/settings.h"
 #include "support/add_matte.h"
 #include "support/everything.h"
+#include "support/lit_scenes.h"
 
 namespace orrery::render {
 namespace {
@@ -56,11 +57,12 @@ void expect_equal(const Result& a, const Result& b) {
 
 TEST(RenderLayers, BeautyIsBitIdenticalWithLayers) {
   for (const auto precision : {scene::Precision::kExact, scene::Precision::kFast, scene::Precision::kBook}) {
-    scene::Scene s = test::everything();
-    s.render.precision = precision;
-    const Result with = render_with(s, all_layers()), without = render_with(s, {});
-    for (const char* name : {"R", "G", "B", "A"}) EXPECT_EQ(plane(with, name), plane(without, name)) << name;
-    EXPECT_EQ(with.statistics.rays, without.statistics.rays);
+    for (scene::Scene s : {test::everything(), test::with_lamps(test::with_plastic(test::everything()))}) {
+      s.render.precision = precision;
+      const Result with = render_with(s, all_layers()), without = render_with(s, {});
+      for (const char* name : {"R", "G", "B", "A"}) EXPECT_EQ(plane(with, name), plane(without, name)) << name;
+      EXPECT_EQ(with.statistics.rays, without.statistics.rays);
+    }
   }
 }
 
@@ -84,7 +86,8 @@ scene::Scene with_light_groups(scene::Scene s) {
 
 TEST(RenderLayers, LobesAndLightGroupsAddUpToTheBeauty) {
   for (const auto precision : {scene::Precision::kExact, scene::Precision::kFast}) {
-    for (const scene::Scene& scene : {test::everything(), with_light_groups(test::everything())}) {
+    for (const scene::Scene& scene : {test::everything(), with_light_groups(test::everything()),
+                                      with_light_groups(test::with_plastic(test::everything()))}) {
       scene::Scene s = scene;
       s.render.precision = precision;
       film::LayerRequest request = all_layers();
@@ -155,6 +158,8 @@ TEST(RenderLayers, LightIsInTheGroupOfTheFirstSurface) {
   };
   EXPECT_EQ(groups_of(scene::Lambertian{{0.5, 0.5, 0.5}}), "background diffuse_direct ");
   EXPECT_EQ(groups_of(scene::Metal{{0.5, 0.5, 0.5}, 0}), "background specular_direct ");
+  for (const double fuzz : {0.0, 0.3})
+    EXPECT_EQ(groups_of(scene::Plastic{{0.5, 0.5, 0.5}, 1.5, fuzz}), "background diffuse_direct specular_direct ");
   // Light transmitted through both interfaces is direct; light reflected inside is indirect.
   EXPECT_EQ(groups_of(scene::Dielectric{1.5, scene::Fresnel::kExact}),
             "background specular_direct transmission_direct transmission_indirect ");
@@ -261,6 +266,41 @@ TEST(RenderLayers, GuidesFollowMirrorsToTheFirstDiffuseSurface) {
   EXPECT_FLOAT_EQ(plane(r, "denoise.albedo.B")[40], 0.1F);
   EXPECT_NEAR(plane(r, "denoise.normal.Z")[40], -1, 1e-3);
   EXPECT_FLOAT_EQ(plane(r, "albedo.R")[40], 0.5F);  // the mirror's albedo
+}
+
+/// Even if the coat is a mirror: what it reflects is a small part of the light.
+TEST(RenderLayers, GuidesShowTheSurfaceOfPlastic) {
+  for (const double fuzz : {0.0, 0.3}) {
+    const Result r =
+        render_with(ball_before_another(scene::Plastic{{0.5, 0.25, 0.125}, 2.5, fuzz}, scene::Metal{{1, 1, 1}, 0}, 64),
+                    all_layers());
+    EXPECT_EQ(plane(r, "denoise.albedo.R")[40], 0.5F);
+    EXPECT_EQ(plane(r, "denoise.albedo.B")[40], 0.125F);
+    EXPECT_NEAR(plane(r, "denoise.normal.Z")[40], 1, 1e-3);
+    EXPECT_EQ(plane(r, "albedo.R")[40], 0.5F);
+  }
+}
+
+/// A lamp of a small solid angle, straight ahead: the light that each lobe reflects is the product of its density, the
+/// solid angle and the radiance.
+TEST(RenderLayers, CoatIsSpecularAndBaseIsDiffuse) {
+  constexpr double kFuzz = 0.4, kShare = 0.04, pi = std::numbers::pi, kSolidAngle = pi * 1e-4, kRadiance = 1e4;
+  for (const auto mode : {scene::DirectLighting::kMis, scene::DirectLighting::kLight}) {
+    scene::Scene s = ball_before_another(scene::Plastic{{0.5, 0.5, 0.5}, 1.5, kFuzz},
+                                         scene::Emitter{{kRadiance, kRadiance, kRadiance}}, 4096);
+    s.image = {1, 1};
+    s.camera.vfov = 1e-3;
+    s.spheres[1].center = {0, 0, 101};
+    s.spheres[1].radius = 1;
+    s.background.type = scene::BackgroundType::kConstant;
+    s.background.color = {0, 0, 0};
+    s.render.direct_lighting = mode;
+    const Result r = render_with(s, all_layers());
+    const double coat = kShare * 2 / (pi * 5 * kFuzz * kFuzz / 3), base = (1 - kShare) * 0.5 / pi;
+    EXPECT_NEAR(plane(r, "specular_direct.G")[0] / (coat * kSolidAngle * kRadiance), 1, 0.01);
+    EXPECT_NEAR(plane(r, "diffuse_direct.G")[0] / (base * kSolidAngle * kRadiance), 1, 0.01);
+    EXPECT_EQ(plane(r, "specular_indirect.G")[0] + plane(r, "diffuse_indirect.G")[0], 0);
+  }
 }
 
 /// Compositing the image over a constant sky by the sum of its mattes, which equals alpha, gives the image rendered

@@ -22,6 +22,7 @@ namespace {
 using math::Vec3d;
 using test::everything;
 using test::with_lamps;
+using test::with_plastic;
 
 std::vector<float> pixels(const scene::Scene& scene, int threads = 0,
                           std::optional<accel::Traversal> traversal = std::nullopt) {
@@ -37,7 +38,7 @@ std::vector<float> pixels(const scene::Scene& scene, int threads = 0,
 
 TEST(RenderRender, ListAndEmbreeGiveTheSameBits) {
   for (const auto precision : {scene::Precision::kExact, scene::Precision::kFast}) {
-    for (scene::Scene s : {everything(), with_lamps(everything())}) {
+    for (scene::Scene s : {everything(), with_lamps(everything()), with_lamps(with_plastic(everything()))}) {
       s.render.precision = precision;
       s.render.accelerator = scene::Accelerator::kEmbree;
       const auto embree = pixels(s);
@@ -49,7 +50,7 @@ TEST(RenderRender, ListAndEmbreeGiveTheSameBits) {
 
 TEST(RenderRender, TraversalsGiveTheSameBits) {
   for (const auto precision : {scene::Precision::kExact, scene::Precision::kFast})
-    for (scene::Scene s : {everything(), with_lamps(everything())}) {
+    for (scene::Scene s : {everything(), with_lamps(everything()), with_lamps(with_plastic(everything()))}) {
       s.render.precision = precision;
       const auto measured = pixels(s);
       EXPECT_EQ(pixels(s, 0, accel::Traversal::kPacket), measured) << static_cast<int>(precision);
@@ -92,7 +93,7 @@ TEST(RenderRender, ListAndEmbreeGiveTheSameBitsFarFromTheOriginInFast) {
 }
 
 TEST(RenderRender, AnyNumberOfThreadsGivesTheSameBits) {
-  for (const scene::Scene& s : {everything(), with_lamps(everything())}) {
+  for (const scene::Scene& s : {everything(), with_lamps(everything()), with_lamps(with_plastic(everything()))}) {
     const auto one = pixels(s, 1);
     EXPECT_EQ(pixels(s, 2), one);
     EXPECT_EQ(pixels(s, 5), one);
@@ -118,7 +119,7 @@ scene::Scene scaled(scene::Scene s, double factor) {
 }
 
 TEST(RenderRender, SceneScaleChangesNoBits) {
-  for (const scene::Scene& s : {everything(), with_lamps(everything())}) {
+  for (const scene::Scene& s : {everything(), with_lamps(everything()), with_lamps(with_plastic(everything()))}) {
     const auto unit = pixels(s);
     for (const int k : {-60, -17, 1, 30, 48}) EXPECT_EQ(pixels(scaled(s, std::ldexp(1.0, k))), unit) << "2^" << k;
   }
@@ -171,6 +172,45 @@ TEST(RenderRender, WhiteFurnaceIsExactlyOne) {
                  {"w", scene::Dielectric{1.5, scene::Fresnel::kSchlick}},
                  {"w", scene::Dielectric{2.4, scene::Fresnel::kExact}}};
   for (const float value : pixels(s)) ASSERT_EQ(value, 1.0f);
+}
+
+TEST(RenderRender, PlasticLosesNoLightInAWhiteFurnace) {
+  scene::Scene s = everything();
+  s.background.bottom = s.background.top = {1, 1, 1};
+  s.render.max_depth = 1000;
+  s.materials = {{"w", scene::Lambertian{{1, 1, 1}}},         {"w", scene::Plastic{{1, 1, 1}, 1.5, 0}},
+                 {"w", scene::Plastic{{1, 1, 1}, 1.5, 0.3}},  {"w", scene::Plastic{{1, 1, 1}, 2.5, 1}},
+                 {"w", scene::Plastic{{1, 1, 1}, 1.5, 0.05}}, {"w", scene::Plastic{{1, 1, 1}, 1, 0.7}}};
+  for (const auto precision : {scene::Precision::kExact, scene::Precision::kFast, scene::Precision::kBook}) {
+    s.render.precision = precision;
+    for (const float value : pixels(s)) ASSERT_EQ(value, 1.0f) << static_cast<int>(precision);
+  }
+}
+
+/// A sphere in white light, from far away: the mean over the image of what its coat reflects has a closed form.
+TEST(RenderRender, ABlackPlasticSphereReflectsTheMeanOfSchlick) {
+  scene::Scene s;
+  s.image = {64, 64};
+  s.camera.look_from = {0, 0, 10};
+  s.camera.look_at = {0, 0, 0};
+  s.camera.projection = scene::Projection::kOrthographic;
+  s.camera.width = 2;
+  s.background.bottom = s.background.top = {1, 1, 1};
+  s.background.backdrop = Vec3d{0, 0, 0};
+  s.render.samples = 256;
+  s.spheres = {{{0, 0, 0}, 1, 0, ""}};
+  for (const double ior : {1.0, 1.5, 3.0}) {
+    const double r0 = (ior - 1) * (ior - 1) / ((ior + 1) * (ior + 1));
+    // Of (1 - cos)^5 over the disc: the integral of 2 c (1 - c)^5 over c in 0..1, which is 1/21.
+    const double expected = (r0 + (1 - r0) / 21) * std::numbers::pi / 4;
+    for (const double fuzz : {0.0, 0.3, 1.0}) {
+      s.materials = {{"black", scene::Plastic{{0, 0, 0}, ior, fuzz}}};
+      double mean = 0;
+      const std::vector<float> values = pixels(s);  // alpha follows the colours
+      for (std::size_t i = 0; i < 3 * 64 * 64; ++i) mean += static_cast<double>(values[i]) / (3 * 64 * 64);
+      EXPECT_NEAR(mean / expected, 1, 0.01) << ior << ' ' << fuzz;
+    }
+  }
 }
 
 TEST(RenderRender, NegativeRadiusEqualsTheInverseIndex) {
