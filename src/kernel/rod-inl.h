@@ -16,8 +16,10 @@
 
 #include <hwy/highway.h>
 
+#include <cstddef>
 #include <limits>
 
+#include "kernel/gather-inl.h"
 #include "kernel/intersect-inl.h"
 #include "kernel/rod.h"
 
@@ -34,6 +36,17 @@ struct Rods {
 template <class D>
 HWY_INLINE Rods<D> broadcast(D d, const Rod& rod) {
   return {set3(d, rod.a), set3(d, rod.b), set(d, rod.radius)};
+}
+
+/// Loads a rod per lane.
+template <class D, class RodOfLane>
+HWY_INLINE Rods<D> gather_rods(D d, RodOfLane rod_of_lane) {
+  hn::Vec<D> a[4], b[4];
+  gather4(
+      d, [&](std::size_t i) { return rod_of_lane(i).a; }, a);
+  gather4(
+      d, [&](std::size_t i) { return rod_of_lane(i).b; }, b);
+  return {{a[0], a[1], a[2]}, {b[0], b[1], b[2]}, a[3]};
 }
 
 /// Rods that have changed by `time` times `change`.
