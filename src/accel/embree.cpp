@@ -113,18 +113,17 @@ class Embree final : public Accel {
     std::vector<std::uint32_t> ids =
         boxed(scene_, view.sphere_count);  // not empty without rods: outliers are defined relative to other spheres
     const std::size_t primitives = view.sphere_count - scene_.outliers.size();
-    const auto share = [this, primitives](std::size_t count) {
-      return static_cast<double>(count) / static_cast<double>(primitives + scene_.rod_pieces.size());
+    const auto share = [all = primitives + view.rods.count](std::size_t count) {
+      return static_cast<double>(count) / static_cast<double>(all);
     };
-    scene_.frame = BoxFrame(scene_.bounded, ids, view.motion, view.moving_count,
-                            BoundedRods{view.rods, precision == kernel::Precision::kFast});
+    const BoundedRods rods{view.rods, precision == kernel::Precision::kFast};
+    scene_.frame = BoxFrame(scene_.bounded, ids, view.motion, view.moving_count, rods);
     ids = take_for_bvh(view, std::move(ids), bvh_threshold);
     for (std::uint32_t i = 0; i < view.rods.count; ++i)
       if (!is_in_bvh(view.rods, i)) add_pieces(view.rods.rods[i], i, scene_.rod_pieces);
     if (!ids.empty()) {
       const double end = share(ids.size());
-      bvh_ = SphereBvh(scene_.bounded, std::move(ids), scene_.frame, part_of(monitor, 0, end),
-                       BoundedRods{view.rods, precision == kernel::Precision::kFast});
+      bvh_ = SphereBvh(scene_.bounded, std::move(ids), scene_.frame, part_of(monitor, 0, end), rods);
     }
     build(primitives, part_of(monitor, share(bvh_.count), 1));
     packets_.scene = singles_.scene = &scene_;
