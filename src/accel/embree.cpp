@@ -120,7 +120,7 @@ class Embree final : public Accel {
     scene_.frame = BoxFrame(scene_.bounded, ids, view.motion, view.moving_count, rods);
     ids = take_for_bvh(view, std::move(ids), bvh_threshold);
     for (std::uint32_t i = 0; i < view.rods.count; ++i)
-      if (!is_in_bvh(view.rods, i)) add_pieces(view.rods.rods[i], i, scene_.rod_pieces);
+      if (!is_in_bvh(view.rods, i)) add_pieces(view.rods[i], i, scene_.rod_pieces);
     if (!ids.empty()) {
       const double end = share(ids.size());
       bvh_ = SphereBvh(scene_.bounded, std::move(ids), scene_.frame, part_of(monitor, 0, end), rods);
@@ -159,7 +159,7 @@ class Embree final : public Accel {
 
   /// Whether a rod is in the BVH of many spheres.
   bool is_in_bvh(const kernel::RodArray& rods, std::size_t rod) const {
-    return rod >= rods.moving_count && enclosing_sphere(rods.rods[rod]).radius <= largest_in_bvh_;
+    return rod >= rods.moving_count && enclosing_sphere(rods[rod]).radius <= largest_in_bvh_;
   }
 
   /// Selects the static spheres and rods of similar size for a BVH, if there are enough of them.

@@ -235,7 +235,7 @@ class PacketTraversal {
         auto found = Found<D, Packet>::load(d, packet, first);
         const auto ray = k::load_rays(d, packet, first);
         if (is_rod) {
-          const auto rod = k::broadcast(d, rods.rods[rods.index(candidate.what)]);
+          const auto rod = k::broadcast(d, rods[rods.index(candidate.what)]);
           intersect_rods<kPrecision>(d, ray, rod, ids, mask_of(d, part), found);
         } else {
           intersect<kPrecision>(d, ray, sphere, ids, mask_of(d, part), found);

@@ -88,9 +88,9 @@ HWY_INLINE unsigned intersect_candidates(const EmbreeQuery<Packet>& query, unsig
         at_spheres = hn::RebindMask(d, found_ids < set(du, rods.first_id));
         const auto at_rods = hn::AndNot(at_spheres, active);
         if (!hn::AllFalse(d, at_rods)) {
-          const auto rod = k::gather_rods(d, [&](std::size_t i) -> const kernel::Rod& {
-            return rods.rods[rods.contains(ids[i]) ? rods.index(ids[i]) : 0];
-          });
+          const Id any_rod = ids[hn::FindKnownFirstTrue(d, at_rods)];
+          const auto rod = k::gather_rods(
+              d, rods, [&](std::size_t i) { return rods.index(rods.contains(ids[i]) ? ids[i] : any_rod); });
           intersect_rods<kPrecision>(d, ray, rod, found_ids, at_rods, found);
         }
       }

@@ -88,7 +88,7 @@ class Prefetcher {
   /// Prefetches a sphere or rod.
   HWY_INLINE void prefetch_candidate(std::uint32_t id) const {
     const auto* const at = reinterpret_cast<const std::uint8_t*>(spheres_ + id * sphere_stride_);
-    hwy::Prefetch(has_rods_ && rods_.contains(id) ? reinterpret_cast<const std::uint8_t*>(&rods_.rods[rods_.index(id)])
+    hwy::Prefetch(has_rods_ && rods_.contains(id) ? static_cast<const std::uint8_t*>(rods_.address(rods_.index(id)))
                                                   : at);
   }
 

@@ -107,7 +107,7 @@ double giant_radius(const kernel::SceneView& view) {
   const kernel::RodArray& rods = view.rods;
   if (radii.empty())
     for (std::size_t i = rods.moving_count; i < rods.count; i += stride(rods.count - rods.moving_count))
-      radii.push_back(enclosing_sphere(rods.rods[i]).radius);
+      radii.push_back(enclosing_sphere(rods[i]).radius);
   const auto middle = radii.begin() + static_cast<std::ptrdiff_t>(radii.size() / 2);
   std::nth_element(radii.begin(), middle, radii.end());
   return kGiantRatio * *middle;
@@ -116,7 +116,7 @@ double giant_radius(const kernel::SceneView& view) {
 std::size_t short_rods(const kernel::SceneView& view, double radius) {
   std::size_t count = 0;
   for (std::size_t i = view.rods.moving_count; i < view.rods.count; ++i)
-    count += enclosing_sphere(view.rods.rods[i]).radius <= radius ? 1 : 0;
+    count += enclosing_sphere(view.rods[i]).radius <= radius ? 1 : 0;
   return count;
 }
 

@@ -27,14 +27,28 @@ struct RodScene {
   std::vector<kernel::Sphere> spheres;
   std::vector<Rod> motion = {};
   double camera_distance = 5;
+  std::vector<kernel::Bond> bonds = {};
 
   kernel::SceneView view() const {
     static constexpr kernel::Sphere kReadable;
     kernel::SceneView view;
     view.spheres = spheres.empty() ? &kReadable : spheres.data();
     view.sphere_count = spheres.size();
-    view.rods = {rods.data(), rods.size(), motion.data(), motion.size(), spheres.size()};
+    static constexpr double kBondRadii[] = {0.02, 0.03};
+    view.rods = {rods.data(),    rods.size() + bonds.size(),
+                 motion.data(),  motion.size(),
+                 spheres.size(), bonds.data(),
+                 bonds.size(),   kBondRadii,
+                 view.spheres};
     return view;
+  }
+
+  /// The same with rods in place of bonds.
+  RodScene without_bonds() const {
+    RodScene out = *this;
+    out.bonds.clear();
+    for (std::size_t i = rods.size(); i < rods.size() + bonds.size(); ++i) out.rods.push_back(view().rods[i]);
+    return out;
   }
 };
 
@@ -92,6 +106,11 @@ std::vector<RodScene> rod_scenes() {
     bundle.rods.push_back(rod);
   }
   list.push_back(bundle);
+  RodScene bonded{"bonds", test::random_rods(random, 3, 0.3, 0.03), test::scattered(random, 400, 1, 0.05, 0)};
+  for (std::uint32_t i = 0; i + 1 < 400; ++i) bonded.bonds.push_back({i, i + 1, i % 2});
+  list.push_back(bonded);
+  bonded.motion = test::random_rods(random, 2, 0.3, 0.03);
+  list.push_back(bonded);
   RodScene moving{"moving", test::random_rods(random, 100, 0.5, 0.03), test::scattered(random, 50, 1, 0.1, 0)};
   moving.motion = test::random_rods(random, 40, 0.6, 0.01);
   list.push_back(moving);
@@ -104,9 +123,8 @@ std::vector<RodScene> rod_scenes() {
 /// A ray from a rod or from afar, towards a point that lies close to the surface of a rod.
 template <class Packet>
 void aim_at_rod(Random& random, const RodScene& scene, Packet& packet, int lane) {
-  const auto pick = [&]() -> const Rod& {
-    return scene.rods[static_cast<std::size_t>(random.uniform(0, static_cast<double>(scene.rods.size())))];
-  };
+  const kernel::RodArray rods = scene.view().rods;
+  const auto pick = [&] { return rods[static_cast<std::size_t>(random.uniform(0, static_cast<double>(rods.count)))]; };
   const auto near = [&](const Rod& rod, double(&base)[3], double(&offset)[3], double height) {
     const double place = std::min(std::max(random.uniform(-0.2, 1.2), 0.0), 1.0);
     double out[3] = {random.uniform(-1, 1), random.uniform(-1, 1), random.uniform(-1, 1)};
@@ -134,7 +152,8 @@ void aim_at_rod(Random& random, const RodScene& scene, Packet& packet, int lane)
 template <class T>
 void compare_hits(const RodScene& scene, kernel::Precision precision, const test::Way& way) {
   const kernel::SceneView view = scene.view();
-  const auto list = make_list(view, precision), other = way.make(view, precision);
+  const RodScene rods = scene.without_bonds();
+  const auto list = make_list(rods.view(), precision), other = way.make(view, precision);
   Random random;
   long rod_hits = 0, different = 0, rays = 0;
   for (; rays < 10000; rays += kPacketSize) {
