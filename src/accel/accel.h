@@ -41,9 +41,9 @@ class Accel {
 /// Receives the progress of a build, 0..1, on any of its threads. Returns false to cancel the build.
 using BuildMonitor = std::function<bool(double fraction)>;
 
-/// Minimum number of static spheres of similar size for a SphereBvh: they then form a single primitive of Embree's
-/// scene (docs/decisions/0027-bvh-for-many-spheres.md). With fewer, each sphere is a primitive, which is faster.
-/// Depends on the instruction set.
+/// Minimum number of static spheres and rods of similar size for a SphereBvh: they then form a single primitive of
+/// Embree's scene (docs/decisions/0027-bvh-for-many-spheres.md). With fewer, each sphere is a primitive, which is
+/// faster. Depends on the instruction set.
 std::size_t bvh_threshold();
 
 /// A threshold that no scene reaches.
@@ -57,9 +57,15 @@ inline constexpr std::size_t kNoBvh = ~std::size_t{0};
 std::unique_ptr<Accel> make_embree(const kernel::SceneView& scene, kernel::Precision precision,
                                    const BuildMonitor& monitor = {}, std::size_t threshold = bvh_threshold());
 
-/// Approximate number of spheres that make_embree puts into its BVH of many spheres, where each takes 10 to 13 bytes
-/// instead of Embree's hundred.
-std::size_t spheres_in_bvh(const kernel::SceneView& scene);
+struct ObjectCounts {
+  std::size_t spheres = 0, rods = 0;
+
+  std::size_t all() const { return spheres + rods; }
+};
+
+/// Approximate numbers of spheres and rods that make_embree puts into its BVH of many spheres, where each takes 10 to
+/// 13 bytes, and 4 more if there are rods, instead of Embree's hundred.
+ObjectCounts objects_in_bvh(const kernel::SceneView& scene);
 
 /// Embree's version, for example "3.13.5".
 std::string embree_version();

@@ -113,16 +113,17 @@ class Embree final : public Accel {
     std::vector<std::uint32_t> ids =
         boxed(scene_, view.sphere_count);  // not empty without rods: outliers are defined relative to other spheres
     const std::size_t primitives = view.sphere_count - scene_.outliers.size();
-    for (std::uint32_t i = 0; i < view.rods.count; ++i) add_pieces(view.rods.rods[i], i, scene_.rod_pieces);
-    const auto share = [this, primitives](std::size_t count) {
-      return static_cast<double>(count) / static_cast<double>(primitives + scene_.rod_pieces.size());
+    const auto share = [all = primitives + view.rods.count](std::size_t count) {
+      return static_cast<double>(count) / static_cast<double>(all);
     };
-    scene_.frame = BoxFrame(scene_.bounded, ids, view.motion, view.moving_count,
-                            BoundedRods{view.rods, precision == kernel::Precision::kFast});
+    const BoundedRods rods{view.rods, precision == kernel::Precision::kFast};
+    scene_.frame = BoxFrame(scene_.bounded, ids, view.motion, view.moving_count, rods);
     ids = take_for_bvh(view, std::move(ids), bvh_threshold);
+    for (std::uint32_t i = 0; i < view.rods.count; ++i)
+      if (!is_in_bvh(view.rods, i)) add_pieces(view.rods[i], i, scene_.rod_pieces);
     if (!ids.empty()) {
       const double end = share(ids.size());
-      bvh_ = SphereBvh(scene_.bounded, std::move(ids), scene_.frame, part_of(monitor, 0, end));
+      bvh_ = SphereBvh(scene_.bounded, std::move(ids), scene_.frame, part_of(monitor, 0, end), rods);
     }
     build(primitives, part_of(monitor, share(bvh_.count), 1));
     packets_.scene = singles_.scene = &scene_;
@@ -156,14 +157,20 @@ class Embree final : public Accel {
     return scene;
   }
 
-  /// Selects the static spheres of similar size for a BVH, if there are enough of them.
+  /// Whether a rod is in the BVH of many spheres.
+  bool is_in_bvh(const kernel::RodArray& rods, std::size_t rod) const {
+    return rod >= rods.moving_count && enclosing_sphere(rods[rod]).radius <= largest_in_bvh_;
+  }
+
+  /// Selects the static spheres and rods of similar size for a BVH, if there are enough of them.
   ///
   /// `ids`      ascending ids of all spheres that are neither outliers nor duplicates
-  /// Result     empty: each sphere is a primitive
+  /// Result     empty: each sphere and rod is a primitive
   std::vector<std::uint32_t> take_for_bvh(const kernel::SceneView& view, std::vector<std::uint32_t> ids,
                                           std::size_t threshold) {
     ids.erase(ids.begin(), std::lower_bound(ids.begin(), ids.end(), view.moving_count));
-    if (ids.size() < threshold || ids.size() > SphereBvh::kMaxSpheres) return {};
+    const std::size_t static_rods = view.rods.count - view.rods.moving_count;
+    if (ids.size() + static_rods < threshold || ids.size() + static_rods > SphereBvh::kMaxSpheres) return {};
     const double limit = giant_radius(view);
     std::vector<std::uint32_t> giants;
     const base::StopPoint stop;
@@ -171,11 +178,15 @@ class Embree final : public Accel {
       stop.check(id);
       if (view.spheres[id].radius > limit) giants.push_back(id);
     }
-    if (ids.size() - giants.size() < threshold) return {};
+    const std::size_t rods = short_rods(view, limit);
+    if (ids.size() - giants.size() + rods < threshold) return {};
     std::erase_if(ids, [&](std::uint32_t id) { return view.spheres[id].radius > limit; });
-    if (threshold > 1 && is_small_layer(view.spheres, ids)) return {};
+    if (threshold > 1 && rods < ids.size() && is_small_layer(view.spheres, ids)) return {};
     scene_.singles = std::move(giants);
     scene_.has_bvh = true;
+    largest_in_bvh_ = limit;
+    for (std::size_t i = view.rods.moving_count; i < view.rods.count; ++i)
+      if (is_in_bvh(view.rods, i)) ids.push_back(view.rods.id(i));
     return ids;
   }
 
@@ -222,6 +233,7 @@ class Embree final : public Accel {
   EmbreeFunctions functions_;
   EmbreeScene scene_;
   ThreadTraversals packets_{Traversal::kPacket}, singles_{Traversal::kSingle};
+  double largest_in_bvh_ = -1;  ///< radius
   SphereBvh bvh_;
   OwnedScene embree_;
 };

@@ -35,7 +35,7 @@ class PacketTraversal {
   HWY_INLINE PacketTraversal(const SphereBvh& bvh, const EmbreeQuery<Packet>& query, const int* valid, RTCRayN* rays)
       : bvh_(bvh),
         query_(query),
-        prefetcher_(bvh, query.scene->spheres),
+        prefetcher_(bvh, *query.scene),
         direction_{&RTCRayN_dir_x(rays, kWidth, 0), &RTCRayN_dir_y(rays, kWidth, 0), &RTCRayN_dir_z(rays, kWidth, 0)},
         origin_{&RTCRayN_org_x(rays, kWidth, 0), &RTCRayN_org_y(rays, kWidth, 0), &RTCRayN_org_z(rays, kWidth, 0)} {
     const auto smallest = hn::Set(d_, kSmallestDirection), one = hn::Set(d_, 1.0F);
@@ -167,6 +167,18 @@ class PacketTraversal {
     const auto direction = load(direction_), origin = load(origin_);
     const auto wide_margin = hn::Set(d_, margin_of(bvh_, leaf));
     const auto infinite = hn::Set(d_, std::numeric_limits<float>::infinity());
+    const SphereBvh::LeafRods* const rods = bvh_.has_rods_in(index) ? &bvh_.rods[index] : nullptr;
+    alignas(64) float half[3][SphereBvh::kArity];
+    float rod_margin = 0;
+    if (rods != nullptr) {
+      rod_margin = margin_of(bvh_, leaf, *rods);
+      for (int v = 0; v < static_cast<int>(SphereBvh::kArity); v += kChildLanes) {
+        const auto axes = half_axes(*rods, v);
+        hn::Store(axes.x, dc, half[0] + v);
+        hn::Store(axes.y, dc, half[1] + v);
+        hn::Store(axes.z, dc, half[2] + v);
+      }
+    }
     auto limit = hn::Load(d_, limit_);
     each_bit(entered_by_any(bound, bvh_.count_in(index)), [&](int i) {
       const std::uint32_t id = leaf.ids[i];
@@ -175,6 +187,13 @@ class PacketTraversal {
       const auto passed = passing(at - origin, direction);
       const auto radius = hn::Set(d_, outer[i]);
       auto hit = may_hit(passed, radius, limit);
+      const bool is_rod = rods != nullptr && (rods->rods >> i & 1u) != 0;
+      const auto at_rod = [&] {
+        return AtRod<hn::Vec<Wide>>{
+            bvh_,        *rods,     rod_margin,
+            at - origin, direction, {hn::Set(d_, half[0][i]), hn::Set(d_, half[1][i]), hn::Set(d_, half[2][i])}};
+      };
+      if (is_rod) hit = hn::And(hit, at_rod().may_hit(passed.along, limit));
       unsigned hitting = bits_of(d_, hit) & lanes;
       if constexpr (Packet::kIsShadow) {
         each_bit(hitting, [&](int lane) {
@@ -183,11 +202,12 @@ class PacketTraversal {
         hit = mask_of(d_, hitting);
       }
       if (hitting == 0) return;
-      const auto begin = passed.along - radius;
-      const auto nearer = certain_limit(passed, hn::Set(d_, inner[i]), begin, wide_margin, limit);
+      const auto begin = is_rod ? at_rod().begin(passed.along) : passed.along - radius;
+      const auto nearer = is_rod ? min(limit, at_rod().certain_distance(begin))
+                                 : certain_limit(passed, hn::Set(d_, inner[i]), begin, wide_margin, limit);
       limit = select(hit, nearer, limit);
       const float nearest = hn::GetLane(hn::MinOfLanes(d_, select(hit, begin, infinite)));
-      prefetcher_.prefetch_sphere(id);
+      prefetcher_.prefetch_candidate(id);
       insert(candidates_, 0, candidate_count_, PacketVisit{nearest, id, hitting});
     });
     hn::Store(limit, d_, limit_);
@@ -205,13 +225,21 @@ class PacketTraversal {
       const unsigned lanes = candidate.lanes & within(candidate.enter);
       if (lanes == 0) continue;
       const auto ids = hn::Set(du, static_cast<typename Packet::Id>(candidate.what));
-      const auto sphere = k::broadcast(d, query_.scene->spheres[candidate.what]);
+      const kernel::RodArray& rods = query_.scene->rods;
+      const bool is_rod = rods.contains(candidate.what);
+      const auto sphere = k::broadcast(d, query_.scene->spheres[is_rod ? 0 : candidate.what]);
       for (int v = 0; v < kWidth; v += kStep) {
         const unsigned part = lanes >> v & ((1u << kStep) - 1u);
         if (part == 0) continue;
         const int first = query_.first + v;
         auto found = Found<D, Packet>::load(d, packet, first);
-        intersect<kPrecision>(d, k::load_rays(d, packet, first), sphere, ids, mask_of(d, part), found);
+        const auto ray = k::load_rays(d, packet, first);
+        if (is_rod) {
+          const auto rod = k::broadcast(d, rods[rods.index(candidate.what)]);
+          intersect_rods<kPrecision>(d, ray, rod, ids, mask_of(d, part), found);
+        } else {
+          intersect<kPrecision>(d, ray, sphere, ids, mask_of(d, part), found);
+        }
         if (hn::AllFalse(d, found.is_new)) continue;
         found.store(d, packet, first);
         store_float_lanes(d, found.limit(d, query_, v), found.is_new, limit_ + v);

@@ -212,6 +212,24 @@ HWY_INLINE void climb(const SphereBvh& bvh, SingleRay& ray) {
   test_children<true>(bvh.nodes[ray.subtree], ray, static_cast<int>(in_level % SphereBvh::kArity));
 }
 
+/// A ray, and the rods of a leaf from `first` on.
+HWY_INLINE AtRod<hn::Vec<ChildTag>> at_rods(const SphereBvh& bvh, std::uint32_t index, int first,
+                                            const SingleRay& ray) {
+  const ChildTag d;
+  const SphereBvh::Leaf& leaf = bvh.leaves[index];
+  const auto to_center = [&](int k) {
+    return mul_add(from_bytes(leaf.center[k] + first), leaf.step, hn::Set(d, leaf.origin[k] - ray.origin[k]));
+  };
+  const auto direction = [&](int k) { return hn::Set(d, ray.direction[k]); };
+  const SphereBvh::LeafRods& rods = bvh.rods[index];
+  return {bvh,
+          rods,
+          margin_of(bvh, leaf, rods),
+          {to_center(0), to_center(1), to_center(2)},
+          {direction(0), direction(1), direction(2)},
+          half_axes(rods, first)};
+}
+
 /// Determines the spheres of a leaf that a ray may hit before its limit.
 ///
 /// `target`    a sphere that is never hit
@@ -231,12 +249,17 @@ HWY_INLINE bool test_spheres(const SphereBvh& bvh, std::uint32_t index, std::uin
   const hn::RebindToUnsigned<ChildTag> du;
   const auto is_target = [&](int v) { return hn::RebindMask(d, hn::LoadU(du, leaf.ids + v) == target); };
   const bool is_last = index == bvh.last_leaf;
+  const bool has_rods = bvh.has_rods_in(index);
   bool any = false;
   for (int v = 0; v < static_cast<int>(SphereBvh::kArity); v += kChildLanes) {
     const k::Vec3<hn::Vec<ChildTag>> codes = {from_bytes(leaf.center[0] + v), from_bytes(leaf.center[1] + v),
                                               from_bytes(leaf.center[2] + v)};
     const auto passed = passing(mul_add(codes, step, origin), direction);
     auto hit = may_hit(passed, radii_of(bvh, index, v).most + margin, limit);
+    if (has_rods) {
+      const auto is_sphere = hn::Not(mask_of(d, bvh.rods[index].rods >> v));
+      hit = hn::And(hit, hn::Or(is_sphere, at_rods(bvh, index, v, ray).may_hit(passed.along, limit)));
+    }
     if (is_last) hit = hn::And(hit, hn::Iota(d, static_cast<float>(v)) < bvh.count_in(index));
     if (kShadows) hit = hn::AndNot(is_target(v), hit);
     hn::Store(passed.along, d, ray.along + v);
@@ -254,12 +277,19 @@ HWY_INLINE void add_candidates(const SphereBvh& bvh, std::uint32_t index, Single
   const SphereBvh::Leaf& leaf = bvh.leaves[index];
   const auto margin = hn::Set(d, margin_of(bvh, leaf));
   const auto infinite = hn::Set(d, std::numeric_limits<float>::infinity());
+  const bool has_rods = bvh.has_rods_in(index);
   int count = ray.candidates;
   auto nearest = hn::Set(d, ray.limit);
   for (int v = 0; v < static_cast<int>(SphereBvh::kArity); v += kChildLanes) {
     const Passing<hn::Vec<ChildTag>> passed = {hn::Load(d, ray.along + v), hn::Load(d, ray.offset_square + v)};
     const RadiusBounds radii = radii_of(bvh, index, v);
-    const auto begin = passed.along - (radii.most + margin);
+    auto begin = passed.along - (radii.most + margin);
+    auto inner = radii.least - margin;
+    const auto is_rod = has_rods ? mask_of(d, bvh.rods[index].rods >> v) : hn::FirstN(d, 0);
+    if (has_rods) {
+      begin = select(is_rod, at_rods(bvh, index, v, ray).begin(passed.along), begin);
+      inner = select(is_rod, -1, inner);
+    }
     const auto hit = passed.offset_square < infinite;
     const auto distance = max(begin, 0);
     if constexpr (kHasCompress) {
@@ -274,7 +304,11 @@ HWY_INLINE void add_candidates(const SphereBvh& bvh, std::uint32_t index, Single
         ray.candidate[count++] = leaf.ids[v + i];
       });
     }
-    nearest = certain_limit(passed, radii.least - margin, begin, margin, nearest);
+    nearest = certain_limit(passed, inner, begin, margin, nearest);
+    if (has_rods) {
+      const auto of_rods = at_rods(bvh, index, v, ray).certain_distance(begin);
+      nearest = min(nearest, select(hn::And(hit, is_rod), of_rods, nearest));
+    }
   }
   ray.candidates = count;
   ray.limit = hn::GetLane(hn::MinOfLanes(d, nearest));

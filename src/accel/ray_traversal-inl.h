@@ -56,6 +56,7 @@ HWY_INLINE unsigned intersect_candidates(const EmbreeQuery<Packet>& query, unsig
   constexpr int kStep = static_cast<int>(hn::MaxLanes(D()));
   Packet& packet = *query.packet;
   const EmbreeScene& scene = *query.scene;
+  const kernel::RodArray& rods = scene.rods;
   unsigned changed = 0, waiting = 0;
   each_bit(lanes, [&](int i) { waiting |= order_candidates(rays[i]) ? 1u << i : 0u; });
   for (int v = 0; v < kWidth; v += kStep) {
@@ -78,15 +79,30 @@ HWY_INLINE unsigned intersect_candidates(const EmbreeQuery<Packet>& query, unsig
         rest &= within && one.key_count > 0 ? ~0u : ~(1u << i);
       });
       if (now == 0) break;
-      const auto spheres = hn::Load(du, ids);
-      const auto active = hn::RebindMask(d, spheres != kernel::kNoSphere);
-      hn::Vec<D> row[4];
+      const auto found_ids = hn::Load(du, ids);
+      const auto active = hn::RebindMask(d, found_ids != kernel::kNoSphere);
       const Id any = ids[static_cast<int>(hwy::Num0BitsBelowLS1Bit_Nonzero32(now)) - v];
-      k::gather_spheres(
-          d, scene.spheres, [&](std::size_t i) { return ids[i] == kernel::kNoSphere ? any : ids[i]; }, row);
-      const k::Spheres<D> sphere{{row[0], row[1], row[2]}, row[3]};
       found.is_new = hn::FirstN(d, 0);
-      intersect<kPrecision>(d, ray, sphere, spheres, active, found);
+      auto at_spheres = active;
+      if (!rods.empty()) {
+        at_spheres = hn::RebindMask(d, found_ids < set(du, rods.first_id));
+        const auto at_rods = hn::AndNot(at_spheres, active);
+        if (!hn::AllFalse(d, at_rods)) {
+          const Id any_rod = ids[hn::FindKnownFirstTrue(d, at_rods)];
+          const auto rod = k::gather_rods(
+              d, rods, [&](std::size_t i) { return rods.index(rods.contains(ids[i]) ? ids[i] : any_rod); });
+          intersect_rods<kPrecision>(d, ray, rod, found_ids, at_rods, found);
+        }
+      }
+      if (!hn::AllFalse(d, at_spheres)) {
+        hn::Vec<D> row[4];
+        const Id other = rods.contains(any) ? 0 : any;
+        k::gather_spheres(
+            d, scene.spheres,
+            [&](std::size_t i) { return ids[i] == kernel::kNoSphere || rods.contains(ids[i]) ? other : ids[i]; }, row);
+        const k::Spheres<D> sphere{{row[0], row[1], row[2]}, row[3]};
+        intersect<kPrecision>(d, ray, sphere, found_ids, at_spheres, found);
+      }
       const unsigned hits = bits_of(d, found.is_new);
       if (hits == 0) continue;
       alignas(64) float limits[kWidth];
@@ -108,8 +124,7 @@ HWY_INLINE unsigned intersect_candidates(const EmbreeQuery<Packet>& query, unsig
 template <class Packet, kernel::Precision kPrecision>
 HWY_INLINE unsigned trace_rays(const SphereBvh& bvh, const EmbreeQuery<Packet>& query, unsigned lanes,
                                SingleRay* rays) {
-  const EmbreeScene& scene = *query.scene;
-  const Prefetcher prefetcher(bvh, scene.spheres);
+  const Prefetcher prefetcher(bvh, *query.scene);
   // Rays grouped by the kind of what they visit next: kWidth bits per kind.
   std::uint64_t queue = 0;
   constexpr std::uint64_t kOneKind = (std::uint64_t{1} << 16) - 1;
@@ -155,7 +170,7 @@ HWY_INLINE unsigned trace_rays(const SphereBvh& bvh, const EmbreeQuery<Packet>& 
       SingleRay& ray = rays[i];
       add_candidates(bvh, ray.what[ray.waiting] & kIndexMask, ray);
       full = full || ray.candidates > kMaxCandidates - static_cast<int>(SphereBvh::kArity);
-      prefetcher.prefetch_sphere(ray.candidate[ray.candidates - 1]);
+      prefetcher.prefetch_candidate(ray.candidate[ray.candidates - 1]);
     });
     each_bit(at_leaves, enqueue);
 
@@ -178,7 +193,9 @@ HWY_INLINE unsigned traverse_by_rays(const SphereBvh& bvh, const EmbreeQuery<Pac
   const hn::ScalableTag<float> d;
   const hn::RebindToUnsigned<decltype(d)> du;
   SingleRay states[kWidth];
-  const auto self = [&](int i) { return static_cast<std::uint32_t>(query.packet->self[query.first + i]); };
+  const auto self = [&](int i) {
+    return query.scene->rods.object(static_cast<std::uint32_t>(query.packet->self[query.first + i]));
+  };
   for (int i = 0; i < kWidth; ++i)
     hwy::Prefetch(bvh.start_nodes.address(self(i) < bvh.start_nodes.size() ? self(i) : 0));
   const float* const origin[3] = {&RTCRayN_org_x(rays, kWidth, 0), &RTCRayN_org_y(rays, kWidth, 0),

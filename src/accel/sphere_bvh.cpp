@@ -28,6 +28,14 @@ using math::rounded_up;
 /// ray by at most 40 x 2^-24 relative to a sphere and by at most 19 x 2^-24 relative to a box.
 constexpr double kSpherePadding = 0x1.4p-17, kBoxPadding = 0x1p-18;
 
+/// The components of the half axes of rods are -127 to 127 steps.
+constexpr double kHalfCodes = 127;
+
+/// Rounding error of the triple product of a ray's direction, the half axis of a rod, and the vector between them, in
+/// units of the frame's reach times the length of the half axis: at most 8 x 2^-24 of that vector, whose length is at
+/// most 2.5 reaches. The half axis is at most sqrt(3) x 127 steps long.
+constexpr double kAxisSlack = 0x1p-18 * 1.7321 * kHalfCodes;
+
 /// Number of leaves that are created before the memory of their items is released, and of items before that of their
 /// ids.
 constexpr std::size_t kReleasedLeaves = 1 << 16, kReleasedIds = kReleasedLeaves * kArity;
@@ -113,25 +121,72 @@ SphereBvh::Leaf make_leaf(const SphereItem* items, std::size_t count) {
   return leaf;
 }
 
+/// A rod's half axis and radius, in box space.
+struct RodExtent {
+  double half[3], radius;
+
+  RodExtent(const kernel::Rod& rod, const BoxFrame& frame) : radius(rod.radius * frame.scale) {
+    for (int axis = 0; axis < 3; ++axis) half[axis] = (rod.b[axis] - rod.a[axis]) / 2 * frame.scale;
+  }
+};
+
+SphereBvh::LeafRods make_leaf_rods(const SphereBvh::Leaf& leaf, std::size_t count, const BoundedRods& rods,
+                                   const BoxFrame& frame) {
+  SphereBvh::LeafRods out{};
+  const auto each = [&](auto f) {
+    for (std::size_t i = 0; i < count; ++i)
+      if (rods.rods.contains(leaf.ids[i])) f(i, RodExtent(rods.at(rods.rods.index(leaf.ids[i]), 0), frame));
+  };
+  double most = 0, thickest = 0, thinnest = std::numeric_limits<double>::infinity();
+  each([&](std::size_t i, const RodExtent& rod) {
+    out.rods |= 1u << i;
+    for (const double x : rod.half) most = std::max(most, std::abs(x));
+    thickest = std::max(thickest, rod.radius);
+    thinnest = std::min(thinnest, rod.radius);
+  });
+  if (out.rods == 0) return out;
+  out.step = std::max(rounded_up(most / kHalfCodes), std::numeric_limits<float>::min());
+  out.radius = rounded_up(thickest);
+  out.least_radius = math::rounded_down(thinnest);
+  each([&](std::size_t i, const RodExtent& rod) {
+    for (int axis = 0; axis < 3; ++axis)
+      out.half[axis][i] = static_cast<std::int8_t>(std::lround(rod.half[axis] / out.step));
+  });
+  return out;
+}
+
 }  // namespace
 
+kernel::Sphere enclosing_sphere(const kernel::Rod& rod) noexcept {
+  const double half[3] = {(rod.b[0] - rod.a[0]) / 2, (rod.b[1] - rod.a[1]) / 2, (rod.b[2] - rod.a[2]) / 2};
+  return {rod.a[0] + half[0], rod.a[1] + half[1], rod.a[2] + half[2],
+          std::hypot(half[0], half[1], half[2]) + rod.radius};
+}
+
 SphereBvh::SphereBvh(const BoundedSpheres& spheres, std::vector<std::uint32_t> ids, const BoxFrame& frame,
-                     const std::function<bool(double)>& monitor)
+                     const std::function<bool(double)>& monitor, const BoundedRods& bounded_rods)
     : count(ids.size()) {
   using Range = tbb::blocked_range<std::size_t>;
   const std::size_t leaf_count = (count + kArity - 1) / kArity;
   padding = rounded_up(kSpherePadding * frame.reach);
+  axis_slack = rounded_up(kAxisSlack * frame.reach);
+  const kernel::RodArray& all_rods = bounded_rods.rods;
+  const auto enclosing = [&](std::uint32_t id) {
+    return all_rods.contains(id) ? enclosing_sphere(bounded_rods.at(all_rods.index(id), 0)) : spheres[id];
+  };
   double smallest = std::numeric_limits<double>::infinity(), largest = 0, sum = 0;
   const base::StopPoint stop;
+  bool has_rods = false;
   for (const std::uint32_t id : ids) {
-    const double r = spheres[id].radius;
+    const double r = enclosing(id).radius;
+    has_rods = has_rods || all_rods.contains(id);
     smallest = std::min(smallest, r);
     largest = std::max(largest, r);
     sum += r;
   }
-  const bool own_radii = smallest < largest;
+  const bool own_radii = smallest < largest || has_rods;
   radius = rounded_up(largest * frame.scale);
-  const std::size_t id_count = std::size_t{*std::max_element(ids.begin(), ids.end())} + 1;
+  const std::size_t object_count = all_rods.object(*std::max_element(ids.begin(), ids.end())) + 1;
 
   stop.check();
   using Allocator = base::HugePageAllocator<SphereItem>;
@@ -142,7 +197,7 @@ SphereBvh::SphereBvh(const BoundedSpheres& spheres, std::vector<std::uint32_t> i
   const auto make_items = [&](const Range& range) {
     stop.check();
     for (std::size_t i = range.begin(); i < range.end(); ++i) {
-      const kernel::Sphere s = spheres[ids[i]];
+      const kernel::Sphere s = enclosing(ids[i]);
       items[i] = {{static_cast<float>((s.x - frame.middle[0]) * frame.scale),
                    static_cast<float>((s.y - frame.middle[1]) * frame.scale),
                    static_cast<float>((s.z - frame.middle[2]) * frame.scale)},
@@ -162,8 +217,9 @@ SphereBvh::SphereBvh(const BoundedSpheres& spheres, std::vector<std::uint32_t> i
   leaves.reserve(leaf_count);
   last_leaf = static_cast<std::uint32_t>(leaf_count - 1);
   no_start_node = static_cast<std::uint32_t>((leaf_count + kArity - 1) / kArity);
-  start_nodes = base::PackedArray(id_count, no_start_node);
+  start_nodes = base::PackedArray(object_count, no_start_node);
   if (own_radii) radii.reserve(leaf_count);
+  if (has_rods) rods.reserve(leaf_count);
   std::vector<Bounds> below;
   below.reserve(leaf_count);
   const auto make_leaves = [&](const Range& range) {
@@ -173,19 +229,24 @@ SphereBvh::SphereBvh(const BoundedSpheres& spheres, std::vector<std::uint32_t> i
       leaves[l] = make_leaf(in_leaf, n);
       float r[kArity], most = 0;
       for (std::size_t i = 0; i < n; ++i) {
-        start_nodes.set(in_leaf[i].id, static_cast<std::uint32_t>(l / kArity));
-        r[i] = own_radii ? rounded_up(spheres[in_leaf[i].id].radius * frame.scale) : radius;
+        start_nodes.set(all_rods.object(in_leaf[i].id), static_cast<std::uint32_t>(l / kArity));
+        r[i] = own_radii ? rounded_up(enclosing(in_leaf[i].id).radius * frame.scale) : radius;
         most = std::max(most, r[i]);
-        float lower[3], upper[3];
+        float reach[3] = {r[i], r[i], r[i]}, lower[3], upper[3];
+        if (all_rods.contains(in_leaf[i].id)) {
+          const RodExtent rod(bounded_rods.at(all_rods.index(in_leaf[i].id), 0), frame);
+          for (int axis = 0; axis < 3; ++axis) reach[axis] = rounded_up(std::abs(rod.half[axis]) + rod.radius);
+        }
         for (int axis = 0; axis < 3; ++axis) {
-          lower[axis] = in_leaf[i].center[axis] - (r[i] + box_padding);
-          upper[axis] = in_leaf[i].center[axis] + (r[i] + box_padding);
+          lower[axis] = in_leaf[i].center[axis] - (reach[axis] + box_padding);
+          upper[axis] = in_leaf[i].center[axis] + (reach[axis] + box_padding);
         }
         below[l].add(lower, upper);
       }
       if (!own_radii) continue;
       radii[l].step = step_between(0, most);
       for (std::size_t i = 0; i < n; ++i) radii[l].radius[i] = code_above(r[i], 0, radii[l].step);
+      if (has_rods) rods[l] = make_leaf_rods(leaves[l], n, bounded_rods, frame);
     }
   };
   // Leaves replace items step by step, so that both are never in memory completely.
@@ -194,6 +255,7 @@ SphereBvh::SphereBvh(const BoundedSpheres& spheres, std::vector<std::uint32_t> i
     const std::size_t end = std::min(leaf_count, begin + kReleasedLeaves);
     leaves.resize(end);
     if (own_radii) radii.resize(end);
+    if (has_rods) rods.resize(end);
     below.resize(end);
     tbb::parallel_for(Range(begin, end, 256), make_leaves);
     release(&items[begin * kArity], &items[0] + std::min(count, end * kArity));
@@ -224,7 +286,7 @@ SphereBvh::SphereBvh(const BoundedSpheres& spheres, std::vector<std::uint32_t> i
 
 std::size_t SphereBvh::bytes() const noexcept {
   return start_nodes.bytes() + cells.size() * sizeof(Cell) + leaves.size() * sizeof(Leaf) +
-         radii.size() * sizeof(LeafRadii) + nodes.size() * sizeof(Node);
+         radii.size() * sizeof(LeafRadii) + rods.size() * sizeof(LeafRods) + nodes.size() * sizeof(Node);
 }
 
 }  // namespace orrery::accel

@@ -11,12 +11,16 @@
 
 #include "accel/box_frame.h"
 #include "base/huge_pages.h"
+#include "kernel/rod.h"
 #include "kernel/sphere.h"
 
 namespace orrery::accel {
 
-/// A BVH over many static spheres, for one Embree primitive: 16 children per node, 16 spheres per leaf, bounds in 8
-/// bits relative to the parent. It takes 10 to 12 bytes per sphere, and one more if radii differ.
+/// A BVH over many static spheres and rods, for one Embree primitive: 16 children per node, 16 spheres per leaf, bounds
+/// in 8 bits relative to the parent. It takes 10 to 12 bytes per sphere, and one more if radii differ.
+///
+/// A rod is in the tree as the sphere around its middle that encloses it. Leaves then also hold the axes of their rods,
+/// which takes 4 bytes more per sphere and rod.
 ///
 /// Like Embree's boxes, it only selects candidates. All bounds enclose the spheres plus the rounding errors of a
 /// single-precision ray in box space (docs/decisions/0027-bvh-for-many-spheres.md), so no hit is lost.
@@ -30,13 +34,22 @@ class SphereBvh {
     std::uint8_t center[3][kArity];
     float origin[3];
     float step;
-    std::uint32_t ids[kArity];  ///< sphere ids; kNoSphere beyond the last one
+    std::uint32_t ids[kArity];  ///< of spheres and of the first halves of rods; kNoSphere beyond the last one
   };
 
   /// Radii of a leaf's spheres, if they differ between spheres: at most step * radius, box space.
   struct LeafRadii {
     std::uint8_t radius[kArity];
     float step;
+  };
+
+  /// The rods of a leaf, in box space.
+  struct alignas(64) LeafRods {
+    /// From the middle to an end: step * half, at most step / 2 off on each axis; 0 for spheres.
+    std::int8_t half[3][kArity];
+    float step;
+    float radius, least_radius;  ///< the largest and the smallest, rounded outwards
+    std::uint32_t rods;          ///< which items are rods, as bits
   };
 
   /// Boxes of the children, in box space: origin + step * bound. Beyond the last child, lower bounds are 255 and upper
@@ -66,19 +79,22 @@ class SphereBvh {
 
   SphereBvh() = default;
 
+  /// `ids`      of spheres and of the first halves of rods, which do not move
   /// `monitor`  receives the progress, 0..1, on any thread; returns false to cancel
-  /// Domain     1 <= ids.size() <= kMaxSpheres; all spheres lie in the frame
+  /// Domain     1 <= ids.size() <= kMaxSpheres; all spheres and rods lie in the frame
   /// Errors     base::Error(kStopped) if the monitor cancelled the build
   SphereBvh(const BoundedSpheres& spheres, std::vector<std::uint32_t> ids, const BoxFrame& frame,
-            const std::function<bool(double)>& monitor = {});
+            const std::function<bool(double)>& monitor = {}, const BoundedRods& rods = {});
 
   bool empty() const noexcept { return leaves.empty(); }
   std::uint32_t root() const noexcept { return static_cast<std::uint32_t>(nodes.size() - 1); }
   std::size_t bytes() const noexcept;
 
-  /// The node above a sphere's leaf; kNoSphere if the sphere is not in the tree.
-  std::uint32_t start_node(std::uint32_t id) const noexcept {
-    const std::uint32_t node = id < start_nodes.size() ? start_nodes[id] : no_start_node;
+  /// The node above the leaf of a sphere or rod; kNoSphere if it is not in the tree.
+  ///
+  /// `object`   kernel::RodArray::object()
+  std::uint32_t start_node(std::size_t object) const noexcept {
+    const std::uint32_t node = object < start_nodes.size() ? start_nodes[object] : no_start_node;
     return node == no_start_node ? kernel::kNoSphere : node;
   }
 
@@ -88,19 +104,27 @@ class SphereBvh {
     return rest < kArity ? static_cast<unsigned>(rest) : kArity;
   }
 
-  std::size_t count = 0;            ///< number of spheres
-  base::PackedArray start_nodes;    ///< for each sphere of the scene, the node above its leaf, or no_start_node
+  bool has_rods_in(std::uint32_t leaf) const noexcept { return !rods.empty() && rods[leaf].rods != 0; }
+
+  std::size_t count = 0;            ///< number of spheres and rods
+  base::PackedArray start_nodes;    ///< for each object of the scene, the node above its leaf, or no_start_node
   std::uint32_t no_start_node = 0;  ///< stands for spheres that are not in the tree
   base::HugeVector<Leaf> leaves;
   base::HugeVector<LeafRadii> radii;                   ///< one per leaf; empty if all spheres have `radius`
+  base::HugeVector<LeafRods> rods;                     ///< one per leaf; empty if there are no rods
   base::HugeVector<Node> nodes;                        ///< level by level, those above the leaves first
   base::HugeVector<Cell> cells;                        ///< one per node
   std::array<std::uint32_t, kMaxDepth> level_begin{};  ///< index of the first node of each level
   std::uint32_t last_leaf = 0;                         ///< the only one that may have fewer than kArity spheres
   float radius = 0;                                    ///< box space, rounded up
+  /// Covers the rounding of the distance between a ray and the axis of a rod, times LeafRods::step.
+  float axis_slack = 0;
   float padding = 0;    ///< added to a sphere's radius to cover rounding errors of a ray's distance from it, box space
   BoxFrame::Box box{};  ///< padded bounds of all spheres
 };
+
+/// The sphere around a rod's middle that encloses the rod.
+kernel::Sphere enclosing_sphere(const kernel::Rod& rod) noexcept;
 
 // While the BVH is built:
 

@@ -11,8 +11,10 @@
 #include <hwy/cache_control.h>
 #include <hwy/highway.h>
 
+#include <algorithm>
 #include <cstddef>
 #include <cstdint>
+#include <limits>
 
 #include "accel/embree_rays-inl.h"
 #include "accel/sphere_bvh.h"
@@ -58,7 +60,9 @@ static_assert(SphereBvh::kLeafBit == std::uint32_t{kLeaf} << kIndexWidth);
 /// it.
 class Prefetcher {
  public:
-  Prefetcher(const SphereBvh& bvh, const kernel::SphereArray& spheres) : has_radii_(!bvh.radii.empty()) {
+  Prefetcher(const SphereBvh& bvh, const EmbreeScene& scene)
+      : rods_(scene.rods), has_radii_(!bvh.radii.empty()), has_rods_(!bvh.rods.empty()) {
+    const kernel::SphereArray& spheres = scene.spheres;
     // The less frequent kind of sphere is not prefetched.
     const bool plain = spheres.all_plain();
     sphere_stride_ = plain ? sizeof(kernel::Sphere) : 3 * sizeof(float);
@@ -68,6 +72,7 @@ class Prefetcher {
     first_[kNode] = first_[kEnd] = at(bvh.nodes.data());
     first_[kLeaf] = at(bvh.leaves.data());
     radii_[kNode] = radii_[kEnd] = radii_[kLeaf] = at(bvh.radii.data());
+    leaf_rods_ = at(bvh.rods.data());
   }
   HWY_INLINE void prefetch(std::uint32_t reference) const {
     static_assert(sizeof(SphereBvh::Node) == 128 && sizeof(SphereBvh::Leaf) == 128);
@@ -78,16 +83,21 @@ class Prefetcher {
     hwy::Prefetch(at);
     hwy::Prefetch(at + 64);
     if (has_radii_) hwy::Prefetch(radii_[kind] + index * kRadii[kind]);
+    if (has_rods_) hwy::Prefetch(leaf_rods_ + (kind == kLeaf ? index * sizeof(SphereBvh::LeafRods) : 0));
   }
-  HWY_INLINE void prefetch_sphere(std::uint32_t id) const {
-    hwy::Prefetch(reinterpret_cast<const std::uint8_t*>(spheres_ + id * sphere_stride_));
+  /// Prefetches a sphere or rod.
+  HWY_INLINE void prefetch_candidate(std::uint32_t id) const {
+    const auto* const at = reinterpret_cast<const std::uint8_t*>(spheres_ + id * sphere_stride_);
+    hwy::Prefetch(has_rods_ && rods_.contains(id) ? static_cast<const std::uint8_t*>(rods_.address(rods_.index(id)))
+                                                  : at);
   }
 
  private:
+  const kernel::RodArray& rods_;
   std::uintptr_t spheres_;
   std::size_t sphere_stride_;
-  const std::uint8_t *first_[kKinds], *radii_[kKinds];
-  bool has_radii_;
+  const std::uint8_t *first_[kKinds], *radii_[kKinds], *leaf_rods_;
+  bool has_radii_, has_rods_;
 };
 
 /// Covers the rounding of squares and of their sum.
@@ -139,6 +149,70 @@ template <class V>
 HWY_INLINE auto may_hit(const Passing<V>& p, V outer, V limit) {
   return hn::And(hn::And(p.offset_square <= outer * outer * kGrowth, p.along + outer >= 0), p.along - outer <= limit);
 }
+
+/// The half axes of a leaf's rods from `first` on; 0 for spheres.
+HWY_INLINE k::Vec3<hn::Vec<ChildTag>> half_axes(const SphereBvh::LeafRods& leaf, int first) {
+  const ChildTag d;
+  const hn::Rebind<std::int32_t, ChildTag> di;
+  const hn::Rebind<std::int8_t, ChildTag> d8;
+  const auto half = [&](int axis) {
+    return hn::ConvertTo(d, hn::PromoteTo(di, hn::LoadU(d8, leaf.half[axis] + first))) * leaf.step;
+  };
+  return {half(0), half(1), half(2)};
+}
+
+/// Maximum quantization error of the points of a rod's axis plus rounding error of a ray's position.
+HWY_INLINE float margin_of(const SphereBvh& bvh, const SphereBvh::Leaf& leaf, const SphereBvh::LeafRods& rods) {
+  return margin_of(bvh, leaf) + 0.875F * rods.step;
+}
+
+/// Rays and rods, a pair per lane.
+template <class V>
+struct AtRod {
+  const SphereBvh& bvh;
+  const SphereBvh::LeafRods& rods;
+  float margin;          ///< margin_of() the rods
+  k::Vec3<V> to_center;  ///< from the rays' origins to the middles of the rods
+  k::Vec3<V> direction;  ///< unit
+  k::Vec3<V> half;       ///< half_axes()
+
+  /// Lower bound of the distance of a hit; exact for rays that are parallel to the axis.
+  HWY_INLINE V begin(V along) const { return along - reach_along(); }
+
+  /// Whether the ray may hit the rod before its limit. The axis is taken as an infinite line.
+  ///
+  /// `along`    distance along the ray of the point that is closest to the middle of the rod
+  HWY_INLINE auto may_hit(V along, V limit) const {
+    const auto normal = k::cross(direction, half);
+    const float outer = (rods.radius + margin) * kGrowth;
+    const auto near =
+        hn::Abs(dot(to_center, normal)) <= hn::Sqrt(dot(normal, normal)) * outer + rods.step * bvh.axis_slack;
+    const V reach = reach_along();
+    return hn::And(near, hn::And(along + reach >= 0, along - reach <= limit));
+  }
+
+  /// An upper bound of the distance of a hit, or infinite if none is certain: the distance at which the ray is closest
+  /// to the axis, if that is between the ends. The padding covers the rounding of positions on ray and axis, which are
+  /// not nearly parallel.
+  ///
+  /// `begin`    a lower bound of the distance
+  HWY_INLINE V certain_distance(V begin) const {
+    const auto normal = k::cross(direction, half);
+    const V square = dot(normal, normal);
+    const float inner = (rods.least_radius - margin - bvh.padding) / kGrowth;
+    const auto crosses =
+        hn::And(square > dot(half, half) * 0x1p-6F, hn::Abs(dot(k::cross(to_center, direction), normal)) <= square);
+    const auto within =
+        hn::Abs(dot(to_center, normal)) + rods.step * bvh.axis_slack <= hn::Sqrt(square) * std::max(inner, 0.0F);
+    const V closest = dot(k::cross(to_center, half), normal) / square;
+    return select(hn::And(hn::And(crosses, within), begin > 0), (closest + (margin + bvh.padding)) * kLonger,
+                  std::numeric_limits<float>::infinity());
+  }
+
+ private:
+  /// Half the extent of the rod in the direction of the ray, at least.
+  HWY_INLINE V reach_along() const { return (hn::Abs(dot(half, direction)) + (rods.radius + margin)) * kLonger; }
+};
 
 /// An upper bound of a hit's distance, or `limit` if that is less or no hit is certain.
 ///

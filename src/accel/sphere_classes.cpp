@@ -100,13 +100,24 @@ std::vector<std::uint32_t> find_outliers(const kernel::SphereArray& spheres, std
 }
 
 double giant_radius(const kernel::SceneView& view) {
-  const std::size_t stride = (view.sphere_count - view.moving_count) / 4096 + 1;
+  const auto stride = [](std::size_t count) { return count / 4096 + 1; };
   std::vector<double> radii;
-  for (std::size_t id = view.moving_count; id < view.sphere_count; id += stride)
+  for (std::size_t id = view.moving_count; id < view.sphere_count; id += stride(view.sphere_count - view.moving_count))
     radii.push_back(view.spheres[id].radius);
+  const kernel::RodArray& rods = view.rods;
+  if (radii.empty())
+    for (std::size_t i = rods.moving_count; i < rods.count; i += stride(rods.count - rods.moving_count))
+      radii.push_back(enclosing_sphere(rods[i]).radius);
   const auto middle = radii.begin() + static_cast<std::ptrdiff_t>(radii.size() / 2);
   std::nth_element(radii.begin(), middle, radii.end());
   return kGiantRatio * *middle;
+}
+
+std::size_t short_rods(const kernel::SceneView& view, double radius) {
+  std::size_t count = 0;
+  for (std::size_t i = view.rods.moving_count; i < view.rods.count; ++i)
+    count += enclosing_sphere(view.rods[i]).radius <= radius ? 1 : 0;
+  return count;
 }
 
 bool is_small_layer(const kernel::SphereArray& spheres, const std::vector<std::uint32_t>& ids) {
@@ -132,10 +143,11 @@ std::size_t bvh_threshold() {
   return kernel::isa_name() == "avx512" ? 1000 : 200'000;
 }
 
-std::size_t spheres_in_bvh(const kernel::SceneView& scene) {
+ObjectCounts objects_in_bvh(const kernel::SceneView& scene) {
   const std::size_t least = bvh_threshold();
-  if (scene.sphere_count - scene.moving_count < least) return 0;
+  if (scene.sphere_count - scene.moving_count + scene.rods.count - scene.rods.moving_count < least) return {};
   const double limit = giant_radius(scene);
+  const std::size_t rods = short_rods(scene, limit);
   std::size_t count = 0;
   std::vector<std::uint32_t> ids;  // enough of them to recognise a small layer
   for (std::size_t id = scene.moving_count; id < scene.sphere_count; ++id) {
@@ -143,8 +155,9 @@ std::size_t spheres_in_bvh(const kernel::SceneView& scene) {
     ++count;
     if (ids.size() <= kMaxInSmallLayer) ids.push_back(static_cast<std::uint32_t>(id));
   }
-  const bool fits = count >= least && count <= SphereBvh::kMaxSpheres;
-  return fits && !is_small_layer(scene.spheres, ids) ? count : 0;
+  const bool fits = count + rods >= least && count + rods <= SphereBvh::kMaxSpheres;
+  if (!fits || (rods < count && is_small_layer(scene.spheres, ids))) return {};
+  return {count, rods};
 }
 
 }  // namespace orrery::accel

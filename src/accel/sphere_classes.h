@@ -30,10 +30,14 @@ std::vector<std::uint32_t> complement_of(const std::vector<std::uint32_t>& witho
 std::vector<std::uint32_t> find_outliers(const kernel::SphereArray& spheres, std::size_t count,
                                          const std::vector<std::uint32_t>& duplicates);
 
-/// The radius above which a static sphere is kept out of a SphereBvh, derived from the median radius of a sample.
+/// The radius above which a static sphere, or the sphere around a static rod, is kept out of a SphereBvh, derived from
+/// the median radius of a sample.
 ///
-/// Domain     at least one static sphere
+/// Domain     at least one static sphere or rod
 double giant_radius(const kernel::SceneView& view);
+
+/// The number of static rods that are within a sphere of this radius.
+std::size_t short_rods(const kernel::SceneView& view, double radius);
 
 /// Whether the spheres are so few and lie in so thin a layer that packets of rays are coherent. One primitive per
 /// sphere is then faster than a SphereBvh.

@@ -49,6 +49,9 @@ constexpr std::uint64_t kAcceleratorBytesPerSphere = 130;
 /// finished tree that does not yet replace them, and up to 2 for memory that has not been released yet.
 constexpr std::uint64_t kBvhBytesPerSphere = 21;
 
+/// More bytes per sphere and rod for the axes of rods, if a SphereBvh has any.
+constexpr std::uint64_t kBvhBytesForAxes = 4;
+
 /// A pixel's sum and the four floats of the finished image.
 constexpr std::uint64_t kFilmBytesPerPixel = sizeof(kernel::PixelSum) + 4 * sizeof(float);
 
@@ -154,8 +157,9 @@ MemoryEstimate estimate_memory(const MemoryNeeds& needs) {
   m.background = needs.background;
   m.textures = needs.textures;
   m.lights = needs.lights;
-  m.accelerator = needs.embree ? needs.spheres_in_bvh * kBvhBytesPerSphere +
-                                     (needs.spheres - needs.spheres_in_bvh + needs.rods) * kAcceleratorBytesPerSphere
+  const std::uint64_t outside = needs.spheres + needs.rods - needs.in_bvh;
+  m.accelerator = needs.embree ? needs.in_bvh * (kBvhBytesPerSphere + (needs.bvh_has_rods ? kBvhBytesForAxes : 0)) +
+                                     outside * kAcceleratorBytesPerSphere
                                : 0;
   return m;
 }
@@ -168,7 +172,11 @@ MemoryNeeds memory_needs(const compile::CompiledScene& compiled, const film::Lay
   needs.spheres = compiled.spheres.size();
   needs.rods = compiled.rods.size();
   needs.embree = compiled.accelerator == compile::Accelerator::kEmbree && !has_accelerator;
-  if (needs.embree) needs.spheres_in_bvh = accel::spheres_in_bvh(compiled.view());
+  if (needs.embree) {
+    const accel::ObjectCounts in_bvh = accel::objects_in_bvh(compiled.view());
+    needs.in_bvh = in_bvh.all();
+    needs.bvh_has_rods = in_bvh.rods > 0;
+  }
   needs.sphere_bytes = compiled.spheres.bytes() + compiled.rods.size() * sizeof(kernel::Rod) +
                        compiled.sphere_materials.bytes() +
                        (layers.matte_classes ? layers.matte_classes->of_sphere.bytes() : 0);

@@ -16,8 +16,11 @@
 
 #include <hwy/highway.h>
 
+#include <cstddef>
 #include <limits>
 
+#include "kernel/gather-inl.h"
+#include "kernel/gather_spheres-inl.h"
 #include "kernel/intersect-inl.h"
 #include "kernel/rod.h"
 
@@ -36,6 +39,45 @@ HWY_INLINE Rods<D> broadcast(D d, const Rod& rod) {
   return {set3(d, rod.a), set3(d, rod.b), set(d, rod.radius)};
 }
 
+/// Loads a rod per lane from rows in memory.
+template <class D, class RodOfLane>
+HWY_INLINE Rods<D> gather_plain_rods(D d, RodOfLane rod_of_lane) {
+  hn::Vec<D> a[4], b[4];
+  gather4(
+      d, [&](std::size_t i) { return rod_of_lane(i).a; }, a);
+  gather4(
+      d, [&](std::size_t i) { return rod_of_lane(i).b; }, b);
+  return {{a[0], a[1], a[2]}, {b[0], b[1], b[2]}, a[3]};
+}
+
+/// Loads a rod per lane.
+template <class D, class IndexOfLane>
+HWY_INLINE Rods<D> gather_rods(D d, const RodArray& rods, IndexOfLane index_of_lane) {
+  if (rods.bond_count == 0)
+    return gather_plain_rods(d, [&](std::size_t i) -> const Rod& { return rods.plain[index_of_lane(i)]; });
+  constexpr std::size_t kLanes = hn::MaxLanes(D());
+  std::size_t index[kLanes];
+  bool are_bonds = true;
+  for (std::size_t i = 0; i < hn::Lanes(d); ++i) {
+    index[i] = index_of_lane(i);
+    are_bonds = are_bonds & (index[i] >= rods.plain_count());
+  }
+  if (!are_bonds) {
+    Rod rows[kLanes];
+    for (std::size_t i = 0; i < hn::Lanes(d); ++i) rows[i] = rods[index[i]];
+    return gather_plain_rods(d, [&](std::size_t i) -> const Rod& { return rows[i]; });
+  }
+  hn::Vec<D> a[4], b[4];
+  gather_spheres(
+      d, rods.spheres, [&](std::size_t i) { return rods.bond(index[i]).a; }, a);
+  gather_spheres(
+      d, rods.spheres, [&](std::size_t i) { return rods.bond(index[i]).b; }, b);
+  HWY_ALIGN hn::TFromD<D> radii[kLanes];
+  for (std::size_t i = 0; i < hn::Lanes(d); ++i)
+    radii[i] = static_cast<hn::TFromD<D>>(rods.bond_radii[rods.bond(index[i]).radius]);
+  return {{a[0], a[1], a[2]}, {b[0], b[1], b[2]}, hn::Load(d, radii)};
+}
+
 /// Rods that have changed by `time` times `change`.
 template <class D>
 HWY_INLINE Rods<D> moved(const Rods<D>& at_opening, const Rods<D>& change, hn::Vec<D> time) {
@@ -48,7 +90,7 @@ HWY_INLINE Rods<D> moved(const Rods<D>& at_opening, const Rods<D>& change, hn::V
 /// Domain     something moves where kMoves
 template <bool kMoves, class D, class Packet>
 HWY_INLINE Rods<D> rod_at(D d, const RodArray& rods, std::size_t index, const Packet& packet, int first) {
-  const auto at_opening = broadcast(d, rods.rods[index]);
+  const auto at_opening = broadcast(d, rods[index]);
   if (!kMoves || index >= rods.moving_count) return at_opening;
   return moved<D>(at_opening, broadcast(d, rods.motion[index]), hn::Load(d, packet.time + first));
 }

@@ -5,6 +5,8 @@
 #include <cstddef>
 #include <cstdint>
 
+#include "kernel/sphere.h"
+
 namespace orrery::kernel {
 
 /// A rod in the kernel's layout: all points within `radius` of the segment from a to b, in one cache line.
@@ -17,17 +19,43 @@ struct alignas(64) Rod {
   double unused = 0;        ///< a row is gathered as twice four doubles
 };
 
-/// Non-owning view of the rods of a scene.
+/// A rod between the centres of two spheres, which do not move.
+struct Bond {
+  std::uint32_t a = 0, b = 0;  ///< spheres whose centres are the ends, which are in order as those of a Rod
+  std::uint32_t radius = 0;    ///< index into RodArray::bond_radii
+};
+
+/// Non-owning view of the rods of a scene: those stored in full, then bonds.
 ///
 /// A rod has two ids, one for each half: those of rod i are `first_id + 2 i` on the half at a, and the next one on the
 /// half at b. Ids of rods follow those of spheres, so that a sphere wins a tie with a rod: a ray that leaves a rod
 /// through its end would otherwise hit a coincident sphere from inside.
 struct RodArray {
-  const Rod* rods = nullptr;
-  std::size_t count = 0;
+  const Rod* plain = nullptr;
+  std::size_t count = 0;        ///< with bonds
   const Rod* motion = nullptr;  ///< change of the first `moving_count` rods until the shutter closes
   std::size_t moving_count = 0;
   std::size_t first_id = 0;  ///< the number of spheres
+  const Bond* bonds = nullptr;
+  std::size_t bond_count = 0;
+  const double* bond_radii = nullptr;
+  SphereArray spheres = {};  ///< those that bonds refer to
+
+  std::size_t plain_count() const noexcept { return count - bond_count; }
+  const Bond& bond(std::size_t rod) const noexcept { return bonds[rod - plain_count()]; }
+
+  /// A rod when the shutter opens.
+  Rod operator[](std::size_t rod) const noexcept {
+    if (rod < plain_count()) return plain[rod];
+    const Bond& of = bond(rod);
+    const Sphere a = spheres[of.a], b = spheres[of.b];
+    return {{a.x, a.y, a.z}, bond_radii[of.radius], {b.x, b.y, b.z}, 0};
+  }
+
+  /// The address of a rod's data, for prefetching.
+  const void* address(std::size_t rod) const noexcept {
+    return rod < plain_count() ? static_cast<const void*>(plain + rod) : &bond(rod);
+  }
 
   bool empty() const noexcept { return count == 0; }
   /// Whether the id of a hit is that of a rod.
@@ -40,7 +68,7 @@ struct RodArray {
 
   /// A rod at a time between 0 (shutter opens) and 1 (shutter closes), computed like in the kernel's loops.
   Rod at(std::size_t rod, double time) const noexcept {
-    Rod out = rods[rod];
+    Rod out = (*this)[rod];
     if (rod >= moving_count) return out;
     const Rod& change = motion[rod];
     for (int k = 0; k < 3; ++k) {

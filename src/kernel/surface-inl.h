@@ -90,19 +90,12 @@ HWY_INLINE Rods<D> load_rods(D d, const SceneView& scene, hn::Vec<IdTag<D>> hits
   HWY_ALIGN hn::TFromD<IdTag<D>> index[hn::MaxLanes(D())];
   const auto ids = hits - set(du, rods.first_id);
   hn::Store(hn::IfThenElseZero(hn::RebindMask(du, is_rod(d, scene, hits)), hn::template ShiftRight<1>(ids)), du, index);
-  const auto gathered = [&](auto rod_of_lane) {
-    hn::Vec<D> a[4], b[4];
-    gather4(
-        d, [&](std::size_t i) { return rod_of_lane(i).a; }, a);
-    gather4(
-        d, [&](std::size_t i) { return rod_of_lane(i).b; }, b);
-    return Rods<D>{{a[0], a[1], a[2]}, {b[0], b[1], b[2]}, a[3]};
-  };
-  const auto at_opening = gathered([&](std::size_t i) -> const Rod& { return rods.rods[index[i]]; });
+  const auto at_opening = gather_rods(d, rods, [&](std::size_t i) { return index[i]; });
   if (times == nullptr || rods.moving_count == 0) return at_opening;
   static constexpr Rod kRodAtRest{{0, 0, 0}, 0, {0, 0, 0}, 0};
-  const auto change = gathered(
-      [&](std::size_t i) -> const Rod& { return index[i] < rods.moving_count ? rods.motion[index[i]] : kRodAtRest; });
+  const auto change = gather_plain_rods(d, [&](std::size_t i) -> const Rod& {
+    return index[i] < rods.moving_count ? rods.motion[index[i]] : kRodAtRest;
+  });
   return moved<D>(at_opening, change, hn::Load(d, times));
 }
 

@@ -46,7 +46,7 @@ struct Method {
 }  // namespace
 
 AlternativeAccelerator alternative_accelerator(const kernel::SceneView& view) {
-  if (accel::spheres_in_bvh(view) > 0) return {"one by one", accel::kNoBvh};
+  if (accel::objects_in_bvh(view).all() > 0) return {"one by one", accel::kNoBvh};
   return {"BVH", 1};
 }
 

@@ -5,9 +5,11 @@
 #include <cmath>
 #include <cstdint>
 #include <random>
+#include <type_traits>
 #include <vector>
 
 #include "kernel/ray_packet.h"
+#include "kernel/rod.h"
 #include "kernel/sphere.h"
 #include "support/intersect_batch.h"
 
@@ -33,6 +35,28 @@ inline std::vector<Sphere> scattered(Random& random, int count, double spread, d
   for (int i = 0; i < count; ++i)
     out.push_back({offset + random.uniform(-spread, spread), random.uniform(-spread, spread),
                    offset + random.uniform(-spread, spread), radius * random.uniform(0.1, 1)});
+  return out;
+}
+
+inline void normalize(double (&d)[3]) {
+  const double length = std::sqrt(d[0] * d[0] + d[1] * d[1] + d[2] * d[2]);
+  for (double& x : d) x /= length;
+}
+
+/// Rods of any direction, with coordinates in -1..1.
+inline std::vector<kernel::Rod> random_rods(Random& random, int count, double length, double radius) {
+  std::vector<kernel::Rod> out;
+  for (int i = 0; i < count; ++i) {
+    kernel::Rod rod;
+    double along[3] = {random.uniform(-1, 1), random.uniform(-1, 1), random.uniform(-1, 1)};
+    test::normalize(along);
+    for (int k = 0; k < 3; ++k) {
+      rod.a[k] = random.uniform(-1, 1) - along[k] * length / 2;
+      rod.b[k] = rod.a[k] + along[k] * length;
+    }
+    rod.radius = radius * random.uniform(0.3, 1);
+    out.push_back(rod);
+  }
   return out;
 }
 
@@ -63,9 +87,24 @@ inline std::vector<Scene> scenes() {
   return list;
 }
 
-inline void normalize(double (&d)[3]) {
-  const double length = std::sqrt(d[0] * d[0] + d[1] * d[1] + d[2] * d[2]);
-  for (double& x : d) x /= length;
+/// Copies rays to a packet of another type.
+template <class To, class From>
+void copy_rays(const From& from, To& to) {
+  using T = std::remove_reference_t<decltype(to.distance[0])>;
+  const auto copy3 = [](const auto& a, auto& b) {
+    for (int k = 0; k < 3; ++k)
+      for (int i = 0; i < kernel::kPacketSize; ++i) b[k][i] = static_cast<T>(a[k][i]);
+  };
+  copy3(from.origin, to.origin);
+  copy3(from.origin_low, to.origin_low);
+  copy3(from.offset, to.offset);
+  copy3(from.direction, to.direction);
+  for (int i = 0; i < kernel::kPacketSize; ++i) {
+    to.inverse_square[i] = static_cast<T>(from.inverse_square[i]);
+    to.self[i] = static_cast<std::remove_reference_t<decltype(to.self[0])>>(from.self[i]);
+    to.time[i] = static_cast<T>(from.time[i]);
+  }
+  to.count = from.count;
 }
 
 /// A ray that is tangent to a sphere at one of the six places where it touches its box, or a little inside.

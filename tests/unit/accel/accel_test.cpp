@@ -180,10 +180,10 @@ TEST(AccelAccel, ThinLayersOfFewSpheresHaveNoBvhOfTheirOwn) {
   kernel::SceneView view;
   view.spheres = spheres.data();
   view.sphere_count = spheres.size();
-  EXPECT_EQ(spheres_in_bvh(view), spheres.size());
+  EXPECT_EQ(objects_in_bvh(view).spheres, spheres.size());
   const std::size_t bytes = make_embree(view, kernel::Precision::kExact)->bytes();
   for (Sphere& s : spheres) s.y *= 0.05;
-  EXPECT_EQ(spheres_in_bvh(view), 0u);
+  EXPECT_EQ(objects_in_bvh(view).all(), 0u);
   EXPECT_GT(make_embree(view, kernel::Precision::kExact)->bytes(), 2 * bytes);
 }
 

@@ -25,25 +25,6 @@ using test::kWays;
 using test::Random;
 using test::Way;
 
-template <class To, class From>
-void copy_rays(const From& from, To& to) {
-  using T = std::remove_reference_t<decltype(to.distance[0])>;
-  const auto copy3 = [](const auto& a, auto& b) {
-    for (int k = 0; k < 3; ++k)
-      for (int i = 0; i < kPacketSize; ++i) b[k][i] = static_cast<T>(a[k][i]);
-  };
-  copy3(from.origin, to.origin);
-  copy3(from.origin_low, to.origin_low);
-  copy3(from.offset, to.offset);
-  copy3(from.direction, to.direction);
-  for (int i = 0; i < kPacketSize; ++i) {
-    to.inverse_square[i] = static_cast<T>(from.inverse_square[i]);
-    to.self[i] = static_cast<std::remove_reference_t<decltype(to.self[0])>>(from.self[i]);
-    to.time[i] = static_cast<T>(from.time[i]);
-  }
-  to.count = from.count;
-}
-
 /// Makes a direction `by` times as long, and its distances that many times smaller, by a power of two: exact.
 template <class Packet>
 void lengthen(Packet& packet, int lane, int exponent) {
@@ -96,11 +77,11 @@ void compare(const test::Scene& scene, const View& view, Precision precision, co
     const bool has_target = random.coin() && !all_coincide;
     using Id = kernel::IdOf<T>;
     kernel::RayPacket<T> hits;
-    copy_rays(drawn, hits);
+    test::copy_rays(drawn, hits);
     reset_hits(hits);
     kernel::trace(has_target ? list_of_rest->tracer() : list->tracer(), hits);
     kernel::ShadowPacket<T> shadow;
-    copy_rays(drawn, shadow);
+    test::copy_rays(drawn, shadow);
     bool expected[kPacketSize];
     for (int lane = 0; lane < kPacketSize; ++lane) {
       const bool hit = hits.hit[lane] != kNoSphere;
@@ -206,7 +187,7 @@ bool is_occluded(const View& view, const Way& way, const double (&normal)[3], st
     if (lane > 0) continue;
     ray.count = 1;
     std::fill_n(ray.time, kPacketSize, 0.0);
-    copy_rays(ray, packet);
+    test::copy_rays(ray, packet);
   }
   packet.distance[0] = 1;
   packet.target[0] = target;

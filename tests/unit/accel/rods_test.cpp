@@ -27,41 +27,39 @@ struct RodScene {
   std::vector<kernel::Sphere> spheres;
   std::vector<Rod> motion = {};
   double camera_distance = 5;
+  std::vector<kernel::Bond> bonds = {};
 
   kernel::SceneView view() const {
     static constexpr kernel::Sphere kReadable;
     kernel::SceneView view;
     view.spheres = spheres.empty() ? &kReadable : spheres.data();
     view.sphere_count = spheres.size();
-    view.rods = {rods.data(), rods.size(), motion.data(), motion.size(), spheres.size()};
+    static constexpr double kBondRadii[] = {0.02, 0.03};
+    view.rods = {rods.data(),    rods.size() + bonds.size(),
+                 motion.data(),  motion.size(),
+                 spheres.size(), bonds.data(),
+                 bonds.size(),   kBondRadii,
+                 view.spheres};
     return view;
   }
-};
 
-/// Rods of any direction, with coordinates in -1..1.
-std::vector<Rod> random_rods(Random& random, int count, double length, double radius) {
-  std::vector<Rod> out;
-  for (int i = 0; i < count; ++i) {
-    Rod rod;
-    double along[3] = {random.uniform(-1, 1), random.uniform(-1, 1), random.uniform(-1, 1)};
-    test::normalize(along);
-    for (int k = 0; k < 3; ++k) {
-      rod.a[k] = random.uniform(-1, 1) - along[k] * length / 2;
-      rod.b[k] = rod.a[k] + along[k] * length;
-    }
-    rod.radius = radius * random.uniform(0.3, 1);
-    out.push_back(rod);
+  /// The same with rods in place of bonds.
+  RodScene without_bonds() const {
+    RodScene out = *this;
+    out.bonds.clear();
+    for (std::size_t i = rods.size(); i < rods.size() + bonds.size(); ++i) out.rods.push_back(view().rods[i]);
+    return out;
   }
-  return out;
-}
+};
 
 std::vector<RodScene> rod_scenes() {
   Random random;
   std::vector<RodScene> list;
-  list.push_back({"one rod", random_rods(random, 1, 1, 0.2), {}});
-  list.push_back({"bonds", random_rods(random, 300, 0.3, 0.03), test::scattered(random, 100, 1, 0.1, 0)});
-  list.push_back({"long rods in pieces", random_rods(random, 60, 2, 0.002), test::scattered(random, 10, 1, 0.1, 0)});
-  RodScene ground{"over a ground", random_rods(random, 50, 0.5, 0.05), test::scattered(random, 50, 1, 0.1, 0)};
+  list.push_back({"one rod", test::random_rods(random, 1, 1, 0.2), {}});
+  list.push_back({"bonds", test::random_rods(random, 300, 0.3, 0.03), test::scattered(random, 100, 1, 0.1, 0)});
+  list.push_back(
+      {"long rods in pieces", test::random_rods(random, 60, 2, 0.002), test::scattered(random, 10, 1, 0.1, 0)});
+  RodScene ground{"over a ground", test::random_rods(random, 50, 0.5, 0.05), test::scattered(random, 50, 1, 0.1, 0)};
   ground.spheres.push_back({0, -1001, 0, 1000});
   list.push_back(ground);
   RodScene edges{"edges of a box", {}, test::scattered(random, 100, 0.9, 0.1, 0)};
@@ -78,7 +76,7 @@ std::vector<RodScene> rod_scenes() {
     }
   }
   list.push_back(edges);
-  RodScene coincident{"coincident, and of length 0", random_rods(random, 5, 0.5, 0.1), {}};
+  RodScene coincident{"coincident, and of length 0", test::random_rods(random, 5, 0.5, 0.1), {}};
   for (int i = 0; i < 5; ++i) {
     Rod sphere = coincident.rods[static_cast<std::size_t>(i)];
     coincident.rods.push_back(sphere);
@@ -87,21 +85,37 @@ std::vector<RodScene> rod_scenes() {
     coincident.spheres.push_back({sphere.a[0], sphere.a[1], sphere.a[2], sphere.radius});
   }
   list.push_back(coincident);
-  RodScene far{"offset 1e6", random_rods(random, 50, 0.5, 0.05), {}};
+  RodScene far{"offset 1e6", test::random_rods(random, 50, 0.5, 0.05), {}};
   for (Rod& rod : far.rods)
     for (int k = 0; k < 3; ++k) {
       rod.a[k] += 1e6;
       rod.b[k] += 1e6;
     }
   list.push_back(far);
-  RodScene many{"beside a BVH of spheres", random_rods(random, 200, 0.3, 0.03),
+  RodScene many{"beside a BVH of spheres", test::random_rods(random, 200, 0.3, 0.03),
                 test::scattered(random, 3000, 1, 0.04, 0)};
   list.push_back(many);
-  RodScene moving{"moving", random_rods(random, 100, 0.5, 0.03), test::scattered(random, 50, 1, 0.1, 0)};
-  moving.motion = random_rods(random, 40, 0.6, 0.01);
+  RodScene bundle{"chains of parallel rods", {}, {}};
+  for (int i = 0; i < 600; ++i) {
+    Rod rod;
+    rod.a[0] = i % 30 * 0.06 - 0.9;
+    rod.b[0] = rod.a[0] + 0.06;
+    rod.a[1] = rod.b[1] = i / 30 % 5 * 0.025;
+    rod.a[2] = rod.b[2] = i / 150 * 0.025;
+    rod.radius = 0.01;
+    bundle.rods.push_back(rod);
+  }
+  list.push_back(bundle);
+  RodScene bonded{"bonds", test::random_rods(random, 3, 0.3, 0.03), test::scattered(random, 400, 1, 0.05, 0)};
+  for (std::uint32_t i = 0; i + 1 < 400; ++i) bonded.bonds.push_back({i, i + 1, i % 2});
+  list.push_back(bonded);
+  bonded.motion = test::random_rods(random, 2, 0.3, 0.03);
+  list.push_back(bonded);
+  RodScene moving{"moving", test::random_rods(random, 100, 0.5, 0.03), test::scattered(random, 50, 1, 0.1, 0)};
+  moving.motion = test::random_rods(random, 40, 0.6, 0.01);
   list.push_back(moving);
-  RodScene moving_long{"moving in pieces", random_rods(random, 40, 2, 0.002), {}};
-  moving_long.motion = random_rods(random, 40, 0.6, 0.0001);
+  RodScene moving_long{"moving in pieces", test::random_rods(random, 40, 2, 0.002), {}};
+  moving_long.motion = test::random_rods(random, 40, 0.6, 0.0001);
   list.push_back(moving_long);
   return list;
 }
@@ -109,9 +123,8 @@ std::vector<RodScene> rod_scenes() {
 /// A ray from a rod or from afar, towards a point that lies close to the surface of a rod.
 template <class Packet>
 void aim_at_rod(Random& random, const RodScene& scene, Packet& packet, int lane) {
-  const auto pick = [&]() -> const Rod& {
-    return scene.rods[static_cast<std::size_t>(random.uniform(0, static_cast<double>(scene.rods.size())))];
-  };
+  const kernel::RodArray rods = scene.view().rods;
+  const auto pick = [&] { return rods[static_cast<std::size_t>(random.uniform(0, static_cast<double>(rods.count)))]; };
   const auto near = [&](const Rod& rod, double(&base)[3], double(&offset)[3], double height) {
     const double place = std::min(std::max(random.uniform(-0.2, 1.2), 0.0), 1.0);
     double out[3] = {random.uniform(-1, 1), random.uniform(-1, 1), random.uniform(-1, 1)};
@@ -136,35 +149,44 @@ void aim_at_rod(Random& random, const RodScene& scene, Packet& packet, int lane)
   test::set_ray(packet, lane, base, offset, direction, kNoSphere);
 }
 
-TEST(AccelRods, EmbreeAndListFindTheSameHits) {
-  for (const RodScene& scene : rod_scenes()) {
-    const kernel::SceneView view = scene.view();
-    const auto list = make_list(view, kernel::Precision::kExact);
-    for (const test::Way& way : test::kWaysBesideTheList) {
-      const auto other = way.make(view, kernel::Precision::kExact);
-      Random random;
-      long rod_hits = 0, different = 0, rays = 0;
-      for (; rays < 10000; rays += kPacketSize) {
-        kernel::RayPacket<double> a;
-        a.count = kPacketSize;
-        for (int lane = 0; lane < kPacketSize; ++lane) {
-          aim_at_rod(random, scene, a, lane);
-          a.time[lane] = random.uniform(0, 1);
-          a.distance[lane] = std::numeric_limits<double>::max();
-          a.hit[lane] = kNoSphere;
-        }
-        kernel::RayPacket<double> b = a;
-        kernel::trace(list->tracer(), a);
-        kernel::trace(other->tracer(way.traversal), b);
-        for (int lane = 0; lane < kPacketSize; ++lane) {
-          rod_hits += view.rods.contains(a.hit[lane]);
-          different += a.hit[lane] != b.hit[lane] || a.distance[lane] != b.distance[lane];
-        }
-      }
-      EXPECT_EQ(different, 0) << scene.name << ", " << way.name;
-      EXPECT_GT(rod_hits, rays / 50) << scene.name;
+template <class T>
+void compare_hits(const RodScene& scene, kernel::Precision precision, const test::Way& way) {
+  const kernel::SceneView view = scene.view();
+  const RodScene rods = scene.without_bonds();
+  const auto list = make_list(rods.view(), precision), other = way.make(view, precision);
+  Random random;
+  long rod_hits = 0, different = 0, rays = 0;
+  for (; rays < 10000; rays += kPacketSize) {
+    kernel::RayPacket<double> drawn;
+    drawn.count = kPacketSize;
+    for (int lane = 0; lane < kPacketSize; ++lane) {
+      aim_at_rod(random, scene, drawn, lane);
+      drawn.time[lane] = random.uniform(0, 1);
+    }
+    kernel::RayPacket<T> a;
+    test::copy_rays(drawn, a);
+    for (int lane = 0; lane < kPacketSize; ++lane) {
+      a.distance[lane] = std::numeric_limits<T>::max();
+      a.hit[lane] = kNoSphere;
+    }
+    kernel::RayPacket<T> b = a;
+    kernel::trace(list->tracer(), a);
+    kernel::trace(other->tracer(way.traversal), b);
+    for (int lane = 0; lane < kPacketSize; ++lane) {
+      rod_hits += view.rods.contains(a.hit[lane]);
+      different += a.hit[lane] != b.hit[lane] || a.distance[lane] != b.distance[lane];
     }
   }
+  EXPECT_EQ(different, 0) << scene.name << ", " << way.name << (sizeof(T) == 4 ? ", fast" : "");
+  EXPECT_GT(rod_hits, rays / 50) << scene.name;
+}
+
+TEST(AccelRods, EmbreeAndListFindTheSameHits) {
+  for (const RodScene& scene : rod_scenes())
+    for (const test::Way& way : test::kWaysBesideTheList) {
+      compare_hits<double>(scene, kernel::Precision::kExact, way);
+      compare_hits<float>(scene, kernel::Precision::kFast, way);
+    }
 }
 
 TEST(AccelRods, EmbreeAndListFindTheSameOcclusion) {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The bounds of a SphereBvh: whatever a ray may hit lies within them.
+// The bounds of a SphereBvh: whatever a ray may hit lies within them. Rods are in it as the spheres that enclose them.
 #include "accel/sphere_bvh.h"
 
 #include <gtest/gtest.h>
@@ -17,6 +17,7 @@
 namespace orrery::accel {
 namespace {
 
+using kernel::Rod;
 using kernel::Sphere;
 using test::Random;
 
@@ -28,24 +29,39 @@ std::vector<std::uint32_t> all_of(const std::vector<Sphere>& spheres) {
 
 struct Tree {
   std::vector<Sphere> spheres;
+  std::vector<Rod> rods;
+  BoundedRods bounded;
+  std::vector<Sphere> objects;  ///< the spheres, then those that enclose the rods
   BoxFrame frame;
   SphereBvh bvh;
 
-  explicit Tree(std::vector<Sphere> of)
-      : spheres(std::move(of)), frame(spheres.data(), all_of(spheres)), bvh(spheres.data(), all_of(spheres), frame) {}
-
-  double center(std::uint32_t id, int axis) const {
-    const Sphere& s = spheres[id];
-    return ((axis == 0 ? s.x : axis == 1 ? s.y : s.z) - frame.middle[axis]) * frame.scale;
+  explicit Tree(std::vector<Sphere> of, std::vector<Rod> and_rods = {})
+      : spheres(std::move(of)),
+        rods(std::move(and_rods)),
+        bounded{{rods.data(), rods.size(), nullptr, 0, spheres.size()}},
+        objects(spheres),
+        frame(spheres.data(), all_of(spheres), nullptr, 0, bounded) {
+    std::vector<std::uint32_t> ids = all_of(spheres);
+    for (std::size_t i = 0; i < rods.size(); ++i) {
+      ids.push_back(bounded.rods.id(i));
+      objects.push_back(enclosing_sphere(rods[i]));
+    }
+    bvh = SphereBvh(spheres.data(), ids, frame, {}, bounded);
   }
-  double radius(std::uint32_t id) const { return spheres[id].radius * frame.scale; }
 
-  /// Calls f(id) for each sphere below a node or leaf.
+  double in_box(double world, int axis) const { return (world - frame.middle[axis]) * frame.scale; }
+  double center(std::size_t object, int axis) const {
+    const Sphere& s = objects[object];
+    return in_box(axis == 0 ? s.x : axis == 1 ? s.y : s.z, axis);
+  }
+  double radius(std::size_t object) const { return objects[object].radius * frame.scale; }
+
+  /// Calls f(object) for each sphere or rod below a node or leaf.
   template <class F>
   void each_below(std::uint32_t reference, F f) const {
     if ((reference & SphereBvh::kLeafBit) != 0) {
       const std::uint32_t leaf = reference & ~SphereBvh::kLeafBit;
-      for (unsigned i = 0; i < bvh.count_in(leaf); ++i) f(bvh.leaves[leaf].ids[i]);
+      for (unsigned i = 0; i < bvh.count_in(leaf); ++i) f(bounded.rods.object(bvh.leaves[leaf].ids[i]));
       return;
     }
     const SphereBvh::Node& node = bvh.nodes[reference];
@@ -64,18 +80,45 @@ std::vector<Tree> trees() {
   std::vector<Sphere> flat = test::scattered(random, 5000, 1, 0.01, 0);
   for (Sphere& s : flat) s.y = 0, s.radius = 0.01;
   out.emplace_back(flat);
+  out.emplace_back(test::scattered(random, 1000, 1, 0.02, 0), test::random_rods(random, 1500, 0.1, 0.01));
+  out.emplace_back(std::vector<Sphere>{}, test::random_rods(random, 40, 0.5, 0.001));
   return out;
+}
+
+/// The ends of rods, with what is needed around them.
+TEST(AccelSphereBvh, LeavesHoldTheAxesOfRods) {
+  long rods = 0;
+  for (const Tree& tree : trees())
+    for (std::uint32_t l = 0; l < tree.bvh.rods.size(); ++l) {
+      const SphereBvh::LeafRods& leaf = tree.bvh.rods[l];
+      for (unsigned i = 0; i < tree.bvh.count_in(l); ++i) {
+        const std::uint32_t id = tree.bvh.leaves[l].ids[i];
+        ASSERT_EQ((leaf.rods >> i & 1u) != 0, tree.bounded.rods.contains(id));
+        if (!tree.bounded.rods.contains(id)) continue;
+        ++rods;
+        const Rod& rod = tree.rods[tree.bounded.rods.index(id)];
+        double square = 0;
+        for (int axis = 0; axis < 3; ++axis)
+          square += std::pow((rod.b[axis] - rod.a[axis]) / 2 * tree.frame.scale -
+                                 static_cast<double>(leaf.half[axis][i]) * static_cast<double>(leaf.step),
+                             2);
+        EXPECT_LE(std::sqrt(square), 0.87 * leaf.step);
+        EXPECT_GE(leaf.radius, rod.radius * tree.frame.scale);
+        EXPECT_LE(leaf.least_radius, rod.radius * tree.frame.scale);
+      }
+    }
+  EXPECT_EQ(rods, 1540);
 }
 
 TEST(AccelSphereBvh, EverySphereIsInOneLeafAndBelowItsStartNode) {
   for (const Tree& tree : trees()) {
-    std::vector<int> seen(tree.spheres.size(), 0);
-    tree.each_below(tree.bvh.root(), [&](std::uint32_t id) { ++seen[id]; });
+    std::vector<int> seen(tree.objects.size(), 0);
+    tree.each_below(tree.bvh.root(), [&](std::size_t object) { ++seen[object]; });
     EXPECT_EQ(std::count(seen.begin(), seen.end(), 1), static_cast<long>(seen.size()));
-    for (std::uint32_t id = 0; id < seen.size(); ++id) {
+    for (std::size_t object = 0; object < seen.size(); ++object) {
       bool found = false;
-      tree.each_below(tree.bvh.start_node(id), [&](std::uint32_t other) { found = found || other == id; });
-      EXPECT_TRUE(found) << id;
+      tree.each_below(tree.bvh.start_node(object), [&](std::size_t other) { found = found || other == object; });
+      EXPECT_TRUE(found) << object;
     }
   }
 }
@@ -102,7 +145,7 @@ TEST(AccelSphereBvh, LeavesHoldCentresAndRadii) {
     for (std::uint32_t l = 0; l < tree.bvh.leaves.size(); ++l) {
       const SphereBvh::Leaf& leaf = tree.bvh.leaves[l];
       for (unsigned i = 0; i < tree.bvh.count_in(l); ++i) {
-        const std::uint32_t id = leaf.ids[i];
+        const std::size_t id = tree.bounded.rods.object(leaf.ids[i]);
         double square = 0;
         for (int axis = 0; axis < 3; ++axis) {
           const double decoded = std::fma(static_cast<double>(leaf.center[axis][i]), static_cast<double>(leaf.step),
@@ -126,14 +169,21 @@ TEST(AccelSphereBvh, BoxesEnclosePaddedSpheres) {
     const double needed = 19 * 0x1p-24 * tree.frame.reach;
     for (const SphereBvh::Node& node : tree.bvh.nodes)
       for (std::uint32_t child = 0; child < node.count; ++child)
-        tree.each_below(node.first + child, [&](std::uint32_t id) {
+        tree.each_below(node.first + child, [&](std::size_t object) {
           for (int axis = 0; axis < 3; ++axis) {
+            double lower = tree.center(object, axis) - tree.radius(object), upper = lower + 2 * tree.radius(object);
+            if (object >= tree.spheres.size()) {
+              const Rod& rod = tree.rods[object - tree.spheres.size()];
+              const double a = tree.in_box(rod.a[axis], axis), b = tree.in_box(rod.b[axis], axis);
+              lower = std::min(a, b) - rod.radius * tree.frame.scale;
+              upper = std::max(a, b) + rod.radius * tree.frame.scale;
+            }
             const auto bound = [&](int side) {
               return static_cast<double>(node.origin[axis]) +
                      static_cast<double>(node.bound[side][axis][child]) * static_cast<double>(node.step[axis]);
             };
-            EXPECT_LE(bound(0), tree.center(id, axis) - tree.radius(id) - needed);
-            EXPECT_GE(bound(1), tree.center(id, axis) + tree.radius(id) + needed);
+            EXPECT_LE(bound(0), lower - needed);
+            EXPECT_GE(bound(1), upper + needed);
           }
         });
   }
@@ -147,9 +197,9 @@ TEST(AccelSphereBvh, NoOtherSphereReachesIntoACell) {
       if (!(cell.lower[0] <= cell.upper[0] && cell.lower[1] <= cell.upper[1] && cell.lower[2] <= cell.upper[2]))
         continue;
       ++cells;
-      std::vector<bool> own(tree.spheres.size(), false);
-      tree.each_below(n, [&](std::uint32_t id) { own[id] = true; });
-      for (std::uint32_t id = 0; id < own.size(); ++id) {
+      std::vector<bool> own(tree.objects.size(), false);
+      tree.each_below(n, [&](std::size_t object) { own[object] = true; });
+      for (std::size_t id = 0; id < own.size(); ++id) {
         if (own[id]) continue;
         double square = 0;
         for (int axis = 0; axis < 3; ++axis) {
