@@ -165,6 +165,16 @@ std::string fault_with_table(const data::FrameInfo& info, const data::Table& tab
   return {};
 }
 
+/// Checks that the bonds of a frame are pairs of its rows, in order.
+std::string fault_with_bonds(const data::FrameInfo& info, const std::vector<data::Bond>& bonds) {
+  if (info.bonds == 0 && !bonds.empty()) return "bonds that are not described";
+  for (const data::Bond& bond : bonds)
+    if (bond.a >= bond.b || bond.b >= info.rows) return "a bond of rows that do not exist, or of a row with itself";
+  for (std::size_t i = 1; i < bonds.size(); ++i)
+    if (!(bonds[i - 1] < bonds[i])) return "the bonds do not ascend";
+  return {};
+}
+
 /// Opens a data file; without success under the names of formats that are recognised by their names.
 std::unique_ptr<data::DataFile> open_data(const std::filesystem::path& folder, const std::string& bytes,
                                           std::filesystem::path& file) {
@@ -246,6 +256,8 @@ std::string fault_with_data(const std::filesystem::path& folder, const std::stri
       for (const data::ColumnInfo& column : info.columns) columns.push_back(column.name);
       if (std::string fault = fault_with_table(info, file->read(frame, columns)); !fault.empty()) return fault;
       if (std::string fault = fault_with_all_keys(name, info, frame); !fault.empty()) return fault;
+      // Last, because damaged bonds are an error even if the rows are not.
+      if (std::string fault = fault_with_bonds(info, file->bonds(frame)); !fault.empty()) return fault;
     }
     return {};
   });
