@@ -125,8 +125,8 @@ class ResidueBonds {
       const auto partners = component->second.find(name);
       if (partners == component->second.end()) continue;
       for (const std::uint32_t partner : partners->second)
-        if (const auto other = rows_.find(partner); other != rows_.end() && other->second != row &&
-                                                    component_of[other->second] == component_of[row])
+        if (const auto other = rows_.find(partner);
+            other != rows_.end() && other->second != row && component_of[other->second] == component_of[row])
           out_.push_back(ordered_bond(row, other->second));
     }
     rows_.clear();
@@ -170,7 +170,8 @@ std::vector<Bond> CifBonds::of_model(const AtomTable& table, const CifResidues& 
       std::vector<std::uint32_t>& partners = components[*component][*first];
       partners.push_back(*second);
       if (partners.size() > kMaxBondsInFile)
-        faults.fail(0, fmt::format("_chem_comp_bond: atom {} of {} has more than {} bonds", a, residue, kMaxBondsInFile));
+        faults.fail(0,
+                    fmt::format("_chem_comp_bond: atom {} of {} has more than {} bonds", a, residue, kMaxBondsInFile));
     }
   }
   ResidueBonds within(atoms, components, out);

@@ -98,7 +98,11 @@ bool fits(const scene::Points& points, std::size_t material_count) {
          std::none_of(points.radii.begin(), points.radii.end(), [](double r) { return std::isnan(r); }) &&
          std::all_of(points.palette.begin(), points.palette.end(), math::is_finite) &&
          std::all_of(points.colors.begin(), points.colors.end(), [&](auto c) { return c < points.palette.size(); }) &&
-         std::all_of(points.materials.begin(), points.materials.end(), [=](auto m) { return m < material_count; });
+         std::all_of(points.materials.begin(), points.materials.end(), [=](auto m) { return m < material_count; }) &&
+         std::all_of(points.bond_pairs.begin(), points.bond_pairs.end(),
+                     [=](const auto& bond) { return bond.a < bond.b && bond.b < count; }) &&
+         std::all_of(points.bond_stubs.begin(), points.bond_stubs.end(),
+                     [=](const auto& stub) { return stub.sphere < count && stub.partner < count; });
 }
 
 /// Runs a reader and checks what it throws.
@@ -203,6 +207,11 @@ std::string fault_with_all_keys(const std::filesystem::path& file, const data::F
   points.skip_bad = frame == 0;
   points.unwrap = info.box && !info.roles.image[0].empty();
   if (info.box) points.replicate = {2, 1, 1};
+  if (frame == 0) {
+    points.bonds.are_drawn = true;
+    points.bonds.from = info.bonds > 0 ? "both" : "distance";
+    points.bonds.length = 1.5;
+  }
   if (!info.assemblies.empty()) points.assembly = info.assemblies.back().name;
   points::LoadRequest request;
   request.file = file;
