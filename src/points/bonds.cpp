@@ -12,18 +12,13 @@
 #include "base/text.h"
 #include "points/elements.h"
 #include "points/rows.h"
+#include "scene/limits.h"
 #include "scene/number_array.h"
 
 namespace orrery::points {
 namespace {
 
 using data::Vec3d;
-
-/// Default of `bonds.factor`. The sum of two covalent radii is the length of a single bond within a few hundredths;
-/// distances between atoms that are not bonded begin at about 1.4 times the sum.
-///
-/// Reference  cordero2008, meng1991
-constexpr double kDefaultFactor = 1.2;
 
 /// Atoms closer than this fraction of the largest length of a bond, 0.4 times the sum of the radii with the default
 /// factor, are alternative positions of one atom.
@@ -49,7 +44,8 @@ BondSource bond_source(const data::FrameInfo& info, const scene::PointsBonds& bo
   const bool by_default = bonds.from.empty();
   out.is_file = by_default ? has_bonds && !(has_distance && info.lists_all_bonds) : bonds.from != "distance";
   out.is_distance = by_default ? !out.is_file || !info.lists_all_bonds : bonds.from != "file";
-  if (out.is_file && !has_bonds) faults.error(".bonds.from", "the file has no bonds; set `from = \"distance\"`");
+  if (out.is_file && !has_bonds)
+    faults.error(".bonds.from", "the file has no bonds; set `from = \"distance\"`, or --bonds distance");
   if (bonds.factor && bonds.length) faults.error(".bonds", "only one of `factor` and `length` can be set");
   if (!out.is_distance && has_distance)
     faults.warning(bonds.factor ? ".bonds.factor" : ".bonds.length", "has no effect: the bonds are those of the file");
@@ -57,9 +53,9 @@ BondSource bond_source(const data::FrameInfo& info, const scene::PointsBonds& bo
     out.element = info.roles.element;
     if (out.element.empty())
       faults.error(".bonds",
-                   fmt::format("the file has no {}column of chemical elements; set `bonds.length`, the largest "
-                               "length of a bond in the unit of the file",
-                               by_default ? "bonds and no " : ""));
+                   fmt::format("the file has no {}column of chemical elements; set `bonds.length`, or --bonds "
+                               "length=X, to the largest length of a bond in the unit of the file",
+                               has_bonds ? "" : "bonds and no "));
   }
   return out;
 }
@@ -77,7 +73,8 @@ Reach reach_of(const data::Table& table, const Rows& rows, const BondSource& sou
   for (const std::string& name : labels.names) {
     const Element* const element = find_element(name);
     if (element == nullptr) missing.push_back(fmt::format("`{}`", name));
-    out.of_label.push_back(element == nullptr ? 0 : element->covalent * bonds.factor.value_or(kDefaultFactor));
+    out.of_label.push_back(element == nullptr ? 0
+                                              : element->covalent * bonds.factor.value_or(scene::kDefaultBondFactor));
   }
   if (labels.of_rows.size() != rows.size()) missing = {"most names"};
   if (!missing.empty())

@@ -124,6 +124,7 @@ class Loader {
     if (points_.bonds.are_drawn) {
       bond_source_ = bond_source(info_, points_.bonds, faults_);
       need(bond_source_.element);
+      points_.bonds_from = !bond_source_.is_distance ? "file" : bond_source_.is_file ? "both" : "distance";
     }
     if (info_.may_be_of_scene && data::has_column(info_.columns, points_.material_column))
       need(material_ = points_.material_column);

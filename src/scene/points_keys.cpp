@@ -13,9 +13,6 @@ using P = Points;
 constexpr Range kAnyValue{-kLargestValue, kLargestValue};
 constexpr int kMaxFrameOfFile = std::numeric_limits<int>::max();
 
-/// Maximum of `bonds.factor`; more than 3 would bond second neighbours.
-constexpr double kLargestFactor = 100;
-
 /// `bonds = true` draws bonds by default keys; with other keys, `bonds` is a table of them.
 Key<P> key_of_bonds() {
   Key<P> key = boolean<P>("bonds",
@@ -94,7 +91,7 @@ std::vector<Key<P>> make_keys() {
            "see [Bonds](data.md#bonds)"},
           in(&P::bonds, &PointsBonds::from)),
       otherwise("1.2, unless `length` is set",
-                number<P>("bonds.factor", {0, kLargestFactor, true, false},
+                number<P>("bonds.factor", {0, kLargestBondFactor, true, false},
                           {"",
                            "By distance: a pair is bonded if it is closer than the sum of its covalent radii in "
                            "ångström, multiplied by this"},

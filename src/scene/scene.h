@@ -274,6 +274,7 @@ struct Points {
   std::vector<std::string> unused = {};  ///< unused columns of the file, such as colours
   std::vector<SphereBond> bond_pairs = {};
   std::vector<BondStub> bond_stubs = {};
+  std::string bonds_from = {};   ///< resolved PointsBonds::from; empty: bonds are not drawn
   double bond_radius = 0;        ///< of the rods of all bonds, scene units
   bool spheres_are_rows = true;  ///< sphere i is row i of the file: no selection, sorting, copying or clipping
 

@@ -131,6 +131,8 @@ TEST_F(CliView, RandomWalksThroughTheControlsMakeThePictureOfTheCommand) {
       {"--map", {"", "magma", "fast"}},
       {"--range", {"", "0:10", "5:1"}},
       {"--style", {"", "night", "flat"}},
+      {"--bonds", {"", "length=1.5", "none", "file"}},
+      {"--representation", {"", "spheres", "sticks"}},
       {"--select", {"", "type == 1", "z > 0 && \"x\" < 2", "type =="}},
       {"--slice", {"", "z=1.5", "x=2\ny=2"}},
       {"--radius-scale", {"", "0.5", "1.2"}},

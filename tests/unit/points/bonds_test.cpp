@@ -166,11 +166,13 @@ TEST_F(PointsBonds, TheSourceFollowsTheFileAndTheKeys) {
 
 TEST_F(PointsBonds, KeysThatDoNotFitAreReported) {
   points.radius.value = 0.5;
-  EXPECT_EQ(load("a.csv", "x,y,z\n0,0,0\n"),
-            "error points[0].bonds: the file has no bonds and no column of chemical elements; set `bonds.length`, the "
-            "largest length of a bond in the unit of the file\n");
+  EXPECT_EQ(
+      load("a.csv", "x,y,z\n0,0,0\n"),
+      "error points[0].bonds: the file has no bonds and no column of chemical elements; set `bonds.length`, or --bonds "
+      "length=X, to the largest length of a bond in the unit of the file\n");
   points.bonds.from = "file";
-  EXPECT_EQ(load(), "error points[0].bonds.from: the file has no bonds; set `from = \"distance\"`\n");
+  EXPECT_EQ(load(),
+            "error points[0].bonds.from: the file has no bonds; set `from = \"distance\"`, or --bonds distance\n");
   points.bonds = {true, "distance", 1, 1, {}, {}};
   EXPECT_EQ(load("a.xyz", kXyz), "error points[0].bonds: only one of `factor` and `length` can be set\n");
   points.bonds = {true, "file", {}, 1, {}, {}};
