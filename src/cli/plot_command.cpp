@@ -209,6 +209,8 @@ void add_look_options(Command& command, plot::PlotOptions& plot, LookArguments& 
   command.add_flag("--allow-empty", plot.allow_empty,
                    "Render the background alone if --select or --slice leaves nothing; default: an error");
   command.add_flag("--ground", plot.ground, "Add a ground that receives shadows");
+  command.add_flag("--box", plot.box, "Draw the edges of the simulation box");
+  command.add_flag("--axes", plot.axes, "Draw the directions of x (red), y (green) and z (blue)");
 }
 
 void read_look_options(const LookArguments& look, plot::PlotOptions& plot) {

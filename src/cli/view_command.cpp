@@ -157,7 +157,8 @@ view::Controls controls_of(const std::filesystem::path& file) {
   out.options["--style"] = plot::style_names();
   out.options["--representation"] = plot::representation_names();
   out.options["--bonds"] = {"auto", "none", "file", "distance", "both"};
-  for (const char* option : {"--ground", "--range", "--select", "--slice", "--radius-scale", "--frame"})
+  for (const char* option :
+       {"--ground", "--box", "--axes", "--range", "--select", "--slice", "--radius-scale", "--frame"})
     out.options[option] = {};
   return out;
 }

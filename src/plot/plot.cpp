@@ -35,6 +35,9 @@ constexpr double kNoise = 0.02;
 /// radius of sticks between elements, in the unit of the file.
 constexpr double kBallFraction = 0.5, kStickFraction = 0.3, kStickRadius = 0.2;
 
+/// Radius of the edges of the box, and length and radius of the axes, as fractions of the radius of what is shown.
+constexpr double kBoxRadius = 0.004, kAxisLength = 0.15, kAxisRadius = 0.01;
+
 /// A side of the image, which the camera must know. An invalid one is reported when the scene is read.
 int side_of(const format::Overrides& overrides, const char* key, int otherwise) {
   return static_cast<int>(std::clamp<std::int64_t>(overrides.integer(key).value_or(otherwise), 1, base::kLargestSide));
@@ -110,6 +113,7 @@ class PlotMaker {
     ViewExtent extent(is_turntable_ ? turned(axes, pole) : axes);
     visit_frames(extent, up);
     if (extent.is_empty()) report_empty();
+    add_guides(extent, up);
     if (is_turntable_ && !extent.is_empty()) extent = orbit(axes, extent.center(), pole);
     const double aspect = static_cast<double>(width_) / height_;
     scene::Camera camera = vfov_ ? extent.perspective_camera(aspect, *vfov_) : extent.camera(aspect);
@@ -136,6 +140,7 @@ class PlotMaker {
     choose_samples();
     if (options_.develops && display_of(options_).view.empty() && out_.view == kPlainView)
       chose(fmt::format("view transform {}", out_.view), "colours match the colour map");
+    parts.guides = std::move(guides_);
     out_.text = scene_text(parts);
     // A still image is made of one frame, whose file need not stay open.
     out_.open_data = out_.frames.empty() ? points::handed_over(data_.open_data()) : data_.open_data();
@@ -330,8 +335,12 @@ class PlotMaker {
       most_bonds = std::max(most_bonds, bonds);
       bonds_from_ = points.bonds_from;
       extent.add(points);
-      for (std::size_t i = 0; i < points.centers.size(); ++i)
-        lowest_ = std::min(lowest_, math::dot(points.centers[i], up) - std::abs(points.radii[i]));
+      for (std::size_t i = 0; i < points.centers.size(); ++i) {
+        const math::Vec3d center = points.centers[i];
+        const double radius = std::abs(points.radii[i]);
+        lowest_ = std::min(lowest_, math::dot(center, up) - radius);
+        add_to_corner(center, radius);
+      }
       if (points.centers.empty()) continue;
       out_.legend.add(points);
       widen(range, points);
@@ -364,10 +373,62 @@ class PlotMaker {
                     most == 1 ? "sphere" : "spheres", base::joined(why)));
   }
 
+  void add_to_corner(const math::Vec3d& center, double radius) {
+    corner_ = {std::min(corner_.x, center.x - radius), std::min(corner_.y, center.y - radius),
+               std::min(corner_.z, center.z - radius)};
+  }
+
+  /// Adds the edges of the simulation box and the axes, and what they take in the image.
+  void add_guides(ViewExtent& extent, const math::Vec3d& up) {
+    if (options_.box) add_box(extent);
+    if (options_.axes && !extent.is_empty()) add_axes(extent.radius());
+    for (const scene::Rod& rod : guides_)
+      for (const math::Vec3d& end : {rod.from, rod.to}) {
+        guide_ends_.centers.push_back(end);
+        guide_ends_.radii.push_back(rod.radius);
+        lowest_ = std::min(lowest_, math::dot(end, up) - rod.radius);
+      }
+    extent.add(guide_ends_);
+  }
+
+  void add_box(ViewExtent& extent) {
+    if (!info_.box)
+      throw base::Error(base::ErrorKind::kBadData,
+                        fmt::format("--box: {} has no simulation box", options_.file.string()));
+    const math::Vec3d counts = options_.points.replicate;
+    const math::Vec3d a = info_.box->edges[0] * counts.x, b = info_.box->edges[1] * counts.y,
+                      c = info_.box->edges[2] * counts.z, origin = info_.box->origin;
+    const auto corner = [&](int i) { return origin + a * (i & 1) + b * (i >> 1 & 1) + c * (i >> 2 & 1); };
+    for (int i = 0; i < 8; ++i) {
+      extent.add(corner(i), 0);
+      add_to_corner(corner(i), 0);
+    }
+    const double radius = rounded(kBoxRadius * extent.radius());
+    for (int i = 0; i < 8; ++i)
+      for (const int edge : {1, 2, 4})
+        if ((i & edge) == 0)
+          guides_.push_back({corner(i), corner(i | edge), radius, {kBoxMaterial, kBoxMaterial}, {}, {}});
+    if (out_.frames.size() > 1) chose("box", fmt::format("that of frame {}", data_.described_frame()));
+  }
+
+  /// Adds a tripod outside the lower corner of what is shown.
+  ///
+  /// `size`     radius of what is shown
+  void add_axes(double size) {
+    const double length = rounded(kAxisLength * size), radius = rounded(kAxisRadius * size);
+    const math::Vec3d origin = corner_ - math::Vec3d{1, 1, 1} * (length + 2 * radius);
+    const std::pair<GuideMaterial, math::Vec3d> axes[] = {
+        {kXMaterial, {1, 0, 0}}, {kYMaterial, {0, 1, 0}}, {kZMaterial, {0, 0, 1}}};
+    for (const auto& [material, direction] : axes)
+      guides_.push_back({origin, origin + direction * length, radius, {material, material}, {}, {}});
+    chose("axes", "x red, y green, z blue");
+  }
+
   /// The space that the spheres of all frames pass through on the orbit of the camera.
   ViewExtent orbit(const ViewAxes& axes, const math::Vec3d& pivot, const math::Vec3d& pole) const {
     ViewExtent out(axes);
     for (const int frame : data_.distinct()) out.add_orbits(load(frame), pivot, pole);
+    out.add_orbits(guide_ends_, pivot, pole);
     return out;
   }
 
@@ -377,7 +438,11 @@ class PlotMaker {
   int width_, height_;          ///< px
   std::optional<double> vfov_;  ///< degrees: a perspective camera; otherwise orthographic
   bool is_turntable_;           ///< the camera orbits around the up axis
-  std::string bonds_from_;      ///< see scene::Points
+  /// Lower corner of all that is shown along x, y and z, scene units.
+  math::Vec3d corner_ = math::Vec3d{1, 1, 1} * std::numeric_limits<double>::infinity();
+  std::vector<scene::Rod> guides_;  ///< see PlotParts
+  scene::Points guide_ends_;        ///< their ends, as spheres
+  std::string bonds_from_;          ///< see scene::Points
   double lowest_ =
       std::numeric_limits<double>::infinity();  ///< lowest point of all spheres along the up axis, scene units
   PlotScene out_;

@@ -44,6 +44,8 @@ struct PlotOptions : DataOptions {
   Representation representation = Representation::kSpheres;
   std::optional<bool> bonds;  ///< draws bonds by the keys in `points.bonds`; default: unless kSpheres
   bool ground = false;
+  bool box = false;                  ///< draws the edges of the simulation box
+  bool axes = false;                 ///< draws the directions of x, y and z
   bool allow_empty = false;          ///< a selection or a slice may leave nothing
   bool has_target = false;           ///< the user limits noise or time
   bool develops = false;             ///< an image has a display format

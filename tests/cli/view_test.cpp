@@ -137,6 +137,8 @@ TEST_F(CliView, RandomWalksThroughTheControlsMakeThePictureOfTheCommand) {
       {"--slice", {"", "z=1.5", "x=2\ny=2"}},
       {"--radius-scale", {"", "0.5", "1.2"}},
       {"--ground", {"", "on"}},
+      {"--box", {"", "on"}},
+      {"--axes", {"", "on"}},
       {"--denoise", {"", "on"}},
       {"--frame", {"", "2", "3", "4"}},
       {"--set", {"", "render.seed=7\nimage.overscan=0", "render.max_depth=3"}},

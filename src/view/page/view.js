@@ -7,7 +7,7 @@ const canvas = $("picture"), context = canvas.getContext("2d");
 // Options in the order of the page. Those that the server does not offer are not shown.
 const LABELS = {
   "--color-by": "Colour by", "--map": "Colour map", "--range": "Range", "--select": "Select", "--slice": "Slice",
-  "--representation": "Representation", "--bonds": "Bonds", "--style": "Style", "--radius-scale": "Radius scale", "--ground": "Ground", "--noise": "Noise", "--samples": "Samples",
+  "--representation": "Representation", "--bonds": "Bonds", "--style": "Style", "--radius-scale": "Radius scale", "--ground": "Ground", "--box": "Box", "--axes": "Axes", "--noise": "Noise", "--samples": "Samples",
   "--denoise": "Denoise", "--set": "Settings",
 };
 const HINTS = {

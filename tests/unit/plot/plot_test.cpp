@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <set>
 
 #include "base/error.h"
 #include "display/develop.h"
@@ -223,6 +224,39 @@ TEST_F(PlotPlot, BondsByDistanceFollowTheFrames) {
   EXPECT_TRUE(chose("0 to 1 bond: closer than 1.2 times the sum of the covalent radii")) << choices();
   EXPECT_EQ(read(1).points[0].bond_pairs.size(), 1u);
   EXPECT_EQ(read(2).points[0].bond_pairs.size(), 0u);
+}
+
+TEST_F(PlotPlot, TheBoxIsTwelveRodsAndTheAxesAreOutsideIt) {
+  options.box = options.axes = true;
+  options.points.replicate = {2, 1, 1};
+  make("a.data", "t\n1 atoms\n-1 3 xlo xhi\n0 3 ylo yhi\n0 5 zlo zhi\n1 0 0 xy xz yz\n\nAtoms # atomic\n\n1 1 1 1 1\n");
+  const scene::Scene scene = read();
+  ASSERT_EQ(scene.rods.size(), 15u);
+  std::multiset<double> lengths;
+  math::Vec3d low{9, 9, 9}, high{-9, -9, -9};
+  for (std::size_t i = 0; i < 12; ++i) {
+    const scene::Rod& rod = scene.rods[i];
+    EXPECT_EQ(rod.name, "box");
+    lengths.insert(math::length(rod.to - rod.from));
+    for (const math::Vec3d& end : {rod.from, rod.to}) {
+      low = {std::min(low.x, end.x), std::min(low.y, end.y), std::min(low.z, end.z)};
+      high = {std::max(high.x, end.x), std::max(high.y, end.y), std::max(high.z, end.z)};
+    }
+  }
+  EXPECT_EQ(lengths, (std::multiset<double>{8, 8, 8, 8, std::sqrt(10), std::sqrt(10), std::sqrt(10), std::sqrt(10), 5,
+                                            5, 5, 5}));
+  EXPECT_EQ(low, (math::Vec3d{-1, 0, 0}));
+  EXPECT_EQ(high, (math::Vec3d{8, 3, 5}));
+  for (std::size_t i = 12; i < 15; ++i) {
+    EXPECT_EQ(scene.rods[i].from, scene.rods[12].from);
+    EXPECT_LT(scene.rods[i].to.x, -1);
+    EXPECT_LT(scene.rods[i].to.y, 0);
+    EXPECT_LT(scene.rods[i].to.z, 0);
+  }
+  options = {};
+  options.box = true;
+  write("b.csv", kCorners);
+  EXPECT_THROW(make(), base::Error);
 }
 
 /// Colours as a plot shows them where all light reaches the sphere; the background comes first.
