@@ -107,8 +107,15 @@ struct DataArguments {
 void add_data_options(Command& command, DataArguments& arguments, plot::DataOptions& data,
                       const std::string& kind = "Data file");
 
-/// Adds the options of plot that select view and style.
-void add_look_options(Command& command, plot::PlotOptions& plot, std::string& style);
+/// Arguments of the look options that need further parsing; empty: not set.
+struct LookArguments {
+  std::string style, representation, bonds;
+};
+
+/// Adds the options of plot that select view, style, representation and bonds.
+void add_look_options(Command& command, plot::PlotOptions& plot, LookArguments& look);
+/// Sets the members of `plot` from the parsed options.
+void read_look_options(const LookArguments& look, plot::PlotOptions& plot);
 
 /// Sets the members of `data` from the parsed options.
 ///

@@ -1,7 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
+#include <algorithm>
+#include <charconv>
 #include <chrono>
 #include <memory>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include <fmt/core.h>
@@ -28,6 +31,7 @@
 #include "plot/plot.h"
 #include "plot/write_legend.h"
 #include "preview/preview.h"
+#include "scene/limits.h"
 
 namespace orrery::cli {
 namespace {
@@ -36,7 +40,7 @@ struct PlotArguments {
   RenderOptions render;
   plot::PlotOptions plot;
   DataArguments data;
-  std::string style;  ///< empty: not set
+  LookArguments look;
   std::filesystem::path save_scene, legend;
   bool force = false;
 };
@@ -132,7 +136,7 @@ int run_plot(PlotArguments& arguments) {
   const bool saves = !arguments.save_scene.empty();
   render.picture.finish(job);
   read_data_options(arguments.data, plot);
-  plot.style = plot::style_of(arguments.style);
+  read_look_options(arguments.look, plot);
   plot.overrides = render.scene.overrides();
   plot.scene_file = saves ? arguments.save_scene : plot.file;
   plot.has_target = job.sampling.noise || job.sampling.seconds;
@@ -171,8 +175,23 @@ int run_plot(PlotArguments& arguments) {
 
 }  // namespace
 
-void add_look_options(Command& command, plot::PlotOptions& plot, std::string& style) {
+void add_look_options(Command& command, plot::PlotOptions& plot, LookArguments& look) {
   const OptionGroup group(command, "Look options");
+  command
+      .add_option("--representation", look.representation, "KIND",
+                  "Particles as spheres, ball-and-stick or sticks, the latter two with bonds; default: spheres")
+      ->details(
+          "ball-and-stick: a quarter of the van der Waals radii, or without elements half the default radius. sticks: "
+          "spheres have the radius of the bonds.")
+      ->choices(plot::representation_names());
+  command
+      .add_option(
+          "--bonds", look.bonds, "SOURCE",
+          "Draw bonds: auto, file, distance, both, a factor of the covalent radii such as 1.2, or length=X; none")
+      ->details(
+          "auto: those of the file; by distance if it has none; both for PDB and mmCIF, which leave out common bonds. "
+          "A "
+          "factor or a length: by distance. docs/data.md describes bonds.");
   command
       .add_option("--look-from", plot.look_from, "VIEW",
                   "View: iso, +x, -x, +y, -y, +z, -z, or azimuth and elevation in degrees, e.g. 30,20; default: iso")
@@ -181,7 +200,7 @@ void add_look_options(Command& command, plot::PlotOptions& plot, std::string& st
       ->choices({"x", "y", "z"});
   command
       .add_option(
-          "--style", style, "STYLE",
+          "--style", look.style, "STYLE",
           "Look: studio, ambient (white light from all directions), flat (no shading) or night; default: studio")
       ->details(
           "studio: a key light from the upper left of the camera, and white light from all directions. night: a lamp "
@@ -195,6 +214,38 @@ void add_look_options(Command& command, plot::PlotOptions& plot, std::string& st
   command.add_flag("--allow-empty", plot.allow_empty,
                    "Render the background alone if --select or --slice leaves nothing; default: an error");
   command.add_flag("--ground", plot.ground, "Add a ground that receives shadows");
+  command.add_flag("--box", plot.box, "Draw the edges of the simulation box");
+  command.add_flag("--axes", plot.axes, "Draw the directions of x (red), y (green) and z (blue)");
+}
+
+void read_look_options(const LookArguments& look, plot::PlotOptions& plot) {
+  plot.style = plot::style_of(look.style);
+  if (!look.representation.empty()) {
+    const std::vector<std::string>& names = plot::representation_names();
+    plot.representation =
+        static_cast<plot::Representation>(std::find(names.begin(), names.end(), look.representation) - names.begin());
+  }
+  if (look.bonds.empty()) return;
+  scene::PointsBonds& bonds = plot.points.bonds;
+  plot.bonds = look.bonds != "none";
+  if (look.bonds == "none" || look.bonds == "auto") return;
+  if (look.bonds == "file" || look.bonds == "distance" || look.bonds == "both") {
+    bonds.from = look.bonds;
+    return;
+  }
+  constexpr std::string_view kLength = "length=";
+  const bool is_length = look.bonds.starts_with(kLength);
+  const std::string_view text = std::string_view(look.bonds).substr(is_length ? kLength.size() : 0);
+  double number = 0;
+  const auto [stopped, error] = std::from_chars(text.data(), text.data() + text.size(), number);
+  const double largest = is_length ? scene::kLargestLength : scene::kLargestBondFactor;
+  if (error != std::errc() || stopped != text.data() + text.size() || !(number >= scene::kSmallestRadius) ||
+      !(number <= largest))
+    base::refuse(
+        fmt::format("--bonds: `{}` is not a source of bonds; write auto, file, distance, both, none, a factor "
+                    "such as 1.2, or length=1.6",
+                    look.bonds));
+  (is_length ? bonds.length : bonds.factor) = number;
 }
 
 void add_plot(Command& program) {
@@ -209,7 +260,7 @@ void add_plot(Command& program) {
           "--time or --samples gives the same pixels.");
   command.add_flag("--force", arguments->force,
                    "Let --save-scene replace a file that was edited, or not written by orrery");
-  add_look_options(command, arguments->plot, arguments->style);
+  add_look_options(command, arguments->plot, arguments->look);
   add_render_options(command, arguments->render);
   command.details(
       "Writes a scene for the data, and renders it. Settings that the options leave open are chosen from the data and "
@@ -224,6 +275,7 @@ void add_plot(Command& program) {
       "Examples:\n"
       "  orrery plot melt.dump -o melt.png\n"
       "  orrery plot 1m4x.pdb -o virus.png --assembly 1\n"
+      "  orrery plot caffeine.xyz -o caffeine.png --representation ball-and-stick\n"
       "  orrery plot grains.dump -o pour.####.png --frames all --color-by vz --range -2:0\n"
       "  orrery plot scan.las -o scan.exr --color-by rgb");
   command.action([arguments] { return run_plot(*arguments); });

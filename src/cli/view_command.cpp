@@ -41,7 +41,7 @@ namespace {
 struct ShownOptions {
   plot::PlotOptions plot;
   DataArguments data;
-  std::string style;
+  LookArguments look;
   SceneOptions scene;
   job::Job job;
   const Command* command = nullptr;
@@ -49,7 +49,7 @@ struct ShownOptions {
   void add_to(Command& parsed) {
     command = &parsed;
     add_data_options(parsed, data, plot, "Scene file, or data file");
-    add_look_options(parsed, plot, style);
+    add_look_options(parsed, plot, look);
     scene.add_to(parsed);
     add_sampling_options(parsed, job);
     add_denoise_option(parsed, job);
@@ -102,7 +102,7 @@ view::Subject data_subject(ShownOptions& shown) {
   plot::PlotOptions& plot = shown.plot;
   if (!shown.data.frames.empty()) base::refuse("--frames: the page has a slider; --frame N selects the first one");
   read_data_options(shown.data, plot);
-  plot.style = plot::style_of(shown.style);
+  read_look_options(shown.look, plot);
   plot.overrides = shown.scene.overrides();
   plot.scene_file = plot.file;
   plot.has_target = shown.job.sampling.noise || shown.job.sampling.seconds;
@@ -125,6 +125,8 @@ view::Subject data_subject(ShownOptions& shown) {
   const scene::PointsColor& color = made.points.color;
   out.chosen["--map"] = color.map;
   if (color.range) out.chosen["--range"] = fmt::format("{}:{}", color.range->low, color.range->high);
+  out.chosen["--representation"] = plot::representation_names()[static_cast<std::size_t>(plot.representation)];
+  out.chosen["--bonds"] = made.points.bonds.are_drawn ? "auto" : "none";
   out.chosen["--style"] = plot::style_names()[static_cast<std::size_t>(plot.style.value_or(plot::Style::kStudio))];
   out.chosen["--material"] = plot.material;
   display::Settings display = plot::settings_of(plot, true).display;
@@ -155,7 +157,10 @@ view::Controls controls_of(const std::filesystem::path& file) {
   out.options["--map"] = points::color_map_names();
   out.options["--style"] = plot::style_names();
   out.options["--material"] = plot::material_names();
-  for (const char* option : {"--ground", "--range", "--select", "--slice", "--radius-scale", "--frame"})
+  out.options["--representation"] = plot::representation_names();
+  out.options["--bonds"] = {"auto", "none", "file", "distance", "both"};
+  for (const char* option :
+       {"--ground", "--box", "--axes", "--range", "--select", "--slice", "--radius-scale", "--frame"})
     out.options[option] = {};
   return out;
 }

@@ -6,6 +6,7 @@
 #include <bit>
 #include <cmath>
 #include <memory>
+#include <optional>
 #include <tuple>
 #include <utility>
 
@@ -31,7 +32,20 @@ kernel::Sphere sphere_of(Vec3d center, double radius) { return {center.x, center
 /// Whether the ends of a rod are exchanged: they are put in order, since the order changes roundings.
 bool is_reversed(Vec3d from, Vec3d to) { return std::tie(to.x, to.y, to.z) < std::tie(from.x, from.y, from.z); }
 
-/// Calls f(from, to, radius, materials) for each rod: those of tables, then those of files.
+/// Calls f(from, to, a, b) for the rod of each bond of a points table, where a and b are the spheres of its halves.
+template <class F>
+void each_bond(const scene::Points& points, F f) {
+  const base::StopPoint stop;
+  for (std::size_t i = 0; i < points.bond_pairs.size(); ++i) {
+    stop.check(i);
+    const auto [a, b] = points.bond_pairs[i];
+    f(points.centers[a], points.centers[b], a, b);
+  }
+  for (const scene::BondStub& stub : points.bond_stubs)
+    f(points.centers[stub.sphere], stub.end, stub.sphere, stub.sphere);
+}
+
+/// Calls f(from, to, radius, materials) for each rod of a table, then for those of files.
 template <class F>
 void each_rod(const scene::Scene& scene, F f) {
   for (const scene::Rod& rod : scene.rods) f(rod.from, rod.to, rod.radius, rod.materials);
@@ -49,14 +63,20 @@ void set_rods(const scene::Scene& scene, CompiledScene& compiled) {
   compiled.rods.reserve(scene.rod_count());
   compiled.rod_file_sizes.clear();
   for (const scene::RodFile& file : scene.rod_files) compiled.rod_file_sizes.push_back(file.from.size());
-  each_rod(scene, [&](Vec3d from, Vec3d to, double radius, const auto&) {
+  const auto add = [&](Vec3d from, Vec3d to, double radius) {
     const bool reversed = is_reversed(from, to);
     kernel::Rod out;
     set(out.a, reversed ? to : from);
     set(out.b, reversed ? from : to);
     out.radius = radius;
     compiled.rods.push_back(out);
-  });
+  };
+  each_rod(scene, [&](Vec3d from, Vec3d to, double radius, const auto&) { add(from, to, radius); });
+  compiled.bond_counts.clear();
+  for (const scene::Points& points : scene.points) {
+    compiled.bond_counts.push_back(points.bond_count());
+    each_bond(points, [&](Vec3d from, Vec3d to, auto...) { add(from, to, points.bond_radius); });
+  }
 }
 
 /// Sets the spheres.
@@ -89,11 +109,25 @@ void set_sphere_materials(const scene::Scene& scene, CompiledScene& compiled) {
                                               : table.colored_index(material, inside_out, p, points.colors[i]));
     }
   }
+  const auto add = [&](Vec3d from, Vec3d to, std::uint32_t at_from, std::uint32_t at_to) {
+    if (is_reversed(from, to)) std::swap(at_from, at_to);
+    compiled.sphere_materials.push_back(at_from);
+    compiled.sphere_materials.push_back(at_to);
+  };
   each_rod(scene, [&](Vec3d from, Vec3d to, double, const std::array<std::uint32_t, 2>& of_halves) {
-    std::uint32_t halves[2] = {table.index(of_halves[0], false), table.index(of_halves[1], false)};
-    if (is_reversed(from, to)) std::swap(halves[0], halves[1]);
-    for (const std::uint32_t half : halves) compiled.sphere_materials.push_back(half);
+    add(from, to, table.index(of_halves[0], false), table.index(of_halves[1], false));
   });
+  std::size_t first = scene.spheres.size();  // sphere of the points table
+  for (const scene::Points& points : scene.points) {
+    const std::optional<std::uint32_t> material = points.bonds.material;
+    each_bond(points, [&](Vec3d from, Vec3d to, std::size_t a, std::size_t b) {
+      if (material)
+        add(from, to, table.index(*material, false), table.index(*material, false));
+      else
+        add(from, to, compiled.sphere_materials[first + a], compiled.sphere_materials[first + b]);
+    });
+    first += points.centers.size();
+  }
 }
 
 /// Sets the motion of [[sphere]] tables from shutter open to shutter close.

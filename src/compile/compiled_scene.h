@@ -30,9 +30,12 @@ using scene::Accelerator;
 /// sphere is its id in hits. The ids of rods follow, see kernel::RodArray.
 struct CompiledScene {
   SphereStore spheres;
-  std::vector<std::size_t> points_sizes;         ///< number of spheres of each points table
-  std::vector<kernel::Rod> rods;                 ///< with ordered ends: [[rod]] tables, then each [[rods]] file
+  std::vector<std::size_t> points_sizes;  ///< number of spheres of each points table
+  /// With ordered ends: [[rod]] tables, then each [[rods]] file, then the bonds of each points table, first pairs, then
+  /// stubs.
+  std::vector<kernel::Rod> rods;
   std::vector<std::size_t> rod_file_sizes;       ///< number of rods of each file
+  std::vector<std::size_t> bond_counts;          ///< number of rods of the bonds of each points table
   PackedIndices sphere_materials;                ///< one per sphere, then two per rod, index into `materials`
   std::vector<MaterialSource> material_sources;  ///< one per material
   std::vector<kernel::Material> materials;

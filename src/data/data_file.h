@@ -61,6 +61,18 @@ class DataFile {
   /// Cost       memory in proportion to the rows in the file, not to a count that its header declares
   virtual Table read(int frame, const std::vector<std::string>& columns) = 0;
 
+  /// Reads the bonds of a frame.
+  ///
+  /// Result     in ascending order, without duplicates; empty if the file has none
+  /// Errors     base::Error(kBadData) with diagnostics: rows that do not exist, a row that is bonded to itself, too
+  /// many
+  ///            bonds of one row; kIo
+  /// Cost       another pass over the file in text formats
+  virtual std::vector<Bond> bonds(int frame) {
+    static_cast<void>(frame);
+    return {};
+  }
+
   /// Memory that the file takes while it is open and read, bytes, in addition to the tables that are read.
   virtual std::uint64_t memory() const { return 0; }
 };

@@ -171,6 +171,13 @@ struct Assembly {
   std::vector<AssemblyPart> parts;
 };
 
+/// A bond between two rows of a table: a < b.
+struct Bond {
+  std::uint32_t a = 0, b = 0;
+
+  auto operator<=>(const Bond&) const = default;
+};
+
 /// What a frame contains, known without reading its rows.
 struct FrameInfo {
   std::uint64_t rows = 0;
@@ -185,6 +192,9 @@ struct FrameInfo {
   /// The file may have been made for a scene: a column may number its materials, and a radius below 0 is a hollow
   /// sphere.
   bool may_be_of_scene = false;
+  std::uint64_t bonds = 0;  ///< estimated number of bonds in the file; 0: it has none
+  /// False if the format leaves out bonds that its readers know, such as those within the residues of a protein.
+  bool lists_all_bonds = true;
 };
 
 /// Columns of a frame. Rows are in file order.

@@ -191,8 +191,12 @@ void read_points(ReadState& state, const toml::table& root, const std::filesyste
     const toml::table& table = *list->get(i)->as_table();
     const std::string full_name = fmt::format("points[{}]", i);
     scene::Points points;
-    read_keys(state, table, full_name, scene::points_keys(), {"material"}, points);
+    read_keys(state, table, full_name, scene::points_keys(), {"material", "bonds.material"}, points);
     points.material = read_material_name(state, table, full_name, scene, index);
+    if (const toml::node* const bonds = table.get("bonds"); bonds != nullptr && bonds->is_table())
+      points.bonds.are_drawn = true;
+    if (const toml::node* const node = node_at(table, "bonds.material"); node != nullptr)
+      points.bonds.material = material_named(state, *node, full_name + ".bonds.material", scene, index);
     points.is_sequence = base::is_sequence(folder / points.file);
     scene.points.push_back(std::move(points));
   }

@@ -75,13 +75,13 @@ KeyTexts texts_of(const std::vector<scene::Key<Target>>& keys, const Target& tar
   for (const auto& key : keys)
     if (const std::string text = key.text(target); key.required || text != key.text(defaults))
       out.emplace_back(key.name, text);
-  return nested(out);
+  return out;
 }
 
 void add_table(std::string& out, const std::string& header, const KeyTexts& keys) {
   if (keys.empty()) return;
   out += header + '\n';
-  for (const auto& [name, text] : keys) out += fmt::format("{} = {}\n", name, text);
+  for (const auto& [name, text] : nested(keys)) out += fmt::format("{} = {}\n", name, text);
   out += '\n';
 }
 
@@ -167,8 +167,11 @@ std::string scene_text(const scene::Scene& scene, const std::string& comment) {
   };
   for (const scene::Rod& rod : scene.rods) add_rods("[[rod]]", texts_of(scene::rod_keys(), rod, {}), rod.materials);
   add_tracks(out, scene);
-  for (const scene::Points& points : scene.points)
-    add("[[points]]", texts_of(scene::points_keys(), points, {}), points.material);
+  for (const scene::Points& points : scene.points) {
+    KeyTexts keys = texts_of(scene::points_keys(), points, {});
+    if (points.bonds.material) keys.emplace_back("bonds.material", name_text(*points.bonds.material));
+    add("[[points]]", keys, points.material);
+  }
   for (const scene::RodFile& rods : scene.rod_files)
     add_rods("[[rods]]", texts_of(scene::rod_file_keys(), rods, {}), rods.materials);
   if (!out.empty()) out.pop_back();  // the blank line after the last block

@@ -36,12 +36,12 @@ std::string identity(const Atom& atom) {
 
 }  // namespace
 
-void AtomTable::add(const Atom& atom) {
+std::size_t AtomTable::add(const Atom& atom) {
   if (!atom.altloc.empty()) {
     const auto [it, is_new] = alternates_.try_emplace(identity(atom), numbers_.size());
     if (!is_new) {
       if (static_cast<float>(atom.occupancy) > occupancies_[it->second]) set(it->second, atom);
-      return;
+      return it->second;
     }
   }
   const std::size_t row = numbers_.size();
@@ -52,6 +52,7 @@ void AtomTable::add(const Atom& atom) {
   for (std::size_t i = 0; i < kTexts.size(); ++i)
     texts_[i].index.push_back(texts_[i].words.index_of(atom.*kTexts[i].member));
   set(row, atom);
+  return row;
 }
 
 void AtomTable::set(std::size_t row, const Atom& atom) {

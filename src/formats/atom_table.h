@@ -37,7 +37,9 @@ struct Atom {
 class AtomTable {
  public:
   /// Adds an atom, or replaces an alternate location of the same atom.
-  void add(const Atom& atom);
+  ///
+  /// Result     its row
+  std::size_t add(const Atom& atom);
 
   std::uint64_t rows() const { return numbers_.size(); }
   /// Memory of the rows, bytes.

@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <cstring>
 #include <filesystem>
+#include <iterator>
 #include <limits>
 #include <memory>
 #include <string>
@@ -18,6 +19,7 @@
 #include "data/dictionary.h"
 #include "data/faults.h"
 #include "data/records.h"
+#include "formats/bonds.h"
 #include "formats/readers.h"
 
 // GSD files of HOOMD-blue: the schema `hoomd` on top of the file layer.
@@ -206,12 +208,15 @@ class GsdReader final : public DataFile {
   FrameInfo describe(int frame) override;
   std::uint64_t memory() const override { return file_.memory(); }
   Table read(int frame, const std::vector<std::string>& columns) override;
+  std::vector<Bond> bonds(int frame) override;
 
  private:
   [[noreturn]] void fail(const std::string& text, const std::string& remedy = {}) const {
     Faults(file_.path()).fail(0, text, remedy);
   }
+  std::uint64_t count_of(std::uint64_t frame, const char* name);
   std::uint64_t rows_of(std::uint64_t frame);
+  const GsdChunk* bonds_of(std::uint64_t frame);
   std::vector<double> setting(std::uint64_t frame, const char* name, std::size_t size);
   const GsdChunk* chunk_of(std::uint64_t frame, const char* name, std::uint32_t components);
   std::vector<std::string> type_names(std::uint64_t frame);
@@ -236,13 +241,18 @@ std::vector<double> GsdReader::setting(std::uint64_t frame, const char* name, st
   return out;
 }
 
+/// Returns a number of particles or bonds, 0 if there is none.
+std::uint64_t GsdReader::count_of(std::uint64_t frame, const char* name) {
+  const std::vector<double> count = setting(frame, name, 1);
+  constexpr double kMaxCount = 1e15;
+  if (!count.empty() && !(count[0] >= 0 && count[0] < kMaxCount))
+    fail(fmt::format("frame {}: `{}` is out of range", frame, name));
+  return count.empty() ? 0 : static_cast<std::uint64_t>(count[0]);
+}
+
 /// Returns the number of particles. Positions for all of them exist, so that memory can be allocated safely.
 std::uint64_t GsdReader::rows_of(std::uint64_t frame) {
-  const std::vector<double> count = setting(frame, "particles/N", 1);
-  constexpr double kMaxRows = 1e15;
-  if (!count.empty() && !(count[0] >= 0 && count[0] < kMaxRows))
-    fail(fmt::format("frame {}: the number of particles is out of range", frame));
-  const auto rows = count.empty() ? 0 : static_cast<std::uint64_t>(count[0]);
+  const std::uint64_t rows = count_of(frame, "particles/N");
   if (rows > 0) {
     const GsdChunk* position = file_.find(frame, kPosition.chunk);
     if (position == nullptr) position = file_.find(0, kPosition.chunk);
@@ -261,6 +271,19 @@ const GsdChunk* GsdReader::chunk_of(std::uint64_t frame, const char* name, std::
   if (chunk != nullptr && (chunk->rows != rows || chunk->components != components))
     fail(fmt::format("frame {}: `{}` has {} rows of {} values instead of {} rows of {}", frame, name, chunk->rows,
                      chunk->components, rows, components));
+  return chunk;
+}
+
+/// Returns the pairs of particles that are bonded; null if there are none.
+const GsdChunk* GsdReader::bonds_of(std::uint64_t frame) {
+  const std::uint64_t count = count_of(frame, "bonds/N");
+  if (count == 0) return nullptr;
+  const char* const name = "bonds/group";
+  const GsdChunk* chunk = file_.find(frame, name);
+  if (chunk == nullptr) chunk = file_.find(0, name);
+  if (chunk == nullptr || chunk->rows != count || chunk->components != 2)
+    fail(fmt::format("frame {}: `bonds/N` is {}, but `{}` has {} rows of {} values", frame, count, name,
+                     chunk == nullptr ? 0 : chunk->rows, chunk == nullptr ? 0 : chunk->components));
   return chunk;
 }
 
@@ -340,6 +363,7 @@ FrameInfo GsdReader::describe(int index) {
   info.box = box_of(frame);
   const std::vector<double> step = setting(frame, "configuration/step", 1);
   info.step = step.empty() ? 0 : step[0];
+  if (const GsdChunk* const bonds = bonds_of(frame)) info.bonds = bonds->rows;
   return info;
 }
 
@@ -367,6 +391,31 @@ Table GsdReader::read(int index, const std::vector<std::string>& columns) {
     }
   }
   return table;
+}
+
+std::vector<Bond> GsdReader::bonds(int index) {
+  const auto frame = static_cast<std::uint64_t>(index);
+  const GsdChunk* const chunk = bonds_of(frame);
+  if (chunk == nullptr) return {};
+  const std::uint64_t rows = rows_of(frame);
+  const Column first{"a", file_.component(*chunk, 0)}, second{"b", file_.component(*chunk, 1)};
+  Faults faults(file_.path());
+  std::vector<Bond> out;
+  out.reserve(first.size());
+  for (std::size_t i = 0; i < first.size(); ++i) {
+    const double ends[] = {first.number(i), second.number(i)};
+    const auto is_missing = [&](double end) { return !(end >= 0 && end < static_cast<double>(rows)); };
+    const double* const missing = std::find_if(std::begin(ends), std::end(ends), is_missing);
+    if (missing != std::end(ends))
+      faults.add_of_many(0, fmt::format("frame {}: bond {} has the particle {:.0f}; there are {}, counted from 0",
+                                        frame, i, *missing, rows));
+    else if (ends[0] == ends[1])
+      faults.add_of_many(0, fmt::format("frame {}: bond {} joins particle {:.0f} to itself", frame, i, ends[0]));
+    else
+      out.push_back(ordered_bond(static_cast<std::uint64_t>(ends[0]), static_cast<std::uint64_t>(ends[1])));
+  }
+  finish_bonds(out, faults);
+  return out;
 }
 
 bool is_gsd(const Signature& signature) { return signature.head.starts_with("\xdf\x65\xdf\x65\xdf\x65\xdf\x65"); }

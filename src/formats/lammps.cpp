@@ -24,6 +24,7 @@
 #include "data/table.h"
 #include "data/text_lines.h"
 #include "data/text_rows.h"
+#include "formats/bonds.h"
 #include "formats/readers.h"
 
 namespace orrery::formats {
@@ -377,6 +378,15 @@ ColumnType type_of_style_column(std::string_view column) {
                                                                                               : ColumnType::kFloat64;
 }
 
+/// Skips the blank lines after the title of a section, and reads its first row.
+///
+/// Result     the place of the row
+TextCursor::Place first_row(TextCursor& cursor, std::string& row) {
+  TextCursor::Place place = cursor.place();
+  while (cursor.next(row) && words_of(row).empty()) place = cursor.place();
+  return place;
+}
+
 /// Reads the file up to the first atom.
 class DataHeader {
  public:
@@ -422,6 +432,12 @@ class DataHeader {
         faults_.fail(line(), fmt::format("'{}' is not a number of atoms", words[0]));
       rows_ = static_cast<std::uint64_t>(count);
     }
+    if (words.size() == 2 && last == "bonds") {
+      std::int64_t count = 0;
+      if (!parse_integer(words[0], count) || count < 0)
+        faults_.fail(line(), fmt::format("'{}' is not a number of bonds", words[0]));
+      info_.bonds = static_cast<std::uint64_t>(count);
+    }
     constexpr std::array<std::string_view, 3> kLow = {"xlo", "ylo", "zlo"};
     constexpr std::array<std::string_view, 3> kHigh = {"xhi", "yhi", "zhi"};
     constexpr std::array<std::string_view, 3> kEdges = {"avec", "bvec", "cvec"};
@@ -453,9 +469,8 @@ class DataHeader {
                    "write for example \"Atoms # full\"; styles: " + known);
     if (style.size() != 1 || !set_columns(style[0]))
       faults_.fail(line(), fmt::format("atom style \"{}\" is not supported", style[0]), "supported: " + known);
-    TextCursor::Place place = cursor_.place();
     std::string row;
-    while (cursor_.next(row) && words_of(row).empty()) place = cursor_.place();
+    const TextCursor::Place place = first_row(cursor_, row);
     layout_.begin = place.offset;
     layout_.first_line = place.line;
     layout_.rows = *rows_;
@@ -522,22 +537,68 @@ class LammpsData final : public DataFile {
   std::uint64_t memory() const override { return bytes_->memory(); }
 
   Table read(int, const std::vector<std::string>& columns) override {
+    TextTable text = read_atoms(columns);
+    require_end(atoms_end(text), info_.rows, "atoms");
+    Table table;
+    table.rows = text.rows;
+    for (std::size_t c = 0; c < info_.columns.size(); ++c)
+      if (base::contains(columns, info_.columns[c].name))
+        table.columns.push_back({info_.columns[c].name, std::move(text.values[c])});
+    return table;
+  }
+
+  std::vector<Bond> bonds(int) override {
+    if (info_.bonds == 0) return {};
+    const TextTable atoms = read_atoms({"id"});
+    const TextTable text = read_bonds(atoms_end(atoms));
+    Faults faults(bytes_->file());
+    BondsById out(std::get<std::vector<std::int64_t>>(atoms.values[0]), faults);  // the first column of all styles
+    const auto& first = std::get<std::vector<std::int64_t>>(text.values[2]);
+    const auto& second = std::get<std::vector<std::int64_t>>(text.values[3]);
+    for (std::size_t i = 0; i < text.rows; ++i) out.add(first[i], second[i], bonds_line_ + i);
+    return out.take();
+  }
+
+ private:
+  TextTable read_atoms(const std::vector<std::string>& columns) const {
     TextLayout layout = layout_;
     for (const ColumnInfo& column : info_.columns)
       layout.columns.push_back({column.type, base::contains(columns, column.name)});
     Faults faults(bytes_->file());
-    TextTable text = read_text_rows(*bytes_, layout, faults);
-    require_end(TextCursor(*bytes_, {text.end, layout.first_line + text.rows}));
-    Table table;
-    table.rows = text.rows;
-    for (std::size_t c = 0; c < info_.columns.size(); ++c)
-      if (layout.columns[c].is_wanted) table.columns.push_back({info_.columns[c].name, std::move(text.values[c])});
-    return table;
+    return read_text_rows(*bytes_, layout, faults);
   }
 
- private:
-  /// Checks that the atoms are followed by a section or by the end of the file.
-  void require_end(TextCursor cursor) const {
+  TextCursor atoms_end(const TextTable& atoms) const {
+    return TextCursor(*bytes_, {atoms.end, layout_.first_line + atoms.rows});
+  }
+
+  /// Reads the rows of the section "Bonds": a number, a type, and two ids of atoms.
+  ///
+  /// `cursor`   after the atoms, which LAMMPS requires to come first
+  TextTable read_bonds(TextCursor cursor) {
+    Faults faults(bytes_->file());
+    std::string line;
+    do {
+      if (!cursor.next_filled(line))
+        faults.fail(0, fmt::format("no section \"Bonds\", but a line \"{} bonds\"", info_.bonds),
+                    "the file is truncated");
+    } while (words_of(content(line)) != std::vector<std::string_view>{"Bonds"});
+    const TextCursor::Place place = first_row(cursor, line);
+    bonds_line_ = place.line;
+    TextLayout layout;
+    layout.begin = place.offset;
+    layout.first_line = place.line;
+    layout.rows = info_.bonds;
+    layout.comment = '#';
+    layout.columns.assign(4, {ColumnType::kInt64, true});
+    layout.columns[0].is_wanted = layout.columns[1].is_wanted = false;
+    TextTable out = read_text_rows(*bytes_, layout, faults);
+    require_end(TextCursor(*bytes_, {out.end, layout.first_line + out.rows}), info_.bonds, "bonds");
+    return out;
+  }
+
+  /// Checks that the rows of a section are followed by another section or by the end of the file.
+  void require_end(TextCursor cursor, std::uint64_t count, const char* what) const {
     std::string line;
     while (cursor.next_filled(line)) {
       const auto words = words_of(content(line));
@@ -545,8 +606,8 @@ class LammpsData final : public DataFile {
       if (words.empty()) continue;
       if (parse_number(words[0], number))
         Faults(bytes_->file())
-            .fail(cursor.line() - 1, fmt::format("more rows than {} atoms", info_.rows),
-                  fmt::format("correct the line \"{} atoms\", or remove the rows", info_.rows));
+            .fail(cursor.line() - 1, fmt::format("more rows than {} {}", count, what),
+                  fmt::format("correct the line \"{} {}\", or remove the rows", count, what));
       return;
     }
   }
@@ -554,6 +615,7 @@ class LammpsData final : public DataFile {
   Bytes bytes_;
   TextLayout layout_;  ///< without columns
   FrameInfo info_;
+  std::uint64_t bonds_line_ = 0;  ///< of the first bond
 };
 
 bool is_lammps_dump(const Signature& signature) {

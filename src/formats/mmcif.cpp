@@ -18,6 +18,7 @@
 #include "data/table.h"
 #include "data/text_lines.h"
 #include "formats/atom_table.h"
+#include "formats/cif_bonds.h"
 #include "formats/cif_rows.h"
 #include "formats/readers.h"
 
@@ -187,6 +188,31 @@ const std::vector<std::string> kOperatorItems = {
 
 constexpr std::string_view kCifBlanks = " \t\r\n";
 
+/// Items of _struct_conn. of each of the two atoms, in the order of PartnerItem; {} is 1 or 2.
+constexpr const char* kPartnerItems[] = {"ptnr{}_auth_asym_id",  "ptnr{}_label_asym_id",     "ptnr{}_auth_seq_id",
+                                         "ptnr{}_label_seq_id",  "pdbx_ptnr{}_pdb_ins_code", "ptnr{}_auth_comp_id",
+                                         "ptnr{}_label_comp_id", "ptnr{}_label_atom_id",     "ptnr{}_symmetry"};
+enum PartnerItem {
+  kPartnerAuthAsym,
+  kPartnerLabelAsym,
+  kPartnerAuthSeq,
+  kPartnerLabelSeq,
+  kPartnerInsertion,
+  kPartnerAuthComp,
+  kPartnerLabelComp,
+  kPartnerAtom,
+  kPartnerSymmetry,
+  kPartnerItemCount
+};
+
+/// Items of _struct_conn.: the type, then those of both atoms.
+std::vector<std::string> connection_items() {
+  std::vector<std::string> out = {"conn_type_id"};
+  for (const char* const partner : {"1", "2"})
+    for (const std::string item : kPartnerItems) out.push_back(std::string(item).replace(item.find("{}"), 2, partner));
+  return out;
+}
+
 using Row = std::vector<std::string>;
 
 class MmcifReader final : public DataFile {
@@ -197,20 +223,27 @@ class MmcifReader final : public DataFile {
   FrameInfo describe(int frame) override;
   std::uint64_t memory() const override {
     std::uint64_t bytes = 0;
-    for (const Model& model : models_) bytes += model.atoms.memory();
+    for (const Model& model : models_) bytes += model.atoms.memory() + model.residues.memory();
     return bytes;
   }
   Table read(int frame, const std::vector<std::string>& columns) override {
     return models_[static_cast<std::size_t>(frame)].atoms.table(columns);
+  }
+  std::vector<Bond> bonds(int frame) override {
+    const Model& model = models_[static_cast<std::size_t>(frame)];
+    Faults faults = faults_;
+    return bonds_.of_model(model.atoms, model.residues, faults);
   }
 
  private:
   struct Model {
     std::string number;
     AtomTable atoms;
+    CifResidues residues = {};
   };
 
   void take_atom(const Row& row, std::uint64_t line);
+  void take_connection(const Row& row, std::uint64_t line);
   double number(const std::string& text, std::uint64_t line);
 
   Faults faults_;
@@ -220,11 +253,19 @@ class MmcifReader final : public DataFile {
   std::vector<Assembly> assemblies_;
   std::string title_;
   Atom atom_;
+  CifBonds bonds_;
 };
 
 /// The author's value, which users know, else the one assigned by the PDB.
-const std::string& preferred(const Row& row, AtomItem author, AtomItem label) {
+const std::string& preferred(const Row& row, std::size_t author, std::size_t label) {
   return row[author].empty() ? row[label] : row[author];
+}
+
+/// 0 if there is no number.
+std::int32_t residue_number(const std::string& text) {
+  std::int32_t number = 0;
+  std::from_chars(text.data(), text.data() + text.size(), number);
+  return number;
 }
 
 /// NaN if there is no value.
@@ -239,9 +280,7 @@ void MmcifReader::take_atom(const Row& row, std::uint64_t line) {
   atom_.position = {number(row[kX], line), number(row[kY], line), number(row[kZ], line)};
   atom_.occupancy = row[kOccupancy].empty() ? 1 : number(row[kOccupancy], line);
   atom_.b_factor = number(row[kBFactor], line);
-  const std::string& residue_number = preferred(row, kAuthSeq, kLabelSeq);
-  atom_.residue_number = 0;
-  std::from_chars(residue_number.data(), residue_number.data() + residue_number.size(), atom_.residue_number);
+  atom_.residue_number = residue_number(preferred(row, kAuthSeq, kLabelSeq));
   atom_.insertion = row[kInsertion];
   atom_.element = gemmi::Element(row[kSymbol]).name();
   atom_.chain = preferred(row, kAuthAsym, kLabelAsym);
@@ -256,7 +295,25 @@ void MmcifReader::take_atom(const Row& row, std::uint64_t line) {
     if (is_new) models_.push_back({row[kModel], {}});
     model_ = it->second;
   }
-  models_[model_].atoms.add(atom_);
+  Model& model = models_[model_];
+  const std::size_t added = model.atoms.add(atom_);
+  if (added + 1 == model.atoms.rows()) model.residues.add(added, atom_);
+}
+
+/// Takes a covalent bond; the table also lists salt bridges, hydrogen bonds, and the coordination of metals.
+void MmcifReader::take_connection(const Row& row, std::uint64_t line) {
+  const std::string type = base::lower(row[0]);
+  if (!type.starts_with("covale") && type != "disulf") return;
+  constexpr std::size_t kFirst = 1, kSecond = kFirst + kPartnerItemCount;
+  // Neither symmetry copies of the atoms nor bonds to them are in the file.
+  if (row[kFirst + kPartnerSymmetry] != row[kSecond + kPartnerSymmetry]) return;
+  const auto atom = [&](std::size_t at) {
+    return CifAtomName{preferred(row, at + kPartnerAuthAsym, at + kPartnerLabelAsym),
+                       residue_number(preferred(row, at + kPartnerAuthSeq, at + kPartnerLabelSeq)),
+                       row[at + kPartnerInsertion], preferred(row, at + kPartnerAuthComp, at + kPartnerLabelComp),
+                       row[at + kPartnerAtom]};
+  };
+  bonds_.add_connection(atom(kFirst), atom(kSecond), line);
 }
 
 MmcifReader::MmcifReader(const Bytes& bytes, const OpenOptions& options) : faults_(bytes->file()) {
@@ -282,6 +339,11 @@ MmcifReader::MmcifReader(const Bytes& bytes, const OpenOptions& options) : fault
             {"_pdbx_struct_assembly_gen.",
              {"assembly_id", "oper_expression", "asym_id_list"},
              [&](const Row& row, std::uint64_t line) { assemblies.add_part(row[0], row[1], row[2], line); }},
+            {"_struct_conn.", connection_items(),
+             [this](const Row& row, std::uint64_t line) { take_connection(row, line); }},
+            {"_chem_comp_bond.",
+             {"comp_id", "atom_id_1", "atom_id_2"},
+             [this](const Row& row, std::uint64_t) { bonds_.add_component(row[0], row[1], row[2]); }},
             {"_struct.", {"title"}, [this](const Row& row, std::uint64_t) { title_ = row[0]; }},
             {"_atom_site_", {"fract_x"}, [&](const Row&, std::uint64_t) { is_small_molecule = true; }}},
            faults_);
@@ -301,6 +363,8 @@ FrameInfo MmcifReader::describe(int frame) {
   info.title = title_;
   const double step = gemmi::cif::as_number(model.number);
   if (!std::isnan(step)) info.step = step;
+  info.bonds = bonds_.estimate(info.rows);
+  info.lists_all_bonds = false;
   return info;
 }
 

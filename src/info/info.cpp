@@ -151,6 +151,7 @@ std::string points_text(const std::vector<PointsInfo>& points) {
   for (const PointsInfo& p : points) {
     base::append(out, "%s %s: %llu %s", out.empty() ? "points     " : "           ", p.file.c_str(),
                  static_cast<unsigned long long>(p.spheres), p.spheres == 1 ? "sphere" : "spheres");
+    if (p.bonds > 0) base::append(out, ", %llu rods of bonds", static_cast<unsigned long long>(p.bonds));
     if (!p.unused.empty()) base::append(out, "; unused: %s", base::joined(p.unused).c_str());
     if (has_colors(p.unused)) out += "; point colours are ignored, materials set the colours";
     out += '\n';
@@ -208,7 +209,7 @@ SceneInfo scene_info(const load::SceneRequest& request, job::PreparedScene& prep
   info.lights = lights_text(compiled, info.emitters);
   for (std::size_t i = 0; i < read.scene.points.size(); ++i) {
     const scene::Points& p = read.scene.points[i];
-    info.points.push_back({p.file.string(), compiled.points_sizes[i], p.unused});
+    info.points.push_back({p.file.string(), compiled.points_sizes[i], p.unused, compiled.bond_counts[i]});
   }
   info.layers = scene::requested_layers(read.scene);
   info.available_layers = scene::available_layers(read.scene);
@@ -320,8 +321,11 @@ std::string info_json(const SceneInfo& info) {
           {{"file", t.file}, {"width", t.width}, {"height", t.height}, {"color_space", t.color_space}});
   }
   for (const PointsInfo& p : info.points)
-    points.push_back(
-        {{"file", p.file}, {"spheres", p.spheres}, {"unused", p.unused}, {"unused_colors", has_colors(p.unused)}});
+    points.push_back({{"file", p.file},
+                      {"spheres", p.spheres},
+                      {"bonds", p.bonds},
+                      {"unused", p.unused},
+                      {"unused_colors", has_colors(p.unused)}});
   for (const Feature& f : info.features)
     features.push_back({{"name", f.name},
                         {"required", f.required},

@@ -29,6 +29,7 @@ struct PointsInfo {
   std::string file;  ///< file name as in the scene, with the frame number
   std::uint64_t spheres = 0;
   std::vector<std::string> unused;  ///< vertex properties that are not used
+  std::uint64_t bonds = 0;          ///< rods of bonds
 };
 
 /// A texture of a scene.

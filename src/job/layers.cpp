@@ -71,7 +71,8 @@ void add_mattes(const scene::Scene& scene, const compile::CompiledScene& compile
       material_ids.push_back(materials.id_of(scene.materials[material].name));
 
   const std::size_t ids_of_all = compiled.sphere_materials.size();
-  const std::size_t blocks = scene.spheres.size() + scene.points.size() + scene.rods.size() + scene.rod_files.size();
+  const std::size_t blocks =
+      scene.spheres.size() + 2 * scene.points.size() + scene.rods.size() + scene.rod_files.size();
   const std::size_t most = std::min(ids_of_all, by_material ? blocks * material_ids.size() : blocks);
   film::MatteClasses classes{{ids_of_all, static_cast<std::uint32_t>(most)}, {}};
   std::map<Ids, std::uint32_t> known;
@@ -96,10 +97,12 @@ void add_mattes(const scene::Scene& scene, const compile::CompiledScene& compile
     const scene::Sphere& s = scene.spheres[i];
     add(1, s.name.empty() ? "sphere." + std::to_string(i) : s.name, s.group);
   }
-  for (std::size_t i = 0; i < scene.points.size(); ++i) {
+  // Spheres of a points table, or halves of its bonds.
+  const auto add_points = [&](std::size_t i, std::size_t count) {
     const scene::Points& p = scene.points[i];
-    add(compiled.points_sizes[i], p.name.empty() ? p.file.stem().string() : p.name, p.group);
-  }
+    add(count, p.name.empty() ? p.file.stem().string() : p.name, p.group);
+  };
+  for (std::size_t i = 0; i < scene.points.size(); ++i) add_points(i, compiled.points_sizes[i]);
   for (std::size_t i = 0; i < scene.rods.size(); ++i) {
     const scene::Rod& r = scene.rods[i];
     add(2, r.name.empty() ? "rod." + std::to_string(i) : r.name, r.group);
@@ -108,6 +111,7 @@ void add_mattes(const scene::Scene& scene, const compile::CompiledScene& compile
     const scene::RodFile& r = scene.rod_files[i];
     add(2 * compiled.rod_file_sizes[i], r.name.empty() ? r.file.stem().string() : r.name, r.group);
   }
+  for (std::size_t i = 0; i < scene.points.size(); ++i) add_points(i, 2 * compiled.bond_counts[i]);
 
   layers.request.matte_classes = std::make_shared<film::MatteClasses>(std::move(classes));
   for (std::size_t m = 0; m < kMatteLayers.size(); ++m) {

@@ -20,6 +20,7 @@
 #include "plot/scene_text.h"
 #include "plot/view.h"
 #include "points/color_map.h"
+#include "scene/limits.h"
 #include "scene/value_text.h"
 
 namespace orrery::plot {
@@ -29,6 +30,13 @@ using scene::number_text;
 
 /// Noise of a plot unless the user limits samples, noise or time.
 constexpr double kNoise = 0.02;
+
+/// Radius of the spheres of a ball-and-stick model or of sticks without elements, as a fraction of that of spheres;
+/// radius of sticks between elements, in the unit of the file.
+constexpr double kBallFraction = 0.5, kStickFraction = 0.3, kStickRadius = 0.2;
+
+/// Radius of the edges of the box, and length and radius of the axes, as fractions of the radius of what is shown.
+constexpr double kBoxRadius = 0.004, kAxisLength = 0.15, kAxisRadius = 0.01;
 
 /// A side of the image, which the camera must know. An invalid one is reported when the scene is read.
 int side_of(const format::Overrides& overrides, const char* key, int otherwise) {
@@ -91,6 +99,7 @@ class PlotMaker {
     // Determining the radius from the spacing requires reading the file, so the colour options are checked first.
     const std::vector<std::string> color_choices = choose_color();
     choose_radius();
+    choose_bonds();
     out_.choices.insert(out_.choices.end(), color_choices.begin(), color_choices.end());
     const std::string up_name = options_.up.empty() ? (info_.z_up ? "z" : "y") : options_.up;
     if (options_.up.empty())
@@ -104,6 +113,7 @@ class PlotMaker {
     ViewExtent extent(is_turntable_ ? turned(axes, pole) : axes);
     visit_frames(extent, up);
     if (extent.is_empty()) report_empty();
+    add_guides(extent, up);
     if (is_turntable_ && !extent.is_empty()) extent = orbit(axes, extent.center(), pole);
     const double aspect = static_cast<double>(width_) / height_;
     scene::Camera camera = vfov_ ? extent.perspective_camera(aspect, *vfov_) : extent.camera(aspect);
@@ -130,6 +140,7 @@ class PlotMaker {
     choose_samples();
     if (options_.develops && display_of(options_).view.empty() && out_.view == kPlainView)
       chose(fmt::format("view transform {}", out_.view), "colours match the colour map");
+    parts.guides = std::move(guides_);
     out_.text = scene_text(parts);
     // A still image is made of one frame, whose file need not stay open.
     out_.open_data = out_.frames.empty() ? points::handed_over(data_.open_data()) : data_.open_data();
@@ -218,22 +229,60 @@ class PlotMaker {
   void choose_radius() {
     scene::PointsRadius& radius = out_.points.radius;
     if (radius.value || !radius.column.empty() || !radius.element.empty() || !radius.types.empty()) return;
-    if (!info_.roles.radius.empty()) {
+    const bool has_elements = !info_.roles.element.empty();
+    const bool is_spheres = options_.representation == Representation::kSpheres;
+    const bool is_sticks = options_.representation == Representation::kSticks;
+    const double fraction = is_spheres ? 1 : is_sticks ? kStickFraction : kBallFraction;
+    const std::string why =
+        is_spheres ? ""
+                   : fmt::format(", times {} for {}", number_text(fraction),
+                                 representation_names()[static_cast<std::size_t>(options_.representation)]);
+    if (is_sticks && has_elements) {
+      radius.value = rounded(kStickRadius * radius.scale);
+      chose("radius " + number_text(*radius.value), "that of sticks");
+    } else if (!info_.roles.radius.empty()) {
+      if (!is_spheres) {
+        radius.column = info_.roles.radius;
+        radius.scale *= info_.roles.radius_scale * fraction;
+      }
       chose("radius by " + info_.roles.radius,
-            info_.roles.radius_scale == 1 ? "a column of radii" : "a column of diameters, halved");
-    } else if (!info_.roles.element.empty()) {
-      radius.element = "vdw";
-      chose("radius vdw", "van der Waals radii of the elements");
+            (info_.roles.radius_scale == 1 ? "a column of radii" : "a column of diameters, halved") + why);
+    } else if (has_elements) {
+      radius.element = is_spheres ? "vdw" : "ball";
+      chose("radius " + radius.element, is_spheres ? "van der Waals radii of the elements"
+                                                   : "a quarter of the van der Waals radii of the elements");
     } else {
       radius.value = 1;
       const double distance = data_.spacing(out_.points);
       if (distance > 0) radius.value = distance / 2;
-      radius.value = rounded(*radius.value * radius.scale);
+      radius.value = rounded(*radius.value * radius.scale * fraction);
       chose("radius " + number_text(*radius.value),
             std::string(distance > 0 ? "half the median distance to the nearest neighbour"
                                      : "no particle has a neighbour") +
-                (radius.scale == 1 ? "" : "; scaled by " + number_text(radius.scale)));
+                why + (radius.scale == 1 ? "" : "; scaled by " + number_text(radius.scale)));
     }
+  }
+
+  /// Sticks have one radius, that of spheres and bonds.
+  void choose_bonds() {
+    scene::PointsBonds& bonds = out_.points.bonds;
+    bonds.are_drawn = options_.bonds.value_or(options_.representation != Representation::kSpheres);
+    if (bonds.are_drawn && options_.representation == Representation::kSticks) bonds.radius = out_.points.radius.value;
+  }
+
+  /// Prints how many bonds are drawn, and from what.
+  void report_bonds(std::size_t fewest, std::size_t most) {
+    const scene::PointsBonds& bonds = out_.points.bonds;
+    if (!bonds.are_drawn) return;
+    std::vector<std::string> from;
+    if (bonds_from_ != "distance") from.emplace_back("those of the file");
+    if (bonds_from_ != "file")
+      from.push_back(bonds.length ? "closer than " + number_text(*bonds.length)
+                                  : fmt::format("closer than {} times the sum of the covalent radii",
+                                                number_text(bonds.factor.value_or(scene::kDefaultBondFactor))));
+    chose(fmt::format("{} {}", fewest == most ? std::to_string(most) : fmt::format("{} to {}", fewest, most),
+                      most == 1 ? "bond" : "bonds"),
+          base::joined(from));
   }
 
   /// Result     the choices, to be printed after those of the radius
@@ -286,19 +335,28 @@ class PlotMaker {
   void visit_frames(ViewExtent& extent, const math::Vec3d& up) {
     const bool needs_range = !out_.points.color.column.empty() && !out_.points.color.range;
     std::optional<scene::Interval> range;
-    std::size_t fewest = std::numeric_limits<std::size_t>::max(), most = 0;
+    std::size_t fewest = std::numeric_limits<std::size_t>::max(), most = 0, fewest_bonds = fewest, most_bonds = 0;
     for (const int frame : data_.distinct()) {
       const scene::Points points = load(frame);
       fewest = std::min(fewest, points.centers.size());
       most = std::max(most, points.centers.size());
+      const std::size_t bonds = points.bond_pairs.size() + points.bond_stubs.size() / 2;  // two stubs are a bond
+      fewest_bonds = std::min(fewest_bonds, bonds);
+      most_bonds = std::max(most_bonds, bonds);
+      bonds_from_ = points.bonds_from;
       extent.add(points);
-      for (std::size_t i = 0; i < points.centers.size(); ++i)
-        lowest_ = std::min(lowest_, math::dot(points.centers[i], up) - std::abs(points.radii[i]));
+      for (std::size_t i = 0; i < points.centers.size(); ++i) {
+        const math::Vec3d center = points.centers[i];
+        const double radius = std::abs(points.radii[i]);
+        lowest_ = std::min(lowest_, math::dot(center, up) - radius);
+        add_to_corner(center, radius);
+      }
       if (points.centers.empty()) continue;
       out_.legend.add(points);
       widen(range, points);
     }
     report_count(fewest, most);
+    report_bonds(fewest_bonds, most_bonds);
     out_.legend.range = out_.points.color.range ? out_.points.color.range : range;
     if (out_.legend.has_conflict)
       out_.warnings.push_back(
@@ -325,10 +383,62 @@ class PlotMaker {
                     most == 1 ? "sphere" : "spheres", base::joined(why)));
   }
 
+  void add_to_corner(const math::Vec3d& center, double radius) {
+    corner_ = {std::min(corner_.x, center.x - radius), std::min(corner_.y, center.y - radius),
+               std::min(corner_.z, center.z - radius)};
+  }
+
+  /// Adds the edges of the simulation box and the axes, and what they take in the image.
+  void add_guides(ViewExtent& extent, const math::Vec3d& up) {
+    if (options_.box) add_box(extent);
+    if (options_.axes && !extent.is_empty()) add_axes(extent.radius());
+    for (const scene::Rod& rod : guides_)
+      for (const math::Vec3d& end : {rod.from, rod.to}) {
+        guide_ends_.centers.push_back(end);
+        guide_ends_.radii.push_back(rod.radius);
+        lowest_ = std::min(lowest_, math::dot(end, up) - rod.radius);
+      }
+    extent.add(guide_ends_);
+  }
+
+  void add_box(ViewExtent& extent) {
+    if (!info_.box)
+      throw base::Error(base::ErrorKind::kBadData,
+                        fmt::format("--box: {} has no simulation box", options_.file.string()));
+    const math::Vec3d counts = options_.points.replicate;
+    const math::Vec3d a = info_.box->edges[0] * counts.x, b = info_.box->edges[1] * counts.y,
+                      c = info_.box->edges[2] * counts.z, origin = info_.box->origin;
+    const auto corner = [&](int i) { return origin + a * (i & 1) + b * (i >> 1 & 1) + c * (i >> 2 & 1); };
+    for (int i = 0; i < 8; ++i) {
+      extent.add(corner(i), 0);
+      add_to_corner(corner(i), 0);
+    }
+    const double radius = rounded(kBoxRadius * extent.radius());
+    for (int i = 0; i < 8; ++i)
+      for (const int edge : {1, 2, 4})
+        if ((i & edge) == 0)
+          guides_.push_back({corner(i), corner(i | edge), radius, {kBoxMaterial, kBoxMaterial}, {}, {}});
+    if (out_.frames.size() > 1) chose("box", fmt::format("that of frame {}", data_.described_frame()));
+  }
+
+  /// Adds a tripod outside the lower corner of what is shown.
+  ///
+  /// `size`     radius of what is shown
+  void add_axes(double size) {
+    const double length = rounded(kAxisLength * size), radius = rounded(kAxisRadius * size);
+    const math::Vec3d origin = corner_ - math::Vec3d{1, 1, 1} * (length + 2 * radius);
+    const std::pair<GuideMaterial, math::Vec3d> axes[] = {
+        {kXMaterial, {1, 0, 0}}, {kYMaterial, {0, 1, 0}}, {kZMaterial, {0, 0, 1}}};
+    for (const auto& [material, direction] : axes)
+      guides_.push_back({origin, origin + direction * length, radius, {material, material}, {}, {}});
+    chose("axes", "x red, y green, z blue");
+  }
+
   /// The space that the spheres of all frames pass through on the orbit of the camera.
   ViewExtent orbit(const ViewAxes& axes, const math::Vec3d& pivot, const math::Vec3d& pole) const {
     ViewExtent out(axes);
     for (const int frame : data_.distinct()) out.add_orbits(load(frame), pivot, pole);
+    out.add_orbits(guide_ends_, pivot, pole);
     return out;
   }
 
@@ -338,12 +448,22 @@ class PlotMaker {
   int width_, height_;          ///< px
   std::optional<double> vfov_;  ///< degrees: a perspective camera; otherwise orthographic
   bool is_turntable_;           ///< the camera orbits around the up axis
+  /// Lower corner of all that is shown along x, y and z, scene units.
+  math::Vec3d corner_ = math::Vec3d{1, 1, 1} * std::numeric_limits<double>::infinity();
+  std::vector<scene::Rod> guides_;  ///< see PlotParts
+  scene::Points guide_ends_;        ///< their ends, as spheres
+  std::string bonds_from_;          ///< see scene::Points
   double lowest_ =
       std::numeric_limits<double>::infinity();  ///< lowest point of all spheres along the up axis, scene units
   PlotScene out_;
 };
 
 }  // namespace
+
+const std::vector<std::string>& representation_names() {
+  static const std::vector<std::string> names = {"spheres", "ball-and-stick", "sticks"};
+  return names;
+}
 
 const std::vector<std::string>& style_names() {
   static const std::vector<std::string> names = {"studio", "ambient", "flat", "night"};

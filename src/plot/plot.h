@@ -19,6 +19,16 @@ namespace orrery::plot {
 
 enum class Style { kStudio, kAmbient, kFlat, kNight };
 
+/// How particles are represented.
+enum class Representation {
+  kSpheres,
+  kBallAndStick,  ///< small spheres, and bonds
+  kSticks,        ///< bonds, and spheres of their radius
+};
+
+/// Names of the representations, in the order of the enumerators.
+const std::vector<std::string>& representation_names();
+
 /// Names of the styles, in the order of the enumerators.
 const std::vector<std::string>& style_names();
 
@@ -35,7 +45,11 @@ struct PlotOptions : DataOptions {
   std::string up;                  ///< "x", "y" or "z"; empty: depends on the format
   std::optional<Style> style;      ///< default: kStudio
   std::string material = "matte";  ///< one of material_names()
+  Representation representation = Representation::kSpheres;
+  std::optional<bool> bonds;  ///< draws bonds by the keys in `points.bonds`; default: unless kSpheres
   bool ground = false;
+  bool box = false;                  ///< draws the edges of the simulation box
+  bool axes = false;                 ///< draws the directions of x, y and z
   bool allow_empty = false;          ///< a selection or a slice may leave nothing
   bool has_target = false;           ///< the user limits noise or time
   bool develops = false;             ///< an image has a display format

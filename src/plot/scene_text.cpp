@@ -1,6 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "plot/scene_text.h"
 
+#include <algorithm>
+#include <utility>
+
 #include <fmt/core.h>
 
 #include "format/write_scene.h"
@@ -94,6 +97,21 @@ std::string scene_text(const PlotParts& parts) {
   if (parts.ground)
     scene.spheres.push_back(
         {parts.ground->center, parts.ground->radius, material("ground", scene::Lambertian{light.ground}), "ground"});
+  constexpr std::pair<const char*, Vec3d> kGuides[] = {{"box", {0.1, 0.1, 0.1}},
+                                                       {"axis_x", {0.7, 0.03, 0.03}},
+                                                       {"axis_y", {0.03, 0.5, 0.03}},
+                                                       {"axis_z", {0.03, 0.1, 0.8}}};
+  for (scene::Rod rod : parts.guides) {
+    const auto& [name, color] = kGuides[rod.materials[0]];
+    const auto known = std::find_if(scene.materials.begin(), scene.materials.end(),
+                                    [&](const scene::Material& m) { return m.name == name; });
+    const std::uint32_t index = known == scene.materials.end()
+                                    ? material(name, scene::Lambertian{color})
+                                    : static_cast<std::uint32_t>(known - scene.materials.begin());
+    rod.materials = {index, index};
+    rod.name = name;
+    scene.rods.push_back(rod);
+  }
   if (light.has_lamp()) {
     scene.spheres.push_back(lamp_of(parts, light));
     scene.spheres.back().material = material("lamp", scene::Emitter{light.radiance});

@@ -1,14 +1,20 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <cstdint>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "plot/view.h"
+#include "scene/scene.h"
 
 namespace orrery::plot {
 
 struct PlotOptions;
+
+/// Materials of the rods beside the spheres.
+enum GuideMaterial : std::uint32_t { kBoxMaterial, kXMaterial, kYMaterial, kZMaterial };
 
 /// The parts of the scene of a plot.
 struct PlotParts {
@@ -21,6 +27,8 @@ struct PlotParts {
   Vec3d center;                  ///< centre of the spheres
   double radius = 1;             ///< radius of a sphere around `center` that contains all spheres
   std::optional<Ground> ground;  ///< ground below the spheres
+  /// Edges of the simulation box and axes; their materials are GuideMaterial.
+  std::vector<scene::Rod> guides = {};
 };
 
 /// Returns the text of the scene file of a plot.

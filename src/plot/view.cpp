@@ -98,6 +98,7 @@ void slice(std::pair<int, double> plane, const ViewAxes& axes, scene::Points& po
 
 void ViewExtent::add(const scene::Points& points) {
   for (std::size_t i = 0; i < points.centers.size(); ++i) add(points.centers[i], points.radii[i]);
+  for (const scene::BondStub& stub : points.bond_stubs) add(stub.end, points.bond_radius);
 }
 
 void ViewExtent::add(Vec3d center, double radius) {
@@ -108,15 +109,17 @@ void ViewExtent::add(Vec3d center, double radius) {
 
 void ViewExtent::add_orbits(const scene::Points& points, Vec3d pivot, Vec3d axis) {
   const Vec3d axes[3] = {axes_.right, axes_.up, axes_.back};
-  for (std::size_t i = 0; i < points.centers.size(); ++i) {
-    const Vec3d from_pivot = points.centers[i] - pivot;
+  const auto add_orbit = [&](Vec3d center, double radius) {
+    const Vec3d from_pivot = center - pivot;
     const double height = math::dot(from_pivot, axis), distance = math::length(from_pivot - axis * height);
     for (int k = 0; k < 3; ++k) {
       const double along = math::dot(axis, axes[k]), across = std::sqrt(std::max(0.0, 1 - along * along));
-      add(k, math::dot(pivot, axes[k]), std::abs(height * along) + distance * across + std::abs(points.radii[i]));
+      add(k, math::dot(pivot, axes[k]), std::abs(height * along) + distance * across + std::abs(radius));
     }
     is_empty_ = false;
-  }
+  };
+  for (std::size_t i = 0; i < points.centers.size(); ++i) add_orbit(points.centers[i], points.radii[i]);
+  for (const scene::BondStub& stub : points.bond_stubs) add_orbit(stub.end, points.bond_radius);
 }
 
 void ViewExtent::add(int k, double at, double reach) {

@@ -205,6 +205,20 @@ bool are_rounded(const std::vector<Copy>& copies, const scene::Points& points, c
          smallest * points.transform.scale * kMaxDisplacement;
 }
 
+CopyIndex::CopyIndex(const std::vector<Copy>& copies, const Labels& chains, std::size_t count) {
+  const CopiedSpheres spheres = spheres_of(copies, chains, count);
+  for (const std::vector<std::uint32_t>& subset : spheres.subsets) {
+    subsets_.emplace_back(count, kNone);
+    for (std::uint32_t i = 0; i < subset.size(); ++i) subsets_.back()[subset[i]] = i;
+  }
+  std::size_t first = 0;
+  for (const std::size_t subset : spheres.subset_of_copy) {
+    const bool is_all = subset == spheres.subsets.size();
+    copies_.push_back({first, is_all ? kAll : subset});
+    first += is_all ? count : spheres.subsets[subset].size();
+  }
+}
+
 std::uint64_t copied_count(const std::vector<Copy>& copies, const Labels& chains, std::size_t count) {
   std::vector<std::uint64_t> counts(chains.names.size());
   for (const std::uint32_t label : chains.of_rows) ++counts[label];
@@ -228,10 +242,13 @@ void clip(scene::Points& points, std::vector<std::uint32_t>* rows) {
   const auto holds = [](const std::optional<scene::Interval>& interval, double at) {
     return !interval || (at >= interval->low && at <= interval->high);
   };
+  const bool has_bonds = points.bond_count() > 0;
+  std::vector<std::uint32_t> new_index(has_bonds ? points.centers.size() : 0, CopyIndex::kNone);
   std::size_t kept = 0;
   for (std::size_t i = 0; i < points.centers.size(); ++i) {
     const Vec3d c = points.centers[i];
     if (!holds(x, c.x) || !holds(y, c.y) || !holds(z, c.z)) continue;
+    if (has_bonds) new_index[i] = static_cast<std::uint32_t>(kept);
     points.centers.set(kept, c);
     points.radii.set(kept, points.radii[i]);
     if (!points.materials.empty()) points.materials[kept] = points.materials[i];
@@ -244,6 +261,13 @@ void clip(scene::Points& points, std::vector<std::uint32_t>* rows) {
   if (!points.materials.empty()) points.materials.resize(kept);
   if (!points.colors.empty()) points.colors.resize(kept);
   if (rows != nullptr) rows->resize(kept);
+  const auto renumber = [&](std::uint32_t& a, std::uint32_t& b) {
+    a = new_index[a];
+    b = new_index[b];
+    return a != CopyIndex::kNone && b != CopyIndex::kNone;
+  };
+  std::erase_if(points.bond_pairs, [&](scene::SphereBond& bond) { return !renumber(bond.a, bond.b); });
+  std::erase_if(points.bond_stubs, [&](scene::BondStub& stub) { return !renumber(stub.sphere, stub.partner); });
 }
 
 void make_copies(const std::vector<Copy>& copies, const Labels& chains, scene::Points& points,

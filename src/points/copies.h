@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 #include <string>
 #include <vector>
@@ -58,6 +59,33 @@ bool are_rounded(const std::vector<Copy>& copies, const scene::Points& points, c
 /// The number of spheres that make_copies() creates from `count` spheres; an upper bound if a copy lists a chain twice.
 std::uint64_t copied_count(const std::vector<Copy>& copies, const Labels& chains, std::size_t count);
 
+/// Where make_copies() puts the spheres.
+class CopyIndex {
+ public:
+  static constexpr std::uint32_t kNone = static_cast<std::uint32_t>(-1);
+
+  /// `count`    number of spheres before they are copied
+  CopyIndex(const std::vector<Copy>& copies, const Labels& chains, std::size_t count);
+
+  std::size_t copies() const { return copies_.size(); }
+  /// Returns the index of the copy of a sphere; kNone if the copy is limited to other chains.
+  std::uint32_t at(std::size_t copy, std::uint32_t sphere) const {
+    const Start& start = copies_[copy];
+    if (start.subset == kAll) return static_cast<std::uint32_t>(start.first + sphere);
+    const std::uint32_t within = subsets_[start.subset][sphere];
+    return within == kNone ? kNone : static_cast<std::uint32_t>(start.first + within);
+  }
+
+ private:
+  static constexpr std::size_t kAll = static_cast<std::size_t>(-1);
+  struct Start {
+    std::size_t first = 0, subset = kAll;
+  };
+
+  std::vector<Start> copies_;
+  std::vector<std::vector<std::uint32_t>> subsets_;  ///< of each set of chains: the place of each sphere in it
+};
+
 /// Replaces the spheres with their copies, copy by copy, and applies the transform of the points table.
 ///
 /// `chains`   chain of each sphere; ignored unless a copy is limited to some chains
@@ -65,7 +93,7 @@ std::uint64_t copied_count(const std::vector<Copy>& copies, const Labels& chains
 void make_copies(const std::vector<Copy>& copies, const Labels& chains, scene::Points& points,
                  std::vector<std::uint32_t>* rows = nullptr);
 
-/// Removes the spheres whose centres are outside `points.clip`.
+/// Removes the spheres whose centres are outside `points.clip`, and the bonds of those.
 ///
 /// `rows`     row number of each sphere, removed along with it; may be null
 void clip(scene::Points& points, std::vector<std::uint32_t>* rows = nullptr);

@@ -15,6 +15,7 @@
 #include "data/columns.h"
 #include "data/data_file.h"
 #include "formats/open.h"
+#include "points/bonds.h"
 #include "points/copies.h"
 #include "points/derived.h"
 #include "points/point_colors.h"
@@ -78,6 +79,8 @@ class Loader {
       points_.materials.clear();
       points_.colors.clear();
       points_.palette.clear();
+      points_.bond_pairs.clear();
+      points_.bond_stubs.clear();
     }
     return faults_.take();
   }
@@ -118,6 +121,11 @@ class Loader {
     if (std::any_of(copies_.begin(), copies_.end(), [](const Copy& c) { return c.chains != nullptr; }))
       need(info_.roles.chain);
     if (points_.unwrap) plan_unwrap();
+    if (points_.bonds.are_drawn) {
+      bond_source_ = bond_source(info_, points_.bonds, faults_);
+      need(bond_source_.element);
+      points_.bonds_from = !bond_source_.is_distance ? "file" : bond_source_.is_file ? "both" : "distance";
+    }
     if (info_.may_be_of_scene && data::has_column(info_.columns, points_.material_column))
       need(material_ = points_.material_column);
     if (request_.source != nullptr)
@@ -153,7 +161,8 @@ class Loader {
 
   /// `count`         number of spheres in one image of the periodic box
   /// `are_rounded`   whether make_copies() rounds their centres
-  void require_memory(std::uint64_t count, bool are_rounded) const {
+  /// `bonds`         number of bonds in all images
+  void require_memory(std::uint64_t count, bool are_rounded, double bonds = 0) const {
     ReadMemory need;
     need.file_bytes = file_->memory();
     need.rows = info_.rows;
@@ -162,6 +171,11 @@ class Loader {
     if (!material_.empty()) need.sphere_bytes += sizeof(std::uint32_t);
     if (!color_.columns.empty()) need.sphere_bytes += sizeof(std::uint16_t);
     if (request_.source != nullptr) need.sphere_bytes += sizeof(std::uint32_t) + need.row_bytes;
+    if (points_.bonds.are_drawn) {
+      need.bond_bytes = bonds * sizeof(scene::SphereBond);
+      if (bond_source_.is_file) need.bond_bytes += static_cast<double>(info_.bonds * kFileBondBytes);
+      if (bond_source_.is_distance) need.bond_bytes += static_cast<double>(info_.rows * kBondSearchBytes);
+    }
     const Vec3d n = points_.replicate;
     need.images = n.x * n.y * n.z;
     need.spheres = static_cast<double>(count) * need.images;
@@ -199,7 +213,12 @@ class Loader {
       chains = labels_of(*column, rows, table.rows);
     const bool is_replicated = !(points_.replicate == Vec3d{1, 1, 1});
     const std::vector<Copy> ends = is_replicated ? outermost(copies_, *info_.box, points_.replicate) : copies_;
-    require_memory(copied_count(copies_, chains, rows.size()), are_rounded(ends, points_, centers, radii));
+    const Lattice lattice(points_.assembly.empty() ? info_.box : std::nullopt);
+    const BondSet bonds = points_.bonds.are_drawn ? bonds_of(table, rows, centers, lattice, frame) : BondSet();
+    if (faults_.has_errors()) return;
+    const Vec3d images = points_.replicate;
+    require_memory(copied_count(copies_, chains, rows.size()), are_rounded(ends, points_, centers, radii),
+                   copied_bond_count(bonds, images.x * images.y * images.z, copies_.size()));
     PointColors colors = colors_of(table, rows, color_, points_.color, faults_);
     points_.centers = std::move(centers);
     points_.radii = std::move(radii);
@@ -212,12 +231,40 @@ class Loader {
     if (is_replicated) copies_ = replicated(copies_, *info_.box, points_.replicate);
     std::vector<std::uint32_t>* const row_of_sphere = request_.source == nullptr ? nullptr : &request_.source->rows;
     if (row_of_sphere != nullptr) *row_of_sphere = rows.list();
+    if (points_.bonds.are_drawn) {
+      points_.bond_radius = bond_radius(info_, points_.bonds, points_.radii) * points_.transform.scale;
+      copy_bonds(bonds, copies_, chains, lattice, points_);
+    }
     make_copies(copies_, chains, points_, row_of_sphere);
     clip(points_, row_of_sphere);
     points_.spheres_are_rows = is_all && copies_.size() == 1 && points_.centers.size() == table.rows;
     if (request_.source == nullptr) return;
+    request_.source->bond_pairs = points_.bond_pairs;
+    request_.source->bond_stubs = points_.bond_stubs;
     request_.source->info = std::move(info_);
     request_.source->table = std::move(table);
+  }
+
+  /// Returns the bonds between the spheres of the rows.
+  BondSet bonds_of(const data::Table& table, const Rows& rows, const scene::PointArray& centers, const Lattice& lattice,
+                   int frame) {
+    BondSet out;
+    if (bond_source_.is_file) out = bonds_of_rows(file_->bonds(frame), rows, table.rows, centers, lattice);
+    if (!bond_source_.is_distance) return out;
+    const Reach reach = reach_of(table, rows, bond_source_, points_.bonds, faults_);
+    if (faults_.has_errors()) return out;
+    std::optional<BondSet> near = find_bonds(centers, reach, lattice);
+    if (!near) {
+      faults_.error(points_.bonds.length ? ".bonds.length" : ".bonds.factor",
+                    fmt::format("bonds of up to {} would join a particle to more than {} others; set a smaller {}, in "
+                                "the unit of the file",
+                                scene::number_text(2 * *std::max_element(reach.of_label.begin(), reach.of_label.end())),
+                                kMaxNeighbors, points_.bonds.length ? "length" : "factor"));
+      return out;
+    }
+    if (!bond_source_.is_file) return std::move(*near);
+    merge(out, std::move(*near));
+    return out;
   }
 
   /// Returns the selected rows, ascending by particle id if there are ids: files list particles in any order.
@@ -276,6 +323,7 @@ class Loader {
   ColorSource color_;
   Selection selection_;
   std::vector<Copy> copies_;
+  BondSource bond_source_;
   std::vector<std::string> speed_sources_;  ///< columns that `speed` is computed from; empty: it is not needed
   std::string material_;                    ///< column of material indices; empty: none
 };

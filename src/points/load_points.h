@@ -12,7 +12,7 @@
 #include "data/table.h"
 #include "points/open_data.h"
 #include "scene/diagnostic.h"
-#include "scene/forward.h"
+#include "scene/scene.h"
 
 namespace orrery::points {
 
@@ -21,6 +21,8 @@ struct SourceRows {
   data::FrameInfo info;             ///< description of the frame
   data::Table table;                ///< all columns of the frame
   std::vector<std::uint32_t> rows;  ///< row of each sphere; copies of a particle have the same one
+  std::vector<scene::SphereBond> bond_pairs;
+  std::vector<scene::BondStub> bond_stubs;
 };
 
 struct LoadRequest {

@@ -5,6 +5,7 @@
 #include <optional>
 #include <string>
 #include <utility>
+#include <vector>
 
 #include "base/input_file.h"
 #include "data/data_file.h"
@@ -31,6 +32,7 @@ class SharedFile final : public data::DataFile {
   int frame_count() override { return file_->frame_count(); }
   data::FrameInfo describe(int frame) override { return file_->describe(frame); }
   data::Table read(int frame, const std::vector<std::string>& columns) override { return file_->read(frame, columns); }
+  std::vector<data::Bond> bonds(int frame) override { return file_->bonds(frame); }
   std::uint64_t memory() const override { return file_->memory(); }
 
  private:

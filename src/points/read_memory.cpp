@@ -43,7 +43,7 @@ std::uint64_t bytes_per_sphere(const data::FrameInfo& info, const scene::Points&
 
 void require_memory(const ReadMemory& need, std::uint64_t limit, const std::filesystem::path& file) {
   const double bytes = static_cast<double>(need.file_bytes) + static_cast<double>(need.rows * need.row_bytes) +
-                       need.spheres * static_cast<double>(need.sphere_bytes) +
+                       need.spheres * static_cast<double>(need.sphere_bytes) + need.bond_bytes +
                        need.images * static_cast<double>(need.copies * sizeof(Copy));
   if (limit == 0 || bytes <= static_cast<double>(limit)) return;
   const auto whole = [](double x) { return static_cast<std::uint64_t>(std::min(x, 1e18)); };

@@ -19,6 +19,7 @@ struct ReadMemory {
   std::uint64_t rows = 0;          ///< number of rows in the file
   std::uint64_t row_bytes = 0;     ///< bytes per row of the columns that are read
   std::uint64_t sphere_bytes = 0;  ///< bytes per sphere of scene data
+  double bond_bytes = 0;           ///< bytes of all bonds, and for finding them
   double images = 1;               ///< number of periodic images of the box; may exceed 64 bits
   double spheres = 0;              ///< number of spheres in all images; 0: not known yet
   std::size_t copies = 0;          ///< copies of an assembly in one image

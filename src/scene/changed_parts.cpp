@@ -73,7 +73,7 @@ void compare_rods(const std::vector<Rod>& before, const std::vector<Rod>& after,
 
 void compare_points(const Points& before, const Points& after, Parts& parts) {
   compare(points_keys(), Part::kGeometry, before, after, parts);
-  if (before.material != after.material) parts.add(Part::kAssignment);
+  if (before.material != after.material || before.bonds.material != after.bonds.material) parts.add(Part::kAssignment);
 }
 
 void compare_scenes(const Scene& before, const Scene& after, Parts& parts) {

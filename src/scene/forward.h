@@ -11,6 +11,7 @@ class NumberArray;
 class PointArray;
 
 struct Background;
+struct BondStub;
 struct Camera;
 struct Color;
 struct Image;
@@ -23,6 +24,7 @@ struct Render;
 struct RodFile;
 struct Scene;
 struct SceneDiagnostic;
+struct SphereBond;
 struct Texture;
 
 }  // namespace orrery::scene

@@ -27,6 +27,15 @@ inline constexpr double kSmallestRadius = 1e-30;
 /// The same for spheres in precision `fast`: the square of the radius is a normal number of single precision.
 inline constexpr double kSmallestFastRadius = 1e-18;
 
+/// Default of `bonds.factor` in [[points]]. The sum of two covalent radii is the length of a single bond within a few
+/// hundredths; distances between atoms that are not bonded begin at about 1.4 times the sum.
+///
+/// Reference  cordero2008, meng1991
+inline constexpr double kDefaultBondFactor = 1.2;
+
+/// Maximum of `bonds.factor`; more than 3 would bond second neighbours.
+inline constexpr double kLargestBondFactor = 100;
+
 /// Maximum number of spheres of a scene: ids have 32 bits, and the largest id means none.
 inline constexpr std::size_t kMaxSpheres = 0xFFFFFFFF;
 

@@ -13,6 +13,20 @@ using P = Points;
 constexpr Range kAnyValue{-kLargestValue, kLargestValue};
 constexpr int kMaxFrameOfFile = std::numeric_limits<int>::max();
 
+/// `bonds = true` draws bonds by default keys; with other keys, `bonds` is a table of them.
+Key<P> key_of_bonds() {
+  Key<P> key = boolean<P>("bonds",
+                          {"",
+                           "Draws bonds as rods between spheres that are drawn, each half with the material and "
+                           "colour of its sphere. A table of the following keys is the same as `true`"},
+                          in(&P::bonds, &PointsBonds::are_drawn));
+  key.get = [](const P& points) -> std::optional<Value> {
+    if (!points.bonds.are_drawn || points.bonds.has_keys()) return std::nullopt;
+    return true;
+  };
+  return key;
+}
+
 std::vector<Key<P>> make_keys() {
   std::vector<Key<P>> keys = {
       required(file<P>("file", kPointsFile,
@@ -68,6 +82,28 @@ std::vector<Key<P>> make_keys() {
                         in(&P::color, &PointsColor::types))),
       changes(Part::kAssignment,
               boolean<P>("color.rgb", {"", "Uses the colours in the file, as sRGB"}, in(&P::color, &PointsColor::rgb))),
+      otherwise("false", key_of_bonds()),
+      choice_of_text<P>(
+          "bonds.from",
+          {"file", "distance", "both"},
+          {"",
+           "Which pairs are bonded: those of the file, those that are close, or both. The default depends on the file; "
+           "see [Bonds](data.md#bonds)"},
+          in(&P::bonds, &PointsBonds::from)),
+      otherwise("1.2, unless `length` is set",
+                number<P>("bonds.factor", {0, kLargestBondFactor, true, false},
+                          {"",
+                           "By distance: a pair is bonded if it is closer than the sum of its covalent radii in "
+                           "ångström, multiplied by this"},
+                          in(&P::bonds, &PointsBonds::factor))),
+      otherwise("none", number<P>("bonds.length", kLength,
+                                  {"unit of the file", "By distance: a pair is bonded if it is closer than this"},
+                                  in(&P::bonds, &PointsBonds::length))),
+      otherwise("0.15 if the file has elements, else 0.3 times the mean radius of the spheres",
+                number<P>("bonds.radius", kLength,
+                          {"unit of the file", "Radius of the rods. `transform.scale` applies",
+                           "About 200 bytes per bond, with the BVH"},
+                          in(&P::bonds, &PointsBonds::radius))),
       text<P>("select",
               {"", "Condition on the columns, e.g. `type == 2 && z > 0`; see [Selections](data.md#selections)"},
               &P::select),

@@ -112,6 +112,10 @@ std::string reference_markdown() {
   for (const auto& key : sphere_keys()) out += row(key, Sphere{});
   out += fmt::format("{}\n### [[points]]\n\n{}", material_row(), header());
   for (const auto& key : points_keys()) out += row(key, Points{});
+  out +=
+      "| `bonds.material` | string | name of a `[material.NAME]`, not of type `dielectric` | - | as the spheres, half "
+      "by "
+      "half | Material of the bonds, without the colours of the spheres | - |\n";
   const std::string halves =
       "| `material` | string, or [string, string] | names of `[material.NAME]`, not of type `dielectric` | - | "
       "**required** | Material; or those of the half at `from` and of the half at `to` | - |\n";

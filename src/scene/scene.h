@@ -218,6 +218,32 @@ struct PointsColor {
   bool has_map_file() const { return map.find_first_of("./\\") != std::string::npos; }
 };
 
+/// Bonds between the particles of a points file. Lengths are in the unit of the file, as are its coordinates.
+struct PointsBonds {
+  bool are_drawn = false;
+  std::string from;              ///< "file", "distance" or "both"; empty: what the file has, see points::bond_source()
+  std::optional<double> factor;  ///< by distance: largest length divided by the sum of the covalent radii
+  std::optional<double> length;  ///< by distance: largest length, instead of `factor`
+  std::optional<double> radius;  ///< of the rods; default: see points::bond_radius()
+  std::optional<std::uint32_t> material;  ///< index into Scene::materials; default: as the spheres, half by half
+
+  /// True if a key other than `are_drawn` is set.
+  bool has_keys() const { return !from.empty() || factor || length || radius || material; }
+};
+
+/// A bond between two spheres of a points table, by index: a < b.
+struct SphereBond {
+  std::uint32_t a = 0, b = 0;
+
+  auto operator<=>(const SphereBond&) const = default;
+};
+
+/// Half of a bond that crosses the boundary of a periodic box.
+struct BondStub {
+  std::uint32_t sphere = 0, partner = 0;  ///< the sphere at which it begins, and the one beyond the boundary
+  Vec3d end{0, 0, 0};                     ///< the middle of the bond
+};
+
 /// Transforms a point p of a file to scale * R p + translate, where R rotates about x, then y, then z.
 struct PointsTransform {
   double scale = 1;
@@ -236,6 +262,7 @@ struct Points {
   std::optional<int> component;  ///< particle type of an HDF5 snapshot
   PointsRadius radius;
   PointsColor color;
+  PointsBonds bonds;
   std::string select;        ///< condition on columns; empty: all
   Vec3d replicate{1, 1, 1};  ///< number of periodic boxes along each box edge
   bool unwrap = false;       ///< unwrap coordinates with the periodic image flags of the file
@@ -254,19 +281,28 @@ struct Points {
   std::vector<std::string> color_names =
       {};                                ///< names of the colours in `palette`, if they represent types or elements
   std::vector<std::string> unused = {};  ///< unused columns of the file, such as colours
-  bool spheres_are_rows = true;          ///< sphere i is row i of the file: no selection, sorting, copying or clipping
+  std::vector<SphereBond> bond_pairs = {};
+  std::vector<BondStub> bond_stubs = {};
+  std::string bonds_from = {};   ///< resolved PointsBonds::from; empty: bonds are not drawn
+  double bond_radius = 0;        ///< of the rods of all bonds, scene units
+  bool spheres_are_rows = true;  ///< sphere i is row i of the file: no selection, sorting, copying or clipping
 
-  /// Bytes of the spheres.
+  /// Number of rods of the bonds.
+  std::size_t bond_count() const { return bond_pairs.size() + bond_stubs.size(); }
+  /// Bytes of the spheres and bonds.
   std::size_t bytes() const {
     return centers.numbers().bytes() + radii.bytes() + materials.size() * sizeof(materials[0]) +
-           colors.size() * sizeof(colors[0]);
+           colors.size() * sizeof(colors[0]) + bond_pairs.size() * sizeof(bond_pairs[0]) +
+           bond_stubs.size() * sizeof(bond_stubs[0]);
   }
-  /// Frees the memory of the spheres; keeps the keys.
+  /// Frees the memory of the spheres and bonds; keeps the keys.
   void release_spheres() {
     centers.clear();
     radii.clear();
     std::vector<std::uint32_t>().swap(materials);
     std::vector<std::uint16_t>().swap(colors);
+    std::vector<SphereBond>().swap(bond_pairs);
+    std::vector<BondStub>().swap(bond_stubs);
   }
 };
 
@@ -338,9 +374,10 @@ struct Scene {
   /// No two spheres coincide in this precision or a higher one. Empty: not known.
   std::optional<Precision> distinct_in = {};
 
-  /// Returns the number of rods in [[rod]] tables and in files.
+  /// Returns the number of rods in [[rod]] tables and in files, and of bonds.
   std::size_t rod_count() const {
     std::size_t count = rods.size();
+    for (const Points& p : points) count += p.bond_count();
     for (const RodFile& file : rod_files) count += file.from.size();
     return count;
   }

@@ -13,8 +13,8 @@
 
 /// The schema of scene files: the description of all keys, used for reading, writing, validation, `--set`, suggestions,
 /// `--settings`, the files that a scene names and the documentation. Defaults are the member initialisers in
-/// scene/scene.h. Four keys are not in it, because they refer to materials by name: `material` of [[sphere]],
-/// [[points]], [[rod]] and [[rods]].
+/// scene/scene.h. Five keys are not in it, because they refer to materials by name: `material` of [[sphere]],
+/// [[points]], [[rod]] and [[rods]], and `bonds.material` of [[points]].
 namespace orrery::scene {
 
 enum class TextureType;

@@ -264,6 +264,33 @@ void check_rods(const Scene& scene, DiagnosticList& diagnostics) {
   }
 }
 
+void check_bonds(const Points& points, const std::string& key, const Scene& scene, DiagnosticList& diagnostics) {
+  if (!points.bonds.are_drawn) return;
+  if (points.bonds.material) {
+    if (const std::string fault = rod_material_fault(*points.bonds.material, scene); !fault.empty())
+      diagnostics.error(key + ".bonds.material", fault);
+  } else {
+    std::vector<bool> is_used(scene.materials.size());
+    const auto use = [&](std::uint32_t material) {
+      if (material < is_used.size()) is_used[material] = true;
+    };
+    if (points.materials.empty()) use(points.material);
+    for (const std::uint32_t material : points.materials) use(material);
+    for (std::size_t m = 0; m < is_used.size(); ++m)
+      if (is_used[m] && std::holds_alternative<Dielectric>(scene.materials[m].model))
+        diagnostics.error(key + ".bonds", fmt::format("bonds are opaque, but have the material of their spheres, {}, "
+                                                      "which is a dielectric; set `bonds.material`",
+                                                      string_text(scene.materials[m].name)));
+  }
+  if (points.bond_count() == 0) return;
+  if (const std::string fault = rod_radius_fault(points.bond_radius, scene.render.precision); !fault.empty())
+    diagnostics.error(key + ".bonds.radius", fault);
+  for (const BondStub& stub : points.bond_stubs)
+    if (!in_domain(stub.end))
+      return diagnostics.error(key + ".bonds", fmt::format("the middle of a bond, {}, is not finite or exceeds {}",
+                                                           vector_text(stub.end), number_text(kLargestLength)));
+}
+
 void check_points(std::size_t number, const Scene& scene, DiagnosticList& diagnostics) {
   const Points& points = scene.points[number];
   const std::string key = fmt::format("points[{}]", number);
@@ -347,7 +374,10 @@ std::vector<SceneDiagnostic> validate(const Scene& scene) {
   check_projection(scene.camera, diagnostics);
   check_shutter(scene.camera, diagnostics);
   check_spheres(scene, diagnostics);
-  for (std::size_t p = 0; p < scene.points.size(); ++p) check_points(p, scene, diagnostics);
+  for (std::size_t p = 0; p < scene.points.size(); ++p) {
+    check_points(p, scene, diagnostics);
+    check_bonds(scene.points[p], fmt::format("points[{}]", p), scene, diagnostics);
+  }
   check_rods(scene, diagnostics);
   if (scene.sphere_count() + 2 * scene.rod_count() > kMaxSpheres)
     diagnostics.error("",

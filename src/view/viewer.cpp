@@ -163,15 +163,23 @@ std::optional<Picked> Viewer::pick(double x, double y) {
     const math::Vec3d a{rod.a[0], rod.a[1], rod.a[2]}, b{rod.b[0], rod.b[1], rod.b[2]};
     out.center = (a + b) * 0.5;
     out.radius = rod.radius;
+    // Finds the table that the rod belongs to, and its number in that table.
+    const auto table_of = [&index](const std::vector<std::size_t>& sizes) {
+      std::size_t table = 0;
+      while (table < sizes.size() && index >= sizes[table]) index -= sizes[table++];
+      return table;
+    };
     if (index < scene.rods.size()) {
       out.title = fmt::format("rod[{}]", index);
       add_names(scene.rods[index]);
     } else {
       index -= scene.rods.size();
-      std::size_t file = 0;
-      while (index >= compiled.rod_file_sizes[file]) index -= compiled.rod_file_sizes[file++];
-      out.title = fmt::format("row {} of {}", index + 1, scene.rod_files[file].file.filename().string());
-      add_names(scene.rod_files[file]);
+      if (const std::size_t file = table_of(compiled.rod_file_sizes); file < scene.rod_files.size()) {
+        out.title = fmt::format("row {} of {}", index + 1, scene.rod_files[file].file.filename().string());
+        add_names(scene.rod_files[file]);
+      } else {
+        add_bond(scene, table_of(compiled.bond_counts), index, out);
+      }
     }
     out.values.emplace_back("ends", scene::vector_text(a) + ", " + scene::vector_text(b));
     return out;
@@ -200,6 +208,22 @@ std::optional<Picked> Viewer::pick(double x, double y) {
   return out;
 }
 
+void Viewer::add_bond(const scene::Scene& scene, std::size_t table, std::size_t bond, Picked& out) {
+  const std::shared_ptr<const Source> source = source_of(scene, table);
+  const auto& [pairs, stubs] = std::tie(source->rows.bond_pairs, source->rows.bond_stubs);
+  const std::vector<std::uint32_t>& rows = source->rows.rows;
+  if (bond >= pairs.size() + stubs.size())
+    throw base::Error(base::ErrorKind::kBadData, scene.points[table].file.string() + " has changed");
+  const scene::SphereBond ends =
+      bond < pairs.size() ? pairs[bond]
+                          : scene::SphereBond{stubs[bond - pairs.size()].sphere, stubs[bond - pairs.size()].partner};
+  const std::uint32_t a = rows.at(ends.a), b = rows.at(ends.b);
+  out.title = fmt::format("bond of rows {} and {} of {}", std::size_t{a} + 1, std::size_t{b} + 1,
+                          scene.points[table].file.filename().string());
+  for (const data::Column& column : source->rows.table.columns)
+    out.values.emplace_back(column.name, text_of(column, a) + ", " + text_of(column, b));
+}
+
 std::shared_ptr<const Viewer::Source> Viewer::source_of(const scene::Scene& scene, std::size_t table) {
   const std::lock_guard lock(picking_);
   if (picked_from_ && picked_from_->table == table) return picked_from_;
@@ -207,7 +231,7 @@ std::shared_ptr<const Viewer::Source> Viewer::source_of(const scene::Scene& scen
   const auto source = std::make_shared<Source>();
   source->table = table;
   source->rows = load::read_source_rows(source_, scene, table);
-  std::uint64_t bytes = 0;
+  std::uint64_t bytes = source->rows.bond_pairs.size() * sizeof(scene::SphereBond);
   for (const data::Column& column : source->rows.table.columns)
     bytes += source->rows.table.rows * data::bytes_per_value(column.type());
   if (bytes <= kKeptSource) picked_from_ = source;

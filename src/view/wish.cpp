@@ -105,7 +105,9 @@ std::set<std::string> named_files(const format::Overrides& overrides) {
   return out;
 }
 
-bool is_flag(const std::string& option) { return option == "--denoise" || option == "--ground"; }
+bool is_flag(const std::string& option) {
+  return option == "--denoise" || option == "--ground" || option == "--box" || option == "--axes";
+}
 
 std::vector<std::string> camera_settings(const scene::Camera& camera) {
   std::vector<std::string> out = {

@@ -153,6 +153,31 @@ TEST_F(CliPlot, OptionsWithoutEffectAreRefused) {
   expect_error("convert c.csv -o a.ply --color-by none --map viridis", 2, "--map has nothing to map");
 }
 
+TEST_F(CliPlot, BondsAreDrawnAndSaved) {
+  write("m.xyz", "3\n\nC 0 0 0\nC 1.5 0 0\nO 2.2 1.2 0\n");
+  const Outcome balls = plot("m.xyz -o a.png --representation ball-and-stick --save-scene m.toml");
+  ASSERT_EQ(balls.status, 0) << balls.err;
+  EXPECT_TRUE(contains(balls.err, "plot: 2 bonds: closer than 1.2 times the sum of the covalent radii\n")) << balls.err;
+  EXPECT_TRUE(contains(text_of(folder_ / "m.toml"), "bonds = true\n"));
+  ASSERT_EQ(run("render m.toml -o b.png -q --samples 1").status, 0);
+  EXPECT_EQ(run("compare a.png b.png --fail-above max=0").status, 0);
+  EXPECT_TRUE(contains(run("info m.toml").out, "points      m.xyz: 3 spheres, 2 rods of bonds\n"));
+  ASSERT_EQ(plot("m.xyz -o a.png -q --bonds length=1.45 --save-scene l.toml").status, 0);
+  EXPECT_TRUE(contains(text_of(folder_ / "l.toml"), "bonds = { length = 1.45 }\n"));
+  ASSERT_EQ(plot("m.xyz -o a.png -q --bonds 1.1 --save-scene f.toml").status, 0);
+  EXPECT_TRUE(contains(text_of(folder_ / "f.toml"), "bonds = { factor = 1.1 }\n"));
+}
+
+TEST_F(CliPlot, BondsThatCannotBeDrawnAreErrors) {
+  for (const std::string bonds : {"no", "length=", "length=0", "-1", "1e3", "length=1e30", "nan"})
+    expect_error("plot a.dump -o a.ppm --bonds=" + bonds, 2,
+                 "--bonds: `" + bonds + "` is not a source of bonds; write auto, file");
+  expect_error("plot a.dump -o a.ppm --bonds file", 65, "the file has no bonds; set `from = \"distance\"`");
+  expect_error("plot a.dump -o a.ppm --representation sticks", 65, "or --bonds length=X, to the largest length");
+  expect_error("plot c.csv -o a.ppm --box", 65, "--box: c.csv has no simulation box");
+  expect_error("plot a.dump -o a.ppm --representation stick", 2, "did you mean `sticks`");
+}
+
 TEST_F(CliPlot, RangesAreFinite) {
   expect_error("plot c.csv -o a.png --color-by q --range=-1e308:1e308 --legend a.svg", 2,
                "--range: the numbers must be from -1e+300 to 1e+300");

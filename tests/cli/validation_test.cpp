@@ -87,6 +87,27 @@ const Broken kBroken[] = {
      "lines.ply:9: error: has 3 values, not 4"},
     {"MorePointsThanDeclared", "[[points]]\nfile = \"more.ply\"\nmaterial = \"grey\"\n", "", 65,
      "more.ply:3: error: the header declares 2 rows of `vertex`, but there are 3"},
+    {"BondsOfGlass",
+     "[material.glass]\ntype = \"dielectric\"\n"
+     "[[points]]\nfile = \"good.ply\"\nmaterial = \"glass\"\nbonds = { length = 3 }\n",
+     "", 65, ":19:9: error: points[0].bonds: bonds are opaque, but have the material of their spheres, \"glass\""},
+    {"BondsOfAnotherGlass",
+     "[material.glass]\ntype = \"dielectric\"\n"
+     "[[points]]\nfile = \"good.ply\"\nmaterial = \"grey\"\nbonds = { length = 3, material = \"glass\" }\n",
+     "", 65, ":19:34: error: points[0].bonds.material: \"glass\" is a dielectric, but rods are opaque"},
+    {"BondsOfAnUndefinedMaterial",
+     "[[points]]\nfile = \"good.ply\"\nmaterial = \"grey\"\nbonds = { length = 3, material = \"gray\" }\n", "", 65,
+     "points[0].bonds.material is \"gray\", which is not defined; did you mean `grey`"},
+    {"BondsThatTheFileLacks", "[[points]]\nfile = \"good.ply\"\nmaterial = \"grey\"\nbonds = { from = \"file\" }\n", "",
+     65, ":17:18: error: points[0].bonds.from: the file has no bonds; set `from = \"distance\"`"},
+    {"BondsWithoutElements", "[[points]]\nfile = \"good.ply\"\nmaterial = \"grey\"\nbonds = true\n", "", 65,
+     ":17:9: error: points[0].bonds: the file has no bonds and no column of chemical elements; set `bonds.length`"},
+    {"BondsOfTwoRules", "[[points]]\nfile = \"good.ply\"\nmaterial = \"grey\"\nbonds = { length = 3, factor = 1 }\n",
+     "", 65, "error: points[0].bonds: only one of `factor` and `length` can be set"},
+    {"AWordAsBonds", "[[points]]\nfile = \"good.ply\"\nmaterial = \"grey\"\nbonds = \"file\"\n", "", 65,
+     ":17:9: error: points[0].bonds must be true or false, not a string"},
+    {"ABondOfAMissingAtom", "[[points]]\nfile = \"bonds.pdb\"\nmaterial = \"grey\"\nradius = 1\nbonds = true\n", "", 65,
+     "bonds.pdb:2: error: a bond of atom 7, which does not exist"},
     {"MissingPointsAndAnUnknownKey", "[image.more]\n[[points]]\nfile = \"none.ply\"\nmaterial = \"grey\"\n", "", 65,
      ": 2 errors"},
     {"AnImageBackgroundWithoutAFile", "[background]\ntype = \"image\"\n", "", 65,
@@ -124,6 +145,9 @@ class CliValidation : public ProgramTest {
         "element vertex 2\nproperty float x\nproperty float y\nproperty float z\n"
         "property float radius\nend_header\n";
     write("two.ply", "ply\nformat ascii 2.0\n" + rows + "0 0 -3 1\n0 2 -3 1\n");
+    write("good.ply", "ply\nformat ascii 1.0\n" + rows + "0 0 -3 1\n0 2 -3 1\n");
+    write("bonds.pdb",
+          "HETATM    1  C1  LIG A   1       0.000   0.000   0.000  1.00  0.00           C\nCONECT    1    7\nEND\n");
     write("lines.ply", "ply\nformat ascii 1.0\n" + rows + "0 0 -3\n1\n0 2 -3 1\n");
     const support::ExrFile sky = support::ExrFile::constant(8, 4, {1, 1, 1});
     write("sky.exr", sky.bytes());

@@ -98,6 +98,9 @@ def write_gsd():
               (2, "particles/position", 9, positions[:1])]
     write("gsd/version2.gsd", gsd(2, chunks))
     write("gsd/version1.gsd", gsd(1, chunks[:7]))
+    bonds = [(0, "bonds/N", 3, numpy.array([[2]], dtype="<u4")),
+             (0, "bonds/group", 3, numpy.array([[0, 1], [1, 0]], dtype="<u4"))]
+    write("gsd/bonds.gsd", gsd(2, chunks[:8] + bonds))
 
 
 def snapshot(name, compression):

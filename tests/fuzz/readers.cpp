@@ -98,7 +98,11 @@ bool fits(const scene::Points& points, std::size_t material_count) {
          std::none_of(points.radii.begin(), points.radii.end(), [](double r) { return std::isnan(r); }) &&
          std::all_of(points.palette.begin(), points.palette.end(), math::is_finite) &&
          std::all_of(points.colors.begin(), points.colors.end(), [&](auto c) { return c < points.palette.size(); }) &&
-         std::all_of(points.materials.begin(), points.materials.end(), [=](auto m) { return m < material_count; });
+         std::all_of(points.materials.begin(), points.materials.end(), [=](auto m) { return m < material_count; }) &&
+         std::all_of(points.bond_pairs.begin(), points.bond_pairs.end(),
+                     [=](const auto& bond) { return bond.a < bond.b && bond.b < count; }) &&
+         std::all_of(points.bond_stubs.begin(), points.bond_stubs.end(),
+                     [=](const auto& stub) { return stub.sphere < count && stub.partner < count; });
 }
 
 /// Runs a reader and checks what it throws.
@@ -165,6 +169,16 @@ std::string fault_with_table(const data::FrameInfo& info, const data::Table& tab
   return {};
 }
 
+/// Checks that the bonds of a frame are pairs of its rows, in order.
+std::string fault_with_bonds(const data::FrameInfo& info, const std::vector<data::Bond>& bonds) {
+  if (info.bonds == 0 && !bonds.empty()) return "bonds that are not described";
+  for (const data::Bond& bond : bonds)
+    if (bond.a >= bond.b || bond.b >= info.rows) return "a bond of rows that do not exist, or of a row with itself";
+  for (std::size_t i = 1; i < bonds.size(); ++i)
+    if (!(bonds[i - 1] < bonds[i])) return "the bonds do not ascend";
+  return {};
+}
+
 /// Opens a data file; without success under the names of formats that are recognised by their names.
 std::unique_ptr<data::DataFile> open_data(const std::filesystem::path& folder, const std::string& bytes,
                                           std::filesystem::path& file) {
@@ -193,6 +207,11 @@ std::string fault_with_all_keys(const std::filesystem::path& file, const data::F
   points.skip_bad = frame == 0;
   points.unwrap = info.box && !info.roles.image[0].empty();
   if (info.box) points.replicate = {2, 1, 1};
+  if (frame == 0) {
+    points.bonds.are_drawn = true;
+    points.bonds.from = info.bonds > 0 ? "both" : "distance";
+    points.bonds.length = 1.5;
+  }
   if (!info.assemblies.empty()) points.assembly = info.assemblies.back().name;
   points::LoadRequest request;
   request.file = file;
@@ -246,6 +265,8 @@ std::string fault_with_data(const std::filesystem::path& folder, const std::stri
       for (const data::ColumnInfo& column : info.columns) columns.push_back(column.name);
       if (std::string fault = fault_with_table(info, file->read(frame, columns)); !fault.empty()) return fault;
       if (std::string fault = fault_with_all_keys(name, info, frame); !fault.empty()) return fault;
+      // Last, because damaged bonds are an error even if the rows are not.
+      if (std::string fault = fault_with_bonds(info, file->bonds(frame)); !fault.empty()) return fault;
     }
     return {};
   });

@@ -69,6 +69,27 @@ inline std::vector<std::string> texts(const data::Table& table, std::string_view
   return out;
 }
 
+/// The bonds of a frame: "0-1 1-2".
+inline std::string bonds_text(data::DataFile& file, int frame = 0) {
+  std::string out;
+  for (const data::Bond& bond : file.bonds(frame))
+    out += (out.empty() ? "" : " ") + std::to_string(bond.a) + "-" + std::to_string(bond.b);
+  return out;
+}
+
+/// Diagnostics of reading the bonds of the first frame, "line: text\n"; empty if there is no error.
+inline std::string bond_faults(data::DataFile& file) {
+  std::string out;
+  try {
+    file.bonds(0);
+  } catch (const base::Error& error) {
+    EXPECT_EQ(error.kind(), base::ErrorKind::kBadData) << error.what();
+    EXPECT_NE(error.diagnostics().back().remedy, "");
+    for (const base::Diagnostic& d : error.diagnostics()) out += std::to_string(d.line) + ": " + d.text + "\n";
+  }
+  return out;
+}
+
 /// "x:float64 id:int32"
 inline std::string columns_text(const data::FrameInfo& info) {
   std::string out;

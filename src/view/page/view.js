@@ -7,15 +7,16 @@ const canvas = $("picture"), context = canvas.getContext("2d");
 // Options in the order of the page. Those that the server does not offer are not shown.
 const LABELS = {
   "--color-by": "Colour by", "--map": "Colour map", "--range": "Range", "--select": "Select", "--slice": "Slice",
-  "--style": "Style", "--material": "Material", "--radius-scale": "Radius scale", "--ground": "Ground",
-  "--noise": "Noise", "--samples": "Samples", "--denoise": "Denoise", "--set": "Settings",
+  "--representation": "Representation", "--bonds": "Bonds", "--style": "Style", "--material": "Material",
+  "--radius-scale": "Radius scale", "--ground": "Ground", "--box": "Box", "--axes": "Axes", "--noise": "Noise",
+  "--samples": "Samples", "--denoise": "Denoise", "--set": "Settings",
 };
 const HINTS = {
   "--range": "low:high", "--select": "type == 2 && z > 0", "--slice": "z=10", "--radius-scale": "1", "--noise": "0.02",
   "--set": "key=value, one per line",
 };
 const SIZES = [[640, 360], [960, 540], [1280, 720], [1920, 1080], [800, 800]];
-const CHOICES = new Set(["--style", "--material"]);
+const CHOICES = new Set(["--representation", "--style", "--material"]);  // of their values, and no others
 const MANY_LINES = new Set(["--set", "--slice"]);
 const SETTLED_ms = 200;  // after the last step of the wheel or of a key
 const CLICK_px = 4;      // a click moves the pointer less
@@ -179,7 +180,7 @@ function makeControls() {
     const option = state.options[name];
     if (!option) continue;
     const id = name.slice(2);
-    const isChoice = option.values.length > 0 && CHOICES.has(name);
+    const isChoice = CHOICES.has(name);
     const field = option.flag ? element("input", { id, type: "checkbox" })
       : isChoice ? element("select", { id })
       : MANY_LINES.has(name) ? element("textarea", { id, rows: 2, spellcheck: false })

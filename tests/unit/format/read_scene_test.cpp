@@ -277,6 +277,28 @@ material = "b"
   EXPECT_EQ(s.rods[1].materials, (std::array<std::uint32_t, 2>{1, 1}));
 }
 
+TEST(FormatReadScene, BondsAreAFlagOrATable) {
+  const auto bonds_of = [](const std::string& bonds) {
+    SceneFiles files;
+    return files
+        .read(
+            "[material]\nm = { type = \"metal\", albedo = [1, 1, 1] }\nn = { type = \"metal\", albedo = [1, 1, 1] "
+            "}\n[[points]]\nfile = \"a.ply\"\nmaterial = "
+            "\"m\"\n" +
+            bonds + "\n")
+        .scene.points.at(0)
+        .bonds;
+  };
+  EXPECT_FALSE(bonds_of("").are_drawn);
+  EXPECT_FALSE(bonds_of("bonds = false").are_drawn);
+  EXPECT_TRUE(bonds_of("bonds = true").are_drawn);
+  EXPECT_TRUE(bonds_of("bonds = {}").are_drawn);
+  const scene::PointsBonds bonds = bonds_of("bonds = { length = 2.5, material = \"n\" }");
+  EXPECT_TRUE(bonds.are_drawn);
+  EXPECT_EQ(bonds.length, 2.5);
+  EXPECT_EQ(bonds.material, 1u);
+}
+
 TEST(FormatReadScene, ErrorsOfRods) {
   SceneFiles files;
   EXPECT_EQ(files.diagnostics("[[rod]]\n"),

@@ -53,6 +53,7 @@ class RandomScene {
       fill(scene::points_keys(), points);
       points.file = word() + ".ply";
       points.material = static_cast<std::uint32_t>(below(s.materials.size()));
+      if (below(2) == 0) points.bonds.material = static_cast<std::uint32_t>(below(s.materials.size()));
       if (points.radius.value) points.radius = {*points.radius.value, "", "", {}};  // excludes the keys of its table
       s.points.push_back(points);
     }

@@ -237,5 +237,42 @@ TEST_F(FormatsGsd, PositionsMustBackTheNumberOfParticles) {
   EXPECT_NE(error_of(gsd.file(2)).find("4000000000 particles, but 0 positions"), std::string::npos);
 }
 
+GsdWriter with_bonds(const std::vector<std::uint32_t>& ends, std::uint32_t count) {
+  GsdWriter gsd;
+  gsd.add<std::uint32_t>(0, "particles/N", kUint32, 1, {2});
+  gsd.add<float>(0, "particles/position", kFloat, 2, {1, 2, 3, -1, -2, -3});
+  gsd.add<std::uint32_t>(0, "bonds/N", kUint32, 1, {count});
+  gsd.add<std::uint32_t>(0, "bonds/group", kUint32, ends.size() / 2, ends);
+  return gsd;
+}
+
+TEST_F(FormatsGsd, BondsOfFrameZeroHoldForLaterFrames) {
+  GsdWriter gsd;
+  gsd.add<std::uint32_t>(0, "particles/N", kUint32, 1, {3});
+  gsd.add<float>(0, "particles/position", kFloat, 3, {0, 0, 1, 0, 0, 2, 0, 0, 3});
+  gsd.add<std::uint32_t>(0, "bonds/N", kUint32, 1, {2});
+  gsd.add<std::uint32_t>(0, "bonds/group", kUint32, 2, {2, 1, 1, 2});
+  gsd.add<float>(1, "particles/position", kFloat, 3, {0, 0, 1, 0, 0, 2, 0, 0, 4});
+  gsd.add<std::uint32_t>(2, "bonds/N", kUint32, 1, {1});
+  gsd.add<std::uint32_t>(2, "bonds/group", kUint32, 1, {0, 1});
+  gsd.add<std::uint32_t>(3, "bonds/N", kUint32, 1, {0});
+  const auto file = opened(gsd.file(2));
+  EXPECT_EQ(file->describe(0).bonds, 2u);
+  EXPECT_EQ(support::bonds_text(*file, 0), "1-2");
+  EXPECT_EQ(support::bonds_text(*file, 1), "1-2");
+  EXPECT_EQ(support::bonds_text(*file, 2), "0-1");
+  EXPECT_EQ(file->describe(3).bonds, 0u);
+  EXPECT_EQ(support::bonds_text(*file, 3), "");
+}
+
+TEST_F(FormatsGsd, BadBondsAreRefusedWithTheirIndex) {
+  EXPECT_EQ(
+      support::bond_faults(*opened(with_bonds({0, 1, 0, 2, 1, 1}, 3).file(2))),
+      "0: frame 0: bond 1 has the particle 2; there are 2, counted from 0\n0: frame 0: bond 2 joins particle 1 to "
+      "itself\n0: the bonds of this file are damaged\n");
+  EXPECT_EQ(error_of(with_bonds({0, 1}, 2).file(2)),
+            "frame 0: `bonds/N` is 2, but `bonds/group` has 1 rows of 2 values");
+}
+
 }  // namespace
 }  // namespace orrery::formats

@@ -117,5 +117,50 @@ TEST_F(FormatsLammpsData, ReadsFilesOfOtherPrograms) {
   EXPECT_EQ(formats::open(folder / "triclinic-1.lmp")->read(0, {"x"}).rows, 0u);
 }
 
+const std::string kBonded =
+    "t\n3 atoms\n3 bonds\n\nAtoms # bond\n\n7 1 1 0 0 0\n5 1 1 1 0 0\n6 1 1 2 0 0\n\nVelocities\n\n7 0 0 0\n5 0 0 "
+    "0\n6 0 0 0\n\nBonds # stiff\n\n";
+
+TEST_F(FormatsLammpsData, BondsArePairsOfRows) {
+  const auto file = open(kBonded + "1 1 6 7 # a comment\n2 label 5 7\n3 1 7 5\n\nAngles\n\n1 1 5 6 7\n");
+  EXPECT_EQ(file->describe(0).bonds, 3u);
+  EXPECT_TRUE(file->describe(0).lists_all_bonds);
+  EXPECT_EQ(support::bonds_text(*file), "0-1 0-2");
+  const auto without = open("t\n1 atoms\n\nAtoms # atomic\n\n1 1 0 0 0\n");
+  EXPECT_EQ(without->describe(0).bonds, 0u);
+  EXPECT_EQ(support::bonds_text(*without), "");
+}
+
+TEST_F(FormatsLammpsData, BadBondsAreRefusedWithTheirLine) {
+  const auto faults = [&](const std::string& rows) { return support::bond_faults(*open(kBonded + rows)); };
+  EXPECT_EQ(
+      faults("1 1 6 7\n2 1 8 7\n3 1 5 5\n"),
+      "20: a bond of atom 8, which does not exist\n21: a bond of atom 5 with itself\n0: the bonds of this file are "
+      "damaged\n");
+  EXPECT_NE(faults("1 1 6 7\n").find("the file ends after 1 of 3 rows"), std::string::npos);
+  EXPECT_NE(faults("1 1 6 7\n1 1 6 7\n1 1 6 7\n1 1 6 7\n").find("22: more rows than 3 bonds"), std::string::npos);
+  EXPECT_EQ(support::bond_faults(*open("t\n2 atoms\n9 bonds\n\nAtoms # atomic\n\n1 1 0 0 0\n2 1 0 0 0\n")),
+            "0: no section \"Bonds\", but a line \"9 bonds\"\n");
+  EXPECT_EQ(
+      support::bond_faults(*open("t\n2 atoms\n1 bonds\n\nAtoms # atomic\n\n1 1 0 0 0\n1 1 0 0 0\nBonds\n\n1 1 1 2\n")),
+      "11: a bond of atom 1, but several atoms have this number\n11: a bond of atom 2, which does not exist\n0: the "
+      "bonds of this file are damaged\n");
+  EXPECT_NE(errors("t\n1 atoms\n-1 bonds\n\nAtoms # atomic\n\n1 1 0 0 0\n").find("3: '-1' is not a number of bonds"),
+            std::string::npos);
+}
+
+TEST_F(FormatsLammpsData, TheBondsOfOneAtomAreLimited) {
+  const auto star = [&](int arms) {
+    std::string atoms, bonds;
+    for (int i = 0; i <= arms; ++i) atoms += std::to_string(i) + " 1 0 0 0\n";
+    for (int i = 1; i <= arms; ++i) bonds += "1 1 " + std::to_string(i) + " 0\n";
+    const std::string count = std::to_string(arms + 1);
+    return open("t\n" + count + " atoms\n" + std::to_string(arms) + " bonds\n\nAtoms # atomic\n\n" + atoms +
+                "\nBonds\n\n" + bonds);
+  };
+  EXPECT_EQ(star(1000)->bonds(0).size(), 1000u);
+  EXPECT_EQ(support::bond_faults(*star(1001)), "0: row 1 has more than 1000 bonds\n");
+}
+
 }  // namespace
 }  // namespace orrery::formats

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <gtest/gtest.h>
 
+#include <array>
 #include <cmath>
 
 #include "base/error.h"
@@ -185,6 +186,76 @@ TEST_F(FormatsMmcif, UnknownCoordinatesAreNotNumbers) {
   const Table table = file->read(0, {"x", "z"});
   EXPECT_TRUE(std::isnan(numbers(table, "x")[0]));
   EXPECT_TRUE(std::isnan(numbers(table, "z")[0]));
+}
+
+/// A table of _struct_conn; the residue numbers are those of authors.
+std::string connections(const std::string& rows) {
+  return "loop_\n_struct_conn.conn_type_id\n_struct_conn.ptnr1_auth_asym_id\n_struct_conn.ptnr1_auth_seq_id\n"
+         "_struct_conn.pdbx_ptnr1_PDB_ins_code\n_struct_conn.ptnr1_label_comp_id\n_struct_conn.ptnr1_label_atom_id\n"
+         "_struct_conn.ptnr1_symmetry\n_struct_conn.ptnr2_auth_asym_id\n_struct_conn.ptnr2_auth_seq_id\n"
+         "_struct_conn.pdbx_ptnr2_PDB_ins_code\n_struct_conn.ptnr2_label_comp_id\n_struct_conn.ptnr2_label_atom_id\n"
+         "_struct_conn.ptnr2_symmetry\n" +
+         rows;
+}
+
+/// Atoms: name, component, author's number, insertion code.
+std::string atoms_of(const std::vector<std::array<const char*, 4>>& atoms) {
+  std::string out =
+      "loop_\n_atom_site.type_symbol\n_atom_site.label_atom_id\n_atom_site.label_comp_id\n_atom_site.auth_asym_id\n"
+      "_atom_site.auth_seq_id\n_atom_site.pdbx_PDB_ins_code\n_atom_site.Cartn_x\n_atom_site.Cartn_y\n"
+      "_atom_site.Cartn_z\n";
+  for (const auto& [name, component, number, insertion] : atoms)
+    out += std::string("C ") + name + ' ' + component + " A " + number + ' ' + insertion + " 0 0 0\n";
+  return out;
+}
+
+const std::string kComponents =
+    "loop_\n_chem_comp_bond.comp_id\n_chem_comp_bond.atom_id_1\n_chem_comp_bond.atom_id_2\n"
+    "HOH O H1\nHOH O H2\nCYS CB SG\nCYS SG CB\nXXX A B\n";
+
+TEST_F(FormatsMmcif, CovalentConnectionsAreBonds) {
+  const std::string atoms =
+      atoms_of({{"SG", "CYS", "1", "."}, {"SG", "CYS", "1", "A"}, {"SG", "CYS", "2", "?"}, {"ZN", "ZN", "3", "?"}});
+  const std::string rows =
+      "disulf A 1 . CYS SG 1_555 A 1 A CYS SG 1_555\ncovale A 2 . CYS SG 1_555 A 1 A CYS SG 1_555\n"
+      "covale A 2 . CYS SG 1_555 A 1 . CYS SG 2_665\nmetalc A 2 . CYS SG 1_555 A 3 . ZN ZN 1_555\n";
+  const auto file = open("data_a\n" + connections(rows) + atoms);
+  EXPECT_EQ(file->describe(0).bonds, 2u);
+  EXPECT_FALSE(file->describe(0).lists_all_bonds);
+  EXPECT_EQ(support::bonds_text(*file), "0-1 1-2");
+  EXPECT_EQ(open("data_a\n" + atoms)->describe(0).bonds, 0u);
+}
+
+TEST_F(FormatsMmcif, ComponentsHaveTheirBondsInEachResidue) {
+  // The residues of water have no numbers.
+  const auto file = open("data_a\n" + kComponents +
+                         atoms_of({{"SG", "CYS", "1", "."},
+                                   {"CB", "CYS", "1", "."},
+                                   {"SG", "CYS", "2", "."},
+                                   {"CB", "CYS", "3", "."},
+                                   {"O", "HOH", ".", "."},
+                                   {"H1", "HOH", ".", "."},
+                                   {"H2", "HOH", ".", "."},
+                                   {"O", "HOH", ".", "."},
+                                   {"H2", "HOH", ".", "."},
+                                   {"CB", "SER", "9", "."},
+                                   {"SG", "SER", "9", "."}}));
+  EXPECT_EQ(support::bonds_text(*file), "0-1 4-5 4-6 7-8");
+}
+
+TEST_F(FormatsMmcif, BadConnectionsAreRefusedWithTheirLine) {
+  const auto faults = [&](const std::string& row) {
+    return support::bond_faults(
+        *open("data_a\n" + connections("covale " + row + "\n") +
+              atoms_of({{"SG", "CYS", "1", "."}, {"O", "HOH", "2", "."}, {"O", "HOH", "2", "."}})));
+  };
+  const std::string damaged = "0: the bonds of this file are damaged\n";
+  EXPECT_EQ(faults("A 1 . CYS SG . A 7 . CYS SG ."),
+            "16: a bond of atom SG of CYS 7 in chain A, which does not exist\n" + damaged);
+  EXPECT_EQ(faults("A 1 . CYS SG . A 1 . CYS SG ."),
+            "16: a bond of atom SG of CYS 1 in chain A with itself\n" + damaged);
+  EXPECT_EQ(faults("A 1 . CYS SG . A 2 . HOH O ."),
+            "16: a bond of atom O of HOH 2 in chain A, but several atoms are named so\n" + damaged);
 }
 
 }  // namespace

@@ -334,5 +334,46 @@ TEST_F(FormatsPdb, PapillomaVirusHasSixtyTransforms) {
   EXPECT_EQ(std::get<Words>(table.find("chain")->values).words.size(), 6U);
 }
 
+/// An atom with a serial number, and a CONECT record.
+std::string numbered(const std::string& serial, const std::string& name, char altloc = ' ') {
+  return atom(name, "LIG", 'A', 1, {}, "C", altloc).replace(6, 5, serial);
+}
+
+TEST_F(FormatsPdb, ConnectionsAreBonds) {
+  const auto file = open(numbered("    1", "C1") + numbered("99999", "C2") + numbered("A0000", "C3") +
+                         "CONECT    199999A0000          \nCONECT99999    1    1A0000\nCONECTA0000    1\nEND\n");
+  EXPECT_EQ(file->describe(0).bonds, 12u);
+  EXPECT_FALSE(file->describe(0).lists_all_bonds);
+  EXPECT_EQ(support::bonds_text(*file), "0-1 0-2 1-2");
+  EXPECT_EQ(open(numbered("    1", "C1") + "END\n")->describe(0).bonds, 0u);
+}
+
+TEST_F(FormatsPdb, AlternateLocationsShareTheirBonds) {
+  const auto file = open(numbered("    1", "C1") + numbered("    2", "C2", 'A') + numbered("    3", "C2", 'B') +
+                         "CONECT    1    2    3\nCONECT    2    3\nEND\n");
+  EXPECT_EQ(support::bonds_text(*file), "0-1");
+}
+
+TEST_F(FormatsPdb, ConnectionsBelongToTheirModelOrToAll) {
+  const std::string atoms = numbered("    1", "C1") + numbered("    2", "C2") + numbered("    3", "C3");
+  const auto file = open("MODEL        1\n" + atoms + "CONECT    1    2\nENDMDL\nMODEL        2\n" + atoms +
+                         "ENDMDL\nCONECT    2    3\nEND\n");
+  ASSERT_EQ(file->frame_count(), 2);
+  EXPECT_EQ(support::bonds_text(*file, 1), "1-2");
+  EXPECT_EQ(support::bonds_text(*file, 0), "0-1 1-2");
+}
+
+TEST_F(FormatsPdb, BadConnectionsAreRefusedWithTheirLine) {
+  const std::string atoms = numbered("    1", "C1") + numbered("    2", "C2") + numbered("    2", "C3");
+  const auto faults = [&](const std::string& records) {
+    return support::bond_faults(*open(atoms + records + "END\n"));
+  };
+  EXPECT_EQ(
+      faults("CONECT    1    7\nCONECT    1    1\nCONECT    1    2\nCONECT    1   x9\n"),
+      "4: a bond of atom 7, which does not exist\n5: a bond of atom 1 with itself\n6: a bond of atom 2, but several "
+      "atoms have this number\n7: `x9` is not the serial number of an atom\n0: the bonds of this file are "
+      "damaged\n");
+}
+
 }  // namespace
 }  // namespace orrery::formats

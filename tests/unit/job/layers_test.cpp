@@ -99,6 +99,32 @@ TEST(JobLayers, RodsAreObjectsWithTwoMaterials) {
   for (std::uint32_t i = 0; i < 5; ++i) EXPECT_EQ(id_of(2, i), i < 3 ? 0 : film::matte_id("bonds")) << i;
 }
 
+/// Bonds share the name of their points, and have the materials of their spheres.
+TEST(JobLayers, BondsBelongToTheirPoints) {
+  scene::Scene s = with_layers({"CryptoObject", "CryptoMaterial"});
+  s.spheres.clear();
+  scene::Points points;
+  points.file = "melt.xyz";
+  points.centers = {{0, 0, 0}, {1, 0, 0}, {-1, 0, 0}};
+  points.radii.assign(3, 0.25);
+  points.materials = {0, 1, 1};
+  points.bond_radius = 0.1;
+  points.bond_pairs = {{0, 1}, {0, 2}};
+  points.bond_stubs = {{1, 0, {1.5, 0, 0}}};
+  s.points = {points};
+  s.rods.resize(1);
+  s.rods[0].materials = {1, 0};
+  const Layers layers = layers_of(s);
+  const auto id_of = [&](std::size_t matte, std::uint32_t i) {
+    return layers.request.matte_id(layers.request.mattes[matte], i);
+  };
+  const int materials[] = {0, 1, 1, 1, 0, 0, 1, 1, 0, 1, 1};  // of bond 0-2, the end with the smaller x comes first
+  for (std::uint32_t i = 0; i < 11; ++i) {
+    EXPECT_EQ(id_of(0, i), film::matte_id(i == 3 || i == 4 ? "rod.0" : "melt")) << i;
+    EXPECT_EQ(id_of(1, i), film::matte_id(s.materials[static_cast<std::size_t>(materials[i])].name)) << i;
+  }
+}
+
 TEST(JobLayers, GroupsHoldOnlySpheresWithAGroup) {
   scene::Scene s = with_layers({"CryptoGroup"});
   s.spheres[1].group = "left";

@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <set>
 
 #include "base/error.h"
 #include "display/develop.h"
@@ -155,6 +156,107 @@ TEST_F(PlotPlot, MoleculesHaveRadiiAndColorsOfTheirElements) {
   options.points.radius.element = "ball";
   make();
   EXPECT_EQ(read().points[0].radii[0], 0.25 * 1.70);
+}
+
+/// Ethanol without most of its hydrogens.
+const std::string kMolecule = "4\n\nC 0 0 0\nC 1.5 0 0\nO 2.2 1.2 0\nH -0.6 0.9 0\n";
+
+TEST_F(PlotPlot, ModelsOfBallsAndSticksHaveBonds) {
+  options.representation = Representation::kBallAndStick;
+  make("a.xyz", kMolecule);
+  EXPECT_TRUE(chose("radius ball: a quarter of the van der Waals radii of the elements")) << choices();
+  EXPECT_TRUE(chose("3 bonds: closer than 1.2 times the sum of the covalent radii")) << choices();
+  scene::Points points = read().points[0];
+  EXPECT_EQ(points.radii[0], 0.25 * 1.70);
+  EXPECT_EQ(points.bond_pairs.size(), 3u);
+  EXPECT_EQ(points.bond_radius, 0.15);
+  options.representation = Representation::kSticks;
+  make();
+  EXPECT_TRUE(chose("radius 0.2: that of sticks")) << choices();
+  points = read().points[0];
+  EXPECT_EQ(points.bond_radius, 0.2);
+  EXPECT_EQ(points.radii[0], 0.2);
+  options.points.radius.value = 0.1;
+  make();
+  EXPECT_EQ(read().points[0].bond_radius, 0.1) << "of spheres and bonds";
+  options.bonds = false;
+  make();
+  EXPECT_TRUE(read().points[0].bond_pairs.empty());
+}
+
+TEST_F(PlotPlot, SpheresHaveBondsOnRequest) {
+  make("a.xyz", kMolecule);
+  EXPECT_EQ(choices().find("bond"), std::string::npos);
+  options.bonds = true;
+  options.points.bonds.length = 1.45;
+  make();
+  EXPECT_TRUE(chose("2 bonds: closer than 1.45")) << choices();
+  EXPECT_TRUE(chose("radius vdw: van der Waals radii of the elements")) << choices();
+  EXPECT_EQ(read().points[0].bond_pairs.size(), 2u);
+}
+
+TEST_F(PlotPlot, WithoutElementsBallsHaveHalfTheRadiusOfSpheres) {
+  options.representation = Representation::kBallAndStick;
+  make("a.data",
+       "t\n3 atoms\n2 bonds\n0 9 xlo xhi\n0 9 ylo yhi\n0 9 zlo zhi\n\nAtoms # bond\n\n1 1 1 1 1 1\n2 1 1 2 1 1\n3 1 1 "
+       "9 1 "
+       "1\n\nBonds\n\n1 1 1 2\n2 1 1 3\n");
+  EXPECT_TRUE(chose("radius 0.25: half the median distance to the nearest neighbour, times 0.5 for ball-and-stick"))
+      << choices();
+  EXPECT_TRUE(chose("2 bonds: those of the file")) << choices();
+  const scene::Points points = read().points[0];
+  EXPECT_EQ(points.bond_stubs.size(), 2u);
+  EXPECT_EQ(points.bond_radius, 0.3 * 0.25);
+  options.representation = Representation::kSticks;
+  make();
+  EXPECT_EQ(read().points[0].bond_radius, 0.15);
+  EXPECT_EQ(read().points[0].radii[0], 0.15);
+  options.representation = Representation::kBallAndStick;
+  options.points.bonds.length = 1.5;
+  make("b.csv", "x,y,z,diameter\n0,0,0,2\n1,0,0,2\n");
+  EXPECT_EQ(read().points[0].radii[0], 0.5) << "half of the file's radius";
+}
+
+TEST_F(PlotPlot, BondsByDistanceFollowTheFrames) {
+  options.representation = Representation::kBallAndStick;
+  options.all_frames = true;
+  make("a.xyz", "2\n\nC 0 0 0\nC 1.5 0 0\n2\n\nC 0 0 0\nC 2.5 0 0\n");
+  EXPECT_TRUE(chose("0 to 1 bond: closer than 1.2 times the sum of the covalent radii")) << choices();
+  EXPECT_EQ(read(1).points[0].bond_pairs.size(), 1u);
+  EXPECT_EQ(read(2).points[0].bond_pairs.size(), 0u);
+}
+
+TEST_F(PlotPlot, TheBoxIsTwelveRodsAndTheAxesAreOutsideIt) {
+  options.box = options.axes = true;
+  options.points.replicate = {2, 1, 1};
+  make("a.data", "t\n1 atoms\n-1 3 xlo xhi\n0 3 ylo yhi\n0 5 zlo zhi\n1 0 0 xy xz yz\n\nAtoms # atomic\n\n1 1 1 1 1\n");
+  const scene::Scene scene = read();
+  ASSERT_EQ(scene.rods.size(), 15u);
+  std::multiset<double> lengths;
+  math::Vec3d low{9, 9, 9}, high{-9, -9, -9};
+  for (std::size_t i = 0; i < 12; ++i) {
+    const scene::Rod& rod = scene.rods[i];
+    EXPECT_EQ(rod.name, "box");
+    lengths.insert(math::length(rod.to - rod.from));
+    for (const math::Vec3d& end : {rod.from, rod.to}) {
+      low = {std::min(low.x, end.x), std::min(low.y, end.y), std::min(low.z, end.z)};
+      high = {std::max(high.x, end.x), std::max(high.y, end.y), std::max(high.z, end.z)};
+    }
+  }
+  EXPECT_EQ(lengths, (std::multiset<double>{8, 8, 8, 8, std::sqrt(10), std::sqrt(10), std::sqrt(10), std::sqrt(10), 5,
+                                            5, 5, 5}));
+  EXPECT_EQ(low, (math::Vec3d{-1, 0, 0}));
+  EXPECT_EQ(high, (math::Vec3d{8, 3, 5}));
+  for (std::size_t i = 12; i < 15; ++i) {
+    EXPECT_EQ(scene.rods[i].from, scene.rods[12].from);
+    EXPECT_LT(scene.rods[i].to.x, -1);
+    EXPECT_LT(scene.rods[i].to.y, 0);
+    EXPECT_LT(scene.rods[i].to.z, 0);
+  }
+  options = {};
+  options.box = true;
+  write("b.csv", kCorners);
+  EXPECT_THROW(make(), base::Error);
 }
 
 /// Colours as a plot shows them where all light reaches the sphere; the background comes first.

@@ -104,7 +104,7 @@ class RandomSelections {
 
   /// Some numbers, closed ranges and half-open ones.
   Condition list_condition(const Number& a) {
-    constexpr double kInfinity = std::numeric_limits<double>::infinity();
+    constexpr double kUnbounded = std::numeric_limits<double>::infinity();
     std::vector<std::pair<double, double>> ranges;
     std::string list;
     for (std::uint32_t n = 1 + below(4); n > 0; --n) {
@@ -114,8 +114,8 @@ class RandomSelections {
       switch (below(chance(3) ? 4 : 2)) {
         case 0: ranges.emplace_back(low, low), list += from; break;
         case 1: ranges.emplace_back(low, high), list += from + ":" + to; break;
-        case 2: ranges.emplace_back(high, kInfinity), list += to + ":"; break;
-        default: ranges.emplace_back(-kInfinity, low), list += ":" + from; break;
+        case 2: ranges.emplace_back(high, kUnbounded), list += to + ":"; break;
+        default: ranges.emplace_back(-kUnbounded, low), list += ":" + from; break;
       }
     }
     return {a.text + " in [" + list + "]", [a, ranges](std::size_t i) {

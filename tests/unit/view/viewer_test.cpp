@@ -204,6 +204,31 @@ TEST(ViewViewer, ARodIsPicked) {
   EXPECT_EQ(picked->values, values);
 }
 
+TEST(ViewViewer, APickedBondTellsItsTwoParticles) {
+  const std::filesystem::path file = testing::TempDir() + "view_bonds.xyz";
+  std::ofstream(file) << "4\n\nHe 9 9 0\nC -2 0 0\nC 2 0 0\nO 2 3 0\n";
+  const auto make = [&](const std::vector<std::string>& words) {
+    Subject out = subject_of(words);
+    out.job.scene.file = file.parent_path() / "scene.toml";
+    out.job.scene.text = std::make_shared<const std::string>(
+        std::string(kScene).substr(0, std::string(kScene).find("[[sphere]]")) +
+        "[[rod]]\nfrom = [9, 9, 9]\nto = [9, 9, 9]\nradius = 1\nmaterial = \"grey\"\n[[points]]\nfile = \"" +
+        file.filename().string() +
+        "\"\nmaterial = \"grey\"\nradius = 0.5\nbonds = { length = 4.5, radius = 0.3 }\nselect = \"element != "
+        "'He'\"\n");
+    return out;
+  };
+  Viewer viewer(make, {}, {});
+  finished(viewer);
+  const std::optional<Picked> picked = viewer.pick(0.5, 0.5);
+  ASSERT_TRUE(picked) << viewer.state().problem;
+  EXPECT_EQ(picked->title, "bond of rows 2 and 3 of view_bonds.xyz");
+  EXPECT_EQ(picked->radius, 0.3);
+  ASSERT_GE(picked->values.size(), 2u);
+  EXPECT_EQ(picked->values[0], (std::pair<std::string, std::string>{"element", "C, C"}));
+  EXPECT_EQ(picked->values[1], (std::pair<std::string, std::string>{"x", "-2, 2"}));
+}
+
 TEST(ViewViewer, APickedParticleHasTheColumnsOfItsRow) {
   const std::filesystem::path file = testing::TempDir() + "view_particles.xyz";
   std::ofstream(file) << "3\nProperties=species:S:1:pos:R:3:charge:R:1\n"
