@@ -32,17 +32,22 @@ kernel::Sphere sphere_of(Vec3d center, double radius) { return {center.x, center
 /// Whether the ends of a rod are exchanged: they are put in order, since the order changes roundings.
 bool is_reversed(Vec3d from, Vec3d to) { return std::tie(to.x, to.y, to.z) < std::tie(from.x, from.y, from.z); }
 
-/// Calls f(from, to, a, b) for the rod of each bond of a points table, where a and b are the spheres of its halves.
+/// Calls f(from, to, sphere) for the stubs of the bonds of a points table.
+template <class F>
+void each_stub(const scene::Points& points, F f) {
+  for (const scene::BondStub& stub : points.bond_stubs) f(points.centers[stub.sphere], stub.end, stub.sphere);
+}
+
+/// Calls f(a, b) for the bonds of a points table, with the spheres of the table in the order of the rods' ends.
 template <class F>
 void each_bond(const scene::Points& points, F f) {
   const base::StopPoint stop;
   for (std::size_t i = 0; i < points.bond_pairs.size(); ++i) {
     stop.check(i);
-    const auto [a, b] = points.bond_pairs[i];
-    f(points.centers[a], points.centers[b], a, b);
+    auto [a, b] = points.bond_pairs[i];
+    if (is_reversed(points.centers[a], points.centers[b])) std::swap(a, b);
+    f(a, b);
   }
-  for (const scene::BondStub& stub : points.bond_stubs)
-    f(points.centers[stub.sphere], stub.end, stub.sphere, stub.sphere);
 }
 
 /// Calls f(from, to, radius, materials) for each rod of a table, then for those of files.
@@ -60,7 +65,10 @@ void each_rod(const scene::Scene& scene, F f) {
 /// Sets the rods.
 void set_rods(const scene::Scene& scene, CompiledScene& compiled) {
   compiled.rods.clear();
-  compiled.rods.reserve(scene.rod_count());
+  std::size_t bonds = 0;
+  for (const scene::Points& points : scene.points) bonds += points.bond_pairs.size();
+  compiled.bonds.reserve(bonds);
+  compiled.rods.reserve(scene.rod_count() - bonds);
   compiled.rod_file_sizes.clear();
   for (const scene::RodFile& file : scene.rod_files) compiled.rod_file_sizes.push_back(file.from.size());
   const auto add = [&](Vec3d from, Vec3d to, double radius) {
@@ -72,10 +80,21 @@ void set_rods(const scene::Scene& scene, CompiledScene& compiled) {
     compiled.rods.push_back(out);
   };
   each_rod(scene, [&](Vec3d from, Vec3d to, double radius, const auto&) { add(from, to, radius); });
+  compiled.stub_counts.clear();
   compiled.bond_counts.clear();
+  compiled.bonds.clear();
+  compiled.bond_radii.clear();
+  auto first = static_cast<std::uint32_t>(scene.spheres.size());  // sphere of the points table
   for (const scene::Points& points : scene.points) {
-    compiled.bond_counts.push_back(points.bond_count());
-    each_bond(points, [&](Vec3d from, Vec3d to, auto...) { add(from, to, points.bond_radius); });
+    each_stub(points, [&](Vec3d from, Vec3d to, std::uint32_t) { add(from, to, points.bond_radius); });
+    const auto radius = static_cast<std::uint32_t>(compiled.bond_radii.size());
+    each_bond(points, [&](std::uint32_t a, std::uint32_t b) {
+      compiled.bonds.push_back({first + a, first + b, radius});
+    });
+    compiled.stub_counts.push_back(points.bond_stubs.size());
+    compiled.bond_counts.push_back(points.bond_pairs.size());
+    compiled.bond_radii.push_back(points.bond_radius);
+    first += static_cast<std::uint32_t>(points.centers.size());
   }
 }
 
@@ -117,17 +136,26 @@ void set_sphere_materials(const scene::Scene& scene, CompiledScene& compiled) {
   each_rod(scene, [&](Vec3d from, Vec3d to, double, const std::array<std::uint32_t, 2>& of_halves) {
     add(from, to, table.index(of_halves[0], false), table.index(of_halves[1], false));
   });
-  std::size_t first = scene.spheres.size();  // sphere of the points table
-  for (const scene::Points& points : scene.points) {
-    const std::optional<std::uint32_t> material = points.bonds.material;
-    each_bond(points, [&](Vec3d from, Vec3d to, std::size_t a, std::size_t b) {
-      if (material)
-        add(from, to, table.index(*material, false), table.index(*material, false));
-      else
-        add(from, to, compiled.sphere_materials[first + a], compiled.sphere_materials[first + b]);
+  // The material of a bond's half at a sphere of a points table.
+  const auto each_table = [&](auto f) {
+    std::size_t first = scene.spheres.size();
+    for (const scene::Points& points : scene.points) {
+      f(points, [&, first](std::size_t sphere) {
+        const std::optional<std::uint32_t> material = points.bonds.material;
+        return material ? table.index(*material, false) : compiled.sphere_materials[first + sphere];
+      });
+      first += points.centers.size();
+    }
+  };
+  each_table([&](const scene::Points& points, auto of) {
+    each_stub(points, [&](Vec3d from, Vec3d to, std::size_t sphere) { add(from, to, of(sphere), of(sphere)); });
+  });
+  each_table([&](const scene::Points& points, auto of) {
+    each_bond(points, [&](std::size_t a, std::size_t b) {
+      compiled.sphere_materials.push_back(of(a));
+      compiled.sphere_materials.push_back(of(b));
     });
-    first += points.centers.size();
-  }
+  });
 }
 
 /// Sets the motion of [[sphere]] tables from shutter open to shutter close.
@@ -286,7 +314,11 @@ kernel::SceneView CompiledScene::view() const noexcept {
   v.sphere_count = spheres.size();
   static constexpr kernel::Sphere kReadable;  // the kernel reads a sphere in lanes that hit a rod
   if (spheres.empty()) v.spheres = &kReadable;
-  v.rods = {rods.data(), rods.size(), rod_motion.data(), rod_motion.size(), spheres.size()};
+  v.rods = {rods.data(), rod_count(), rod_motion.data(), rod_motion.size(), spheres.size()};
+  v.rods.bonds = bonds.data();
+  v.rods.bond_count = bonds.size();
+  v.rods.bond_radii = bond_radii.data();
+  v.rods.spheres = v.spheres;
   v.emission = emission.empty() ? nullptr : emission.data();
   if (!textures.textures().empty()) {
     v.textures = textures.textures().data();
@@ -328,7 +360,9 @@ Bounds bounds_of(const CompiledScene& scene) {
         is_empty ? high : Vec3d{std::max(b.upper.x, high.x), std::max(b.upper.y, high.y), std::max(b.upper.z, high.z)};
     is_empty = false;
   };
-  for (const kernel::Rod& rod : scene.rods) {
+  const kernel::RodArray rods = scene.view().rods;
+  for (std::size_t i = 0; i < rods.count; ++i) {
+    const kernel::Rod rod = rods[i];
     add(rod.a, rod.radius);
     add(rod.b, rod.radius);
   }
@@ -364,7 +398,7 @@ void update(const scene::Scene& scene, const scene::Scene* closing, scene::Parts
     set_sphere_motion(scene, closing, compiled);
     set_rods(scene, compiled);
     set_rod_motion(scene, closing, compiled);
-    compiled.features.rods = !compiled.rods.empty();
+    compiled.features.rods = compiled.rod_count() > 0;
   }
   if (changed.geometry || changed.assignment) set_sphere_materials(scene, compiled);
   if (changed.geometry || changed.assignment || changed.look) {

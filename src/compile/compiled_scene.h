@@ -31,11 +31,13 @@ using scene::Accelerator;
 struct CompiledScene {
   SphereStore spheres;
   std::vector<std::size_t> points_sizes;  ///< number of spheres of each points table
-  /// With ordered ends: [[rod]] tables, then each [[rods]] file, then the bonds of each points table, first pairs, then
-  /// stubs.
+  /// With ordered ends: [[rod]] tables, then each [[rods]] file, then the stubs of bonds of each points table.
   std::vector<kernel::Rod> rods;
+  std::vector<kernel::Bond> bonds;               ///< of each points table; in ids, they follow `rods`
+  std::vector<double> bond_radii;                ///< one per points table
   std::vector<std::size_t> rod_file_sizes;       ///< number of rods of each file
-  std::vector<std::size_t> bond_counts;          ///< number of rods of the bonds of each points table
+  std::vector<std::size_t> stub_counts;          ///< number of stubs of bonds of each points table
+  std::vector<std::size_t> bond_counts;          ///< number of bonds of each points table, without those in stubs
   PackedIndices sphere_materials;                ///< one per sphere, then two per rod, index into `materials`
   std::vector<MaterialSource> material_sources;  ///< one per material
   std::vector<kernel::Material> materials;
@@ -69,6 +71,8 @@ struct CompiledScene {
   std::uint32_t max_depth = 0;                         ///< rays per path, including the camera ray
   std::uint32_t roulette_depth = kernel::kNoRoulette;  ///< scattering events before Russian roulette begins
   kernel::Sampler sampler;
+
+  std::size_t rod_count() const noexcept { return rods.size() + bonds.size(); }
 
   /// Returns a view for the kernel; valid until this CompiledScene is modified or destroyed.
   kernel::SceneView view() const noexcept;

@@ -191,7 +191,7 @@ SceneInfo scene_info(const load::SceneRequest& request, job::PreparedScene& prep
   info.samples = compiled.samples;
   info.max_depth = static_cast<int>(compiled.max_depth);
   info.spheres = compiled.spheres.size();
-  info.rods = compiled.rods.size();
+  info.rods = compiled.rod_count();
   const auto [low, high] = compile::bounds_of(compiled);
   std::copy_n(std::array{low.x, low.y, low.z}.begin(), 3, info.lower);
   std::copy_n(std::array{high.x, high.y, high.z}.begin(), 3, info.upper);
@@ -202,14 +202,16 @@ SceneInfo scene_info(const load::SceneRequest& request, job::PreparedScene& prep
       info.largest_radius = std::max(info.largest_radius, radius);
     };
     for (std::size_t i = 0; i < compiled.spheres.size(); ++i) add_radius(compiled.spheres[i].radius);
-    for (const kernel::Rod& rod : compiled.rods) add_radius(rod.radius);
+    const kernel::RodArray rods = compiled.view().rods;
+    for (std::size_t i = 0; i < rods.count; ++i) add_radius(rods[i].radius);
   }
   info.materials = count_materials(compiled);
   info.emitters = count_emitters(compiled);
   info.lights = lights_text(compiled, info.emitters);
   for (std::size_t i = 0; i < read.scene.points.size(); ++i) {
     const scene::Points& p = read.scene.points[i];
-    info.points.push_back({p.file.string(), compiled.points_sizes[i], p.unused, compiled.bond_counts[i]});
+    info.points.push_back(
+        {p.file.string(), compiled.points_sizes[i], p.unused, compiled.stub_counts[i] + compiled.bond_counts[i]});
   }
   info.layers = scene::requested_layers(read.scene);
   info.available_layers = scene::available_layers(read.scene);

@@ -152,7 +152,7 @@ class Run {
     report_.width = compiled().width;
     report_.height = compiled().height;
     report_.spheres = compiled().spheres.size();
-    report_.rods = compiled().rods.size();
+    report_.rods = compiled().rod_count();
   }
 
   /// The layers that an output of the job holds; others are not computed.

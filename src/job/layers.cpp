@@ -72,7 +72,7 @@ void add_mattes(const scene::Scene& scene, const compile::CompiledScene& compile
 
   const std::size_t ids_of_all = compiled.sphere_materials.size();
   const std::size_t blocks =
-      scene.spheres.size() + 2 * scene.points.size() + scene.rods.size() + scene.rod_files.size();
+      scene.spheres.size() + 3 * scene.points.size() + scene.rods.size() + scene.rod_files.size();
   const std::size_t most = std::min(ids_of_all, by_material ? blocks * material_ids.size() : blocks);
   film::MatteClasses classes{{ids_of_all, static_cast<std::uint32_t>(most)}, {}};
   std::map<Ids, std::uint32_t> known;
@@ -111,6 +111,7 @@ void add_mattes(const scene::Scene& scene, const compile::CompiledScene& compile
     const scene::RodFile& r = scene.rod_files[i];
     add(2 * compiled.rod_file_sizes[i], r.name.empty() ? r.file.stem().string() : r.name, r.group);
   }
+  for (std::size_t i = 0; i < scene.points.size(); ++i) add_points(i, 2 * compiled.stub_counts[i]);
   for (std::size_t i = 0; i < scene.points.size(); ++i) add_points(i, 2 * compiled.bond_counts[i]);
 
   layers.request.matte_classes = std::make_shared<film::MatteClasses>(std::move(classes));

@@ -170,7 +170,7 @@ MemoryNeeds memory_needs(const compile::CompiledScene& compiled, const film::Lay
   needs.width = compiled.width;
   needs.height = compiled.height;
   needs.spheres = compiled.spheres.size();
-  needs.rods = compiled.rods.size();
+  needs.rods = compiled.rod_count();
   needs.embree = compiled.accelerator == compile::Accelerator::kEmbree && !has_accelerator;
   if (needs.embree) {
     const accel::ObjectCounts in_bvh = accel::objects_in_bvh(compiled.view());
@@ -178,7 +178,7 @@ MemoryNeeds memory_needs(const compile::CompiledScene& compiled, const film::Lay
     needs.bvh_has_rods = in_bvh.rods > 0;
   }
   needs.sphere_bytes = compiled.spheres.bytes() + compiled.rods.size() * sizeof(kernel::Rod) +
-                       compiled.sphere_materials.bytes() +
+                       compiled.bonds.size() * sizeof(kernel::Bond) + compiled.sphere_materials.bytes() +
                        (layers.matte_classes ? layers.matte_classes->of_sphere.bytes() : 0);
   if (compiled.environment) needs.background = compiled.environment->bytes();
   needs.textures = compiled.textures.bytes();

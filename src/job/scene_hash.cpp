@@ -88,7 +88,10 @@ Hash hash_of_spheres(const compile::CompiledScene& compiled) {
     stop.check(i);
     for (const kernel::Sphere s = compiled.spheres[i]; const double v : {s.x, s.y, s.z, s.radius}) hash.add(v);
   }
-  for (const kernel::Rod& r : compiled.rods) {
+  const kernel::RodArray rods = compiled.view().rods;
+  for (std::size_t i = 0; i < rods.count; ++i) {
+    stop.check(i);
+    const kernel::Rod r = rods[i];
     add_all(hash, r.a);
     add_all(hash, r.b);
     hash.add(r.radius);

@@ -90,7 +90,7 @@ class Planner {
     };
     add_one("exact", compile::Precision::kExact, false);
     add_one("fast", compile::Precision::kFast, true);
-    if (compiled_.spheres.size() + compiled_.rods.size() > kMaxListSpheres) {
+    if (compiled_.spheres.size() + compiled_.rod_count() > kMaxListSpheres) {
       out_.left_out.push_back("more than 5000 spheres: precision book is too slow");
       return;
     }
@@ -205,7 +205,7 @@ class Planner {
 
   /// Time with the list of spheres and rods relative to that with Embree.
   double list_slowness() const {
-    return 1 + static_cast<double>(compiled_.spheres.size() + compiled_.rods.size()) / 12;
+    return 1 + static_cast<double>(compiled_.spheres.size() + compiled_.rod_count()) / 12;
   }
 
   void accelerator() {
@@ -217,7 +217,7 @@ class Planner {
         accel::Traversal::kPacket;
     add("accelerator", "embree, single rays", flag(kTimed) + " --set render.traversal=single", kTimed).traversal =
         accel::Traversal::kSingle;
-    if (compiled_.spheres.size() + compiled_.rods.size() > kMaxListSpheres) {
+    if (compiled_.spheres.size() + compiled_.rod_count() > kMaxListSpheres) {
       out_.left_out.push_back("more than 5000 spheres: the list is too slow");
       return;
     }

@@ -177,7 +177,7 @@ class Subject {
 };
 
 bool lists_are_affordable(const compile::CompiledScene& compiled) {
-  return 3.0 * compiled.width * compiled.height * static_cast<double>(compiled.spheres.size() + compiled.rods.size()) /
+  return 3.0 * compiled.width * compiled.height * static_cast<double>(compiled.spheres.size() + compiled.rod_count()) /
              kListTests <=
          kLongestListSeconds;
 }
@@ -290,8 +290,8 @@ Benchmark bench_scene(const BenchRequest& request) {
   for (Case& c : feature_cases_of(compiled)) cases.push_back(std::move(c));
   std::optional<TracingBench> tracing;
   // The accelerators that are compared with Embree know spheres only.
-  const bool compares = !compiled.spheres.empty() && compiled.rods.empty();
-  if (!compiled.rods.empty()) out.left_out.push_back("comparison of accelerators: the scene has rods");
+  const bool compares = !compiled.spheres.empty() && compiled.rod_count() == 0;
+  if (compiled.rod_count() > 0) out.left_out.push_back("comparison of accelerators: the scene has rods");
   if (request.threads == 1 && compares) tracing.emplace(subject.tracing_bench(lists_are_affordable(compiled)));
   const int total = static_cast<int>(cases.size()) * (request.rounds + 1);
   int done = 0;

@@ -2,14 +2,14 @@
 #pragma once
 
 #include <chrono>
+#include <cstdint>
 #include <map>
 #include <memory>
 #include <optional>
 #include <string>
 #include <utility>
-
-#include <cstdint>
 #include <vector>
+
 #include "accel/accel.h"
 #include "compile/compiled_scene.h"
 #include "render/forward.h"
@@ -28,6 +28,8 @@ class Spheres {
     std::swap(materials_, compiled.sphere_materials);
     std::swap(rods_, compiled.rods);
     std::swap(rod_motion_, compiled.rod_motion);
+    std::swap(bonds_, compiled.bonds);
+    std::swap(bond_radii_, compiled.bond_radii);
   }
 
   /// Lends the spheres to a compiled scene until the ScopedAttachment is destroyed.
@@ -47,6 +49,8 @@ class Spheres {
   compile::SphereStore spheres_;
   compile::PackedIndices materials_;
   std::vector<kernel::Rod> rods_, rod_motion_;
+  std::vector<kernel::Bond> bonds_;
+  std::vector<double> bond_radii_;
 };
 
 /// Renders the images of a study and accumulates their render times.

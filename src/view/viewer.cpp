@@ -159,7 +159,7 @@ std::optional<Picked> Viewer::pick(double x, double y) {
   };
   if (const kernel::RodArray rods = compiled.view().rods; rods.contains(*id)) {
     std::size_t index = rods.index(*id);
-    const kernel::Rod& rod = compiled.rods[index];
+    const kernel::Rod rod = rods[index];
     const math::Vec3d a{rod.a[0], rod.a[1], rod.a[2]}, b{rod.b[0], rod.b[1], rod.b[2]};
     out.center = (a + b) * 0.5;
     out.radius = rod.radius;
@@ -177,8 +177,10 @@ std::optional<Picked> Viewer::pick(double x, double y) {
       if (const std::size_t file = table_of(compiled.rod_file_sizes); file < scene.rod_files.size()) {
         out.title = fmt::format("row {} of {}", index + 1, scene.rod_files[file].file.filename().string());
         add_names(scene.rod_files[file]);
+      } else if (const std::size_t of_stub = table_of(compiled.stub_counts); of_stub < scene.points.size()) {
+        add_bond(scene, of_stub, true, index, out);
       } else {
-        add_bond(scene, table_of(compiled.bond_counts), index, out);
+        add_bond(scene, table_of(compiled.bond_counts), false, index, out);
       }
     }
     out.values.emplace_back("ends", scene::vector_text(a) + ", " + scene::vector_text(b));
@@ -208,19 +210,18 @@ std::optional<Picked> Viewer::pick(double x, double y) {
   return out;
 }
 
-void Viewer::add_bond(const scene::Scene& scene, std::size_t table, std::size_t bond, Picked& out) {
+void Viewer::add_bond(const scene::Scene& scene, std::size_t table, bool is_stub, std::size_t index, Picked& out) {
   const std::shared_ptr<const Source> source = source_of(scene, table);
-  const auto& [pairs, stubs] = std::tie(source->rows.bond_pairs, source->rows.bond_stubs);
-  const std::vector<std::uint32_t>& rows = source->rows.rows;
-  if (bond >= pairs.size() + stubs.size())
-    throw base::Error(base::ErrorKind::kBadData, scene.points[table].file.string() + " has changed");
-  const scene::SphereBond ends =
-      bond < pairs.size() ? pairs[bond]
-                          : scene::SphereBond{stubs[bond - pairs.size()].sphere, stubs[bond - pairs.size()].partner};
-  const std::uint32_t a = rows.at(ends.a), b = rows.at(ends.b);
-  out.title = fmt::format("bond of rows {} and {} of {}", std::size_t{a} + 1, std::size_t{b} + 1,
-                          scene.points[table].file.filename().string());
-  for (const data::Column& column : source->rows.table.columns)
+  const points::SourceRows& read = source->rows;
+  const std::string file = scene.points[table].file.filename().string();
+  if (index >= (is_stub ? read.bond_stubs.size() : read.bond_pairs.size()))
+    throw base::Error(base::ErrorKind::kBadData, file + " has changed");
+  const scene::SphereBond ends = is_stub
+                                     ? scene::SphereBond{read.bond_stubs[index].sphere, read.bond_stubs[index].partner}
+                                     : read.bond_pairs[index];
+  const std::uint32_t a = read.rows.at(ends.a), b = read.rows.at(ends.b);
+  out.title = fmt::format("bond of rows {} and {} of {}", std::size_t{a} + 1, std::size_t{b} + 1, file);
+  for (const data::Column& column : read.table.columns)
     out.values.emplace_back(column.name, text_of(column, a) + ", " + text_of(column, b));
 }
 

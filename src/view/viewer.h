@@ -123,8 +123,8 @@ class Viewer {
   void set_served(std::uint64_t wish, const std::string& problem);
   void refresh(Live& live);
   std::shared_ptr<const Source> source_of(const scene::Scene& scene, std::size_t table);
-  /// Describes the two particles of a bond of a points table.
-  void add_bond(const scene::Scene& scene, std::size_t table, std::size_t bond, Picked& out);
+  /// Describes the two particles of a bond of a points table, or of a stub of one.
+  void add_bond(const scene::Scene& scene, std::size_t table, bool is_stub, std::size_t index, Picked& out);
 
   const MakeSubject make_;
   const std::vector<std::string> fixed_;
