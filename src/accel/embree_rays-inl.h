@@ -15,6 +15,7 @@
 
 #include "accel/embree_scene.h"
 #include "kernel/intersect-inl.h"
+#include "kernel/opacity-inl.h"
 #include "kernel/rod-inl.h"
 
 HWY_BEFORE_NAMESPACE();
@@ -138,17 +139,23 @@ HWY_INLINE void intersect(D d, const k::Rays<D>& ray, const k::Spheres<D>& spher
   found.take(d, k::closest_distance<D, kPrecision>(d, ray, spheres, is_self), ids, lanes);
 }
 
-/// Intersects rays with a rod at the times of the rays.
+/// Intersects rays with a rod at the times of the rays. The half that they enter has the opacity.
 ///
-/// `id`       of the rod's first half
-template <kernel::Precision kPrecision, class D, class Packet>
-HWY_INLINE void intersect_rod(D d, const k::Rays<D>& ray, const k::Rods<D>& rod, typename Packet::Id id,
-                              hn::Mask<D> lanes, Found<D, Packet>& found) {
-  const auto may = hn::And(lanes, k::may_hit(ray, rod));
+/// `first`    lane of the packet
+template <kernel::Precision kPrecision, bool kOpacity, class D, class Packet>
+HWY_INLINE void intersect_rod(D d, const EmbreeScene& scene, const Packet& packet, int first, const k::Rays<D>& ray,
+                              const k::Rods<D>& rod, std::size_t index, hn::Mask<D> lanes, Found<D, Packet>& found) {
+  auto may = hn::And(lanes, k::may_hit(ray, rod));
   if (hn::AllFalse(d, may)) return;
   const k::IdTag<D> du;
   const auto entry = k::closest_entry<D, kPrecision>(d, ray, rod);
-  const auto ids = hn::Set(du, id) + hn::IfThenElseZero(hn::RebindMask(du, entry.second_half), set(du, 1));
+  const std::uint32_t id = scene.rods.id(index);
+  if constexpr (kOpacity) {
+    const k::KeyTag<D> d32;
+    const auto opacity = select(entry.second_half, set(d, scene.opacity[id + 1]), set(d, scene.opacity[id]));
+    may = hn::And(may, k::are_visible(d, hn::LoadU(d32, packet.key + first), hn::Set(d32, id), opacity));
+  }
+  const auto ids = set(du, id) + hn::IfThenElseZero(hn::RebindMask(du, entry.second_half), set(du, 1));
   found.take(d, {entry.distance, entry.hits}, ids, may);
 }
 

@@ -29,7 +29,7 @@ struct PacketVisit {
 
 /// The rays of an Embree packet, traversed together: one pass over a node's children tests all rays. Faster than
 /// single-ray traversal if the rays visit the same nodes, such as the camera rays of a pixel.
-template <class Packet, kernel::Precision kPrecision>
+template <class Packet, kernel::Precision kPrecision, bool kOpacity>
 class PacketTraversal {
  public:
   HWY_INLINE PacketTraversal(const SphereBvh& bvh, const EmbreeQuery<Packet>& query, const int* valid, RTCRayN* rays)
@@ -183,6 +183,11 @@ class PacketTraversal {
         hit = mask_of(d_, hitting);
       }
       if (hitting == 0) return;
+      if constexpr (kOpacity) {
+        hit = hn::And(hit, k::visible_lanes(d_, *query_.packet, query_.first, id, query_.scene->opacity[id]));
+        hitting &= bits_of(d_, hit);
+        if (hitting == 0) return;
+      }
       const auto begin = passed.along - radius;
       const auto nearer = certain_limit(passed, hn::Set(d_, inner[i]), begin, wide_margin, limit);
       limit = select(hit, nearer, limit);

@@ -105,7 +105,7 @@ HWY_INLINE unsigned intersect_candidates(const EmbreeQuery<Packet>& query, unsig
 ///
 /// `lanes`    lanes of the query that have a ray, as bits
 /// Result     lanes with a new hit, as bits
-template <class Packet, kernel::Precision kPrecision>
+template <class Packet, kernel::Precision kPrecision, bool kOpacity>
 HWY_INLINE unsigned trace_rays(const SphereBvh& bvh, const EmbreeQuery<Packet>& query, unsigned lanes,
                                SingleRay* rays) {
   const EmbreeScene& scene = *query.scene;
@@ -148,7 +148,10 @@ HWY_INLINE unsigned trace_rays(const SphereBvh& bvh, const EmbreeQuery<Packet>& 
       SingleRay& ray = rays[i];
       std::uint32_t target = kernel::kNoSphere;
       if constexpr (Packet::kIsShadow) target = static_cast<std::uint32_t>(query.packet->target[query.first + i]);
-      const bool any = test_spheres<Packet::kIsShadow>(bvh, ray.what[--ray.waiting] & kIndexMask, target, ray);
+      const std::uint32_t leaf = ray.what[--ray.waiting] & kIndexMask;
+      bool any = test_spheres<Packet::kIsShadow>(bvh, leaf, target, ray);
+      if constexpr (kOpacity)
+        any = any && keep_visible(bvh, leaf, query.packet->key[query.first + i], scene.opacity, ray);
       found |= static_cast<unsigned>(any) << i;
     });
     each_bit(found, [&](int i) {
@@ -172,7 +175,7 @@ HWY_INLINE unsigned trace_rays(const SphereBvh& bvh, const EmbreeQuery<Packet>& 
 ///
 /// `limits`   out: per lane, the distance beyond which nothing was searched
 /// Result     lanes with a new hit, as bits
-template <class Packet, kernel::Precision kPrecision>
+template <class Packet, kernel::Precision kPrecision, bool kOpacity>
 HWY_INLINE unsigned traverse_by_rays(const SphereBvh& bvh, const EmbreeQuery<Packet>& query, const int* valid,
                                      RTCRayN* rays, float (&limits)[kWidth]) {
   const hn::ScalableTag<float> d;
@@ -217,7 +220,7 @@ HWY_INLINE unsigned traverse_by_rays(const SphereBvh& bvh, const EmbreeQuery<Pac
     ray.what[1] = ray.subtree;
     ray.waiting = 2;
   });
-  const unsigned hits = trace_rays<Packet, kPrecision>(bvh, query, lanes, states);
+  const unsigned hits = trace_rays<Packet, kPrecision, kOpacity>(bvh, query, lanes, states);
   each_bit(lanes, [&](int i) { limits[i] = states[i].limit; });
   return hits;
 }

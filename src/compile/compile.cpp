@@ -96,6 +96,40 @@ void set_sphere_materials(const scene::Scene& scene, CompiledScene& compiled) {
   });
 }
 
+/// Sets the opacities of the spheres and of the halves of rods, unless all are 1.
+void set_opacity(const scene::Scene& scene, CompiledScene& compiled) {
+  const base::StopPoint stop;
+  const std::size_t count = scene.sphere_count() + 2 * scene.rod_count();
+  std::vector<float>().swap(compiled.opacity);
+  compiled.features.opacity = false;
+  const auto is_opaque = [](const auto& of) { return opacity_of(of.model) == 1; };
+  const auto has_none = [](const scene::Points& points) { return !points.opacity.is_set(); };
+  if (std::all_of(scene.materials.begin(), scene.materials.end(), is_opaque) &&
+      std::all_of(scene.points.begin(), scene.points.end(), has_none))
+    return;
+  std::size_t next = 0;
+  const auto add = [&](double opacity) {
+    stop.check(next);
+    if (opacity < 1 && compiled.opacity.empty()) compiled.opacity.assign(count, 1.0F);
+    if (!compiled.opacity.empty()) compiled.opacity[next] = static_cast<float>(opacity);
+    ++next;
+  };
+  std::vector<double> of_materials;
+  for (const scene::Material& material : scene.materials) of_materials.push_back(opacity_of(material.model));
+  for (const scene::Sphere& s : scene.spheres) add(of_materials[s.material]);
+  for (const scene::Points& points : scene.points)
+    for (std::size_t i = 0; i < points.centers.size(); ++i) {
+      const double own = points.opacities.empty() ? points.opacity.value.value_or(-1) : double{points.opacities[i]};
+      add(own >= 0 ? own : of_materials[points.materials.empty() ? points.material : points.materials[i]]);
+    }
+  each_rod(scene, [&](Vec3d from, Vec3d to, double, const std::array<std::uint32_t, 2>& of_halves) {
+    double ends[2] = {of_materials[of_halves[0]], of_materials[of_halves[1]]};
+    if (is_reversed(from, to)) std::swap(ends[0], ends[1]);
+    for (const double end : ends) add(end);
+  });
+  compiled.features.opacity = !compiled.opacity.empty();
+}
+
 /// Sets the motion of [[sphere]] tables from shutter open to shutter close.
 void set_sphere_motion(const scene::Scene& opening, const scene::Scene* closing, CompiledScene& compiled) {
   compiled.motion.clear();
@@ -253,6 +287,7 @@ kernel::SceneView CompiledScene::view() const noexcept {
   static constexpr kernel::Sphere kReadable;  // the kernel reads a sphere in lanes that hit a rod
   if (spheres.empty()) v.spheres = &kReadable;
   v.rods = {rods.data(), rods.size(), rod_motion.data(), rod_motion.size(), spheres.size()};
+  v.opacity = opacity.empty() ? nullptr : opacity.data();
   v.emission = emission.empty() ? nullptr : emission.data();
   if (!textures.textures().empty()) {
     v.textures = textures.textures().data();
@@ -332,7 +367,10 @@ void update(const scene::Scene& scene, const scene::Scene* closing, scene::Parts
     set_rod_motion(scene, closing, compiled);
     compiled.features.rods = !compiled.rods.empty();
   }
-  if (changed.geometry || changed.assignment) set_sphere_materials(scene, compiled);
+  if (changed.geometry || changed.assignment) {
+    set_sphere_materials(scene, compiled);
+    set_opacity(scene, compiled);
+  }
   if (changed.geometry || changed.assignment || changed.look) {
     compiled.direct_lighting = direct_lighting_of(scene.render.direct_lighting);
     compile_materials(scene, compiled);

@@ -34,6 +34,7 @@ struct CompiledScene {
   std::vector<kernel::Rod> rods;                 ///< with ordered ends: [[rod]] tables, then each [[rods]] file
   std::vector<std::size_t> rod_file_sizes;       ///< number of rods of each file
   PackedIndices sphere_materials;                ///< one per sphere, then two per rod, index into `materials`
+  std::vector<float> opacity;                    ///< as kernel::SceneView has it; empty: all are 1
   std::vector<MaterialSource> material_sources;  ///< one per material
   std::vector<kernel::Material> materials;
   std::vector<kernel::Emission> emission;  ///< one per material; empty if none emits

@@ -170,7 +170,7 @@ MemoryNeeds memory_needs(const compile::CompiledScene& compiled, const film::Lay
   needs.embree = compiled.accelerator == compile::Accelerator::kEmbree && !has_accelerator;
   if (needs.embree) needs.spheres_in_bvh = accel::spheres_in_bvh(compiled.view());
   needs.sphere_bytes = compiled.spheres.bytes() + compiled.rods.size() * sizeof(kernel::Rod) +
-                       compiled.sphere_materials.bytes() +
+                       compiled.sphere_materials.bytes() + compiled.opacity.size() * sizeof(compiled.opacity[0]) +
                        (layers.matte_classes ? layers.matte_classes->of_sphere.bytes() : 0);
   if (compiled.environment) needs.background = compiled.environment->bytes();
   needs.textures = compiled.textures.bytes();

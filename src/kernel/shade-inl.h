@@ -16,6 +16,7 @@
 #include "kernel/cone-inl.h"
 #include "kernel/deposit-inl.h"
 #include "kernel/direct_light-inl.h"
+#include "kernel/opacity-inl.h"
 #include "kernel/path_stream.h"
 #include "kernel/record-inl.h"
 #include "kernel/render_tile.h"
@@ -30,14 +31,14 @@ namespace orrery::kernel::HWY_NAMESPACE {
 struct Loop {
   Precision precision = Precision::kExact;
   bool records = false;  ///< fills the tile's records, events and guides
-  bool full = false;     ///< renders all features; false: neither motion, lights, rods nor textures and rough glass
+  bool full = false;  ///< renders all features; false: neither motion, lights, rods, opacity, textures nor rough glass
 };
 
 /// The features of a scene in this loop. In plain loops, those of full loops are false at compile time.
 template <Loop kLoop>
 HWY_INLINE Features features_of(const SceneView& scene) {
   Features features = scene.features;
-  if (!kLoop.full) features.motion = features.lit = features.extended = features.rods = false;
+  if (!kLoop.full) features.motion = features.lit = features.extended = features.rods = features.opacity = false;
   return features;
 }
 
@@ -293,6 +294,10 @@ class Shader {
     compactor.store3(d, sample.reach, shadow.direction, n);
     compactor.store(d, sample.distance, shadow.distance + n);
     if (features_.motion) compactor.store(d, hn::Load(d, at.times), shadow.time + n);
+    if (features_.opacity) {
+      const auto keys = keys_at_vertex(du, scene_.sampler.seed, at.pixels, at.samples, depth_ + 1);
+      compactor.store_ids(d, keys.shadow, shadow.key + n);
+    }
     compactor.store3(d, sample.radiance * tinted * factor, shadow.light, n);
     compactor.store_ids(d, at.hits, shadow.self + n);
     compactor.store_ids(d, sample.target, shadow.target + n);

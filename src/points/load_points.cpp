@@ -18,6 +18,7 @@
 #include "points/copies.h"
 #include "points/derived.h"
 #include "points/point_colors.h"
+#include "points/point_opacity.h"
 #include "points/point_radii.h"
 #include "points/read_memory.h"
 #include "points/rows.h"
@@ -77,6 +78,7 @@ class Loader {
       points_.radii.clear();
       points_.materials.clear();
       points_.colors.clear();
+      points_.opacities.clear();
       points_.palette.clear();
     }
     return faults_.take();
@@ -105,13 +107,15 @@ class Loader {
       columns_.push_back(column);
   }
 
-  /// Determines the sources of radii and colours, and the columns to read.
+  /// Determines the sources of radii, colours and opacities, and the columns to read.
   void plan() {
     for (const std::string& column : info_.roles.position) need(column);
     radius_ = radius_source(info_, points_.radius, faults_);
     need(radius_.column);
     color_ = color_source(info_, points_.color, request_.folder, faults_);
     for (const std::string& column : color_.columns) need(column);
+    opacity_ = opacity_source(info_, points_.opacity, faults_);
+    for (const std::string& column : opacity_.needed) need(column);
     need(info_.roles.id);
     plan_selection();
     copies_ = copies_of(info_, points_, faults_);
@@ -161,6 +165,7 @@ class Loader {
     need.sphere_bytes = bytes_per_sphere(info_, points_, radius_, are_rounded);
     if (!material_.empty()) need.sphere_bytes += sizeof(std::uint32_t);
     if (!color_.columns.empty()) need.sphere_bytes += sizeof(std::uint16_t);
+    if (opacity_.is_set()) need.sphere_bytes += sizeof(float);
     if (request_.source != nullptr) need.sphere_bytes += sizeof(std::uint32_t) + need.row_bytes;
     const Vec3d n = points_.replicate;
     need.images = n.x * n.y * n.z;
@@ -201,6 +206,7 @@ class Loader {
     const std::vector<Copy> ends = is_replicated ? outermost(copies_, *info_.box, points_.replicate) : copies_;
     require_memory(copied_count(copies_, chains, rows.size()), are_rounded(ends, points_, centers, radii));
     PointColors colors = colors_of(table, rows, color_, points_.color, faults_);
+    if (opacity_.is_set()) points_.opacities = opacities_of(table, rows, opacity_, points_, faults_);
     points_.centers = std::move(centers);
     points_.radii = std::move(radii);
     points_.colors = std::move(colors.indices);
@@ -274,6 +280,7 @@ class Loader {
   std::vector<std::string> columns_;
   RadiusSource radius_;
   ColorSource color_;
+  OpacitySource opacity_;
   Selection selection_;
   std::vector<Copy> copies_;
   std::vector<std::string> speed_sources_;  ///< columns that `speed` is computed from; empty: it is not needed

@@ -41,7 +41,11 @@ void compare_materials(const std::vector<Material>& before, const std::vector<Ma
     return parts.add(Part::kAssignment);
   for (std::size_t i = 0; i < before.size(); ++i) {
     const MaterialModel &a = before[i].model, &b = after[i].model;
-    if (a.index() != b.index()) return parts.add(Part::kLook);
+    if (a.index() != b.index()) {
+      parts.add(Part::kLook);
+      if (opacity_of(a) != opacity_of(b)) parts.add(Part::kAssignment);
+      continue;
+    }
     const MaterialType& type = material_types()[a.index()];
     compare(type.keys, Part::kLook, a, b, parts);
     for (const TexturedKey& key : type.textured)

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <variant>
+
 #include "scene/scene.h"
 
 namespace orrery::test {
@@ -23,6 +25,17 @@ inline scene::Scene everything() {
   s.spheres = {{{0, -1000, 0}, 1000, 0, ""}, {{-1, 0.5, 0}, 0.5, 1, ""},  {{0, 0.5, 0}, 0.5, 2, ""},
                {{1, 0.5, 0}, 0.5, 3, ""},    {{0, 0.5, 1}, 0.5, 4, ""},   {{0, 0.5, 1}, -0.45, 4, ""},
                {{1, 0.5, 1.5}, 0.5, 5, ""},  {{-1, 0.4, 1.2}, 0.4, 0, ""}};
+  return s;
+}
+
+/// The scene with an opacity below 1 for all materials that may have one.
+inline scene::Scene translucent(scene::Scene s) {
+  for (scene::Material& material : s.materials)
+    std::visit(
+        [](auto& model) {
+          if constexpr (requires { model.opacity; }) model.opacity = 0.6;
+        },
+        material.model);
   return s;
 }
 

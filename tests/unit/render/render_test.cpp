@@ -21,6 +21,7 @@ namespace {
 
 using math::Vec3d;
 using test::everything;
+using test::translucent;
 using test::with_lamps;
 
 std::vector<float> pixels(const scene::Scene& scene, int threads = 0,
@@ -37,7 +38,7 @@ std::vector<float> pixels(const scene::Scene& scene, int threads = 0,
 
 TEST(RenderRender, ListAndEmbreeGiveTheSameBits) {
   for (const auto precision : {scene::Precision::kExact, scene::Precision::kFast}) {
-    for (scene::Scene s : {everything(), with_lamps(everything())}) {
+    for (scene::Scene s : {everything(), with_lamps(everything()), translucent(with_lamps(everything()))}) {
       s.render.precision = precision;
       s.render.accelerator = scene::Accelerator::kEmbree;
       const auto embree = pixels(s);
@@ -49,7 +50,7 @@ TEST(RenderRender, ListAndEmbreeGiveTheSameBits) {
 
 TEST(RenderRender, TraversalsGiveTheSameBits) {
   for (const auto precision : {scene::Precision::kExact, scene::Precision::kFast})
-    for (scene::Scene s : {everything(), with_lamps(everything())}) {
+    for (scene::Scene s : {everything(), with_lamps(everything()), translucent(with_lamps(everything()))}) {
       s.render.precision = precision;
       const auto measured = pixels(s);
       EXPECT_EQ(pixels(s, 0, accel::Traversal::kPacket), measured) << static_cast<int>(precision);
@@ -92,7 +93,7 @@ TEST(RenderRender, ListAndEmbreeGiveTheSameBitsFarFromTheOriginInFast) {
 }
 
 TEST(RenderRender, AnyNumberOfThreadsGivesTheSameBits) {
-  for (const scene::Scene& s : {everything(), with_lamps(everything())}) {
+  for (const scene::Scene& s : {everything(), with_lamps(everything()), translucent(with_lamps(everything()))}) {
     const auto one = pixels(s, 1);
     EXPECT_EQ(pixels(s, 2), one);
     EXPECT_EQ(pixels(s, 5), one);
@@ -118,7 +119,7 @@ scene::Scene scaled(scene::Scene s, double factor) {
 }
 
 TEST(RenderRender, SceneScaleChangesNoBits) {
-  for (const scene::Scene& s : {everything(), with_lamps(everything())}) {
+  for (const scene::Scene& s : {everything(), with_lamps(everything()), translucent(with_lamps(everything()))}) {
     const auto unit = pixels(s);
     for (const int k : {-60, -17, 1, 30, 48}) EXPECT_EQ(pixels(scaled(s, std::ldexp(1.0, k))), unit) << "2^" << k;
   }
