@@ -96,7 +96,7 @@ void add_threads_option(Command& command, int& threads, const char* otherwise = 
 /// Arguments of the data options that need further parsing.
 struct DataArguments {
   std::string frame, frames, radius, range, replicate, component;
-  std::vector<std::string> select, slice;
+  std::vector<std::string> select, slice, opacity;
   const Option* map = nullptr;
 };
 
@@ -107,8 +107,8 @@ struct DataArguments {
 void add_data_options(Command& command, DataArguments& arguments, plot::DataOptions& data,
                       const std::string& kind = "Data file");
 
-/// Adds the options of plot that select view and style.
-void add_look_options(Command& command, plot::PlotOptions& plot, std::string& style);
+/// Adds the options of plot that select opacity, view and style.
+void add_look_options(Command& command, DataArguments& arguments, plot::PlotOptions& plot, std::string& style);
 
 /// Sets the members of `data` from the parsed options.
 ///

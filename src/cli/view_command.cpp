@@ -49,7 +49,7 @@ struct ShownOptions {
   void add_to(Command& parsed) {
     command = &parsed;
     add_data_options(parsed, data, plot, "Scene file, or data file");
-    add_look_options(parsed, plot, style);
+    add_look_options(parsed, data, plot, style);
     scene.add_to(parsed);
     add_sampling_options(parsed, job);
     add_denoise_option(parsed, job);
@@ -153,7 +153,7 @@ view::Controls controls_of(const std::filesystem::path& file) {
   out.options["--color-by"] = {"none", "element", "type", "rgb"};
   out.options["--map"] = points::color_map_names();
   out.options["--style"] = plot::style_names();
-  for (const char* option : {"--ground", "--range", "--select", "--slice", "--radius-scale", "--frame"})
+  for (const char* option : {"--ground", "--opacity", "--range", "--select", "--slice", "--radius-scale", "--frame"})
     out.options[option] = {};
   return out;
 }
