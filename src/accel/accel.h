@@ -31,6 +31,11 @@ class Accel {
   /// Domain     the traversals outlive the result
   virtual kernel::Tracer thread_tracer(ThreadTraversals& traversals) const noexcept;
 
+  /// Replaces kernel::SceneView::opacity of the scene, without a new build.
+  ///
+  /// Domain     no query is under way; the array outlives its use
+  virtual void set_opacity(const float* opacity) noexcept = 0;
+
   /// For example "embree 3.13.5" or "list".
   virtual std::string name() const = 0;
 

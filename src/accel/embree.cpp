@@ -41,6 +41,9 @@ kernel::Sphere sphere_at_step(const EmbreeScene& scene, std::uint32_t id, unsign
   return {s.x + change.x, s.y + change.y, s.z + change.z, s.radius + change.radius};
 }
 
+/// What a geometry of Embree's scene consists of.
+enum class Content { kSpheres, kBvh, kRods };
+
 /// Most primitives of a rod, and the extent of one across its longest axis in radii, above which it is divided. The box
 /// of a long diagonal is nearly empty; those of bonds, and of rods parallel to an axis, are not
 /// (measured: docs/decisions/0034-rods.md).
@@ -108,7 +111,8 @@ class Embree final : public Accel {
  public:
   Embree(const kernel::SceneView& view, kernel::Precision precision, const BuildMonitor& monitor,
          std::size_t bvh_threshold)
-      : functions_(embree_functions(precision, view.moving_count > 0 || view.rods.moving_count > 0)),
+      : precision_(precision),
+        moves_(view.moving_count > 0 || view.rods.moving_count > 0),
         scene_(make_scene(view, precision)) {
     std::vector<std::uint32_t> ids =
         boxed(scene_, view.sphere_count);  // not empty without rods: outliers are defined relative to other spheres
@@ -125,6 +129,7 @@ class Embree final : public Accel {
       const double end = share(ids.size());
       bvh_ = SphereBvh(scene_.bounded, std::move(ids), scene_.frame, part_of(monitor, 0, end), rods);
     }
+    set_opacity(view.opacity);
     build(primitives, part_of(monitor, share(bvh_.count), 1));
     packets_.scene = singles_.scene = &scene_;
   }
@@ -135,6 +140,11 @@ class Embree final : public Accel {
   kernel::Tracer thread_tracer(ThreadTraversals& traversals) const noexcept override {
     traversals.scene = &scene_;
     return functions_.tracer_of(traversals);
+  }
+  void set_opacity(const float* opacity) noexcept override {
+    scene_.opacity = opacity;
+    functions_ = embree_functions(precision_, moves_, opacity != nullptr);
+    for (const auto& [geometry, content] : geometries_) set_callbacks(geometry, content);
   }
   std::string name() const override { return "embree " + embree_.version(); }
   std::size_t bytes() const noexcept override {
@@ -193,16 +203,13 @@ class Embree final : public Accel {
   /// Moving spheres get a separate geometry, since the others need no second time step.
   void build(std::size_t primitives, const BuildMonitor& monitor) {
     BuildState moving{&scene_, 0}, still{&scene_, scene_.moving_primitives > 0 ? 1u : 0u};
-    const auto add_spheres = [&](std::size_t count, unsigned time_steps, BuildState& state) {
-      add_geometry(count, time_steps, &state, sphere_bounds, functions_.intersect, functions_.occluded);
-    };
-    if (scene_.moving_primitives > 0) add_spheres(scene_.moving_primitives, 2, moving);
+    if (scene_.moving_primitives > 0)
+      add_geometry(Content::kSpheres, scene_.moving_primitives, 2, &moving, sphere_bounds);
     const std::size_t rest = bvh_.empty() ? primitives - scene_.moving_primitives : scene_.singles.size();
-    if (rest > 0) add_spheres(rest, 1, still);
-    if (!bvh_.empty()) add_geometry(1, 1, &bvh_, bvh_bounds, functions_.intersect_bvh, functions_.occluded_by_bvh);
+    if (rest > 0) add_geometry(Content::kSpheres, rest, 1, &still, sphere_bounds);
+    if (!bvh_.empty()) add_geometry(Content::kBvh, 1, 1, &bvh_, bvh_bounds);
     if (!scene_.rod_pieces.empty())
-      add_geometry(scene_.rod_pieces.size(), scene_.rods.moving_count > 0 ? 2 : 1, &still, rod_bounds,
-                   functions_.intersect_rods, functions_.occluded_by_rods);
+      add_geometry(Content::kRods, scene_.rod_pieces.size(), scene_.rods.moving_count > 0 ? 2 : 1, &still, rod_bounds);
     if (monitor)
       rtcSetSceneProgressMonitorFunction(
           embree_.get(),
@@ -217,25 +224,43 @@ class Embree final : public Accel {
     scene_.has_packets = embree_.has_packets_of(functions_.width);
   }
 
-  void add_geometry(std::size_t primitives, unsigned time_steps, void* data, RTCBoundsFunction bounds,
-                    RTCIntersectFunctionN intersect, RTCOccludedFunctionN occluded) {
+  void add_geometry(Content content, std::size_t primitives, unsigned time_steps, void* data,
+                    RTCBoundsFunction bounds) {
     RTCGeometry geometry = rtcNewGeometry(embree_.device(), RTC_GEOMETRY_TYPE_USER);
     rtcSetGeometryUserPrimitiveCount(geometry, static_cast<unsigned>(primitives));
     rtcSetGeometryTimeStepCount(geometry, time_steps);
     rtcSetGeometryUserData(geometry, data);
     rtcSetGeometryBoundsFunction(geometry, bounds, nullptr);
-    rtcSetGeometryIntersectFunction(geometry, intersect);
-    rtcSetGeometryOccludedFunction(geometry, occluded);
+    set_callbacks(geometry, content);
     rtcSetGeometryMask(geometry, ~0u);  // the default differs between Embree 3 and 4
     embree_.attach(geometry);
+    geometries_.emplace_back(geometry, content);
   }
 
+  /// Sets what Embree calls during queries. It looks the callbacks up in each query, so that they may change after the
+  /// build (AccelOpacity.CanChangeAfterTheBuild).
+  void set_callbacks(RTCGeometry geometry, Content content) const noexcept {
+    const EmbreeFunctions& f = functions_;
+    const auto set = [&](RTCIntersectFunctionN intersect, RTCOccludedFunctionN occluded) {
+      rtcSetGeometryIntersectFunction(geometry, intersect);
+      rtcSetGeometryOccludedFunction(geometry, occluded);
+    };
+    switch (content) {
+      case Content::kSpheres: return set(f.intersect, f.occluded);
+      case Content::kBvh: return set(f.intersect_bvh, f.occluded_by_bvh);
+      case Content::kRods: return set(f.intersect_rods, f.occluded_by_rods);
+    }
+  }
+
+  kernel::Precision precision_;
+  bool moves_;
   EmbreeFunctions functions_;
   EmbreeScene scene_;
   ThreadTraversals packets_{Traversal::kPacket}, singles_{Traversal::kSingle};
   double largest_in_bvh_ = -1;  ///< radius
   SphereBvh bvh_;
   OwnedScene embree_;
+  std::vector<std::pair<RTCGeometry, Content>> geometries_;  ///< owned by the scene
 };
 
 }  // namespace

@@ -15,6 +15,7 @@
 
 #include "accel/embree_scene.h"
 #include "kernel/intersect-inl.h"
+#include "kernel/opacity-inl.h"
 #include "kernel/rod-inl.h"
 
 HWY_BEFORE_NAMESPACE();
@@ -138,27 +139,31 @@ HWY_INLINE void intersect(D d, const k::Rays<D>& ray, const k::Spheres<D>& spher
   found.take(d, k::closest_distance<D, kPrecision>(d, ray, spheres, is_self), ids, lanes);
 }
 
-/// Intersects rays with rods, one per lane, at the times of the rays.
+/// Intersects rays with rods, one per lane, at the times of the rays. The halves that they enter have the opacity.
 ///
+/// `first`    lane of the packet
 /// `ids`      of the rods' first halves
-template <kernel::Precision kPrecision, class D, class Packet>
-HWY_INLINE void intersect_rods(D d, const k::Rays<D>& ray, const k::Rods<D>& rod, hn::Vec<k::IdTag<D>> ids,
-                               hn::Mask<D> lanes, Found<D, Packet>& found) {
-  const auto may = hn::And(lanes, k::may_hit(ray, rod));
+template <kernel::Precision kPrecision, bool kOpacity, class D, class Packet>
+HWY_INLINE void intersect_rods(D d, const EmbreeScene& scene, const Packet& packet, int first, const k::Rays<D>& ray,
+                               const k::Rods<D>& rod, hn::Vec<k::IdTag<D>> ids, hn::Mask<D> lanes,
+                               Found<D, Packet>& found) {
+  auto may = hn::And(lanes, k::may_hit(ray, rod));
   if (hn::AllFalse(d, may)) return;
   const k::IdTag<D> du;
   const auto entry = k::closest_entry<D, kPrecision>(d, ray, rod);
   const auto of_halves = ids + hn::IfThenElseZero(hn::RebindMask(du, entry.second_half), set(du, 1));
+  if constexpr (kOpacity) may = hn::And(may, k::visible_rods(d, packet, first, ids, of_halves, may, scene.opacity));
   found.take(d, {entry.distance, entry.hits}, of_halves, may);
 }
 
 /// Intersects rays with the same rod.
 ///
 /// `id`       of the rod's first half
-template <kernel::Precision kPrecision, class D, class Packet>
-HWY_INLINE void intersect_rod(D d, const k::Rays<D>& ray, const k::Rods<D>& rod, typename Packet::Id id,
-                              hn::Mask<D> lanes, Found<D, Packet>& found) {
-  intersect_rods<kPrecision>(d, ray, rod, hn::Set(k::IdTag<D>(), id), lanes, found);
+template <kernel::Precision kPrecision, bool kOpacity, class D, class Packet>
+HWY_INLINE void intersect_rod(D d, const EmbreeScene& scene, const Packet& packet, int first, const k::Rays<D>& ray,
+                              const k::Rods<D>& rod, typename Packet::Id id, hn::Mask<D> lanes,
+                              Found<D, Packet>& found) {
+  intersect_rods<kPrecision, kOpacity>(d, scene, packet, first, ray, rod, hn::Set(k::IdTag<D>(), id), lanes, found);
 }
 
 /// Stores lanes as floats.

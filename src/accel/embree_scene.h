@@ -29,6 +29,7 @@ struct EmbreeScene {
   /// Number of moving primitives. If not 0, they are Embree's geometry 0, with two time steps, and the others geometry
   /// 1; otherwise there is only one geometry.
   std::uint32_t moving_primitives = 0;
+  const float* opacity = nullptr;  ///< as in kernel::SceneView
   kernel::RodArray rods;
   std::vector<RodPiece> rod_pieces;  ///< the primitives of the rods' geometry
   std::size_t listed_rods = 0;       ///< the first rods, which every ray tests instead
@@ -73,7 +74,7 @@ struct EmbreeQuery {
 };
 
 /// Callbacks and tracer, instantiated for the instruction set of this processor, for one precision, and with or without
-/// motion.
+/// motion and opacities.
 struct EmbreeFunctions {
   RTCIntersectFunctionN intersect = nullptr;
   RTCOccludedFunctionN occluded = nullptr;
@@ -92,6 +93,6 @@ struct EmbreeFunctions {
 };
 
 /// Domain     precision is exact or fast
-EmbreeFunctions embree_functions(kernel::Precision precision, bool moves);
+EmbreeFunctions embree_functions(kernel::Precision precision, bool moves, bool has_opacity);
 
 }  // namespace orrery::accel

@@ -79,12 +79,16 @@ HWY_INLINE void test_all(const EmbreeQuery<Packet>& query, const Arguments& argu
 }
 
 /// Embree's callback for a sphere that is a primitive.
-template <class Packet, kernel::Precision kPrecision, bool kMoves, class Arguments>
+template <class Packet, kernel::Precision kPrecision, bool kMoves, bool kOpacity, class Arguments>
 void at_sphere(const Arguments* arguments) {
   const auto& query = *reinterpret_cast<const EmbreeQuery<Packet>*>(arguments->context);
   const std::uint32_t id = query.scene->sphere_id(kMoves ? arguments->geomID : 0, arguments->primID);
   // Captured by value: the compiler would read a reference again after each store.
   const auto test = [id, &scene = *query.scene](auto d, const Packet& packet, int first, auto lanes, auto& found) {
+    if constexpr (kOpacity) {
+      lanes = hn::And(lanes, k::visible_lanes(d, packet, first, id, scene.opacity[id]));
+      if (hn::AllFalse(d, lanes)) return;
+    }
     intersect<kPrecision>(d, k::load_rays(d, packet, first), k::sphere_at<kMoves>(d, scene, id, packet, first),
                           hn::Set(k::IdTag<decltype(d)>(), static_cast<typename Packet::Id>(id)), lanes, found);
   };
@@ -92,13 +96,14 @@ void at_sphere(const Arguments* arguments) {
 }
 
 /// Embree's callback for a part of a rod.
-template <class Packet, kernel::Precision kPrecision, bool kMoves, class Arguments>
+template <class Packet, kernel::Precision kPrecision, bool kMoves, bool kOpacity, class Arguments>
 void at_rod(const Arguments* arguments) {
   const auto& query = *reinterpret_cast<const EmbreeQuery<Packet>*>(arguments->context);
   const std::size_t rod = query.scene->rod_pieces[arguments->primID].rod;
-  const auto test = [rod, &rods = query.scene->rods](auto d, const Packet& packet, int first, auto lanes, auto& found) {
-    intersect_rod<kPrecision>(d, k::load_rays(d, packet, first), k::rod_at<kMoves>(d, rods, rod, packet, first),
-                              rods.id(rod), lanes, found);
+  const auto test = [rod, &scene = *query.scene](auto d, const Packet& packet, int first, auto lanes, auto& found) {
+    intersect_rod<kPrecision, kOpacity>(d, scene, packet, first, k::load_rays(d, packet, first),
+                                        k::rod_at<kMoves>(d, scene.rods, rod, packet, first), scene.rods.id(rod), lanes,
+                                        found);
   };
   test_all(query, *arguments, test);
 }
@@ -126,7 +131,7 @@ struct LoneRay {
 };
 
 /// Embree's callback for a SphereBvh.
-template <class Packet, kernel::Precision kPrecision, class Arguments>
+template <class Packet, kernel::Precision kPrecision, bool kOpacity, class Arguments>
 void at_bvh(const Arguments* arguments) {
   const auto& query = *reinterpret_cast<const EmbreeQuery<Packet>*>(arguments->context);
   const auto& bvh = *static_cast<const SphereBvh*>(arguments->geometryUserPtr);
@@ -134,8 +139,8 @@ void at_bvh(const Arguments* arguments) {
   float limits[kWidth];  // per lane, the distance beyond which nothing was searched
   const auto traverse = [&](const EmbreeQuery<Packet>& all, const int* valid, RTCRayN* of_all) {
     return all.traversal == Traversal::kSingle
-               ? traverse_by_rays<Packet, kPrecision>(bvh, all, valid, of_all, limits)
-               : PacketTraversal<Packet, kPrecision>(bvh, all, valid, of_all).trace(limits);
+               ? traverse_by_rays<Packet, kPrecision, kOpacity>(bvh, all, valid, of_all, limits)
+               : PacketTraversal<Packet, kPrecision, kOpacity>(bvh, all, valid, of_all).trace(limits);
   };
   const bool is_alone = arguments->N == 1;
   const unsigned first = is_alone ? static_cast<unsigned>(query.lane) : 0;
@@ -188,7 +193,7 @@ HWY_INLINE TraversalChoice& choice_for(const ThreadTraversals& traversals, const
 }
 
 /// Tests the rods that are not in Embree's scene.
-template <class Packet, kernel::Precision kPrecision, bool kMoves>
+template <class Packet, kernel::Precision kPrecision, bool kMoves, bool kOpacity>
 HWY_NOINLINE void test_listed_rods(const EmbreeScene& scene, Packet& packet) {
   const hn::ScalableTag<typename Packet::Number> d;
   using D = std::remove_const_t<decltype(d)>;
@@ -197,8 +202,8 @@ HWY_NOINLINE void test_listed_rods(const EmbreeScene& scene, Packet& packet) {
     const auto lanes = hn::FirstN(d, static_cast<std::size_t>(packet.count - v));
     auto found = Found<D, Packet>::load(d, packet, v);
     for (std::size_t rod = 0; rod < scene.listed_rods; ++rod)
-      intersect_rod<kPrecision>(d, ray, k::rod_at<kMoves>(d, scene.rods, rod, packet, v), scene.rods.id(rod), lanes,
-                                found);
+      intersect_rod<kPrecision, kOpacity>(d, scene, packet, v, ray, k::rod_at<kMoves>(d, scene.rods, rod, packet, v),
+                                          scene.rods.id(rod), lanes, found);
     found.store(d, packet, v);
   }
 }
@@ -206,7 +211,7 @@ HWY_NOINLINE void test_listed_rods(const EmbreeScene& scene, Packet& packet) {
 /// Traces a packet: the outliers, then Embree's scene.
 ///
 /// `self`     ThreadTraversals
-template <class Packet, kernel::Precision kPrecision, bool kMoves>
+template <class Packet, kernel::Precision kPrecision, bool kMoves, bool kOpacity>
 void trace(const void* self, void* memory) {
   const hn::ScalableTag<typename Packet::Number> d;
   using D = std::remove_const_t<decltype(d)>;
@@ -219,12 +224,15 @@ void trace(const void* self, void* memory) {
     const auto ray = k::load_rays(d, packet, v);
     const auto lanes = hn::FirstN(d, static_cast<std::size_t>(packet.count - v));
     auto found = Found<D, Packet>::load(d, packet, v);
-    for (const std::uint32_t id : scene.outliers)
+    for (const std::uint32_t id : scene.outliers) {
+      auto visible = lanes;
+      if constexpr (kOpacity) visible = hn::And(lanes, k::visible_lanes(d, packet, v, id, scene.opacity[id]));
       intersect<kPrecision>(d, ray, k::sphere_at<kMoves>(d, scene, id, packet, v),
-                            hn::Set(du, static_cast<typename Packet::Id>(id)), lanes, found);
+                            hn::Set(du, static_cast<typename Packet::Id>(id)), visible, found);
+    }
     found.store(d, packet, v);
   }
-  if (scene.listed_rods > 0) test_listed_rods<Packet, kPrecision, kMoves>(scene, packet);
+  if (scene.listed_rods > 0) test_listed_rods<Packet, kPrecision, kMoves, kOpacity>(scene, packet);
   if (scene.scene == nullptr) return;
 
   TraversalChoice& choice = choice_for(traversals, packet);
@@ -251,29 +259,34 @@ void trace(const void* self, void* memory) {
   if (is_timed) choice.add(packet.count, thread_seconds() - begin);
 }
 
-template <kernel::Precision kPrecision, bool kMoves>
+template <kernel::Precision kPrecision, bool kMoves, bool kOpacity>
 EmbreeFunctions instance() {
   using T = std::conditional_t<kPrecision == kernel::Precision::kFast, float, double>;
   using Rays = kernel::RayPacket<T>;
   using ShadowRays = kernel::ShadowPacket<T>;
   EmbreeFunctions f;
   f.width = kWidth;
-  f.intersect = at_sphere<Rays, kPrecision, kMoves>;
-  f.occluded = at_sphere<ShadowRays, kPrecision, kMoves>;
-  f.intersect_rods = at_rod<Rays, kPrecision, kMoves>;
-  f.occluded_by_rods = at_rod<ShadowRays, kPrecision, kMoves>;
-  f.intersect_bvh = at_bvh<Rays, kPrecision>;
-  f.occluded_by_bvh = at_bvh<ShadowRays, kPrecision>;
-  f.tracer.trace = trace<Rays, kPrecision, kMoves>;
-  f.tracer.occlude = trace<ShadowRays, kPrecision, kMoves>;
+  f.intersect = at_sphere<Rays, kPrecision, kMoves, kOpacity>;
+  f.occluded = at_sphere<ShadowRays, kPrecision, kMoves, kOpacity>;
+  f.intersect_rods = at_rod<Rays, kPrecision, kMoves, kOpacity>;
+  f.occluded_by_rods = at_rod<ShadowRays, kPrecision, kMoves, kOpacity>;
+  f.intersect_bvh = at_bvh<Rays, kPrecision, kOpacity>;
+  f.occluded_by_bvh = at_bvh<ShadowRays, kPrecision, kOpacity>;
+  f.tracer.trace = trace<Rays, kPrecision, kMoves, kOpacity>;
+  f.tracer.occlude = trace<ShadowRays, kPrecision, kMoves, kOpacity>;
   f.tracer.target = HWY_TARGET;
   return f;
 }
 
-EmbreeFunctions functions(kernel::Precision precision, bool moves) {
+template <kernel::Precision kPrecision>
+EmbreeFunctions instance(bool moves, bool has_opacity) {
+  if (has_opacity) return moves ? instance<kPrecision, true, true>() : instance<kPrecision, false, true>();
+  return moves ? instance<kPrecision, true, false>() : instance<kPrecision, false, false>();
+}
+
+EmbreeFunctions functions(kernel::Precision precision, bool moves, bool has_opacity) {
   using enum kernel::Precision;
-  if (precision == kFast) return moves ? instance<kFast, true>() : instance<kFast, false>();
-  return moves ? instance<kExact, true>() : instance<kExact, false>();
+  return precision == kFast ? instance<kFast>(moves, has_opacity) : instance<kExact>(moves, has_opacity);
 }
 
 }  // namespace orrery::accel::HWY_NAMESPACE
@@ -284,8 +297,8 @@ namespace orrery::accel {
 
 HWY_EXPORT(functions);
 
-EmbreeFunctions embree_functions(kernel::Precision precision, bool moves) {
-  return ORRERY_BEST(functions)(precision, moves);
+EmbreeFunctions embree_functions(kernel::Precision precision, bool moves, bool has_opacity) {
+  return ORRERY_BEST(functions)(precision, moves, has_opacity);
 }
 
 }  // namespace orrery::accel

@@ -13,6 +13,7 @@
 #include <type_traits>
 
 #include "kernel/intersect-inl.h"
+#include "kernel/opacity-inl.h"
 #include "kernel/rod-inl.h"
 #include "kernel/scene_view.h"
 #include "math/dispatch.h"
@@ -48,6 +49,11 @@ void trace_list(const void* self, void* memory) {
   if constexpr (Packet::kIsShadow) std::fill_n(packet.occluded, kernel::kPacketSize, Id{0});
   for (int i = 0; i < packet.count; ++i) {
     const auto ray = k::load_rays(d, packet, i);
+    // Of a rod, the half that the ray enters has the opacity, and the id of the first half stands for the rod.
+    const auto is_visible = [&](std::size_t hit, std::size_t object) {
+      return scene.opacity == nullptr ||
+             !hn::AllFalse(d, k::visible_lanes(d, packet, i, static_cast<std::uint32_t>(object), scene.opacity[hit]));
+    };
     std::size_t id = 0;
     const auto trace_up_to = [&](std::size_t end) {
       for (; id < end; ++id) {
@@ -57,6 +63,7 @@ void trace_list(const void* self, void* memory) {
         if (hn::AllFalse(d, found.mask)) continue;
         const T distance = hn::GetLane(found.value);
         if (distance >= packet.distance[i]) continue;  // ids ascend, so at equal distance the smaller id was first
+        if (!is_visible(id, id)) continue;
         if constexpr (Packet::kIsShadow) {
           if (packet.target[i] == id) continue;
           packet.occluded[i] = static_cast<Id>(~Id{0});
@@ -79,12 +86,14 @@ void trace_list(const void* self, void* memory) {
       if (hn::AllFalse(d, k::may_hit(ray, at))) continue;
       const auto entry = k::closest_entry<D, kPrecision>(d, ray, at);
       if (hn::AllFalse(d, entry.hits) || hn::GetLane(entry.distance) >= packet.distance[i]) continue;
+      const std::size_t hit = scene.rods.id(rod) + (hn::AllTrue(d, entry.second_half) ? 1u : 0u);
+      if (!is_visible(hit, scene.rods.id(rod))) continue;
       if constexpr (Packet::kIsShadow) {
         packet.occluded[i] = static_cast<Id>(~Id{0});
         is_occluded = true;
       } else {
         packet.distance[i] = hn::GetLane(entry.distance);
-        packet.hit[i] = static_cast<Id>(scene.rods.id(rod) + (hn::AllTrue(d, entry.second_half) ? 1 : 0));
+        packet.hit[i] = static_cast<Id>(hit);
       }
     }
   }
@@ -130,6 +139,7 @@ class List final : public Accel {
     t.self = &scene_;
     return t;
   }
+  void set_opacity(const float* opacity) noexcept override { scene_.view.opacity = opacity; }
   std::string name() const override { return "list"; }
   std::size_t bytes() const noexcept override { return scene_.duplicates.size() * sizeof(scene_.duplicates[0]); }
 

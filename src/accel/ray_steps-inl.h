@@ -269,8 +269,34 @@ HWY_INLINE bool test_spheres(const SphereBvh& bvh, std::uint32_t index, std::uin
   return any;
 }
 
+/// Removes the spheres that test_spheres() has found, but that are not visible to the ray. Rods are kept: the opacity
+/// of the half that is hit is not known yet.
+///
+/// `opacity`  of each sphere
+/// Result     whether any are left
+inline bool keep_visible(const SphereBvh& bvh, std::uint32_t index, std::uint32_t key, const float* opacity,
+                         SingleRay& ray) {
+  const ChildTag d;
+  const k::KeyTag<ChildTag> d32;
+  const SphereBvh::Leaf& leaf = bvh.leaves[index];
+  const auto infinite = hn::Set(d, std::numeric_limits<float>::infinity());
+  bool any = false;
+  for (int v = 0; v < static_cast<int>(SphereBvh::kArity); v += kChildLanes) {
+    const auto offset_square = hn::Load(d, ray.offset_square + v);
+    auto hit = offset_square < infinite;
+    alignas(64) float opacities[kChildLanes] = {};
+    const unsigned rods = bvh.has_rods_in(index) ? bvh.rods[index].rods >> v : 0;
+    each_bit(bits_of(d, hit), [&](int i) { opacities[i] = (rods >> i & 1u) != 0 ? 1 : opacity[leaf.ids[v + i]]; });
+    hit = hn::And(hit, k::are_visible(d, hn::Set(d32, key), hn::LoadU(d32, leaf.ids + v), hn::Load(d, opacities)));
+    hn::Store(select(hit, offset_square, infinite), d, ray.offset_square + v);
+    any |= !hn::AllFalse(d, hit);
+  }
+  return any;
+}
+
 /// Adds the spheres that test_spheres() has found to a ray's candidates. Shortens the ray to spheres that it certainly
 /// hits.
+template <bool kOpacity>
 HWY_INLINE void add_candidates(const SphereBvh& bvh, std::uint32_t index, SingleRay& ray) {
   const ChildTag d;
   const hn::RebindToUnsigned<ChildTag> du;
@@ -305,7 +331,7 @@ HWY_INLINE void add_candidates(const SphereBvh& bvh, std::uint32_t index, Single
       });
     }
     nearest = certain_limit(passed, inner, begin, margin, nearest);
-    if (has_rods) {
+    if (has_rods && !kOpacity) {  // otherwise a rod may be invisible
       const auto of_rods = at_rods(bvh, index, v, ray).certain_distance(begin);
       nearest = min(nearest, select(hn::And(hit, is_rod), of_rods, nearest));
     }

@@ -47,7 +47,7 @@ HWY_INLINE bool order_candidates(SingleRay& ray) {
 /// Intersects the candidates of rays, which are lanes of the query, and stores the results in the packet.
 ///
 /// Result     lanes with a new hit, as bits
-template <class Packet, kernel::Precision kPrecision>
+template <class Packet, kernel::Precision kPrecision, bool kOpacity>
 HWY_INLINE unsigned intersect_candidates(const EmbreeQuery<Packet>& query, unsigned lanes, SingleRay* rays) {
   using Id = typename Packet::Id;
   const hn::ScalableTag<typename Packet::Number> d;
@@ -91,7 +91,7 @@ HWY_INLINE unsigned intersect_candidates(const EmbreeQuery<Packet>& query, unsig
           const Id any_rod = ids[hn::FindKnownFirstTrue(d, at_rods)];
           const auto rod = k::gather_rods(
               d, rods, [&](std::size_t i) { return rods.index(rods.contains(ids[i]) ? ids[i] : any_rod); });
-          intersect_rods<kPrecision>(d, ray, rod, found_ids, at_rods, found);
+          intersect_rods<kPrecision, kOpacity>(d, scene, packet, first, ray, rod, found_ids, at_rods, found);
         }
       }
       if (!hn::AllFalse(d, at_spheres)) {
@@ -121,10 +121,11 @@ HWY_INLINE unsigned intersect_candidates(const EmbreeQuery<Packet>& query, unsig
 ///
 /// `lanes`    lanes of the query that have a ray, as bits
 /// Result     lanes with a new hit, as bits
-template <class Packet, kernel::Precision kPrecision>
+template <class Packet, kernel::Precision kPrecision, bool kOpacity>
 HWY_INLINE unsigned trace_rays(const SphereBvh& bvh, const EmbreeQuery<Packet>& query, unsigned lanes,
                                SingleRay* rays) {
-  const Prefetcher prefetcher(bvh, *query.scene);
+  const EmbreeScene& scene = *query.scene;
+  const Prefetcher prefetcher(bvh, scene);
   // Rays grouped by the kind of what they visit next: kWidth bits per kind.
   std::uint64_t queue = 0;
   constexpr std::uint64_t kOneKind = (std::uint64_t{1} << 16) - 1;
@@ -163,12 +164,15 @@ HWY_INLINE unsigned trace_rays(const SphereBvh& bvh, const EmbreeQuery<Packet>& 
       SingleRay& ray = rays[i];
       std::uint32_t target = kernel::kNoSphere;
       if constexpr (Packet::kIsShadow) target = static_cast<std::uint32_t>(query.packet->target[query.first + i]);
-      const bool any = test_spheres<Packet::kIsShadow>(bvh, ray.what[--ray.waiting] & kIndexMask, target, ray);
+      const std::uint32_t leaf = ray.what[--ray.waiting] & kIndexMask;
+      bool any = test_spheres<Packet::kIsShadow>(bvh, leaf, target, ray);
+      if constexpr (kOpacity)
+        any = any && keep_visible(bvh, leaf, query.packet->key[query.first + i], scene.opacity, ray);
       found |= static_cast<unsigned>(any) << i;
     });
     each_bit(found, [&](int i) {
       SingleRay& ray = rays[i];
-      add_candidates(bvh, ray.what[ray.waiting] & kIndexMask, ray);
+      add_candidates<kOpacity>(bvh, ray.what[ray.waiting] & kIndexMask, ray);
       full = full || ray.candidates > kMaxCandidates - static_cast<int>(SphereBvh::kArity);
       prefetcher.prefetch_candidate(ray.candidate[ray.candidates - 1]);
     });
@@ -178,16 +182,16 @@ HWY_INLINE unsigned trace_rays(const SphereBvh& bvh, const EmbreeQuery<Packet>& 
     each_bit(climbing, [&](int i) { climbing &= ~(static_cast<unsigned>(is_done(bvh, rays[i])) << i); });
     each_bit(climbing, [&](int i) { climb(bvh, rays[i]); });
     push(climbing);
-    if (full) changed |= intersect_candidates<Packet, kPrecision>(query, lanes, rays);
+    if (full) changed |= intersect_candidates<Packet, kPrecision, kOpacity>(query, lanes, rays);
   }
-  return changed | intersect_candidates<Packet, kPrecision>(query, lanes, rays);
+  return changed | intersect_candidates<Packet, kPrecision, kOpacity>(query, lanes, rays);
 }
 
 /// Traces the valid rays of Embree's packet.
 ///
 /// `limits`   out: per lane, the distance beyond which nothing was searched
 /// Result     lanes with a new hit, as bits
-template <class Packet, kernel::Precision kPrecision>
+template <class Packet, kernel::Precision kPrecision, bool kOpacity>
 HWY_INLINE unsigned traverse_by_rays(const SphereBvh& bvh, const EmbreeQuery<Packet>& query, const int* valid,
                                      RTCRayN* rays, float (&limits)[kWidth]) {
   const hn::ScalableTag<float> d;
@@ -234,7 +238,7 @@ HWY_INLINE unsigned traverse_by_rays(const SphereBvh& bvh, const EmbreeQuery<Pac
     ray.what[1] = ray.subtree;
     ray.waiting = 2;
   });
-  const unsigned hits = trace_rays<Packet, kPrecision>(bvh, query, lanes, states);
+  const unsigned hits = trace_rays<Packet, kPrecision, kOpacity>(bvh, query, lanes, states);
   each_bit(lanes, [&](int i) { limits[i] = states[i].limit; });
   return hits;
 }

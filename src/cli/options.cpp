@@ -15,7 +15,9 @@
 #include "format/read_scene.h"
 #include "job/job.h"
 #include "plot/data_frames.h"
+#include "points/point_opacity.h"
 #include "scene/limits.h"
+#include "scene/value_text.h"
 
 namespace orrery::cli {
 namespace {
@@ -36,6 +38,31 @@ std::vector<double> numbers_of(const std::string& text, char separator, std::siz
   return out;
 }
 
+/// Adds an --opacity to those before it. One without a condition matches all particles, so that it replaces them.
+void read_opacity(const std::string& text, scene::PointsOpacity& opacity) {
+  if (text.find(':') != std::string::npos) {
+    try {
+      points::parse_opacity_rule(text);
+    } catch (const base::Error& error) {
+      base::refuse(std::string("--opacity: ") + error.what());
+    }
+    if (opacity.value) opacity.where.push_back(scene::number_text(*opacity.value));
+    opacity.value.reset();
+    opacity.where.push_back(text);
+    return;
+  }
+  opacity = {};
+  double value = 0;
+  const char* const end = text.data() + text.size();
+  const auto [stop, error] = std::from_chars(text.data(), end, value);
+  if (error != std::errc() || stop != end) {
+    opacity.column = text;
+    return;
+  }
+  if (!(value >= 0 && value <= 1)) base::refuse(fmt::format("--opacity: {} must be in 0..1", text));
+  opacity.value = value;
+}
+
 void read_points(const DataArguments& arguments, scene::Points& points) {
   if (!arguments.frame.empty()) points.frame = integer_of(arguments.frame);
   if (!arguments.component.empty()) points.component = integer_of(arguments.component);
@@ -52,6 +79,7 @@ void read_points(const DataArguments& arguments, scene::Points& points) {
       points.radius.column = arguments.radius;
     }
   }
+  for (const std::string& text : arguments.opacity) read_opacity(text, points.opacity);
   if (!arguments.range.empty()) {
     const auto ends =
         numbers_of(arguments.range, ':', 2,

@@ -96,7 +96,7 @@ void add_threads_option(Command& command, int& threads, const char* otherwise = 
 /// Arguments of the data options that need further parsing.
 struct DataArguments {
   std::string frame, frames, radius, range, replicate, component;
-  std::vector<std::string> select, slice;
+  std::vector<std::string> select, slice, opacity;
   const Option* map = nullptr;
 };
 
@@ -112,8 +112,8 @@ struct LookArguments {
   std::string style, representation, bonds;
 };
 
-/// Adds the options of plot that select view, style, representation and bonds.
-void add_look_options(Command& command, plot::PlotOptions& plot, LookArguments& look);
+/// Adds the options of plot that select view, style, representation, bonds and opacity.
+void add_look_options(Command& command, DataArguments& data, plot::PlotOptions& plot, LookArguments& look);
 /// Sets the members of `plot` from the parsed options.
 void read_look_options(const LookArguments& look, plot::PlotOptions& plot);
 

@@ -175,7 +175,7 @@ int run_plot(PlotArguments& arguments) {
 
 }  // namespace
 
-void add_look_options(Command& command, plot::PlotOptions& plot, LookArguments& look) {
+void add_look_options(Command& command, DataArguments& data, plot::PlotOptions& plot, LookArguments& look) {
   const OptionGroup group(command, "Look options");
   command
       .add_option("--representation", look.representation, "KIND",
@@ -192,6 +192,12 @@ void add_look_options(Command& command, plot::PlotOptions& plot, LookArguments& 
           "auto: those of the file; by distance if it has none; both for PDB and mmCIF, which leave out common bonds. "
           "A "
           "factor or a length: by distance. docs/data.md describes bonds.");
+  command
+      .add_option("--opacity", data.opacity, "X|COLUMN|CONDITION:X",
+                  "Opacity, 0 to 1: of all, from a column, or of those that match, e.g. 'type == 2: 0.3'; can be "
+                  "repeated")
+      ->details("The last that matches a particle decides; particles that none matches are opaque.")
+      ->repeatable();
   command
       .add_option("--look-from", plot.look_from, "VIEW",
                   "View: iso, +x, -x, +y, -y, +z, -z, or azimuth and elevation in degrees, e.g. 30,20; default: iso")
@@ -260,7 +266,7 @@ void add_plot(Command& program) {
           "--time or --samples gives the same pixels.");
   command.add_flag("--force", arguments->force,
                    "Let --save-scene replace a file that was edited, or not written by orrery");
-  add_look_options(command, arguments->plot, arguments->look);
+  add_look_options(command, arguments->data, arguments->plot, arguments->look);
   add_render_options(command, arguments->render);
   command.details(
       "Writes a scene for the data, and renders it. Settings that the options leave open are chosen from the data and "

@@ -49,7 +49,7 @@ struct ShownOptions {
   void add_to(Command& parsed) {
     command = &parsed;
     add_data_options(parsed, data, plot, "Scene file, or data file");
-    add_look_options(parsed, plot, look);
+    add_look_options(parsed, data, plot, look);
     scene.add_to(parsed);
     add_sampling_options(parsed, job);
     add_denoise_option(parsed, job);
@@ -160,7 +160,7 @@ view::Controls controls_of(const std::filesystem::path& file) {
   out.options["--representation"] = plot::representation_names();
   out.options["--bonds"] = {"auto", "none", "file", "distance", "both"};
   for (const char* option :
-       {"--ground", "--box", "--axes", "--range", "--select", "--slice", "--radius-scale", "--frame"})
+       {"--ground", "--opacity", "--box", "--axes", "--range", "--select", "--slice", "--radius-scale", "--frame"})
     out.options[option] = {};
   return out;
 }

@@ -50,6 +50,30 @@ void each_bond(const scene::Points& points, F f) {
   }
 }
 
+/// Calls f(points, sphere) for each half of the rods of bonds, in the order of their ids, with the sphere of the scene
+/// that it belongs to.
+template <class F>
+void each_bond_half(const scene::Scene& scene, F f) {
+  const auto each_table = [&](auto g) {
+    std::size_t first = scene.spheres.size();
+    for (const scene::Points& points : scene.points) {
+      g(points, first);
+      first += points.centers.size();
+    }
+  };
+  each_table([&](const scene::Points& points, std::size_t first) {
+    each_stub(points, [&](Vec3d, Vec3d, std::uint32_t sphere) {
+      for (int half = 0; half < 2; ++half) f(points, first + sphere);
+    });
+  });
+  each_table([&](const scene::Points& points, std::size_t first) {
+    each_bond(points, [&](std::uint32_t a, std::uint32_t b) {
+      f(points, first + a);
+      f(points, first + b);
+    });
+  });
+}
+
 /// Calls f(from, to, radius, materials) for each rod of a table, then for those of files.
 template <class F>
 void each_rod(const scene::Scene& scene, F f) {
@@ -136,26 +160,48 @@ void set_sphere_materials(const scene::Scene& scene, CompiledScene& compiled) {
   each_rod(scene, [&](Vec3d from, Vec3d to, double, const std::array<std::uint32_t, 2>& of_halves) {
     add(from, to, table.index(of_halves[0], false), table.index(of_halves[1], false));
   });
-  // The material of a bond's half at a sphere of a points table.
-  const auto each_table = [&](auto f) {
-    std::size_t first = scene.spheres.size();
-    for (const scene::Points& points : scene.points) {
-      f(points, [&, first](std::size_t sphere) {
-        const std::optional<std::uint32_t> material = points.bonds.material;
-        return material ? table.index(*material, false) : compiled.sphere_materials[first + sphere];
-      });
-      first += points.centers.size();
-    }
+  each_bond_half(scene, [&](const scene::Points& points, std::size_t sphere) {
+    const std::optional<std::uint32_t> material = points.bonds.material;
+    compiled.sphere_materials.push_back(material ? table.index(*material, false) : compiled.sphere_materials[sphere]);
+  });
+}
+
+/// Sets the opacities of the spheres and of the halves of rods, unless all are 1.
+void set_opacity(const scene::Scene& scene, CompiledScene& compiled) {
+  const base::StopPoint stop;
+  const std::size_t count = scene.sphere_count() + 2 * scene.rod_count();
+  std::vector<float>().swap(compiled.opacity);
+  compiled.features.opacity = false;
+  const auto is_opaque = [](const auto& of) { return opacity_of(of.model) == 1; };
+  const auto has_none = [](const scene::Points& points) { return !points.opacity.is_set(); };
+  if (std::all_of(scene.materials.begin(), scene.materials.end(), is_opaque) &&
+      std::all_of(scene.points.begin(), scene.points.end(), has_none))
+    return;
+  std::size_t next = 0;
+  const auto add = [&](double opacity) {
+    stop.check(next);
+    if (opacity < 1 && compiled.opacity.empty()) compiled.opacity.assign(count, 1.0F);
+    if (!compiled.opacity.empty()) compiled.opacity[next] = static_cast<float>(opacity);
+    ++next;
   };
-  each_table([&](const scene::Points& points, auto of) {
-    each_stub(points, [&](Vec3d from, Vec3d to, std::size_t sphere) { add(from, to, of(sphere), of(sphere)); });
+  std::vector<double> of_materials;
+  for (const scene::Material& material : scene.materials) of_materials.push_back(opacity_of(material.model));
+  for (const scene::Sphere& s : scene.spheres) add(of_materials[s.material]);
+  for (const scene::Points& points : scene.points)
+    for (std::size_t i = 0; i < points.centers.size(); ++i) {
+      const double own = points.opacities.empty() ? points.opacity.value.value_or(-1) : double{points.opacities[i]};
+      add(own >= 0 ? own : of_materials[points.materials.empty() ? points.material : points.materials[i]]);
+    }
+  each_rod(scene, [&](Vec3d from, Vec3d to, double, const std::array<std::uint32_t, 2>& of_halves) {
+    double ends[2] = {of_materials[of_halves[0]], of_materials[of_halves[1]]};
+    if (is_reversed(from, to)) std::swap(ends[0], ends[1]);
+    for (const double end : ends) add(end);
   });
-  each_table([&](const scene::Points& points, auto of) {
-    each_bond(points, [&](std::size_t a, std::size_t b) {
-      compiled.sphere_materials.push_back(of(a));
-      compiled.sphere_materials.push_back(of(b));
-    });
+  each_bond_half(scene, [&](const scene::Points& points, std::size_t sphere) {
+    const std::optional<std::uint32_t> material = points.bonds.material;
+    add(material ? of_materials[*material] : compiled.opacity.empty() ? 1 : double{compiled.opacity[sphere]});
   });
+  compiled.features.opacity = !compiled.opacity.empty();
 }
 
 /// Sets the motion of [[sphere]] tables from shutter open to shutter close.
@@ -319,6 +365,7 @@ kernel::SceneView CompiledScene::view() const noexcept {
   v.rods.bond_count = bonds.size();
   v.rods.bond_radii = bond_radii.data();
   v.rods.spheres = v.spheres;
+  v.opacity = opacity.empty() ? nullptr : opacity.data();
   v.emission = emission.empty() ? nullptr : emission.data();
   if (!textures.textures().empty()) {
     v.textures = textures.textures().data();
@@ -400,7 +447,10 @@ void update(const scene::Scene& scene, const scene::Scene* closing, scene::Parts
     set_rod_motion(scene, closing, compiled);
     compiled.features.rods = compiled.rod_count() > 0;
   }
-  if (changed.geometry || changed.assignment) set_sphere_materials(scene, compiled);
+  if (changed.geometry || changed.assignment) {
+    set_sphere_materials(scene, compiled);
+    set_opacity(scene, compiled);
+  }
   if (changed.geometry || changed.assignment || changed.look) {
     compiled.direct_lighting = direct_lighting_of(scene.render.direct_lighting);
     compile_materials(scene, compiled);

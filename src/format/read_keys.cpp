@@ -179,6 +179,19 @@ std::optional<Value> read_words(ReadState& state, const toml::node& node, const 
   return good ? std::optional<Value>(words) : std::nullopt;
 }
 
+std::optional<Value> read_texts(ReadState& state, const toml::node& node, const std::string& name) {
+  const toml::array* array = node.as_array();
+  if (array == nullptr) {
+    wrong_type(state, node, name, "a list of strings");
+    return {};
+  }
+  std::vector<std::string> texts;
+  for (std::size_t i = 0; i < array->size(); ++i)
+    if (const auto text = read_text(state, *array->get(i), fmt::format("{}[{}]", name, i), {}))
+      texts.push_back(std::get<std::string>(*text));
+  return texts.size() == array->size() ? std::optional<Value>(texts) : std::nullopt;
+}
+
 /// Reads a table from particle types to numbers or colours: `type = { 1 = 0.5, 2 = 0.7 }`. Each fault drops a type.
 template <class T>
 std::optional<Value> read_types(ReadState& state, const toml::node& node, const std::string& name, ValueType type,
@@ -215,6 +228,7 @@ std::optional<Value> read_value(ReadState& state, const toml::node& node, const 
     case ValueType::kName:
       if (const toml::value<std::int64_t>* number = node.as_integer()) return std::to_string(number->get());
       return read_text(state, node, name, {});
+    case ValueType::kTexts: return read_texts(state, node, name);
     case ValueType::kNumbersByType: return read_types<double>(state, node, name, ValueType::kNumber, range);
     case ValueType::kColorsByType: return read_types<math::Vec3d>(state, node, name, ValueType::kVector, range);
   }

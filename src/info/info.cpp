@@ -99,22 +99,24 @@ std::vector<Feature> features_of(const compile::CompiledScene& compiled, bool ha
   const auto feature = [](const char* name, bool required, const char* why_not, const char* why = "") {
     return Feature{name, required, required ? why : why_not};
   };
-  return {feature("thin lens", compiled.features.lens, "pinhole camera: no lens sampling",
-                  "camera.defocus_angle is above 0"),
-          feature("lambertian", of(kernel::MaterialKind::kLambertian), "not used by any sphere"),
-          feature("hemisphere", of(kernel::MaterialKind::kHemisphere), "not used by any sphere"),
-          feature("metal", of(kernel::MaterialKind::kMetal), "not used by any sphere"),
-          feature("fuzz", some([](const kernel::Material& m) { return m.fuzz > 0; }), "no material has fuzz above 0"),
-          feature("dielectric", of(kernel::MaterialKind::kDielectric), "no glass: no Fresnel term, no refraction"),
-          feature("plastic", of(kernel::MaterialKind::kPlastic), "not used by any sphere"),
-          feature("gradient sky", compiled.features.sky, "no gradient: independent of direction"),
-          feature("image background", compiled.environment != nullptr, "no image: no texture lookups"),
-          feature("textures", !compiled.textures.textures().empty(), "all materials are constant"),
-          feature("motion blur", compiled.features.motion, "nothing moves while the shutter is open",
-                  "camera, spheres or rods move while the shutter is open"),
-          feature("lights", compiled.features.lit, "no emitters: no shadow rays"),
-          feature("layers", has_layers, "none requested: paths are not recorded"),
-          feature("light paths", compiled.shading == kernel::Shading::kPath, "render.shading uses the first hit only")};
+  return {
+      feature("thin lens", compiled.features.lens, "pinhole camera: no lens sampling",
+              "camera.defocus_angle is above 0"),
+      feature("lambertian", of(kernel::MaterialKind::kLambertian), "not used by any sphere"),
+      feature("hemisphere", of(kernel::MaterialKind::kHemisphere), "not used by any sphere"),
+      feature("metal", of(kernel::MaterialKind::kMetal), "not used by any sphere"),
+      feature("fuzz", some([](const kernel::Material& m) { return m.fuzz > 0; }), "no material has fuzz above 0"),
+      feature("dielectric", of(kernel::MaterialKind::kDielectric), "no glass: no Fresnel term, no refraction"),
+      feature("plastic", of(kernel::MaterialKind::kPlastic), "not used by any sphere"),
+      feature("gradient sky", compiled.features.sky, "no gradient: independent of direction"),
+      feature("image background", compiled.environment != nullptr, "no image: no texture lookups"),
+      feature("textures", !compiled.textures.textures().empty(), "all materials are constant"),
+      feature("motion blur", compiled.features.motion, "nothing moves while the shutter is open",
+              "camera, spheres or rods move while the shutter is open"),
+      feature("opacity", compiled.features.opacity, "all objects are opaque", "some objects have an opacity below 1"),
+      feature("lights", compiled.features.lit, "no emitters: no shadow rays"),
+      feature("layers", has_layers, "none requested: paths are not recorded"),
+      feature("light paths", compiled.shading == kernel::Shading::kPath, "render.shading uses the first hit only")};
 }
 
 /// Describes the textures of a scene.

@@ -64,7 +64,10 @@ const compile::CompiledScene& PreparedScene::compile(std::uint64_t memory_limit)
 accel::Accel& PreparedScene::accelerator(int threads, const accel::BuildMonitor& monitor) {
   if (accel_ && isa_ != kernel::isa_name()) accel_.reset();
   isa_ = kernel::isa_name();
-  if (!accel_) accel_ = render::build(compiled_, threads, monitor);
+  if (accel_)
+    accel_->set_opacity(compiled_.view().opacity);
+  else
+    accel_ = render::build(compiled_, threads, monitor);
   return *accel_;
 }
 

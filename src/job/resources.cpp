@@ -179,6 +179,7 @@ MemoryNeeds memory_needs(const compile::CompiledScene& compiled, const film::Lay
   }
   needs.sphere_bytes = compiled.spheres.bytes() + compiled.rods.size() * sizeof(kernel::Rod) +
                        compiled.bonds.size() * sizeof(kernel::Bond) + compiled.sphere_materials.bytes() +
+                       compiled.opacity.size() * sizeof(compiled.opacity[0]) +
                        (layers.matte_classes ? layers.matte_classes->of_sphere.bytes() : 0);
   if (compiled.environment) needs.background = compiled.environment->bytes();
   needs.textures = compiled.textures.bytes();

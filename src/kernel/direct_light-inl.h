@@ -16,6 +16,7 @@
 #include "kernel/deposit-inl.h"
 #include "kernel/environment-inl.h"
 #include "kernel/light-inl.h"
+#include "kernel/opacity-inl.h"
 #include "kernel/path_record.h"
 #include "kernel/path_stream.h"
 #include "kernel/record-inl.h"
@@ -70,6 +71,18 @@ HWY_INLINE Emitted<D> emitted(D d, const SceneView& scene, hn::Vec<IdTag<D>> hit
       d, [&](std::size_t i) { return emission(i).radiance; }, rgb);
   for (std::size_t i = 0; i < hn::Lanes(d); ++i) group[i] = static_cast<Id>(emission(i).group);
   return {{rgb[0], rgb[1], rgb[2]}, hn::Load(du, group)};
+}
+
+/// Opacities of spheres, one per lane.
+///
+/// Domain     scene.opacity is not null
+template <class D>
+HWY_INLINE hn::Vec<D> opacities(D d, const SceneView& scene, hn::Vec<IdTag<D>> ids) {
+  HWY_ALIGN hn::TFromD<IdTag<D>> id[hn::MaxLanes(D())];
+  HWY_ALIGN hn::TFromD<D> out[hn::MaxLanes(D())];
+  hn::Store(ids, IdTag<D>(), id);
+  for (std::size_t i = 0; i < hn::Lanes(d); ++i) out[i] = hn::TFromD<D>{scene.opacity[id[i]]};
+  return hn::Load(d, out);
 }
 
 /// True if vertices send shadow rays.
@@ -158,6 +171,8 @@ HWY_NOINLINE LightSample<D> sample_emitter(D d, const SceneView& scene, const Ve
         {light.center, point.normal * light.radius, point.normal, width2 / (light.radius * light.radius)},
         source.radiance);
   }
+  // A shadow ray ignores its light, which is visible to rays with a sampled direction with the probability `opacity`.
+  if (scene.opacity != nullptr) source.radiance = source.radiance * opacities(d, scene, chosen.spheres);
   return {point.direction,
           mul_add(point.normal, light.radius, to),
           one,
@@ -226,6 +241,7 @@ HWY_INLINE void trace_shadow_packet(D d, const SceneView& scene, const Tracer& t
     hn::Store(hn::LoadU(du, shadow.self + i), du, packet.self + v);
     hn::Store(hn::LoadU(du, shadow.target + i), du, packet.target + v);
     if (scene.features.motion) hn::Store(hn::LoadU(d, shadow.time + i), d, packet.time + v);
+    if (scene.features.opacity) store_keys(d, hn::LoadU(du, shadow.key + i), packet.key + v);
   }
   counts.rays += static_cast<std::uint64_t>(packet.count);
   tracer.occlude(tracer.self, &packet);

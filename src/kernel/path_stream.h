@@ -23,6 +23,7 @@ struct alignas(64) ShadowStreamOf {
   T direction[3][kCapacity];   ///< to the light; of any length
   T distance[kCapacity];       ///< maximum distance of an occluder, as a multiple of the direction's length
   T time[kCapacity];           ///< 0..1 within the shutter; only if the scene moves
+  Id key[kCapacity];           ///< see PacketRays, in the low 32 bits; only if the scene has opacities
   T light[3][kCapacity];       ///< radiance times throughput and weight
   Id self[kCapacity];          ///< sphere that the ray leaves
   Id target[kCapacity];        ///< the light, or kNoSphere

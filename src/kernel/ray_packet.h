@@ -30,11 +30,12 @@ struct alignas(64) PacketRays {
   T origin_low[3][kPacketSize];
   T offset[3][kPacketSize];
   T direction[3][kPacketSize];
-  T inverse_square[kPacketSize];  ///< 1 / (direction . direction)
-  Id self[kPacketSize];           ///< sphere that the ray leaves, or kNoSphere
-  T distance[kPacketSize];        ///< maximum distance of a hit, as a multiple of the direction's length
-  T time[kPacketSize];            ///< 0..1 within the shutter; only if the scene moves
-  int count = 0;                  ///< number of rays in use, from the first
+  T inverse_square[kPacketSize];   ///< 1 / (direction . direction)
+  Id self[kPacketSize];            ///< sphere that the ray leaves, or kNoSphere
+  T distance[kPacketSize];         ///< maximum distance of a hit, as a multiple of the direction's length
+  T time[kPacketSize];             ///< 0..1 within the shutter; only if the scene moves
+  std::uint32_t key[kPacketSize];  ///< decides which objects are visible; only if the scene has opacities
+  int count = 0;                   ///< number of rays in use, from the first
 };
 
 /// Rays and their closest hits. Directions are unit; `distance` becomes that of the closest hit.
@@ -53,7 +54,8 @@ struct ShadowPacket : PacketRays<T> {
 };
 
 /// How the kernel queries the scene, in one precision. Neither query's results depend on the order of traversal: of two
-/// closest hits the smaller distance wins, then the smaller id, and occlusion is an OR over all spheres.
+/// closest hits the smaller distance wins, then the smaller id, and occlusion is an OR over all spheres. Objects that
+/// are not visible to a ray (SceneView::opacity) are not there.
 struct Tracer {
   void (*trace)(const void* self, void* ray_packet) = nullptr;
   void (*occlude)(const void* self, void* shadow_packet) = nullptr;

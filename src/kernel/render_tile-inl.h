@@ -76,6 +76,8 @@ HWY_INLINE void load_camera_rays(D d, const SceneView& scene, PathCounter& count
       hn::Store(time, d, packet.time + v);
       camera = moved(camera, camera_vectors(d, scene.camera_motion), time);
     }
+    if (features.opacity)
+      store_keys(d, keys_at_vertex(du, scene.sampler.seed, pixels, samples, 0).next, packet.key + v);
     const auto ray = camera_ray(d, scene, camera, x, y, random);
     const auto origin = camera.origin + ray.offset;
     store(origin, packet.origin);
@@ -93,10 +95,10 @@ HWY_INLINE void load_camera_rays(D d, const SceneView& scene, PathCounter& count
   }
 }
 
-/// Fills the packet with the next rays of the stream's paths first .. first + count.
+/// Fills the packet with the next rays of the stream's paths first .. first + count, which are at a vertex.
 template <class D, Loop kLoop, class Stream, class Carried>
-HWY_INLINE void load_secondary_rays(D d, const SceneView& scene, Stream& stream, int first, int count,
-                                    Carried& carried) {
+HWY_INLINE void load_secondary_rays(D d, const SceneView& scene, Stream& stream, std::uint32_t vertex, int first,
+                                    int count, Carried& carried) {
   const Features features = features_of<kLoop>(scene);
   const IdTag<D> du;
   auto& packet = stream.packet;
@@ -118,6 +120,8 @@ HWY_INLINE void load_secondary_rays(D d, const SceneView& scene, Stream& stream,
     hn::Store(pixels, du, carried.pixel + v);
     hn::Store(samples, du, carried.sample + v);
     if (features.motion) hn::Store(time_of_path(d, scene.sampler, pixels, samples), d, packet.time + v);
+    if (features.opacity)
+      store_keys(d, keys_at_vertex(du, scene.sampler.seed, pixels, samples, vertex).next, packet.key + v);
     if (kLoop.records) hn::Store(hn::LoadU(du, stream.history + i), du, carried.history + v);
     if (kLoop.full) hn::Store(hn::LoadU(du, stream.lit.path + i), du, carried.path + v);
     if (features.lit) hn::Store(hn::LoadU(d, stream.lit.pdf + i), d, carried.pdf + v);
@@ -172,7 +176,7 @@ TileCounts render_tile(const SceneView& scene, const Tracer& tracer, const Tile&
       // Survivors overwrite paths that have already been read, because a packet never grows.
       int survivors = 0;
       for (int i = 0; i < alive; i += kPacketSize) {
-        load_secondary_rays<D, kLoop>(d, scene, stream, i, std::min(kPacketSize, alive - i), carried);
+        load_secondary_rays<D, kLoop>(d, scene, stream, depth, i, std::min(kPacketSize, alive - i), carried);
         survivors = trace_and_shade(depth, survivors);
       }
       alive = survivors;

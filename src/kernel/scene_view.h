@@ -41,6 +41,7 @@ struct Features {
   bool lit = false;         ///< something emits, or is sampled: paths gain radiance at their vertices
   bool extended = false;    ///< textures, rough glass or plastic
   bool rods = false;        ///< there are rods
+  bool opacity = false;     ///< some opacity is below 1
 };
 
 /// Reciprocal of the throughput below which Russian roulette may end a path. Ending paths of higher throughput would
@@ -57,6 +58,8 @@ struct SceneView {
   const Material* materials = nullptr;
   std::size_t sphere_count = 0;
   RodArray rods;  ///< ids follow those of the spheres
+  /// Probability, 0..1, that each sphere, then each half of each rod, is visible to a ray; null: all are 1.
+  const float* opacity = nullptr;
   /// No two spheres coincide in double, or in single precision. False: not known.
   bool distinct = false, distinct_in_single = false;
   const Emission* emission = nullptr;  ///< one per material; null if nothing emits
@@ -115,6 +118,7 @@ inline LightNode light_leaf(const SceneView& scene, std::uint32_t id) noexcept {
   const Sphere s = scene.spheres[id];
   const double* const rgb = scene.emission[scene.sphere_materials[id]].radiance;
   LightNode leaf{{s.x, s.y, s.z}, s.radius, (rgb[0] + rgb[1] + rgb[2]) * (s.radius * s.radius)};
+  if (scene.opacity != nullptr) leaf.power *= static_cast<double>(scene.opacity[id]);
   if (id >= scene.moving_count) return leaf;
   const Sphere& change = scene.motion[id];
   const math::Vec3d half{change.x / 2, change.y / 2, change.z / 2};

@@ -16,6 +16,7 @@
 #include "kernel/cone-inl.h"
 #include "kernel/deposit-inl.h"
 #include "kernel/direct_light-inl.h"
+#include "kernel/opacity-inl.h"
 #include "kernel/path_stream.h"
 #include "kernel/record-inl.h"
 #include "kernel/render_tile.h"
@@ -30,7 +31,8 @@ namespace orrery::kernel::HWY_NAMESPACE {
 struct Loop {
   Precision precision = Precision::kExact;
   bool records = false;  ///< fills the tile's records, events and guides
-  bool full = false;  ///< renders all features; false: neither motion, lights, rods, textures, rough glass nor plastic
+  /// Renders all features; false: neither motion, lights, rods, opacity, textures, rough glass nor plastic.
+  bool full = false;
   bool plastic = false;  ///< scatters vectors in which a lane hit plastic; full loops have such a part
 };
 
@@ -38,7 +40,7 @@ struct Loop {
 template <Loop kLoop>
 HWY_INLINE Features features_of(const SceneView& scene) {
   Features features = scene.features;
-  if (!kLoop.full) features.motion = features.lit = features.extended = features.rods = false;
+  if (!kLoop.full) features.motion = features.lit = features.extended = features.rods = features.opacity = false;
   return features;
 }
 
@@ -329,6 +331,10 @@ class Shader {
     compactor.store3(d, sample.reach, shadow.direction, n);
     compactor.store(d, sample.distance, shadow.distance + n);
     if (features_.motion) compactor.store(d, hn::Load(d, at.times), shadow.time + n);
+    if (features_.opacity) {
+      const auto keys = keys_at_vertex(du, scene_.sampler.seed, at.pixels, at.samples, depth_ + 1);
+      compactor.store_ids(d, keys.shadow, shadow.key + n);
+    }
     compactor.store3(d, arriving, shadow.light, n);
     compactor.store_ids(d, at.hits, shadow.self + n);
     compactor.store_ids(d, sample.target, shadow.target + n);

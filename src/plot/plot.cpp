@@ -83,8 +83,9 @@ class PlotMaker {
     out_.frames = data_.numbers();
     const scene::Points& points = out_.points;
     for (const std::string& text : {points.file.string(), options.color_by, points.color.column, points.color.map,
-                                    points.radius.column, points.select, points.assembly})
+                                    points.radius.column, points.opacity.column, points.select, points.assembly})
       require_utf8(text);
+    for (const std::string& text : points.opacity.where) require_utf8(text);
   }
 
   const std::vector<int>& frames() const { return out_.frames; }

@@ -253,6 +253,7 @@ void clip(scene::Points& points, std::vector<std::uint32_t>* rows) {
     points.radii.set(kept, points.radii[i]);
     if (!points.materials.empty()) points.materials[kept] = points.materials[i];
     if (!points.colors.empty()) points.colors[kept] = points.colors[i];
+    if (!points.opacities.empty()) points.opacities[kept] = points.opacities[i];
     if (rows != nullptr) (*rows)[kept] = (*rows)[i];
     ++kept;
   }
@@ -260,6 +261,7 @@ void clip(scene::Points& points, std::vector<std::uint32_t>* rows) {
   points.radii.resize(kept);
   if (!points.materials.empty()) points.materials.resize(kept);
   if (!points.colors.empty()) points.colors.resize(kept);
+  if (!points.opacities.empty()) points.opacities.resize(kept);
   if (rows != nullptr) rows->resize(kept);
   const auto renumber = [&](std::uint32_t& a, std::uint32_t& b) {
     a = new_index[a];
@@ -291,6 +293,7 @@ void make_copies(const std::vector<Copy>& copies, const Labels& chains, scene::P
   spheres.repeat(points.radii);
   spheres.repeat(points.materials);
   spheres.repeat(points.colors);
+  spheres.repeat(points.opacities);
   if (rows != nullptr) spheres.repeat(*rows);
   if (is_placed) scale(points.radii, points.transform.scale);
 }

@@ -19,6 +19,7 @@
 #include "points/copies.h"
 #include "points/derived.h"
 #include "points/point_colors.h"
+#include "points/point_opacity.h"
 #include "points/point_radii.h"
 #include "points/read_memory.h"
 #include "points/rows.h"
@@ -78,6 +79,7 @@ class Loader {
       points_.radii.clear();
       points_.materials.clear();
       points_.colors.clear();
+      points_.opacities.clear();
       points_.palette.clear();
       points_.bond_pairs.clear();
       points_.bond_stubs.clear();
@@ -108,13 +110,15 @@ class Loader {
       columns_.push_back(column);
   }
 
-  /// Determines the sources of radii and colours, and the columns to read.
+  /// Determines the sources of radii, colours and opacities, and the columns to read.
   void plan() {
     for (const std::string& column : info_.roles.position) need(column);
     radius_ = radius_source(info_, points_.radius, faults_);
     need(radius_.column);
     color_ = color_source(info_, points_.color, request_.folder, faults_);
     for (const std::string& column : color_.columns) need(column);
+    opacity_ = opacity_source(info_, points_.opacity, faults_);
+    for (const std::string& column : opacity_.needed) need(column);
     need(info_.roles.id);
     plan_selection();
     copies_ = copies_of(info_, points_, faults_);
@@ -170,6 +174,7 @@ class Loader {
     need.sphere_bytes = bytes_per_sphere(info_, points_, radius_, are_rounded);
     if (!material_.empty()) need.sphere_bytes += sizeof(std::uint32_t);
     if (!color_.columns.empty()) need.sphere_bytes += sizeof(std::uint16_t);
+    if (opacity_.is_set()) need.sphere_bytes += sizeof(float);
     if (request_.source != nullptr) need.sphere_bytes += sizeof(std::uint32_t) + need.row_bytes;
     if (points_.bonds.are_drawn) {
       need.bond_bytes = bonds * sizeof(scene::SphereBond);
@@ -220,6 +225,7 @@ class Loader {
     require_memory(copied_count(copies_, chains, rows.size()), are_rounded(ends, points_, centers, radii),
                    copied_bond_count(bonds, images.x * images.y * images.z, copies_.size()));
     PointColors colors = colors_of(table, rows, color_, points_.color, faults_);
+    if (opacity_.is_set()) points_.opacities = opacities_of(table, rows, opacity_, points_, faults_);
     points_.centers = std::move(centers);
     points_.radii = std::move(radii);
     points_.colors = std::move(colors.indices);
@@ -321,6 +327,7 @@ class Loader {
   std::vector<std::string> columns_;
   RadiusSource radius_;
   ColorSource color_;
+  OpacitySource opacity_;
   Selection selection_;
   std::vector<Copy> copies_;
   BondSource bond_source_;

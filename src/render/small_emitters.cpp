@@ -84,7 +84,8 @@ class Coverage {
 
   /// `opening`, `closing`  images when the shutter opens and closes
   /// `radiance`            mean of the channels
-  void add(const std::optional<SphereImage>& opening, const std::optional<SphereImage>& closing, double radiance) {
+  void add(const std::optional<SphereImage>& opening, const std::optional<SphereImage>& closing, double radiance,
+           double opacity = 1) {
     if (!opening || !closing) return;
     const double x0 = std::min(opening->x0, closing->x0), x1 = std::max(opening->x1, closing->x1);
     const double y0 = std::min(opening->y0, closing->y0), y1 = std::max(opening->y1, closing->y1);
@@ -92,7 +93,7 @@ class Coverage {
     const double left = std::floor(x0 - margin_), right = std::floor(x1 + margin_);
     const double top = std::floor(y0 - margin_), bottom = std::floor(y1 + margin_);
     if (!(right >= 0 && left < width_ && bottom >= 0 && top < height_)) return;
-    const double share = (opening->area + closing->area) / 2 / ((right - left + 1) * (bottom - top + 1));
+    const double share = opacity * (opening->area + closing->area) / 2 / ((right - left + 1) * (bottom - top + 1));
     if (pixels_.empty()) pixels_.resize(static_cast<std::size_t>(width_) * static_cast<std::size_t>(height_));
     for (int y = std::max(static_cast<int>(top), 0); y <= std::min(static_cast<int>(bottom), height_ - 1); ++y) {
       for (int x = std::max(static_cast<int>(left), 0); x <= std::min(static_cast<int>(right), width_ - 1); ++x) {
@@ -141,7 +142,8 @@ std::vector<EmitterCoverage> find_small_emitters(const kernel::SceneView& scene,
     const double radiance = mean_of(vector_of(scene.emission[scene.sphere_materials[id]].radiance));
     if (!(radiance > 0)) continue;
     const kernel::Sphere a = sphere_at(scene, id, 0), b = sphere_at(scene, id, 1);
-    coverage.add(image_of(opening, {a.x, a.y, a.z}, a.radius), image_of(closing, {b.x, b.y, b.z}, b.radius), radiance);
+    coverage.add(image_of(opening, {a.x, a.y, a.z}, a.radius), image_of(closing, {b.x, b.y, b.z}, b.radius), radiance,
+                 scene.opacity != nullptr ? double{scene.opacity[id]} : 1);
   }
   const kernel::Environment* const sky = scene.environment;
   if (sky != nullptr && sky->has_sun && scene.background_visible && !scene.has_backdrop && !opening.is_orthographic) {

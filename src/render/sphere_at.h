@@ -14,7 +14,8 @@ namespace orrery::render {
 ///
 /// `accel`    of the spheres of `scene`
 /// `x`, `y`   px from the upper left corner of the rendered window
-/// Result     the id of a hit; empty if the background is visible
+/// Result     the id of a hit; with opacities, of the object that contributes most to the point; empty if only the
+///            background is visible
 std::optional<std::uint32_t> sphere_at(const compile::CompiledScene& scene, const accel::Accel& accel, double x,
                                        double y);
 

@@ -41,7 +41,11 @@ void compare_materials(const std::vector<Material>& before, const std::vector<Ma
     return parts.add(Part::kAssignment);
   for (std::size_t i = 0; i < before.size(); ++i) {
     const MaterialModel &a = before[i].model, &b = after[i].model;
-    if (a.index() != b.index()) return parts.add(Part::kLook);
+    if (a.index() != b.index()) {
+      parts.add(Part::kLook);
+      if (opacity_of(a) != opacity_of(b)) parts.add(Part::kAssignment);
+      continue;
+    }
     const MaterialType& type = material_types()[a.index()];
     compare(type.keys, Part::kLook, a, b, parts);
     for (const TexturedKey& key : type.textured)
@@ -73,6 +77,7 @@ void compare_rods(const std::vector<Rod>& before, const std::vector<Rod>& after,
 
 void compare_points(const Points& before, const Points& after, Parts& parts) {
   compare(points_keys(), Part::kGeometry, before, after, parts);
+  if (before.bonds.are_drawn != after.bonds.are_drawn) parts.add(Part::kGeometry);
   if (before.material != after.material || before.bonds.material != after.bonds.material) parts.add(Part::kAssignment);
 }
 

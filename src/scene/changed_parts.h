@@ -8,7 +8,7 @@ namespace orrery::scene {
 /// What a key of the scene changes in a scene that is prepared for rendering.
 enum class Part {
   kGeometry,    ///< the spheres, and with them the BVH
-  kAssignment,  ///< which material or colour each sphere has
+  kAssignment,  ///< which material, colour or opacity each sphere has
   kLook,        ///< materials, colours, textures, background, lights
   kView,        ///< camera, image, filter, sampling
   kOutput,      ///< nothing that is rendered: names, layers, the display transform

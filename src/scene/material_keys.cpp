@@ -17,17 +17,25 @@ std::vector<MaterialType> make_material_types() {
   using M = MaterialModel;
   const KeyDoc albedo{"scene-linear",
                       "Fraction of the light that is scattered, per colour channel; or a [texture](#textures)"};
+  const auto opacity = [](auto at) {
+    return changes(
+        Part::kAssignment,
+        number<M>("opacity", kUnit,
+                  {"", "Probability that an object of this material is visible to a ray; see [Opacity](#opacity)",
+                   "Below 1: more noise, and 4 bytes per sphere"},
+                  at));
+  };
   const auto of = [](const char* key, TextureUse use, auto at) { return TexturedKey{key, use, at}; };
   return {
       {"lambertian",
        "Diffuse, with Lambert's cosine law",
        Lambertian{},
-       {required(vector<M>("albedo", kUnit, albedo, in(&Lambertian::albedo)))},
+       {required(vector<M>("albedo", kUnit, albedo, in(&Lambertian::albedo))), opacity(in(&Lambertian::opacity))},
        {of("albedo", TextureUse::kReflectance, in(&Lambertian::albedo_texture))}},
       {"hemisphere",
        "The book's first diffuse material: scatters uniformly over the hemisphere",
        Hemisphere{},
-       {required(vector<M>("albedo", kUnit, albedo, in(&Hemisphere::albedo)))},
+       {required(vector<M>("albedo", kUnit, albedo, in(&Hemisphere::albedo))), opacity(in(&Hemisphere::opacity))},
        {of("albedo", TextureUse::kReflectance, in(&Hemisphere::albedo_texture))}},
       {"metal",
        "Metal, from a perfect mirror to fuzzy reflection",
@@ -38,7 +46,8 @@ std::vector<MaterialType> make_material_types() {
                    "Radius of the sphere, centred on the tip of the unit reflected direction, on which the perturbed "
                    "direction is sampled. Directions below the surface are absorbed. 0 is a perfect mirror. Or a "
                    "[texture](#textures)"},
-                  in(&Metal::fuzz))},
+                  in(&Metal::fuzz)),
+        opacity(in(&Metal::opacity))},
        {of("albedo", TextureUse::kReflectance, in(&Metal::albedo_texture)),
         of("fuzz", TextureUse::kNumber, in(&Metal::fuzz_texture))}},
       {"dielectric",
@@ -72,7 +81,8 @@ std::vector<MaterialType> make_material_types() {
                   {"stops", "Multiplies the radiance by 2 to this power. The product is at most 2^34"},
                   in(&Emitter::exposure)),
         text<M>("light_group", {"", "Light group, for the layer `light_groups`. Default: the group `default`"},
-                in(&Emitter::light_group))},
+                in(&Emitter::light_group)),
+        opacity(in(&Emitter::opacity))},
        {of("radiance", TextureUse::kRadiance, in(&Emitter::radiance_texture))}},
       {"plastic",
        "Plastic or paint: a clear coat over a diffuse base",

@@ -104,6 +104,28 @@ std::vector<Key<P>> make_keys() {
                           {"unit of the file", "Radius of the rods. `transform.scale` applies",
                            "About 200 bytes per bond, with the BVH"},
                           in(&P::bonds, &PointsBonds::radius))),
+      changes(
+          Part::kAssignment,
+          otherwise("those of the materials",
+                    number<P>("opacity", kUnit,
+                              {"", "Opacity of all spheres, in place of that of the material; see [Opacity](#opacity)",
+                               "Below 1: more noise, and 4 bytes per sphere"},
+                              in(&P::opacity, &PointsOpacity::value)))),
+      changes(Part::kAssignment, text<P>("opacity.column", {"", "Column of the file that holds the opacities, 0..1"},
+                                         in(&P::opacity, &PointsOpacity::column))),
+      changes(Part::kAssignment,
+              key_of<P>("opacity.type", ValueType::kNumbersByType, kUnit,
+                        {"",
+                         "Opacities by particle type, e.g. `{ 2 = 0.2 }`. Types that are not listed have that of the "
+                         "material"},
+                        in(&P::opacity, &PointsOpacity::types))),
+      changes(Part::kAssignment,
+              key_of<P>("opacity.where", ValueType::kTexts, {},
+                        {"",
+                         "Opacities of the spheres that match a [condition](data.md#selections), e.g. "
+                         "`[\"type == 2: 0.2\"]`. A number alone matches all. The last that matches decides, before "
+                         "the other opacities"},
+                        in(&P::opacity, &PointsOpacity::where))),
       text<P>("select",
               {"", "Condition on the columns, e.g. `type == 2 && z > 0`; see [Selections](data.md#selections)"},
               &P::select),

@@ -29,6 +29,7 @@ const char* type_name(const Key<Target>& key) {
     case ValueType::kBoolean: return "boolean";
     case ValueType::kInterval: return "[low, high]";
     case ValueType::kName: return "string or integer";
+    case ValueType::kTexts: return "list of strings";
     case ValueType::kNumbersByType: return "table of numbers";
     case ValueType::kColorsByType: return "table of [r, g, b]";
   }
@@ -46,6 +47,7 @@ std::string range_text(const Key<Target>& key) {
     case ValueType::kVector:
     case ValueType::kColorsByType: return "each " + key.range.text();
     case ValueType::kText:
+    case ValueType::kTexts:
     case ValueType::kName: return "any";
     case ValueType::kInterval: return "low below high";
     case ValueType::kBoolean: return "`true`, `false`";

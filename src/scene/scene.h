@@ -121,17 +121,20 @@ struct Render {
 struct Lambertian {
   Vec3d albedo{0.5, 0.5, 0.5};
   TextureSlot albedo_texture = {};
+  double opacity = 1;  ///< 0..1, probability that an object of this material is visible to a ray
 };
 /// The book's first diffuse material: directions uniform over the hemisphere, weighted by the albedo alone.
 struct Hemisphere {
   Vec3d albedo{0.5, 0.5, 0.5};
   TextureSlot albedo_texture = {};
+  double opacity = 1;  ///< as of Lambertian
 };
 struct Metal {
   Vec3d albedo{0.5, 0.5, 0.5};
   double fuzz = 0;  ///< 0..1, radius of the sphere around the tip of the unit mirror direction
   TextureSlot albedo_texture = {};
   TextureSlot fuzz_texture = {};
+  double opacity = 1;  ///< as of Lambertian
 };
 enum class Fresnel { kSchlick, kExact, kNone };
 struct Dielectric {
@@ -156,9 +159,20 @@ struct Emitter {
   double exposure = 0;           ///< stops
   std::string light_group = {};  ///< empty: the default group
   TextureSlot radiance_texture = {};
+  double opacity = 1;  ///< as of Lambertian
 };
 
 using MaterialModel = std::variant<Lambertian, Hemisphere, Metal, Dielectric, Emitter, Plastic>;
+
+/// The opacity of a material. Dielectrics have none, since a path must leave the medium that it has entered.
+inline double opacity_of(const MaterialModel& model) {
+  return std::visit(
+      [](const auto& m) {
+        if constexpr (requires { m.opacity; }) return m.opacity;
+        return 1.0;
+      },
+      model);
+}
 
 struct Material {
   std::string name;
@@ -173,7 +187,7 @@ struct Sphere {
   std::string group = {};      ///< optional, for mattes: all objects of a group are one matte
 };
 
-/// A sphere swept along a segment. Opaque.
+/// A sphere swept along a segment. It transmits no light.
 struct Rod {
   Vec3d from, to;     ///< ends of the segment; if they are equal, a sphere
   double radius = 1;  ///< > 0
@@ -244,6 +258,17 @@ struct BondStub {
   Vec3d end{0, 0, 0};                     ///< the middle of the bond
 };
 
+/// Opacities of the spheres of a points file, 0..1, in place of those of their materials: `value`, or that of the last
+/// of `where` that matches, else one of `column` and `types`, if one is set and has a value for the sphere.
+struct PointsOpacity {
+  std::optional<double> value;     ///< of every sphere; excludes the others
+  std::string column;              ///< name of a column
+  NumbersByType types;             ///< of the listed types
+  std::vector<std::string> where;  ///< "CONDITION: NUMBER" or "NUMBER", see points::parse_opacity_rule()
+
+  bool is_set() const { return value || !column.empty() || !types.empty() || !where.empty(); }
+};
+
 /// Transforms a point p of a file to scale * R p + translate, where R rotates about x, then y, then z.
 struct PointsTransform {
   double scale = 1;
@@ -263,6 +288,7 @@ struct Points {
   PointsRadius radius;
   PointsColor color;
   PointsBonds bonds;
+  PointsOpacity opacity;
   std::string select;        ///< condition on columns; empty: all
   Vec3d replicate{1, 1, 1};  ///< number of periodic boxes along each box edge
   bool unwrap = false;       ///< unwrap coordinates with the periodic image flags of the file
@@ -275,8 +301,10 @@ struct Points {
   NumberArray radii = {};                     ///< one per centre
   std::vector<std::uint32_t> materials = {};  ///< one per centre; empty: `material` for all
   std::vector<std::uint16_t> colors = {};     ///< one per centre, index into `palette`; empty: the material's colour
-  std::vector<Vec3d> palette = {};            ///< colours that replace those of the material
-  std::size_t palette_rec709 = 0;  ///< leading colours that are linear Rec.709; the others are in Color::space
+  /// One per centre; below 0: that of the material. Empty: opacity.value, or that of the material, for all.
+  std::vector<float> opacities = {};
+  std::vector<Vec3d> palette = {};  ///< colours that replace those of the material
+  std::size_t palette_rec709 = 0;   ///< leading colours that are linear Rec.709; the others are in Color::space
   std::optional<Interval> color_range = {};  ///< range of the colour map, if there is one
   std::vector<std::string> color_names =
       {};                                ///< names of the colours in `palette`, if they represent types or elements
@@ -293,7 +321,7 @@ struct Points {
   std::size_t bytes() const {
     return centers.numbers().bytes() + radii.bytes() + materials.size() * sizeof(materials[0]) +
            colors.size() * sizeof(colors[0]) + bond_pairs.size() * sizeof(bond_pairs[0]) +
-           bond_stubs.size() * sizeof(bond_stubs[0]);
+           bond_stubs.size() * sizeof(bond_stubs[0]) + opacities.size() * sizeof(opacities[0]);
   }
   /// Frees the memory of the spheres and bonds; keeps the keys.
   void release_spheres() {
@@ -303,6 +331,7 @@ struct Points {
     std::vector<std::uint16_t>().swap(colors);
     std::vector<SphereBond>().swap(bond_pairs);
     std::vector<BondStub>().swap(bond_stubs);
+    std::vector<float>().swap(opacities);
   }
 };
 

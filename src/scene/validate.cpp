@@ -211,8 +211,9 @@ std::string rod_material_fault(std::uint32_t material, const Scene& scene) {
   if (const std::string fault = material_fault(material, scene); !fault.empty()) return fault;
   if (!std::holds_alternative<Dielectric>(scene.materials[material].model)) return {};
   return fmt::format(
-      "{} is a dielectric, but rods are opaque: a ray hits them from outside only; use another type of material, or "
-      "spheres",
+      "{} is a dielectric, but rods transmit no light: a ray hits them from outside only; use another type of "
+      "material, "
+      "or spheres",
       string_text(scene.materials[material].name));
 }
 
@@ -291,12 +292,33 @@ void check_bonds(const Points& points, const std::string& key, const Scene& scen
                                                            vector_text(stub.end), number_text(kLargestLength)));
 }
 
+/// Reports spheres of dielectrics with an opacity below 1, the first one of a table.
+void check_opacity(std::size_t number, const Scene& scene, DiagnosticList& diagnostics) {
+  const Points& points = scene.points[number];
+  if (!points.opacity.is_set()) return;
+  const base::StopPoint stop;
+  for (std::size_t i = 0; i < points.centers.size(); ++i) {
+    stop.check(i);
+    const double opacity = points.opacities.empty() ? points.opacity.value.value_or(1) : points.opacities[i];
+    const std::uint32_t material = points.materials.empty() ? points.material : points.materials[i];
+    if (opacity < 0 || opacity == 1 || material >= scene.materials.size() ||
+        !std::holds_alternative<Dielectric>(scene.materials[material].model))
+      continue;
+    return diagnostics.error(
+        fmt::format("points[{}].opacity", number),
+        fmt::format("{} has opacity {} and the dielectric {}, but a path must leave the medium that it has entered; "
+                    "use another type of material",
+                    sphere_name(scene, number, i), number_text(opacity), string_text(scene.materials[material].name)));
+  }
+}
+
 void check_points(std::size_t number, const Scene& scene, DiagnosticList& diagnostics) {
   const Points& points = scene.points[number];
   const std::string key = fmt::format("points[{}]", number);
   if (points.radii.size() != points.centers.size() ||
       (!points.materials.empty() && points.materials.size() != points.centers.size()) ||
-      (!points.colors.empty() && points.colors.size() != points.centers.size())) {
+      (!points.colors.empty() && points.colors.size() != points.centers.size()) ||
+      (!points.opacities.empty() && points.opacities.size() != points.centers.size())) {
     diagnostics.error(key, fmt::format("has {} centres, {} radii and {} materials", points.centers.size(),
                                        points.radii.size(), points.materials.size()));
     return;
@@ -317,6 +339,7 @@ void check_points(std::size_t number, const Scene& scene, DiagnosticList& diagno
   }
   if (faults > kMaxReported)
     diagnostics.error(key + ".file", fmt::format("and {} more ({} in all)", faults - kMaxReported, faults));
+  check_opacity(number, scene, diagnostics);
 }
 
 void check_layers(const Scene& scene, DiagnosticList& diagnostics) {

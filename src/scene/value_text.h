@@ -26,6 +26,7 @@ enum class ValueType {
   kBoolean,
   kInterval,
   kName,
+  kTexts,          ///< a list of strings
   kNumbersByType,  ///< a table from particle types to numbers
   kColorsByType,
 };

@@ -130,7 +130,7 @@ std::vector<std::string> words_of(const std::vector<std::string>& fixed, const W
     if (!is_flag(option)) out.push_back(value);
   };
   for (const auto& [option, value] : wish.options) {
-    if (option != "--set" && option != "--slice") {
+    if (option != "--set" && option != "--slice" && option != "--opacity") {
       add(option, value);
       continue;
     }

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // Data files: convert and info.
 #include <algorithm>
+#include <tuple>
+#include <vector>
 
 #include <nlohmann/json.hpp>
 
@@ -256,6 +258,33 @@ TEST_F(CliConvert, SavedScenesHaveTheSettingsOfTheCommandLine) {
   const Outcome scaled = run("plot a.csv -o c.ppm --radius-scale 2 --width 16 --height 9 --samples 1");
   EXPECT_TRUE(contains(scaled.err, "radius 1: half the median distance to the nearest neighbour; scaled by 2"))
       << scaled.err;
+}
+
+TEST_F(CliConvert, PlotsAndTheirSavedScenesHaveOpacities) {
+  write("a.csv", "x,y,z,q\n0,0,0,1\n1,0,0,0.5\n");
+  const std::string size = " --width 16 --height 9 --samples 4 -q";
+  ASSERT_EQ(run("plot a.csv -o plain.ppm --radius 0.4" + size).status, 0);
+  for (const char* const options :
+       {"--opacity 0.4", "--opacity q", "--opacity 0.4 --opacity \"q == 1: 0.9\" --opacity \"x in [0:1]: 0.3\""}) {
+    const Outcome plot =
+        run(std::string("plot a.csv -o a.ppm --radius 0.4 --save-scene s.toml --force ") + options + size);
+    ASSERT_EQ(plot.status, 0) << plot.err;
+    ASSERT_EQ(run("render s.toml -o b.ppm -q").status, 0);
+    EXPECT_TRUE(text_of(folder_ / "a.ppm") == text_of(folder_ / "b.ppm")) << options;
+    EXPECT_FALSE(text_of(folder_ / "a.ppm") == text_of(folder_ / "plain.ppm")) << options;
+  }
+  ASSERT_EQ(run("plot a.csv -o b.ppm --radius 0.4 --opacity \"q == 7: 0.1\" --opacity 1" + size).status, 0);
+  EXPECT_TRUE(text_of(folder_ / "plain.ppm") == text_of(folder_ / "b.ppm")) << "the last that matches decides";
+  for (const auto& [options, status, told] :
+       std::vector<std::tuple<const char*, int, const char*>>{{"--opacity 1.5", 2, "--opacity: 1.5 must be in 0..1"},
+                                                              {"--opacity nan", 2, "--opacity: nan must be in 0..1"},
+                                                              {"--opacity \"q == 1:2\"", 2, "write CONDITION:NUMBER"},
+                                                              {"--opacity \"q = 1:1\"", 65, "at character 3"},
+                                                              {"--opacity w", 65, "the file has no column `w`"}}) {
+    const Outcome r = run(std::string("plot a.csv -o b.ppm --radius 0.4 ") + options + size);
+    EXPECT_EQ(r.status, status) << options;
+    EXPECT_TRUE(contains(r.err, told)) << r.err;
+  }
 }
 
 TEST_F(CliConvert, PlotsUseTheDefaultViewOfAConfigWithoutTheirOwn) {

@@ -66,6 +66,20 @@ const Broken kBroken[] = {
      "", 65, ":20:12: error: rod[0].material: \"glass\" is a dielectric, but rods are opaque"},
     {"APlasticOfAnIndexBelowOne", "[material.m]\ntype = \"plastic\"\nalbedo = [1, 1, 1]\nior = 0.9\n", "", 65,
      ":17:7: error: material.m.ior is 0.9; must be in 1..1e+06"},
+    {"AnOpacityAboveOne", "[material.ghost]\ntype = \"metal\"\nalbedo = [1, 1, 1]\nopacity = 1.5\n", "", 65,
+     ":17:11: error: material.ghost.opacity is 1.5; must be in 0..1"},
+    {"AnOpacityOfGlass", "[material.glass]\ntype = \"dielectric\"\nopacity = 0.5\n", "", 65,
+     ":16:1: error: unknown key `opacity` in material.glass of type dielectric"},
+    {"AnOpacityOfPointsOfGlass",
+     "[material.glass]\ntype = \"dielectric\"\n"
+     "[[points]]\nfile = \"atoms.csv\"\nmaterial = \"glass\"\nradius = 1\nopacity = 0.5\n",
+     "", 65, "has opacity 0.5 and the dielectric \"glass\", but a path must leave the medium that it has entered"},
+    {"AnOpacityWithoutCondition",
+     "[[points]]\nfile = \"atoms.csv\"\nmaterial = \"grey\"\nradius = 1\nopacity = { where = [\"x > 0\"] }\n", "", 65,
+     "error: points[0].opacity.where[0]: `x > 0` has no colon, and is no number in 0..1; write CONDITION:NUMBER"},
+    {"AnOpacityThatIsNoList",
+     "[[points]]\nfile = \"atoms.csv\"\nmaterial = \"grey\"\nradius = 1\nopacity = { where = \"x > 0: 1\" }\n", "", 65,
+     "points[0].opacity.where must be a list of strings, not a string"},
     {"ARodThatShrinks",
      "[camera]\nshutter_close = 1\n[[rod]]\nfrom = [0, 0, 0]\nto = [1, 0, 0]\nradius = 1\nmaterial = \"grey\"\n"
      "[[key]]\ntarget = \"rod[0].radius\"\nframes = [1, 2]\nvalues = [1, 0]\n",
@@ -144,6 +158,7 @@ class CliValidation : public ProgramTest {
     const std::string rows =
         "element vertex 2\nproperty float x\nproperty float y\nproperty float z\n"
         "property float radius\nend_header\n";
+    write("atoms.csv", "x,y,z\n0,0,0\n1,0,0\n");
     write("two.ply", "ply\nformat ascii 2.0\n" + rows + "0 0 -3 1\n0 2 -3 1\n");
     write("good.ply", "ply\nformat ascii 1.0\n" + rows + "0 0 -3 1\n0 2 -3 1\n");
     write("bonds.pdb",

@@ -137,6 +137,7 @@ TEST_F(CliView, RandomWalksThroughTheControlsMakeThePictureOfTheCommand) {
       {"--select", {"", "type == 1", "z > 0 && \"x\" < 2", "type =="}},
       {"--slice", {"", "z=1.5", "x=2\ny=2"}},
       {"--radius-scale", {"", "0.5", "1.2"}},
+      {"--opacity", {"", "0.4", "0.1\ntype == 1: 0.8", "type == 1: 2"}},
       {"--ground", {"", "on"}},
       {"--box", {"", "on"}},
       {"--axes", {"", "on"}},

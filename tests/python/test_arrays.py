@@ -225,6 +225,15 @@ class BadInput(FolderTest):
         with self.assertRaisesRegex(orrery.SceneError, "the file has no radius"):
             orrery.Scene().add_points(p)
 
+    def test_opacities(self):
+        p = positions()
+        plain = beauty(small_scene(p))
+        for opacity in (0.3, np.linspace(0, 1, 60), {"where": ["x > 0: 0.2"]}):
+            self.assertNotEqual(beauty(small_scene(p, opacity=opacity)), plain)
+        self.assertEqual(beauty(small_scene(p, opacity=np.ones(60))), plain)
+        with self.assertRaisesRegex(orrery.SceneError, "row 1 of positions-1 has opacity 2"):
+            small_scene(p, opacity=np.full(60, 2)).check()
+
     def test_unknown_names(self):
         p = positions()
         with self.assertRaisesRegex(orrery.SceneError, 'there is no colour map "viridi".*did you mean `viridis`'):

@@ -180,7 +180,7 @@ class Changes(FolderTest):
         self.assertEqual(beauty(scene), without)
         scene.add_material("glass", orrery.Dielectric(1.5))
         scene.add_rod((0, 0, 0), (1, 0, 0), 0.2, ("matte", "glass"))
-        with self.assertRaisesRegex(orrery.SceneError, "\"glass\" is a dielectric, but rods are opaque"):
+        with self.assertRaisesRegex(orrery.SceneError, "\"glass\" is a dielectric, but rods transmit no light"):
             scene.check()
         scene.add_material("glass", orrery.Metal(0.5))
         self.assertNotEqual(beauty(scene), without)

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <variant>
+
 #include "scene/scene.h"
 
 namespace orrery::test {
@@ -30,6 +32,17 @@ inline scene::Scene everything() {
 inline scene::Scene with_plastic(scene::Scene s) {
   s.materials[0].model = scene::Plastic{{0.5, 0.6, 0.4}, 1.5, 0.3};
   s.materials[3].model = scene::Plastic{{0.8, 0.6, 0.2}, 2, 0};
+  return s;
+}
+
+/// The scene with an opacity below 1 for all materials that may have one.
+inline scene::Scene translucent(scene::Scene s) {
+  for (scene::Material& material : s.materials)
+    std::visit(
+        [](auto& model) {
+          if constexpr (requires { model.opacity; }) model.opacity = 0.6;
+        },
+        material.model);
   return s;
 }
 

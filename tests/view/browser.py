@@ -149,7 +149,7 @@ def main():
     try:
         look(browser, program, "melt", [("color-by", "speed"), ("map", "magma"), ("range", "0:100"), ("style", "night"),
                                         ("material", "plastic"), ("select", "type == 1"), ("radius-scale", "1.3"),
-                                        ("frame", "3"), ("size", "640 360")])
+                                        ("opacity", "0.5\ntype == 1: 0.3"), ("frame", "3"), ("size", "640 360")])
         choose(browser, "select", "nothing ==")
         settle(browser, problem="nothing")
         choose(browser, "select", "")

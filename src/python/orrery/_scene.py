@@ -138,6 +138,7 @@ class Scene:
         radius: float | ArrayLike | Mapping[str, Any] | None = None,
         *,
         color: ColorMap | ArrayLike | Mapping[str, Any] | None = None,
+        opacity: float | ArrayLike | Mapping[str, Any] | None = None,
         material: str = "matte",
         columns: Mapping[str, ArrayLike] | None = None,
         **keys: Any,
@@ -150,6 +151,8 @@ class Scene:
         radius     a number, or an array of shape (n,), or keys such as {"column": "mass", "scale": 0.1}
         color      a colormap(), or display-referred sRGB: shape (3,) or (n, 3), from 0 to 1, or integers to 255;
                    by default the colour of the material
+        opacity    from 0 to 1: a number, or an array of shape (n,), or keys such as {"where": ["x > 1: 0.2"]}; by
+                   default that of the material
         columns    further arrays of shape (n,) by name, for keys that name columns: numbers, or strings, which are copied
         keys       of [[points]]: select, clip, transform, name, group ...
         """
@@ -164,7 +167,9 @@ class Scene:
             raise TypeError("add_points() has no key 'file'; set radius, color or columns, or read_points(file)")
         keys["material"] = material
         if radius is not None:
-            keys["radius"] = _radius(radius, rows, table)
+            keys["radius"] = _numbers("radius", radius, rows, table)
+        if opacity is not None:
+            keys["opacity"] = _numbers("opacity", opacity, rows, table)
         if color is not None:
             keys["color"] = _color(color, rows, table)
         name = self._new_name()
@@ -343,11 +348,11 @@ def _add_column(table, name, values):
     table[name] = values
 
 
-def _radius(radius, rows, table):
-    if isinstance(radius, (str, Mapping)) or np.ndim(radius) == 0:
-        return radius if isinstance(radius, Mapping) else np.asarray(radius).item()
-    _add_column(table, "radius", _arrays.column(radius, "radius", rows))
-    return {"column": "radius"}
+def _numbers(key, value, rows, table):
+    if isinstance(value, (str, Mapping)) or np.ndim(value) == 0:
+        return value if isinstance(value, Mapping) else np.asarray(value).item()
+    _add_column(table, key, _arrays.column(value, key, rows))
+    return {"column": key}
 
 
 def _color(color, rows, table):

@@ -8,16 +8,16 @@ const canvas = $("picture"), context = canvas.getContext("2d");
 const LABELS = {
   "--color-by": "Colour by", "--map": "Colour map", "--range": "Range", "--select": "Select", "--slice": "Slice",
   "--representation": "Representation", "--bonds": "Bonds", "--style": "Style", "--material": "Material",
-  "--radius-scale": "Radius scale", "--ground": "Ground", "--box": "Box", "--axes": "Axes", "--noise": "Noise",
+  "--opacity": "Opacity", "--radius-scale": "Radius scale", "--ground": "Ground", "--box": "Box", "--axes": "Axes", "--noise": "Noise",
   "--samples": "Samples", "--denoise": "Denoise", "--set": "Settings",
 };
 const HINTS = {
-  "--range": "low:high", "--select": "type == 2 && z > 0", "--slice": "z=10", "--radius-scale": "1", "--noise": "0.02",
+  "--range": "low:high", "--select": "type == 2 && z > 0", "--slice": "z=10", "--opacity": "0.3, or type == 2: 0.3", "--radius-scale": "1", "--noise": "0.02",
   "--set": "key=value, one per line",
 };
 const SIZES = [[640, 360], [960, 540], [1280, 720], [1920, 1080], [800, 800]];
 const CHOICES = new Set(["--representation", "--style", "--material"]);  // of their values, and no others
-const MANY_LINES = new Set(["--set", "--slice"]);
+const MANY_LINES = new Set(["--set", "--slice", "--opacity"]);
 const SETTLED_ms = 200;  // after the last step of the wheel or of a key
 const CLICK_px = 4;      // a click moves the pointer less
 const UNREACHABLE = "The program has ended, or cannot be reached.";

@@ -328,7 +328,7 @@ TEST(FormatReadScene, ErrorsOfRods) {
          "scene.toml:10:12: error: rod[0].material has 1 names; write one name, or two");
   expect(told("[0, 0, 0]", "1", "3"), "scene.toml:10:12: error: rod[0].material");
   expect(told("[0, 0, 0]", "1", "[\"m\", \"glass\"]"),
-         "scene.toml:10:12: error: rod[0].material: \"glass\" is a dielectric, but rods are opaque");
+         "scene.toml:10:12: error: rod[0].material: \"glass\" is a dielectric, but rods transmit no light");
   expect(files.diagnostics("rod = 3\n"), "scene.toml:1:7: error: `rod` must be an array of tables; write [[rod]]");
 }
 

@@ -54,6 +54,7 @@ class RandomScene {
       points.file = word() + ".ply";
       points.material = static_cast<std::uint32_t>(below(s.materials.size()));
       if (below(2) == 0) points.bonds.material = static_cast<std::uint32_t>(below(s.materials.size()));
+      if (points.opacity.value) points.opacity = {*points.opacity.value, "", {}, {}};
       if (points.radius.value) points.radius = {*points.radius.value, "", "", {}};  // excludes the keys of its table
       s.points.push_back(points);
     }
@@ -109,6 +110,7 @@ class RandomScene {
       case ValueType::kWindow: return scene::Window{1, 2, static_cast<int>(below(9)), 4};
       case ValueType::kBoolean: return below(2) == 0;
       case ValueType::kChoices: return std::vector<std::string>{key.choices.back(), key.choices.front()};
+      case ValueType::kTexts: return std::vector<std::string>{word(), word()};
       case ValueType::kNumbersByType:
         return scene::NumbersByType{{"1", number(key.range)}, {word(), number(key.range)}};
       case ValueType::kColorsByType: return scene::ColorsByType{{"1", vector(key.range)}, {word(), vector(key.range)}};

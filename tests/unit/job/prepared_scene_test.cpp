@@ -90,6 +90,10 @@ const std::vector<const char*> kSettings = {
     "material.ball.albedo=[0.1, 0.9, 0.1]",
     "material.ball.fuzz=0",
     "material.ball={type=\"dielectric\"}",
+    "material.ball={type=\"lambertian\", albedo=[0.8, 0.8, 0.2], opacity=0.3}",
+    "material.ball.opacity=0.6",
+    "material.ground.opacity=0.5",
+    "material.lamp.opacity=0.5",
     "material.ground={type=\"hemisphere\", albedo=[0.2, 0.2, 0.9]}",
     "material.checked.albedo={texture=\"noise\", scale=3}",
     "material.lamp.radiance=[9, 1, 1]",
@@ -114,6 +118,8 @@ const std::vector<const char*> kSettings = {
     "points[0].bonds={length=2}",
     "points[0].bonds={length=2, radius=0.01}",
     "points[0].bonds={length=2, material=\"lamp\"}",
+    "points[0].opacity=0.4",
+    "points[0].opacity={where=[\"v > 1: 0.2\"]}",
     "points[0].select=\"v > 1\"",
     "points[0].radius=0.1",
     "points[0].transform.scale=2",
@@ -219,11 +225,11 @@ TEST_F(JobPreparedScene, TheAcceleratorOutlivesWhatDoesNotMoveSpheres) {
     return &prepared.accelerator(1, {});
   };
   const accel::Accel* const first = accelerator({});
-  for (const char* setting :
-       {"camera.vfov=20", "image.width=30", "render.samples=9", "material.ball.albedo=[1, 0, 0]",
-        "points[0].color.map=\"magma\"", "points[0].color.range=[0, 2]", "background.color=[1, 1, 1]",
-        "sphere[1].material=\"ball\"", "rod[0].material=[\"ground\", \"lamp\"]", "rods[0].material=\"lamp\"",
-        "output.layers=[\"Z\"]", "color.exposure=2"}) {
+  for (const char* setting : {"camera.vfov=20", "image.width=30", "render.samples=9", "material.ball.albedo=[1, 0, 0]",
+                              "material.ball.opacity=0.5", "points[0].opacity=0.3", "points[0].color.map=\"magma\"",
+                              "points[0].color.range=[0, 2]", "background.color=[1, 1, 1]",
+                              "sphere[1].material=\"ball\"", "rod[0].material=[\"ground\", \"lamp\"]",
+                              "rods[0].material=\"lamp\"", "output.layers=[\"Z\"]", "color.exposure=2"}) {
     EXPECT_TRUE(prepared.has_accelerator());
     EXPECT_EQ(accelerator({setting}), first) << setting;
   }

@@ -67,11 +67,12 @@ TEST(RenderLayers, BeautyIsBitIdenticalWithLayers) {
 }
 
 TEST(RenderLayers, ThreadsAndAcceleratorsGiveTheSameBits) {
-  scene::Scene s = test::everything();
-  const Result one = render_with(s, all_layers(), 1);
-  expect_equal(render_with(s, all_layers(), 3), one);
-  s.render.accelerator = scene::Accelerator::kList;
-  expect_equal(render_with(s, all_layers()), one);
+  for (scene::Scene s : {test::everything(), test::translucent(test::everything())}) {
+    const Result one = render_with(s, all_layers(), 1);
+    expect_equal(render_with(s, all_layers(), 3), one);
+    s.render.accelerator = scene::Accelerator::kList;
+    expect_equal(render_with(s, all_layers()), one);
+  }
 }
 
 /// A scene with emitters in two light groups, and a background in the default group.
@@ -87,7 +88,8 @@ scene::Scene with_light_groups(scene::Scene s) {
 TEST(RenderLayers, LobesAndLightGroupsAddUpToTheBeauty) {
   for (const auto precision : {scene::Precision::kExact, scene::Precision::kFast}) {
     for (const scene::Scene& scene : {test::everything(), with_light_groups(test::everything()),
-                                      with_light_groups(test::with_plastic(test::everything()))}) {
+                                      with_light_groups(test::with_plastic(test::everything())),
+                                      test::translucent(with_light_groups(test::everything()))}) {
       scene::Scene s = scene;
       s.render.precision = precision;
       film::LayerRequest request = all_layers();
@@ -132,6 +134,34 @@ scene::Scene ball_before_another(const scene::MaterialModel& first, const scene:
   s.materials = {{"first", first}, {"second", second}};
   s.spheres = {{{0, 0, 0}, 1, 0, ""}, {{0, 0, 30}, 20, 1, ""}};
   return s;
+}
+
+/// Two translucent objects in a row, before the background.
+TEST(RenderLayers, TranslucentObjectsHaveTheirShareOfAPixel) {
+  scene::Scene s;
+  s.image = {8, 8};
+  s.camera.look_from = {0, 0, 5};
+  s.camera.look_at = {0, 0, 0};
+  s.camera.vfov = 1;
+  s.render.samples = 4096;
+  s.materials = {{"front", scene::Lambertian{{0.5, 0.5, 0.5}, {}, 0.25}},
+                 {"back", scene::Metal{{0.5, 0.5, 0.5}, 0, {}, {}, 0.5}}};
+  s.spheres = {{{0, 0, 0}, 1, 0, ""}, {{0, 0, -3}, 1, 1, ""}};
+  film::LayerRequest request = all_layers();
+  request.coverage = true;
+  const Result r = render_with(s, request);
+  // Binomial: |z| of the mean of a plane over the image.
+  const auto expect_share = [&](const std::string& name, double share) {
+    double mean = 0;
+    for (const float v : plane(r, name.c_str())) mean += static_cast<double>(v) / 64;
+    const double z = (mean - share) / std::sqrt(share * (1 - share) / (64.0 * 4096));
+    EXPECT_LT(std::abs(z), 4) << name << " is " << mean;
+  };
+  expect_share("A", 0.25 + 0.75 * 0.5);
+  // A pixel's mattes are in descending order of their share.
+  expect_share("CryptoObject00.G", 0.375);
+  expect_share("CryptoObject00.A", 0.25);
+  for (std::size_t i = 0; i < 64; ++i) EXPECT_NEAR(plane(r, "Z")[i], 4, 1e-3) << "of the nearest hit";
 }
 
 /// With a single material, only that material's groups receive light.

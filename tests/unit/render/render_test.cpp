@@ -21,6 +21,7 @@ namespace {
 
 using math::Vec3d;
 using test::everything;
+using test::translucent;
 using test::with_lamps;
 using test::with_plastic;
 
@@ -38,7 +39,8 @@ std::vector<float> pixels(const scene::Scene& scene, int threads = 0,
 
 TEST(RenderRender, ListAndEmbreeGiveTheSameBits) {
   for (const auto precision : {scene::Precision::kExact, scene::Precision::kFast}) {
-    for (scene::Scene s : {everything(), with_lamps(everything()), with_lamps(with_plastic(everything()))}) {
+    for (scene::Scene s : {everything(), with_lamps(everything()), with_lamps(with_plastic(everything())),
+                           translucent(with_lamps(everything()))}) {
       s.render.precision = precision;
       s.render.accelerator = scene::Accelerator::kEmbree;
       const auto embree = pixels(s);
@@ -50,7 +52,8 @@ TEST(RenderRender, ListAndEmbreeGiveTheSameBits) {
 
 TEST(RenderRender, TraversalsGiveTheSameBits) {
   for (const auto precision : {scene::Precision::kExact, scene::Precision::kFast})
-    for (scene::Scene s : {everything(), with_lamps(everything()), with_lamps(with_plastic(everything()))}) {
+    for (scene::Scene s : {everything(), with_lamps(everything()), with_lamps(with_plastic(everything())),
+                           translucent(with_lamps(everything()))}) {
       s.render.precision = precision;
       const auto measured = pixels(s);
       EXPECT_EQ(pixels(s, 0, accel::Traversal::kPacket), measured) << static_cast<int>(precision);
@@ -93,7 +96,8 @@ TEST(RenderRender, ListAndEmbreeGiveTheSameBitsFarFromTheOriginInFast) {
 }
 
 TEST(RenderRender, AnyNumberOfThreadsGivesTheSameBits) {
-  for (const scene::Scene& s : {everything(), with_lamps(everything()), with_lamps(with_plastic(everything()))}) {
+  for (const scene::Scene& s : {everything(), with_lamps(everything()), with_lamps(with_plastic(everything())),
+                                translucent(with_lamps(everything()))}) {
     const auto one = pixels(s, 1);
     EXPECT_EQ(pixels(s, 2), one);
     EXPECT_EQ(pixels(s, 5), one);
@@ -119,7 +123,8 @@ scene::Scene scaled(scene::Scene s, double factor) {
 }
 
 TEST(RenderRender, SceneScaleChangesNoBits) {
-  for (const scene::Scene& s : {everything(), with_lamps(everything()), with_lamps(with_plastic(everything()))}) {
+  for (const scene::Scene& s : {everything(), with_lamps(everything()), with_lamps(with_plastic(everything())),
+                                translucent(with_lamps(everything()))}) {
     const auto unit = pixels(s);
     for (const int k : {-60, -17, 1, 30, 48}) EXPECT_EQ(pixels(scaled(s, std::ldexp(1.0, k))), unit) << "2^" << k;
   }

@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <memory>
 #include <string>
+#include <variant>
 #include <vector>
 
 #include "compile/compile.h"
@@ -73,6 +74,9 @@ TEST(RenderSmallEmitters, AreFoundWhereTheyAreRendered) {
   s.camera.defocus_angle = 1;
   s.camera.focus_distance = 11;
   expect_where_rendered(s, "lens");
+  s = distant_lamp();
+  std::get<scene::Emitter>(s.materials[0].model).opacity = 0.4;
+  expect_where_rendered(s, "translucent");
   s = distant_lamp();
   scene::Scene closing = s;
   closing.spheres[0].center.x += 0.2;

@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "compile/compile.h"
+#include "compile/compiled_scene.h"
 #include "render/render.h"
 #include "scene/environment_image.h"
 #include "scene/texture.h"

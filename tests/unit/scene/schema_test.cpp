@@ -41,6 +41,7 @@ Value other_value(const Key<Target>& key) {
     case ValueType::kWindow: return Window{1, 2, 3, 4};
     case ValueType::kBoolean: return false;
     case ValueType::kChoices: return std::vector<std::string>{key.choices.back(), key.choices.front()};
+    case ValueType::kTexts: return std::vector<std::string>{"x > 0: 0.375"};
     case ValueType::kNumbersByType: return NumbersByType{{"1", 0.375}};
     case ValueType::kColorsByType: return ColorsByType{{"1", {0.125, 0.375, 0.625}}};
   }

@@ -59,8 +59,9 @@ TEST(SceneValidate, Rods) {
   EXPECT_EQ(told(scene).size(), 1u);
   rod = {};
   rod.materials = {0, 1};
-  EXPECT_EQ(told(scene), Told{"rod[0].material: \"glass\" is a dielectric, but rods are opaque: a ray hits them from "
-                              "outside only; use another type of material, or spheres"});
+  EXPECT_EQ(told(scene),
+            Told{"rod[0].material: \"glass\" is a dielectric, but rods transmit no light: a ray hits them from "
+                 "outside only; use another type of material, or spheres"});
   rod.materials = {2, 2};
   EXPECT_EQ(told(scene), Told{"rod[0].material: there is no material with index 2; the scene has 2, counted from 0"});
 }
