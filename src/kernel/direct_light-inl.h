@@ -77,7 +77,7 @@ HWY_INLINE Emitted<D> emitted(D d, const SceneView& scene, hn::Vec<IdTag<D>> hit
 ///
 /// Domain     scene.opacity is not null
 template <class D>
-HWY_INLINE hn::Vec<D> opacities(D d, const SceneView& scene, hn::Vec<IdTag<D>> ids) {
+HWY_NOINLINE hn::Vec<D> opacities(D d, const SceneView& scene, hn::Vec<IdTag<D>> ids) {
   HWY_ALIGN hn::TFromD<IdTag<D>> id[hn::MaxLanes(D())];
   HWY_ALIGN hn::TFromD<D> out[hn::MaxLanes(D())];
   hn::Store(ids, IdTag<D>(), id);

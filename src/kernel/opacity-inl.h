@@ -29,13 +29,14 @@ struct RayKeys {
   hn::Vec<DU> shadow;  ///< of the shadow ray
 };
 
-/// Returns the keys of the rays from a vertex, independent of those from any other.
+/// Returns the keys of the rays from a vertex, independent of those from any other. Not inlined, so that the loop costs
+/// the same without them.
 ///
 /// `vertex`   0: the camera
 /// Domain     vertex < 2^30
 /// Result     as for philox
 template <class DU, class V = hn::Vec<DU>>
-HWY_INLINE RayKeys<DU> keys_at_vertex(DU du, std::uint32_t seed, V pixel, V sample, std::uint32_t vertex) {
+HWY_NOINLINE RayKeys<DU> keys_at_vertex(DU du, std::uint32_t seed, V pixel, V sample, std::uint32_t vertex) {
   constexpr std::uint32_t kKeys = 0x80000000u;  // above the vertices of second_random_at_vertex
   const auto random = independent_at_vertex(du, seed, pixel, sample, kKeys + vertex);
   return {random.v[0], random.v[1]};
@@ -64,7 +65,7 @@ template <class D>
 HWY_INLINE hn::Mask<D> are_visible(D d, hn::Vec<KeyTag<D>> keys, hn::Vec<KeyTag<D>> ids, hn::Vec<D> opacity) {
   const KeyTag<D> d32;
   const hn::RebindToSigned<KeyTag<D>> di;
-  // Ids are hashed first: otherwise those that differ only in their highest bits would be correlated.
+  // Ids are hashed first: otherwise decisions about ids that differ in a single high bit would be correlated.
   const auto hash = hashed(d32, keys + hashed(d32, ids));
   const auto bits = hn::BitCast(di, hn::ShiftRight<8>(hash));
   if constexpr (sizeof(hn::TFromD<D>) == 8) {

@@ -148,7 +148,7 @@ struct Dielectric {
 struct Plastic {
   Vec3d albedo{0.5, 0.5, 0.5};  ///< of the base
   double ior = 1.5;             ///< of the coat
-  double fuzz = 0.3;            ///< 0..1, roughness of the coat
+  double fuzz = 0.2;            ///< 0..1, roughness of the coat
   TextureSlot albedo_texture = {};
   TextureSlot fuzz_texture = {};
 };

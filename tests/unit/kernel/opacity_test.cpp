@@ -2,6 +2,7 @@
 #include <gtest/gtest.h>
 
 #include <cstdint>
+#include <numeric>
 #include <random>
 #include <utility>
 #include <vector>
@@ -67,9 +68,9 @@ HWY_EXPORT(keys_of_paths);
 using Visible = std::vector<std::uint8_t>;
 constexpr std::size_t kCount = std::size_t{1} << 18;
 
-std::vector<std::uint32_t> path_keys() {
-  std::vector<std::uint32_t> keys(kCount);
-  ORRERY_BEST(keys_of_paths)(keys.data(), kCount);
+std::vector<std::uint32_t> path_keys(std::size_t count = kCount) {
+  std::vector<std::uint32_t> keys(count);
+  ORRERY_BEST(keys_of_paths)(keys.data(), count);
   return keys;
 }
 
@@ -84,6 +85,15 @@ TEST(KernelOpacity, ZeroIsNeverVisibleAndOneAlways) {
   for (const std::uint32_t id : {0u, 1u, 77u, 0xffffffffu}) {
     EXPECT_EQ(visible(keys, id, 0), Visible(kCount, 0)) << id;
     EXPECT_EQ(visible(keys, id, 1), Visible(kCount, 1)) << id;
+  }
+}
+
+/// Of all keys from 0 to 2^26, about four have the hash 0.
+TEST(KernelOpacity, ZeroIsNotVisibleToTheSmallestHash) {
+  std::vector<std::uint32_t> keys(kCount);
+  for (std::uint32_t begin = 0; begin < 1u << 26; begin += kCount) {
+    std::iota(keys.begin(), keys.end(), begin);
+    ASSERT_EQ(visible(keys, 5, 0), Visible(kCount, 0));
   }
 }
 
@@ -122,6 +132,27 @@ TEST(KernelOpacity, DecisionsAboutTwoObjectsAreIndependentAndUniform) {
     std::vector<std::uint64_t> counts(16);
     for (std::size_t i = 0; i < kCount; ++i) ++counts[of_a[i] * 4u + of_b[i]];
     EXPECT_LT(std::abs(test::chi_square_of_equal_bins(counts).z), test::kLargestZ) << a << ", " << b;
+  }
+}
+
+/// A hash of the sum of key and id would fail.
+TEST(KernelOpacity, DecisionsAreIndependentOfTheBitInWhichIdsDiffer) {
+  constexpr int kLevels = 16;
+  const auto keys = path_keys(std::size_t{1} << 20);
+  const auto levels = [&](std::uint32_t id) {
+    Visible out(keys.size(), kLevels - 1);
+    for (int level = 1; level < kLevels; ++level) {
+      const Visible below = visible(keys, id, static_cast<float>(level) / kLevels);
+      for (std::size_t i = 0; i < keys.size(); ++i) out[i] = static_cast<std::uint8_t>(out[i] - below[i]);
+    }
+    return out;
+  };
+  const Visible of_first = levels(0);
+  for (std::uint32_t bit = 0; bit < 32; ++bit) {
+    const Visible of_other = levels(1u << bit);
+    std::vector<std::uint64_t> counts(std::size_t{kLevels} * kLevels);
+    for (std::size_t i = 0; i < keys.size(); ++i) ++counts[of_first[i] * std::size_t{kLevels} + of_other[i]];
+    EXPECT_LT(std::abs(test::chi_square_of_equal_bins(counts).z), test::kLargestZ) << "bit " << bit;
   }
 }
 
