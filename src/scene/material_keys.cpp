@@ -101,7 +101,8 @@ std::vector<MaterialType> make_material_types() {
                   {"",
                    "Roughness of the coat. Its highlights are as wide as those of metal with the same fuzz, but "
                    "brightest in the middle. 0: smooth. Or a [texture](#textures)"},
-                  in(&Plastic::fuzz))},
+                  in(&Plastic::fuzz)),
+        opacity(in(&Plastic::opacity))},
        {of("albedo", TextureUse::kReflectance, in(&Plastic::albedo_texture)),
         of("fuzz", TextureUse::kNumber, in(&Plastic::fuzz_texture))}},
   };

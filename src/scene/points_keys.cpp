@@ -102,7 +102,7 @@ std::vector<Key<P>> make_keys() {
       otherwise("0.15 if the file has elements, else 0.3 times the mean radius of the spheres",
                 number<P>("bonds.radius", kLength,
                           {"unit of the file", "Radius of the rods. `transform.scale` applies",
-                           "About 200 bytes per bond, with the BVH"},
+                           "About 40 bytes per bond, with the BVH"},
                           in(&P::bonds, &PointsBonds::radius))),
       changes(
           Part::kAssignment,

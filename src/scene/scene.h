@@ -151,6 +151,7 @@ struct Plastic {
   double fuzz = 0.2;            ///< 0..1, roughness of the coat
   TextureSlot albedo_texture = {};
   TextureSlot fuzz_texture = {};
+  double opacity = 1;  ///< as of Lambertian
 };
 
 /// Emits the same radiance in all directions, on both sides, and reflects nothing.

@@ -337,7 +337,7 @@ const std::vector<Key<RodFile>>& rod_file_keys() {
                          "Data file, relative to the scene file, in a format of `[[points]]`, with columns `x0`, "
                          "`y0`, `z0`, `x1`, `y1`, `z1` and `radius`: a rod per row. May contain a frame pattern such "
                          "as `####`",
-                         "About 200 bytes per rod, with the BVH"},
+                         "About 90 bytes per rod, with the BVH"},
                         &RodFile::file)),
       otherwise("as in the file",
                 number<RodFile>("radius", kLength, {"scene units", "Radius of all rods"}, &RodFile::radius)),

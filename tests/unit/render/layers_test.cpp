@@ -330,6 +330,9 @@ TEST(RenderLayers, CoatIsSpecularAndBaseIsDiffuse) {
     EXPECT_NEAR(plane(r, "specular_direct.G")[0] / (coat * kSolidAngle * kRadiance), 1, 0.01);
     EXPECT_NEAR(plane(r, "diffuse_direct.G")[0] / (base * kSolidAngle * kRadiance), 1, 0.01);
     EXPECT_EQ(plane(r, "specular_indirect.G")[0] + plane(r, "diffuse_indirect.G")[0], 0);
+    // A smooth coat reflects the image of the lamp, which only BSDF sampling finds.
+    s.materials[0].model = scene::Plastic{{0.5, 0.5, 0.5}, 1.5, 0};
+    EXPECT_NEAR(plane(render_with(s, all_layers()), "specular_direct.G")[0] / (kShare * kRadiance), 1, 0.01);
   }
 }
 
