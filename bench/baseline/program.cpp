@@ -36,6 +36,7 @@ struct MakeMaterial {
     return std::make_unique<Dielectric>(m.ior);
   }
   std::unique_ptr<const Material> operator()(const scene::Emitter&) const { refuse("emitters"); }
+  std::unique_ptr<const Material> operator()(const scene::Plastic&) const { refuse("plastic"); }
 };
 
 std::unique_ptr<const Hittable> make_list(const std::vector<PlacedSphere>& spheres) {
@@ -60,6 +61,9 @@ Program::Program(const scene::Scene& scene, Spheres spheres)
     refuse("image backgrounds");
   if (background_.type == scene::BackgroundType::kConstant) background_.bottom = background_.top = background_.color;
 
+  if (scene.rod_count() > 0) refuse("rods");
+  for (const scene::Material& m : scene.materials)
+    if (scene::opacity_of(m.model) < 1) refuse("opacity");
   for (const scene::Material& m : scene.materials) materials_.push_back(std::visit(MakeMaterial(), m.model));
   std::vector<PlacedSphere> placed;
   for (const scene::Sphere& s : scene.spheres) placed.push_back({s.center, s.radius, materials_[s.material].get()});

@@ -86,6 +86,15 @@ void each_rod(const scene::Scene& scene, F f) {
     }
 }
 
+/// Calls f(material) for the halves of these rods, in the order of their ids.
+template <class F>
+void each_rod_half(const scene::Scene& scene, F f) {
+  each_rod(scene, [&](Vec3d from, Vec3d to, double, std::array<std::uint32_t, 2> halves) {
+    if (is_reversed(from, to)) std::swap(halves[0], halves[1]);
+    for (const std::uint32_t material : halves) f(material);
+  });
+}
+
 /// Sets the rods.
 void set_rods(const scene::Scene& scene, CompiledScene& compiled) {
   compiled.rods.clear();
@@ -152,14 +161,8 @@ void set_sphere_materials(const scene::Scene& scene, CompiledScene& compiled) {
                                               : table.colored_index(material, inside_out, p, points.colors[i]));
     }
   }
-  const auto add = [&](Vec3d from, Vec3d to, std::uint32_t at_from, std::uint32_t at_to) {
-    if (is_reversed(from, to)) std::swap(at_from, at_to);
-    compiled.sphere_materials.push_back(at_from);
-    compiled.sphere_materials.push_back(at_to);
-  };
-  each_rod(scene, [&](Vec3d from, Vec3d to, double, const std::array<std::uint32_t, 2>& of_halves) {
-    add(from, to, table.index(of_halves[0], false), table.index(of_halves[1], false));
-  });
+  each_rod_half(scene,
+                [&](std::uint32_t material) { compiled.sphere_materials.push_back(table.index(material, false)); });
   each_bond_half(scene, [&](const scene::Points& points, std::size_t sphere) {
     const std::optional<std::uint32_t> material = points.bonds.material;
     compiled.sphere_materials.push_back(material ? table.index(*material, false) : compiled.sphere_materials[sphere]);
@@ -192,11 +195,7 @@ void set_opacity(const scene::Scene& scene, CompiledScene& compiled) {
       const double own = points.opacities.empty() ? points.opacity.value.value_or(-1) : double{points.opacities[i]};
       add(own >= 0 ? own : of_materials[points.materials.empty() ? points.material : points.materials[i]]);
     }
-  each_rod(scene, [&](Vec3d from, Vec3d to, double, const std::array<std::uint32_t, 2>& of_halves) {
-    double ends[2] = {of_materials[of_halves[0]], of_materials[of_halves[1]]};
-    if (is_reversed(from, to)) std::swap(ends[0], ends[1]);
-    for (const double end : ends) add(end);
-  });
+  each_rod_half(scene, [&](std::uint32_t material) { add(of_materials[material]); });
   each_bond_half(scene, [&](const scene::Points& points, std::size_t sphere) {
     const std::optional<std::uint32_t> material = points.bonds.material;
     add(material ? of_materials[*material] : compiled.opacity.empty() ? 1 : double{compiled.opacity[sphere]});

@@ -174,7 +174,7 @@ INSTANTIATE_TEST_SUITE_P(, DeterminismProgram,
                                          StoredImage{"image-textures.toml", 0xfcae157c25f25d31u},
                                          StoredImage{"rods.toml", 0xb41708b0cd007565u},
                                          StoredImage{"plastic.toml", 0x534e526ad2d381a9u},
-                                         StoredImage{"many.toml", 0x730984d601e00b28u}),
+                                         StoredImage{"many.toml", 0x730984d601e00b28u},
                                          StoredImage{"opacity.toml", 0x0950c53a3a037a6eu}),
                          [](const auto& instance) {
                            std::string name = instance.param.scene;
