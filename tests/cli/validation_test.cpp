@@ -63,7 +63,7 @@ const Broken kBroken[] = {
     {"ARodOfGlass",
      "[material.glass]\ntype = \"dielectric\"\n"
      "[[rod]]\nfrom = [0, 0, 0]\nto = [1, 0, 0]\nradius = 1\nmaterial = [\"grey\", \"glass\"]\n",
-     "", 65, ":20:12: error: rod[0].material: \"glass\" is a dielectric, but rods are opaque"},
+     "", 65, ":20:12: error: rod[0].material: \"glass\" is a dielectric, but rods transmit no light"},
     {"APlasticOfAnIndexBelowOne", "[material.m]\ntype = \"plastic\"\nalbedo = [1, 1, 1]\nior = 0.9\n", "", 65,
      ":17:7: error: material.m.ior is 0.9; must be in 1..1e+06"},
     {"AnOpacityAboveOne", "[material.ghost]\ntype = \"metal\"\nalbedo = [1, 1, 1]\nopacity = 1.5\n", "", 65,
@@ -108,7 +108,7 @@ const Broken kBroken[] = {
     {"BondsOfAnotherGlass",
      "[material.glass]\ntype = \"dielectric\"\n"
      "[[points]]\nfile = \"good.ply\"\nmaterial = \"grey\"\nbonds = { length = 3, material = \"glass\" }\n",
-     "", 65, ":19:34: error: points[0].bonds.material: \"glass\" is a dielectric, but rods are opaque"},
+     "", 65, ":19:34: error: points[0].bonds.material: \"glass\" is a dielectric, but rods transmit no light"},
     {"BondsOfAnUndefinedMaterial",
      "[[points]]\nfile = \"good.ply\"\nmaterial = \"grey\"\nbonds = { length = 3, material = \"gray\" }\n", "", 65,
      "points[0].bonds.material is \"gray\", which is not defined; did you mean `grey`"},

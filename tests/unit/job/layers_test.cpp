@@ -118,7 +118,8 @@ TEST(JobLayers, BondsBelongToTheirPoints) {
   const auto id_of = [&](std::size_t matte, std::uint32_t i) {
     return layers.request.matte_id(layers.request.mattes[matte], i);
   };
-  const int materials[] = {0, 1, 1, 1, 0, 0, 1, 1, 0, 1, 1};  // of bond 0-2, the end with the smaller x comes first
+  // Spheres, rod, stub, bonds; of bond 0-2, the end with the smaller x comes first.
+  const int materials[] = {0, 1, 1, 1, 0, 1, 1, 0, 1, 1, 0};
   for (std::uint32_t i = 0; i < 11; ++i) {
     EXPECT_EQ(id_of(0, i), film::matte_id(i == 3 || i == 4 ? "rod.0" : "melt")) << i;
     EXPECT_EQ(id_of(1, i), film::matte_id(s.materials[static_cast<std::size_t>(materials[i])].name)) << i;
