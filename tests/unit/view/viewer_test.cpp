@@ -9,6 +9,7 @@
 #include <fstream>
 #include <optional>
 #include <set>
+#include <stdexcept>
 #include <string>
 #include <thread>
 #include <utility>
@@ -68,9 +69,12 @@ scene::Camera camera_at(double x) {
 
 /// Waits for the finished image of the last wish, which differs from that of number `after`.
 Frame finished(Viewer& viewer, std::uint64_t after = 0) {
-  Frame frame = viewer.frame(after, 60s);
-  while (frame.number <= after || !frame.is_finished) frame = viewer.frame(std::max(frame.number, after), 60s);
-  return frame;
+  for (;;) {
+    Frame frame = viewer.frame(after, 60s);
+    if (frame.number <= after) throw std::runtime_error("no image within a minute; " + viewer.state().problem);
+    if (frame.is_finished) return frame;
+    after = frame.number;
+  }
 }
 
 film::Picture rendered(const std::vector<std::string>& words) {
