@@ -2,6 +2,7 @@
 // Queries of packets by Embree, and its callbacks. Compiled once per instruction set.
 //
 // Closest hits and occlusion are the same functions: a packet's type says which of the two it is traced for.
+#include <algorithm>
 #include <ctime>
 #include <type_traits>
 

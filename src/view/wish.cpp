@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "view/wish.h"
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <cstddef>

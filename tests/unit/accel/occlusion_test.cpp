@@ -2,7 +2,9 @@
 // Occlusion against the list's closest hits: a ray is occluded if and only if its closest hit is nearer than its limit.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <limits>
 #include <memory>
 #include <string>

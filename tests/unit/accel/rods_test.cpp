@@ -2,6 +2,7 @@
 // Compares Embree with the list on rods, ray by ray: the same half of the same rod, and the same bits of distance.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <iterator>
 #include <limits>

@@ -2,6 +2,7 @@
 // Random selections against an evaluator that computes one row at a time from the same random tree.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <functional>
 #include <limits>

@@ -2,6 +2,7 @@
 // Layers of whole renders. They do not change the beauty.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <numbers>
 #include <string>

@@ -2,6 +2,7 @@
 // Image textures with mip maps, rendered.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
