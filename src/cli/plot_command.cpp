@@ -190,8 +190,7 @@ void add_look_options(Command& command, DataArguments& data, plot::PlotOptions& 
           "Draw bonds: auto, file, distance, both, a factor of the covalent radii such as 1.2, or length=X; none")
       ->details(
           "auto: those of the file; by distance if it has none; both for PDB and mmCIF, which leave out common bonds. "
-          "A "
-          "factor or a length: by distance. docs/data.md describes bonds.");
+          "A factor or a length: by distance. docs/data.md describes bonds.");
   command
       .add_option("--opacity", data.opacity, "X|COLUMN|CONDITION:X",
                   "Opacity, 0 to 1: of all, from a column, or of those that match, e.g. 'type == 2: 0.3'; can be "

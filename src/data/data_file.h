@@ -65,8 +65,7 @@ class DataFile {
   ///
   /// Result     in ascending order, without duplicates; empty if the file has none
   /// Errors     base::Error(kBadData) with diagnostics: rows that do not exist, a row that is bonded to itself, too
-  /// many
-  ///            bonds of one row; kIo
+  ///            many bonds of one row; kIo
   /// Cost       another pass over the file in text formats
   virtual std::vector<Bond> bonds(int frame) {
     static_cast<void>(frame);
