@@ -115,7 +115,7 @@ class Embree final : public Accel {
         moves_(view.moving_count > 0 || view.rods.moving_count > 0),
         scene_(make_scene(view, precision)) {
     std::vector<std::uint32_t> ids =
-        boxed(scene_, view.sphere_count);  // not empty without rods: outliers are defined relative to other spheres
+        boxed(scene_, view.sphere_count);  // not empty without rods: outliers are defined relative to other objects
     const std::size_t primitives = view.sphere_count - scene_.outliers.size();
     const auto share = [all = primitives + view.rods.count](std::size_t count) {
       return static_cast<double>(count) / static_cast<double>(all);
@@ -124,7 +124,7 @@ class Embree final : public Accel {
     scene_.frame = BoxFrame(scene_.bounded, ids, view.motion, view.moving_count, rods);
     ids = take_for_bvh(view, std::move(ids), bvh_threshold);
     for (std::uint32_t i = 0; i < view.rods.count; ++i)
-      if (!is_in_bvh(view.rods, i)) add_pieces(view.rods[i], i, scene_.rod_pieces);
+      if (!is_short(view.rods, i, largest_in_bvh_)) add_pieces(view.rods[i], i, scene_.rod_pieces);
     if (!ids.empty()) {
       const double end = share(ids.size());
       bvh_ = SphereBvh(scene_.bounded, std::move(ids), scene_.frame, part_of(monitor, 0, end), rods);
@@ -160,16 +160,11 @@ class Embree final : public Accel {
     scene.moving_count = view.moving_count;
     scene.rods = view.rods;
     scene.duplicates = duplicates(view, precision);
-    scene.outliers = find_outliers(view.spheres, view.sphere_count, scene.duplicates);
+    scene.outliers = find_outliers(view, scene.duplicates);
     const auto moving_outliers = std::lower_bound(scene.outliers.begin(), scene.outliers.end(), view.moving_count);
     scene.moving_primitives = static_cast<std::uint32_t>(view.moving_count) -
                               static_cast<std::uint32_t>(moving_outliers - scene.outliers.begin());
     return scene;
-  }
-
-  /// Whether a rod is in the BVH of many spheres.
-  bool is_in_bvh(const kernel::RodArray& rods, std::size_t rod) const {
-    return rod >= rods.moving_count && enclosing_sphere(rods[rod]).radius <= largest_in_bvh_;
   }
 
   /// Selects the static spheres and rods of similar size for a BVH, if there are enough of them.
@@ -188,7 +183,7 @@ class Embree final : public Accel {
       stop.check(id);
       if (view.spheres[id].radius > limit) giants.push_back(id);
     }
-    const std::size_t rods = short_rods(view, limit);
+    const std::size_t rods = short_rods(view.rods, limit);
     if (ids.size() - giants.size() + rods < threshold) return {};
     std::erase_if(ids, [&](std::uint32_t id) { return view.spheres[id].radius > limit; });
     if (threshold > 1 && rods < ids.size() && is_small_layer(view.spheres, ids)) return {};
@@ -196,7 +191,7 @@ class Embree final : public Accel {
     scene_.has_bvh = true;
     largest_in_bvh_ = limit;
     for (std::size_t i = view.rods.moving_count; i < view.rods.count; ++i)
-      if (is_in_bvh(view.rods, i)) ids.push_back(view.rods.id(i));
+      if (is_short(view.rods, i, limit)) ids.push_back(view.rods.id(i));
     return ids;
   }
 
@@ -257,7 +252,7 @@ class Embree final : public Accel {
   EmbreeFunctions functions_;
   EmbreeScene scene_;
   ThreadTraversals packets_{Traversal::kPacket}, singles_{Traversal::kSingle};
-  double largest_in_bvh_ = -1;  ///< radius
+  double largest_in_bvh_ = 0;  ///< radius; 0: there is no BVH
   SphereBvh bvh_;
   OwnedScene embree_;
   std::vector<std::pair<RTCGeometry, Content>> geometries_;  ///< owned by the scene

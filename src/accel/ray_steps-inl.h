@@ -256,10 +256,9 @@ HWY_INLINE bool test_spheres(const SphereBvh& bvh, std::uint32_t index, std::uin
                                               from_bytes(leaf.center[2] + v)};
     const auto passed = passing(mul_add(codes, step, origin), direction);
     auto hit = may_hit(passed, radii_of(bvh, index, v).most + margin, limit);
-    if (has_rods) {
-      const auto is_sphere = hn::Not(mask_of(d, bvh.rods[index].rods >> v));
-      hit = hn::And(hit, hn::Or(is_sphere, at_rods(bvh, index, v, ray).may_hit(passed.along, limit)));
-    }
+    const auto rods = has_rods ? hn::And(hit, mask_of(d, bvh.rods[index].rods >> v)) : hn::FirstN(d, 0);
+    if (has_rods && !hn::AllFalse(d, rods))
+      hit = hn::And(hit, hn::Or(hn::Not(rods), at_rods(bvh, index, v, ray).may_hit(passed.along, limit)));
     if (is_last) hit = hn::And(hit, hn::Iota(d, static_cast<float>(v)) < bvh.count_in(index));
     if (kShadows) hit = hn::AndNot(is_target(v), hit);
     hn::Store(passed.along, d, ray.along + v);
@@ -311,12 +310,15 @@ HWY_INLINE void add_candidates(const SphereBvh& bvh, std::uint32_t index, Single
     const RadiusBounds radii = radii_of(bvh, index, v);
     auto begin = passed.along - (radii.most + margin);
     auto inner = radii.least - margin;
-    const auto is_rod = has_rods ? mask_of(d, bvh.rods[index].rods >> v) : hn::FirstN(d, 0);
-    if (has_rods) {
-      begin = select(is_rod, at_rods(bvh, index, v, ray).begin(passed.along), begin);
-      inner = select(is_rod, -1, inner);
-    }
     const auto hit = passed.offset_square < infinite;
+    const auto rods = has_rods ? hn::And(hit, mask_of(d, bvh.rods[index].rods >> v)) : hn::FirstN(d, 0);
+    if (has_rods && !hn::AllFalse(d, rods)) {
+      const auto at = at_rods(bvh, index, v, ray);
+      begin = select(rods, at.begin(passed.along), begin);
+      inner = select(rods, -1, inner);
+      if (!kOpacity)  // otherwise a rod may be invisible
+        nearest = min(nearest, select(rods, at.certain_distance(begin), infinite));
+    }
     const auto distance = max(begin, 0);
     if constexpr (kHasCompress) {
       hn::StoreU(hn::Compress(distance, hit), d, ray.at + count);
@@ -331,10 +333,6 @@ HWY_INLINE void add_candidates(const SphereBvh& bvh, std::uint32_t index, Single
       });
     }
     nearest = certain_limit(passed, inner, begin, margin, nearest);
-    if (has_rods && !kOpacity) {  // otherwise a rod may be invisible
-      const auto of_rods = at_rods(bvh, index, v, ray).certain_distance(begin);
-      nearest = min(nearest, select(hn::And(hit, is_rod), of_rods, nearest));
-    }
   }
   ray.candidates = count;
   ray.limit = hn::GetLane(hn::MinOfLanes(d, nearest));

@@ -28,6 +28,10 @@ constexpr double kOutlierRatio = 4;
 /// around them.
 constexpr double kGiantRatio = 16;
 
+/// A SphereBvh bounds a rod by the sphere around it. Above this many radii, the boxes of Embree's primitives are so
+/// much tighter that they are faster (measured: docs/decisions/0034-rods.md).
+constexpr double kLongRatio = 200;
+
 /// A layer is this many times as wide as it is thick, in both directions.
 constexpr double kLayerRatio = 10;
 /// Layers of more spheres are not small.
@@ -62,8 +66,7 @@ std::vector<std::uint32_t> complement_of(const std::vector<std::uint32_t>& witho
   return rest;
 }
 
-std::vector<std::uint32_t> find_outliers(const kernel::SphereArray& spheres, std::size_t count,
-                                         const std::vector<std::uint32_t>& duplicates) {
+std::vector<std::uint32_t> find_outliers(const kernel::SceneView& scene, const std::vector<std::uint32_t>& duplicates) {
   struct OutlierCandidate {
     double radius;
     std::uint32_t id;
@@ -71,13 +74,13 @@ std::vector<std::uint32_t> find_outliers(const kernel::SphereArray& spheres, std
   std::vector<OutlierCandidate> largest;  // descending, at most one more than there can be outliers
   auto duplicate = duplicates.begin();
   const base::StopPoint stop;
-  for (std::uint32_t id = 0; id < count; ++id) {
+  for (std::uint32_t id = 0; id < scene.sphere_count; ++id) {
     stop.check(id);
     if (duplicate != duplicates.end() && *duplicate == id) {
       ++duplicate;
       continue;
     }
-    const double radius = spheres[id].radius;
+    const double radius = scene.spheres[id].radius;
     if (largest.size() > kMaxOutliers && !(radius > largest.back().radius)) continue;
     const auto at =
         std::find_if(largest.begin(), largest.end(), [&](const OutlierCandidate& l) { return l.radius < radius; });
@@ -87,36 +90,41 @@ std::vector<std::uint32_t> find_outliers(const kernel::SphereArray& spheres, std
   // Take the largest set whose smallest member is an outlier relative to the rest.
   for (std::size_t n = std::min(largest.size(), kMaxOutliers); n > 0; --n) {
     // The rest has a frame at least as large as its largest sphere.
-    if (n == largest.size() || !(largest[n - 1].radius > kOutlierRatio * largest[n].radius)) continue;
+    const bool may_be =
+        n == largest.size() ? !scene.rods.empty() : largest[n - 1].radius > kOutlierRatio * largest[n].radius;
+    if (!may_be) continue;
     std::vector<std::uint32_t> outliers;
     for (std::size_t i = 0; i < n; ++i) outliers.push_back(largest[i].id);
     std::sort(outliers.begin(), outliers.end());
     std::vector<std::uint32_t> without;
     std::set_union(outliers.begin(), outliers.end(), duplicates.begin(), duplicates.end(), std::back_inserter(without));
-    const BoxFrame frame(spheres, complement_of(without, count));
+    const BoxFrame frame(scene.spheres, complement_of(without, scene.sphere_count), nullptr, 0, {scene.rods});
     if (largest[n - 1].radius * frame.scale > kOutlierRatio * frame.reach) return outliers;
   }
   return {};
 }
 
-double giant_radius(const kernel::SceneView& view) {
-  const auto stride = [](std::size_t count) { return count / 4096 + 1; };
+double giant_radius(const kernel::SceneView& scene) {
+  const kernel::RodArray& rods = scene.rods;
+  const std::size_t spheres = scene.sphere_count - scene.moving_count;
+  const std::size_t all = spheres + rods.count - rods.moving_count;
   std::vector<double> radii;
-  for (std::size_t id = view.moving_count; id < view.sphere_count; id += stride(view.sphere_count - view.moving_count))
-    radii.push_back(view.spheres[id].radius);
-  const kernel::RodArray& rods = view.rods;
-  if (radii.empty())
-    for (std::size_t i = rods.moving_count; i < rods.count; i += stride(rods.count - rods.moving_count))
-      radii.push_back(enclosing_sphere(rods[i]).radius);
+  for (std::size_t i = 0; i < all; i += all / 4096 + 1)
+    radii.push_back(i < spheres ? scene.spheres[scene.moving_count + i].radius
+                                : enclosing_sphere(rods[rods.moving_count + i - spheres]).radius);
   const auto middle = radii.begin() + static_cast<std::ptrdiff_t>(radii.size() / 2);
   std::nth_element(radii.begin(), middle, radii.end());
   return kGiantRatio * *middle;
 }
 
-std::size_t short_rods(const kernel::SceneView& view, double radius) {
+bool is_short(const kernel::RodArray& rods, std::size_t rod, double largest) {
+  return rod >= rods.moving_count &&
+         enclosing_sphere(rods[rod]).radius <= std::min(largest, kLongRatio * rods[rod].radius);
+}
+
+std::size_t short_rods(const kernel::RodArray& rods, double largest) {
   std::size_t count = 0;
-  for (std::size_t i = view.rods.moving_count; i < view.rods.count; ++i)
-    count += enclosing_sphere(view.rods[i]).radius <= radius ? 1 : 0;
+  for (std::size_t i = rods.moving_count; i < rods.count; ++i) count += is_short(rods, i, largest) ? 1 : 0;
   return count;
 }
 
@@ -147,7 +155,7 @@ ObjectCounts objects_in_bvh(const kernel::SceneView& scene) {
   const std::size_t least = bvh_threshold();
   if (scene.sphere_count - scene.moving_count + scene.rods.count - scene.rods.moving_count < least) return {};
   const double limit = giant_radius(scene);
-  const std::size_t rods = short_rods(scene, limit);
+  const std::size_t rods = short_rods(scene.rods, limit);
   std::size_t count = 0;
   std::vector<std::uint32_t> ids;  // enough of them to recognise a small layer
   for (std::size_t id = scene.moving_count; id < scene.sphere_count; ++id) {

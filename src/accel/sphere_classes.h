@@ -7,6 +7,7 @@
 
 #include "kernel/forward.h"
 #include "kernel/precision.h"
+#include "kernel/rod.h"
 
 /// Finds the spheres that do not belong into the BVHs: duplicates, and those that are too large.
 namespace orrery::accel {
@@ -25,19 +26,22 @@ std::vector<std::uint32_t> duplicates(const kernel::SceneView& scene, kernel::Pr
 /// Domain     `without` is ascending
 std::vector<std::uint32_t> complement_of(const std::vector<std::uint32_t>& without, std::size_t count);
 
-/// Ids, ascending, of the outliers: a few spheres that are much larger than the bounds of all smaller ones, such as a
-/// ground. Duplicates are ignored.
-std::vector<std::uint32_t> find_outliers(const kernel::SphereArray& spheres, std::size_t count,
-                                         const std::vector<std::uint32_t>& duplicates);
+/// Ids, ascending, of the outliers: a few spheres that are much larger than the bounds of all smaller ones and of the
+/// rods, such as a ground. Duplicates are ignored.
+std::vector<std::uint32_t> find_outliers(const kernel::SceneView& scene, const std::vector<std::uint32_t>& duplicates);
 
 /// The radius above which a static sphere, or the sphere around a static rod, is kept out of a SphereBvh, derived from
 /// the median radius of a sample.
 ///
 /// Domain     at least one static sphere or rod
-double giant_radius(const kernel::SceneView& view);
+double giant_radius(const kernel::SceneView& scene);
 
-/// The number of static rods that are within a sphere of this radius.
-std::size_t short_rods(const kernel::SceneView& view, double radius);
+/// Whether a rod belongs into a SphereBvh: it is static, and the sphere around it is neither larger than `largest` nor
+/// nearly empty.
+bool is_short(const kernel::RodArray& rods, std::size_t rod, double largest);
+
+/// The number of rods for which is_short() holds.
+std::size_t short_rods(const kernel::RodArray& rods, double largest);
 
 /// Whether the spheres are so few and lie in so thin a layer that packets of rays are coherent. One primitive per
 /// sphere is then faster than a SphereBvh.

@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "accel/accel.h"
+#include "accel/sphere_classes.h"
 #include "kernel/scene_view.h"
 #include "support/accel_rays.h"
 #include "support/accelerators.h"
@@ -255,6 +256,34 @@ TEST(AccelRods, SpheresWinTies) {
       for (const auto hit : p.hit) ASSERT_EQ(hit, 0u) << way.name;
     }
   }
+}
+
+/// Its frame would otherwise be that of the ground, and the padding of the boxes larger than the rods.
+TEST(AccelRods, AGroundIsAnOutlier) {
+  Random random;
+  RodScene scene{"", test::random_rods(random, 100, 0.3, 0.03), {{0, -1001, 0, 1000}}};
+  EXPECT_EQ(find_outliers(scene.view(), {}), (std::vector<std::uint32_t>{0}));
+  scene.spheres[0] = {0, 0, 0, 1};
+  EXPECT_TRUE(find_outliers(scene.view(), {}).empty());
+}
+
+TEST(AccelRods, ShortRodsAreStaticAndFillTheirSphere) {
+  RodScene scene{"", {}, {}};
+  for (const double length : {1.0, 1.0, 30.0, 3.0}) {
+    Rod rod;
+    rod.b[0] = length;
+    rod.radius = length == 3.0 ? 0.001 : 0.1;
+    scene.rods.push_back(rod);
+  }
+  scene.motion.resize(1);  // the first one moves
+  const kernel::RodArray rods = scene.view().rods;
+  EXPECT_FALSE(is_short(rods, 0, 10));
+  EXPECT_TRUE(is_short(rods, 1, 10));
+  EXPECT_FALSE(is_short(rods, 2, 10)) << "larger than the limit";
+  EXPECT_FALSE(is_short(rods, 3, 10)) << "its sphere is nearly empty";
+  EXPECT_EQ(short_rods(rods, 10), 1u);
+  EXPECT_EQ(short_rods(rods, 20), 2u);
+  EXPECT_EQ(short_rods(rods, 0), 0u);
 }
 
 }  // namespace
