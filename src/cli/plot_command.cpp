@@ -3,6 +3,7 @@
 #include <charconv>
 #include <chrono>
 #include <memory>
+#include <sstream>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -191,6 +192,8 @@ void add_look_options(Command& command, DataArguments& data, plot::PlotOptions& 
       ->details(
           "auto: those of the file; by distance if it has none; both for PDB and mmCIF, which leave out common bonds. "
           "A factor or a length: by distance. docs/data.md describes bonds.");
+  command.add_option("--vectors", look.vectors, "X,Y,Z", "Draw arrows from three columns, e.g. vx,vy,vz")
+      ->details("Their length is chosen from the data; --set 'points[0].vectors.scale=2' sets it.");
   command
       .add_option("--opacity", data.opacity, "X|COLUMN|CONDITION:X",
                   "Opacity, 0 to 1: of all, from a column, or of those that match, e.g. 'type == 2: 0.3'; can be "
@@ -230,6 +233,8 @@ void read_look_options(const LookArguments& look, plot::PlotOptions& plot) {
     plot.representation =
         static_cast<plot::Representation>(std::find(names.begin(), names.end(), look.representation) - names.begin());
   }
+  std::istringstream columns(look.vectors);
+  for (std::string column; std::getline(columns, column, ',');) plot.points.vectors.columns.push_back(column);
   if (look.bonds.empty()) return;
   scene::PointsBonds& bonds = plot.points.bonds;
   plot.bonds = look.bonds != "none";

@@ -159,8 +159,8 @@ view::Controls controls_of(const std::filesystem::path& file) {
   out.options["--material"] = plot::material_names();
   out.options["--representation"] = plot::representation_names();
   out.options["--bonds"] = {"auto", "none", "file", "distance", "both"};
-  for (const char* option :
-       {"--ground", "--opacity", "--box", "--axes", "--range", "--select", "--slice", "--radius-scale", "--frame"})
+  for (const char* option : {"--ground", "--opacity", "--box", "--axes", "--vectors", "--range", "--select", "--slice",
+                             "--radius-scale", "--frame"})
     out.options[option] = {};
   return out;
 }

@@ -213,8 +213,8 @@ SceneInfo scene_info(const load::SceneRequest& request, job::PreparedScene& prep
   info.lights = lights_text(compiled, info.emitters);
   for (std::size_t i = 0; i < read.scene.points.size(); ++i) {
     const scene::Points& p = read.scene.points[i];
-    info.points.push_back(
-        {p.file.string(), compiled.points_sizes[i], p.unused, compiled.stub_counts[i] + compiled.bond_counts[i]});
+    info.points.push_back({p.file.string(), compiled.points_sizes[i], p.unused,
+                           compiled.stub_counts[i] + compiled.bond_counts[i] - p.arrow_count});
   }
   info.layers = scene::requested_layers(read.scene);
   info.available_layers = scene::available_layers(read.scene);

@@ -37,6 +37,10 @@ constexpr double kNoise = 0.02;
 /// radius of sticks between elements, in the unit of the file.
 constexpr double kBallFraction = 0.5, kStickFraction = 0.3, kStickRadius = 0.2;
 
+/// Length of arrows and radius of their shafts, in distances to the nearest neighbour; radius of spheres with arrows,
+/// as a fraction of that without.
+constexpr double kArrowLength = 1.2, kShaftRadius = 0.07, kArrowSphereFraction = 0.25;
+
 /// Radius of the edges of the box, and length and radius of the axes, as fractions of the radius of what is shown.
 constexpr double kBoxRadius = 0.004, kAxisLength = 0.15, kAxisRadius = 0.01;
 
@@ -103,6 +107,7 @@ class PlotMaker {
     const std::vector<std::string> color_choices = choose_color();
     choose_radius();
     choose_bonds();
+    choose_arrows();
     out_.choices.insert(out_.choices.end(), color_choices.begin(), color_choices.end());
     const std::string up_name = options_.up.empty() ? (info_.z_up ? "z" : "y") : options_.up;
     if (options_.up.empty())
@@ -235,25 +240,31 @@ class PlotMaker {
     const bool has_elements = !info_.roles.element.empty();
     const bool is_spheres = options_.representation == Representation::kSpheres;
     const bool is_sticks = options_.representation == Representation::kSticks;
-    const double fraction = is_spheres ? 1 : is_sticks ? kStickFraction : kBallFraction;
+    const bool has_arrows = !out_.points.vectors.columns.empty() && is_spheres;
+    const double fraction = has_arrows   ? kArrowSphereFraction
+                            : is_spheres ? 1
+                            : is_sticks  ? kStickFraction
+                                         : kBallFraction;
     const std::string why =
-        is_spheres ? ""
-                   : fmt::format(", times {} for {}", number_text(fraction),
-                                 representation_names()[static_cast<std::size_t>(options_.representation)]);
+        has_arrows   ? fmt::format(", times {} beside arrows", number_text(fraction))
+        : is_spheres ? ""
+                     : fmt::format(", times {} for {}", number_text(fraction),
+                                   representation_names()[static_cast<std::size_t>(options_.representation)]);
     if (is_sticks && has_elements) {
       radius.value = rounded(kStickRadius * radius.scale);
       chose("radius " + number_text(*radius.value), "that of sticks");
     } else if (!info_.roles.radius.empty()) {
-      if (!is_spheres) {
+      if (fraction != 1) {
         radius.column = info_.roles.radius;
         radius.scale *= info_.roles.radius_scale * fraction;
       }
       chose("radius by " + info_.roles.radius,
             (info_.roles.radius_scale == 1 ? "a column of radii" : "a column of diameters, halved") + why);
     } else if (has_elements) {
-      radius.element = is_spheres ? "vdw" : "ball";
-      chose("radius " + radius.element, is_spheres ? "van der Waals radii of the elements"
-                                                   : "a quarter of the van der Waals radii of the elements");
+      const bool is_full = is_spheres && !has_arrows;
+      radius.element = is_full ? "vdw" : "ball";
+      chose("radius " + radius.element,
+            is_full ? "van der Waals radii of the elements" : "a quarter of the van der Waals radii of the elements");
     } else {
       radius.value = 1;
       const double distance = data_.spacing(out_.points);
@@ -271,6 +282,22 @@ class PlotMaker {
     scene::PointsBonds& bonds = out_.points.bonds;
     bonds.are_drawn = options_.bonds.value_or(options_.representation != Representation::kSpheres);
     if (bonds.are_drawn && options_.representation == Representation::kSticks) bonds.radius = out_.points.radius.value;
+  }
+
+  /// Arrows of a root mean square vector are somewhat longer than the distance to the nearest neighbour. All frames
+  /// have one scale.
+  void choose_arrows() {
+    scene::PointsVectors& vectors = out_.points.vectors;
+    if (vectors.columns.empty()) return;
+    if (options_.material == "glass")
+      base::refuse("--vectors: arrows of glass are not supported; use another --material");
+    scene::Points points = load(data_.described_frame());
+    const double spacing = data_.spacing(out_.points);
+    if (spacing > 0 && !out_.points.bonds.are_drawn) vectors.radius = rounded(kShaftRadius * spacing);
+    if (spacing > 0 && points.rms_vector > 0) vectors.scale = rounded(kArrowLength * spacing / points.rms_vector);
+    chose(fmt::format("arrows {} times {}", number_text(vectors.scale), base::joined(vectors.columns)),
+          fmt::format("the root mean square one is {} times the median distance to the nearest neighbour",
+                      number_text(kArrowLength)));
   }
 
   /// Prints how many bonds are drawn, and from what.
@@ -341,9 +368,10 @@ class PlotMaker {
     std::size_t fewest = std::numeric_limits<std::size_t>::max(), most = 0, fewest_bonds = fewest, most_bonds = 0;
     for (const int frame : data_.distinct()) {
       const scene::Points points = load(frame);
-      fewest = std::min(fewest, points.centers.size());
-      most = std::max(most, points.centers.size());
-      const std::size_t bonds = points.bond_pairs.size() + points.bond_stubs.size() / 2;  // two stubs are a bond
+      fewest = std::min(fewest, points.particle_count());
+      most = std::max(most, points.particle_count());
+      // Two stubs are a bond.
+      const std::size_t bonds = points.bond_pairs.size() - points.arrow_count + points.bond_stubs.size() / 2;
       fewest_bonds = std::min(fewest_bonds, bonds);
       most_bonds = std::max(most_bonds, bonds);
       bonds_from_ = points.bonds_from;

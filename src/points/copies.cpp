@@ -26,6 +26,11 @@ bool is_identity(const Transform& t) {
   return t.rows == identity.rows && t.translation == identity.translation;
 }
 
+/// Returns a transformed direction, without the translation.
+Vec3d turned(const Transform& t, Vec3d v) {
+  return {math::dot(t.rows[0], v), math::dot(t.rows[1], v), math::dot(t.rows[2], v)};
+}
+
 /// Rounding to single precision moves a coordinate by up to this fraction of itself.
 constexpr double kRounding = 0x1p-24;
 
@@ -254,6 +259,7 @@ void clip(scene::Points& points, std::vector<std::uint32_t>* rows) {
     if (!points.materials.empty()) points.materials[kept] = points.materials[i];
     if (!points.colors.empty()) points.colors[kept] = points.colors[i];
     if (!points.opacities.empty()) points.opacities[kept] = points.opacities[i];
+    if (!points.sphere_vectors.empty()) points.sphere_vectors.set(kept, points.sphere_vectors[i]);
     if (rows != nullptr) (*rows)[kept] = (*rows)[i];
     ++kept;
   }
@@ -262,6 +268,7 @@ void clip(scene::Points& points, std::vector<std::uint32_t>* rows) {
   if (!points.materials.empty()) points.materials.resize(kept);
   if (!points.colors.empty()) points.colors.resize(kept);
   if (!points.opacities.empty()) points.opacities.resize(kept);
+  if (!points.sphere_vectors.empty()) points.sphere_vectors.resize(kept);
   if (rows != nullptr) rows->resize(kept);
   const auto renumber = [&](std::uint32_t& a, std::uint32_t& b) {
     a = new_index[a];
@@ -280,6 +287,8 @@ void make_copies(const std::vector<Copy>& copies, const Labels& chains, scene::P
     if (!is_placed) return;
     for (std::size_t i = 0; i < points.centers.size(); ++i)
       points.centers.set(i, applied(placement, points.centers[i]));
+    for (std::size_t i = 0; i < points.sphere_vectors.size(); ++i)
+      points.sphere_vectors.set(i, turned(placement, points.sphere_vectors[i]));
     scale(points.radii, points.transform.scale);
     return;
   }
@@ -294,6 +303,9 @@ void make_copies(const std::vector<Copy>& copies, const Labels& chains, scene::P
   spheres.repeat(points.materials);
   spheres.repeat(points.colors);
   spheres.repeat(points.opacities);
+  spheres.repeat(points.sphere_vectors, [&](Vec3d vector, std::size_t copy) {
+    return turned(placement, turned(copies[copy].transform, vector));
+  });
   if (rows != nullptr) spheres.repeat(*rows);
   if (is_placed) scale(points.radii, points.transform.scale);
 }

@@ -15,6 +15,7 @@
 #include "data/columns.h"
 #include "data/data_file.h"
 #include "formats/open.h"
+#include "points/arrows.h"
 #include "points/bonds.h"
 #include "points/copies.h"
 #include "points/derived.h"
@@ -81,6 +82,7 @@ class Loader {
       points_.colors.clear();
       points_.opacities.clear();
       points_.palette.clear();
+      points_.sphere_vectors.clear();
       points_.bond_pairs.clear();
       points_.bond_stubs.clear();
     }
@@ -130,6 +132,7 @@ class Loader {
       need(bond_source_.element);
       points_.bonds_from = !bond_source_.is_distance ? "file" : bond_source_.is_file ? "both" : "distance";
     }
+    if (!points_.vectors.columns.empty()) plan_arrows();
     if (info_.may_be_of_scene && data::has_column(info_.columns, points_.material_column))
       need(material_ = points_.material_column);
     if (request_.source != nullptr)
@@ -152,6 +155,18 @@ class Loader {
       return;
     }
     for (const std::string& column : selection_.columns) need(column);
+  }
+
+  void plan_arrows() {
+    const std::vector<std::string>& columns = points_.vectors.columns;
+    if (columns.size() != 3)
+      return faults_.error(".vectors.columns",
+                           fmt::format("has {} columns; a vector has three, e.g. vx, vy and vz", columns.size()));
+    for (const std::string& column : columns)
+      if (require_column(info_, column, true, ".vectors.columns", faults_)) need(column);
+    // The shafts are bonds too, and a table has one radius of bonds.
+    if (points_.vectors.radius && points_.bonds.are_drawn)
+      faults_.error(".vectors.radius", "shafts have the radius of the bonds; set `bonds.radius` instead");
   }
 
   void plan_unwrap() {
@@ -184,6 +199,10 @@ class Loader {
     const Vec3d n = points_.replicate;
     need.images = n.x * n.y * n.z;
     need.spheres = static_cast<double>(count) * need.images;
+    if (!points_.vectors.columns.empty()) {
+      need.bond_bytes += need.spheres * (sizeof(scene::SphereBond) + sizeof(Vec3d));
+      need.spheres *= 1 + kHeadSpheres;
+    }
     need.copies = copies_.size();
     if (need.spheres > static_cast<double>(scene::kMaxSpheres))
       throw base::Error(base::ErrorKind::kBadData,
@@ -234,15 +253,18 @@ class Loader {
     points_.color_range = colors.range;
     points_.color_names = std::move(colors.names);
     if (!material_.empty()) set_materials(table, rows);
+    if (!points_.vectors.columns.empty()) points_.sphere_vectors = vectors_of(table, rows);
     if (is_replicated) copies_ = replicated(copies_, *info_.box, points_.replicate);
     std::vector<std::uint32_t>* const row_of_sphere = request_.source == nullptr ? nullptr : &request_.source->rows;
     if (row_of_sphere != nullptr) *row_of_sphere = rows.list();
-    if (points_.bonds.are_drawn) {
-      points_.bond_radius = bond_radius(info_, points_.bonds, points_.radii) * points_.transform.scale;
+    if (points_.bonds.are_drawn || !points_.vectors.columns.empty()) {
+      points_.bond_radius =
+          points_.vectors.radius.value_or(bond_radius(info_, points_.bonds, points_.radii)) * points_.transform.scale;
       copy_bonds(bonds, copies_, chains, lattice, points_);
     }
     make_copies(copies_, chains, points_, row_of_sphere);
     clip(points_, row_of_sphere);
+    add_arrows(points_, row_of_sphere, faults_);
     points_.spheres_are_rows = is_all && copies_.size() == 1 && points_.centers.size() == table.rows;
     if (request_.source == nullptr) return;
     request_.source->bond_pairs = points_.bond_pairs;
@@ -295,6 +317,15 @@ class Loader {
           fmt::format("{}{} the id of another one in column `{}`; in other frames, particles may change places",
                       repeated, repeated == 1 ? " particle has" : " particles have", info_.roles.id));
     return rows;
+  }
+
+  scene::PointArray vectors_of(const data::Table& table, const Rows& rows) const {
+    const double scale = points_.vectors.scale;
+    scene::PointArray out(rows.size());
+    for (std::size_t axis = 0; axis < 3; ++axis)
+      for_each_number(*table.find(points_.vectors.columns[axis]), rows,
+                      [&](std::size_t i, double v) { out.set(i, axis, v * scale); });
+    return out;
   }
 
   scene::PointArray centers_of(const data::Table& table, const Rows& rows) const {

@@ -259,6 +259,13 @@ struct BondStub {
   Vec3d end{0, 0, 0};                     ///< the middle of the bond
 };
 
+/// Arrows at the spheres of a points file.
+struct PointsVectors {
+  std::vector<std::string> columns;  ///< of the x, y and z component; empty: no arrows
+  double scale = 1;                  ///< length of an arrow, in the unit of the file, divided by that of its vector
+  std::optional<double> radius;      ///< of the shafts, unit of the file; default: as PointsBonds::radius
+};
+
 /// Opacities of the spheres of a points file, 0..1, in place of those of their materials: `value`, or that of the last
 /// of `where` that matches, else one of `column` and `types`, if one is set and has a value for the sphere.
 struct PointsOpacity {
@@ -289,6 +296,7 @@ struct Points {
   PointsRadius radius;
   PointsColor color;
   PointsBonds bonds;
+  PointsVectors vectors;
   PointsOpacity opacity;
   std::string select;        ///< condition on columns; empty: all
   Vec3d replicate{1, 1, 1};  ///< number of periodic boxes along each box edge
@@ -310,13 +318,19 @@ struct Points {
   std::vector<std::string> color_names =
       {};                                ///< names of the colours in `palette`, if they represent types or elements
   std::vector<std::string> unused = {};  ///< unused columns of the file, such as colours
+  PointArray sphere_vectors = {};        ///< one per centre, while arrows are to be added
+  std::size_t arrow_count = 0;           ///< number of arrows; their shafts are the last of `bond_pairs`
+  std::size_t arrow_spheres = 0;         ///< number of spheres of their heads, after all others
+  double rms_vector = 0;                 ///< root mean square length of the vectors, times their scale
   std::vector<SphereBond> bond_pairs = {};
   std::vector<BondStub> bond_stubs = {};
   std::string bonds_from = {};   ///< resolved PointsBonds::from; empty: bonds are not drawn
   double bond_radius = 0;        ///< of the rods of all bonds, scene units
   bool spheres_are_rows = true;  ///< sphere i is row i of the file: no selection, sorting, copying or clipping
 
-  /// Number of rods of the bonds.
+  /// Number of spheres without those of arrows.
+  std::size_t particle_count() const { return centers.size() - arrow_spheres; }
+  /// Number of rods of the bonds and arrows.
   std::size_t bond_count() const { return bond_pairs.size() + bond_stubs.size(); }
   /// Bytes of the spheres and bonds.
   std::size_t bytes() const {

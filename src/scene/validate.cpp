@@ -279,7 +279,7 @@ void check_bonds(const Points& points, const std::string& key, const Scene& scen
     for (const std::uint32_t material : points.materials) use(material);
     for (std::size_t m = 0; m < is_used.size(); ++m)
       if (is_used[m] && std::holds_alternative<Dielectric>(scene.materials[m].model))
-        diagnostics.error(key + ".bonds", fmt::format("bonds are opaque, but have the material of their spheres, {}, "
+        diagnostics.error(key + ".bonds", fmt::format("rods are opaque, but have the material of their spheres, {}, "
                                                       "which is a dielectric; set `bonds.material`",
                                                       string_text(scene.materials[m].name)));
   }

@@ -220,9 +220,12 @@ void Viewer::add_bond(const scene::Scene& scene, std::size_t table, bool is_stub
                                      ? scene::SphereBond{read.bond_stubs[index].sphere, read.bond_stubs[index].partner}
                                      : read.bond_pairs[index];
   const std::uint32_t a = read.rows.at(ends.a), b = read.rows.at(ends.b);
-  out.title = fmt::format("bond of rows {} and {} of {}", std::size_t{a} + 1, std::size_t{b} + 1, file);
+  const bool is_arrow = !is_stub && index + scene.points[table].arrow_count >= read.bond_pairs.size();
+  out.title = is_arrow ? fmt::format("arrow of row {} of {}", std::size_t{a} + 1, file)
+                       : fmt::format("bond of rows {} and {} of {}", std::size_t{a} + 1, std::size_t{b} + 1, file);
   for (const data::Column& column : read.table.columns)
-    out.values.emplace_back(column.name, text_of(column, a) + ", " + text_of(column, b));
+    out.values.emplace_back(column.name,
+                            is_arrow ? text_of(column, a) : text_of(column, a) + ", " + text_of(column, b));
 }
 
 std::shared_ptr<const Viewer::Source> Viewer::source_of(const scene::Scene& scene, std::size_t table) {

@@ -174,6 +174,9 @@ TEST_F(CliPlot, BondsThatCannotBeDrawnAreErrors) {
                  "--bonds: `" + bonds + "` is not a source of bonds; write auto, file");
   expect_error("plot a.dump -o a.ppm --bonds file", 65, "the file has no bonds; set `from = \"distance\"`");
   expect_error("plot a.dump -o a.ppm --representation sticks", 65, "or --bonds length=X, to the largest length");
+  expect_error("plot a.dump -o a.ppm --vectors x,y", 65, "has 2 columns; a vector has three");
+  expect_error("plot a.dump -o a.ppm --vectors x,y,nothing", 65, "nothing");
+  expect_error("plot a.dump -o a.ppm --vectors x,y,z --material glass", 2, "arrows of glass are not supported");
   expect_error("plot c.csv -o a.ppm --box", 65, "--box: c.csv has no simulation box");
   expect_error("plot a.dump -o a.ppm --representation stick", 2, "did you mean `sticks`");
 }

@@ -141,6 +141,7 @@ TEST_F(CliView, RandomWalksThroughTheControlsMakeThePictureOfTheCommand) {
       {"--ground", {"", "on"}},
       {"--box", {"", "on"}},
       {"--axes", {"", "on"}},
+      {"--vectors", {"", "vx,vy,vz", "x,y"}},
       {"--denoise", {"", "on"}},
       {"--frame", {"", "2", "3", "4"}},
       {"--set", {"", "render.seed=7\nimage.overscan=0", "render.max_depth=3"}},

@@ -7,12 +7,13 @@ const canvas = $("picture"), context = canvas.getContext("2d");
 // Options in the order of the page. Those that the server does not offer are not shown.
 const LABELS = {
   "--color-by": "Colour by", "--map": "Colour map", "--range": "Range", "--select": "Select", "--slice": "Slice",
-  "--representation": "Representation", "--bonds": "Bonds", "--style": "Style", "--material": "Material",
+  "--representation": "Representation", "--bonds": "Bonds", "--vectors": "Vectors", "--style": "Style", "--material": "Material",
   "--opacity": "Opacity", "--radius-scale": "Radius scale", "--ground": "Ground", "--box": "Box", "--axes": "Axes", "--noise": "Noise",
   "--samples": "Samples", "--denoise": "Denoise", "--set": "Settings",
 };
 const HINTS = {
-  "--range": "low:high", "--select": "type == 2 && z > 0", "--slice": "z=10", "--opacity": "0.3, or type == 2: 0.3", "--radius-scale": "1", "--noise": "0.02",
+  "--range": "low:high", "--select": "type == 2 && z > 0", "--slice": "z=10", "--opacity": "0.3, or type == 2: 0.3", "--vectors": "vx,vy,vz",
+  "--radius-scale": "1", "--noise": "0.02",
   "--set": "key=value, one per line",
 };
 const SIZES = [[640, 360], [960, 540], [1280, 720], [1920, 1080], [800, 800]];

@@ -226,6 +226,30 @@ TEST_F(PlotPlot, BondsByDistanceFollowTheFrames) {
   EXPECT_EQ(read(2).points[0].bond_pairs.size(), 0u);
 }
 
+TEST_F(PlotPlot, ArrowsAreAsLongAsTheirNeighborsAreFarInAllFrames) {
+  options.points.vectors.columns = {"vx", "vy", "vz"};
+  options.all_frames = true;
+  const auto frame = [](const char* velocities) {
+    return "ITEM: TIMESTEP\n0\nITEM: NUMBER OF ATOMS\n2\nITEM: BOX BOUNDS pp pp pp\n0 9\n0 9\n0 9\n"
+           "ITEM: ATOMS id type x y z vx vy vz\n" +
+           std::string(velocities);
+  };
+  make("a.dump", frame("1 1 1 1 1 10 0 0\n2 1 3 1 1 0 0 10\n") + frame("1 1 1 1 1 90 0 0\n2 1 3 1 1 0 0 0\n"));
+  EXPECT_TRUE(
+      chose("arrows 0.24 times vx, vy, vz: the root mean square one is 1.2 times the median distance to the "
+            "nearest neighbour"))
+      << choices();
+  EXPECT_TRUE(chose("radius 0.25: half the median distance to the nearest neighbour, times 0.25 beside arrows"))
+      << choices();
+  const scene::Scene first = read(1), second = read(2);
+  EXPECT_EQ(first.points[0].arrow_count, 2u);
+  EXPECT_DOUBLE_EQ(first.points[0].rms_vector, 2.4);
+  EXPECT_EQ(second.points[0].arrow_count, 1u);
+  EXPECT_EQ(second.points[0].particle_count(), 2u);
+  EXPECT_GT(*first.camera.width, 15) << "the long arrow is in the view";
+  EXPECT_EQ(choices().find("spheres:"), std::string::npos) << "those of heads are not counted: " << choices();
+}
+
 TEST_F(PlotPlot, TheBoxIsTwelveRodsAndTheAxesAreOutsideIt) {
   options.box = options.axes = true;
   options.points.replicate = {2, 1, 1};
