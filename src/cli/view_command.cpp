@@ -26,6 +26,7 @@
 #include "cli/render_options.h"
 #include "cli/run.h"
 #include "cli/signals.h"
+#include "cli/subject.h"
 #include "http/server.h"
 #include "image/library.h"
 #include "plot/plot.h"
@@ -134,6 +135,26 @@ view::Subject data_subject(ShownOptions& shown) {
   out.legend = plot::legend_svg(made.legend, display);
   return out;
 }
+
+}  // namespace
+
+view::Subject data_subject(const std::string& file, std::vector<std::string> words, const job::Resources& resources,
+                           const points::OpenData& open) {
+  view::Subject out;
+  ShownOptions shown;
+  shown.job.resources = resources;
+  words.insert(words.begin(), file);
+  parse_words(
+      words, [&](Command& parsed) { shown.add_to(parsed); },
+      [&] {
+        shown.plot.open = open;
+        out = data_subject(shown);
+        out.job.scene.open_data = open;
+      });
+  return out;
+}
+
+namespace {
 
 /// What the page may set, for a kind of file.
 view::Controls controls_of(const std::filesystem::path& file) {

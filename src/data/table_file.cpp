@@ -12,14 +12,16 @@ namespace {
 
 class TableFile : public DataFile {
  public:
-  TableFile(const std::filesystem::path& name, std::shared_ptr<const Table> table) : table_(std::move(table)) {
+  TableFile(const std::filesystem::path& name, std::shared_ptr<const Table> table, const std::optional<Box>& box)
+      : table_(std::move(table)) {
+    info_.box = box;
     info_.rows = table_->rows;
     for (const Column& column : table_->columns) info_.columns.push_back({column.name, column.type()});
     Faults faults(name);
     info_.roles = required_roles(info_.columns, faults);
     const bool has_strings = std::any_of(info_.columns.begin(), info_.columns.end(),
                                          [](const ColumnInfo& c) { return c.type == ColumnType::kText; });
-    format = has_strings ? "NPY" : "PLY";
+    format = "arrays";
     info_.may_be_of_scene = !has_strings;
   }
 
@@ -38,8 +40,9 @@ class TableFile : public DataFile {
 
 }  // namespace
 
-std::unique_ptr<DataFile> open_table(const std::filesystem::path& name, std::shared_ptr<const Table> table) {
-  return std::make_unique<TableFile>(name, std::move(table));
+std::unique_ptr<DataFile> open_table(const std::filesystem::path& name, std::shared_ptr<const Table> table,
+                                     const std::optional<Box>& box) {
+  return std::make_unique<TableFile>(name, std::move(table), box);
 }
 
 }  // namespace orrery::data

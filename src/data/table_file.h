@@ -3,6 +3,7 @@
 
 #include <filesystem>
 #include <memory>
+#include <optional>
 
 #include "data/data_file.h"
 #include "data/table.h"
@@ -13,8 +14,10 @@ namespace orrery::data {
 /// to the NPY file if it has columns of strings. Columns that are views stay views.
 ///
 /// `name`     for messages
+/// `box`      simulation box, which files of these formats do not have
 /// Domain     columns with table.rows rows and distinct names
 /// Errors     base::Error(kBadData): there are no columns x, y and z
-std::unique_ptr<DataFile> open_table(const std::filesystem::path& name, std::shared_ptr<const Table> table);
+std::unique_ptr<DataFile> open_table(const std::filesystem::path& name, std::shared_ptr<const Table> table,
+                                     const std::optional<Box>& box = {});
 
 }  // namespace orrery::data

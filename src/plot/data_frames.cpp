@@ -35,7 +35,11 @@ bool is_text(const data::FrameInfo& info, const std::string& name) {
 }  // namespace
 
 DataFrames::DataFrames(const DataOptions& options, const std::filesystem::path& folder)
-    : options_(options), folder_(folder), is_sequence_(base::is_sequence(options.file)), numbers_(options.frames) {
+    : options_(options),
+      folder_(folder),
+      is_sequence_(base::is_sequence(options.file)),
+      open_(options.open ? options.open : points::open_once()),
+      numbers_(options.frames) {
   data::OpenOptions open_options;
   open_options.component = options.points.component;
   open_options.limit_memory(options.memory_limit);
@@ -67,7 +71,7 @@ const char* DataFrames::format() const { return file_->format; }
 std::optional<int> DataFrames::frame_count() const {
   if (is_sequence_) return 1;
   std::error_code unknown;
-  if (std::filesystem::file_size(file_of(1), unknown) > kMaxCountedBytes || unknown) return {};
+  if (!options_.open && (std::filesystem::file_size(file_of(1), unknown) > kMaxCountedBytes || unknown)) return {};
   try {
     return file_->frame_count();
   } catch (const base::Error&) {

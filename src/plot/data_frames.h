@@ -30,6 +30,7 @@ struct DataOptions {
   /// Slice planes: axis 0, 1 or 2, and position. Spheres in front of any of them are removed.
   std::vector<std::pair<int, double>> slices = {};
   std::uint64_t memory_limit = 0;  ///< bytes; 0: no limit
+  points::OpenData open = {};      ///< opens `file`; default: by its name
 };
 
 /// Spheres of a frame, and warnings about the data and the options.
@@ -89,7 +90,7 @@ class DataFrames {
   const DataOptions& options_;
   std::filesystem::path folder_;
   bool is_sequence_;
-  points::OpenData open_ = points::open_once();
+  points::OpenData open_;
   std::unique_ptr<data::DataFile> file_;
   data::FrameInfo info_;
   int described_ = 1;

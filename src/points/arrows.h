@@ -15,8 +15,8 @@ class KeyFaults;
 /// Spheres of the head of an arrow.
 inline constexpr std::size_t kHeadSpheres = 12;
 
-/// Adds an arrow at each sphere of `points`, along its vector: a bond as the shaft, and spheres of falling radius as the
-/// head, after all other spheres. They have the colour, material and opacity of the sphere. Consumes
+/// Adds an arrow at each sphere of `points`, along its vector: a bond as the shaft, and spheres of falling radius as
+/// the head, after all other spheres. They have the colour, material and opacity of the sphere. Consumes
 /// `points.sphere_vectors`, and sets `points.arrow_count` and `points.rms_vector`.
 ///
 /// Vectors that are not finite, and those no longer than the shaft is thick, have no arrow; the former are reported.

@@ -33,6 +33,7 @@
 #include "points/color_map.h"
 #include "python/arrays.h"
 #include "python/picture.h"
+#include "python/plot.h"
 #include "python/render.h"
 #include "python/scene_data.h"
 #include "python/view.h"
@@ -128,13 +129,14 @@ Picture render_scene(const SceneData& scene, Prepared& prepared, double noise, d
   job.resources.memory_limit = memory_limit;
   job.resources.isa = isa;
   job.denoise = denoise;
-  if (prepared.is_in_use.exchange(true)) return render(std::move(job), on_progress, on_warning);
+  const auto make_job = [&job] { return std::move(job); };
+  if (prepared.is_in_use.exchange(true)) return render(make_job, on_progress, on_warning);
   struct Release {
     std::atomic<bool>& is_in_use;
     ~Release() { is_in_use = false; }
   } const release{prepared.is_in_use};
   job.prepared = prepared.scene;
-  return render(std::move(job), on_progress, on_warning);
+  return render(make_job, on_progress, on_warning);
 }
 
 void write_picture(const Picture& picture, const std::vector<std::filesystem::path>& files, int bits,
@@ -281,6 +283,7 @@ PYBIND11_MODULE(_orrery, m) {
   bind_scene(m);
   bind_picture(m);
   bind_read_points(m);
+  bind_plot(m);
   m.def("read_scene_text", &read_scene_text, ReleaseGil());
   m.def("color_map_names", &points::color_map_names);
   m.def("version", &job::program_version);

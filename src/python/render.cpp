@@ -8,6 +8,7 @@
 #include <condition_variable>
 #include <cstdint>
 #include <exception>
+#include <functional>
 #include <mutex>
 #include <optional>
 #include <set>
@@ -17,6 +18,7 @@
 #include <vector>
 
 #include "base/error.h"
+#include "base/stop_point.h"
 #include "job/rendering.h"
 #include "python/arrays.h"
 #include "python/picture.h"
@@ -126,20 +128,22 @@ void deliver(const std::optional<render::Progress>& progress, const std::vector<
 
 }  // namespace
 
-Picture render(job::Job job, const py::object& on_progress, const py::object& on_warning) {
+Picture render(const std::function<job::Job()>& make_job, const py::object& on_progress, const py::object& on_warning) {
   job::Rendering rendering;
   Messages messages;
   std::atomic<bool> cancel{false};
   RenderEntry entry(cancel);
-  job.keep = &rendering;
-  job.hooks.cancel = &cancel;
-  job.hooks.on_progress = [&](const render::Progress& p) { messages.set_progress(p); };
-  job.hooks.on_warning = [&](const base::Diagnostic& d) { messages.add_warning(d); };
   std::exception_ptr failure, python_failure;
   {
     const py::gil_scoped_release released;
     std::thread worker([&] {
       try {
+        const base::StopScope scope(&cancel);
+        job::Job job = make_job();
+        job.keep = &rendering;
+        job.hooks.cancel = &cancel;
+        job.hooks.on_progress = [&](const render::Progress& p) { messages.set_progress(p); };
+        job.hooks.on_warning = [&](const base::Diagnostic& d) { messages.add_warning(d); };
         job::run_job(job);
       } catch (...) {
         failure = std::current_exception();

@@ -3,6 +3,8 @@
 
 #include <pybind11/pybind11.h>
 
+#include <functional>
+
 #include "job/forward.h"
 
 namespace orrery::python {
@@ -12,11 +14,13 @@ class Picture;
 /// Renders on a separate thread, without the GIL, while the calling thread reports progress and warnings and checks for
 /// signals: KeyboardInterrupt, and an exception in a callback, stop the render.
 ///
+/// `make_job`     called on that thread, in a base::StopScope
 /// `on_progress`  called with fraction, samples done, samples in all, seconds and goal; or None
 /// `on_warning`   called with a text
 /// Domain         the calling thread holds the GIL; the job has no outputs and no hooks
-/// Errors         those of job::run_job; those of the callbacks
-Picture render(job::Job job, const pybind11::object& on_progress, const pybind11::object& on_warning);
+/// Errors         those of make_job and job::run_job; those of the callbacks
+Picture render(const std::function<job::Job()>& make_job, const pybind11::object& on_progress,
+               const pybind11::object& on_warning);
 
 /// Stops the renders of all other threads and waits until they have ended. Those threads are daemon threads and do not
 /// return to Python. Called before the interpreter finalizes, which would otherwise kill them in the middle of a

@@ -7,6 +7,8 @@
     scene.add_points(positions, radius=0.1)
     scene.render(640, 360, noise=0.05).write("out.png")
 
+    orrery.plot("melt.dump", color_by="speed").write("melt.png")
+
 The keys of scenes, their units and their defaults are those of scene files (docs/scene-format.md).
 """
 
@@ -35,6 +37,7 @@ from orrery._keys import (
 from orrery._orrery import color_map_names as _color_map_names
 from orrery._orrery import version as _version
 from orrery._picture import Picture
+from orrery._plot import plot
 from orrery._points import ColorMap, Points, colormap, read_points
 from orrery._scene import Progress, Scene, load
 from orrery._view import View
@@ -67,6 +70,7 @@ __all__ = [
     "color_maps",
     "colormap",
     "load",
+    "plot",
     "read_points",
 ]
 

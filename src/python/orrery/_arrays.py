@@ -24,6 +24,9 @@ class Strings:
             _arguments.text(name, word)
         self.words = list(places)
 
+    def __len__(self):
+        return len(self.index)
+
 
 def _unmasked(values, name):
     if np.ma.is_masked(values):

@@ -5,6 +5,7 @@ from __future__ import annotations
 
 import os
 import tempfile
+from collections.abc import Sequence
 from typing import Any, Literal
 
 import numpy as np
@@ -28,8 +29,9 @@ class Picture:
     (height, width), others (height, width, channels). picture["R"] and picture["N.X"] are single channels. Arrays remain valid after the picture is deleted.
     """
 
-    def __init__(self, native: Any) -> None:
+    def __init__(self, native: Any, notes: Sequence[str] = ()) -> None:
         self._native = native
+        self._notes = tuple(notes)
 
     def __repr__(self):
         return f"Picture({self.width} x {self.height}{''.join(', ' + layer for layer in self.layers)})"
@@ -48,6 +50,11 @@ class Picture:
     def layers(self) -> tuple[str, ...]:
         """Names of the layers other than the beauty."""
         return tuple(self._native.layers)
+
+    @property
+    def notes(self) -> tuple[str, ...]:
+        """What plot() chose from the data, and the reasons; empty for other pictures."""
+        return self._notes
 
     @property
     def beauty(self) -> NDArray[np.float32]:

@@ -1,0 +1,22 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "job/resources.h"
+#include "points/open_data.h"
+#include "view/viewer.h"
+
+namespace orrery::cli {
+
+/// Returns what `orrery view` shows for the options of `orrery plot`.
+///
+/// `words`      options and their values, as typed
+/// `open`       opens the data file; null: by its name
+/// Result       its job keeps `open`
+/// Errors       base::Error: those of plot::make_plot(); kUsage for words that are not options of `orrery view`
+view::Subject data_subject(const std::string& file, std::vector<std::string> words, const job::Resources& resources,
+                           const points::OpenData& open);
+
+}  // namespace orrery::cli

@@ -1,0 +1,167 @@
+# SPDX-License-Identifier: Apache-2.0
+"""plot(): particles from files, arrays, ASE and MDAnalysis, by the options of `orrery plot`."""
+
+from __future__ import annotations
+
+import warnings
+from collections.abc import Callable, Mapping
+from typing import Any
+
+import numpy as np
+
+from orrery import _arguments, _arrays, _keys, _orrery
+from orrery._errors import SceneWarning
+from orrery._picture import Picture
+from orrery._scene import Progress, _limit
+
+_REPEATED = ("select", "slice", "opacity")  # options that can be given several times
+_PER_PARTICLE = ("radius", "color_by", "opacity")  # options that arrays may replace
+
+
+def plot(
+    data: Any,
+    *,
+    columns: Mapping[str, Any] | None = None,
+    cell: Any = None,
+    threads: int | None = None,
+    memory_limit: int | None = None,
+    on_progress: Callable[[Progress], object] | None = None,
+    **options: Any,
+) -> Picture:
+    """Renders particles and returns a Picture, with the same bits as `orrery plot`.
+
+    data           a data file (docs/data.md); positions of shape (n, 3); a mapping of columns with x, y and z, such as
+                   Points; an ASE Atoms; or an MDAnalysis AtomGroup or Universe, in its current frame
+    columns        further columns by name, shape (n,): numbers or strings
+    cell           edges of the periodic simulation box by rows, shape (3, 3), or (3,) for a rectangular one; by default
+                   the box of the atoms or Points. box=True draws it
+    threads, memory_limit, on_progress   as for Scene.render()
+    options        of `orrery plot --help`, with underscores: color_by="type", style="night", width=960, noise=0.05,
+                   bonds=True, vectors=("vx", "vy", "vz"), range=(0, 5), select=["z > 0", "type == 1"],
+                   settings={"render.seed": 7}. radius, color_by and opacity may be arrays of shape (n,)
+
+    What was chosen from the data is in the picture's `notes`.
+    """
+    threads = 0 if threads is None else _arguments.whole("threads", threads, 1, 1024)
+    memory = int(_limit("memory_limit", memory_limit, 1, 2**63))
+    if on_progress is not None and not callable(on_progress):
+        raise TypeError(f"on_progress is {on_progress!r}; must be a function")
+    table, own_box = _table(data)
+    options = dict(options)
+    if table is None:
+        if columns is not None or cell is not None:
+            raise TypeError("a file has its own columns and box; to change them, pass read_points(file)")
+        source = _arguments.path("data", data)
+    else:
+        rows = len(next(iter(table.values())))
+        arrays = {name: values for name, values in options.items() if name in _PER_PARTICLE and np.ndim(values) == 1}
+        for name, values in {**(columns or {}), **arrays}.items():
+            if name in table:
+                raise ValueError(f"there is a column {name!r} already")
+            table[_arguments.text("a name in columns", name)] = _arrays.column(values, name, rows)
+        options.update({name: name for name in arrays})
+        source = (_arrays.native(table), own_box if cell is None else _cell(cell))
+
+    def report(*values):
+        on_progress(Progress(*values))
+
+    def warn(text):
+        warnings.warn(text.rstrip("\n"), SceneWarning, stacklevel=3)
+
+    native, notes = _orrery.plot(source, _words(options), threads, memory, report if on_progress else None, warn)
+    return Picture(native, notes)
+
+
+def _words(options):
+    """Returns the words of the command line."""
+    out = []
+    for name, value in options.items():
+        option = "--" + name.replace("_", "-")
+        if value is None or value is False:
+            continue
+        if name == "settings":
+            out += [f"--set={_arguments.text('a key', key)}={_keys.toml_text(v)}" for key, v in value.items()]
+        elif value is True:
+            out.append(option + "=auto" if name == "bonds" else option)
+        elif name in _REPEATED and isinstance(value, (list, tuple)):
+            out += [f"{option}={_word(name, v)}" for v in value]
+        elif isinstance(value, (list, tuple, np.ndarray)):
+            out.append(f"{option}={(':' if name == 'range' else ',').join(_word(name, v) for v in value)}")
+        else:
+            out.append(f"{option}={_word(name, value)}")
+    return out
+
+
+def _word(name, value):
+    if isinstance(value, str):
+        return _arguments.text(name, value)
+    if not _keys.is_number(value):
+        raise TypeError(f"{name} is {value!r}; must be a number, a str, or a sequence of them")
+    return repr(value.item() if isinstance(value, np.number) else value)
+
+
+def _table(data):
+    """Returns the columns of some particles and their box; None and None for the name of a file."""
+    if hasattr(data, "get_chemical_symbols"):
+        return _ase(data)
+    if hasattr(data, "atoms") and hasattr(data, "universe"):
+        return _mdanalysis(data.atoms)
+    if isinstance(data, Mapping):
+        lengths = {name: len(values) for name, values in data.items()}
+        rows = next(iter(lengths.values()), 0)
+        table = {name: _arrays.column(values, name, rows) for name, values in data.items()}
+        return table, getattr(data, "box", None) and _periodic_box(*data.box)
+    if isinstance(data, (np.ndarray, list, tuple)):
+        return dict(zip("xyz", _arrays.positions(data).T)), None
+    return None, None
+
+
+def _ase(atoms):
+    """The columns of an ASE Atoms: element, and its arrays of numbers; vectors as the extended XYZ file has them."""
+    table = dict(zip("xyz", _arrays.positions(atoms.get_positions()).T))
+    rows = len(atoms)
+    table["element"] = _arrays.column(atoms.get_chemical_symbols(), "element", rows)
+    for name, values in atoms.arrays.items():
+        if name in ("positions", "numbers"):
+            continue
+        if np.ndim(values) == 1:
+            table.setdefault(name, _arrays.column(values, name, rows))
+        elif np.shape(values) == (rows, 3) and np.asarray(values).dtype.kind in "fiu":
+            parts = zip(("_x", "_y", "_z"), _arrays.numbers(values, name).T)
+            table.update({name + axis: part for axis, part in parts})
+    if atoms.has("momenta"):
+        table.update(zip(("vx", "vy", "vz"), _arrays.positions(atoms.get_velocities()).T))
+    cell = np.array(atoms.cell, dtype=float)
+    box = _periodic_box(np.zeros(3), cell, atoms.pbc) if abs(np.linalg.det(cell)) > 0 else None
+    return table, box
+
+
+def _mdanalysis(group):
+    """The columns of an MDAnalysis AtomGroup, in its current frame."""
+    table = dict(zip("xyz", _arrays.positions(group.positions).T))
+    attributes = {
+        "element": "elements", "name": "names", "type": "types", "residue": "resnames", "residue_number": "resids",
+        "chain": "segids", "charge": "charges", "mass": "masses", "id": "ids",
+    }  # fmt: skip
+    for name, attribute in attributes.items():
+        values = getattr(group, attribute, None)  # a topology has some of them
+        if values is not None and np.shape(values) == (len(group),):
+            table[name] = _arrays.column(values, name, len(group))
+    timestep = group.universe.trajectory.ts
+    if getattr(timestep, "has_velocities", False):
+        table.update(zip(("vx", "vy", "vz"), _arrays.positions(group.velocities).T))
+    edges = timestep.triclinic_dimensions if timestep.dimensions is not None else None
+    return table, None if edges is None or not np.linalg.det(edges) > 0 else _periodic_box(np.zeros(3), edges)
+
+
+def _cell(edges):
+    array = np.asarray(edges, dtype=float)
+    if array.shape == (3,):
+        array = np.diag(array)
+    if array.shape != (3, 3) or not np.isfinite(array).all():
+        raise ValueError(f"cell must be finite numbers of shape (3, 3) or (3,), not {edges!r}")
+    return _periodic_box(np.zeros(3), array)
+
+
+def _periodic_box(origin, edges, periodic=(True, True, True)):
+    return [float(x) for x in origin], [[float(x) for x in edge] for edge in edges], [bool(p) for p in periodic]
