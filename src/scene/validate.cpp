@@ -265,8 +265,11 @@ void check_rods(const Scene& scene, DiagnosticList& diagnostics) {
   }
 }
 
+/// Checks the rods of bonds and arrows.
 void check_bonds(const Points& points, const std::string& key, const Scene& scene, DiagnosticList& diagnostics) {
-  if (!points.bonds.are_drawn) return;
+  const bool are_bonds = points.bonds.are_drawn;
+  if (!are_bonds && points.vectors.columns.empty()) return;
+  const std::string part = key + (are_bonds ? ".bonds" : ".vectors");
   if (points.bonds.material) {
     if (const std::string fault = rod_material_fault(*points.bonds.material, scene); !fault.empty())
       diagnostics.error(key + ".bonds.material", fault);
@@ -279,13 +282,14 @@ void check_bonds(const Points& points, const std::string& key, const Scene& scen
     for (const std::uint32_t material : points.materials) use(material);
     for (std::size_t m = 0; m < is_used.size(); ++m)
       if (is_used[m] && std::holds_alternative<Dielectric>(scene.materials[m].model))
-        diagnostics.error(key + ".bonds", fmt::format("rods are opaque, but have the material of their spheres, {}, "
-                                                      "which is a dielectric; set `bonds.material`",
-                                                      string_text(scene.materials[m].name)));
+        diagnostics.error(part, fmt::format("{} are opaque, but have the material of their spheres, {}, which is a "
+                                            "dielectric; {}",
+                                            are_bonds ? "bonds" : "arrows", string_text(scene.materials[m].name),
+                                            are_bonds ? "set `bonds.material`" : "use another material"));
   }
   if (points.bond_count() == 0) return;
   if (const std::string fault = rod_radius_fault(points.bond_radius, scene.render.precision); !fault.empty())
-    diagnostics.error(key + ".bonds.radius", fault);
+    diagnostics.error(part + ".radius", fault);
   for (const BondStub& stub : points.bond_stubs)
     if (!in_domain(stub.end))
       return diagnostics.error(key + ".bonds", fmt::format("the middle of a bond, {}, is not finite or exceeds {}",
