@@ -25,6 +25,7 @@ inline double display_error_squared(double squares, double light) noexcept {
 struct HalvesEstimate {
   double light = 0;
   double variance = 0;  ///< expected squared error of `light`; 0 if a half has no samples
+  double color = 1;     ///< mean square of the channels over the square of their mean: 1 if grey, 3 if only one is lit
 };
 
 HalvesEstimate compare_halves(const kernel::PixelSum& a, const kernel::PixelSum& b) noexcept;

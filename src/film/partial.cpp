@@ -15,6 +15,11 @@ RenderWork& RenderWork::operator+=(const RenderWork& other) {
   return *this;
 }
 
+void Partial::add_second_half() {
+  second = Film(film.width(), film.height());
+  largest.resize(pixel_count());
+}
+
 void Partial::add(const Partial& other) {
   film.add(other.film);
   layers.resize(std::max(layers.size(), other.layers.size()));

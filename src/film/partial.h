@@ -33,6 +33,9 @@ struct Partial {
   /// The sums are those of adaptive sampling.
   bool is_adaptive() const { return second.pixel_count() > 0; }
 
+  /// Prepares for adaptive sampling.
+  void add_second_half();
+
   /// Adds the samples of another shard of the same size.
   ///
   /// Domain     without adaptive sampling
@@ -51,8 +54,10 @@ struct Partial {
   /// Writes the mean of a pixel's samples, R, G and B; 0 without samples. These are the bits of the finished image.
   void mean(int x, int y, float* rgb) const;
 
-  Film film;                          ///< sample sums; those of the first half in adaptive sampling
-  Film second{0, 0};                  ///< sample sums of the second half in adaptive sampling; else without pixels
+  Film film;          ///< sample sums; those of the first half in adaptive sampling
+  Film second{0, 0};  ///< sample sums of the second half in adaptive sampling; else without pixels
+  /// Largest sample of each pixel in both halves, absolute value of the sum of the channels; else empty.
+  std::vector<float> largest;
   std::vector<std::uint32_t> counts;  ///< samples per pixel, row by row; with two halves, samples per half
   /// Target sample count of each pixel in the current pass; empty if it is the same for all.
   std::vector<std::uint32_t> goals;

@@ -18,10 +18,11 @@ namespace {
 
 using kernel::Int128;
 
-constexpr std::uint32_t kFormat = 5;
+constexpr std::uint32_t kFormat = 6;
 
 enum Flag : std::uint32_t { kHasSecond = 1, kHasGoals = 2, kHasLayers = 4, kHasHalves = 8, kAllFlags = 15 };
 
+std::uint32_t bits(float v) { return std::bit_cast<std::uint32_t>(v); }
 std::uint64_t bits(std::uint64_t v) { return v; }
 std::uint64_t bits(std::int64_t v) { return static_cast<std::uint64_t>(v); }
 std::uint64_t bits(double v) { return std::bit_cast<std::uint64_t>(v); }
@@ -65,6 +66,7 @@ class Writer {
 
  private:
   static std::uint32_t word(std::uint32_t v, int) { return v; }
+  static std::uint32_t word(float v, int) { return bits(v); }
   template <class T>
   static std::uint32_t word(const T& v, int w) {
     if constexpr (sizeof(T) == sizeof(Int128)) {
@@ -124,7 +126,7 @@ class Reader {
   template <class T>
   static T joined(const std::uint32_t* words) {
     if constexpr (sizeof(T) == sizeof(std::uint32_t)) {
-      return words[0];
+      return std::bit_cast<T>(words[0]);
     } else if constexpr (sizeof(T) == sizeof(Int128)) {
       __extension__ using Unsigned = unsigned __int128;
       Unsigned v = 0;
@@ -234,7 +236,10 @@ const auto itself = [](auto& v) -> auto& { return v; };
 template <class Io, class P>
 void each_pixel_number(Io& io, P& partial) {
   each_sum(io, partial.film.sums());
-  if (partial.is_adaptive()) each_sum(io, partial.second.sums());
+  if (partial.is_adaptive()) {
+    each_sum(io, partial.second.sums());
+    io.numbers(partial.largest, itself);
+  }
   io.numbers(partial.counts, itself);
   if (!partial.goals.empty()) io.numbers(partial.goals, itself);
   if (!partial.layers.empty()) each_layer_number(io, partial.layers);
@@ -324,12 +329,15 @@ Partial from_words(const std::vector<std::uint32_t>& words, int width_px, int he
                                                      " pixels, not " + std::to_string(width_px) + " x " +
                                                      std::to_string(height_px));
   Partial partial(width_px, height_px);
-  if ((flags & kHasSecond) != 0) partial.second = Film(width_px, height_px);
+  if ((flags & kHasSecond) != 0) partial.add_second_half();
   if ((flags & kHasGoals) != 0) partial.goals.resize(partial.pixel_count());
   if ((flags & kHasLayers) != 0) partial.layers.resize(partial.pixel_count());
   if ((flags & kHasHalves) != 0) partial.halves.resize(partial.pixel_count());
   each_effort(in, partial.work);
   each_pixel_number(in, partial);
+  const auto is_valid = [](float v) { return v >= 0 && v <= 3 * static_cast<float>(kernel::kLargestSample); };
+  if (!std::all_of(partial.largest.begin(), partial.largest.end(), is_valid))
+    throw base::Error(base::ErrorKind::kBadData, kInconsistent);
   if (!partial.layers.empty()) read_light(in, partial.layers);
   if (!partial.layers.empty()) read_shares(in, partial);
   return partial;

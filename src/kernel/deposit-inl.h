@@ -9,6 +9,8 @@
 
 #include <hwy/highway.h>
 
+#include <algorithm>
+
 #include "kernel/compaction-inl.h"
 #include "kernel/path_stream.h"
 #include "kernel/record-inl.h"
@@ -17,10 +19,27 @@
 HWY_BEFORE_NAMESPACE();
 namespace orrery::kernel::HWY_NAMESPACE {
 
-/// The sum of a pixel of the tile.
-HWY_INLINE PixelSum& sum_of(std::uint64_t pixel, const SceneView& scene, const Tile& tile) {
+/// The index of a pixel of the tile among its sums.
+HWY_INLINE std::int64_t index_of(std::uint64_t pixel, const SceneView& scene, const Tile& tile) {
   const PixelPlace at = place_of(pixel, scene);
-  return tile.sums[(at.y - tile.y) * tile.row_stride + (at.x - tile.x)];
+  return (at.y - tile.y) * tile.row_stride + (at.x - tile.x);
+}
+HWY_INLINE PixelSum& sum_of(std::uint64_t pixel, const SceneView& scene, const Tile& tile) {
+  return tile.sums[index_of(pixel, scene, tile)];
+}
+
+/// Raises the largest samples of the pixels of finished paths. Bad samples do not count.
+template <class D>
+HWY_INLINE void raise_largest(D d, hn::Mask<D> lanes, const Vec3<hn::Vec<D>>& light, const hn::TFromD<IdTag<D>>* pixel,
+                              const SceneView& scene, const Tile& tile) {
+  const auto is_valid = [&](hn::Vec<D> v) { return hn::Abs(v) <= set(d, kLargestSample); };
+  const auto valid = hn::And(hn::And(is_valid(light.x), is_valid(light.y)), is_valid(light.z));
+  HWY_ALIGN hn::TFromD<D> value[hn::MaxLanes(D())];
+  hn::Store(hn::Abs(light.x + light.y + light.z), d, value);
+  each_lane(d, hn::And(lanes, valid), [&](int i) {
+    float& largest = tile.largest[index_of(pixel[i], scene, tile)];
+    largest = std::max(largest, static_cast<float>(value[i]));
+  });
 }
 
 /// Converts to units of 2^-60, like to_fixed_point().
@@ -44,6 +63,7 @@ HWY_INLINE void deposit(D d, hn::Mask<D> lanes, const Vec3<hn::Vec<D>>& light, h
   using T = hn::TFromD<D>;
   HWY_ALIGN hn::TFromD<IdTag<D>> pixel[hn::MaxLanes(D())];
   hn::Store(pixels, IdTag<D>(), pixel);
+  if (tile.largest != nullptr) raise_largest(d, lanes, light, pixel, scene, tile);
   // Other instruction sets convert lanes one by one.
   if constexpr (HWY_TARGET <= HWY_AVX3 && hn::MaxLanes(D()) > 1) {
     // Compared one by one, since the maximum of a NaN and a number may be the number.

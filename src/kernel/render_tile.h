@@ -14,7 +14,9 @@ struct Tile {
   int x = 0, y = 0;  ///< px, upper left corner, within the rendered window
   int width = 0, height = 0;
   std::uint32_t sample_begin = 0, sample_end = 0;
-  PixelSum* sums = nullptr;            ///< sum of the upper left pixel
+  PixelSum* sums = nullptr;  ///< sum of the upper left pixel
+  /// The pixels' largest samples (absolute value of the sum of the channels), laid out like the sums; null: not needed.
+  float* largest = nullptr;
   std::int64_t row_stride = 0;         ///< distance from a pixel's sum to that of the pixel below, elements
   const PixelPlace* chosen = nullptr;  ///< the pixels to render, relative to the upper left one; null: all
   int chosen_count = 0;

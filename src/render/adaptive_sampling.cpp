@@ -8,11 +8,9 @@
 #include <vector>
 
 #include "compile/compiled_scene.h"
-#include "film/display_error.h"
 #include "film/partial.h"
 #include "render/allocation.h"
-#include "render/noise_estimate.h"
-#include "render/pixel_statistics.h"
+#include "render/pixel_noise.h"
 #include "render/progressive_sampling.h"
 #include "render/result.h"
 #include "render/settings.h"
@@ -59,7 +57,7 @@ class AdaptiveSampling {
     if (settings.layers.coverage) pixels_.known_black.resize(pixels_.samples.size());
     kernel::SceneView view = compiled.view();
     if (settings.layers.coverage) view.background_visible = false;
-    pixels_.small_emitters = find_small_emitters(view, compiled.width, compiled.height);
+    pixels_.emitters = find_small_emitters(view, compiled.width, compiled.height);
     for (int y = 0; y < compiled.height; ++y)
       for (int x = 0; x < compiled.width; ++x) update(x, y);
   }
@@ -87,7 +85,7 @@ class AdaptiveSampling {
       goal.error_ratio = settings_.sampling.noise > 0 ? (upper > wanted ? wanted / upper : 1) : 0.5;
       goal.max_per_pixel = max_samples_;
       goal.affordable = affordable(kShareOfTime);
-      const std::vector<float> errors = errors_of_one_sample(pixels_, noise_, pool_);
+      const std::vector<float> errors = errors_of_one_sample(pixels_, pool_);
       PixelSelection selection = choose_pixels(pixels_.samples, errors, unreliable.of_pixel, goal);
       if (!selection.any && settings_.sampling.seconds > 0) {
         goal.affordable = affordable(1);
@@ -160,10 +158,7 @@ class AdaptiveSampling {
 
   void update(int x, int y) {
     const std::size_t i = pixels_.at(x, y);
-    const film::HalvesEstimate halves = film::compare_halves(*state_.film.at(x, y), *state_.second.at(x, y));
-    pixels_.samples[i] = state_.counts[i];
-    pixels_.light[i] = static_cast<float>(std::max(halves.light, 0.0));
-    pixels_.variance[i] = static_cast<float>(halves.variance);
+    pixels_.set(i, state_.counts[i], *state_.film.at(x, y), *state_.second.at(x, y), state_.largest[i]);
     // With a transparent background, pixels in which no path hits a sphere are black.
     if (settings_.layers.coverage) pixels_.known_black[i] = state_.layers[i].covered == 0 ? 1 : 0;
   }

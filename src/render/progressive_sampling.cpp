@@ -143,6 +143,7 @@ void ProgressiveSampling::render_square(int x0, int y0, int side, const OnPixel&
       tile.sample_begin = first + group.have;
       tile.sample_end = first + group.want;
       tile.sums = film.at(x0, y0);
+      tile.largest = state_.is_adaptive() ? &state_.largest[at({0, 0})] : nullptr;
       render_tile_(tile, worker, state_);
       progress_.add(tile.path_count());
     };

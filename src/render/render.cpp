@@ -58,7 +58,7 @@ void report_pixels(const Settings& settings, const film::Partial& state) {
 /// The state of a render that has not begun.
 film::Partial fresh_state(const compile::CompiledScene& compiled, const Settings& settings) {
   film::Partial state(compiled.width, compiled.height);
-  if (settings.sampling.is_adaptive()) state.second = film::Film(compiled.width, compiled.height);
+  if (settings.sampling.is_adaptive()) state.add_second_half();
   if (settings.layers.records()) state.layers.resize(state.pixel_count());
   if (settings.layers.guides()) state.halves.resize(state.pixel_count());
   return state;

@@ -4,12 +4,11 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
-#include <cstdint>
 #include <numbers>
 #include <optional>
 #include <utility>
+#include <vector>
 
-#include "film/display_error.h"
 #include "kernel/scene_view.h"
 #include "math/vec3.h"
 
@@ -22,15 +21,6 @@ using math::vector_of;
 /// Side of the largest image of a small emitter, px, without the pixel filter. Larger ones are found through the
 /// neighbours.
 constexpr int kLargestSide = 3;
-
-/// Expected number of hits in each half before a pixel's error is trusted.
-constexpr double kExpectedHits = 4;
-/// Light below this fraction of that around the pixel is ignored.
-constexpr float kMinFraction = 1.0f / 8;
-/// Minimum coverage assumed in the error of a sample, so that few samples are wasted on occluded emitters.
-constexpr float kMinCoverage = 1.0f / 32;
-/// Half-width of the window around a pixel, px.
-constexpr int kWindowReach = 3;
 
 /// The distance of the sun of a daylight sky, in distances to the focus plane. The result does not depend on it as long
 /// as it is large.
@@ -115,24 +105,6 @@ class Coverage {
 
 double mean_of(Vec3d rgb) { return (rgb.x + rgb.y + rgb.z) / 3; }
 
-/// The fraction of a pixel's radiance that comes from small emitters if the rest is as bright as its neighbours of
-/// other classes; 0 if it is negligible.
-float fraction_of_emitters(const PixelStatistics& s, int x, int y) {
-  if (!s.has_small_emitters(s.at(x, y))) return 0;
-  const float own = s.small_emitters[s.at(x, y)].light;
-  double light = 0;
-  int count = 0;
-  for (int v = std::max(y - kWindowReach, 0); v <= std::min(y + kWindowReach, s.height - 1); ++v) {
-    for (int u = std::max(x - kWindowReach, 0); u <= std::min(x + kWindowReach, s.width - 1); ++u) {
-      if (class_of(u, v) == class_of(x, y)) continue;
-      light += static_cast<double>(s.light[s.at(u, v)]);
-      ++count;
-    }
-  }
-  const auto around = static_cast<float>(std::max(count > 0 ? light / count : 0, film::kDarkestLight));
-  return own < kMinFraction * around ? 0 : own / (own + around);
-}
-
 }  // namespace
 
 std::vector<EmitterCoverage> find_small_emitters(const kernel::SceneView& scene, int width_px, int height_px) {
@@ -155,20 +127,6 @@ std::vector<EmitterCoverage> find_small_emitters(const kernel::SceneView& scene,
     coverage.add(image(opening), image(closing), mean_of(sky->sun_radiance));
   }
   return coverage.take();
-}
-
-bool needs_samples_for_emitters(const PixelStatistics& s, int x, int y) {
-  const std::uint32_t n = s.samples[s.at(x, y)];
-  if (n >= kSamplesForReliability || fraction_of_emitters(s, x, y) == 0) return false;
-  return n * static_cast<double>(s.small_emitters[s.at(x, y)].coverage) < kExpectedHits;
-}
-
-float error_of_small_emitters(const PixelStatistics& s, int x, int y) {
-  const float share = fraction_of_emitters(s, x, y);
-  if (share == 0) return 0;
-  // Hits are 1 with the probability of the coverage, and display errors half the relative errors of radiance.
-  const float coverage = std::max(s.small_emitters[s.at(x, y)].coverage, kMinCoverage);
-  return share * share * std::max(1 / coverage - 1, 0.0f) / 4;
 }
 
 }  // namespace orrery::render

@@ -166,6 +166,10 @@ void TileRenderer::attach_buffers(kernel::Tile& tile, TileWorker& worker) const 
     worker.light.assign(pixels, {});
     worker.guides.assign(pixels, {});
     tile.sums = worker.light.data();
+    if (tile.largest != nullptr) {
+      worker.largest.assign(pixels, 0);
+      tile.largest = worker.largest.data();
+    }
     tile.guides = worker.guides.data();
     tile.row_stride = tile.width;
   }
@@ -185,7 +189,9 @@ void TileRenderer::add_half(const kernel::Tile& tile, const kernel::Tile& part, 
   for (int i = 0; i < tile.pixel_count(); ++i) {
     const kernel::PixelPlace at = tile.pixel(i);
     const auto within = static_cast<std::size_t>(at.y * tile.width + at.x);
-    tile.sums[at.y * tile.row_stride + at.x] += worker.light[within];
+    const auto index = at.y * tile.row_stride + at.x;
+    tile.sums[index] += worker.light[within];
+    if (tile.largest != nullptr) tile.largest[index] = std::max(tile.largest[index], worker.largest[within]);
     image.halves[index_of(image, tile, at)][half] += {worker.light[within], worker.guides[within]};
   }
 }

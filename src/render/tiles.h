@@ -40,6 +40,7 @@ struct TileWorker {
   accel::ThreadTraversals traversals;
   std::vector<kernel::PathRecord> records;
   std::vector<kernel::PixelSum> light;   ///< sums of a tile's pixels
+  std::vector<float> largest;            ///< largest samples of a tile's pixels
   std::vector<kernel::GuideSum> guides;  ///< guides of a tile's pixels
   LightEventBuffer events;
   kernel::TileCounts counts;

@@ -1,10 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <algorithm>
 #include <cstdint>
 #include <random>
 
-#include "render/light_guide.h"
+#include "kernel/pixel_sum.h"
+#include "render/pixel_noise.h"
 
 namespace orrery::test {
 
@@ -16,14 +18,17 @@ render::PixelStatistics statistics_of(int width, int height, std::uint32_t sampl
   std::mt19937 random(seed);
   for (int y = 0; y < height; ++y) {
     for (int x = 0; x < width; ++x) {
-      double halves[2] = {0, 0};
-      for (double& half : halves)
-        for (std::uint32_t k = 0; k < samples; ++k)
-          half += static_cast<double>(light(x, y, static_cast<double>(random()) * 0x1p-32)) / samples;
-      const std::size_t i = s.at(x, y);
-      s.samples[i] = samples;
-      s.light[i] = static_cast<float>((halves[0] + halves[1]) / 2);
-      s.variance[i] = static_cast<float>((halves[0] - halves[1]) * (halves[0] - halves[1]) / 4);
+      kernel::PixelSum halves[2];
+      float largest = 0;
+      for (kernel::PixelSum& half : halves) {
+        half.weight = samples;
+        for (std::uint32_t k = 0; k < samples; ++k) {
+          const auto value = static_cast<double>(light(x, y, static_cast<double>(random()) * 0x1p-32));
+          for (auto& channel : half.rgb) channel += kernel::to_fixed_point(value);
+          largest = std::max(largest, static_cast<float>(3 * value));
+        }
+      }
+      s.set(s.at(x, y), samples, halves[0], halves[1], largest);
     }
   }
   return s;

@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <cstring>
+#include <limits>
 #include <random>
 
 #include "base/error.h"
@@ -24,7 +25,8 @@ Partial full_partial(bool is_adaptive, bool goals, bool layers, bool halves, std
     for (kernel::PixelSum& s : film.sums()) s = {{large(), -large(), large()}, number()};
   };
   fill(p.film);
-  if (is_adaptive) p.second = Film(5, 3);
+  if (is_adaptive) p.add_second_half();
+  for (float& v : p.largest) v = static_cast<float>(random() % 1000) / 7;
   fill(p.second);
   for (std::uint32_t& n : p.counts) n = static_cast<std::uint32_t>(random());
   if (goals)
@@ -64,6 +66,7 @@ TEST(FilmPartialWords, RoundTrip) {
     EXPECT_EQ(q.film.height(), 3);
     EXPECT_EQ(q.counts, p.counts);
     EXPECT_EQ(q.goals, p.goals);
+    EXPECT_EQ(q.largest, p.largest);
     EXPECT_EQ(q.is_adaptive(), p.is_adaptive());
     EXPECT_TRUE(q.film.sums()[7].rgb[1] == p.film.sums()[7].rgb[1]);
     EXPECT_EQ(q.work.seconds, 12.625);
@@ -115,6 +118,14 @@ TEST(FilmPartialWords, ConstantPlanesAreStoredAsOneWord) {
   empty.halves.resize(empty.pixel_count());
   EXPECT_LT(to_words(empty).size(), 1000u);
   EXPECT_EQ(to_words(from_words(to_words(empty), 500, 400)), to_words(empty));
+}
+
+TEST(FilmPartialWords, InvalidLargestSamplesAreRefused) {
+  for (const float bad : {-1.0f, std::numeric_limits<float>::quiet_NaN(), std::numeric_limits<float>::infinity()}) {
+    Partial p = full_partial(true, false, false, false);
+    p.largest[7] = bad;
+    EXPECT_THROW(from_words(to_words(p), 5, 3), base::Error) << bad;
+  }
 }
 
 TEST(FilmPartialWords, DamagedWordsAreRefusedOrRead) {

@@ -303,8 +303,7 @@ TEST_F(JobRun, RejectsACheckpointWithOtherSumsThanItsHeaderSays) {
   const image::PartialFile right = image::read_partial(checkpoint, 200, 100);
   const std::vector<std::function<void(film::Partial&)>> changes = {
       [](film::Partial& sums) { sums.layers.clear(); }, [](film::Partial& sums) { sums.halves.clear(); },
-      [](film::Partial& sums) { sums.second = film::Film(200, 100); },
-      [](film::Partial& sums) { sums.layers[5].sphere = 1; }};
+      [](film::Partial& sums) { sums.add_second_half(); }, [](film::Partial& sums) { sums.layers[5].sphere = 1; }};
   film::Picture preview = right.partial.film.picture();
   preview.frame_width = 200;
   preview.frame_height = 100;

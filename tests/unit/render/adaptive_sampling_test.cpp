@@ -157,7 +157,7 @@ TEST(RenderAdaptiveSampling, RareLightIsNotMistakenForBlack) {
       EXPECT_LT(*r.statistics.expected_noise, *r.statistics.noise);
       const double error = error_of(r.picture, truth);
       EXPECT_LT(error, 1.1 * 0.3) << seed;
-      EXPECT_GT(error, 0.7 * 0.3) << seed;
+      EXPECT_GT(error, 0.5 * 0.3) << seed;
     }
   }
 }
@@ -193,7 +193,7 @@ TEST(RenderAdaptiveSampling, TransparentBackgroundIsKnownToBeBlack) {
   const Result r = render(compile::compile(s), settings);
   EXPECT_EQ(r.statistics.ended_by, "noise");
   EXPECT_EQ(r.statistics.min_samples, 16u);
-  EXPECT_LT(r.statistics.paths, 30u * 600u);  // a thousand per pixel if black needed evidence
+  EXPECT_LT(r.statistics.paths, 100u * 600u);  // a thousand per pixel if black needed evidence
 }
 
 TEST(RenderAdaptiveSampling, ImagesOfFewPixelsFinish) {

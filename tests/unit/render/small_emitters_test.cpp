@@ -10,7 +10,6 @@
 #include <vector>
 
 #include "compile/compile.h"
-#include "render/noise_estimate.h"
 #include "render/render.h"
 #include "support/lit_scenes.h"
 
@@ -114,43 +113,6 @@ TEST(RenderSmallEmitters, TheSunOfASkyIsASmallEmitter) {
   expect_where_rendered(s, "sun");
   s.background.visible = false;
   EXPECT_TRUE(find(compile::compile(s)).empty());
-}
-
-/// Pixels that are lit without noise, with an emitter of a fiftieth of the middle one.
-PixelStatistics with_emitter(std::uint32_t samples, float light) {
-  PixelStatistics s(15, 15);
-  std::fill(s.samples.begin(), s.samples.end(), samples);
-  std::fill(s.light.begin(), s.light.end(), 1.0f);
-  s.small_emitters.resize(s.samples.size());
-  s.small_emitters[s.at(7, 7)] = {0.02f, light};
-  return s;
-}
-
-TEST(RenderSmallEmitters, NeedSeveralExpectedHits) {
-  EXPECT_TRUE(needs_samples_for_emitters(with_emitter(8, 10), 7, 7));
-  EXPECT_TRUE(needs_samples_for_emitters(with_emitter(128, 10), 7, 7));
-  EXPECT_FALSE(needs_samples_for_emitters(with_emitter(256, 10), 7, 7));
-  EXPECT_FALSE(needs_samples_for_emitters(with_emitter(8, 10), 6, 7));
-  EXPECT_FALSE(needs_samples_for_emitters(with_emitter(8, 0.1f), 7, 7)) << "negligible light";
-  PixelStatistics tiny = with_emitter(511, 10);
-  tiny.small_emitters[tiny.at(7, 7)].coverage = 1e-5f;
-  EXPECT_TRUE(needs_samples_for_emitters(tiny, 7, 7));
-  std::fill(tiny.samples.begin(), tiny.samples.end(), kSamplesForReliability);
-  EXPECT_FALSE(needs_samples_for_emitters(tiny, 7, 7));
-  TilePool pool(1);
-  EXPECT_EQ(find_unreliable_pixels(with_emitter(8, 10), pool).count, 1u);
-}
-
-TEST(RenderSmallEmitters, RaiseTheErrorOfAPixelRegardlessOfItsOwnValues) {
-  TilePool pool(1);
-  PixelStatistics s = with_emitter(256, 10);
-  const auto error = [&] { return errors_of_one_sample(s, estimate_noise(s, pool), pool)[s.at(7, 7)]; };
-  const float expected = (10.0f / 11) * (10.0f / 11) * 31 / 4;  // of a coverage of 1/32
-  EXPECT_NEAR(error(), expected, 1e-3f);
-  s.light[s.at(7, 7)] = 40;
-  EXPECT_NEAR(error(), expected, 1e-3f);
-  s.small_emitters[s.at(7, 7)].coverage = 0.5f;
-  EXPECT_NEAR(error(), (10.0f / 11) * (10.0f / 11) / 4, 1e-3f);
 }
 
 /// A lamp of a hundredth of a pixel before a bright sky: nothing but the lamp has noise, and 16 samples rarely hit it.

@@ -1,0 +1,181 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "noise_scenes.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+#include <memory>
+#include <random>
+
+#include "scene/environment_image.h"
+#include "support/lit_scenes.h"
+#include "support/room.h"
+
+namespace orrery::bench {
+namespace {
+
+using math::Vec3d;
+
+/// Uniform random numbers in 0..1, the same with every library.
+class Numbers {
+ public:
+  explicit Numbers(unsigned seed) : engine_(seed) {}
+  double operator()() { return static_cast<double>(engine_()) * 0x1p-32; }
+  double operator()(double low, double high) { return low + (high - low) * (*this)(); }
+
+ private:
+  std::mt19937 engine_;
+};
+
+scene::Scene stage() { return test::dark_stage(64, 36); }
+
+/// A dim room with a mirror ball between camera and wall. The ball reflects the gaps behind the camera as small bright
+/// spots, each in one pixel of some hundreds.
+NoiseScene room_with_mirror() {
+  scene::Scene s = test::room(3.7, 5, 64, 36);
+  s.materials.push_back({"mirror", scene::Metal{{0.9, 0.9, 0.9}, 0}});
+  s.spheres.push_back({{0.15, 0.1, -0.7}, 0.3, 1, ""});
+  return {s};
+}
+
+/// Lamps of equal power far behind the focus plane of a wide lens, above a lit floor.
+NoiseScene bokeh(int count, double radius) {
+  scene::Scene s = stage();
+  s.background.color = {0.02, 0.02, 0.03};
+  s.camera.defocus_angle = 4;
+  s.camera.focus_distance = 6;
+  test::add_lamp(s, {2, 5, 3}, 0.5, {8, 8, 8});
+  Numbers number(5);
+  for (int i = 0; i < count; ++i) {
+    const double x = count == 1 ? 2 : number(-18, 18), y = count == 1 ? 4 : number(1, 9);
+    const double light = 40 / (radius * radius);
+    test::add_lamp(s, {x, y, -30}, radius, {light, 0.8 * light, 0.5 * light});
+  }
+  return {s};
+}
+
+/// Small lamps that move while the shutter is open.
+NoiseScene moving_lamps() {
+  scene::Scene s = stage();
+  s.background.color = {0.05, 0.05, 0.06};
+  Numbers number(7);
+  for (int i = 0; i < 8; ++i) test::add_lamp(s, {number(-4, 4), number(0.5, 3), -4}, 0.03, {400, 300, 200});
+  scene::Scene closing = s;
+  for (std::size_t i = 2; i < closing.spheres.size(); ++i) {
+    closing.spheres[i].center.x += number(-2, 2);
+    closing.spheres[i].center.y += number(-0.5, 0.5);
+  }
+  return {s, closing};
+}
+
+/// Distant lamps, each a small fraction of a pixel, before a dim sky.
+NoiseScene stars() {
+  scene::Scene s;
+  s.camera.vfov = 50;
+  s.background.type = scene::BackgroundType::kConstant;
+  s.background.color = {0.02, 0.03, 0.05};
+  Numbers number(3);
+  for (int i = 0; i < 60; ++i)
+    test::add_lamp(s, {number(-90, 90), number(-50, 50), -100}, number(0.05, 0.3), {300, 300, 250});
+  return {s};
+}
+
+/// Glass balls inside each other above a lamp.
+NoiseScene glass_stack() {
+  scene::Scene s = stage();
+  s.background.color = {0.02, 0.02, 0.02};
+  s.spheres.pop_back();
+  test::add_lamp(s, {0, 0.4, -0.5}, 0.05, {200, 200, 200});
+  test::add_ball(s, {0, 1.2, 0}, 1, scene::Dielectric{1.5, scene::Fresnel::kExact});
+  test::add_ball(s, {0, 1.2, 0}, 0.8, scene::Dielectric{1 / 1.5, scene::Fresnel::kExact});
+  test::add_ball(s, {0, 1.2, 0}, 0.5, scene::Dielectric{1.5, scene::Fresnel::kExact});
+  return {s};
+}
+
+/// A dark floor that only glass lights: all fireflies are equally bright, since the lamp has one radiance.
+NoiseScene equal_fireflies() {
+  scene::Scene s = stage();
+  s.render.direct_lighting = scene::DirectLighting::kBsdf;
+  test::add_lamp(s, {-3, 4, -2}, 0.15, {500, 500, 500});
+  test::add_ball(s, {1.6, 0.6, 0.5}, 0.6, scene::Dielectric{1.5});
+  return {s};
+}
+
+/// Few bright texels in an environment that the camera sees.
+NoiseScene bright_texels(int width, float light) {
+  scene::Scene s = stage();
+  s.background.type = scene::BackgroundType::kImage;
+  const auto map = std::make_shared<scene::EnvironmentImage>(width, width / 2);
+  Numbers number(11);
+  for (int y = 0; y < map->height(); ++y)
+    std::fill_n(map->row(y), 3 * map->width(), y < map->height() / 2 ? 0.3f : 0.1f);
+  for (int i = 0; i < 12; ++i) {
+    const auto x = static_cast<int>(number(0.4, 0.6) * width), y = static_cast<int>(number(0.40, 0.5) * width / 2);
+    for (int c = 0; c < 3; ++c) map->row(y)[3 * x + c] = light;
+  }
+  s.background.image = map;
+  return {s};
+}
+
+/// A lit stage, in one corner of which a lamp behind glass adds rare light.
+NoiseScene rare_patch() {
+  scene::Scene s = stage();
+  s.background.color = {0.6, 0.7, 0.8};
+  test::add_lamp(s, {2.2, 0.5, 0.6}, 0.02, {30000, 30000, 20000});
+  test::add_ball(s, {2.2, 0.5, 0.6}, 0.2, scene::Dielectric{1.5});
+  return {s};
+}
+
+/// A bulb: a lamp in hollow glass.
+NoiseScene bulb() {
+  scene::Scene s = stage();
+  test::add_lamp(s, {1.5, 1.6, 1}, 0.1, {60, 50, 40});
+  test::add_ball(s, {1.5, 1.6, 1}, 0.3, scene::Dielectric{1.5});
+  test::add_ball(s, {1.5, 1.6, 1}, -0.28, scene::Dielectric{1.5});
+  return {s};
+}
+
+/// Small glass balls on a floor below one lamp.
+NoiseScene beads() {
+  scene::Scene s = stage();
+  s.background.color = {0.05, 0.05, 0.05};
+  test::add_lamp(s, {-3, 6, 2}, 0.6, {40, 40, 40});
+  s.materials.push_back({"bead", scene::Dielectric{1.5}});
+  const auto bead = static_cast<std::uint32_t>(s.materials.size() - 1);
+  Numbers number(13);
+  for (int i = 0; i < 40; ++i) {
+    const double r = number(0.08, 0.2);
+    s.spheres.push_back({{number(-3, 3), r, number(-1, 3)}, r, bead, ""});
+  }
+  return {s};
+}
+
+}  // namespace
+
+std::vector<NoiseCase> hard_scenes() {
+  const auto room = [](const char* name, double radius, double sky) {
+    return NoiseCase{name, [=] { return NoiseScene{test::room(radius, sky, 64, 36)}; }};
+  };
+  return {{"mirror", room_with_mirror},
+          room("room 3.7, sky 5", 3.7, 5),
+          room("room 3.8, sky 50", 3.8, 50),
+          room("room 3.88, sky 500", 3.88, 500),
+          room("room 3.9, sky 500", 3.9, 500),
+          room("room 3.95, sky 50", 3.95, 50),
+          {"bokeh 0.5", [] { return bokeh(15, 0.5); }},
+          {"bokeh 0.2", [] { return bokeh(15, 0.2); }},
+          {"one blurred lamp", [] { return bokeh(1, 0.1); }},
+          {"moving lamps", moving_lamps},
+          {"stars", stars},
+          {"glass stack", glass_stack},
+          {"equal fireflies", equal_fireflies},
+          {"bright texels", [] { return bright_texels(1024, 2000); }},
+          {"fine texels", [] { return bright_texels(4096, 20000); }},
+          {"rare patch", rare_patch},
+          {"bulb", bulb},
+          {"beads", beads}};
+}
+
+std::vector<NoiseCase> held_out_scenes() { return {}; }
+
+}  // namespace orrery::bench

@@ -1,0 +1,201 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "render/pixel_noise.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include "film/display_error.h"
+#include "render/tiles.h"
+
+namespace orrery::render {
+namespace {
+
+/// Half-widths of windows, px: around a pixel whose light is compared with that of its neighbours, and of the search
+/// for light.
+constexpr int kReach = 2, kWideReach = 3;
+
+/// Number of largest samples without which a pixel's own light counts.
+constexpr float kTrimmed = 3;
+
+/// Largest half-width of the windows in which errors are averaged, px, and how many pixels must effectively contribute.
+constexpr int kLargestReach = 8;
+constexpr double kMinEffectiveCount = 3;
+
+/// Lower bound of a pixel's error as a fraction of the image's, so that a pixel unlike its neighbours is never
+/// abandoned.
+constexpr double kMinError = 1.0 / 64;
+
+/// Paths in a window that must have found light, and expected hits of an emitter in each half, before an error is
+/// trusted.
+constexpr float kPaths = 4, kHits = 4;
+
+/// Light of emitters below this fraction of that around the pixel is ignored.
+constexpr float kMinFraction = 1.0f / 8;
+/// Coverage that is assumed at least when samples are distributed, so that few are wasted on occluded emitters.
+constexpr float kMinCoverage = 1.0f / 32;
+
+/// Keeps squared errors within the range of float; far above any error of interest.
+constexpr float kLargestError = 0x1p50f;
+
+constexpr float kDarkest = static_cast<float>(film::kDarkestLight);
+
+/// Calls `use(x, y)` for all pixels: rows in any order and on all threads, the pixels of a row in their order.
+template <class Use>
+void each_pixel(const PixelStatistics& s, TilePool& pool, Use use) {
+  const auto row = [&](std::size_t y, TileWorker&) {
+    for (int x = 0; x < s.width; ++x) use(x, static_cast<int>(y));
+  };
+  pool.run(static_cast<std::size_t>(s.height), row, [] { return false; });
+}
+
+/// Calls `use(index)` for the other pixels within `reach`; for the pixel itself if there are no others in the image.
+template <class Use>
+void each_neighbour(const PixelStatistics& s, int x, int y, int reach, Use use) {
+  const bool is_only = s.samples.size() == 1;
+  for (int v = std::max(y - reach, 0); v <= std::min(y + reach, s.height - 1); ++v)
+    for (int u = std::max(x - reach, 0); u <= std::min(x + reach, s.width - 1); ++u)
+      if (u != x || v != y || is_only) use(s.at(u, v));
+}
+
+float relative(float variance, float light) {
+  const float shown = 2 * std::max(light, kDarkest);
+  return std::min(variance / (shown * shown), kLargestError);
+}
+
+/// The light that three quarters of the pixels around a pixel exceed, each without its largest sample.
+float light_around(const PixelStatistics& s, int x, int y) {
+  std::array<float, (2 * kReach + 1) * (2 * kReach + 1)> light{};
+  int count = 0;
+  each_neighbour(s, x, y, kReach,
+                 [&](std::size_t i) { light[static_cast<std::size_t>(count++)] = s.light[i] - s.outlier[i]; });
+  const auto quartile = light.begin() + (count - 1) / 4;
+  std::nth_element(light.begin(), quartile, light.begin() + count);
+  return *quartile;
+}
+
+float error_of(const PixelStatistics& s, int x, int y) {
+  const std::size_t i = s.at(x, y);
+  const float seen_around = s.variance[i] > 0 ? std::min(s.light[i], light_around(s, x, y)) : 0;
+  return relative(s.variance[i], std::max(s.light[i] - kTrimmed * s.outlier[i], seen_around));
+}
+
+/// The fraction of a pixel's light that comes from small emitters if the rest is as bright as the pixels around it;
+/// 0 if it is negligible.
+float share_of_emitters(const PixelStatistics& s, int x, int y) {
+  if (s.emitters.empty() || s.emitters[s.at(x, y)].light <= 0) return 0;
+  float light = 0;
+  int count = 0;
+  each_neighbour(s, x, y, kWideReach, [&](std::size_t i) {
+    light += s.light[i];
+    ++count;
+  });
+  const float own = s.emitters[s.at(x, y)].light, around = std::max(light / static_cast<float>(count), kDarkest);
+  return own < kMinFraction * around ? 0 : own / (own + around);
+}
+
+/// The squared relative display error of a single sample that hits small emitters by chance.
+float error_of_emitters(const PixelStatistics& s, int x, int y) {
+  const float share = share_of_emitters(s, x, y);
+  if (share == 0) return 0;
+  // Hits are 1 with the probability of the coverage, and display errors half the relative errors of radiance.
+  return share * share * (1 / std::max(s.emitters[s.at(x, y)].coverage, kMinCoverage) - 1) / 4;
+}
+
+/// Whether a pixel's neighbours have found enough light, or can be trusted to be black.
+bool has_reliable_estimate(const PixelStatistics& s, int x, int y) {
+  const std::size_t own = s.at(x, y);
+  if (s.samples[own] >= kSamplesForReliability) return true;
+  if (share_of_emitters(s, x, y) > 0 && static_cast<float>(s.samples[own]) * s.emitters[own].coverage < kHits)
+    return false;
+  int count = 0, dark = 0;
+  each_neighbour(s, x, y, kReach, [&](std::size_t i) {
+    ++count;
+    dark += s.light[i] > 0 || (!s.known_black.empty() && s.known_black[i] != 0) ? 0 : 1;
+  });
+  if (2 * dark >= count) return false;  // light next to a dark area gives no information about the area
+  float light = 0, largest = 0;         // sums over the samples
+  each_neighbour(s, x, y, kWideReach, [&](std::size_t i) {
+    const float n = 2 * static_cast<float>(s.samples[i]);
+    light += n * s.light[i];
+    largest = std::max(largest, n * s.outlier[i]);
+  });
+  return light >= kPaths * largest;
+}
+
+}  // namespace
+
+void PixelStatistics::set(std::size_t i, std::uint32_t half, const kernel::PixelSum& a, const kernel::PixelSum& b,
+                          float largest) {
+  const film::HalvesEstimate halves = film::compare_halves(a, b);
+  samples[i] = half;
+  light[i] = static_cast<float>(std::max(halves.light, 0.0));
+  // With a filter that has negative lobes, the weight is less than the number of samples.
+  const auto weight = static_cast<double>(a.weight + b.weight);
+  const double excess = std::max(static_cast<double>(largest) / 3 - halves.light, 0.0);
+  const double raised = weight > 1 ? excess / (weight - 1) : 0;
+  outlier[i] = static_cast<float>(raised);
+  variance[i] = static_cast<float>(std::max(halves.variance, raised * raised * halves.color));
+}
+
+NoiseEstimate estimate_noise(const PixelStatistics& s, TilePool& pool) {
+  struct Sums {
+    double sum = 0, squares = 0;
+  };
+  std::vector<Sums> rows(static_cast<std::size_t>(s.height));
+  each_pixel(s, pool, [&](int x, int y) {
+    const auto e = static_cast<double>(error_of(s, x, y));
+    Sums& row = rows[static_cast<std::size_t>(y)];
+    row.sum += e;
+    row.squares += e * e;
+  });
+  Sums all;
+  for (const Sums& row : rows) {
+    all.sum += row.sum;
+    all.squares += row.squares;
+  }
+  const auto pixels = static_cast<double>(s.samples.size());
+  return {all.sum / pixels, std::sqrt(all.squares) / pixels};
+}
+
+UnreliablePixels find_unreliable_pixels(const PixelStatistics& s, TilePool& pool) {
+  UnreliablePixels out;
+  out.of_pixel.resize(s.samples.size());
+  each_pixel(s, pool, [&](int x, int y) { out.of_pixel[s.at(x, y)] = has_reliable_estimate(s, x, y) ? 0 : 1; });
+  for (const std::uint8_t is_unreliable : out.of_pixel) out.count += is_unreliable;
+  return out;
+}
+
+std::vector<float> errors_of_one_sample(const PixelStatistics& s, TilePool& pool) {
+  std::vector<float> own(s.samples.size()), of_emitters(own.size()), out(own.size());
+  each_pixel(s, pool, [&](int x, int y) {
+    const std::size_t i = s.at(x, y);
+    of_emitters[i] = error_of_emitters(s, x, y);
+    // It is known that other pixels have no such errors.
+    own[i] = of_emitters[i] > 0 ? 0 : relative(s.variance[i] * static_cast<float>(s.samples[i]), s.light[i]);
+  });
+  double mean = 0;
+  for (const float e : own) mean += static_cast<double>(e) / static_cast<double>(own.size());
+
+  const auto around = [&](int x, int y) {
+    for (int reach = 1;; reach *= 2) {
+      double sum = 0, squares = 0;
+      int count = 0;
+      each_neighbour(s, x, y, reach, [&](std::size_t i) {
+        const auto e = static_cast<double>(own[i]);
+        sum += e;
+        squares += e * e;
+        ++count;
+      });
+      if (sum > 0 && sum * sum >= kMinEffectiveCount * squares) return sum / count;
+      if (reach == kLargestReach) return sum > 0 ? mean : 0;  // any pixel may be another one of a few noisy ones
+    }
+  };
+  each_pixel(s, pool, [&](int x, int y) {
+    const std::size_t i = s.at(x, y);
+    out[i] = static_cast<float>(std::max(around(x, y), static_cast<double>(of_emitters[i])) + kMinError * mean);
+  });
+  return out;
+}
+
+}  // namespace orrery::render
