@@ -8,7 +8,7 @@
 //
 // --set, --scene and --sampler can be repeated. Each target is rendered with every seed, and with a few seeds by
 // uniform sampling with the same mean sample count. The reference is the mean of two uniform images, whose samples are
-// doubled until their error is a tenth of the smallest target, or the limit is reached; their remaining error is
+// doubled until their error is a fifth of the smallest target, or the limit is reached; their remaining error is
 // subtracted.
 // --cache keeps the references for the next run. Runs that need more than --most samples per pixel, or report pixels
 // whose noise cannot be estimated, are counted as "not reached". Exit status 1 if fewer than 98 % of the other true
@@ -33,8 +33,6 @@
 #include "compile/compiled_scene.h"
 #include "film/display_error.h"
 #include "film/picture.h"
-#include "format/read_scene.h"
-#include "load/load_scene.h"
 #include "noise_scenes.h"
 #include "render/render.h"
 #include "render/result.h"
@@ -43,33 +41,6 @@
 namespace orrery::bench {
 namespace {
 
-/// The scenes of a set: those that come with orrery, or those of noise_scenes.h.
-std::vector<NoiseCase> cases_of(const std::string& set) {
-  const std::filesystem::path folder = ORRERY_SCENES;
-  const auto files = [&](const std::vector<std::filesystem::path>& names) {
-    std::vector<NoiseCase> out;
-    for (const auto& name : names) {
-      out.push_back({name.stem().string(), [path = folder / name] {
-                       load::SceneRequest request;
-                       request.source.file = path;
-                       return NoiseScene{load::read_with_data(request).scene};
-                     }});
-    }
-    return out;
-  };
-  if (set == "ordinary")
-    return files({"trade/contrast.toml", "book/final.toml", "trade/glass.toml", "trade/defocus.toml"});
-  if (set == "hard") return hard_scenes();
-  if (set == "held-out") return held_out_scenes();
-  if (set != "committed") throw std::runtime_error("unknown set: " + set);
-  std::vector<std::filesystem::path> names;
-  for (const char* kind : {"book", "extremes", "light", "molecules", "next-week", "trade"})
-    for (const auto& entry : std::filesystem::directory_iterator(folder / kind))
-      names.push_back(std::filesystem::path(kind) / entry.path().filename());
-  std::sort(names.begin(), names.end());
-  return files(names);
-}
-
 struct Options {
   bool bias = false;
   int seeds = 0, width = 0, most = 4000;
@@ -77,18 +48,6 @@ struct Options {
   std::vector<std::string> sets, scenes, samplers;
   std::filesystem::path cache;
 };
-
-std::vector<std::string> split(const std::string& text) {
-  std::vector<std::string> out(1);
-  for (const char c : text) {
-    if (c == ',') {
-      out.emplace_back();
-    } else {
-      out.back() += c;
-    }
-  }
-  return out;
-}
 
 Options parse(int argc, char** argv) {
   Options o;
@@ -246,7 +205,7 @@ Reference reference_of(const NoiseCase& c, const Options& o) {
     if (in.read(reinterpret_cast<char*>(&out.squared_error), sizeof(double)) && in.read(data, bytes)) return out;
   }
   Subject subject(c.scene(), o, "sobol");
-  out = render_reference(subject, 0.1 * *std::min_element(o.noise.begin(), o.noise.end()));
+  out = render_reference(subject, 0.2 * *std::min_element(o.noise.begin(), o.noise.end()));
   if (!o.cache.empty()) {
     std::ofstream to(file, std::ios::binary);
     to.write(reinterpret_cast<const char*>(&out.squared_error), sizeof(double));
@@ -346,7 +305,7 @@ int run(int argc, char** argv) {
   Score score;
   double largest_bias = 0;
   for (const std::string& set : o.sets) {
-    for (const NoiseCase& c : cases_of(set)) {
+    for (const NoiseCase& c : scenes_of(set)) {
       if (!is_wanted(c.name)) continue;
       const Reference truth = o.bias ? Reference() : reference_of(c, o);
       for (const std::string& sampler : o.samplers) {

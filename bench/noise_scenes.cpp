@@ -4,10 +4,14 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
+#include <filesystem>
 #include <memory>
 #include <random>
+#include <stdexcept>
 
+#include "load/load_scene.h"
 #include "scene/environment_image.h"
+#include "scene/texture.h"
 #include "support/lit_scenes.h"
 #include "support/room.h"
 
@@ -110,7 +114,9 @@ NoiseScene bright_texels(int width, float light) {
   for (int y = 0; y < map->height(); ++y)
     std::fill_n(map->row(y), 3 * map->width(), y < map->height() / 2 ? 0.3f : 0.1f);
   for (int i = 0; i < 12; ++i) {
-    const auto x = static_cast<int>(number(0.4, 0.6) * width), y = static_cast<int>(number(0.40, 0.5) * width / 2);
+    // Around the left and right edges, -z, at which the camera looks.
+    const auto x = static_cast<int>(number(0.9, 1.1) * width) % width,
+               y = static_cast<int>(number(0.40, 0.5) * width / 2);
     for (int c = 0; c < 3; ++c) map->row(y)[3 * x + c] = light;
   }
   s.background.image = map;
@@ -150,8 +156,127 @@ NoiseScene beads() {
   return {s};
 }
 
-}  // namespace
+// Made after the rule.
 
+/// Small bright balls close to a wide lens, before a dim stage.
+NoiseScene foreground_blur() {
+  scene::Scene s = stage();
+  s.background.color = {0.1, 0.1, 0.12};
+  s.camera.defocus_angle = 3;
+  s.camera.focus_distance = 6;
+  Numbers number(21);
+  for (int i = 0; i < 6; ++i)
+    test::add_lamp(s, {number(-0.5, 0.5), 1.7 + number(-0.2, 0.3), 4.5}, 0.004, {900, 700, 900});
+  return {s};
+}
+
+/// A lamp in a sphere of soot with a narrow opening, between soot and stage.
+NoiseScene lamp_behind_a_gap() {
+  scene::Scene s = stage();
+  test::add_ball(s, {0, 3.2, 0}, 0.9, scene::Lambertian{{0.02, 0.02, 0.02}});
+  test::add_ball(s, {1.8, 3.2, 0}, 0.88, scene::Lambertian{{0.02, 0.02, 0.02}});
+  test::add_lamp(s, {0.9, 4.4, 0}, 0.1, {3000, 3000, 3000});
+  s.render.direct_lighting = scene::DirectLighting::kBsdf;
+  return {s};
+}
+
+/// An environment with a sun of two texels, visible and reflected.
+NoiseScene sun_of_two_texels() {
+  scene::Scene s = stage();
+  s.background.type = scene::BackgroundType::kImage;
+  const auto map = std::make_shared<scene::EnvironmentImage>(2048, 1024);
+  for (int y = 0; y < map->height(); ++y) std::fill_n(map->row(y), 3 * map->width(), 0.2f);
+  for (int c = 0; c < 3; ++c) map->row(480)[3 * 40 + c] = map->row(480)[3 * 41 + c] = 40000;
+  s.background.image = map;
+  test::add_ball(s, {1.6, 0.6, 0.6}, 0.6, scene::Metal{{0.9, 0.9, 0.9}, 0});
+  return {s};
+}
+
+/// A fast lamp and a shaking camera.
+NoiseScene lamp_streak() {
+  scene::Scene s = stage();
+  test::add_lamp(s, {-3, 1, -1}, 0.02, {8000, 6000, 3000});
+  test::add_lamp(s, {3, 5, 3}, 0.4, {10, 10, 10});
+  scene::Scene closing = s;
+  closing.spheres[2].center = {3, 2.5, -1};
+  closing.camera.look_at.x += 0.15;
+  return {s, closing};
+}
+
+/// Lamps of which a ball in front hides all but a thin crescent.
+NoiseScene crescents() {
+  scene::Scene s = stage();
+  s.background.color = {0.05, 0.05, 0.08};
+  s.spheres.pop_back();
+  for (int i = 0; i < 5; ++i) {
+    const double x = i - 2.0, y = 0.6 + 0.3 * i;
+    test::add_ball(s, {x, y, 0}, 0.25, scene::Lambertian{{0.1, 0.1, 0.1}});
+    test::add_lamp(s, {x * 1.5 + 0.012, y - (2 - y) * 0.5 + 0.01, -3}, 0.378, {400, 400, 300});
+  }
+  return {s};
+}
+
+/// A lamp behind a ball of which only fine cells of its texture emit.
+NoiseScene emitting_texture() {
+  scene::Scene s = stage();
+  auto texture = std::make_shared<scene::Texture>();
+  texture->type = scene::TextureType::kMarble;
+  texture->scale = 6;
+  texture->low = {0, 0, 0};
+  texture->high = {60, 20, 5};
+  scene::Emitter lamp;
+  lamp.radiance_texture = texture;
+  test::add_ball(s, {-1.8, 0.7, 0.5}, 0.7, lamp);
+  auto checker = std::make_shared<scene::Texture>();
+  checker->scale = 0.05;
+  checker->high = {0.9, 0.9, 0.9};
+  scene::Lambertian checked;
+  checked.albedo_texture = checker;
+  test::add_ball(s, {1.8, 0.6, 0.5}, 0.6, checked);
+  return {s};
+}
+
+/// Glass balls in a row between a lamp and the camera.
+NoiseScene glass_row() {
+  scene::Scene s = stage();
+  s.background.color = {0.1, 0.1, 0.1};
+  for (int i = 0; i < 5; ++i) test::add_ball(s, {0.3 * i - 0.6, 0.5, 2.0 - i}, 0.45, scene::Dielectric{1.5});
+  test::add_lamp(s, {0.5, 0.9, -5}, 0.2, {150, 150, 150});
+  return {s};
+}
+
+/// A lit stage with one small, very bright reflection.
+NoiseScene one_bright_pixel() {
+  scene::Scene s = stage();
+  s.background.color = {0.7, 0.8, 0.9};
+  test::add_ball(s, {1.5, 0.4, 1}, 0.4, scene::Metal{{0.9, 0.9, 0.9}, 0});
+  test::add_lamp(s, {6, 8, 9}, 0.04, {60000, 60000, 60000});
+  return {s};
+}
+
+/// Red, green and blue lamps that light the floor through glass.
+NoiseScene colored_caustics() {
+  scene::Scene s = stage();
+  s.background.color = {0.02, 0.02, 0.02};
+  const Vec3d colors[3] = {{90, 0, 0}, {0, 90, 0}, {0, 0, 90}};
+  for (int i = 0; i < 3; ++i) {
+    test::add_ball(s, {2.0 * i - 2, 0.5, 1.5}, 0.4, scene::Dielectric{1.5});
+    test::add_lamp(s, {2.0 * i - 3, 4, -1}, 0.25, colors[i]);
+  }
+  return {s};
+}
+
+/// Mirrors and a small lamp between them.
+NoiseScene mirrors() {
+  scene::Scene s = stage();
+  Numbers number(31);
+  for (int i = 0; i < 7; ++i)
+    test::add_ball(s, {i - 3.0, number(0.4, 1.5), number(-1, 1.5)}, 0.45, scene::Metal{{0.95, 0.9, 0.9}, i % 2 * 0.05});
+  test::add_lamp(s, {0.2, 2.2, 1.5}, 0.06, {250, 250, 250});
+  return {s};
+}
+
+/// Scenes whose noise is hard to estimate: rare, small, blurred or moving light.
 std::vector<NoiseCase> hard_scenes() {
   const auto room = [](const char* name, double radius, double sky) {
     return NoiseCase{name, [=] { return NoiseScene{test::room(radius, sky, 64, 36)}; }};
@@ -176,6 +301,58 @@ std::vector<NoiseCase> hard_scenes() {
           {"beads", beads}};
 }
 
-std::vector<NoiseCase> held_out_scenes() { return {}; }
+/// Scenes that were made after the rule, to test it.
+std::vector<NoiseCase> held_out_scenes() {
+  return {{"foreground blur", foreground_blur},
+          {"lamp behind a gap", lamp_behind_a_gap},
+          {"sun of two texels", sun_of_two_texels},
+          {"lamp streak", lamp_streak},
+          {"crescents", crescents},
+          {"emitting texture", emitting_texture},
+          {"glass row", glass_row},
+          {"one bright pixel", one_bright_pixel},
+          {"coloured caustics", colored_caustics},
+          {"mirrors", mirrors}};
+}
+
+}  // namespace
+
+std::vector<NoiseCase> scenes_of(const std::string& set) {
+  const std::filesystem::path folder = ORRERY_SCENES;
+  const auto files = [&](const std::vector<std::filesystem::path>& names) {
+    std::vector<NoiseCase> out;
+    for (const auto& name : names) {
+      out.push_back({name.stem().string(), [path = folder / name] {
+                       load::SceneRequest request;
+                       request.source.file = path;
+                       return NoiseScene{load::read_with_data(request).scene};
+                     }});
+    }
+    return out;
+  };
+  if (set == "ordinary")
+    return files({"trade/contrast.toml", "book/final.toml", "trade/glass.toml", "trade/defocus.toml"});
+  if (set == "hard") return hard_scenes();
+  if (set == "held-out") return held_out_scenes();
+  if (set != "committed") throw std::runtime_error("unknown set: " + set);
+  std::vector<std::filesystem::path> names;
+  for (const char* kind : {"book", "extremes", "light", "molecules", "next-week", "trade"})
+    for (const auto& entry : std::filesystem::directory_iterator(folder / kind))
+      names.push_back(std::filesystem::path(kind) / entry.path().filename());
+  std::sort(names.begin(), names.end());
+  return files(names);
+}
+
+std::vector<std::string> split(const std::string& text) {
+  std::vector<std::string> out(1);
+  for (const char c : text) {
+    if (c == ',') {
+      out.emplace_back();
+    } else {
+      out.back() += c;
+    }
+  }
+  return out;
+}
 
 }  // namespace orrery::bench

@@ -20,10 +20,13 @@ struct NoiseCase {
   std::function<NoiseScene()> scene;
 };
 
-/// Scenes whose noise is hard to estimate: rare, small, blurred or moving light. The rule was made with them.
-std::vector<NoiseCase> hard_scenes();
+/// The scenes of a set: "ordinary" and "committed" ones that come with orrery; "hard" ones, with which the rule was
+/// made; "held-out" ones, made afterwards to test it.
+///
+/// Errors     std::runtime_error if there is no such set
+std::vector<NoiseCase> scenes_of(const std::string& set);
 
-/// Scenes that were made after the rule, to test it.
-std::vector<NoiseCase> held_out_scenes();
+/// The words between commas.
+std::vector<std::string> split(const std::string& text);
 
 }  // namespace orrery::bench

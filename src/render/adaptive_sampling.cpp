@@ -10,11 +10,11 @@
 #include "compile/compiled_scene.h"
 #include "film/partial.h"
 #include "render/allocation.h"
+#include "render/emitter_coverage.h"
 #include "render/pixel_noise.h"
 #include "render/progressive_sampling.h"
 #include "render/result.h"
 #include "render/settings.h"
-#include "render/small_emitters.h"
 #include "render/tiles.h"
 
 namespace orrery::render {
@@ -57,7 +57,7 @@ class AdaptiveSampling {
     if (settings.layers.coverage) pixels_.known_black.resize(pixels_.samples.size());
     kernel::SceneView view = compiled.view();
     if (settings.layers.coverage) view.background_visible = false;
-    pixels_.emitters = find_small_emitters(view, compiled.width, compiled.height);
+    pixels_.emitters = emitter_coverage(view, compiled.width, compiled.height);
     for (int y = 0; y < compiled.height; ++y)
       for (int x = 0; x < compiled.width; ++x) update(x, y);
   }

@@ -80,7 +80,7 @@ float error_of(const PixelStatistics& s, int x, int y) {
   return relative(s.variance[i], std::max(s.light[i] - kTrimmed * s.outlier[i], seen_around));
 }
 
-/// The fraction of a pixel's light that comes from small emitters if the rest is as bright as the pixels around it;
+/// The fraction of a pixel's light that comes from emitters if the rest is as bright as the pixels around it;
 /// 0 if it is negligible.
 float share_of_emitters(const PixelStatistics& s, int x, int y) {
   if (s.emitters.empty() || s.emitters[s.at(x, y)].light <= 0) return 0;
@@ -94,7 +94,7 @@ float share_of_emitters(const PixelStatistics& s, int x, int y) {
   return own < kMinFraction * around ? 0 : own / (own + around);
 }
 
-/// The squared relative display error of a single sample that hits small emitters by chance.
+/// The squared relative display error of a single sample that hits emitters by chance.
 float error_of_emitters(const PixelStatistics& s, int x, int y) {
   const float share = share_of_emitters(s, x, y);
   if (share == 0) return 0;

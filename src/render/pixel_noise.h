@@ -11,7 +11,7 @@ namespace orrery::render {
 
 class TilePool;
 
-/// Light of small emitters in a pixel; see find_small_emitters.
+/// Light of small emitters in a pixel; see emitter_coverage.
 struct EmitterCoverage {
   float coverage = 0;  ///< fraction of the pixel
   float light = 0;     ///< radiance that they add to the pixel, mean of the three channels
@@ -45,7 +45,7 @@ struct PixelStatistics {
   std::vector<float> outlier;  ///< by how much the largest sample raises `light`, at least 0
   /// 1: no path reached anything that could emit, so the pixel is black; empty: not known for any pixel.
   std::vector<std::uint8_t> known_black;
-  std::vector<EmitterCoverage> emitters;  ///< empty: there are no small ones
+  std::vector<EmitterCoverage> emitters;  ///< empty: there are none
 };
 
 /// Samples in each half from which every error estimate counts as reliable.

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "render/small_emitters.h"
+#include "render/emitter_coverage.h"
 
 #include <gtest/gtest.h>
 
@@ -16,7 +16,7 @@
 namespace orrery::render {
 namespace {
 
-constexpr double kRadiance = 1000;
+constexpr double kLampRadiance = 1000;
 
 /// A lamp of a tenth of a pixel, 10 units in front of the camera, in the left upper part of the image.
 scene::Scene distant_lamp() {
@@ -28,17 +28,17 @@ scene::Scene distant_lamp() {
   s.background.type = scene::BackgroundType::kConstant;
   s.background.color = {0, 0, 0};
   s.render.samples = 2048;
-  test::add_lamp(s, {-2.13, 1.41, 0}, 0.04, {kRadiance, kRadiance, kRadiance});
+  test::add_lamp(s, {-2.13, 1.41, 0}, 0.04, {kLampRadiance, kLampRadiance, kLampRadiance});
   return s;
 }
 
 std::vector<EmitterCoverage> find(const compile::CompiledScene& compiled) {
-  return find_small_emitters(compiled.view(), compiled.width, compiled.height);
+  return emitter_coverage(compiled.view(), compiled.width, compiled.height);
 }
 
 /// Compares with the rendered image, in which nothing but the lamp is bright.
-void expect_where_rendered(const scene::Scene& opening, const std::string& name,
-                           const scene::Scene* closing = nullptr) {
+void expect_where_rendered(const scene::Scene& opening, const std::string& name, const scene::Scene* closing = nullptr,
+                           int most_pixels = 36) {
   const compile::CompiledScene compiled = compile::compile(opening, closing);
   const std::vector<EmitterCoverage> found = find(compiled);
   const std::vector<float> rendered = render(compiled, {}).picture.planes[0].values;
@@ -48,15 +48,16 @@ void expect_where_rendered(const scene::Scene& opening, const std::string& name,
     light += static_cast<double>(found[i].light);
     expected += static_cast<double>(rendered[i]);
     EXPECT_FALSE(rendered[i] > 0 && found[i].light == 0) << name << ", pixel " << i;
-    EXPECT_NEAR(found[i].light, kRadiance * static_cast<double>(found[i].coverage), 1e-3) << name;
+    EXPECT_NEAR(found[i].light, kLampRadiance * static_cast<double>(found[i].coverage), 1e-3) << name;
   }
   EXPECT_GT(expected, 0) << name;
   EXPECT_NEAR(light, expected, 0.1 * expected) << name;
-  EXPECT_LE(std::count_if(found.begin(), found.end(), [](const EmitterCoverage& e) { return e.light > 0; }), 36)
+  EXPECT_LE(std::count_if(found.begin(), found.end(), [](const EmitterCoverage& e) { return e.coverage > 1e-9f; }),
+            most_pixels)
       << name;
 }
 
-TEST(RenderSmallEmitters, AreFoundWhereTheyAreRendered) {
+TEST(RenderEmitterCoverage, AreFoundWhereTheyAreRendered) {
   expect_where_rendered(distant_lamp(), "perspective");
   scene::Scene s = distant_lamp();
   s.image.crop = scene::Window{4, 3, 20, 20};
@@ -73,6 +74,10 @@ TEST(RenderSmallEmitters, AreFoundWhereTheyAreRendered) {
   s.camera.defocus_angle = 1;
   s.camera.focus_distance = 11;
   expect_where_rendered(s, "lens");
+  s.camera.defocus_angle = 8;
+  s.camera.focus_distance = 20;
+  s.render.samples = 1 << 16;
+  expect_where_rendered(s, "wide lens", nullptr, 400);
   s = distant_lamp();
   std::get<scene::Emitter>(s.materials[0].model).opacity = 0.4;
   expect_where_rendered(s, "translucent");
@@ -85,9 +90,9 @@ TEST(RenderSmallEmitters, AreFoundWhereTheyAreRendered) {
   expect_where_rendered(s, "moving camera", &closing);
 }
 
-TEST(RenderSmallEmitters, LargeEmittersAndThoseOutsideTheImageDoNotCount) {
+TEST(RenderEmitterCoverage, LargeEmittersAndThoseOutsideTheImageDoNotCount) {
   scene::Scene s = distant_lamp();
-  s.spheres[0].radius = 0.5;
+  s.spheres[0].radius = 1.5;
   EXPECT_TRUE(find(compile::compile(s)).empty());
   s = distant_lamp();
   s.spheres[0].center.z = 20;
@@ -100,7 +105,32 @@ TEST(RenderSmallEmitters, LargeEmittersAndThoseOutsideTheImageDoNotCount) {
   EXPECT_TRUE(find(compile::compile(s)).empty()) << "no emitter";
 }
 
-TEST(RenderSmallEmitters, TheSunOfASkyIsASmallEmitter) {
+TEST(RenderEmitterCoverage, RectanglesAreClippedToTheImage) {
+  // A lamp so far out of focus that its image is larger than the frame.
+  scene::Scene s = distant_lamp();
+  s.camera.defocus_angle = 120;
+  s.camera.focus_distance = 1;
+  const std::vector<EmitterCoverage> found = find(compile::compile(s));
+  ASSERT_FALSE(found.empty());
+  for (const EmitterCoverage& e : found) EXPECT_NEAR(e.coverage, found[0].coverage, 1e-6f * found[0].coverage);
+}
+
+TEST(RenderEmitterCoverage, BrightTexelsAreEmitters) {
+  scene::Scene s = distant_lamp();
+  s.spheres.clear();
+  s.render.samples = 1 << 14;
+  s.background.type = scene::BackgroundType::kImage;
+  s.background.rotation = 7;
+  const auto map = std::make_shared<scene::EnvironmentImage>(1024, 512);
+  for (int y = 0; y < map->height(); ++y) std::fill_n(map->row(y), 3 * map->width(), 0.0f);
+  std::fill_n(map->row(250) + 3 * 32, 3, static_cast<float>(kLampRadiance));
+  s.background.image = map;
+  expect_where_rendered(s, "texel");
+  for (int y = 0; y < map->height(); ++y) std::fill_n(map->row(y), 3 * map->width(), 1.0f);
+  EXPECT_TRUE(find(compile::compile(s)).empty()) << "no texel is brighter than the others";
+}
+
+TEST(RenderEmitterCoverage, TheSunOfASkyIsASmallEmitter) {
   scene::Scene s = distant_lamp();
   s.spheres.clear();
   s.background.type = scene::BackgroundType::kImage;
@@ -108,7 +138,7 @@ TEST(RenderSmallEmitters, TheSunOfASkyIsASmallEmitter) {
   for (int y = 0; y < map->height(); ++y) std::fill_n(map->row(y), 3 * map->width(), 0.0f);
   map->sun.direction = math::normalized(math::Vec3d{0.13, 0.11, -1});
   map->sun.one_minus_cos = 1.08e-5;
-  map->sun.radiance = {kRadiance, kRadiance, kRadiance};
+  map->sun.radiance = {kLampRadiance, kLampRadiance, kLampRadiance};
   s.background.image = map;
   expect_where_rendered(s, "sun");
   s.background.visible = false;
@@ -116,7 +146,7 @@ TEST(RenderSmallEmitters, TheSunOfASkyIsASmallEmitter) {
 }
 
 /// A lamp of a hundredth of a pixel before a bright sky: nothing but the lamp has noise, and 16 samples rarely hit it.
-TEST(RenderSmallEmitters, ADistantLampIsNotMissed) {
+TEST(RenderEmitterCoverage, ADistantLampIsNotMissed) {
   scene::Scene s = distant_lamp();
   s.background.color = {1, 1, 1};
   s.spheres[0].radius = 0.012;
