@@ -70,17 +70,6 @@ std::vector<std::string_view> words_of(std::string_view line) {
   return words;
 }
 
-/// Parses "#rrggbb" to 0..255. False if it is not a colour.
-bool parse_hex(std::string_view word, Vec3d& color) {
-  unsigned code = 0;
-  if (word.size() != 7) return false;
-  const auto [end, status] = std::from_chars(word.data() + 1, word.data() + 7, code, 16);
-  if (status != std::errc() || end != word.data() + 7) return false;
-  color = {static_cast<double>(code >> 16 & 255u), static_cast<double>(code >> 8 & 255u),
-           static_cast<double>(code & 255u)};
-  return true;
-}
-
 bool parse_numbers(const std::vector<std::string_view>& words, std::vector<double>& numbers) {
   numbers.resize(words.size());
   for (std::size_t i = 0; i < words.size(); ++i) {
@@ -99,10 +88,9 @@ class Reader {
   void add(std::uint64_t line, std::string_view text) {
     const std::vector<std::string_view> words = words_of(text);
     if (words.empty()) return;
-    Vec3d color;
     if (words[0][0] == '#') {
-      if (words.size() > 1 || !parse_hex(words[0], color)) return;  // a comment
-      add_row(line, kHex, static_cast<double>(rows_.size()), color);
+      const std::optional<Vec3d> color = words.size() == 1 ? parse_hex(words[0]) : std::nullopt;
+      if (color) add_row(line, kHex, static_cast<double>(rows_.size()), *color);  // otherwise a comment
       return;
     }
     std::vector<double> numbers;
@@ -165,6 +153,15 @@ class Reader {
 }  // namespace
 
 const ColorMap* find_color_map(std::string_view name) { return data::find_named(maps(), name); }
+
+std::optional<Vec3d> parse_hex(std::string_view text) {
+  unsigned code = 0;
+  if (text.size() != 7 || text[0] != '#') return {};
+  const auto [end, status] = std::from_chars(text.data() + 1, text.data() + 7, code, 16);
+  if (status != std::errc() || end != text.data() + 7) return {};
+  return Vec3d{static_cast<double>(code >> 16 & 255u), static_cast<double>(code >> 8 & 255u),
+               static_cast<double>(code & 255u)};
+}
 
 const std::vector<std::string>& color_map_names() {
   static const std::vector<std::string> names = [] {

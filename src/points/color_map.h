@@ -4,6 +4,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <filesystem>
+#include <optional>
 #include <span>
 #include <string>
 #include <string_view>
@@ -32,6 +33,9 @@ struct ColorMap {
 /// Precision  within 1/255 of the published tables; tools/color_maps.py measures it
 /// Reference  docs/references.md, colour maps
 const ColorMap* find_color_map(std::string_view name);
+
+/// The colour `#rrggbb`, 0 to 255; none for other text.
+std::optional<Vec3d> parse_hex(std::string_view text);
 
 /// Returns the names of the built-in colour maps, the categorical ones last.
 const std::vector<std::string>& color_map_names();

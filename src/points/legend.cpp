@@ -114,7 +114,7 @@ class Drawing {
     body_ += "</linearGradient></defs>\n";
     y_ += kSvgFont / 2;  // half of the label of a tick at the end
     add_rectangle(kSvgMargin, y_, kSvgBarWidth, kSvgBarHeight, "url(#bar)");
-    for (const Tick& tick : nice_ticks(legend.first, legend.last)) {
+    for (const Tick& tick : ticks_of(legend)) {
       const double y = y_ + kSvgBarHeight * (1 - share_of(tick.value, legend)), x = kSvgMargin + kSvgBarWidth;
       body_ += fmt::format("<path d=\"M{} {}h{}\" stroke=\"#000000\"/>\n", px(x), px(y), px(kSvgTickLength));
       add_text(x + kSvgTickLength + kSvgGap, y + 0.35 * kSvgFont, tick.label);
@@ -193,6 +193,27 @@ std::vector<Tick> nice_ticks(double first, double last) {
   return out;
 }
 
+std::vector<Tick> ticks_of(const Legend& legend) {
+  const double low = std::min(legend.first, legend.last), high = std::max(legend.first, legend.last);
+  constexpr double kTiny = 1e-9;  // relative; ends may be rounded
+  const double decades = legend.is_log ? std::log10(high / low) : 0;
+  if (!(decades >= 1 - kTiny) || !std::isfinite(decades)) return nice_ticks(legend.first, legend.last);
+  constexpr double kMaxTicks = 8;
+  const int step = static_cast<int>(std::ceil(decades / kMaxTicks));
+  std::vector<Tick> out;
+  for (int exponent = exponent_of(low); exponent <= exponent_of(high * (1 + kTiny)); ++exponent) {
+    if (exponent % step != 0) continue;
+    for (const int digit : {1, 2, 5}) {
+      if (digit > 1 && decades >= 3) continue;
+      const std::string text = fmt::format("{}e{}", digit, exponent);
+      double value = 0;
+      std::from_chars(text.data(), text.data() + text.size(), value);  // the closest double
+      if (value >= low * (1 - kTiny) && value <= high * (1 + kTiny)) out.push_back({value, shortest_text(value)});
+    }
+  }
+  return out;
+}
+
 std::string legend_svg(const Legend& legend) {
   Drawing drawing;
   drawing.add_title(legend.title);
@@ -203,6 +224,8 @@ std::string legend_svg(const Legend& legend) {
 }
 
 double share_of(double value, const Legend& legend) {
+  if (legend.is_log && legend.first != legend.last)
+    return std::clamp(std::log(value / legend.first) / std::log(legend.last / legend.first), 0.0, 1.0);
   // Halves: the difference of the ends may not be finite.
   const double range = legend.last / 2 - legend.first / 2;
   return range != 0 ? std::clamp((value / 2 - legend.first / 2) / range, 0.0, 1.0) : 0.5;

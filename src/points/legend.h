@@ -21,6 +21,7 @@ struct Legend {
   std::string title;           ///< UTF-8, one line: the name of the column
   std::vector<Srgb8> bar;      ///< colours at equal steps from `first` to `last`; empty: patches only
   double first = 0, last = 1;  ///< finite
+  bool is_log = false;         ///< the steps are those of logarithms; both ends are above 0
   std::vector<Patch> patches;
   std::optional<Srgb8> nan_color;  ///< shown as a patch "no value"
 };
@@ -52,6 +53,10 @@ struct Tick {
 /// Result     4 to 11 ascending ticks; one if the ends are equal or too close to be distinguished; the ends if their
 ///            difference is not finite
 std::vector<Tick> nice_ticks(double first, double last);
+
+/// Returns the ticks of a legend's bar: nice_ticks(), or on a logarithmic bar of at least a decade powers of ten, with
+/// their double and fivefold on less than three decades.
+std::vector<Tick> ticks_of(const Legend& legend);
 
 /// Maximum number of patches in legend_image(): few programs could open a larger image.
 inline constexpr std::size_t kMaxImagePatches = 500;

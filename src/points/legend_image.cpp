@@ -115,7 +115,7 @@ LegendImage legend_image(const Legend& legend) {
   const int bar_top = y;
   std::vector<int> ticks;
   if (!legend.bar.empty()) {
-    for (const Tick& tick : nice_ticks(legend.first, legend.last)) {
+    for (const Tick& tick : ticks_of(legend)) {
       const double share = share_of(tick.value, legend);
       ticks.push_back(bar_top + static_cast<int>(std::lround((1 - share) * (kBarHeight - 1))));
       texts.push_back({kMargin + kBarWidth + kTick + kGap, ticks.back(), in_font(tick.label)});

@@ -187,6 +187,7 @@ class Loader {
     need.rows = info_.rows;
     for (const std::string& column : columns_) need.row_bytes += data::bytes_per_value(type_of(info_, column));
     need.sphere_bytes = bytes_per_sphere(info_, points_, radius_, are_rounded);
+    if (color_.expression) need.row_bytes += sizeof(double);
     if (!material_.empty()) need.sphere_bytes += sizeof(std::uint32_t);
     if (!color_.columns.empty()) need.sphere_bytes += sizeof(std::uint16_t);
     if (opacity_.is_set()) need.sphere_bytes += sizeof(float);
@@ -217,6 +218,7 @@ class Loader {
     require_memory(points_.select.empty() ? copied_count(copies_, {}, info_.rows) : 0, !points_.assembly.empty());
     data::Table table = file_->read(frame, columns_);
     if (!speed_sources_.empty()) compute_speed(speed_sources_, table);
+    add_expression(color_, points_.color, table, faults_);
     Rows rows = chosen_rows(table);
     if (rows.size() == 0)
       faults_.warning(
@@ -244,6 +246,8 @@ class Loader {
     require_memory(copied_count(copies_, chains, rows.size()), are_rounded(ends, points_, centers, radii),
                    copied_bond_count(bonds, images.x * images.y * images.z, copies_.size()));
     PointColors colors = colors_of(table, rows, color_, points_.color, faults_);
+    if (request_.on_value && colors.range)
+      for_each_shown(*table.find(points_.color.column), rows, points_.color.log, request_.on_value);
     if (opacity_.is_set()) points_.opacities = opacities_of(table, rows, opacity_, points_, faults_);
     points_.centers = std::move(centers);
     points_.radii = std::move(radii);

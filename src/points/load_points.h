@@ -26,14 +26,15 @@ struct SourceRows {
 };
 
 struct LoadRequest {
-  std::filesystem::path file;      ///< the data file
-  std::filesystem::path folder;    ///< folder of the scene file, for the file of a colour map
-  std::string key;                 ///< "points[0]", for diagnostics
-  int frame = 1;                   ///< the rendered frame
-  std::size_t materials = 0;       ///< number of materials of the scene
-  SourceRows* source = nullptr;    ///< if not null, receives the rows of the spheres
-  std::uint64_t memory_limit = 0;  ///< maximum memory of the spheres, bytes; 0: no limit
-  OpenData open = {};              ///< replaces formats::open(), except in a sequence of files
+  std::filesystem::path file;            ///< the data file
+  std::filesystem::path folder;          ///< folder of the scene file, for the file of a colour map
+  std::string key;                       ///< "points[0]", for diagnostics
+  int frame = 1;                         ///< the rendered frame
+  std::size_t materials = 0;             ///< number of materials of the scene
+  SourceRows* source = nullptr;          ///< if not null, receives the rows of the spheres
+  std::function<void(double)> on_value;  ///< receives the values that a continuous colour map shows; may be empty
+  std::uint64_t memory_limit = 0;        ///< maximum memory of the spheres, bytes; 0: no limit
+  OpenData open = {};                    ///< replaces formats::open(), except in a sequence of files
 };
 
 /// Reads the spheres of a data file into `points` according to its keys: selects rows, determines radii and colours,

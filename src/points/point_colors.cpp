@@ -5,9 +5,12 @@
 #include <cmath>
 #include <limits>
 #include <numeric>
+#include <string_view>
+#include <utility>
 
 #include <fmt/core.h>
 
+#include "base/error.h"
 #include "base/text.h"
 #include "data/table.h"
 #include "points/color_map.h"
@@ -88,12 +91,11 @@ PointColors colors_by_label(const Labels& labels, const data::Column& column, co
   return out;
 }
 
-/// The range of the finite values of a column, if there are any.
-std::optional<scene::Interval> range_of(const data::Column& column, const Rows& rows) {
+/// The range of the values of a column that a map shows, if there are any.
+std::optional<scene::Interval> range_of(const data::Column& column, const Rows& rows, bool is_log) {
   constexpr double kInfinity = std::numeric_limits<double>::infinity();
   scene::Interval range{kInfinity, -kInfinity};
-  for_each_number(column, rows, [&](std::size_t, double v) {
-    if (!std::isfinite(v)) return;
+  for_each_shown(column, rows, is_log, [&](double v) {
     range.low = std::min(range.low, v);
     range.high = std::max(range.high, v);
   });
@@ -102,31 +104,42 @@ std::optional<scene::Interval> range_of(const data::Column& column, const Rows& 
 }
 
 PointColors colors_by_number(const data::Column& column, const Rows& rows, const ColorMap& map,
-                             const scene::PointsColor& color) {
+                             const scene::PointsColor& color, KeyFaults& faults) {
   PointColors out;
   out.palette = palette(map, kMapColors);
   out.rec709 = kMapColors;
   out.palette.push_back(color.nan_color);
-  out.range = color.range ? color.range : range_of(column, rows);
-  const scene::Interval range = out.range.value_or(scene::Interval{});
-  const double low = range.low, high = range.high;
+  out.range = color.range ? color.range : range_of(column, rows, color.log);
+  if (color.log && out.range && !(out.range->low > 0)) {
+    faults.error(".color.range", "must be above 0 with color.log");
+    return out;
+  }
+  const auto scaled = [&](double v) { return color.log ? std::log10(v) : v; };
+  const scene::Interval range = out.range.value_or(scene::Interval{1, 1});
+  const double low = scaled(range.low), high = scaled(range.high);
   const double unit = std::isfinite(high - low) ? 1 : 0.5;  // halving prevents overflow for the largest range
   const double span = high * unit - low * unit;
   out.indices.resize(rows.size());
+  std::size_t without_log = 0;
   for_each_number(column, rows, [&](std::size_t i, double v) {
+    if (color.log && v <= 0) ++without_log;
+    const bool has_color = color.log ? v > 0 : !std::isnan(v);
     // A constant column has the colour in the middle.
-    const double t = span > 0 ? (std::clamp(v, low, high) * unit - low * unit) / span : 0.5;
-    out.indices[i] = std::isnan(v) ? kMapColors : static_cast<std::uint16_t>(t * (kMapColors - 1) + 0.5);
+    const double t = has_color && span > 0 ? (std::clamp(scaled(v), low, high) * unit - low * unit) / span : 0.5;
+    out.indices[i] = has_color ? static_cast<std::uint16_t>(t * (kMapColors - 1) + 0.5) : kMapColors;
   });
+  if (without_log > 0)
+    faults.warning(".color.log", fmt::format("{} of {} values are not above 0, and have the colour of NaN", without_log,
+                                             rows.size()));
   return out;
 }
 
 PointColors colors_by_map(const data::Table& table, const Rows& rows, const ColorSource& source,
                           const scene::PointsColor& color, KeyFaults& faults) {
-  const data::Column& column = *table.find(source.columns[0]);
+  const data::Column& column = *table.find(color.column);
   if (!source.map->is_categorical && column.type() != data::ColumnType::kText)
-    return colors_by_number(column, rows, *source.map, color);
-  const auto labels = labels_or_fault(table, rows, source.columns[0], ".color.column", faults);
+    return colors_by_number(column, rows, *source.map, color, faults);
+  const auto labels = labels_or_fault(table, rows, color.column, ".color.column", faults);
   return labels ? colors_by_label(*labels, column, *source.map, color.nan_color) : PointColors();
 }
 
@@ -255,7 +268,39 @@ void set_map(const scene::PointsColor& color, const std::filesystem::path& folde
   }
 }
 
+/// True if the text is not a column, and cannot be a misspelt one.
+bool is_expression(const std::string& text, const data::FrameInfo& info) {
+  constexpr std::string_view kSymbols = "+-*/^(){}<>=!&|`\"' ";
+  return data::find_named(info.columns, text) == nullptr && text.find_first_of(kSymbols) != std::string::npos;
+}
+
+void parse_color(const std::string& text, const data::FrameInfo& info, ColorSource& out, KeyFaults& faults) {
+  try {
+    out.expression = parse_expression(text, info.columns);
+    out.columns = out.expression->columns();
+  } catch (const base::Error& error) {
+    for (const base::Diagnostic& d : error.diagnostics())
+      faults.error(".color.column", fmt::format("`{}` is no column, and no expression: at character {}: {}{}", text,
+                                                d.column, d.text, d.remedy.empty() ? "" : "; " + d.remedy));
+  }
+}
+
 }  // namespace
+
+void add_expression(const ColorSource& source, const scene::PointsColor& color, data::Table& table, KeyFaults& faults) {
+  if (!source.expression) return;
+  std::vector<double> values = source.expression->evaluate(table);
+  std::size_t bad = 0;
+  for (double& value : values) {
+    if (std::isfinite(value)) continue;
+    value = std::numeric_limits<double>::quiet_NaN();
+    ++bad;
+  }
+  if (bad > 0)
+    faults.warning(".color.column", fmt::format("{} of {} values of `{}` are not finite, and have the colour of NaN",
+                                                bad, values.size(), color.column));
+  table.columns.push_back({color.column, std::move(values)});
+}
 
 ColorSource color_source(const data::FrameInfo& info, const scene::PointsColor& color,
                          const std::filesystem::path& folder, KeyFaults& faults) {
@@ -266,9 +311,12 @@ ColorSource color_source(const data::FrameInfo& info, const scene::PointsColor& 
     faults.error(".color", "only one of `column`, `element`, `type` and `rgb` can be set");
   } else if (!color.column.empty()) {
     out.kind = ColorSource::Kind::kMap;
-    out.columns = {color.column};
     set_map(color, folder, out, faults);
-    require_column(info, color.column, false, ".color.column", faults);
+    if (is_expression(color.column, info)) {
+      parse_color(color.column, info, out, faults);
+    } else if (require_column(info, color.column, false, ".color.column", faults)) {
+      out.columns = {color.column};
+    }
   } else if (!color.element.empty()) {
     out.kind = ColorSource::Kind::kElement;
     out.columns = {info.roles.element};

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <array>
+#include <cmath>
 #include <cstdint>
 #include <filesystem>
 #include <optional>
@@ -10,6 +11,8 @@
 
 #include "data/table.h"
 #include "points/color_map.h"
+#include "points/rows.h"
+#include "points/selection.h"
 #include "scene/scene.h"
 
 namespace orrery::points {
@@ -18,13 +21,11 @@ namespace orrery::points {
 struct ColorSource {
   enum class Kind { kNone, kMap, kElement, kType, kRgb };
   Kind kind = Kind::kNone;
-  std::vector<std::string> columns;  ///< columns to read
+  std::vector<std::string> columns;      ///< columns to read
+  std::optional<Expression> expression;  ///< kMap: of these columns; none: the column itself
   double rgb_maximum = 255;
   std::optional<ColorMap> map;
 };
-
-class KeyFaults;
-class Rows;
 
 /// Colours of spheres: a palette and one index per sphere.
 struct PointColors {
@@ -42,10 +43,22 @@ struct PointColors {
 ColorSource color_source(const data::FrameInfo& info, const scene::PointsColor& color,
                          const std::filesystem::path& folder, KeyFaults& faults);
 
+/// Adds the values of the source's expression, if it has one, to a table as the column scene::PointsColor::column.
+/// Those that are not finite become NaN, and are counted in a warning.
+void add_expression(const ColorSource& source, const scene::PointsColor& color, data::Table& table, KeyFaults& faults);
+
+/// Calls `f(value)` for each value of a column that a continuous map shows: finite, and above 0 if `is_log`.
+template <class F>
+void for_each_shown(const data::Column& column, const Rows& rows, bool is_log, F f) {
+  for_each_number(column, rows, [&](std::size_t, double v) {
+    if (std::isfinite(v) && (v > 0 || !is_log)) f(v);
+  });
+}
+
 /// Returns the colours of the rows. A map becomes 256 colours. More than 65,536 distinct RGB colours are reduced to 7,
 /// 6 or 5 bits per channel, whichever fits.
 ///
-/// Domain     a table with the source's columns
+/// Domain     a table with the source's columns, after add_expression()
 PointColors colors_of(const data::Table& table, const Rows& rows, const ColorSource& source,
                       const scene::PointsColor& color, KeyFaults& faults);
 

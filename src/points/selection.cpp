@@ -31,12 +31,21 @@ SelectionRun::SelectionRun(const Selection& selection, const data::Table& table)
     places_.push_back(places_in(words(test.column).words, test.is_same ? words(test.other).words : test.words));
 }
 
-void SelectionRun::run(std::size_t begin, std::size_t count, Truth* out) {
+void SelectionRun::run(std::size_t begin, std::size_t count) {
   begin_ = begin;
   count_ = count;
   number_end_ = truth_end_ = 0;
   for (const SelectionStep& step : selection_.steps) step(*this);
+}
+
+void SelectionRun::run(std::size_t begin, std::size_t count, Truth* out) {
+  run(begin, count);
   std::copy_n(truths_.data(), count, out);
+}
+
+void SelectionRun::run(std::size_t begin, std::size_t count, double* out) {
+  run(begin, count);
+  std::copy_n(numbers_.data(), count, out);
 }
 
 double* SelectionRun::push_numbers() {
@@ -85,12 +94,27 @@ void SelectionRun::negate() {
   for (std::size_t row = 0; row < count; ++row) a[row] ^= 1;
 }
 
-std::vector<std::uint8_t> Selection::evaluate(const data::Table& table) const {
-  std::vector<std::uint8_t> out(table.rows, 1);
-  if (steps.empty()) return out;
-  SelectionRun run(*this, table);
+namespace {
+
+/// Evaluates all rows, block by block.
+template <class Value>
+void evaluate_rows(const Selection& selection, const data::Table& table, std::vector<Value>& out) {
+  SelectionRun run(selection, table);
   for (std::size_t begin = 0; begin < table.rows; begin += SelectionRun::kRows)
     run.run(begin, std::min(SelectionRun::kRows, table.rows - begin), out.data() + begin);
+}
+
+}  // namespace
+
+std::vector<std::uint8_t> Selection::evaluate(const data::Table& table) const {
+  std::vector<std::uint8_t> out(table.rows, 1);
+  if (!steps.empty()) evaluate_rows(*this, table, out);
+  return out;
+}
+
+std::vector<double> Expression::evaluate(const data::Table& table) const {
+  std::vector<double> out(table.rows);
+  evaluate_rows(steps, table, out);
   return out;
 }
 

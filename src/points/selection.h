@@ -29,8 +29,9 @@ struct TextTest {
 
 /// A condition on the rows of a table: `type == 2 && z > 0`, `element == "C" || !(chain in {A, B})`.
 ///
-/// Operators by precedence, weakest first: `||`, `&&`, one of `== != < <= > >= in`, `+ -`, `* /`, and the prefixes `!`
-/// and `-`; parentheses; functions abs(x), sqrt(x), min(x, y, ...), max(x, y, ...). `x in [1, 5:8, 20:]` tests for
+/// Operators by precedence, weakest first: `||`, `&&`, one of `== != < <= > >= in`, `+ -`, `* /`, the prefixes `!` and
+/// `-`, and `^`; parentheses; functions abs(x), sqrt(x), exp(x), log(x), log10(x), floor(x), min(x, y, ...),
+/// max(x, y, ...). `x in [1, 5:8, 20:]` tests for
 /// numbers and closed ranges, `chain in {A, B}` for strings. Strings are quoted, except in braces, and can be compared
 /// with ==, != and `in`. Columns are written by name, or `in backquotes` if the name contains characters other than
 /// letters, digits, `_`, `.` and indices as in `c_stress[1]`.
@@ -50,11 +51,27 @@ struct Selection {
   std::vector<std::uint8_t> evaluate(const data::Table& table) const;
 };
 
+/// A number for each row of a table, in the operators and functions of selections: `sqrt(vx^2 + vy^2)`.
+struct Expression {
+  Selection steps;  ///< leaves a number instead of a truth value
+
+  const std::vector<std::string>& columns() const { return steps.columns; }
+  /// Returns the values, one per row.
+  ///
+  /// Domain     a table with the columns of parse_expression(), as far as the expression reads them
+  std::vector<double> evaluate(const data::Table& table) const;
+};
+
 /// Parses a selection of the rows of a table with some columns. A blank string selects all rows.
 ///
 /// Errors     base::Error(kBadData) with one diagnostic: what is wrong, the remedy, and the selection as source line
 ///            with column and width. The caller sets file and line.
 Selection parse_selection(std::string_view text, const std::vector<data::ColumnInfo>& columns);
+
+/// Parses an expression on the columns of a table.
+///
+/// Errors     as parse_selection()
+Expression parse_expression(std::string_view text, const std::vector<data::ColumnInfo>& columns);
 
 /// Requires that a selection closes the parentheses that it opens, so that it can be combined with others. Columns need
 /// not be known.

@@ -149,9 +149,9 @@ void SelectionLexer::read_name(Token& token) const {
 
 void SelectionLexer::read_symbol(Token& token) const {
   static constexpr std::string_view kSymbols[] = {"==", "!=", "<=", ">=", "&&", "||", "<", ">", "+", "-", "*",
-                                                  "/",  "!",  "(",  ")",  "[",  "]",  "{", "}", ":", ","};
+                                                  "/",  "^",  "!",  "(",  ")",  "[",  "]", "{", "}", ":", ","};
   static constexpr std::pair<std::string_view, std::string_view> kForeign[] = {
-      {"=", "equality is =="}, {"&", "write &&"}, {"|", "write ||"}, {"^", "write x * x"}, {"~", "write !"}};
+      {"=", "equality is =="}, {"&", "write &&"}, {"|", "write ||"}, {"~", "write !"}};
   const std::string_view rest = std::string_view(text_).substr(token.span.begin);
   token.kind = TokenKind::kSymbol;
   for (const std::string_view symbol : kSymbols)
@@ -209,7 +209,11 @@ constexpr Operator kSums[] = {{"+", [](Run& run) { run.combine(std::plus<>()); }
 constexpr Operator kProducts[] = {{"*", [](Run& run) { run.combine(std::multiplies<>()); }},
                                   {"/", [](Run& run) { run.combine(std::divides<>()); }}};
 constexpr Operator kFunctions[] = {{"abs", [](Run& run) { run.change([](double a) { return std::abs(a); }); }},
-                                   {"sqrt", [](Run& run) { run.change([](double a) { return std::sqrt(a); }); }}};
+                                   {"sqrt", [](Run& run) { run.change([](double a) { return std::sqrt(a); }); }},
+                                   {"exp", [](Run& run) { run.change([](double a) { return std::exp(a); }); }},
+                                   {"log", [](Run& run) { run.change([](double a) { return std::log(a); }); }},
+                                   {"log10", [](Run& run) { run.change([](double a) { return std::log10(a); }); }},
+                                   {"floor", [](Run& run) { run.change([](double a) { return std::floor(a); }); }}};
 /// Functions of two or more operands: min(x, y, z) is min(min(x, y), z). NaN if one operand is NaN: a missing value
 /// must not become the limit of a clamp.
 constexpr Operator kFolds[] = {
@@ -263,6 +267,14 @@ class Parser {
       fail(result.span, std::string("expected a condition, not ") + type_text(result.type),
            "compare it, as in: x != 0");
     return std::move(selection_);
+  }
+
+  Expression parse_number_of_row() {
+    const Operand result = parse_sum();
+    if (token_.kind != TokenKind::kEnd) fail_at_token("expected an arithmetic operator", "e.g. sqrt(vx^2 + vy^2)");
+    if (result.type != Type::kNumber)
+      fail(result.span, std::string("expected a number, not ") + type_text(result.type), "e.g. sqrt(vx^2 + vy^2)");
+    return {std::move(selection_)};
   }
 
  private:
@@ -436,6 +448,13 @@ class Parser {
           token.kind == TokenKind::kEnd ? "the condition ends too early" : "expected a column, number or text",
           "e.g. type == 2 && z > 0");
     }
+    const Span power = token_.span;
+    if (take("^")) {  // -x^2 is -(x^2), and x^y^z is x^(y^z)
+      require(parse_operand(), Type::kNumber, power);
+      require(out, Type::kNumber, power);
+      out =
+          emit([](Run& run) { run.combine([](double a, double b) { return std::pow(a, b); }); }, Type::kNumber, power);
+    }
     --depth_;
     return out;
   }
@@ -465,7 +484,8 @@ class Parser {
     const Operator* const fold = find(kFolds, name.text);
     const Operator* const function = find(kFunctions, name.text);
     if (fold == nullptr && function == nullptr)
-      fail(name.span, "unknown function " + std::string(name.text), "functions are abs, sqrt, min, max");
+      fail(name.span, "unknown function " + std::string(name.text),
+           "functions are abs, sqrt, exp, log, log10, floor, min, max");
     const Span open = token_.span;
     int count = 0;
     do {
@@ -576,6 +596,10 @@ class Parser {
 
 Selection parse_selection(std::string_view text, const std::vector<data::ColumnInfo>& columns) {
   return Parser(text, columns).parse();
+}
+
+Expression parse_expression(std::string_view text, const std::vector<data::ColumnInfo>& columns) {
+  return Parser(text, columns).parse_number_of_row();
 }
 
 void require_closed(const std::string& selection) {

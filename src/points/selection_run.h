@@ -24,8 +24,9 @@ class SelectionRun {
 
   SelectionRun(const Selection& selection, const data::Table& table);
 
-  /// Evaluates rows [begin, begin + count).
+  /// Evaluates rows [begin, begin + count) of a selection, or of an expression.
   void run(std::size_t begin, std::size_t count, Truth* out);
+  void run(std::size_t begin, std::size_t count, double* out);
 
   /// Pushes a column of numbers.
   void load(std::size_t column);
@@ -66,6 +67,7 @@ class SelectionRun {
   }
 
  private:
+  void run(std::size_t begin, std::size_t count);
   /// The topmost numbers, `depth` blocks.
   double* numbers(std::size_t depth) { return numbers_.data() + number_end_ - depth * kRows; }
   double* push_numbers();

@@ -57,7 +57,10 @@ std::vector<Key<P>> make_keys() {
       number<P>("radius.scale", {0, kLargestLength, true, false},
                 {"", "Scale factor for radii from a column or by element, e.g. 0.5 for a column of diameters"},
                 in(&P::radius, &PointsRadius::scale)),
-      changes(Part::kAssignment, text<P>("color.column", {"", "Column of the file that `color.map` maps to colours"},
+      changes(Part::kAssignment, text<P>("color.column",
+                                         {"",
+                                          "Column of the file that `color.map` maps to colours, or an "
+                                          "[expression](data.md#expressions) such as `sqrt(vx^2 + vy^2)`"},
                                          in(&P::color, &PointsColor::column))),
       changes(Part::kAssignment,
               file<P>("color.map", kColorMapFile,
@@ -70,6 +73,11 @@ std::vector<Key<P>> make_keys() {
                         interval<P>("color.range", kAnyValue,
                                     {"", "Values of the column at both ends of the map, e.g. `[-2, 2]`"},
                                     in(&P::color, &PointsColor::range)))),
+      changes(
+          Part::kAssignment,
+          boolean<P>("color.log",
+                     {"", "The map is linear in the logarithms of the values. Those up to 0 have `color.nan_color`"},
+                     in(&P::color, &PointsColor::log))),
       changes(Part::kAssignment, vector<P>("color.nan_color", {0, 1}, {"scene-linear", "Colour of NaN values"},
                                            in(&P::color, &PointsColor::nan_color))),
       changes(Part::kAssignment,

@@ -220,9 +220,10 @@ struct PointsRadius {
 /// Colours of the spheres of a points file, set by one of `column`, `element`, `types` and `rgb`; if none is set, those
 /// of the material.
 struct PointsColor {
-  std::string column;              ///< coloured by a map
+  std::string column;              ///< coloured by a map; or an expression of columns
   std::string map = "viridis";     ///< name of a colour map, or a file relative to the scene file
   std::optional<Interval> range;   ///< range of the column's values; default: that of the selected spheres
+  bool log = false;                ///< the map is linear in the logarithms of the values
   Vec3d nan_color{0.5, 0.5, 0.5};  ///< colour of NaN values
   std::string element;             ///< "jmol"
   ColorsByType types;

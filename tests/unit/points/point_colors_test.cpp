@@ -42,7 +42,9 @@ class PointsPointColors : public testing::Test {
     KeyFaults faults("points[0]");
     const ColorSource source = color_source(info, keys, folder_.path(), faults);
     PointColors out;
-    if (!faults.has_errors()) out = colors_of(table, rows, source, keys, faults);
+    data::Table all = table;
+    add_expression(source, keys, all, faults);
+    if (!faults.has_errors()) out = colors_of(all, rows, source, keys, faults);
     diagnostics = text_of(faults);
     EXPECT_LE(out.rec709, out.palette.size());
     for (const std::uint16_t i : out.indices) EXPECT_LT(i, out.palette.size());
@@ -74,6 +76,35 @@ TEST_F(PointsPointColors, NoneUnlessAKeyIsSet) {
   keys.column.clear();
   const PointColors none = colors(table_of(std::vector<double>{1, 2}));
   EXPECT_TRUE(none.palette.empty() && none.indices.empty() && !none.range && none.names.empty());
+}
+
+TEST_F(PointsPointColors, ExpressionsAreColumns) {
+  keys.column = "c * c - 1";
+  const PointColors of_squares = colors(table_of(std::vector<double>{1, 2, 3, kNan}));
+  EXPECT_EQ(of_squares.range->low, 0);
+  EXPECT_EQ(of_squares.range->high, 8);
+  EXPECT_EQ(of_squares.indices, (Indices{0, 96, 255, 256}));
+  EXPECT_EQ(
+      diagnostics,
+      "warning points[0].color.column: 1 of 4 values of `c * c - 1` are not finite, and have the colour of NaN\n");
+  keys.column = "1 / c";
+  EXPECT_EQ(colors(table_of(std::vector<double>{0, 2, 4})).indices, (Indices{256, 255, 0})) << "division by zero";
+  keys.column = "1 / d";
+  colors(table_of(std::vector<double>{0}));
+  EXPECT_EQ(diagnostics.substr(0, 90),
+            "error points[0].color.column: `1 / d` is no column, and no expression: at character 5: unk");
+}
+
+TEST_F(PointsPointColors, LogarithmsShowDecades) {
+  keys.log = true;
+  const PointColors decades = colors(table_of(std::vector<double>{1e-3, 1, 1e3, 0, -5, kNan, kInfinity}));
+  EXPECT_EQ(decades.range->low, 1e-3);
+  EXPECT_EQ(decades.range->high, 1e3);
+  EXPECT_EQ(decades.indices, (Indices{0, 128, 255, 256, 256, 256, 255}));
+  EXPECT_EQ(diagnostics, "warning points[0].color.log: 2 of 7 values are not above 0, and have the colour of NaN\n");
+  keys.range = scene::Interval{0, 1};
+  colors(table_of(std::vector<double>{1}));
+  EXPECT_EQ(diagnostics, "error points[0].color.range: must be above 0 with color.log\n");
 }
 
 /// Tables of colour maps are display values. A renderer that takes them for light shows pastel colours.

@@ -148,6 +148,36 @@ TEST(PointsSelection, Functions) {
   EXPECT_EQ(rows("sqrt(x * x + z * z) < 2"), "01");
 }
 
+std::vector<double> values_of(const std::string& text) {
+  const Table table = six_atoms();
+  return parse_expression(text, columns_of(table)).evaluate(table);
+}
+
+std::string error_of_expression(const std::string& text) {
+  try {
+    values_of(text);
+  } catch (const base::Error& error) {
+    return error.diagnostics().at(0).text;
+  }
+  return "no error";
+}
+
+TEST(PointsSelection, ExpressionsAreNumbersOfRows) {
+  EXPECT_EQ(values_of("sqrt(v.x^2 + 0 * id)"), (std::vector<double>{6, 5, 4, 3, 2, 1}));
+  EXPECT_EQ(values_of("-type^2")[1], -4) << "the power first";
+  EXPECT_EQ(values_of("2^type^2")[1], 16) << "from the right";
+  EXPECT_EQ(values_of("2^-type")[1], 0.25);
+  EXPECT_EQ(values_of("3 * type^2")[2], 12);
+  EXPECT_EQ(values_of("log10(id / 10)")[0], 0);
+  EXPECT_EQ(values_of("floor(exp(log(z) / 2) * 100)")[3], 141);
+  EXPECT_TRUE(std::isinf(values_of("1 / x")[0]));
+  EXPECT_EQ(rows("type^2 == 4"), "124") << "in conditions, too";
+  EXPECT_EQ(error_of_expression("x > 1"), "expected an arithmetic operator");
+  EXPECT_EQ(error_of_expression("element"), "expected a number, not a string");
+  EXPECT_EQ(error_of_expression("sqrt(y)"), "unknown column y");
+  EXPECT_EQ(error_of_expression("x ^"), "the condition ends too early");
+}
+
 TEST(PointsSelection, NamesWithIndicesDotsAndBackquotes) {
   EXPECT_EQ(rows("c_stress[1] > 4"), "45");
   EXPECT_EQ(rows("v.x>4"), "01");
@@ -236,7 +266,8 @@ TEST(PointsSelection, SyntaxErrorsHavePositionAndRemedy) {
   EXPECT_EQ(message("element in {C]").substr(0, 20), "14+1 expected , or }");
   EXPECT_EQ(message("element in ['C', 2:]").substr(0, 29), "18+1 list of both numbers and");
   EXPECT_EQ(message("z : 1").substr(0, 24), "3+1 expected an operator");
-  EXPECT_EQ(message("floor(z) > 1"), "1+5 unknown function floor; functions are abs, sqrt, min, max");
+  EXPECT_EQ(message("floof(z) > 1"),
+            "1+5 unknown function floof; functions are abs, sqrt, exp, log, log10, floor, min, max");
   EXPECT_EQ(message("abs(z, x) > 1").substr(0, 23), "1+3 abs with 2 operands");
   EXPECT_EQ(message("min(z) > 1").substr(0, 23), "1+3 min with 1 operands");
   EXPECT_EQ(message("`` > 1"), "1+2 no name between the backquotes; write the name of a column");

@@ -25,6 +25,33 @@ TEST(PointsTicks, AreAtRoundNumbers) {
   EXPECT_EQ(labels(273.15, 274.95), "273.2 273.4 273.6 273.8 274.0 274.2 274.4 274.6 274.8");
 }
 
+std::string log_labels(double first, double last) {
+  Legend legend;
+  legend.first = first;
+  legend.last = last;
+  legend.is_log = true;
+  std::string out;
+  double share = -1;
+  for (const Tick& tick : ticks_of(legend)) {
+    out += (out.empty() ? "" : " ") + tick.label;
+    EXPECT_GT(share_of(tick.value, legend), share);
+    share = share_of(tick.value, legend);
+  }
+  return out;
+}
+
+TEST(PointsTicks, LogarithmicBarsHaveDecades) {
+  EXPECT_EQ(log_labels(1e-3, 1e4), "0.001 0.01 0.1 1 10 100 1000 10000");
+  EXPECT_EQ(log_labels(0.3, 40), "0.5 1 2 5 10 20");
+  EXPECT_EQ(log_labels(1e-20, 1e12), "1e-20 1e-16 1e-12 1e-08 1e-04 1 10000 1e08 1e12");
+  EXPECT_EQ(log_labels(3, 7), "3.0 3.5 4.0 4.5 5.0 5.5 6.0 6.5 7.0") << "less than a decade";
+  Legend legend;
+  legend.first = 1e-3;
+  legend.last = 1e3;
+  legend.is_log = true;
+  EXPECT_NEAR(share_of(1, legend), 0.5, 1e-12);
+}
+
 TEST(PointsTicks, LargeAndSmallNumbersHaveExponents) {
   EXPECT_EQ(labels(0, 3e7), "0 0.5e7 1.0e7 1.5e7 2.0e7 2.5e7 3.0e7");
   EXPECT_EQ(labels(-1e-9, 1e-9), "-1.0e-9 -0.8e-9 -0.6e-9 -0.4e-9 -0.2e-9 0 0.2e-9 0.4e-9 0.6e-9 0.8e-9 1.0e-9");
