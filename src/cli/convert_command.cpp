@@ -40,7 +40,7 @@ int run_convert(ConvertArguments& arguments) {
   end_on_signals();
   plot::ConvertOptions& convert = arguments.convert;
   read_data_options(arguments.data, convert);
-  if (convert.color_by.empty() && (convert.has_map || convert.points.color.range))
+  if (convert.color_by.empty() && (convert.has_map || convert.range.is_set))
     base::refuse("--map and --range need --color-by");
   convert.memory_limit = base::available_memory().value_or(0);
   plot::convert(convert, [&](const plot::ConvertedFile& written) { print_file(written, arguments.quiet); });

@@ -15,6 +15,7 @@
 #include "format/read_scene.h"
 #include "job/job.h"
 #include "plot/data_frames.h"
+#include "plot/range.h"
 #include "points/point_opacity.h"
 #include "scene/limits.h"
 #include "scene/value_text.h"
@@ -80,15 +81,6 @@ void read_points(const DataArguments& arguments, scene::Points& points) {
     }
   }
   for (const std::string& text : arguments.opacity) read_opacity(text, points.opacity);
-  if (!arguments.range.empty()) {
-    const auto ends =
-        numbers_of(arguments.range, ':', 2,
-                   fmt::format("--range: `{}` is not a range; write LOW:HIGH, e.g. 0:12", arguments.range));
-    if (std::max(std::abs(ends[0]), std::abs(ends[1])) > scene::kLargestValue)
-      base::refuse("--range: the numbers must be from -1e+300 to 1e+300");
-    if (!(ends[0] < ends[1])) base::refuse("--range: the first number must be less than the second");
-    points.color.range = scene::Interval{ends[0], ends[1]};
-  }
   if (!arguments.replicate.empty()) {
     const auto counts =
         numbers_of(arguments.replicate, ',', 3,
@@ -302,13 +294,19 @@ void add_data_options(Command& command, DataArguments& arguments, plot::DataOpti
       ->choices({"vdw", "covalent", "ball"});
   command
       .add_option("--color-by", data.color_by, "COLUMN",
-                  "Colour by a column, or by element, type or rgb; none: one colour; default: from the file")
-      ->details("rgb: the file's own colours.");
+                  "Colour by a column, an expression such as 'sqrt(vx^2+vy^2)', element, type, rgb or none")
+      ->details(
+          "rgb: the file's own colours. none: one colour. The default depends on the file. Expressions have the "
+          "operators and functions of conditions.");
   arguments.map =
       command.add_option("--map", points.color.map, "MAP", "Colour map, e.g. viridis, fast, coolwarm, or a file")
           ->details("docs/data.md lists the maps. The default is fast, for types and strings tab10.");
-  command.add_option("--range", arguments.range, "LOW:HIGH",
-                     "Values at both ends of the colour map; default: minimum and maximum over all frames");
+  command
+      .add_option("--range", arguments.range, "RANGE",
+                  "Values at both ends of the colour map, e.g. 0:12, 1%:99%, log, symmetric; default: 0%:100%")
+      ->details(
+          "Numbers or percentiles of the values of all frames. log: a logarithmic scale; symmetric: -X:X; both also "
+          "with a range, e.g. log,1%:99%.");
 }
 
 void read_data_options(const DataArguments& arguments, plot::DataOptions& data) {
@@ -317,6 +315,11 @@ void read_data_options(const DataArguments& arguments, plot::DataOptions& data) 
   if (!arguments.frames.empty() && !data.all_frames) data.frames = base::parse_frames(arguments.frames);
   data.has_map = arguments.map->count() > 0;
   read_points(arguments, data.points);
+  if (!arguments.range.empty()) {
+    data.range = plot::parse_range(arguments.range);
+    data.points.color.range = data.range.fixed();
+    data.points.color.log = data.range.is_log;
+  }
   data.points.select = plot::all_of(arguments.select);
   for (const std::string& plane : arguments.slice) data.slices.push_back(slice_of(plane));
 }

@@ -109,7 +109,7 @@ void add_data_options(Command& command, DataArguments& arguments, plot::DataOpti
 
 /// Arguments of the look options that need further parsing; empty: not set.
 struct LookArguments {
-  std::string style, representation, bonds, vectors;
+  std::string style, quality, representation, bonds, vectors, background;
 };
 
 /// Adds the options of plot that select view, style, representation, bonds and opacity.

@@ -150,6 +150,7 @@ int run_plot(PlotArguments& arguments) {
   plot::PlotScene made = prepare(arguments);
   job.prepare_s = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
   if (made.noise) job.sampling.noise = *made.noise;
+  job.denoise = job.denoise || (made.denoise && job.outputs.deep.empty());
   made.choices.push_back(
       fmt::format("prepared in {:.1f} s: read {} to fit the view and the colours", job.prepare_s,
                   made.frames.size() > 1 ? std::to_string(made.frames.size()) + " frames" : "the file"));
@@ -204,16 +205,28 @@ void add_look_options(Command& command, DataArguments& data, plot::PlotOptions& 
       .add_option("--look-from", plot.look_from, "VIEW",
                   "View: iso, +x, -x, +y, -y, +z, -z, or azimuth and elevation in degrees, e.g. 30,20; default: iso")
       ->details("iso: from 45 degrees to the right of the front and 35.26 degrees above.");
+  command.add_option("--zoom", plot.zoom, "X", "Magnification, relative to the view that shows all; default: 1")
+      ->check(real_number(1e-3, 1e6));
+  command.add_option("--center", plot.center, "CONDITION",
+                     "Look at the middle of the particles that match, e.g. 'residue == \"HEM\"'");
+  command
+      .add_option("--perspective", plot.vfov_deg, "VFOV",
+                  "Perspective camera with this vertical field of view in degrees, e.g. 30; default: orthographic")
+      ->check(real_number(0.1, 170));
   command.add_option("--up", plot.up, "AXIS", "Axis that points up in the image; default: z, y for PDB and mmCIF")
       ->choices({"x", "y", "z"});
-  command
-      .add_option(
-          "--style", look.style, "STYLE",
-          "Look: studio, ambient (white light from all directions), flat (no shading) or night; default: studio")
+  command.add_option("--style", look.style, "STYLE", "Light: studio, soft, flat, night or ambient; default: studio")
       ->details(
-          "studio: a key light from the upper left of the camera, and white light from all directions. night: a lamp "
-          "and a dark sky.")
+          "studio: a key light from the upper left of the camera, and white light from all directions. soft: more of "
+          "the latter. flat: no shading. night: a lamp and a dark sky. ambient: white light from all directions alone.")
       ->choices(plot::style_names());
+  command.add_option("--background", look.background, "COLOR",
+                     "Colour behind the spheres: white, black, grey or #rrggbb; default: that of the style");
+  command.add_flag("--transparent", plot.transparent, "Transparent background, in EXR, PNG and TIFF");
+  command
+      .add_option("--quality", look.quality, "NAME",
+                  "draft (--samples 8 --denoise), good (--noise 0.1 --denoise) or final (--noise 0.02); default: good")
+      ->choices(plot::quality_names());
   command
       .add_option("--material", plot.material, "MATERIAL",
                   "Material of the spheres: matte, plastic, metal or glass; default: matte")
@@ -228,6 +241,8 @@ void add_look_options(Command& command, DataArguments& data, plot::PlotOptions& 
 
 void read_look_options(const LookArguments& look, plot::PlotOptions& plot) {
   plot.style = plot::style_of(look.style);
+  plot.quality = plot::quality_of(look.quality);
+  if (!look.background.empty()) plot.background = plot::color_of(look.background);
   if (!look.representation.empty()) {
     const std::vector<std::string>& names = plot::representation_names();
     plot.representation =
@@ -277,8 +292,8 @@ void add_plot(Command& program) {
       "printed: the radius is that of the file, else by chemical element, else half the median distance to the nearest "
       "neighbour in the first frame; the colour is that of the file, else by element, else by type, else light grey; "
       "an orthographic camera is fitted to the spheres of all frames; the view transform is Un-tone-mapped, or the "
-      "default view if the OpenColorIO config has none of this name; --noise is 0.02, unless --noise, --time or "
-      "--samples is given. docs/data.md describes data files.");
+      "default view if the OpenColorIO config has none of this name; --quality is good, unless --noise, --time "
+      "or --samples is given. docs/data.md describes data files.");
   command.footer(
       "Settings without an option are chosen from the data and printed.\n"
       "\n"

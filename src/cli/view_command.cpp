@@ -119,13 +119,15 @@ view::Subject data_subject(ShownOptions& shown) {
   out.job.scene.has_file = false;
   out.job.scene.overrides = plot.overrides;
   if (made.noise) out.job.sampling.noise = *made.noise;
+  out.job.denoise = out.job.denoise || made.denoise;
   out.notes = made.choices;
   for (const std::string& warning : made.warnings) out.notes.push_back("warning: " + warning);
   out.columns = made.columns;
   out.frame_count = made.frame_count;
   const scene::PointsColor& color = made.points.color;
   out.chosen["--map"] = color.map;
-  if (color.range) out.chosen["--range"] = fmt::format("{}:{}", color.range->low, color.range->high);
+  if (color.range)
+    out.chosen["--range"] = fmt::format("{}{}:{}", color.log ? "log," : "", color.range->low, color.range->high);
   out.chosen["--representation"] = plot::representation_names()[static_cast<std::size_t>(plot.representation)];
   out.chosen["--bonds"] = made.points.bonds.are_drawn ? "auto" : "none";
   out.chosen["--style"] = plot::style_names()[static_cast<std::size_t>(plot.style.value_or(plot::Style::kStudio))];

@@ -190,10 +190,10 @@ class Converter {
 
   /// One range of the colour map for all frames, as in a plot.
   void choose_range() {
-    if (keys_.color.column.empty() || keys_.color.range || data_.all().size() < 2) return;
-    std::optional<scene::Interval> range;
-    for (const int frame : data_.all()) widen(range, data_.load(frame, keys_).points);
-    keys_.color.range = range;
+    if (keys_.color.column.empty() || keys_.color.range || (data_.all().size() < 2 && !options_.range.is_set)) return;
+    RangeFinder finder(options_.range);
+    for (const int frame : data_.all()) data_.load(frame, keys_, nullptr, [&](double value) { finder.add(value); });
+    if (!finder.is_empty()) keys_.color.range = finder.range();
   }
 
   ConvertedFile convert_frame(int frame) const {

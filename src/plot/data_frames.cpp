@@ -92,7 +92,8 @@ std::filesystem::path DataFrames::file_of(int frame) const {
   return is_sequence_ ? std::filesystem::path(base::with_frame(options_.file.string(), frame)) : options_.file;
 }
 
-LoadedFrame DataFrames::load(int frame, const scene::Points& keys, points::SourceRows* source) const {
+LoadedFrame DataFrames::load(int frame, const scene::Points& keys, points::SourceRows* source,
+                             const std::function<void(double)>& on_value) const {
   points::LoadRequest request;
   request.file = file_of(frame);
   request.folder = folder_;
@@ -100,6 +101,7 @@ LoadedFrame DataFrames::load(int frame, const scene::Points& keys, points::Sourc
   request.frame = frame;
   request.memory_limit = options_.memory_limit;
   request.source = source;
+  request.on_value = on_value;
   request.open = open_;
   LoadedFrame out{keys, {}};
   out.points.is_sequence = is_sequence_;
@@ -189,7 +191,7 @@ bool choose_color(const DataOptions& options, const std::string& color_by, const
 
 bool set_color(const DataOptions& options, const std::string& color_by, const data::FrameInfo& info,
                scene::PointsColor& color) {
-  const bool has_range = options.points.color.range.has_value();
+  const bool has_range = options.range.is_set || options.points.color.range;
   const bool is_chosen = choose_color(options, color_by, info, color);
   if (color.column.empty() && (options.has_map || has_range))
     base::refuse(std::string(options.has_map ? "--map" : "--range") +
@@ -198,13 +200,6 @@ bool set_color(const DataOptions& options, const std::string& color_by, const da
   if (has_range && map && map->is_categorical)
     base::refuse(fmt::format("--range has no effect: the map {} has a colour for each value", color.map));
   return is_chosen;
-}
-
-void widen(std::optional<scene::Interval>& range, const scene::Points& points) {
-  if (!points.color_range || points.centers.empty()) return;
-  if (!range) range = points.color_range;
-  range->low = std::min(range->low, points.color_range->low);
-  range->high = std::max(range->high, points.color_range->high);
 }
 
 }  // namespace orrery::plot

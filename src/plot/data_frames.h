@@ -3,6 +3,7 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <functional>
 #include <memory>
 #include <optional>
 #include <string>
@@ -12,6 +13,7 @@
 #include "base/error.h"
 #include "data/data_file.h"
 #include "data/table.h"
+#include "plot/range.h"
 #include "points/load_points.h"
 #include "points/open_data.h"
 #include "scene/forward.h"
@@ -27,6 +29,7 @@ struct DataOptions {
   scene::Points points;        ///< keys that the user has set; `file` and the spheres are not used
   std::string color_by;        ///< "element", "type", "rgb", "none" or a column; empty: not set
   bool has_map = false;        ///< the user set `points.color.map`
+  RangeChoice range;           ///< of the colour map, where `points.color.range` is not set
   /// Slice planes: axis 0, 1 or 2, and position. Spheres in front of any of them are removed.
   std::vector<std::pair<int, double>> slices = {};
   std::uint64_t memory_limit = 0;  ///< bytes; 0: no limit
@@ -73,9 +76,10 @@ class DataFrames {
   /// Reads the spheres of a frame.
   ///
   /// `keys`     the scene's keys: what to read, and how
-  /// `source`   see points::LoadRequest
+  /// `source`, `on_value`   see points::LoadRequest
   /// Errors     base::Error: those of points::load_points(); kBadData with its errors
-  LoadedFrame load(int frame, const scene::Points& keys, points::SourceRows* source = nullptr) const;
+  LoadedFrame load(int frame, const scene::Points& keys, points::SourceRows* source = nullptr,
+                   const std::function<void(double)>& on_value = {}) const;
 
   /// The median distance between neighbours in the first frame in which particles have neighbours; 0: in none. It
   /// depends on the file alone, not on which frame and which particles are used: all panels of a figure show a particle
@@ -108,8 +112,5 @@ std::string all_of(const std::vector<std::string>& conditions);
 /// Errors     base::Error(kUsage) if the user set a map or a range that would have no effect
 bool set_color(const DataOptions& options, const std::string& color_by, const data::FrameInfo& info,
                scene::PointsColor& color);
-
-/// Extends a colour map's range of values by those of a frame, so that all frames can share one range.
-void widen(std::optional<scene::Interval>& range, const scene::Points& points);
 
 }  // namespace orrery::plot

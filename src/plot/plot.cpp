@@ -19,6 +19,7 @@
 #include "load/load_scene.h"
 #include "load/working_space.h"
 #include "plot/data_frames.h"
+#include "plot/range.h"
 #include "plot/scene_text.h"
 #include "plot/view.h"
 #include "points/color_map.h"
@@ -30,8 +31,13 @@ namespace {
 
 using scene::number_text;
 
-/// Noise of a plot unless the user limits samples, noise or time.
-constexpr double kNoise = 0.02;
+/// Samples per pixel of a draft, and noise of the other qualities, unless the user limits samples, noise or time.
+/// Drafts and good images are denoised: of a million atoms at 1920 x 1080, noise cannot be seen with 16 samples.
+constexpr int kDraftSamples = 8;
+constexpr double kGoodNoise = 0.1, kFinalNoise = 0.02;
+
+/// Atoms from which colours by element are noise, and chains are shown instead.
+constexpr std::uint64_t kManyAtoms = 5000;
 
 /// Radius of the spheres of a ball-and-stick model or of sticks without elements, as a fraction of that of spheres;
 /// radius of sticks between elements, in the unit of the file.
@@ -49,12 +55,13 @@ int side_of(const format::Overrides& overrides, const char* key, int otherwise) 
   return static_cast<int>(std::clamp<std::int64_t>(overrides.integer(key).value_or(otherwise), 1, base::kLargestSide));
 }
 
-/// The vertical field of view if the overrides select a perspective camera, also by a field of view alone. An invalid
-/// one is reported when the scene is read.
-std::optional<double> vfov_of(const format::Overrides& overrides) {
+/// The vertical field of view of a perspective camera, which overrides can also select, by a field of view alone. An
+/// invalid one is reported when the scene is read.
+std::optional<double> vfov_of(const PlotOptions& options) {
+  const format::Overrides& overrides = options.overrides;
   const std::optional<std::string> projection = overrides.string("camera.projection");
   const std::optional<double> vfov = overrides.number("camera.vfov");
-  if (projection != "perspective" && (projection || !vfov)) return {};
+  if (projection != "perspective" && (projection || !vfov)) return projection ? std::nullopt : options.vfov_deg;
   return vfov && *vfov > 0 && *vfov < 180 ? *vfov : scene::Camera().vfov;
 }
 
@@ -77,7 +84,7 @@ class PlotMaker {
         info_(data_.info()),
         width_(side_of(options.overrides, "image.width", 1920)),
         height_(side_of(options.overrides, "image.height", 1080)),
-        vfov_(vfov_of(options.overrides)),
+        vfov_(vfov_of(options)),
         is_turntable_(options.overrides.number("animation.turntable").value_or(0) != 0) {
     const std::filesystem::path folder = options.scene_file.parent_path();
     out_.points = options.points;
@@ -88,8 +95,9 @@ class PlotMaker {
       map = std::filesystem::proximate(map, folder.empty() ? "." : folder).string();
     out_.frames = data_.numbers();
     const scene::Points& points = out_.points;
-    for (const std::string& text : {points.file.string(), options.color_by, points.color.column, points.color.map,
-                                    points.radius.column, points.opacity.column, points.select, points.assembly})
+    for (const std::string& text :
+         {points.file.string(), options.color_by, points.color.column, points.color.map, points.radius.column,
+          points.opacity.column, points.select, points.assembly, options.center})
       require_utf8(text);
     for (const std::string& text : points.opacity.where) require_utf8(text);
   }
@@ -122,18 +130,22 @@ class PlotMaker {
     visit_frames(extent, up);
     if (extent.is_empty()) report_empty();
     add_guides(extent, up);
-    if (is_turntable_ && !extent.is_empty()) extent = orbit(axes, extent.center(), pole);
+    const std::optional<math::Vec3d> target = target_of(axes);
+    if (is_turntable_ && !extent.is_empty()) extent = orbit(axes, target.value_or(extent.center()), pole);
     const double aspect = static_cast<double>(width_) / height_;
     scene::Camera camera = vfov_ ? extent.perspective_camera(aspect, *vfov_) : extent.camera(aspect);
     camera.up = pole;
+    if (target) look_at(*target, axes, camera);
+    magnify(camera, options_.zoom);
     chose(fmt::format("view {}, {}", options_.look_from,
-                      vfov_ ? fmt::format("vertical field of view {}", number_text(*vfov_))
+                      vfov_ ? fmt::format("vertical field of view {}", number_text(rounded(camera.vfov)))
                             : number_text(rounded(*camera.width)) + " wide"),
-          fmt::format("fitted to the spheres{}{}", out_.frames.size() > 1 ? " of all frames" : "",
-                      is_turntable_ ? " and the whole orbit" : ""));
+          fmt::format("fitted to the spheres{}{}{}", out_.frames.size() > 1 ? " of all frames" : "",
+                      is_turntable_ ? " and the whole orbit" : "",
+                      options_.zoom == 1 ? "" : ", times " + number_text(options_.zoom)));
     choose_display_view();
-    PlotParts parts{options_,  width_, height_,         out_.points,     camera,
-                    out_.view, axes,   extent.center(), extent.radius(), {}};
+    PlotParts parts{options_, width_,          height_,         out_.points, camera, out_.view,
+                    axes,     extent.center(), extent.radius(), {},          {}};
     if (options_.ground && !extent.is_empty()) {
       parts.ground = ground_below(lowest_, up, extent);
       if (hides_view(*parts.ground, camera, aspect)) {
@@ -145,7 +157,7 @@ class PlotMaker {
     if (!options_.style) chose("style studio", "a key light from the upper left, and white light from all directions");
     if (!options_.overrides.sets("image.width") && !options_.overrides.sets("image.height"))
       chose(fmt::format("size {} x {}", width_, height_), "--width and --height change it");
-    choose_samples();
+    choose_samples(parts.samples);
     if (options_.develops && display_of(options_).view.empty() && out_.view == kPlainView)
       chose(fmt::format("view transform {}", out_.view), "colours match the colour map");
     parts.guides = std::move(guides_);
@@ -326,15 +338,21 @@ class PlotMaker {
     if (is_glass && !by.empty() && by != "none")
       base::refuse(fmt::format("--color-by {} has no effect: glass has no colour; use another --material", by));
     if (by.empty()) {
-      by = is_glass                 ? "none"
-           : !roles.rgb[0].empty()  ? "rgb"
-           : !roles.element.empty() ? "element"
-           : !roles.type.empty()    ? "type"
-                                    : "none";
-      why = is_glass       ? "glass has none"
-            : by == "rgb"  ? "the file's own"
-            : by == "none" ? "light grey"
-                           : "the file has no colours";
+      const bool has_chains = !roles.chain.empty() && !options_.has_map;
+      const bool is_assembly = !options_.points.assembly.empty(), has_many = info_.rows >= kManyAtoms;
+      by = is_glass                                  ? "none"
+           : !roles.rgb[0].empty()                   ? "rgb"
+           : has_chains && (is_assembly || has_many) ? roles.chain
+           : !roles.element.empty()                  ? "element"
+           : !roles.type.empty()                     ? "type"
+                                                     : "none";
+      why = is_glass          ? "glass has none"
+            : by == "rgb"     ? "the file's own; --color-by changes it"
+            : by == "none"    ? "light grey; --color-by COLUMN shows values"
+            : by == "element" ? "the file has no colours; --color-by changes it"
+            : by == "type"    ? "the file has no colours; --color-by changes it"
+            : is_assembly     ? "an assembly; --color-by element shows elements"
+                              : "many atoms; --color-by element shows elements";
       out.push_back(fmt::format("{}: {}", by == "none" ? "no colour" : "colour by " + by, why));
     }
     if (set_color(options_, by, info_, color))
@@ -354,20 +372,50 @@ class PlotMaker {
       chose("display view " + out_.view, std::string("the default; the OCIO config has no view ") + kPlainView);
   }
 
-  void choose_samples() {
-    if (options_.has_target || options_.overrides.sets("render.samples")) return;
-    if (options_.style == Style::kFlat) return chose("samples 100", "without shading there is hardly any noise");
-    out_.noise = kNoise;
-    chose(fmt::format("noise {}", kNoise), "--noise, --time or --samples change it");
+  void choose_samples(std::optional<int>& samples) {
+    if (options_.has_target || options_.overrides.sets("render.samples")) {
+      if (options_.quality) base::refuse("--quality excludes --noise, --time and --samples: it sets them");
+      return;
+    }
+    if (options_.style == Style::kFlat && !options_.quality)
+      return chose("samples 100", "without shading there is hardly any noise");
+    const Quality quality = options_.quality.value_or(Quality::kGood);
+    out_.denoise = quality != Quality::kFinal && options_.style != Style::kFlat;
+    std::string what;
+    if (quality == Quality::kDraft) {
+      samples = kDraftSamples;
+      what = fmt::format("{} samples", kDraftSamples);
+    } else {
+      out_.noise = quality == Quality::kGood ? kGoodNoise : kFinalNoise;
+      what = fmt::format("noise {}", *out_.noise);
+    }
+    chose(
+        "quality " + quality_names()[static_cast<std::size_t>(quality)],
+        fmt::format("{}{}; --quality, --noise, --time or --samples change it", what, out_.denoise ? ", denoised" : ""));
+  }
+
+  /// The middle of the particles that --center selects, in all frames; none without it.
+  std::optional<math::Vec3d> target_of(const ViewAxes& axes) const {
+    if (options_.center.empty()) return {};
+    scene::Points selected = out_.points;
+    selected.select =
+        all_of(selected.select.empty() ? std::vector{options_.center} : std::vector{selected.select, options_.center});
+    ViewExtent extent(axes);
+    for (const int frame : data_.distinct()) extent.add(data_.load(frame, selected).points);
+    if (extent.is_empty())
+      throw base::Error(base::ErrorKind::kBadData,
+                        fmt::format("--center `{}` matches none of the particles that are drawn", options_.center));
+    return extent.center();
   }
 
   /// Reads all frames once, so that the view contains all of them and a single range of the colour map avoids flicker.
   void visit_frames(ViewExtent& extent, const math::Vec3d& up) {
     const bool needs_range = !out_.points.color.column.empty() && !out_.points.color.range;
-    std::optional<scene::Interval> range;
+    RangeFinder finder(options_.range);
+    const auto on_value = needs_range ? [&](double value) { finder.add(value); } : std::function<void(double)>();
     std::size_t fewest = std::numeric_limits<std::size_t>::max(), most = 0, fewest_bonds = fewest, most_bonds = 0;
     for (const int frame : data_.distinct()) {
-      const scene::Points points = load(frame);
+      const scene::Points points = data_.load(frame, out_.points, nullptr, on_value).points;
       fewest = std::min(fewest, points.particle_count());
       most = std::max(most, points.particle_count());
       // Two stubs are a bond.
@@ -384,20 +432,33 @@ class PlotMaker {
       }
       if (points.centers.empty()) continue;
       out_.legend.add(points);
-      widen(range, points);
     }
     report_count(fewest, most);
     report_bonds(fewest_bonds, most_bonds);
-    out_.legend.range = out_.points.color.range ? out_.points.color.range : range;
+    if (!finder.is_empty()) out_.legend.range = finder.range();
+    if (out_.points.color.range) out_.legend.range = out_.points.color.range;
     if (out_.legend.has_conflict)
       out_.warnings.push_back(
           fmt::format("colour by {}: the frames do not have the same values, and one value has different colours in "
                       "different frames; colour by a column of integers",
                       out_.legend.title));
-    if (!needs_range || !range) return;
-    if (range->low < range->high) out_.points.color.range = range;
-    chose("range " + range_text(*range),
-          out_.frames.size() > 1 ? "minimum and maximum over all frames" : "minimum and maximum");
+    if (needs_range && !finder.is_empty()) choose_range(*out_.legend.range);
+  }
+
+  void choose_range(const scene::Interval& range) {
+    if (range.low < range.high) out_.points.color.range = range;
+    const RangeChoice& choice = options_.range;
+    const auto end_text = [](const RangeChoice::End& end) {
+      return number_text(end.value) + (end.is_percentile ? "%" : "");
+    };
+    const bool is_default =
+        choice.low.is_percentile && choice.low.value == 0 && choice.high.is_percentile && choice.high.value == 100;
+    chose("range " + range_text(range),
+          fmt::format(
+              "{}{}{}{}",
+              is_default ? "minimum and maximum" : fmt::format("{} to {}", end_text(choice.low), end_text(choice.high)),
+              out_.frames.size() > 1 ? " over all frames" : "", choice.is_symmetric ? ", symmetric" : "",
+              choice.is_log ? ", logarithmic" : ""));
   }
 
   /// Prints how many spheres are drawn, next to the number of particles, where they differ.
@@ -490,21 +551,6 @@ class PlotMaker {
 };
 
 }  // namespace
-
-const std::vector<std::string>& representation_names() {
-  static const std::vector<std::string> names = {"spheres", "ball-and-stick", "sticks"};
-  return names;
-}
-
-const std::vector<std::string>& style_names() {
-  static const std::vector<std::string> names = {"studio", "ambient", "flat", "night"};
-  return names;
-}
-
-std::optional<Style> style_of(const std::string& name) {
-  if (name.empty()) return {};
-  return static_cast<Style>(std::find(style_names().begin(), style_names().end(), name) - style_names().begin());
-}
 
 PlotScene make_plot(const PlotOptions& options, const std::function<void(const std::vector<int>& frames)>& check) {
   PlotMaker maker(options);

@@ -17,7 +17,10 @@
 /// Makes a scene for a data file: settings that the user did not choose are chosen from the data, and reported.
 namespace orrery::plot {
 
-enum class Style { kStudio, kAmbient, kFlat, kNight };
+enum class Style { kStudio, kSoft, kFlat, kNight, kAmbient };
+
+/// How little noise an image has, and how long it takes.
+enum class Quality { kDraft, kGood, kFinal };
 
 /// How particles are represented.
 enum class Representation {
@@ -29,8 +32,9 @@ enum class Representation {
 /// Names of the representations, in the order of the enumerators.
 const std::vector<std::string>& representation_names();
 
-/// Names of the styles, in the order of the enumerators.
+/// Names of the styles and of the qualities, in the order of the enumerators.
 const std::vector<std::string>& style_names();
+const std::vector<std::string>& quality_names();
 
 /// Materials of the spheres, by name.
 const std::vector<std::string>& material_names();
@@ -40,11 +44,28 @@ const std::vector<std::string>& material_names();
 /// Domain     empty, or one of style_names()
 std::optional<Style> style_of(const std::string& name);
 
+/// The quality with this name; none for an empty name.
+///
+/// Domain     empty, or one of quality_names()
+std::optional<Quality> quality_of(const std::string& name);
+
+/// The colour with a name or in the form #rrggbb, as a display shows it.
+///
+/// Result     linear Rec.709
+/// Errors     base::Error(kUsage)
+math::Vec3d color_of(const std::string& text);
+
 struct PlotOptions : DataOptions {
-  std::string look_from = "iso";   ///< "iso", "+x" .. "-z", or "azimuth,elevation" in degrees
-  std::string up;                  ///< "x", "y" or "z"; empty: depends on the format
-  std::optional<Style> style;      ///< default: kStudio
-  std::string material = "matte";  ///< one of material_names()
+  std::string look_from = "iso";          ///< "iso", "+x" .. "-z", or "azimuth,elevation" in degrees
+  std::string up;                         ///< "x", "y" or "z"; empty: depends on the format
+  std::optional<double> vfov_deg;         ///< vertical field of view of a perspective camera; none: orthographic
+  double zoom = 1;                        ///< magnification, relative to the camera that sees all
+  std::string center;                     ///< condition: the camera looks at the middle of the particles that match
+  std::optional<Style> style;             ///< default: kStudio
+  std::optional<Quality> quality;         ///< default: kGood
+  std::optional<math::Vec3d> background;  ///< colour behind the spheres, linear Rec.709; default: that of the style
+  bool transparent = false;               ///< the background is transparent
+  std::string material = "matte";         ///< one of material_names()
   Representation representation = Representation::kSpheres;
   std::optional<bool> bonds;  ///< draws bonds by the keys in `points.bonds`; default: unless kSpheres
   bool ground = false;
@@ -72,6 +93,7 @@ struct PlotScene {
   std::vector<std::string> columns;  ///< columns of the data that can be colours
   std::optional<int> frame_count;    ///< of the file; empty: unknown, since counting would read it
   std::optional<double> noise = {};  ///< target noise, unless the user limits samples, noise or time
+  bool denoise = false;              ///< the quality is that of denoised images
   points::OpenData open_data;        ///< opens the data file for the render without reading it again
 };
 

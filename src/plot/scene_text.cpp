@@ -32,9 +32,12 @@ struct Lighting {
 /// Half of the light on a sphere comes from all directions, so that gaps between spheres are dark, and half from a lamp
 /// of 35 degrees, whose shadows are soft. It is far away, so that it illuminates all parts alike. The mean radiance
 /// over the image of an unoccluded matte sphere is then that of its albedo in white light of radiance 1 (test
-/// PlotPlot.TheMeanOfASphereInTheStudioIsItsColor).
+/// PlotPlot.TheMeanOfASphereIsItsColor).
 constexpr Lighting kStudio{
     {0.5, 0.5, 0.5}, Vec3d{1, 1, 1}, {0.75, 0.75, 0.75}, {10.896, 10.896, 10.896}, 0.7, 0.5, 100, 30};
+/// The same mean, with more light from all directions and a lamp of 74 degrees: shadows are faint, and gaps dark.
+constexpr Lighting kSoft{
+    {0.7, 0.7, 0.7}, Vec3d{1, 1, 1}, {0.85, 0.85, 0.85}, {2.3165, 2.3165, 2.3165}, 0.9, 0.6, 100, 60};
 constexpr Lighting kWhite{{1, 1, 1}, {}, {0.95, 0.95, 0.95}, {}, 0, 0, 0, 0};
 /// The irradiance at the centre, pi times radiance times (radius / distance)^2, is that of a white dome.
 constexpr Lighting kNight{{0.02, 0.02, 0.025}, {}, {0.1, 0.1, 0.1}, {25, 24.5, 23.5}, 0.9, 0.7, 6, 1.2};
@@ -42,9 +45,10 @@ constexpr Lighting kNight{{0.02, 0.02, 0.025}, {}, {0.1, 0.1, 0.1}, {25, 24.5, 2
 const Lighting& lighting_of(Style style) {
   switch (style) {
     case Style::kStudio: return kStudio;
-    case Style::kAmbient:
-    case Style::kFlat: return kWhite;
+    case Style::kSoft: return kSoft;
     case Style::kNight: return kNight;
+    case Style::kFlat:
+    case Style::kAmbient: return kWhite;
   }
   return kWhite;
 }
@@ -83,7 +87,9 @@ std::string scene_text(const PlotParts& parts) {
   scene.camera = parts.camera;
   scene.background.type = scene::BackgroundType::kConstant;
   scene.background.color = light.background;
-  scene.background.backdrop = light.backdrop;
+  scene.background.backdrop = options.background ? options.background : light.backdrop;
+  scene.background.alpha = options.transparent ? 0 : 1;
+  if (parts.samples) scene.render.samples = *parts.samples;
   if (options.style == Style::kFlat) scene.render.shading = scene::Shading::kFlat;
   scene.color.view = parts.view;
   scene.points = {parts.points};

@@ -26,6 +26,7 @@ struct PlotParts {
   const ViewAxes& axes;          ///< axes of the image
   Vec3d center;                  ///< centre of the spheres
   double radius = 1;             ///< radius of a sphere around `center` that contains all spheres
+  std::optional<int> samples;    ///< per pixel; default: that of scenes
   std::optional<Ground> ground;  ///< ground below the spheres
   /// Edges of the simulation box and axes; their materials are GuideMaterial.
   std::vector<scene::Rod> guides = {};

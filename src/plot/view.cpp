@@ -154,6 +154,21 @@ bool hides_view(const Ground& ground, const scene::Camera& camera, double aspect
   return false;
 }
 
+void look_at(Vec3d target, const ViewAxes& axes, scene::Camera& camera) {
+  const Vec3d shift = target - camera.look_at;
+  camera.look_at = target;
+  // A perspective camera keeps its distance to what is in front of the target.
+  camera.look_from =
+      camera.look_from +
+      (camera.projection == scene::Projection::kOrthographic ? shift : shift - axes.back * math::dot(shift, axes.back));
+}
+
+void magnify(scene::Camera& camera, double zoom) {
+  if (camera.width) camera.width = *camera.width / zoom;
+  constexpr double kHalfDegree = std::numbers::pi / 360;
+  if (zoom != 1) camera.vfov = std::atan(std::tan(camera.vfov * kHalfDegree) / zoom) / kHalfDegree;
+}
+
 ViewExtent ViewExtent::grown(double length) const {
   ViewExtent out = *this;
   for (int k = 0; k < 3 && !is_empty_; ++k) {

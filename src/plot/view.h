@@ -86,6 +86,13 @@ Ground ground_below(double lowest, Vec3d up, const ViewExtent& extent);
 /// `aspect`   image width divided by its height
 bool hides_view(const Ground& ground, const scene::Camera& camera, double aspect);
 
+/// Moves the camera, in the plane of its image, so that a point is at the centre of the image, and makes that point the
+/// centre of orbits.
+void look_at(Vec3d target, const ViewAxes& axes, scene::Camera& camera);
+
+/// Narrows what the camera sees by a factor.
+void magnify(scene::Camera& camera, double zoom);
+
 /// The unit vector of the axis "x", "y" or "z".
 Vec3d axis_of(const std::string& name);
 

@@ -55,6 +55,7 @@ points::Legend legend_of(const LegendColors& colors, const display::Settings& di
   if (colors.nan_color) legend.nan_color = developed({*colors.nan_color}, display)[0];
   legend.first = colors.range->low;
   legend.last = colors.range->high;
+  legend.is_log = colors.is_log;
   return legend;
 }
 
@@ -97,6 +98,7 @@ void LegendColors::add(const scene::Points& frame) {
   if (!frame.color_names.empty() || key.column.empty() || frame.palette.empty()) return;
   // The last colour stands for values that are not numbers.
   const std::size_t last = frame.palette.size() - 1;
+  is_log = key.log;
   bar.assign(frame.palette.begin(), frame.palette.end() - 1);
   if (std::find(frame.colors.begin(), frame.colors.end(), last) != frame.colors.end()) nan_color = frame.palette[last];
 }

@@ -25,6 +25,7 @@ struct LegendColors {
   std::vector<math::Vec3d> bar;                           ///< colours of a colour map; empty: there is none
   std::optional<math::Vec3d> nan_color;                   ///< set if a value is NaN
   std::optional<scene::Interval> range;                   ///< range of the colour map
+  bool is_log = false;                                    ///< the map is logarithmic
   bool has_conflict = false;                              ///< a label has different colours in different frames
 
   /// Adds the colours of a loaded frame.

@@ -64,11 +64,13 @@ TEST_F(CliPlot, ChoicesOfTheRenderArePrinted) {
   Outcome r = run("plot a.dump -o a.ppm --width 16 --height 9");
   EXPECT_TRUE(contains(r.err, "\nplot: frame 1 of 2: the first; --frames all renders all of them\n")) << r.err;
   EXPECT_TRUE(contains(r.err, "\nplot: view transform Un-tone-mapped: ")) << r.err;
-  EXPECT_TRUE(contains(r.err, "\nplot: noise 0.02: --noise, --time or --samples change it\n")) << r.err;
+  EXPECT_TRUE(
+      contains(r.err, "\nplot: quality good: noise 0.1, denoised; --quality, --noise, --time or --samples change it\n"))
+      << r.err;
   EXPECT_TRUE(contains(r.err, "\nplot: prepared in ")) << r.err;
   EXPECT_FALSE(contains(r.err, "\nplot: size")) << r.err;
   r = plot("a.dump -o a.ppm --style flat --set color.view=Raw");
-  EXPECT_FALSE(contains(r.err, "view transform") || contains(r.err, "plot: noise") || contains(r.err, "plot: style"))
+  EXPECT_FALSE(contains(r.err, "view transform") || contains(r.err, "plot: quality") || contains(r.err, "plot: style"))
       << r.err;
   r = run("plot a.dump -o a.ppm --style flat --set image.width=16 --set image.height=9");
   EXPECT_TRUE(contains(r.err, "\nplot: samples 100: ")) << r.err;

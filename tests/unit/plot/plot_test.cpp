@@ -4,8 +4,11 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <set>
+
+#include <fmt/core.h>
 
 #include "base/error.h"
 #include "display/develop.h"
@@ -93,12 +96,12 @@ TEST_F(PlotPlot, DefaultsWithoutRadiusAndColor) {
   EXPECT_EQ(choices(),
             "CSV: 9 particles\n"
             "radius 2: half the median distance to the nearest neighbour\n"
-            "no colour: light grey\n"
+            "no colour: light grey; --color-by COLUMN shows values\n"
             "up z: customary for simulations and scans\n"
             "view iso, 20.8 wide: fitted to the spheres\n"
             "style studio: a key light from the upper left, and white light from all directions\n"
             "size 1920 x 1080: --width and --height change it\n"
-            "noise 0.02: --noise, --time or --samples change it\n");
+            "quality good: noise 0.1, denoised; --quality, --noise, --time or --samples change it\n");
   const scene::Scene scene = read();
   ASSERT_EQ(scene.points.size(), 1u);
   EXPECT_EQ(scene.points[0].file, "a.csv") << "relative to the scene file";
@@ -147,7 +150,7 @@ TEST_F(PlotPlot, MoleculesHaveRadiiAndColorsOfTheirElements) {
        "ATOM      1  CA  ALA A   1       1.000   2.000   3.000  1.00  0.00           C\n"
        "ATOM      2  N   ALA B   1       4.000   5.000   6.000  1.00  0.00           N\nEND\n");
   EXPECT_TRUE(chose("radius vdw: van der Waals radii of the elements")) << choices();
-  EXPECT_TRUE(chose("colour by element: the file has no colours")) << choices();
+  EXPECT_TRUE(chose("colour by element: the file has no colours; --color-by changes it")) << choices();
   EXPECT_TRUE(chose("up y: customary for molecules")) << choices();
   const scene::Scene scene = read();
   EXPECT_EQ(scene.points[0].radii, (std::vector<double>{1.70, 1.55}));
@@ -310,7 +313,7 @@ TEST_F(PlotPlot, ElementsDifferFromTheBackground) {
     text += std::string(points::find_element(z)->symbol) + " " + std::to_string(z) + " 0 0\n";
   write("a.xyz", text);
   options.points.radius.value = 1;
-  for (const Style style : {Style::kStudio, Style::kFlat, Style::kNight}) {
+  for (const Style style : {Style::kStudio, Style::kSoft, Style::kFlat, Style::kNight}) {
     options.style = style;
     make();
     const auto colors = shown(read());
@@ -325,13 +328,13 @@ TEST_F(PlotPlot, ElementsDifferFromTheBackground) {
 
 TEST_F(PlotPlot, ColorsOfTheFileComeFirst) {
   make("a.csv", "x,y,z,radius,type,red,green,blue\n0,0,0,1,1,255,0,0\n");
-  EXPECT_TRUE(chose("colour by rgb: the file's own")) << choices();
+  EXPECT_TRUE(chose("colour by rgb: the file's own; --color-by changes it")) << choices();
   EXPECT_EQ(read().points[0].palette, (std::vector<Vec3d>{{1, 0, 0}}));
 }
 
 TEST_F(PlotPlot, TypesAreCategories) {
   make("a.dump", frame("x y z radius type", {"1 0 0 1 2", "2 0 0 1 1"}));
-  EXPECT_TRUE(chose("colour by type: the file has no colours")) << choices();
+  EXPECT_TRUE(chose("colour by type: the file has no colours; --color-by changes it")) << choices();
   const scene::Points points = read().points[0];
   EXPECT_EQ(points.color.map, "tab10");
   EXPECT_EQ(points.palette, points::palette(*points::find_color_map("tab10"), 2));
@@ -697,9 +700,8 @@ TEST_F(PlotPlot, GlassHasNoColor) {
 
 /// The mean over the image of an unoccluded matte sphere: the mean over the visible normals of the irradiance from the
 /// lamp and the background, by quadrature.
-TEST_F(PlotPlot, TheMeanOfASphereInTheStudioIsItsColor) {
-  make("a.csv", "x,y,z,radius\n0,0,0,1\n");
-  const scene::Scene scene = read();
+/// The mean over the image of a matte sphere's radiance, divided by its albedo.
+double mean_of_sphere(const scene::Scene& scene) {
   const scene::Sphere& lamp = scene.spheres.at(0);
   const double distance = math::length(lamp.center), size = lamp.radius / distance;
   const Vec3d toward = lamp.center / distance, back = math::normalized(scene.camera.look_from - scene.camera.look_at);
@@ -726,10 +728,106 @@ TEST_F(PlotPlot, TheMeanOfASphereInTheStudioIsItsColor) {
   const double solid_angle = 2 * kPi * (1 - std::sqrt(1 - size * size));
   // The lamp hides a part of the background.
   const double from_lamp = (radiance - scene.background.color.x) * solid_angle / kPi * sum / std::pow(kSteps, 4);
-  EXPECT_NEAR(from_lamp + scene.background.color.x, 1, 2e-3);
   EXPECT_GT(math::dot(lamp.center - scene.camera.look_from, back), lamp.radius) << "behind the camera";
   EXPECT_LT(math::dot(lamp.center, math::cross(scene.camera.up, back)), 0) << "left";
   EXPECT_GT(math::dot(lamp.center, scene.camera.up), 0) << "above";
+  return from_lamp + scene.background.color.x;
+}
+
+TEST_F(PlotPlot, TheMeanOfASphereIsItsColor) {
+  for (const Style style : {Style::kStudio, Style::kSoft}) {
+    options.style = style;
+    make("a.csv", "x,y,z,radius\n0,0,0,1\n");
+    EXPECT_NEAR(mean_of_sphere(read()), 1, 2e-3) << static_cast<int>(style);
+  }
+  for (const Style style : {Style::kFlat, Style::kAmbient}) {
+    options.style = style;
+    make();
+    EXPECT_EQ(read().background.color, (Vec3d{1, 1, 1})) << "white light";
+    EXPECT_TRUE(read().spheres.empty()) << "alone";
+  }
+}
+
+TEST_F(PlotPlot, TheBackgroundIsAColorOrTransparent) {
+  options.background = color_of("#ff8000");
+  make("a.csv", kCorners);
+  EXPECT_EQ(shown(read())[0], (std::array<int, 3>{255, 128, 0}));
+  EXPECT_EQ(read().background.alpha, 1);
+  options.transparent = true;
+  make();
+  EXPECT_EQ(read().background.alpha, 0);
+  EXPECT_EQ(color_of("black"), (Vec3d{0, 0, 0}));
+  for (const char* text : {"", "puce", "#ff800", "#ff80000", "#gg0000", "ff8000"})
+    EXPECT_THROW(color_of(text), base::Error) << text;
+}
+
+TEST_F(PlotPlot, QualitiesAreNoiseOrSamples) {
+  make("a.csv", kCorners);
+  EXPECT_EQ(made.noise, 0.1);
+  EXPECT_TRUE(made.denoise);
+  options.quality = Quality::kFinal;
+  make();
+  EXPECT_EQ(made.noise, 0.02);
+  EXPECT_FALSE(made.denoise);
+  options.quality = Quality::kDraft;
+  make();
+  EXPECT_FALSE(made.noise);
+  EXPECT_TRUE(made.denoise);
+  EXPECT_EQ(read().render.samples, 8);
+  options.has_target = true;
+  EXPECT_EQ(error(), "--quality excludes --noise, --time and --samples: it sets them");
+}
+
+TEST_F(PlotPlot, CenterAndZoomMoveTheCamera) {
+  for (const bool is_perspective : {false, true}) {
+    if (is_perspective) options.vfov_deg = 30;
+    options.center.clear();
+    options.zoom = 1;
+    make("a.csv", kCorners);
+    const scene::Camera all = read().camera;
+    options.center = "mass == 8";  // at 4, 4, 4
+    options.zoom = 4;
+    make();
+    const scene::Camera camera = read().camera;
+    const Vec3d back = math::normalized(all.look_from - all.look_at);
+    EXPECT_LT(math::length(camera.look_at - Vec3d{4, 4, 4}), 1e-12);
+    EXPECT_LT(math::length(math::cross(back, camera.look_from - camera.look_at)), 1e-12) << "the same direction";
+    if (is_perspective) {
+      EXPECT_NEAR(math::dot(camera.look_from - all.look_from, back), 0, 1e-12) << "not into the spheres";
+      EXPECT_NEAR(std::tan(camera.vfov / 360 * 3.14159265358979) * 4, std::tan(15.0 / 180 * 3.14159265358979), 1e-9);
+    } else {
+      EXPECT_NEAR(*camera.width * 4, *all.width, 1e-9);
+    }
+  }
+  options.center = "mass == 10";
+  EXPECT_EQ(error(), "--center `mass == 10` matches none of the particles that are drawn");
+  options.points.select = "mass < 8";
+  options.center = "mass == 8";
+  EXPECT_EQ(error(), "--center `mass == 8` matches none of the particles that are drawn");
+}
+
+/// Elements of many atoms are noise.
+TEST_F(PlotPlot, ManyAtomsAreColoredByChain) {
+  std::string text;
+  for (int i = 0; i < 5000; ++i)
+    text += fmt::format("ATOM  {:5}  CA  ALA {} {:3}    {:8.3f}{:8.3f}{:8.3f}  1.00  0.00           C\n", i,
+                        i % 2 == 0 ? 'A' : 'B', i % 1000, i % 50 * 2.0, i / 50 % 50 * 2.0, i / 2500 * 2.0);
+  make("a.pdb", text + "END\n");
+  EXPECT_TRUE(chose("colour by chain: many atoms; --color-by element shows elements")) << choices();
+  EXPECT_EQ(read().points[0].color.map, "tab10");
+  EXPECT_EQ(read().points[0].palette.size(), 2u);
+  options.color_by = "element";
+  make();
+  EXPECT_EQ(read().points[0].color.element, "jmol");
+  options.color_by.clear();
+  const std::string assembly =
+      "REMARK 350 BIOMOLECULE: 1\nREMARK 350 APPLY THE FOLLOWING TO CHAINS: A\n"
+      "REMARK 350   BIOMT1   1  1.000000  0.000000  0.000000        0.00000\n"
+      "REMARK 350   BIOMT2   1  0.000000  1.000000  0.000000        0.00000\n"
+      "REMARK 350   BIOMT3   1  0.000000  0.000000  1.000000        0.00000\n";
+  options.points.assembly = "1";
+  make("b.pdb", assembly + text.substr(0, 81 * 2) + "END\n");
+  EXPECT_TRUE(chose("colour by chain: an assembly; --color-by element shows elements")) << choices();
 }
 
 TEST_F(PlotPlot, APerspectiveCameraIsFitted) {
