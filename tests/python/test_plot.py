@@ -90,6 +90,15 @@ class Plot(PlotTest):
         self.assert_as_program(picture, *WORDS)
         self.assertIn("1.2 times the sum of the covalent radii", " ".join(picture.notes))
 
+    def test_the_default_quality_is_that_of_the_program(self):
+        picture = orrery.plot("a.xyz", width=48, height=27)
+        status, error = run("plot", "a.xyz", "-o", "a.exr", "-q", "--type", "float", "--width", 48, "--height", 27)
+        self.assertEqual(status, 0, error)
+        picture.write("b.exr", type="float")
+        status, error = run("compare", "a.exr", "b.exr", "--fail-above", "max=0")
+        self.assertEqual(status, 0, error)
+        self.assertIn("quality good", " ".join(picture.notes))
+
     def test_options_have_the_values_of_the_command_line(self):
         picture = render(
             "a.xyz", look_from=(10, -20), select=["z > 0", "x < 8"], color_by="vx", range=(-1, 2.5), bonds=1.5,
