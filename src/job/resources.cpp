@@ -147,10 +147,10 @@ void choose_isa(const std::string& name) {
 
 MemoryEstimate estimate_memory(const MemoryNeeds& needs) {
   // Image; sample count and target count; with layers, the sums of their pixel; with adaptive sampling, a second sum
-  // and seven numbers for the noise estimate.
+  // and nine numbers for the noise estimate.
   const std::uint64_t bytes_per_pixel = kFilmBytesPerPixel + needs.layer_planes * kBytesPerLayerPlane +
                                         2 * sizeof(std::uint32_t) + bytes_of_sums(needs) +
-                                        (needs.is_adaptive ? sizeof(kernel::PixelSum) + 7 * sizeof(float) : 0);
+                                        (needs.is_adaptive ? sizeof(kernel::PixelSum) + 9 * sizeof(float) : 0);
   MemoryEstimate m;
   m.film = static_cast<std::uint64_t>(needs.width) * static_cast<std::uint64_t>(needs.height) * bytes_per_pixel;
   m.spheres = needs.sphere_bytes;

@@ -30,6 +30,9 @@ constexpr double kMinError = 1.0 / 64;
 /// trusted.
 constexpr float kPaths = 4, kHits = 4;
 
+/// Samples in each half beyond which no hits are expected, so that emitters of a tiny coverage do not decide alone.
+constexpr std::uint32_t kSamplesForEmitters = 8192;
+
 /// Light of emitters below this fraction of that around the pixel is ignored.
 constexpr float kMinFraction = 1.0f / 8;
 /// Coverage that is assumed at least when samples are distributed, so that few are wasted on occluded emitters.
@@ -102,12 +105,25 @@ float error_of_emitters(const PixelStatistics& s, int x, int y) {
   return share * share * (1 / std::max(s.emitters[s.at(x, y)].coverage, kMinCoverage) - 1) / 4;
 }
 
+/// Whether a pixel expects more hits of emitters than its samples can have had. Up to kSamplesForReliability, emitters
+/// may be hidden; beyond, paths around the pixel must have hit them.
+bool expects_emitters(const PixelStatistics& s, int x, int y) {
+  if (share_of_emitters(s, x, y) == 0) return false;
+  const std::uint32_t n = s.samples[s.at(x, y)];
+  const EmitterCoverage& own = s.emitters[s.at(x, y)];
+  if (n >= kSamplesForEmitters || static_cast<float>(n) * own.coverage >= kHits) return false;
+  bool are_hit = n < kSamplesForReliability;
+  each_neighbour(s, x, y, kWideReach, [&](std::size_t i) {
+    const float largest = s.outlier[i] * 2 * static_cast<float>(s.samples[i]);
+    are_hit |= 2 * largest * own.coverage >= own.light;
+  });
+  return are_hit;
+}
+
 /// Whether a pixel's neighbours have found enough light, or can be trusted to be black.
 bool has_reliable_estimate(const PixelStatistics& s, int x, int y) {
-  const std::size_t own = s.at(x, y);
-  if (s.samples[own] >= kSamplesForReliability) return true;
-  if (share_of_emitters(s, x, y) > 0 && static_cast<float>(s.samples[own]) * s.emitters[own].coverage < kHits)
-    return false;
+  if (expects_emitters(s, x, y)) return false;
+  if (s.samples[s.at(x, y)] >= kSamplesForReliability) return true;
   int count = 0, dark = 0;
   each_neighbour(s, x, y, kReach, [&](std::size_t i) {
     ++count;

@@ -251,6 +251,10 @@ TEST(RenderPixelNoise, SmallEmittersNeedSeveralExpectedHits) {
   tiny.emitters[tiny.at(7, 7)].coverage = 1e-5f;
   EXPECT_EQ(needs(tiny), 1);
   std::fill(tiny.samples.begin(), tiny.samples.end(), kSamplesForReliability);
+  EXPECT_EQ(needs(tiny), 0) << "it may be hidden";
+  tiny.outlier[tiny.at(8, 9)] = 10 / 1e-5f / 1024;
+  EXPECT_EQ(needs(tiny), 1) << "a path beside the pixel has hit it";
+  std::fill(tiny.samples.begin(), tiny.samples.end(), 8192);
   EXPECT_EQ(needs(tiny), 0);
 }
 
