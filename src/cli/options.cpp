@@ -253,7 +253,7 @@ void add_data_options(Command& command, DataArguments& arguments, plot::DataOpti
       .add_option("FILE", data.file, "FILE",
                   kind + ": LAMMPS, XYZ, PDB, mmCIF, PLY, CSV, NPY, NPZ, LAS, GSD, HDF5, VTK")
       ->required();
-  const OptionGroup group(command, "Data options");
+  const OptionGroup group(command, kDataOptions);
   scene::Points& points = data.points;
   command.add_option("--frame", arguments.frame, "N", "Frame of the file, from 1; default: 1")
       ->check(whole_number(1, 2'000'000'000));
@@ -280,7 +280,7 @@ void add_data_options(Command& command, DataArguments& arguments, plot::DataOpti
   command.add_flag("--unwrap", points.unwrap, "Unwrap coordinates with the file's periodic image flags");
   command.add_flag("--skip-bad", points.skip_bad, "Skip rows with non-finite coordinates or radii")
       ->details("Otherwise they are an error.");
-  const OptionGroup look(command, "Look options");
+  const OptionGroup look(command, kLookOptions);
   command.add_option("--radius", arguments.radius, "X|COLUMN",
                      "Radius: a number, or a column of radii; default: from the file");
   command

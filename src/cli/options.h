@@ -3,6 +3,7 @@
 
 #include <deque>
 #include <filesystem>
+#include <functional>
 #include <string>
 #include <vector>
 
@@ -20,6 +21,9 @@ namespace orrery::cli {
 /// Headings in the help.
 inline constexpr const char* kImageOptions = "Image options";
 inline constexpr const char* kDisplayOptions = "Display options";
+inline constexpr const char* kDataOptions = "Data options";
+inline constexpr const char* kViewOptions = "View options";
+inline constexpr const char* kLookOptions = "Look options";
 
 /// The options that override scene keys: --set, and short forms of frequent keys.
 class SceneOptions {
@@ -31,6 +35,9 @@ class SceneOptions {
   ///
   /// Domain     called once; this must not move, and `command` must exist, until the last call of overrides()
   void add_to(Command& command, Short forms = Short::kAll);
+
+  /// Adds a --set that another option stands for.
+  void set(const std::string& setting) { set_.push_back(setting); }
 
   /// All overrides, short forms first, so that --set wins.
   format::Overrides overrides() const;
@@ -78,6 +85,13 @@ class PictureOptions {
   /// Returns a warning for each kind of option that affects none of the files, one per line.
   std::string unused_options(const job::Job& job) const;
 
+  /// Replaces file names.
+  ///
+  /// `replaced`  returns the new name
+  void rename(const std::function<std::filesystem::path(const std::filesystem::path&)>& replaced) {
+    for (std::filesystem::path& file : files_) file = replaced(file);
+  }
+
   /// Converts the options that are not members of a job.
   ///
   /// Errors     base::Error(kUsage) for a file with an unknown extension
@@ -109,7 +123,7 @@ void add_data_options(Command& command, DataArguments& arguments, plot::DataOpti
 
 /// Arguments of the look options that need further parsing; empty: not set.
 struct LookArguments {
-  std::string style, quality, representation, bonds, vectors, background;
+  std::string style, quality, representation, bonds, vectors, background, scale_bar;
 };
 
 /// Adds the options of plot that select view, style, representation, bonds and opacity.

@@ -2,6 +2,7 @@
 #include <algorithm>
 #include <charconv>
 #include <chrono>
+#include <cmath>
 #include <memory>
 #include <sstream>
 #include <string>
@@ -10,6 +11,7 @@
 
 #include <fmt/core.h>
 
+#include "annotation/legend_colors.h"
 #include "base/atomic_file.h"
 #include "base/available_memory.h"
 #include "base/error.h"
@@ -19,6 +21,7 @@
 #include "base/image_limits.h"
 #include "base/stop_point.h"
 #include "cli/commands.h"
+#include "cli/film.h"
 #include "cli/messages.h"
 #include "cli/render_options.h"
 #include "cli/signals.h"
@@ -30,7 +33,6 @@
 #include "load/load_scene.h"
 #include "load/scene_files.h"
 #include "plot/plot.h"
-#include "plot/write_legend.h"
 #include "preview/preview.h"
 #include "scene/limits.h"
 
@@ -44,7 +46,47 @@ struct PlotArguments {
   LookArguments look;
   std::filesystem::path save_scene, legend;
   bool force = false;
+  double fps = 24, turntable_s = 0;
+  bool keep_frames = false;
+  std::vector<std::unique_ptr<Film>> films;
 };
+
+/// Replaces films among the outputs by their frames, and sets the frames of a turntable.
+void prepare_films(PlotArguments& arguments) {
+  RenderOptions& render = arguments.render;
+  plot::PlotOptions& plot = arguments.plot;
+  render.picture.rename([&](const std::filesystem::path& file) {
+    if (!Film::is_film(file)) return file;
+    arguments.films.push_back(std::make_unique<Film>(file, arguments.fps, arguments.keep_frames));
+    return arguments.films.back()->frame_pattern();
+  });
+  if (arguments.fps != PlotArguments().fps) render.scene.set(fmt::format("animation.fps={}", arguments.fps));
+  if (arguments.turntable_s > 0) {
+    const int count = std::max(1, static_cast<int>(std::lround(arguments.turntable_s * arguments.fps)));
+    render.scene.set(fmt::format("animation.turntable={}", count));
+    if (arguments.data.frames.empty()) {
+      for (int frame = 1; frame <= count; ++frame) plot.frames.push_back(frame);
+      if (!plot.points.frame) plot.points.frame = 1;
+    }
+  }
+  if (arguments.films.empty()) return;
+  const std::string film = arguments.films.front()->file().string();
+  if (plot.frames.empty() && !plot.all_frames)
+    base::refuse(
+        fmt::format("{} is a film; select its frames with --frames, e.g. --frames all, or --turntable 4s", film));
+  if (plot.transparent) base::refuse(fmt::format("--transparent: {} is a film, which is opaque", film));
+  render.batch.job.skip_existing = true;  // frames of a stopped command
+}
+
+/// Writes the films from their frames.
+void write_films(const PlotArguments& arguments) {
+  for (const auto& film : arguments.films) {
+    film->encode(arguments.render.batch.frames);
+    if (!arguments.render.quiet)
+      print_message(fmt::format("wrote {}: {} frames, {} frames per second\n", film->file().string(),
+                                arguments.render.batch.frames.size(), arguments.fps));
+  }
+}
 
 /// The files that plot writes in addition to those of a render.
 std::vector<job::OutputFile> own_outputs(const PlotArguments& arguments) {
@@ -125,6 +167,22 @@ plot::PlotScene prepare(const PlotArguments& arguments) {
   }
 }
 
+/// Parses "auto", "20" or "20 nm".
+void read_scale_bar(const std::string& text, scene::Annotation& annotation) {
+  if (text.empty()) return;
+  double length = 0;
+  const char* const end = text.data() + text.size();
+  const auto [stopped, error] = std::from_chars(text.data(), end, length);
+  if (text != "auto" && (error != std::errc() || !(length >= scene::kSmallestRadius) ||
+                         !(length <= scene::kLargestLength) || (stopped != end && *stopped != ' ')))
+    base::refuse(
+        fmt::format("--scale-bar: `{}` is not a length; write auto, or a length above 0, with a space before "
+                    "the unit, e.g. 20 or '20 nm'",
+                    text));
+  annotation.scale_bar = length;
+  if (text != "auto" && stopped != end) annotation.unit = std::string(stopped + 1, end);
+}
+
 int run_plot(PlotArguments& arguments) {
   begin_messages(arguments.render);
   arguments.render.batch.job.hooks.cancel = &stop_on_signals();
@@ -135,9 +193,11 @@ int run_plot(PlotArguments& arguments) {
   plot::PlotOptions& plot = arguments.plot;
   job::Job& job = render.batch.job;
   const bool saves = !arguments.save_scene.empty();
-  render.picture.finish(job);
   read_data_options(arguments.data, plot);
+  prepare_films(arguments);
+  render.picture.finish(job);
   read_look_options(arguments.look, plot);
+  read_scale_bar(arguments.look.scale_bar, plot.annotation);
   plot.overrides = render.scene.overrides();
   plot.scene_file = saves ? arguments.save_scene : plot.file;
   plot.has_target = job.sampling.noise || job.sampling.seconds;
@@ -168,17 +228,43 @@ int run_plot(PlotArguments& arguments) {
     if (!arguments.legend.empty()) {
       display::Settings display = plot::settings_of(plot, true).display;
       display.view = made.view;
-      plot::write_legend(arguments.legend, made.legend, display);
+      annotation::write_legend(arguments.legend, made.legend, display);
     }
     if (saves) base::write_text_file(arguments.save_scene, *text);
   };
-  return run_render(render);
+  const int status = run_render(render);
+  if (status == 0) write_films(arguments);
+  return status;
+}
+
+}  // namespace
+
+namespace {
+
+/// Adds the options of the camera.
+void add_view_options(Command& command, plot::PlotOptions& plot) {
+  const OptionGroup group(command, kViewOptions);
+  command
+      .add_option("--look-from", plot.look_from, "VIEW",
+                  "View: iso, +x, -x, +y, -y, +z, -z, or azimuth and elevation in degrees, e.g. 30,20; default: iso")
+      ->details("iso: from 45 degrees to the right of the front and 35.26 degrees above.");
+  command.add_option("--zoom", plot.zoom, "X", "Magnification, relative to the view that shows all; default: 1")
+      ->check(real_number(1e-3, 1e6));
+  command.add_option("--center", plot.center, "CONDITION",
+                     "Look at the middle of the particles that match, e.g. 'residue == \"HEM\"'");
+  command
+      .add_option("--perspective", plot.vfov_deg, "VFOV",
+                  "Perspective camera with this vertical field of view in degrees, e.g. 30; default: orthographic")
+      ->check(real_number(0.1, 170));
+  command.add_option("--up", plot.up, "AXIS", "Axis that points up in the image; default: z, y for PDB and mmCIF")
+      ->choices({"x", "y", "z"});
 }
 
 }  // namespace
 
 void add_look_options(Command& command, DataArguments& data, plot::PlotOptions& plot, LookArguments& look) {
-  const OptionGroup group(command, "Look options");
+  add_view_options(command, plot);
+  const OptionGroup group(command, kLookOptions);
   command
       .add_option("--representation", look.representation, "KIND",
                   "Particles as spheres, ball-and-stick or sticks, the latter two with bonds; default: spheres")
@@ -201,20 +287,6 @@ void add_look_options(Command& command, DataArguments& data, plot::PlotOptions& 
                   "repeated")
       ->details("The last that matches a particle decides; particles that none matches are opaque.")
       ->repeatable();
-  command
-      .add_option("--look-from", plot.look_from, "VIEW",
-                  "View: iso, +x, -x, +y, -y, +z, -z, or azimuth and elevation in degrees, e.g. 30,20; default: iso")
-      ->details("iso: from 45 degrees to the right of the front and 35.26 degrees above.");
-  command.add_option("--zoom", plot.zoom, "X", "Magnification, relative to the view that shows all; default: 1")
-      ->check(real_number(1e-3, 1e6));
-  command.add_option("--center", plot.center, "CONDITION",
-                     "Look at the middle of the particles that match, e.g. 'residue == \"HEM\"'");
-  command
-      .add_option("--perspective", plot.vfov_deg, "VFOV",
-                  "Perspective camera with this vertical field of view in degrees, e.g. 30; default: orthographic")
-      ->check(real_number(0.1, 170));
-  command.add_option("--up", plot.up, "AXIS", "Axis that points up in the image; default: z, y for PDB and mmCIF")
-      ->choices({"x", "y", "z"});
   command.add_option("--style", look.style, "STYLE", "Light: studio, soft, flat, night or ambient; default: studio")
       ->details(
           "studio: a key light from the upper left of the camera, and white light from all directions. soft: more of "
@@ -273,6 +345,42 @@ void read_look_options(const LookArguments& look, plot::PlotOptions& plot) {
   (is_length ? bonds.length : bonds.factor) = number;
 }
 
+namespace {
+
+/// Adds the options of films: -o names one.
+void add_film_options(Command& command, PlotArguments& arguments) {
+  const OptionGroup group(command, "Film options, for -o FILE.mp4 and FILE.gif");
+  command
+      .add_option("--turntable", arguments.turntable_s, "TIME",
+                  "Orbit of the camera in this time, e.g. 4s; alone, of one frame of the file")
+      ->transform(duration());
+  command.add_option("--fps", arguments.fps, "X", "Frames per second; default: 24")->check(real_number(0.1, 1000));
+  command.add_flag("--keep-frames", arguments.keep_frames, "Keep the frames, in the folder FILE.frames")
+      ->details("They are removed otherwise when the film is complete. A stopped command continues from them.");
+}
+
+/// Adds the options of text, scales and lines over the image.
+void add_annotation_options(Command& command, plot::PlotOptions& plot, LookArguments& look) {
+  const OptionGroup group(command, "Annotation options");
+  scene::Annotation& annotation = plot.annotation;
+  command.add_option("--title", annotation.title, "TEXT", "Text at the top left, e.g. 't = {step * 0.005:.1f} ps'")
+      ->details(
+          "{EXPRESSION} is the value of an expression of frame and step, the time step in the data file, with a format "
+          "after a colon.");
+  command.add_option("--scale-bar", look.scale_bar, "LENGTH",
+                     "Scale bar: auto, or a length, with a unit to be shown, e.g. '20 nm'; not with --perspective");
+  command.add_flag("--color-bar", annotation.color_bar, "Legend of the colours in the image");
+  command
+      .add_option("--label", plot.points.labels, "CONDITION: TEXT",
+                  "Label the middle of the particles that match, e.g. 'id == 5: Fe'; can be repeated")
+      ->repeatable();
+  command.add_option("--outline", annotation.outline, "PX", "Width of lines around objects in pixels, e.g. 2")
+      ->check(real_number(0, scene::kWidestOutline));
+  command.add_option("--font", annotation.font, "FONT", "Name or file of the font; default: DejaVuSans");
+}
+
+}  // namespace
+
 void add_plot(Command& program) {
   const auto arguments = std::make_shared<PlotArguments>();
   Command& command = *program.add_subcommand("plot", "Render a particle data file");
@@ -286,6 +394,8 @@ void add_plot(Command& program) {
   command.add_flag("--force", arguments->force,
                    "Let --save-scene replace a file that was edited, or not written by orrery");
   add_look_options(command, arguments->data, arguments->plot, arguments->look);
+  add_annotation_options(command, arguments->plot, arguments->look);
+  add_film_options(command, *arguments);
   add_render_options(command, arguments->render);
   command.details(
       "Writes a scene for the data, and renders it. Settings that the options leave open are chosen from the data and "
@@ -301,7 +411,8 @@ void add_plot(Command& program) {
       "  orrery plot melt.dump -o melt.png\n"
       "  orrery plot 1m4x.pdb -o virus.png --assembly 1\n"
       "  orrery plot caffeine.xyz -o caffeine.png --representation ball-and-stick\n"
-      "  orrery plot grains.dump -o pour.####.png --frames all --color-by vz --range -2:0\n"
+      "  orrery plot grains.dump -o pour.mp4 --frames all --color-by vz --range -2:0 --color-bar\n"
+      "  orrery plot 1m4x.pdb -o turn.mp4 --turntable 4s --scale-bar '20 nm'\n"
       "  orrery plot scan.las -o scan.exr --color-by rgb");
   command.action([arguments] { return run_plot(*arguments); });
 }

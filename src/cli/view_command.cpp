@@ -17,6 +17,7 @@
 
 #include <fmt/core.h>
 
+#include "annotation/legend_colors.h"
 #include "base/available_memory.h"
 #include "base/error.h"
 #include "base/file_name.h"
@@ -30,7 +31,6 @@
 #include "http/server.h"
 #include "image/library.h"
 #include "plot/plot.h"
-#include "plot/write_legend.h"
 #include "points/color_map.h"
 #include "view/site.h"
 #include "view/viewer.h"
@@ -90,7 +90,7 @@ std::set<std::string> files_of(const ShownOptions& shown) {
 
 view::Subject scene_subject(const ShownOptions& shown) {
   for (const Option& option : shown.command->options())
-    if (option.count() > 0 && (option.heading() == "Data options" || option.heading() == "Look options"))
+    if (option.count() > 0 && base::contains({kDataOptions, kViewOptions, kLookOptions}, option.heading()))
       base::refuse(fmt::format("{} is an option for data files; a scene has its keys: --set KEY=VALUE", option.name()));
   view::Subject out;
   out.job = shown.job;
@@ -134,7 +134,7 @@ view::Subject data_subject(ShownOptions& shown) {
   out.chosen["--material"] = plot.material;
   display::Settings display = plot::settings_of(plot, true).display;
   display.view = made.view;
-  out.legend = plot::legend_svg(made.legend, display);
+  out.legend = annotation::legend_svg(made.legend, display);
   return out;
 }
 

@@ -8,6 +8,7 @@
 
 #include <fmt/core.h>
 
+#include "annotation/annotate.h"
 #include "base/atomic_file.h"
 #include "base/available_memory.h"
 #include "base/stop_point.h"
@@ -32,6 +33,7 @@
 #include "job/version.h"
 #include "load/load_scene.h"
 #include "load/scene_files.h"
+#include "render/outlines.h"
 #include "render/render.h"
 #include "render/result.h"
 #include "render/settings.h"
@@ -140,7 +142,12 @@ class Run {
     choose_layers();
     for (const auto& manifest : manifest_files(layers_.mattes, job_.outputs)) base::check_creatable(manifest);
     provenance_ = provenance_of(job_, loaded().read, compiled(), prepared_->hashes(), layers_);
-    stamp_ = stamp_of(job_, provenance_, loaded().display, report_.display);
+    drawing_ = annotation::drawing_of(scene(), loaded().palettes, annotated_view());
+    if (const std::string missing = annotation::missing_glyphs(drawing_); !missing.empty())
+      warn(base::file_diagnostic(base::Severity::kWarning, job_.scene.file.string(),
+                                 fmt::format("the font {} has no glyphs for `{}`", drawing_.font.string(), missing),
+                                 "set annotation.font to another font"));
+    stamp_ = annotation::stamped(stamp_of(job_, provenance_, loaded().display, report_.display), drawing_);
     report_.scene_hash = provenance_.at("sceneHash");
     report_.was_skipped = job_.skip_existing && is_up_to_date(job_, compiled(), provenance_, stamp_);
     if (report_.was_skipped) return;
@@ -153,6 +160,37 @@ class Run {
     report_.height = compiled().height;
     report_.spheres = compiled().spheres.size();
     report_.rods = compiled().rod_count();
+  }
+
+  /// The image to annotate.
+  annotation::View annotated_view() const {
+    const kernel::Camera& camera = compiled().camera;
+    const auto project = [&camera](const math::Vec3d& at) -> std::optional<std::pair<double, double>> {
+      const double from[] = {at.x - camera.origin[0], at.y - camera.origin[1], at.z - camera.origin[2]};
+      const auto along = [&](const auto& axis) {
+        double dot = 0, square = 0;
+        for (int k = 0; k < 3; ++k) {
+          dot += from[k] * axis[k];
+          square += axis[k] * axis[k];
+        }
+        return dot / square;
+      };
+      const double depth = along(camera.forward), scale = camera.is_orthographic ? 1 : depth;
+      if (!(depth > 0)) return {};
+      return std::pair{along(camera.right) / scale + camera.half_width,
+                       along(camera.down) / scale + camera.half_height};
+    };
+    return {compiled().width, compiled().height, job_.scene.frame, job_.scene.file.parent_path(), project};
+  }
+
+  /// Completes the drawing over the image, and adds it to EXR files as a layer.
+  void annotate(film::Picture& picture) {
+    if (drawing_.is_empty()) return;
+    if (drawing_.outline_px > 0)
+      if (const accel::Accel* const accel = build(); accel != nullptr)
+        drawing_.lines = render::outlines(compiled(), *accel, drawing_.outline_px, settings_.threads);
+    const auto same = [](const math::Vec3d& color) { return color; };
+    if (job_.outputs.has_exr() || is_kept()) annotation::add_layer(annotation::draw(drawing_, same), picture);
   }
 
   /// The layers that an output of the job holds; others are not computed.
@@ -290,13 +328,15 @@ class Run {
   }
 
   void write(render::Result& result) {
+    if (!is_shard(job_)) annotate(result.picture);
     if (is_kept()) return keep(std::move(result.picture));
     if (is_shard(job_)) return write_sums(job_.outputs.images.front().path, *result.partial);
     image::Header own = header(job_.outputs.reproducible);
     own.stamp = stamp_;
     const int bits = job_.outputs.bits != 0 ? job_.outputs.bits : report_.display.default_bits();
     try {
-      report_.written = write_outputs(job_.outputs, loaded().display, bits, result.picture, own, layers_.mattes);
+      report_.written =
+          write_outputs(job_.outputs, loaded().display, bits, {result.picture, own, layers_.mattes, drawing_});
       if (!job_.outputs.deep.empty()) image::write_deep(job_.outputs.deep, result.deep, result.picture, own);
     } catch (const base::Error& error) {
       if (!result.partial) throw;  // of a merge: the shards still exist
@@ -315,6 +355,7 @@ class Run {
     out.header = header(false);
     out.reproducible_header = header(true);
     out.mattes = layers_.mattes;
+    out.drawing = drawing_;
     out.display = loaded().display;
     out.provenance = provenance_;
     out.report = report_;
@@ -357,6 +398,7 @@ class Run {
   Layers layers_;
   image::Provenance provenance_;  ///< what the sums depend on
   std::string stamp_;             ///< what the images depend on
+  annotation::Drawing drawing_;   ///< over the image
   render::Settings settings_;
   std::optional<Checkpoint> checkpoint_;
   Stopwatch watch_;  ///< of the phases

@@ -5,6 +5,7 @@
 
 #include <fmt/core.h>
 
+#include "annotation/annotate.h"
 #include "base/error.h"
 #include "display/develop.h"
 #include "display/settings.h"
@@ -38,9 +39,12 @@ bool Outputs::has_display_format() const {
 void DisplayWriter::write(const std::filesystem::path& file, const std::string& software, const std::string& stamp) {
   const bool keeps_alpha = picture_.is_transparent && image::holds_alpha(image::format_of(file));
   std::optional<film::EncodedPicture>& developed = keeps_alpha ? with_alpha_ : over_black_;
-  if (!developed)
+  if (!developed) {
     developed = display::develop(picture_, settings_, bits_, false,
                                  keeps_alpha ? display::Alpha::kStraight : display::Alpha::kOverBlack);
+    if (drawing_ != nullptr && !drawing_->is_empty())
+      annotation::blend(annotation::draw(*drawing_, annotation::shown_by(settings_)), *developed);
+  }
   image::write_encoded(file, *developed, software, stamp);
 }
 
@@ -54,9 +58,9 @@ void require_bits(const display::Choice& display, const Outputs& outputs) {
 }
 
 image::WriteReport write_outputs(const Outputs& outputs, const display::Settings& display, int bits,
-                                 const film::Picture& picture, const image::Header& header,
-                                 const std::vector<MatteNames>& mattes) {
-  DisplayWriter developed(picture, display, bits);
+                                 const FinishedPicture& finished) {
+  const auto& [picture, header, mattes, drawing] = finished;
+  DisplayWriter developed(picture, display, bits, &drawing);
   image::WriteReport report;
   const auto add = [&](const image::WriteReport& one) {
     report.clamped += one.clamped;

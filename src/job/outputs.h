@@ -7,6 +7,7 @@
 #include <utility>
 #include <vector>
 
+#include "annotation/drawing.h"
 #include "display/forward.h"
 #include "display/settings.h"
 #include "film/forward.h"
@@ -60,13 +61,20 @@ struct Outputs {
 /// Errors     base::Error(kUsage)
 void require_bits(const display::Choice& display, const Outputs& outputs);
 
+/// An image and what its files hold besides it.
+struct FinishedPicture {
+  const film::Picture& picture;
+  const image::Header& header;
+  const std::vector<MatteNames>& mattes;
+  const annotation::Drawing& drawing;  ///< over the image; that of EXR files is a layer of `picture`
+};
+
 /// Writes the files of an image, and the manifests of its mattes.
 ///
 /// `bits`     bits per channel of display formats
 /// Errors     base::Error: kCannotCreate, kIo; those of display::develop
 image::WriteReport write_outputs(const Outputs& outputs, const display::Settings& display, int bits,
-                                 const film::Picture& picture, const image::Header& header,
-                                 const std::vector<MatteNames>& mattes);
+                                 const FinishedPicture& finished);
 
 /// Writes one image to display formats. The display transform runs once for all files with the same channels. PNG and
 /// TIFF keep the alpha of a transparent image.
@@ -74,9 +82,11 @@ class DisplayWriter {
  public:
   /// Prepares an image for display formats; write() applies the display transform on first use.
   ///
+  /// `drawing`  over the image; null: none
   /// Domain     the arguments outlive this; bits 8 or 16
-  DisplayWriter(const film::Picture& picture, const display::Settings& settings, int bits)
-      : picture_(picture), settings_(settings), bits_(bits) {}
+  DisplayWriter(const film::Picture& picture, const display::Settings& settings, int bits,
+                const annotation::Drawing* drawing = nullptr)
+      : picture_(picture), settings_(settings), bits_(bits), drawing_(drawing) {}
 
   /// Writes a file in the display format of its extension.
   ///
@@ -87,6 +97,7 @@ class DisplayWriter {
   const film::Picture& picture_;
   const display::Settings& settings_;
   int bits_;
+  const annotation::Drawing* drawing_;
   std::optional<film::EncodedPicture> over_black_, with_alpha_;
 };
 

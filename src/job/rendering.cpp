@@ -73,8 +73,8 @@ image::WriteReport write_rendering(const Rendering& rendering, const Outputs& ou
   }
   Job job = rendering.job;
   job.outputs = outputs;
-  header.stamp = stamp_of(job, rendering.provenance, display, choice);
-  return write_outputs(outputs, display, bits, rendering.picture, header, rendering.mattes);
+  header.stamp = annotation::stamped(stamp_of(job, rendering.provenance, display, choice), rendering.drawing);
+  return write_outputs(outputs, display, bits, {rendering.picture, header, rendering.mattes, rendering.drawing});
 }
 
 }  // namespace orrery::job

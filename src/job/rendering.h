@@ -3,6 +3,7 @@
 
 #include <vector>
 
+#include "annotation/drawing.h"
 #include "base/file_set.h"
 #include "display/settings.h"
 #include "film/picture.h"
@@ -19,6 +20,7 @@ struct Rendering {
   film::Picture picture;  ///< R, G, B, A, then the layers of the scene
   image::Header header, reproducible_header;
   std::vector<MatteNames> mattes;
+  annotation::Drawing drawing;   ///< over the image
   display::Settings display;     ///< from the request and the scene
   image::Provenance provenance;  ///< everything that the image depends on
   JobReport report;

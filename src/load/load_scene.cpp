@@ -280,6 +280,8 @@ class SceneLoader {
     to.color_range = from.color_range;
     to.color_names = std::move(from.color_names);
     to.unused = std::move(from.unused);
+    to.step = from.step;
+    to.placed_labels = std::move(from.placed_labels);
     to.spheres_are_rows = from.spheres_are_rows;
   }
 

@@ -45,9 +45,11 @@ std::optional<Quality> quality_of(const std::string& name) { return enumerator_o
 math::Vec3d color_of(const std::string& text) {
   constexpr std::pair<const char*, const char*> kNames[] = {
       {"white", "#ffffff"}, {"black", "#000000"}, {"grey", "#808080"}, {"gray", "#808080"}};
-  const auto* const known = std::find_if(std::begin(kNames), std::end(kNames), [&](const auto& n) { return n.first == text; });
+  const auto* const known =
+      std::find_if(std::begin(kNames), std::end(kNames), [&](const auto& n) { return n.first == text; });
   const std::optional<math::Vec3d> srgb = points::parse_hex(known == std::end(kNames) ? text : known->second);
-  if (!srgb) base::refuse(fmt::format("`{}` is not a colour; write white, black, grey or #rrggbb, e.g. '#202030'", text));
+  if (!srgb)
+    base::refuse(fmt::format("`{}` is not a colour; write white, black, grey or #rrggbb, e.g. '#202030'", text));
   return points::linear_from_srgb(*srgb / 255);
 }
 

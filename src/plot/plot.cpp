@@ -100,11 +100,17 @@ class PlotMaker {
           points.opacity.column, points.select, points.assembly, options.center})
       require_utf8(text);
     for (const std::string& text : points.opacity.where) require_utf8(text);
+    for (const std::string& text : points.labels) require_utf8(text);
+    require_utf8(options.annotation.title);
+    require_utf8(options.annotation.unit);
   }
 
   const std::vector<int>& frames() const { return out_.frames; }
 
   PlotScene run() {
+    if (vfov_ && options_.annotation.scale_bar)
+      base::refuse(
+          "--scale-bar: in a perspective image, the length of an object depends on its distance; omit --perspective");
     const int frame = data_.described_frame();
     const std::string which = frame > 1 ? fmt::format(" in frame {}", frame) : "";
     chose(data_.format(), fmt::format("{} particles{}", info_.rows, which));
@@ -144,8 +150,8 @@ class PlotMaker {
                       is_turntable_ ? " and the whole orbit" : "",
                       options_.zoom == 1 ? "" : ", times " + number_text(options_.zoom)));
     choose_display_view();
-    PlotParts parts{options_, width_,          height_,         out_.points, camera, out_.view,
-                    axes,     extent.center(), extent.radius(), {},          {}};
+    PlotParts parts{options_,        width_,          height_, out_.points,           camera, out_.view, axes,
+                    extent.center(), extent.radius(), {},      annotation_of(camera), {}};
     if (options_.ground && !extent.is_empty()) {
       parts.ground = ground_below(lowest_, up, extent);
       if (hides_view(*parts.ground, camera, aspect)) {
@@ -359,6 +365,23 @@ class PlotMaker {
       out.push_back(fmt::format(
           "map {}: {}", color.map,
           points::find_color_map(color.map)->is_categorical ? "colours for categories" : "the default for numbers"));
+    return out;
+  }
+
+  /// The annotation, with a scale bar of a suitable length.
+  scene::Annotation annotation_of(const scene::Camera& camera) {
+    scene::Annotation out = options_.annotation;
+    const std::filesystem::path folder = options_.scene_file.parent_path();
+    if (out.font.string().find_first_of("./") != std::string::npos)
+      out.font = std::filesystem::proximate(out.font, folder.empty() ? "." : folder);
+    if (out.scale_bar && *out.scale_bar == 0) {
+      // The largest of 1, 2 and 5 times a power of ten that takes up to a fifth of the image.
+      constexpr double kLargestShare = 0.2;
+      const double most = kLargestShare * camera.width.value_or(1), power = std::pow(10, std::floor(std::log10(most)));
+      const double digit = std::floor(most / power);
+      out.scale_bar = rounded((digit >= 5 ? 5 : digit >= 2 ? 2 : 1) * power);
+      chose("scale bar " + number_text(*out.scale_bar), "in units of the file; --scale-bar 'LENGTH UNIT' changes it");
+    }
     return out;
   }
 

@@ -7,11 +7,11 @@
 #include <string>
 #include <vector>
 
+#include "annotation/legend_colors.h"
 #include "display/settings.h"
 #include "format/overrides.h"
 #include "load/load_scene.h"
 #include "plot/data_frames.h"
-#include "plot/write_legend.h"
 #include "scene/scene.h"
 
 /// Makes a scene for a data file: settings that the user did not choose are chosen from the data, and reported.
@@ -69,6 +69,8 @@ struct PlotOptions : DataOptions {
   Representation representation = Representation::kSpheres;
   std::optional<bool> bonds;  ///< draws bonds by the keys in `points.bonds`; default: unless kSpheres
   bool ground = false;
+  /// Text and lines over the image. A scale bar of length 0 has a length that suits the view.
+  scene::Annotation annotation;
   bool box = false;                  ///< draws the edges of the simulation box
   bool axes = false;                 ///< draws the directions of x, y and z
   bool allow_empty = false;          ///< a selection or a slice may leave nothing
@@ -88,7 +90,7 @@ struct PlotScene {
   std::vector<std::string> warnings;
   std::vector<int> frames;  ///< frames to render; empty: one still image
   scene::Points points;     ///< keys of the scene's points
-  LegendColors legend;
+  annotation::LegendColors legend;
   std::string view;                  ///< view of the display
   std::vector<std::string> columns;  ///< columns of the data that can be colours
   std::optional<int> frame_count;    ///< of the file; empty: unknown, since counting would read it

@@ -40,8 +40,7 @@ void parse_ends(std::string_view word, const std::string& text, RangeChoice& out
   for (const RangeChoice::End& end : {*low, *high}) {
     if (end.is_percentile && !(end.value >= 0 && end.value <= 100))
       base::refuse("--range: percentiles are from 0% to 100%");
-    if (std::abs(end.value) > scene::kLargestValue)
-      base::refuse("--range: the numbers must be from -1e+300 to 1e+300");
+    if (std::abs(end.value) > scene::kLargestValue) base::refuse("--range: the numbers must be from -1e+300 to 1e+300");
   }
   if (low->is_percentile == high->is_percentile && !(low->value < high->value))
     base::refuse("--range: the first number must be less than the second");
@@ -73,8 +72,8 @@ RangeChoice parse_range(const std::string& text) {
     begin = end + 1;
   }
   if (out.is_log && out.is_symmetric) base::refuse("--range: log excludes symmetric: logarithms have values above 0");
-  if (out.is_log && ((!out.low.is_percentile && !(out.low.value > 0)) ||
-                     (!out.high.is_percentile && !(out.high.value > 0))))
+  if (out.is_log &&
+      ((!out.low.is_percentile && !(out.low.value > 0)) || (!out.high.is_percentile && !(out.high.value > 0))))
     base::refuse("--range: the numbers must be above 0 with log");
   return out;
 }

@@ -89,6 +89,7 @@ std::string scene_text(const PlotParts& parts) {
   scene.background.color = light.background;
   scene.background.backdrop = options.background ? options.background : light.backdrop;
   scene.background.alpha = options.transparent ? 0 : 1;
+  scene.annotation = parts.annotation;
   if (parts.samples) scene.render.samples = *parts.samples;
   if (options.style == Style::kFlat) scene.render.shading = scene::Shading::kFlat;
   scene.color.view = parts.view;

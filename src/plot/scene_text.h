@@ -27,6 +27,7 @@ struct PlotParts {
   Vec3d center;                  ///< centre of the spheres
   double radius = 1;             ///< radius of a sphere around `center` that contains all spheres
   std::optional<int> samples;    ///< per pixel; default: that of scenes
+  scene::Annotation annotation;  ///< text and lines over the image
   std::optional<Ground> ground;  ///< ground below the spheres
   /// Edges of the simulation box and axes; their materials are GuideMaterial.
   std::vector<scene::Rod> guides = {};

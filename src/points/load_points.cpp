@@ -19,6 +19,7 @@
 #include "points/bonds.h"
 #include "points/copies.h"
 #include "points/derived.h"
+#include "points/labels.h"
 #include "points/point_colors.h"
 #include "points/point_opacity.h"
 #include "points/point_radii.h"
@@ -122,6 +123,9 @@ class Loader {
     opacity_ = opacity_source(info_, points_.opacity, faults_);
     for (const std::string& column : opacity_.needed) need(column);
     need(info_.roles.id);
+    labels_ = label_rules(info_, points_, faults_);
+    for (const LabelRule& label : labels_)
+      for (const std::string& column : label.condition.columns) need(column);
     plan_selection();
     copies_ = copies_of(info_, points_, faults_);
     if (std::any_of(copies_.begin(), copies_.end(), [](const Copy& c) { return c.chains != nullptr; }))
@@ -249,6 +253,8 @@ class Loader {
     if (request_.on_value && colors.range)
       for_each_shown(*table.find(points_.color.column), rows, points_.color.log, request_.on_value);
     if (opacity_.is_set()) points_.opacities = opacities_of(table, rows, opacity_, points_, faults_);
+    points_.step = info_.step;
+    points_.placed_labels = placed_labels(table, rows, centers, labels_, copies_.front(), points_, faults_);
     points_.centers = std::move(centers);
     points_.radii = std::move(radii);
     points_.colors = std::move(colors.indices);
@@ -364,6 +370,7 @@ class Loader {
   ColorSource color_;
   OpacitySource opacity_;
   Selection selection_;
+  std::vector<LabelRule> labels_;
   std::vector<Copy> copies_;
   BondSource bond_source_;
   std::vector<std::string> speed_sources_;  ///< columns that `speed` is computed from; empty: it is not needed

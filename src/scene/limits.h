@@ -45,6 +45,9 @@ inline constexpr double kSmallestUpSine = 1e-9;
 
 using base::kLargestSide;
 
+/// Maximum width of outlines, px: the search for edges takes time in proportion to its square.
+inline constexpr double kWidestOutline = 64;
+
 /// Maximum radiance of a light or background, also after exposure: half of kernel::kLargestSample, so that a pixel's
 /// sums hold it. The luminance of the sun, 1.6e9 cd/m2, is less. A path whose total exceeds kLargestSample is a bad
 /// sample.

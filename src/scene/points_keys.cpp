@@ -177,6 +177,11 @@ std::vector<Key<P>> make_keys() {
                                           "order of the scene file. `\"\"`: "
                                           "none"},
                                          &P::material_column)),
+      key_of<P>("labels", ValueType::kTexts, {},
+                {"",
+                 "Texts in the image, each at the middle of the particles that match a "
+                 "[condition](data.md#selections): `[\"id == 5: Fe\"]`"},
+                &P::labels),
       boolean<P>("skip_bad", {"", "Skips rows with non-finite coordinates or radii"}, &P::skip_bad),
       changes(Part::kOutput,
               text<P>("name",

@@ -254,6 +254,12 @@ struct SphereBond {
   auto operator<=>(const SphereBond&) const = default;
 };
 
+/// A text in the image, at a point of the scene.
+struct Label {
+  Vec3d at{0, 0, 0};
+  std::string text;
+};
+
 /// Half of a bond that crosses the boundary of a periodic box.
 struct BondStub {
   std::uint32_t sphere = 0, partner = 0;  ///< the sphere at which it begins, and the one beyond the boundary
@@ -307,6 +313,7 @@ struct Points {
   std::array<std::optional<Interval>, 3> clip = {};  ///< keeps spheres with centres in these intervals of x, y and z
   std::string material_column = "material";          ///< indices into Scene::materials, in PLY files; empty: none
   bool skip_bad = false;                             ///< skips rows with non-finite coordinates or radii
+  std::vector<std::string> labels;                   ///< "CONDITION: TEXT", at the middle of the particles that match
   PointArray centers = {};
   NumberArray radii = {};                     ///< one per centre
   std::vector<std::uint32_t> materials = {};  ///< one per centre; empty: `material` for all
@@ -317,8 +324,10 @@ struct Points {
   std::size_t palette_rec709 = 0;   ///< leading colours that are linear Rec.709; the others are in Color::space
   std::optional<Interval> color_range = {};  ///< range of the colour map, if there is one
   std::vector<std::string> color_names =
-      {};                                ///< names of the colours in `palette`, if they represent types or elements
-  std::vector<std::string> unused = {};  ///< unused columns of the file, such as colours
+      {};                                 ///< names of the colours in `palette`, if they represent types or elements
+  std::vector<std::string> unused = {};   ///< unused columns of the file, such as colours
+  std::optional<double> step = {};        ///< time step of the frame, or its number in the file
+  std::vector<Label> placed_labels = {};  ///< those of `labels`
   PointArray sphere_vectors = {};        ///< one per centre, while arrows are to be added
   std::size_t arrow_count = 0;           ///< number of arrows; their shafts are the last of `bond_pairs`
   std::size_t arrow_spheres = 0;         ///< number of spheres of their heads, after all others
@@ -387,6 +396,19 @@ struct Color {
   const std::string& working_space() const { return working.empty() ? space : working; }
 };
 
+/// Text, scales and lines over the image: burnt into display formats, and a layer of EXR files.
+struct Annotation {
+  std::string title;                ///< at the top left; {EXPRESSION} of frame and step is replaced by its value
+  std::optional<double> scale_bar;  ///< length, scene units
+  std::string unit;                 ///< of the scale bar, as text
+  bool color_bar = false;           ///< the colours of the first coloured points table
+  double outline = 0;               ///< width of the lines around objects, px; 0: none
+  std::filesystem::path font;       ///< name or file; empty: DejaVu Sans
+
+  /// True if something is drawn.
+  bool is_set() const { return !title.empty() || scale_bar || color_bar || outline > 0; }
+};
+
 enum class Interpolation { kLinear, kCubic, kHold };
 
 /// Keyframes of an animated number or vector, and the interpolation between them.
@@ -409,6 +431,7 @@ struct Scene {
   Render render;
   Color color;
   Output output;
+  Annotation annotation;
   Animation animation;
   std::vector<Track> tracks;
   std::vector<Material> materials;

@@ -230,6 +230,34 @@ Table render_table() {
                            in(&S::render, &Render::filter_width)))}};
 }
 
+Table annotation_table() {
+  return {
+      "annotation",
+      Part::kOutput,
+      {text<S>("title",
+               {"",
+                "Text at the top left. `{EXPRESSION}` is replaced by the value of an [expression](data.md#expressions) "
+                "of `frame` and `step`, the time step in the data file: `t = {step * 0.005:.1f} ps`"},
+               in(&S::annotation, &Annotation::title)),
+       otherwise("none",
+                 number<S>("scale_bar", kLength,
+                           {"scene units", "Length of a bar at the bottom left. Requires an orthographic camera"},
+                           in(&S::annotation, &Annotation::scale_bar))),
+       text<S>("unit", {"", "Text after the length of the scale bar, e.g. `nm`"},
+               in(&S::annotation, &Annotation::unit)),
+       boolean<S>("color_bar", {"", "Legend of the first points table that is coloured by a column, type or element"},
+                  in(&S::annotation, &Annotation::color_bar)),
+       number<S>("outline", {0, kWidestOutline},
+                 {"px",
+                  "Width of lines around objects that stand out from what is behind them. 0: none. Spheres and rods at "
+                  "shutter open, seen without a lens",
+                  "16 rays per pixel"},
+                 in(&S::annotation, &Annotation::outline)),
+       file<S>("font", kFontFile,
+               {"", "Font of all texts: a name, or a file relative to the scene file. Default: DejaVu Sans"},
+               in(&S::annotation, &Annotation::font))}};
+}
+
 Table output_table() {
   std::vector<std::string> layers = layer_names();
   layers.emplace_back(kAllLayers);
@@ -255,6 +283,8 @@ const FileRole kColorMapFile{"colour map", false, [](const std::string& value) {
                              }};
 const FileRole kBackgroundFile{"background image", true};
 const FileRole kTextureFile{"texture", true};
+const FileRole kFontFile{"font", false,
+                         [](const std::string& value) { return value.find_first_of("./\\") != std::string::npos; }};
 const FileRole kOcioConfigFile{
     "OCIO config", false, [](const std::string& value) { return !value.empty() && !value.starts_with("ocio://"); }};
 
@@ -296,6 +326,7 @@ const std::vector<Table>& tables() {
         number<S>("exposure", {-kMaxStops, kMaxStops}, {"stops", "Exposure of display output. Does not affect EXR"},
                   in(&S::color, &Color::exposure))}},
       output_table(),
+      annotation_table(),
       animation_table()};
   return all;
 }

@@ -28,7 +28,7 @@ struct FileRole {
   /// Returns whether a value names a file; null: unless it is empty.
   bool (*names_file)(const std::string& value) = nullptr;
 };
-extern const FileRole kPointsFile, kRodsFile, kColorMapFile, kBackgroundFile, kTextureFile, kOcioConfigFile;
+extern const FileRole kPointsFile, kRodsFile, kColorMapFile, kBackgroundFile, kTextureFile, kFontFile, kOcioConfigFile;
 
 /// One key of a table in a scene file. A dotted name is that of a key in a subtable: "radius.column" is `column` in
 /// `radius = { column = "diameter" }`.

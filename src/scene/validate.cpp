@@ -62,6 +62,17 @@ void check_image(const Image& image, DiagnosticList& diagnostics) {
                       fmt::format("frame plus overscan exceeds the limit of {} pixels per side", kLargestSide));
 }
 
+void check_annotation(const Scene& scene, DiagnosticList& diagnostics) {
+  const bool has_labels =
+      std::any_of(scene.points.begin(), scene.points.end(), [](const Points& p) { return !p.labels.empty(); });
+  if (scene.annotation.scale_bar && scene.camera.projection == Projection::kPerspective)
+    diagnostics.error("annotation.scale_bar",
+                      "requires camera.projection = \"orthographic\": in a perspective image, the length of an object "
+                      "depends on its distance");
+  if ((scene.annotation.is_set() || has_labels) && (scene.image.crop || scene.image.overscan > 0))
+    diagnostics.error("annotation", "cannot be combined with image.crop or image.overscan");
+}
+
 void check_camera(const Camera& camera, DiagnosticList& diagnostics) {
   bool usable = true;
   for (const auto& [name, v] :
@@ -395,6 +406,7 @@ std::vector<SceneDiagnostic> validate(const Scene& scene) {
   DiagnosticList diagnostics;
   check_image(scene.image, diagnostics);
   check_camera(scene.camera, diagnostics);
+  check_annotation(scene, diagnostics);
   check_background(scene.background, diagnostics);
   check_emitters(scene, diagnostics);
   check_lens(scene.camera, diagnostics);

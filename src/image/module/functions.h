@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include "image/draw_text.h"
 #include "image/jpeg_bytes.h"
 #include "image/library.h"
 #include "image/partial_file.h"
@@ -27,6 +28,10 @@ struct Functions {
   decltype(&image::read_provenance) read_provenance;
   decltype(&image::read_partial) read_partial;
   decltype(&image::verified_stamp) verified_stamp;
+  decltype(&image::font_file) font_file;
+  decltype(&image::draw_text) draw_text;
+  decltype(&image::text_width) text_width;
+  decltype(&image::missing_glyphs) missing_glyphs;
 };
 
 }  // namespace orrery::image

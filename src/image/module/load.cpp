@@ -79,4 +79,19 @@ PartialFile read_partial(const std::filesystem::path& file, int width_px, int he
 
 std::string verified_stamp(const std::filesystem::path& file) { return module().verified_stamp(file); }
 
+std::filesystem::path font_file(const std::string& font) { return module().font_file(font); }
+
+void draw_text(const TextLine& line, const std::filesystem::path& font, int width, int height,
+               std::vector<float>& coverage) {
+  module().draw_text(line, font, width, height, coverage);
+}
+
+double text_width(const std::string& text, double size_px, const std::filesystem::path& font) {
+  return module().text_width(text, size_px, font);
+}
+
+std::string missing_glyphs(const std::string& text, const std::filesystem::path& font) {
+  return module().missing_glyphs(text, font);
+}
+
 }  // namespace orrery::image

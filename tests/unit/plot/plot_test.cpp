@@ -38,7 +38,7 @@ std::string frame(const std::string& columns, const std::vector<std::string>& ro
 const std::string kCorners =
     "x,y,z,mass\n0,0,0,1\n4,0,0,2\n0,4,0,3\n4,4,0,4\n0,0,4,5\n4,0,4,6\n0,4,4,7\n4,4,4,8\n1,0,0,9\n";
 
-using Labels = decltype(LegendColors::labels);
+using Labels = decltype(annotation::LegendColors::labels);
 
 class PlotPlot : public testing::Test {
  protected:

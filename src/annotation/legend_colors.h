@@ -11,14 +11,14 @@
 #include "display/forward.h"
 #include "scene/scene.h"
 
-namespace orrery::plot {
+namespace orrery::annotation {
 
 /// Orders numbers by value, before other strings.
 struct LabelOrder {
   bool operator()(std::string_view a, std::string_view b) const;
 };
 
-/// The colours of a plot, collected over its frames. All are linear Rec.709.
+/// The colours of points tables, collected over frames. All are linear Rec.709.
 struct LegendColors {
   std::string title;                                      ///< the column, "type" or "element"
   std::map<std::string, math::Vec3d, LabelOrder> labels;  ///< colours of types, elements and categories
@@ -46,4 +46,4 @@ std::string legend_svg(const LegendColors& colors, const display::Settings& disp
 ///            those of display::develop; kCannotCreate, kIo
 void write_legend(const std::filesystem::path& file, const LegendColors& colors, const display::Settings& display);
 
-}  // namespace orrery::plot
+}  // namespace orrery::annotation

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "plot/write_legend.h"
+#include "annotation/legend_colors.h"
 
 #include <algorithm>
 #include <charconv>
@@ -19,7 +19,7 @@
 #include "image/write.h"
 #include "points/legend.h"
 
-namespace orrery::plot {
+namespace orrery::annotation {
 namespace {
 
 /// Colours as the display shows them.
@@ -116,4 +116,4 @@ void write_legend(const std::filesystem::path& file, const LegendColors& colors,
   write_image(file, legend);
 }
 
-}  // namespace orrery::plot
+}  // namespace orrery::annotation

@@ -1,0 +1,236 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "annotation/annotate.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <cstdint>
+#include <memory>
+
+#include <fmt/core.h>
+
+#include "annotation/legend_colors.h"
+#include "base/error.h"
+#include "data/table.h"
+#include "display/develop.h"
+#include "display/settings.h"
+#include "points/legend.h"
+#include "points/selection.h"
+#include "scene/value_text.h"
+
+namespace orrery::annotation {
+namespace {
+
+constexpr const char* kFont = "DejaVuSans";
+
+// Lengths in font sizes.
+constexpr double kMargin = 1, kBarThickness = 0.3, kTextGap = 0.4, kColorBarWidth = 1, kColorBarHeight = 12,
+                 kTickLength = 0.3, kLineWidth = 0.06, kPatchPitch = 1.5, kMiddle = 0.36;
+/// Font sizes in the height of the image, and smallest font.
+constexpr double kFontShare = 32;
+constexpr double kSmallestFont = 9;
+/// Names in a legend; the others are counted.
+constexpr std::size_t kMaxPatches = 20;
+
+/// Luminance below which text is white.
+constexpr double kDark = 0.18;
+
+Vec3d ink_over(const scene::Background& background) {
+  const bool is_plain = background.backdrop || background.type == scene::BackgroundType::kConstant;
+  const Vec3d seen = background.backdrop.value_or(background.color);
+  const double luminance = 0.2126 * seen.x + 0.7152 * seen.y + 0.0722 * seen.z;
+  return background.alpha != 0 && is_plain && luminance < kDark ? Vec3d{1, 1, 1} : Vec3d{0, 0, 0};
+}
+
+/// The colours of the first coloured points table; none if there is no such table.
+std::optional<LegendColors> legend_of(const scene::Scene& scene, const std::vector<std::vector<Vec3d>>& palettes) {
+  for (std::size_t i = 0; i < scene.points.size(); ++i) {
+    scene::Points keys;
+    keys.color = scene.points[i].color;
+    keys.color_names = scene.points[i].color_names;
+    keys.palette = palettes[i];
+    LegendColors out;
+    out.add(keys);
+    out.range = scene.points[i].color_range;
+    if (!out.labels.empty() || (!out.bar.empty() && out.range)) return out;
+  }
+  return {};
+}
+
+class Layout {
+ public:
+  Layout(const scene::Scene& scene, View view) : scene_(scene), view_(std::move(view)) {
+    const std::string font = scene.annotation.font.string();
+    const bool is_file = font.find_first_of("./\\") != std::string::npos;
+    font_ = font.empty() ? kFont : is_file ? (view_.folder / font).string() : font;
+    out_.width = view_.width;
+    out_.height = view_.height;
+    out_.ink = ink_over(scene.background);
+    size_ = std::max(kSmallestFont, std::round(view_.height / kFontShare));
+  }
+
+  Drawing run(const std::vector<std::vector<Vec3d>>& palettes) {
+    const scene::Annotation& annotation = scene_.annotation;
+    const bool has_labels = std::any_of(scene_.points.begin(), scene_.points.end(),
+                                        [](const scene::Points& points) { return !points.placed_labels.empty(); });
+    if (!annotation.title.empty() || annotation.scale_bar || annotation.color_bar || has_labels)
+      out_.font = image::font_file(font_);
+    out_.outline_px = annotation.outline;
+    if (!annotation.title.empty()) {
+      const std::optional<double> step = scene_.points.empty() ? std::nullopt : scene_.points[0].step;
+      add_text(title_of(annotation.title, view_.frame, step), kMargin * size_, (kMargin + 0.8) * size_, 0);
+    }
+    if (annotation.scale_bar && scene_.camera.width) add_scale_bar(*annotation.scale_bar);
+    if (annotation.color_bar)
+      if (const std::optional<LegendColors> legend = legend_of(scene_, palettes)) add_legend(*legend);
+    for (const scene::Points& points : scene_.points)
+      for (const scene::Label& label : points.placed_labels)
+        if (const auto at = view_.project(label.at))
+          out_.labels.push_back({label.text, at->first, at->second + kMiddle * size_, size_, 0.5});
+    return std::move(out_);
+  }
+
+ private:
+  void add_text(const std::string& text, double x, double y, double anchor) {
+    out_.texts.push_back({text, x, y, size_, anchor});
+  }
+
+  void add_scale_bar(double length) {
+    const double width = length / *scene_.camera.width * view_.width, left = kMargin * size_,
+                 bottom = view_.height - kMargin * size_, top = bottom - kBarThickness * size_;
+    out_.boxes.push_back({left, top, left + width, bottom, out_.ink});
+    const std::string& unit = scene_.annotation.unit;
+    add_text(scene::number_text(length) + (unit.empty() ? "" : " " + unit), left, top - kTextGap * size_, 0);
+  }
+
+  void add_legend(const LegendColors& legend) {
+    if (legend.labels.empty())
+      add_color_bar(legend);
+    else
+      add_patches(legend);
+  }
+
+  void add_color_bar(const LegendColors& legend) {
+    points::Legend scale;
+    scale.first = legend.range->low;
+    scale.last = legend.range->high;
+    scale.is_log = legend.is_log;
+    const std::vector<points::Tick> ticks = points::ticks_of(scale);
+    double labels = 0;
+    for (const points::Tick& tick : ticks) labels = std::max(labels, image::text_width(tick.label, size_, out_.font));
+    const double right = view_.width - kMargin * size_ - labels - (kTickLength + kTextGap) * size_,
+                 left = right - kColorBarWidth * size_, top = (kMargin + 1.5) * size_,
+                 height = std::min(kColorBarHeight * size_, view_.height - top - 2 * kMargin * size_);
+    add_text(legend.title, view_.width - kMargin * size_, (kMargin + 0.8) * size_, 1);
+    const auto count = static_cast<double>(legend.bar.size());
+    for (std::size_t i = 0; i < legend.bar.size(); ++i) {
+      // Each colour down to the bottom, over that above: boxes that only touch would let the image shine through.
+      const std::size_t color = legend.bar.size() - 1 - i;
+      out_.boxes.push_back(
+          {left, top + static_cast<double>(i) / count * height, right, top + height, legend.bar[color]});
+    }
+    const double line = std::max(1.0, kLineWidth * size_);
+    for (const points::Tick& tick : ticks) {
+      const double y = top + height * (1 - points::share_of(tick.value, scale));
+      out_.boxes.push_back({right, y - line / 2, right + kTickLength * size_, y + line / 2, out_.ink});
+      add_text(tick.label, right + (kTickLength + kTextGap) * size_, y + kMiddle * size_, 0);
+    }
+  }
+
+  void add_patches(const LegendColors& legend) {
+    std::vector<std::pair<std::string, std::optional<Vec3d>>> rows;
+    for (const auto& [name, color] : legend.labels) rows.emplace_back(name, color);
+    if (rows.size() > kMaxPatches) {
+      const std::size_t rest = rows.size() - kMaxPatches + 1;
+      rows.resize(kMaxPatches - 1);
+      rows.emplace_back(fmt::format("{} more", rest), std::nullopt);
+    }
+    double widest = image::text_width(legend.title, size_, out_.font) - (kColorBarWidth + kTextGap) * size_;
+    for (const auto& row : rows) widest = std::max(widest, image::text_width(row.first, size_, out_.font));
+    const double left = view_.width - (kMargin + kColorBarWidth + kTextGap) * size_ - widest;
+    add_text(legend.title, left, (kMargin + 0.8) * size_, 0);
+    double top = (kMargin + 1.5) * size_;
+    for (const auto& [name, color] : rows) {
+      if (color) out_.boxes.push_back({left, top, left + kColorBarWidth * size_, top + size_, *color});
+      add_text(name, left + (kColorBarWidth + kTextGap) * size_, top + (0.5 + kMiddle) * size_, 0);
+      top += kPatchPitch * size_;
+    }
+  }
+
+  const scene::Scene& scene_;
+  View view_;
+  std::string font_;
+  double size_;  ///< of the font, px
+  Drawing out_;
+};
+
+/// The number of decimals in ".2f"; none for other text.
+std::optional<int> decimals_of(const std::string& format) {
+  if (format.size() != 3 || format[0] != '.' || format[2] != 'f' || format[1] < '0' || format[1] > '9') return {};
+  return format[1] - '0';
+}
+
+/// The value of "step * 0.005:.2f".
+std::string field_text(const std::string& field, int frame, std::optional<double> step) {
+  const std::size_t colon = field.find(':');
+  data::Table table;
+  table.rows = 1;
+  table.columns = {{"frame", std::vector<double>{static_cast<double>(frame)}}};
+  if (step) table.columns.push_back({"step", std::vector<double>{*step}});
+  std::vector<data::ColumnInfo> columns;
+  for (const data::Column& column : table.columns) columns.push_back({column.name, column.type()});
+  const auto refuse = [&](const std::string& text, const std::string& remedy) {
+    throw base::Error(base::ErrorKind::kBadData,
+                      fmt::format("annotation.title: {{{}}}: {}{}", field, text, remedy.empty() ? "" : "; " + remedy));
+  };
+  try {
+    const double value = points::parse_expression(field.substr(0, colon), columns).evaluate(table)[0];
+    if (colon == std::string::npos) return scene::number_text(value);
+    const std::optional<int> decimals = decimals_of(field.substr(colon + 1));
+    if (!decimals) refuse("no format after the colon", "write the number of decimals, e.g. {step:.2f}");
+    return fmt::format("{:.{}f}", value, *decimals);
+  } catch (const base::Error& error) {
+    for (const base::Diagnostic& d : error.diagnostics()) refuse(d.text, d.remedy);
+    throw;
+  }
+}
+
+}  // namespace
+
+std::string title_of(const std::string& title, int frame, std::optional<double> step) {
+  std::string out;
+  for (std::size_t at = 0; at < title.size();) {
+    const std::size_t open = std::min(title.find('{', at), title.size()), close = title.find('}', open);
+    out += title.substr(at, open - at);
+    if (open == title.size()) break;
+    if (close == std::string::npos)
+      throw base::Error(base::ErrorKind::kBadData, "annotation.title: `{` is not closed; add `}`");
+    out += field_text(title.substr(open + 1, close - open - 1), frame, step);
+    at = close + 1;
+  }
+  return out;
+}
+
+Drawing drawing_of(const scene::Scene& scene, const std::vector<std::vector<Vec3d>>& palettes, View view) {
+  return Layout(scene, std::move(view)).run(palettes);
+}
+
+std::string missing_glyphs(const Drawing& drawing) {
+  std::string all;
+  for (const std::vector<image::TextLine>* lines : {&drawing.texts, &drawing.labels})
+    for (const image::TextLine& line : *lines) all += line.text;
+  const bool is_ascii = std::all_of(all.begin(), all.end(), [](char c) { return static_cast<unsigned char>(c) < 0x80; });
+  return is_ascii ? "" : image::missing_glyphs(all, drawing.font);
+}
+
+std::function<Vec3d(const Vec3d&)> shown_by(display::Settings display) {
+  display.working_space = "lin_rec709";
+  return [developer = std::make_shared<display::PixelDeveloper>(display)](const Vec3d& color) {
+    float rgb[] = {static_cast<float>(color.x), static_cast<float>(color.y), static_cast<float>(color.z)};
+    std::uint8_t codes[3];
+    (*developer)(rgb, 1, codes);
+    return Vec3d{double(codes[0]), double(codes[1]), double(codes[2])} / 255;
+  };
+}
+
+}  // namespace orrery::annotation

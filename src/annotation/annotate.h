@@ -1,0 +1,47 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <filesystem>
+#include <functional>
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "annotation/drawing.h"
+#include "display/settings.h"
+#include "scene/scene.h"
+
+namespace orrery::annotation {
+
+/// An image to annotate.
+struct View {
+  int width = 0, height = 0;  ///< px
+  int frame = 1;
+  std::filesystem::path folder;  ///< of the scene, for the file of a font
+  /// Projects a point of the scene to the image, px; none behind the camera.
+  std::function<std::optional<std::pair<double, double>>(const Vec3d&)> project;
+};
+
+/// Replaces {EXPRESSION} and {EXPRESSION:.Nf}, with N decimals, in a title. Expressions may use `frame`, and `step`, if
+/// the data have time steps.
+///
+/// Errors     base::Error(kBadData)
+std::string title_of(const std::string& title, int frame, std::optional<double> step);
+
+/// Lays out the annotation of a scene at a frame.
+///
+/// `palettes` those of the points tables, linear Rec.709
+/// Result     empty if the scene has no annotation
+/// Errors     base::Error: those of title_of() and image::text_width()
+Drawing drawing_of(const scene::Scene& scene, const std::vector<std::vector<Vec3d>>& palettes, View view);
+
+/// The characters of all texts of a drawing for which its font has no glyphs.
+std::string missing_glyphs(const Drawing& drawing);
+
+/// Converts colours to what a display shows, 0..1.
+///
+/// Errors     those of display::develop
+std::function<Vec3d(const Vec3d&)> shown_by(display::Settings display);
+
+}  // namespace orrery::annotation

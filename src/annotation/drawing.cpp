@@ -1,0 +1,179 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "annotation/drawing.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <cstdint>
+#include <utility>
+
+#include <fmt/core.h>
+
+#include "base/hash.h"
+#include "base/text.h"
+
+namespace orrery::annotation {
+namespace {
+
+/// Width of the contour of labels, as a part of the size of their font.
+constexpr double kContour = 0.12;
+
+/// Layers of colour with coverage, one over the other.
+class Canvas {
+ public:
+  Canvas(int width, int height) : width_(width), height_(height) {
+    overlay_.width = width;
+    overlay_.height = height;
+    overlay_.rgba.resize(4 * pixels());
+  }
+
+  std::size_t pixels() const { return static_cast<std::size_t>(width_) * static_cast<std::size_t>(height_); }
+
+  /// Puts a colour over a pixel.
+  void paint(std::size_t pixel, const Vec3d& color, double coverage) {
+    if (!(coverage > 0)) return;
+    const double a = std::min(coverage, 1.0), colors[] = {color.x, color.y, color.z, 1};
+    float* const to = &overlay_.rgba[4 * pixel];
+    for (std::size_t c = 0; c < 4; ++c) to[c] = static_cast<float>(to[c] * (1 - a) + colors[c] * a);
+  }
+
+  void paint(const std::vector<float>& coverage, const Vec3d& color) {
+    for (std::size_t i = 0; i < coverage.size(); ++i) paint(i, color, coverage[i]);
+  }
+
+  void paint(const Box& box, const Vec3d& color) {
+    const auto covered = [](double begin, double end, int at) {
+      return std::max(0.0, std::min(end, at + 1.0) - std::max(begin, static_cast<double>(at)));
+    };
+    const auto first = [](double at) { return std::max(0, static_cast<int>(std::floor(at))); };
+    for (int y = first(box.top); y < std::min<double>(height_, box.bottom); ++y)
+      for (int x = first(box.left); x < std::min<double>(width_, box.right); ++x)
+        paint(static_cast<std::size_t>(y) * static_cast<std::size_t>(width_) + static_cast<std::size_t>(x), color,
+              covered(box.left, box.right, x) * covered(box.top, box.bottom, y));
+  }
+
+  Overlay take() { return std::move(overlay_); }
+
+ private:
+  int width_, height_;
+  Overlay overlay_;
+};
+
+/// The largest coverage within a distance of each pixel.
+std::vector<float> dilated(const std::vector<float>& coverage, int width, int height, int reach) {
+  std::vector<float> rows(coverage.size()), out(coverage.size());
+  const auto pass = [&](const std::vector<float>& from, std::vector<float>& to, int step, int count, int position_step,
+                        int positions) {
+    for (int p = 0; p < positions; ++p)
+      for (int i = 0; i < count; ++i) {
+        float most = 0;
+        for (int k = std::max(0, i - reach); k <= std::min(count - 1, i + reach); ++k)
+          most = std::max(most, from[static_cast<std::size_t>(p) * static_cast<std::size_t>(position_step) +
+                                     static_cast<std::size_t>(k) * static_cast<std::size_t>(step)]);
+        to[static_cast<std::size_t>(p) * static_cast<std::size_t>(position_step) +
+           static_cast<std::size_t>(i) * static_cast<std::size_t>(step)] = most;
+      }
+  };
+  pass(coverage, rows, 1, width, width, height);
+  pass(rows, out, width, height, 1, width);
+  return out;
+}
+
+std::string hex(const Vec3d& color) {
+  const auto byte = [](double c) { return static_cast<int>(std::lround(std::clamp(c, 0.0, 1.0) * 255)); };
+  return fmt::format("#{:02x}{:02x}{:02x}", byte(color.x), byte(color.y), byte(color.z));
+}
+
+std::string xml(const std::string& text) {
+  std::string out;
+  for (std::size_t at = 0; at < text.size();) {
+    const std::size_t length = base::printable_length(text, at);
+    const std::string character = text.substr(at, std::max<std::size_t>(length, 1));
+    out += length == 0 ? "?" : character == "<" ? "&lt;" : character == ">" ? "&gt;" : character == "&" ? "&amp;" : character;
+    at += character.size();
+  }
+  return out;
+}
+
+std::string svg_text(const image::TextLine& line, const std::string& ink, const std::string& contour) {
+  const std::string outline =
+      contour.empty() ? ""
+                      : fmt::format(" stroke=\"{}\" stroke-width=\"{:.2f}\" stroke-linejoin=\"round\" paint-order=\"stroke\"",
+                                    contour, 2 * kContour * line.size_px);
+  return fmt::format("<text x=\"{:.2f}\" y=\"{:.2f}\" font-size=\"{:.2f}\" text-anchor=\"{}\" fill=\"{}\"{}>{}</text>\n",
+                     line.x, line.y, line.size_px,
+                     line.anchor < 0.25   ? "start"
+                     : line.anchor < 0.75 ? "middle"
+                                          : "end",
+                     ink, outline, xml(line.text));
+}
+
+Vec3d opposite(const Vec3d& ink) { return Vec3d{1, 1, 1} - ink; }
+
+}  // namespace
+
+Overlay draw(const Drawing& drawing, const std::function<Vec3d(const Vec3d&)>& shown) {
+  Canvas canvas(drawing.width, drawing.height);
+  const Vec3d ink = shown(drawing.ink);
+  canvas.paint(drawing.lines, ink);
+  for (const Box& box : drawing.boxes) canvas.paint(box, shown(box.color));
+  std::vector<float> coverage(drawing.texts.empty() ? 0 : canvas.pixels());
+  for (const image::TextLine& line : drawing.texts)
+    image::draw_text(line, drawing.font, drawing.width, drawing.height, coverage);
+  canvas.paint(coverage, ink);
+  for (const image::TextLine& line : drawing.labels) {
+    coverage.assign(canvas.pixels(), 0);
+    image::draw_text(line, drawing.font, drawing.width, drawing.height, coverage);
+    const int reach = std::max(1, static_cast<int>(std::lround(kContour * line.size_px)));
+    canvas.paint(dilated(coverage, drawing.width, drawing.height, reach), shown(opposite(drawing.ink)));
+    canvas.paint(coverage, ink);
+  }
+  return canvas.take();
+}
+
+std::string stamped(const std::string& stamp, const Drawing& drawing) {
+  if (drawing.is_empty()) return stamp;
+  const auto same = [](const Vec3d& color) { return color; };
+  return base::text_hash(fmt::format("{}\n{}\n{}\n{}", stamp, drawing.font.string(), drawing.outline_px, svg(drawing, same)));
+}
+
+void blend(const Overlay& overlay, film::EncodedPicture& picture) {
+  const auto channels = static_cast<std::size_t>(picture.channels);
+  const double largest = picture.bits == 8 ? 255 : 65535;
+  const auto code = [&](double v) {
+    return static_cast<std::uint16_t>(std::lround(std::clamp(v, 0.0, 1.0) * largest));
+  };
+  for (std::size_t i = 0; i < overlay.rgba.size() / 4; ++i) {
+    const float* const over = &overlay.rgba[4 * i];
+    std::uint16_t* const pixel = &picture.values[channels * i];
+    if (!(over[3] > 0)) continue;
+    const double below = (channels == 4 ? pixel[3] / largest : 1) * (1 - over[3]), alpha = below + over[3];
+    for (std::size_t c = 0; c < 3; ++c) pixel[c] = code((pixel[c] / largest * below + over[c]) / alpha);
+    if (channels == 4) pixel[3] = code(alpha);
+  }
+}
+
+void add_layer(const Overlay& overlay, film::Picture& picture) {
+  constexpr const char* kNames[] = {"annotation.R", "annotation.G", "annotation.B", "annotation.A"};
+  for (std::size_t c = 0; c < 4; ++c) {
+    film::Plane plane{kNames[c], std::vector<float>(overlay.rgba.size() / 4), film::PlaneKind::kLight};
+    for (std::size_t i = 0; i < plane.values.size(); ++i) plane.values[i] = overlay.rgba[4 * i + c];
+    picture.planes.push_back(std::move(plane));
+  }
+}
+
+std::string svg(const Drawing& drawing, const std::function<Vec3d(const Vec3d&)>& shown) {
+  const std::string ink = hex(shown(drawing.ink)), contour = hex(shown(opposite(drawing.ink)));
+  std::string body;
+  for (const Box& box : drawing.boxes)
+    body += fmt::format("<rect x=\"{:.3f}\" y=\"{:.3f}\" width=\"{:.3f}\" height=\"{:.3f}\" fill=\"{}\"/>\n", box.left,
+                        box.top, box.right - box.left, box.bottom - box.top, hex(shown(box.color)));
+  for (const image::TextLine& line : drawing.texts) body += svg_text(line, ink, "");
+  for (const image::TextLine& line : drawing.labels) body += svg_text(line, ink, contour);
+  return fmt::format(
+      "<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"{0}\" height=\"{1}\" viewBox=\"0 0 {0} {1}\" "
+      "font-family=\"DejaVu Sans, sans-serif\">\n{2}</svg>\n",
+      drawing.width, drawing.height, body);
+}
+
+}  // namespace orrery::annotation

@@ -1,0 +1,39 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <filesystem>
+#include <vector>
+
+namespace orrery::cli {
+
+/// A film file, and its frames as PNG files in a folder next to it. The frames stay until the film is complete, so that
+/// a stopped command continues from them.
+class Film {
+ public:
+  /// Creates the folder of the frames.
+  ///
+  /// Errors     base::Error(kCannotCreate) if the program ffmpeg is not installed, or a file or folder cannot be created
+  Film(std::filesystem::path file, double fps, bool keeps_frames);
+  ~Film();
+  Film(const Film&) = delete;
+  Film& operator=(const Film&) = delete;
+
+  /// True for the extensions of films.
+  static bool is_film(const std::filesystem::path& file);
+
+  const std::filesystem::path& file() const { return file_; }
+  /// The name of the frames, with a frame pattern.
+  std::filesystem::path frame_pattern() const;
+
+  /// Encodes the film, and then removes its frames, unless they are to be kept.
+  ///
+  /// Errors     base::Error(kIo) if ffmpeg fails; the frames stay
+  void encode(const std::vector<int>& frames) const;
+
+ private:
+  std::filesystem::path file_, folder_;
+  double fps_;
+  bool keeps_frames_;
+};
+
+}  // namespace orrery::cli

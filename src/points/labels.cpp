@@ -1,0 +1,62 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "points/labels.h"
+
+#include <algorithm>
+#include <limits>
+
+#include <fmt/core.h>
+
+#include "base/error.h"
+#include "points/copies.h"
+#include "points/rows.h"
+
+namespace orrery::points {
+
+std::pair<std::string, std::string> parse_label(const std::string& text) {
+  const std::size_t colon = text.find(": ");
+  if (colon == std::string::npos || colon == 0 || colon + 2 == text.size())
+    base::refuse(fmt::format("`{}` is not a label; write CONDITION: TEXT, e.g. 'id == 5: Fe'", text));
+  return {text.substr(0, colon), text.substr(colon + 2)};
+}
+
+std::vector<LabelRule> label_rules(const data::FrameInfo& info, const scene::Points& points, KeyFaults& faults) {
+  std::vector<LabelRule> out;
+  for (std::size_t i = 0; i < points.labels.size(); ++i) {
+    const std::string key = fmt::format(".labels[{}]", i);
+    try {
+      const auto [condition, text] = parse_label(points.labels[i]);
+      out.push_back({parse_selection(condition, info.columns), text});
+    } catch (const base::Error& error) {
+      if (error.diagnostics().empty()) faults.error(key, error.what());
+      for (const base::Diagnostic& d : error.diagnostics())
+        faults.error(key,
+                     fmt::format("at character {}: {}{}", d.column, d.text, d.remedy.empty() ? "" : "; " + d.remedy));
+    }
+  }
+  return out;
+}
+
+std::vector<scene::Label> placed_labels(const data::Table& table, const Rows& rows, const scene::PointArray& centers,
+                                        const std::vector<LabelRule>& rules, const Copy& first,
+                                        const scene::Points& points, KeyFaults& faults) {
+  std::vector<scene::Label> out;
+  const data::Transform placement = transform_of(points.transform);
+  for (std::size_t r = 0; r < rules.size(); ++r) {
+    const std::vector<std::uint8_t> mask = rules[r].condition.evaluate(table);
+    constexpr double kInfinity = std::numeric_limits<double>::infinity();
+    data::Vec3d low{kInfinity, kInfinity, kInfinity}, high = low * -1.0;
+    for (std::size_t i = 0; i < rows.size(); ++i) {
+      if (mask[rows[i]] == 0) continue;
+      const data::Vec3d c = centers[i];
+      low = {std::min(low.x, c.x), std::min(low.y, c.y), std::min(low.z, c.z)};
+      high = {std::max(high.x, c.x), std::max(high.y, c.y), std::max(high.z, c.z)};
+    }
+    if (low.x <= high.x)
+      out.push_back({applied(placement, applied(first.transform, (low + high) * 0.5)), rules[r].text});
+    else
+      faults.warning(fmt::format(".labels[{}]", r), "matches none of the particles that are drawn");
+  }
+  return out;
+}
+
+}  // namespace orrery::points

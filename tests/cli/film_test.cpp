@@ -1,0 +1,128 @@
+// SPDX-License-Identifier: Apache-2.0
+// Films and annotated images of the command plot.
+#include <algorithm>
+#include <filesystem>
+
+#include "cli/program.h"
+
+namespace orrery::test {
+namespace {
+
+class CliFilm : public ProgramTest {
+ protected:
+  void SetUp() override {
+    ProgramTest::SetUp();
+    std::string dump;
+    for (int step = 0; step < 3; ++step)
+      dump += "ITEM: TIMESTEP\n" + std::to_string(100 * step) +
+              "\nITEM: NUMBER OF ATOMS\n1\nITEM: BOX BOUNDS pp pp pp\n0 10\n0 10\n0 10\nITEM: ATOMS id type x y z radius\n"
+              "1 1 " +
+              std::to_string(step) + " 0 0 1\n";
+    write("a.dump", dump);
+    // Programs in place of ffmpeg: one that copies its input, and one that fails.
+    write_program("copies/ffmpeg", "for last; do :; done; exec cat > \"${last#file:}\"");
+    write_program("fails/ffmpeg", "head -c 100 > /dev/null; echo first >&2; echo out of luck >&2; exit 3");
+  }
+  void write_program(const std::string& name, const std::string& script) {
+    std::filesystem::create_directories((folder_ / name).parent_path());
+    write(name, "#!/bin/sh\n" + script + "\n");
+    std::filesystem::permissions(folder_ / name, std::filesystem::perms::owner_all);
+  }
+  Outcome film(const std::string& arguments, const std::string& ffmpeg = "copies") {
+    return run("plot a.dump --width 17 --height 9 --samples 1 " + arguments, "PATH=\"$PWD/" + ffmpeg + ":$PATH\"");
+  }
+  bool exists(const std::string& name) const { return std::filesystem::exists(folder_ / name); }
+};
+
+TEST_F(CliFilm, HasAllFramesInOrder) {
+  const Outcome r = film("-o a.mp4 --frames all --keep-frames");
+  ASSERT_EQ(r.status, 0) << r.err;
+  EXPECT_TRUE(contains(r.err, "wrote a.mp4: 3 frames, 24 frames per second\n")) << r.err;
+  std::string all;
+  for (const char* frame : {"1", "2", "3"}) all += text_of(folder_ / "a.mp4.frames" / ("frame.00000" + std::string(frame) + ".png"));
+  EXPECT_EQ(text_of(folder_ / "a.mp4"), all);
+  ASSERT_EQ(film("-o a.mp4 --frames 3,1").status, 0);
+  EXPECT_FALSE(exists("a.mp4.frames/frame.000001.png")) << "removed";
+  EXPECT_TRUE(exists("a.mp4.frames/frame.000002.png")) << "of another command";
+}
+
+TEST_F(CliFilm, AFailureKeepsTheFramesForTheNextCommand) {
+  const Outcome failed = film("-o a.gif --frames all", "fails");
+  EXPECT_EQ(failed.status, 74);
+  EXPECT_TRUE(contains(failed.err, "a.gif: ffmpeg failed with status 3: out of luck; the frames are in a.gif.frames, and "
+                                   "the same command continues from them"))
+      << failed.err;
+  EXPECT_FALSE(exists("a.gif") || exists("a.gif.part"));
+  const Outcome r = film("-o a.gif --frames all");
+  EXPECT_EQ(r.status, 0) << r.err;
+  EXPECT_TRUE(contains(r.err, "3 skipped")) << r.err;
+  EXPECT_TRUE(exists("a.gif"));
+  EXPECT_FALSE(exists("a.gif.frames"));
+}
+
+TEST_F(CliFilm, TurntablesHaveTheFramesOfTheirTime) {
+  const Outcome r = film("-o a.mp4 --turntable 0.5s --fps 10 --keep-frames");
+  ASSERT_EQ(r.status, 0) << r.err;
+  EXPECT_TRUE(contains(r.err, "wrote a.mp4: 5 frames, 10 frames per second\n")) << r.err;
+  EXPECT_TRUE(contains(r.err, "the whole orbit")) << r.err;
+  EXPECT_TRUE(film("-o b.mp4 --turntable 0.5s --frames 1-2").err.find("wrote b.mp4: 2 frames") != std::string::npos);
+}
+
+TEST_F(CliFilm, RequestsThatCannotBeMetAreRefused) {
+  EXPECT_TRUE(contains(film("-o a.mp4").err, "a.mp4 is a film; select its frames with --frames"));
+  EXPECT_TRUE(contains(film("-o a.mp4 --frames all --transparent").err, "a.mp4 is a film, which is opaque"));
+  EXPECT_EQ(film("-o no/a.mp4 --frames all").status, 73);
+  const Outcome none = run("plot a.dump -o a.mp4 --frames all", "PATH=/nowhere");
+  EXPECT_EQ(none.status, 73);
+  EXPECT_TRUE(contains(none.err, "the program ffmpeg was not found; install the package ffmpeg")) << none.err;
+  EXPECT_FALSE(exists("a.mp4.frames")) << "empty folders do not stay";
+}
+
+/// By the real program, where it is installed, as in the tests of packages.
+TEST_F(CliFilm, FfmpegReadsTheFrames) {
+  if (std::system("command -v ffmpeg ffprobe > /dev/null 2>&1") != 0) GTEST_SKIP() << "ffmpeg is not installed";
+  ASSERT_EQ(run("plot a.dump -o a.mp4 --frames all --width 33 --height 17 --samples 1 -q").status, 0);
+  const std::string probe = "cd '" + folder_.string() +
+                            "' && ffprobe -v error -show_entries "
+                            "stream=width,height,pix_fmt,color_space,color_transfer,nb_frames -of csv a.mp4 > probe";
+  ASSERT_EQ(std::system(probe.c_str()), 0);
+  EXPECT_EQ(text_of(folder_ / "probe"), "stream,32,16,yuv420p,bt709,iec61966-2-1,3\n");
+}
+
+TEST_F(CliFilm, AnnotationsOfASavedSceneAreTheSame) {
+  const std::string options =
+      "--title 'step {step}' --scale-bar '1 nm' --color-bar --outline 1 --label 'id == 1: A' --frame 2 ";
+  Outcome r = film(options + "-o a.ppm -o a.exr --save-scene a.toml");
+  ASSERT_EQ(r.status, 0) << r.err;
+  ASSERT_EQ(run("render a.toml --samples 1 --frames 2 -o b.##.ppm -q").status, 0);
+  EXPECT_EQ(text_of(folder_ / "a.ppm"), text_of(folder_ / "b.02.ppm"));
+  ASSERT_EQ(film("--frame 2 -o c.ppm -o c.exr --save-scene c.toml").status, 0);
+  EXPECT_NE(text_of(folder_ / "a.ppm"), text_of(folder_ / "c.ppm"));
+  ASSERT_EQ(run("develop a.exr -o d.ppm -q").status, 0);
+  ASSERT_EQ(run("develop c.exr -o e.ppm -q").status, 0);
+  EXPECT_EQ(text_of(folder_ / "d.ppm"), text_of(folder_ / "e.ppm")) << "the beauty is without annotation";
+  EXPECT_TRUE(contains(text_of(folder_ / "a.exr"), "annotation.R"));
+  r = film("--frame 2 --title '漢' -o c.png");
+  EXPECT_EQ(r.status, 0);
+  EXPECT_TRUE(contains(r.err, "has no glyphs for `漢`")) << r.err;
+}
+
+TEST_F(CliFilm, SkippedImagesHaveTheSameAnnotation) {
+  ASSERT_EQ(film("-o a.png --title A").status, 0);
+  EXPECT_TRUE(contains(film("-o a.png --title A --skip-existing").err, "skipped"));
+  EXPECT_FALSE(contains(film("-o a.png --title B --skip-existing").err, "skipped"));
+}
+
+TEST_F(CliFilm, InvalidAnnotationsAreRefused) {
+  EXPECT_TRUE(contains(film("-o a.png --scale-bar auto --perspective 30").err, "depends on its distance"));
+  EXPECT_TRUE(contains(film("-o a.png --scale-bar 2nm").err, "`2nm` is not a length"));
+  EXPECT_EQ(film("-o a.png --scale-bar 0").status, 2);
+  EXPECT_EQ(film("-o a.png --label x").status, 65);
+  EXPECT_EQ(film("-o a.png --title '{foo}'").status, 65);
+  EXPECT_EQ(film("-o a.png --outline 65").status, 2);
+  EXPECT_EQ(film("-o a.png --title a --font NoSuchFont").status, 66);
+  EXPECT_EQ(run("render good.toml -o a.png --set annotation.scale_bar=1").status, 65) << "a perspective camera";
+}
+
+}  // namespace
+}  // namespace orrery::test

@@ -1,0 +1,137 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "annotation/annotate.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <string>
+
+#include "base/error.h"
+
+namespace orrery::annotation {
+namespace {
+
+std::string error_of(const std::string& title) {
+  try {
+    title_of(title, 1, {});
+  } catch (const base::Error& error) {
+    return error.what();
+  }
+  return "no error";
+}
+
+class AnnotationAnnotate : public testing::Test {
+ protected:
+  AnnotationAnnotate() {
+    scene.camera.projection = scene::Projection::kOrthographic;
+    scene.camera.width = 50;
+    scene.background.type = scene::BackgroundType::kConstant;
+    scene.background.color = {1, 1, 1};
+    view.width = 400;
+    view.height = 320;
+    view.project = [](const Vec3d& at) { return std::pair{at.x, at.y}; };
+  }
+  Drawing drawing() { return drawing_of(scene, palettes, view); }
+  /// The line with a text.
+  image::TextLine line(const std::string& text) {
+    const Drawing all = drawing();
+    for (const auto& lines : {all.texts, all.labels})
+      for (const image::TextLine& one : lines)
+        if (one.text == text) return one;
+    ADD_FAILURE() << "no text " << text;
+    return {};
+  }
+
+  scene::Scene scene;
+  std::vector<std::vector<Vec3d>> palettes;
+  View view;
+};
+
+TEST(AnnotationTitle, ExpressionsAreReplaced) {
+  EXPECT_EQ(title_of("plain", 7, {}), "plain");
+  EXPECT_EQ(title_of("frame {frame} of 9", 7, {}), "frame 7 of 9");
+  EXPECT_EQ(title_of("t = {step * 0.005:.2f} ps, {frame:.0f}", 7, 300), "t = 1.50 ps, 7");
+  EXPECT_EQ(error_of("{step}"), "annotation.title: {step}: unknown column step; columns are frame")
+      << "the data have no time steps";
+  EXPECT_NE(error_of("{frame").find("`{` is not closed"), std::string::npos);
+  EXPECT_NE(error_of("{frame:.22f}").find("write the number of decimals"), std::string::npos);
+  EXPECT_NE(error_of("{frame:q}").find("annotation.title: {frame:q}: "), std::string::npos);
+  EXPECT_NE(error_of("{}").find("annotation.title: {}: "), std::string::npos);
+}
+
+TEST_F(AnnotationAnnotate, NothingByDefault) { EXPECT_TRUE(drawing().is_empty()); }
+
+TEST_F(AnnotationAnnotate, ScaleBarsAreExact) {
+  scene.annotation.scale_bar = 7.3;
+  scene.annotation.unit = "nm";
+  EXPECT_EQ(line("7.3 nm").anchor, 0);
+  const Overlay overlay = draw(drawing(), [](const Vec3d& color) { return color; });
+  double longest = 0;
+  for (int y = 0; y < 320; ++y) {
+    double length = 0;
+    for (int x = 0; x < 400; ++x) length += overlay.rgba[static_cast<std::size_t>(4 * (y * 400 + x) + 3)];
+    longest = std::max(longest, length);
+  }
+  EXPECT_NEAR(longest, 7.3 / 50 * 400, 0.01) << "of pixels, with partly covered ones at its ends";
+}
+
+TEST_F(AnnotationAnnotate, ColorBarsHaveTicks) {
+  scene.annotation.color_bar = true;
+  scene.points.resize(2);
+  scene.points[1].color.column = "speed";
+  scene.points[1].color_range = scene::Interval{0, 12};
+  palettes = {{}, {{0, 0, 0}, {1, 1, 1}, {0.5, 0.5, 0.5}}};
+  EXPECT_LT(line("12").y, line("6").y) << "the largest at the top";
+  EXPECT_NEAR(line("12").y - line("6").y, line("6").y - line("0").y, 1e-9);
+  EXPECT_EQ(line("speed").anchor, 1);
+  scene.points[1].color.log = true;
+  scene.points[1].color_range = scene::Interval{1, 1e4};
+  EXPECT_NEAR(line("10000").y - line("100").y, line("100").y - line("1").y, 1e-9);
+}
+
+TEST_F(AnnotationAnnotate, CategoriesHavePatches) {
+  scene.annotation.color_bar = true;
+  scene.points.resize(1);
+  scene.points[0].color.column = "type";
+  palettes.resize(1);
+  for (int i = 1; i <= 30; ++i) {
+    scene.points[0].color_names.push_back(std::to_string(i));
+    palettes[0].push_back({i / 30.0, 0, 0});
+  }
+  EXPECT_EQ(drawing().boxes.size(), 19u);
+  EXPECT_LT(line("1").y, line("19").y);
+  EXPECT_LT(line("19").y, line("11 more").y);
+}
+
+TEST_F(AnnotationAnnotate, LabelsAreAtTheirPoints) {
+  scene.points.resize(1);
+  scene.points[0].placed_labels = {{{100, 200, 0}, "Fe"}};
+  EXPECT_EQ(line("Fe").x, 100);
+  EXPECT_EQ(line("Fe").anchor, 0.5);
+  view.project = [](const Vec3d&) { return std::optional<std::pair<double, double>>(); };
+  EXPECT_TRUE(drawing().labels.empty()) << "behind the camera";
+}
+
+TEST_F(AnnotationAnnotate, TextIsWhiteOnDarkBackgrounds) {
+  scene.annotation.title = "a";
+  EXPECT_EQ(drawing().ink, (Vec3d{0, 0, 0}));
+  scene.background.backdrop = Vec3d{0.02, 0.02, 0.02};
+  EXPECT_EQ(drawing().ink, (Vec3d{1, 1, 1}));
+  scene.background.alpha = 0;
+  EXPECT_EQ(drawing().ink, (Vec3d{0, 0, 0})) << "a transparent background is usually put on paper";
+}
+
+TEST_F(AnnotationAnnotate, MissingFontsAndGlyphsAreReported) {
+  scene.annotation.title = "ångström ψ ≥ 漢字";
+  EXPECT_EQ(missing_glyphs(drawing()), "漢字");
+  scene.annotation.title = "Ελλάδα";
+  EXPECT_EQ(missing_glyphs(drawing()), "");
+  scene.annotation.font = "NoSuchFont";
+  EXPECT_THROW(drawing(), base::Error);
+  scene.annotation.font = "no/such.ttf";
+  EXPECT_THROW(drawing(), base::Error);
+}
+
+}  // namespace
+}  // namespace orrery::annotation

@@ -1,0 +1,65 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "image/draw_text.h"
+
+#include <gtest/gtest.h>
+
+#include <cstddef>
+#include <string>
+#include <vector>
+
+#include "base/error.h"
+
+namespace orrery::image {
+namespace {
+
+constexpr int kTextWidth = 200, kTextHeight = 40;
+
+/// The columns that a text covers: the first and the last.
+std::pair<int, int> columns_of(const TextLine& line) {
+  std::vector<float> coverage(std::size_t{kTextWidth} * kTextHeight);
+  draw_text(line, font_file("DejaVuSans"), kTextWidth, kTextHeight, coverage);
+  int first = kTextWidth, last = -1;
+  for (int x = 0; x < kTextWidth; ++x)
+    for (int y = 0; y < kTextHeight; ++y)
+      if (coverage[static_cast<std::size_t>(y * kTextWidth + x)] > 0) {
+        first = std::min(first, x);
+        last = std::max(last, x);
+      }
+  return {first, last};
+}
+
+TEST(ImageDrawText, AnchorsAreAtTheStartTheMiddleAndTheEnd) {
+  const double width = text_width("HHHH", 20, font_file("DejaVuSans"));
+  EXPECT_GT(width, 40);
+  const auto [start, start_last] = columns_of({"HHHH", 100, 30, 20, 0});
+  EXPECT_NEAR(start, 100, 3);
+  EXPECT_NEAR(start_last, 100 + width, 4);
+  EXPECT_NEAR(columns_of({"HHHH", 100, 30, 20, 0.5}).first, start - width / 2, 1.01);
+  EXPECT_NEAR(columns_of({"HHHH", 100, 30, 20, 1}).first, start - width, 1.01);
+}
+
+TEST(ImageDrawText, CharactersOfOtherScriptsAreDistinct) {
+  const auto pixels = [](const char* text) {
+    std::vector<float> out(std::size_t{kTextWidth} * kTextHeight);
+    draw_text({text, 10, 30, 20, 0}, font_file("DejaVuSans"), kTextWidth, kTextHeight, out);
+    return out;
+  };
+  EXPECT_NE(pixels("ψ"), pixels("φ"));
+  EXPECT_NE(pixels("≥"), pixels("e")) << "not by the low byte";
+  EXPECT_EQ(pixels("\xff"), pixels("?")) << "not UTF-8";
+}
+
+TEST(ImageDrawText, TextBeyondTheImageIsCut) {
+  EXPECT_EQ(columns_of({"HHHH", -5, 30, 20, 0}).first, 0);
+  EXPECT_EQ(columns_of({"HHHH", kTextWidth - 10, 30, 20, 0}).second, kTextWidth - 1);
+  EXPECT_EQ(columns_of({"HHHH", 0, 500, 20, 0}).second, -1);
+  EXPECT_EQ(columns_of({"", 0, 20, 20, 0}).second, -1);
+}
+
+TEST(ImageDrawText, FilesThatAreNoFontsAreRefused) {
+  EXPECT_THROW(font_file("NoSuchFont"), base::Error);
+  EXPECT_THROW(text_width("a", 10, "/dev/null"), base::Error);
+}
+
+}  // namespace
+}  // namespace orrery::image

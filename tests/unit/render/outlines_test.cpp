@@ -1,0 +1,87 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "render/outlines.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <numbers>
+#include <vector>
+
+#include "compile/compile.h"
+#include "compile/compiled_scene.h"
+#include "render/render.h"
+#include "scene/scene.h"
+
+namespace orrery::render {
+namespace {
+
+/// Spheres seen along -z by an orthographic camera of width 4.
+scene::Scene scene_of(const std::vector<scene::Sphere>& spheres, int side) {
+  scene::Scene out;
+  out.image = {side, side};
+  out.camera.projection = scene::Projection::kOrthographic;
+  out.camera.width = 4;
+  out.camera.look_from = {0, 0, 20};
+  out.camera.look_at = {0, 0, 0};
+  out.materials = {{"grey", scene::Lambertian{}}};
+  out.spheres = spheres;
+  return out;
+}
+
+std::vector<float> lines_of(const scene::Scene& scene, double width) {
+  const compile::CompiledScene compiled = compile::compile(scene);
+  return outlines(compiled, *build(compiled, 1), width, 2);
+}
+
+double sum(const std::vector<float>& lines) {
+  double out = 0;
+  for (const float v : lines) out += v;
+  return out;
+}
+
+TEST(RenderOutlines, HaveTheirWidthAtAnyResolution) {
+  for (const int side : {100, 400})
+    for (const double width : {1.0, 2.0, 3.5}) {
+      const double circumference = 2 * std::numbers::pi * side / 4;
+      EXPECT_NEAR(sum(lines_of(scene_of({{{0, 0, 0}, 1}}, side), width)) / circumference, width, 0.3) << side << width;
+    }
+}
+
+TEST(RenderOutlines, HaveNoGaps) {
+  constexpr int kSide = 200;
+  const std::vector<float> lines = lines_of(scene_of({{{0, 0, 0}, 1}}, kSide), 2);
+  // The densest pixel across the line, in each direction from the centre.
+  for (int degree = 0; degree < 360; ++degree) {
+    float most = 0;
+    for (double r = 46; r <= 54; r += 0.25) {
+      const int x = static_cast<int>(100 + r * std::cos(degree * std::numbers::pi / 180)),
+                y = static_cast<int>(100 + r * std::sin(degree * std::numbers::pi / 180));
+      most = std::max(most, lines[static_cast<std::size_t>(y * kSide + x)]);
+    }
+    EXPECT_GT(most, 0.8f) << degree;
+  }
+}
+
+TEST(RenderOutlines, AreAtStepsInDepthOnly) {
+  const auto line_at_center = [](double z) {
+    // A small sphere in front of a large one; its limb crosses the centre of the image.
+    const std::vector<float> lines = lines_of(scene_of({{{-0.3, 0, z}, 0.3}, {{0, 0, -20}, 20}}, 101), 2);
+    return lines[50 * 101 + 50];
+  };
+  EXPECT_GT(line_at_center(1), 0.9f);
+  EXPECT_EQ(line_at_center(0), 0) << "half inside the large sphere";
+  const std::vector<scene::Sphere> touching = {{{0.25, 0, 0}, 0.5}, {{-0.25, 0, 0}, 0.5}};
+  EXPECT_EQ(lines_of(scene_of(touching, 101), 2)[50 * 101 + 50], 0) << "where two spheres intersect";
+}
+
+TEST(RenderOutlines, SmallSpheresThatTouchHaveNone) {
+  std::vector<scene::Sphere> many;
+  for (int x = -40; x <= 40; ++x)
+    for (int y = -40; y <= 40; ++y) many.push_back({{x * 0.1, y * 0.1, (x * 7 + y * 3) % 5 * 0.02}, 0.07});
+  EXPECT_EQ(sum(lines_of(scene_of(many, 64), 2)), 0);
+}
+
+}  // namespace
+}  // namespace orrery::render
