@@ -219,7 +219,8 @@ std::string missing_glyphs(const Drawing& drawing) {
   std::string all;
   for (const std::vector<image::TextLine>* lines : {&drawing.texts, &drawing.labels})
     for (const image::TextLine& line : *lines) all += line.text;
-  const bool is_ascii = std::all_of(all.begin(), all.end(), [](char c) { return static_cast<unsigned char>(c) < 0x80; });
+  const bool is_ascii =
+      std::all_of(all.begin(), all.end(), [](char c) { return static_cast<unsigned char>(c) < 0x80; });
   return is_ascii ? "" : image::missing_glyphs(all, drawing.font);
 }
 

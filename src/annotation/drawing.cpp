@@ -89,7 +89,11 @@ std::string xml(const std::string& text) {
   for (std::size_t at = 0; at < text.size();) {
     const std::size_t length = base::printable_length(text, at);
     const std::string character = text.substr(at, std::max<std::size_t>(length, 1));
-    out += length == 0 ? "?" : character == "<" ? "&lt;" : character == ">" ? "&gt;" : character == "&" ? "&amp;" : character;
+    out += length == 0        ? "?"
+           : character == "<" ? "&lt;"
+           : character == ">" ? "&gt;"
+           : character == "&" ? "&amp;"
+                              : character;
     at += character.size();
   }
   return out;
@@ -97,15 +101,17 @@ std::string xml(const std::string& text) {
 
 std::string svg_text(const image::TextLine& line, const std::string& ink, const std::string& contour) {
   const std::string outline =
-      contour.empty() ? ""
-                      : fmt::format(" stroke=\"{}\" stroke-width=\"{:.2f}\" stroke-linejoin=\"round\" paint-order=\"stroke\"",
-                                    contour, 2 * kContour * line.size_px);
-  return fmt::format("<text x=\"{:.2f}\" y=\"{:.2f}\" font-size=\"{:.2f}\" text-anchor=\"{}\" fill=\"{}\"{}>{}</text>\n",
-                     line.x, line.y, line.size_px,
-                     line.anchor < 0.25   ? "start"
-                     : line.anchor < 0.75 ? "middle"
-                                          : "end",
-                     ink, outline, xml(line.text));
+      contour.empty()
+          ? ""
+          : fmt::format(" stroke=\"{}\" stroke-width=\"{:.2f}\" stroke-linejoin=\"round\" paint-order=\"stroke\"",
+                        contour, 2 * kContour * line.size_px);
+  return fmt::format(
+      "<text x=\"{:.2f}\" y=\"{:.2f}\" font-size=\"{:.2f}\" text-anchor=\"{}\" fill=\"{}\"{}>{}</text>\n", line.x,
+      line.y, line.size_px,
+      line.anchor < 0.25   ? "start"
+      : line.anchor < 0.75 ? "middle"
+                           : "end",
+      ink, outline, xml(line.text));
 }
 
 Vec3d opposite(const Vec3d& ink) { return Vec3d{1, 1, 1} - ink; }
@@ -134,7 +140,8 @@ Overlay draw(const Drawing& drawing, const std::function<Vec3d(const Vec3d&)>& s
 std::string stamped(const std::string& stamp, const Drawing& drawing) {
   if (drawing.is_empty()) return stamp;
   const auto same = [](const Vec3d& color) { return color; };
-  return base::text_hash(fmt::format("{}\n{}\n{}\n{}", stamp, drawing.font.string(), drawing.outline_px, svg(drawing, same)));
+  return base::text_hash(
+      fmt::format("{}\n{}\n{}\n{}", stamp, drawing.font.string(), drawing.outline_px, svg(drawing, same)));
 }
 
 void blend(const Overlay& overlay, film::EncodedPicture& picture) {

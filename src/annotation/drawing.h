@@ -23,14 +23,14 @@ struct Box {
 
 /// A drawing over an image.
 struct Drawing {
-  int width = 0, height = 0;   ///< px
-  Vec3d ink{0, 0, 0};          ///< of lines and text, linear Rec.709
-  double outline_px = 0;       ///< width of the outlines; 0: none
-  std::vector<float> lines;    ///< coverage by the outlines, one per pixel; empty: not known yet
-  std::vector<Box> boxes;      ///< over the lines, in this order
+  int width = 0, height = 0;            ///< px
+  Vec3d ink{0, 0, 0};                   ///< of lines and text, linear Rec.709
+  double outline_px = 0;                ///< width of the outlines; 0: none
+  std::vector<float> lines;             ///< coverage by the outlines, one per pixel; empty: not known yet
+  std::vector<Box> boxes;               ///< over the lines, in this order
   std::vector<image::TextLine> texts;   ///< over the boxes
   std::vector<image::TextLine> labels;  ///< over all, with a contour in the opposite of the ink
-  std::filesystem::path font;  ///< file
+  std::filesystem::path font;           ///< file
 
   bool is_empty() const { return outline_px == 0 && boxes.empty() && texts.empty() && labels.empty(); }
 };

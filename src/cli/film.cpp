@@ -47,8 +47,12 @@ bool is_installed(const std::string& program) {
 /// out. Colours are those of sRGB images, which display programs show as such.
 std::vector<std::string> encoding_of(const fs::path& file) {
   if (base::extension(file) == ".gif")
-    return {"-filter_complex", "[0:v]split[a][b];[a]palettegen=stats_mode=diff[p];[b][p]paletteuse", "-loop", "0",
-            "-f",              "gif"};
+    return {"-filter_complex",
+            "[0:v]split[a][b];[a]palettegen=stats_mode=diff[p];[b][p]paletteuse",
+            "-loop",
+            "0",
+            "-f",
+            "gif"};
   return {"-vf",
           "crop=trunc(iw/2)*2:trunc(ih/2)*2,scale=out_color_matrix=bt709:out_range=tv",
           "-c:v",
@@ -80,9 +84,9 @@ using File = std::unique_ptr<std::FILE, CloseFile>;
 class Encoder {
  public:
   Encoder(const fs::path& film, const fs::path& output, double fps) : messages_(std::tmpfile()) {
-    std::vector<std::string> words = {kEncoder,     "-nostdin",    "-y",           "-loglevel", "error", "-f",
-                                      "image2pipe", "-framerate", fmt::format("{}", fps), "-c:v",      "png",   "-i",
-                                      "pipe:0"};
+    std::vector<std::string> words = {
+        kEncoder, "-nostdin", "-y", "-loglevel", "error", "-f", "image2pipe", "-framerate", fmt::format("{}", fps),
+        "-c:v",   "png",      "-i", "pipe:0"};
     for (std::string& word : encoding_of(film)) words.push_back(std::move(word));
     words.push_back("file:" + output.string());
     std::vector<char*> arguments;

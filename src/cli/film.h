@@ -12,7 +12,8 @@ class Film {
  public:
   /// Creates the folder of the frames.
   ///
-  /// Errors     base::Error(kCannotCreate) if the program ffmpeg is not installed, or a file or folder cannot be created
+  /// Errors     base::Error(kCannotCreate) if the program ffmpeg is not installed, or a file or folder cannot be
+  /// created
   Film(std::filesystem::path file, double fps, bool keeps_frames);
   ~Film();
   Film(const Film&) = delete;

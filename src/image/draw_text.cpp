@@ -52,7 +52,8 @@ class Face {
   Face(const fs::path& font, double size_px) {
     FT_Library library = nullptr;
     FT_Face face = nullptr;
-    if (FT_Init_FreeType(&library) != 0) throw base::Error(base::ErrorKind::kInternal, "FreeType cannot be initialised");
+    if (FT_Init_FreeType(&library) != 0)
+      throw base::Error(base::ErrorKind::kInternal, "FreeType cannot be initialised");
     library_.reset(library);
     if (FT_New_Face(library, font.c_str(), 0, &face) != 0)
       throw base::Error(base::ErrorKind::kBadData, fmt::format("{} is not a font", font.string()));

@@ -9,10 +9,10 @@ namespace orrery::image {
 
 /// A line of text.
 struct TextLine {
-  std::string text;       ///< UTF-8
-  double x = 0, y = 0;    ///< px from the top left, a point of the baseline
-  double size_px = 16;    ///< of the font
-  double anchor = 0;      ///< where that point is: 0 at the start of the text, 0.5 in the middle, 1 at the end
+  std::string text;     ///< UTF-8
+  double x = 0, y = 0;  ///< px from the top left, a point of the baseline
+  double size_px = 16;  ///< of the font
+  double anchor = 0;    ///< where that point is: 0 at the start of the text, 0.5 in the middle, 1 at the end
 };
 
 /// Returns the file of a font.
@@ -25,7 +25,8 @@ std::filesystem::path font_file(const std::string& font);
 ///
 /// Shape      `coverage`: width * height, row by row from the top
 /// Errors     base::Error(kBadData) if the file is not a font
-void draw_text(const TextLine& line, const std::filesystem::path& font, int width, int height, std::vector<float>& coverage);
+void draw_text(const TextLine& line, const std::filesystem::path& font, int width, int height,
+               std::vector<float>& coverage);
 
 /// The width of a line of text.
 ///

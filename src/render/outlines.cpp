@@ -77,21 +77,28 @@ void trace_grid(const compile::CompiledScene& scene, const accel::Accel& accel, 
     kernel::trace(tracer, packet);
     for (int lane = 0; lane < packet.count; ++lane)
       if (packet.hit[lane] != kernel::kNoSphere)
-        grid.seen[static_cast<std::size_t>(begin + lane)] = {packet.hit[lane], static_cast<double>(packet.distance[lane])};
+        grid.seen[static_cast<std::size_t>(begin + lane)] = {packet.hit[lane],
+                                                             static_cast<double>(packet.distance[lane])};
   }
 }
 
 class TileOutlines {
  public:
   TileOutlines(const compile::CompiledScene& scene, const accel::Accel& accel, double width_px)
-      : scene_(scene), accel_(accel), reach_(width_px / 2 * kRays), border_(static_cast<int>(std::ceil(width_px / 2)) + 1) {
+      : scene_(scene),
+        accel_(accel),
+        reach_(width_px / 2 * kRays),
+        border_(static_cast<int>(std::ceil(width_px / 2)) + 1) {
     for (int axis = 0; axis < 3; ++axis) pixel_ += scene.camera.right[axis] * scene.camera.right[axis];
     pixel_ = std::sqrt(pixel_);
   }
 
   void draw(int left, int top, int right, int bottom, std::vector<float>& coverage) const {
-    Grid grid{(left - border_) * kRays, (top - border_) * kRays, (right - left + 2 * border_) * kRays,
-              (bottom - top + 2 * border_) * kRays, {}};
+    Grid grid{(left - border_) * kRays,
+              (top - border_) * kRays,
+              (right - left + 2 * border_) * kRays,
+              (bottom - top + 2 * border_) * kRays,
+              {}};
     if (scene_.precision == kernel::Precision::kFast)
       trace_grid<float>(scene_, accel_, grid);
     else

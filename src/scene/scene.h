@@ -328,10 +328,10 @@ struct Points {
   std::vector<std::string> unused = {};   ///< unused columns of the file, such as colours
   std::optional<double> step = {};        ///< time step of the frame, or its number in the file
   std::vector<Label> placed_labels = {};  ///< those of `labels`
-  PointArray sphere_vectors = {};        ///< one per centre, while arrows are to be added
-  std::size_t arrow_count = 0;           ///< number of arrows; their shafts are the last of `bond_pairs`
-  std::size_t arrow_spheres = 0;         ///< number of spheres of their heads, after all others
-  double rms_vector = 0;                 ///< root mean square length of the vectors, times their scale
+  PointArray sphere_vectors = {};         ///< one per centre, while arrows are to be added
+  std::size_t arrow_count = 0;            ///< number of arrows; their shafts are the last of `bond_pairs`
+  std::size_t arrow_spheres = 0;          ///< number of spheres of their heads, after all others
+  double rms_vector = 0;                  ///< root mean square length of the vectors, times their scale
   std::vector<SphereBond> bond_pairs = {};
   std::vector<BondStub> bond_stubs = {};
   std::string bonds_from = {};   ///< resolved PointsBonds::from; empty: bonds are not drawn

@@ -14,10 +14,11 @@ class CliFilm : public ProgramTest {
     ProgramTest::SetUp();
     std::string dump;
     for (int step = 0; step < 3; ++step)
-      dump += "ITEM: TIMESTEP\n" + std::to_string(100 * step) +
-              "\nITEM: NUMBER OF ATOMS\n1\nITEM: BOX BOUNDS pp pp pp\n0 10\n0 10\n0 10\nITEM: ATOMS id type x y z radius\n"
-              "1 1 " +
-              std::to_string(step) + " 0 0 1\n";
+      dump +=
+          "ITEM: TIMESTEP\n" + std::to_string(100 * step) +
+          "\nITEM: NUMBER OF ATOMS\n1\nITEM: BOX BOUNDS pp pp pp\n0 10\n0 10\n0 10\nITEM: ATOMS id type x y z radius\n"
+          "1 1 " +
+          std::to_string(step) + " 0 0 1\n";
     write("a.dump", dump);
     // Programs in place of ffmpeg: one that copies its input, and one that fails.
     write_program("copies/ffmpeg", "for last; do :; done; exec cat > \"${last#file:}\"");
@@ -39,7 +40,8 @@ TEST_F(CliFilm, HasAllFramesInOrder) {
   ASSERT_EQ(r.status, 0) << r.err;
   EXPECT_TRUE(contains(r.err, "wrote a.mp4: 3 frames, 24 frames per second\n")) << r.err;
   std::string all;
-  for (const char* frame : {"1", "2", "3"}) all += text_of(folder_ / "a.mp4.frames" / ("frame.00000" + std::string(frame) + ".png"));
+  for (const char* frame : {"1", "2", "3"})
+    all += text_of(folder_ / "a.mp4.frames" / ("frame.00000" + std::string(frame) + ".png"));
   EXPECT_EQ(text_of(folder_ / "a.mp4"), all);
   ASSERT_EQ(film("-o a.mp4 --frames 3,1").status, 0);
   EXPECT_FALSE(exists("a.mp4.frames/frame.000001.png")) << "removed";
@@ -49,8 +51,9 @@ TEST_F(CliFilm, HasAllFramesInOrder) {
 TEST_F(CliFilm, AFailureKeepsTheFramesForTheNextCommand) {
   const Outcome failed = film("-o a.gif --frames all", "fails");
   EXPECT_EQ(failed.status, 74);
-  EXPECT_TRUE(contains(failed.err, "a.gif: ffmpeg failed with status 3: out of luck; the frames are in a.gif.frames, and "
-                                   "the same command continues from them"))
+  EXPECT_TRUE(contains(failed.err,
+                       "a.gif: ffmpeg failed with status 3: out of luck; the frames are in a.gif.frames, and "
+                       "the same command continues from them"))
       << failed.err;
   EXPECT_FALSE(exists("a.gif") || exists("a.gif.part"));
   const Outcome r = film("-o a.gif --frames all");
