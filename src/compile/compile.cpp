@@ -12,6 +12,7 @@
 
 #include "base/stop_point.h"
 #include "compile/camera_basis.h"
+#include "compile/caustic_list.h"
 #include "compile/compiled_scene.h"
 #include "compile/environment.h"
 #include "compile/light_tree.h"
@@ -373,6 +374,7 @@ kernel::SceneView CompiledScene::view() const noexcept {
   }
   v.lights = light_tree.view();
   v.direct_lighting = direct_lighting;
+  v.caustics = caustics.view();
   v.motion = motion.data();
   v.moving_count = motion.size();
   v.distinct = distinct_in.has_value();
@@ -423,6 +425,10 @@ void update_lights(CompiledScene& scene) {
   } else if (!built || (is_fast(*built) != is_fast(scene.precision) && scene.distinct_in != scene::Precision::kFast)) {
     scene.light_tree = build_light_tree(scene.view(), scene.precision);
   }
+  scene.caustics = {};
+  if (scene.samples_caustics && scene.direct_lighting != kernel::DirectLighting::kBsdf)
+    scene.caustics = caustic_list(scene.view(), scene.precision);
+  scene.features.caustics = !scene.caustics.balls.empty();
 }
 
 int blue_noise_bits(int samples) noexcept {
@@ -452,6 +458,7 @@ void update(const scene::Scene& scene, const scene::Scene* closing, scene::Parts
   }
   if (changed.geometry || changed.assignment || changed.look) {
     compiled.direct_lighting = direct_lighting_of(scene.render.direct_lighting);
+    compiled.samples_caustics = scene.render.caustics;
     compile_materials(scene, compiled);
     set_background(scene, compiled);
     light_group(compiled, scene::background_light_group(scene.background));

@@ -25,10 +25,10 @@ CompiledScene compile(const scene::Scene& scene, const scene::Scene* closing = n
 /// Domain     the points tables of `scene` have their spheres if `changed` contains geometry or assignment
 void update(const scene::Scene& scene, const scene::Scene* closing, scene::Parts changed, CompiledScene& compiled);
 
-/// Builds the light tree, if the scene samples its emitters. Needed after a change of `precision`, since other spheres
-/// may coincide in another number type, and of `direct_lighting`.
+/// Builds the light tree and the list of caustics, if the scene samples its lights. Needed after a change of
+/// `precision`, since other spheres may coincide in another number type, of `direct_lighting` and `samples_caustics`.
 ///
-/// Cost       that of build_light_tree; none if the tree would be the same
+/// Cost       that of build_light_tree, unless the tree would be the same; that of caustic_list
 void update_lights(CompiledScene& scene);
 
 /// Returns the number of index bits that count a pixel's samples when neighbouring pixels share a blue-noise sequence.

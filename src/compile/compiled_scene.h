@@ -8,6 +8,7 @@
 #include <string>
 #include <vector>
 
+#include "compile/caustic_list.h"
 #include "compile/forward.h"
 #include "compile/light_tree.h"
 #include "compile/material_table.h"
@@ -46,6 +47,8 @@ struct CompiledScene {
   TextureStore textures;
   LightTree light_tree;  ///< light tree of the emitting spheres; empty if lights are not sampled
   kernel::DirectLighting direct_lighting = kernel::DirectLighting::kMis;
+  bool samples_caustics = true;           ///< false: `caustics` stays empty
+  CausticList caustics;                   ///< of lights that are sampled
   std::vector<std::string> light_groups;  ///< names, indexed by Emission::group; the first is "", the default group
   std::vector<kernel::Sphere>
       motion;  ///< motion of the first motion.size() spheres, see kernel::SceneView; empty: none moves

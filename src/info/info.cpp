@@ -90,6 +90,29 @@ std::string lights_text(const compile::CompiledScene& compiled, std::uint64_t co
   return out;
 }
 
+/// Maximum number of pairs of balls and lights that are named.
+constexpr std::size_t kNamedPairs = 4;
+
+/// Describes which pairs of a sharp ball and a light are sampled: "2 of 3 pairs of a ball and a light sampled:
+/// sphere[1] and sphere[3], sphere[1] and the sun". Empty if there is no pair, or lights are not sampled.
+std::string caustics_text(const compile::CompiledScene& compiled) {
+  const compile::CausticList& list = compiled.caustics;
+  if (!compiled.samples_caustics || list.pairs == 0) return {};
+  std::size_t tables = compiled.spheres.size(), listed = 0;
+  for (const std::size_t size : compiled.points_sizes) tables -= size;
+  const auto name = [&](std::uint32_t id) {
+    if (id == kernel::kNoSphere) return std::string("the sun");
+    return id < tables ? fmt::format("sphere[{}]", id) : fmt::format("particle {}", id - tables);
+  };
+  std::string names;
+  for (const kernel::CausticBall& ball : list.balls)
+    for (std::uint32_t i = ball.begin; i < ball.end; ++i)
+      if (++listed <= kNamedPairs)
+        names += fmt::format("{} {} and {}", listed == 1 ? ":" : ",", name(ball.sphere), name(list.lights[i].id));
+  return fmt::format("{} of {} pair{} of a ball and a light sampled{}{}", listed, list.pairs,
+                     list.pairs == 1 ? "" : "s", names, listed > kNamedPairs ? ", ..." : "");
+}
+
 std::vector<Feature> features_of(const compile::CompiledScene& compiled, bool has_layers) {
   const auto some = [&](auto holds) {
     return std::any_of(compiled.materials.begin(), compiled.materials.end(), holds);
@@ -211,6 +234,7 @@ SceneInfo scene_info(const load::SceneRequest& request, job::PreparedScene& prep
   info.materials = count_materials(compiled);
   info.emitters = count_emitters(compiled);
   info.lights = lights_text(compiled, info.emitters);
+  info.caustics = caustics_text(compiled);
   for (std::size_t i = 0; i < read.scene.points.size(); ++i) {
     const scene::Points& p = read.scene.points[i];
     info.points.push_back({p.file.string(), compiled.points_sizes[i], p.unused,
@@ -285,6 +309,7 @@ std::string info_text(const SceneInfo& info) {
     out += '\n';
   }
   if (!info.lights.empty()) base::append(out, "lights      %s\n", info.lights.c_str());
+  if (!info.caustics.empty()) base::append(out, "caustics    %s\n", info.caustics.c_str());
   base::append(out, "layers      %s; available: %s\n", info.layers.empty() ? "none" : base::joined(info.layers).c_str(),
                base::joined(info.available_layers).c_str());
   base::append(out, "kernel      %s, precision %s, accelerator %s\n", info.isa.c_str(), info.precision.c_str(),
@@ -353,6 +378,7 @@ std::string info_json(const SceneInfo& info) {
               {"radius", nullptr},
               {"materials", materials},
               {"emitters", info.emitters},
+              {"caustics", info.caustics},
               {"points", points},
               {"layers", {{"requested", info.layers}, {"available", info.available_layers}}},
               {"features", features},

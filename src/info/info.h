@@ -53,6 +53,7 @@ struct SceneInfo {
   std::vector<std::pair<std::string, std::uint64_t>> materials;  ///< number of compiled materials by type
   std::uint64_t emitters = 0;                                    ///< spheres and rods that emit; black ones do not
   std::string lights;                                            ///< emitters, background and how they are sampled
+  std::string caustics;                                          ///< pairs of balls and lights, and which are sampled
   std::vector<PointsInfo> points;
   std::vector<std::string> layers, available_layers;  ///< layers requested in [output], and all that the scene supports
   std::vector<Feature> features;

@@ -43,7 +43,8 @@ void add_map(Hash& hash, const kernel::Environment& map) {
   add_texels(hash, map.texels, map.width, map.height);
 }
 
-/// Adds everything about lights. Scenes without lights keep the hash that they had before there were lights.
+/// Adds everything about lights. Scenes without lights keep the hash that they had before there were lights, and
+/// those without pairs of balls and lights the one from before caustics were sampled.
 void add_lights(Hash& hash, const compile::CompiledScene& compiled) {
   if (compiled.emission.empty() && !compiled.environment) return;
   hash.add_bits(static_cast<std::uint64_t>(compiled.direct_lighting));
@@ -52,6 +53,7 @@ void add_lights(Hash& hash, const compile::CompiledScene& compiled) {
     hash.add(e.group);
   }
   if (compiled.environment) add_map(hash, compiled.environment->view());
+  if (compiled.features.caustics) hash.add_bits(compiled.caustics.balls.size());
 }
 
 /// Scenes without textures keep the hash that they had before there were textures.

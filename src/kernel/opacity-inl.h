@@ -27,6 +27,7 @@ template <class DU>
 struct RayKeys {
   hn::Vec<DU> next;    ///< of the ray that continues the path
   hn::Vec<DU> shadow;  ///< of the shadow ray
+  hn::Vec<DU> chain;   ///< of the first ray of a chain; see caustic_light-inl.h
 };
 
 /// Returns the keys of the rays from a vertex, independent of those from any other. Not inlined, so that the loop costs
@@ -39,7 +40,7 @@ template <class DU, class V = hn::Vec<DU>>
 HWY_NOINLINE RayKeys<DU> keys_at_vertex(DU du, std::uint32_t seed, V pixel, V sample, std::uint32_t vertex) {
   constexpr std::uint32_t kKeys = 0x80000000u;  // above the vertices of second_random_at_vertex
   const auto random = independent_at_vertex(du, seed, pixel, sample, kKeys + vertex);
-  return {random.v[0], random.v[1]};
+  return {random.v[0], random.v[1], random.v[2]};
 }
 
 /// Stores the low 32 bits of keys.

@@ -36,6 +36,49 @@ struct alignas(64) ShadowStreamOf {
   ShadowPacket<T> packet;  ///< the rays being traced
 };
 
+/// Diffuse vertices at which light by way of balls is sampled, until they fill vectors; see caustic_light-inl.h.
+template <class T>
+struct alignas(64) CausticVerticesOf {
+  using Id = IdOf<T>;
+  /// Vertices that wait. Several packets, since shadow rays are traced first, in packets that may not be full.
+  static constexpr int kBatch = 8 * kPacketSize;
+  static constexpr int kCapacity = kBatch + 2 * kPacketSize;
+  T base[3][kCapacity];    ///< centre of the sphere that the ray leaves
+  T offset[3][kCapacity];  ///< from that centre to the ray's origin
+  T side[kCapacity];       ///< 1 outside of the sphere, -1 inside
+  T uniform[kCapacity];    ///< 1: the lobe is uniform; 0: Lambertian
+  T value[3][kCapacity];   ///< throughput divided by the probability of being sampled
+  T random[4][kCapacity];  ///< two numbers for the direction, for the choices of the light and of a piece
+  T time[kCapacity];       ///< 0..1 within the shutter; only if the scene moves
+  Id key[kCapacity];       ///< see PacketRays, in the low 32 bits; only if the scene has opacities
+  Id self[kCapacity];      ///< sphere that the ray leaves
+  Id ball[kCapacity];      ///< index into Caustics
+  Id path[kCapacity];      ///< index into LitPathsOf
+  Id history[kCapacity];   ///< only in loops that record paths
+  int count = 0;
+};
+
+/// Rays of chains that wait until they fill packets; see caustic_rays-inl.h.
+template <class T>
+struct alignas(64) ChainStreamOf {
+  using Id = IdOf<T>;
+  static constexpr int kCapacity = CausticVerticesOf<T>::kCapacity + 2 * kPacketSize;
+  T base[3][kCapacity];       ///< centre of the sphere that the ray leaves
+  T offset[3][kCapacity];     ///< from that centre to the ray's origin
+  T direction[3][kCapacity];  ///< unit
+  T time[kCapacity];          ///< 0..1 within the shutter; only if the scene moves
+  Id key[kCapacity];          ///< see PacketRays, in the low 32 bits; only if the scene has opacities
+  T value[3][kCapacity];      ///< radiance times throughput and weight
+  Id self[kCapacity];         ///< sphere that the ray leaves
+  Id events[kCapacity];       ///< that are left; see CausticEvent
+  Id ball[kCapacity];         ///< that causes them
+  Id light[kCapacity];        ///< the emitter, or kNoSphere: the sun
+  Id path[kCapacity];         ///< index into LitPathsOf
+  Id history[kCapacity];      ///< only in loops that record paths
+  Id group[kCapacity];        ///< light group; only in loops that record paths
+  int count = 0;
+};
+
 /// State of paths that gain radiance at their vertices.
 ///
 /// A path's radiance is stored at its index within the batch and deposited when all paths of the batch have ended, so
@@ -49,7 +92,10 @@ struct alignas(64) LitPathsOf {
   T radiance[3][kCapacity];  ///< by index within the batch
   Id pixel[kCapacity];       ///< by index within the batch
   Id sample[kCapacity];      ///< by index within the batch
+  Id chain[kCapacity];       ///< of each path of the stream, only with features.caustics; see caustic_partition-inl.h
   ShadowStreamOf<T> shadow;
+  CausticVerticesOf<T> vertices;
+  ChainStreamOf<T> chains;
 };
 
 /// The state of a tile's paths between two vertices, as a structure of arrays.

@@ -13,6 +13,7 @@
 #include <cstdint>
 
 #include "kernel/camera-inl.h"
+#include "kernel/caustic_rays-inl.h"
 #include "kernel/render_tile.h"
 #include "kernel/shade-inl.h"
 
@@ -88,6 +89,7 @@ HWY_INLINE void load_camera_rays(D d, const SceneView& scene, PathCounter& count
     hn::Store(1 / dot(ray.direction, ray.direction), d, packet.inverse_square + v);
     hn::Store(set(du, kNoSphere), du, packet.self + v);
     if (kLoop.records) hn::Store(set(du, kOnlyDeltaBit), du, carried.history + v);
+    if (features.caustics) hn::Store(set(du, kNoChain), du, carried.chain + v);
     if (features.extended && scene.cone_width > 0) {
       const auto cone = camera_cone(d, scene, camera, ray.direction, scene.cone_width);
       store(Vec3<hn::Vec<D>>{cone.width2, cone.mixed, cone.slope2}, carried.cone);
@@ -125,6 +127,7 @@ HWY_INLINE void load_secondary_rays(D d, const SceneView& scene, Stream& stream,
     if (kLoop.records) hn::Store(hn::LoadU(du, stream.history + i), du, carried.history + v);
     if (kLoop.full) hn::Store(hn::LoadU(du, stream.lit.path + i), du, carried.path + v);
     if (features.lit) hn::Store(hn::LoadU(d, stream.lit.pdf + i), d, carried.pdf + v);
+    if (features.caustics) hn::Store(hn::LoadU(du, stream.lit.chain + i), du, carried.chain + v);
     if (features.extended && scene.cone_width > 0) store(at(stream.cone), carried.cone);
   }
 }
@@ -152,15 +155,23 @@ TileCounts render_tile(const SceneView& scene, const Tracer& tracer, const Tile&
     if (kLoop.full && shadow.count >= waiting)
       trace_shadow_packet<D, kLoop.records>(d, scene, tracer, tile, stream.lit, counts);
   };
+  // After the shadow rays of the same vertices, so that a path's light is summed in the same order in every batch.
+  const auto trace_caustics = [&](std::uint32_t depth, int waiting, int fewest) {
+    if (!kLoop.full || !scene.features.caustics || stream.lit.vertices.count < waiting) return;
+    trace_shadows(1);
+    sample_caustics<D, kLoop.records>(scene, stream.lit, sampled_chains(scene, depth));
+    trace_chains<D, kLoop.precision, kLoop.records>(scene, tracer, tile, stream, fewest, counts);
+  };
   const auto trace_and_shade = [&](std::uint32_t depth, int alive) {
     reset_hits(stream.packet);
     counts.rays += static_cast<std::uint64_t>(stream.packet.count);
     tracer.trace(tracer.self, &stream.packet);
     alive = Shader<D, kLoop>(scene, tile, depth, stream, counts).shade(carried, alive);
     trace_shadows(kPacketSize);
+    trace_caustics(depth, CausticVerticesOf<T>::kBatch, kPacketSize);
     return alive;
   };
-  shadow.count = 0;
+  shadow.count = stream.lit.vertices.count = stream.lit.chains.count = 0;
   while (to_start > 0) {
     const int batch = static_cast<int>(std::min<std::uint64_t>(to_start, kStreamSize));
     to_start -= static_cast<std::uint64_t>(batch);
@@ -172,6 +183,7 @@ TileCounts render_tile(const SceneView& scene, const Tracer& tracer, const Tile&
     }
     // Shadow rays do not wait for the next depth, so that a path's light is summed in the same order in every batch.
     trace_shadows(1);
+    trace_caustics(0, 0, 1);
     for (std::uint32_t depth = 1; alive > 0; ++depth) {
       // Survivors overwrite paths that have already been read, because a packet never grows.
       int survivors = 0;
@@ -181,6 +193,7 @@ TileCounts render_tile(const SceneView& scene, const Tracer& tracer, const Tile&
       }
       alive = survivors;
       trace_shadows(1);
+      trace_caustics(depth, 0, 1);
     }
     if (kLoop.full) deposit_paths<D, kLoop.records>(d, batch, scene, tile, stream.lit, counts);
   }

@@ -6,6 +6,7 @@
 #include <cstdint>
 
 #include "kernel/camera.h"
+#include "kernel/caustics.h"
 #include "kernel/lights.h"
 #include "kernel/material.h"
 #include "kernel/pixel_sum.h"
@@ -42,6 +43,7 @@ struct Features {
   bool extended = false;    ///< textures, rough glass or plastic
   bool rods = false;        ///< there are rods
   bool opacity = false;     ///< some opacity is below 1
+  bool caustics = false;    ///< images of lights in balls are sampled
 };
 
 /// Reciprocal of the throughput below which Russian roulette may end a path. Ending paths of higher throughput would
@@ -71,6 +73,7 @@ struct SceneView {
   double cone_width = 0;
   Lights lights;  ///< the emitters that light sampling chooses from
   DirectLighting direct_lighting = DirectLighting::kMis;
+  Caustics caustics;  ///< empty unless features.caustics
   /// Change in centre and radius of each of the first `moving_count` spheres, from shutter open to shutter close; null:
   /// none.
   const Sphere* motion = nullptr;

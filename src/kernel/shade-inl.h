@@ -12,6 +12,8 @@
 #include <cstdint>
 #include <limits>
 
+#include "kernel/caustic_light-inl.h"
+#include "kernel/caustic_partition-inl.h"
 #include "kernel/compaction-inl.h"
 #include "kernel/cone-inl.h"
 #include "kernel/deposit-inl.h"
@@ -40,7 +42,8 @@ struct Loop {
 template <Loop kLoop>
 HWY_INLINE Features features_of(const SceneView& scene) {
   Features features = scene.features;
-  if (!kLoop.full) features.motion = features.lit = features.extended = features.rods = features.opacity = false;
+  if (!kLoop.full)
+    features.motion = features.lit = features.extended = features.rods = features.opacity = features.caustics = false;
   return features;
 }
 
@@ -54,6 +57,7 @@ struct alignas(64) PathPayload {
   Id history[kPacketSize];  ///< in loops that record paths; see record-inl.h
   Id path[kPacketSize];     ///< in full loops: index within the batch
   T pdf[kPacketSize];       ///< in full loops: see LitPathsOf
+  Id chain[kPacketSize];    ///< with features.caustics: see LitPathsOf
   T cone[3][kPacketSize];   ///< in full loops: see PathStreamOf
 };
 
@@ -96,6 +100,7 @@ struct Arrivals {
   Ids history;         ///< only in loops that record paths
   Ids paths;           ///< only in full loops: index within the batch
   V pdf;               ///< only in full loops: see LitPathsOf
+  Ids chain;           ///< only with features.caustics: see LitPathsOf
   RayCone<V> cone;     ///< at the hits; only in scenes with ray cones
 };
 
@@ -174,6 +179,7 @@ class Shader {
   /// Samples lights and BSDFs at hits; see scatter() and light().
   HWY_INLINE int scatter_and_light(const Arrivals<D>& at, Lookup<D>& look, const Vec3<V>& tinted, int alive) {
     if (features_.lit && samples_lights(scene_)) light(at, look, tinted);
+    if (features_.caustics) caustics(at, look, tinted);
     return scatter(at, look, tinted, alive);
   }
 
@@ -202,6 +208,7 @@ class Shader {
     if (kLoop.full) {
       at.paths = hn::Load(du, carried.path + v);
       at.pdf = hn::Load(d, carried.pdf + v);
+      if (features_.caustics) at.chain = hn::Load(du, carried.chain + v);
     }
     at.cone = {hn::Zero(d), hn::Zero(d), hn::Zero(d)};
     if (has_cones()) {
@@ -221,6 +228,8 @@ class Shader {
     } else if (features_.lit && scene_.environment != nullptr) {
       radiance = depth_ == 0 ? environment_radiance(d, *scene_.environment, at.ray.direction)
                              : weighted_environment(d, scene_, at.ray.direction, at.pdf);
+      if (features_.caustics)
+        radiance = without_sampled_sun(d, scene_, radiance, at.ray.direction, at.missed, at.chain, at.ray.self);
       groups = set(du, scene_.environment->light_group);
     } else {
       radiance = background(d, scene_.background, features_.sky, at.ray.direction);
@@ -239,7 +248,9 @@ class Shader {
     if (scene_.emission == nullptr || scene_.shading != Shading::kPath) return;
     auto source = emitted(d, scene_, at.hits, at.hit);
     const auto dark = hn::And(hn::And(source.radiance.x == 0, source.radiance.y == 0), source.radiance.z == 0);
-    const auto shines = hn::AndNot(dark, at.hit);
+    auto shines = hn::AndNot(dark, at.hit);
+    if (features_.caustics)
+      shines = hn::AndNot(is_sampled_caustic(d, scene_, shines, at.chain, at.ray.self, at.hits), shines);
     if (hn::AllFalse(d, shines)) return;
     if (features_.extended && scene_.textures != nullptr)
       source.radiance = textured_radiance<D, kLoop.precision>(d, scene_, at.ray, at.hits, shines, at.distance,
@@ -291,6 +302,15 @@ class Shader {
         Lobe::kBackground);
   }
 
+  /// The hits as points from which light is sampled.
+  HWY_INLINE Vertex<D> vertex_at(const Arrivals<D>& at, const Lookup<D>& look) const {
+    const Vec3<V>&center = look.sphere.center, &offset = look.surface.offset;
+    const auto origin = center + offset;
+    const auto unit = normalized(offset);
+    return {origin, sum_error(center, offset, origin), select(look.surface.from_outside, unit, negated(unit)), at.cone,
+            at.times};
+  }
+
   /// Samples a light at each vertex whose material is neither delta nor an emitter and appends shadow rays to the
   /// shadow stream.
   HWY_INLINE void light(const Arrivals<D>& at, const Lookup<D>& look, const Vec3<V>& tinted) {
@@ -300,10 +320,7 @@ class Shader {
     const auto random =
         second_random_at_vertex(d, scene_.sampler, at.pixels, at.samples, depth_ + 1, chooses_light(scene_));
     const Vec3<V>& center = look.sphere.center;
-    const auto origin = center + surface.offset;
-    const auto unit = normalized(surface.offset);
-    Vertex<D> vertex{origin, sum_error(center, surface.offset, origin),
-                     select(surface.from_outside, unit, negated(unit)), at.cone, at.times};
+    Vertex<D> vertex = vertex_at(at, look);
     if (has_cones()) vertex.cone = {at.cone.width2, hn::Zero(d), lobe_slope2(d, surface, scene_.cone_width)};
     const auto sample = sample_light(d, scene_, vertex, random);
     const V pdf = pdf_bsdf<kLoop.plastic>(d, features_, surface, sample.direction);
@@ -354,6 +371,49 @@ class Shader {
     shadow.count += compactor.count();
   }
 
+  /// Chooses a ball at diffuse vertices and appends those that are sampled to the waiting vertices.
+  HWY_INLINE void caustics(const Arrivals<D>& at, const Lookup<D>& look, const Vec3<V>& tinted) {
+    const Surface<D>& surface = look.surface;
+    const auto diffuse = hn::And(at.hit, is_diffuse(d, surface));
+    if (sampled_chains(scene_, depth_) < 1 || hn::AllFalse(d, diffuse)) return;
+    const auto random = second_random_at_vertex(d, scene_.sampler, at.pixels, at.samples, depth_ + 1, true);
+    const auto chosen = choose_ball(d, scene_.caustics, vertex_at(at, look), random.v[2]);
+    Vec3<V> value = tinted;
+    if constexpr (kLoop.plastic)
+      value = select(is_kind(d, surface.kind, MaterialKind::kPlastic), value * (1 - coat_share(surface)), value);
+    const V chance = caustic_chance(scene_.caustics, chosen.importance, max(value));
+    const auto lanes = hn::And(hn::And(diffuse, chosen.probability > 0), random.v[3] < chance);
+    if (hn::AllFalse(d, lanes)) return;
+    auto& waiting = stream_.lit.vertices;
+    const int n = waiting.count;
+    const V one = set(d, 1);
+    const Compactor<D> compactor(d, lanes);
+    compactor.store3(d, look.sphere.center, waiting.base, n);
+    compactor.store3(d, surface.offset, waiting.offset, n);
+    compactor.store3(d, value * (1 / (chance * chosen.probability)), waiting.value, n);
+    compactor.store(d, random.v[0], waiting.random[0] + n);
+    compactor.store(d, random.v[1], waiting.random[1] + n);
+    compactor.store(d, chosen.rest, waiting.random[2] + n);
+    compactor.store(d, random.v[3] / chance, waiting.random[3] + n);
+    compactor.store(d, select(surface.from_outside, one, -one), waiting.side + n);
+    compactor.store(d, hn::IfThenElseZero(is_kind(d, surface.kind, MaterialKind::kHemisphere), one),
+                    waiting.uniform + n);
+    if (features_.motion) compactor.store(d, hn::Load(d, at.times), waiting.time + n);
+    if (features_.opacity) {
+      const auto keys = keys_at_vertex(du, scene_.sampler.seed, at.pixels, at.samples, depth_ + 1);
+      compactor.store_ids(d, keys.chain, waiting.key + n);
+    }
+    compactor.store_ids(d, at.hits, waiting.self + n);
+    compactor.store_ids(d, chosen.index, waiting.ball + n);
+    compactor.store_ids(d, at.paths, waiting.path + n);
+    if (kLoop.records) {
+      // The light has the lobe of this vertex and is indirect, like that of a path which finds it.
+      const auto history = history_after(at, surface, surface.normal);
+      compactor.store_ids(d, hn::Or(history, set(du, kIndirectBit)), waiting.history + n);
+    }
+    waiting.count += compactor.count();
+  }
+
   /// Samples the BSDF and appends the surviving paths to the stream.
   ///
   /// Result     their number
@@ -384,6 +444,12 @@ class Shader {
         pdf = select(scattered.in_coat, coat, pdf);
       }
       compactor.store(d, pdf, stream_.lit.pdf + alive);
+    }
+    if (features_.caustics) {
+      const auto is_self = hn::RebindMask(d, at.hits == at.ray.self);
+      const auto diffuse = hn::AndNot(scattered.in_coat, is_diffuse(d, surface));
+      const Ids chain = continued_chain(d, at.chain, surface, scattered.direction, is_self, diffuse);
+      compactor.store_ids(d, chain, stream_.lit.chain + alive);
     }
     if constexpr (kLoop.plastic) look.surface.kind = lobe_kinds(surface, scattered.in_coat);
     if (has_cones()) {

@@ -116,6 +116,7 @@ struct Render {
   int roulette_depth = 3;                   ///< scattering events before Russian roulette begins; 0: off
   Sampler sampler = Sampler::kSobol;
   DirectLighting direct_lighting = DirectLighting::kMis;
+  bool caustics = true;  ///< sample light by way of mirror balls and glass balls
 };
 
 struct Lambertian {

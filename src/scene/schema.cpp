@@ -220,6 +220,14 @@ Table render_table() {
                 "`mis` and `light`: one shadow ray per vertex on a diffuse material or fuzzy metal; none in scenes "
                 "without lights"},
                in(&S::render, &Render::direct_lighting))),
+       changes(Part::kLook,
+               boolean<S>("caustics",
+                          {"",
+                           "Sample the light that reaches diffuse surfaces by way of a mirror ball or a ball of clear "
+                           "glass, from lamps and the sun. `false`: it is found by BSDF sampling, as without light "
+                           "sampling. Has no effect with `direct_lighting = \"bsdf\"`",
+                           "2 to 4 rays per vertex on a diffuse material; none in scenes without such a ball or light"},
+                          in(&S::render, &Render::caustics))),
        choice<S>("filter", {"box", "gaussian", "blackman-harris", "mitchell"},
                  {"",
                   "Pixel filter. `box`: the area of the pixel, as in the book. `gaussian`, `blackman-harris`: softer. "

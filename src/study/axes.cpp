@@ -39,6 +39,7 @@ class Planner {
     depth();
     fresnel();
     direct_lighting();
+    caustics();
     accelerator();
     if (compiled_.sampler.kind == kernel::SamplerKind::kBlueNoise)
       for (Choice& choice : out_.choices)
@@ -199,6 +200,18 @@ class Planner {
     };
     add_one("mis", kernel::DirectLighting::kMis);
     add_one("bsdf", kernel::DirectLighting::kBsdf);
+  }
+
+  void caustics() {
+    const bool sampled = compiled_.direct_lighting != kernel::DirectLighting::kBsdf;
+    if (!compiled_.features.caustics && (compiled_.samples_caustics || !sampled)) {
+      out_.left_out.push_back("no pairs of a sharp ball and a light that is sampled: no caustics axis");
+      return;
+    }
+    for (const bool on : {true, false})
+      add("caustics", on ? "sampled" : "not sampled", fmt::format("{} --set render.caustics={}", flag(kCompared), on),
+          kCompared)
+          .apply = [on](CompiledScene& w) { w.samples_caustics = on; };
   }
 
   bool is_empty() const { return compiled_.spheres.empty() && compiled_.rods.empty(); }

@@ -168,14 +168,14 @@ TEST_P(DeterminismProgram, OptionsThatMatterChangeTheImage) {
 
 INSTANTIATE_TEST_SUITE_P(, DeterminismProgram,
                          testing::Values(StoredImage{"everything.toml", 0x3fa6a00f7e524967u},
-                                         StoredImage{"lights.toml", 0x12f07436d90f5202u},
-                                         StoredImage{"sky-and-lights.toml", 0xf3919d87a625abe6u},
+                                         StoredImage{"lights.toml", 0xd8d69f6136275d11u},
+                                         StoredImage{"sky-and-lights.toml", 0xff17943a1948c0eau},
                                          StoredImage{"textures.toml", 0xf986224e4a21d9f2u},
                                          StoredImage{"image-textures.toml", 0xfcae157c25f25d31u},
-                                         StoredImage{"rods.toml", 0xb41708b0cd007565u},
-                                         StoredImage{"plastic.toml", 0x534e526ad2d381a9u},
-                                         StoredImage{"many.toml", 0x730984d601e00b28u},
-                                         StoredImage{"opacity.toml", 0x0950c53a3a037a6eu}),
+                                         StoredImage{"rods.toml", 0x89e9970c4046d412u},
+                                         StoredImage{"plastic.toml", 0xca721e37e6bab612u},
+                                         StoredImage{"many.toml", 0xf0ce502a90666d53u},
+                                         StoredImage{"opacity.toml", 0x791bd4dc4a562f9cu}),
                          [](const auto& instance) {
                            std::string name = instance.param.scene;
                            std::replace(name.begin(), name.end(), '-', '_');

@@ -15,40 +15,14 @@
 #include "compile/compiled_scene.h"
 #include "render/render.h"
 #include "render/result.h"
-#include "render/settings.h"
+#include "support/block_means.h"
 #include "support/lit_scenes.h"
 
 namespace orrery::test {
 namespace {
 
-constexpr int kWidth = 32, kHeight = 24, kBlock = 8;
+constexpr int kWidth = 32, kHeight = 24;
 constexpr int kBlocks = (kWidth / kBlock) * (kHeight / kBlock);
-
-/// Mean of the blocks' radiance over the seeds, and its squared standard error.
-struct BlockMeans {
-  std::vector<double> mean = std::vector<double>(kBlocks, 0.0);
-  std::vector<double> error2 = std::vector<double>(kBlocks, 0.0);
-};
-
-BlockMeans block_means(compile::CompiledScene compiled, int seeds) {
-  std::vector<std::vector<double>> values(kBlocks);
-  for (int seed = 0; seed < seeds; ++seed) {
-    compiled.sampler.seed = static_cast<std::uint32_t>(seed + 1);
-    const render::Result result = render::render(compiled, {});
-    std::vector<double> sum(kBlocks, 0.0);
-    for (std::size_t c = 0; c < 3; ++c)
-      for (std::size_t i = 0; i < kWidth * kHeight; ++i)
-        sum[i / kWidth / kBlock * (kWidth / kBlock) + i % kWidth / kBlock] +=
-            static_cast<double>(result.picture.planes[c].values[i]) / (3 * kBlock * kBlock);
-    for (std::size_t b = 0; b < sum.size(); ++b) values[b].push_back(sum[b]);
-  }
-  BlockMeans out;
-  for (std::size_t b = 0; b < values.size(); ++b) {
-    for (const double v : values[b]) out.mean[b] += v / seeds;
-    for (const double v : values[b]) out.error2[b] += (v - out.mean[b]) * (v - out.mean[b]) / (seeds - 1) / seeds;
-  }
-  return out;
-}
 
 compile::CompiledScene with(const NamedScene& named, scene::DirectLighting mode, int samples) {
   scene::Scene scene = named.scene;
@@ -66,15 +40,6 @@ struct Demand {
   double standard_error = 0.01;  ///< of the image's mean with `mis`, relative
 };
 
-/// Standard error of the image's mean, relative to it.
-double relative_error(const BlockMeans& blocks) {
-  double error2 = 0, mean = 0;
-  for (const double e : blocks.error2) error2 += e;
-  for (const double m : blocks.mean) mean += m;
-  EXPECT_GT(mean, 0);
-  return std::sqrt(error2) / mean;
-}
-
 /// The largest radiance of an emitter.
 double brightest_lamp(const scene::Scene& scene) {
   double brightest = 0;
@@ -88,8 +53,8 @@ void expect_agreement(const NamedScene& s, const Demand& demand) {
   const BlockMeans mis = block_means(with(s, scene::DirectLighting::kMis, demand.samples), demand.seeds);
   double mean = 0;
   for (const double m : mis.mean) mean += m / kBlocks;
-  EXPECT_LE(relative_error(mis), demand.standard_error) << s.name;
-  std::printf("%-56s mean %.5f, standard error: mis %.1e", s.name.c_str(), mean, relative_error(mis));
+  EXPECT_LE(mis.relative_error(), demand.standard_error) << s.name;
+  std::printf("%-56s mean %.5f, standard error: mis %.1e", s.name.c_str(), mean, mis.relative_error());
   const double least = demand.standard_error / 100 * mean;
   // Where BSDF sampling finds a lamp only a few times or never, its error is unknown, and t means nothing.
   const double rare = 10 * brightest_lamp(s.scene) / (kBlock * kBlock * demand.samples * demand.seeds);
@@ -106,7 +71,7 @@ void expect_agreement(const NamedScene& s, const Demand& demand) {
           << s.name << ", block " << b << ": " << mis.mean[b] << " against " << other.mean[b] << " (" << name
           << "), error " << error;
     }
-    std::printf(", %s %.1e", name, relative_error(other));
+    std::printf(", %s %.1e", name, other.relative_error());
   }
   std::printf(", largest |t| %.2f\n", largest_t);
   std::fflush(stdout);

@@ -133,6 +133,27 @@ TEST_F(Info, ReportsHowTheBackgroundIsSampled) {
   EXPECT_EQ(info(sky, {"render.direct_lighting=bsdf"}).lights, "background; found by BSDF sampling only");
 }
 
+TEST_F(Info, NamesPairsOfBallsAndLights) {
+  EXPECT_EQ(info(kLamps).caustics, "");
+  const std::string balls = R"(
+background.type = "sky"
+material.lamp = { type = "emitter", radiance = [1, 1, 1] }
+material.mirror = { type = "metal", albedo = [1, 1, 1], fuzz = 0 }
+material.bubble = { type = "dielectric", ior = 0.8 }
+sphere = [{ center = [0, 0, -1], radius = 0.5, material = "mirror" },
+  { center = [3, 0, -1], radius = 0.5, material = "bubble" },
+  { center = [0, 3, -1], radius = 0.5, material = "lamp" },
+  { center = [0, 0.8, -1], radius = 0.5, material = "lamp" }]
+)";
+  const SceneInfo found = info(balls);
+  EXPECT_EQ(found.caustics,
+            "2 of 6 pairs of a ball and a light sampled: sphere[0] and sphere[2], sphere[0] and the sun")
+      << "neither with a lamp that cuts the ball nor with a bubble";
+  EXPECT_NE(info_text(found).find("\ncaustics    2 of 6"), std::string::npos);
+  EXPECT_EQ(info(balls, {"render.caustics=false"}).caustics, "");
+  EXPECT_EQ(info(balls, {"render.direct_lighting=bsdf"}).caustics, "");
+}
+
 TEST_F(Info, TheListNeedsNoMemoryForABvh) {
   EXPECT_GT(info(kScene).memory.accelerator, 0u);
   EXPECT_EQ(info(kScene, {"render.accelerator=list"}).memory.accelerator, 0u);

@@ -142,6 +142,19 @@ TEST(JobSceneHash, ChangesWithLights) {
   }
 }
 
+TEST(JobSceneHash, CausticsMatterOnlyWithASharpBall) {
+  const auto hash = [](const scene::MaterialModel& ball, bool caustics) {
+    scene::Scene s;
+    s.materials = {{"lamp", scene::Emitter{}}, {"ball", ball}};
+    s.spheres = {{{0, 5, 0}, 1, 0, ""}, {{0, 0, 0}, 1, 1, ""}};
+    s.render.caustics = caustics;
+    return hash_of(s);
+  };
+  const scene::Metal mirror{{0.5, 0.5, 0.5}, 0}, brushed{{0.5, 0.5, 0.5}, 0.1};
+  EXPECT_NE(hash(mirror, true), hash(mirror, false));
+  EXPECT_EQ(hash(brushed, true), hash(brushed, false));
+}
+
 TEST(JobSceneHash, DirectLightingDoesNotMatterWithoutLights) {
   scene::Scene scene = small_scene();
   scene.render.direct_lighting = scene::DirectLighting::kBsdf;

@@ -1,0 +1,227 @@
+// SPDX-License-Identifier: Apache-2.0
+// Samples light that reaches diffuse vertices by way of a sharp ball. Compiled once per instruction set.
+#if defined(ORRERY_KERNEL_CAUSTIC_LIGHT_INL_H_) == defined(HWY_TARGET_TOGGLE)
+#ifdef ORRERY_KERNEL_CAUSTIC_LIGHT_INL_H_
+#undef ORRERY_KERNEL_CAUSTIC_LIGHT_INL_H_
+#else
+#define ORRERY_KERNEL_CAUSTIC_LIGHT_INL_H_
+#endif
+
+#include <hwy/highway.h>
+
+#include <algorithm>
+#include <cstdint>
+
+#include "kernel/caustic_image-inl.h"
+#include "kernel/caustics.h"
+#include "kernel/compaction-inl.h"
+#include "kernel/direct_light-inl.h"
+#include "kernel/light-inl.h"
+#include "kernel/path_stream.h"
+#include "kernel/scatter-inl.h"
+#include "kernel/surface-inl.h"
+
+HWY_BEFORE_NAMESPACE();
+namespace orrery::kernel::HWY_NAMESPACE {
+
+/// Balls that were chosen for vertices.
+template <class D>
+struct ChosenBalls {
+  hn::Vec<IdTag<D>> index;
+  hn::Vec<D> probability;  ///< 0: none was chosen
+  hn::Vec<D> rest;         ///< the random number rescaled to be uniform in 0..1 again
+  hn::Vec<D> importance;   ///< sum over all balls
+};
+
+/// Chooses a ball for each vertex by power / distance^2. The probability is zero only where the ball is below the
+/// horizon.
+template <class D, class V = hn::Vec<D>>
+HWY_NOINLINE ChosenBalls<D> choose_ball(D d, const Caustics& caustics, const Vertex<D>& at, V u) {
+  using T = hn::TFromD<D>;
+  using Id = hn::TFromD<IdTag<D>>;
+  const IdTag<D> du;
+  V of_ball[Caustics::kMaxBalls];
+  V whole = hn::Zero(d);
+  for (std::uint32_t i = 0; i < caustics.count; ++i) {
+    const CausticBall& ball = caustics.balls[i];
+    const V radius = set(d, ball.radius);
+    const Vec3<V> to = to_center<D>(at, set3(d, ball.center));
+    const V distance2 = max(dot(to, to), radius * radius);
+    const auto above = dot(to, at.normal) + radius > 0;
+    of_ball[i] = hn::IfThenElseZero(above, set(d, static_cast<T>(ball.power)) / distance2);
+    whole = whole + of_ball[i];
+  }
+  const V target = u * whole;
+  V before = hn::Zero(d), chosen = before, start = before;
+  auto index = hn::Zero(du);
+  for (std::uint32_t i = 0; i < caustics.count; ++i) {
+    const auto reached = hn::And(of_ball[i] > 0, before <= target);
+    chosen = select(reached, of_ball[i], chosen);
+    start = select(reached, before, start);
+    index = select(hn::RebindMask(du, reached), hn::Set(du, static_cast<Id>(i)), index);
+    before = before + of_ball[i];
+  }
+  const auto some = chosen > 0;
+  const V rest = hn::IfThenElseZero(some, (target - start) / chosen);
+  return {index, hn::IfThenElseZero(some, chosen / whole), min(max(rest, 0), 1), whole};
+}
+
+/// Number of chains that are sampled at a depth, from the shortest on: those that a path could follow to the light
+/// before its depth ends.
+inline int sampled_chains(const SceneView& scene, std::uint32_t depth) {
+  const std::uint32_t rays_left = scene.max_depth > depth + 2 ? scene.max_depth - depth - 2 : 0;
+  return static_cast<int>(std::min<std::uint32_t>(rays_left, kCausticChains));
+}
+
+/// Least probability of sampling a vertex: what is saved beyond is small, and a sample's weight is bounded.
+inline constexpr double kLeastCausticChance = 1.0 / 8;
+
+/// The probability with which vertices are sampled, for a throughput. It falls where the balls are far away or the path
+/// carries little, so that time is spent where the light matters.
+template <class V>
+HWY_INLINE V caustic_chance(const Caustics& caustics, V importance, V throughput) {
+  return min(max(importance * throughput * caustics.inverse_reference, kLeastCausticChance), 1);
+}
+
+/// Balls and lights of waiting vertices, one per lane.
+template <class D>
+struct CausticChoice {
+  static constexpr std::size_t kMax = hn::MaxLanes(D());
+  HWY_ALIGN hn::TFromD<IdTag<D>> ball[kMax], light[kMax];  ///< sphere ids; light kNoSphere: the sun
+  HWY_ALIGN hn::TFromD<D> inverse_probability[kMax];       ///< of the choice of the light
+};
+
+/// Chooses a light for each ball, by power.
+///
+/// `balls`, `u`  indices into Caustics, and uniform numbers in 0..1; as many as `count`, at most one per lane
+template <class D>
+HWY_INLINE CausticChoice<D> choose_lights(D d, const Caustics& caustics, const hn::TFromD<IdTag<D>>* balls,
+                                          const hn::TFromD<D>* u, int count) {
+  using T = hn::TFromD<D>;
+  CausticChoice<D> out;
+  for (int i = 0; i < static_cast<int>(hn::Lanes(d)); ++i) {
+    const bool in_use = i < count;
+    const CausticBall& ball = caustics.balls[in_use ? balls[i] : 0];
+    const double target = in_use ? static_cast<double>(u[i]) : 0;
+    const CausticLight* const last = caustics.lights + ball.end - 1;
+    const CausticLight* const light =
+        std::lower_bound(caustics.lights + ball.begin, last, target,
+                         [](const CausticLight& at, double share) { return at.cumulative < share; });
+    out.ball[i] = ball.sphere;
+    out.light[i] = light->id;
+    out.inverse_probability[i] = static_cast<T>(1 / light->probability);
+  }
+  return out;
+}
+
+/// Loads balls and lights of pairs as they appear from vertices. The ids are those of CausticChoice.
+template <class D>
+HWY_INLINE BallAndLight<D> load_pairs(D d, const SceneView& scene, const Vertex<D>& at,
+                                      const hn::TFromD<IdTag<D>>* ball, const hn::TFromD<IdTag<D>>* light) {
+  using T = hn::TFromD<D>;
+  using V = hn::Vec<D>;
+  constexpr std::size_t kMax = hn::MaxLanes(D());
+  HWY_ALIGN hn::TFromD<IdTag<D>> emitter[kMax];
+  HWY_ALIGN T eta[kMax], r0[kMax], glass[kMax], sun[kMax];
+  for (std::size_t i = 0; i < hn::Lanes(d); ++i) {
+    const Material& material = scene.materials[scene.sphere_materials[ball[i]]];
+    eta[i] = static_cast<T>(material.eta[1]);
+    r0[i] = static_cast<T>(material.r0[0]);
+    glass[i] = material.kind == MaterialKind::kDielectric ? T(1) : T(0);
+    sun[i] = light[i] == kNoSphere ? T(1) : T(0);
+    emitter[i] = light[i] == kNoSphere ? ball[i] : light[i];
+  }
+  const auto sphere = load_spheres(d, scene, ball, at.times), lamp = load_spheres(d, scene, emitter, at.times);
+  const V inverse_radius = 1 / sphere.radius;
+  const auto is_sun = hn::Load(d, sun) != 0;
+  const auto to = lamp.center - sphere.center;
+  const V inverse = 1 / hn::Sqrt(dot(to, to));
+  BallAndLight<D> out;
+  out.from_center = negated(to_center(at, sphere.center)) * inverse_radius;
+  out.to_light = to * inverse;
+  out.inverse_distance = sphere.radius * inverse;
+  out.light_sin = lamp.radius * inverse;
+  if (scene.environment != nullptr && scene.environment->has_sun) {
+    const V versine = set(d, scene.environment->sun_one_minus_cos);
+    out.to_light = select(is_sun, set3(d, scene.environment->sun), out.to_light);
+    out.inverse_distance = select(is_sun, 0, out.inverse_distance);
+    out.light_sin = select(is_sun, hn::Sqrt(versine * (2 - versine)), out.light_sin);
+  }
+  out.is_glass = hn::Load(d, glass) != 0;
+  out.eta = select(out.is_glass, hn::Load(d, eta), 1.5);  // in other lanes any index will do
+  out.r0 = hn::Load(d, r0);
+  return out;
+}
+
+/// Loads radiance and light groups.
+template <class D>
+HWY_INLINE Emitted<D> load_lights(D d, const SceneView& scene, hn::Vec<IdTag<D>> lights) {
+  const IdTag<D> du;
+  const auto is_sun = hn::RebindMask(d, lights == kNoSphere);
+  Emitted<D> out{{hn::Zero(d), hn::Zero(d), hn::Zero(d)}, hn::Zero(du)};
+  if (scene.emission != nullptr) out = emitted(d, scene, lights, hn::Not(is_sun));
+  if (scene.environment == nullptr) return out;
+  out.radiance = select(is_sun, set3(d, scene.environment->sun_radiance), out.radiance);
+  out.group = select(hn::RebindMask(du, is_sun), set(du, scene.environment->light_group), out.group);
+  return out;
+}
+
+/// Samples directions at the waiting vertices and appends their rays to the stream of chains.
+///
+/// `chains`   number of chains that are sampled, from the shortest on
+template <class D, bool kRecords>
+HWY_NOINLINE void sample_caustics(const SceneView& scene, LitPathsOf<hn::TFromD<D>>& lit, int chains) {
+  using T = hn::TFromD<D>;
+  using V = hn::Vec<D>;
+  const D d;
+  const IdTag<D> du;
+  const auto& vertices = lit.vertices;
+  auto& rays = lit.chains;
+  for (int v = 0; v < vertices.count; v += static_cast<int>(hn::Lanes(d))) {
+    const auto active = hn::FirstN(d, static_cast<std::size_t>(vertices.count - v));
+    const auto chosen = choose_lights(d, scene.caustics, vertices.ball + v, vertices.random[2] + v, vertices.count - v);
+    const auto lights = hn::Load(du, chosen.light);
+    const auto base = load3(d, vertices.base, v), offset = load3(d, vertices.offset, v);
+    const V side = hn::Load(d, vertices.side + v);
+    const auto origin = base + offset;
+    const T* const times = scene.features.motion ? vertices.time + v : nullptr;
+    const Vertex<D> at{origin, sum_error(base, offset, origin), normalized(offset) * side, {}, times};
+    const auto source = load_lights(d, scene, lights);
+    const auto sample = sample_caustic(d, load_pairs(d, scene, at, chosen.ball, chosen.light), chains, active,
+                                       hn::Load(d, vertices.random[0] + v), hn::Load(d, vertices.random[1] + v),
+                                       hn::Load(d, vertices.random[3] + v));
+    // The density of the diffuse lobes, as in pdf_bsdf.
+    const V cosine = dot(sample.direction, at.normal);
+    const auto uniform = hn::Load(d, vertices.uniform + v) != 0;
+    const V factor = select(uniform, 1 / kTwoPi, cosine * (2 / kTwoPi)) * sample.inverse_pdf *
+                     hn::Load(d, chosen.inverse_probability);
+    const auto lanes = hn::And(hn::And(active, dot(sample.direction, offset) * side > 0), factor > 0);
+    if (hn::AllFalse(d, lanes)) continue;
+    const int n = rays.count;
+    const Compactor<D> compactor(d, lanes);
+    const auto keep = [&](const auto& from_array, auto& to) {
+      compactor.store_ids(d, hn::Load(du, from_array + v), to + n);
+    };
+    compactor.store3(d, base, rays.base, n);
+    compactor.store3(d, offset, rays.offset, n);
+    compactor.store3(d, sample.direction, rays.direction, n);
+    compactor.store3(d, source.radiance * load3(d, vertices.value, v) * factor, rays.value, n);
+    if (times != nullptr) compactor.store(d, hn::Load(d, times), rays.time + n);
+    if (scene.features.opacity) keep(vertices.key, rays.key);
+    keep(vertices.self, rays.self);
+    keep(vertices.path, rays.path);
+    compactor.store_ids(d, sample.events, rays.events + n);
+    compactor.store_ids(d, hn::Load(du, chosen.ball), rays.ball + n);
+    compactor.store_ids(d, lights, rays.light + n);
+    if (kRecords) {
+      keep(vertices.history, rays.history);
+      compactor.store_ids(d, source.group, rays.group + n);
+    }
+    rays.count += compactor.count();
+  }
+  lit.vertices.count = 0;
+}
+
+}  // namespace orrery::kernel::HWY_NAMESPACE
+HWY_AFTER_NAMESPACE();
+#endif

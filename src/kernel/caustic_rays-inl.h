@@ -1,0 +1,175 @@
+// SPDX-License-Identifier: Apache-2.0
+// Rays that follow chains of events through balls to a light. Compiled once per instruction set.
+#if defined(ORRERY_KERNEL_CAUSTIC_RAYS_INL_H_) == defined(HWY_TARGET_TOGGLE)
+#ifdef ORRERY_KERNEL_CAUSTIC_RAYS_INL_H_
+#undef ORRERY_KERNEL_CAUSTIC_RAYS_INL_H_
+#else
+#define ORRERY_KERNEL_CAUSTIC_RAYS_INL_H_
+#endif
+
+#include <hwy/highway.h>
+
+#include <algorithm>
+#include <cstdint>
+
+#include "kernel/caustic_light-inl.h"
+#include "kernel/caustics.h"
+#include "kernel/compaction-inl.h"
+#include "kernel/deposit-inl.h"
+#include "kernel/environment-inl.h"
+#include "kernel/path_stream.h"
+#include "kernel/record-inl.h"
+#include "kernel/scatter-inl.h"
+#include "kernel/surface-inl.h"
+
+HWY_BEFORE_NAMESPACE();
+namespace orrery::kernel::HWY_NAMESPACE {
+
+/// The key of the next ray of a chain.
+template <class DU, class V = hn::Vec<DU>>
+HWY_INLINE V next_key(DU du, V key) {
+  const hn::Repartition<std::uint32_t, DU> d32;
+  return hn::BitCast(du, hashed(d32, hn::BitCast(d32, key) + hn::Set(d32, 0x9e3779b9u)));
+}
+
+/// The rays of chains.
+template <class D, Precision kPrecision, bool kRecords>
+class ChainTracer {
+  using T = hn::TFromD<D>;
+  using V = hn::Vec<D>;
+  using Ids = hn::Vec<IdTag<D>>;
+  using Id = hn::TFromD<IdTag<D>>;
+
+ public:
+  HWY_INLINE ChainTracer(const SceneView& scene, const Tile& tile, PathStreamOf<T>& stream)
+      : scene_(scene), tile_(tile), packet_(stream.packet), lit_(stream.lit), chains_(stream.lit.chains) {}
+
+  /// Traces the last packet of the waiting rays. Those that have reached their light add it to their paths, and those
+  /// that the ball reflects or transmits wait again.
+  ///
+  /// Result     number of rays traced
+  HWY_INLINE int trace(const Tracer& tracer) {
+    const int count = std::min(chains_.count, kPacketSize);
+    const int first = chains_.count - count;
+    load(first, count);
+    reset_hits(packet_);
+    tracer.trace(tracer.self, &packet_);
+    // Rays that go on overwrite rays that have been read.
+    chains_.count = first;
+    for (int v = 0; v < count; v += static_cast<int>(hn::Lanes(d))) follow(first, v);
+    return count;
+  }
+
+ private:
+  static constexpr D d{};
+  static constexpr IdTag<D> du{};
+
+  HWY_INLINE void load(int first, int count) {
+    packet_.count = count;
+    for (int v = 0; v < count; v += static_cast<int>(hn::Lanes(d))) {
+      const int i = first + v;
+      const auto base = loadu3(d, chains_.base, i), offset = loadu3(d, chains_.offset, i);
+      const auto direction = loadu3(d, chains_.direction, i);
+      const auto origin = base + offset;
+      store3(d, origin, packet_.origin, v);
+      store3(d, sum_error(base, offset, origin), packet_.origin_low, v);
+      store3(d, offset, packet_.offset, v);
+      store3(d, direction, packet_.direction, v);
+      hn::Store(1 / dot(direction, direction), d, packet_.inverse_square + v);
+      hn::Store(hn::LoadU(du, chains_.self + i), du, packet_.self + v);
+      if (scene_.features.motion) hn::Store(hn::LoadU(d, chains_.time + i), d, packet_.time + v);
+      if (scene_.features.opacity) store_keys(d, hn::LoadU(du, chains_.key + i), packet_.key + v);
+    }
+  }
+
+  HWY_INLINE void follow(int first, int v) {
+    const int i = first + v;
+    const auto active = hn::FirstN(d, static_cast<std::size_t>(packet_.count - v));
+    const auto hits = hn::Load(du, packet_.hit + v);
+    const auto events = hn::LoadU(du, chains_.events + i), light = hn::LoadU(du, chains_.light + i);
+    const auto is_last = hn::RebindMask(d, events == 0);
+    const auto ray = load_rays(d, packet_, v);
+    auto arrived = hn::And(active, hn::And(is_last, hn::RebindMask(d, hits == light)));
+    if (scene_.environment != nullptr && scene_.environment->has_sun) {
+      const auto sees_sun = is_in_sun(d, *scene_.environment, ray.direction);
+      arrived = hn::And(arrived, hn::Or(sees_sun, hn::RebindMask(d, light != kNoSphere)));
+    }
+    if (!hn::AllFalse(d, arrived)) arrive(i, arrived);
+    const auto on_ball = hn::RebindMask(d, hits == hn::LoadU(du, chains_.ball + i));
+    const auto scattered = hn::And(hn::AndNot(is_last, active), on_ball);
+    if (!hn::AllFalse(d, scattered)) scatter(i, v, ray, hits, events, scattered);
+  }
+
+  /// Adds light to paths.
+  HWY_INLINE void arrive(int i, hn::Mask<D> lanes) {
+    const auto value = loadu3(d, chains_.value, i);
+    gain(d, lanes, value, hn::LoadU(du, chains_.path + i), lit_);
+    if (!kRecords || !tile_.record_light) return;
+    HWY_ALIGN Id pixel[hn::MaxLanes(D())] = {}, sample[hn::MaxLanes(D())] = {};
+    each_lane(d, lanes, [&](int lane) {
+      pixel[lane] = lit_.pixel[chains_.path[i + lane]];
+      sample[lane] = lit_.sample[chains_.path[i + lane]];
+    });
+    Recorder<D, kRecords> record(scene_, tile_, hn::Load(du, pixel), hn::Load(du, sample));
+    record.event(d, lanes, value, hn::LoadU(du, chains_.history + i), hn::LoadU(du, chains_.group + i),
+                 Lobe::kEmission);
+  }
+
+  /// Applies the next event of each chain.
+  HWY_INLINE void scatter(int i, int v, const Rays<D>& ray, Ids hits, Ids events, hn::Mask<D> lanes) {
+    const T* const times = scene_.features.motion ? packet_.time + v : nullptr;
+    const auto look =
+        reach_surface<D, kPrecision>(d, scene_, ray, hits, hn::Load(d, packet_.distance + v), times);
+    const Surface<D>& surface = look.surface;
+    // The first event is outside the ball, the others are inside.
+    const auto is_self = hn::RebindMask(d, hits == ray.self);
+    const auto is_on_side = hn::Xor(surface.from_outside, is_self);
+    const auto reflects = hn::RebindMask(d, hn::And(events, set(du, (1U << kCausticEventBits) - 1)) == kReflect);
+    const auto glass = refraction(d, surface);
+    const V reflected_part = select(glass.is_total, 1, glass.reflectance);
+    const V part = select(reflects, reflected_part, 1 - reflected_part);
+    const auto is_glass = is_kind(d, surface.kind, MaterialKind::kDielectric);
+    auto value = loadu3(d, chains_.value, i);
+    value = select(is_glass, value * part, value * look.albedo);
+    const auto direction = select(reflects, reflected(surface), glass.direction);
+    const auto goes_on = hn::And(hn::And(lanes, is_on_side), hn::Or(hn::Not(is_glass), part > 0));
+    const int to = chains_.count;
+    const Compactor<D> compactor(d, goes_on);
+    const auto keep = [&](auto& array) { compactor.store_ids(d, hn::LoadU(du, array + i), array + to); };
+    compactor.store3(d, look.sphere.center, chains_.base, to);
+    compactor.store3(d, surface.offset, chains_.offset, to);
+    compactor.store3(d, direction, chains_.direction, to);
+    compactor.store3(d, value, chains_.value, to);
+    compactor.store_ids(d, hits, chains_.self + to);
+    compactor.store_ids(d, hn::ShiftRight<kCausticEventBits>(events), chains_.events + to);
+    if (scene_.features.motion) compactor.store(d, hn::LoadU(d, chains_.time + i), chains_.time + to);
+    if (scene_.features.opacity)
+      compactor.store_ids(d, next_key(du, hn::LoadU(du, chains_.key + i)), chains_.key + to);
+    keep(chains_.ball);
+    keep(chains_.light);
+    keep(chains_.path);
+    if (kRecords) {
+      keep(chains_.history);
+      keep(chains_.group);
+    }
+    chains_.count += compactor.count();
+  }
+
+  const SceneView& scene_;
+  const Tile& tile_;
+  RayPacket<T>& packet_;
+  LitPathsOf<T>& lit_;
+  ChainStreamOf<T>& chains_;
+};
+
+/// Traces rays of chains until fewer than `waiting` wait. Not inlined, so that the loop costs the same without them.
+template <class D, Precision kPrecision, bool kRecords>
+HWY_NOINLINE void trace_chains(const SceneView& scene, const Tracer& tracer, const Tile& tile,
+                               PathStreamOf<hn::TFromD<D>>& stream, int waiting, TileCounts& counts) {
+  ChainTracer<D, kPrecision, kRecords> chains(scene, tile, stream);
+  while (stream.lit.chains.count >= waiting) counts.rays += static_cast<std::uint64_t>(chains.trace(tracer));
+}
+
+}  // namespace orrery::kernel::HWY_NAMESPACE
+HWY_AFTER_NAMESPACE();
+#endif

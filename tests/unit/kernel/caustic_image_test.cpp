@@ -1,0 +1,289 @@
+// SPDX-License-Identifier: Apache-2.0
+// Light by way of a ball, integrated with the sampled directions, against closed forms and uniform directions.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+#include <cstdio>
+#include <numbers>
+#include <random>
+#include <utility>
+
+#include "kernel/caustics.h"
+#include "math/vec3.h"
+#include "support/caustic_batch.h"
+
+namespace orrery::test {
+namespace {
+
+using kernel::caustic_events;
+using math::Vec3d;
+
+constexpr double kPi = std::numbers::pi;
+
+/// A ray, and the part of the light that it carries.
+struct Carried {
+  Vec3d origin, direction;
+  double part;
+};
+
+double schlick(double cosine, double eta) {
+  const double r = (1 - eta) / (1 + eta);
+  return r * r + (1 - r * r) * std::pow(1 - cosine, 5);
+}
+
+/// The ray that follows the events of a chain from a point outside the ball; part 0 if it misses the ball.
+Carried followed(const CausticPlace& place, Vec3d direction, std::uint32_t events) {
+  const double along = -dot(place.point, direction);
+  const Vec3d closest = place.point + direction * along;
+  const double chord2 = 1 - dot(closest, closest);
+  if (chord2 < 0 || along < 0) return {place.point, direction, 0};
+  Vec3d at = math::normalized(closest - direction * std::sqrt(chord2));
+  double part = 1;
+  for (bool inside = false; events != 0; events >>= kernel::kCausticEventBits) {
+    const Vec3d normal = inside ? -at : at;
+    const double cosine = std::min(-dot(direction, normal), 1.0), eta = inside ? place.eta : 1 / place.eta;
+    const double reflectance = place.is_glass ? schlick(cosine, place.eta) : 1;
+    if ((events & 3) == kernel::kReflect) {
+      part *= reflectance;
+      direction = math::normalized(direction + normal * (2 * cosine));
+    } else {
+      part *= 1 - reflectance;
+      const double sine2 = eta * eta * (1 - cosine * cosine);
+      direction = math::normalized(direction * eta + normal * (eta * cosine - std::sqrt(std::max(1 - sine2, 0.0))));
+      inside = !inside;
+    }
+    if (inside) at = math::normalized(at - direction * (2 * dot(at, direction)));
+  }
+  return {at, direction, part};
+}
+
+/// Whether a ray that has left the ball hits the light.
+bool hits_light(const CausticPlace& place, const Carried& ray) {
+  if (place.inverse_distance == 0) {
+    const Vec3d between = ray.direction - place.to_light;
+    const double cosine = std::sqrt(1 - place.light_sin * place.light_sin);
+    return dot(between, between) <= 2 * place.light_sin * place.light_sin / (1 + cosine);
+  }
+  const Vec3d to = place.to_light / place.inverse_distance - ray.origin;
+  const double along = dot(to, ray.direction), radius = place.light_sin / place.inverse_distance;
+  const Vec3d off = to - ray.direction * along;
+  return along > 0 && dot(off, off) <= radius * radius;
+}
+
+/// The points of Roberts' sequence in three dimensions.
+struct Sequence {
+  double u = 0.5, v = 0.5, w = 0.5;
+
+  void advance() {
+    const auto add = [](double& x, double step) { x = x + step - std::floor(x + step); };
+    add(u, 0.8191725133961645);
+    add(v, 0.6710436067037893);
+    add(w, 0.5497004779019703);
+  }
+};
+
+using Sampler = CausticDirection (*)(const CausticPlace&, int, double, double, double);
+
+/// Sum over samples, for a light of radiance 1, of cosine times the part of the light, and of the squares.
+struct Sum {
+  double value = 0, square = 0, largest = 0;
+  int count = 0, hits = 0;
+
+  void add(double x) {
+    value += x;
+    square += x * x;
+    largest = std::max(largest, x);
+    hits += x > 0 ? 1 : 0;
+    ++count;
+  }
+  double mean() const { return value / count; }
+  double error() const { return std::sqrt(std::max(square / count - mean() * mean(), 0.0) / count); }
+};
+
+constexpr int kAllChains = -1;
+
+/// The irradiance through one chain, or all, by sampled directions.
+Sum irradiance(const CausticPlace& place, Vec3d normal, int chain, int samples, Sampler sample = caustic_direction) {
+  Sum sum;
+  Sequence s;
+  for (int i = 0; i < samples; ++i, s.advance()) {
+    const CausticDirection w = sample(place, kernel::kCausticChains, s.u, s.v, s.w);
+    const double cosine = dot(w.direction, normal);
+    const bool counts = chain == kAllChains || w.events == caustic_events(chain);
+    double value = 0;
+    if (w.inverse_pdf > 0 && cosine > 0 && counts) {
+      const Carried ray = followed(place, w.direction, w.events);
+      if (ray.part > 0 && hits_light(place, ray)) value = cosine * ray.part * w.inverse_pdf;
+    }
+    sum.add(value);
+  }
+  return sum;
+}
+
+/// Of a sun with an irradiance of 1 on a surface that faces it.
+double sun_radiance(double sine) { return 1 / (kPi * sine * sine); }
+
+TEST(KernelCausticImage, AMirrorFacingTheSunReflectsTheClosedForm) {
+  for (const double p : {1.2, 2.0, 5.0}) {
+    const CausticPlace place{{0, p, 0}, {0, 1, 0}, 0, 1e-4, false};
+    const double value = irradiance(place, {0, -1, 0}, 0, 20'000).mean() * sun_radiance(place.light_sin);
+    EXPECT_NEAR(value * (2 * p - 1) * (2 * p - 1), 1, 1e-4) << p;
+  }
+}
+
+/// Beyond the focus, an image on the axis; before it, also a ring.
+TEST(KernelCausticImage, GlassBeforeTheSunTransmitsTheClosedForm) {
+  constexpr double kEta = 1.5;
+  for (const double beta : {1e-3, 1e-4})
+    for (const double p : {1.2, 1.4, 1.6, 2.0, 5.0}) {
+      const CausticPlace place{{0, -p, 0}, {0, 1, 0}, 0, std::sin(beta), true, kEta};
+      const auto theta = [&](double i) {
+        return kPi + 2 * i - 2 * std::asin(std::sin(i) / kEta) - std::asin(std::sin(i) / p);
+      };
+      double want = 0.96 * 0.96 / std::pow(2 * p * (kEta - 1) / kEta - 1, 2);
+      double low = 0.05, high = kPi / 2;
+      if (theta(high) > kPi && theta(low) < kPi) {
+        for (int step = 0; step < 60; ++step) (theta((low + high) / 2) < kPi ? low : high) = (low + high) / 2;
+        const double b = std::sin(low), c = std::cos(low);
+        const double slope = 2 / c - 2 / std::sqrt(kEta * kEta - b * b) - 1 / std::sqrt(p * p - b * b);
+        const double part = (1 - schlick(c, kEta)) * (1 - schlick(std::sqrt(1 - b * b / (kEta * kEta)), kEta));
+        want += part * 4 * b / (beta * p * p * slope);
+      }
+      const double value = irradiance(place, {0, 1, 0}, 1, 50'000).mean() * sun_radiance(place.light_sin);
+      // The closed form is that of a vanishing sun.
+      EXPECT_NEAR(value / want, 1, 5 * beta + 1e-3) << "p " << p << ", beta " << beta;
+    }
+}
+
+/// All light that a ball scatters passes through a sphere around it.
+TEST(KernelCausticImage, TheFluxThroughASphereIsThatOfTheBall) {
+  for (const bool is_glass : {false, true})
+    for (int chain = 0; chain < (is_glass ? kernel::kCausticChains : 1); ++chain) {
+      CausticPlace place{{}, {0, 1, 0}, 0, 0.00465, is_glass};
+      double want = 0;
+      constexpr int kSteps = 20'000;
+      for (int i = 0; i < kSteps; ++i) {
+        const double b = (i + 0.5) / kSteps;
+        const double outside = is_glass ? schlick(std::sqrt(1 - b * b), place.eta) : 1;
+        const double inside = schlick(std::sqrt(1 - b * b / (place.eta * place.eta)), place.eta);
+        want +=
+            2 * kPi * b / kSteps * (chain == 0 ? outside : (1 - outside) * (1 - inside) * (chain == 1 ? 1 : inside));
+      }
+      constexpr double kDistance = 3;
+      constexpr int kPoints = 200'000;
+      Sum sum;
+      Sequence s;
+      for (int i = 0; i < kPoints; ++i, s.advance()) {
+        const double z = (2 * i + 1.0) / kPoints - 1, r = std::sqrt(1 - z * z);
+        const Vec3d out{r, z, 0};
+        place.point = out * kDistance;
+        const CausticDirection w = caustic_direction(place, kernel::kCausticChains, s.u, s.v, s.w);
+        const Carried ray = followed(place, w.direction, w.events);
+        const bool counts = w.inverse_pdf > 0 && w.events == caustic_events(chain) && hits_light(place, ray);
+        const double irradiance = counts ? -dot(w.direction, out) * ray.part * w.inverse_pdf : 0;
+        sum.add(irradiance * 4 * kPi * kDistance * kDistance * sun_radiance(place.light_sin));
+      }
+      EXPECT_NEAR(sum.mean() / want, 1, 5e-3) << (is_glass ? "glass" : "mirror") << ", chain " << chain;
+    }
+}
+
+/// The rainbow of water: the angle of the caustic is known in closed form, and beyond it there is no light.
+TEST(KernelCausticImage, TheRainbowIsWhereDescartesFoundIt) {
+  const double eta = 1.333, cos2 = (eta * eta - 1) / 3, i = std::acos(std::sqrt(cos2));
+  const double fold = (4 * std::asin(std::sin(i) / eta) - 2 * i) * 180 / kPi;
+  EXPECT_NEAR(fold, 42.078, 1e-3);
+  const auto intensity = [&](double angle) {
+    const double p = 1e6, a = angle * kPi / 180;
+    const Vec3d out{std::sin(a), std::cos(a), 0};
+    const CausticPlace place{out * p, {0, 1, 0}, 0, 1e-4, true, eta};
+    return irradiance(place, -out, 2, 20'000).mean() * sun_radiance(1e-4) * p * p;
+  };
+  // The half angle of the sun is 0.0057 degrees, that of the ball at this distance 0.00006.
+  EXPECT_NEAR(intensity(42.07), 1.01, 0.02);
+  EXPECT_GT(intensity(fold - 0.001), intensity(42.07));
+  EXPECT_EQ(intensity(fold + 0.01), 0);
+}
+
+Vec3d random_direction(std::mt19937& random) {
+  std::uniform_real_distribution<double> unit;
+  const double z = 1 - 2 * unit(random), turn = 2 * kPi * unit(random), r = std::sqrt(1 - z * z);
+  return {r * std::cos(turn), r * std::sin(turn), z};
+}
+
+/// Points, balls and lights in all proportions: touching, near and far, on the axis and off it.
+std::pair<CausticPlace, Vec3d> random_place(std::mt19937& random) {
+  std::uniform_real_distribution<double> unit;
+  CausticPlace place;
+  place.to_light = random_direction(random);
+  if (unit(random) < 0.3) {
+    place.light_sin = std::sin(std::pow(10, -1.7 + 1.5 * unit(random)));
+  } else {
+    const double radius = std::pow(10, -1.5 + 2 * unit(random));
+    const double distance = 1 + radius + (unit(random) < 0.1 ? 0 : std::pow(10, -3 + 4 * unit(random)));
+    place.inverse_distance = 1 / distance;
+    place.light_sin = radius / distance;
+  }
+  place.is_glass = unit(random) < 0.75;
+  place.eta = 1.05 + 1.6 * unit(random) * unit(random);
+  Vec3d out = random_direction(random);
+  if (unit(random) < 0.5)
+    out = math::normalized(-place.to_light + random_direction(random) * (unit(random) * unit(random) * 0.8));
+  if (unit(random) < 0.05) out = -place.to_light;
+  place.point = out * (unit(random) < 0.1 ? 1 : 1 + std::pow(10, -4 + 5 * unit(random)));
+  return {place, math::normalized(-out + random_direction(random) * 1.5)};
+}
+
+/// The irradiance through all chains, by uniform directions to the ball.
+Sum brute_irradiance(const CausticPlace& place, Vec3d normal, int samples, std::mt19937& random) {
+  std::uniform_real_distribution<double> unit;
+  const double p = std::max(math::length(place.point), 1.0), sine = 1 / p;
+  const double cone = sine * sine / (1 + std::sqrt((1 - sine) * (1 + sine)));
+  const Vec3d axis = -math::normalized(place.point);
+  const Vec3d across = math::normalized(cross(axis, std::abs(axis.x) < 0.5 ? Vec3d{1, 0, 0} : Vec3d{0, 1, 0}));
+  const Vec3d up = cross(axis, across);
+  Sum sum;
+  for (int i = 0; i < samples; ++i) {
+    const double versine = cone * unit(random), turn = 2 * kPi * unit(random);
+    const double r = std::sqrt(versine * (2 - versine));
+    const Vec3d w = axis * (1 - versine) + (across * std::cos(turn) + up * std::sin(turn)) * r;
+    const double cosine = dot(w, normal);
+    double part = 0;
+    for (int chain = 0; chain < (place.is_glass ? kernel::kCausticChains : 1) && cosine > 0; ++chain) {
+      const Carried ray = followed(place, w, caustic_events(chain));
+      if (hits_light(place, ray)) part += ray.part;
+    }
+    sum.add(std::max(cosine, 0.0) * part * 2 * kPi * cone);
+  }
+  return sum;
+}
+
+/// Where uniform directions find the light, they find as much as the sampled ones.
+void expect_unbiased(Sampler sample, const char* name) {
+  std::mt19937 random(7);
+  int compared = 0;
+  double squares = 0, largest_z = 0, largest = 0;
+  for (int test = 0; test < 160; ++test) {
+    const auto [place, normal] = random_place(random);
+    const Sum brute = brute_irradiance(place, normal, 20'000, random);
+    if (brute.hits < 50) continue;
+    const Sum sampled = irradiance(place, normal, kAllChains, 3'000, sample);
+    const double z = (sampled.mean() - brute.mean()) / std::hypot(brute.error(), sampled.error());
+    EXPECT_LT(std::abs(z), 4.5) << name << ", test " << test << ": " << sampled.mean() << " and " << brute.mean();
+    squares += z * z;
+    ++compared;
+    largest_z = std::max(largest_z, std::abs(z));
+    largest = std::max(largest, sampled.largest / brute.mean());
+  }
+  EXPECT_GT(compared, 80);
+  EXPECT_LT(std::sqrt(squares / compared), 1.2);
+  std::printf("%s: %d places, largest |z| %.2f, rms z %.2f, largest contribution / mean %.1f\n", name, compared,
+              largest_z, std::sqrt(squares / compared), largest);
+}
+
+TEST(KernelCausticImage, FindsAllLightInDouble) { expect_unbiased(caustic_direction, "double"); }
+TEST(KernelCausticImage, FindsAllLightInFloat) { expect_unbiased(caustic_direction_in_float, "float"); }
+
+}  // namespace
+}  // namespace orrery::test
