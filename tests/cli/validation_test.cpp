@@ -52,6 +52,8 @@ const Broken kBroken[] = {
     {"ACameraWithoutDirection", "[camera]\nlook_at = [0, 0, 0]\n", "", 65, "error: camera.look_at: "},
     {"AShutter", "[camera]\nshutter_open = 1\n", "", 65, "error: camera.shutter_close: "},
     {"CropAndOverscan", "", "--set image.crop=[0,0,2,2] --set image.overscan=1", 65, "--set: error: image.overscan: "},
+    {"CropAndAnnotation", "", "--set image.crop=[0,0,2,2] --set annotation.title=a", 65, "error: annotation"},
+    {"ScaleBarInPerspective", "", "--set annotation.scale_bar=1", 65, "requires camera.projection"},
     {"ATarget", "[[key]]\ntarget = \"camera.speed\"\nframes = [1]\nvalues = [1]\n", "", 65, ":15:10: error: key[0]"},
     {"AnAmbiguousTarget",
      "[[sphere]]\nname = \"b\"\ncenter = [0, 0, -3]\nradius = 1\nmaterial = \"grey\"\n[[sphere]]\nname = \"b\"\n"
