@@ -27,7 +27,8 @@ void run(benchmark::State& state, Precision precision, kernel::RenderTile render
   std::uint64_t rays = 0;
   for (auto _ : state) {
     rays += render(view, tracer,
-                   {0, 0, kRecordedWidth, kRecordedHeight, 0, kRecordedSamples, sums.data(), kRecordedWidth}, *stream)
+                   {0, 0, kRecordedWidth, kRecordedHeight, 0, kRecordedSamples, sums.data(), nullptr, kRecordedWidth},
+                   *stream)
                 .rays;
   }
   const std::int64_t paths = state.iterations() * kRecordedWidth * kRecordedHeight * kRecordedSamples;

@@ -20,9 +20,9 @@
 HWY_BEFORE_NAMESPACE();
 namespace orrery::kernel::HWY_NAMESPACE {
 
-// What a path has passed since its last diffuse vertex. Light that it finds at the end of a sampled chain was sampled at
-// that vertex and counts zero. The ball is the sphere that the ray leaves, so that the path need not store it.
-inline constexpr unsigned kNoChain = 0;     ///< the camera, another lobe, or another sequence of events
+// What a path has passed since its last diffuse vertex. Light that it finds at the end of a sampled chain was sampled
+// at that vertex and counts zero. The ball is the sphere that the ray leaves, so that the path need not store it.
+inline constexpr unsigned kNoChain = 0;      ///< the camera, another lobe, or another sequence of events
 inline constexpr unsigned kFromDiffuse = 1;  ///< nothing
 inline constexpr unsigned kInside = 2;       ///< inside a ball, since it was refracted into it
 inline constexpr unsigned kInsideTwice = 3;  ///< inside a ball, reflected once

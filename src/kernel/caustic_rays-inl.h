@@ -118,8 +118,7 @@ class ChainTracer {
   /// Applies the next event of each chain.
   HWY_INLINE void scatter(int i, int v, const Rays<D>& ray, Ids hits, Ids events, hn::Mask<D> lanes) {
     const T* const times = scene_.features.motion ? packet_.time + v : nullptr;
-    const auto look =
-        reach_surface<D, kPrecision>(d, scene_, ray, hits, hn::Load(d, packet_.distance + v), times);
+    const auto look = reach_surface<D, kPrecision>(d, scene_, ray, hits, hn::Load(d, packet_.distance + v), times);
     const Surface<D>& surface = look.surface;
     // The first event is outside the ball, the others are inside.
     const auto is_self = hn::RebindMask(d, hits == ray.self);
@@ -143,8 +142,7 @@ class ChainTracer {
     compactor.store_ids(d, hits, chains_.self + to);
     compactor.store_ids(d, hn::ShiftRight<kCausticEventBits>(events), chains_.events + to);
     if (scene_.features.motion) compactor.store(d, hn::LoadU(d, chains_.time + i), chains_.time + to);
-    if (scene_.features.opacity)
-      compactor.store_ids(d, next_key(du, hn::LoadU(du, chains_.key + i)), chains_.key + to);
+    if (scene_.features.opacity) compactor.store_ids(d, next_key(du, hn::LoadU(du, chains_.key + i)), chains_.key + to);
     keep(chains_.ball);
     keep(chains_.light);
     keep(chains_.path);
