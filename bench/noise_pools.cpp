@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Simulates --noise on recorded samples, which takes a thousandth of the time of rendering: the same rule, with samples
+// Simulates --noise on recorded samples, which is much faster than rendering: the same rule, with samples
 // drawn at random from those that were recorded for each pixel, whose mean is exactly known. bench_noise_guarantee
 // renders instead, also with Sobol points.
 //
