@@ -138,11 +138,12 @@ TEST(ImageNextWeekPictures, RoughGlassBlursWhatIsBehindIt) {
   EXPECT_LT(spread(p, 0.335, 0.36, 0.425, 0.46).deviation, 0.6 * spread(p, 0.09, 0.36, 0.18, 0.46).deviation);
 }
 
-/// Renders the scene with every texture flattened to one colour, either as a texture or as a constant.
+/// Renders the scene with every texture flattened to one colour, either as a texture or as a constant. Caustics are
+/// sampled only of balls and lamps without textures.
 film::Picture flattened(bool as_texture, const std::string& precision) {
   auto read =
       support::read_scene_file(std::filesystem::path(ORRERY_SCENES) / ".." / "tests" / "determinism" / "textures.toml",
-                               {"render.precision=" + precision, "material.rough.fuzz=0"});
+                               {"render.precision=" + precision, "render.caustics=false", "material.rough.fuzz=0"});
   for (scene::Material& material : read.scene.materials) {
     for (const scene::TexturedKey& key : scene::material_types()[material.model.index()].textured) {
       const scene::TextureSlot texture = key.get(material.model);
