@@ -62,8 +62,7 @@ picture $balls light-grey-and-chrome --samples 400
 for elevation in 60 12; do
   picture $balls light-grey-and-chrome-$elevation --samples 400 --set background.sun_elevation=$elevation
 done
-picture $balls light-grey-and-chrome-3 --samples 4000 --denoise --set background.sun_elevation=3 \
-  --set background.exposure=3
+picture $balls light-grey-and-chrome-3 --samples 400 --set background.sun_elevation=3 --set background.exposure=3
 picture $balls light-grey-and-chrome-m4 --samples 1000 --set background.sun_elevation=-4 --set background.exposure=7
 "$program" generate env studio -o "$work/studio.exr"
 picture $balls light-studio --samples 400 --set "background={ type = \"image\", file = \"$work/studio.exr\" }"
