@@ -98,6 +98,7 @@ class Subject {
       if (at == nullptr) continue;
       at->image = {o.width, o.width * 9 / 16};
       at->render.sampler = sampler == "independent" ? scene::Sampler::kIndependent : scene::Sampler::kSobol;
+      at->render.caustics = false;  // the rule is tested with light that is hard to find
     }
     compiled_ = compile::compile(s.opening, s.closing ? &*s.closing : nullptr);
     accel_ = render::build(compiled_, render::available_threads());

@@ -88,6 +88,7 @@ class Pool {
         s->image = {side * width_, side * height_};
         s->render.sampler = scene::Sampler::kIndependent;
         s->render.samples = 1;
+        s->render.caustics = false;  // the rule is tested with light that is hard to find
       }
       return compile::compile(scene.opening, scene.closing ? &*scene.closing : nullptr);
     };
