@@ -128,6 +128,8 @@ struct LookArguments {
 
 /// Adds the options of plot that select view, style, representation, bonds and opacity.
 void add_look_options(Command& command, DataArguments& data, plot::PlotOptions& plot, LookArguments& look);
+/// Adds the options of plot for text, scales and lines over the image.
+void add_annotation_options(Command& command, plot::PlotOptions& plot, LookArguments& look);
 /// Sets the members of `plot` from the parsed options.
 void read_look_options(const LookArguments& look, plot::PlotOptions& plot);
 

@@ -167,22 +167,6 @@ plot::PlotScene prepare(const PlotArguments& arguments) {
   }
 }
 
-/// Parses "auto", "20" or "20 nm".
-void read_scale_bar(const std::string& text, scene::Annotation& annotation) {
-  if (text.empty()) return;
-  double length = 0;
-  const char* const end = text.data() + text.size();
-  const auto [stopped, error] = std::from_chars(text.data(), end, length);
-  if (text != "auto" && (error != std::errc() || !(length >= scene::kSmallestRadius) ||
-                         !(length <= scene::kLargestLength) || (stopped != end && *stopped != ' ')))
-    base::refuse(
-        fmt::format("--scale-bar: `{}` is not a length; write auto, or a length above 0, with a space before "
-                    "the unit, e.g. 20 or '20 nm'",
-                    text));
-  annotation.scale_bar = length;
-  if (text != "auto" && stopped != end) annotation.unit = std::string(stopped + 1, end);
-}
-
 int run_plot(PlotArguments& arguments) {
   begin_messages(arguments.render);
   arguments.render.batch.job.hooks.cancel = &stop_on_signals();
@@ -197,7 +181,6 @@ int run_plot(PlotArguments& arguments) {
   prepare_films(arguments);
   render.picture.finish(job);
   read_look_options(arguments.look, plot);
-  read_scale_bar(arguments.look.scale_bar, plot.annotation);
   plot.overrides = render.scene.overrides();
   plot.scene_file = saves ? arguments.save_scene : plot.file;
   plot.has_target = job.sampling.noise || job.sampling.seconds;
@@ -311,6 +294,26 @@ void add_look_options(Command& command, DataArguments& data, plot::PlotOptions& 
   command.add_flag("--axes", plot.axes, "Draw the directions of x (red), y (green) and z (blue)");
 }
 
+namespace {
+
+/// Parses "auto", "20" or "20 nm".
+void read_scale_bar(const std::string& text, scene::Annotation& annotation) {
+  if (text.empty()) return;
+  double length = 0;
+  const char* const end = text.data() + text.size();
+  const auto [stopped, error] = std::from_chars(text.data(), end, length);
+  if (text != "auto" && (error != std::errc() || !(length >= scene::kSmallestRadius) ||
+                         !(length <= scene::kLargestLength) || (stopped != end && *stopped != ' ')))
+    base::refuse(
+        fmt::format("--scale-bar: `{}` is not a length; write auto, or a length above 0, with a space before "
+                    "the unit, e.g. 20 or '20 nm'",
+                    text));
+  annotation.scale_bar = length;
+  if (text != "auto" && stopped != end) annotation.unit = std::string(stopped + 1, end);
+}
+
+}  // namespace
+
 void read_look_options(const LookArguments& look, plot::PlotOptions& plot) {
   plot.style = plot::style_of(look.style);
   plot.quality = plot::quality_of(look.quality);
@@ -322,6 +325,7 @@ void read_look_options(const LookArguments& look, plot::PlotOptions& plot) {
   }
   std::istringstream columns(look.vectors);
   for (std::string column; std::getline(columns, column, ',');) plot.points.vectors.columns.push_back(column);
+  read_scale_bar(look.scale_bar, plot.annotation);
   if (look.bonds.empty()) return;
   scene::PointsBonds& bonds = plot.points.bonds;
   plot.bonds = look.bonds != "none";
@@ -359,7 +363,8 @@ void add_film_options(Command& command, PlotArguments& arguments) {
       ->details("They are removed otherwise when the film is complete. A stopped command continues from them.");
 }
 
-/// Adds the options of text, scales and lines over the image.
+}  // namespace
+
 void add_annotation_options(Command& command, plot::PlotOptions& plot, LookArguments& look) {
   const OptionGroup group(command, "Annotation options");
   scene::Annotation& annotation = plot.annotation;
@@ -378,8 +383,6 @@ void add_annotation_options(Command& command, plot::PlotOptions& plot, LookArgum
       ->check(real_number(0, scene::kWidestOutline));
   command.add_option("--font", annotation.font, "FONT", "Name or file of the font; default: DejaVuSans");
 }
-
-}  // namespace
 
 void add_plot(Command& program) {
   const auto arguments = std::make_shared<PlotArguments>();

@@ -10,12 +10,12 @@
 
 namespace orrery::cli {
 
-/// Returns what `orrery view` shows for the options of `orrery plot`.
+/// Returns what `orrery view` shows for the options of `orrery plot`, also those of annotations.
 ///
 /// `words`      options and their values, as typed
 /// `open`       opens the data file; null: by its name
 /// Result       its job keeps `open`
-/// Errors       base::Error: those of plot::make_plot(); kUsage for words that are not options of `orrery view`
+/// Errors       base::Error: those of plot::make_plot(); kUsage for other words
 view::Subject data_subject(const std::string& file, std::vector<std::string> words, const job::Resources& resources,
                            const points::OpenData& open);
 

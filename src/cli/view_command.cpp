@@ -147,7 +147,11 @@ view::Subject data_subject(const std::string& file, std::vector<std::string> wor
   shown.job.resources = resources;
   words.insert(words.begin(), file);
   parse_words(
-      words, [&](Command& parsed) { shown.add_to(parsed); },
+      words,
+      [&](Command& parsed) {
+        shown.add_to(parsed);
+        add_annotation_options(parsed, shown.plot, shown.look);
+      },
       [&] {
         shown.plot.open = open;
         out = data_subject(shown);

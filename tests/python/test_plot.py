@@ -99,6 +99,20 @@ class Plot(PlotTest):
         self.assertEqual(status, 0, error)
         self.assertIn("quality good", " ".join(picture.notes))
 
+    def test_annotations_are_in_the_files(self):
+        words = ("--title", "frame {frame}", "--scale-bar", "2 nm", "--outline", "2", "--label", 'species == "S": sulphur', "--color-bar")
+        status, error = run("plot", "a.xyz", "-o", "a.png", "-q", "--width", 160, "--height", 90, "--samples", 2, *words)
+        self.assertEqual(status, 0, error)
+        picture = orrery.plot(
+            "a.xyz", width=160, height=90, samples=2, title="frame {frame}", scale_bar="2 nm", outline=2,
+            label=['species == "S": sulphur'], color_bar=True,
+        )  # fmt: skip
+        picture.write("b.png")
+        status, error = run("compare", "a.png", "b.png", "--fail-above", "max=0")
+        self.assertEqual(status, 0, error)
+        orrery.plot("a.xyz", width=160, height=90, samples=2).write("c.png")
+        self.assertEqual(run("compare", "a.png", "c.png", "--fail-above", "max=0")[0], 1)
+
     def test_options_have_the_values_of_the_command_line(self):
         picture = render(
             "a.xyz", look_from=(10, -20), select=["z > 0", "x < 8"], color_by="vx", range=(-1, 2.5), bonds=1.5,

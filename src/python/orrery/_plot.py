@@ -14,7 +14,7 @@ from orrery._errors import SceneWarning
 from orrery._picture import Picture
 from orrery._scene import Progress, _limit
 
-_REPEATED = ("select", "slice", "opacity")  # options that can be given several times
+_REPEATED = ("select", "slice", "opacity", "label")  # options that can be given several times
 _PER_PARTICLE = ("radius", "color_by", "opacity")  # options that arrays may replace
 
 
@@ -37,10 +37,11 @@ def plot(
                    the box of the atoms or Points. box=True draws it
     threads, memory_limit, on_progress   as for Scene.render()
     options        of `orrery plot --help`, with underscores: color_by="type", style="night", width=960, noise=0.05,
-                   bonds=True, vectors=("vx", "vy", "vz"), range=(0, 5), select=["z > 0", "type == 1"],
+                   bonds=True, outline=2, scale_bar="2 nm", vectors=("vx", "vy", "vz"), range=(0, 5), select=["z > 0", "type == 1"],
                    settings={"render.seed": 7}. radius, color_by and opacity may be arrays of shape (n,)
 
-    What was chosen from the data is in the picture's `notes`.
+    What was chosen from the data is in the picture's `notes`. Title, scale bar, color bar, labels and outlines are in the
+    files that write() makes; `beauty` and to_srgb8() are without them.
     """
     threads = 0 if threads is None else _arguments.whole("threads", threads, 1, 1024)
     memory = int(_limit("memory_limit", memory_limit, 1, 2**63))
