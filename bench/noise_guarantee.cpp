@@ -215,15 +215,11 @@ Reference reference_of(const NoiseCase& c, const Options& o) {
   return out;
 }
 
-struct Score {
-  int runs = 0, above = 0, far_above = 0, not_reached = 0;
-};
-
 /// Measures and prints the errors of one target for one scene and sampler.
 ///
 /// Result     false if no run reached the target
 bool measure_errors(const NoiseCase& c, Subject& subject, const std::string& sampler, double noise,
-                    const Reference& truth, const Options& o, Score& score) {
+                    const Reference& truth, const Options& o, NoiseScore& score) {
   constexpr int kUniformSeeds = 4;
   std::vector<double> ratios;
   int not_reached = 0;
@@ -239,9 +235,9 @@ bool measure_errors(const NoiseCase& c, Subject& subject, const std::string& sam
     adaptive += e;
     ratios.push_back(std::sqrt(e) / noise);
   }
-  score.not_reached += not_reached;
   std::printf("%-26s %-11s %5g   ", c.name.c_str(), sampler.c_str(), noise);
   if (ratios.empty()) {
+    score.not_reached += not_reached;
     std::printf("not reached with %d samples per pixel\n", o.most);
     return false;
   }
@@ -252,16 +248,9 @@ bool measure_errors(const NoiseCase& c, Subject& subject, const std::string& sam
         subject.uniform(static_cast<std::uint32_t>(100000 + seed), static_cast<int>(std::lround(samples))).picture);
     uniform += std::max(squared_error(picture, truth.values) - truth.squared_error, 0.0) / kUniformSeeds;
   }
-  std::sort(ratios.begin(), ratios.end());
-  const auto above = [&](double limit) {
-    return static_cast<int>(std::count_if(ratios.begin(), ratios.end(), [&](double r) { return r > limit; }));
-  };
-  score.runs += static_cast<int>(ratios.size());
-  score.above += above(1.1);
-  score.far_above += above(1.3);
-  std::printf("%.2f %.2f  %3d %3d  of %zu, %d not reached  %7.0f   %.2f   %.2f\n", ratios[ratios.size() / 2],
-              ratios.back(), above(1.1), above(1.3), ratios.size(), not_reached, samples,
-              uniform > 0 ? adaptive / runs / uniform : 0.0, std::sqrt(truth.squared_error) / noise);
+  score.add(ratios, not_reached);
+  std::printf("  %7.0f   %.2f   %.2f\n", samples, uniform > 0 ? adaptive / runs / uniform : 0.0,
+              std::sqrt(truth.squared_error) / noise);
   std::fflush(stdout);
   return true;
 }
@@ -303,7 +292,7 @@ int run(int argc, char** argv) {
         "the reference / target\n",
         "scene", "sampler", "noise");
   }
-  Score score;
+  NoiseScore score;
   double largest_bias = 0;
   for (const std::string& set : o.sets) {
     for (const NoiseCase& c : scenes_of(set)) {
@@ -322,9 +311,7 @@ int run(int argc, char** argv) {
     }
   }
   if (o.bias) return largest_bias < 3 ? 0 : 1;
-  std::printf("%d runs: %d above 1.1, %d above 1.3 times the target; %d not reached\n", score.runs, score.above,
-              score.far_above, score.not_reached);
-  return score.above * 50 <= score.runs && score.far_above == 0 ? 0 : 1;
+  return score.report();
 }
 
 }  // namespace

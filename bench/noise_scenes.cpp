@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
+#include <cstdio>
 #include <filesystem>
 #include <memory>
 #include <random>
@@ -353,6 +354,25 @@ std::vector<std::string> split(const std::string& text) {
     }
   }
   return out;
+}
+
+void NoiseScore::add(std::vector<double> ratios, int not_reached_runs) {
+  std::sort(ratios.begin(), ratios.end());
+  const auto count_above = [&](double limit) {
+    return static_cast<int>(std::count_if(ratios.begin(), ratios.end(), [&](double r) { return r > limit; }));
+  };
+  runs += static_cast<int>(ratios.size());
+  above += count_above(1.1);
+  far_above += count_above(1.3);
+  not_reached += not_reached_runs;
+  std::printf("%.2f %.2f  %3d %3d  of %3zu, %d not reached", ratios[ratios.size() / 2], ratios.back(), count_above(1.1),
+              count_above(1.3), ratios.size(), not_reached_runs);
+}
+
+int NoiseScore::report() const {
+  std::printf("%d runs: %d above 1.1, %d above 1.3 times the target; %d not reached\n", runs, above, far_above,
+              not_reached);
+  return above * 50 <= runs && far_above == 0 ? 0 : 1;
 }
 
 }  // namespace orrery::bench

@@ -379,7 +379,7 @@ void add_annotation_options(Command& command, plot::PlotOptions& plot, LookArgum
       .add_option("--label", plot.points.labels, "CONDITION: TEXT",
                   "Label the middle of the particles that match, e.g. 'id == 5: Fe'; can be repeated")
       ->repeatable();
-  command.add_option("--outline", annotation.outline, "PX", "Width of lines around objects in pixels, e.g. 2")
+  command.add_option("--outline", annotation.outline, "PX", "Width of the outlines of objects in pixels, e.g. 2")
       ->check(real_number(0, scene::kWidestOutline));
   command.add_option("--font", annotation.font, "FONT", "Name or file of the font; default: DejaVuSans");
 }

@@ -312,7 +312,8 @@ class PlotMaker {
     scene::Points points = load(data_.described_frame());
     const double spacing = data_.spacing(out_.points);
     if (spacing > 0 && !out_.points.bonds.are_drawn) vectors.radius = rounded(kShaftRadius * spacing);
-    if (spacing > 0 && points.rms_vector > 0) vectors.scale = rounded(kArrowLength * spacing / points.rms_vector);
+    if (!(spacing > 0 && points.rms_vector > 0)) return;
+    vectors.scale = rounded(kArrowLength * spacing / points.rms_vector);
     chose(fmt::format("arrows {} times {}", number_text(vectors.scale), base::joined(vectors.columns)),
           fmt::format("the root mean square one is {} times the median distance to the nearest neighbour",
                       number_text(kArrowLength)));

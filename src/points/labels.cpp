@@ -27,10 +27,7 @@ std::vector<LabelRule> label_rules(const data::FrameInfo& info, const scene::Poi
       const auto [condition, text] = parse_label(points.labels[i]);
       out.push_back({parse_selection(condition, info.columns), text});
     } catch (const base::Error& error) {
-      if (error.diagnostics().empty()) faults.error(key, error.what());
-      for (const base::Diagnostic& d : error.diagnostics())
-        faults.error(key,
-                     fmt::format("at character {}: {}{}", d.column, d.text, d.remedy.empty() ? "" : "; " + d.remedy));
+      faults.error(key, error);
     }
   }
   return out;

@@ -153,10 +153,7 @@ class Loader {
     try {
       selection_ = parse_selection(points_.select, info_.columns);
     } catch (const base::Error& error) {
-      for (const base::Diagnostic& d : error.diagnostics())
-        faults_.error(".select",
-                      fmt::format("at character {}: {}{}", d.column, d.text, d.remedy.empty() ? "" : "; " + d.remedy));
-      return;
+      return faults_.error(".select", error);
     }
     for (const std::string& column : selection_.columns) need(column);
   }

@@ -71,10 +71,7 @@ OpacitySource opacity_source(const data::FrameInfo& info, const scene::PointsOpa
       out.rules.push_back({parse_selection(rule.condition, info.columns), static_cast<float>(rule.opacity)});
       for (const std::string& column : out.rules.back().condition.columns) out.needed.push_back(column);
     } catch (const base::Error& error) {
-      if (error.diagnostics().empty()) faults.error(key, error.what());
-      for (const base::Diagnostic& d : error.diagnostics())
-        faults.error(key,
-                     fmt::format("at character {}: {}{}", d.column, d.text, d.remedy.empty() ? "" : "; " + d.remedy));
+      faults.error(key, error);
     }
   }
   return out;

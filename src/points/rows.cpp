@@ -155,6 +155,12 @@ std::string column_names(const data::FrameInfo& info) {
   return out;
 }
 
+void KeyFaults::error(const std::string& part, const base::Error& thrown) {
+  if (thrown.diagnostics().empty()) error(part, thrown.what());
+  for (const base::Diagnostic& d : thrown.diagnostics())
+    error(part, fmt::format("at character {}: {}{}", d.column, d.text, d.remedy.empty() ? "" : "; " + d.remedy));
+}
+
 bool require_column(const data::FrameInfo& info, const std::string& name, bool is_number, const std::string& part,
                     KeyFaults& faults) {
   if (const data::ColumnInfo* const found = data::find_named(info.columns, name)) {

@@ -10,6 +10,7 @@
 #include <variant>
 #include <vector>
 
+#include "base/error.h"
 #include "base/stop_point.h"
 #include "data/table.h"
 #include "scene/diagnostic.h"
@@ -81,6 +82,8 @@ class KeyFaults {
     diagnostics_.push_back({base::Severity::kError, key_ + part, std::move(text), kind});
     has_errors_ = true;
   }
+  /// Adds the errors that parsing the text of a key has thrown, with their places in the text.
+  void error(const std::string& part, const base::Error& thrown);
   void warning(const std::string& part, std::string text) {
     diagnostics_.push_back({base::Severity::kWarning, key_ + part, std::move(text)});
   }

@@ -12,6 +12,8 @@
 
 #include "compile/compiled_scene.h"
 #include "kernel/ray_packet.h"
+#include "kernel/scene_view.h"
+#include "render/film_ray.h"
 
 namespace orrery::render {
 namespace {
@@ -39,10 +41,9 @@ struct Grid {
   }
 };
 
-double radius_of(const compile::CompiledScene& scene, std::uint64_t id) {
-  const std::size_t spheres = scene.spheres.size();
-  if (id < spheres) return std::abs(scene.spheres[id].radius);
-  return scene.view().rods[(id - spheres) / 2].radius;  // a rod has two ids
+double radius_of(const kernel::SceneView& scene, std::uint64_t id) {
+  if (id < scene.sphere_count) return scene.spheres[id].radius;
+  return scene.rods[(id - scene.sphere_count) / 2].radius;  // a rod has two ids
 }
 
 /// Traces the rays of a grid.
@@ -59,20 +60,8 @@ void trace_grid(const compile::CompiledScene& scene, const accel::Accel& accel, 
     for (int lane = 0; lane < packet.count; ++lane) {
       const int column = (begin + lane) % grid.width, row = (begin + lane) / grid.width;
       const double x = (grid.x + column + 0.5) / kRays, y = (grid.y + row + 0.5) / kRays;
-      double film[3], direction[3], square = 0;
-      for (int axis = 0; axis < 3; ++axis) {
-        film[axis] = (x - camera.half_width) * camera.right[axis] + (y - camera.half_height) * camera.down[axis];
-        direction[axis] = camera.forward[axis] + (camera.is_orthographic ? 0 : film[axis]);
-        square += direction[axis] * direction[axis];
-      }
-      for (int axis = 0; axis < 3; ++axis) {
-        packet.offset[axis][lane] = static_cast<T>(camera.is_orthographic ? film[axis] : 0);
-        packet.origin[axis][lane] = static_cast<T>(camera.origin[axis]) + packet.offset[axis][lane];
-        packet.direction[axis][lane] = static_cast<T>(direction[axis] / std::sqrt(square));
-      }
-      packet.inverse_square[lane] = 1;
-      packet.self[lane] = kernel::kNoSphere;
-      packet.key[lane] = 0;  // one key: which translucent objects are visible does not change from ray to ray
+      // One key for all: which translucent objects are visible does not change from ray to ray.
+      set_film_ray(camera, x, y, packet, lane);
     }
     kernel::trace(tracer, packet);
     for (int lane = 0; lane < packet.count; ++lane)
@@ -86,6 +75,7 @@ class TileOutlines {
  public:
   TileOutlines(const compile::CompiledScene& scene, const accel::Accel& accel, double width_px)
       : scene_(scene),
+        view_(scene.view()),
         accel_(accel),
         reach_(width_px / 2 * kRays),
         border_(static_cast<int>(std::ceil(width_px / 2)) + 1) {
@@ -126,7 +116,7 @@ class TileOutlines {
     const double jump = std::abs(a.depth - b.depth);
     // A pixel of a perspective image is as wide as the distance times its width at distance 1.
     const double pixel = scene_.camera.is_orthographic ? pixel_ : pixel_ * front.depth;
-    return jump > std::max(kEdgeRadii * radius_of(scene_, front.id), kEdgePixels * pixel);
+    return jump > std::max(kEdgeRadii * radius_of(view_, front.id), kEdgePixels * pixel);
   }
 
   /// Marks the rays within reach of a point between two rays.
@@ -150,6 +140,7 @@ class TileOutlines {
   }
 
   const compile::CompiledScene& scene_;
+  kernel::SceneView view_;
   const accel::Accel& accel_;
   double reach_;      ///< half of the lines' width, rays
   int border_;        ///< px around a tile

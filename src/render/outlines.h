@@ -8,9 +8,9 @@
 
 namespace orrery::render {
 
-/// The coverage of each pixel by lines around objects, where what is behind them is further away than a quarter of the
-/// front object's radius and than three pixels: small objects that touch have no lines. As sphere_at(), at shutter
-/// open, without the blur of the lens; translucent objects are seen through.
+/// The coverage of each pixel by outlines, drawn where the depth jumps by more than a quarter of the front object's
+/// radius and by more than three pixels: small objects that touch have none. As sphere_at(), at shutter open, without
+/// the blur of the lens. A translucent object has outlines with the probability of its opacity.
 ///
 /// `accel`      of the objects of `scene`
 /// `width_px`   of the lines, half of it on either side of the edge

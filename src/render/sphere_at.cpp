@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "render/sphere_at.h"
 
-#include <cmath>
 #include <map>
 
 #include "compile/compiled_scene.h"
 #include "kernel/ray_packet.h"
+#include "render/film_ray.h"
 
 namespace orrery::render {
 namespace {
@@ -16,24 +16,9 @@ constexpr int kPackets = 16;
 template <class T>
 std::optional<std::uint32_t> seen_along_ray(const compile::CompiledScene& scene, const accel::Accel& accel, double x,
                                             double y) {
-  const kernel::Camera& camera = scene.camera;
-  double film[3], direction[3], square = 0;
-  for (int axis = 0; axis < 3; ++axis) {
-    film[axis] = (x - camera.half_width) * camera.right[axis] + (y - camera.half_height) * camera.down[axis];
-    direction[axis] = camera.forward[axis] + (camera.is_orthographic ? 0 : film[axis]);
-    square += direction[axis] * direction[axis];
-  }
   kernel::RayPacket<T> packet{};
   packet.count = scene.features.opacity ? kernel::kPacketSize : 1;
-  for (int lane = 0; lane < packet.count; ++lane) {
-    for (int axis = 0; axis < 3; ++axis) {
-      packet.offset[axis][lane] = static_cast<T>(camera.is_orthographic ? film[axis] : 0);
-      packet.origin[axis][lane] = static_cast<T>(camera.origin[axis]) + packet.offset[axis][lane];
-      packet.direction[axis][lane] = static_cast<T>(direction[axis] / std::sqrt(square));
-    }
-    packet.inverse_square[lane] = 1;
-    packet.self[lane] = kernel::kNoSphere;
-  }
+  for (int lane = 0; lane < packet.count; ++lane) set_film_ray(scene.camera, x, y, packet, lane);
   std::map<std::uint32_t, int> seen;  // number of rays
   std::optional<std::uint32_t> most;
   for (int i = 0; i < (scene.features.opacity ? kPackets : 1); ++i) {

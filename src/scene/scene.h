@@ -403,7 +403,7 @@ struct Annotation {
   std::optional<double> scale_bar;  ///< length, scene units
   std::string unit;                 ///< of the scale bar, as text
   bool color_bar = false;           ///< the colours of the first coloured points table
-  double outline = 0;               ///< width of the lines around objects, px; 0: none
+  double outline = 0;               ///< width of the outlines of objects, px; 0: none
   std::filesystem::path font;       ///< name or file; empty: DejaVu Sans
 
   /// True if something is drawn.

@@ -255,12 +255,13 @@ Table annotation_table() {
                in(&S::annotation, &Annotation::unit)),
        boolean<S>("color_bar", {"", "Legend of the first points table that is coloured by a column, type or element"},
                   in(&S::annotation, &Annotation::color_bar)),
-       number<S>("outline", {0, kWidestOutline},
-                 {"px",
-                  "Width of lines around objects that stand out from what is behind them. 0: none. Spheres and rods at "
-                  "shutter open, seen without a lens",
-                  "16 rays per pixel"},
-                 in(&S::annotation, &Annotation::outline)),
+       number<S>(
+           "outline", {0, kWidestOutline},
+           {"px",
+            "Width of the outlines of objects, drawn at discontinuities of the depth. 0: none. Spheres and rods at "
+            "shutter open, seen without a lens",
+            "16 rays per pixel"},
+           in(&S::annotation, &Annotation::outline)),
        file<S>("font", kFontFile,
                {"", "Font of all texts: a name, or a file relative to the scene file. Default: DejaVu Sans"},
                in(&S::annotation, &Annotation::font))}};
