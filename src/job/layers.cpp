@@ -51,13 +51,101 @@ std::vector<std::uint32_t> authored_materials(const compile::CompiledScene& comp
   return authored;
 }
 
+/// The ids of a sphere in each matte, in the order of kMatteLayers; 0: it is not in the matte.
+using MatteIds = std::array<std::uint32_t, kMatteLayers.size()>;
+
+/// Sorts spheres into classes of equal ids.
+class SphereClasses {
+ public:
+  /// `material_ids`   id of each compiled material; empty: spheres are not divided by material
+  /// `most`           maximum number of classes
+  SphereClasses(const compile::PackedIndices& sphere_materials, std::vector<std::uint32_t> material_ids,
+                std::size_t most)
+      : materials_(sphere_materials),
+        material_ids_(std::move(material_ids)),
+        classes_{{sphere_materials.size(), static_cast<std::uint32_t>(most)}, {}} {}
+
+  /// Adds the next spheres, or halves of rods.
+  void add(std::size_t count, MatteIds wanted) {
+    for (; count > 0; --count, ++sphere_) {
+      if (!material_ids_.empty()) wanted[1] = material_ids_[materials_[sphere_]];
+      if (ids_.empty() || wanted != ids_[current_]) {
+        const auto [at, is_new] = known_.try_emplace(wanted, static_cast<std::uint32_t>(ids_.size()));
+        current_ = at->second;
+        if (is_new) {
+          ids_.push_back(wanted);
+          classes_.first_sphere.push_back(sphere_);
+        }
+      }
+      classes_.of_sphere.set(sphere_, current_);
+    }
+  }
+
+  /// The ids of each class.
+  const std::vector<MatteIds>& ids() const { return ids_; }
+  film::MatteClasses take() { return std::move(classes_); }
+
+ private:
+  const compile::PackedIndices& materials_;
+  const std::vector<std::uint32_t> material_ids_;
+  film::MatteClasses classes_;
+  std::map<MatteIds, std::uint32_t> known_;
+  std::vector<MatteIds> ids_;
+  std::uint32_t sphere_ = 0, current_ = 0;
+};
+
+/// Adds all spheres and halves of rods in the order of their ids.
+///
+/// `ids_of`   f(object, group): their ids, without those of materials
+template <class IdsOf>
+void add_spheres(const scene::Scene& scene, const compile::CompiledScene& compiled, const IdsOf& ids_of,
+                 SphereClasses& classes) {
+  for (std::size_t i = 0; i < scene.spheres.size(); ++i) {
+    const scene::Sphere& s = scene.spheres[i];
+    classes.add(1, ids_of(s.name.empty() ? "sphere." + std::to_string(i) : s.name, s.group));
+  }
+  std::vector<std::vector<MatteIds>> of_points;  // of each object of a points table
+  for (const scene::Points& p : scene.points) {
+    const std::string name = p.name.empty() ? p.file.stem().string() : p.name;
+    of_points.emplace_back();
+    if (p.objects.empty()) of_points.back().push_back(ids_of(name, p.group));
+    for (const std::string& object : p.object_names) of_points.back().push_back(ids_of(name + object, p.group));
+  }
+  // Spheres of a points table, or halves of its bonds. The k-th one is in the object of `at(k)`, see Points::objects.
+  const auto add_points = [&](std::size_t table, std::size_t count, const auto& at) {
+    const std::vector<std::uint32_t>& objects = scene.points[table].objects;
+    if (objects.empty()) return classes.add(count, of_points[table][0]);
+    for (std::size_t k = 0; k < count; ++k) classes.add(1, of_points[table][objects[at(k)]]);
+  };
+  for (std::size_t i = 0; i < scene.points.size(); ++i)
+    add_points(i, compiled.points_sizes[i], [](std::size_t k) { return k; });
+  for (std::size_t i = 0; i < scene.rods.size(); ++i) {
+    const scene::Rod& r = scene.rods[i];
+    classes.add(2, ids_of(r.name.empty() ? "rod." + std::to_string(i) : r.name, r.group));
+  }
+  for (std::size_t i = 0; i < scene.rod_files.size(); ++i) {
+    const scene::RodFile& r = scene.rod_files[i];
+    classes.add(2 * compiled.rod_file_sizes[i], ids_of(r.name.empty() ? r.file.stem().string() : r.name, r.group));
+  }
+  for (std::size_t i = 0; i < scene.points.size(); ++i)
+    add_points(i, 2 * compiled.stub_counts[i], [&](std::size_t k) { return compiled.points_sizes[i] + k / 2; });
+  std::size_t first_sphere = scene.spheres.size(), first_bond = 0;
+  for (std::size_t i = 0; i < scene.points.size(); ++i) {
+    add_points(i, 2 * compiled.bond_counts[i], [&](std::size_t k) {
+      const kernel::Bond& bond = compiled.bonds[first_bond + k / 2];
+      return (k % 2 == 0 ? bond.a : bond.b) - first_sphere;
+    });
+    first_sphere += compiled.points_sizes[i];
+    first_bond += compiled.bond_counts[i];
+  }
+}
+
 /// Adds the mattes whose layers are requested, in the order of kMatteLayers.
 ///
 /// `authored`   the authored material of each compiled material
 template <class Requested>
 void add_mattes(const scene::Scene& scene, const compile::CompiledScene& compiled,
                 const std::vector<std::uint32_t>& authored, const Requested& requested, Layers& layers) {
-  using Ids = std::array<std::uint32_t, kMatteLayers.size()>;
   std::array<bool, kMatteLayers.size()> is_requested;
   std::transform(kMatteLayers.begin(), kMatteLayers.end(), is_requested.begin(), requested);
   const auto [by_object, by_material, by_group] = is_requested;
@@ -71,55 +159,21 @@ void add_mattes(const scene::Scene& scene, const compile::CompiledScene& compile
       material_ids.push_back(materials.id_of(scene.materials[material].name));
 
   const std::size_t ids_of_all = compiled.sphere_materials.size();
-  const std::size_t blocks =
-      scene.spheres.size() + 3 * scene.points.size() + scene.rods.size() + scene.rod_files.size();
+  std::size_t blocks = scene.spheres.size() + scene.rods.size() + scene.rod_files.size();
+  for (const scene::Points& points : scene.points) blocks += std::max<std::size_t>(1, points.object_names.size());
   const std::size_t most = std::min(ids_of_all, by_material ? blocks * material_ids.size() : blocks);
-  film::MatteClasses classes{{ids_of_all, static_cast<std::uint32_t>(most)}, {}};
-  std::map<Ids, std::uint32_t> known;
-  std::vector<Ids> ids;
-  std::uint32_t sphere = 0, current = 0;
-  const auto add = [&](std::size_t count, const std::string& object, const std::string& group) {
-    Ids wanted = {by_object ? objects.id_of(object) : 0, 0, by_group ? groups.id_of(group) : 0};
-    for (; count > 0; --count, ++sphere) {
-      if (by_material) wanted[1] = material_ids[compiled.sphere_materials[sphere]];
-      if (ids.empty() || wanted != ids[current]) {
-        const auto [at, is_new] = known.try_emplace(wanted, static_cast<std::uint32_t>(ids.size()));
-        current = at->second;
-        if (is_new) {
-          ids.push_back(wanted);
-          classes.first_sphere.push_back(sphere);
-        }
-      }
-      classes.of_sphere.set(sphere, current);
-    }
+  SphereClasses classes(compiled.sphere_materials, std::move(material_ids), most);
+  const auto ids_of = [&](const std::string& object, const std::string& group) {
+    return MatteIds{by_object ? objects.id_of(object) : 0, 0, by_group ? groups.id_of(group) : 0};
   };
-  for (std::size_t i = 0; i < scene.spheres.size(); ++i) {
-    const scene::Sphere& s = scene.spheres[i];
-    add(1, s.name.empty() ? "sphere." + std::to_string(i) : s.name, s.group);
-  }
-  // Spheres of a points table, or halves of its bonds.
-  const auto add_points = [&](std::size_t i, std::size_t count) {
-    const scene::Points& p = scene.points[i];
-    add(count, p.name.empty() ? p.file.stem().string() : p.name, p.group);
-  };
-  for (std::size_t i = 0; i < scene.points.size(); ++i) add_points(i, compiled.points_sizes[i]);
-  for (std::size_t i = 0; i < scene.rods.size(); ++i) {
-    const scene::Rod& r = scene.rods[i];
-    add(2, r.name.empty() ? "rod." + std::to_string(i) : r.name, r.group);
-  }
-  for (std::size_t i = 0; i < scene.rod_files.size(); ++i) {
-    const scene::RodFile& r = scene.rod_files[i];
-    add(2 * compiled.rod_file_sizes[i], r.name.empty() ? r.file.stem().string() : r.name, r.group);
-  }
-  for (std::size_t i = 0; i < scene.points.size(); ++i) add_points(i, 2 * compiled.stub_counts[i]);
-  for (std::size_t i = 0; i < scene.points.size(); ++i) add_points(i, 2 * compiled.bond_counts[i]);
+  add_spheres(scene, compiled, ids_of, classes);
 
-  layers.request.matte_classes = std::make_shared<film::MatteClasses>(std::move(classes));
+  layers.request.matte_classes = std::make_shared<film::MatteClasses>(classes.take());
   for (std::size_t m = 0; m < kMatteLayers.size(); ++m) {
     if (!is_requested[m]) continue;
     film::Matte& matte = layers.request.mattes.emplace_back();
     matte.name = kMatteLayers[m];
-    for (const Ids& of_class : ids) matte.ids.push_back(of_class[m]);
+    for (const MatteIds& of_class : classes.ids()) matte.ids.push_back(of_class[m]);
     layers.mattes.push_back({kMatteLayers[m], std::move(names[m].things)});
   }
 }

@@ -279,6 +279,8 @@ class SceneLoader {
     to.palette_rec709 = from.palette_rec709;
     to.color_range = from.color_range;
     to.color_names = std::move(from.color_names);
+    to.objects = std::move(from.objects);
+    to.object_names = std::move(from.object_names);
     to.unused = std::move(from.unused);
     to.step = from.step;
     to.placed_labels = std::move(from.placed_labels);

@@ -77,6 +77,7 @@ void add_arrows(scene::Points& points, std::vector<std::uint32_t>* rows, KeyFaul
     repeat(points.materials, i);
     repeat(points.colors, i);
     repeat(points.opacities, i);
+    repeat(points.objects, i);
     if (rows != nullptr) repeat(*rows, i);
     ++points.arrow_count;
     points.arrow_spheres += kHeadSpheres;

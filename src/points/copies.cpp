@@ -259,6 +259,7 @@ void clip(scene::Points& points, std::vector<std::uint32_t>* rows) {
     if (!points.materials.empty()) points.materials[kept] = points.materials[i];
     if (!points.colors.empty()) points.colors[kept] = points.colors[i];
     if (!points.opacities.empty()) points.opacities[kept] = points.opacities[i];
+    if (!points.objects.empty()) points.objects[kept] = points.objects[i];
     if (!points.sphere_vectors.empty()) points.sphere_vectors.set(kept, points.sphere_vectors[i]);
     if (rows != nullptr) (*rows)[kept] = (*rows)[i];
     ++kept;
@@ -268,6 +269,7 @@ void clip(scene::Points& points, std::vector<std::uint32_t>* rows) {
   if (!points.materials.empty()) points.materials.resize(kept);
   if (!points.colors.empty()) points.colors.resize(kept);
   if (!points.opacities.empty()) points.opacities.resize(kept);
+  if (!points.objects.empty()) points.objects.resize(kept);
   if (!points.sphere_vectors.empty()) points.sphere_vectors.resize(kept);
   if (rows != nullptr) rows->resize(kept);
   const auto renumber = [&](std::uint32_t& a, std::uint32_t& b) {
@@ -303,6 +305,7 @@ void make_copies(const std::vector<Copy>& copies, const Labels& chains, scene::P
   spheres.repeat(points.materials);
   spheres.repeat(points.colors);
   spheres.repeat(points.opacities);
+  spheres.repeat(points.objects);
   spheres.repeat(points.sphere_vectors, [&](Vec3d vector, std::size_t copy) {
     return turned(placement, turned(copies[copy].transform, vector));
   });

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <map>
 #include <memory>
 #include <optional>
 #include <string>
@@ -82,6 +83,7 @@ class Loader {
       points_.materials.clear();
       points_.colors.clear();
       points_.opacities.clear();
+      points_.objects.clear();
       points_.palette.clear();
       points_.sphere_vectors.clear();
       points_.bond_pairs.clear();
@@ -123,6 +125,8 @@ class Loader {
     opacity_ = opacity_source(info_, points_.opacity, faults_);
     for (const std::string& column : opacity_.needed) need(column);
     need(info_.roles.id);
+    for (const std::string& column : points_.cryptomatte)
+      if (require_column(info_, column, false, ".cryptomatte", faults_)) need(column);
     labels_ = label_rules(info_, points_, faults_);
     for (const LabelRule& label : labels_)
       for (const std::string& column : label.condition.columns) need(column);
@@ -192,6 +196,7 @@ class Loader {
     if (!material_.empty()) need.sphere_bytes += sizeof(std::uint32_t);
     if (!color_.columns.empty()) need.sphere_bytes += sizeof(std::uint16_t);
     if (opacity_.is_set()) need.sphere_bytes += sizeof(float);
+    if (!points_.cryptomatte.empty()) need.sphere_bytes += sizeof(std::uint32_t);
     if (request_.source != nullptr) need.sphere_bytes += sizeof(std::uint32_t) + need.row_bytes;
     if (points_.bonds.are_drawn) {
       need.bond_bytes = bonds * sizeof(scene::SphereBond);
@@ -250,6 +255,7 @@ class Loader {
     if (request_.on_value && colors.range)
       for_each_shown(*table.find(points_.color.column), rows, points_.color.log, request_.on_value);
     if (opacity_.is_set()) points_.opacities = opacities_of(table, rows, opacity_, points_, faults_);
+    if (!points_.cryptomatte.empty()) divide_into_objects(table, rows);
     points_.step = info_.step;
     points_.placed_labels = placed_labels(table, rows, centers, labels_, copies_.front(), points_, faults_);
     points_.centers = std::move(centers);
@@ -272,6 +278,8 @@ class Loader {
     make_copies(copies_, chains, points_, row_of_sphere);
     clip(points_, row_of_sphere);
     add_arrows(points_, row_of_sphere, faults_);
+    if (!points_.objects.empty())
+      for (const scene::BondStub& stub : points_.bond_stubs) points_.objects.push_back(points_.objects[stub.sphere]);
     points_.spheres_are_rows = is_all && copies_.size() == 1 && points_.centers.size() == table.rows;
     if (request_.source == nullptr) return;
     request_.source->bond_pairs = points_.bond_pairs;
@@ -341,6 +349,25 @@ class Loader {
       for_each_number(*table.find(info_.roles.position[axis]), rows,
                       [&](std::size_t i, double v) { out.set(i, axis, v); });
     return out;
+  }
+
+  /// Makes an object of each combination of values in the columns of `cryptomatte`.
+  void divide_into_objects(const data::Table& table, const Rows& rows) {
+    points_.objects.assign(rows.size(), 0);
+    points_.object_names = {""};
+    for (const std::string& column : points_.cryptomatte) {
+      const Labels labels = labels_of(*table.find(column), rows, rows.size());
+      std::map<std::pair<std::uint32_t, std::uint32_t>, std::uint32_t> known;
+      std::vector<std::string> names;
+      for (std::size_t i = 0; i < rows.size(); ++i) {
+        std::uint32_t& object = points_.objects[i];
+        const std::pair key{object, labels.of_rows[i]};
+        const auto [at, is_new] = known.try_emplace(key, static_cast<std::uint32_t>(names.size()));
+        if (is_new) names.push_back(points_.object_names[object] + '.' + labels.names[key.second]);
+        object = at->second;
+      }
+      points_.object_names = std::move(names);
+    }
   }
 
   /// Sets the material of each sphere from the file's column of indices into the scene's materials.

@@ -182,11 +182,21 @@ std::vector<Key<P>> make_keys() {
                  "Texts in the image, each at the middle of the particles that match a "
                  "[condition](data.md#selections): `[\"id == 5: Fe\"]`"},
                 &P::labels),
+      changes(
+          Part::kAssignment,
+          key_of<P>("cryptomatte", ValueType::kTexts, {},
+                    {"",
+                     "Columns that divide the file into objects of the CryptoObject matte: `[\"chain\"]` makes one of "
+                     "each chain, with the name of the file, a dot and the name of the chain. Several columns: one "
+                     "for each combination of their values",
+                     "4 bytes per sphere"},
+                    &P::cryptomatte)),
       boolean<P>("skip_bad", {"", "Skips rows with non-finite coordinates or radii"}, &P::skip_bad),
-      changes(Part::kOutput,
-              text<P>("name",
-                      {"", "Name in the CryptoObject matte, shared by all spheres of the file. Default: the file name"},
-                      &P::name)),
+      changes(Part::kOutput, text<P>("name",
+                                     {"",
+                                      "Name in the CryptoObject matte, shared by all spheres of the file; see "
+                                      "`cryptomatte`. Default: the file name"},
+                                     &P::name)),
       changes(Part::kOutput,
               text<P>("group", {"", "CryptoGroup name; objects of a group share one matte"}, &P::group))};
   return keys;

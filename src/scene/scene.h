@@ -315,6 +315,7 @@ struct Points {
   std::string material_column = "material";          ///< indices into Scene::materials, in PLY files; empty: none
   bool skip_bad = false;                             ///< skips rows with non-finite coordinates or radii
   std::vector<std::string> labels;                   ///< "CONDITION: TEXT", at the middle of the particles that match
+  std::vector<std::string> cryptomatte;              ///< columns; each combination of their values is an object
   PointArray centers = {};
   NumberArray radii = {};                     ///< one per centre
   std::vector<std::uint32_t> materials = {};  ///< one per centre; empty: `material` for all
@@ -325,14 +326,16 @@ struct Points {
   std::size_t palette_rec709 = 0;   ///< leading colours that are linear Rec.709; the others are in Color::space
   std::optional<Interval> color_range = {};  ///< range of the colour map, if there is one
   std::vector<std::string> color_names =
-      {};                                 ///< names of the colours in `palette`, if they represent types or elements
-  std::vector<std::string> unused = {};   ///< unused columns of the file, such as colours
-  std::optional<double> step = {};        ///< time step of the frame, or its number in the file
-  std::vector<Label> placed_labels = {};  ///< those of `labels`
-  PointArray sphere_vectors = {};         ///< one per centre, while arrows are to be added
-  std::size_t arrow_count = 0;            ///< number of arrows; their shafts are the last of `bond_pairs`
-  std::size_t arrow_spheres = 0;          ///< number of spheres of their heads, after all others
-  double rms_vector = 0;                  ///< root mean square length of the vectors, times their scale
+      {};                                   ///< names of the colours in `palette`, if they represent types or elements
+  std::vector<std::string> unused = {};     ///< unused columns of the file, such as colours
+  std::optional<double> step = {};          ///< time step of the frame, or its number in the file
+  std::vector<Label> placed_labels = {};    ///< those of `labels`
+  PointArray sphere_vectors = {};           ///< one per centre, while arrows are to be added
+  std::size_t arrow_count = 0;              ///< number of arrows; their shafts are the last of `bond_pairs`
+  std::size_t arrow_spheres = 0;            ///< number of spheres of their heads, after all others
+  double rms_vector = 0;                    ///< root mean square length of the vectors, times their scale
+  std::vector<std::uint32_t> objects = {};  ///< with `cryptomatte`: indices into `object_names`, of centres, then stubs
+  std::vector<std::string> object_names = {};  ///< ".A", appended to the name of the table
   std::vector<SphereBond> bond_pairs = {};
   std::vector<BondStub> bond_stubs = {};
   std::string bonds_from = {};   ///< resolved PointsBonds::from; empty: bonds are not drawn
@@ -347,9 +350,10 @@ struct Points {
   std::size_t bytes() const {
     return centers.numbers().bytes() + radii.bytes() + materials.size() * sizeof(materials[0]) +
            colors.size() * sizeof(colors[0]) + bond_pairs.size() * sizeof(bond_pairs[0]) +
-           bond_stubs.size() * sizeof(bond_stubs[0]) + opacities.size() * sizeof(opacities[0]);
+           bond_stubs.size() * sizeof(bond_stubs[0]) + opacities.size() * sizeof(opacities[0]) +
+           objects.size() * sizeof(objects[0]);
   }
-  /// Frees the memory of the spheres and bonds; keeps the keys.
+  /// Frees the memory of the spheres and bonds; keeps the keys, and the objects, which the mattes need.
   void release_spheres() {
     centers.clear();
     radii.clear();

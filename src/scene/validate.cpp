@@ -333,7 +333,8 @@ void check_points(std::size_t number, const Scene& scene, DiagnosticList& diagno
   if (points.radii.size() != points.centers.size() ||
       (!points.materials.empty() && points.materials.size() != points.centers.size()) ||
       (!points.colors.empty() && points.colors.size() != points.centers.size()) ||
-      (!points.opacities.empty() && points.opacities.size() != points.centers.size())) {
+      (!points.opacities.empty() && points.opacities.size() != points.centers.size()) ||
+      (!points.objects.empty() && points.objects.size() != points.centers.size() + points.bond_stubs.size())) {
     diagnostics.error(key, fmt::format("has {} centres, {} radii and {} materials", points.centers.size(),
                                        points.radii.size(), points.materials.size()));
     return;

@@ -126,6 +126,32 @@ TEST(JobLayers, BondsBelongToTheirPoints) {
   }
 }
 
+/// Halves of bonds are in the objects of their spheres.
+TEST(JobLayers, ColumnsDivideAFileIntoObjects) {
+  scene::Scene s = with_layers({"CryptoObject"});
+  s.spheres.resize(1);
+  scene::Points dust;
+  dust.file = "dust.ply";
+  dust.centers = {{5, 0, 0}};
+  dust.radii.assign(1, 0.25);
+  scene::Points points;
+  points.file = "1m4x.pdb";
+  points.centers = {{0, 0, 0}, {1, 0, 0}, {-1, 0, 0}};
+  points.radii.assign(3, 0.25);
+  points.objects = {0, 1, 0, 1};  // of the spheres and the stub
+  points.object_names = {".A", ".B"};
+  points.bond_radius = 0.1;
+  points.bond_pairs = {{0, 1}};
+  points.bond_stubs = {{1, 0, {1.5, 0, 0}}};
+  s.points = {dust, points};
+  s.rods.clear();
+  const Layers layers = layers_of(s);
+  const char* const wanted[] = {"sphere.0", "dust",   "1m4x.A", "1m4x.B", "1m4x.A",
+                                "1m4x.B",   "1m4x.B", "1m4x.A", "1m4x.B"};
+  for (std::uint32_t i = 0; i < 9; ++i)
+    EXPECT_EQ(layers.request.matte_id(layers.request.mattes[0], i), film::matte_id(wanted[i])) << i;
+}
+
 TEST(JobLayers, GroupsHoldOnlySpheresWithAGroup) {
   scene::Scene s = with_layers({"CryptoGroup"});
   s.spheres[1].group = "left";

@@ -484,6 +484,32 @@ TEST_F(PointsLoadPoints, AColumnOfMaterialsElsewhereIsOrdinary) {
   EXPECT_TRUE(points.materials.empty());
 }
 
+/// Selected, copied and clipped spheres and stubs of bonds keep the object of their row.
+TEST_F(PointsLoadPoints, ColumnsDivideAFileIntoObjects) {
+  points.cryptomatte = {"name", "type"};
+  points.radius.value = 0.5;
+  EXPECT_EQ(load("a.csv", kCsv), "");
+  EXPECT_EQ(points.objects, (std::vector<std::uint32_t>{0, 1, 2}));
+  EXPECT_EQ(points.object_names, (std::vector<std::string>{".a.1", ".b.2", ".a.2"}));
+
+  points.cryptomatte = {"type"};
+  points.select = "x > 0.5";
+  points.replicate = {2, 1, 1};
+  points.clip[2] = scene::Interval{0, 10};
+  points.bonds.are_drawn = true;
+  points.bonds.length = 4.0;
+  EXPECT_EQ(load("a.dump", frame("x y z type", {"0 0 0 7", "1 0 0 9", "5 0 20 6", "4 0 0 5", "9 0 0 8"})), "");
+  EXPECT_EQ(x(), (Numbers{1, 4, 9, 11, 14, 19}));
+  EXPECT_EQ(points.object_names, (std::vector<std::string>{".9", ".6", ".5", ".8"}));
+  ASSERT_FALSE(points.bond_stubs.empty());
+  std::vector<std::uint32_t> wanted = {0, 2, 3, 0, 2, 3};
+  for (const scene::BondStub& stub : points.bond_stubs) wanted.push_back(wanted[stub.sphere]);
+  EXPECT_EQ(points.objects, wanted);
+
+  points.cryptomatte = {"kind"};
+  EXPECT_NE(load().find("error points[0].cryptomatte"), std::string::npos);
+}
+
 TEST_F(PointsLoadPoints, SpeedIsDerivedFromTheVelocity) {
   points.radius.value = 1;
   points.color.column = "speed";
