@@ -8,6 +8,8 @@
 #   ./test.sh -R Camera
 #   GTEST_FILTER='Info.*' ./test.sh -R unit_info
 #
+# ORRERY_BENCH=OFF   without the benchmarks
+#
 # Tests write their files to $TMPDIR if set, otherwise to /dev/shm if it has 2 GB of free space, otherwise to /tmp. On a disk
 # that syncs every write some tests take twenty times as long.
 set -euo pipefail
@@ -18,7 +20,7 @@ install_missing "$root/tools/packages-build.txt" "$root/tools/packages-test.txt"
 # Other systems may lack what the Python package needs.
 python=ON
 command -v dpkg-query >/dev/null || python=OFF
-configure -DBUILD_TESTING=ON -DORRERY_BENCH=ON "-DORRERY_PYTHON=$python"
+configure -DBUILD_TESTING=ON "-DORRERY_BENCH=${ORRERY_BENCH:-ON}" "-DORRERY_PYTHON=$python"
 build 10 all
 
 if [ $# -eq 0 ]; then set -- -LE slow; fi

@@ -92,6 +92,6 @@ if [ "$commands" = run ]; then
   exit 0
 fi
 say "./test.sh"
-# Only tests that depend on versions of libraries and compilers; the long statistical ones do not.
-in_root "./test.sh -LE 'slow|statistical|numeric|fuzz'"
+# Only tests that depend on versions of libraries and compilers; benchmarks and the long statistical ones do not.
+in_root "ORRERY_BENCH=OFF ./test.sh -LE 'slow|statistical|numeric|fuzz'"
 say "done"
