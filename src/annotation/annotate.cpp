@@ -9,28 +9,24 @@
 
 #include <fmt/core.h>
 
-#include "annotation/legend_colors.h"
+#include "annotation/legend.h"
 #include "base/error.h"
 #include "data/table.h"
 #include "display/develop.h"
 #include "display/settings.h"
-#include "points/legend.h"
 #include "points/selection.h"
 #include "scene/value_text.h"
 
 namespace orrery::annotation {
 namespace {
 
-constexpr const char* kFont = "DejaVuSans";
-
 // Lengths in font sizes.
-constexpr double kMargin = 1, kBarThickness = 0.3, kTextGap = 0.4, kColorBarWidth = 1, kColorBarHeight = 12,
-                 kTickLength = 0.3, kLineWidth = 0.06, kPatchPitch = 1.5, kMiddle = 0.36;
+constexpr double kMargin = 1, kBarThickness = 0.3, kTextGap = 0.4, kMiddle = 0.36;
 /// Font sizes in the height of the image, and smallest font.
 constexpr double kFontShare = 32;
 constexpr double kSmallestFont = 9;
 /// Names in a legend; the others are counted.
-constexpr std::size_t kMaxPatches = 20;
+constexpr std::size_t kMaxLabels = 20;
 
 /// Luminance below which text is white.
 constexpr double kDark = 0.18;
@@ -62,7 +58,7 @@ class Layout {
   Layout(const scene::Scene& scene, View view) : scene_(scene), view_(std::move(view)) {
     const std::string font = scene.annotation.font.string();
     const bool is_file = font.find_first_of("./\\") != std::string::npos;
-    font_ = font.empty() ? kFont : is_file ? (view_.folder / font).string() : font;
+    font_ = font.empty() ? kDefaultFont : is_file ? (view_.folder / font).string() : font;
     out_.width = view_.width;
     out_.height = view_.height;
     out_.ink = ink_over(scene.background);
@@ -103,58 +99,10 @@ class Layout {
     add_text(scene::number_text(length) + (unit.empty() ? "" : " " + unit), left, top - kTextGap * size_, 0);
   }
 
-  void add_legend(const LegendColors& legend) {
-    if (legend.labels.empty())
-      add_color_bar(legend);
-    else
-      add_patches(legend);
-  }
-
-  void add_color_bar(const LegendColors& legend) {
-    points::Legend scale;
-    scale.first = legend.range->low;
-    scale.last = legend.range->high;
-    scale.is_log = legend.is_log;
-    const std::vector<points::Tick> ticks = points::ticks_of(scale);
-    double labels = 0;
-    for (const points::Tick& tick : ticks) labels = std::max(labels, image::text_width(tick.label, size_, out_.font));
-    const double right = view_.width - kMargin * size_ - labels - (kTickLength + kTextGap) * size_,
-                 left = right - kColorBarWidth * size_, top = (kMargin + 1.5) * size_,
-                 height = std::min(kColorBarHeight * size_, view_.height - top - 2 * kMargin * size_);
-    add_text(legend.title, view_.width - kMargin * size_, (kMargin + 0.8) * size_, 1);
-    const auto count = static_cast<double>(legend.bar.size());
-    for (std::size_t i = 0; i < legend.bar.size(); ++i) {
-      // Each colour down to the bottom, over that above: boxes that only touch would let the image shine through.
-      const std::size_t color = legend.bar.size() - 1 - i;
-      out_.boxes.push_back(
-          {left, top + static_cast<double>(i) / count * height, right, top + height, legend.bar[color]});
-    }
-    const double line = std::max(1.0, kLineWidth * size_);
-    for (const points::Tick& tick : ticks) {
-      const double y = top + height * (1 - points::share_of(tick.value, scale));
-      out_.boxes.push_back({right, y - line / 2, right + kTickLength * size_, y + line / 2, out_.ink});
-      add_text(tick.label, right + (kTickLength + kTextGap) * size_, y + kMiddle * size_, 0);
-    }
-  }
-
-  void add_patches(const LegendColors& legend) {
-    std::vector<std::pair<std::string, std::optional<Vec3d>>> rows;
-    for (const auto& [name, color] : legend.labels) rows.emplace_back(name, color);
-    if (rows.size() > kMaxPatches) {
-      const std::size_t rest = rows.size() - kMaxPatches + 1;
-      rows.resize(kMaxPatches - 1);
-      rows.emplace_back(fmt::format("{} more", rest), std::nullopt);
-    }
-    double widest = image::text_width(legend.title, size_, out_.font) - (kColorBarWidth + kTextGap) * size_;
-    for (const auto& row : rows) widest = std::max(widest, image::text_width(row.first, size_, out_.font));
-    const double left = view_.width - (kMargin + kColorBarWidth + kTextGap) * size_ - widest;
-    add_text(legend.title, left, (kMargin + 0.8) * size_, 0);
-    double top = (kMargin + 1.5) * size_;
-    for (const auto& [name, color] : rows) {
-      if (color) out_.boxes.push_back({left, top, left + kColorBarWidth * size_, top + size_, *color});
-      add_text(name, left + (kColorBarWidth + kTextGap) * size_, top + (0.5 + kMiddle) * size_, 0);
-      top += kPatchPitch * size_;
-    }
+  void add_legend(const LegendColors& colors) {
+    const double margin = kMargin * size_;
+    const Drawing legend = legend_drawing(colors, {size_, view_.height - 2 * margin, kMaxLabels, out_.ink}, out_.font);
+    place(legend, view_.width - margin - legend.width, margin, out_);
   }
 
   const scene::Scene& scene_;

@@ -14,6 +14,9 @@
 
 namespace orrery::annotation {
 
+/// The font of annotations and legends.
+inline constexpr const char* kDefaultFont = "DejaVuSans";
+
 /// An image to annotate.
 struct View {
   int width = 0, height = 0;  ///< px

@@ -42,19 +42,36 @@ class Canvas {
   }
 
   void paint(const Box& box, const Vec3d& color) {
-    const auto covered = [](double begin, double end, int at) {
-      return std::max(0.0, std::min(end, at + 1.0) - std::max(begin, static_cast<double>(at)));
-    };
-    const auto first = [](double at) { return std::max(0, static_cast<int>(std::floor(at))); };
-    for (int y = first(box.top); y < std::min<double>(height_, box.bottom); ++y)
-      for (int x = first(box.left); x < std::min<double>(width_, box.right); ++x)
-        paint(static_cast<std::size_t>(y) * static_cast<std::size_t>(width_) + static_cast<std::size_t>(x), color,
-              covered(box.left, box.right, x) * covered(box.top, box.bottom, y));
+    paint(box.left, box.top, box.right, box.bottom, [&](int) { return color; });
+  }
+
+  /// `colors`   of the bar, as they are to be shown
+  void paint(const Bar& bar, const std::vector<Vec3d>& colors) {
+    paint(bar.left, bar.top, bar.right, bar.bottom, [&](int y) {
+      const double share = std::clamp((bar.bottom - y - 0.5) / (bar.bottom - bar.top), 0.0, 1.0);
+      const double at = share * static_cast<double>(colors.size() - 1);
+      const auto i = static_cast<std::size_t>(at);
+      const double t = at - static_cast<double>(i);
+      return colors[i] * (1 - t) + colors[std::min(i + 1, colors.size() - 1)] * t;
+    });
   }
 
   Overlay take() { return std::move(overlay_); }
 
  private:
+  /// `color_of`   the colour of a row of pixels
+  template <class F>
+  void paint(double left, double top, double right, double bottom, F color_of) {
+    const auto covered = [](double begin, double end, int at) {
+      return std::max(0.0, std::min(end, at + 1.0) - std::max(begin, static_cast<double>(at)));
+    };
+    const auto first = [](double at) { return std::max(0, static_cast<int>(std::floor(at))); };
+    for (int y = first(top); y < std::min<double>(height_, bottom); ++y)
+      for (int x = first(left); x < std::min<double>(width_, right); ++x)
+        paint(static_cast<std::size_t>(y) * static_cast<std::size_t>(width_) + static_cast<std::size_t>(x), color_of(y),
+              covered(left, right, x) * covered(top, bottom, y));
+  }
+
   int width_, height_;
   Overlay overlay_;
 };
@@ -114,15 +131,47 @@ std::string svg_text(const image::TextLine& line, const std::string& ink, const 
       ink, outline, xml(line.text));
 }
 
+std::string svg_bar(const Bar& bar, std::size_t number, const std::function<Vec3d(const Vec3d&)>& shown) {
+  const std::size_t last = bar.colors.size() - 1;
+  std::string out = fmt::format("<linearGradient id=\"bar{}\" x1=\"0\" y1=\"1\" x2=\"0\" y2=\"0\">\n", number);
+  for (std::size_t i = 0; i <= last; ++i)
+    out +=
+        fmt::format("<stop offset=\"{:.2f}%\" stop-color=\"{}\"/>\n",
+                    last > 0 ? 100 * static_cast<double>(i) / static_cast<double>(last) : 0, hex(shown(bar.colors[i])));
+  return out + fmt::format(
+                   "</linearGradient>\n<rect x=\"{:.3f}\" y=\"{:.3f}\" width=\"{:.3f}\" height=\"{:.3f}\" "
+                   "fill=\"url(#bar{})\"/>\n",
+                   bar.left, bar.top, bar.right - bar.left, bar.bottom - bar.top, number);
+}
+
 Vec3d opposite(const Vec3d& ink) { return Vec3d{1, 1, 1} - ink; }
 
 }  // namespace
+
+void place(const Drawing& part, double x, double y, Drawing& into) {
+  for (Box box : part.boxes) {
+    box = {box.left + x, box.top + y, box.right + x, box.bottom + y, box.color};
+    into.boxes.push_back(box);
+  }
+  for (const Bar& bar : part.bars)
+    into.bars.push_back({bar.left + x, bar.top + y, bar.right + x, bar.bottom + y, bar.colors});
+  for (image::TextLine text : part.texts) {
+    text.x += x;
+    text.y += y;
+    into.texts.push_back(std::move(text));
+  }
+}
 
 Overlay draw(const Drawing& drawing, const std::function<Vec3d(const Vec3d&)>& shown) {
   Canvas canvas(drawing.width, drawing.height);
   const Vec3d ink = shown(drawing.ink);
   canvas.paint(drawing.lines, ink);
   for (const Box& box : drawing.boxes) canvas.paint(box, shown(box.color));
+  for (const Bar& bar : drawing.bars) {
+    std::vector<Vec3d> colors;
+    for (const Vec3d& color : bar.colors) colors.push_back(shown(color));
+    canvas.paint(bar, colors);
+  }
   std::vector<float> coverage(drawing.texts.empty() ? 0 : canvas.pixels());
   for (const image::TextLine& line : drawing.texts)
     image::draw_text(line, drawing.font, drawing.width, drawing.height, coverage);
@@ -175,6 +224,7 @@ std::string svg(const Drawing& drawing, const std::function<Vec3d(const Vec3d&)>
   for (const Box& box : drawing.boxes)
     body += fmt::format("<rect x=\"{:.3f}\" y=\"{:.3f}\" width=\"{:.3f}\" height=\"{:.3f}\" fill=\"{}\"/>\n", box.left,
                         box.top, box.right - box.left, box.bottom - box.top, hex(shown(box.color)));
+  for (std::size_t i = 0; i < drawing.bars.size(); ++i) body += svg_bar(drawing.bars[i], i, shown);
   for (const image::TextLine& line : drawing.texts) body += svg_text(line, ink, "");
   for (const image::TextLine& line : drawing.labels) body += svg_text(line, ink, contour);
   return fmt::format(

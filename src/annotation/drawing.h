@@ -21,6 +21,12 @@ struct Box {
   Vec3d color;                      ///< linear Rec.709
 };
 
+/// A rectangle with a gradient.
+struct Bar {
+  double left, top, right, bottom;  ///< px from the top left
+  std::vector<Vec3d> colors;        ///< from the bottom to the top, at equal steps; linear Rec.709
+};
+
 /// A drawing over an image.
 struct Drawing {
   int width = 0, height = 0;            ///< px
@@ -28,12 +34,16 @@ struct Drawing {
   double outline_px = 0;                ///< width of the outlines; 0: none
   std::vector<float> lines;             ///< coverage by the outlines, one per pixel; empty: not known yet
   std::vector<Box> boxes;               ///< over the lines, in this order
-  std::vector<image::TextLine> texts;   ///< over the boxes
+  std::vector<Bar> bars;                ///< over the boxes
+  std::vector<image::TextLine> texts;   ///< over the bars
   std::vector<image::TextLine> labels;  ///< over all, with a contour in the opposite of the ink
   std::filesystem::path font;           ///< file
 
-  bool is_empty() const { return outline_px == 0 && boxes.empty() && texts.empty() && labels.empty(); }
+  bool is_empty() const { return outline_px == 0 && boxes.empty() && bars.empty() && texts.empty() && labels.empty(); }
 };
+
+/// Adds the boxes, bars and texts of a part to a drawing, with the part's origin at a point.
+void place(const Drawing& part, double x, double y, Drawing& into);
 
 /// A drawing as pixels, premultiplied by alpha.
 struct Overlay {

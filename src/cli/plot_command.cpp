@@ -11,7 +11,7 @@
 
 #include <fmt/core.h>
 
-#include "annotation/legend_colors.h"
+#include "annotation/legend.h"
 #include "base/atomic_file.h"
 #include "base/available_memory.h"
 #include "base/error.h"
@@ -366,7 +366,7 @@ void add_film_options(Command& command, PlotArguments& arguments) {
 }  // namespace
 
 void add_annotation_options(Command& command, plot::PlotOptions& plot, LookArguments& look) {
-  const OptionGroup group(command, "Annotation options");
+  const OptionGroup group(command, kAnnotationOptions);
   scene::Annotation& annotation = plot.annotation;
   command.add_option("--title", annotation.title, "TEXT", "Text at the top left, e.g. 't = {step * 0.005:.1f} ps'")
       ->details(

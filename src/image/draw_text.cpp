@@ -129,8 +129,11 @@ void draw_text(const TextLine& line, const fs::path& font, int width, int height
   });
 }
 
-double text_width(const std::string& text, double size_px, const fs::path& font) {
-  return width_of(Face(font, size_px), text);
+std::vector<double> text_widths(const std::vector<std::string>& lines, double size_px, const fs::path& font) {
+  const Face face(font, size_px);
+  std::vector<double> out;
+  for (const std::string& line : lines) out.push_back(width_of(face, line));
+  return out;
 }
 
 std::string missing_glyphs(const std::string& text, const fs::path& font) {

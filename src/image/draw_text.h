@@ -28,11 +28,12 @@ std::filesystem::path font_file(const std::string& font);
 void draw_text(const TextLine& line, const std::filesystem::path& font, int width, int height,
                std::vector<float>& coverage);
 
-/// The width of a line of text.
+/// The widths of lines of text.
 ///
 /// Units      px
 /// Errors     as draw_text()
-double text_width(const std::string& text, double size_px, const std::filesystem::path& font);
+std::vector<double> text_widths(const std::vector<std::string>& lines, double size_px,
+                                const std::filesystem::path& font);
 
 /// Returns the characters of a text for which the font has no glyphs, each once.
 ///

@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-#include "annotation/legend_colors.h"
+#include "annotation/legend.h"
 #include "display/settings.h"
 #include "format/overrides.h"
 #include "load/load_scene.h"

@@ -86,8 +86,9 @@ void draw_text(const TextLine& line, const std::filesystem::path& font, int widt
   module().draw_text(line, font, width, height, coverage);
 }
 
-double text_width(const std::string& text, double size_px, const std::filesystem::path& font) {
-  return module().text_width(text, size_px, font);
+std::vector<double> text_widths(const std::vector<std::string>& lines, double size_px,
+                                const std::filesystem::path& font) {
+  return module().text_widths(lines, size_px, font);
 }
 
 std::string missing_glyphs(const std::string& text, const std::filesystem::path& font) {

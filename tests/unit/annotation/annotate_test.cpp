@@ -84,7 +84,7 @@ TEST_F(AnnotationAnnotate, ColorBarsHaveTicks) {
   palettes = {{}, {{0, 0, 0}, {1, 1, 1}, {0.5, 0.5, 0.5}}};
   EXPECT_LT(line("12").y, line("6").y) << "the largest at the top";
   EXPECT_NEAR(line("12").y - line("6").y, line("6").y - line("0").y, 1e-9);
-  EXPECT_EQ(line("speed").anchor, 1);
+  EXPECT_LT(line("speed").y, line("12").y);
   scene.points[1].color.log = true;
   scene.points[1].color_range = scene::Interval{1, 1e4};
   EXPECT_NEAR(line("10000").y - line("100").y, line("100").y - line("1").y, 1e-9);
@@ -99,7 +99,7 @@ TEST_F(AnnotationAnnotate, CategoriesHavePatches) {
     scene.points[0].color_names.push_back(std::to_string(i));
     palettes[0].push_back({i / 30.0, 0, 0});
   }
-  EXPECT_EQ(drawing().boxes.size(), 19u);
+  EXPECT_EQ(drawing().boxes.size(), 2 * 19u) << "patches and their frames";
   EXPECT_LT(line("1").y, line("19").y);
   EXPECT_LT(line("19").y, line("11 more").y);
 }

@@ -31,7 +31,7 @@ std::pair<int, int> columns_of(const TextLine& line) {
 }
 
 TEST(ImageDrawText, AnchorsAreAtTheStartTheMiddleAndTheEnd) {
-  const double width = text_width("HHHH", 20, font_file("DejaVuSans"));
+  const double width = text_widths({"HHHH"}, 20, font_file("DejaVuSans"))[0];
   EXPECT_GT(width, 40);
   const auto [start, start_last] = columns_of({"HHHH", 100, 30, 20, 0});
   EXPECT_NEAR(start, 100, 3);
@@ -60,7 +60,7 @@ TEST(ImageDrawText, TextBeyondTheImageIsCut) {
 
 TEST(ImageDrawText, FilesThatAreNoFontsAreRefused) {
   EXPECT_THROW(font_file("NoSuchFont"), base::Error);
-  EXPECT_THROW(text_width("a", 10, "/dev/null"), base::Error);
+  EXPECT_THROW(text_widths({"a"}, 10, "/dev/null"), base::Error);
 }
 
 }  // namespace

@@ -1,0 +1,195 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "annotation/legend.h"
+
+#include <algorithm>
+#include <charconv>
+#include <cmath>
+#include <limits>
+#include <system_error>
+#include <utility>
+
+#include <fmt/core.h>
+
+#include "annotation/annotate.h"
+#include "base/atomic_file.h"
+#include "base/error.h"
+#include "base/file_name.h"
+#include "base/text.h"
+#include "display/settings.h"
+#include "film/picture.h"
+#include "image/format.h"
+#include "image/write.h"
+#include "points/ticks.h"
+
+namespace orrery::annotation {
+namespace {
+
+// Lengths in font sizes.
+constexpr double kTitleHeight = 1.5, kTitleBaseline = 0.8, kColorWidth = 1, kBarHeight = 12, kColorGap = 0.4,
+                 kTickLength = 0.3, kLineWidth = 0.06, kPatchPitch = 1.5, kMiddleOfText = 0.36;
+constexpr std::size_t kMaxTextBytes = 60;
+
+/// Of legends in files, px. Screens and papers show SVG at its own size.
+constexpr double kSvgFont = 14, kImageFont = 28;
+/// Few programs could open a larger image.
+constexpr std::size_t kMaxImageLabels = 500;
+
+std::string shortened(const std::string& text) {
+  const std::string_view prefix = base::utf8_prefix(text, kMaxTextBytes);
+  return std::string(prefix) + (prefix.size() < text.size() ? "…" : "");
+}
+
+/// Adds the parts of a legend from the top.
+class LegendLayout {
+ public:
+  LegendLayout(const LegendStyle& style, const std::filesystem::path& font)
+      : style_(style), em_(style.font_px), line_(std::max(1.0, kLineWidth * em_)) {
+    out_.font = font;
+    out_.ink = style.ink;
+  }
+
+  void add_title(const std::string& title) {
+    add_text(title, 0, kTitleBaseline * em_);
+    y_ += kTitleHeight * em_;
+  }
+
+  void add_bar(const LegendColors& colors) {
+    const points::ValueScale scale{colors.range->low, colors.range->high, colors.is_log};
+    const double right = kColorWidth * em_, height = std::min(kBarHeight * em_, style_.height_px - y_ - em_);
+    add_frame(right, height);
+    out_.bars.push_back({0, y_, right, y_ + height, colors.bar});
+    for (const points::Tick& tick : points::ticks_of(scale)) {
+      const double y = y_ + height * (1 - scale.share_of(tick.value)), end = right + kTickLength * em_;
+      out_.boxes.push_back({right, y - line_ / 2, end, y + line_ / 2, out_.ink});
+      add_text(tick.label, end + kColorGap * em_, y + kMiddleOfText * em_);
+    }
+    y_ += height + em_;
+  }
+
+  void add_patch(const std::string& label, const std::optional<Vec3d>& color) {
+    if (color) {
+      add_frame(kColorWidth * em_, em_);
+      out_.boxes.push_back({0, y_, kColorWidth * em_, y_ + em_, *color});
+    }
+    add_text(label, (kColorWidth + kColorGap) * em_, y_ + (0.5 + kMiddleOfText) * em_);
+    y_ += kPatchPitch * em_;
+  }
+
+  Drawing take() {
+    std::vector<std::string> texts;
+    for (const image::TextLine& text : out_.texts) texts.push_back(text.text);
+    const std::vector<double> widths = image::text_widths(texts, em_, out_.font);
+    double width = 0;
+    for (std::size_t i = 0; i < widths.size(); ++i) width = std::max(width, out_.texts[i].x + widths[i]);
+    out_.width = static_cast<int>(std::ceil(width));
+    out_.height = static_cast<int>(std::ceil(y_));
+    return std::move(out_);
+  }
+
+ private:
+  void add_text(const std::string& text, double x, double y) { out_.texts.push_back({shortened(text), x, y, em_, 0}); }
+
+  /// A frame about a bar or a patch at the left; a white one would not be seen on white.
+  void add_frame(double width, double height) {
+    out_.boxes.push_back({-line_, y_ - line_, width + line_, y_ + height + line_, out_.ink});
+  }
+
+  const LegendStyle style_;
+  const double em_, line_;
+  double y_ = 0;
+  Drawing out_;
+};
+
+/// The colours as a display shows them, 0..1.
+LegendColors seen(LegendColors colors, const display::Settings& display) {
+  const std::function<Vec3d(const Vec3d&)> shown = shown_by(display);
+  for (auto& [label, color] : colors.labels) color = shown(color);
+  for (Vec3d& color : colors.bar) color = shown(color);
+  if (colors.nan_color) colors.nan_color = shown(*colors.nan_color);
+  return colors;
+}
+
+/// A legend on white, in display colours.
+Drawing page(const LegendColors& colors, const display::Settings& display, double font_px) {
+  constexpr double kAny = std::numeric_limits<double>::infinity();
+  constexpr std::size_t kMany = std::numeric_limits<std::size_t>::max();
+  const Drawing legend = legend_drawing(seen(colors, display), {font_px, kAny, kMany}, image::font_file(kDefaultFont));
+  Drawing out;
+  out.font = legend.font;
+  out.width = legend.width + static_cast<int>(2 * font_px);
+  out.height = legend.height + static_cast<int>(2 * font_px);
+  out.boxes.push_back({0, 0, static_cast<double>(out.width), static_cast<double>(out.height), {1, 1, 1}});
+  place(legend, font_px, font_px, out);
+  return out;
+}
+
+Vec3d same(const Vec3d& color) { return color; }
+
+std::optional<double> number_of(std::string_view label) {
+  double value = 0;
+  const auto [end, error] = std::from_chars(label.data(), label.data() + label.size(), value);
+  if (error != std::errc() || end != label.data() + label.size() || std::isnan(value)) return {};
+  return value;
+}
+
+}  // namespace
+
+bool LabelOrder::operator()(std::string_view a, std::string_view b) const {
+  const std::optional<double> x = number_of(a), y = number_of(b);
+  if (x && y && *x != *y) return *x < *y;
+  return x.has_value() != y.has_value() ? x.has_value() : a < b;
+}
+
+void LegendColors::add(const scene::Points& frame) {
+  const scene::PointsColor& key = frame.color;
+  title = !key.column.empty() ? key.column : key.element.empty() ? "type" : "element";
+  for (std::size_t i = 0; i < std::min(frame.palette.size(), frame.color_names.size()); ++i) {
+    const auto [label, is_new] = labels.try_emplace(frame.color_names[i], frame.palette[i]);
+    has_conflict = has_conflict || (!is_new && label->second != frame.palette[i]);
+  }
+  if (!frame.color_names.empty() || key.column.empty() || frame.palette.empty()) return;
+  // The last colour stands for values that are not numbers.
+  const std::size_t last = frame.palette.size() - 1;
+  is_log = key.log;
+  bar.assign(frame.palette.begin(), frame.palette.end() - 1);
+  if (std::find(frame.colors.begin(), frame.colors.end(), last) != frame.colors.end()) nan_color = frame.palette[last];
+}
+
+Drawing legend_drawing(const LegendColors& colors, const LegendStyle& style, const std::filesystem::path& font) {
+  LegendLayout layout(style, font);
+  layout.add_title(colors.title);
+  if (colors.labels.empty()) {
+    layout.add_bar(colors);
+    if (colors.nan_color) layout.add_patch("no value", *colors.nan_color);
+    return layout.take();
+  }
+  const bool has_rest = colors.labels.size() > style.most_labels;
+  std::size_t left = has_rest ? style.most_labels - 1 : colors.labels.size();
+  for (auto label = colors.labels.begin(); left > 0; ++label, --left) layout.add_patch(label->first, label->second);
+  if (has_rest) layout.add_patch(fmt::format("{} more", colors.labels.size() - style.most_labels + 1), {});
+  return layout.take();
+}
+
+std::string legend_svg(const LegendColors& colors, const display::Settings& display) {
+  return colors.is_empty() ? "" : svg(page(colors, display, kSvgFont), same);
+}
+
+void write_legend(const std::filesystem::path& file, const LegendColors& colors, const display::Settings& display) {
+  if (colors.is_empty())
+    throw base::Error(base::ErrorKind::kUsage, "--legend: the colours are not those of a column, types or elements");
+  if (base::extension(file) == ".svg") return base::write_text_file(file, legend_svg(colors, display));
+  if (!image::is_display_format(image::format_of(file)))
+    throw base::Error(base::ErrorKind::kUsage, "--legend: name an .svg or .png file");
+  if (colors.labels.size() > kMaxImageLabels)
+    throw base::Error(base::ErrorKind::kUsage,
+                      fmt::format("--legend: an image shows up to {} values; name an .svg file", kMaxImageLabels));
+  const Drawing drawing = page(colors, display, kImageFont);
+  film::EncodedPicture picture;
+  picture.width = drawing.width;
+  picture.height = drawing.height;
+  picture.values.resize(3 * static_cast<std::size_t>(drawing.width) * static_cast<std::size_t>(drawing.height));
+  blend(draw(drawing, same), picture);
+  image::write_encoded(file, picture, "orrery");
+}
+
+}  // namespace orrery::annotation

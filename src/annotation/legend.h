@@ -1,0 +1,66 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstddef>
+#include <filesystem>
+#include <map>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "annotation/drawing.h"
+#include "display/forward.h"
+#include "scene/scene.h"
+
+namespace orrery::annotation {
+
+/// Orders numbers by value, before other strings.
+struct LabelOrder {
+  bool operator()(std::string_view a, std::string_view b) const;
+};
+
+/// The colours of points tables, collected over frames. All are linear Rec.709.
+struct LegendColors {
+  std::string title;                                ///< the column, "type" or "element"
+  std::map<std::string, Vec3d, LabelOrder> labels;  ///< colours of types, elements and categories
+  std::vector<Vec3d> bar;                           ///< colours of a colour map; empty: there is none
+  std::optional<Vec3d> nan_color;                   ///< set if a value is NaN
+  std::optional<scene::Interval> range;             ///< range of the colour map
+  bool is_log = false;                              ///< the map is logarithmic
+  bool has_conflict = false;                        ///< a label has different colours in different frames
+
+  bool is_empty() const { return labels.empty() && !range; }
+  /// Adds the colours of a loaded frame.
+  void add(const scene::Points& frame);
+};
+
+/// How a legend is drawn.
+struct LegendStyle {
+  double font_px = 0;
+  double height_px = 0;         ///< of a bar's legend, at most
+  std::size_t most_labels = 0;  ///< of further ones, the number is shown
+  Vec3d ink{0, 0, 0};           ///< of text, ticks and frames
+};
+
+/// Lays out a legend: a title, then a bar with ticks, or patches with labels. Long texts are truncated.
+///
+/// Domain     colours that are not empty
+/// Errors     those of image::text_width()
+Drawing legend_drawing(const LegendColors& colors, const LegendStyle& style, const std::filesystem::path& font);
+
+/// The legend of a plot's colours as SVG; empty if there are none.
+///
+/// `display`  see write_legend()
+/// Errors     those of display::develop and image::font_file
+std::string legend_svg(const LegendColors& colors, const display::Settings& display);
+
+/// Writes the legend of a plot's colours as SVG or as an image. Applies the display transform of the plot's images, so
+/// that the colours match.
+///
+/// `display`  display transform of the images; its working space is not used
+/// Errors     base::Error: kUsage for another extension, if there are no colours, and for an image of too many labels;
+///            those of legend_svg(); kCannotCreate, kIo
+void write_legend(const std::filesystem::path& file, const LegendColors& colors, const display::Settings& display);
+
+}  // namespace orrery::annotation
