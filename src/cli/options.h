@@ -24,6 +24,7 @@ inline constexpr const char* kDisplayOptions = "Display options";
 inline constexpr const char* kDataOptions = "Data options";
 inline constexpr const char* kViewOptions = "View options";
 inline constexpr const char* kLookOptions = "Look options";
+inline constexpr const char* kAnnotationOptions = "Annotation options";
 
 /// The options that override scene keys: --set, and short forms of frequent keys.
 class SceneOptions {

@@ -17,7 +17,7 @@
 
 #include <fmt/core.h>
 
-#include "annotation/legend_colors.h"
+#include "annotation/legend.h"
 #include "base/available_memory.h"
 #include "base/error.h"
 #include "base/file_name.h"
@@ -51,6 +51,7 @@ struct ShownOptions {
     command = &parsed;
     add_data_options(parsed, data, plot, "Scene file, or data file");
     add_look_options(parsed, data, plot, look);
+    add_annotation_options(parsed, plot, look);
     scene.add_to(parsed);
     add_sampling_options(parsed, job);
     add_denoise_option(parsed, job);
@@ -90,7 +91,8 @@ std::set<std::string> files_of(const ShownOptions& shown) {
 
 view::Subject scene_subject(const ShownOptions& shown) {
   for (const Option& option : shown.command->options())
-    if (option.count() > 0 && base::contains({kDataOptions, kViewOptions, kLookOptions}, option.heading()))
+    if (option.count() > 0 &&
+        base::contains({kDataOptions, kViewOptions, kLookOptions, kAnnotationOptions}, option.heading()))
       base::refuse(fmt::format("{} is an option for data files; a scene has its keys: --set KEY=VALUE", option.name()));
   view::Subject out;
   out.job = shown.job;
@@ -132,6 +134,9 @@ view::Subject data_subject(ShownOptions& shown) {
   out.chosen["--bonds"] = made.points.bonds.are_drawn ? "auto" : "none";
   out.chosen["--style"] = plot::style_names()[static_cast<std::size_t>(plot.style.value_or(plot::Style::kStudio))];
   out.chosen["--material"] = plot.material;
+  if (plot.quality || made.noise)
+    out.chosen["--quality"] =
+        plot::quality_names()[static_cast<std::size_t>(plot.quality.value_or(plot::Quality::kGood))];
   display::Settings display = plot::settings_of(plot, true).display;
   display.view = made.view;
   out.legend = annotation::legend_svg(made.legend, display);
@@ -147,11 +152,7 @@ view::Subject data_subject(const std::string& file, std::vector<std::string> wor
   shown.job.resources = resources;
   words.insert(words.begin(), file);
   parse_words(
-      words,
-      [&](Command& parsed) {
-        shown.add_to(parsed);
-        add_annotation_options(parsed, shown.plot, shown.look);
-      },
+      words, [&](Command& parsed) { shown.add_to(parsed); },
       [&] {
         shown.plot.open = open;
         out = data_subject(shown);
@@ -186,8 +187,12 @@ view::Controls controls_of(const std::filesystem::path& file) {
   out.options["--material"] = plot::material_names();
   out.options["--representation"] = plot::representation_names();
   out.options["--bonds"] = {"auto", "none", "file", "distance", "both"};
-  for (const char* option : {"--ground", "--opacity", "--box", "--axes", "--vectors", "--range", "--select", "--slice",
-                             "--radius-scale", "--frame"})
+  out.options["--quality"] = plot::quality_names();
+  out.options["--background"] = {"white", "black", "grey"};
+  out.options["--scale-bar"] = {"auto"};
+  for (const char* option :
+       {"--ground", "--opacity", "--box", "--axes", "--vectors", "--range", "--select", "--slice", "--radius-scale",
+        "--frame", "--perspective", "--center", "--title", "--color-bar", "--label", "--outline"})
     out.options[option] = {};
   return out;
 }

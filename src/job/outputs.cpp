@@ -36,14 +36,20 @@ bool Outputs::has_display_format() const {
   return std::any_of(images.begin(), images.end(), [](const ImageFile& i) { return is_display_format(i.format); });
 }
 
+film::EncodedPicture develop_annotated(const film::Picture& picture, const annotation::Drawing* drawing,
+                                       const display::Settings& settings, int bits, display::Alpha alpha) {
+  film::EncodedPicture out = display::develop(picture, settings, bits, false, alpha);
+  if (drawing != nullptr && !drawing->is_empty())
+    annotation::blend(annotation::draw(*drawing, annotation::shown_by(settings)), out);
+  return out;
+}
+
 void DisplayWriter::write(const std::filesystem::path& file, const std::string& software, const std::string& stamp) {
   const bool keeps_alpha = picture_.is_transparent && image::holds_alpha(image::format_of(file));
   std::optional<film::EncodedPicture>& developed = keeps_alpha ? with_alpha_ : over_black_;
   if (!developed) {
-    developed = display::develop(picture_, settings_, bits_, false,
-                                 keeps_alpha ? display::Alpha::kStraight : display::Alpha::kOverBlack);
-    if (drawing_ != nullptr && !drawing_->is_empty())
-      annotation::blend(annotation::draw(*drawing_, annotation::shown_by(settings_)), *developed);
+    const display::Alpha alpha = keeps_alpha ? display::Alpha::kStraight : display::Alpha::kOverBlack;
+    developed = develop_annotated(picture_, drawing_, settings_, bits_, alpha);
   }
   image::write_encoded(file, *developed, software, stamp);
 }

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "annotation/drawing.h"
+#include "display/develop.h"
 #include "display/forward.h"
 #include "display/settings.h"
 #include "film/forward.h"
@@ -75,6 +76,13 @@ struct FinishedPicture {
 /// Errors     base::Error: kCannotCreate, kIo; those of display::develop
 image::WriteReport write_outputs(const Outputs& outputs, const display::Settings& display, int bits,
                                  const FinishedPicture& finished);
+
+/// Applies the display transform, then draws the annotation.
+///
+/// `drawing`  over the image; null: none
+/// Errors     those of display::develop and annotation::draw
+film::EncodedPicture develop_annotated(const film::Picture& picture, const annotation::Drawing* drawing,
+                                       const display::Settings& settings, int bits, display::Alpha alpha);
 
 /// Writes one image to display formats. The display transform runs once for all files with the same channels. PNG and
 /// TIFF keep the alpha of a transparent image.

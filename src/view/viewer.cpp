@@ -19,6 +19,7 @@
 #include "film/picture.h"
 #include "image/jpeg_bytes.h"
 #include "job/job.h"
+#include "job/outputs.h"
 #include "preview/file_sink.h"
 #include "render/sphere_at.h"
 #include "scene/value_text.h"
@@ -359,6 +360,7 @@ void Viewer::render(const Wish& wish, std::uint64_t number) {
     job.scene.overrides.add(fmt::format("image.width={}", side(width)));
     job.scene.overrides.add(fmt::format("image.height={}", side(height)));
     job.scene.overrides.add("render.samples=1");
+    job.scene.overrides.add("annotation.outline=0");
     if (prepared_depth_ > kMovingDepth) job.scene.overrides.add(fmt::format("render.max_depth={}", kMovingDepth));
     job.sampling = {};
     job.denoise = false;
@@ -430,7 +432,8 @@ void Viewer::render(const Wish& wish, std::uint64_t number) {
   const job::JobReport report = job::run_job(job);
   set_prepared();
 
-  const film::EncodedPicture picture = display::develop(rendering->picture, rendering->display, 8);
+  const film::EncodedPicture picture = job::develop_annotated(rendering->picture, moves ? nullptr : &rendering->drawing,
+                                                              rendering->display, 8, display::Alpha::kOverBlack);
   const std::vector<std::uint8_t> codes(picture.values.begin(), picture.values.end());
   Frame frame;
   frame.width = picture.width;

@@ -107,7 +107,8 @@ std::set<std::string> named_files(const format::Overrides& overrides) {
 }
 
 bool is_flag(const std::string& option) {
-  return option == "--denoise" || option == "--ground" || option == "--box" || option == "--axes";
+  return option == "--denoise" || option == "--ground" || option == "--box" || option == "--axes" ||
+         option == "--color-bar";
 }
 
 std::vector<std::string> camera_settings(const scene::Camera& camera) {
@@ -131,7 +132,7 @@ std::vector<std::string> words_of(const std::vector<std::string>& fixed, const W
     if (!is_flag(option)) out.push_back(value);
   };
   for (const auto& [option, value] : wish.options) {
-    if (option != "--set" && option != "--slice" && option != "--opacity") {
+    if (option != "--set" && option != "--slice" && option != "--opacity" && option != "--label") {
       add(option, value);
       continue;
     }

@@ -117,6 +117,10 @@ class CliView : public ProgramTest {
     write("page.png", picture.body);
     const Outcome same = run("compare page.png picture.png --fail-above max=0");
     EXPECT_EQ(same.status, 0) << state["command"] << same.out << same.err;
+    const support::HttpAnswer frame = view.get("/frame?after=0");
+    write("frame.png", frame.body);
+    const Outcome seen = run("compare frame.png page.png --fail-above max=0");
+    EXPECT_EQ(seen.status, 0) << state["command"] << seen.out << seen.err;
   }
 };
 
@@ -143,6 +147,14 @@ TEST_F(CliView, RandomWalksThroughTheControlsMakeThePictureOfTheCommand) {
       {"--axes", {"", "on"}},
       {"--vectors", {"", "vx,vy,vz", "x,y"}},
       {"--denoise", {"", "on"}},
+      {"--outline", {"", "2", "-1"}},
+      {"--title", {"", "t = {step}", "{"}},
+      {"--label", {"", "id == 1: Fe", "id == 1: Fe\nid == 5: O"}},
+      {"--scale-bar", {"", "auto", "1 nm"}},
+      {"--color-bar", {"", "on"}},
+      {"--perspective", {"", "30"}},
+      {"--center", {"", "type == 2"}},
+      {"--background", {"", "black", "#102030"}},
       {"--frame", {"", "2", "3", "4"}},
       {"--set", {"", "render.seed=7\nimage.overscan=0", "render.max_depth=3"}},
   };

@@ -4,21 +4,30 @@ import { alongAxis, centerOn, orbit, pan, roll, zoom } from "./camera.js";
 const $ = id => document.getElementById(id);
 const canvas = $("picture"), context = canvas.getContext("2d");
 
-// Options in the order of the page. Those that the server does not offer are not shown.
-const LABELS = {
-  "--color-by": "Colour by", "--map": "Colour map", "--range": "Range", "--select": "Select", "--slice": "Slice",
-  "--representation": "Representation", "--bonds": "Bonds", "--vectors": "Vectors", "--style": "Style", "--material": "Material",
-  "--opacity": "Opacity", "--radius-scale": "Radius scale", "--ground": "Ground", "--box": "Box", "--axes": "Axes", "--noise": "Noise",
-  "--samples": "Samples", "--denoise": "Denoise", "--set": "Settings",
+// Options in the order of the page, by heading. Those that the server does not offer are not shown.
+const GROUPS = {
+  "Data": {
+    "--color-by": "Colour by", "--map": "Colour map", "--range": "Range", "--select": "Select", "--slice": "Slice",
+    "--representation": "Representation", "--bonds": "Bonds", "--vectors": "Vectors", "--radius-scale": "Radius scale",
+  },
+  "Look": {
+    "--style": "Style", "--background": "Background", "--material": "Material", "--opacity": "Opacity",
+    "--ground": "Ground", "--box": "Box", "--axes": "Axes", "--outline": "Outline",
+  },
+  "Camera": { "--perspective": "Perspective", "--center": "Centre" },
+  "Annotation": { "--title": "Title", "--label": "Labels", "--scale-bar": "Scale bar", "--color-bar": "Colour bar" },
+  "Image": { "--quality": "Quality", "--noise": "Noise", "--samples": "Samples", "--denoise": "Denoise", "--set": "Settings" },
 };
 const HINTS = {
   "--range": "low:high", "--select": "type == 2 && z > 0", "--slice": "z=10", "--opacity": "0.3, or type == 2: 0.3", "--vectors": "vx,vy,vz",
-  "--radius-scale": "1", "--noise": "0.02",
+  "--radius-scale": "1", "--perspective": "degrees, such as 30", "--center": "id == 5", "--outline": "2",
+  "--title": "t = {step * 0.005:.1f} ps", "--label": "id == 5: Fe", "--scale-bar": "auto, or 2 nm", "--noise": "0.02",
   "--set": "key=value, one per line",
 };
 const SIZES = [[640, 360], [960, 540], [1280, 720], [1920, 1080], [800, 800]];
 const CHOICES = new Set(["--representation", "--style", "--material"]);  // of their values, and no others
-const MANY_LINES = new Set(["--set", "--slice", "--opacity"]);
+const MANY_LINES = new Set(["--set", "--slice", "--opacity", "--label"]);
+const FITTED = new Set(["--perspective", "--center"]);  // by the camera of the data, not by one that was moved
 const SETTLED_ms = 200;  // after the last step of the wheel or of a key
 const CLICK_px = 4;      // a click moves the pointer less
 const UNREACHABLE = "The program has ended, or cannot be reached.";
@@ -86,6 +95,9 @@ const current = () => camera ?? state?.camera;
 
 function setOption(name, value) {
   options = { ...options, [name]: value };
+  if (FITTED.has(name)) camera = null;
+  if (name === "--quality") for (const other of ["--noise", "--samples", "--denoise"]) delete options[other];
+  else if ((name === "--noise" || name === "--samples") && value !== "") delete options["--quality"];
   wish(true);  // a first image soon
   wish(false);
 }
@@ -156,7 +168,7 @@ async function showState() {
   }
   showProblem(state.problem);
   document.title = `${state.title} - orrery view`;
-  $("title").textContent = state.title;
+  $("file").textContent = state.title;
   $("command").value = state.command;
   $("film").hidden = state.film === "";
   if (state.activity) $("status").textContent = state.activity;
@@ -174,27 +186,38 @@ function element(tag, properties, ...children) {
   return out;
 }
 
+// Adds the control of an option by `row(id, label, ...fields)`.
+function addControl(name, label, row) {
+  const option = state.options[name];
+  const id = name.slice(2);
+  const isChoice = CHOICES.has(name);
+  const field = option.flag ? element("input", { id, type: "checkbox" })
+    : isChoice ? element("select", { id })
+    : MANY_LINES.has(name) ? element("textarea", { id, rows: 2, spellcheck: false })
+    : element("input", { id, type: "text", spellcheck: false });
+  field.placeholder = HINTS[name] ?? "";
+  field.addEventListener("change", () =>
+    setOption(name, option.flag ? (field.checked ? "on" : "") : field.value.trim()));
+  if (option.values.length > 0 && !isChoice) {
+    field.setAttribute("list", `${id}-values`);
+    row(id, label, element("div", {}, field, element("datalist", { id: `${id}-values` })));
+  } else {
+    row(id, label, field);
+  }
+}
+
 function makeControls() {
   const form = $("controls");
-  const row = (id, label, ...fields) => form.append(element("label", { htmlFor: id, textContent: label }), ...fields);
-  for (const [name, label] of Object.entries(LABELS)) {
-    const option = state.options[name];
-    if (!option) continue;
-    const id = name.slice(2);
-    const isChoice = CHOICES.has(name);
-    const field = option.flag ? element("input", { id, type: "checkbox" })
-      : isChoice ? element("select", { id })
-      : MANY_LINES.has(name) ? element("textarea", { id, rows: 2, spellcheck: false })
-      : element("input", { id, type: "text", spellcheck: false });
-    field.placeholder = HINTS[name] ?? "";
-    field.addEventListener("change", () =>
-      setOption(name, option.flag ? (field.checked ? "on" : "") : field.value.trim()));
-    if (option.values.length > 0 && !isChoice) {
-      field.setAttribute("list", `${id}-values`);
-      row(id, label, element("div", {}, field, element("datalist", { id: `${id}-values` })));
-    } else {
-      row(id, label, field);
-    }
+  let place = form;
+  const row = (id, label, ...fields) => place.append(element("label", { htmlFor: id, textContent: label }), ...fields);
+  for (const [heading, labels] of Object.entries(GROUPS)) {
+    const known = Object.entries(labels).filter(([name]) => state.options[name]);
+    if (known.length === 0) continue;
+    const isSet = known.some(([name]) => state.options[name].value !== "");
+    const open = isSet || heading === "Data" || heading === "Look" || !state.options["--style"];  // all, of a scene
+    place = element("div", { className: "fields" });
+    form.append(element("details", { open }, element("summary", { textContent: heading }), place));
+    for (const [name, label] of known) addControl(name, label, row);
   }
   if (state.options["--width"]) {
     const size = element("select", { id: "size" }, ...SIZES.map(([w, h]) =>
@@ -207,6 +230,8 @@ function makeControls() {
     row("size", "Size", size);
   }
   if (state.options["--frame"]) {
+    place = element("div", { className: "fields" });
+    form.append(place);
     const slider = element("input", { id: "frame", type: "range", min: 1, value: 1 });
     slider.addEventListener("input", () => {
       hold();
