@@ -84,8 +84,14 @@ say "./run.sh"
 # The default scene at a size that renders in seconds. The second call must have nothing left to build.
 in_root './run.sh render scenes/book/final.toml -o /tmp/final.exr -o /tmp/final.png -q \
   --set image.width=160 --set image.height=90 --set render.samples=16 && test -s /tmp/final.exr && test -s /tmp/final.png'
-say "./run.sh --version"
-in_root './run.sh --version'
+say "./run.sh --install"
+# To ~/.local, with a hint at the PATH; found by the manual and by fish; and without a hint once it is on the PATH.
+in_root './run.sh --install 2>&1 | tee /tmp/install.log && grep -qF "export PATH=\"/root/.local/bin:\$PATH\"" /tmp/install.log'
+in_root 'export PATH=/root/.local/bin:$PATH && cd / && orrery --version && orrery render /orrery/scenes/book/final.toml \
+  -o /tmp/installed.png -q --set image.width=160 --set image.height=90 --set render.samples=16 && test -s /tmp/installed.png &&
+  cd /root/.local/share && test -s man/man1/orrery.1 && test -s bash-completion/completions/orrery &&
+  test -s zsh/site-functions/_orrery && test -s fish/vendor_completions.d/orrery.fish && test ! -e /root/.local/include &&
+  ! /orrery/run.sh --install 2>&1 | grep PATH'
 
 if [ "$commands" = run ]; then
   say "done"
