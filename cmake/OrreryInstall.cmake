@@ -2,6 +2,7 @@
 # Installation, the package config for find_package(orrery), and the Debian packages of `cpack -G DEB`: orrery (the
 # program) and orrery-dev (the rooms as static libraries, with headers).
 include(CMakePackageConfigHelpers)
+include(OrreryHeaders)
 
 if(TARGET orrery)
   install(TARGETS orrery RUNTIME COMPONENT runtime)
@@ -43,11 +44,23 @@ if(ORRERY_PYTHON)
           EXCLUDE_FROM_ALL)
 endif()
 
+# The library: the public headers and what they include, and the rooms that they need.
+get_property(public GLOBAL PROPERTY ORRERY_PUBLIC)
+orrery_included_headers(headers ${PROJECT_SOURCE_DIR}/src ${public})
+foreach(header IN LISTS headers)
+  get_filename_component(room ${header} DIRECTORY)
+  install(FILES src/${header} DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/orrery/${room} COMPONENT development)
+endforeach()
+list(TRANSFORM public REPLACE "/.*" "")
+orrery_linked_rooms(rooms ${public})
+list(TRANSFORM rooms PREPEND orrery_)
+install(TARGETS ${rooms} EXPORT orrery ARCHIVE COMPONENT development)
+
 set(config_dir ${CMAKE_INSTALL_LIBDIR}/cmake/orrery)
 install(EXPORT orrery NAMESPACE orrery:: FILE orreryTargets.cmake DESTINATION ${config_dir} COMPONENT development)
 configure_package_config_file(cmake/orreryConfig.cmake.in ${PROJECT_BINARY_DIR}/orreryConfig.cmake
                               INSTALL_DESTINATION ${config_dir} NO_SET_AND_CHECK_MACRO)
-# Before 1.0 a minor version may change interfaces.
+# A minor version may change the interface of the library.
 write_basic_package_version_file(${PROJECT_BINARY_DIR}/orreryConfigVersion.cmake COMPATIBILITY SameMinorVersion)
 install(FILES ${PROJECT_BINARY_DIR}/orreryConfig.cmake ${PROJECT_BINARY_DIR}/orreryConfigVersion.cmake
               cmake/OrreryDependencies.cmake

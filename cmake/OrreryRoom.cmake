@@ -1,18 +1,17 @@
 # SPDX-License-Identifier: Apache-2.0
-include(OrreryHeaders)
 
 # orrery_room(<name> [DEPENDS <room>...] [LIBRARIES <third-party target>...] [FOREIGN <include prefix>...]
-#                    [EXPOSED_LIBRARIES <third-party target>...] [EXPOSED <include prefix>...])
+#                    [EXPOSED_LIBRARIES <third-party target>...] [EXPOSED <include prefix>...] [PUBLIC <header>...])
 #
 # Declares a room: one folder under src/, one target, one namespace.
 #
 # DEPENDS rooms that it may include. Drives linking and, through rooms.txt in the build folder, the test `layering`.
 # FOREIGN include prefixes of third-party libraries that only this room may include. A header that includes one is
-# internal: other rooms must not include it, and it is not installed. EXPOSED include prefixes that any header of the
-# room may include. LIBRARIES, EXPOSED_LIBRARIES the targets that provide FOREIGN and EXPOSED. DECLARED only declares
-# the room: it is no library and is not installed.
+# internal: other rooms must not include it. EXPOSED include prefixes that any header of the room may include. LIBRARIES,
+# EXPOSED_LIBRARIES the targets that provide FOREIGN and EXPOSED. PUBLIC headers for other projects: they are installed,
+# with the headers that they include and the rooms that they link. DECLARED only declares the room: it is no library.
 function(orrery_room name)
-  cmake_parse_arguments(PARSE_ARGV 1 ROOM "DECLARED" "" "DEPENDS;LIBRARIES;FOREIGN;EXPOSED_LIBRARIES;EXPOSED")
+  cmake_parse_arguments(PARSE_ARGV 1 ROOM "DECLARED" "" "DEPENDS;LIBRARIES;FOREIGN;EXPOSED_LIBRARIES;EXPOSED;PUBLIC")
   if(ROOM_UNPARSED_ARGUMENTS)
     message(FATAL_ERROR "orrery_room(${name}): unknown arguments: ${ROOM_UNPARSED_ARGUMENTS}")
   endif()
@@ -24,6 +23,9 @@ function(orrery_room name)
     return()
   endif()
   set_property(GLOBAL APPEND PROPERTY ORRERY_ROOMS "${name}")
+  set_property(GLOBAL APPEND PROPERTY ORRERY_FOREIGN ${ROOM_FOREIGN})
+  list(TRANSFORM ROOM_PUBLIC PREPEND ${name}/)
+  set_property(GLOBAL APPEND PROPERTY ORRERY_PUBLIC ${ROOM_PUBLIC})
   set(folder ${CMAKE_CURRENT_SOURCE_DIR}/${name})
   file(GLOB sources CONFIGURE_DEPENDS ${folder}/*.cpp)
   file(GLOB headers CONFIGURE_DEPENDS ${folder}/*.h)
@@ -50,18 +52,10 @@ function(orrery_room name)
   list(TRANSFORM ROOM_DEPENDS PREPEND orrery:: OUTPUT_VARIABLE rooms)
   target_link_libraries(${target} ${scope} ${rooms} ${ROOM_EXPOSED_LIBRARIES})
 
-  orrery_internal_headers(internal ${folder} ${ROOM_FOREIGN})
-  if(internal)
-    list(REMOVE_ITEM headers ${internal})
-  endif()
-  set_target_properties(${target} PROPERTIES EXPORT_NAME ${name})
-  install(TARGETS ${target} EXPORT orrery ARCHIVE COMPONENT development)
-  install(FILES ${headers} DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/orrery/${name} COMPONENT development)
-
+  set_target_properties(${target} PROPERTIES EXPORT_NAME ${name} ORRERY_DEPENDS "${ROOM_DEPENDS}")
 endfunction()
 
-# The compiler must not fuse operations: the source has explicit fused operations where they are wanted. Images are
-# therefore bit-identical, also in programs that instantiate the installed kernel source.
+# The compiler must not fuse operations: the source has explicit fused operations where they are wanted.
 set(ORRERY_ARITHMETIC -ffp-contract=off)
 
 # Minimum CPU requirements: rooms with Highway code start from this instruction set and dispatch to better ones at run

@@ -42,9 +42,9 @@ run(fields dpkg-deb --field ${rooms})
 must_match("the rooms' package" "${fields}" "Package: orrery-dev\n" "Depends: [^\n]*libembree-dev")
 run(files dpkg-deb --contents ${rooms})
 must_match("the rooms' package" "${files}" "/liborrery_render\\.a\n" "/include/orrery/render/render\\.h\n"
-           "/include/orrery/kernel/intersect-inl\\.h\n" "/cmake/orrery/orreryConfig\\.cmake\n")
-if(files MATCHES "toml_tree\\.h")
-  message(FATAL_ERROR "the rooms' package contains a header that includes a third-party library:\n${files}")
+           "/cmake/orrery/orreryConfig\\.cmake\n")
+if(files MATCHES "toml_tree\\.h|-inl\\.h|liborrery_cli")
+  message(FATAL_ERROR "the rooms' package contains internals:\n${files}")
 endif()
 
 # The Python package, if it is built: imported from the unpacked packages, it finds the modules of the program's package.
