@@ -1,10 +1,11 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: Apache-2.0
-# Runs the README's two commands as a new user would: in a minimal Debian root, from a fresh clone of HEAD.
+# Follows the instructions for new users: in a minimal Debian root, from a fresh clone of HEAD, ./run.sh and ./test.sh;
+# then the Debian packages, which are installed, used and removed in a second root that has nothing else.
 #
-#   tools/minimal-root.sh bookworm|trixie [run]
+#   tools/minimal-root.sh bookworm|trixie [run|packages]
 #
-# With `run` only ./run.sh is run, for a Debian release on which ./test.sh runs anyway.
+# With `run` only ./run.sh is run, for a Debian release on which ./test.sh runs anyway; `packages` leaves out ./test.sh.
 #
 # KEEP=1          keep the root and print its path
 # ORRERY_DEBS=DIR package cache, kept between runs
@@ -13,7 +14,7 @@
 # Exit status: 0 success; 77 this machine cannot create the root (the reason is printed); otherwise a command failed.
 set -euo pipefail
 suite=${1:?bookworm or trixie}
-commands=${2:-both}
+commands=${2:-all}
 repository=$(cd "$(dirname "${BASH_SOURCE[0]}")/.." && pwd)
 begin=$SECONDS
 
@@ -32,9 +33,12 @@ debs=${ORRERY_DEBS:-${TMPDIR:-/var/tmp}/orrery-debs}/$suite
 mkdir -p "$debs/partial"
 work=$(mktemp -d "${TMPDIR:-/var/tmp}/orrery-root.XXXXXX")
 root="$work/root"
+bare="$work/bare"
 cleanup() {
-  for mount in "$root/var/cache/apt/archives" "$root/var/cache/ccache" "$root/dev/shm" "$root/proc"; do
-    if mountpoint -q "$mount"; then umount "$mount" || umount -l "$mount"; fi
+  for folder in "$root" "$bare"; do
+    for mount in "$folder/var/cache/apt/archives" "$folder/var/cache/ccache" "$folder/dev/shm" "$folder/proc"; do
+      if mountpoint -q "$mount"; then umount "$mount" || umount -l "$mount"; fi
+    done
   done
   if [ -n "${KEEP:-}" ]; then
     say "kept in $root"
@@ -58,11 +62,16 @@ fi
 for file in /etc/apt/apt.conf.d/*proxy* /etc/resolv.conf; do
   if [ -f "$file" ]; then cp "$file" "$root$file"; fi
 done
-mount -t proc proc "$root/proc" 2>/dev/null || skip "proc cannot be mounted here"
-mount --bind "$debs" "$root/var/cache/apt/archives"
-# Test files go to /dev/shm, as on a running Debian; if this fails they go to the disk.
-mkdir -p "$root/dev/shm"
-mount -t tmpfs tmpfs "$root/dev/shm" 2>/dev/null || true
+if [ "$commands" != run ]; then cp -a "$root" "$bare"; fi
+# prepare FOLDER: mounts what a root needs.
+prepare() {
+  mount -t proc proc "$1/proc" 2>/dev/null || skip "proc cannot be mounted here"
+  mount --bind "$debs" "$1/var/cache/apt/archives"
+  # Test files go to /dev/shm, as on a running Debian; if this fails they go to the disk.
+  mkdir -p "$1/dev/shm"
+  mount -t tmpfs tmpfs "$1/dev/shm" 2>/dev/null || true
+}
+prepare "$root"
 
 # git refuses to read a checkout of another owner without this.
 HOME=$work git config --global --add safe.directory '*'
@@ -97,7 +106,21 @@ if [ "$commands" = run ]; then
   say "done"
   exit 0
 fi
-say "./test.sh"
-# Only tests that depend on versions of libraries and compilers; benchmarks and the long statistical ones do not.
-in_root "ORRERY_BENCH=OFF ./test.sh -LE 'slow|statistical|numeric|fuzz'"
+if [ "$commands" = all ]; then
+  say "./test.sh"
+  # Only tests that depend on versions of libraries and compilers; benchmarks and the long statistical ones do not.
+  in_root "ORRERY_BENCH=OFF ./test.sh -LE 'slow|statistical|numeric|fuzz'"
+fi
+
+say "tools/packages.sh"
+in_root 'tools/packages.sh /root/packages'
+say "lintian"
+in_root 'apt-get install -y -qq --no-install-recommends lintian >/root/lintian.log 2>&1 &&
+  lintian --fail-on error --no-tag-display-limit /root/packages/*.deb'
+say "packages in a bare root"
+prepare "$bare"
+mkdir "$bare/orrery"
+cp -r "$root/root/packages" "$root/orrery/tests/consumer" "$root/orrery/scenes" "$bare/orrery"
+chroot "$bare" env -i "${environment[@]}" /orrery/consumer/packages.sh /orrery/packages </dev/null
+
 say "done"

@@ -7,7 +7,7 @@
 
 namespace orrery::job {
 
-/// Version of the program, e.g. "0.1.0".
+/// Version of the program, e.g. "1.0.0".
 std::string program_version();
 
 /// Names and versions of all libraries that the program uses, except the command line's.

@@ -1,0 +1,39 @@
+#!/usr/bin/env bash
+# SPDX-License-Identifier: Apache-2.0
+# Builds the Debian packages orrery, liborrery-dev and python3-orrery of this checkout.
+#
+#   tools/packages.sh [FOLDER]    default: build/packages
+#
+# Packages of a commit that is not tagged with its version (v1.2.3) have a version that precedes the release
+# (1.2.3~git...). Dates are those of the commit: the packages of a commit are the same in every build on the same system
+# (tools/reproducible.sh).
+set -euo pipefail
+root=$(cd "$(dirname "${BASH_SOURCE[0]}")/.." && pwd)
+. "$root/tools/setup.sh"
+umask 022
+folder=$(realpath -m -- "${1:-$root/build/packages}")
+
+if [ -z "${SOURCE_DATE_EPOCH:-}" ]; then
+  SOURCE_DATE_EPOCH=$(git -C "$root" log -1 --format=%ct) || die "not a git checkout: set SOURCE_DATE_EPOCH"
+fi
+export SOURCE_DATE_EPOCH
+version=$(sed -n 's/^project(orrery VERSION \([0-9.]*\).*/\1/p' "$root/CMakeLists.txt")
+if [ "$(git -C "$root" describe --tags --exact-match 2>/dev/null)" != "v$version" ]; then
+  version+="~git$(date -u -d "@$SOURCE_DATE_EPOCH" +%Y%m%d.%H%M%S)"
+fi
+
+install_missing "$root/tools/packages-build.txt" "$root/tools/packages-debian.txt"
+# The build of test.sh serves as well.
+if ! grep -qs '^ORRERY_PYTHON:BOOL=ON' "$root/build/CMakeCache.txt"; then
+  configure -DBUILD_TESTING=OFF -DORRERY_PYTHON=ON
+fi
+cmake "$root/build" >"$root/build/configure.log" 2>&1 || die "CMake configuration failed, see build/configure.log"
+build 6 all
+rm -rf "$folder"
+if ! cpack -G DEB --config "$root/build/CPackConfig.cmake" -D "CPACK_PACKAGE_VERSION=$version" -B "$folder" \
+  >"$root/build/packages.log" 2>&1; then
+  show_log "$root/build/packages.log"
+  die "cpack failed"
+fi
+rm -rf "$folder/_CPack_Packages"
+ls "$folder"/*.deb
