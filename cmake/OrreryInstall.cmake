@@ -3,6 +3,14 @@
 include(CMakePackageConfigHelpers)
 include(OrreryHeaders)
 
+# In a wheel (pyproject.toml) the Python package is at the root, and all else is data, which pip installs to the prefix.
+if(SKBUILD)
+  foreach(folder IN ITEMS BINDIR LIBEXECDIR MANDIR DATADIR DOCDIR)
+    set(CMAKE_INSTALL_${folder} ${SKBUILD_DATA_DIR}/${CMAKE_INSTALL_${folder}})
+  endforeach()
+  set(ORRERY_PYTHON_INSTALL_DIR .)
+endif()
+
 if(TARGET orrery)
   install(TARGETS orrery RUNTIME COMPONENT runtime)
   install(TARGETS orrery_program orrery_http_module orrery_image_module orrery_formats_module

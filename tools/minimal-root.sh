@@ -1,7 +1,8 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: Apache-2.0
 # Follows the instructions for new users: in a minimal Debian root, from a fresh clone of HEAD, ./run.sh and ./test.sh;
-# then the Debian packages, which are installed, used and removed in a second root that has nothing else.
+# then the Debian packages, which are installed, used and removed in a second root that has nothing else, and, where
+# Debian has scikit-build-core, `pip install .`.
 #
 #   tools/minimal-root.sh bookworm|trixie [run|packages]
 #
@@ -123,4 +124,8 @@ mkdir "$bare/orrery"
 cp -r "$root/root/packages" "$root/orrery/tests/consumer" "$root/orrery/scenes" "$bare/orrery"
 chroot "$bare" env -i "${environment[@]}" /orrery/consumer/packages.sh /orrery/packages </dev/null
 
+if in_root 'apt-cache show python3-scikit-build-core' >/dev/null 2>&1; then
+  say "pip install ."
+  in_root tests/consumer/pip.sh
+fi
 say "done"
