@@ -27,6 +27,7 @@ if dpkg -L liborrery-dev | grep -E 'toml_tree\.h|-inl\.h|liborrery_cli'; then fa
 cmake -S "$here" -B build -G Ninja -DCMAKE_BUILD_TYPE=Release >cmake.log 2>&1 || { cat cmake.log; exit 1; }
 cmake --build build >build.log 2>&1 || { cat build.log; exit 1; }
 build/consumer
+python3 "$here/check_sbom.py" /usr
 
 apt-get purge -y -qq orrery python3-orrery liborrery-dev >/tmp/apt.log 2>&1
 left=$(find / -xdev -iname '*orrery*' -not -path '/orrery*' -not -path '/proc/*' -not -path '/tmp/*' -not -path '/root/.cache/*')

@@ -21,6 +21,7 @@ run(${WORK}/prefix/bin/orrery --version)
 file(GLOB python ${WORK}/prefix/lib/python3*/dist-packages)
 if(PYTHON)
   run(${CMAKE_COMMAND} -E env PYTHONPATH=${python} PYTHONDONTWRITEBYTECODE=1 ${PYTHON} ${SOURCE}/check_python.py ${WORK})
+  run(${PYTHON} ${SOURCE}/check_sbom.py ${WORK}/prefix)
 endif()
 
 # Installed files do not name the build folder.
