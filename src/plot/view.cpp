@@ -164,7 +164,10 @@ void look_at(Vec3d target, const ViewAxes& axes, scene::Camera& camera) {
 }
 
 void magnify(scene::Camera& camera, double zoom) {
-  if (camera.width) camera.width = *camera.width / zoom;
+  if (camera.width) {
+    camera.width = *camera.width / zoom;
+    return;
+  }
   constexpr double kHalfDegree = std::numbers::pi / 360;
   if (zoom != 1) camera.vfov = std::atan(std::tan(camera.vfov * kHalfDegree) / zoom) / kHalfDegree;
 }

@@ -797,6 +797,7 @@ TEST_F(PlotPlot, CenterAndZoomMoveTheCamera) {
       EXPECT_NEAR(std::tan(camera.vfov / 360 * 3.14159265358979) * 4, std::tan(15.0 / 180 * 3.14159265358979), 1e-9);
     } else {
       EXPECT_NEAR(*camera.width * 4, *all.width, 1e-9);
+      EXPECT_EQ(camera.vfov, scene::Camera().vfov) << "it would have no effect";
     }
   }
   options.center = "mass == 10";
