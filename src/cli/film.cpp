@@ -9,6 +9,7 @@
 #include <algorithm>
 #include <array>
 #include <cerrno>
+#include <cmath>
 #include <cstdio>
 #include <cstdlib>
 #include <cstring>
@@ -24,6 +25,7 @@
 #include "base/error.h"
 #include "base/file_name.h"
 #include "base/frames.h"
+#include "cli/options.h"
 
 namespace orrery::cli {
 namespace {
@@ -169,6 +171,16 @@ bool send_file(const Encoder& encoder, const fs::path& file) {
 }
 
 }  // namespace
+
+void FilmSettings::apply(SceneOptions& scene, plot::PlotOptions& plot) const {
+  if (fps != FilmSettings().fps) scene.set(fmt::format("animation.fps={}", fps));
+  if (turntable_s <= 0) return;
+  const int count = std::max(1, static_cast<int>(std::lround(turntable_s * fps)));
+  scene.set(fmt::format("animation.turntable={}", count));
+  if (plot.all_frames || !plot.frames.empty()) return;
+  for (int frame = 1; frame <= count; ++frame) plot.frames.push_back(frame);
+  if (!plot.points.frame) plot.points.frame = 1;
+}
 
 Film::Film(fs::path file, double fps, bool keeps_frames)
     : file_(std::move(file)), folder_(file_.string() + ".frames"), fps_(fps), keeps_frames_(keeps_frames) {

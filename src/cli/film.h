@@ -4,7 +4,20 @@
 #include <filesystem>
 #include <vector>
 
+#include "plot/plot.h"
+
 namespace orrery::cli {
+
+class SceneOptions;
+
+/// Speed of a film, and the orbit of its camera.
+struct FilmSettings {
+  double fps = 24;         ///< frames per second
+  double turntable_s = 0;  ///< duration of an orbit of the camera; 0: none
+
+  /// Adds these settings to a plot. A turntable of data without selected frames shows one of them during one orbit.
+  void apply(SceneOptions& scene, plot::PlotOptions& plot) const;
+};
 
 /// A film file, and its frames as PNG files in a folder next to it. The frames stay until the film is complete, so that
 /// a stopped command continues from them.

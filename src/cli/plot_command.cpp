@@ -46,7 +46,7 @@ struct PlotArguments {
   LookArguments look;
   std::filesystem::path save_scene, legend;
   bool force = false;
-  double fps = 24, turntable_s = 0;
+  FilmSettings film;
   bool keep_frames = false;
   std::vector<std::unique_ptr<Film>> films;
 };
@@ -57,18 +57,10 @@ void prepare_films(PlotArguments& arguments) {
   plot::PlotOptions& plot = arguments.plot;
   render.picture.rename([&](const std::filesystem::path& file) {
     if (!Film::is_film(file)) return file;
-    arguments.films.push_back(std::make_unique<Film>(file, arguments.fps, arguments.keep_frames));
+    arguments.films.push_back(std::make_unique<Film>(file, arguments.film.fps, arguments.keep_frames));
     return arguments.films.back()->frame_pattern();
   });
-  if (arguments.fps != PlotArguments().fps) render.scene.set(fmt::format("animation.fps={}", arguments.fps));
-  if (arguments.turntable_s > 0) {
-    const int count = std::max(1, static_cast<int>(std::lround(arguments.turntable_s * arguments.fps)));
-    render.scene.set(fmt::format("animation.turntable={}", count));
-    if (arguments.data.frames.empty()) {
-      for (int frame = 1; frame <= count; ++frame) plot.frames.push_back(frame);
-      if (!plot.points.frame) plot.points.frame = 1;
-    }
-  }
+  arguments.film.apply(render.scene, plot);
   if (arguments.films.empty()) return;
   const std::string film = arguments.films.front()->file().string();
   if (plot.frames.empty() && !plot.all_frames)
@@ -84,7 +76,7 @@ void write_films(const PlotArguments& arguments) {
     film->encode(arguments.render.batch.frames);
     if (!arguments.render.quiet)
       print_message(fmt::format("wrote {}: {} frames, {} frames per second\n", film->file().string(),
-                                arguments.render.batch.frames.size(), arguments.fps));
+                                arguments.render.batch.frames.size(), arguments.film.fps));
   }
 }
 
@@ -355,10 +347,10 @@ namespace {
 void add_film_options(Command& command, PlotArguments& arguments) {
   const OptionGroup group(command, "Film options, for -o FILE.mp4 and FILE.gif");
   command
-      .add_option("--turntable", arguments.turntable_s, "TIME",
+      .add_option("--turntable", arguments.film.turntable_s, "TIME",
                   "Orbit of the camera in this time, e.g. 4s; alone, of one frame of the file")
       ->transform(duration());
-  command.add_option("--fps", arguments.fps, "X", "Frames per second; default: 24")->check(real_number(0.1, 1000));
+  command.add_option("--fps", arguments.film.fps, "X", "Frames per second; default: 24")->check(real_number(0.1, 1000));
   command.add_flag("--keep-frames", arguments.keep_frames, "Keep the frames, in the folder FILE.frames")
       ->details("They are removed otherwise when the film is complete. A stopped command continues from them.");
 }

@@ -23,6 +23,7 @@
 #include "base/file_name.h"
 #include "base/text.h"
 #include "cli/commands.h"
+#include "cli/film.h"
 #include "cli/messages.h"
 #include "cli/render_options.h"
 #include "cli/run.h"
@@ -101,10 +102,12 @@ view::Subject scene_subject(const ShownOptions& shown) {
   return out;
 }
 
-view::Subject data_subject(ShownOptions& shown) {
+view::Subject data_subject(ShownOptions& shown, const FilmSettings* film = nullptr) {
   plot::PlotOptions& plot = shown.plot;
-  if (!shown.data.frames.empty()) base::refuse("--frames: the page has a slider; --frame N selects the first one");
+  if (!film && !shown.data.frames.empty())
+    base::refuse("--frames: the page has a slider; --frame N selects the first one");
   read_data_options(shown.data, plot);
+  if (film) film->apply(shown.scene, plot);
   read_look_options(shown.look, plot);
   plot.overrides = shown.scene.overrides();
   plot.scene_file = plot.file;
@@ -126,6 +129,7 @@ view::Subject data_subject(ShownOptions& shown) {
   for (const std::string& warning : made.warnings) out.notes.push_back("warning: " + warning);
   out.columns = made.columns;
   out.frame_count = made.frame_count;
+  out.frames = made.frames;
   const scene::PointsColor& color = made.points.color;
   out.chosen["--map"] = color.map;
   if (color.range)
@@ -146,7 +150,7 @@ view::Subject data_subject(ShownOptions& shown) {
 }  // namespace
 
 view::Subject data_subject(const std::string& file, std::vector<std::string> words, const job::Resources& resources,
-                           const points::OpenData& open) {
+                           const points::OpenData& open, const FilmSettings* film) {
   view::Subject out;
   ShownOptions shown;
   shown.job.resources = resources;
@@ -155,7 +159,7 @@ view::Subject data_subject(const std::string& file, std::vector<std::string> wor
       words, [&](Command& parsed) { shown.add_to(parsed); },
       [&] {
         shown.plot.open = open;
-        out = data_subject(shown);
+        out = data_subject(shown, film);
         out.job.scene.open_data = open;
       });
   return out;

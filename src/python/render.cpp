@@ -128,8 +128,8 @@ void deliver(const std::optional<render::Progress>& progress, const std::vector<
 
 }  // namespace
 
-Picture render(const std::function<job::Job()>& make_job, const py::object& on_progress, const py::object& on_warning) {
-  job::Rendering rendering;
+void run(const std::function<void(const job::Hooks&)>& work, const py::object& on_progress,
+         const py::object& on_warning) {
   Messages messages;
   std::atomic<bool> cancel{false};
   RenderEntry entry(cancel);
@@ -139,12 +139,11 @@ Picture render(const std::function<job::Job()>& make_job, const py::object& on_p
     std::thread worker([&] {
       try {
         const base::StopScope scope(&cancel);
-        job::Job job = make_job();
-        job.keep = &rendering;
-        job.hooks.cancel = &cancel;
-        job.hooks.on_progress = [&](const render::Progress& p) { messages.set_progress(p); };
-        job.hooks.on_warning = [&](const base::Diagnostic& d) { messages.add_warning(d); };
-        job::run_job(job);
+        job::Hooks hooks;
+        hooks.cancel = &cancel;
+        hooks.on_progress = [&](const render::Progress& p) { messages.set_progress(p); };
+        hooks.on_warning = [&](const base::Diagnostic& d) { messages.add_warning(d); };
+        work(hooks);
       } catch (...) {
         failure = std::current_exception();
       }
@@ -168,6 +167,17 @@ Picture render(const std::function<job::Job()>& make_job, const py::object& on_p
   }
   if (python_failure) std::rethrow_exception(python_failure);
   if (failure) std::rethrow_exception(failure);
+}
+
+Picture render(const std::function<job::Job()>& make_job, const py::object& on_progress, const py::object& on_warning) {
+  job::Rendering rendering;
+  const auto work = [&](const job::Hooks& hooks) {
+    job::Job job = make_job();
+    job.keep = &rendering;
+    job.hooks = hooks;
+    job::run_job(job);
+  };
+  run(work, on_progress, on_warning);
   const std::uint64_t paths = rendering.report.render.paths;
   if (!on_progress.is_none()) on_progress(1.0, paths, paths, rendering.report.render.render_s, "");
   if (!rendering.report.target_missed.empty()) on_warning(str_of(rendering.report.target_missed));

@@ -33,6 +33,7 @@ struct Subject {
   std::vector<std::string> columns = {};           ///< columns of a data file that can be colours
   std::map<std::string, std::string> chosen = {};  ///< values of controls that the data decided, by option
   std::optional<int> frame_count = 1;              ///< frames of a data file; empty: unknown
+  std::vector<int> frames = {};                    ///< to render, of a film
   std::string legend = {};                         ///< SVG; empty: none
 };
 

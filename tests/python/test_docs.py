@@ -31,7 +31,7 @@ class Examples(FolderTest):
                 exec(compile("\n" * (line + 1) + example[1], "docs/python.md", "exec"), names)
         for text in ("did you mean `vfov`", "Points(2000 rows: x, y, z)", "float32", "100%", "('Z', 'N')"):
             self.assertIn(text, out.getvalue())
-        for name in ("out.exr", "out.png", "saved.toml", "saved.positions-1.ply", "layers.exr"):
+        for name in ("out.exr", "out.png", "saved.toml", "saved.positions-1.ply", "layers.exr", "wave.gif", "turn.mp4"):
             self.assertTrue(os.path.exists(name), name)
 
 

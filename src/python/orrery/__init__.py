@@ -8,6 +8,7 @@
     scene.render(640, 360, noise=0.05).write("out.png")
 
     orrery.plot("melt.dump", color_by="speed").write("melt.png")
+    orrery.movie("pour.dump", "pour.mp4", color_by="speed")
 
 The keys of scenes, their units and their defaults are those of scene files (docs/scene-format.md).
 """
@@ -36,6 +37,7 @@ from orrery._keys import (
 )
 from orrery._orrery import color_map_names as _color_map_names
 from orrery._orrery import version as _version
+from orrery._movie import Movie, movie
 from orrery._picture import Picture
 from orrery._plot import plot
 from orrery._points import ColorMap, Points, colormap, read_points
@@ -55,6 +57,7 @@ __all__ = [
     "Lambertian",
     "Metal",
     "MissingInputError",
+    "Movie",
     "OutOfMemoryError",
     "OutputError",
     "Picture",
@@ -70,6 +73,7 @@ __all__ = [
     "color_maps",
     "colormap",
     "load",
+    "movie",
     "plot",
     "read_points",
 ]

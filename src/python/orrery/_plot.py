@@ -3,6 +3,7 @@
 
 from __future__ import annotations
 
+import os
 import warnings
 from collections.abc import Callable, Mapping
 from typing import Any
@@ -43,34 +44,55 @@ def plot(
     What was chosen from the data is in the picture's `notes`. Title, scale bar, color bar, labels and outlines are in the
     files that write() makes; `beauty` and to_srgb8() are without them.
     """
+    if "frames" in options:
+        raise TypeError("plot() renders one frame, frame=N; movie() renders several")
+    columns, options = _named(data, columns, options)
+    source = _source(data, columns, cell)
+    limits, report = _limits(threads, memory_limit, on_progress)
+    native, notes = _orrery.plot(source, _words(options), *limits, report, _warn)
+    return Picture(native, notes)
+
+
+def _limits(threads, memory_limit, on_progress):
+    """Returns threads and memory limit, and the function that receives progress, as the extension module takes them."""
     threads = 0 if threads is None else _arguments.whole("threads", threads, 1, 1024)
     memory = int(_limit("memory_limit", memory_limit, 1, 2**63))
     if on_progress is not None and not callable(on_progress):
         raise TypeError(f"on_progress is {on_progress!r}; must be a function")
-    table, own_box = _table(data)
-    options = dict(options)
-    if table is None:
-        if columns is not None or cell is not None:
-            raise TypeError("a file has its own columns and box; to change them, pass read_points(file)")
-        source = _arguments.path("data", data)
-    else:
-        rows = len(next(iter(table.values())))
-        arrays = {name: values for name, values in options.items() if name in _PER_PARTICLE and np.ndim(values) == 1}
-        for name, values in {**(columns or {}), **arrays}.items():
-            if name in table:
-                raise ValueError(f"there is a column {name!r} already")
-            table[_arguments.text("a name in columns", name)] = _arrays.column(values, name, rows)
-        options.update({name: name for name in arrays})
-        source = (_arrays.native(table), own_box if cell is None else _cell(cell))
 
     def report(*values):
         on_progress(Progress(*values))
 
-    def warn(text):
-        warnings.warn(text.rstrip("\n"), SceneWarning, stacklevel=3)
+    return (threads, memory), report if on_progress else None
 
-    native, notes = _orrery.plot(source, _words(options), threads, memory, report if on_progress else None, warn)
-    return Picture(native, notes)
+
+def _warn(text):
+    warnings.warn(text.rstrip("\n"), SceneWarning, stacklevel=4)
+
+
+def _named(data, columns, options):
+    """Returns the columns with the arrays among the options, and the options with the names of these columns."""
+    columns = dict(columns or {})
+    if not isinstance(data, (str, bytes, os.PathLike)):
+        arrays = {name: values for name, values in options.items() if name in _PER_PARTICLE and np.ndim(values) == 1}
+        columns.update(arrays)
+        options = {**options, **{name: name for name in arrays}}
+    return columns, options
+
+
+def _source(data, columns, cell):
+    """Returns the name of a file, or columns and box."""
+    table, own_box = _table(data)
+    if table is None:
+        if columns or cell is not None:
+            raise TypeError("a file has its own columns and box; to change them, pass read_points(file)")
+        return _arguments.path("data", data)
+    rows = len(next(iter(table.values())))
+    for name, values in columns.items():
+        if name in table:
+            raise ValueError(f"there is a column {name!r} already")
+        table[_arguments.text("a name in columns", name)] = _arrays.column(values, name, rows)
+    return _arrays.native(table), own_box if cell is None else _cell(cell)
 
 
 def _words(options):
