@@ -12,9 +12,12 @@ endfunction()
 run(${CMAKE_COMMAND} --install ${BUILD} --prefix ${WORK}/born)
 file(RENAME ${WORK}/born ${WORK}/prefix)
 run(${CMAKE_COMMAND} -S ${SOURCE} -B ${WORK}/build -G ${GENERATOR} -DCMAKE_PREFIX_PATH=${WORK}/prefix
-    -DCMAKE_CXX_COMPILER=${COMPILER} -DCMAKE_BUILD_TYPE=Release)
+    -DCMAKE_CXX_COMPILER=${COMPILER} -DCMAKE_BUILD_TYPE=Release -DEXAMPLE=${SOURCE}/../../examples/cpp)
 run(${CMAKE_COMMAND} --build ${WORK}/build)
 run(${WORK}/build/consumer)
+run(${WORK}/build/example/spiral ${WORK}/spiral.png)
+run(${WORK}/prefix/bin/orrery compare ${WORK}/spiral.png ${SOURCE}/../../examples/cpp/spiral.jpg --fail-above rmse=0.05)
+run(sh ${SOURCE}/stop.sh ${WORK}/build/example/spiral ${WORK}/endless.png)
 run(${WORK}/prefix/bin/orrery --version)
 
 # The Python package finds the modules of the program in the moved tree.
