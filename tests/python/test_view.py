@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The interactive view: the page of a scene, and the notebook that shows it."""
+"""The interactive view: the page of a scene."""
 
 import json
 import pathlib
@@ -9,7 +9,7 @@ import urllib.request
 
 import numpy as np
 import orrery
-from support import ROOT, FolderTest, positions, run, small_scene
+from support import FolderTest, positions, run, small_scene
 
 
 class Page:
@@ -104,15 +104,6 @@ class View(FolderTest):
             port = int(view.address.split(":")[2].split("/")[0])
             with self.assertRaises(orrery.OutputError):
                 small_scene(positions()).view(port=port)
-
-    def test_the_notebook_runs(self):
-        notebook = json.loads(pathlib.Path(ROOT, "docs/examples/view.ipynb").read_text(encoding="utf-8"))
-        names = {}
-        for cell in notebook["cells"]:
-            if cell["cell_type"] == "code":
-                exec("".join(cell["source"]), names)
-        self.assertIn("<p>The view is closed.</p>", names["view"]._repr_html_())
-        self.assertEqual(names["picture"].beauty.shape, (540, 960, 4))
 
 
 def eval_statements(text, scene):
