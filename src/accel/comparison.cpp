@@ -63,9 +63,8 @@ RTCRay one_ray(const Packet& packet, int lane) {
   return ray;
 }
 
-void trace_points(const void* self, void* memory) {
+void trace_points(const void* self, kernel::RayPacket<float>& packet) {
   const auto scene = static_cast<RTCScene>(const_cast<void*>(self));
-  auto& packet = *static_cast<kernel::RayPacket<float>*>(memory);
   EmbreeContext context;
   init(context);
   for (int i = 0; i < packet.count; ++i) {
@@ -80,9 +79,8 @@ void trace_points(const void* self, void* memory) {
 }
 
 /// Ignores `target`: without an id test, the maximum distance must exclude the light.
-void occlude_points(const void* self, void* memory) {
+void occlude_points(const void* self, kernel::ShadowPacket<float>& packet) {
   const auto scene = static_cast<RTCScene>(const_cast<void*>(self));
-  auto& packet = *static_cast<kernel::ShadowPacket<float>*>(memory);
   EmbreeContext context;
   init(context);
   for (int i = 0; i < packet.count; ++i) {
@@ -100,8 +98,8 @@ class NativePoints final : public Accel {
 
   kernel::Tracer tracer(Traversal) const noexcept override {
     kernel::Tracer t;
-    t.trace = trace_points;
-    t.occlude = occlude_points;
+    t.trace = kernel::query_each<kernel::RayPacket<float>, trace_points>;
+    t.occlude = kernel::query_each<kernel::ShadowPacket<float>, occlude_points>;
     t.self = scene_.get();
     return t;
   }

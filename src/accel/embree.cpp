@@ -188,7 +188,7 @@ class Embree final : public Accel {
     std::erase_if(ids, [&](std::uint32_t id) { return view.spheres[id].radius > limit; });
     if (threshold > 1 && rods < ids.size() && is_small_layer(view.spheres, ids)) return {};
     scene_.singles = std::move(giants);
-    scene_.has_bvh = true;
+    scene_.bvh = &bvh_;
     largest_in_bvh_ = limit;
     for (std::size_t i = view.rods.moving_count; i < view.rods.count; ++i)
       if (is_short(view.rods, i, limit)) ids.push_back(view.rods.id(i));
@@ -203,6 +203,7 @@ class Embree final : public Accel {
     const std::size_t rest = bvh_.empty() ? primitives - scene_.moving_primitives : scene_.singles.size();
     if (rest > 0) add_geometry(Content::kSpheres, rest, 1, &still, sphere_bounds);
     if (!bvh_.empty()) add_geometry(Content::kBvh, 1, 1, &bvh_, bvh_bounds);
+    scene_.is_bvh_alone = !bvh_.empty() && geometries_.size() == 1 && scene_.rod_pieces.empty();
     if (!scene_.rod_pieces.empty())
       add_geometry(Content::kRods, scene_.rod_pieces.size(), scene_.rods.moving_count > 0 ? 2 : 1, &still, rod_bounds);
     if (monitor)

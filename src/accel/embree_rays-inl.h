@@ -11,6 +11,7 @@
 
 #include <algorithm>
 #include <cstddef>
+#include <cstdint>
 #include <limits>
 
 #include "accel/embree_scene.h"
@@ -197,8 +198,8 @@ HWY_INLINE hn::Mask<D> mask_of(D d, unsigned lanes) {
 
 /// Calls f(i) for each bit i that is set, in ascending order.
 template <class F>
-HWY_INLINE void each_bit(unsigned bits, F f) {
-  for (; bits != 0; bits &= bits - 1) f(static_cast<int>(hwy::Num0BitsBelowLS1Bit_Nonzero32(bits)));
+HWY_INLINE void each_bit(std::uint64_t bits, F f) {
+  for (; bits != 0; bits &= bits - 1) f(static_cast<int>(hwy::Num0BitsBelowLS1Bit_Nonzero64(bits)));
 }
 
 /// Converts Embree's valid flags to a mask.

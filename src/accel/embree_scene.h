@@ -13,6 +13,8 @@
 
 namespace orrery::accel {
 
+class SphereBvh;
+
 /// A primitive of a rod: a part of its length. All parts of a rod are tested as the whole rod.
 struct RodPiece {
   std::uint32_t rod;
@@ -40,14 +42,16 @@ struct EmbreeScene {
   std::vector<std::uint32_t> duplicates;  ///< ascending ids of spheres that are never hit: their boxes are empty
   /// If there is a SphereBvh: ascending ids of the static spheres outside it, one primitive each.
   std::vector<std::uint32_t> singles;
-  bool has_bvh = false;  ///< the traversal is that of the SphereBvh; Embree receives packets
+  /// The traversal is that of this BVH; Embree receives packets. Null: there is none.
+  const SphereBvh* bvh = nullptr;
+  bool is_bvh_alone = false;  ///< Embree's scene has nothing else
   /// Whether Embree hands packets to its callbacks as they are. Otherwise, as with an Embree that was built or opened
   /// for narrower vectors than this program uses, it divides them, and even traces rays that are not valid.
   bool has_packets = false;
 
   /// Whether Embree receives packets, with this traversal.
   bool by_packets(Traversal traversal) const noexcept {
-    return has_packets && (has_bvh || traversal == Traversal::kPacket);
+    return has_packets && (bvh != nullptr || traversal == Traversal::kPacket);
   }
 
   /// The sphere of a primitive: ids count all spheres, primitives only those that are not outliers.
@@ -67,8 +71,7 @@ struct EmbreeQuery {
   const EmbreeScene* scene;
   Packet* packet;
   Traversal traversal;
-  int first;     ///< packet lane that corresponds to Embree's lane 0
-  int lane = 0;  ///< of a ray that is traced alone: its distance from the first lane of its register
+  int first;  ///< packet lane that corresponds to Embree's lane 0
   /// Distance by which each ray was advanced, indexed by Embree's lane, box space.
   alignas(64) typename Packet::Number start[kernel::kPacketSize];
 };

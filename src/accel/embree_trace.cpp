@@ -109,53 +109,20 @@ void at_rod(const Arguments* arguments) {
   test_all(query, *arguments, test);
 }
 
-/// A ray that Embree traverses alone, in its lane of an otherwise empty packet.
-template <class Packet>
-struct LoneRay {
-  EmbreeQuery<Packet> query;
-  EmbreeShadowRays rays{};
-  alignas(64) int valid[kWidth] = {};
-
-  LoneRay(const EmbreeQuery<Packet>& of_ray, RTCRayN* ray) : query(of_ray) {
-    const auto lane = static_cast<unsigned>(of_ray.lane);
-    query.first -= of_ray.lane;
-    query.start[lane] = of_ray.start[0];
-    rays.org_x[lane] = RTCRayN_org_x(ray, 1, 0);
-    rays.org_y[lane] = RTCRayN_org_y(ray, 1, 0);
-    rays.org_z[lane] = RTCRayN_org_z(ray, 1, 0);
-    rays.dir_x[lane] = RTCRayN_dir_x(ray, 1, 0);
-    rays.dir_y[lane] = RTCRayN_dir_y(ray, 1, 0);
-    rays.dir_z[lane] = RTCRayN_dir_z(ray, 1, 0);
-    rays.tfar[lane] = RTCRayN_tfar(ray, 1, 0);
-    valid[lane] = -1;
-  }
-};
-
-/// Embree's callback for a SphereBvh.
+/// Embree's callback for a SphereBvh. Rays that are traced each on their own have been through it: see trace().
 template <class Packet, kernel::Precision kPrecision, bool kOpacity, class Arguments>
 void at_bvh(const Arguments* arguments) {
   const auto& query = *reinterpret_cast<const EmbreeQuery<Packet>*>(arguments->context);
-  const auto& bvh = *static_cast<const SphereBvh*>(arguments->geometryUserPtr);
   RTCRayN* const rays = rays_of(*arguments);
-  float limits[kWidth];  // per lane, the distance beyond which nothing was searched
-  const auto traverse = [&](const EmbreeQuery<Packet>& all, const int* valid, RTCRayN* of_all) {
-    return all.traversal == Traversal::kSingle
-               ? traverse_by_rays<Packet, kPrecision, kOpacity>(bvh, all, valid, of_all, limits)
-               : PacketTraversal<Packet, kPrecision, kOpacity>(bvh, all, valid, of_all).trace(limits);
-  };
-  const bool is_alone = arguments->N == 1;
-  const unsigned first = is_alone ? static_cast<unsigned>(query.lane) : 0;
-  unsigned hits = 0;
-  if (is_alone) {
-    LoneRay<Packet> alone(query, rays);
-    hits = traverse(alone.query, alone.valid, reinterpret_cast<RTCRayN*>(&alone.rays));
-  } else {
-    hits = traverse(query, arguments->valid, rays);
-  }
+  unsigned hits = 0;  // lanes with a new hit, as bits
+  float limits[kWidth];
+  if (query.traversal == Traversal::kPacket)
+    hits =
+        PacketTraversal<Packet, kPrecision, kOpacity>(*query.scene->bvh, query, arguments->valid, rays).trace(limits);
   for (unsigned i = 0; i < arguments->N; ++i) {
-    const bool is_new = (hits >> (first + i) & 1u) != 0;
+    const bool is_new = (hits >> i & 1u) != 0;
     if (!Packet::kIsShadow) arguments->valid[i] = is_new ? -1 : 0;
-    if (is_new) RTCRayN_tfar(rays, arguments->N, i) = limits[first + i];
+    if (is_new) RTCRayN_tfar(rays, arguments->N, i) = limits[i];
   }
 }
 
@@ -171,7 +138,6 @@ HWY_INLINE void trace_one_by_one(const int* valid, const EmbreePacket<Packet>& r
     if (valid[i] == 0) continue;
     rays_of(ray) = one_ray(rays_of(rays), i);
     query.first = first + i;
-    query.lane = i;
     query.start[0] = start[i];
     accel::query(query.scene->scene, query.context, ray);
   }
@@ -209,18 +175,12 @@ HWY_NOINLINE void test_listed_rods(const EmbreeScene& scene, Packet& packet) {
   }
 }
 
-/// Traces a packet: the outliers, then Embree's scene.
-///
-/// `self`     ThreadTraversals
+/// Tests the spheres that are not in Embree's scene.
 template <class Packet, kernel::Precision kPrecision, bool kMoves, bool kOpacity>
-void trace(const void* self, void* memory) {
+HWY_INLINE void test_outliers(const EmbreeScene& scene, Packet& packet) {
   const hn::ScalableTag<typename Packet::Number> d;
   using D = std::remove_const_t<decltype(d)>;
   const k::IdTag<D> du;
-  const auto& traversals = *static_cast<const ThreadTraversals*>(self);
-  const auto& scene = *static_cast<const EmbreeScene*>(traversals.scene);
-  auto& packet = *static_cast<Packet*>(memory);
-  if constexpr (Packet::kIsShadow) std::fill_n(packet.occluded, kernel::kPacketSize, 0);
   for (int v = 0; !scene.outliers.empty() && v < packet.count; v += static_cast<int>(hn::Lanes(d))) {
     const auto ray = k::load_rays(d, packet, v);
     const auto lanes = hn::FirstN(d, static_cast<std::size_t>(packet.count - v));
@@ -233,17 +193,16 @@ void trace(const void* self, void* memory) {
     }
     found.store(d, packet, v);
   }
-  if (scene.listed_rods > 0) test_listed_rods<Packet, kPrecision, kMoves, kOpacity>(scene, packet);
-  if (scene.scene == nullptr) return;
+}
 
-  TraversalChoice& choice = choice_for(traversals, packet);
-  const bool is_timed = !choice.is_made();
-  const double begin = is_timed ? thread_seconds() : 0;
+/// Traces a packet through Embree's scene.
+template <class Packet, bool kMoves>
+HWY_INLINE void trace_embree(const EmbreeScene& scene, Traversal traversal, Packet& packet) {
   EmbreeQuery<Packet> query;
   init(query.context);
   query.scene = &scene;
   query.packet = &packet;
-  query.traversal = choice.next();
+  query.traversal = traversal;
   EmbreePacket<Packet> rays;
   set_constants(rays_of(rays));
   reset_hits(rays);
@@ -251,13 +210,42 @@ void trace(const void* self, void* memory) {
   for (int first = 0; first < packet.count; first += kWidth) {
     query.first = first;
     set_rays<kMoves>(query, rays_of(rays), valid);
-    if (scene.by_packets(query.traversal)) {
+    if (scene.by_packets(traversal)) {
       accel::query(valid, scene.scene, query.context, rays);
     } else {
       trace_one_by_one(valid, rays, query);
     }
   }
-  if (is_timed) choice.add(packet.count, thread_seconds() - begin);
+}
+
+/// Traces packets: the outliers, then Embree's scene. Rays that are traced each on their own go through the SphereBvh
+/// before, those of all packets at the same time.
+///
+/// `self`     ThreadTraversals
+template <class Packet, kernel::Precision kPrecision, bool kMoves, bool kOpacity>
+void trace(const void* self, void* memory, int count) {
+  const auto& traversals = *static_cast<const ThreadTraversals*>(self);
+  const auto& scene = *static_cast<const EmbreeScene*>(traversals.scene);
+  auto* const packets = static_cast<Packet*>(memory);
+  int rays = 0;
+  for (int i = 0; i < count; ++i) {
+    Packet& packet = packets[i];
+    rays += packet.count;
+    if constexpr (Packet::kIsShadow) std::fill_n(packet.occluded, kernel::kPacketSize, 0);
+    test_outliers<Packet, kPrecision, kMoves, kOpacity>(scene, packet);
+    if (scene.listed_rods > 0) test_listed_rods<Packet, kPrecision, kMoves, kOpacity>(scene, packet);
+  }
+  if (scene.scene == nullptr) return;
+
+  TraversalChoice& choice = choice_for(traversals, packets[0]);
+  const bool is_timed = !choice.is_made();
+  const double begin = is_timed ? thread_seconds() : 0;
+  const Traversal traversal = scene.has_packets ? choice.next() : Traversal::kSingle;
+  const bool by_rays = scene.bvh != nullptr && traversal == Traversal::kSingle;
+  if (by_rays) trace_by_rays<Packet, kPrecision, kOpacity>(scene, packets, count);
+  for (int i = 0; i < count && !(by_rays && scene.is_bvh_alone); ++i)
+    trace_embree<Packet, kMoves>(scene, traversal, packets[i]);
+  if (is_timed) choice.add(count, rays, thread_seconds() - begin);
 }
 
 template <kernel::Precision kPrecision, bool kMoves, bool kOpacity>

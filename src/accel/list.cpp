@@ -38,14 +38,13 @@ namespace hn = hwy::HWY_NAMESPACE;
 
 /// Traces each ray of a packet, or tests it for occlusion, by a loop over all spheres, then all rods.
 template <class Packet, kernel::Precision kPrecision, bool kMoves>
-void trace_list(const void* self, void* memory) {
+void trace_list(const void* self, Packet& packet) {
   namespace k = kernel::HWY_NAMESPACE;
   using T = typename Packet::Number;
   using Id = typename Packet::Id;
   using D = hn::FixedTag<T, 1>;
   const D d;
   const auto& [scene, duplicates] = *static_cast<const DistinctSpheres*>(self);
-  auto& packet = *static_cast<Packet*>(memory);
   if constexpr (Packet::kIsShadow) std::fill_n(packet.occluded, kernel::kPacketSize, Id{0});
   for (int i = 0; i < packet.count; ++i) {
     const auto ray = k::load_rays(d, packet, i);
@@ -103,8 +102,10 @@ template <kernel::Precision kPrecision, bool kMoves>
 kernel::Tracer list_instance() {
   using T = std::conditional_t<kPrecision == kernel::Precision::kFast, float, double>;
   kernel::Tracer t;
-  t.trace = trace_list<kernel::RayPacket<T>, kPrecision, kMoves>;
-  t.occlude = trace_list<kernel::ShadowPacket<T>, kPrecision, kMoves>;
+  using Rays = kernel::RayPacket<T>;
+  using ShadowRays = kernel::ShadowPacket<T>;
+  t.trace = kernel::query_each<Rays, trace_list<Rays, kPrecision, kMoves>>;
+  t.occlude = kernel::query_each<ShadowRays, trace_list<ShadowRays, kPrecision, kMoves>>;
   t.target = HWY_TARGET;
   return t;
 }

@@ -112,6 +112,8 @@ struct alignas(64) SingleRay {
   // Vectors of four, of which the last is 0.
   float origin[4], direction[4], inverse[4];
   float limit;            ///< distance beyond which nothing is searched
+  std::uint32_t target;   ///< shadow rays: a sphere that is never hit
+  std::uint32_t key;      ///< decides which objects are visible; only if the scene has opacities
   std::uint32_t near[3];  ///< per axis: offset in Node::bound of the bounds at which the ray enters boxes
   std::uint32_t subtree;  ///< the node below which everything has been visited once the stack is empty
   unsigned subtree_level;
@@ -232,10 +234,9 @@ HWY_INLINE AtRod<hn::Vec<ChildTag>> at_rods(const SphereBvh& bvh, std::uint32_t 
 
 /// Determines the spheres of a leaf that a ray may hit before its limit.
 ///
-/// `target`    a sphere that is never hit
-/// Result      whether there are any
+/// Result     whether there are any
 template <bool kShadows>
-HWY_INLINE bool test_spheres(const SphereBvh& bvh, std::uint32_t index, std::uint32_t target, SingleRay& ray) {
+HWY_INLINE bool test_spheres(const SphereBvh& bvh, std::uint32_t index, SingleRay& ray) {
   const ChildTag d;
   const SphereBvh::Leaf& leaf = bvh.leaves[index];
   const auto set3 = [&](float x, float y, float z) {
@@ -247,7 +248,7 @@ HWY_INLINE bool test_spheres(const SphereBvh& bvh, std::uint32_t index, std::uin
   const auto origin =
       set3(leaf.origin[0] - ray.origin[0], leaf.origin[1] - ray.origin[1], leaf.origin[2] - ray.origin[2]);
   const hn::RebindToUnsigned<ChildTag> du;
-  const auto is_target = [&](int v) { return hn::RebindMask(d, hn::LoadU(du, leaf.ids + v) == target); };
+  const auto is_target = [&](int v) { return hn::RebindMask(d, hn::LoadU(du, leaf.ids + v) == ray.target); };
   const bool is_last = index == bvh.last_leaf;
   const bool has_rods = bvh.has_rods_in(index);
   bool any = false;
@@ -273,8 +274,7 @@ HWY_INLINE bool test_spheres(const SphereBvh& bvh, std::uint32_t index, std::uin
 ///
 /// `opacity`  of each sphere
 /// Result     whether any are left
-inline bool keep_visible(const SphereBvh& bvh, std::uint32_t index, std::uint32_t key, const float* opacity,
-                         SingleRay& ray) {
+inline bool keep_visible(const SphereBvh& bvh, std::uint32_t index, const float* opacity, SingleRay& ray) {
   const ChildTag d;
   const k::KeyTag<ChildTag> d32;
   const SphereBvh::Leaf& leaf = bvh.leaves[index];
@@ -286,7 +286,7 @@ inline bool keep_visible(const SphereBvh& bvh, std::uint32_t index, std::uint32_
     alignas(64) float opacities[kChildLanes] = {};
     const unsigned rods = bvh.has_rods_in(index) ? bvh.rods[index].rods >> v : 0;
     each_bit(bits_of(d, hit), [&](int i) { opacities[i] = (rods >> i & 1u) != 0 ? 1 : opacity[leaf.ids[v + i]]; });
-    hit = hn::And(hit, k::are_visible(d, hn::Set(d32, key), hn::LoadU(d32, leaf.ids + v), hn::Load(d, opacities)));
+    hit = hn::And(hit, k::are_visible(d, hn::Set(d32, ray.key), hn::LoadU(d32, leaf.ids + v), hn::Load(d, opacities)));
     hn::Store(select(hit, offset_square, infinite), d, ray.offset_square + v);
     any |= !hn::AllFalse(d, hit);
   }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Traversal of a SphereBvh by single rays, those of a packet interleaved. Compiled once per instruction set.
+// Traversal of a SphereBvh by single rays, those of some packets interleaved. Compiled once per instruction set.
 #if defined(ORRERY_ACCEL_RAY_TRAVERSAL_INL_H_) == defined(HWY_TARGET_TOGGLE)
 #ifdef ORRERY_ACCEL_RAY_TRAVERSAL_INL_H_
 #undef ORRERY_ACCEL_RAY_TRAVERSAL_INL_H_
@@ -14,6 +14,7 @@
 #include <cstdint>
 #include <limits>
 #include <type_traits>
+#include <utility>
 
 #include "accel/ray_steps-inl.h"
 #include "kernel/gather_spheres-inl.h"
@@ -45,10 +46,8 @@ HWY_INLINE bool order_candidates(SingleRay& ray) {
 }
 
 /// Intersects the candidates of rays, which are lanes of the query, and stores the results in the packet.
-///
-/// Result     lanes with a new hit, as bits
 template <class Packet, kernel::Precision kPrecision, bool kOpacity>
-HWY_INLINE unsigned intersect_candidates(const EmbreeQuery<Packet>& query, unsigned lanes, SingleRay* rays) {
+HWY_INLINE void intersect_candidates(const EmbreeQuery<Packet>& query, unsigned lanes, SingleRay* rays) {
   using Id = typename Packet::Id;
   const hn::ScalableTag<typename Packet::Number> d;
   using D = std::remove_const_t<decltype(d)>;
@@ -57,7 +56,7 @@ HWY_INLINE unsigned intersect_candidates(const EmbreeQuery<Packet>& query, unsig
   Packet& packet = *query.packet;
   const EmbreeScene& scene = *query.scene;
   const kernel::RodArray& rods = scene.rods;
-  unsigned changed = 0, waiting = 0;
+  unsigned waiting = 0;
   each_bit(lanes, [&](int i) { waiting |= order_candidates(rays[i]) ? 1u << i : 0u; });
   for (int v = 0; v < kWidth; v += kStep) {
     unsigned rest = waiting & (((1u << kStep) - 1u) << v);
@@ -109,66 +108,62 @@ HWY_INLINE unsigned intersect_candidates(const EmbreeQuery<Packet>& query, unsig
       store_float(d, found.limit(d, query, v), limits);
       each_bit(hits, [&](int i) { rays[v + i].limit = limits[i]; });
       if (Packet::kIsShadow) rest &= ~(hits << v);
-      changed |= hits << v;
     }
     found.store(d, packet, first);
   }
-  return changed;
 }
+
+/// The rays of a query of packets, one for each bit of a word.
+constexpr int kMostRays = kernel::kPacketsInFlight * kernel::kPacketSize;
+static_assert(kMostRays <= 64 && kMostRays % kWidth == 0);
 
 /// Traces rays through the tree in rounds of one step per ray, so that the memory latency of one ray is hidden by the
 /// others. Candidate spheres are intersected at the end.
 ///
-/// `lanes`    lanes of the query that have a ray, as bits
-/// Result     lanes with a new hit, as bits
+/// `queries`  kWidth rays each
+/// `lanes`    which rays there are, as bits
 template <class Packet, kernel::Precision kPrecision, bool kOpacity>
-HWY_INLINE unsigned trace_rays(const SphereBvh& bvh, const EmbreeQuery<Packet>& query, unsigned lanes,
-                               SingleRay* rays) {
-  const EmbreeScene& scene = *query.scene;
+HWY_INLINE void trace_rays(const SphereBvh& bvh, const EmbreeQuery<Packet>* queries, std::uint64_t lanes,
+                           SingleRay* rays) {
+  const EmbreeScene& scene = *queries->scene;
   const Prefetcher prefetcher(bvh, scene);
-  // Rays grouped by the kind of what they visit next: kWidth bits per kind.
-  std::uint64_t queue = 0;
-  constexpr std::uint64_t kOneKind = (std::uint64_t{1} << 16) - 1;
-  static_assert(kWidth <= 16 && kKinds <= 4);
+  std::uint64_t queues[kKinds] = {};  // rays by the kind of what they visit next
   const auto enqueue = [&](int i) {
     SingleRay& ray = rays[i];
     std::size_t waiting = ray.waiting;
     while (ray.enter[waiting - 1] > ray.limit) --waiting;
     ray.waiting = waiting;
     const std::uint32_t next = ray.what[waiting - 1];
-    queue |= std::uint64_t{1} << ((next >> kIndexWidth) * 16 + static_cast<unsigned>(i));
+    queues[next >> kIndexWidth] |= std::uint64_t{1} << i;
     prefetcher.prefetch(next);
   };
-  const auto push = [&](unsigned visiting) {
+  const auto push = [&](std::uint64_t visiting) {
     each_bit(visiting, [&](int i) { push_children(rays[i]); });
     each_bit(visiting, enqueue);
   };
-  const auto take = [&](Kind kind) {
-    const auto bits = static_cast<unsigned>(queue >> (kind * 16) & kOneKind);
-    queue &= ~(kOneKind << (kind * 16));
-    return bits;
+  const auto intersect_all = [&] {
+    for (int i = 0; i < kMostRays; i += kWidth) {
+      const auto of_query = static_cast<unsigned>(lanes >> i) & ((1u << kWidth) - 1u);
+      if (of_query != 0) intersect_candidates<Packet, kPrecision, kOpacity>(queries[i / kWidth], of_query, rays + i);
+    }
   };
   each_bit(lanes, enqueue);
-  unsigned changed = 0;
   // Each kind of step is divided into passes over the rays, arithmetic without branches first: a mispredicted branch
   // would discard the arithmetic of the next rays, which is already in flight.
-  while (queue != 0) {
-    const unsigned at_nodes = take(kNode);
+  while ((queues[kNode] | queues[kLeaf] | queues[kEnd]) != 0) {
+    const std::uint64_t at_nodes = std::exchange(queues[kNode], 0);
     each_bit(at_nodes, [&](int i) { test_children(bvh.nodes[rays[i].what[--rays[i].waiting]], rays[i]); });
     push(at_nodes);
 
-    const unsigned at_leaves = take(kLeaf);
+    const std::uint64_t at_leaves = std::exchange(queues[kLeaf], 0);
     bool full = false;
-    unsigned found = 0;
+    std::uint64_t found = 0;
     each_bit(at_leaves, [&](int i) {
       SingleRay& ray = rays[i];
-      std::uint32_t target = kernel::kNoSphere;
-      if constexpr (Packet::kIsShadow) target = static_cast<std::uint32_t>(query.packet->target[query.first + i]);
       const std::uint32_t leaf = ray.what[--ray.waiting] & kIndexMask;
-      bool any = test_spheres<Packet::kIsShadow>(bvh, leaf, target, ray);
-      if constexpr (kOpacity)
-        any = any && keep_visible(bvh, leaf, query.packet->key[query.first + i], scene.opacity, ray);
-      found |= static_cast<unsigned>(any) << i;
+      bool any = test_spheres<Packet::kIsShadow>(bvh, leaf, ray);
+      if constexpr (kOpacity) any = any && keep_visible(bvh, leaf, scene.opacity, ray);
+      found |= std::uint64_t{any} << i;
     });
     each_bit(found, [&](int i) {
       SingleRay& ray = rays[i];
@@ -178,39 +173,34 @@ HWY_INLINE unsigned trace_rays(const SphereBvh& bvh, const EmbreeQuery<Packet>& 
     });
     each_bit(at_leaves, enqueue);
 
-    unsigned climbing = take(kEnd);
-    each_bit(climbing, [&](int i) { climbing &= ~(static_cast<unsigned>(is_done(bvh, rays[i])) << i); });
+    std::uint64_t climbing = std::exchange(queues[kEnd], 0);
+    each_bit(climbing, [&](int i) { climbing &= ~(std::uint64_t{is_done(bvh, rays[i])} << i); });
     each_bit(climbing, [&](int i) { climb(bvh, rays[i]); });
     push(climbing);
-    if (full) changed |= intersect_candidates<Packet, kPrecision, kOpacity>(query, lanes, rays);
+    if (full) intersect_all();
   }
-  return changed | intersect_candidates<Packet, kPrecision, kOpacity>(query, lanes, rays);
+  intersect_all();
 }
 
-/// Traces the valid rays of Embree's packet.
+/// Starts the rays of a query.
 ///
-/// `limits`   out: per lane, the distance beyond which nothing was searched
-/// Result     lanes with a new hit, as bits
-template <class Packet, kernel::Precision kPrecision, bool kOpacity>
-HWY_INLINE unsigned traverse_by_rays(const SphereBvh& bvh, const EmbreeQuery<Packet>& query, const int* valid,
-                                     RTCRayN* rays, float (&limits)[kWidth]) {
+/// `rays`     out: one per lane
+/// Result     lanes that have a ray, as bits
+template <bool kOpacity, class Packet>
+HWY_INLINE unsigned start_rays(const SphereBvh& bvh, EmbreeQuery<Packet>& query, SingleRay* rays) {
   const hn::ScalableTag<float> d;
   const hn::RebindToUnsigned<decltype(d)> du;
-  SingleRay states[kWidth];
-  const auto self = [&](int i) {
-    return query.scene->rods.object(static_cast<std::uint32_t>(query.packet->self[query.first + i]));
-  };
-  for (int i = 0; i < kWidth; ++i)
-    hwy::Prefetch(bvh.start_nodes.address(self(i) < bvh.start_nodes.size() ? self(i) : 0));
-  const float* const origin[3] = {&RTCRayN_org_x(rays, kWidth, 0), &RTCRayN_org_y(rays, kWidth, 0),
-                                  &RTCRayN_org_z(rays, kWidth, 0)};
-  const float* const direction[3] = {&RTCRayN_dir_x(rays, kWidth, 0), &RTCRayN_dir_y(rays, kWidth, 0),
-                                     &RTCRayN_dir_z(rays, kWidth, 0)};
-  const float* const limit = &RTCRayN_tfar(rays, kWidth, 0);
+  const Packet& packet = *query.packet;
+  EmbreeShadowRays embree;
+  alignas(64) int valid[kWidth];
+  set_rays<false>(query, embree, valid);  // the BVH has no moving spheres
+  const float *const origin[3] = {embree.org_x, embree.org_y, embree.org_z}, *const direction[3] = {embree.dir_x,
+                                                                                                    embree.dir_y,
+                                                                                                    embree.dir_z};
   alignas(64) float inverse[3][kWidth];
   alignas(64) std::uint32_t near[3][kWidth];
   for (int k = 0; k < 3; ++k) {
-    const auto x = hn::LoadU(d, direction[k]);
+    const auto x = hn::Load(d, direction[k]);
     const auto one_over = 1.0F / hn::CopySign(max(hn::Abs(x), kSmallestDirection), x);
     hn::Store(one_over, d, inverse[k]);
     hn::Store(hn::IfThenElseZero(hn::RebindMask(du, one_over < 0), hn::Set(du, kOtherSide)), du, near[k]);
@@ -218,7 +208,8 @@ HWY_INLINE unsigned traverse_by_rays(const SphereBvh& bvh, const EmbreeQuery<Pac
   unsigned lanes = 0;
   for (int i = 0; i < kWidth; ++i) lanes |= valid[i] != 0 ? 1u << i : 0u;
   each_bit(lanes, [&](int i) {
-    SingleRay& ray = states[i];
+    SingleRay& ray = rays[i];
+    const int lane = query.first + i;
     for (int k = 0; k < 3; ++k) {
       ray.origin[k] = origin[k][i];
       ray.direction[k] = direction[k][i];
@@ -226,21 +217,45 @@ HWY_INLINE unsigned traverse_by_rays(const SphereBvh& bvh, const EmbreeQuery<Pac
       ray.near[k] = near[k][i];
     }
     ray.origin[3] = ray.direction[3] = ray.inverse[3] = 0;
-    ray.limit = limit[i];
+    ray.limit = embree.tfar[i];
+    if constexpr (Packet::kIsShadow) ray.target = static_cast<std::uint32_t>(packet.target[lane]);
+    if constexpr (kOpacity) ray.key = packet.key[lane];
     ray.candidates = 0;
     ray.candidate[0] = 0;
     ray.enter[0] = -std::numeric_limits<float>::infinity();  // never beyond the limit
     ray.what[0] = kEndOfStack;
     ray.enter[1] = 0;
-    ray.subtree = bvh.start_node(self(i));
+    ray.subtree = bvh.start_node(query.scene->rods.object(static_cast<std::uint32_t>(packet.self[lane])));
     ray.subtree_level = 0;
     if (ray.subtree == kernel::kNoSphere) ray.subtree = bvh.root();
     ray.what[1] = ray.subtree;
     ray.waiting = 2;
   });
-  const unsigned hits = trace_rays<Packet, kPrecision, kOpacity>(bvh, query, lanes, states);
-  each_bit(lanes, [&](int i) { limits[i] = states[i].limit; });
-  return hits;
+  return lanes;
+}
+
+/// Traces the rays of packets, each on its own.
+template <class Packet, kernel::Precision kPrecision, bool kOpacity>
+HWY_NOINLINE void trace_by_rays(const EmbreeScene& scene, Packet* packets, int count) {
+  const SphereBvh& bvh = *scene.bvh;
+  const std::size_t objects = bvh.start_nodes.size();
+  for (int p = 0; p < count; ++p) {
+    for (int i = 0; i < packets[p].count; ++i) {
+      const std::size_t self = scene.rods.object(static_cast<std::uint32_t>(packets[p].self[i]));
+      hwy::Prefetch(bvh.start_nodes.address(self < objects ? self : 0));
+    }
+  }
+  EmbreeQuery<Packet> queries[kMostRays / kWidth];
+  SingleRay rays[kMostRays];
+  std::uint64_t lanes = 0;
+  for (int i = 0; i < count * kernel::kPacketSize; i += kWidth) {
+    EmbreeQuery<Packet>& query = queries[i / kWidth];
+    query.scene = &scene;
+    query.packet = packets + i / kernel::kPacketSize;
+    query.first = i % kernel::kPacketSize;
+    lanes |= std::uint64_t{start_rays<kOpacity>(bvh, query, rays + i)} << i;
+  }
+  trace_rays<Packet, kPrecision, kOpacity>(bvh, queries, lanes, rays);
 }
 
 }  // namespace orrery::accel::HWY_NAMESPACE

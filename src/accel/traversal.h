@@ -11,23 +11,24 @@ enum class Traversal : std::uint8_t {
   kSingle,  ///< each ray separately
 };
 
-/// The traversal of one thread's rays of one kind: the faster one. The first packets alternate between the traversals
+/// The traversal of one thread's rays of one kind: the faster one. The first queries alternate between the traversals
 /// and are timed.
 class TraversalChoice {
  public:
-  /// `packets`  number of packets that are timed
+  /// `packets`  number of packets that are timed, at least
   explicit TraversalChoice(int packets) noexcept : packets_left_(packets) {}
   /// Chosen without measurements.
   explicit TraversalChoice(Traversal traversal) noexcept : next_(traversal) {}
 
-  bool is_made() const noexcept { return packets_left_ == 0; }
-  /// The traversal of the next packet.
+  bool is_made() const noexcept { return packets_left_ <= 0; }
+  /// The traversal of the next query.
   Traversal next() const noexcept { return next_; }
-  /// Adds the measurement of a packet that was traced by next().
-  void add(int rays, double seconds) noexcept {
+  /// Adds the measurement of a query whose packets were traced by next().
+  void add(int packets, int rays, double seconds) noexcept {
     measured_[index(next_)].rays += rays;
     measured_[index(next_)].seconds += seconds;
-    next_ = --packets_left_ > 0 ? (next_ == Traversal::kPacket ? Traversal::kSingle : Traversal::kPacket) : faster();
+    packets_left_ -= packets;
+    next_ = is_made() ? faster() : next_ == Traversal::kPacket ? Traversal::kSingle : Traversal::kPacket;
   }
 
  private:

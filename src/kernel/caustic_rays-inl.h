@@ -42,7 +42,7 @@ class ChainTracer {
 
  public:
   HWY_INLINE ChainTracer(const SceneView& scene, const Tile& tile, PathStreamOf<T>& stream)
-      : scene_(scene), tile_(tile), packet_(stream.packet), lit_(stream.lit), chains_(stream.lit.chains) {}
+      : scene_(scene), tile_(tile), packet_(stream.lit.chains.packet), lit_(stream.lit), chains_(stream.lit.chains) {}
 
   /// Traces the last packet of the waiting rays. Those that have reached their light add it to their paths, and those
   /// that the ball reflects or transmits wait again.
@@ -53,7 +53,7 @@ class ChainTracer {
     const int first = chains_.count - count;
     load(first, count);
     reset_hits(packet_);
-    tracer.trace(tracer.self, &packet_);
+    kernel::trace(tracer, packet_);
     // Rays that go on overwrite rays that have been read.
     chains_.count = first;
     for (int v = 0; v < count; v += static_cast<int>(hn::Lanes(d))) follow(first, v);

@@ -216,19 +216,14 @@ HWY_NOINLINE LightSample<D> sample_light(D d, const SceneView& scene, const Vert
           select(ids, sky.group, lamp.group)};
 }
 
-/// Traces the last packet of shadow rays in the stream and adds the unoccluded light to its paths.
-template <class D, bool kRecords, class Lit>
-HWY_INLINE void trace_shadow_packet(D d, const SceneView& scene, const Tracer& tracer, const Tile& tile, Lit& lit,
-                                    TileCounts& counts) {
-  using Id = hn::TFromD<IdTag<D>>;
+/// Fills a packet with `count` waiting shadow rays from `first` on.
+template <class D, class Shadow, class Packet>
+HWY_INLINE void load_shadow_rays(D d, const SceneView& scene, const Shadow& shadow, int first, int count,
+                                 Packet& packet) {
   const IdTag<D> du;
-  auto& shadow = lit.shadow;
-  auto& packet = shadow.packet;
-  packet.count = std::min(shadow.count, kPacketSize);
-  shadow.count -= packet.count;
-  const int step = static_cast<int>(hn::Lanes(d));
-  for (int v = 0; v < packet.count; v += step) {
-    const int i = shadow.count + v;
+  packet.count = count;
+  for (int v = 0; v < count; v += static_cast<int>(hn::Lanes(d))) {
+    const int i = first + v;
     const auto base = loadu3(d, shadow.base, i), offset = loadu3(d, shadow.offset, i);
     const auto direction = loadu3(d, shadow.direction, i);
     const auto origin = base + offset;
@@ -243,10 +238,17 @@ HWY_INLINE void trace_shadow_packet(D d, const SceneView& scene, const Tracer& t
     if (scene.features.motion) hn::Store(hn::LoadU(d, shadow.time + i), d, packet.time + v);
     if (scene.features.opacity) store_keys(d, hn::LoadU(du, shadow.key + i), packet.key + v);
   }
-  counts.rays += static_cast<std::uint64_t>(packet.count);
-  tracer.occlude(tracer.self, &packet);
-  for (int v = 0; v < packet.count; v += step) {
-    const int i = shadow.count + v;
+}
+
+/// Adds the light of the unoccluded rays of a packet, the waiting ones from `first` on, to their paths.
+template <class D, bool kRecords, class Packet, class Lit>
+HWY_INLINE void add_unoccluded(D d, const SceneView& scene, const Tile& tile, const Packet& packet, int first,
+                               Lit& lit) {
+  using Id = hn::TFromD<IdTag<D>>;
+  const IdTag<D> du;
+  const auto& shadow = lit.shadow;
+  for (int v = 0; v < packet.count; v += static_cast<int>(hn::Lanes(d))) {
+    const int i = first + v;
     const auto active = hn::FirstN(d, static_cast<std::size_t>(packet.count - v));
     const auto is_free = hn::RebindMask(d, hn::Load(du, packet.occluded + v) == 0);
     const auto lanes = hn::And(active, is_free);
@@ -272,6 +274,26 @@ HWY_INLINE void trace_shadow_packet(D d, const SceneView& scene, const Tracer& t
       record.event(d, in_coat, coat, hn::LoadU(du, shadow.coat_history + i), group, unscattered);
     }
   }
+}
+
+/// Traces the last batch of the waiting shadow rays.
+template <class D, bool kRecords, class Lit>
+HWY_INLINE void trace_shadow_batch(D d, const SceneView& scene, const Tracer& tracer, const Tile& tile, Lit& lit,
+                                   TileCounts& counts) {
+  auto& shadow = lit.shadow;
+  const int batch = std::min(shadow.count, shadow.kBatch);
+  shadow.count -= batch;
+  counts.rays += static_cast<std::uint64_t>(batch);
+  const auto each_packet = [&](auto what) {
+    for (int i = 0; i * kPacketSize < batch; ++i) what(shadow.packets[i], i * kPacketSize);
+  };
+  each_packet([&](auto& packet, int begin) {
+    load_shadow_rays(d, scene, shadow, shadow.count + begin, std::min(kPacketSize, batch - begin), packet);
+  });
+  occlude(tracer, shadow.packets, (batch + kPacketSize - 1) / kPacketSize);
+  each_packet([&](const auto& packet, int begin) {
+    add_unoccluded<D, kRecords>(d, scene, tile, packet, shadow.count + begin, lit);
+  });
 }
 
 }  // namespace orrery::kernel::HWY_NAMESPACE

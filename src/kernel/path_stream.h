@@ -11,13 +11,14 @@ namespace orrery::kernel {
 /// Number of paths in a stream: enough to fill packets at deep bounces, few enough to stay in the cache.
 inline constexpr int kStreamSize = 1024;
 
-/// Shadow rays that wait until they fill a packet, and the light that they carry if they are not occluded.
+/// Shadow rays that wait until they fill packets, and the light that they carry if they are not occluded.
 ///
 /// The arrays are padded, because whole vectors are stored at their ends.
 template <class T>
 struct alignas(64) ShadowStreamOf {
   using Id = IdOf<T>;
-  static constexpr int kCapacity = 3 * kPacketSize;
+  /// Rays that wait for a query, and those that a packet of paths adds to them.
+  static constexpr int kBatch = kPacketsInFlight * kPacketSize, kCapacity = kBatch + 2 * kPacketSize;
   T base[3][kCapacity];        ///< centre of the sphere that the ray leaves
   T offset[3][kCapacity];      ///< from that centre to the ray's origin
   T direction[3][kCapacity];   ///< to the light; of any length
@@ -33,7 +34,7 @@ struct alignas(64) ShadowStreamOf {
   T coat[3][kCapacity];        ///< part of `light` that a coat scatters; only if the history has kCoatBit
   Id coat_history[kCapacity];  ///< history of that part
   int count = 0;
-  ShadowPacket<T> packet;  ///< the rays being traced
+  ShadowPacket<T> packets[kPacketsInFlight];  ///< the rays being traced
 };
 
 /// Diffuse vertices at which light by way of balls is sampled, until they fill vectors; see caustic_light-inl.h.
@@ -77,6 +78,7 @@ struct alignas(64) ChainStreamOf {
   Id history[kCapacity];      ///< only in loops that record paths
   Id group[kCapacity];        ///< light group; only in loops that record paths
   int count = 0;
+  RayPacket<T> packet;  ///< the rays being traced
 };
 
 /// State of paths that gain radiance at their vertices.
@@ -112,10 +114,10 @@ struct alignas(64) PathStreamOf {
   Id self[kCapacity];          ///< sphere that the ray leaves
   Id pixel[kCapacity];         ///< y << 16 | x
   Id sample[kCapacity];
-  Id history[kCapacity];  ///< only in loops that record paths; see record-inl.h
-  RayPacket<T> packet;    ///< the rays being traced
-  LitPathsOf<T> lit;      ///< only in full loops
-  T cone[3][kCapacity];   ///< only in full loops, if the scene has ray cones; see cone-inl.h
+  Id history[kCapacity];                   ///< only in loops that record paths; see record-inl.h
+  RayPacket<T> packets[kPacketsInFlight];  ///< the rays being traced
+  LitPathsOf<T> lit;                       ///< only in full loops
+  T cone[3][kCapacity];                    ///< only in full loops, if the scene has ray cones; see cone-inl.h
 };
 
 /// Memory for the paths of a tile, in any precision.

@@ -13,6 +13,9 @@ namespace orrery::kernel {
 /// Rays per packet: the number of floats in a 512-bit register.
 inline constexpr int kPacketSize = 16;
 
+/// Most packets of a query. While a ray waits for memory, the others go on.
+inline constexpr int kPacketsInFlight = 4;
+
 /// Unsigned integers for ids, as wide as T so that masks fit both.
 template <class T>
 using IdOf = std::conditional_t<sizeof(T) == 8, std::uint64_t, std::uint32_t>;
@@ -53,30 +56,44 @@ struct ShadowPacket : PacketRays<T> {
   IdOf<T> occluded[kPacketSize];            ///< out: all bits set if a sphere is hit in 0 < t < distance, else 0
 };
 
-/// How the kernel queries the scene, in one precision. Neither query's results depend on the order of traversal: of two
-/// closest hits the smaller distance wins, then the smaller id, and occlusion is an OR over all spheres. Objects that
-/// are not visible to a ray (SceneView::opacity) are not there.
+/// How the kernel queries the scene, in one precision. Queries take an array of packets. Their results do not depend on
+/// the order of traversal: of two closest hits the smaller distance wins, then the smaller id, and occlusion is an OR
+/// over all spheres. Objects that are not visible to a ray (SceneView::opacity) are not there.
 struct Tracer {
-  void (*trace)(const void* self, void* ray_packet) = nullptr;
-  void (*occlude)(const void* self, void* shadow_packet) = nullptr;
+  void (*trace)(const void* self, void* ray_packets, int count) = nullptr;
+  void (*occlude)(const void* self, void* shadow_packets, int count) = nullptr;
   const void* self = nullptr;
   std::int64_t target = 0;  ///< instruction set that the functions were compiled for, HWY_AVX2 etc.; 0: unknown
 };
 
-/// Finds the closest hits of a packet.
+/// Finds the closest hits of `count` packets.
 ///
-/// Domain     T is the number type of the tracer's precision
+/// Domain     T is the number type of the tracer's precision; 1 <= count <= kPacketsInFlight
+template <class T>
+inline void trace(const Tracer& tracer, RayPacket<T>* packets, int count) {
+  tracer.trace(tracer.self, packets, count);
+}
 template <class T>
 inline void trace(const Tracer& tracer, RayPacket<T>& packet) {
-  tracer.trace(tracer.self, &packet);
+  trace(tracer, &packet, 1);
 }
 
-/// Determines which rays of a packet are occluded.
+/// Determines which rays of `count` packets are occluded.
 ///
-/// Domain     T is the number type of the tracer's precision
+/// Domain     as for trace()
+template <class T>
+inline void occlude(const Tracer& tracer, ShadowPacket<T>* packets, int count) {
+  tracer.occlude(tracer.self, packets, count);
+}
 template <class T>
 inline void occlude(const Tracer& tracer, ShadowPacket<T>& packet) {
-  tracer.occlude(tracer.self, &packet);
+  occlude(tracer, &packet, 1);
+}
+
+/// A query of a Tracer, from a function for one packet.
+template <class Packet, void (*kQuery)(const void* self, Packet& packet)>
+void query_each(const void* self, void* packets, int count) {
+  for (int i = 0; i < count; ++i) kQuery(self, static_cast<Packet*>(packets)[i]);
 }
 
 /// Resets all rays of a packet to no hit, with an unlimited maximum distance.

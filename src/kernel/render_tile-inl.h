@@ -98,12 +98,11 @@ HWY_INLINE void load_camera_rays(D d, const SceneView& scene, PathCounter& count
 }
 
 /// Fills the packet with the next rays of the stream's paths first .. first + count, which are at a vertex.
-template <class D, Loop kLoop, class Stream, class Carried>
-HWY_INLINE void load_secondary_rays(D d, const SceneView& scene, Stream& stream, std::uint32_t vertex, int first,
-                                    int count, Carried& carried) {
+template <class D, Loop kLoop, class Stream, class Packet, class Carried>
+HWY_INLINE void load_secondary_rays(D d, const SceneView& scene, const Stream& stream, std::uint32_t vertex, int first,
+                                    int count, Packet& packet, Carried& carried) {
   const Features features = features_of<kLoop>(scene);
   const IdTag<D> du;
-  auto& packet = stream.packet;
   packet.count = count;
   for (int v = 0; v < count; v += static_cast<int>(hn::Lanes(d))) {
     const int i = first + v;
@@ -138,7 +137,7 @@ TileCounts render_tile(const SceneView& scene, const Tracer& tracer, const Tile&
   const D d;
   using T = hn::TFromD<D>;
   auto& stream = memory.as<T>();
-  PathPayload<T> carried;
+  PathPayload<T> carried[kPacketsInFlight];
   TileCounts counts;
   counts.target = HWY_TARGET;
   const std::int64_t weight = scene.filter.weight(tile.sample_begin, tile.sample_end);
@@ -153,7 +152,7 @@ TileCounts render_tile(const SceneView& scene, const Tracer& tracer, const Tile&
   auto& shadow = stream.lit.shadow;
   const auto trace_shadows = [&](int waiting) {
     if (kLoop.full && shadow.count >= waiting)
-      trace_shadow_packet<D, kLoop.records>(d, scene, tracer, tile, stream.lit, counts);
+      trace_shadow_batch<D, kLoop.records>(d, scene, tracer, tile, stream.lit, counts);
   };
   // After the shadow rays of the same vertices, so that a path's light is summed in the same order in every batch.
   const auto trace_caustics = [&](std::uint32_t depth, int waiting, int fewest) {
@@ -162,39 +161,45 @@ TileCounts render_tile(const SceneView& scene, const Tracer& tracer, const Tile&
     sample_caustics<D, kLoop.records>(scene, stream.lit, sampled_chains(scene, depth));
     trace_chains<D, kLoop.precision, kLoop.records>(scene, tracer, tile, stream, fewest, counts);
   };
-  const auto trace_and_shade = [&](std::uint32_t depth, int alive) {
-    reset_hits(stream.packet);
-    counts.rays += static_cast<std::uint64_t>(stream.packet.count);
-    tracer.trace(tracer.self, &stream.packet);
-    alive = Shader<D, kLoop>(scene, tile, depth, stream, counts).shade(carried, alive);
-    trace_shadows(kPacketSize);
-    trace_caustics(depth, CausticVerticesOf<T>::kBatch, kPacketSize);
+  const auto trace_and_shade = [&](std::uint32_t depth, int packets, int alive) {
+    for (int i = 0; i < packets; ++i) {
+      reset_hits(stream.packets[i]);
+      counts.rays += static_cast<std::uint64_t>(stream.packets[i].count);
+    }
+    kernel::trace(tracer, stream.packets, packets);
+    for (int i = 0; i < packets; ++i) {
+      alive = Shader<D, kLoop>(scene, tile, depth, stream, counts).shade(stream.packets[i], carried[i], alive);
+      trace_shadows(shadow.kBatch);
+      trace_caustics(depth, CausticVerticesOf<T>::kBatch, kPacketSize);
+    }
+    return alive;
+  };
+  // Survivors overwrite paths that have already been read, because a packet never grows.
+  const auto advance = [&](std::uint32_t depth, int count, auto load) {
+    int alive = 0, loaded = 0;
+    for (int i = 0; i < count; i += kPacketSize) {
+      load(i, std::min(kPacketSize, count - i), stream.packets[loaded], carried[loaded]);
+      if (++loaded < kPacketsInFlight && i + kPacketSize < count) continue;
+      alive = trace_and_shade(depth, loaded, alive);
+      loaded = 0;
+    }
+    // Shadow rays do not wait for the next depth, so that a path's light is summed in the same order in every batch.
+    trace_shadows(1);
+    trace_caustics(depth, 0, 1);
     return alive;
   };
   shadow.count = stream.lit.vertices.count = stream.lit.chains.count = 0;
   while (to_start > 0) {
     const int batch = static_cast<int>(std::min<std::uint64_t>(to_start, kStreamSize));
     to_start -= static_cast<std::uint64_t>(batch);
-    int alive = 0;
-    for (int i = 0; i < batch; i += kPacketSize) {
-      load_camera_rays<D, kLoop>(d, scene, counter, std::min(kPacketSize, batch - i), stream.packet, carried);
-      if (kLoop.full) begin_paths(d, i, carried, stream.lit);
-      alive = trace_and_shade(0, alive);
-    }
-    // Shadow rays do not wait for the next depth, so that a path's light is summed in the same order in every batch.
-    trace_shadows(1);
-    trace_caustics(0, 0, 1);
-    for (std::uint32_t depth = 1; alive > 0; ++depth) {
-      // Survivors overwrite paths that have already been read, because a packet never grows.
-      int survivors = 0;
-      for (int i = 0; i < alive; i += kPacketSize) {
-        load_secondary_rays<D, kLoop>(d, scene, stream, depth, i, std::min(kPacketSize, alive - i), carried);
-        survivors = trace_and_shade(depth, survivors);
-      }
-      alive = survivors;
-      trace_shadows(1);
-      trace_caustics(depth, 0, 1);
-    }
+    int alive = advance(0, batch, [&](int first, int count, auto& packet, auto& payload) {
+      load_camera_rays<D, kLoop>(d, scene, counter, count, packet, payload);
+      if (kLoop.full) begin_paths(d, first, payload, stream.lit);
+    });
+    for (std::uint32_t depth = 1; alive > 0; ++depth)
+      alive = advance(depth, alive, [&](int first, int count, auto& packet, auto& payload) {
+        load_secondary_rays<D, kLoop>(d, scene, stream, depth, first, count, packet, payload);
+      });
     if (kLoop.full) deposit_paths<D, kLoop.records>(d, batch, scene, tile, stream.lit, counts);
   }
   return counts;

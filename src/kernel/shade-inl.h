@@ -118,7 +118,8 @@ HWY_NOINLINE void record_first_hit(D d, const SceneView& scene, const Tile& tile
 
 template <class D, Loop kLoop>
 int shade_plastic(const SceneView& scene, const Tile& tile, std::uint32_t depth, PathStreamOf<hn::TFromD<D>>& stream,
-                  TileCounts& counts, const PathPayload<hn::TFromD<D>>& carried, int v, int alive);
+                  TileCounts& counts, const RayPacket<hn::TFromD<D>>& packet, const PathPayload<hn::TFromD<D>>& carried,
+                  int v, int alive);
 
 /// Shades traced packets of one depth.
 template <class D, Loop kLoop>
@@ -141,10 +142,10 @@ class Shader {
   /// in `stream.lit`) and appends the surviving paths to the stream.
   ///
   /// Result     number of paths in the stream; `alive` is their number before the call
-  HWY_INLINE int shade(const PathPayload<T>& carried, int alive) {
+  HWY_INLINE int shade(const RayPacket<T>& packet, const PathPayload<T>& carried, int alive) {
     const bool ends = scene_.shading == Shading::kPath && depth_ + 1 >= scene_.max_depth;
-    for (int v = 0; v < stream_.packet.count; v += static_cast<int>(hn::Lanes(d))) {
-      const Arrivals<D> at = arrive(carried, v);
+    for (int v = 0; v < packet.count; v += static_cast<int>(hn::Lanes(d))) {
+      const Arrivals<D> at = arrive(packet, carried, v);
       if (!hn::AllFalse(d, at.missed)) leave(at);
       if (hn::AllFalse(d, at.hit)) continue;
       if (features_.lit) emit(at);
@@ -160,7 +161,7 @@ class Shader {
       if constexpr (kLoop.full) {
         const auto plastic = is_kind(d, look.surface.kind, MaterialKind::kPlastic);
         if (features_.extended && !hn::AllFalse(d, plastic)) {
-          alive += shade_plastic<D, kLoop>(scene_, tile_, depth_, stream_, counts_, carried, v, alive);
+          alive += shade_plastic<D, kLoop>(scene_, tile_, depth_, stream_, counts_, packet, carried, v, alive);
           continue;
         }
       }
@@ -170,8 +171,8 @@ class Shader {
   }
 
   /// Samples lights and BSDFs at the hits of a vector in which a lane hit plastic; see shade_plastic().
-  HWY_INLINE int sample_plastic_hits(const PathPayload<T>& carried, int v, int alive) {
-    const Arrivals<D> at = arrive(carried, v);
+  HWY_INLINE int sample_plastic_hits(const RayPacket<T>& packet, const PathPayload<T>& carried, int v, int alive) {
+    const Arrivals<D> at = arrive(packet, carried, v);
     Lookup<D> look = surface(at);
     return scatter_and_light(at, look, at.throughput * look.albedo, alive);
   }
@@ -188,8 +189,7 @@ class Shader {
   static constexpr IdTag<D> du{};
 
   /// Loads a vector of rays and paths.
-  HWY_INLINE Arrivals<D> arrive(const PathPayload<T>& carried, int v) const {
-    const auto& packet = stream_.packet;
+  HWY_INLINE Arrivals<D> arrive(const RayPacket<T>& packet, const PathPayload<T>& carried, int v) const {
     Arrivals<D> at;
     const auto active = hn::FirstN(d, static_cast<std::size_t>(packet.count - v));
     at.hits = hn::Load(du, packet.hit + v);
@@ -517,9 +517,10 @@ class Shader {
 template <class D, Loop kLoop>
 HWY_NOINLINE int shade_plastic(const SceneView& scene, const Tile& tile, std::uint32_t depth,
                                PathStreamOf<hn::TFromD<D>>& stream, TileCounts& counts,
-                               const PathPayload<hn::TFromD<D>>& carried, int v, int alive) {
+                               const RayPacket<hn::TFromD<D>>& packet, const PathPayload<hn::TFromD<D>>& carried, int v,
+                               int alive) {
   constexpr Loop kPlastic{kLoop.precision, kLoop.records, kLoop.full, true};
-  return Shader<D, kPlastic>(scene, tile, depth, stream, counts).sample_plastic_hits(carried, v, alive);
+  return Shader<D, kPlastic>(scene, tile, depth, stream, counts).sample_plastic_hits(packet, carried, v, alive);
 }
 
 }  // namespace orrery::kernel::HWY_NAMESPACE

@@ -20,16 +20,17 @@ struct Recorder {
   RecordedRays<T> rays;
 
   // The kernel passes `self` as const, but a recorder changes.
-  static void trace(const void* self, void* memory) {
+  static void trace(const void* self, void* memory, int count) {
     auto& recorder = *static_cast<Recorder*>(const_cast<void*>(self));
-    const auto& packet = *static_cast<kernel::RayPacket<T>*>(memory);
-    recorder.tracer.trace(recorder.tracer.self, memory);
-    const bool from_camera = packet.self[0] == kernel::kNoSphere;
-    (from_camera ? recorder.rays.camera : recorder.rays.secondary).push_back(packet);
+    auto* const packets = static_cast<kernel::RayPacket<T>*>(memory);
+    kernel::trace(recorder.tracer, packets, count);
+    const bool from_camera = packets->self[0] == kernel::kNoSphere;
+    auto& traced = from_camera ? recorder.rays.camera : recorder.rays.secondary;
+    traced.insert(traced.end(), packets, packets + count);
   }
-  static void occlude(const void* self, void* memory) {
+  static void occlude(const void* self, void* memory, int count) {
     const kernel::Tracer& tracer = static_cast<const Recorder*>(self)->tracer;
-    tracer.occlude(tracer.self, memory);
+    tracer.occlude(tracer.self, memory, count);
   }
 };
 

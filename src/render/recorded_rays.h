@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <algorithm>
 #include <chrono>
+#include <cstddef>
 #include <cstdint>
 #include <vector>
 
@@ -36,9 +38,11 @@ RecordedRays<T> record_rays(const kernel::SceneView& view, const accel::Accel& a
 template <class T>
 double trace_again(const kernel::Tracer& tracer, std::vector<kernel::RayPacket<T>>& packets) {
   const auto begin = std::chrono::steady_clock::now();
-  for (kernel::RayPacket<T>& packet : packets) {
-    kernel::reset_hits(packet);
-    kernel::trace(tracer, packet);
+  constexpr std::size_t kMost = kernel::kPacketsInFlight;
+  for (std::size_t i = 0; i < packets.size(); i += kMost) {
+    const std::size_t count = std::min(kMost, packets.size() - i);
+    for (std::size_t k = i; k < i + count; ++k) kernel::reset_hits(packets[k]);
+    kernel::trace(tracer, &packets[i], static_cast<int>(count));
   }
   return std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
 }

@@ -25,6 +25,7 @@ namespace orrery::accel {
 namespace {
 
 using kernel::kNoSphere;
+using kernel::kPacketsInFlight;
 using kernel::kPacketSize;
 using kernel::Sphere;
 using test::aim;
@@ -56,24 +57,28 @@ Differences differences(const Scene& scene, const Way& way, long ray_count) {
   const auto list = make_list(view, kernel::Precision::kExact), other = way.make(view, kernel::Precision::kExact);
   Random random;
   Differences found;
-  for (; found.rays < ray_count; found.rays += kPacketSize) {
-    kernel::RayPacket<double> a;
-    a.count = kPacketSize;
-    for (int lane = 0; lane < kPacketSize; ++lane) {
-      aim(random, scene, a, lane);
-      // Distant and near origins in one packet are advanced by different lengths.
-      if (random.uniform(0, 1) < 0.05) step_back(random, scene, a, lane);
-      a.distance[lane] = std::numeric_limits<double>::max();
-      a.hit[lane] = kNoSphere;
+  for (int count = 1; found.rays < ray_count; count = count % kPacketsInFlight + 1) {
+    kernel::RayPacket<double> a[kPacketsInFlight], b[kPacketsInFlight];
+    for (int p = 0; p < count; ++p) {
+      a[p].count = p == 1 ? kPacketSize - 5 : kPacketSize;  // one is not full
+      for (int lane = 0; lane < kPacketSize; ++lane) {
+        aim(random, scene, a[p], lane);
+        // Distant and near origins in one packet are advanced by different lengths.
+        if (random.uniform(0, 1) < 0.05) step_back(random, scene, a[p], lane);
+      }
+      reset_hits(a[p]);
+      b[p] = a[p];
     }
-    kernel::RayPacket<double> b = a;
-    kernel::trace(list->tracer(), a);
-    kernel::trace(other->tracer(way.traversal), b);
-    for (int lane = 0; lane < kPacketSize; ++lane) {
-      const bool hit = a.hit[lane] != kNoSphere;
-      found.hits += hit;
-      found.lost += hit && b.hit[lane] == kNoSphere;
-      found.different += a.hit[lane] != b.hit[lane] || (hit && a.distance[lane] != b.distance[lane]);
+    kernel::trace(list->tracer(), a, count);
+    kernel::trace(other->tracer(way.traversal), b, count);
+    for (int p = 0; p < count; ++p) {
+      found.rays += a[p].count;
+      for (int lane = 0; lane < kPacketSize; ++lane) {
+        const bool hit = a[p].hit[lane] != kNoSphere;
+        found.hits += hit;
+        found.lost += hit && b[p].hit[lane] == kNoSphere;
+        found.different += a[p].hit[lane] != b[p].hit[lane] || (hit && a[p].distance[lane] != b[p].distance[lane]);
+      }
     }
   }
   return found;

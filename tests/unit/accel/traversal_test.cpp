@@ -11,7 +11,7 @@ Traversal chosen(double packet_s, double single_s) {
   TraversalChoice choice(10);
   for (int i = 0; !choice.is_made(); ++i) {
     const int rays = 1 + 3 * i % 16;  // packets are not equally full
-    choice.add(rays, rays * (choice.next() == Traversal::kPacket ? packet_s : single_s));
+    choice.add(1, rays, rays * (choice.next() == Traversal::kPacket ? packet_s : single_s));
   }
   return choice.next();
 }
@@ -22,15 +22,15 @@ TEST(AccelTraversal, TheFasterOneIsChosen) {
 }
 
 TEST(AccelTraversal, BothAreMeasuredInTurns) {
-  TraversalChoice choice(4);
-  int packets = 0;
-  for (int i = 0; i < 4; ++i) {
+  TraversalChoice choice(11);
+  int by_packets = 0;
+  for (int i = 0; i < 4; ++i) {  // queries of three packets
     EXPECT_FALSE(choice.is_made());
-    packets += choice.next() == Traversal::kPacket;
-    choice.add(16, 1e-6);
+    by_packets += choice.next() == Traversal::kPacket;
+    choice.add(3, 48, 1e-6);
   }
   EXPECT_TRUE(choice.is_made());
-  EXPECT_EQ(packets, 2);
+  EXPECT_EQ(by_packets, 2);
 }
 
 TEST(AccelTraversal, ARequestedOneIsNotMeasured) {
