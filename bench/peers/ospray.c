@@ -146,6 +146,7 @@ int main(int argc, char **argv) {
   OSPRenderer renderer = ospNewRenderer("pathtracer");
   ospSetInt(renderer, "maxPathLength", (int)image[3]);
   ospSetInt(renderer, "roulettePathLength", (int)image[3]);
+  ospSetFloat(renderer, "minContribution", 0); /* its default ends paths of low throughput */
   ospSetInt(renderer, "lightSamples", 0);
   ospSetInt(renderer, "pixelSamples", 1);
   ospSetInt(renderer, "pixelFilter", OSP_PIXELFILTER_BOX);
