@@ -133,6 +133,16 @@ struct alignas(64) SingleRay {
   std::uint32_t what[SphereBvh::kStackSize + SphereBvh::kArity];  ///< node references, encoded like SphereBvh::root()
 };
 
+/// Discards the end of a ray's stack that is beyond its limit.
+///
+/// Result     what the ray visits next, the last entry that is left
+HWY_INLINE std::uint32_t next_visit(SingleRay& ray) {
+  std::size_t waiting = ray.waiting;
+  while (ray.enter[waiting - 1] > ray.limit) --waiting;
+  ray.waiting = waiting;
+  return ray.what[waiting - 1];
+}
+
 /// Offset from lower to upper bounds in Node::bound.
 constexpr std::uint32_t kOtherSide = 3 * SphereBvh::kArity;
 

@@ -14,7 +14,6 @@
 #include <cstdint>
 #include <limits>
 #include <type_traits>
-#include <utility>
 
 #include "accel/ray_steps-inl.h"
 #include "kernel/gather_spheres-inl.h"
@@ -127,35 +126,31 @@ HWY_INLINE void trace_rays(const SphereBvh& bvh, const EmbreeQuery<Packet>* quer
                            SingleRay* rays) {
   const EmbreeScene& scene = *queries->scene;
   const Prefetcher prefetcher(bvh, scene);
-  std::uint64_t queues[kKinds] = {};  // rays by the kind of what they visit next
-  const auto enqueue = [&](int i) {
-    SingleRay& ray = rays[i];
-    std::size_t waiting = ray.waiting;
-    while (ray.enter[waiting - 1] > ray.limit) --waiting;
-    ray.waiting = waiting;
-    const std::uint32_t next = ray.what[waiting - 1];
-    queues[next >> kIndexWidth] |= std::uint64_t{1} << i;
-    prefetcher.prefetch(next);
-  };
-  const auto push = [&](std::uint64_t visiting) {
-    each_bit(visiting, [&](int i) { push_children(rays[i]); });
-    each_bit(visiting, enqueue);
-  };
   const auto intersect_all = [&] {
     for (int i = 0; i < kMostRays; i += kWidth) {
       const auto of_query = static_cast<unsigned>(lanes >> i) & ((1u << kWidth) - 1u);
       if (of_query != 0) intersect_candidates<Packet, kPrecision, kOpacity>(queries[i / kWidth], of_query, rays + i);
     }
   };
-  each_bit(lanes, enqueue);
-  // Each kind of step is divided into passes over the rays, arithmetic without branches first: a mispredicted branch
-  // would discard the arithmetic of the next rays, which is already in flight.
-  while ((queues[kNode] | queues[kLeaf] | queues[kEnd]) != 0) {
-    const std::uint64_t at_nodes = std::exchange(queues[kNode], 0);
+  std::uint64_t active = lanes;
+  // A round is divided into passes over the rays, arithmetic without branches first: a mispredicted branch would
+  // discard the arithmetic of the next rays, which is already in flight.
+  while (true) {
+    std::uint64_t at_leaves = 0, at_ends = 0;
+    each_bit(active, [&](int i) {
+      const std::uint32_t next = next_visit(rays[i]);
+      at_leaves |= std::uint64_t{(next >> kIndexWidth & kLeaf) != 0} << i;
+      at_ends |= std::uint64_t{(next >> kIndexWidth & kEnd) != 0} << i;
+      prefetcher.prefetch(next);
+    });
+    const std::uint64_t at_nodes = active & ~(at_leaves | at_ends);
+    each_bit(at_ends, [&](int i) { at_ends &= ~(std::uint64_t{is_done(bvh, rays[i])} << i); });
+    active = at_nodes | at_leaves | at_ends;
+    if (active == 0) break;
     each_bit(at_nodes, [&](int i) { test_children(bvh.nodes[rays[i].what[--rays[i].waiting]], rays[i]); });
-    push(at_nodes);
+    each_bit(at_ends, [&](int i) { climb(bvh, rays[i]); });
+    each_bit(at_nodes | at_ends, [&](int i) { push_children(rays[i]); });
 
-    const std::uint64_t at_leaves = std::exchange(queues[kLeaf], 0);
     bool full = false;
     std::uint64_t found = 0;
     each_bit(at_leaves, [&](int i) {
@@ -171,12 +166,6 @@ HWY_INLINE void trace_rays(const SphereBvh& bvh, const EmbreeQuery<Packet>* quer
       full = full || ray.candidates > kMaxCandidates - static_cast<int>(SphereBvh::kArity);
       prefetcher.prefetch_candidate(ray.candidate[ray.candidates - 1]);
     });
-    each_bit(at_leaves, enqueue);
-
-    std::uint64_t climbing = std::exchange(queues[kEnd], 0);
-    each_bit(climbing, [&](int i) { climbing &= ~(std::uint64_t{is_done(bvh, rays[i])} << i); });
-    each_bit(climbing, [&](int i) { climb(bvh, rays[i]); });
-    push(climbing);
     if (full) intersect_all();
   }
   intersect_all();
