@@ -121,7 +121,7 @@ in_root 'apt-get install -y -qq --no-install-recommends lintian >/root/lintian.l
 say "packages in a bare root"
 prepare "$bare"
 mkdir "$bare/orrery"
-cp -r "$root/root/packages" "$root/orrery/tests/consumer" "$root/orrery/scenes" "$bare/orrery"
+cp -r "$root/root/packages" "$root/orrery/tests/consumer" "$root/orrery/scenes" "$root/orrery/examples" "$bare/orrery"
 chroot "$bare" env -i "${environment[@]}" /orrery/consumer/packages.sh /orrery/packages </dev/null
 
 if in_root 'apt-cache show python3-scikit-build-core' >/dev/null 2>&1; then

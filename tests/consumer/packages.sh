@@ -24,7 +24,7 @@ case $printed in 'x y z /usr/lib/python3/dist-packages/orrery/'*) ;; *) fail "im
 
 install "$packages"/liborrery-dev_*.deb g++ cmake ninja-build
 if dpkg -L liborrery-dev | grep -E 'toml_tree\.h|-inl\.h|liborrery_cli'; then fail "liborrery-dev contains internals"; fi
-cmake -S "$here" -B build -G Ninja -DCMAKE_BUILD_TYPE=Release >cmake.log 2>&1 || { cat cmake.log; exit 1; }
+cmake -S "$here" -B build -G Ninja -DCMAKE_BUILD_TYPE=Release "-DEXAMPLE=$here/../examples/cpp" >cmake.log 2>&1 || { cat cmake.log; exit 1; }
 cmake --build build >build.log 2>&1 || { cat build.log; exit 1; }
 build/consumer
 python3 "$here/check_sbom.py" /usr
