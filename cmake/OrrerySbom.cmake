@@ -25,7 +25,7 @@ set(libraries
     "glibc|LGPL-2.1-or-later|libc6||DYNAMIC_LINK"
     "libstdc++|GPL-3.0-or-later WITH GCC-exception-3.1|libstdc++6||DYNAMIC_LINK"
     "gemmi|MPL-2.0|gemmi-dev||${gemmi_is}"
-    "tomlplusplus|MIT|libtomlplusplus-dev|${tomlplusplus_VERSION}|STATIC_LINK"
+    "tomlplusplus|MIT|libtomlplusplus-dev|${tomlplusplus_VERSION}|DYNAMIC_LINK"
     "cli11|BSD-3-Clause|libcli11-dev|${CLI11_VERSION}|STATIC_LINK"
     "nlohmann-json|MIT|nlohmann-json3-dev|${nlohmann_json_VERSION}|STATIC_LINK")
 if(ORRERY_PYTHON)

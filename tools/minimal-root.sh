@@ -117,7 +117,7 @@ say "tools/packages.sh"
 in_root 'tools/packages.sh /root/packages'
 say "lintian"
 in_root 'apt-get install -y -qq --no-install-recommends lintian >/root/lintian.log 2>&1 &&
-  lintian --fail-on error --no-tag-display-limit /root/packages/*.deb'
+  lintian --fail-on error --tag-display-limit 0 /root/packages/*.deb'
 say "packages in a bare root"
 prepare "$bare"
 mkdir "$bare/orrery"

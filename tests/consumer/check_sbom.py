@@ -77,13 +77,15 @@ def check_libraries() -> None:
                 break
         else:
             raise AssertionError(f"no package owns {file}")
-    listed = set()
-    for package in packages.values():
-        for reference in package.get("externalRefs", []):
+    listed: dict[str, set[str]] = {"DYNAMIC_LINK": set(), "STATIC_LINK": set()}
+    for relationship in sbom["relationships"][1:]:
+        for reference in packages[relationship["relatedSpdxElement"]]["externalRefs"]:
             name = re.fullmatch(r"pkg:deb/[a-z]+/([^@]+)@\S+", reference["referenceLocator"])[1]
-            listed.add(name.replace("%2B", "+"))
-    missing = sources(*owners) - sources(*listed)
-    assert not missing, f"loaded, but not listed: {missing}"
+            listed[relationship["relationshipType"]].add(name.replace("%2B", "+"))
+    loaded, dynamic = sources(*owners), sources(*listed["DYNAMIC_LINK"])
+    assert loaded <= dynamic, f"loaded, but not listed as DYNAMIC_LINK: {loaded - dynamic}"
+    assert dynamic <= loaded, f"listed as DYNAMIC_LINK, but not loaded: {dynamic - loaded}"
+    assert listed["STATIC_LINK"]
 
 
 check_form()
