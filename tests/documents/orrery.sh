@@ -39,10 +39,10 @@ case ${words[0]:-} in
   plot) if ! $has_width; then words+=(--width "$(smaller 1920)" --height "$(smaller 1080)"); fi ;;
   render) if ! $has_width; then words+=(--width 96 --height 54); fi ;;
   view)
-    # Until a signal ends it, as Ctrl+C does.
+    # Until a signal ends it; INT is ignored in the background.
     "$ORRERY" "${words[@]}" &
     sleep 2
-    kill -INT $!
+    kill -TERM $!
     wait $!
     exit
     ;;

@@ -21,5 +21,5 @@ s/^ssh .*/not run: another machine/
 s/^apt-get .*/not run: changes the system/
 s/.*[ .\/](NAME|FILE|DATA|OLD\.json|RESULT\.json|N)( .*|$)/not run: has a name to be filled in/
 
-# Of the examples, the one that is a program of its own.
+# An example whose program takes the width of the image.
 s/^\.\/attractor\.py$/.\/attractor.py 240/
