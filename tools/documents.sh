@@ -5,10 +5,10 @@
 #
 #   tools/documents.sh [PAGE...]      default: README.md, the pages of docs/, scenes/ and examples/
 #
-# ORRERY is the program; default: build/src/orrery. Exit status: 0 if no command fails.
+# ORRERY is the program; default: build/src/orrery; the Python package is that of the same build. Exit status: 0 if no command fails.
 #
 # tests/documents/ has the parts: commands.awk finds the commands, rules.sed names those that are not run and why,
-# stand_ins.py writes the data, orrery.sh makes images small. The Python of docs/python.md is a test of its own.
+# stand_ins.py writes the data, orrery.sh makes images small. The Python of docs/python.md is tested separately.
 set -euo pipefail
 root=$(cd "$(dirname "${BASH_SOURCE[0]}")/.." && pwd)
 ORRERY=$(realpath "${ORRERY:-$root/build/src/orrery}")
@@ -25,14 +25,15 @@ done
 mkdir "$work/bin"
 ln -s "$parts/orrery.sh" "$work/bin/orrery"
 ln -s /usr/bin/python3 "$work/bin/python3" # Debian's, which the package is built for
-export PATH="$work/bin:$PATH" PYTHONDONTWRITEBYTECODE=1
+build=$(dirname "$(dirname "$ORRERY")")
+export PATH="$work/bin:$PATH" PYTHONPATH=$build/lib/python3/dist-packages PYTHONDONTWRITEBYTECODE=1
 
 ran=0 failed=0 skipped=0
 # run_page PAGE: runs the commands of a page, in a clone; those of an example, in its folder.
 run_page() {
   local page=$1 folder="$work/page" place line command status
   git clone -q "$work/clone" "$folder"
-  ln -s "$(dirname "$(dirname "$ORRERY")")" "$folder/build"
+  ln -s "$build" "$folder/build"
   place=$folder
   if [[ $page == examples/*/* ]]; then place="$folder/$(dirname "$page")"; else cp "$work/data"/* "$folder"; fi
   while IFS=$'\t' read -r line command; do
