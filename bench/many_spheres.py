@@ -7,12 +7,16 @@
     bench/many_spheres.py build/src/orrery --radii               spheres of many sizes
     bench/many_spheres.py build/src/orrery --whole 100000000     from command to image, all threads
     bench/many_spheres.py build/src/orrery --capsids 1M4X.pdb    the same for six copies of a PDB file's assembly 1
+    bench/many_spheres.py build/src/orrery --against OTHER       times of a render relative to another build's
 
 For each scene the first form prints closest hits per second of `orrery bench` (the BVH for many spheres with single rays
 and with packets, one Embree primitive per sphere, Embree's sphere points), the ratio of the scene's accelerator to sphere
 points, seconds of the build, the ratio of the build's time to that of sphere points, and peak bytes per sphere of a small
 render. The base, which is what the program takes without spheres, is
 subtracted. --json FILE keeps the numbers. --isa avx2 limits the instruction set of orrery and of Embree.
+
+--against renders with both programs in turns, on one thread, and prints the ratio of their user times, without what a
+render of one sample takes: median over the rounds, least and greatest. Other work on the machine affects both.
 """
 import argparse
 import array
@@ -20,9 +24,11 @@ import json
 import os
 import pathlib
 import random
+import resource
 import subprocess
 import sys
 import tempfile
+from statistics import median
 
 SCENE = """[camera]
 look_from = [{look_from}]
@@ -182,6 +188,26 @@ def measure(program, scene, folder, rounds, base):
             "bytes_per_sphere": (stats["peak_memory_bytes"] - base) / stats["spheres"]}
 
 
+def user_seconds(program, scene, folder, precision, samples):
+    before = resource.getrusage(resource.RUSAGE_CHILDREN).ru_utime
+    program.run("render", scene, "-o", folder / "out.exr", "-q", "-t", "1", "--width", "480", "--height", "270",
+                "--precision", precision, "--samples", str(samples))
+    return resource.getrusage(resource.RUSAGE_CHILDREN).ru_utime - before
+
+
+def compare(program, other, scene, folder, rounds):
+    """Prints the time of `program` relative to that of `other`."""
+    for precision in ("fast", "exact"):
+        starts = {p: min(user_seconds(p, scene, folder, precision, 1) for _ in range(2)) for p in (program, other)}
+        ratios = []
+        for i in range(rounds):
+            turns = (program, other) if i % 2 else (other, program)
+            took = {p: user_seconds(p, scene, folder, precision, 17) - starts[p] for p in turns}
+            ratios.append(took[program] / took[other])
+        print(f"{scene.stem:20} {precision:6} {median(ratios):.2f} ({min(ratios):.2f} .. {max(ratios):.2f})",
+              flush=True)
+
+
 def main():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("program")
@@ -190,6 +216,7 @@ def main():
     parser.add_argument("--whole", type=int, metavar="COUNT")
     parser.add_argument("--capsids", type=pathlib.Path, metavar="FILE", help="a PDB file, e.g. 1M4X.pdb")
     parser.add_argument("--radii", action="store_true", help="stars, grains and a cloud with a giant instead")
+    parser.add_argument("--against", metavar="OTHER", help="another orrery executable")
     parser.add_argument("--isa", help="instruction set, e.g. avx2")
     parser.add_argument("--json")
     parser.add_argument("--folder", help="where the scenes are written; default: a temporary folder")
@@ -207,12 +234,20 @@ def main():
             print(json.dumps({"scene": scene.stem, **{k: out[k] for k in keys}}, indent=1), flush=True)
         if whole:
             return
+        counts = [int(count) for count in options.counts.split(",")]
+        makers = (stars, grains, giant) if options.radii else (uniform, crystal)
+        if options.against:
+            other = Program(options.against, options.isa)
+            for count in counts:
+                for make in makers:
+                    compare(program, other, make(folder, count), folder, options.rounds)
+            return
         base = base_bytes(program, folder)
         results = []
         print("scene                BVH: single  packets  one by one  sphere points   ratio    build  its ratio  "
               "bytes/sphere")
-        for count in map(int, options.counts.split(",")):
-            for make in (stars, grains, giant) if options.radii else (uniform, crystal):
+        for count in counts:
+            for make in makers:
                 r = measure(program, make(folder, count), folder, options.rounds, base)
                 hits = {k: v / 1e6 for k, v in r["hits_per_second"].items()}
                 own, other = (hits["single rays"], hits["packets"]), tuple(

@@ -20,6 +20,7 @@ namespace orrery::accel {
 namespace {
 
 using kernel::kNoSphere;
+using kernel::kPacketsInFlight;
 using kernel::kPacketSize;
 using kernel::Precision;
 using kernel::Sphere;
@@ -53,7 +54,7 @@ struct Result {
   long rays = 0, occluded = 0, different = 0;
 };
 
-/// Queries both packet types of one precision, whose number type is T.
+/// Queries both packet types of one precision, whose number type is T. Shadow packets are traced one to four at a time.
 template <class T>
 void compare(const test::Scene& scene, const View& view, Precision precision, const Way& way, long rays,
              Result& found) {
@@ -65,7 +66,8 @@ void compare(const test::Scene& scene, const View& view, Precision precision, co
   const auto list_of_rest = make_list(rest.get(), precision);
   const bool all_coincide = view.spheres.size() > 1 && view.spheres[0].x == view.spheres[1].x;
   Random random;
-  for (long n = 0; n < rays; n += kPacketSize) {
+  using Id = kernel::IdOf<T>;
+  const auto draw = [&](kernel::ShadowPacket<T>& shadow, bool* expected) {
     kernel::RayPacket<double> drawn;
     drawn.count = 1 + static_cast<int>(random.uniform(0, kPacketSize));
     for (int lane = 0; lane < kPacketSize; ++lane) {
@@ -77,14 +79,11 @@ void compare(const test::Scene& scene, const View& view, Precision precision, co
       if (drawn.self[lane] == target || drawn.self[lane] < view.motion.size()) drawn.self[lane] = kNoSphere;
     }
     const bool has_target = random.coin() && !all_coincide;
-    using Id = kernel::IdOf<T>;
     kernel::RayPacket<T> hits;
     test::copy_rays(drawn, hits);
     reset_hits(hits);
     kernel::trace(has_target ? list_of_rest->tracer() : list->tracer(), hits);
-    kernel::ShadowPacket<T> shadow;
     test::copy_rays(drawn, shadow);
-    bool expected[kPacketSize];
     for (int lane = 0; lane < kPacketSize; ++lane) {
       const bool hit = hits.hit[lane] != kNoSphere;
       const T at = hits.distance[lane];
@@ -101,13 +100,19 @@ void compare(const test::Scene& scene, const View& view, Precision precision, co
       shadow.occluded[lane] = 7;
       if (limit < std::numeric_limits<T>::max()) lengthen(shadow, lane, static_cast<int>(random.uniform(-9, 9)));
     }
-    kernel::occlude(other->tracer(way.traversal), shadow);
-    for (int lane = 0; lane < shadow.count; ++lane) {
-      ++found.rays;
-      found.occluded += expected[lane];
-      const Id answer = shadow.occluded[lane];
-      found.different += answer != (expected[lane] ? static_cast<Id>(~Id{0}) : Id{0});
-    }
+  };
+  for (int count = 1; rays > 0; rays -= count * kPacketSize, count = count % kPacketsInFlight + 1) {
+    kernel::ShadowPacket<T> shadows[kPacketsInFlight];
+    bool expected[kPacketsInFlight][kPacketSize];
+    for (int p = 0; p < count; ++p) draw(shadows[p], expected[p]);
+    kernel::occlude(other->tracer(way.traversal), shadows, count);
+    for (int p = 0; p < count; ++p)
+      for (int lane = 0; lane < shadows[p].count; ++lane) {
+        ++found.rays;
+        found.occluded += expected[p][lane];
+        const Id answer = shadows[p].occluded[lane];
+        found.different += answer != (expected[p][lane] ? static_cast<Id>(~Id{0}) : Id{0});
+      }
   }
 }
 
