@@ -202,7 +202,7 @@ def compare(program, other, scene, folder, rounds):
         ratios = []
         for i in range(rounds):
             turns = (program, other) if i % 2 else (other, program)
-            took = {p: user_seconds(p, scene, folder, precision, 17) - starts[p] for p in turns}
+            took = {p: user_seconds(p, scene, folder, precision, 9) - starts[p] for p in turns}
             ratios.append(took[program] / took[other])
         print(f"{scene.stem:20} {precision:6} {median(ratios):.2f} ({min(ratios):.2f} .. {max(ratios):.2f})",
               flush=True)

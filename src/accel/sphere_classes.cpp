@@ -148,7 +148,7 @@ bool is_small_layer(const kernel::SphereArray& spheres, const std::vector<std::u
 std::size_t bvh_threshold() {
   // Measured in clouds and crystals (docs/benchmarks.md). A register of AVX-512 holds a bound of all children of a
   // node.
-  return kernel::isa_name() == "avx512" ? 1000 : 200'000;
+  return kernel::isa_name() == "avx512" ? 1000 : 100'000;
 }
 
 ObjectCounts objects_in_bvh(const kernel::SceneView& scene) {
