@@ -3,9 +3,10 @@
 
 import ast
 
-from docstrings import markdown
+from docstrings import escaped, markdown
 
 WIDTH = 100  # of a signature on one line
+MADE = {"ColorMap", "Movie", "Picture", "Points", "View"}  # by functions: users do not call the constructors
 
 
 def _signature(function, name, is_method):
@@ -36,13 +37,18 @@ def _has_decorator(function, *names):
     return any(ast.unparse(decorator).split(".")[-1].split("(")[0] in names for decorator in function.decorator_list)
 
 
-def _member(owner, item):
-    """A method or property of a class."""
-    if _has_decorator(item, "setter", "overload"):
-        return []
-    if _has_decorator(item, "property"):
-        returns = f": {ast.unparse(item.returns)}" if item.returns else ""
-        return [f"#### `{owner}.{item.name}`\n", _code(f"{item.name}{returns}"), markdown(ast.get_docstring(item))]
+def _properties(functions):
+    """A table of the properties of a class."""
+    rows = []
+    for item in functions:
+        if _has_decorator(item, "property"):
+            kind = f"`{ast.unparse(item.returns)}`" if item.returns else ""
+            text = " ".join((ast.get_docstring(item) or "").split())
+            rows.append(f"| `{item.name}` | {kind.replace('|', 'or')} | {escaped(text)} |")
+    return ["| property | type | |\n|---|---|---|\n" + "\n".join(rows) + "\n"] if rows else []
+
+
+def _method(owner, item):
     is_method = not _has_decorator(item, "staticmethod")
     prefix = f"{owner}." if _has_decorator(item, "staticmethod", "classmethod") else ""
     return [f"#### `{owner}.{item.name}()`\n", _code(_signature(item, prefix + item.name, is_method)), markdown(ast.get_docstring(item))]
@@ -52,7 +58,7 @@ def _class(node):
     bases = [ast.unparse(base) for base in node.bases if not ast.unparse(base).startswith("_")]
     out = [f"### `{node.name}`\n"]
     functions = [item for item in node.body if isinstance(item, ast.FunctionDef)]
-    makers = [item for item in functions if item.name == "__init__" and "Error" not in "".join(bases)]
+    makers = [item for item in functions if item.name == "__init__" and "Error" not in "".join(bases) and node.name not in MADE]
     fields = [ast.unparse(item) for item in node.body if isinstance(item, ast.AnnAssign) and not item.target.id.startswith("_")]
     if makers:
         out.append(_code(_signature(makers[0], node.name, True)))
@@ -63,9 +69,11 @@ def _class(node):
     out.append(markdown(ast.get_docstring(node)))
     if makers and ast.get_docstring(makers[0]):
         out.append(markdown(ast.get_docstring(makers[0])))
-    for item in functions:
-        if not item.name.startswith("_"):
-            out += _member(node.name, item)
+    public = [item for item in functions if not item.name.startswith("_")]
+    out += _properties(public)
+    for item in public:
+        if not _has_decorator(item, "property", "setter", "overload"):
+            out += _method(node.name, item)
     return out
 
 
