@@ -21,6 +21,8 @@
 #include "base/available_memory.h"
 #include "base/error.h"
 #include "base/file_name.h"
+#include "base/frames.h"
+#include "base/input_file.h"
 #include "base/text.h"
 #include "cli/commands.h"
 #include "cli/film.h"
@@ -252,6 +254,8 @@ void open_in_browser(const std::string& address) {
 
 int run_view(ViewArguments& arguments, const Command& command) {
   const std::filesystem::path& file = arguments.shown.plot.file;
+  // The page reports all other faults; without a file there is nothing that it could change.
+  if (!base::has_frame_pattern(file.filename().string())) base::require_readable(file);
   const std::set<std::string> allowed = files_of(arguments.shown);
   const view::Controls controls = controls_of(file);
   std::vector<std::string> fixed = words_of(command, arguments.own);

@@ -211,6 +211,12 @@ TEST_F(CliView, APortInUseIsAnError) {
   EXPECT_TRUE(contains(second.err, "--port")) << second.err;
 }
 
+TEST_F(CliView, AMissingFileIsAnErrorAtOnce) {
+  const Outcome r = run("view nothing.pdb");
+  EXPECT_EQ(r.status, 66);
+  EXPECT_TRUE(contains(r.err, "nothing.pdb")) << r.err;
+}
+
 TEST_F(CliView, OthersAreNotServed) {
   const Served view(folder_, {"good.toml"});
   EXPECT_EQ(support::http_request(view.port(), "GET", "/state").status, 403) << "without the secret";
@@ -230,9 +236,10 @@ TEST_F(CliView, APageMayNotNameFiles) {
 }
 
 TEST_F(CliView, FaultyOptionsAreErrorsInThePage) {
-  const Served view(folder_, {"missing.dump"});
+  write("faulty.dump", "nonsense");
+  const Served view(folder_, {"faulty.dump"});
   const Json state = view.wish(Json::object());
-  EXPECT_TRUE(contains(state["problem"], "missing.dump")) << state["problem"];
+  EXPECT_TRUE(contains(state["problem"], "faulty.dump")) << state["problem"];
   EXPECT_EQ(run("view good.toml --port 70000").status, 2);
   EXPECT_EQ(run("view good.toml --host nonsense").status, 2);
   EXPECT_EQ(run("view").status, 2);
