@@ -4,6 +4,7 @@
 # tools/minimal-root.sh runs these two in a bare system.
 s/^\.\/run\.sh( +#.*)?$/not run: tools\/minimal-root.sh runs .\/run.sh/
 s/^\.\/test\.sh.*/not run: tools\/minimal-root.sh runs .\/test.sh/
+s/^\.\/run\.sh --install.*/not run: installs/
 s/^\.\/run\.sh /orrery /
 
 # Builds.
