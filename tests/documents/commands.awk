@@ -5,7 +5,8 @@
 # command. `$ ` before it is dropped, and with it the other lines of the block, which show its output.
 function is_command(line) {
   sub(/^([A-Z_]+=[^ ]* )+/, "", line)
-  return line ~ /^(orrery|\.\/(run|test)\.sh|(bench|tools|tests|build|build-ci|examples)\/|time|oiiotool|iinfo|printf|awk|cmake|ctest|ninja|apt-get|perf|jq|ssh|lmp|git|cd|pip|python3|mkdocs)( |$|[a-z_\/.-]* )/
+  return line ~ /^(orrery|\.\/(run|test)\.sh|time|oiiotool|iinfo|printf|awk|cmake|ctest|ninja|apt(-get)?|perf|jq|ssh|lmp|git|cd|pip|python3|mkdocs)( |$)/ ||
+    line ~ /^(bench|tools|tests|build|build-ci|examples|venv)\/[^ ]+( |$)/
 }
 function flush() {
   if (text != "") print start "\t" text

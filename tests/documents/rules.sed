@@ -5,10 +5,12 @@
 s/^\.\/run\.sh( +#.*)?$/not run: tools\/minimal-root.sh runs .\/run.sh/
 s/^\.\/test\.sh.*/not run: tools\/minimal-root.sh runs .\/test.sh/
 s/^\.\/run\.sh --install.*/not run: installs/
+s/^(python3 -m venv|venv\/bin\/pip) .*/not run: installs/
 s/^\.\/run\.sh /orrery /
 
 # Builds.
 s/^(time )?(cmake|ctest|ninja) .*/not run: builds/
+s/^tools\/(packages|reproducible|minimal-root|mutants|steady|documents|site)\.sh.*/not run: builds, or another check/
 s/^build\/spiral .*/not run: the test consumer runs it/
 s/^build-ci\/.*/not run: needs a build of benchmarks/
 
@@ -19,7 +21,7 @@ s/^perf .*/not run: benchmark/
 
 # Other machines, other programs, and names to be filled in.
 s/^ssh .*/not run: another machine/
-s/^apt-get .*/not run: changes the system/
+s/^(apt|apt-get) .*/not run: changes the system/
 s/.*[ .\/](NAME|FILE|DATA|OLD\.json|RESULT\.json|N)( .*|$)/not run: has a name to be filled in/
 
 # An example whose program takes the width of the image.
