@@ -3,7 +3,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdlib>
 #include <limits>
 #include <utility>
 
@@ -19,6 +18,7 @@
 #include "load/load_scene.h"
 #include "load/working_space.h"
 #include "plot/data_frames.h"
+#include "plot/guides.h"
 #include "plot/range.h"
 #include "plot/scene_text.h"
 #include "plot/view.h"
@@ -46,9 +46,6 @@ constexpr double kBallFraction = 0.5, kStickFraction = 0.3, kStickRadius = 0.2;
 /// Length of arrows and radius of their shafts, in distances to the nearest neighbour; radius of spheres with arrows,
 /// as a fraction of that without.
 constexpr double kArrowLength = 1.2, kShaftRadius = 0.07, kArrowSphereFraction = 0.25;
-
-/// Radius of the edges of the box, and length and radius of the axes, as fractions of the radius of what is shown.
-constexpr double kBoxRadius = 0.004, kAxisLength = 0.15, kAxisRadius = 0.01;
 
 /// A side of the image, which the camera must know. An invalid one is reported when the scene is read.
 int side_of(const format::Overrides& overrides, const char* key, int otherwise) {
@@ -133,9 +130,10 @@ class PlotMaker {
     const bool is_vertical = math::length(math::cross(up, axes.back)) < kSmallestSine;
     const math::Vec3d pole = is_turntable_ && !is_vertical ? up : axes.up;
     ViewExtent extent(is_turntable_ ? turned(axes, pole) : axes);
-    visit_frames(extent, up);
+    guides_.emplace(up);
+    visit_frames(extent);
     if (extent.is_empty()) report_empty();
-    add_guides(extent, up);
+    add_guides(extent);
     const std::optional<math::Vec3d> target = target_of(axes);
     if (is_turntable_ && !extent.is_empty()) extent = orbit(axes, target.value_or(extent.center()), pole);
     const double aspect = static_cast<double>(width_) / height_;
@@ -153,7 +151,7 @@ class PlotMaker {
     PlotParts parts{options_,        width_,          height_, out_.points,           camera, out_.view, axes,
                     extent.center(), extent.radius(), {},      annotation_of(camera), {}};
     if (options_.ground && !extent.is_empty()) {
-      parts.ground = ground_below(lowest_, up, extent);
+      parts.ground = ground_below(guides_->lowest(), up, extent);
       if (hides_view(*parts.ground, camera, aspect)) {
         parts.ground.reset();
         chose("no ground",
@@ -166,7 +164,7 @@ class PlotMaker {
     choose_samples(parts.samples);
     if (options_.develops && display_of(options_).view.empty() && out_.view == kPlainView)
       chose(fmt::format("view transform {}", out_.view), "colours match the colour map");
-    parts.guides = std::move(guides_);
+    parts.guides = guides_->rods();
     out_.text = scene_text(parts);
     // A still image is made of one frame, whose file need not stay open.
     out_.open_data = out_.frames.empty() ? points::handed_over(data_.open_data()) : data_.open_data();
@@ -176,25 +174,6 @@ class PlotMaker {
  private:
   /// Minimum sine of the angle between the camera and the up axis for an orbit around that axis.
   static constexpr double kSmallestSine = 1e-6;
-
-  /// Rounds a number to a sensible number of digits.
-  static double rounded(double x, int digits = 4) {
-    char text[32];
-    std::snprintf(text, sizeof(text), "%.*g", digits, x);
-    return std::strtod(text, nullptr);
-  }
-
-  /// A range with as many digits as distinguish a thousandth of it, at least four.
-  static std::string range_text(const scene::Interval& range) {
-    const auto digits_suffice = [&](int digits) {
-      const double error = std::max(std::abs(rounded(range.low, digits) - range.low),
-                                    std::abs(rounded(range.high, digits) - range.high));
-      return range.low == range.high || error <= (range.high - range.low) / 1000;
-    };
-    int digits = 4;
-    while (digits < 17 && !digits_suffice(digits)) ++digits;
-    return number_text(rounded(range.low, digits)) + ":" + number_text(rounded(range.high, digits));
-  }
 
   /// The axes of the same view at the height of its target.
   static ViewAxes turned(const ViewAxes& axes, const math::Vec3d& pole) {
@@ -433,7 +412,7 @@ class PlotMaker {
   }
 
   /// Reads all frames once, so that the view contains all of them and a single range of the colour map avoids flicker.
-  void visit_frames(ViewExtent& extent, const math::Vec3d& up) {
+  void visit_frames(ViewExtent& extent) {
     const bool needs_range = !out_.points.color.column.empty() && !out_.points.color.range;
     RangeFinder finder(options_.range);
     const auto on_value = needs_range ? [&](double value) { finder.add(value); } : std::function<void(double)>();
@@ -448,12 +427,7 @@ class PlotMaker {
       most_bonds = std::max(most_bonds, bonds);
       bonds_from_ = points.bonds_from;
       extent.add(points);
-      for (std::size_t i = 0; i < points.centers.size(); ++i) {
-        const math::Vec3d center = points.centers[i];
-        const double radius = std::abs(points.radii[i]);
-        lowest_ = std::min(lowest_, math::dot(center, up) - radius);
-        add_to_corner(center, radius);
-      }
+      guides_->surround(points);
       if (points.centers.empty()) continue;
       out_.legend.add(points);
     }
@@ -499,62 +473,27 @@ class PlotMaker {
                     most == 1 ? "sphere" : "spheres", base::joined(why)));
   }
 
-  void add_to_corner(const math::Vec3d& center, double radius) {
-    corner_ = {std::min(corner_.x, center.x - radius), std::min(corner_.y, center.y - radius),
-               std::min(corner_.z, center.z - radius)};
-  }
-
-  /// Adds the edges of the simulation box and the axes, and what they take in the image.
-  void add_guides(ViewExtent& extent, const math::Vec3d& up) {
-    if (options_.box) add_box(extent);
-    if (options_.axes && !extent.is_empty()) add_axes(extent.radius());
-    for (const scene::Rod& rod : guides_)
-      for (const math::Vec3d& end : {rod.from, rod.to}) {
-        guide_ends_.centers.push_back(end);
-        guide_ends_.radii.push_back(rod.radius);
-        lowest_ = std::min(lowest_, math::dot(end, up) - rod.radius);
-      }
-    extent.add(guide_ends_);
-  }
-
-  void add_box(ViewExtent& extent) {
-    if (!info_.box)
-      throw base::Error(base::ErrorKind::kBadData,
-                        fmt::format("--box: {} has no simulation box", options_.file.string()));
-    const math::Vec3d counts = options_.points.replicate;
-    const math::Vec3d a = info_.box->edges[0] * counts.x, b = info_.box->edges[1] * counts.y,
-                      c = info_.box->edges[2] * counts.z, origin = info_.box->origin;
-    const auto corner = [&](int i) { return origin + a * (i & 1) + b * (i >> 1 & 1) + c * (i >> 2 & 1); };
-    for (int i = 0; i < 8; ++i) {
-      extent.add(corner(i), 0);
-      add_to_corner(corner(i), 0);
+  /// Adds the edges of the simulation box and the axes, and the space that they take.
+  void add_guides(ViewExtent& extent) {
+    if (options_.box) {
+      if (!info_.box)
+        throw base::Error(base::ErrorKind::kBadData,
+                          fmt::format("--box: {} has no simulation box", options_.file.string()));
+      guides_->add_box(*info_.box, options_.points.replicate, extent);
+      if (out_.frames.size() > 1) chose("box", fmt::format("that of frame {}", data_.described_frame()));
     }
-    const double radius = rounded(kBoxRadius * extent.radius());
-    for (int i = 0; i < 8; ++i)
-      for (const int edge : {1, 2, 4})
-        if ((i & edge) == 0)
-          guides_.push_back({corner(i), corner(i | edge), radius, {kBoxMaterial, kBoxMaterial}, {}, {}});
-    if (out_.frames.size() > 1) chose("box", fmt::format("that of frame {}", data_.described_frame()));
-  }
-
-  /// Adds a tripod outside the lower corner of what is shown.
-  ///
-  /// `size`     radius of what is shown
-  void add_axes(double size) {
-    const double length = rounded(kAxisLength * size), radius = rounded(kAxisRadius * size);
-    const math::Vec3d origin = corner_ - math::Vec3d{1, 1, 1} * (length + 2 * radius);
-    const std::pair<GuideMaterial, math::Vec3d> axes[] = {
-        {kXMaterial, {1, 0, 0}}, {kYMaterial, {0, 1, 0}}, {kZMaterial, {0, 0, 1}}};
-    for (const auto& [material, direction] : axes)
-      guides_.push_back({origin, origin + direction * length, radius, {material, material}, {}, {}});
-    chose("axes", "x red, y green, z blue");
+    if (options_.axes && !extent.is_empty()) {
+      guides_->add_axes(extent.radius());
+      chose("axes", "x red, y green, z blue");
+    }
+    extent.add(guides_->ends());
   }
 
   /// The space that the spheres of all frames pass through on the orbit of the camera.
   ViewExtent orbit(const ViewAxes& axes, const math::Vec3d& pivot, const math::Vec3d& pole) const {
     ViewExtent out(axes);
     for (const int frame : data_.distinct()) out.add_orbits(load(frame), pivot, pole);
-    out.add_orbits(guide_ends_, pivot, pole);
+    out.add_orbits(guides_->ends(), pivot, pole);
     return out;
   }
 
@@ -564,13 +503,8 @@ class PlotMaker {
   int width_, height_;          ///< px
   std::optional<double> vfov_;  ///< degrees: a perspective camera; otherwise orthographic
   bool is_turntable_;           ///< the camera orbits around the up axis
-  /// Lower corner of all that is shown along x, y and z, scene units.
-  math::Vec3d corner_ = math::Vec3d{1, 1, 1} * std::numeric_limits<double>::infinity();
-  std::vector<scene::Rod> guides_;  ///< see PlotParts
-  scene::Points guide_ends_;        ///< their ends, as spheres
-  std::string bonds_from_;          ///< see scene::Points
-  double lowest_ =
-      std::numeric_limits<double>::infinity();  ///< lowest point of all spheres along the up axis, scene units
+  std::optional<Guides> guides_;
+  std::string bonds_from_;  ///< see scene::Points
   PlotScene out_;
 };
 

@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <charconv>
 #include <cmath>
+#include <cstdio>
+#include <cstdlib>
 #include <string_view>
 #include <system_error>
 
@@ -103,6 +105,23 @@ double RangeFinder::end(const RangeChoice::End& end) {
   const auto rank = static_cast<std::ptrdiff_t>(std::lround(end.value / 100 * static_cast<double>(values_.size() - 1)));
   std::nth_element(values_.begin(), values_.begin() + rank, values_.end());
   return values_[static_cast<std::size_t>(rank)];
+}
+
+double rounded(double x, int digits) {
+  char text[32];
+  std::snprintf(text, sizeof(text), "%.*g", digits, x);
+  return std::strtod(text, nullptr);
+}
+
+std::string range_text(const scene::Interval& range) {
+  const auto digits_suffice = [&](int digits) {
+    const double error =
+        std::max(std::abs(rounded(range.low, digits) - range.low), std::abs(rounded(range.high, digits) - range.high));
+    return range.low == range.high || error <= (range.high - range.low) / 1000;
+  };
+  int digits = 4;
+  while (digits < 17 && !digits_suffice(digits)) ++digits;
+  return scene::number_text(rounded(range.low, digits)) + ":" + scene::number_text(rounded(range.high, digits));
 }
 
 scene::Interval RangeFinder::range() {

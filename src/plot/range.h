@@ -26,6 +26,12 @@ struct RangeChoice {
   std::optional<scene::Interval> fixed() const;
 };
 
+/// Rounds a number to significant digits.
+double rounded(double x, int digits = 4);
+
+/// "LOW:HIGH", with as many digits as distinguish a thousandth of the range, at least four.
+std::string range_text(const scene::Interval& range);
+
 /// Parses words separated by commas: `log`, `symmetric` and `LOW:HIGH`, with numbers or percentiles: "log,1%:99%".
 ///
 /// Errors     base::Error(kUsage)

@@ -1,0 +1,50 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstdint>
+#include <limits>
+#include <vector>
+
+#include "data/table.h"
+#include "plot/view.h"
+#include "scene/scene.h"
+
+namespace orrery::plot {
+
+/// Rods beside the spheres: the edges of the simulation box, and the axes in the lower corner of what is shown.
+class Guides {
+ public:
+  /// `up`       unit vector
+  explicit Guides(const Vec3d& up) : up_(up) {}
+
+  /// Includes spheres in what is shown.
+  void surround(const scene::Points& points);
+  /// Adds the edges of a periodic box, and includes it in `extent`.
+  ///
+  /// `counts`   number of boxes along each edge
+  void add_box(const data::Box& box, const Vec3d& counts, ViewExtent& extent);
+  /// Adds a tripod outside the lower corner of what is shown.
+  ///
+  /// `size`     radius of what is shown
+  void add_axes(double size);
+
+  /// The rods. Their materials are GuideMaterial.
+  const std::vector<scene::Rod>& rods() const { return rods_; }
+  /// The ends of the rods, as spheres.
+  const scene::Points& ends() const { return ends_; }
+  /// Lowest point of the spheres and the rods along the up axis, scene units.
+  double lowest() const { return lowest_; }
+
+ private:
+  void surround(const Vec3d& center, double radius);
+  void add(const Vec3d& from, const Vec3d& to, double radius, std::uint32_t material);
+
+  static constexpr double kInfinity = std::numeric_limits<double>::infinity();
+  Vec3d up_;
+  Vec3d corner_{kInfinity, kInfinity, kInfinity};  ///< lower corner of all that is shown along x, y and z
+  double lowest_ = kInfinity;
+  std::vector<scene::Rod> rods_;
+  scene::Points ends_;
+};
+
+}  // namespace orrery::plot
