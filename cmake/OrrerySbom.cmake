@@ -4,8 +4,8 @@
 # with the installed binaries.
 
 # Name | licence | Debian package | version where there is no dpkg | relationship
-set(gemmi_is STATIC_LINK) # headers only
-if(ORRERY_GEMMI_LIBRARY)
+set(gemmi_is STATIC_LINK) # Debian 12 has headers only, Debian 13 a static library
+if(ORRERY_GEMMI_LIBRARY MATCHES "\\.so$")
   set(gemmi_is DYNAMIC_LINK)
 endif()
 set(libraries
