@@ -68,7 +68,7 @@ esac
 install_missing "$root/tools/packages-build.txt"
 # An existing configuration, for example that of test.sh, is kept.
 if [ ! -f "$root/build/.configured-with" ]; then configure -DBUILD_TESTING=OFF; fi
-build 5 orrery
+build 9 orrery
 
 if [ -n "$prefix" ]; then
   install_program "$prefix"

@@ -21,7 +21,7 @@ install_missing "$root/tools/packages-build.txt" "$root/tools/packages-debian.tx
 python=ON
 command -v dpkg-query >/dev/null || python=OFF
 configure -DBUILD_TESTING=ON "-DORRERY_BENCH=${ORRERY_BENCH:-ON}" "-DORRERY_PYTHON=$python"
-build 10 all
+build 20 all
 
 if [ $# -eq 0 ]; then set -- -LE slow; fi
 if [ -z "${TMPDIR:-}" ] && [ "$(stat -f -c %T /dev/shm 2>/dev/null)" = tmpfs ] && [ -w /dev/shm ] &&

@@ -28,7 +28,7 @@ if ! grep -qs '^ORRERY_PYTHON:BOOL=ON' "$root/build/CMakeCache.txt"; then
   configure -DBUILD_TESTING=OFF -DORRERY_PYTHON=ON
 fi
 cmake "$root/build" >"$root/build/configure.log" 2>&1 || die "CMake configuration failed, see build/configure.log"
-build 6 all
+build 10 all
 rm -rf "$folder"
 if ! cpack -G DEB --config "$root/build/CPackConfig.cmake" -D "CPACK_PACKAGE_VERSION=$version" -B "$folder" \
   >"$root/build/packages.log" 2>&1; then
