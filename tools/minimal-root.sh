@@ -96,12 +96,12 @@ in_root './run.sh render scenes/book/final.toml -o /tmp/final.exr -o /tmp/final.
   --set image.width=160 --set image.height=90 --set render.samples=16 && test -s /tmp/final.exr && test -s /tmp/final.png'
 say "./run.sh --install"
 # To ~/.local, with a hint at the PATH; found by the manual and by fish; and without a hint once it is on the PATH.
-in_root './run.sh --install 2>&1 | tee /tmp/install.log && grep -qF "export PATH=\"/root/.local/bin:\$PATH\"" /tmp/install.log'
-in_root 'export PATH=/root/.local/bin:$PATH && cd / && orrery --version && orrery render /orrery/scenes/book/final.toml \
+in_root './run.sh --install 2>&1 | tee /tmp/install.log && grep -qF "export PATH=\"$HOME/.local/bin:\$PATH\"" /tmp/install.log'
+in_root 'export PATH=$HOME/.local/bin:$PATH && cd / && orrery --version && orrery render /orrery/scenes/book/final.toml \
   -o /tmp/installed.png -q --set image.width=160 --set image.height=90 --set render.samples=16 && test -s /tmp/installed.png &&
-  cd /root/.local/share && test -s man/man1/orrery.1 && test -s bash-completion/completions/orrery &&
-  test -s zsh/site-functions/_orrery && test -s fish/vendor_completions.d/orrery.fish && test ! -e /root/.local/include &&
-  ! /orrery/run.sh --install 2>&1 | grep PATH'
+  cd $HOME/.local/share && test -s man/man1/orrery.1 && test -s bash-completion/completions/orrery &&
+  test -s zsh/site-functions/_orrery && test -s fish/vendor_completions.d/orrery.fish && test ! -e $HOME/.local/include &&
+  /orrery/run.sh --install >/tmp/install.log 2>&1 && ! grep PATH /tmp/install.log'
 
 if [ "$commands" = run ]; then
   say "done"
@@ -114,14 +114,14 @@ if [ "$commands" = all ]; then
 fi
 
 say "tools/packages.sh"
-in_root 'tools/packages.sh /root/packages'
+in_root tools/packages.sh
 say "lintian"
-in_root 'apt-get install -y -qq --no-install-recommends lintian >/root/lintian.log 2>&1 &&
-  lintian --fail-on error --tag-display-limit 0 /root/packages/*.deb'
+in_root 'apt-get install -y -qq --no-install-recommends lintian >/tmp/lintian.log 2>&1 &&
+  lintian --fail-on error --tag-display-limit 0 build/packages/*.deb'
 say "packages in a bare root"
 prepare "$bare"
 mkdir "$bare/orrery"
-cp -r "$root/root/packages" "$root/orrery/tests/consumer" "$root/orrery/scenes" "$root/orrery/examples" "$bare/orrery"
+cp -r "$root/orrery/build/packages" "$root/orrery/tests/consumer" "$root/orrery/scenes" "$root/orrery/examples" "$bare/orrery"
 chroot "$bare" env -i "${environment[@]}" /orrery/consumer/packages.sh /orrery/packages </dev/null
 
 if in_root 'apt-cache show python3-scikit-build-core' >/dev/null 2>&1; then

@@ -248,7 +248,8 @@ http::Response Site::state() const {
     options[option] = {{"value", set != state.wish.options.end() ? set->second : ""},
                        {"chosen", chosen != state.subject.chosen.end() ? chosen->second : ""},
                        {"values", values},
-                       {"flag", is_flag(option)}};
+                       {"flag", is_flag(option)},
+                       {"lines", is_repeated(option)}};
   }
   if (options.contains("--color-by"))
     for (const std::string& column : state.subject.columns) options["--color-by"]["values"].push_back(column);

@@ -10,6 +10,7 @@
 #include <nlohmann/json.hpp>
 
 #include "base/error.h"
+#include "base/text.h"
 #include "scene/limits.h"
 #include "scene/schema.h"
 #include "scene/texture.h"
@@ -107,8 +108,11 @@ std::set<std::string> named_files(const format::Overrides& overrides) {
 }
 
 bool is_flag(const std::string& option) {
-  return option == "--denoise" || option == "--ground" || option == "--box" || option == "--axes" ||
-         option == "--color-bar";
+  return base::contains({"--denoise", "--ground", "--box", "--axes", "--color-bar"}, option);
+}
+
+bool is_repeated(const std::string& option) {
+  return base::contains({"--set", "--slice", "--opacity", "--label"}, option);
 }
 
 std::vector<std::string> camera_settings(const scene::Camera& camera) {
@@ -132,7 +136,7 @@ std::vector<std::string> words_of(const std::vector<std::string>& fixed, const W
     if (!is_flag(option)) out.push_back(value);
   };
   for (const auto& [option, value] : wish.options) {
-    if (option != "--set" && option != "--slice" && option != "--opacity" && option != "--label") {
+    if (!is_repeated(option)) {
       add(option, value);
       continue;
     }

@@ -33,6 +33,9 @@ std::set<std::string> named_files(const format::Overrides& overrides);
 /// Whether a control is an option without a value.
 bool is_flag(const std::string& option);
 
+/// Whether a control is an option that can be repeated: its value has one line for each.
+bool is_repeated(const std::string& option);
+
 /// The settings, KEY=VALUE, that give a scene this camera.
 std::vector<std::string> camera_settings(const scene::Camera& camera);
 

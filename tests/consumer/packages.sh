@@ -30,5 +30,5 @@ build/consumer
 python3 "$here/check_sbom.py" /usr
 
 apt-get purge -y -qq orrery python3-orrery liborrery-dev >/tmp/apt.log 2>&1
-left=$(find / -xdev -iname '*orrery*' -not -path '/orrery*' -not -path '/proc/*' -not -path '/tmp/*' -not -path '/root/.cache/*')
+left=$(find / -xdev -iname '*orrery*' -not -path '/orrery*' -not -path '/proc/*' -not -path '/tmp/*' -not -path "$HOME/.cache/*")
 [ -z "$left" ] || fail "left after removal: $left"

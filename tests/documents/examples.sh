@@ -20,9 +20,9 @@ if [ -n "$python" ]; then ln -s "$python" "$work/bin/python3"; fi
 export PATH="$work/bin:$PATH"
 
 # Root mean square difference of display values, 0 to 1, of both pictures reduced to 24 x 14 pixels: noise and the size of
-# text differ with the size of an image. Another colour map or view differs by 0.068 or more, the right ones by 0.055 or
+# text differ with the size of an image. Another colour map or view differs by 0.068 or more, the right ones by 0.035 or
 # less.
-limit=0.062
+limit=0.045
 
 status=0
 for folder in "$root"/examples/*/; do
@@ -34,7 +34,7 @@ for folder in "$root"/examples/*/; do
   cd "$work/examples/$name"
   awk -f "$parts/commands.awk" README.md | cut -f 2- | tr '\001' '\n' | sed -E -f "$parts/rules.sed" > commands.sh
   divisor=6
-  if grep -q -e --scale-bar commands.sh; then divisor=4; fi # text has a smallest size
+  if grep -q -e --scale-bar commands.sh; then divisor=2; fi # text has a smallest size
   if ! ORRERY_DIVISOR=$divisor bash -euo pipefail commands.sh > log 2>&1; then
     printf '%s: a command failed\n' "$name"
     tail -n 5 log

@@ -39,9 +39,11 @@ case ${words[0]:-} in
   plot) if ! $has_width; then words+=(--width "$(smaller 1920)" --height "$(smaller 1080)"); fi ;;
   render) if ! $has_width; then words+=(--width 96 --height 54); fi ;;
   view)
-    # Until a signal ends it; INT is ignored in the background.
-    "$ORRERY" "${words[@]}" &
-    sleep 2
+    # Until it serves the page; then a signal ends it. INT is ignored in the background.
+    address=$(mktemp)
+    trap 'rm -f "$address"' EXIT
+    "$ORRERY" "${words[@]}" >"$address" &
+    while kill -0 $! 2>/dev/null && ! [ -s "$address" ]; do sleep 0.1; done
     kill -TERM $!
     wait $!
     exit

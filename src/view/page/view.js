@@ -26,7 +26,6 @@ const HINTS = {
 };
 const SIZES = [[640, 360], [960, 540], [1280, 720], [1920, 1080], [800, 800]];
 const CHOICES = new Set(["--representation", "--style", "--material"]);  // of their values, and no others
-const MANY_LINES = new Set(["--set", "--slice", "--opacity", "--label"]);
 const FITTED = new Set(["--perspective", "--center"]);  // by the camera of the data, not by one that was moved
 const SETTLED_ms = 200;  // after the last step of the wheel or of a key
 const CLICK_px = 4;      // a click moves the pointer less
@@ -193,7 +192,7 @@ function addControl(name, label, row) {
   const isChoice = CHOICES.has(name);
   const field = option.flag ? element("input", { id, type: "checkbox" })
     : isChoice ? element("select", { id })
-    : MANY_LINES.has(name) ? element("textarea", { id, rows: 2, spellcheck: false })
+    : option.lines ? element("textarea", { id, rows: 2, spellcheck: false })
     : element("input", { id, type: "text", spellcheck: false });
   field.placeholder = HINTS[name] ?? "";
   field.addEventListener("change", () =>
