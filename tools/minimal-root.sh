@@ -78,8 +78,9 @@ prepare "$root"
 HOME=$work git config --global --add safe.directory '*'
 HOME=$work git clone -q --no-hardlinks "file://$repository" "$root/orrery"
 environment=(HOME=/root PATH=/usr/sbin:/usr/bin:/sbin:/bin LANG=C.UTF-8 ORRERY_WERROR=ON)
+launcher=()  # only this root has ccache
 in_root() {
-  chroot "$root" env -i "${environment[@]}" /bin/sh -c "cd /orrery && $1" </dev/null
+  chroot "$root" env -i "${environment[@]}" "${launcher[@]}" /bin/sh -c "cd /orrery && $1" </dev/null
 }
 
 in_root 'apt-get update -qq' >"$work/update.log" 2>&1 || skip "the root cannot reach the mirror"
@@ -87,7 +88,7 @@ if [ -n "${ORRERY_CCACHE:-}" ]; then
   mkdir -p "$ORRERY_CCACHE" "$root/var/cache/ccache"
   mount --bind "$ORRERY_CCACHE" "$root/var/cache/ccache"
   in_root 'apt-get install -y -qq --no-install-recommends ccache' >"$work/ccache.log" 2>&1
-  environment+=(CMAKE_CXX_COMPILER_LAUNCHER=ccache CCACHE_DIR=/var/cache/ccache CCACHE_BASEDIR=/orrery)
+  launcher=(CMAKE_CXX_COMPILER_LAUNCHER=ccache CCACHE_DIR=/var/cache/ccache CCACHE_BASEDIR=/orrery)
 fi
 
 say "./run.sh"
