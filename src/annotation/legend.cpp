@@ -55,7 +55,8 @@ class LegendLayout {
 
   void add_bar(const LegendColors& colors) {
     const points::ValueScale scale{colors.range->low, colors.range->high, colors.is_log};
-    const double right = kColorWidth * em_, height = std::min(kBarHeight * em_, style_.height_px - y_ - em_);
+    const double right = kColorWidth * em_;
+    const double height = std::max(1.0, std::min(kBarHeight * em_, style_.height_px - y_ - em_));
     add_frame(right, height);
     out_.bars.push_back({0, y_, right, y_ + height, colors.bar});
     for (const points::Tick& tick : points::ticks_of(scale)) {

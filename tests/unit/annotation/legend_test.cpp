@@ -53,6 +53,8 @@ TEST(AnnotationLegend, BarsAreAtMostAsHighAsTheirSpace) {
   const Drawing low = legend_drawing(colors, {20, 150, 100}, image::font_file("DejaVuSans"));
   EXPECT_LE(low.height, 150);
   EXPECT_LT(low.height, drawing_of(colors).height);
+  const Bar none = legend_drawing(colors, {20, 0, 100}, image::font_file("DejaVuSans")).bars[0];
+  EXPECT_EQ(none.bottom - none.top, 1) << "an image of a few pixels";
 }
 
 TEST(AnnotationLegend, LabelsBeyondTheMostAreCounted) {
