@@ -15,8 +15,7 @@ namespace {
 /// Treats every sphere as an outlier, and lists every rod, without a BVH.
 class SimdList final : public Accel {
  public:
-  SimdList(const kernel::SceneView& view, kernel::Precision precision)
-      : precision_(precision), moves_(view.moving_count > 0 || view.rods.moving_count > 0) {
+  SimdList(const kernel::SceneView& view, kernel::Precision precision) : functions_(embree_functions(precision)) {
     scene_.spheres = view.spheres;
     scene_.motion = view.motion;
     scene_.moving_count = view.moving_count;
@@ -24,20 +23,15 @@ class SimdList final : public Accel {
     scene_.listed_rods = view.rods.count;
     scene_.outliers = complement_of(duplicates(view, precision), view.sphere_count);
     traversals_.scene = &scene_;
-    set_opacity(view.opacity);
+    scene_.opacity = view.opacity;
   }
 
   kernel::Tracer tracer(Traversal) const noexcept override { return functions_.tracer_of(traversals_); }
-  void set_opacity(const float* opacity) noexcept override {
-    scene_.opacity = opacity;
-    functions_ = embree_functions(precision_, moves_, opacity != nullptr);
-  }
+  void set_opacity(const float* opacity) noexcept override { scene_.opacity = opacity; }
   std::string name() const override { return "SIMD list"; }
   std::size_t bytes() const noexcept override { return scene_.outliers.size() * sizeof(scene_.outliers[0]); }
 
  private:
-  kernel::Precision precision_;
-  bool moves_;
   EmbreeFunctions functions_;
   EmbreeScene scene_;
   ThreadTraversals traversals_{Traversal::kPacket};

@@ -41,9 +41,6 @@ kernel::Sphere sphere_at_step(const EmbreeScene& scene, std::uint32_t id, unsign
   return {s.x + change.x, s.y + change.y, s.z + change.z, s.radius + change.radius};
 }
 
-/// What a geometry of Embree's scene consists of.
-enum class Content { kSpheres, kBvh, kRods };
-
 /// Most primitives of a rod, and the extent of one across its longest axis in radii, above which it is divided. The box
 /// of a long diagonal is nearly empty; those of bonds, and of rods parallel to an axis, are not
 /// (measured: docs/decisions/0034-rods.md).
@@ -111,9 +108,7 @@ class Embree final : public Accel {
  public:
   Embree(const kernel::SceneView& view, kernel::Precision precision, const BuildMonitor& monitor,
          std::size_t bvh_threshold)
-      : precision_(precision),
-        moves_(view.moving_count > 0 || view.rods.moving_count > 0),
-        scene_(make_scene(view, precision)) {
+      : functions_(embree_functions(precision)), scene_(make_scene(view, precision)) {
     std::vector<std::uint32_t> ids =
         boxed(scene_, view.sphere_count);  // not empty without rods: outliers are defined relative to other objects
     const std::size_t primitives = view.sphere_count - scene_.outliers.size();
@@ -129,7 +124,6 @@ class Embree final : public Accel {
       const double end = share(ids.size());
       bvh_ = SphereBvh(scene_.bounded, std::move(ids), scene_.frame, part_of(monitor, 0, end), rods);
     }
-    set_opacity(view.opacity);
     build(primitives, part_of(monitor, share(bvh_.count), 1));
     packets_.scene = singles_.scene = &scene_;
   }
@@ -141,11 +135,7 @@ class Embree final : public Accel {
     traversals.scene = &scene_;
     return functions_.tracer_of(traversals);
   }
-  void set_opacity(const float* opacity) noexcept override {
-    scene_.opacity = opacity;
-    functions_ = embree_functions(precision_, moves_, opacity != nullptr);
-    for (const auto& [geometry, content] : geometries_) set_callbacks(geometry, content);
-  }
+  void set_opacity(const float* opacity) noexcept override { scene_.opacity = opacity; }
   std::string name() const override { return "embree " + embree_.version(); }
   std::size_t bytes() const noexcept override {
     return embree_.bytes() + bvh_.bytes() + scene_.rod_pieces.size() * sizeof(RodPiece);
@@ -158,6 +148,7 @@ class Embree final : public Accel {
     scene.bounded = {view.spheres, precision == kernel::Precision::kFast};
     scene.motion = view.motion;
     scene.moving_count = view.moving_count;
+    scene.opacity = view.opacity;
     scene.rods = view.rods;
     scene.duplicates = duplicates(view, precision);
     scene.outliers = find_outliers(view, scene.duplicates);
@@ -199,13 +190,14 @@ class Embree final : public Accel {
   void build(std::size_t primitives, const BuildMonitor& monitor) {
     BuildState moving{&scene_, 0}, still{&scene_, scene_.moving_primitives > 0 ? 1u : 0u};
     if (scene_.moving_primitives > 0)
-      add_geometry(Content::kSpheres, scene_.moving_primitives, 2, &moving, sphere_bounds);
+      add_geometry(functions_.spheres, sphere_bounds, scene_.moving_primitives, 2, &moving);
     const std::size_t rest = bvh_.empty() ? primitives - scene_.moving_primitives : scene_.singles.size();
-    if (rest > 0) add_geometry(Content::kSpheres, rest, 1, &still, sphere_bounds);
-    if (!bvh_.empty()) add_geometry(Content::kBvh, 1, 1, &bvh_, bvh_bounds);
-    scene_.is_bvh_alone = !bvh_.empty() && geometries_.size() == 1 && scene_.rod_pieces.empty();
+    if (rest > 0) add_geometry(functions_.spheres, sphere_bounds, rest, 1, &still);
+    if (!bvh_.empty()) add_geometry(functions_.bvh, bvh_bounds, 1, 1, &bvh_);
+    scene_.is_bvh_alone =
+        !bvh_.empty() && scene_.moving_primitives == 0 && scene_.singles.empty() && scene_.rod_pieces.empty();
     if (!scene_.rod_pieces.empty())
-      add_geometry(Content::kRods, scene_.rod_pieces.size(), scene_.rods.moving_count > 0 ? 2 : 1, &still, rod_bounds);
+      add_geometry(functions_.rods, rod_bounds, scene_.rod_pieces.size(), scene_.rods.moving_count > 0 ? 2 : 1, &still);
     if (monitor)
       rtcSetSceneProgressMonitorFunction(
           embree_.get(),
@@ -220,43 +212,25 @@ class Embree final : public Accel {
     scene_.has_packets = embree_.has_packets_of(functions_.width);
   }
 
-  void add_geometry(Content content, std::size_t primitives, unsigned time_steps, void* data,
-                    RTCBoundsFunction bounds) {
+  void add_geometry(const EmbreeFunctions::Callbacks& callbacks, RTCBoundsFunction bounds, std::size_t primitives,
+                    unsigned time_steps, void* data) {
     RTCGeometry geometry = rtcNewGeometry(embree_.device(), RTC_GEOMETRY_TYPE_USER);
     rtcSetGeometryUserPrimitiveCount(geometry, static_cast<unsigned>(primitives));
     rtcSetGeometryTimeStepCount(geometry, time_steps);
     rtcSetGeometryUserData(geometry, data);
     rtcSetGeometryBoundsFunction(geometry, bounds, nullptr);
-    set_callbacks(geometry, content);
+    rtcSetGeometryIntersectFunction(geometry, callbacks.intersect);
+    rtcSetGeometryOccludedFunction(geometry, callbacks.occluded);
     rtcSetGeometryMask(geometry, ~0u);  // the default differs between Embree 3 and 4
     embree_.attach(geometry);
-    geometries_.emplace_back(geometry, content);
   }
 
-  /// Sets what Embree calls during queries. It looks the callbacks up in each query, so that they may change after the
-  /// build (AccelOpacity.CanChangeAfterTheBuild).
-  void set_callbacks(RTCGeometry geometry, Content content) const noexcept {
-    const EmbreeFunctions& f = functions_;
-    const auto set = [&](RTCIntersectFunctionN intersect, RTCOccludedFunctionN occluded) {
-      rtcSetGeometryIntersectFunction(geometry, intersect);
-      rtcSetGeometryOccludedFunction(geometry, occluded);
-    };
-    switch (content) {
-      case Content::kSpheres: return set(f.intersect, f.occluded);
-      case Content::kBvh: return set(f.intersect_bvh, f.occluded_by_bvh);
-      case Content::kRods: return set(f.intersect_rods, f.occluded_by_rods);
-    }
-  }
-
-  kernel::Precision precision_;
-  bool moves_;
   EmbreeFunctions functions_;
   EmbreeScene scene_;
   ThreadTraversals packets_{Traversal::kPacket}, singles_{Traversal::kSingle};
   double largest_in_bvh_ = 0;  ///< radius; 0: there is no BVH
   SphereBvh bvh_;
   OwnedScene embree_;
-  std::vector<std::pair<RTCGeometry, Content>> geometries_;  ///< owned by the scene
 };
 
 }  // namespace

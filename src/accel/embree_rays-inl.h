@@ -140,11 +140,27 @@ HWY_INLINE void intersect(D d, const k::Rays<D>& ray, const k::Spheres<D>& spher
   found.take(d, k::closest_distance<D, kPrecision>(d, ray, spheres, is_self), ids, lanes);
 }
 
+/// Intersects rays with the same sphere.
+///
+/// kPlain     EmbreeScene::is_plain()
+template <kernel::Precision kPrecision, bool kPlain, class D, class Packet>
+HWY_INLINE void intersect_sphere(D d, const EmbreeScene& scene, const Packet& packet, int first, const k::Rays<D>& ray,
+                                 std::uint32_t id, hn::Mask<D> lanes, Found<D, Packet>& found) {
+  const auto ids = hn::Set(k::IdTag<D>(), static_cast<typename Packet::Id>(id));
+  if constexpr (kPlain) {
+    intersect<kPrecision>(d, ray, k::broadcast(d, scene.spheres[id]), ids, lanes, found);
+  } else {
+    if (scene.opacity != nullptr) lanes = hn::And(lanes, k::visible_lanes(d, packet, first, id, scene.opacity[id]));
+    if (!hn::AllFalse(d, lanes))
+      intersect<kPrecision>(d, ray, k::sphere_at(d, scene, id, packet, first), ids, lanes, found);
+  }
+}
+
 /// Intersects rays with rods, one per lane, at the times of the rays. The halves that they enter have the opacity.
 ///
 /// `first`    lane of the packet
 /// `ids`      of the rods' first halves
-template <kernel::Precision kPrecision, bool kOpacity, class D, class Packet>
+template <kernel::Precision kPrecision, class D, class Packet>
 HWY_INLINE void intersect_rods(D d, const EmbreeScene& scene, const Packet& packet, int first, const k::Rays<D>& ray,
                                const k::Rods<D>& rod, hn::Vec<k::IdTag<D>> ids, hn::Mask<D> lanes,
                                Found<D, Packet>& found) {
@@ -153,18 +169,19 @@ HWY_INLINE void intersect_rods(D d, const EmbreeScene& scene, const Packet& pack
   const k::IdTag<D> du;
   const auto entry = k::closest_entry<D, kPrecision>(d, ray, rod);
   const auto of_halves = ids + hn::IfThenElseZero(hn::RebindMask(du, entry.second_half), set(du, 1));
-  if constexpr (kOpacity) may = hn::And(may, k::visible_rods(d, packet, first, ids, of_halves, may, scene.opacity));
+  if (scene.opacity != nullptr)
+    may = hn::And(may, k::visible_rods(d, packet, first, ids, of_halves, may, scene.opacity));
   found.take(d, {entry.distance, entry.hits}, of_halves, may);
 }
 
 /// Intersects rays with the same rod.
 ///
 /// `id`       of the rod's first half
-template <kernel::Precision kPrecision, bool kOpacity, class D, class Packet>
+template <kernel::Precision kPrecision, class D, class Packet>
 HWY_INLINE void intersect_rod(D d, const EmbreeScene& scene, const Packet& packet, int first, const k::Rays<D>& ray,
                               const k::Rods<D>& rod, typename Packet::Id id, hn::Mask<D> lanes,
                               Found<D, Packet>& found) {
-  intersect_rods<kPrecision, kOpacity>(d, scene, packet, first, ray, rod, hn::Set(k::IdTag<D>(), id), lanes, found);
+  intersect_rods<kPrecision>(d, scene, packet, first, ray, rod, hn::Set(k::IdTag<D>(), id), lanes, found);
 }
 
 /// Stores lanes as floats.
@@ -262,7 +279,7 @@ HWY_INLINE void set_constants(EmbreeRay& rays) {
 
 /// Sets Embree's rays to rays `first` .. of the query's packet in box space, and which of them can hit a box before
 /// their maximum distance.
-template <bool kMoves, class Packet, class EmbreeRay>
+template <class Packet, class EmbreeRay>
 HWY_INLINE void set_rays(EmbreeQuery<Packet>& query, EmbreeRay& rays, int* valid) {
   const hn::ScalableTag<typename Packet::Number> d;
   const int step = static_cast<int>(hn::Lanes(d));
@@ -286,7 +303,7 @@ HWY_INLINE void set_rays(EmbreeQuery<Packet>& query, EmbreeRay& rays, int* valid
     store_float(d, ray.direction.y, rays.dir_y + v);
     store_float(d, ray.direction.z, rays.dir_z + v);
     store_float(d, limit, rays.tfar + v);
-    if constexpr (kMoves) store_float(d, hn::Load(d, packet.time + first), rays.time + v);
+    if (scene.moves()) store_float(d, hn::Load(d, packet.time + first), rays.time + v);
     hn::Store(box.start, d, query.start + v);
     // If a known hit is in front of all boxes, there is nothing to find, and Embree does not accept a negative limit.
     const auto active = hn::FirstN(d, static_cast<std::size_t>(std::max(0, packet.count - first)));

@@ -54,6 +54,10 @@ struct EmbreeScene {
     return has_packets && (bvh != nullptr || traversal == Traversal::kPacket);
   }
 
+  bool moves() const noexcept { return moving_count > 0 || rods.moving_count > 0; }
+  /// Whether no sphere moves or may be invisible: the tests of spheres are then instances without these branches.
+  bool is_plain() const noexcept { return moving_count == 0 && opacity == nullptr; }
+
   /// The sphere of a primitive: ids count all spheres, primitives only those that are not outliers.
   std::uint32_t sphere_id(std::uint32_t geometry, std::uint32_t primitive) const noexcept {
     if (!singles.empty() && (geometry > 0 || moving_primitives == 0)) return singles[primitive];
@@ -76,15 +80,14 @@ struct EmbreeQuery {
   alignas(64) typename Packet::Number start[kernel::kPacketSize];
 };
 
-/// Callbacks and tracer, instantiated for the instruction set of this processor, for one precision, and with or without
-/// motion and opacities.
+/// Callbacks and tracer, instantiated for the instruction set of this processor and for one precision.
 struct EmbreeFunctions {
-  RTCIntersectFunctionN intersect = nullptr;
-  RTCOccludedFunctionN occluded = nullptr;
-  RTCIntersectFunctionN intersect_rods = nullptr;
-  RTCOccludedFunctionN occluded_by_rods = nullptr;
-  RTCIntersectFunctionN intersect_bvh = nullptr;  ///< for a geometry whose user data is a SphereBvh
-  RTCOccludedFunctionN occluded_by_bvh = nullptr;
+  struct Callbacks {
+    RTCIntersectFunctionN intersect = nullptr;
+    RTCOccludedFunctionN occluded = nullptr;
+  };
+  Callbacks spheres, rods;
+  Callbacks bvh;          ///< for a geometry whose user data is a SphereBvh
   int width = 0;          ///< rays per packet handed to Embree
   kernel::Tracer tracer;  ///< `self` is to be set: ThreadTraversals whose `scene` is an EmbreeScene
 
@@ -96,6 +99,6 @@ struct EmbreeFunctions {
 };
 
 /// Domain     precision is exact or fast
-EmbreeFunctions embree_functions(kernel::Precision precision, bool moves, bool has_opacity);
+EmbreeFunctions embree_functions(kernel::Precision precision);
 
 }  // namespace orrery::accel

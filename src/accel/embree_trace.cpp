@@ -80,45 +80,42 @@ HWY_INLINE void test_all(const EmbreeQuery<Packet>& query, const Arguments& argu
 }
 
 /// Embree's callback for a sphere that is a primitive.
-template <class Packet, kernel::Precision kPrecision, bool kMoves, bool kOpacity, class Arguments>
+template <class Packet, kernel::Precision kPrecision, class Arguments>
 void at_sphere(const Arguments* arguments) {
   const auto& query = *reinterpret_cast<const EmbreeQuery<Packet>*>(arguments->context);
-  const std::uint32_t id = query.scene->sphere_id(kMoves ? arguments->geomID : 0, arguments->primID);
-  // Captured by value: the compiler would read a reference again after each store.
-  const auto test = [id, &scene = *query.scene](auto d, const Packet& packet, int first, auto lanes, auto& found) {
-    if constexpr (kOpacity) {
-      lanes = hn::And(lanes, k::visible_lanes(d, packet, first, id, scene.opacity[id]));
-      if (hn::AllFalse(d, lanes)) return;
-    }
-    intersect<kPrecision>(d, k::load_rays(d, packet, first), k::sphere_at<kMoves>(d, scene, id, packet, first),
-                          hn::Set(k::IdTag<decltype(d)>(), static_cast<typename Packet::Id>(id)), lanes, found);
+  const std::uint32_t id = query.scene->sphere_id(arguments->geomID, arguments->primID);
+  const auto test_all_with = [&](auto is_plain) {
+    // Captured by value: the compiler would read a reference again after each store.
+    test_all(query, *arguments,
+             [id, &scene = *query.scene](auto d, const Packet& packet, int first, auto lanes, auto& found) {
+               intersect_sphere<kPrecision, decltype(is_plain)::value>(
+                   d, scene, packet, first, k::load_rays(d, packet, first), id, lanes, found);
+             });
   };
-  test_all(query, *arguments, test);
+  query.scene->is_plain() ? test_all_with(std::true_type()) : test_all_with(std::false_type());
 }
 
 /// Embree's callback for a part of a rod.
-template <class Packet, kernel::Precision kPrecision, bool kMoves, bool kOpacity, class Arguments>
+template <class Packet, kernel::Precision kPrecision, class Arguments>
 void at_rod(const Arguments* arguments) {
   const auto& query = *reinterpret_cast<const EmbreeQuery<Packet>*>(arguments->context);
   const std::size_t rod = query.scene->rod_pieces[arguments->primID].rod;
   const auto test = [rod, &scene = *query.scene](auto d, const Packet& packet, int first, auto lanes, auto& found) {
-    intersect_rod<kPrecision, kOpacity>(d, scene, packet, first, k::load_rays(d, packet, first),
-                                        k::rod_at<kMoves>(d, scene.rods, rod, packet, first), scene.rods.id(rod), lanes,
-                                        found);
+    intersect_rod<kPrecision>(d, scene, packet, first, k::load_rays(d, packet, first),
+                              k::rod_at(d, scene.rods, rod, packet, first), scene.rods.id(rod), lanes, found);
   };
   test_all(query, *arguments, test);
 }
 
 /// Embree's callback for a SphereBvh. Rays that are traced each on their own have been through it: see trace().
-template <class Packet, kernel::Precision kPrecision, bool kOpacity, class Arguments>
+template <class Packet, kernel::Precision kPrecision, class Arguments>
 void at_bvh(const Arguments* arguments) {
   const auto& query = *reinterpret_cast<const EmbreeQuery<Packet>*>(arguments->context);
   RTCRayN* const rays = rays_of(*arguments);
   unsigned hits = 0;  // lanes with a new hit, as bits
   float limits[kWidth];
   if (query.traversal == Traversal::kPacket)
-    hits =
-        PacketTraversal<Packet, kPrecision, kOpacity>(*query.scene->bvh, query, arguments->valid, rays).trace(limits);
+    hits = PacketTraversal<Packet, kPrecision>(*query.scene->bvh, query, arguments->valid, rays).trace(limits);
   for (unsigned i = 0; i < arguments->N; ++i) {
     const bool is_new = (hits >> i & 1u) != 0;
     if (!Packet::kIsShadow) arguments->valid[i] = is_new ? -1 : 0;
@@ -160,7 +157,7 @@ HWY_INLINE TraversalChoice& choice_for(const ThreadTraversals& traversals, const
 }
 
 /// Tests the rods that are not in Embree's scene.
-template <class Packet, kernel::Precision kPrecision, bool kMoves, bool kOpacity>
+template <class Packet, kernel::Precision kPrecision>
 HWY_NOINLINE void test_listed_rods(const EmbreeScene& scene, Packet& packet) {
   const hn::ScalableTag<typename Packet::Number> d;
   using D = std::remove_const_t<decltype(d)>;
@@ -169,34 +166,29 @@ HWY_NOINLINE void test_listed_rods(const EmbreeScene& scene, Packet& packet) {
     const auto lanes = hn::FirstN(d, static_cast<std::size_t>(packet.count - v));
     auto found = Found<D, Packet>::load(d, packet, v);
     for (std::size_t rod = 0; rod < scene.listed_rods; ++rod)
-      intersect_rod<kPrecision, kOpacity>(d, scene, packet, v, ray, k::rod_at<kMoves>(d, scene.rods, rod, packet, v),
-                                          scene.rods.id(rod), lanes, found);
+      intersect_rod<kPrecision>(d, scene, packet, v, ray, k::rod_at(d, scene.rods, rod, packet, v), scene.rods.id(rod),
+                                lanes, found);
     found.store(d, packet, v);
   }
 }
 
 /// Tests the spheres that are not in Embree's scene.
-template <class Packet, kernel::Precision kPrecision, bool kMoves, bool kOpacity>
+template <class Packet, kernel::Precision kPrecision, bool kPlain>
 HWY_INLINE void test_outliers(const EmbreeScene& scene, Packet& packet) {
   const hn::ScalableTag<typename Packet::Number> d;
   using D = std::remove_const_t<decltype(d)>;
-  const k::IdTag<D> du;
   for (int v = 0; !scene.outliers.empty() && v < packet.count; v += static_cast<int>(hn::Lanes(d))) {
     const auto ray = k::load_rays(d, packet, v);
     const auto lanes = hn::FirstN(d, static_cast<std::size_t>(packet.count - v));
     auto found = Found<D, Packet>::load(d, packet, v);
-    for (const std::uint32_t id : scene.outliers) {
-      auto visible = lanes;
-      if constexpr (kOpacity) visible = hn::And(lanes, k::visible_lanes(d, packet, v, id, scene.opacity[id]));
-      intersect<kPrecision>(d, ray, k::sphere_at<kMoves>(d, scene, id, packet, v),
-                            hn::Set(du, static_cast<typename Packet::Id>(id)), visible, found);
-    }
+    for (const std::uint32_t id : scene.outliers)
+      intersect_sphere<kPrecision, kPlain>(d, scene, packet, v, ray, id, lanes, found);
     found.store(d, packet, v);
   }
 }
 
 /// Traces a packet through Embree's scene.
-template <class Packet, bool kMoves>
+template <class Packet>
 HWY_INLINE void trace_embree(const EmbreeScene& scene, Traversal traversal, Packet& packet) {
   EmbreeQuery<Packet> query;
   init(query.context);
@@ -209,7 +201,7 @@ HWY_INLINE void trace_embree(const EmbreeScene& scene, Traversal traversal, Pack
   alignas(64) int valid[kWidth];
   for (int first = 0; first < packet.count; first += kWidth) {
     query.first = first;
-    set_rays<kMoves>(query, rays_of(rays), valid);
+    set_rays(query, rays_of(rays), valid);
     if (scene.by_packets(traversal)) {
       accel::query(valid, scene.scene, query.context, rays);
     } else {
@@ -222,18 +214,20 @@ HWY_INLINE void trace_embree(const EmbreeScene& scene, Traversal traversal, Pack
 /// before, those of all packets at the same time.
 ///
 /// `self`     ThreadTraversals
-template <class Packet, kernel::Precision kPrecision, bool kMoves, bool kOpacity>
+template <class Packet, kernel::Precision kPrecision>
 void trace(const void* self, void* memory, int count) {
   const auto& traversals = *static_cast<const ThreadTraversals*>(self);
   const auto& scene = *static_cast<const EmbreeScene*>(traversals.scene);
   auto* const packets = static_cast<Packet*>(memory);
+  const bool is_plain = scene.is_plain();
   int rays = 0;
   for (int i = 0; i < count; ++i) {
     Packet& packet = packets[i];
     rays += packet.count;
     if constexpr (Packet::kIsShadow) std::fill_n(packet.occluded, kernel::kPacketSize, 0);
-    test_outliers<Packet, kPrecision, kMoves, kOpacity>(scene, packet);
-    if (scene.listed_rods > 0) test_listed_rods<Packet, kPrecision, kMoves, kOpacity>(scene, packet);
+    is_plain ? test_outliers<Packet, kPrecision, true>(scene, packet)
+             : test_outliers<Packet, kPrecision, false>(scene, packet);
+    if (scene.listed_rods > 0) test_listed_rods<Packet, kPrecision>(scene, packet);
   }
   if (scene.scene == nullptr) return;
 
@@ -242,40 +236,30 @@ void trace(const void* self, void* memory, int count) {
   const double begin = is_timed ? thread_seconds() : 0;
   const Traversal traversal = scene.has_packets ? choice.next() : Traversal::kSingle;
   const bool by_rays = scene.bvh != nullptr && traversal == Traversal::kSingle;
-  if (by_rays) trace_by_rays<Packet, kPrecision, kOpacity>(scene, packets, count);
-  for (int i = 0; i < count && !(by_rays && scene.is_bvh_alone); ++i)
-    trace_embree<Packet, kMoves>(scene, traversal, packets[i]);
+  if (by_rays) trace_by_rays<Packet, kPrecision>(scene, packets, count);
+  for (int i = 0; i < count && !(by_rays && scene.is_bvh_alone); ++i) trace_embree(scene, traversal, packets[i]);
   if (is_timed) choice.add(count, rays, thread_seconds() - begin);
 }
 
-template <kernel::Precision kPrecision, bool kMoves, bool kOpacity>
+template <kernel::Precision kPrecision>
 EmbreeFunctions instance() {
   using T = std::conditional_t<kPrecision == kernel::Precision::kFast, float, double>;
   using Rays = kernel::RayPacket<T>;
   using ShadowRays = kernel::ShadowPacket<T>;
   EmbreeFunctions f;
   f.width = kWidth;
-  f.intersect = at_sphere<Rays, kPrecision, kMoves, kOpacity>;
-  f.occluded = at_sphere<ShadowRays, kPrecision, kMoves, kOpacity>;
-  f.intersect_rods = at_rod<Rays, kPrecision, kMoves, kOpacity>;
-  f.occluded_by_rods = at_rod<ShadowRays, kPrecision, kMoves, kOpacity>;
-  f.intersect_bvh = at_bvh<Rays, kPrecision, kOpacity>;
-  f.occluded_by_bvh = at_bvh<ShadowRays, kPrecision, kOpacity>;
-  f.tracer.trace = trace<Rays, kPrecision, kMoves, kOpacity>;
-  f.tracer.occlude = trace<ShadowRays, kPrecision, kMoves, kOpacity>;
+  f.spheres = {at_sphere<Rays, kPrecision>, at_sphere<ShadowRays, kPrecision>};
+  f.rods = {at_rod<Rays, kPrecision>, at_rod<ShadowRays, kPrecision>};
+  f.bvh = {at_bvh<Rays, kPrecision>, at_bvh<ShadowRays, kPrecision>};
+  f.tracer.trace = trace<Rays, kPrecision>;
+  f.tracer.occlude = trace<ShadowRays, kPrecision>;
   f.tracer.target = HWY_TARGET;
   return f;
 }
 
-template <kernel::Precision kPrecision>
-EmbreeFunctions instance(bool moves, bool has_opacity) {
-  if (has_opacity) return moves ? instance<kPrecision, true, true>() : instance<kPrecision, false, true>();
-  return moves ? instance<kPrecision, true, false>() : instance<kPrecision, false, false>();
-}
-
-EmbreeFunctions functions(kernel::Precision precision, bool moves, bool has_opacity) {
+EmbreeFunctions functions(kernel::Precision precision) {
   using enum kernel::Precision;
-  return precision == kFast ? instance<kFast>(moves, has_opacity) : instance<kExact>(moves, has_opacity);
+  return precision == kFast ? instance<kFast>() : instance<kExact>();
 }
 
 }  // namespace orrery::accel::HWY_NAMESPACE
@@ -286,9 +270,7 @@ namespace orrery::accel {
 
 HWY_EXPORT(functions);
 
-EmbreeFunctions embree_functions(kernel::Precision precision, bool moves, bool has_opacity) {
-  return ORRERY_BEST(functions)(precision, moves, has_opacity);
-}
+EmbreeFunctions embree_functions(kernel::Precision precision) { return ORRERY_BEST(functions)(precision); }
 
 }  // namespace orrery::accel
 #endif

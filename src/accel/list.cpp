@@ -37,7 +37,7 @@ namespace orrery::accel::HWY_NAMESPACE {
 namespace hn = hwy::HWY_NAMESPACE;
 
 /// Traces each ray of a packet, or tests it for occlusion, by a loop over all spheres, then all rods.
-template <class Packet, kernel::Precision kPrecision, bool kMoves>
+template <class Packet, kernel::Precision kPrecision>
 void trace_list(const void* self, Packet& packet) {
   namespace k = kernel::HWY_NAMESPACE;
   using T = typename Packet::Number;
@@ -58,7 +58,7 @@ void trace_list(const void* self, Packet& packet) {
       for (; id < end; ++id) {
         const auto is_self = packet.self[i] == id ? hn::FirstN(d, 1) : hn::FirstN(d, 0);
         const auto found = k::closest_distance<D, kPrecision>(
-            d, ray, k::sphere_at<kMoves>(d, scene, static_cast<std::uint32_t>(id), packet, i), is_self);
+            d, ray, k::sphere_at(d, scene, static_cast<std::uint32_t>(id), packet, i), is_self);
         if (hn::AllFalse(d, found.mask)) continue;
         const T distance = hn::GetLane(found.value);
         if (distance >= packet.distance[i]) continue;  // ids ascend, so at equal distance the smaller id was first
@@ -81,7 +81,7 @@ void trace_list(const void* self, Packet& packet) {
     }
     if (!is_occluded) is_occluded = trace_up_to(scene.sphere_count);
     for (std::size_t rod = 0; rod < scene.rods.count && !is_occluded; ++rod) {
-      const auto at = k::rod_at<kMoves>(d, scene.rods, rod, packet, i);
+      const auto at = k::rod_at(d, scene.rods, rod, packet, i);
       if (hn::AllFalse(d, k::may_hit(ray, at))) continue;
       const auto entry = k::closest_entry<D, kPrecision>(d, ray, at);
       if (hn::AllFalse(d, entry.hits) || hn::GetLane(entry.distance) >= packet.distance[i]) continue;
@@ -98,24 +98,24 @@ void trace_list(const void* self, Packet& packet) {
   }
 }
 
-template <kernel::Precision kPrecision, bool kMoves>
+template <kernel::Precision kPrecision>
 kernel::Tracer list_instance() {
   using T = std::conditional_t<kPrecision == kernel::Precision::kFast, float, double>;
   kernel::Tracer t;
   using Rays = kernel::RayPacket<T>;
   using ShadowRays = kernel::ShadowPacket<T>;
-  t.trace = kernel::query_each<Rays, trace_list<Rays, kPrecision, kMoves>>;
-  t.occlude = kernel::query_each<ShadowRays, trace_list<ShadowRays, kPrecision, kMoves>>;
+  t.trace = kernel::query_each<Rays, trace_list<Rays, kPrecision>>;
+  t.occlude = kernel::query_each<ShadowRays, trace_list<ShadowRays, kPrecision>>;
   t.target = HWY_TARGET;
   return t;
 }
 
-kernel::Tracer list_tracer(kernel::Precision precision, bool moves) {
+kernel::Tracer list_tracer(kernel::Precision precision) {
   using enum kernel::Precision;
   switch (precision) {
-    case kExact: return moves ? list_instance<kExact, true>() : list_instance<kExact, false>();
-    case kFast: return moves ? list_instance<kFast, true>() : list_instance<kFast, false>();
-    case kBook: return moves ? list_instance<kBook, true>() : list_instance<kBook, false>();
+    case kExact: return list_instance<kExact>();
+    case kFast: return list_instance<kFast>();
+    case kBook: return list_instance<kBook>();
   }
   return {};
 }
@@ -135,8 +135,7 @@ class List final : public Accel {
       : scene_{view, duplicates(view, precision)}, precision_(precision) {}
 
   kernel::Tracer tracer(Traversal) const noexcept override {
-    kernel::Tracer t =
-        ORRERY_BEST(list_tracer)(precision_, scene_.view.moving_count > 0 || scene_.view.rods.moving_count > 0);
+    kernel::Tracer t = ORRERY_BEST(list_tracer)(precision_);
     t.self = &scene_;
     return t;
   }

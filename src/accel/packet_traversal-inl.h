@@ -29,7 +29,7 @@ struct PacketVisit {
 
 /// The rays of an Embree packet, traversed together: one pass over a node's children tests all rays. Faster than
 /// single-ray traversal if the rays visit the same nodes, such as the camera rays of a pixel.
-template <class Packet, kernel::Precision kPrecision, bool kOpacity>
+template <class Packet, kernel::Precision kPrecision>
 class PacketTraversal {
  public:
   HWY_INLINE PacketTraversal(const SphereBvh& bvh, const EmbreeQuery<Packet>& query, const int* valid, RTCRayN* rays)
@@ -179,6 +179,7 @@ class PacketTraversal {
         hn::Store(axes.z, dc, half[2] + v);
       }
     }
+    const bool has_opacity = query_.scene->opacity != nullptr;
     auto limit = hn::Load(d_, limit_);
     each_bit(entered_by_any(bound, bvh_.count_in(index)), [&](int i) {
       const std::uint32_t id = leaf.ids[i];
@@ -202,7 +203,7 @@ class PacketTraversal {
         hit = mask_of(d_, hitting);
       }
       if (hitting == 0) return;
-      if constexpr (kOpacity) {
+      if (has_opacity) {
         // The halves of a rod may have different opacities: its opacity is known only with the hit.
         if (!is_rod)
           hit = hn::And(hit, k::visible_lanes(d_, *query_.packet, query_.first, id, query_.scene->opacity[id]));
@@ -210,7 +211,7 @@ class PacketTraversal {
         if (hitting == 0) return;
       }
       const auto begin = is_rod ? at_rod().begin(passed.along) : passed.along - radius;
-      const auto nearer = is_rod ? kOpacity ? limit : min(limit, at_rod().certain_distance(begin))
+      const auto nearer = is_rod ? has_opacity ? limit : min(limit, at_rod().certain_distance(begin))
                                  : certain_limit(passed, hn::Set(d_, inner[i]), begin, wide_margin, limit);
       limit = select(hit, nearer, limit);
       const float nearest = hn::GetLane(hn::MinOfLanes(d_, select(hit, begin, infinite)));
@@ -243,7 +244,7 @@ class PacketTraversal {
         const auto ray = k::load_rays(d, packet, first);
         if (is_rod) {
           const auto rod = k::broadcast(d, rods[rods.index(candidate.what)]);
-          intersect_rods<kPrecision, kOpacity>(d, *query_.scene, packet, first, ray, rod, ids, mask_of(d, part), found);
+          intersect_rods<kPrecision>(d, *query_.scene, packet, first, ray, rod, ids, mask_of(d, part), found);
         } else {
           intersect<kPrecision>(d, ray, sphere, ids, mask_of(d, part), found);
         }

@@ -305,8 +305,7 @@ inline bool keep_visible(const SphereBvh& bvh, std::uint32_t index, const float*
 
 /// Adds the spheres that test_spheres() has found to a ray's candidates. Shortens the ray to spheres that it certainly
 /// hits.
-template <bool kOpacity>
-HWY_INLINE void add_candidates(const SphereBvh& bvh, std::uint32_t index, SingleRay& ray) {
+HWY_INLINE void add_candidates(const SphereBvh& bvh, std::uint32_t index, bool has_opacity, SingleRay& ray) {
   const ChildTag d;
   const hn::RebindToUnsigned<ChildTag> du;
   const SphereBvh::Leaf& leaf = bvh.leaves[index];
@@ -326,7 +325,7 @@ HWY_INLINE void add_candidates(const SphereBvh& bvh, std::uint32_t index, Single
       const auto at = at_rods(bvh, index, v, ray);
       begin = select(rods, at.begin(passed.along), begin);
       inner = select(rods, -1, inner);
-      if (!kOpacity)  // otherwise a rod may be invisible
+      if (!has_opacity)  // otherwise a rod may be invisible
         nearest = min(nearest, select(rods, at.certain_distance(begin), infinite));
     }
     const auto distance = max(begin, 0);

@@ -45,7 +45,7 @@ HWY_INLINE bool order_candidates(SingleRay& ray) {
 }
 
 /// Intersects the candidates of rays, which are lanes of the query, and stores the results in the packet.
-template <class Packet, kernel::Precision kPrecision, bool kOpacity>
+template <class Packet, kernel::Precision kPrecision>
 HWY_INLINE void intersect_candidates(const EmbreeQuery<Packet>& query, unsigned lanes, SingleRay* rays) {
   using Id = typename Packet::Id;
   const hn::ScalableTag<typename Packet::Number> d;
@@ -89,7 +89,7 @@ HWY_INLINE void intersect_candidates(const EmbreeQuery<Packet>& query, unsigned 
           const Id any_rod = ids[hn::FindKnownFirstTrue(d, at_rods)];
           const auto rod = k::gather_rods(
               d, rods, [&](std::size_t i) { return rods.index(rods.contains(ids[i]) ? ids[i] : any_rod); });
-          intersect_rods<kPrecision, kOpacity>(d, scene, packet, first, ray, rod, found_ids, at_rods, found);
+          intersect_rods<kPrecision>(d, scene, packet, first, ray, rod, found_ids, at_rods, found);
         }
       }
       if (!hn::AllFalse(d, at_spheres)) {
@@ -121,15 +121,16 @@ static_assert(kMostRays <= 64 && kMostRays % kWidth == 0);
 ///
 /// `queries`  kWidth rays each
 /// `lanes`    which rays there are, as bits
-template <class Packet, kernel::Precision kPrecision, bool kOpacity>
+template <class Packet, kernel::Precision kPrecision>
 HWY_INLINE void trace_rays(const SphereBvh& bvh, const EmbreeQuery<Packet>* queries, std::uint64_t lanes,
                            SingleRay* rays) {
   const EmbreeScene& scene = *queries->scene;
+  const bool has_opacity = scene.opacity != nullptr;
   const Prefetcher prefetcher(bvh, scene);
   const auto intersect_all = [&] {
     for (int i = 0; i < kMostRays; i += kWidth) {
       const auto of_query = static_cast<unsigned>(lanes >> i) & ((1u << kWidth) - 1u);
-      if (of_query != 0) intersect_candidates<Packet, kPrecision, kOpacity>(queries[i / kWidth], of_query, rays + i);
+      if (of_query != 0) intersect_candidates<Packet, kPrecision>(queries[i / kWidth], of_query, rays + i);
     }
   };
   std::uint64_t active = lanes;
@@ -157,12 +158,12 @@ HWY_INLINE void trace_rays(const SphereBvh& bvh, const EmbreeQuery<Packet>* quer
       SingleRay& ray = rays[i];
       const std::uint32_t leaf = ray.what[--ray.waiting] & kIndexMask;
       bool any = test_spheres<Packet::kIsShadow>(bvh, leaf, ray);
-      if constexpr (kOpacity) any = any && keep_visible(bvh, leaf, scene.opacity, ray);
+      if (has_opacity) any = any && keep_visible(bvh, leaf, scene.opacity, ray);
       found |= std::uint64_t{any} << i;
     });
     each_bit(found, [&](int i) {
       SingleRay& ray = rays[i];
-      add_candidates<kOpacity>(bvh, ray.what[ray.waiting] & kIndexMask, ray);
+      add_candidates(bvh, ray.what[ray.waiting] & kIndexMask, has_opacity, ray);
       full = full || ray.candidates > kMaxCandidates - static_cast<int>(SphereBvh::kArity);
       prefetcher.prefetch_candidate(ray.candidate[ray.candidates - 1]);
     });
@@ -175,14 +176,14 @@ HWY_INLINE void trace_rays(const SphereBvh& bvh, const EmbreeQuery<Packet>* quer
 ///
 /// `rays`     out: one per lane
 /// Result     lanes that have a ray, as bits
-template <bool kOpacity, class Packet>
+template <class Packet>
 HWY_INLINE unsigned start_rays(const SphereBvh& bvh, EmbreeQuery<Packet>& query, SingleRay* rays) {
   const hn::ScalableTag<float> d;
   const hn::RebindToUnsigned<decltype(d)> du;
   const Packet& packet = *query.packet;
   EmbreeShadowRays embree;
   alignas(64) int valid[kWidth];
-  set_rays<false>(query, embree, valid);  // the BVH has no moving spheres
+  set_rays(query, embree, valid);
   const float *const origin[3] = {embree.org_x, embree.org_y, embree.org_z}, *const direction[3] = {embree.dir_x,
                                                                                                     embree.dir_y,
                                                                                                     embree.dir_z};
@@ -208,7 +209,7 @@ HWY_INLINE unsigned start_rays(const SphereBvh& bvh, EmbreeQuery<Packet>& query,
     ray.origin[3] = ray.direction[3] = ray.inverse[3] = 0;
     ray.limit = embree.tfar[i];
     if constexpr (Packet::kIsShadow) ray.target = static_cast<std::uint32_t>(packet.target[lane]);
-    if constexpr (kOpacity) ray.key = packet.key[lane];
+    if (query.scene->opacity != nullptr) ray.key = packet.key[lane];
     ray.candidates = 0;
     ray.candidate[0] = 0;
     ray.enter[0] = -std::numeric_limits<float>::infinity();  // never beyond the limit
@@ -224,7 +225,7 @@ HWY_INLINE unsigned start_rays(const SphereBvh& bvh, EmbreeQuery<Packet>& query,
 }
 
 /// Traces the rays of packets, each on its own.
-template <class Packet, kernel::Precision kPrecision, bool kOpacity>
+template <class Packet, kernel::Precision kPrecision>
 HWY_NOINLINE void trace_by_rays(const EmbreeScene& scene, Packet* packets, int count) {
   const SphereBvh& bvh = *scene.bvh;
   const std::size_t objects = bvh.start_nodes.size();
@@ -242,9 +243,9 @@ HWY_NOINLINE void trace_by_rays(const EmbreeScene& scene, Packet* packets, int c
     query.scene = &scene;
     query.packet = packets + i / kernel::kPacketSize;
     query.first = i % kernel::kPacketSize;
-    lanes |= std::uint64_t{start_rays<kOpacity>(bvh, query, rays + i)} << i;
+    lanes |= std::uint64_t{start_rays(bvh, query, rays + i)} << i;
   }
-  trace_rays<Packet, kPrecision, kOpacity>(bvh, queries, lanes, rays);
+  trace_rays<Packet, kPrecision>(bvh, queries, lanes, rays);
 }
 
 }  // namespace orrery::accel::HWY_NAMESPACE

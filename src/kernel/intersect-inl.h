@@ -59,11 +59,11 @@ HWY_INLINE Spheres<D> broadcast(D d, const Sphere& s) {
 
 /// A sphere at the times of a packet's rays from `first` on.
 ///
-/// Domain     `scene` has spheres, motion and moving_count as SceneView has them; something moves where kMoves
-template <bool kMoves, class D, class Scene, class Packet>
+/// Domain     `scene` has spheres, motion and moving_count as SceneView has them
+template <class D, class Scene, class Packet>
 HWY_INLINE Spheres<D> sphere_at(D d, const Scene& scene, std::uint32_t id, const Packet& packet, int first) {
   const auto at_opening = broadcast(d, scene.spheres[id]);
-  if (!kMoves || id >= scene.moving_count) return at_opening;
+  if (id >= scene.moving_count) return at_opening;
   const auto change = broadcast(d, scene.motion[id]);
   const auto time = hn::Load(d, packet.time + first);
   return {mul_add(change.center, time, at_opening.center), mul_add(change.radius, time, at_opening.radius)};

@@ -86,12 +86,10 @@ HWY_INLINE Rods<D> moved(const Rods<D>& at_opening, const Rods<D>& change, hn::V
 }
 
 /// A rod at the times of a packet's rays from `first` on.
-///
-/// Domain     something moves where kMoves
-template <bool kMoves, class D, class Packet>
+template <class D, class Packet>
 HWY_INLINE Rods<D> rod_at(D d, const RodArray& rods, std::size_t index, const Packet& packet, int first) {
   const auto at_opening = broadcast(d, rods[index]);
-  if (!kMoves || index >= rods.moving_count) return at_opening;
+  if (index >= rods.moving_count) return at_opening;
   return moved<D>(at_opening, broadcast(d, rods.motion[index]), hn::Load(d, packet.time + first));
 }
 

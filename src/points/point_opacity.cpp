@@ -11,7 +11,7 @@
 #include "points/rows.h"
 #include "points/valid_spheres.h"
 #include "scene/limits.h"
-#include "scene/scene.h"
+#include "scene/validate.h"
 #include "scene/value_text.h"
 
 namespace orrery::points {

@@ -6,7 +6,7 @@
 
 #include "data/table.h"
 #include "points/selection.h"
-#include "scene/forward.h"
+#include "scene/scene.h"
 
 namespace orrery::points {
 
