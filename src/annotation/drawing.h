@@ -66,9 +66,10 @@ void blend(const Overlay& overlay, film::EncodedPicture& picture);
 /// Adds a scene-linear overlay to an image as the layer `annotation`.
 void add_layer(const Overlay& overlay, film::Picture& picture);
 
-/// Returns the drawing without its lines as SVG, with a transparent background.
+/// Returns the drawing without its lines as SVG.
 ///
 /// `shown`    converts colours to display values, 0..1
-std::string svg(const Drawing& drawing, const std::function<Vec3d(const Vec3d&)>& shown);
+/// `png`      the image below, with the lines; empty: a transparent background
+std::string svg(const Drawing& drawing, const std::function<Vec3d(const Vec3d&)>& shown, std::string_view png = {});
 
 }  // namespace orrery::annotation

@@ -196,10 +196,12 @@ void PictureOptions::add_to(Command& command, job::Job& job) {
   const OptionGroup group(command, kImageOptions);
   command
       .add_option("-o,--output", files_, "FILE",
-                  "File to write: .exr, .hdr, .png, .tif, .tiff, .jpg, .jpeg or .ppm; can be repeated")
+                  "File to write: .exr, .hdr, .png, .tif, .tiff, .jpg, .jpeg, .ppm or .svg; can be repeated")
       ->details(
           "EXR and HDR are scene-linear, the others are display formats. An image with background.alpha = 0 has an "
-          "alpha channel in PNG and TIFF, unassociated (not premultiplied).")
+          "alpha channel in PNG, TIFF and SVG, unassociated (not premultiplied). SVG files contain the image as PNG, "
+          "and "
+          "annotations as text and shapes that an editor can change.")
       ->required()
       ->repeatable();
   add_bits_option(command, job.outputs.bits);

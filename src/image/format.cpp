@@ -30,7 +30,8 @@ const std::vector<FormatInfo>& formats() {
       {Format::kPng, {"png"}, "png", 65535, true, 16, true, 1.8, 4.8},
       {Format::kTiff, {"tif", "tiff"}, "tiff", 1 << 20, true, 16, true, 1.8, 4.8},
       {Format::kJpeg, {"jpg", "jpeg"}, "jpeg", kLargestJpeg, true, 8, false, 0.8, 0.8},
-      {Format::kPpm, {"ppm"}, "pnm", 65535, true, 8, false, 3, 3}};
+      {Format::kPpm, {"ppm"}, "pnm", 65535, true, 8, false, 3, 3},
+      {Format::kSvg, {"svg"}, "", 65535, true, 8, true, 2.4, 2.4}};
   return all;
 }
 

@@ -17,13 +17,14 @@ enum class Format {
   kTiff,  ///< display, 8 or 16 bit
   kJpeg,  ///< display, 8 bit
   kPpm,   ///< display, 8 bit
+  kSvg,   ///< display, 8 bit: a PNG below text and bars; only job::DisplayWriter writes it, nothing reads it
 };
 
 /// Properties of an image file format.
 struct FormatInfo {
   Format format;
   std::vector<const char*> extensions;  ///< lower case, without the dot
-  const char* library_name;             ///< OpenImageIO's name
+  const char* library_name;             ///< OpenImageIO's name; empty: it does not know the format
   int largest_side;                     ///< px, that the encoder accepts
   bool is_display;                      ///< holds display-encoded colours; the others hold scene-linear values
   int max_bits;                         ///< of display formats: maximum number of bits per channel

@@ -17,7 +17,7 @@ struct Attribute {
 };
 
 /// The attribute that holds a header's stamp. Formats without custom attributes hold this name and the stamp in their
-/// description; Radiance and PPM files hold no stamp.
+/// description; Radiance, PPM and SVG files hold no stamp.
 inline constexpr const char* kStampName = "orrery/stamp";
 
 /// Metadata of an image. Empty members are not written. The same pixels with the same header give the same bytes.

@@ -168,6 +168,7 @@ Input open_input(const std::filesystem::path& file, Alpha alpha) {
   prepare_library();
   const Format format = format_of(file);
   base::require_readable(file);
+  if (format == Format::kSvg) fail_to_read(file, "SVG files are only written; name a PNG or EXR of the same image");
   if (const std::string damage = damage_of(file, format); !damage.empty()) fail_to_read(file, damage);
   Input out{OIIO::ImageInput::create(info_of(format).library_name), {}, 0};
   if (!out.in)

@@ -70,6 +70,17 @@ void add_attributes_of(Format format, ImageSpec& spec) {
   leave_out_date(spec);
 }
 
+/// The layout and attributes of a display-encoded image.
+ImageSpec encoded_spec(const film::EncodedPicture& picture, const std::string& software, const std::string& stamp) {
+  ImageSpec spec(picture.width, picture.height, picture.channels,
+                 picture.bits == 8 ? TypeDesc::UINT8 : TypeDesc::UINT16);
+  if (!software.empty()) spec.attribute("Software", software);
+  if (!stamp.empty()) spec.attribute("ImageDescription", fmt::format("{} {}", kStampName, stamp));
+  if (picture.channels > 3) spec.attribute("oiio:UnassociatedAlpha", 1);  // else OpenImageIO divides by alpha
+  if (picture.is_srgb) spec.attribute("oiio:ColorSpace", "sRGB");
+  return spec;
+}
+
 }  // namespace
 
 WriteReport write_exr(const std::filesystem::path& file, const film::Picture& picture, const Header& header,
@@ -149,12 +160,7 @@ void write_encoded(const std::filesystem::path& file, const film::EncodedPicture
                                    static_cast<std::size_t>(picture.channels))
     throw base::Error(base::ErrorKind::kInternal,
                       fmt::format("the values of {} do not have the image's size", file.string()));
-  ImageSpec spec(picture.width, picture.height, picture.channels,
-                 picture.bits == 8 ? TypeDesc::UINT8 : TypeDesc::UINT16);
-  if (!software.empty()) spec.attribute("Software", software);
-  if (!stamp.empty()) spec.attribute("ImageDescription", fmt::format("{} {}", kStampName, stamp));
-  if (picture.channels > 3) spec.attribute("oiio:UnassociatedAlpha", 1);  // else OpenImageIO divides by alpha
-  if (picture.is_srgb) spec.attribute("oiio:ColorSpace", "sRGB");
+  ImageSpec spec = encoded_spec(picture, software, stamp);
   add_attributes_of(format, spec);
   const char* const name = info_of(format).library_name;
   if (picture.bits == 8) {
@@ -163,6 +169,20 @@ void write_encoded(const std::filesystem::path& file, const film::EncodedPicture
   } else {
     write_whole(file, name, TypeDesc::UINT16, {{spec, picture.values.data()}});
   }
+}
+
+std::string png_bytes(const film::EncodedPicture& picture) {
+  prepare_library();
+  ImageSpec spec = encoded_spec(picture, "", "");
+  add_attributes_of(Format::kPng, spec);
+  const std::vector<std::uint8_t> codes(picture.values.begin(), picture.values.end());
+  OIIO::Filesystem::IOVecOutput out;
+  const auto encoder = OIIO::ImageOutput::create("png");
+  if (!encoder || !encoder->set_ioproxy(&out) || !encoder->open("image.png", spec) ||
+      !encoder->write_image(TypeDesc::UINT8, codes.data()) || !encoder->close())
+    throw base::Error(base::ErrorKind::kInternal,
+                      "cannot encode a PNG: " + (encoder ? encoder->geterror() : OIIO::geterror()));
+  return {out.buffer().begin(), out.buffer().end()};
 }
 
 }  // namespace orrery::image

@@ -48,4 +48,9 @@ WriteReport write_hdr(const std::filesystem::path& file, const film::Picture& pi
 void write_encoded(const std::filesystem::path& file, const film::EncodedPicture& picture, const std::string& software,
                    const std::string& stamp = {});
 
+/// Encodes a display-encoded image of 8 bits per channel as PNG in memory.
+///
+/// Errors     base::Error(kInternal): the encoder's
+std::string png_bytes(const film::EncodedPicture& picture);
+
 }  // namespace orrery::image

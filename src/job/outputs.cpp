@@ -2,10 +2,12 @@
 #include "job/outputs.h"
 
 #include <algorithm>
+#include <utility>
 
 #include <fmt/core.h>
 
 #include "annotation/annotate.h"
+#include "base/atomic_file.h"
 #include "base/error.h"
 #include "display/develop.h"
 #include "display/settings.h"
@@ -46,12 +48,27 @@ film::EncodedPicture develop_annotated(const film::Picture& picture, const annot
 
 void DisplayWriter::write(const std::filesystem::path& file, const std::string& software, const std::string& stamp) {
   const bool keeps_alpha = picture_.is_transparent && image::holds_alpha(image::format_of(file));
+  const display::Alpha alpha = keeps_alpha ? display::Alpha::kStraight : display::Alpha::kOverBlack;
+  if (image::format_of(file) == image::Format::kSvg) return write_svg(file, alpha);
   std::optional<film::EncodedPicture>& developed = keeps_alpha ? with_alpha_ : over_black_;
-  if (!developed) {
-    const display::Alpha alpha = keeps_alpha ? display::Alpha::kStraight : display::Alpha::kOverBlack;
-    developed = develop_annotated(picture_, drawing_, settings_, bits_, alpha);
-  }
+  if (!developed) developed = develop_annotated(picture_, drawing_, settings_, bits_, alpha);
   image::write_encoded(file, *developed, software, stamp);
+}
+
+/// Outlines are pixels, like the image; text, bars and boxes are elements that an editor can change.
+void DisplayWriter::write_svg(const std::filesystem::path& file, display::Alpha alpha) const {
+  annotation::Drawing drawing;
+  if (drawing_ != nullptr) drawing = *drawing_;
+  drawing.width = picture_.width;
+  drawing.height = picture_.height;
+  annotation::Drawing outlines;
+  outlines.width = drawing.width;
+  outlines.height = drawing.height;
+  outlines.ink = drawing.ink;
+  outlines.outline_px = drawing.outline_px;
+  outlines.lines = std::move(drawing.lines);
+  const std::string png = image::png_bytes(develop_annotated(picture_, &outlines, settings_, 8, alpha));
+  base::write_text_file(file, annotation::svg(drawing, annotation::shown_by(settings_), png));
 }
 
 void require_bits(const display::Choice& display, const Outputs& outputs) {

@@ -84,8 +84,8 @@ image::WriteReport write_outputs(const Outputs& outputs, const display::Settings
 film::EncodedPicture develop_annotated(const film::Picture& picture, const annotation::Drawing* drawing,
                                        const display::Settings& settings, int bits, display::Alpha alpha);
 
-/// Writes one image to display formats. The display transform runs once for all files with the same channels. PNG and
-/// TIFF keep the alpha of a transparent image.
+/// Writes one image to display formats. The display transform runs once for all files with the same channels. PNG,
+/// TIFF and SVG keep the alpha of a transparent image.
 class DisplayWriter {
  public:
   /// Prepares an image for display formats; write() applies the display transform on first use.
@@ -98,10 +98,12 @@ class DisplayWriter {
 
   /// Writes a file in the display format of its extension.
   ///
-  /// Errors     those of display::develop and image::write_encoded
+  /// Errors     those of display::develop, image::write_encoded and base::write_text_file
   void write(const std::filesystem::path& file, const std::string& software, const std::string& stamp = {});
 
  private:
+  void write_svg(const std::filesystem::path& file, display::Alpha alpha) const;
+
   const film::Picture& picture_;
   const display::Settings& settings_;
   int bits_;

@@ -24,6 +24,7 @@ struct Functions {
   decltype(&image::write_deep) write_deep;
   decltype(&image::write_hdr) write_hdr;
   decltype(&image::write_encoded) write_encoded;
+  decltype(&image::png_bytes) png_bytes;
   decltype(&image::write_partial) write_partial;
   decltype(&image::read_provenance) read_provenance;
   decltype(&image::read_partial) read_partial;

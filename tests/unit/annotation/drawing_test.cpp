@@ -5,6 +5,7 @@
 
 #include <cstddef>
 #include <string>
+#include <utility>
 
 namespace orrery::annotation {
 namespace {
@@ -79,6 +80,24 @@ TEST(AnnotationDrawing, TextInSvgIsEscaped) {
   const std::string text = svg(drawing, same);
   EXPECT_NE(text.find(">a &lt; b &amp; ?</text>"), std::string::npos) << text;
   EXPECT_NE(text.find("text-anchor=\"middle\""), std::string::npos) << text;
+}
+
+TEST(AnnotationDrawing, SvgHasTheImageBelowTheText) {
+  Drawing drawing;
+  drawing.width = 3;
+  drawing.height = 2;
+  drawing.texts = {{"a", 1, 2, 10, 0}};
+  // Digits and padding of RFC 4648, section 10, and bytes above 127.
+  const std::pair<const char*, const char*> encoded[] = {
+      {"f", "Zg=="}, {"fo", "Zm8="}, {"foo", "Zm9v"}, {"foob", "Zm9vYg=="}, {"\xff\xfe\xfd", "//79"}};
+  for (const auto& [bytes, text] : encoded) {
+    const std::string out = svg(drawing, same, bytes);
+    const std::size_t image =
+        out.find(std::string("<image width=\"3\" height=\"2\" href=\"data:image/png;base64,") + text + "\"/>");
+    ASSERT_NE(image, std::string::npos) << out;
+    EXPECT_LT(image, out.find("<text"));
+  }
+  EXPECT_EQ(svg(drawing, same).find("<image"), std::string::npos);
 }
 
 }  // namespace

@@ -16,18 +16,19 @@ TEST(ImageFormat, FollowsTheExtension) {
   EXPECT_EQ(format_of("d.jpg"), Format::kJpeg);
   EXPECT_EQ(format_of("d.jpeg"), Format::kJpeg);
   EXPECT_EQ(format_of("d.ppm"), Format::kPpm);
+  EXPECT_EQ(format_of("d.svg"), Format::kSvg);
 }
 
 TEST(ImageFormat, ListsTheKnownExtensionsForAnUnknownOne) {
   for (const char* file : {"d.bmp", "d", "d.", ".exr", "exr", "a.exr/d"})
-    expect_error(base::ErrorKind::kUsage, {"exr, hdr, png, tif, tiff, jpg, jpeg, ppm"}, [&] { format_of(file); });
+    expect_error(base::ErrorKind::kUsage, {"exr, hdr, png, tif, tiff, jpg, jpeg, ppm, svg"}, [&] { format_of(file); });
   expect_error(base::ErrorKind::kUsage, {"did you mean `png`?"}, [] { format_of("d.pgn"); });
 }
 
 TEST(ImageFormat, OnlyExrAndHdrAreSceneLinear) {
   EXPECT_FALSE(is_display_format(Format::kExr));
   EXPECT_FALSE(is_display_format(Format::kHdr));
-  for (const Format format : {Format::kPng, Format::kTiff, Format::kJpeg, Format::kPpm})
+  for (const Format format : {Format::kPng, Format::kTiff, Format::kJpeg, Format::kPpm, Format::kSvg})
     EXPECT_TRUE(is_display_format(format));
 }
 
@@ -36,6 +37,7 @@ TEST(ImageFormat, OnlyPngAndTiffHoldSixteenBits) {
   EXPECT_EQ(max_bits(Format::kTiff), 16);
   EXPECT_EQ(max_bits(Format::kJpeg), 8);
   EXPECT_EQ(max_bits(Format::kPpm), 8);
+  EXPECT_EQ(max_bits(Format::kSvg), 8);
 }
 
 TEST(ImageFormat, ASideIsLimitedByTheEncoder) {
