@@ -2,7 +2,8 @@
 """Checks how Blender reads our EXR files. Runs inside Blender: blender --background --python blender.py -- FOLDER.
 
 FOLDER contains single.exr and multipart.exr, rendered from bunny.toml. Blender must find their layers under its own
-names for passes, and its Cryptomatte node must select the sphere "bunny" with the coverage computed from geometry.
+names for passes, and its Cryptomatte node must select the sphere "bunny", and the beads of one group of a data file, with
+the coverage computed from geometry.
 """
 import math
 import os
@@ -13,10 +14,19 @@ import bpy
 FOLDER = sys.argv[sys.argv.index("--") + 1]
 WIDTH, HEIGHT = 240, 160  # px, as in bunny.toml
 DISTANCE, RADIUS, VFOV_DEG = 5.0, 1.0, 40.0
-
-# A sphere at the image centre projects to a circle: its tangent cone intersected with the image plane.
 PIXELS_PER_TANGENT = HEIGHT / 2 / math.tan(math.radians(VFOV_DEG) / 2)
-AREA_PX = math.pi * (PIXELS_PER_TANGENT * math.tan(math.asin(RADIUS / DISTANCE))) ** 2
+
+
+def area_px(aside, radius):
+    """Area of a sphere's projection, an ellipse: its tangent cone intersected with the image plane. The sphere's centre is
+    in the plane of the bunny's, `aside` from it."""
+    distance = math.hypot(DISTANCE, aside)
+    sine = radius / distance  # of half the cone's angle
+    return (math.pi * (PIXELS_PER_TANGENT * sine) ** 2 * math.sqrt(1 - sine ** 2)
+            / ((DISTANCE / distance) ** 2 - sine ** 2) ** 1.5)
+
+
+OBJECTS = {"bunny": area_px(0, RADIUS), "beads.left": area_px(1.5, 0.3), "beads.right": area_px(1.5, 0.3)}
 
 PASSES = {"Combined", "Depth", "N", "P", "albedo", "diffuse_direct", "diffuse_indirect", "variance", "samples",
           "object_id", "denoise.albedo", "CryptoObject00", "CryptoObject01", "CryptoObject02"}
@@ -65,12 +75,12 @@ def check(file):
         found.update("denoise." + s.name for s in other.outputs)
         return node
 
-    def matte(tree):
+    def matte(tree, name):
         node = tree.nodes.new("CompositorNodeCryptomatteV2")
         node.source = "IMAGE"
         node.image = image
         node.layer_name = "CryptoObject"
-        node.matte_id = "bunny"
+        node.matte_id = name
         return node.outputs["Matte"]
 
     def depth(tree):
@@ -81,13 +91,13 @@ def check(file):
     middle = values[((HEIGHT // 2) * WIDTH + WIDTH // 2) * 4]
     expect(abs(middle - (DISTANCE - RADIUS)) < 1e-2, f"{file}: depth at the centre is {middle}")
 
-    values = composite(file + "-matte", matte)
-    coverage = sum(values[0::4])
-    print(file, "coverage", coverage, "px, expected", AREA_PX)
-    expect(abs(coverage - AREA_PX) < 0.002 * AREA_PX, f"{file}: the matte covers {coverage} px, expected {AREA_PX}")
-    expect(max(values[0::4]) <= 1.0, f"{file}: matte value above 1")
-    corner = values[0]
-    expect(corner == 0, f"{file}: the matte is {corner} in the corner, expected 0")
+    for name, area in OBJECTS.items():
+        values = composite(f"{file}-{name}", lambda tree, name=name: matte(tree, name))
+        coverage = sum(values[0::4])
+        print(file, name, "coverage", coverage, "px, expected", area)
+        expect(abs(coverage - area) < 0.002 * area, f"{file}: {name} covers {coverage} px, expected {area}")
+        expect(max(values[0::4]) <= 1.0, f"{file}: matte value of {name} above 1")
+        expect(values[0] == 0, f"{file}: the matte of {name} is {values[0]} in the corner, expected 0")
     missing = PASSES - found
     expect(not missing, f"{file}: Blender does not find {sorted(missing)} among {sorted(found)}")
 
