@@ -49,10 +49,6 @@ void free_slot(int index) noexcept {
   slots[static_cast<std::size_t>(index)].taken.store(false, std::memory_order_release);
 }
 
-std::filesystem::path directory_of(const std::filesystem::path& path) {
-  return path.has_parent_path() ? path.parent_path() : std::filesystem::path(".");
-}
-
 [[noreturn]] void cannot_create(const std::filesystem::path& path, const std::string& reason, int number) {
   throw FileError(ErrorKind::kCannotCreate, "cannot create " + path.string() + ": " + reason, path, number);
 }
@@ -83,7 +79,7 @@ void check_replaceable(const std::filesystem::path& path, const std::filesystem:
   if (::stat(target.c_str(), &file) != 0) return;
   if (::faccessat(AT_FDCWD, target.c_str(), W_OK, AT_EACCESS) != 0)
     cannot_create(path, std::string("it exists and cannot be written: ") + std::strerror(errno), errno);
-  if (::stat(directory_of(target).c_str(), &directory) != 0 || (directory.st_mode & S_ISVTX) == 0) return;
+  if (::stat(folder_of(target).c_str(), &directory) != 0 || (directory.st_mode & S_ISVTX) == 0) return;
   const uid_t user = ::geteuid();
   if (user != 0 && user != file.st_uid && user != directory.st_uid)
     cannot_create(path, "it belongs to another user, and its directory has the sticky bit", EPERM);
@@ -109,7 +105,7 @@ NewFile create_beside(const std::filesystem::path& path, const std::filesystem::
   constexpr std::size_t kLetters = 8;
   constexpr int kMaxAttempts = 16;
   std::error_code ignored;
-  const std::filesystem::path directory = directory_of(target);
+  const std::filesystem::path directory = folder_of(target);
   if (!std::filesystem::is_directory(directory, ignored))
     cannot_create(path, "directory " + directory.string() + " does not exist", ENOENT);
   check_replaceable(path, target);
@@ -167,7 +163,7 @@ void AtomicFile::commit() {
   ::close(file);
   if (synced != 0 && error != EINVAL) fail_to_write(path_, error);  // EINVAL: the file system does not support fsync
   commit_unsynced();
-  const int directory = ::open(directory_of(target_).c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
+  const int directory = ::open(folder_of(target_).c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
   if (directory >= 0) {
     ::fsync(directory);  // the name itself; if that fails, the file is still complete
     ::close(directory);

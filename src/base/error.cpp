@@ -10,10 +10,8 @@
 namespace orrery::base {
 namespace {
 
-/// True for the second and later bytes of a UTF-8 character, which take no column.
-bool continues_character(char c) { return (static_cast<unsigned char>(c) & 0xC0u) == 0x80u; }
-
-/// Returns the line with the caret. It repeats the tabs of the source line, so that the caret is under its column.
+/// Returns the line with the caret. It repeats the tabs of the source line, so that the caret is under its column. Only
+/// the first byte of a character takes one.
 std::string caret_line(const Diagnostic& diagnostic) {
   const std::string& source = diagnostic.source_line;
   const std::size_t begin = std::min(static_cast<std::size_t>(diagnostic.column) - 1, source.size());

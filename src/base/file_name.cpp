@@ -3,6 +3,8 @@
 
 #include <cstdint>
 
+#include <fmt/core.h>
+
 #include "base/text.h"
 
 namespace orrery::base {
@@ -19,11 +21,15 @@ std::uint32_t digest(std::string_view text) {
 
 }  // namespace
 
+std::filesystem::path folder_of(const std::filesystem::path& file) {
+  return file.has_parent_path() ? file.parent_path() : ".";
+}
+
 std::string extension(const std::filesystem::path& file) { return lower(file.extension().string()); }
 
 std::string_view utf8_prefix(std::string_view text, std::size_t bytes) {
   if (text.size() <= bytes) return text;
-  while (bytes > 0 && (static_cast<unsigned char>(text[bytes]) & 0xC0u) == 0x80u) --bytes;
+  while (bytes > 0 && continues_character(text[bytes])) --bytes;
   return text.substr(0, bytes);
 }
 
@@ -32,7 +38,7 @@ std::string companion_name(std::string_view stem, std::string_view suffix) {
   if (stem.size() + suffix.size() > kLongestFileName) {
     constexpr std::size_t kDigest = 9;  // a dot, eight digits
     out = utf8_prefix(stem, kLongestFileName - suffix.size() - kDigest);
-    append(out, ".%08x", digest(stem));
+    out += fmt::format(".{:08x}", digest(stem));
   }
   return out.append(suffix);
 }

@@ -11,6 +11,9 @@ namespace orrery::base {
 /// Maximum length of a file name on common file systems, bytes.
 inline constexpr std::size_t kLongestFileName = 255;
 
+/// Returns the folder that holds a file.
+std::filesystem::path folder_of(const std::filesystem::path& file);
+
 /// Returns the extension of a file in lower case: ".ply". Extensions are compared ignoring case.
 std::string extension(const std::filesystem::path& file);
 

@@ -3,20 +3,25 @@
 
 #include <sys/stat.h>
 
+#include <fmt/core.h>
+
 #include "base/atomic_file.h"
 #include "base/error.h"
+#include "base/file_name.h"
 
 namespace orrery::base {
 namespace {
 
 namespace fs = std::filesystem;
 
-std::string described(const fs::path& file, const std::string& role) { return file.string() + " (" + role + ")"; }
+std::string described(const fs::path& file, const std::string& role) {
+  return fmt::format("{} ({})", file.string(), role);
+}
 
 }  // namespace
 
 const FileSet::Folder& FileSet::folder_of(const fs::path& file) {
-  const fs::path folder = file.has_parent_path() ? file.parent_path() : fs::path(".");
+  const fs::path folder = base::folder_of(file);
   const auto [at, is_new] = folders_.try_emplace(folder.string());
   struct stat status {};
   if (is_new && ::stat(folder.c_str(), &status) == 0) at->second = {status.st_dev, status.st_ino, true};
@@ -43,38 +48,29 @@ std::vector<FileSet::Key> FileSet::keys_of(const fs::path& file) {
   return keys;
 }
 
-const FileSet::Entry* FileSet::find(const std::vector<Key>& keys) const {
+const FileSet::Entry* FileSet::insert(const Entry& entry) {
+  const std::vector<Key> keys = keys_of(entry.path);
   for (const Key& key : keys)
-    if (const auto found = index_.find(key); found != index_.end()) return &entries_[found->second];
+    if (const auto known = index_.find(key); known != index_.end()) return &entries_[known->second];
+  for (const Key& key : keys) index_.emplace(key, entries_.size());
+  entries_.push_back(entry);
   return nullptr;
 }
 
-void FileSet::insert(const std::vector<Key>& keys, const Entry& entry) {
-  for (const Key& key : keys) index_.emplace(key, entries_.size());
-  entries_.push_back(entry);
-}
-
 bool FileSet::add_input(const fs::path& file, const std::string& role) {
-  const std::vector<Key> keys = keys_of(file);
-  const Entry* const known = find(keys);
+  const Entry* const known = insert({file, role, false});
   if (known != nullptr && known->is_output)
-    throw Error(ErrorKind::kUsage, described(known->path, known->role) + " would overwrite " + described(file, role) +
-                                       "; choose another name");
-  if (known != nullptr) return false;
-  insert(keys, {file, role, false});
-  return true;
+    refuse(fmt::format("{} would overwrite {}; choose another name", described(known->path, known->role),
+                       described(file, role)));
+  return known == nullptr;
 }
 
 void FileSet::add_output(const fs::path& file, const std::string& role) {
-  const std::vector<Key> keys = keys_of(file);
-  const Entry* const known = find(keys);
-  if (known != nullptr && known->is_output)
-    throw Error(ErrorKind::kUsage, described(file, role) + " and " + described(known->path, known->role) +
-                                       " are the same file; choose another name");
-  if (known != nullptr)
-    throw Error(ErrorKind::kUsage, described(file, role) + " would overwrite " + described(known->path, known->role) +
-                                       "; choose another name");
-  insert(keys, {file, role, true});
+  const Entry* const known = insert({file, role, true});
+  if (known == nullptr) return;
+  const std::string own = described(file, role), other = described(known->path, known->role);
+  refuse(known->is_output ? fmt::format("{} and {} are the same file; choose another name", own, other)
+                          : fmt::format("{} would overwrite {}; choose another name", own, other));
 }
 
 }  // namespace orrery::base

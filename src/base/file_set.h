@@ -49,8 +49,8 @@ class FileSet {
 
   const Folder& folder_of(const std::filesystem::path& file);
   std::vector<Key> keys_of(const std::filesystem::path& file);
-  const Entry* find(const std::vector<Key>& keys) const;
-  void insert(const std::vector<Key>& keys, const Entry& entry);
+  /// Inserts a file, unless it is known; then returns its entry.
+  const Entry* insert(const Entry& entry);
 
   std::vector<Entry> entries_;
   std::map<Key, std::size_t> index_;  ///< into entries_

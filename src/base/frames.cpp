@@ -3,10 +3,11 @@
 
 #include <algorithm>
 #include <charconv>
-#include <cstdio>
 #include <cstdlib>
 #include <set>
 #include <string_view>
+
+#include <fmt/core.h>
 
 #include "base/error.h"
 
@@ -18,7 +19,7 @@ constexpr int kLargestFrame = 9'999'999;
 constexpr std::size_t kMaxFrames = 100'000;
 
 [[noreturn]] void refuse(const std::string& text, const std::string& why) {
-  throw Error(ErrorKind::kUsage, "`" + text + "` is not a frame range: " + why + "; write 1-10, 1-10x2 or 1,3,7-9");
+  base::refuse(fmt::format("`{}` is not a frame range: {}; write 1-10, 1-10x2 or 1,3,7-9", text, why));
 }
 
 /// Parses a number at the front of `rest`, the unread end of `text`, and removes it.
@@ -28,8 +29,7 @@ int take_number(const std::string& text, std::string_view& rest, const char* mis
   if (error == std::errc::invalid_argument) refuse(text, missing);
   const auto length = static_cast<std::size_t>(end - rest.data());
   if (error != std::errc() || std::abs(number) > kLargestFrame)
-    refuse(text,
-           std::string(rest.substr(0, length)) + " exceeds the maximum frame number " + std::to_string(kLargestFrame));
+    refuse(text, fmt::format("{} exceeds the maximum frame number {}", rest.substr(0, length), kLargestFrame));
   rest.remove_prefix(length);
   return number;
 }
@@ -82,10 +82,10 @@ std::vector<int> parse_frames(const std::string& text) {
     if (more) {
       rest.remove_prefix(1);
     } else if (!rest.empty()) {
-      refuse(text, "unexpected `" + std::string(rest) + "`");
+      refuse(text, fmt::format("unexpected `{}`", rest));
     }
     count += static_cast<std::size_t>(std::abs(last - first) / step) + 1;
-    if (count > kMaxFrames) refuse(text, "it has more than " + std::to_string(kMaxFrames) + " frames");
+    if (count > kMaxFrames) refuse(text, fmt::format("it has more than {} frames", kMaxFrames));
     const int signed_step = last < first ? -step : step;
     for (int f = first; signed_step > 0 ? f <= last : f >= last; f += signed_step)
       if (seen.insert(f).second) frames.push_back(f);
@@ -97,8 +97,8 @@ std::string frames_text(const std::vector<int>& frames) {
   std::string out;
   for (std::size_t i = 0, end = 0; i < frames.size(); i = end) {
     for (end = i + 1; end < frames.size() && frames[end] == frames[end - 1] + 1;) ++end;
-    out += (out.empty() ? "" : ",") + std::to_string(frames[i]);
-    if (end - i > 1) out += "-" + std::to_string(frames[end - 1]);
+    out += fmt::format("{}{}", out.empty() ? "" : ",", frames[i]);
+    if (end - i > 1) out += fmt::format("-{}", frames[end - 1]);
   }
   return out;
 }
@@ -107,18 +107,15 @@ bool has_frame_pattern(const std::string& name) { return find_pattern(name, name
 
 void refuse_one_name(const std::string& name, std::size_t frames, const std::string& example) {
   const bool has_single = name.find('#') != std::string::npos;
-  throw Error(ErrorKind::kUsage, name + " is one name for " + std::to_string(frames) +
-                                     " frames; add a frame pattern, e.g. " + example +
-                                     (has_single ? "; a single # is an ordinary character, so write at least ##" : ""));
+  refuse(fmt::format("{} is one name for {} frames; add a frame pattern, e.g. {}{}", name, frames, example,
+                     has_single ? "; a single # is an ordinary character, so write at least ##" : ""));
 }
 
 std::string with_frame(const std::string& name, int frame) {
   std::size_t at = name_begin(name);
   std::string out = name.substr(0, at);
   for (Pattern p = find_pattern(name, at); p.end > 0; p = find_pattern(name, at)) {
-    char digits[128];
-    std::snprintf(digits, sizeof(digits), "%0*d", p.digits, frame);
-    out += name.substr(at, p.begin - at) + digits;
+    out += name.substr(at, p.begin - at) + fmt::format("{:0{}}", frame, p.digits);
     at = p.end;
   }
   return out + name.substr(at);

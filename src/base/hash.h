@@ -1,13 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <bit>
 #include <cinttypes>
 #include <cstdint>
-#include <cstring>
+#include <cstdio>
 #include <string>
 #include <string_view>
-
-#include "base/text.h"
 
 namespace orrery::base {
 
@@ -16,20 +15,16 @@ namespace orrery::base {
 /// Reference  fnv
 class Hash {
  public:
-  void add(double x) {
-    std::uint64_t bits;
-    std::memcpy(&bits, &x, sizeof(bits));
-    add_bits(bits);
-  }
+  void add(double x) { add_bits(std::bit_cast<std::uint64_t>(x)); }
   void add_bits(std::uint64_t bits) {
     state_ = (state_ ^ bits) * 0x100000001b3u;
     state_ ^= state_ >> 29;
   }
   /// Sixteen hexadecimal digits.
   std::string text() const {
-    std::string out;
-    append(out, "%016" PRIx64, state_);
-    return out;
+    char digits[17];
+    std::snprintf(digits, sizeof(digits), "%016" PRIx64, state_);
+    return digits;
   }
 
  private:

@@ -3,26 +3,15 @@
 
 #include <algorithm>
 #include <cctype>
-#include <cstdarg>
 #include <cstddef>
 #include <cstdint>
-#include <cstdio>
+
+#include <fmt/core.h>
 
 namespace orrery::base {
 
-void append(std::string& out, const char* format, ...) {
-  va_list arguments, again;
-  va_start(arguments, format);
-  va_copy(again, arguments);
-  const int length = std::vsnprintf(nullptr, 0, format, arguments);
-  va_end(arguments);
-  if (length > 0) {
-    const std::size_t begin = out.size();
-    out.resize(begin + static_cast<std::size_t>(length) + 1);  // with the terminating zero
-    std::vsnprintf(out.data() + begin, static_cast<std::size_t>(length) + 1, format, again);
-    out.pop_back();
-  }
-  va_end(again);
+std::string counted(std::uint64_t number, std::string_view noun) {
+  return fmt::format("{} {}{}", number, noun, number == 1 ? "" : "s");
 }
 
 std::string bytes_text(std::uint64_t bytes) {
@@ -33,9 +22,7 @@ std::string bytes_text(std::uint64_t bytes) {
     value /= 1024;
     unit = larger;
   }
-  std::string out;
-  append(out, "%.1f %s", value, unit);
-  return out;
+  return fmt::format("{:.1f} {}", value, unit);
 }
 
 std::string printable(std::string_view text) {
@@ -68,7 +55,7 @@ std::size_t printable_length(std::string_view text, std::size_t at) {
   if (lead < 0xC2 || lead > 0xF4 || at + length > text.size()) return 0;
   unsigned code = lead & (0x7Fu >> length);
   for (std::size_t i = 1; i < length; ++i) {
-    if ((byte(at + i) & 0xC0u) != 0x80u) return 0;
+    if (!continues_character(text[at + i])) return 0;
     code = code << 6 | (byte(at + i) & 0x3Fu);
   }
   const bool is_overlong = code < (length == 4 ? 0x10000u : length == 3 ? 0x800u : 0x80u);
@@ -85,12 +72,17 @@ bool is_printable(std::string_view text) {
   return true;
 }
 
+std::string replaced(std::string text, std::string_view what, std::string_view by) {
+  for (std::size_t at = text.find(what); at != std::string::npos; at = text.find(what, at + by.size()))
+    text.replace(at, what.size(), by);
+  return text;
+}
+
+std::string quoted(const std::string& word) { return "'" + replaced(word, "'", "'\\''") + "'"; }
+
 std::string shell_quoted(const std::string& word) {
   static const std::string plain = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789_-./:=,+@%^";
-  if (!word.empty() && word.find_first_not_of(plain) == std::string::npos) return word;
-  std::string out = "'";
-  for (const char c : word) out += c == '\'' ? std::string("'\\''") : std::string(1, c);
-  return out + "'";
+  return !word.empty() && word.find_first_not_of(plain) == std::string::npos ? word : quoted(word);
 }
 
 namespace {

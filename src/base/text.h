@@ -1,16 +1,28 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <charconv>
 #include <cstddef>
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
 
 namespace orrery::base {
 
-/// Appends printf output of any length to a string.
-[[gnu::format(printf, 2, 3)]] void append(std::string& out, const char* format, ...);
+/// The number that is the whole text, as std::from_chars reads it; empty if it is not one.
+template <class Number>
+std::optional<Number> number_of(std::string_view text) {
+  Number number{};
+  const char* const end = text.data() + text.size();
+  const auto [stop, error] = std::from_chars(text.data(), end, number);
+  if (error != std::errc() || stop != end) return {};
+  return number;
+}
+
+/// "1 sphere", "2 spheres".
+std::string counted(std::uint64_t number, std::string_view noun);
 
 /// Formats a size in bytes: "49.4 MiB".
 std::string bytes_text(std::uint64_t bytes);
@@ -31,8 +43,16 @@ bool is_printable(std::string_view text);
 /// Converts ASCII letters to lower case.
 std::string lower(std::string_view text);
 
-/// Quotes a word for a POSIX shell; a word without special characters is returned unchanged.
+/// Replaces all occurrences of a text.
+std::string replaced(std::string text, std::string_view what, std::string_view by);
+
+/// Quotes a word for a shell.
+std::string quoted(const std::string& word);
+/// The same, but a word without special characters is returned unchanged.
 std::string shell_quoted(const std::string& word);
+
+/// True for the second and later bytes of a UTF-8 character.
+inline bool continues_character(char c) { return (static_cast<unsigned char>(c) & 0xC0u) == 0x80u; }
 
 /// Returns the candidate closest to a misspelt word.
 ///

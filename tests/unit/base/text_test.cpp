@@ -50,13 +50,21 @@ TEST(BaseText, JoinsWithCommas) {
   EXPECT_EQ(joined({}), "");
 }
 
-TEST(BaseText, AppendTakesAnyLength) {
-  const std::string word(5000, 'x');
-  std::string out = "a ";
-  append(out, "%s %d", word.c_str(), 42);
-  EXPECT_EQ(out, "a " + word + " 42");
-  append(out, "%s", "");
-  EXPECT_EQ(out, "a " + word + " 42");
+TEST(BaseText, ANumberIsTheWholeText) {
+  EXPECT_EQ(number_of<int>("42"), 42);
+  EXPECT_EQ(number_of<double>("-1.5e3"), -1500);
+  for (const char* text : {"", "4x", "x4", "1 2"}) EXPECT_FALSE(number_of<int>(text)) << text;
+  EXPECT_FALSE(number_of<std::uint8_t>("256"));
+}
+
+TEST(BaseText, OneIsSingular) {
+  EXPECT_EQ(counted(1, "rod"), "1 rod");
+  EXPECT_EQ(counted(0, "rod"), "0 rods");
+}
+
+TEST(BaseText, ReplacesAllOccurrences) {
+  EXPECT_EQ(replaced("a.b.", ".", ".."), "a..b..");
+  EXPECT_EQ(replaced("", ".", "x"), "");
 }
 
 TEST(BaseText, BytesHaveTheLargestUnitAboveOne) {
