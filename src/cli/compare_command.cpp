@@ -1,10 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-#include <algorithm>
-#include <charconv>
-#include <cmath>
 #include <cstdio>
 #include <memory>
-#include <utility>
+#include <string_view>
 
 #include <fmt/core.h>
 
@@ -38,24 +35,21 @@ struct CompareOptions {
 };
 
 Limit limit_of(const std::string& text) {
-  const auto wrong = [&](const std::string& reason) {
-    return base::Error(base::ErrorKind::kUsage, fmt::format("--fail-above {}: {}", text, reason));
+  const auto refuse = [&](const std::string& reason) {
+    base::refuse(fmt::format("--fail-above {}: {}", text, reason));
   };
   const std::size_t equals = text.find('=');
-  if (equals == std::string::npos) throw wrong("write METRIC=VALUE, e.g. rmse=0.001");
-  Limit limit{text.substr(0, equals), 0};
-  const char* const end = text.data() + text.size();
-  const auto [stopped, error] = std::from_chars(text.data() + equals + 1, end, limit.value);
-  if (error != std::errc() || stopped != end || !(limit.value >= 0))
-    throw wrong("the value must be a number, 0 or more");
+  if (equals == std::string::npos) refuse("write METRIC=VALUE, e.g. rmse=0.001");
+  const std::string metric = text.substr(0, equals);
+  const auto value = base::number_of<double>(std::string_view(text).substr(equals + 1));
+  if (!value || !(*value >= 0)) refuse("the value must be a number, 0 or more");
   const std::vector<std::string>& known = compare::limitable_metrics();
-  if (limit.metric == "psnr" || limit.metric == "ssim")
-    throw wrong(limit.metric + " decreases with the error; limit rmse or flip instead");
-  if (std::find(known.begin(), known.end(), limit.metric) == known.end()) {
-    const std::string remedy = base::did_you_mean(limit.metric, known);
-    throw wrong("unknown metric; " + (remedy.empty() ? "use one of " + base::joined(known) : remedy));
+  if (metric == "psnr" || metric == "ssim") refuse(metric + " decreases with the error; limit rmse or flip instead");
+  if (!base::contains(known, metric)) {
+    const std::string remedy = base::did_you_mean(metric, known);
+    refuse("unknown metric; " + (remedy.empty() ? "use one of " + base::joined(known) : remedy));
   }
-  return limit;
+  return {metric, *value};
 }
 
 void warn_of_layers(const CompareOptions& options, const compare::Comparison& found) {

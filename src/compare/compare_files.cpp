@@ -19,8 +19,8 @@
 #include "image/header.h"
 #include "image/read.h"
 #include "image/write.h"
+#include "job/report_text.h"
 #include "job/resources.h"
-#include "job/statistics.h"
 #include "job/version.h"
 #include "render/tiles.h"
 
@@ -49,33 +49,16 @@ void count_differing(const film::Picture& picture, const film::Picture& referenc
     if (picture.find(plane.name) == nullptr) out.only_in_reference.push_back(plane.name);
 }
 
-/// sRGB-encoded values of an image without exposure, for metrics that need display-encoded input.
-struct Codes {
+/// An image with changed values. Those that are not finite are 0, since filters would spread them.
+struct ChangedImage {
   std::vector<float> values[3];
   ColorView view;
 
-  Codes(const ColorView& from, Encoding encoding) : view(from) {
+  template <class Change>
+  ChangedImage(const ColorView& from, Change change) : view(from) {
     for (int c = 0; c < 3; ++c) {
       values[c].assign(from.channel[c], from.channel[c] + from.pixels());
-      for (float& v : values[c]) {
-        v = std::isfinite(v) ? std::clamp(v, 0.0f, 1.0f) : 0.0f;
-        if (encoding == Encoding::kLight) v = srgb_encoded(v);
-      }
-      view.channel[c] = values[c].data();
-    }
-  }
-};
-
-/// The image with non-finite values replaced by 0, since filters would spread them.
-struct Finite {
-  std::vector<float> values[3];
-  ColorView view;
-
-  explicit Finite(const ColorView& from) : view(from) {
-    for (int c = 0; c < 3; ++c) {
-      values[c].assign(from.channel[c], from.channel[c] + from.pixels());
-      for (float& v : values[c])
-        if (!std::isfinite(v)) v = 0;
+      for (float& v : values[c]) v = std::isfinite(v) ? change(v) : 0.0f;
       view.channel[c] = values[c].data();
     }
   }
@@ -114,7 +97,7 @@ void write_codes(const std::filesystem::path& file, const film::Picture& codes) 
 
 void write_numbers(const std::filesystem::path& file, const film::Picture& numbers) {
   if (image::format_of(file) == image::Format::kHdr)
-    throw base::Error(base::ErrorKind::kUsage, file.string() + " cannot hold negative values; use EXR");
+    base::refuse(file.string() + " cannot hold negative values; use EXR");
   image::ExrOptions options;
   options.as_float = true;
   image::write_exr(file, numbers, {}, options);
@@ -161,9 +144,8 @@ double Comparison::metric(const std::string& name) const {
   if (name == "bias") return std::abs(errors.bias);
   if (name == "flip" && flip) return *flip;
   if (name == "z" && z_test) return std::abs(z_test->largest_z);
-  throw base::Error(base::ErrorKind::kUsage,
-                    fmt::format("--fail-above {}: not available for these images; {}", name,
-                                name == "z" ? "render with --layers variance" : "it covers colours only"));
+  base::refuse(fmt::format("--fail-above {}: not available for these images; {}", name,
+                           name == "z" ? "render with --layers variance" : "it covers colours only"));
 }
 
 Comparison compare(const film::Picture& picture, const film::Picture& reference, Encoding encoding,
@@ -186,11 +168,18 @@ Comparison compare(const film::Picture& picture, const film::Picture& reference,
         fmt::format("nothing to compare: no value of {} is finite and a hit in both images", base::joined(c.names)));
   out.display_map = display_error_map(c.picture, c.reference, c.excluded);
   if (!layer.empty() || c.names.size() < 3) return out;
-  const Codes code_a(c.picture, encoding), code_b(c.reference, encoding);
+  // For metrics that need display-encoded input: without exposure.
+  const auto code = [&](float v) {
+    v = std::clamp(v, 0.0f, 1.0f);
+    return encoding == Encoding::kLight ? srgb_encoded(v) : v;
+  };
+  const auto same = [](float v) { return v; };
+  const ChangedImage code_a(c.picture, code), code_b(c.reference, code);
   out.ssim = ssim(code_a.view, code_b.view);
-  out.flip_map = encoding == Encoding::kDisplay ? flip(code_a.view, code_b.view)
-                                                : hdr_flip(Finite(c.picture).view, Finite(c.reference).view,
-                                                           kPixelsPerDegree, on_threads(threads));
+  out.flip_map = encoding == Encoding::kDisplay
+                     ? flip(code_a.view, code_b.view)
+                     : hdr_flip(ChangedImage(c.picture, same).view, ChangedImage(c.reference, same).view,
+                                kPixelsPerDegree, on_threads(threads));
   out.flip = out.flip_map.mean();
   out.z_test = z_test(c.picture, color_of(picture, "variance"), c.reference, color_of(reference, "variance"));
   return out;
@@ -201,14 +190,13 @@ Comparison compare_files(const std::filesystem::path& picture, const std::filesy
   const bool developed = image::is_display_format(image::format_of(picture));
   if (developed != image::is_display_format(image::format_of(reference))) {
     const auto& linear = developed ? reference : picture;
-    throw base::Error(base::ErrorKind::kUsage,
-                      fmt::format("{} is scene-linear, but the other image is display-encoded; develop it first: "
-                                  "orrery develop {} -o developed.png",
-                                  linear.string(), linear.string()));
+    base::refuse(
+        fmt::format("{0} is scene-linear, but the other image is display-encoded; develop it first: orrery develop {0} "
+                    "-o developed.png",
+                    linear.string()));
   }
   check_files(picture, reference, pictures);
-  if (!layer.empty() && !pictures.flip.empty())
-    throw base::Error(base::ErrorKind::kUsage, "--flip covers colours only; remove --layer");
+  if (!layer.empty() && !pictures.flip.empty()) base::refuse("--flip covers colours only; remove --layer");
   const auto read = [](const std::filesystem::path& file) {
     return image::read(file, image::Parts::kAll, base::available_memory().value_or(0));
   };
@@ -230,94 +218,77 @@ Comparison compare_files(const std::filesystem::path& picture, const std::filesy
 }
 
 std::string comparison_text(const Comparison& c) {
+  using job::add_row;
   std::string out;
   const PixelErrors& e = c.errors;
-  base::append(out, "images      %d x %d, channels %s\n", c.width, c.height, base::joined(c.channels).c_str());
+  add_row(out, "images", "{} x {}, channels {}", c.width, c.height, base::joined(c.channels));
   if (c.is_matte)
-    base::append(out, "matte       %.6g of the coverage belongs to different objects; errors are of this fraction\n",
-                 e.mae);
-  base::append(out, "rmse        %.6g\n", e.rmse);
-  base::append(out, "relmse      %.6g\n", e.relative_mse);
-  base::append(out, "mae         %.6g\n", e.mae);
-  base::append(out, "max         %.6g", e.max);
-  if (e.max_channel >= 0)
-    base::append(out, " in %s at %d, %d",
-                 c.channels[std::min(static_cast<std::size_t>(e.max_channel), c.channels.size() - 1)].c_str(), e.max_x,
-                 e.max_y);
-  if (std::isfinite(e.psnr_db())) {
-    base::append(out, "\npsnr        %.2f dB\n", e.psnr_db());
-  } else {
-    out += "\npsnr        infinite\n";
-  }
-  base::append(out, "display     %.6g relative display error, as in --noise\n", e.display);
-  base::append(out, "bias        %+.3g of the mean\n", e.bias);
-  if (c.ssim) base::append(out, "ssim        %.6g\n", *c.ssim);
-  if (c.flip) base::append(out, "flip        %.6g\n", *c.flip);
+    add_row(out, "matte", "{:.6g} of the coverage belongs to different objects; errors are of this fraction", e.mae);
+  add_row(out, "rmse", "{:.6g}", e.rmse);
+  add_row(out, "relmse", "{:.6g}", e.relative_mse);
+  add_row(out, "mae", "{:.6g}", e.mae);
+  add_row(out, "max", "{:.6g}{}", e.max,
+          e.max_channel >= 0 ? fmt::format(" in {} at {}, {}", c.channel(e.max_channel), e.max_x, e.max_y) : "");
+  add_row(out, "psnr", "{}", std::isfinite(e.psnr_db()) ? fmt::format("{:.2f} dB", e.psnr_db()) : "infinite");
+  add_row(out, "display", "{:.6g} relative display error, as in --noise", e.display);
+  add_row(out, "bias", "{:+.3g} of the mean", e.bias);
+  if (c.ssim) add_row(out, "ssim", "{:.6g}", *c.ssim);
+  if (c.flip) add_row(out, "flip", "{:.6g}", *c.flip);
   if (c.z_test) {
     const ZTest& z = *c.z_test;
-    base::append(out, "noise       rmse %.6g explained by the variances, %.6g unexplained\n", z.noise, z.bias);
-    base::append(out, "mean bias   %+.3g relative, standard error %.2g\n", z.mean_bias, z.mean_bias_error);
-    base::append(out, "z-test      %s: %d of %d blocks of %d px exceed |z| = %.2f; maximum %+.2f in %s at %d, %d\n",
-                 z.differ() ? "the images differ by more than noise" : "no difference but noise", z.rejected, z.tests,
-                 kTestedSide, z.critical_z, z.largest_z, c.channels[static_cast<std::size_t>(z.channel)].c_str(), z.x,
-                 z.y);
+    add_row(out, "noise", "rmse {:.6g} explained by the variances, {:.6g} unexplained", z.noise, z.bias);
+    add_row(out, "mean bias", "{:+.3g} relative, standard error {:.2g}", z.mean_bias, z.mean_bias_error);
+    add_row(out, "z-test", "{}: {} of {} blocks of {} px exceed |z| = {:.2f}; maximum {:+.2f} in {} at {}, {}",
+            z.differ() ? "the images differ by more than noise" : "no difference but noise", z.rejected, z.tests,
+            kTestedSide, z.critical_z, z.largest_z, c.channel(z.channel), z.x, z.y);
   }
-  base::append(out, "differing   %llu of %llu values\n", static_cast<unsigned long long>(c.differing),
-               static_cast<unsigned long long>(c.values));
+  add_row(out, "differing", "{} of {} values", c.differing, c.values);
   if (c.no_hit > 0)
-    base::append(out, "left out    %llu pixels without a hit, %llu of them in one image only\n",
-                 static_cast<unsigned long long>(c.no_hit), static_cast<unsigned long long>(c.no_hit_in_one));
-  if (e.not_finite > 0)
-    base::append(out, "left out    %llu non-finite values\n", static_cast<unsigned long long>(e.not_finite));
+    add_row(out, "left out", "{} pixels without a hit, {} of them in one image only", c.no_hit, c.no_hit_in_one);
+  if (e.not_finite > 0) add_row(out, "left out", "{} non-finite values", e.not_finite);
   return out;
 }
 
 std::string comparison_json(const Comparison& c) {
   using nlohmann::json;
   const PixelErrors& e = c.errors;
-  json out = {{"schema", "orrery.compare/2"},
-              {"width", c.width},
-              {"height", c.height},
-              {"channels", c.channels},
-              {"rmse", e.rmse},
-              {"relmse", e.relative_mse},
-              {"mae", e.mae},
-              {"max", e.max},
-              {"max_at", nullptr},
-              {"psnr_db", nullptr},
-              {"display", e.display},
-              {"bias", e.bias},
-              {"ssim", nullptr},
-              {"flip", nullptr},
-              {"z_test", nullptr},
-              {"values", c.values},
-              {"differing", c.differing},
-              {"not_finite", e.not_finite},
-              {"no_hit", c.no_hit},
-              {"no_hit_in_one", c.no_hit_in_one},
-              {"only_in_a", c.only_in_picture},
-              {"only_in_b", c.only_in_reference}};
-  if (e.max_channel >= 0)
-    out["max_at"] = {{"channel", c.channels[std::min(static_cast<std::size_t>(e.max_channel), c.channels.size() - 1)]},
-                     {"x", e.max_x},
-                     {"y", e.max_y}};
-  if (std::isfinite(e.psnr_db())) out["psnr_db"] = e.psnr_db();
-  if (c.ssim) out["ssim"] = *c.ssim;
-  if (c.flip) out["flip"] = *c.flip;
+  json max_at, z_test;
+  if (e.max_channel >= 0) max_at = {{"channel", c.channel(e.max_channel)}, {"x", e.max_x}, {"y", e.max_y}};
   if (c.z_test) {
     const ZTest& z = *c.z_test;
-    out["z_test"] = {{"tests", z.tests},
-                     {"rejected", z.rejected},
-                     {"critical_z", z.critical_z},
-                     {"largest_z", z.largest_z},
-                     {"at", {{"channel", c.channels[static_cast<std::size_t>(z.channel)]}, {"x", z.x}, {"y", z.y}}},
-                     {"family_wise_error", kFamilyWiseError},
-                     {"noise_rmse", z.noise},
-                     {"bias_rmse", z.bias},
-                     {"mean_bias", z.mean_bias},
-                     {"mean_bias_error", z.mean_bias_error}};
+    z_test = {{"tests", z.tests},
+              {"rejected", z.rejected},
+              {"critical_z", z.critical_z},
+              {"largest_z", z.largest_z},
+              {"at", {{"channel", c.channel(z.channel)}, {"x", z.x}, {"y", z.y}}},
+              {"family_wise_error", kFamilyWiseError},
+              {"noise_rmse", z.noise},
+              {"bias_rmse", z.bias},
+              {"mean_bias", z.mean_bias},
+              {"mean_bias_error", z.mean_bias_error}};
   }
-  return job::json_text(out);
+  return job::json_text({{"schema", "orrery.compare/2"},
+                         {"width", c.width},
+                         {"height", c.height},
+                         {"channels", c.channels},
+                         {"rmse", e.rmse},
+                         {"relmse", e.relative_mse},
+                         {"mae", e.mae},
+                         {"max", e.max},
+                         {"max_at", max_at},
+                         {"psnr_db", e.psnr_db()},
+                         {"display", e.display},
+                         {"bias", e.bias},
+                         {"ssim", job::json_or_null(c.ssim)},
+                         {"flip", job::json_or_null(c.flip)},
+                         {"z_test", z_test},
+                         {"values", c.values},
+                         {"differing", c.differing},
+                         {"not_finite", e.not_finite},
+                         {"no_hit", c.no_hit},
+                         {"no_hit_in_one", c.no_hit_in_one},
+                         {"only_in_a", c.only_in_picture},
+                         {"only_in_b", c.only_in_reference}});
 }
 
 }  // namespace orrery::compare

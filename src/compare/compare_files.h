@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <algorithm>
 #include <cstdint>
 #include <filesystem>
 #include <optional>
@@ -59,6 +60,10 @@ struct Comparison {
 
   Map flip_map, display_map;  ///< per-pixel FLIP and display error
 
+  /// The name of a channel of `errors` or `z_test`.
+  const std::string& channel(int index) const {
+    return channels[std::min(static_cast<std::size_t>(index), channels.size() - 1)];
+  }
   /// Returns a metric, given its name in `--fail-above`.
   ///
   /// Domain     one of limitable_metrics()

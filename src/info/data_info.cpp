@@ -7,15 +7,22 @@
 #include <type_traits>
 #include <utility>
 
+#include <nlohmann/json.hpp>
+
 #include <fmt/core.h>
 
 #include "base/available_memory.h"
 #include "base/error.h"
+#include "base/file_name.h"
+#include "base/text.h"
 #include "formats/open.h"
+#include "job/report_text.h"
 #include "points/derived.h"
 
 namespace orrery::info {
 namespace {
+
+using nlohmann::json;
 
 /// Fallback if the available memory is unknown: that of a small machine.
 constexpr std::uint64_t kUnknownMemory = std::uint64_t{4} << 30;
@@ -75,9 +82,8 @@ DataInfo data_info(const DataInfoRequest& request) {
   info.frames = file->frame_count();
   info.frame = request.frame;
   if (request.frame < 1 || request.frame > info.frames)
-    throw base::Error(base::ErrorKind::kUsage,
-                      fmt::format("--frame {}: {} has {}{}", request.frame, request.file.string(), info.frames,
-                                  info.frames == 1 ? " frame" : " frames"));
+    base::refuse(fmt::format("--frame {}: {} has {}", request.frame, request.file.string(),
+                             base::counted(static_cast<std::uint64_t>(info.frames), "frame")));
   info.described = file->describe(request.frame - 1);
   for (const data::ColumnInfo& column : info.described.columns) info.columns.push_back({column});
   points::add_derived_columns(info.described);
@@ -99,6 +105,198 @@ DataInfo data_info(const DataInfoRequest& request) {
   }
   read();
   return info;
+}
+
+namespace {
+
+/// Maximum lengths of strings from a file, bytes; longer ones are shortened.
+constexpr std::size_t kLongestText = 32;
+constexpr std::size_t kLongestTitle = 200;
+/// Number of assemblies that are printed as text.
+constexpr std::size_t kMaxAssemblies = 8;
+
+std::string shortened(const std::string& text, std::size_t bytes) {
+  if (text.size() <= bytes) return base::printable(text);
+  return base::printable(base::utf8_prefix(text, bytes)) + "...";
+}
+
+std::string number_text(double value) { return fmt::format("{:.10g}", value); }
+
+std::string number_text(const std::optional<ColumnSummary::Number>& number, data::ColumnType type) {
+  if (!number) return "-";
+  if (const auto* const integer = std::get_if<std::int64_t>(&*number)) return std::to_string(*integer);
+  return fmt::format("{:.{}g}", std::get<double>(*number), type == data::ColumnType::kFloat32 ? 7 : 10);
+}
+
+std::string vector_text(const data::Vec3d& v) {
+  return fmt::format("({}, {}, {})", number_text(v.x), number_text(v.y), number_text(v.z));
+}
+
+std::string box_text(const data::Box& box) {
+  std::vector<std::string> periodic;
+  for (std::size_t i = 0; i < box.periodic.size(); ++i)
+    if (box.periodic[i]) periodic.emplace_back(1, "abc"[i]);
+  return fmt::format("origin {}, edges a {}, b {}, c {}{}", vector_text(box.origin), vector_text(box.edges[0]),
+                     vector_text(box.edges[1]), vector_text(box.edges[2]),
+                     periodic.empty() ? ", not periodic" : ", periodic along " + base::joined(periodic));
+}
+
+std::size_t copies_of(const data::Assembly& assembly) {
+  std::size_t copies = 0;
+  for (const data::AssemblyPart& part : assembly.parts) copies += part.transforms.size();
+  return copies;
+}
+
+std::string assemblies_text(const std::vector<data::Assembly>& assemblies) {
+  std::vector<std::string> out;
+  for (std::size_t i = 0; i < std::min(assemblies.size(), kMaxAssemblies); ++i) {
+    const std::size_t copies = copies_of(assemblies[i]);
+    out.push_back(fmt::format("{} ({} {})", assemblies[i].name, copies, copies == 1 ? "copy" : "copies"));
+  }
+  if (assemblies.size() > kMaxAssemblies) out.push_back(fmt::format("{} more", assemblies.size() - kMaxAssemblies));
+  return base::joined(out);
+}
+
+std::vector<std::string> list_of(const std::array<std::string, 3>& names) { return {names.begin(), names.end()}; }
+
+std::string roles_text(const data::Roles& roles) {
+  std::string out = "position " + base::joined(list_of(roles.position));
+  const auto add = [&](const char* role, const std::string& column) {
+    if (!column.empty()) out += fmt::format("; {} {}", role, column);
+  };
+  add("radius", roles.radius.empty() || roles.radius_scale == 1
+                    ? roles.radius
+                    : fmt::format("{} times {}", roles.radius, number_text(roles.radius_scale)));
+  add("element", roles.element);
+  add("type", roles.type);
+  add("id", roles.id);
+  add("chain", roles.chain);
+  if (!roles.rgb[0].empty())
+    add("rgb", fmt::format("{} (0 to {})", base::joined(list_of(roles.rgb)), number_text(roles.rgb_maximum)));
+  if (!roles.image[0].empty()) add("image", base::joined(list_of(roles.image)));
+  return out;
+}
+
+std::string texts_text(const ColumnSummary& summary) {
+  std::vector<std::string> texts;
+  for (const std::string& text : summary.texts) texts.push_back(text.empty() ? "\"\"" : shortened(text, kLongestText));
+  return fmt::format("{} distinct: {}{}", summary.distinct, base::joined(texts),
+                     summary.distinct > summary.texts.size() ? ", ..." : "");
+}
+
+/// A table of the columns; every line is indented.
+std::string columns_text(const std::vector<ColumnSummary>& columns) {
+  using Row = std::array<std::string, 5>;
+  std::vector<Row> rows = {{"name", "type", "minimum", "maximum", "NaN"}};
+  for (const ColumnSummary& c : columns) {
+    const std::string name = shortened(c.column.name, kLongestText);
+    if (c.column.type == data::ColumnType::kText)
+      rows.push_back({name, data::type_name(c.column.type), texts_text(c), "", ""});
+    else
+      rows.push_back(
+          {name, data::type_name(c.column.type), number_text(c.minimum, c.column.type),
+           number_text(c.maximum, c.column.type),
+           std::to_string(c.nan_count) + (c.infinite_count > 0 ? fmt::format(", {} infinite", c.infinite_count) : "")});
+  }
+  std::array<std::size_t, 4> widths{};
+  for (const Row& row : rows)
+    for (std::size_t i = 0; i < widths.size(); ++i)
+      if (i < 2 || !row.back().empty()) widths[i] = std::max(widths[i], row[i].size());
+  std::string out;
+  for (const Row& row : rows) {
+    std::string line = out.empty() ? "columns     " : "            ";
+    for (std::size_t i = 0; i < row.size(); ++i)
+      line += row[i] +
+              (i < widths.size() && row[i].size() <= widths[i] ? std::string(widths[i] - row[i].size() + 2, ' ') : "");
+    out += line.substr(0, line.find_last_not_of(' ') + 1) + '\n';
+  }
+  return out;
+}
+
+json json_of(const data::Vec3d& v) { return {v.x, v.y, v.z}; }
+
+json json_of(const std::optional<ColumnSummary::Number>& number) {
+  if (!number) return nullptr;
+  return std::visit([](auto value) { return json(value); }, *number);
+}
+
+json json_or_null(const std::string& name) { return name.empty() ? json() : json(name); }
+json json_or_null(const std::array<std::string, 3>& names) { return names[0].empty() ? json() : json(names); }
+
+json json_of(const data::Roles& roles) {
+  json out = {{"position", roles.position},
+              {"radius", nullptr},
+              {"element", json_or_null(roles.element)},
+              {"type", json_or_null(roles.type)},
+              {"id", json_or_null(roles.id)},
+              {"chain", json_or_null(roles.chain)},
+              {"rgb", nullptr},
+              {"image", json_or_null(roles.image)}};
+  if (!roles.radius.empty()) out["radius"] = {{"column", roles.radius}, {"scale", roles.radius_scale}};
+  if (!roles.rgb[0].empty()) out["rgb"] = {{"columns", roles.rgb}, {"maximum", roles.rgb_maximum}};
+  return out;
+}
+
+json json_of(const ColumnSummary& summary) {
+  json out = {{"name", summary.column.name}, {"type", data::type_name(summary.column.type)}};
+  if (summary.column.type == data::ColumnType::kText) {
+    out["distinct"] = summary.distinct;
+    out["values"] = summary.texts;
+  } else {
+    out["minimum"] = json_of(summary.minimum);
+    out["maximum"] = json_of(summary.maximum);
+    out["nan"] = summary.nan_count;
+    out["infinite"] = summary.infinite_count;
+  }
+  return out;
+}
+
+}  // namespace
+
+std::string data_info_text(const DataInfo& info) {
+  using base::printable;
+  using job::add_row;
+  const data::FrameInfo& frame = info.described;
+  std::string out;
+  add_row(out, "file", "{}", printable(info.file.string()));
+  add_row(out, "format", "{}", info.format);
+  add_row(out, "frame", "{} of {}{}", info.frame, info.frames, frame.step ? ", step " + number_text(*frame.step) : "");
+  if (!frame.title.empty()) add_row(out, "title", "{}", shortened(frame.title, kLongestTitle));
+  add_row(out, "rows", "{}", frame.rows);
+  if (frame.box) add_row(out, "box", "{}", box_text(*frame.box));
+  if (!frame.assemblies.empty()) add_row(out, "assemblies", "{}", printable(assemblies_text(frame.assemblies)));
+  add_row(out, "roles", "{}", printable(roles_text(frame.roles)));
+  for (const data::ColumnInfo& column : frame.columns)
+    if (column.is_derived)
+      add_row(out, "computed", "{}",
+              printable(column.name + ", from " + base::joined(points::sources_of(frame, column.name))));
+  return out + columns_text(info.columns);
+}
+
+std::string data_info_json(const DataInfo& info) {
+  const data::FrameInfo& frame = info.described;
+  json assemblies = json::array(), columns = json::array(), computed = json::array(), box;
+  for (const data::Assembly& a : frame.assemblies) assemblies.push_back({{"name", a.name}, {"copies", copies_of(a)}});
+  for (const ColumnSummary& c : info.columns) columns.push_back(json_of(c));
+  for (const data::ColumnInfo& c : frame.columns)
+    if (c.is_derived) computed.push_back({{"name", c.name}, {"columns", points::sources_of(frame, c.name)}});
+  if (frame.box)
+    box = {{"origin", json_of(frame.box->origin)},
+           {"edges", {json_of(frame.box->edges[0]), json_of(frame.box->edges[1]), json_of(frame.box->edges[2])}},
+           {"periodic", frame.box->periodic}};
+  return job::json_text({{"schema", "orrery.data/1"},
+                         {"file", info.file.string()},
+                         {"format", info.format},
+                         {"frames", info.frames},
+                         {"frame", info.frame},
+                         {"step", job::json_or_null(frame.step)},
+                         {"title", frame.title},
+                         {"rows", frame.rows},
+                         {"box", box},
+                         {"assemblies", assemblies},
+                         {"roles", json_of(frame.roles)},
+                         {"computed", computed},
+                         {"columns", columns}});
 }
 
 }  // namespace orrery::info

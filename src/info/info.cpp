@@ -9,6 +9,8 @@
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
+#include <fmt/core.h>
+
 #include "base/text.h"
 #include "compile/compiled_scene.h"
 #include "compile/emitters.h"
@@ -17,7 +19,7 @@
 #include "format/read_scene.h"
 #include "job/layers.h"
 #include "job/prepared_scene.h"
-#include "job/statistics.h"
+#include "job/report_text.h"
 #include "kernel/isa.h"
 #include "kernel/lights.h"
 #include "load/load_scene.h"
@@ -29,19 +31,19 @@
 #include "study/bench.h"
 
 namespace orrery::info {
+
+using nlohmann::json;
+
 namespace {
 
 /// Describes how an image background is sampled: "sky by texels above the mean and the sun (87 %)"; empty if it is not.
 std::string environment_text(const compile::CompiledScene& compiled) {
   if (!compiled.environment || !compiled.environment->view().is_sampled) return {};
   const kernel::Environment& view = compiled.environment->view();
-  std::string out;
-  if (view.map_density > 0) out = view.weight_offset > 0 ? "texels above the mean" : "all texels";
-  if (view.sun_probability > 0) {
-    if (!out.empty()) out += " and ";
-    base::append(out, "the sun (%.3g %%)", view.sun_probability * 100);
-  }
-  return out;
+  std::vector<std::string> chosen;
+  if (view.map_density > 0) chosen.push_back(view.weight_offset > 0 ? "texels above the mean" : "all texels");
+  if (view.sun_probability > 0) chosen.push_back(fmt::format("the sun ({:.3g} %)", view.sun_probability * 100));
+  return base::joined(chosen, " and ");
 }
 
 /// Returns the number of emitters that are rendered, without those that are black. Of coincident spheres, only the
@@ -67,7 +69,7 @@ std::uint64_t count_emitters(const compile::CompiledScene& compiled) {
 std::string lights_text(const compile::CompiledScene& compiled, std::uint64_t count) {
   if (count == 0 && !compiled.environment) return {};
   std::vector<std::string> lights;
-  if (count > 0) lights.push_back(fmt::format("{} emitter{}", count, count == 1 ? "" : "s"));
+  if (count > 0) lights.push_back(base::counted(count, "emitter"));
   if (compiled.environment) lights.push_back("background");
   std::string out = base::joined(lights);
   const std::string environment = environment_text(compiled);
@@ -110,8 +112,8 @@ std::string caustics_text(const compile::CompiledScene& compiled) {
     for (std::uint32_t i = ball.begin; i < ball.end; ++i)
       if (++listed <= kNamedPairs)
         names += fmt::format("{} {} and {}", listed == 1 ? ":" : ",", name(ball.sphere), name(list.lights[i].id));
-  return fmt::format("{} of {} pair{} of a ball and a light sampled{}{}", listed, list.pairs,
-                     list.pairs == 1 ? "" : "s", names, listed > kNamedPairs ? ", ..." : "");
+  return fmt::format("{} of {} of a ball and a light sampled{}{}", listed, base::counted(list.pairs, "pair"), names,
+                     listed > kNamedPairs ? ", ..." : "");
 }
 
 std::vector<Feature> features_of(const compile::CompiledScene& compiled, bool has_layers) {
@@ -173,17 +175,25 @@ bool has_colors(const std::vector<std::string>& properties) {
   });
 }
 
-std::string points_text(const std::vector<PointsInfo>& points) {
-  std::string out;
-  for (const PointsInfo& p : points) {
-    base::append(out, "%s %s: %llu %s", out.empty() ? "points     " : "           ", p.file.c_str(),
-                 static_cast<unsigned long long>(p.spheres), p.spheres == 1 ? "sphere" : "spheres");
-    if (p.bonds > 0) base::append(out, ", %llu rods of bonds", static_cast<unsigned long long>(p.bonds));
-    if (!p.unused.empty()) base::append(out, "; unused: %s", base::joined(p.unused).c_str());
-    if (has_colors(p.unused)) out += "; point colours are ignored, materials set the colours";
-    out += '\n';
-  }
+std::string text_of(const PointsInfo& p) {
+  std::string out = fmt::format("{}: {}", p.file, base::counted(p.spheres, "sphere"));
+  if (p.bonds > 0) out += fmt::format(", {} rods of bonds", p.bonds);
+  if (!p.unused.empty()) out += "; unused: " + base::joined(p.unused);
+  if (has_colors(p.unused)) out += "; point colours are ignored, materials set the colours";
   return out;
+}
+
+std::string text_of(const TextureInfo& t) {
+  std::string out = fmt::format("{}: {}", t.key, t.type);
+  if (t.width > 0)
+    out += fmt::format(", {}: {} x {}, {}", t.file, t.width, t.height, t.color_space.empty() ? "data" : t.color_space);
+  return out;
+}
+
+std::string text_of(const Feature& f) {
+  if (f.required) return f.name;
+  const std::string saves = f.saves ? fmt::format("; saves {:.1f} % of the time", *f.saves * 100) : "";
+  return fmt::format("{} ({}{})", f.name, f.note, saves);
 }
 
 std::vector<std::pair<std::string, std::uint64_t>> count_materials(const compile::CompiledScene& compiled) {
@@ -197,6 +207,26 @@ std::vector<std::pair<std::string, std::uint64_t>> count_materials(const compile
 }
 
 }  // namespace
+
+// Called by the JSON library.
+
+static void to_json(json& out, const PointsInfo& p) {
+  out = {{"file", p.file},
+         {"spheres", p.spheres},
+         {"bonds", p.bonds},
+         {"unused", p.unused},
+         {"unused_colors", has_colors(p.unused)}};
+}
+
+static void to_json(json& out, const TextureInfo& t) {
+  out = {{"key", t.key}, {"type", t.type}};
+  if (t.width > 0)
+    out.update({{"file", t.file}, {"width", t.width}, {"height", t.height}, {"color_space", t.color_space}});
+}
+
+static void to_json(json& out, const Feature& f) {
+  out = {{"name", f.name}, {"required", f.required}, {"note", f.note}, {"saves", job::json_or_null(f.saves)}};
+}
 
 SceneInfo scene_info(const load::SceneRequest& request) {
   job::PreparedScene prepared;
@@ -220,8 +250,8 @@ SceneInfo scene_info(const load::SceneRequest& request, job::PreparedScene& prep
   info.spheres = compiled.spheres.size();
   info.rods = compiled.rod_count();
   const auto [low, high] = compile::bounds_of(compiled);
-  std::copy_n(std::array{low.x, low.y, low.z}.begin(), 3, info.lower);
-  std::copy_n(std::array{high.x, high.y, high.z}.begin(), 3, info.upper);
+  info.lower = {low.x, low.y, low.z};
+  info.upper = {high.x, high.y, high.z};
   if (info.spheres + info.rods > 0) {
     info.smallest_radius = std::numeric_limits<double>::infinity();
     const auto add_radius = [&](double radius) {
@@ -244,8 +274,8 @@ SceneInfo scene_info(const load::SceneRequest& request, job::PreparedScene& prep
   info.layers = scene::requested_layers(read.scene);
   info.available_layers = scene::available_layers(read.scene);
   info.features = features_of(compiled, layers.any());
+  info.settings = read.settings;
   for (const format::Setting& s : read.settings) {
-    info.settings.push_back({s.key, s.value, s.origin});
     if (s.key == "render.precision") info.precision = scene::unquoted(s.value);
     if (s.key == "render.accelerator") info.accelerator = scene::unquoted(s.value);
   }
@@ -284,130 +314,95 @@ void measure_savings(const load::SceneRequest& request, SceneInfo& info) {
 }
 
 std::string info_text(const SceneInfo& info) {
+  using job::add_row;
   std::string out;
-  base::append(out, "scene       %s\n", info.scene_hash.empty() ? "unknown" : info.scene_hash.c_str());
-  base::append(out, "frame       %d\n", info.frame);
-  base::append(out, "image       %d x %d, %d samples per pixel, max depth %d\n", info.width, info.height, info.samples,
-               info.max_depth);
-  base::append(out, "spheres     %llu", static_cast<unsigned long long>(info.spheres));
-  if (info.rods > 0) base::append(out, "\nrods        %llu", static_cast<unsigned long long>(info.rods));
-  if (info.spheres + info.rods > 0)
-    base::append(out, ", radius %g .. %g, from (%g, %g, %g) to (%g, %g, %g)", info.smallest_radius, info.largest_radius,
-                 info.lower[0], info.lower[1], info.lower[2], info.upper[0], info.upper[1], info.upper[2]);
-  out += info.materials.empty() ? "\nmaterials   none" : "\nmaterials  ";
-  for (std::size_t i = 0; i < info.materials.size(); ++i)
-    base::append(out, "%s %llu %s", i == 0 ? "" : ",", static_cast<unsigned long long>(info.materials[i].second),
-                 info.materials[i].first.c_str());
-  out += '\n' + points_text(info.points);
+  add_row(out, "scene", "{}", info.scene_hash.empty() ? "unknown" : info.scene_hash);
+  add_row(out, "frame", "{}", info.frame);
+  add_row(out, "image", "{} x {}, {} samples per pixel, max depth {}", info.width, info.height, info.samples,
+          info.max_depth);
+  const auto& [low_x, low_y, low_z] = info.lower;
+  const auto& [high_x, high_y, high_z] = info.upper;
+  const std::string extent =
+      fmt::format(", radius {:g} .. {:g}, from ({:g}, {:g}, {:g}) to ({:g}, {:g}, {:g})", info.smallest_radius,
+                  info.largest_radius, low_x, low_y, low_z, high_x, high_y, high_z);
+  add_row(out, "spheres", "{}{}", info.spheres, info.spheres > 0 && info.rods == 0 ? extent : "");
+  if (info.rods > 0) add_row(out, "rods", "{}{}", info.rods, extent);
+  std::vector<std::string> materials;
+  for (const auto& [name, count] : info.materials) materials.push_back(fmt::format("{} {}", count, name));
+  add_row(out, "materials", "{}", materials.empty() ? "none" : base::joined(materials));
+  for (const PointsInfo& p : info.points) add_row(out, &p == &info.points[0] ? "points" : "", "{}", text_of(p));
   if (info.background)
-    base::append(out, "background  %s: %d x %d, %s\n", info.background_file.c_str(), info.background->width,
-                 info.background->height, info.background->color_space.c_str());
-  for (const TextureInfo& texture : info.textures) {
-    base::append(out, "texture     %s: %s", texture.key.c_str(), texture.type.c_str());
-    if (texture.width > 0)
-      base::append(out, ", %s: %d x %d, %s", texture.file.c_str(), texture.width, texture.height,
-                   texture.color_space.empty() ? "data" : texture.color_space.c_str());
-    out += '\n';
-  }
-  if (!info.lights.empty()) base::append(out, "lights      %s\n", info.lights.c_str());
-  if (!info.caustics.empty()) base::append(out, "caustics    %s\n", info.caustics.c_str());
-  base::append(out, "layers      %s; available: %s\n", info.layers.empty() ? "none" : base::joined(info.layers).c_str(),
-               base::joined(info.available_layers).c_str());
-  base::append(out, "kernel      %s, precision %s, accelerator %s\n", info.isa.c_str(), info.precision.c_str(),
-               info.accelerator.c_str());
-  base::append(out, "traversal   %s\n", info.traversal.c_str());
-  base::append(out, "memory      about %s: %s\n", base::bytes_text(info.memory.total()).c_str(),
-               job::text_of(info.memory).c_str());
-  for (const bool required : {true, false}) {
-    out += required ? "requires   " : "unused     ";
-    bool first = true;
-    for (const Feature& f : info.features) {
-      if (f.required != required) continue;
-      base::append(out, "%s %s", first ? "" : (required ? "," : ";"), f.name.c_str());
-      if (!required && !f.note.empty()) base::append(out, " (%s", f.note.c_str());
-      if (f.saves) base::append(out, "; saves %.1f %% of the time", *f.saves * 100);
-      if (!required && !f.note.empty()) out += ')';
-      first = false;
-    }
-    out += first ? " none\n" : "\n";
-  }
+    add_row(out, "background", "{}: {} x {}, {}", info.background_file, info.background->width, info.background->height,
+            info.background->color_space);
+  for (const TextureInfo& texture : info.textures) add_row(out, "texture", "{}", text_of(texture));
+  if (!info.lights.empty()) add_row(out, "lights", "{}", info.lights);
+  if (!info.caustics.empty()) add_row(out, "caustics", "{}", info.caustics);
+  add_row(out, "layers", "{}; available: {}", info.layers.empty() ? "none" : base::joined(info.layers),
+          base::joined(info.available_layers));
+  add_row(out, "kernel", "{}, precision {}, accelerator {}", info.isa, info.precision, info.accelerator);
+  add_row(out, "traversal", "{}", info.traversal);
+  add_row(out, "memory", "about {}: {}", base::bytes_text(info.memory.total()), job::text_of(info.memory));
+  std::vector<std::string> required, unused;
+  for (const Feature& f : info.features) (f.required ? required : unused).push_back(text_of(f));
+  add_row(out, "requires", "{}", required.empty() ? "none" : base::joined(required));
+  add_row(out, "unused", "{}", unused.empty() ? "none" : base::joined(unused, "; "));
   return out;
 }
 
 std::string settings_text(const SceneInfo& info) {
   std::string out;
-  for (const auto& s : info.settings)
-    base::append(out, "%-26s %-24s %s\n", s.key.c_str(), s.value.c_str(), s.origin.c_str());
+  for (const format::Setting& s : info.settings) out += fmt::format("{:26} {:24} {}\n", s.key, s.value, s.origin);
   return out;
 }
 
 std::string info_json(const SceneInfo& info) {
-  using nlohmann::json;
-  json features = json::array(), settings = json::array(), materials = json::object(), warnings = json::array();
-  json points = json::array(), textures = json::array();
-  for (const TextureInfo& t : info.textures) {
-    textures.push_back({{"key", t.key}, {"type", t.type}});
-    if (t.width > 0)
-      textures.back().update(
-          {{"file", t.file}, {"width", t.width}, {"height", t.height}, {"color_space", t.color_space}});
-  }
-  for (const PointsInfo& p : info.points)
-    points.push_back({{"file", p.file},
-                      {"spheres", p.spheres},
-                      {"bonds", p.bonds},
-                      {"unused", p.unused},
-                      {"unused_colors", has_colors(p.unused)}});
-  for (const Feature& f : info.features)
-    features.push_back({{"name", f.name},
-                        {"required", f.required},
-                        {"note", f.note},
-                        {"saves", f.saves ? json(*f.saves) : json(nullptr)}});
-  for (const auto& s : info.settings) settings.push_back({{"key", s.key}, {"value", s.value}, {"origin", s.origin}});
+  json settings = json::array(), materials = json::object(), warnings = json::array(), background, bounds, radius;
+  for (const format::Setting& s : info.settings)
+    settings.push_back({{"key", s.key}, {"value", s.value}, {"origin", s.origin}});
   for (const auto& [name, count] : info.materials) materials[name] = count;
   for (const base::Diagnostic& w : info.warnings)
     warnings.push_back({{"file", w.file}, {"line", w.line}, {"column", w.column}, {"text", w.text}});
-  json out = {{"schema", "orrery.info/1"},
-              {"scene_hash", info.scene_hash.empty() ? json(nullptr) : json(info.scene_hash)},
-              {"frame", info.frame},
-              {"width", info.width},
-              {"height", info.height},
-              {"samples", info.samples},
-              {"max_depth", info.max_depth},
-              {"spheres", info.spheres},
-              {"rods", info.rods},
-              {"bounds", nullptr},
-              {"radius", nullptr},
-              {"materials", materials},
-              {"emitters", info.emitters},
-              {"caustics", info.caustics},
-              {"points", points},
-              {"layers", {{"requested", info.layers}, {"available", info.available_layers}}},
-              {"features", features},
-              {"precision", info.precision},
-              {"accelerator", info.accelerator},
-              {"isa", info.isa},
-              {"traversal", info.traversal},
-              {"memory_bytes",
-               {{"film", info.memory.film},
-                {"spheres", info.memory.spheres},
-                {"accelerator", info.memory.accelerator},
-                {"background", info.memory.background},
-                {"textures", info.memory.textures},
-                {"lights", info.memory.lights}}},
-              {"background", nullptr},
-              {"textures", textures},
-              {"settings", settings},
-              {"warnings", warnings}};
   if (info.background)
-    out["background"] = {{"file", info.background_file},
-                         {"width", info.background->width},
-                         {"height", info.background->height},
-                         {"color_space", info.background->color_space}};
+    background = {{"file", info.background_file},
+                  {"width", info.background->width},
+                  {"height", info.background->height},
+                  {"color_space", info.background->color_space}};
   if (info.spheres + info.rods > 0) {
-    out["bounds"] = {{"lower", info.lower}, {"upper", info.upper}};
-    out["radius"] = {{"smallest", info.smallest_radius}, {"largest", info.largest_radius}};
+    bounds = {{"lower", info.lower}, {"upper", info.upper}};
+    radius = {{"smallest", info.smallest_radius}, {"largest", info.largest_radius}};
   }
-  return job::json_text(out);
+  return job::json_text({{"schema", "orrery.info/1"},
+                         {"scene_hash", info.scene_hash.empty() ? json() : json(info.scene_hash)},
+                         {"frame", info.frame},
+                         {"width", info.width},
+                         {"height", info.height},
+                         {"samples", info.samples},
+                         {"max_depth", info.max_depth},
+                         {"spheres", info.spheres},
+                         {"rods", info.rods},
+                         {"bounds", bounds},
+                         {"radius", radius},
+                         {"materials", materials},
+                         {"emitters", info.emitters},
+                         {"caustics", info.caustics},
+                         {"points", info.points},
+                         {"layers", {{"requested", info.layers}, {"available", info.available_layers}}},
+                         {"features", info.features},
+                         {"precision", info.precision},
+                         {"accelerator", info.accelerator},
+                         {"isa", info.isa},
+                         {"traversal", info.traversal},
+                         {"memory_bytes",
+                          {{"film", info.memory.film},
+                           {"spheres", info.memory.spheres},
+                           {"accelerator", info.memory.accelerator},
+                           {"background", info.memory.background},
+                           {"textures", info.memory.textures},
+                           {"lights", info.memory.lights}}},
+                         {"background", background},
+                         {"textures", info.textures},
+                         {"settings", settings},
+                         {"warnings", warnings}});
 }
 
 }  // namespace orrery::info

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <optional>
 #include <string>
@@ -9,6 +10,7 @@
 
 #include "base/error.h"
 #include "compile/forward.h"
+#include "format/read_scene.h"
 #include "job/forward.h"
 #include "job/resources.h"
 #include "load/load_map.h"
@@ -48,7 +50,7 @@ struct SceneInfo {
   int width = 0, height = 0, samples = 0, max_depth = 0;
   std::uint64_t spheres = 0;
   std::uint64_t rods = 0;
-  double lower[3] = {0, 0, 0}, upper[3] = {0, 0, 0};  ///< bounds, scene units; valid if there are spheres or rods
+  std::array<double, 3> lower{}, upper{};  ///< bounds, scene units; valid if there are spheres or rods
   double smallest_radius = 0, largest_radius = 0;
   std::vector<std::pair<std::string, std::uint64_t>> materials;  ///< number of compiled materials by type
   std::uint64_t emitters = 0;                                    ///< spheres and rods that emit; black ones do not
@@ -63,10 +65,7 @@ struct SceneInfo {
   std::optional<load::LoadedBackground> background;  ///< set for an image background
   std::string background_file;
   std::vector<TextureInfo> textures;
-  struct Setting {
-    std::string key, value, origin;
-  };
-  std::vector<Setting> settings;
+  std::vector<format::Setting> settings;
   std::vector<base::Diagnostic> warnings;
 };
 

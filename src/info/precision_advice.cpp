@@ -3,8 +3,9 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
 #include <limits>
+
+#include <fmt/core.h>
 
 #include "compile/compiled_scene.h"
 #include "kernel/material.h"
@@ -61,13 +62,6 @@ kernel::Sphere largest_sphere(const compile::CompiledScene& compiled) {
   return largest;
 }
 
-template <class... Arguments>
-std::string text(const char* format, Arguments... arguments) {
-  char line[300];
-  std::snprintf(line, sizeof(line), format, arguments...);
-  return line;
-}
-
 }  // namespace
 
 std::vector<std::string> precision_advice(const compile::CompiledScene& compiled) {
@@ -78,31 +72,32 @@ std::vector<std::string> precision_advice(const compile::CompiledScene& compiled
     // Ray origins and centres are rounded to float before the subtraction.
     const double error = 0x1p-23 * p.coordinate;
     if (error > kVisible)
-      advice.push_back(
-          text("precision fast: hit points on the smallest sphere (radius %g) have an error of about %.1g of its "
-               "radius, since coordinates reach %.1g radii; use exact",
-               p.smallest, error, p.coordinate));
+      advice.push_back(fmt::format(
+          "precision fast: hit points on the smallest sphere (radius {:g}) have an error of about {:.1g} of its "
+          "radius, since coordinates reach {:.1g} radii; use exact",
+          p.smallest, error, p.coordinate));
     // Points on the ground are off by up to 2^-23 of its radius, and so is the part of the lamp above their horizon.
     const kernel::Sphere ground = largest_sphere(compiled);
     const double lamp = sunk_lamp_radius(compiled, ground), light = 0x1p-22 * ground.radius / lamp;
     if (light > kVisible)
-      advice.push_back(text(
-          "precision fast: light of a lamp of radius %g, partly inside a sphere of radius %g, has an error of about "
-          "%.1g beside it; use exact",
-          lamp, ground.radius, light));
+      advice.push_back(
+          fmt::format("precision fast: light of a lamp of radius {:g}, partly inside a sphere of radius {:g}, has an "
+                      "error of about "
+                      "{:.1g} beside it; use exact",
+                      lamp, ground.radius, light));
     return advice;
   }
   // The quadratic subtracts the squared radius from the squared distance: cancellation grows with their ratio.
   const double error = 0x1p-52 * p.farthest * p.farthest;
   if (error > kVisible)
-    advice.push_back(
-        text("precision book: a sphere is %.1g radii from the camera; the error of the quadratic's discriminant is "
-             "about %.1g of its maximum there, so hits are missed, or spurious hits appear; use exact",
-             p.farthest, error));
+    advice.push_back(fmt::format(
+        "precision book: a sphere is {:.1g} radii from the camera; the error of the quadratic's discriminant is "
+        "about {:.1g} of its maximum there, so hits are missed, or spurious hits appear; use exact",
+        p.farthest, error));
   if (p.smallest < 20 * kernel::kBookShortestDistance)
     advice.push_back(
-        text("precision book: radius %g is close to t_min %g, so light leaks where spheres touch; use exact",
-             p.smallest, kernel::kBookShortestDistance));
+        fmt::format("precision book: radius {:g} is close to t_min {:g}, so light leaks where spheres touch; use exact",
+                    p.smallest, kernel::kBookShortestDistance));
   return advice;
 }
 

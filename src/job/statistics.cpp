@@ -8,6 +8,7 @@
 #include "base/atomic_file.h"
 #include "film/picture.h"
 #include "job/job.h"
+#include "job/report_text.h"
 #include "job/version.h"
 
 namespace orrery::job {
@@ -42,8 +43,8 @@ std::string statistics_json(const JobReport& report, const Outcome& outcome) {
               {"samples", pixels > 0 ? static_cast<double>(r.paths) / pixels : 0.0},
               {"samples_fewest", r.min_samples},
               {"samples_most", r.max_samples},
-              {"noise", nullptr},
-              {"noise_expected", nullptr},
+              {"noise", json_or_null(r.noise)},
+              {"noise_expected", json_or_null(r.expected_noise)},
               {"unreliable_pixels", r.unreliable_pixels},
               {"ended_by", r.ended_by},
               {"target_missed", report.target_missed},
@@ -75,8 +76,6 @@ std::string statistics_json(const JobReport& report, const Outcome& outcome) {
               {"traversal", r.traversal},
               {"accelerator", r.accelerator},
               {"versions", versions}};
-  if (r.noise) out["noise"] = *r.noise;
-  if (r.expected_noise) out["noise_expected"] = *r.expected_noise;
   for (const auto& [layer, bad] : report.bad_layers) out["bad_pixels"]["layers"][layer] = bad_values_json(bad);
   if (!outcome.error.empty()) out["error"] = outcome.error;
   return json_text(out);
@@ -93,10 +92,6 @@ void write_failure(const std::filesystem::path& file, const JobReport& report, c
     write_statistics(file, report, {stopped ? "stopped" : "failed", base::exit_status(error.kind()), error.what()});
   } catch (const base::Error&) {
   }
-}
-
-std::string json_text(const nlohmann::json& value) {
-  return value.dump(2, ' ', false, nlohmann::json::error_handler_t::replace) + "\n";
 }
 
 }  // namespace orrery::job

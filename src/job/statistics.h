@@ -4,8 +4,6 @@
 #include <filesystem>
 #include <string>
 
-#include <nlohmann/json_fwd.hpp>
-
 #include "base/error.h"
 
 namespace orrery::job {
@@ -32,9 +30,5 @@ void write_failure(const std::filesystem::path& file, const JobReport& report, c
 
 /// Peak resident memory of this process, in bytes.
 std::size_t peak_memory();
-
-/// Formats a value as indented JSON with a final newline. Bytes that are not UTF-8, possible in file names, become
-/// replacement characters.
-std::string json_text(const nlohmann::json& value);
 
 }  // namespace orrery::job

@@ -78,8 +78,7 @@ class Planner {
   }
 
   void noise(double noise) {
-    std::string text;
-    base::append(text, "%g", noise);
+    const std::string text = fmt::format("{:g}", noise);
     add("noise", text, "--noise " + text, compiled_.samples).noise = noise;
   }
 

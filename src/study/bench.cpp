@@ -50,13 +50,13 @@ enum class Tracer { kEmbree, kList, kSimdList };
 
 struct Case {
   std::string name;
+  kernel::Features features;
   Tracer tracer = Tracer::kEmbree;
   Precision precision = Precision::kExact;
-  kernel::Features features;
-  std::optional<accel::Traversal> traversal;
+  std::optional<accel::Traversal> traversal = {};
   bool samples_lights = true;  ///< false: direct_lighting = "bsdf"
   int samples = 1;
-  std::vector<double> paths_per_s, tracing;
+  std::vector<double> paths_per_s = {}, tracing = {};
 };
 
 const std::vector<std::pair<const char*, bool kernel::Features::*>>& known_features() {
@@ -116,9 +116,7 @@ class Subject {
 
   /// The benchmark of closest-hit queries in `fast`.
   TracingBench tracing_bench(bool with_lists) {
-    Case fast;
-    fast.precision = Precision::kFast;
-    fast.features = required_;
+    const Case fast{"", required_, Tracer::kEmbree, Precision::kFast};
     prepare(fast);
     const accel::Accel& with = accel(fast);
     return TracingBench(compiled_.view(), fast_rays(with), with_lists);
@@ -162,9 +160,7 @@ class Subject {
 
   template <class T>
   static double seconds_a_path(const accel::Accel& with, render::RecordedRays<T>& rays) {
-    const double seconds =
-        render::trace_again(with.tracer(), rays.camera) + render::trace_again(with.tracer(), rays.secondary);
-    return seconds / static_cast<double>(rays.paths);
+    return trace_again(with.tracer(), rays) / static_cast<double>(rays.paths);
   }
 
   const BenchRequest& request_;
@@ -184,29 +180,25 @@ bool lists_are_affordable(const compile::CompiledScene& compiled) {
 
 std::vector<Case> cases_of(const compile::CompiledScene& compiled, Benchmark& out) {
   std::vector<Case> cases;
-  const std::pair<const char*, Precision> precisions[] = {{"exact", Precision::kExact}, {"fast", Precision::kFast}};
-  for (const auto& [name, precision] : precisions)
-    cases.push_back(
-        {std::string("embree ") + name, Tracer::kEmbree, precision, compiled.features, std::nullopt, true, 1, {}, {}});
-  for (const auto& [name, traversal] :
-       {std::pair{"exact packet", accel::Traversal::kPacket}, std::pair{"exact single", accel::Traversal::kSingle}})
-    cases.push_back({name, Tracer::kEmbree, Precision::kExact, compiled.features, traversal, true, 1, {}, {}});
-  if (compiled.features.lit && compiled.direct_lighting != kernel::DirectLighting::kBsdf) {
-    cases.push_back(cases.front());
-    cases.back().name = "exact bsdf";
-    cases.back().samples_lights = false;
-  }
+  const auto add = [&](const std::string& name, Tracer tracer, Precision precision) -> Case& {
+    return cases.emplace_back(Case{name, compiled.features, tracer, precision});
+  };
+  add("embree exact", Tracer::kEmbree, Precision::kExact);
+  add("embree fast", Tracer::kEmbree, Precision::kFast);
+  add("exact packet", Tracer::kEmbree, Precision::kExact).traversal = accel::Traversal::kPacket;
+  add("exact single", Tracer::kEmbree, Precision::kExact).traversal = accel::Traversal::kSingle;
+  if (compiled.features.lit && compiled.direct_lighting != kernel::DirectLighting::kBsdf)
+    add("exact bsdf", Tracer::kEmbree, Precision::kExact).samples_lights = false;
   if (!lists_are_affordable(compiled)) {
     out.left_out.push_back(fmt::format("lists: with this many spheres one sample per pixel would take more than {} s",
                                        static_cast<int>(kLongestListSeconds)));
     return cases;
   }
-  for (const auto& [name, accelerator] :
-       {std::pair{"SIMD list ", Tracer::kSimdList}, std::pair{"list ", Tracer::kList}})
-    for (const auto& [suffix, precision] : precisions)
-      cases.push_back(
-          {std::string(name) + suffix, accelerator, precision, compiled.features, std::nullopt, true, 1, {}, {}});
-  cases.push_back({"list book", Tracer::kList, Precision::kBook, compiled.features, std::nullopt, true, 1, {}, {}});
+  add("SIMD list exact", Tracer::kSimdList, Precision::kExact);
+  add("SIMD list fast", Tracer::kSimdList, Precision::kFast);
+  add("list exact", Tracer::kList, Precision::kExact);
+  add("list fast", Tracer::kList, Precision::kFast);
+  add("list book", Tracer::kList, Precision::kBook);
   return cases;
 }
 
@@ -215,7 +207,7 @@ std::vector<Case> feature_cases_of(const compile::CompiledScene& compiled) {
   if (compiled.shading != kernel::Shading::kPath) return cases;
   for (const auto& [name, feature] : known_features()) {
     if (compiled.features.*feature) continue;
-    cases.push_back({name, Tracer::kEmbree, Precision::kExact, compiled.features, std::nullopt, true, 1, {}, {}});
+    cases.push_back({name, compiled.features});
     cases.back().features.*feature = true;
   }
   return cases;
@@ -232,24 +224,11 @@ void calibrate(Subject& subject, Case& c, double seconds) {
   }
 }
 
-/// Renders every case once, records its speed, and calls `then` with the case and its statistics.
-template <class Then>
-void measure_all(Subject& subject, std::vector<Case>& cases, int round, Then then) {
-  for (std::size_t i = 0; i < cases.size(); ++i) {
-    // Each round starts with a different case.
-    Case& c = cases[(i + static_cast<std::size_t>(round)) % cases.size()];
-    const render::Statistics did = subject.run(c);
-    c.paths_per_s.push_back(static_cast<double>(did.paths) / did.render_s);
-    then(c, did);
-  }
-}
-
-BenchCase result_of(const Case& c, const std::vector<double>& reference) {
-  std::vector<double> ratios;
-  for (std::size_t i = 0; i < reference.size(); ++i) ratios.push_back(c.paths_per_s[i] / reference[i]);
-  BenchCase out{c.name, quartiles(c.paths_per_s), quartiles(ratios), {}};
-  if (!c.tracing.empty()) out.tracing = quartiles(c.tracing);
-  return out;
+/// Renders a case once and records its speed.
+render::Statistics measure(Subject& subject, Case& c) {
+  const render::Statistics did = subject.run(c);
+  c.paths_per_s.push_back(static_cast<double>(did.paths) / did.render_s);
+  return did;
 }
 
 }  // namespace
@@ -258,16 +237,16 @@ std::vector<FeatureCost> bench_features(const BenchRequest& request) {
   job::choose_isa();
   Subject subject(request);
   const compile::CompiledScene& compiled = subject.compiled();
-  std::vector<Case> cases = {Case{}};
-  cases[0].features = compiled.features;
+  std::vector<Case> cases = {{"embree exact", compiled.features}};
   for (Case& c : feature_cases_of(compiled)) cases.push_back(std::move(c));
   for (Case& c : cases) calibrate(subject, c, request.seconds);
-  for (int round = 0; round < request.rounds; ++round) measure_all(subject, cases, round, [](Case&, const auto&) {});
+  for (int round = 0; round < request.rounds; ++round)
+    measure_round(cases, round, [&](Case& c) { measure(subject, c); });
   std::vector<FeatureCost> out;
   for (const auto& [name, feature] : known_features()) {
     FeatureCost& cost = out.emplace_back(FeatureCost{name, subject.required().*feature, 0});
     for (const Case& c : cases)
-      if (c.name == name) cost.saves = 1 - result_of(c, cases[0].paths_per_s).ratio.median;
+      if (c.name == name) cost.saves = 1 - ratios(c.paths_per_s, cases[0].paths_per_s).median;
   }
   return out;
 }
@@ -304,7 +283,8 @@ Benchmark bench_scene(const BenchRequest& request) {
     report_progress();
   }
   for (int round = 0; round < request.rounds; ++round) {
-    measure_all(subject, cases, round, [&](Case& c, const render::Statistics& did) {
+    measure_round(cases, round, [&](Case& c) {
+      const render::Statistics did = measure(subject, c);
       if (c.tracer == Tracer::kEmbree && request.threads == 1 && &c < &cases[case_count])
         c.tracing.push_back(subject.trace_alone(c) * c.paths_per_s.back());
       if (&c == &cases[0]) out.rays_per_path = static_cast<double>(did.rays) / static_cast<double>(did.paths);
@@ -316,8 +296,12 @@ Benchmark bench_scene(const BenchRequest& request) {
   }
   if (tracing) out.tracing = tracing->results();
   if (compares) out.builds = bench_builds(compiled.view(), request.rounds);
-  for (std::size_t i = 0; i < cases.size(); ++i)
-    (i < case_count ? out.cases : out.features).push_back(result_of(cases[i], cases[0].paths_per_s));
+  for (std::size_t i = 0; i < cases.size(); ++i) {
+    const Case& c = cases[i];
+    BenchResult& result = (i < case_count ? out.cases : out.features).emplace_back();
+    result = {c.name, quartiles(c.paths_per_s), ratios(c.paths_per_s, cases[0].paths_per_s)};
+    if (!c.tracing.empty()) result.tracing = quartiles(c.tracing);
+  }
   return out;
 }
 

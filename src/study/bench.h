@@ -28,28 +28,14 @@ struct BenchRequest {
   std::function<void(int done, int total)> on_progress;  ///< called after each measurement
 };
 
-/// Result of one render configuration.
-struct BenchCase {
-  std::string name;  ///< "embree fast"
-  Quartiles paths_per_s;
-  Quartiles ratio;  ///< speed relative to "embree exact" in the same round
-  /// Fraction of the render time that tracing the same rays takes on its own; only with one thread and a BVH.
-  std::optional<Quartiles> tracing;
-};
-
-/// Result of one traversal method on the recorded rays of a render in `fast`.
-struct BenchTracing {
-  std::string name;  ///< "sphere points"
-  Quartiles rays_per_s;
-  Quartiles ratio;  ///< speed relative to the first method in the same round
-};
-
-/// Result of building one accelerator.
-struct BenchBuild {
-  std::string name;  ///< "sphere points"
-  Quartiles spheres_per_s;
-  Quartiles ratio;              ///< time relative to Embree's sphere points in the same round
-  double bytes_per_sphere = 0;  ///< memory of the accelerator, excluding the spheres
+/// The speed of one configuration.
+struct BenchResult {
+  std::string name;  ///< "embree fast", "sphere points"
+  Quartiles speed;   ///< paths, rays or spheres per second
+  Quartiles ratio;   ///< to a reference in the same round
+  /// Of renders with one thread and a BVH: fraction of the time that tracing the same rays takes on its own.
+  std::optional<Quartiles> tracing = {};
+  double bytes_per_sphere = 0;  ///< of builds: memory of the accelerator, excluding the spheres
 };
 
 /// Results of a benchmark whose rounds alternate between all cases.
@@ -59,10 +45,12 @@ struct Benchmark {
   double rays_per_path = 0;
   int width = 0, height = 0;  ///< reduced image size, px
   int threads = 0, rounds = 0;
-  std::vector<BenchCase> cases;       ///< "embree exact" is the first
-  std::vector<BenchTracing> tracing;  ///< with one thread only
-  std::vector<BenchBuild> builds;     ///< on all threads
-  std::vector<BenchCase> features;    ///< embree exact with one feature added that the scene lacks; named after it
+  std::vector<BenchResult> cases;  ///< renders; the ratio is that of speeds to "embree exact", which is the first
+  /// Closest-hit queries on the recorded rays of a render in `fast`, with one thread only; ratio of speeds to the
+  /// first.
+  std::vector<BenchResult> tracing;
+  std::vector<BenchResult> builds;    ///< on all threads; ratio of times to Embree's sphere points
+  std::vector<BenchResult> features;  ///< embree exact with one feature added that the scene lacks; named after it
   std::vector<std::string> left_out;  ///< what was not measured, and why
 };
 

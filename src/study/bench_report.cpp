@@ -1,81 +1,85 @@
 // SPDX-License-Identifier: Apache-2.0
+#include <algorithm>
+#include <string_view>
+
 #include <nlohmann/json.hpp>
 
+#include <fmt/core.h>
+
 #include "base/text.h"
-#include "job/statistics.h"
+#include "job/report_text.h"
 #include "study/bench.h"
 
 namespace orrery::study {
-namespace {
 
-/// Median and quartiles, "1.35 (1.31 .. 1.38)".
-std::string with_quartiles(const char* format, const Quartiles& q) {
-  std::string out;
-  base::append(out, format, q.median);
-  out += " (";
-  base::append(out, format, q.low);
-  out += " .. ";
-  base::append(out, format, q.high);
-  return out + ")";
+/// Called by the JSON library.
+static void to_json(nlohmann::json& out, const Quartiles& q) {
+  out = {{"low", q.low}, {"median", q.median}, {"high", q.high}};
 }
 
-nlohmann::json quartiles_json(const Quartiles& q) { return {{"low", q.low}, {"median", q.median}, {"high", q.high}}; }
+namespace {
 
-nlohmann::json case_json(const BenchCase& c) {
-  return {{"name", c.name},
-          {"paths_per_s", quartiles_json(c.paths_per_s)},
-          {"ratio", quartiles_json(c.ratio)},
-          {"tracing", c.tracing ? quartiles_json(*c.tracing) : nlohmann::json()}};
+using nlohmann::json;
+
+/// The columns of a table.
+struct Columns {
+  std::string_view name, speed, ratio, last;
+};
+
+/// A table: names, speeds in millions, ratios as "1.35 (1.31 .. 1.38)", and what `last` returns for each result.
+template <class Last>
+std::string table(const Columns& titles, const std::vector<BenchResult>& results, Last last) {
+  const std::size_t width = std::max<std::size_t>(10, titles.speed.size() + 1);
+  std::string out;
+  const auto add = [&](const Columns& row) {
+    out += fmt::format("{:<20} {:>{}}  {:<24} {}", row.name, row.speed, width, row.ratio, row.last);
+    out.erase(out.find_last_not_of(' ') + 1);
+    out += '\n';
+  };
+  add(titles);
+  for (const BenchResult& r : results)
+    add({r.name, fmt::format("{:.3g}", r.speed.median / 1e6),
+         fmt::format("{:.3g} ({:.3g} .. {:.3g})", r.ratio.median, r.ratio.low, r.ratio.high), last(r)});
+  return out;
+}
+
+/// `speed`    key of the speeds
+json json_of(const std::vector<BenchResult>& results, const char* speed) {
+  json out = json::array();
+  for (const BenchResult& r : results) out.push_back({{"name", r.name}, {speed, r.speed}, {"ratio", r.ratio}});
+  return out;
+}
+
+json json_of_renders(const std::vector<BenchResult>& results) {
+  json out = json_of(results, "paths_per_s");
+  for (std::size_t i = 0; i < results.size(); ++i) out[i]["tracing"] = job::json_or_null(results[i].tracing);
+  return out;
 }
 
 }  // namespace
 
 std::string benchmark_text(const Benchmark& b) {
+  const auto nothing = [](const BenchResult&) { return std::string(); };
   std::string out;
-  base::append(out, "scene       %s, %llu spheres, %.2f rays per path\n", b.scene_hash.c_str(),
-               static_cast<unsigned long long>(b.spheres), b.rays_per_path);
-  base::append(out, "measured    %d x %d px, %d thread%s, %s, %s; %d rounds, median (interquartile range)\n\n", b.width,
-               b.height, b.threads, b.threads == 1 ? "" : "s", b.isa.c_str(), b.accelerator.c_str(), b.rounds);
-  base::append(out, "%-20s %10s  %-24s %s\n", "", "M paths/s", "ratio to embree exact", "tracing alone");
-  for (const BenchCase& c : b.cases) {
-    base::append(out, "%-20s %10.3g  ", c.name.c_str(), c.paths_per_s.median / 1e6);
-    const std::string ratio = with_quartiles("%.3g", c.ratio);
-    if (c.tracing) {
-      base::append(out, "%-24s %.0f %%\n", ratio.c_str(), c.tracing->median * 100);
-    } else {
-      out += ratio + "\n";
-    }
-  }
-  if (!b.tracing.empty()) base::append(out, "\n%-20s %10s  %s\n", "fast, hits only", "M rays/s", "ratio to packets");
-  for (const BenchTracing& t : b.tracing)
-    base::append(out, "%-20s %10.3g  %s\n", t.name.c_str(), t.rays_per_s.median / 1e6,
-                 with_quartiles("%.3g", t.ratio).c_str());
+  job::add_row(out, "scene", "{}, {} spheres, {:.2f} rays per path", b.scene_hash, b.spheres, b.rays_per_path);
+  job::add_row(out, "measured", "{} x {} px, {}, {}, {}; {} rounds, median (interquartile range)\n", b.width, b.height,
+               base::counted(static_cast<std::uint64_t>(b.threads), "thread"), b.isa, b.accelerator, b.rounds);
+  out += table({"", "M paths/s", "ratio to embree exact", "tracing alone"}, b.cases,
+               [](const BenchResult& r) { return r.tracing ? fmt::format("{:.0f} %", r.tracing->median * 100) : ""; });
+  if (!b.tracing.empty())
+    out += "\n" + table({"fast, hits only", "M rays/s", "ratio to packets", ""}, b.tracing, nothing);
   if (!b.builds.empty())
-    base::append(out, "\n%-20s %12s  %-24s %s\n", "build, all threads", "M spheres/s", "relative time", "bytes/sphere");
-  for (const BenchBuild& build : b.builds)
-    base::append(out, "%-20s %12.3g  %-24s %.0f\n", build.name.c_str(), build.spheres_per_s.median / 1e6,
-                 with_quartiles("%.3g", build.ratio).c_str(), build.bytes_per_sphere);
-  if (!b.features.empty()) out += "\nembree exact with one feature added\n";
-  for (const BenchCase& c : b.features)
-    base::append(out, "%-20s %10.3g  %s\n", c.name.c_str(), c.paths_per_s.median / 1e6,
-                 with_quartiles("%.3g", c.ratio).c_str());
-  for (const std::string& text : b.left_out) base::append(out, "\nleft out    %s\n", text.c_str());
+    out += "\n" + table({"build, all threads", "M spheres/s", "relative time", "bytes/sphere"}, b.builds,
+                        [](const BenchResult& r) { return fmt::format("{:.0f}", r.bytes_per_sphere); });
+  if (!b.features.empty())
+    out += "\n" + table({"embree exact with one feature added", "", "", ""}, b.features, nothing);
+  for (const std::string& text : b.left_out) job::add_row(out += '\n', "left out", "{}", text);
   return out;
 }
 
 std::string benchmark_json(const Benchmark& b) {
-  using nlohmann::json;
-  json cases = json::array(), features = json::array(), tracing = json::array(), builds = json::array();
-  for (const BenchTracing& t : b.tracing)
-    tracing.push_back(
-        {{"name", t.name}, {"rays_per_s", quartiles_json(t.rays_per_s)}, {"ratio", quartiles_json(t.ratio)}});
-  for (const BenchBuild& build : b.builds)
-    builds.push_back({{"name", build.name},
-                      {"spheres_per_s", quartiles_json(build.spheres_per_s)},
-                      {"ratio", quartiles_json(build.ratio)},
-                      {"bytes_per_sphere", build.bytes_per_sphere}});
-  for (const BenchCase& c : b.cases) cases.push_back(case_json(c));
-  for (const BenchCase& c : b.features) features.push_back(case_json(c));
+  json builds = json_of(b.builds, "spheres_per_s");
+  for (std::size_t i = 0; i < builds.size(); ++i) builds[i]["bytes_per_sphere"] = b.builds[i].bytes_per_sphere;
   return job::json_text({{"schema", "orrery.bench/1"},
                          {"scene_hash", b.scene_hash},
                          {"spheres", b.spheres},
@@ -86,10 +90,10 @@ std::string benchmark_json(const Benchmark& b) {
                          {"rounds", b.rounds},
                          {"isa", b.isa},
                          {"accelerator", b.accelerator},
-                         {"cases", cases},
-                         {"tracing", tracing},
+                         {"cases", json_of_renders(b.cases)},
+                         {"tracing", json_of(b.tracing, "rays_per_s")},
                          {"builds", builds},
-                         {"features", features},
+                         {"features", json_of_renders(b.features)},
                          {"left_out", b.left_out}});
 }
 

@@ -30,8 +30,7 @@ class Recommender {
 
   void run() {
     compile::CompiledScene compiled = full_;
-    std::string flags;
-    base::append(flags, "--noise %g", request_.noise);
+    std::string flags = fmt::format("--noise {:g}", request_.noise);
     Recommendation& r = study_.recommendation;
     const Point* const exact = find("precision", "exact");
     const Point* const fast = find("precision", "fast");
@@ -74,9 +73,9 @@ class Recommender {
     }
     r.command =
         fmt::format("orrery render {} -o final.exr {}{}", base::shell_quoted(study_.scene), scene_flags(), flags);
-    base::append(r.words, "for %.3g %% noise: %s, %.3g s", request_.noise * 100, flags.c_str(), r.seconds);
-    if (is_faster) base::append(r.words, " instead of %.3g s", baseline.seconds);
-    if (r.bias > 0) base::append(r.words, ", bias %.2g %%", r.bias * 100);
+    r.words = fmt::format("for {:.3g} % noise: {}, {:.3g} s", request_.noise * 100, flags, r.seconds);
+    if (is_faster) r.words += fmt::format(" instead of {:.3g} s", baseline.seconds);
+    if (r.bias > 0) r.words += fmt::format(", bias {:.2g} %", r.bias * 100);
   }
 
  private:
@@ -113,7 +112,7 @@ class Recommender {
       for (const format::KeyValue& set : override.values)
         if (set.key != "render.samples") flags += fmt::format("--set {} ", base::shell_quoted(set.text));
     }
-    if (request_.scene.frame != format::kFirstFrame) base::append(flags, "--frames %d ", request_.scene.frame);
+    if (request_.scene.frame != format::kFirstFrame) flags += fmt::format("--frames {} ", request_.scene.frame);
     return flags;
   }
 

@@ -7,6 +7,8 @@
 
 #include <nlohmann/json.hpp>
 
+#include <fmt/core.h>
+
 #include "base/temp_dir.h"
 #include "base/text.h"
 #include "compare/color_view.h"
@@ -14,45 +16,53 @@
 #include "display/develop.h"
 #include "display/settings.h"
 #include "image/write.h"
+#include "job/report_text.h"
 #include "study/study.h"
 
 namespace orrery::study {
 
 extern const char* const kReportPage;  // report_page.cpp.in
 
-namespace {
-
-using base::append;
 using nlohmann::json;
+
+// Called by the JSON library.
+
+static void to_json(json& out, const Point& p) {
+  out = {{"axis", p.axis},           {"name", p.name},
+         {"flags", p.flags},         {"samples", p.samples},
+         {"seconds", p.seconds},     {"error", p.error},
+         {"bias", p.bias},           {"noise", p.noise},
+         {"energy", p.energy},       {"efficiency", p.efficiency},
+         {"memory_bytes", p.memory}, {"is_shortcut", p.is_shortcut},
+         {"on_front", p.on_front}};
+}
+
+static void to_json(json& out, const FilePoint& f) {
+  out = {{"name", f.name}, {"flags", f.flags}, {"bytes", f.bytes}, {"write_s", f.write_s}, {"error", f.error}};
+}
+
+static void to_json(json& out, const Slope& l) { out = {{"name", l.name}, {"slope", l.slope}}; }
+
+static void to_json(json& out, const FeatureCost& f) {
+  out = {{"name", f.name}, {"required", f.required}, {"saves", f.required ? json() : json(f.saves)}};
+}
+
+static void to_json(json& out, const Recommendation& r) {
+  out = {{"words", r.words},
+         {"command", r.command},
+         {"noise", r.noise},
+         {"bias", r.bias},
+         {"samples", r.samples},
+         {"seconds", r.seconds},
+         {"baseline_seconds", r.baseline_seconds}};
+}
+
+namespace {
 
 /// Maximum width of the images on the page, px; keeps a page with twenty images within a few megabytes.
 constexpr int kShownWidth = 480;
 
-json number(double v) { return std::isfinite(v) ? json(v) : json(nullptr); }
-
 json study_object(const Study& s) {
-  json points = json::array(), files = json::array(), slopes = json::array(), features = json::array();
-  for (const Point& p : s.points)
-    points.push_back({{"axis", p.axis},
-                      {"name", p.name},
-                      {"flags", p.flags},
-                      {"samples", p.samples},
-                      {"seconds", p.seconds},
-                      {"error", number(p.error)},
-                      {"bias", number(p.bias)},
-                      {"noise", number(p.noise)},
-                      {"energy", number(p.energy)},
-                      {"efficiency", number(p.efficiency)},
-                      {"memory_bytes", p.memory},
-                      {"is_shortcut", p.is_shortcut},
-                      {"on_front", p.on_front}});
-  for (const FilePoint& f : s.files)
-    files.push_back(
-        {{"name", f.name}, {"flags", f.flags}, {"bytes", f.bytes}, {"write_s", f.write_s}, {"error", number(f.error)}});
-  for (const Slope& l : s.slopes) slopes.push_back({{"name", l.name}, {"slope", number(l.slope)}});
-  for (const auto& f : s.features)
-    features.push_back({{"name", f.name}, {"required", f.required}, {"saves", f.required ? json() : number(f.saves)}});
-  const Recommendation& r = s.recommendation;
   return {{"schema", "orrery.study/1"},
           {"version", s.version},
           {"scene", s.scene},
@@ -67,19 +77,12 @@ json study_object(const Study& s) {
           {"seconds", s.seconds},
           {"budget_s", s.budget_s},
           {"reference", {{"noise", s.reference_noise}, {"samples", s.reference_samples}, {"seconds", s.reference_s}}},
-          {"points", points},
-          {"files", files},
-          {"slopes", slopes},
+          {"points", s.points},
+          {"files", s.files},
+          {"slopes", s.slopes},
           {"left_out", s.left_out},
-          {"features", features},
-          {"recommendation",
-           {{"words", r.words},
-            {"command", r.command},
-            {"noise", number(r.noise)},
-            {"bias", number(r.bias)},
-            {"samples", number(r.samples)},
-            {"seconds", number(r.seconds)},
-            {"baseline_seconds", number(r.baseline_seconds)}}}};
+          {"features", s.features},
+          {"recommendation", s.recommendation}};
 }
 
 /// Downsamples an image to at most kShownWidth by averaging square blocks of pixels.
@@ -137,41 +140,33 @@ class Encoder {
 
 }  // namespace
 
-std::string study_json(const Study& study) {
-  return study_object(study).dump(2, ' ', false, json::error_handler_t::replace) + "\n";
-}
+std::string study_json(const Study& study) { return job::json_text(study_object(study)); }
 
 std::string study_text(const Study& s) {
-  std::string out;
-  base::append(out, "%s, %d x %d of %d x %d pixels, %d threads, %s, %.0f s of %.0f s\n", s.scene.c_str(), s.width,
-               s.height, s.scene_width, s.scene_height, s.threads, s.isa.c_str(), s.seconds, s.budget_s);
-  base::append(out, "reference   %.0f samples per pixel, noise %.2g %%\n\n", s.reference_samples,
+  std::string out =
+      fmt::format("{}, {} x {} of {} x {} pixels, {} threads, {}, {:.0f} s of {:.0f} s\n", s.scene, s.width, s.height,
+                  s.scene_width, s.scene_height, s.threads, s.isa, s.seconds, s.budget_s);
+  job::add_row(out, "reference", "{:.0f} samples per pixel, noise {:.2g} %\n", s.reference_samples,
                s.reference_noise * 100);
-  base::append(out, "%-12s %-22s %9s %9s %9s %9s %9s %9s %10s\n", "axis", "choice", "samples", "seconds", "error %",
-               "bias %", "noise %", "energy %", "efficiency");
+  out += fmt::format("{:12} {:22} {:>9} {:>9} {:>9} {:>9} {:>9} {:>9} {:>10}\n", "axis", "choice", "samples", "seconds",
+                     "error %", "bias %", "noise %", "energy %", "efficiency");
   for (const Point& p : s.points)
-    base::append(out, "%-12s %-22s %9.1f %9.3f %9.3f %9.3f %9.3f %+9.3f %10.4g%s\n", p.axis.c_str(), p.name.c_str(),
-                 p.samples, p.seconds, p.error * 100, p.bias * 100, p.noise * 100, p.energy * 100, p.efficiency,
-                 p.on_front ? " *" : "");
+    out += fmt::format("{:12} {:22} {:9.1f} {:9.3f} {:9.3f} {:9.3f} {:9.3f} {:+9.3f} {:10.4g}{}\n", p.axis, p.name,
+                       p.samples, p.seconds, p.error * 100, p.bias * 100, p.noise * 100, p.energy * 100, p.efficiency,
+                       p.on_front ? " *" : "");
   out += "* Pareto front: no other choice is both faster and more accurate\n\n";
   for (const Slope& l : s.slopes)
-    base::append(out, "error of %s is proportional to samples^%.2f\n", l.name.c_str(), l.slope);
-  base::append(out, "\n%-14s %12s %9s %9s\n", "file", "size", "write s", "error %");
+    out += fmt::format("error of {} is proportional to samples^{:.2f}\n", l.name, l.slope);
+  out += fmt::format("\n{:14} {:>12} {:>9} {:>9}\n", "file", "size", "write s", "error %");
   for (const FilePoint& f : s.files)
-    base::append(out, "%-14s %12s %9.3f %9.4f\n", f.name.c_str(), base::bytes_text(f.bytes).c_str(), f.write_s,
-                 f.error * 100);
+    out += fmt::format("{:14} {:>12} {:9.3f} {:9.4f}\n", f.name, base::bytes_text(f.bytes), f.write_s, f.error * 100);
   out += '\n';
-  for (const auto& f : s.features) {
-    if (f.required) {
-      base::append(out, "feature     %s: required by this scene\n", f.name.c_str());
-    } else {
-      base::append(out, "feature     %s: not required, omitting it saves %.1f %% of the time\n", f.name.c_str(),
-                   f.saves * 100);
-    }
-  }
-  for (const std::string& text : s.left_out) base::append(out, "left out    %s\n", text.c_str());
-  base::append(out, "\n%s\n  %s\n", s.recommendation.words.c_str(), s.recommendation.command.c_str());
-  return out;
+  for (const FeatureCost& f : s.features)
+    job::add_row(out, "feature", "{}: {}", f.name,
+                 f.required ? "required by this scene"
+                            : fmt::format("not required, omitting it saves {:.1f} % of the time", f.saves * 100));
+  for (const std::string& text : s.left_out) job::add_row(out, "left out", "{}", text);
+  return out + fmt::format("\n{}\n  {}\n", s.recommendation.words, s.recommendation.command);
 }
 
 std::string study_html(const Study& study) {
@@ -187,12 +182,8 @@ std::string study_html(const Study& study) {
     data["points"][i]["heat"] = encode.codes(downsampled(compare::false_color(map, compare::kFalseColorMax)));
   }
   // The text must not contain the end tag of its script element.
-  std::string text = data.dump(-1, ' ', true, json::error_handler_t::replace);
-  for (std::size_t at = 0; (at = text.find("</", at)) != std::string::npos;) text.replace(at, 2, "<\\/");
-  std::string page = kReportPage;
-  const std::string mark = "{{DATA}}";
-  page.replace(page.find(mark), mark.size(), text);
-  return page;
+  const std::string text = base::replaced(data.dump(-1, ' ', true, json::error_handler_t::replace), "</", "<\\/");
+  return base::replaced(kReportPage, "{{DATA}}", text);
 }
 
 }  // namespace orrery::study

@@ -109,8 +109,7 @@ class Runner {
     scene::Scene& scene = read_.scene;
     load::add_scene_files(request_.scene.file, scene, files);
     if (scene.render.shading != scene::Shading::kPath)
-      throw base::Error(base::ErrorKind::kUsage,
-                        "a study needs render.shading = \"path\"; the other modes trace no light paths");
+      base::refuse("a study needs render.shading = \"path\"; the other modes trace no light paths");
     full_ = compile::compile(scene, closing());
     film::LayerRequest layers = job::choose_layers(scene, full_).request;
     memory_needs_ = job::memory_needs(full_, layers);
@@ -148,12 +147,9 @@ class Runner {
     for (std::size_t i = 0; i < std::min(kMinChoices, plan_.choices.size()); ++i)
       samples += 2 * plan_.choices[i].samples;
     const double needed = least * samples / paths_per_s_;
-    if (needed > left()) {
-      std::string text;
-      base::append(text, "--budget is too small: loading this scene, a reference and two choices take %.3g s",
-                   1.2 * (elapsed() + needed));
-      throw base::Error(base::ErrorKind::kUsage, text);
-    }
+    if (needed > left())
+      base::refuse(fmt::format("--budget is too small: loading this scene, a reference and two choices take {:.3g} s",
+                               1.2 * (elapsed() + needed)));
     resize(reduced_, std::clamp(left() * (1 - kPilotShare) * paths_per_s_ / kTargetSamples, least, most));
     out_.width = reduced_.width;
     out_.height = reduced_.height;

@@ -7,6 +7,7 @@
 #include <regex>
 
 #include "job/job.h"
+#include "job/report_text.h"
 #include "job/version.h"
 
 namespace orrery::job {

@@ -38,9 +38,9 @@ class StudyBenchScene : public testing::Test {
   support::TempDir folder_;
 };
 
-std::vector<std::string> names(const std::vector<BenchCase>& cases) {
+std::vector<std::string> names(const std::vector<BenchResult>& cases) {
   std::vector<std::string> out;
-  for (const BenchCase& c : cases) out.push_back(c.name);
+  for (const BenchResult& c : cases) out.push_back(c.name);
   return out;
 }
 
@@ -55,28 +55,28 @@ TEST_F(StudyBenchScene, MeasuresEveryPrecisionWithEmbreeAndLists) {
   EXPECT_LE(b.rays_per_path, 2);
   EXPECT_NEAR(b.width * b.height, 96 * 54, 100);
   EXPECT_NEAR(static_cast<double>(b.width) / b.height, 1.5, 0.05);
-  for (const BenchCase& c : b.cases) {
-    EXPECT_GT(c.paths_per_s.low, 0) << c.name;
-    EXPECT_LE(c.paths_per_s.low, c.paths_per_s.median) << c.name;
-    EXPECT_LE(c.paths_per_s.median, c.paths_per_s.high) << c.name;
+  for (const BenchResult& c : b.cases) {
+    EXPECT_GT(c.speed.low, 0) << c.name;
+    EXPECT_LE(c.speed.low, c.speed.median) << c.name;
+    EXPECT_LE(c.speed.median, c.speed.high) << c.name;
     EXPECT_EQ(c.tracing.has_value(), c.name.find("list") == std::string::npos) << c.name;
   }
   EXPECT_EQ(b.cases[0].ratio.low, 1);
   EXPECT_EQ(b.cases[0].ratio.high, 1);
   ASSERT_EQ(b.tracing.size(), 6u);
-  for (const BenchTracing& t : b.tracing) EXPECT_GT(t.rays_per_s.low, 0) << t.name;
+  for (const BenchResult& t : b.tracing) EXPECT_GT(t.speed.low, 0) << t.name;
   EXPECT_EQ(b.tracing[0].ratio.median, 1);
   EXPECT_TRUE(b.left_out.empty());
 }
 
 TEST_F(StudyBenchScene, MeasuresTheBuildOfEveryAccelerator) {
-  const std::vector<BenchBuild> builds = bench_scene(request()).builds;
+  const std::vector<BenchResult> builds = bench_scene(request()).builds;
   ASSERT_EQ(builds.size(), 3u);
   EXPECT_EQ(builds[1].name, "BVH") << "the scene has one primitive per sphere";
   EXPECT_EQ(builds[2].name, "sphere points");
   EXPECT_EQ(builds[2].ratio.median, 1);
-  for (const BenchBuild& build : builds) {
-    EXPECT_GT(build.spheres_per_s.low, 0) << build.name;
+  for (const BenchResult& build : builds) {
+    EXPECT_GT(build.speed.low, 0) << build.name;
     EXPECT_GT(build.bytes_per_sphere, 0) << build.name;
   }
 }
@@ -134,7 +134,7 @@ TEST_F(StudyBenchScene, MeasuresMotionBlur) {
 TEST_F(StudyBenchScene, TracingAloneIsMeasuredWithOneThreadOnly) {
   BenchRequest r = request();
   r.threads = 2;
-  for (const BenchCase& c : bench_scene(r).cases) EXPECT_FALSE(c.tracing.has_value()) << c.name;
+  for (const BenchResult& c : bench_scene(r).cases) EXPECT_FALSE(c.tracing.has_value()) << c.name;
 }
 
 TEST_F(StudyBenchScene, ReportsTheInstructionSetUsed) {
@@ -182,7 +182,7 @@ Benchmark some_benchmark() {
   b.rays_per_path = 2.5;
   b.cases = {{"embree exact", {1e6, 2e6, 3e6}, {1, 1, 1}, Quartiles{0.6, 0.7, 0.8}},
              {"list book", {1e5, 2e5, 3e5}, {0.05, 0.1, 0.15}, {}}};
-  b.builds = {{"sphere points", {1e6, 2e6, 3e6}, {1, 1, 1}, 52.4}};
+  b.builds = {{"sphere points", {1e6, 2e6, 3e6}, {1, 1, 1}, {}, 52.4}};
   b.left_out = {"something, since"};
   return b;
 }
