@@ -9,7 +9,7 @@
 #include "base/text.h"
 #include "cli/commands.h"
 #include "cli/messages.h"
-#include "cli/options.h"
+#include "cli/plot_options.h"
 #include "cli/signals.h"
 #include "plot/convert.h"
 
@@ -27,8 +27,8 @@ void print_file(const plot::ConvertedFile& written, bool quiet) {
   for (const base::Diagnostic& warning : written.warnings) text += base::formatted(warning);
   if (!quiet) {
     const std::string name = written.file.string();
-    text += base::printable(fmt::format("wrote {}: {}{}; columns {}", name, written.spheres,
-                                        written.spheres == 1 ? " sphere" : " spheres", base::joined(written.columns))) +
+    text += base::printable(fmt::format("wrote {}: {}; columns {}", name, base::counted(written.spheres, "sphere"),
+                                        base::joined(written.columns))) +
             "\n";
     for (const std::string& note : written.notes)
       text += base::printable(fmt::format("note: {}: {}", name, note)) + "\n";
@@ -39,7 +39,7 @@ void print_file(const plot::ConvertedFile& written, bool quiet) {
 int run_convert(ConvertArguments& arguments) {
   end_on_signals();
   plot::ConvertOptions& convert = arguments.convert;
-  read_data_options(arguments.data, convert);
+  arguments.data.read(convert);
   if (convert.color_by.empty() && (convert.has_map || convert.range.is_set))
     base::refuse("--map and --range need --color-by");
   convert.memory_limit = base::available_memory().value_or(0);
@@ -57,7 +57,7 @@ void add_convert(Command& program) {
       ->details("PLY is binary, NPY a structured array.")
       ->required();
   command.add_flag("-q,--quiet", arguments->quiet, "Print only errors and warnings");
-  add_data_options(command, arguments->data, convert);
+  arguments->data.add_to(command, convert);
   command.details(
       "The spheres are selected, unwrapped, replicated and sliced. Colours are sRGB, 8 bits. Copies of a particle have "
       "the same values in the other columns. If the file has particle ids, they give the order. Columns that a format "

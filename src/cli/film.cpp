@@ -1,10 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "cli/film.h"
 
-#include <fcntl.h>
-#include <spawn.h>
 #include <sys/wait.h>
-#include <unistd.h>
 
 #include <algorithm>
 #include <array>
@@ -18,6 +15,7 @@
 #include <string>
 #include <system_error>
 #include <utility>
+#include <vector>
 
 #include <fmt/core.h>
 
@@ -25,6 +23,8 @@
 #include "base/error.h"
 #include "base/file_name.h"
 #include "base/frames.h"
+#include "base/temp_dir.h"
+#include "base/text.h"
 #include "cli/options.h"
 
 namespace orrery::cli {
@@ -32,142 +32,53 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr const char* kEncoder = "ffmpeg";
+/// Options of ffmpeg between input and output. Videos have sizes of even numbers: the last column or row is left out.
+/// Colours are those of sRGB images, which display programs show as such.
+constexpr const char* kGif =
+    "-filter_complex '[0:v]split[a][b];[a]palettegen=stats_mode=diff[p];[b][p]paletteuse' -loop 0 -f gif";
+constexpr const char* kVideo =
+    "-vf 'crop=trunc(iw/2)*2:trunc(ih/2)*2,scale=out_color_matrix=bt709:out_range=tv' -c:v libx264 -crf 18 "
+    "-pix_fmt yuv420p -colorspace bt709 -color_primaries bt709 -color_trc iec61966-2-1 -color_range tv "
+    "-movflags +faststart -f mp4";
 
-bool is_installed(const std::string& program) {
-  const char* const path = std::getenv("PATH");
-  const std::string folders = path != nullptr ? path : "";
-  for (std::size_t begin = 0; begin <= folders.size();) {
-    const std::size_t end = std::min(folders.find(':', begin), folders.size());
-    if (access((folders.substr(begin, end - begin) + "/" + program).c_str(), X_OK) == 0) return true;
-    begin = end + 1;
-  }
-  return false;
-}
-
-/// The options of ffmpeg between input and output. Videos have sizes of even numbers: the last column or row is left
-/// out. Colours are those of sRGB images, which display programs show as such.
-std::vector<std::string> encoding_of(const fs::path& file) {
-  if (base::extension(file) == ".gif")
-    return {"-filter_complex",
-            "[0:v]split[a][b];[a]palettegen=stats_mode=diff[p];[b][p]paletteuse",
-            "-loop",
-            "0",
-            "-f",
-            "gif"};
-  return {"-vf",
-          "crop=trunc(iw/2)*2:trunc(ih/2)*2,scale=out_color_matrix=bt709:out_range=tv",
-          "-c:v",
-          "libx264",
-          "-crf",
-          "18",
-          "-pix_fmt",
-          "yuv420p",
-          "-colorspace",
-          "bt709",
-          "-color_primaries",
-          "bt709",
-          "-color_trc",
-          "iec61966-2-1",
-          "-color_range",
-          "tv",
-          "-movflags",
-          "+faststart",
-          "-f",
-          "mp4"};
-}
-
-struct CloseFile {
-  void operator()(std::FILE* file) const { std::fclose(file); }
-};
-using File = std::unique_ptr<std::FILE, CloseFile>;
-
-/// A running ffmpeg that reads images from a pipe.
-class Encoder {
- public:
-  Encoder(const fs::path& film, const fs::path& output, double fps) : messages_(std::tmpfile()) {
-    std::vector<std::string> words = {
-        kEncoder, "-nostdin", "-y", "-loglevel", "error", "-f", "image2pipe", "-framerate", fmt::format("{}", fps),
-        "-c:v",   "png",      "-i", "pipe:0"};
-    for (std::string& word : encoding_of(film)) words.push_back(std::move(word));
-    words.push_back("file:" + output.string());
-    std::vector<char*> arguments;
-    for (std::string& word : words) arguments.push_back(word.data());
-    arguments.push_back(nullptr);
-    std::array<int, 2> ends{};
-    if (!messages_ || pipe2(ends.data(), O_CLOEXEC) != 0) fail_to_start(errno);
-    posix_spawn_file_actions_t actions;
-    posix_spawn_file_actions_init(&actions);
-    posix_spawn_file_actions_adddup2(&actions, ends[0], STDIN_FILENO);
-    posix_spawn_file_actions_adddup2(&actions, fileno(messages_.get()), STDERR_FILENO);
-    posix_spawn_file_actions_addopen(&actions, STDOUT_FILENO, "/dev/null", O_WRONLY, 0);
-    const int error = posix_spawnp(&process_, kEncoder, &actions, nullptr, arguments.data(), environ);
-    posix_spawn_file_actions_destroy(&actions);
-    close(ends[0]);
-    input_ = ends[1];
-    if (error != 0) fail_to_start(error);
-  }
-  ~Encoder() {
-    if (input_ >= 0) close(input_);
-    if (process_ > 0) waitpid(process_, nullptr, 0);
-  }
-  Encoder(const Encoder&) = delete;
-  Encoder& operator=(const Encoder&) = delete;
-
-  /// Sends bytes. False if ffmpeg has ended: the program ignores SIGPIPE.
-  bool send(const char* bytes, std::size_t size) const {
-    while (size > 0) {
-      const ssize_t sent = write(input_, bytes, size);
-      if (sent < 0 && errno == EINTR) continue;
-      if (sent <= 0) return false;
-      bytes += sent;
-      size -= static_cast<std::size_t>(sent);
-    }
-    return true;
-  }
-
-  /// Waits for the end.
-  ///
-  /// Result     an error message, or an empty string
-  std::string finish() {
-    close(std::exchange(input_, -1));
-    int status = 0;
-    while (waitpid(process_, &status, 0) < 0 && errno == EINTR) continue;
-    process_ = 0;
-    if (WIFEXITED(status) && WEXITSTATUS(status) == 0) return {};
-    const std::string how = WIFSIGNALED(status) ? fmt::format("was ended by signal {}", WTERMSIG(status))
-                                                : fmt::format("failed with status {}", WEXITSTATUS(status));
-    const std::string said = message();
-    return said.empty() ? how : how + ": " + said;
-  }
-
- private:
-  [[noreturn]] static void fail_to_start(int error) {
-    throw base::Error(base::ErrorKind::kIo, fmt::format("{} cannot be started: {}", kEncoder, std::strerror(error)));
-  }
-
-  /// The last line that ffmpeg printed.
-  std::string message() const {
-    std::rewind(messages_.get());
-    std::string last;
-    char line[1024];
-    while (std::fgets(line, sizeof line, messages_.get()) != nullptr) last = line;
-    while (!last.empty() && last.back() == '\n') last.pop_back();
-    return last;
-  }
-
-  File messages_;
-  int input_ = -1;
-  pid_t process_ = 0;
-};
-
-bool send_file(const Encoder& encoder, const fs::path& file) {
+/// Sends a file. False if the reader of the pipe has ended: the program ignores SIGPIPE.
+bool send_file(const fs::path& file, std::FILE* pipe) {
   std::ifstream in(file, std::ios::binary);
   if (!in) throw base::Error(base::ErrorKind::kIo, fmt::format("cannot read {}", file.string()));
   std::array<char, 1 << 16> block{};
   while (in.read(block.data(), block.size()) || in.gcount() > 0)
-    if (!encoder.send(block.data(), static_cast<std::size_t>(in.gcount()))) return false;
+    if (const auto size = static_cast<std::size_t>(in.gcount()); std::fwrite(block.data(), 1, size, pipe) != size)
+      return false;
   return true;
+}
+
+std::string last_line(const fs::path& file) {
+  std::ifstream in(file);
+  std::string last;
+  for (std::string line; std::getline(in, line);) last = line;
+  return last;
+}
+
+/// Encodes images to `output`, with the options for the name of `film`.
+///
+/// Result     how ffmpeg failed, or an empty string
+std::string encoded(const std::vector<fs::path>& images, const fs::path& film, const fs::path& output, double fps) {
+  const base::TempDir folder;
+  const fs::path messages = folder.path() / "messages";
+  const std::string command = fmt::format(
+      "exec ffmpeg -nostdin -y -loglevel error -f image2pipe -framerate {} -c:v png -i pipe:0 {} {} > /dev/null 2> {}",
+      fps, base::extension(film) == ".gif" ? kGif : kVideo, base::shell_quoted("file:" + output.string()),
+      base::shell_quoted(messages.string()));
+  std::unique_ptr<std::FILE, int (*)(std::FILE*)> pipe(popen(command.c_str(), "we"), pclose);
+  if (!pipe) return fmt::format("cannot be started: {}", std::strerror(errno));
+  for (const fs::path& image : images)
+    if (!send_file(image, pipe.get())) break;
+  const int status = pclose(pipe.release());
+  if (status == 0) return {};
+  const std::string how = WIFSIGNALED(status) ? fmt::format("was ended by signal {}", WTERMSIG(status))
+                                              : fmt::format("failed with status {}", WEXITSTATUS(status));
+  const std::string said = last_line(messages);
+  return said.empty() ? how : how + ": " + said;
 }
 
 }  // namespace
@@ -184,7 +95,7 @@ void FilmSettings::apply(SceneOptions& scene, plot::PlotOptions& plot) const {
 
 Film::Film(fs::path file, double fps, bool keeps_frames)
     : file_(std::move(file)), folder_(file_.string() + ".frames"), fps_(fps), keeps_frames_(keeps_frames) {
-  if (!is_installed(kEncoder))
+  if (std::system("command -v ffmpeg > /dev/null 2>&1") != 0)
     throw base::Error(base::ErrorKind::kCannotCreate,
                       fmt::format("{} cannot be created: the program ffmpeg was not found; install the package ffmpeg, "
                                   "or write an image for each frame, e.g. -o out.####.png",
@@ -210,14 +121,10 @@ bool Film::is_film(const fs::path& file) {
 fs::path Film::frame_pattern() const { return folder_ / "frame.######.png"; }
 
 void Film::encode(const std::vector<int>& frames) const {
+  std::vector<fs::path> images;
+  for (const int frame : frames) images.emplace_back(base::with_frame(frame_pattern().string(), frame));
   const fs::path unfinished = file_.string() + ".part";
-  std::string error;
-  {
-    Encoder encoder(file_, unfinished, fps_);
-    for (const int frame : frames)
-      if (!send_file(encoder, base::with_frame(frame_pattern().string(), frame))) break;
-    error = encoder.finish();
-  }
+  std::string error = encoded(images, file_, unfinished, fps_);
   std::error_code failed;
   if (error.empty()) fs::rename(unfinished, file_, failed);
   if (failed) error = failed.message();
@@ -228,7 +135,7 @@ void Film::encode(const std::vector<int>& frames) const {
                                   file_.string(), error, folder_.string()));
   }
   if (keeps_frames_) return;
-  for (const int frame : frames) fs::remove(base::with_frame(frame_pattern().string(), frame), failed);
+  for (const fs::path& image : images) fs::remove(image, failed);
 }
 
 }  // namespace orrery::cli

@@ -2,8 +2,6 @@
 #include "cli/options.h"
 
 #include <algorithm>
-#include <charconv>
-#include <cmath>
 #include <utility>
 
 #include <fmt/core.h>
@@ -14,92 +12,9 @@
 #include "display/settings.h"
 #include "format/read_scene.h"
 #include "job/job.h"
-#include "plot/data_frames.h"
-#include "plot/range.h"
-#include "points/point_opacity.h"
 #include "scene/limits.h"
-#include "scene/value_text.h"
 
 namespace orrery::cli {
-namespace {
-
-/// Parses numbers with a separator: "0:12", "2,2,1".
-std::vector<double> numbers_of(const std::string& text, char separator, std::size_t count, const std::string& usage) {
-  std::vector<double> out;
-  const char *at = text.data(), *const end = at + text.size();
-  while (out.size() < count) {
-    double value = 0;
-    const auto [stop, error] = std::from_chars(at, end, value);
-    const bool is_last = out.size() + 1 == count;
-    if (error != std::errc() || !std::isfinite(value) || (is_last ? stop != end : stop == end || *stop != separator))
-      base::refuse(usage);
-    out.push_back(value);
-    at = is_last ? end : stop + 1;
-  }
-  return out;
-}
-
-/// Adds an --opacity to those before it. One without a condition matches all particles, so that it replaces them.
-void read_opacity(const std::string& text, scene::PointsOpacity& opacity) {
-  if (text.find(':') != std::string::npos) {
-    try {
-      points::parse_opacity_rule(text);
-    } catch (const base::Error& error) {
-      base::refuse(std::string("--opacity: ") + error.what());
-    }
-    if (opacity.value) opacity.where.push_back(scene::number_text(*opacity.value));
-    opacity.value.reset();
-    opacity.where.push_back(text);
-    return;
-  }
-  opacity = {};
-  double value = 0;
-  const char* const end = text.data() + text.size();
-  const auto [stop, error] = std::from_chars(text.data(), end, value);
-  if (error != std::errc() || stop != end) {
-    opacity.column = text;
-    return;
-  }
-  if (!(value >= 0 && value <= 1)) base::refuse(fmt::format("--opacity: {} must be in 0..1", text));
-  opacity.value = value;
-}
-
-void read_points(const DataArguments& arguments, scene::Points& points) {
-  if (!arguments.frame.empty()) points.frame = integer_of(arguments.frame);
-  if (!arguments.component.empty()) points.component = integer_of(arguments.component);
-  if (!arguments.radius.empty()) {
-    double value = 0;
-    const char* const end = arguments.radius.data() + arguments.radius.size();
-    const auto [stop, error] = std::from_chars(arguments.radius.data(), end, value);
-    if (error == std::errc() && stop == end) {
-      if (!(value > 0) || !std::isfinite(value)) base::refuse("--radius: must be above 0");
-      if (points.radius.scale != 1)
-        base::refuse("--radius-scale applies to radii of the data; scale the number in --radius instead");
-      points.radius.value = value;
-    } else {
-      points.radius.column = arguments.radius;
-    }
-  }
-  for (const std::string& text : arguments.opacity) read_opacity(text, points.opacity);
-  if (!arguments.replicate.empty()) {
-    const auto counts =
-        numbers_of(arguments.replicate, ',', 3,
-                   fmt::format("--replicate: `{}` must be three numbers of copies, e.g. 2,2,1", arguments.replicate));
-    for (const double n : counts)
-      if (!(n >= 1 && n <= scene::kMaxCopies && n == std::floor(n)))
-        base::refuse(
-            fmt::format("--replicate: the numbers of copies must be integers from 1 to {}", scene::kMaxCopies));
-    points.replicate = {counts[0], counts[1], counts[2]};
-  }
-}
-
-std::pair<int, double> slice_of(const std::string& text) {
-  const std::string usage = fmt::format("--slice: `{}` is not a plane; write AXIS=POSITION, e.g. z=10", text);
-  if (text.size() < 3 || text[0] < 'x' || text[0] > 'z' || text[1] != '=') base::refuse(usage);
-  return {text[0] - 'x', numbers_of(text.substr(2), '=', 1, usage)[0]};
-}
-
-}  // namespace
 
 void SceneOptions::add_to(Command& command, Short forms) {
   const OptionGroup group(command, "Scene options");
@@ -248,82 +163,6 @@ std::string PictureOptions::unused_options(const job::Job& job) const {
 void PictureOptions::finish(job::Job& job) const {
   job.outputs.images = job::image_files(files_);
   job.outputs.exr.as_float = type_ == "float";
-}
-
-void add_data_options(Command& command, DataArguments& arguments, plot::DataOptions& data, const std::string& kind) {
-  command
-      .add_option("FILE", data.file, "FILE",
-                  kind + ": LAMMPS, XYZ, PDB, mmCIF, PLY, CSV, NPY, NPZ, LAS, GSD, HDF5, VTK")
-      ->required();
-  const OptionGroup group(command, kDataOptions);
-  scene::Points& points = data.points;
-  command.add_option("--frame", arguments.frame, "N", "Frame of the file, from 1; default: 1")
-      ->check(whole_number(1, 2'000'000'000));
-  command
-      .add_option("--frames", arguments.frames, "RANGE",
-                  "Frames of the file: all, or e.g. 1-48; name outputs like out.####.png")
-      ->details("Names of outputs need a frame pattern, as for orrery render.");
-  command
-      .add_option("--select", arguments.select, "CONDITION",
-                  "Use only the rows that match, e.g. 'type == 2 && z > 0'; if repeated, all must match")
-      ->details("For example 'id in [20:60] && chain in {A, B}'; docs/data.md describes conditions.")
-      ->repeatable();
-  command
-      .add_option("--slice", arguments.slice, "AXIS=POSITION",
-                  "Slice plane: remove the spheres in front of it, e.g. z=10; can be repeated")
-      ->details("With convert, as seen from the default view of plot.")
-      ->repeatable();
-  command.add_option("--component", arguments.component, "N", "HDF5: particle type, N of PartTypeN")
-      ->details("Required if the file has particles of several types.")
-      ->check(whole_number(0, 1000));
-  command.add_option("--assembly", points.assembly, "NAME", "PDB, mmCIF: biological assembly, e.g. 1");
-  command.add_option("--replicate", arguments.replicate, "A,B,C",
-                     "Number of periodic boxes along each box edge, e.g. 2,2,1");
-  command.add_flag("--unwrap", points.unwrap, "Unwrap coordinates with the file's periodic image flags");
-  command.add_flag("--skip-bad", points.skip_bad, "Skip rows with non-finite coordinates or radii")
-      ->details("Otherwise they are an error.");
-  const OptionGroup look(command, kLookOptions);
-  command.add_option("--radius", arguments.radius, "X|COLUMN",
-                     "Radius: a number, or a column of radii; default: from the file");
-  command
-      .add_option("--radius-scale", points.radius.scale, "X",
-                  "Scale factor for radii of the data and for the default radius, e.g. 0.5 for a column of diameters")
-      ->check(real_number(1e-30, 1e30));
-  command
-      .add_option("--element-radii", points.radius.element, "TABLE",
-                  "Radii by chemical element: vdw, covalent or ball (a quarter of vdw)")
-      ->details("In angstrom.")
-      ->choices({"vdw", "covalent", "ball"});
-  command
-      .add_option("--color-by", data.color_by, "COLUMN",
-                  "Colour by a column, an expression such as 'sqrt(vx^2+vy^2)', element, type, rgb or none")
-      ->details(
-          "rgb: the file's own colours. none: one colour. The default depends on the file. Expressions have the "
-          "operators and functions of conditions.");
-  arguments.map =
-      command.add_option("--map", points.color.map, "MAP", "Colour map, e.g. viridis, fast, coolwarm, or a file")
-          ->details("docs/data.md lists the maps. The default is fast, for types and strings tab10.");
-  command
-      .add_option("--range", arguments.range, "RANGE",
-                  "Values at both ends of the colour map, e.g. 0:12, 1%:99%, log, symmetric; default: 0%:100%")
-      ->details(
-          "Numbers or percentiles of the values of all frames. log: a logarithmic scale; symmetric: -X:X; both also "
-          "with a range, e.g. log,1%:99%.");
-}
-
-void read_data_options(const DataArguments& arguments, plot::DataOptions& data) {
-  if (!arguments.frames.empty() && !arguments.frame.empty()) base::refuse("--frame and --frames exclude each other");
-  data.all_frames = arguments.frames == "all";
-  if (!arguments.frames.empty() && !data.all_frames) data.frames = base::parse_frames(arguments.frames);
-  data.has_map = arguments.map->count() > 0;
-  read_points(arguments, data.points);
-  if (!arguments.range.empty()) {
-    data.range = plot::parse_range(arguments.range);
-    data.points.color.range = data.range.fixed();
-    data.points.color.log = data.range.is_log;
-  }
-  data.points.select = plot::all_of(arguments.select);
-  for (const std::string& plane : arguments.slice) data.slices.push_back(slice_of(plane));
 }
 
 }  // namespace orrery::cli

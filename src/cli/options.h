@@ -11,8 +11,6 @@
 #include "display/forward.h"
 #include "format/overrides.h"
 #include "job/forward.h"
-#include "plot/data_frames.h"
-#include "plot/plot.h"
 
 namespace orrery::cli {
 
@@ -107,36 +105,5 @@ class PictureOptions {
 ///
 /// `otherwise`  the default, in the help
 void add_threads_option(Command& command, int& threads, const char* otherwise = "all CPUs available to the process");
-
-/// Arguments of the data options that need further parsing.
-struct DataArguments {
-  std::string frame, frames, radius, range, replicate, component;
-  std::vector<std::string> select, slice, opacity;
-  const Option* map = nullptr;
-};
-
-/// Adds FILE and the options that all commands on data files share. Values go to `data`, or to `arguments` and then to
-/// `data` by read_data_options().
-///
-/// `kind`     of FILE, in the help
-void add_data_options(Command& command, DataArguments& arguments, plot::DataOptions& data,
-                      const std::string& kind = "Data file");
-
-/// Arguments of the look options that need further parsing; empty: not set.
-struct LookArguments {
-  std::string style, quality, representation, bonds, vectors, background, scale_bar;
-};
-
-/// Adds the options of plot that select view, style, representation, bonds and opacity.
-void add_look_options(Command& command, DataArguments& data, plot::PlotOptions& plot, LookArguments& look);
-/// Adds the options of plot for text, scales and lines over the image.
-void add_annotation_options(Command& command, plot::PlotOptions& plot, LookArguments& look);
-/// Sets the members of `plot` from the parsed options.
-void read_look_options(const LookArguments& look, plot::PlotOptions& plot);
-
-/// Sets the members of `data` from the parsed options.
-///
-/// Errors     base::Error(kUsage)
-void read_data_options(const DataArguments& arguments, plot::DataOptions& data);
 
 }  // namespace orrery::cli

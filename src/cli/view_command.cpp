@@ -18,7 +18,6 @@
 #include <fmt/core.h>
 
 #include "annotation/legend.h"
-#include "base/available_memory.h"
 #include "base/error.h"
 #include "base/file_name.h"
 #include "base/frames.h"
@@ -27,6 +26,7 @@
 #include "cli/commands.h"
 #include "cli/film.h"
 #include "cli/messages.h"
+#include "cli/plot_options.h"
 #include "cli/render_options.h"
 #include "cli/run.h"
 #include "cli/signals.h"
@@ -43,18 +43,16 @@ namespace {
 
 /// The options that say what is shown. Those of data files have no effect on scenes.
 struct ShownOptions {
-  plot::PlotOptions plot;
-  DataArguments data;
-  LookArguments look;
+  PlotArguments plot;
   SceneOptions scene;
   job::Job job;
   const Command* command = nullptr;
 
   void add_to(Command& parsed) {
     command = &parsed;
-    add_data_options(parsed, data, plot, "Scene file, or data file");
-    add_look_options(parsed, data, plot, look);
-    add_annotation_options(parsed, plot, look);
+    plot.add_data_to(parsed, "Scene file, or data file");
+    plot.add_look_to(parsed);
+    plot.add_annotations_to(parsed);
     scene.add_to(parsed);
     add_sampling_options(parsed, job);
     add_denoise_option(parsed, job);
@@ -88,7 +86,7 @@ std::vector<std::string> words_of(const Command& command, const std::vector<cons
 /// The files that options name besides FILE.
 std::set<std::string> files_of(const ShownOptions& shown) {
   std::set<std::string> out = view::named_files(shown.scene.overrides());
-  if (shown.plot.points.color.has_map_file()) out.insert(shown.plot.points.color.map);
+  if (shown.plot.options.points.color.has_map_file()) out.insert(shown.plot.options.points.color.map);
   return out;
 }
 
@@ -99,34 +97,27 @@ view::Subject scene_subject(const ShownOptions& shown) {
       base::refuse(fmt::format("{} is an option for data files; a scene has its keys: --set KEY=VALUE", option.name()));
   view::Subject out;
   out.job = shown.job;
-  out.job.scene.file = shown.plot.file;
+  out.job.scene.file = shown.plot.options.file;
   out.job.scene.overrides = shown.scene.overrides();
   return out;
 }
 
 view::Subject data_subject(ShownOptions& shown, const FilmSettings* film = nullptr) {
-  plot::PlotOptions& plot = shown.plot;
-  if (!film && !shown.data.frames.empty())
+  plot::PlotOptions& plot = shown.plot.options;
+  if (!film && shown.plot.has_frames())
     base::refuse("--frames: the page has a slider; --frame N selects the first one");
-  read_data_options(shown.data, plot);
+  shown.plot.read_data();
   if (film) film->apply(shown.scene, plot);
-  read_look_options(shown.look, plot);
-  plot.overrides = shown.scene.overrides();
+  shown.plot.read(shown.scene, shown.job);
   plot.scene_file = plot.file;
-  plot.has_target = shown.job.sampling.noise || shown.job.sampling.seconds;
   plot.develops = true;
-  plot.memory_limit =
-      shown.job.resources.memory_limit > 0 ? shown.job.resources.memory_limit : base::available_memory().value_or(0);
   const plot::PlotScene made = plot::make_plot(plot);
   view::Subject out;
   out.job = shown.job;
   out.job.scene.file = plot.file;
-  out.job.scene.text = std::make_shared<const std::string>(made.text);
+  show(made, std::make_shared<const std::string>(made.text), out.job);
   out.job.scene.typed_lines = 0;
-  out.job.scene.has_file = false;
   out.job.scene.overrides = plot.overrides;
-  if (made.noise) out.job.sampling.noise = *made.noise;
-  out.job.denoise = out.job.denoise || made.denoise;
   out.notes = made.choices;
   for (const std::string& warning : made.warnings) out.notes.push_back("warning: " + warning);
   out.columns = made.columns;
@@ -160,7 +151,7 @@ view::Subject data_subject(const std::string& file, std::vector<std::string> wor
   parse_words(
       words, [&](Command& parsed) { shown.add_to(parsed); },
       [&] {
-        shown.plot.open = open;
+        shown.plot.options.open = open;
         out = data_subject(shown, film);
         out.job.scene.open_data = open;
       });
@@ -253,7 +244,7 @@ void open_in_browser(const std::string& address) {
 }
 
 int run_view(ViewArguments& arguments, const Command& command) {
-  const std::filesystem::path& file = arguments.shown.plot.file;
+  const std::filesystem::path& file = arguments.shown.plot.options.file;
   // The page reports all other faults; without a file there is nothing that it could change.
   if (!base::has_frame_pattern(file.filename().string())) base::require_readable(file);
   const std::set<std::string> allowed = files_of(arguments.shown);

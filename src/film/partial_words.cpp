@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <bit>
 #include <cstddef>
+#include <functional>
 #include <string>
 #include <type_traits>
 
@@ -16,16 +17,40 @@
 namespace orrery::film {
 namespace {
 
-using kernel::Int128;
-
 constexpr std::uint32_t kFormat = 6;
 
 enum Flag : std::uint32_t { kHasSecond = 1, kHasGoals = 2, kHasLayers = 4, kHasHalves = 8, kAllFlags = 15 };
 
-std::uint32_t bits(float v) { return std::bit_cast<std::uint32_t>(v); }
-std::uint64_t bits(std::uint64_t v) { return v; }
-std::uint64_t bits(std::int64_t v) { return static_cast<std::uint64_t>(v); }
-std::uint64_t bits(double v) { return std::bit_cast<std::uint64_t>(v); }
+/// Number of words of a number.
+template <class T>
+constexpr std::size_t kWords = sizeof(T) / sizeof(std::uint32_t);
+
+/// Word `w` of a number, least significant first.
+template <class T>
+std::uint32_t word(const T& v, std::size_t w) {
+  if constexpr (kWords<T> == 1) {
+    return std::bit_cast<std::uint32_t>(v);
+  } else if constexpr (kWords<T> == 2) {
+    return static_cast<std::uint32_t>(std::bit_cast<std::uint64_t>(v) >> 32 * w);
+  } else {
+    return static_cast<std::uint32_t>(v >> 32 * w);
+  }
+}
+
+/// The number of these words.
+template <class T>
+T joined(const std::uint32_t* words) {
+  if constexpr (kWords<T> == 1) {
+    return std::bit_cast<T>(words[0]);
+  } else if constexpr (kWords<T> == 2) {
+    return std::bit_cast<T>(std::uint64_t{words[1]} << 32 | words[0]);
+  } else {
+    __extension__ using Unsigned = unsigned __int128;
+    Unsigned v = 0;
+    for (std::size_t w = kWords<T>; w-- > 0;) v = v << 32 | words[w];
+    return static_cast<T>(v);
+  }
+}
 
 /// Header word of a plane: kConstant is followed by one word for all pixels, kPlane by one word per pixel.
 constexpr std::uint32_t kConstant = 0, kPlane = 1;
@@ -37,45 +62,28 @@ class Writer {
  public:
   explicit Writer(std::vector<std::uint32_t>& out) : out_(out) {}
 
-  void number(const std::uint32_t& v) { out_.push_back(v); }
   template <class T>
   void number(const T& v) {
-    if constexpr (sizeof(T) == sizeof(Int128)) {
-      for (int w = 0; w < 4; ++w) out_.push_back(word(v, w));
-    } else {
-      for (int w = 0; w < 2; ++w) out_.push_back(static_cast<std::uint32_t>(bits(v) >> 32 * w));
-    }
+    for (std::size_t w = 0; w < kWords<T>; ++w) out_.push_back(word(v, w));
   }
   /// Appends one number of every element of `things`, as one plane per word of the number.
   template <class Things, class At>
   void numbers(Things& things, At at) {
-    using T = std::remove_reference_t<decltype(at(things[0]))>;
-    constexpr int kWords = sizeof(T) / sizeof(std::uint32_t);
-    for (int w = 0; w < kWords && !things.empty(); ++w) {
-      const std::uint32_t first = word(at(things[0]), w);
+    using T = std::remove_reference_t<decltype(std::invoke(at, things[0]))>;
+    for (std::size_t w = 0; w < kWords<T> && !things.empty(); ++w) {
+      const std::uint32_t first = word(std::invoke(at, things[0]), w);
       bool is_constant = true;
-      for (auto& thing : things) is_constant = is_constant && word(at(thing), w) == first;
+      for (auto& thing : things) is_constant = is_constant && word(std::invoke(at, thing), w) == first;
       out_.push_back(is_constant ? kConstant : kPlane);
       if (is_constant) {
         out_.push_back(first);
       } else {
-        for (auto& thing : things) out_.push_back(word(at(thing), w));
+        for (auto& thing : things) out_.push_back(word(std::invoke(at, thing), w));
       }
     }
   }
 
  private:
-  static std::uint32_t word(std::uint32_t v, int) { return v; }
-  static std::uint32_t word(float v, int) { return bits(v); }
-  template <class T>
-  static std::uint32_t word(const T& v, int w) {
-    if constexpr (sizeof(T) == sizeof(Int128)) {
-      return static_cast<std::uint32_t>(v >> 32 * w);
-    } else {
-      return static_cast<std::uint32_t>(bits(v) >> 32 * w);
-    }
-  }
-
   std::vector<std::uint32_t>& out_;
 };
 
@@ -84,21 +92,19 @@ class Reader {
  public:
   explicit Reader(const std::vector<std::uint32_t>& in) : in_(in) {}
 
-  void number(std::uint32_t& v) {
-    need(1);
-    v = in_[at_++];
+  template <class T>
+  void number(T& v) {
+    need(kWords<T>);
+    v = joined<T>(&in_[at_]);
+    at_ += kWords<T>;
   }
-  void number(std::uint64_t& v) { v = take64(); }
-  void number(double& v) { v = std::bit_cast<double>(take64()); }
-
   template <class Things, class At>
   void numbers(Things& things, At at) {
-    using T = std::remove_reference_t<decltype(at(things[0]))>;
-    constexpr std::size_t kWords = sizeof(T) / sizeof(std::uint32_t);
+    using T = std::remove_reference_t<decltype(std::invoke(at, things[0]))>;
     if (things.empty()) return;
-    const std::uint32_t* planes[kWords];
-    std::size_t steps[kWords];
-    for (std::size_t w = 0; w < kWords; ++w) {
+    const std::uint32_t* planes[kWords<T>];
+    std::size_t steps[kWords<T>];
+    for (std::size_t w = 0; w < kWords<T>; ++w) {
       std::uint32_t kind = 0;
       number(kind);
       if (kind > kPlane) throw base::Error(base::ErrorKind::kBadData, kInconsistent);
@@ -109,12 +115,12 @@ class Reader {
       at_ += size;
     }
     for (auto& thing : things) {
-      std::uint32_t words[kWords];
-      for (std::size_t w = 0; w < kWords; ++w) {
+      std::uint32_t words[kWords<T>];
+      for (std::size_t w = 0; w < kWords<T>; ++w) {
         words[w] = *planes[w];
         planes[w] += steps[w];
       }
-      at(thing) = joined<T>(words);
+      std::invoke(at, thing) = joined<T>(words);
     }
   }
 
@@ -123,107 +129,63 @@ class Reader {
   }
 
  private:
-  template <class T>
-  static T joined(const std::uint32_t* words) {
-    if constexpr (sizeof(T) == sizeof(std::uint32_t)) {
-      return std::bit_cast<T>(words[0]);
-    } else if constexpr (sizeof(T) == sizeof(Int128)) {
-      __extension__ using Unsigned = unsigned __int128;
-      Unsigned v = 0;
-      for (int w = 4; w-- > 0;) v = v << 32 | words[w];
-      return static_cast<Int128>(v);
-    } else {
-      return std::bit_cast<T>(std::uint64_t{words[1]} << 32 | words[0]);
-    }
-  }
-  std::uint64_t take64() {
-    need(2);
-    at_ += 2;
-    return std::uint64_t{in_[at_ - 1]} << 32 | in_[at_ - 2];
-  }
-
   const std::vector<std::uint32_t>& in_;
   std::size_t at_ = 0;
 };
 
+/// Reads or writes several numbers of every element of `things`, one after another.
+///
+/// `ats`      members, or functions that return one
+template <class Io, class Things, class... Ats>
+void each(Io& io, Things& things, Ats... ats) {
+  (io.numbers(things, ats), ...);
+}
+
+/// An element of a member that is an array.
+template <class Member>
+auto element(Member member, int k) {
+  return [=](auto& thing) -> auto& { return (thing.*member)[k]; };
+}
+
 template <class Io, class Sums>
 void each_sum(Io& io, Sums& sums) {
-  for (int c = 0; c < 3; ++c)
-    io.numbers(
-        sums, [c](auto& s) -> auto& { return s.rgb[c]; });
-  io.numbers(
-      sums, [](auto& s) -> auto& { return s.weight; });
+  for (int c = 0; c < 3; ++c) each(io, sums, element(&kernel::PixelSum::rgb, c));
+  each(io, sums, &kernel::PixelSum::weight);
 }
 
 template <class Io, class Layers>
 void each_layer_number(Io& io, Layers& layers) {
-  for (int k = 0; k < 3; ++k) {
-    io.numbers(
-        layers, [k](auto& p) -> auto& { return p.squares[k]; });
-    io.numbers(
-        layers, [k](auto& p) -> auto& { return p.negative_light[k]; });
-    io.numbers(
-        layers, [k](auto& p) -> auto& { return p.negative_squares[k]; });
-    io.numbers(
-        layers, [k](auto& p) -> auto& { return p.normal[k]; });
-    io.numbers(
-        layers, [k](auto& p) -> auto& { return p.albedo[k]; });
-    io.numbers(
-        layers, [k](auto& p) -> auto& { return p.position[k]; });
-  }
-  io.numbers(
-      layers, [](auto& p) -> auto& { return p.weight; });
-  io.numbers(
-      layers, [](auto& p) -> auto& { return p.lit; });
-  io.numbers(
-      layers, [](auto& p) -> auto& { return p.paths; });
-  io.numbers(
-      layers, [](auto& p) -> auto& { return p.covered; });
-  io.numbers(
-      layers, [](auto& p) -> auto& { return p.depth; });
-  io.numbers(
-      layers, [](auto& p) -> auto& { return p.z; });
-  io.numbers(
-      layers, [](auto& p) -> auto& { return p.sphere; });
+  using P = LayerPixel;
+  for (int k = 0; k < 3; ++k)
+    each(io, layers, element(&P::squares, k), element(&P::negative_light, k), element(&P::negative_squares, k),
+         element(&P::normal, k), element(&P::albedo, k), element(&P::position, k));
+  each(io, layers, &P::weight, &P::lit, &P::paths, &P::covered, &P::depth, &P::z, &P::sphere);
 }
 
-template <class Io, class Halves>
-void each_half_number(Io& io, Halves& halves) {
+template <class Io, class BothHalves>
+void each_half_number(Io& io, BothHalves& halves) {
   for (std::size_t i = 0; i < 2; ++i) {
-    for (int k = 0; k < 3; ++k) {
-      io.numbers(
-          halves, [=](auto& h) -> auto& { return h[i].light.rgb[k]; });
-      io.numbers(
-          halves, [=](auto& h) -> auto& { return h[i].guides.albedo[k]; });
-      io.numbers(
-          halves, [=](auto& h) -> auto& { return h[i].guides.normal[k]; });
-    }
-    io.numbers(
-        halves, [=](auto& h) -> auto& { return h[i].light.weight; });
-    io.numbers(
-        halves, [=](auto& h) -> auto& { return h[i].guides.weight; });
-    io.numbers(
-        halves, [=](auto& h) -> auto& { return h[i].guides.inverse_depth; });
+    for (int k = 0; k < 3; ++k)
+      each(
+          io, halves, [=](auto& h) -> auto& { return h[i].light.rgb[k]; },
+          [=](auto& h) -> auto& { return h[i].guides.albedo[k]; },
+          [=](auto& h) -> auto& { return h[i].guides.normal[k]; });
+    each(
+        io, halves, [=](auto& h) -> auto& { return h[i].light.weight; },
+        [=](auto& h) -> auto& { return h[i].guides.weight; },
+        [=](auto& h) -> auto& { return h[i].guides.inverse_depth; });
   }
 }
 
 template <class Io, class Shares>
 void each_share_number(Io& io, Shares& shares) {
-  io.numbers(
-      shares, [](auto& s) -> auto& { return s.sphere; });
-  io.numbers(
-      shares, [](auto& s) -> auto& { return s.weight; });
-  for (int k = 0; k < 3; ++k)
-    io.numbers(
-        shares, [k](auto& s) -> auto& { return s.light[k]; });
-  io.numbers(
-      shares, [](auto& s) -> auto& { return s.front; });
-  io.numbers(
-      shares, [](auto& s) -> auto& { return s.back; });
+  each(io, shares, &SphereCoverage::sphere, &SphereCoverage::weight);
+  for (int k = 0; k < 3; ++k) each(io, shares, element(&SphereCoverage::light, k));
+  each(io, shares, &SphereCoverage::front, &SphereCoverage::back);
 }
 
-template <class Io, class EffortType>
-void each_effort(Io& io, EffortType& work) {
+template <class Io, class Work>
+void each_number_of_work(Io& io, Work& work) {
   io.number(work.paths);
   io.number(work.rays);
   io.number(work.bad_samples);
@@ -247,7 +209,7 @@ void each_pixel_number(Io& io, P& partial) {
 }
 
 void write_light(Writer& out, const std::vector<LayerPixel>& layers) {
-  static const Int128 zero = 0;  // a pixel without light events has no sums
+  static const kernel::Int128 zero = 0;  // a pixel without light events has no sums
   std::size_t cells = 0;
   for (const LayerPixel& p : layers) cells = std::max(cells, p.light.size());
   out.number(static_cast<std::uint32_t>(cells));
@@ -262,7 +224,7 @@ void read_light(Reader& in, std::vector<LayerPixel>& layers) {
   in.number(cells);
   if (cells > base::kMaxLightGroups * kernel::kLobes) throw base::Error(base::ErrorKind::kBadData, kInconsistent);
   // Each plane has two words at least: a damaged count fails here, before allocation.
-  in.need(cells * std::size_t{3 * 2 * sizeof(Int128) / sizeof(std::uint32_t)});
+  in.need(cells * 3 * 2 * kWords<kernel::Int128>);
   for (LayerPixel& p : layers) p.light.resize(cells);
   for (std::size_t i = 0; i < cells; ++i)
     for (std::size_t k = 0; k < 3; ++k)
@@ -311,7 +273,7 @@ std::vector<std::uint32_t> to_words(const Partial& partial) {
   for (const std::uint32_t v : {kFormat, static_cast<std::uint32_t>(partial.film.width()),
                                 static_cast<std::uint32_t>(partial.film.height()), flags})
     out.number(v);
-  each_effort(out, partial.work);
+  each_number_of_work(out, partial.work);
   each_pixel_number(out, partial);
   if (!partial.layers.empty()) write_light(out, partial.layers);
   if (!partial.layers.empty()) write_shares(out, partial);
@@ -333,7 +295,7 @@ Partial from_words(const std::vector<std::uint32_t>& words, int width_px, int he
   if ((flags & kHasGoals) != 0) partial.goals.resize(partial.pixel_count());
   if ((flags & kHasLayers) != 0) partial.layers.resize(partial.pixel_count());
   if ((flags & kHasHalves) != 0) partial.halves.resize(partial.pixel_count());
-  each_effort(in, partial.work);
+  each_number_of_work(in, partial.work);
   each_pixel_number(in, partial);
   const auto is_valid = [](float v) { return v >= 0 && v <= 3 * static_cast<float>(kernel::kLargestSample); };
   if (!std::all_of(partial.largest.begin(), partial.largest.end(), is_valid))

@@ -1,0 +1,308 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "cli/plot_options.h"
+
+#include <algorithm>
+#include <charconv>
+#include <cmath>
+#include <memory>
+#include <sstream>
+#include <string_view>
+#include <utility>
+
+#include <fmt/core.h>
+
+#include "base/available_memory.h"
+#include "base/error.h"
+#include "base/frames.h"
+#include "base/text.h"
+#include "job/job.h"
+#include "plot/range.h"
+#include "points/point_opacity.h"
+#include "scene/limits.h"
+#include "scene/value_text.h"
+
+namespace orrery::cli {
+namespace {
+
+/// Adds an --opacity to those before it. One without a condition matches all particles, so that it replaces them.
+void read_opacity(const std::string& text, scene::PointsOpacity& opacity) {
+  if (text.find(':') != std::string::npos) {
+    try {
+      points::parse_opacity_rule(text);
+    } catch (const base::Error& error) {
+      base::refuse(std::string("--opacity: ") + error.what());
+    }
+    if (opacity.value) opacity.where.push_back(scene::number_text(*opacity.value));
+    opacity.value.reset();
+    opacity.where.push_back(text);
+    return;
+  }
+  opacity = {};
+  opacity.value = base::number_of<double>(text);
+  if (!opacity.value)
+    opacity.column = text;
+  else if (!(*opacity.value >= 0 && *opacity.value <= 1))
+    base::refuse(fmt::format("--opacity: {} must be in 0..1", text));
+}
+
+void read_radius(const std::string& text, scene::PointsRadius& radius) {
+  radius.value = base::number_of<double>(text);
+  if (!radius.value) {
+    radius.column = text;
+    return;
+  }
+  if (!(*radius.value > 0) || !std::isfinite(*radius.value)) base::refuse("--radius: must be above 0");
+  if (radius.scale != 1)
+    base::refuse("--radius-scale applies to radii of the data; scale the number in --radius instead");
+}
+
+math::Vec3d copies_of(const std::string& text) {
+  std::vector<double> counts;
+  std::istringstream words(text + ',');
+  for (std::string word; std::getline(words, word, ',');)
+    counts.push_back(base::number_of<double>(word).value_or(std::nan("")));
+  if (counts.size() != 3 || !std::all_of(counts.begin(), counts.end(), [](double n) { return std::isfinite(n); }))
+    base::refuse(fmt::format("--replicate: `{}` must be three numbers of copies, e.g. 2,2,1", text));
+  for (const double n : counts)
+    if (!(n >= 1 && n <= scene::kMaxCopies && n == std::floor(n)))
+      base::refuse(fmt::format("--replicate: the numbers of copies must be integers from 1 to {}", scene::kMaxCopies));
+  return {counts[0], counts[1], counts[2]};
+}
+
+std::pair<int, double> slice_of(const std::string& text) {
+  const bool is_of_axis = text.size() > 2 && text[0] >= 'x' && text[0] <= 'z' && text[1] == '=';
+  const auto position = base::number_of<double>(is_of_axis ? text.substr(2) : "");
+  if (!position || !std::isfinite(*position))
+    base::refuse(fmt::format("--slice: `{}` is not a plane; write AXIS=POSITION, e.g. z=10", text));
+  return {text[0] - 'x', *position};
+}
+
+/// Adds the options of the camera.
+void add_view_options(Command& command, plot::PlotOptions& plot) {
+  const OptionGroup group(command, kViewOptions);
+  command
+      .add_option("--look-from", plot.look_from, "VIEW",
+                  "View: iso, +x, -x, +y, -y, +z, -z, or azimuth and elevation in degrees, e.g. 30,20; default: iso")
+      ->details("iso: from 45 degrees to the right of the front and 35.26 degrees above.");
+  command.add_option("--zoom", plot.zoom, "X", "Magnification, relative to the view that shows all; default: 1")
+      ->check(real_number(1e-3, 1e6));
+  command.add_option("--center", plot.center, "CONDITION",
+                     "Look at the middle of the particles that match, e.g. 'residue == \"HEM\"'");
+  command
+      .add_option("--perspective", plot.vfov_deg, "VFOV",
+                  "Perspective camera with this vertical field of view in degrees, e.g. 30; default: orthographic")
+      ->check(real_number(0.1, 170));
+  command.add_option("--up", plot.up, "AXIS", "Axis that points up in the image; default: z, y for PDB and mmCIF")
+      ->choices({"x", "y", "z"});
+}
+
+/// Parses "auto", "20" or "20 nm".
+void read_scale_bar(const std::string& text, scene::Annotation& annotation) {
+  if (text.empty()) return;
+  const std::size_t space = text.find(' ');
+  const auto length = text == "auto" ? 0 : base::number_of<double>(text.substr(0, space));
+  if (text != "auto" && !(length >= scene::kSmallestRadius && length <= scene::kLargestLength))
+    base::refuse(
+        fmt::format("--scale-bar: `{}` is not a length; write auto, or a length above 0, with a space before "
+                    "the unit, e.g. 20 or '20 nm'",
+                    text));
+  annotation.scale_bar = length;
+  if (space != std::string::npos) annotation.unit = text.substr(space + 1);
+}
+
+/// Parses --bonds, except none and auto.
+void read_bonds(const std::string& text, scene::PointsBonds& bonds) {
+  if (text == "file" || text == "distance" || text == "both") {
+    bonds.from = text;
+    return;
+  }
+  constexpr std::string_view kLength = "length=";
+  const bool is_length = text.starts_with(kLength);
+  const auto number = base::number_of<double>(std::string_view(text).substr(is_length ? kLength.size() : 0));
+  const double largest = is_length ? scene::kLargestLength : scene::kLargestBondFactor;
+  if (!number || !(*number >= scene::kSmallestRadius && *number <= largest))
+    base::refuse(
+        fmt::format("--bonds: `{}` is not a source of bonds; write auto, file, distance, both, none, a factor "
+                    "such as 1.2, or length=1.6",
+                    text));
+  (is_length ? bonds.length : bonds.factor) = *number;
+}
+
+}  // namespace
+
+void DataArguments::add_to(Command& command, plot::DataOptions& data, const std::string& kind) {
+  command
+      .add_option("FILE", data.file, "FILE",
+                  kind + ": LAMMPS, XYZ, PDB, mmCIF, PLY, CSV, NPY, NPZ, LAS, GSD, HDF5, VTK")
+      ->required();
+  const OptionGroup group(command, kDataOptions);
+  scene::Points& points = data.points;
+  command.add_option("--frame", frame, "N", "Frame of the file, from 1; default: 1")
+      ->check(whole_number(1, 2'000'000'000));
+  command
+      .add_option("--frames", frames, "RANGE", "Frames of the file: all, or e.g. 1-48; name outputs like out.####.png")
+      ->details("Names of outputs need a frame pattern, as for orrery render.");
+  command
+      .add_option("--select", select, "CONDITION",
+                  "Use only the rows that match, e.g. 'type == 2 && z > 0'; if repeated, all must match")
+      ->details("For example 'id in [20:60] && chain in {A, B}'; docs/data.md describes conditions.")
+      ->repeatable();
+  command
+      .add_option("--slice", slice, "AXIS=POSITION",
+                  "Slice plane: remove the spheres in front of it, e.g. z=10; can be repeated")
+      ->details("With convert, as seen from the default view of plot.")
+      ->repeatable();
+  command.add_option("--component", component, "N", "HDF5: particle type, N of PartTypeN")
+      ->details("Required if the file has particles of several types.")
+      ->check(whole_number(0, 1000));
+  command.add_option("--assembly", points.assembly, "NAME", "PDB, mmCIF: biological assembly, e.g. 1");
+  command.add_option("--replicate", replicate, "A,B,C", "Number of periodic boxes along each box edge, e.g. 2,2,1");
+  command.add_flag("--unwrap", points.unwrap, "Unwrap coordinates with the file's periodic image flags");
+  command.add_flag("--skip-bad", points.skip_bad, "Skip rows with non-finite coordinates or radii")
+      ->details("Otherwise they are an error.");
+  const OptionGroup look(command, kLookOptions);
+  command.add_option("--radius", radius, "X|COLUMN", "Radius: a number, or a column of radii; default: from the file");
+  command
+      .add_option("--radius-scale", points.radius.scale, "X",
+                  "Scale factor for radii of the data and for the default radius, e.g. 0.5 for a column of diameters")
+      ->check(real_number(1e-30, 1e30));
+  command
+      .add_option("--element-radii", points.radius.element, "TABLE",
+                  "Radii by chemical element: vdw, covalent or ball (a quarter of vdw)")
+      ->details("In angstrom.")
+      ->choices({"vdw", "covalent", "ball"});
+  command
+      .add_option("--color-by", data.color_by, "COLUMN",
+                  "Colour by a column, an expression such as 'sqrt(vx^2+vy^2)', element, type, rgb or none")
+      ->details(
+          "rgb: the file's own colours. none: one colour. The default depends on the file. Expressions have the "
+          "operators and functions of conditions.");
+  map = command.add_option("--map", points.color.map, "MAP", "Colour map, e.g. viridis, fast, coolwarm, or a file")
+            ->details("docs/data.md lists the maps. The default is fast, for types and strings tab10.");
+  command
+      .add_option("--range", range, "RANGE",
+                  "Values at both ends of the colour map, e.g. 0:12, 1%:99%, log, symmetric; default: 0%:100%")
+      ->details(
+          "Numbers or percentiles of the values of all frames. log: a logarithmic scale; symmetric: -X:X; both also "
+          "with a range, e.g. log,1%:99%.");
+}
+
+void DataArguments::read(plot::DataOptions& data) const {
+  if (!frames.empty() && !frame.empty()) base::refuse("--frame and --frames exclude each other");
+  data.all_frames = frames == "all";
+  if (!frames.empty() && !data.all_frames) data.frames = base::parse_frames(frames);
+  data.has_map = map->count() > 0;
+  scene::Points& points = data.points;
+  if (!frame.empty()) points.frame = integer_of(frame);
+  if (!component.empty()) points.component = integer_of(component);
+  if (!radius.empty()) read_radius(radius, points.radius);
+  for (const std::string& text : opacity) read_opacity(text, points.opacity);
+  if (!replicate.empty()) points.replicate = copies_of(replicate);
+  if (!range.empty()) {
+    data.range = plot::parse_range(range);
+    points.color.range = data.range.fixed();
+    points.color.log = data.range.is_log;
+  }
+  points.select = plot::all_of(select);
+  for (const std::string& plane : slice) data.slices.push_back(slice_of(plane));
+}
+
+void PlotArguments::add_look_to(Command& command) {
+  add_view_options(command, options);
+  const OptionGroup group(command, kLookOptions);
+  command
+      .add_option("--representation", look_.representation, "KIND",
+                  "Particles as spheres, ball-and-stick or sticks, the latter two with bonds; default: spheres")
+      ->details(
+          "ball-and-stick: a quarter of the van der Waals radii, or without elements half the default radius. sticks: "
+          "spheres have the radius of the bonds.")
+      ->choices(plot::representation_names());
+  command
+      .add_option(
+          "--bonds", look_.bonds, "SOURCE",
+          "Draw bonds: auto, file, distance, both, a factor of the covalent radii such as 1.2, or length=X; none")
+      ->details(
+          "auto: those of the file; by distance if it has none; both for PDB and mmCIF, which leave out common bonds. "
+          "A factor or a length: by distance. docs/data.md describes bonds.");
+  command.add_option("--vectors", look_.vectors, "X,Y,Z", "Draw arrows from three columns, e.g. vx,vy,vz")
+      ->details("Their length is chosen from the data; --set 'points[0].vectors.scale=2' sets it.");
+  command
+      .add_option("--opacity", data_.opacity, "X|COLUMN|CONDITION:X",
+                  "Opacity, 0 to 1: of all, from a column, or of those that match, e.g. 'type == 2: 0.3'; can be "
+                  "repeated")
+      ->details("The last that matches a particle decides; particles that none matches are opaque.")
+      ->repeatable();
+  command.add_option("--style", look_.style, "STYLE", "Light: studio, soft, flat, night or ambient; default: studio")
+      ->details(
+          "studio: a key light from the upper left of the camera, and white light from all directions. soft: more of "
+          "the latter. flat: no shading. night: a lamp and a dark sky. ambient: white light from all directions alone.")
+      ->choices(plot::style_names());
+  command.add_option("--background", look_.background, "COLOR",
+                     "Colour behind the spheres: white, black, grey or #rrggbb; default: that of the style");
+  command.add_flag("--transparent", options.transparent, "Transparent background, in EXR, PNG and TIFF");
+  command
+      .add_option("--quality", look_.quality, "NAME",
+                  "draft (--samples 8 --denoise), good (--noise 0.1 --denoise) or final (--noise 0.02); default: good")
+      ->choices(plot::quality_names());
+  command
+      .add_option("--material", options.material, "MATERIAL",
+                  "Material of the spheres: matte, plastic, metal or glass; default: matte")
+      ->details("plastic: matte with a soft highlight. metal: brushed. glass: clear, without colours.")
+      ->choices(plot::material_names());
+  command.add_flag("--allow-empty", options.allow_empty,
+                   "Render the background alone if --select or --slice leaves nothing; default: an error");
+  command.add_flag("--ground", options.ground, "Add a ground that receives shadows");
+  command.add_flag("--box", options.box, "Draw the edges of the simulation box");
+  command.add_flag("--axes", options.axes, "Draw the directions of x (red), y (green) and z (blue)");
+}
+
+void PlotArguments::add_annotations_to(Command& command) {
+  const OptionGroup group(command, kAnnotationOptions);
+  scene::Annotation& annotation = options.annotation;
+  command.add_option("--title", annotation.title, "TEXT", "Text at the top left, e.g. 't = {step * 0.005:.1f} ps'")
+      ->details(
+          "{EXPRESSION} is the value of an expression of frame and step, the time step in the data file, with a format "
+          "after a colon.");
+  command.add_option("--scale-bar", look_.scale_bar, "LENGTH",
+                     "Scale bar: auto, or a length, with a unit to be shown, e.g. '20 nm'; not with --perspective");
+  command.add_flag("--color-bar", annotation.color_bar, "Legend of the colours in the image");
+  command
+      .add_option("--label", options.points.labels, "CONDITION: TEXT",
+                  "Label the middle of the particles that match, e.g. 'id == 5: Fe'; can be repeated")
+      ->repeatable();
+  command.add_option("--outline", annotation.outline, "PX", "Width of the outlines of objects in pixels, e.g. 2")
+      ->check(real_number(0, scene::kWidestOutline));
+  command.add_option("--font", annotation.font, "FONT", "Name or file of the font; default: DejaVuSans");
+}
+
+void PlotArguments::read(const SceneOptions& scene, const job::Job& job) {
+  plot::PlotOptions& plot = options;
+  plot.style = plot::style_of(look_.style);
+  plot.quality = plot::quality_of(look_.quality);
+  if (!look_.background.empty()) plot.background = plot::color_of(look_.background);
+  if (!look_.representation.empty()) {
+    const std::vector<std::string>& names = plot::representation_names();
+    plot.representation =
+        static_cast<plot::Representation>(std::find(names.begin(), names.end(), look_.representation) - names.begin());
+  }
+  std::istringstream columns(look_.vectors);
+  for (std::string column; std::getline(columns, column, ',');) plot.points.vectors.columns.push_back(column);
+  read_scale_bar(look_.scale_bar, plot.annotation);
+  if (const std::string& bonds = look_.bonds; !bonds.empty()) {
+    plot.bonds = bonds != "none";
+    if (bonds != "none" && bonds != "auto") read_bonds(bonds, plot.points.bonds);
+  }
+  plot.overrides = scene.overrides();
+  plot.has_target = job.sampling.noise || job.sampling.seconds;
+  plot.memory_limit =
+      job.resources.memory_limit > 0 ? job.resources.memory_limit : base::available_memory().value_or(0);
+}
+
+void show(const plot::PlotScene& made, std::shared_ptr<const std::string> text, job::Job& job) {
+  job.scene.text = std::move(text);
+  job.scene.has_file = false;
+  if (made.noise) job.sampling.noise = *made.noise;
+  job.denoise = job.denoise || (made.denoise && job.outputs.deep.empty());
+}
+
+}  // namespace orrery::cli

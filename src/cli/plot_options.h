@@ -1,0 +1,65 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "cli/options.h"
+#include "job/forward.h"
+#include "plot/data_frames.h"
+#include "plot/plot.h"
+
+namespace orrery::cli {
+
+/// Arguments of the data options that need further parsing.
+struct DataArguments {
+  std::string frame, frames, radius, range, replicate, component;
+  std::vector<std::string> select, slice, opacity;
+  const Option* map = nullptr;
+
+  /// Adds FILE and the options that all commands on data files share. Values go to `data`, or to this and then to
+  /// `data` by read().
+  ///
+  /// `kind`     of FILE, in the help
+  void add_to(Command& command, plot::DataOptions& data, const std::string& kind = "Data file");
+  /// Sets the members of `data` from the parsed options.
+  ///
+  /// Errors     base::Error(kUsage)
+  void read(plot::DataOptions& data) const;
+};
+
+/// The options of a plot.
+class PlotArguments {
+ public:
+  plot::PlotOptions options;
+
+  /// Adds the data options; see DataArguments::add_to().
+  void add_data_to(Command& command, const std::string& kind = "Data file") { data_.add_to(command, options, kind); }
+  /// Adds the options that select view, style, representation, bonds and opacity.
+  void add_look_to(Command& command);
+  /// Adds the options of text, scales and lines over the image.
+  void add_annotations_to(Command& command);
+
+  bool has_frames() const { return !data_.frames.empty(); }
+  /// Sets the members of the options that come from the data options.
+  void read_data() { data_.read(options); }
+  /// Sets the others, except those for outputs. Called after read_data().
+  ///
+  /// Errors     base::Error(kUsage)
+  void read(const SceneOptions& scene, const job::Job& job);
+
+ private:
+  DataArguments data_;
+  /// Arguments that need further parsing; empty: not set.
+  struct {
+    std::string style, quality, representation, bonds, vectors, background, scale_bar;
+  } look_;
+};
+
+/// Lets a job show a plot.
+///
+/// `text`     of the scene
+void show(const plot::PlotScene& made, std::shared_ptr<const std::string> text, job::Job& job);
+
+}  // namespace orrery::cli
