@@ -73,11 +73,9 @@ std::string find_scene_linear(const Config& config, const std::string& name) {
   const ocio::ConstColorSpaceRcPtr space = config.config->getColorSpace(found.c_str());
   const std::string encoding = space->getEncoding();
   if (space->isData() || (!encoding.empty() && encoding != "scene-linear"))
-    throw base::Error(
-        base::ErrorKind::kUsage,
-        fmt::format(
-            "colour space `{}` of the OCIO config ({}) is not scene-linear; rendering needs a scene-linear space", name,
-            config.source));
+    base::refuse(fmt::format(
+        "colour space `{}` of the OCIO config ({}) is not scene-linear; rendering needs a scene-linear space", name,
+        config.source));
   return found;
 }
 

@@ -13,10 +13,12 @@
 #include "base/error.h"
 #include "base/input_file.h"
 #include "base/text.h"
-#include "display/builtin_config.h"
 #include "display/settings.h"
 
 namespace orrery::display {
+
+extern const char* const kBuiltinConfig;  // builtin_config.cpp.in
+
 namespace {
 
 namespace ocio = OCIO_NAMESPACE;
@@ -54,9 +56,8 @@ void check_optimization_flags() {
   errno = 0;
   static_cast<void>(std::strtoul(text, &end, 0));
   if (std::isdigit(static_cast<unsigned char>(*text)) == 0 || *end != '\0' || errno != 0)
-    throw base::Error(base::ErrorKind::kUsage,
-                      fmt::format("${} is `{}`; must be a number such as 0x1FF, or unset",
-                                  ocio::OCIO_OPTIMIZATION_FLAGS_ENVVAR, base::printable(text)));
+    base::refuse(fmt::format("${} is `{}`; must be a number such as 0x1FF, or unset",
+                             ocio::OCIO_OPTIMIZATION_FLAGS_ENVVAR, base::printable(text)));
 }
 
 /// The version of the library, for errors that a newer one would not have. Some of its messages say it themselves.

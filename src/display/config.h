@@ -50,9 +50,8 @@ Names names(int count, Get get) {
 [[noreturn]] inline void unknown(const Config& config, const std::string& what, const std::string& name,
                                  const Names& known, const std::string& tried = {}) {
   const std::string near = base::did_you_mean(name, known);
-  throw base::Error(base::ErrorKind::kUsage, "the OCIO config (" + config.source + ") has no " + what + " `" + name +
-                                                 "`" + tried + "; " + (near.empty() ? "" : near + " ") +
-                                                 (known.empty() ? "it has none" : "it has " + base::joined(known)));
+  base::refuse("the OCIO config (" + config.source + ") has no " + what + " `" + name + "`" + tried + "; " +
+               (near.empty() ? "" : near + " ") + (known.empty() ? "it has none" : "it has " + base::joined(known)));
 }
 
 }  // namespace orrery::display

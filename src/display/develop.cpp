@@ -24,11 +24,10 @@ constexpr std::size_t kPixelsAtATime = std::size_t{1} << 14;
 constexpr double kMaxGainStops = 120;
 
 const std::vector<float>& plane(const film::Picture& picture, const char* name) {
-  const film::Plane* found = picture.find(name);
-  if (found == nullptr) throw base::Error(base::ErrorKind::kBadData, std::string("the image has no channel ") + name);
-  if (found->values.size() != static_cast<std::size_t>(picture.width) * static_cast<std::size_t>(picture.height))
+  const std::vector<float>& values = picture.at(name).values;
+  if (values.size() != static_cast<std::size_t>(picture.width) * static_cast<std::size_t>(picture.height))
     throw base::Error(base::ErrorKind::kInternal, fmt::format("plane {} does not have the image's size", name));
-  return found->values;
+  return values;
 }
 
 float gain_of(const Settings& settings) {
@@ -44,26 +43,16 @@ float fit(float v, float gain) {
 /// Divides a premultiplied value by alpha; 0 if alpha is 0.
 float unmultiplied(float v, float alpha) { return alpha > 0 ? v / alpha : 0.0f; }
 
-/// Dither noise: a hash of `number`, uniform in -0.5 .. 0.5.
-double noise(std::uint64_t number) {
-  std::uint64_t x = number + 0x9e3779b97f4a7c15u;
-  x = (x ^ (x >> 32)) * 0xd6e8feb86659fd93u;
-  x = (x ^ (x >> 32)) * 0xd6e8feb86659fd93u;
-  x ^= x >> 32;
-  return static_cast<double>(x >> 11) * 0x1p-53 - 0.5;
-}
-
-std::uint16_t quantised(float v, double largest, double shift) {
+std::uint16_t quantised(float v, double largest) {
   const double shown = v > 0 ? std::min(static_cast<double>(v), 1.0) : 0.0;  // NaN is not > 0
-  return static_cast<std::uint16_t>(std::clamp(shown * largest + shift + 0.5, 0.0, largest));
+  return static_cast<std::uint16_t>(std::clamp(shown * largest + 0.5, 0.0, largest));
 }
 
 }  // namespace
 
 Choice choose(const Settings& settings) { return find_view(settings).choice; }
 
-film::EncodedPicture develop(const film::Picture& picture, const Settings& settings, int bits, bool dither,
-                             Alpha alpha) {
+film::EncodedPicture develop(const film::Picture& picture, const Settings& settings, int bits, Alpha alpha) {
   if (bits != 8 && bits != 16) throw base::Error(base::ErrorKind::kInternal, "a developed image has 8 or 16 bits");
   const std::vector<float>* const planes[3] = {&plane(picture, "R"), &plane(picture, "G"), &plane(picture, "B")};
   const View view = find_view(settings);
@@ -91,9 +80,8 @@ film::EncodedPicture develop(const film::Picture& picture, const Settings& setti
     view.processor->apply(part);
     for (std::size_t i = 0; i < count; ++i) {
       std::uint16_t* const pixel = &out.values[(begin + i) * channels];
-      for (std::size_t c = 0; c < 3; ++c)
-        pixel[c] = quantised(rgb[i * 3 + c], largest, dither ? noise((begin + i) * 3 + c) : 0.0);
-      if (covered != nullptr) pixel[3] = quantised(covered[begin + i], largest, 0.0);
+      for (std::size_t c = 0; c < 3; ++c) pixel[c] = quantised(rgb[i * 3 + c], largest);
+      if (covered != nullptr) pixel[3] = quantised(covered[begin + i], largest);
     }
   }
   return out;
@@ -112,7 +100,7 @@ void PixelDeveloper::operator()(float* rgb, std::size_t pixels, std::uint8_t* co
   for (std::size_t i = 0; i < 3 * pixels; ++i) rgb[i] = fit(rgb[i], impl_->gain);
   ocio::PackedImageDesc part(rgb, static_cast<long>(pixels), 1, 3);
   impl_->view.processor->apply(part);
-  for (std::size_t i = 0; i < 3 * pixels; ++i) codes[i] = static_cast<std::uint8_t>(quantised(rgb[i], 255, 0.0));
+  for (std::size_t i = 0; i < 3 * pixels; ++i) codes[i] = static_cast<std::uint8_t>(quantised(rgb[i], 255));
 }
 
 std::string ocio_version() { return ocio::GetVersion(); }

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include <fmt/core.h>
 
@@ -65,8 +66,6 @@ ocio::ConstProcessorRcPtr transform(const ocio::Config& config, const Settings& 
   return config.getProcessor(group);
 }
 
-}  // namespace
-
 void choose_display(const Config& config, const Settings& settings, Choice& choice) {
   choice.display = settings.display.empty() ? config.config->getDefaultDisplay() : settings.display;
   require(config, "display", choice.display,
@@ -90,11 +89,24 @@ void check_look(const Config& config, const Settings& settings) {
           names(config.config->getNumLooks(), [&](int i) { return config.config->getLookNameByIndex(i); }));
 }
 
+/// Runs `find`; stores its error as a fault and returns false if it throws.
+template <class Find>
+bool found(LookUp& out, Name name, Find find) {
+  try {
+    find();
+    return true;
+  } catch (const base::Error& error) {
+    out.faults.push_back({name, error});
+    return false;
+  }
+}
+
+}  // namespace
+
 View find_view(const Settings& settings) { return find_view(load_config(settings.config), settings); }
 
 View find_view(const Config& source, const Settings& settings) {
-  if (!std::isfinite(settings.stops()))
-    throw base::Error(base::ErrorKind::kUsage, "the exposure must be a finite number of stops");
+  if (!std::isfinite(settings.stops())) base::refuse("the exposure must be a finite number of stops");
   View out;
   try {
     out.choice.config = source.source;
@@ -119,6 +131,38 @@ View find_view(const Config& source, const Settings& settings) {
                       fmt::format("the OCIO config {} cannot be used: {}", source.source, error.what()));
   }
   return out;
+}
+
+LookUp look_up(const Settings& settings, const std::string& space) {
+  LookUp out;
+  Config config;
+  if (!found(out, Name::kConfig, [&] { config = load_config(settings.config); })) return out;
+  found(out, Name::kSpace, [&] { find_scene_linear(config, space); });
+  if (settings.working_space != space)
+    found(out, Name::kWorkingSpace, [&] { find_scene_linear(config, settings.working_space); });
+  Choice choice;
+  if (found(out, Name::kDisplay, [&] { choose_display(config, settings, choice); }))
+    found(out, Name::kView, [&] { choose_view(config, settings, choice); });
+  found(out, Name::kLook, [&] { check_look(config, settings); });
+  if (!out.faults.empty()) return out;
+  View view;  // building the transform fails if a LUT file is missing
+  if (found(out, Name::kConfig, [&] { view = find_view(config, settings); })) out.choice = std::move(view.choice);
+  return out;
+}
+
+std::string view_or_default(const Settings& settings, const std::string& preferred) {
+  Choice choice;
+  try {
+    const Config config = load_config(settings.config);
+    choose_display(config, settings, choice);
+    if (has_view(config, choice.display, preferred)) return preferred;
+    Settings with_default = settings;
+    with_default.view.clear();
+    choose_view(config, with_default, choice);
+  } catch (const base::Error&) {
+    return preferred;
+  }
+  return choice.view;
 }
 
 }  // namespace orrery::display

@@ -27,20 +27,4 @@ View find_view(const Settings& settings);
 /// The same with a config that is already loaded.
 View find_view(const Config& config, const Settings& settings);
 
-// The steps of find_view(). Each throws base::Error(kUsage) for a name that is not in the config.
-
-/// Sets the display: that of the settings, or the config's default.
-void choose_display(const Config& config, const Settings& settings, Choice& choice);
-
-/// Sets the view: that of the settings, or the display's default.
-///
-/// Domain     the display is set
-void choose_view(const Config& config, const Settings& settings, Choice& choice);
-
-/// True if a display of the config has a view of this name.
-bool has_view(const Config& config, const std::string& display, const std::string& view);
-
-/// Checks that the config has the look.
-void check_look(const Config& config, const Settings& settings);
-
 }  // namespace orrery::display

@@ -26,8 +26,7 @@ std::vector<ImageFile> image_files(const std::vector<std::filesystem::path>& fil
 void check_bits(const std::vector<ImageFile>& images, int bits) {
   for (const ImageFile& image : images)
     if (image::is_display_format(image.format) && bits > image::max_bits(image.format))
-      throw base::Error(base::ErrorKind::kUsage,
-                        image.path.string() + " holds 8 bits per channel; use PNG or TIFF for 16");
+      base::refuse(image.path.string() + " holds 8 bits per channel; use PNG or TIFF for 16");
 }
 
 bool Outputs::has_exr() const {
@@ -40,7 +39,7 @@ bool Outputs::has_display_format() const {
 
 film::EncodedPicture develop_annotated(const film::Picture& picture, const annotation::Drawing* drawing,
                                        const display::Settings& settings, int bits, display::Alpha alpha) {
-  film::EncodedPicture out = display::develop(picture, settings, bits, false, alpha);
+  film::EncodedPicture out = display::develop(picture, settings, bits, alpha);
   if (drawing != nullptr && !drawing->is_empty())
     annotation::blend(annotation::draw(*drawing, annotation::shown_by(settings)), out);
   return out;
@@ -74,9 +73,8 @@ void DisplayWriter::write_svg(const std::filesystem::path& file, display::Alpha 
 void require_bits(const display::Choice& display, const Outputs& outputs) {
   for (const ImageFile& output : outputs.images) {
     if (display.is_hdr && image::is_display_format(output.format) && image::max_bits(output.format) < 16)
-      throw base::Error(base::ErrorKind::kUsage,
-                        fmt::format("{} holds 8 bits per channel, too few for display {}; PNG and TIFF hold 16",
-                                    output.path.string(), display.display));
+      base::refuse(fmt::format("{} holds 8 bits per channel, too few for display {}; PNG and TIFF hold 16",
+                               output.path.string(), display.display));
   }
 }
 

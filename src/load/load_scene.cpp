@@ -11,7 +11,7 @@
 #include "base/available_memory.h"
 #include "base/error.h"
 #include "base/input_file.h"
-#include "display/look_up.h"
+#include "display/settings.h"
 #include "format/read_scene.h"
 #include "load/load_background.h"
 #include "load/load_textures.h"

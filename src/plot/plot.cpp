@@ -12,7 +12,7 @@
 #include "base/image_limits.h"
 #include "base/text.h"
 #include "data/data_file.h"
-#include "display/look_up.h"
+#include "display/settings.h"
 #include "format/read_scene.h"
 #include "format/write_scene.h"
 #include "load/load_scene.h"

@@ -98,9 +98,9 @@ void Picture::write(const job::Outputs& outputs) const { job::write_rendering(wi
 
 film::EncodedPicture Picture::srgb8(const display::Settings& display) const {
   const bool keeps_alpha = rendering_->picture.is_transparent;
-  film::EncodedPicture out = display::develop(with_planes().picture, job::display_of(*rendering_, display), 8, false,
+  film::EncodedPicture out = display::develop(with_planes().picture, job::display_of(*rendering_, display), 8,
                                               keeps_alpha ? display::Alpha::kStraight : display::Alpha::kOverBlack);
-  if (!out.is_srgb) throw base::Error(base::ErrorKind::kUsage, "the scene's display is not sRGB; set display=\"sRGB\"");
+  if (!out.is_srgb) base::refuse("the scene's display is not sRGB; set display=\"sRGB\"");
   return out;
 }
 

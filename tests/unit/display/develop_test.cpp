@@ -214,12 +214,12 @@ TEST_F(DisplayDevelop, StraightAlphaUnpremultipliesColours) {
   const std::vector<float> alpha = {0, 0.25f, 1, -0.5f};
   const std::vector<float> light = {0, 0.1f, 0.4f, 0.3f};
   picture.planes = {{"R", light}, {"G", light}, {"B", light}, {"A", alpha}};
-  const film::EncodedPicture out = develop(picture, on("sRGB", "Raw"), 8, false, Alpha::kStraight);
+  const film::EncodedPicture out = develop(picture, on("sRGB", "Raw"), 8, Alpha::kStraight);
   EXPECT_EQ(out.channels, 4);
   EXPECT_EQ(out.values, (std::vector<std::uint16_t>{0, 0, 0, 0, 102, 102, 102, 64, 102, 102, 102, 255, 0, 0, 0, 0}));
   EXPECT_EQ(develop(picture, on("sRGB", "Raw"), 8).channels, 3) << "over black";
   picture.planes.pop_back();
-  EXPECT_THROW(develop(picture, on("sRGB"), 8, false, Alpha::kStraight), base::Error);
+  EXPECT_THROW(develop(picture, on("sRGB"), 8, Alpha::kStraight), base::Error);
 }
 
 TEST_F(DisplayDevelop, RoundsToTheNearestLevel) {
@@ -230,25 +230,8 @@ TEST_F(DisplayDevelop, RoundsToTheNearestLevel) {
   }
 }
 
-TEST_F(DisplayDevelop, DitherPreservesTheMean) {
-  const float level = 100.25f / 255;
-  const film::Picture picture = flat(200, 200, {level, level, level});
-  const film::EncodedPicture out = develop(picture, on("sRGB", "Raw"), 8, true);
-  double sum = 0;
-  for (const std::uint16_t v : out.values) {
-    ASSERT_TRUE(v == 100 || v == 101) << v;
-    sum += v;
-  }
-  // 120000 values, each 1 higher with probability 1/4: the standard deviation of the mean is 0.00125; limit: 6 of it.
-  EXPECT_NEAR(sum / static_cast<double>(out.values.size()), 100.25, 0.0075);
-  EXPECT_EQ(develop(picture, on("sRGB", "Raw"), 8, true).values, out.values);
-}
-
-TEST_F(DisplayDevelop, DitherKeepsBlackAndWhite) {
-  for (const float v : {0.0f, 1.0f, 7.0f, -1.0f}) {
-    const film::EncodedPicture out = develop(flat(100, 100, {v, v, v}), on("sRGB", "Raw"), 8, true);
-    for (const std::uint16_t level : out.values) ASSERT_EQ(level, v > 0 ? 255 : 0);
-  }
+TEST_F(DisplayDevelop, ClampsToBlackAndWhite) {
+  for (const float v : {0.0f, 1.0f, 7.0f, -1.0f}) EXPECT_EQ(shown({v, v, v}, on("sRGB", "Raw")), grey(v > 0 ? 255 : 0));
 }
 
 TEST_F(DisplayDevelop, ReportsWhetherTheResultIsSrgb) {

@@ -9,14 +9,15 @@
 
 #include "base/error.h"
 #include "base/text.h"
-#include "display/builtin_config.h"
 #include "display/develop.h"
-#include "display/look_up.h"
 #include "display/settings.h"
 #include "film/picture.h"
 #include "support/temp_dir.h"
 
 namespace orrery::display {
+
+extern const char* const kBuiltinConfig;
+
 namespace {
 
 /// A small config with one display of the given name.
