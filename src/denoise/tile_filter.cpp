@@ -12,23 +12,23 @@
 #include <hwy/highway.h>
 
 #include "math/dispatch.h"
+#include "math/lanes-inl.h"
 
 HWY_BEFORE_NAMESPACE();
 namespace orrery::denoise::HWY_NAMESPACE {
 namespace {
 
 namespace hn = hwy::HWY_NAMESPACE;
+using namespace math::HWY_NAMESPACE;  // NOLINT(google-build-using-namespace): SIMD vectors of another room
 using D = hn::ScalableTag<float>;
 using V = hn::Vec<D>;
 
-// Products and sums are not fused: otherwise, SSE4 would give different bits than AVX2.
-HWY_INLINE V add_product(V sum, V a, V b) { return hn::Add(sum, hn::Mul(a, b)); }
+// No multiply-add in this file is fused: otherwise, SSE4 would give different bits than AVX2.
 
 /// (1 - x)^4 for x in 0..1, and 0 beyond: like exp(-4 x), with compact support.
-HWY_INLINE V bump(D d, V x) {
-  const V rest = hn::Max(hn::Zero(d), hn::Sub(hn::Set(d, 1.0F), hn::Max(hn::Zero(d), x)));
-  const V squared = hn::Mul(rest, rest);
-  return hn::Mul(squared, squared);
+HWY_INLINE V bump(V x) {
+  const V rest = max(0, 1 - max(0, x)), squared = rest * rest;
+  return squared * squared;
 }
 
 inline constexpr int kHaloWidth = kTileWidth + 2 * kPatchRadius, kHaloHeight = kTileHeight + 2 * kPatchRadius;
@@ -52,18 +52,16 @@ HWY_INLINE void pixel_distances(const WeightSource& source, int x0, int y0, int 
       const int x = x0 + column - kPatchRadius;
       const V here = hn::LoadU(d, source.variance->at(x, y));
       const V there = hn::LoadU(d, source.variance->at(x + dx, y + dy));
-      const V smaller = hn::Min(here, there);
-      V difference = kHalves ? hn::Zero(d) : hn::Neg(hn::Add(here, smaller));
+      const V smaller = min(here, there);
+      V difference = kHalves ? hn::Zero(d) : -(here + smaller);
       for (const ComparedChannel& channel : source.compared) {
         const auto step = [&](const PaddedPlane& plane) {
-          return hn::Sub(hn::LoadU(d, plane.at(x, y)), hn::LoadU(d, plane.at(x + dx, y + dy)));
+          return hn::LoadU(d, plane.at(x, y)) - hn::LoadU(d, plane.at(x + dx, y + dy));
         };
         const V a = step(*channel.a);
-        difference = add_product(difference, a, kHalves ? step(*channel.b) : a);
+        difference = difference + a * (kHalves ? step(*channel.b) : a);
       }
-      const V noise = add_product(hn::Set(d, kMinNoise), hn::Set(d, 2.0F), smaller);
-      const V distance =
-          hn::Min(hn::Set(d, kMaxDistance), hn::Max(hn::Set(d, kMinDistance), hn::Div(difference, noise)));
+      const V distance = min(kMaxDistance, max(kMinDistance, difference / (kMinNoise + 2 * smaller)));
       hn::StoreU(distance, d, out + static_cast<std::size_t>(row) * kDistanceStride + column);
     }
   }
@@ -77,12 +75,12 @@ HWY_INLINE void patch_sums(const float* distances, float* columns, TilePixels& o
     for (int x = 0; x < kHaloWidth; x += lanes) {
       const float* const from = distances + static_cast<std::size_t>(y) * kDistanceStride + x;
       V sum = hn::LoadU(d, from);
-      for (std::size_t i = 1; i <= 2 * kPatchRadius; ++i) sum = hn::Add(sum, hn::LoadU(d, from + i * kDistanceStride));
+      for (std::size_t i = 1; i <= 2 * kPatchRadius; ++i) sum = sum + hn::LoadU(d, from + i * kDistanceStride);
       hn::StoreU(sum, d, columns + x);
     }
     for (int x = 0; x < kTileWidth; x += lanes) {
       V sum = hn::LoadU(d, columns + x);
-      for (int i = 1; i <= 2 * kPatchRadius; ++i) sum = hn::Add(sum, hn::LoadU(d, columns + x + i));
+      for (int i = 1; i <= 2 * kPatchRadius; ++i) sum = sum + hn::LoadU(d, columns + x + i);
       hn::Store(sum, d, out.data() + y * kTileWidth + x);
     }
   }
@@ -92,23 +90,23 @@ HWY_INLINE void patch_sums(const float* distances, float* columns, TilePixels& o
 HWY_INLINE void similarities(const WeightSource& source, int x0, int y0, int dx, int dy, TilePixels& sums) {
   const D d;
   constexpr float kPatchPixels = (2 * kPatchRadius + 1) * (2 * kPatchRadius + 1);
-  const V scale = hn::Set(d, 1.0F / (kPatchPixels * source.tolerance));
+  const float scale = 1.0F / (kPatchPixels * source.tolerance);
   for (int row = 0; row < kTileHeight; ++row) {
     for (int column = 0; column < kTileWidth; column += static_cast<int>(hn::Lanes(d))) {
       const int x = x0 + column, y = y0 + row;
       float* const at = sums.data() + row * kTileWidth + column;
-      V weight = bump(d, hn::Mul(hn::Load(d, at), scale));
+      V weight = bump(hn::Load(d, at) * scale);
       if (!source.guides.empty()) {
         const V here = hn::LoadU(d, source.guide_variance->at(x, y));
         const V there = hn::LoadU(d, source.guide_variance->at(x + dx, y + dy));
-        V guide_distance = hn::Neg(hn::Add(here, hn::Min(here, there)));
+        V guide_distance = -(here + min(here, there));
         for (const PaddedPlane* guide : source.guides) {
-          const V step = hn::Sub(hn::LoadU(d, guide->at(x, y)), hn::LoadU(d, guide->at(x + dx, y + dy)));
-          guide_distance = add_product(guide_distance, step, step);
+          const V step = hn::LoadU(d, guide->at(x, y)) - hn::LoadU(d, guide->at(x + dx, y + dy));
+          guide_distance = guide_distance + step * step;
         }
-        weight = hn::Mul(weight, bump(d, guide_distance));
+        weight = weight * bump(guide_distance);
       }
-      hn::Store(hn::Mul(weight, hn::LoadU(d, source.valid->at(x + dx, y + dy))), d, at);
+      hn::Store(weight * hn::LoadU(d, source.valid->at(x + dx, y + dy)), d, at);
     }
   }
 }
@@ -137,21 +135,21 @@ HWY_INLINE void solve_first(D d, V (&m)[kEntries], V (&z)[kUnknowns]) {
   const auto at = [&m](std::size_t row, std::size_t column) -> V& { return m[row * (row + 1) / 2 + column]; };
   V inverse[kUnknowns];
   for (std::size_t j = 0; j < kUnknowns; ++j) {
-    for (std::size_t k = 0; k < j; ++k) at(j, j) = hn::Sub(at(j, j), hn::Mul(at(j, k), at(j, k)));
-    inverse[j] = hn::Div(hn::Set(d, 1.0F), hn::Sqrt(hn::Max(at(j, j), hn::Set(d, kTiny))));
+    for (std::size_t k = 0; k < j; ++k) at(j, j) = at(j, j) - at(j, k) * at(j, k);
+    inverse[j] = 1 / hn::Sqrt(max(at(j, j), kTiny));
     for (std::size_t i = j + 1; i < kUnknowns; ++i) {
-      for (std::size_t k = 0; k < j; ++k) at(i, j) = hn::Sub(at(i, j), hn::Mul(at(i, k), at(j, k)));
-      at(i, j) = hn::Mul(at(i, j), inverse[j]);
+      for (std::size_t k = 0; k < j; ++k) at(i, j) = at(i, j) - at(i, k) * at(j, k);
+      at(i, j) = at(i, j) * inverse[j];
     }
   }
   for (std::size_t i = 0; i < kUnknowns; ++i) {
-    z[i] = i == 0 ? hn::Set(d, 1.0F) : hn::Zero(d);
-    for (std::size_t k = 0; k < i; ++k) z[i] = hn::Sub(z[i], hn::Mul(at(i, k), z[k]));
-    z[i] = hn::Mul(z[i], inverse[i]);
+    z[i] = set(d, i == 0 ? 1 : 0);
+    for (std::size_t k = 0; k < i; ++k) z[i] = z[i] - at(i, k) * z[k];
+    z[i] = z[i] * inverse[i];
   }
   for (std::size_t i = kUnknowns; i-- > 0;) {
-    for (std::size_t k = i + 1; k < kUnknowns; ++k) z[i] = hn::Sub(z[i], hn::Mul(at(k, i), z[k]));
-    z[i] = hn::Mul(z[i], inverse[i]);
+    for (std::size_t k = i + 1; k < kUnknowns; ++k) z[i] = z[i] - at(k, i) * z[k];
+    z[i] = z[i] * inverse[i];
   }
 }
 
@@ -159,11 +157,11 @@ HWY_INLINE void solve_first(D d, V (&m)[kEntries], V (&z)[kUnknowns]) {
 HWY_INLINE void normalize(int radius, std::size_t at, TileWeights& weights) {
   const D d;
   V sum = hn::Zero(d);
-  each_offset(radius, [&](std::size_t i, int, int) { sum = hn::Add(sum, hn::Load(d, weights[i].data() + at)); });
-  const V scale = hn::Div(hn::Set(d, 1.0F), hn::Max(sum, hn::Set(d, kTiny)));
+  each_offset(radius, [&](std::size_t i, int, int) { sum = sum + hn::Load(d, weights[i].data() + at); });
+  const V scale = 1 / max(sum, kTiny);
   each_offset(radius, [&](std::size_t i, int, int) {
     float* const weight = weights[i].data() + at;
-    hn::Store(hn::Mul(hn::Load(d, weight), scale), d, weight);
+    hn::Store(hn::Load(d, weight) * scale, d, weight);
   });
 }
 
@@ -176,7 +174,7 @@ HWY_INLINE void regress(const WeightSource& source, int x, int y, std::size_t at
   const D d;
   V center[kGuides], m[kEntries], z[kUnknowns];
   const auto relative = [&](std::size_t guide, int dx, int dy) {
-    return hn::Sub(hn::LoadU(d, source.guides[guide]->at(x + dx, y + dy)), center[guide]);
+    return hn::LoadU(d, source.guides[guide]->at(x + dx, y + dy)) - center[guide];
   };
   for (std::size_t g = 0; g < kGuides; ++g) center[g] = hn::LoadU(d, source.guides[g]->at(x, y));
   for (V& v : m) v = hn::Zero(d);
@@ -184,53 +182,50 @@ HWY_INLINE void regress(const WeightSource& source, int x, int y, std::size_t at
     const V similarity = hn::Load(d, weights[i].data() + at);
     V guides[kGuides];
     for (std::size_t g = 0; g < kGuides; ++g) guides[g] = relative(g, dx, dy);
-    m[0] = hn::Add(m[0], similarity);
+    m[0] = m[0] + similarity;
     std::size_t entry = 1;
     for (std::size_t row = 0; row < kGuides; ++row) {
-      const V weighted = hn::Mul(similarity, guides[row]);
-      m[entry] = hn::Add(m[entry], weighted);
+      const V weighted = similarity * guides[row];
+      m[entry] = m[entry] + weighted;
       ++entry;
-      for (std::size_t column = 0; column <= row; ++column, ++entry)
-        m[entry] = add_product(m[entry], weighted, guides[column]);
+      for (std::size_t column = 0; column <= row; ++column, ++entry) m[entry] = m[entry] + weighted * guides[column];
     }
   });
-  const V total = hn::Max(m[0], hn::Set(d, kTiny));
-  for (std::size_t i = 1; i < kUnknowns; ++i)
-    m[i * (i + 1) / 2 + i] = add_product(m[i * (i + 1) / 2 + i], hn::Set(d, kRidges[i - 1]), total);
+  const V total = max(m[0], kTiny);
+  for (std::size_t i = 1; i < kUnknowns; ++i) {
+    V& diagonal = m[i * (i + 1) / 2 + i];
+    diagonal = diagonal + kRidges[i - 1] * total;
+  }
   solve_first(d, m, z);
 
-  const V of_total = hn::Div(hn::Set(d, 1.0F), total);
+  const V of_total = 1 / total;
   V fit[3], mean[3];
   for (std::size_t c = 0; c < 3; ++c) fit[c] = mean[c] = hn::Zero(d);
   HWY_ALIGN float means[kOffsets][kMaxLanes];
   each_offset(source.radius, [&](std::size_t i, int dx, int dy) {
     float* const weight = weights[i].data() + at;
     V factor = z[0];
-    for (std::size_t g = 0; g < kGuides; ++g) factor = add_product(factor, z[g + 1], relative(g, dx, dy));
+    for (std::size_t g = 0; g < kGuides; ++g) factor = factor + z[g + 1] * relative(g, dx, dy);
     const V similarity = hn::Load(d, weight);
-    const V of_fit = hn::Mul(similarity, factor), of_mean = hn::Mul(similarity, of_total);
+    const V of_fit = similarity * factor, of_mean = similarity * of_total;
     hn::Store(of_fit, d, weight);
     hn::Store(of_mean, d, means[i]);
     for (std::size_t c = 0; c < 3; ++c) {
       const V value = hn::LoadU(d, source.target[c]->at(x + dx, y + dy));
-      fit[c] = add_product(fit[c], of_fit, value);
-      mean[c] = add_product(mean[c], of_mean, value);
+      fit[c] = fit[c] + of_fit * value;
+      mean[c] = mean[c] + of_mean * value;
     }
   });
   // The largest blend factor from the weighted mean to the regression at which no channel is negative.
-  const V one = hn::Set(d, 1.0F);
-  V fraction = one;
-  for (std::size_t c = 0; c < 3; ++c) {
-    const V limit = hn::Div(mean[c], hn::Max(hn::Sub(mean[c], fit[c]), hn::Set(d, 1e-30F)));
-    fraction = hn::IfThenElse(hn::Lt(fit[c], hn::Zero(d)), hn::Min(fraction, limit), fraction);
-  }
-  fraction = hn::Max(fraction, hn::Zero(d));
-  if (hn::AllTrue(d, hn::Ge(fraction, one))) return;
+  V fraction = hn::Set(d, 1.0F);
+  for (std::size_t c = 0; c < 3; ++c)
+    fraction = select(fit[c] < 0, min(fraction, mean[c] / max(mean[c] - fit[c], 1e-30F)), fraction);
+  fraction = max(fraction, 0);
+  if (hn::AllTrue(d, fraction >= 1)) return;
   each_offset(source.radius, [&](std::size_t i, int, int) {
     float* const weight = weights[i].data() + at;
     const V of_mean = hn::Load(d, means[i]), of_fit = hn::Load(d, weight);
-    const V blend = add_product(of_mean, fraction, hn::Sub(of_fit, of_mean));
-    hn::Store(hn::IfThenElse(hn::Lt(fraction, one), blend, of_fit), d, weight);
+    hn::Store(select(fraction < 1, of_mean + fraction * (of_fit - of_mean), of_fit), d, weight);
   });
 }
 
@@ -267,7 +262,7 @@ void apply_tile_weights(const TileWeights& weights, int radius, const PaddedPlan
       V sum = hn::Zero(d);
       each_offset(radius, [&](std::size_t i, int dx, int dy) {
         const V value = hn::LoadU(d, plane.at(x + column + dx, y + row + dy));
-        sum = add_product(sum, hn::Load(d, weights[i].data() + at), value);
+        sum = sum + hn::Load(d, weights[i].data() + at) * value;
       });
       hn::Store(sum, d, out.data() + at);
     }

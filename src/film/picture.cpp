@@ -3,7 +3,15 @@
 
 #include <cmath>
 
+#include "base/error.h"
+
 namespace orrery::film {
+
+const Plane& Picture::at(const std::string& name) const {
+  const Plane* const found = find(name);
+  if (found == nullptr) throw base::Error(base::ErrorKind::kBadData, "the image has no channel " + name);
+  return *found;
+}
 
 BadValues& BadValues::operator+=(const BadValues& other) {
   nan += other.nan;

@@ -46,6 +46,10 @@ struct Picture {
       if (plane.name == name) return &plane;
     return nullptr;
   }
+  /// The plane of this name.
+  ///
+  /// Errors     base::Error(kBadData) if there is none
+  const Plane& at(const std::string& name) const;
 };
 
 /// The largest finite half.

@@ -2,58 +2,27 @@
 #include "image/checked_file.h"
 
 #include <fcntl.h>
-#include <unistd.h>
 
 #include <algorithm>
 #include <cerrno>
+#include <utility>
 
 namespace orrery::image {
-namespace {
-
-/// Write buffer size. Radiance files are written a few bytes at a time; a system call for each would be too slow.
-constexpr std::size_t kLargestPending = std::size_t{1} << 16;
-
-}  // namespace
 
 CheckedFile::CheckedFile(const std::filesystem::path& file) : IOProxy(file.string(), Write) {
-  descriptor_ = ::open(file.c_str(), O_RDWR | O_TRUNC | O_CLOEXEC);
-  if (descriptor_ < 0) fail(errno);
-}
-
-CheckedFile::~CheckedFile() {
-  if (descriptor_ >= 0) ::close(descriptor_);
+  const int descriptor = ::open(file.c_str(), O_RDWR | O_TRUNC | O_CLOEXEC);
+  if (descriptor >= 0) file_ = fdopen(descriptor, "r+");
+  if (file_ == nullptr) fail(errno);
 }
 
 int CheckedFile::finish() {
-  flush_pending();
-  if (descriptor_ >= 0 && ::close(descriptor_) != 0) fail(errno);
-  descriptor_ = -1;
+  if (std::FILE* const file = std::exchange(file_, nullptr); file != nullptr && std::fclose(file) != 0) fail(errno);
   return error_;
 }
 
-bool CheckedFile::fail(int error) {
+size_t CheckedFile::fail(int error) {
   if (error_ == 0) error_ = error;
-  return false;
-}
-
-bool CheckedFile::write_at(const unsigned char* bytes, size_t size, int64_t offset) {
-  while (size > 0) {
-    const ssize_t written = ::pwrite(descriptor_, bytes, size, offset);
-    if (written < 0 && errno == EINTR) continue;
-    if (written < 0) return fail(errno);
-    if (written == 0) return fail(ENOSPC);
-    bytes += written;
-    size -= static_cast<size_t>(written);
-    offset += written;
-  }
-  return true;
-}
-
-bool CheckedFile::flush_pending() {
-  if (error_ != 0) return false;
-  const bool written = write_at(pending_.data(), pending_.size(), pending_offset_);
-  pending_.clear();
-  return written;
+  return 0;
 }
 
 bool CheckedFile::seek(int64_t offset) {
@@ -70,19 +39,10 @@ size_t CheckedFile::write(const void* bytes, size_t size) {
 
 size_t CheckedFile::pwrite(const void* bytes, size_t size, int64_t offset) {
   if (error_ != 0) return 0;
-  const auto* const first = static_cast<const unsigned char*>(bytes);
-  const bool continues = offset == pending_offset_ + static_cast<int64_t>(pending_.size());
-  if (!continues || pending_.size() + size > kLargestPending) {
-    if (!flush_pending()) return 0;
-    pending_offset_ = offset;
-  }
-  if (size > kLargestPending) {
-    if (!write_at(first, size, offset)) return 0;
-    pending_offset_ = offset + static_cast<int64_t>(size);
-  } else {
-    pending_.insert(pending_.end(), first, first + size);
-  }
-  end_ = std::max(end_, offset + static_cast<int64_t>(size));
+  if (offset != next_ && fseeko(file_, offset, SEEK_SET) != 0) return fail(errno);
+  if (std::fwrite(bytes, 1, size, file_) != size) return fail(errno);
+  next_ = offset + static_cast<int64_t>(size);
+  end_ = std::max(end_, next_);
   return size;
 }
 
@@ -93,20 +53,12 @@ size_t CheckedFile::read(void* out, size_t size) {
 }
 
 size_t CheckedFile::pread(void* out, size_t size, int64_t offset) {
-  if (!flush_pending()) return 0;
-  pending_offset_ = end_;
-  size_t got = 0;
-  while (got < size) {
-    const ssize_t n =
-        ::pread(descriptor_, static_cast<unsigned char*>(out) + got, size - got, offset + static_cast<int64_t>(got));
-    if (n < 0 && errno == EINTR) continue;
-    if (n < 0) fail(errno);
-    if (n <= 0) break;
-    got += static_cast<size_t>(n);
-  }
+  if (error_ != 0) return 0;
+  next_ = -1;  // a seek must separate reading and writing
+  if (fseeko(file_, offset, SEEK_SET) != 0) return fail(errno);
+  const size_t got = std::fread(out, 1, size, file_);
+  if (std::ferror(file_) != 0) fail(errno);
   return got;
 }
-
-size_t CheckedFile::size() const { return static_cast<size_t>(end_); }
 
 }  // namespace orrery::image

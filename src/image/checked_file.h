@@ -4,8 +4,8 @@
 #include <OpenImageIO/filesystem.h>
 
 #include <cstdint>
+#include <cstdio>
 #include <filesystem>
-#include <vector>
 
 namespace orrery::image {
 
@@ -19,7 +19,7 @@ class CheckedFile final : public OIIO::Filesystem::IOProxy {
   ///
   /// Domain     the file exists; it is emptied
   explicit CheckedFile(const std::filesystem::path& file);
-  ~CheckedFile() override;
+  ~CheckedFile() override { finish(); }
   CheckedFile(const CheckedFile&) = delete;
   CheckedFile& operator=(const CheckedFile&) = delete;
 
@@ -29,24 +29,21 @@ class CheckedFile final : public OIIO::Filesystem::IOProxy {
   int finish();
 
   const char* proxytype() const override { return "orrery"; }
-  bool opened() const override { return descriptor_ >= 0; }
+  bool opened() const override { return file_ != nullptr; }
   bool seek(int64_t offset) override;
   size_t read(void* out, size_t size) override;
   size_t write(const void* bytes, size_t size) override;
   size_t pread(void* out, size_t size, int64_t offset) override;
   size_t pwrite(const void* bytes, size_t size, int64_t offset) override;
-  size_t size() const override;
+  size_t size() const override { return static_cast<size_t>(end_); }
 
  private:
-  bool flush_pending();
-  bool write_at(const unsigned char* bytes, size_t size, int64_t offset);
-  bool fail(int error);
+  size_t fail(int error);
 
-  int descriptor_ = -1;
+  std::FILE* file_ = nullptr;  ///< buffered: Radiance files are written a few bytes at a time
   int error_ = 0;
-  int64_t end_ = 0;                     ///< file size including the buffer
-  int64_t pending_offset_ = 0;          ///< file offset of the first buffered byte
-  std::vector<unsigned char> pending_;  ///< buffer of consecutive small writes
+  int64_t end_ = 0;   ///< file size including the buffer
+  int64_t next_ = 0;  ///< offset after the last write; -1 after a read
 };
 
 }  // namespace orrery::image

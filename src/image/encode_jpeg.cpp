@@ -1,6 +1,4 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "image/encode_jpeg.h"
-#include "image/jpeg_bytes.h"
 
 #include <array>
 #include <csetjmp>
@@ -17,6 +15,9 @@
 #include <jerror.h>
 
 #include "base/error.h"
+#include "image/checked_file.h"
+#include "image/whole_file.h"
+#include "image/write.h"
 
 // Declared in OpenImageIO/tiffutils.h, which includes a libtiff header that the OpenImageIO package does not depend on.
 OIIO_NAMESPACE_BEGIN

@@ -2,7 +2,6 @@
 #include "image/format.h"
 
 #include <algorithm>
-#include <charconv>
 #include <cmath>
 #include <cstddef>
 #include <string_view>
@@ -36,9 +35,8 @@ const std::vector<FormatInfo>& formats() {
 }
 
 bool is_level(std::string_view text) {
-  float level = 0;
-  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), level);
-  return error == std::errc() && end == text.data() + text.size() && std::isfinite(level) && level >= 0;
+  const auto level = base::number_of<float>(text);
+  return level && std::isfinite(*level) && *level >= 0;
 }
 
 }  // namespace
@@ -56,20 +54,18 @@ Format format_of(const std::filesystem::path& file) {
     }
   }
   const std::string near = base::did_you_mean(extension, known);
-  throw base::Error(base::ErrorKind::kUsage, fmt::format("{}; {}known formats are {}",
-                                                         extension.empty() ? file.string() + " has no extension"
-                                                                           : "unknown image format ." + extension,
-                                                         near.empty() ? "" : near + " ", base::joined(known)));
+  base::refuse(
+      fmt::format("{}; {}known formats are {}",
+                  extension.empty() ? file.string() + " has no extension" : "unknown image format ." + extension,
+                  near.empty() ? "" : near + " ", base::joined(known)));
 }
 
 void check_size(const std::filesystem::path& file, int width_px, int height_px) {
   const int largest = info_of(format_of(file)).largest_side;
   if (width_px <= largest && height_px <= largest) return;
-  throw base::Error(
-      base::ErrorKind::kUsage,
-      fmt::format(
-          "{} cannot hold {} x {} pixels: the maximum side of its format is {}; use TIFF or EXR for larger images",
-          file.string(), width_px, height_px, largest));
+  base::refuse(fmt::format(
+      "{} cannot hold {} x {} pixels: the maximum side of its format is {}; use TIFF or EXR for larger images",
+      file.string(), width_px, height_px, largest));
 }
 
 bool is_lossy(const std::string& compression) { return compression.rfind("dwa", 0) == 0; }
@@ -81,10 +77,8 @@ void check_compression(const std::string& name) {
   const std::string word = name.substr(0, colon);
   if ((word == "dwaa" || word == "dwab") && is_level(std::string_view(name).substr(colon + 1))) return;
   const std::string near = base::did_you_mean(word, plain);
-  throw base::Error(
-      base::ErrorKind::kUsage,
-      fmt::format("unknown EXR compression {}; {}known names are {}; dwaa and dwab take a level, e.g. dwaa:45", name,
-                  near.empty() ? "" : near + " ", base::joined(plain)));
+  base::refuse(fmt::format("unknown EXR compression {}; {}known names are {}; dwaa and dwab take a level, e.g. dwaa:45",
+                           name, near.empty() ? "" : near + " ", base::joined(plain)));
 }
 
 void check_lossless(const std::vector<film::Plane>& planes, const ExrOptions& options) {
@@ -93,10 +87,10 @@ void check_lossless(const std::vector<film::Plane>& planes, const ExrOptions& op
     // The compression takes these channels for colours, by the last component of their names.
     const char last = plane.name.back();
     if (plane.kind == film::PlaneKind::kData && (last == 'R' || last == 'G' || last == 'B'))
-      throw base::Error(base::ErrorKind::kUsage,
-                        fmt::format("compression {} would damage layer {}; use zip, zips or piz, or --multipart, which "
-                                    "stores data layers without loss",
-                                    options.compression, plane.layer()));
+      base::refuse(
+          fmt::format("compression {} would damage layer {}; use zip, zips or piz, or --multipart, which "
+                      "stores data layers without loss",
+                      options.compression, plane.layer()));
   }
 }
 

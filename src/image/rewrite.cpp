@@ -159,8 +159,7 @@ std::pair<film::Picture, std::vector<Place>> planes_of_parts(const std::vector<N
 RewriteReport rewrite_exr(const std::filesystem::path& input, const std::filesystem::path& output,
                           const EditPlanes& edit) {
   for (const std::filesystem::path& file : {input, output})
-    if (format_of(file) != Format::kExr)
-      throw base::Error(base::ErrorKind::kUsage, file.string() + " is not an EXR file");
+    if (format_of(file) != Format::kExr) base::refuse(file.string() + " is not an EXR file");
   std::vector<NativePart> parts;
   std::pair<film::Picture, std::vector<Place>> planes;
   try {

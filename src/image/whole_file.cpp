@@ -17,7 +17,6 @@
 #include "base/error.h"
 #include "base/input_file.h"
 #include "image/checked_file.h"
-#include "image/encode_jpeg.h"
 #include "image/library.h"
 
 namespace orrery::image {

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <cstdint>
 #include <filesystem>
 #include <optional>
 #include <string>
@@ -9,6 +10,8 @@
 #include <OpenImageIO/imageio.h>
 
 namespace orrery::image {
+
+class CheckedFile;
 
 /// One part of an image file. All parts of a file have the same size.
 struct WholePart {
@@ -33,5 +36,15 @@ void leave_out_date(OIIO::ImageSpec& spec);
 ///
 /// Errors     base::Error: kMissingInput if the file cannot be opened, kBadData if it has no digest or a wrong one
 void require_digest(const std::filesystem::path& file);
+
+/// JPEG quality: OpenImageIO's "jpeg:95", without chroma subsampling.
+inline constexpr int kJpegQuality = 95;
+
+/// Encodes an image as JPEG with the same bytes as OpenImageIO, which exits the process on any libjpeg error, such as
+/// lack of memory.
+///
+/// Domain     three channels of eight bits; a side of up to 65,500 px
+/// Result     libjpeg's error message, or empty
+std::string encode_jpeg(const OIIO::ImageSpec& spec, const std::uint8_t* pixels, CheckedFile& file);
 
 }  // namespace orrery::image

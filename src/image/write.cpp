@@ -135,11 +135,7 @@ void write_deep(const std::filesystem::path& file, const film::DeepPicture& deep
 
 WriteReport write_hdr(const std::filesystem::path& file, const film::Picture& picture) {
   std::vector<const film::Plane*> planes;
-  for (const char* name : {"R", "G", "B"}) {
-    planes.push_back(picture.find(name));
-    if (planes.back() == nullptr)
-      throw base::Error(base::ErrorKind::kBadData, std::string("the image has no channel ") + name);
-  }
+  for (const char* name : {"R", "G", "B"}) planes.push_back(&picture.at(name));
   WriteReport report;
   const ImageSpec spec(picture.width, picture.height, 3, TypeDesc::FLOAT);
   const std::vector<float> pixels = interleaved(picture, planes, {3, kRadianceRange}, report);
@@ -151,8 +147,7 @@ void write_encoded(const std::filesystem::path& file, const film::EncodedPicture
                    const std::string& stamp) {
   const Format format = format_of(file);
   if (!is_display_format(format)) throw base::Error(base::ErrorKind::kInternal, "EXR and HDR hold scene-linear light");
-  if (picture.bits > max_bits(format))
-    throw base::Error(base::ErrorKind::kUsage, file.string() + " holds 8 bits per channel; PNG and TIFF hold 16");
+  if (picture.bits > max_bits(format)) base::refuse(file.string() + " holds 8 bits per channel; PNG and TIFF hold 16");
   check_size(file, picture.width, picture.height);
   if (picture.channels > 3 && !holds_alpha(format))
     throw base::Error(base::ErrorKind::kInternal, file.string() + " cannot hold alpha");

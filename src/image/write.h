@@ -53,4 +53,12 @@ void write_encoded(const std::filesystem::path& file, const film::EncodedPicture
 /// Errors     base::Error(kInternal): the encoder's
 std::string png_bytes(const film::EncodedPicture& picture);
 
+/// Encodes an image as JPEG in memory, with chroma subsampling and without metadata.
+///
+/// `codes`    R, G, B of all pixels, row by row from the top
+/// `quality`  1 to 100
+/// Domain     a side of up to 65,500 px
+/// Errors     base::Error(kInternal): libjpeg's
+std::string jpeg_bytes(int width_px, int height_px, const std::uint8_t* codes, int quality);
+
 }  // namespace orrery::image

@@ -2,7 +2,6 @@
 #pragma once
 
 #include "image/draw_text.h"
-#include "image/jpeg_bytes.h"
 #include "image/library.h"
 #include "image/partial_file.h"
 #include "image/read.h"

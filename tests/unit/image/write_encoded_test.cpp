@@ -5,8 +5,8 @@
 #include <cerrno>
 #include <cmath>
 
-#include "image/encode_jpeg.h"
 #include "image/read.h"
+#include "image/whole_file.h"
 #include "image/write.h"
 #include "support/temp_dir.h"
 #include "unit/image/test_pictures.h"
