@@ -4,7 +4,6 @@
 #include <sys/random.h>
 
 #include <array>
-#include <charconv>
 #include <cmath>
 #include <cstdint>
 #include <filesystem>
@@ -18,12 +17,16 @@
 
 #include "base/error.h"
 #include "base/temp_dir.h"
+#include "base/text.h"
 #include "format/read_scene.h"
 #include "format/write_scene.h"
 #include "job/rendering.h"
-#include "view/page.h"
 
 namespace orrery::view {
+
+// The files of the page: page.cpp.in.
+extern const char *const kPageHtml, *const kPageStyle, *const kPageScript, *const kCameraScript;
+
 namespace {
 
 using Json = nlohmann::json;
@@ -100,12 +103,7 @@ const PageFile* file_of_page(const std::string& path) {
 template <class T>
 std::optional<T> number_of(const http::Request& request, const char* name) {
   const auto found = request.query.find(name);
-  if (found == request.query.end()) return {};
-  T out{};
-  const char* const last = found->second.data() + found->second.size();
-  const auto [end, error] = std::from_chars(found->second.data(), last, out);
-  if (error != std::errc() || end != last) return {};
-  return out;
+  return found != request.query.end() ? base::number_of<T>(found->second) : std::nullopt;
 }
 
 }  // namespace

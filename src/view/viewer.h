@@ -18,10 +18,9 @@
 #include "job/job.h"
 #include "job/prepared_scene.h"
 #include "job/rendering.h"
-#include "load/load_scene.h"
-#include "math/vec3.h"
 #include "preview/sink.h"
 #include "scene/scene.h"
+#include "view/picker.h"
 #include "view/wish.h"
 
 namespace orrery::view {
@@ -69,14 +68,6 @@ struct State {
   std::vector<std::string> warnings;    ///< about the image that is shown
 };
 
-/// A sphere or a rod that a client has chosen.
-struct Picked {
-  std::string title;   ///< "row 17 of melt.dump", "sphere[3]"
-  math::Vec3d center;  ///< scene units; the middle of a rod
-  double radius = 0;
-  std::vector<std::pair<std::string, std::string>> values = {};  ///< columns of its row, or keys, and their values
-};
-
 /// Renders what clients want to see, on one thread, with one prepared scene.
 ///
 /// While a wish moves, images are as large as can be rendered in kMovingTime and have one sample per pixel. The last
@@ -97,14 +88,8 @@ class Viewer {
   /// number than `state`; then the number of the frame is not larger.
   Frame frame(std::uint64_t after, std::chrono::milliseconds patience, std::optional<std::uint64_t> state = {});
 
-  /// The sphere or the rod that is visible at a point of the image.
-  ///
-  /// `x`, `y`   fractions of the image's width and height, from the upper left corner
-  /// Result     empty if the background is visible, or while a scene is prepared
-  /// Errors     those of load::read_source_rows
-  /// Cost       reads the data file, unless its columns take little memory and the particle before was of the same file
-  std::optional<Picked> pick(double x, double y);
-
+  /// See Picker::pick().
+  std::optional<Picked> pick(double x, double y) { return picker_.pick(x, y); }
   State state() const;
 
   /// The finished image; null while it is rendered.
@@ -115,17 +100,18 @@ class Viewer {
 
  private:
   struct Live;
-  struct Source;
+  struct Image;
 
   void run();
   void make_subject(const Wish& wish);
   void render(const Wish& wish, std::uint64_t number);
+  job::Hooks hooks_for(Image& image);
+  void begin(Image& image, const display::PictureInfo& info);
+  void finish(Image& image, std::shared_ptr<const job::Rendering> rendering);
   void announce();
+  void set_activity(const std::string& activity);
   void set_served(std::uint64_t wish, const std::string& problem);
   void refresh(Live& live);
-  std::shared_ptr<const Source> source_of(const scene::Scene& scene, std::size_t table);
-  /// Describes the two particles of a bond of a points table, or of a stub of one.
-  void add_bond(const scene::Scene& scene, std::size_t table, bool is_stub, std::size_t index, Picked& out);
 
   const MakeSubject make_;
   const std::vector<std::string> fixed_;
@@ -143,19 +129,11 @@ class Viewer {
   std::shared_ptr<const job::Rendering> finished_;
 
   std::atomic<bool> cancel_{false};
-  std::mutex preparation_;  // guards what follows
-  std::condition_variable looked_;
-  bool is_prepared_ = false;  ///< `prepared_` has its BVH and does not change
-  int looks_ = 0;             ///< calls of pick() that look at `prepared_`
-  load::SceneSource source_;  ///< of the prepared scene
-
-  std::mutex picking_;  ///< guards picked_from_
-  std::shared_ptr<const Source> picked_from_;
-
   // Of the rendering thread.
   bool is_new_subject_ = false;                                     ///< it has not been rendered yet
   std::optional<std::map<std::string, std::string>> made_options_;  ///< of the subject
   std::shared_ptr<job::PreparedScene> prepared_;
+  Picker picker_;
   double pixels_per_second_ = 1e6;  ///< of moving images
   int prepared_depth_ = 0;          ///< render.max_depth of the scene
   std::thread thread_;
