@@ -176,10 +176,9 @@ Comparison compare(const film::Picture& picture, const film::Picture& reference,
   const auto same = [](float v) { return v; };
   const ChangedImage code_a(c.picture, code), code_b(c.reference, code);
   out.ssim = ssim(code_a.view, code_b.view);
-  out.flip_map = encoding == Encoding::kDisplay
-                     ? flip(code_a.view, code_b.view)
-                     : hdr_flip(ChangedImage(c.picture, same).view, ChangedImage(c.reference, same).view,
-                                kPixelsPerDegree, on_threads(threads));
+  out.flip_map = encoding == Encoding::kDisplay ? flip(code_a.view, code_b.view)
+                                                : hdr_flip(ChangedImage(c.picture, same).view,
+                                                           ChangedImage(c.reference, same).view, on_threads(threads));
   out.flip = out.flip_map.mean();
   out.z_test = z_test(c.picture, color_of(picture, "variance"), c.reference, color_of(reference, "variance"));
   return out;

@@ -150,12 +150,12 @@ struct EyeFilters {
   Taps brightness, red_green, blue_yellow[2];
   float share[2];
 
-  explicit EyeFilters(double pixels_per_degree) {
+  EyeFilters() {
     constexpr double kPi2 = std::numbers::pi * std::numbers::pi;
     constexpr double kB[2] = {0.04, 0.025}, kA[2] = {34.1, 13.5};
-    const int radius = static_cast<int>(std::ceil(3 * std::sqrt(0.04 / (2 * kPi2)) * pixels_per_degree));
+    const int radius = static_cast<int>(std::ceil(3 * std::sqrt(0.04 / (2 * kPi2)) * kPixelsPerDegree));
     const auto shape = [&](double b) {
-      return [=](double x) { return std::exp(-kPi2 * x * x / (pixels_per_degree * pixels_per_degree) / b); };
+      return [=](double x) { return std::exp(-kPi2 * x * x / (kPixelsPerDegree * kPixelsPerDegree) / b); };
     };
     brightness = taps_of(radius, shape(0.0047));
     red_green = taps_of(radius, shape(0.0053));
@@ -205,8 +205,8 @@ Taps balanced(int radius, const std::function<double(double)>& shape) {
   return taps;
 }
 
-FilteredImage filtered_image(const Maps& codes, double pixels_per_degree) {
-  const EyeFilters eye(pixels_per_degree);
+FilteredImage filtered_image(const Maps& codes) {
+  const EyeFilters eye;
   Maps o = each_pixel(codes, [](const Color& code) {
     return opponent({srgb_decoded(code[0]), srgb_decoded(code[1]), srgb_decoded(code[2])});
   });
@@ -226,7 +226,7 @@ FilteredImage filtered_image(const Maps& codes, double pixels_per_degree) {
     return hunt_lab(light);
   });
 
-  const double sigma = kFeatureWidth / 2 * pixels_per_degree;
+  const double sigma = kFeatureWidth / 2 * kPixelsPerDegree;
   const int radius = static_cast<int>(std::ceil(3 * sigma));
   const auto bell = [sigma](double x) { return std::exp(-x * x / (2 * sigma * sigma)); };
   const Taps along = taps_of(radius, bell);
@@ -314,18 +314,17 @@ std::vector<double> exposures_for(const ColorView& reference) {
 
 }  // namespace
 
-Map flip(const ColorView& picture, const ColorView& reference, double pixels_per_degree) {
-  return flip(filtered_image(codes_of(picture), pixels_per_degree),
-              filtered_image(codes_of(reference), pixels_per_degree));
+Map flip(const ColorView& picture, const ColorView& reference) {
+  return flip(filtered_image(codes_of(picture)), filtered_image(codes_of(reference)));
 }
 
-Map hdr_flip(const ColorView& picture, const ColorView& reference, double pixels_per_degree, const ForEach& for_each) {
+Map hdr_flip(const ColorView& picture, const ColorView& reference, const ForEach& for_each) {
   const std::vector<double> exposures = exposures_for(reference);
   Map out{reference.width, reference.height, std::vector<float>(reference.pixels(), 0.0f)};
   std::mutex merging;
   const auto merge = [&](std::size_t i) {
-    const Map map = flip(filtered_image(codes_at(picture, exposures[i]), pixels_per_degree),
-                         filtered_image(codes_at(reference, exposures[i]), pixels_per_degree));
+    const Map map =
+        flip(filtered_image(codes_at(picture, exposures[i])), filtered_image(codes_at(reference, exposures[i])));
     const std::lock_guard lock(merging);
     for (std::size_t p = 0; p < out.values.size(); ++p) out.values[p] = std::max(out.values[p], map.values[p]);
   };

@@ -41,14 +41,13 @@ using ForEach = std::function<void(std::size_t count, const std::function<void(s
 /// Domain     sRGB-encoded values 0..1; views of the same size
 /// Result     0..1
 /// Reference  andersson2020
-Map flip(const ColorView& picture, const ColorView& reference, double pixels_per_degree = kPixelsPerDegree);
+Map flip(const ColorView& picture, const ColorView& reference);
 
 /// The HDR-FLIP error map of scene-linear images: the maximum of flip() over a range of exposures, tone-mapped with the
 /// curve of the paper. The range extends from the exposure for the brightest pixel to that for the median.
 ///
 /// Domain     linear Rec. 709; negative values count as 0. `for_each` runs the exposures; default: one after another
 /// Reference  andersson2021
-Map hdr_flip(const ColorView& picture, const ColorView& reference, double pixels_per_degree = kPixelsPerDegree,
-             const ForEach& for_each = {});
+Map hdr_flip(const ColorView& picture, const ColorView& reference, const ForEach& for_each = {});
 
 }  // namespace orrery::compare

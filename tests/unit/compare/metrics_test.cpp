@@ -245,7 +245,7 @@ TEST(CompareHdrFlip, RunsExposuresWithForEachInAnyOrder) {
   const ForEach backwards = [&](std::size_t count, const std::function<void(std::size_t)>& work) {
     for (std::size_t i = count; i-- > 0; ++calls) work(i);
   };
-  EXPECT_EQ(hdr_flip(a.view, b.view, kPixelsPerDegree, backwards).values, hdr_flip(a.view, b.view).values);
+  EXPECT_EQ(hdr_flip(a.view, b.view, backwards).values, hdr_flip(a.view, b.view).values);
   EXPECT_GT(calls, 1u);
 }
 
