@@ -4,7 +4,6 @@
 #include <CLI/CLI.hpp>
 
 #include <algorithm>
-#include <charconv>
 #include <cmath>
 #include <string_view>
 #include <type_traits>
@@ -14,17 +13,10 @@
 
 #include "base/error.h"
 #include "base/text.h"
+#include "cli/signals.h"
 
 namespace orrery::cli {
 namespace {
-
-/// Parses the whole text, not only its beginning.
-template <class Number>
-bool parse(const std::string& text, Number& value) {
-  const char* const end = text.data() + text.size();
-  const auto [stopped, error] = std::from_chars(text.data(), end, value);
-  return error == std::errc() && stopped == end;
-}
 
 /// Maximum time limit, one year in seconds: a longer time probably has the wrong unit.
 constexpr double kLongestTime = 365.0 * 24 * 3600;
@@ -49,12 +41,12 @@ std::string parse_duration(const std::string& text, double& seconds) {
   std::size_t next_unit = 0;
   for (std::size_t begin = 0; begin < text.size();) {
     const std::size_t end = text.find_first_not_of("0123456789.", begin);
-    double value = 0;
-    if (!parse(text.substr(begin, end - begin), value)) return wrong;
+    const auto value = base::number_of<double>(text.substr(begin, end - begin));
+    if (!value) return wrong;
     if (end == std::string::npos) return next_unit < kUnits.size() ? missing_unit(text, next_unit) : wrong;
     const std::size_t unit = kUnits.find(text[end], next_unit);
     if (unit == std::string_view::npos) return wrong;
-    seconds += value * kSeconds[unit];
+    seconds += *value * kSeconds[unit];
     next_unit = unit + 1;
     begin = end + 1;
   }
@@ -71,7 +63,7 @@ CLI::Validator validator(Check check) { return CLI::Validator(std::move(check), 
 
 Check one_of(std::vector<std::string> names) {
   return [names = std::move(names)](std::string& word) -> std::string {
-    if (std::find(names.begin(), names.end(), word) != names.end()) return {};
+    if (base::contains(names, word)) return {};
     const bool is_number = !word.empty() && word[0] >= '0' && word[0] <= '9';  // do not suggest 16 for 12
     const std::string remedy = is_number ? "" : base::did_you_mean(word, names);
     return fmt::format("unknown value `{}`; {}", word, remedy.empty() ? "use one of " + base::joined(names) : remedy);
@@ -80,26 +72,22 @@ Check one_of(std::vector<std::string> names) {
 
 Check whole_number(std::uint64_t from, std::uint64_t to) {
   return [from, to](std::string& text) -> std::string {
-    std::uint64_t value = 0;
-    if (parse(text, value) && value >= from && value <= to) {
-      text = std::to_string(value);  // CLI11 would read 010 as eight
+    const auto value = base::number_of<std::uint64_t>(text);
+    if (value && *value >= from && *value <= to) {
+      text = std::to_string(*value);  // CLI11 would read 010 as eight
       return {};
     }
     return fmt::format("must be an integer from {} to {}, not `{}`", from, to, text);
   };
 }
 
-int integer_of(const std::string& text) {
-  int value = 0;
-  parse(text, value);
-  return value;
-}
+int integer_of(const std::string& text) { return base::number_of<int>(text).value_or(0); }
 
 Check real_number(double from, double to) {
   return [from, to](std::string& text) -> std::string {
-    double value = 0;
     const bool plus = text.size() > 1 && text[0] == '+' && text[1] != '-';
-    if (parse(plus ? text.substr(1) : text, value) && value >= from && value <= to) return {};
+    const auto value = base::number_of<double>(plus ? text.substr(1) : text);
+    if (value && *value >= from && *value <= to) return {};
     return fmt::format("must be a number from {:g} to {:g}, not `{}`", from, to, text);
   };
 }
@@ -108,9 +96,9 @@ Check byte_size() {
   return [](std::string& text) -> std::string {
     constexpr std::string_view kUnits = "KMGT";
     const std::size_t unit = text.empty() ? std::string::npos : kUnits.find(text.back());
-    double value = 0;
-    if (unit != std::string::npos && parse(text.substr(0, text.size() - 1), value)) {
-      value = std::ldexp(value, 10 * (static_cast<int>(unit) + 1));
+    const auto number = base::number_of<double>(text.substr(0, text.empty() ? 0 : text.size() - 1));
+    if (unit != std::string::npos && number) {
+      const double value = std::ldexp(*number, 10 * (static_cast<int>(unit) + 1));
       if (value >= 1 && value < 0x1p63) {
         text = std::to_string(static_cast<std::uint64_t>(value));
         return {};
@@ -297,6 +285,14 @@ void Command::footer(const std::string& text) {
 }
 
 void Command::action(std::function<int()> run) { action_ = std::move(run); }
+
+void Command::act(std::function<void()> run) {
+  action([run = std::move(run)] {
+    end_on_signals();
+    run();
+    return 0;
+  });
+}
 
 int Command::run() const {
   const auto named =

@@ -144,6 +144,8 @@ class Command {
   void footer(const std::string& text);
   /// Sets what the command does; `run` returns the exit status.
   void action(std::function<int()> run);
+  /// The same for a command that cannot stop midway: a signal ends the process.
+  void act(std::function<void()> run);
   /// Runs the command that the command line named, after refusing options that were given twice. Of the program.
   int run() const;
 

@@ -10,7 +10,6 @@
 #include "cli/commands.h"
 #include "cli/messages.h"
 #include "cli/plot_options.h"
-#include "cli/signals.h"
 #include "plot/convert.h"
 
 namespace orrery::cli {
@@ -36,15 +35,13 @@ void print_file(const plot::ConvertedFile& written, bool quiet) {
   print_message(text);
 }
 
-int run_convert(ConvertArguments& arguments) {
-  end_on_signals();
+void run_convert(ConvertArguments& arguments) {
   plot::ConvertOptions& convert = arguments.convert;
   arguments.data.read(convert);
   if (convert.color_by.empty() && (convert.has_map || convert.range.is_set))
     base::refuse("--map and --range need --color-by");
   convert.memory_limit = base::available_memory().value_or(0);
   plot::convert(convert, [&](const plot::ConvertedFile& written) { print_file(written, arguments.quiet); });
-  return 0;
 }
 
 }  // namespace
@@ -69,7 +66,7 @@ void add_convert(Command& program) {
       "  orrery convert melt.dump -o melt.ply --select 'type == 2' --radius 0.5\n"
       "  orrery convert 1m4x.pdb -o virus.npy --assembly 1 --element-radii vdw\n"
       "  orrery convert pour.dump -o pour.####.ply --frames all --color-by speed --map viridis");
-  command.action([arguments] { return run_convert(*arguments); });
+  command.act([arguments] { run_convert(*arguments); });
 }
 
 }  // namespace orrery::cli

@@ -167,12 +167,7 @@ complete -o default -F _orrery orrery
                      find, values, words);
 }
 
-/// A word of zsh or fish in single quotes.
-std::string quoted(const std::string& text) {
-  std::string out;
-  for (const char c : text) out += c == '\'' ? std::string("'\\''") : std::string(1, c);
-  return "'" + out + "'";
-}
+using base::quoted;
 
 std::string zsh_escaped(const std::string& text) {
   std::string out;
@@ -244,10 +239,6 @@ std::string fish_completion(const Command& program) {
   return out;
 }
 
-std::string replaced(std::string text, const std::string& what, const std::string& by) {
-  return text.replace(text.find(what), what.size(), by);
-}
-
 }  // namespace
 
 void add_documents(Command& program) {
@@ -268,8 +259,8 @@ void add_documents(Command& program) {
       const std::vector<const Command*> commands = leaves_of(program);
       std::ifstream in(arguments->page);
       const std::string text(std::istreambuf_iterator<char>(in), {});
-      const std::string page = replaced(text, "@SYNOPSIS@\n", mdoc_synopsis(commands));
-      print_result(replaced(page, "@COMMANDS@\n", mdoc_commands(commands)));
+      const std::string page = base::replaced(text, "@SYNOPSIS@\n", mdoc_synopsis(commands));
+      print_result(base::replaced(page, "@COMMANDS@\n", mdoc_commands(commands)));
     } else {
       print_result(kind == "bash"  ? bash_completion(program)
                    : kind == "zsh" ? zsh_completion(program)

@@ -6,7 +6,6 @@
 
 #include "base/error.h"
 #include "cli/commands.h"
-#include "cli/signals.h"
 #include "generate/generate.h"
 #include "scene/limits.h"
 #include "scene/scene.h"
@@ -74,11 +73,7 @@ void add_final(Command& generate, const std::shared_ptr<GenerateOptions>& option
       "Examples:\n"
       "  orrery generate final -o final.toml --seed 7\n"
       "  orrery generate final --moving -o bouncing.toml");
-  command.action([options] {
-    end_on_signals();
-    generate::generate_final(options->final_scene, options->output, options->force);
-    return 0;
-  });
+  command.act([options] { generate::generate_final(options->final_scene, options->output, options->force); });
 }
 
 void add_cloud(Command& generate, const std::shared_ptr<GenerateOptions>& options) {
@@ -94,11 +89,7 @@ void add_cloud(Command& generate, const std::shared_ptr<GenerateOptions>& option
       ->check(real_number(0, generate::kLargestCloudRadius));
   command.details("An existing PLY file is replaced only if orrery wrote it; otherwise the exit status is 73.");
   command.footer("Example:\n  orrery generate cloud -o cloud.toml --count 1000000");
-  command.action([options] {
-    end_on_signals();
-    generate::generate_cloud(options->cloud, options->output, options->force);
-    return 0;
-  });
+  command.act([options] { generate::generate_cloud(options->cloud, options->output, options->force); });
 }
 
 constexpr const char* kSkyHeading = "Options of sky";
@@ -143,18 +134,13 @@ void add_env(Command& generate, const std::shared_ptr<GenerateOptions>& options)
       "Examples:\n"
       "  orrery generate env studio -o studio.exr\n"
       "  orrery generate env sky -o evening.exr --sun-elevation 4 --sun-azimuth -60");
-  command.action([options, &command] {
+  command.act([options, &command] {
     const std::vector<std::string> of_sky = command.arguments(kSkyHeading);
     if (options->environment != "sky" && !of_sky.empty()) base::refuse(of_sky.front() + " is an option of `sky`");
-    end_on_signals();
-    if (options->environment == "studio") {
-      generate::generate_studio(options->width, options->output);
-      return 0;
-    }
+    if (options->environment == "studio") return generate::generate_studio(options->width, options->output);
     options->sky.sun = !options->no_sun;
     options->sky.ground_albedo = math::Vec3d{1, 1, 1} * options->ground_albedo;
     generate::generate_sky(options->sky, options->width, options->output);
-    return 0;
   });
 }
 
@@ -164,11 +150,7 @@ void add_planet(Command& generate, const std::shared_ptr<GenerateOptions>& optio
   add_seed(command, options->planet_seed);
   command.details("The map holds reflectance, scene-linear Rec.709, for textures of type image.");
   command.footer("Example:\n  orrery generate planet -o planet.exr --width 2048");
-  command.action([options] {
-    end_on_signals();
-    generate::generate_planet(options->planet_seed, options->width, options->output);
-    return 0;
-  });
+  command.act([options] { generate::generate_planet(options->planet_seed, options->width, options->output); });
 }
 
 }  // namespace

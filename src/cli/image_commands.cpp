@@ -10,7 +10,6 @@
 #include "cli/commands.h"
 #include "cli/messages.h"
 #include "cli/options.h"
-#include "cli/signals.h"
 #include "display/settings.h"
 #include "job/image_files.h"
 
@@ -22,15 +21,13 @@ struct DevelopOptions {
   bool quiet = false;
 };
 
-int develop(const DevelopOptions& options) {
-  end_on_signals();
+void develop(const DevelopOptions& options) {
   const job::DevelopReport report = job::develop_file(options.development);
-  if (options.quiet) return 0;
+  if (options.quiet) return;
   for (const std::string& warning : report.display.warnings) print_message(base::warning_line(warning));
   if (const std::uint64_t bad = report.bad_values.nan + report.bad_values.infinite; bad > 0)
     print_message(base::warning_line(
         fmt::format("{} values of {} are not finite and were written as 0", bad, options.development.input.string())));
-  return 0;
 }
 
 struct DenoiseOptions {
@@ -40,35 +37,27 @@ struct DenoiseOptions {
 
 std::string text_of(const job::Denoising& denoising, const job::DenoisedFile& done) {
   const denoise::Report& report = done.report;
+  const std::string input = denoising.input.string();
   std::string out =
       fmt::format("wrote {}: beauty and {} light layers\n", denoising.output.string(), report.layers.size());
-  if (done.written.had_attributes)
-    out += base::warning_line(
-        fmt::format("{} was denoised already and has been filtered again", denoising.input.string()));
-  if (!report.missing.empty())
-    out += base::warning_line(
-        fmt::format("{} lacks the layers {}: {}; render with --layers halves for the best result",
-                    denoising.input.string(), base::joined(report.missing),
-                    report.has_guides ? "noise was estimated from the beauty" : "only the beauty guided the filter"));
-  if (report.bad_pixels > 0)
-    out += base::warning_line(
-        fmt::format("{} pixels have no samples, or values that are not finite or too large; they were not changed",
-                    report.bad_pixels));
-  if (!done.written.other_parts.empty())
-    out +=
-        base::warning_line(fmt::format("the parts {} have separate channels R, G and B and were copied unchanged; to "
-                                       "denoise them, save them as separate files",
-                                       base::joined(done.written.other_parts)));
-  if (done.written.clamped > 0)
-    out += base::warning_line(fmt::format("{} values were clamped to the range of half", done.written.clamped));
+  const auto warn = [&out](bool is_so, const std::string& text) {
+    if (is_so) out += base::warning_line(text);
+  };
+  warn(done.written.had_attributes, input + " was denoised already and has been filtered again");
+  warn(!report.missing.empty(),
+       fmt::format("{} lacks the layers {}: {}; render with --layers halves for the best result", input,
+                   base::joined(report.missing),
+                   report.has_guides ? "noise was estimated from the beauty" : "only the beauty guided the filter"));
+  warn(report.bad_pixels > 0,
+       fmt::format("{} pixels have no samples, or values that are not finite or too large; they were not changed",
+                   report.bad_pixels));
+  warn(!done.written.other_parts.empty(),
+       fmt::format(
+           "the parts {} have separate channels R, G and B and were copied unchanged; to denoise them, save them "
+           "as separate files",
+           base::joined(done.written.other_parts)));
+  warn(done.written.clamped > 0, fmt::format("{} values were clamped to the range of half", done.written.clamped));
   return out;
-}
-
-int denoise(const DenoiseOptions& options) {
-  end_on_signals();
-  const job::DenoisedFile done = job::denoise_file(options.denoising);
-  if (!options.quiet) print_message(text_of(options.denoising, done));
-  return 0;
 }
 
 /// Smaller cubes are too coarse for a view; other programs do not read larger ones.
@@ -79,12 +68,6 @@ struct BakeOptions {
   std::filesystem::path output;
   int size = display::kDefaultCubeSize;
 };
-
-int bake(const BakeOptions& options) {
-  end_on_signals();
-  job::bake_file(options.display, options.size, options.output);
-  return 0;
-}
 
 }  // namespace
 
@@ -109,7 +92,7 @@ void add_develop(Command& program) {
       "Examples:\n"
       "  orrery develop final.exr -o final.png --exposure 1\n"
       "  orrery develop final.exr -o book.tif --bits 16 --display \"Gamma 2.0 Rec.709\"");
-  command.action([options] { return develop(*options); });
+  command.act([options] { develop(*options); });
 }
 
 void add_denoise(Command& program) {
@@ -127,7 +110,10 @@ void add_denoise(Command& program) {
       "Examples:\n"
       "  orrery render scene.toml -o noisy.exr --samples 32 --layers halves,light_groups\n"
       "  orrery denoise noisy.exr -o clean.exr");
-  command.action([options] { return denoise(*options); });
+  command.act([options] {
+    const job::DenoisedFile done = job::denoise_file(options->denoising);
+    if (!options->quiet) print_message(text_of(options->denoising, done));
+  });
 }
 
 void add_bake(Command& program) {
@@ -145,7 +131,7 @@ void add_bake(Command& program) {
       "Examples:\n"
       "  orrery bake -o film.cube --view \"ACES 1.0 SDR Video\"\n"
       "  orrery bake -o book.clf --display \"Gamma 2.0 Rec.709\"");
-  command.action([options] { return bake(*options); });
+  command.act([options] { job::bake_file(options->display, options->size, options->output); });
 }
 
 }  // namespace orrery::cli

@@ -55,8 +55,7 @@ struct StudyOptions {
 
 void check_report_name(const std::filesystem::path& file) {
   if (base::extension(file) != ".html" && base::extension(file) != ".htm")
-    throw base::Error(base::ErrorKind::kUsage,
-                      file.string() + ": the report is an HTML file; name it .html, or print numbers with --json");
+    base::refuse(file.string() + ": the report is an HTML file; name it .html, or print numbers with --json");
 }
 
 int study(StudyOptions& options) {

@@ -47,8 +47,7 @@ format::Overrides SceneOptions::overrides() const {
     if (option.flag->count() == 0) continue;
     for (const format::Override& other : set)
       if (other.sets(option.key))
-        throw base::Error(base::ErrorKind::kUsage,
-                          fmt::format("{} and --set {} set the same key; omit one of them", option.name, other.typed));
+        base::refuse(fmt::format("{} and --set {} set the same key; omit one of them", option.name, other.typed));
     out.add_option(option.name, option.key, option.value, option.is_list);
   }
   for (const format::Override& other : set) out.add(other);
@@ -63,10 +62,8 @@ int SceneOptions::frame() const {
   if (frame_.empty()) return format::kFirstFrame;
   const std::vector<int> frames = base::parse_frames(frame_);
   if (frames.size() != 1)
-    throw base::Error(
-        base::ErrorKind::kUsage,
-        fmt::format("--frame {} selects {} frames, but this command takes one; orrery check takes several", frame_,
-                    frames.size()));
+    base::refuse(fmt::format("--frame {} selects {} frames, but this command takes one; orrery check takes several",
+                             frame_, frames.size()));
   return frames.front();
 }
 

@@ -1,7 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <algorithm>
-#include <charconv>
-#include <chrono>
 #include <cstdio>
 #include <limits>
 #include <memory>
@@ -14,6 +12,8 @@
 #include "base/error.h"
 #include "base/file_name.h"
 #include "base/frames.h"
+#include "base/stopwatch.h"
+#include "base/text.h"
 #include "cli/commands.h"
 #include "cli/messages.h"
 #include "cli/progress.h"
@@ -40,15 +40,10 @@ ProgressStyle style_of(const RenderOptions& options) {
 template <class Number>
 std::optional<std::pair<Number, Number>> pair_of(const std::string& text, char separator) {
   const std::size_t at = text.find(separator);
-  std::pair<Number, Number> out;
-  const auto parse = [](const char* begin, const char* end, Number& number) {
-    const auto [stopped, error] = std::from_chars(begin, end, number);
-    return error == std::errc() && stopped == end && begin != end;
-  };
-  if (at == std::string::npos || !parse(text.data(), text.data() + at, out.first) ||
-      !parse(text.data() + at + 1, text.data() + text.size(), out.second))
-    return {};
-  return out;
+  if (at == std::string::npos) return {};
+  const auto first = base::number_of<Number>(text.substr(0, at)), second = base::number_of<Number>(text.substr(at + 1));
+  if (!first || !second) return {};
+  return std::pair{*first, *second};
 }
 
 void read_shard(const RenderOptions& options, job::Job& job) {
@@ -80,16 +75,14 @@ class BatchProgress {
   }
   void update(const render::Progress& p) {
     if (count_ <= 1) return printer_.update({p.samples_done, p.samples_total, p.seconds, p.goal});
-    const double seconds = std::chrono::duration<double>(Clock::now() - start_).count();
-    printer_.update({index_ * p.samples_total + p.samples_done, count_ * p.samples_total, seconds,
+    printer_.update({index_ * p.samples_total + p.samples_done, count_ * p.samples_total, watch_.seconds(),
                      fmt::format("{} of {}", index_ + 1, count_)});
   }
 
  private:
-  using Clock = std::chrono::steady_clock;
   ProgressPrinter& printer_;
   std::size_t index_ = 0, count_ = 1;
-  Clock::time_point start_ = Clock::now();
+  base::Stopwatch watch_;
 };
 
 /// Starts a preview and connects the hooks of jobs with it; null and no hooks without one.
@@ -143,7 +136,7 @@ void add_summary(std::string& out, const job::Job& job, const job::JobReport& re
   out += '\n';
   if (!detail.is_verbose) return;
   if (r.accelerator.empty()) return;  // a merge
-  const std::string rods = report.rods > 0 ? fmt::format(", {} rod{}", report.rods, report.rods == 1 ? "" : "s") : "";
+  const std::string rods = report.rods > 0 ? ", " + base::counted(report.rods, "rod") : "";
   out += fmt::format("{} spheres{}, {}, {}, traversal {}, {} threads, {} rays; scene {}\n", report.spheres, rods,
                      r.accelerator, r.isa, r.traversal, r.threads, r.rays, report.scene_hash);
   const job::Phases& p = report.phases;

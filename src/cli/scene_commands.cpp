@@ -45,8 +45,7 @@ std::string warnings_text(const info::SceneInfo& info) {
 
 /// Rejects an option that does not apply to the kind of file.
 void refuse_option(bool is_given, const std::string& option, const InfoOptions& options, const char* kind) {
-  if (is_given)
-    throw base::Error(base::ErrorKind::kUsage, fmt::format("{}: {} is a {}", option, options.file.string(), kind));
+  if (is_given) base::refuse(fmt::format("{}: {} is a {}", option, options.file.string(), kind));
 }
 
 int data_info(const InfoOptions& options) {

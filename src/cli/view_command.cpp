@@ -1,13 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
-#include <fcntl.h>
-#include <spawn.h>
-#include <sys/wait.h>
-#include <unistd.h>
-
 #include <algorithm>
 #include <atomic>
 #include <chrono>
-#include <cstring>
+#include <cstdio>
 #include <memory>
 #include <set>
 #include <string>
@@ -221,24 +216,11 @@ view::Wish first_wish(std::vector<std::string>& words, const view::Controls& con
 
 /// Opens an address in the user's browser, without waiting for it.
 void open_in_browser(const std::string& address) {
-  std::string command = "xdg-open", argument = address;
-  char* words[] = {command.data(), argument.data(), nullptr};
-  posix_spawn_file_actions_t actions;
-  posix_spawn_file_actions_init(&actions);
   // Results are printed to stdout, and a browser is talkative.
-  posix_spawn_file_actions_addopen(&actions, STDOUT_FILENO, "/dev/null", O_WRONLY, 0);
-  posix_spawn_file_actions_addopen(&actions, STDERR_FILENO, "/dev/null", O_WRONLY, 0);
-  pid_t browser = 0;
-  const int error = posix_spawnp(&browser, command.c_str(), &actions, nullptr, words, environ);
-  posix_spawn_file_actions_destroy(&actions);
-  if (error != 0) {
-    print_message(fmt::format("orrery: --open: cannot start xdg-open: {}; open the address in a browser\n",
-                              std::strerror(error)));
-    return;
-  }
+  const std::string command = fmt::format("exec xdg-open {} > /dev/null 2>&1", base::shell_quoted(address));
+  std::FILE* const browser = popen(command.c_str(), "re");
   std::thread([browser] {
-    int status = 0;
-    if (waitpid(browser, &status, 0) == browser && status != 0)
+    if (browser == nullptr || pclose(browser) != 0)
       print_message("orrery: --open: no browser was found; open the address in a browser\n");
   }).detach();
 }

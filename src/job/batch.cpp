@@ -1,10 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "job/batch.h"
-
 #include <fmt/core.h>
 
 #include "base/error.h"
 #include "base/frames.h"
+#include "base/text.h"
 #include "job/check_job.h"
 #include "job/job.h"
 #include "job/prepared_scene.h"
@@ -18,13 +17,6 @@ namespace fs = std::filesystem;
 constexpr const char* kScenePattern = "{scene}";
 
 bool has_scene_pattern(const std::string& name) { return name.find(kScenePattern) != std::string::npos; }
-
-std::string with_scene(std::string name, const std::string& stem) {
-  const std::string pattern = kScenePattern;
-  for (std::size_t at = name.find(pattern); at != std::string::npos; at = name.find(pattern, at + stem.size()))
-    name.replace(at, pattern.size(), stem);
-  return name;
-}
 
 /// All output names that the user chose.
 std::vector<fs::path*> names_of(Job& job) {
@@ -74,7 +66,7 @@ std::vector<Job> jobs_of(const Batch& batch) {
       job.scene.file = scene;
       job.scene.frame = frame;
       for (fs::path* name : names_of(job)) {
-        std::string text = with_scene(name->string(), scene.stem().string());
+        std::string text = base::replaced(name->string(), kScenePattern, scene.stem().string());
         *name = batch.frames.empty() ? text : base::with_frame(text, frame);
       }
       add_job_files(job, files, batch.scenes.size() > 1 ? " of " + scene.string() : "");

@@ -32,12 +32,11 @@ std::vector<OutputFile> outputs_of(const Job& job) {
 
 /// A shard holds sums only; images are made from all shards together.
 void check_shard(const Job& job) {
-  const auto refuse = [](const std::string& text) { throw base::Error(base::ErrorKind::kUsage, text); };
   if (job.outputs.images.size() > 1 || job.outputs.images.front().format != image::Format::kExr ||
       !job.outputs.deep.empty())
-    refuse("--sample-range A:B and --shard write one shard, a single EXR; orrery merge makes images from shards");
+    base::refuse("--sample-range A:B and --shard write one shard, a single EXR; orrery merge makes images from shards");
   if (job.sampling.is_adaptive())
-    refuse("--noise and --time need the whole image; they cannot be combined with --sample-range A:B or --shard");
+    base::refuse("--noise and --time need the whole image; they cannot be combined with --sample-range A:B or --shard");
 }
 
 }  // namespace
@@ -56,27 +55,25 @@ void check_request(const Job& job) {
   check_bits(job.outputs.images, job.outputs.bits);
   if (is_shard(job)) check_shard(job);
   if (!job.outputs.deep.empty() && image::format_of(job.outputs.deep) != image::Format::kExr)
-    throw base::Error(base::ErrorKind::kUsage, job.outputs.deep.string() + " cannot hold deep samples; use EXR");
+    base::refuse(job.outputs.deep.string() + " cannot hold deep samples; use EXR");
   if (!job.outputs.deep.empty() && job.denoise)
-    throw base::Error(base::ErrorKind::kUsage,
-                      "--denoise does not filter deep samples; render --deep without --denoise, in a separate run");
+    base::refuse("--denoise does not filter deep samples; render --deep without --denoise, in a separate run");
   for (const OutputFile& output : outputs_of(job)) base::check_creatable(output.path);
   image::check_compression(job.outputs.exr.compression);
-  choose_isa(job.resources.isa);
+  choose_isa();
 }
 
 void check_layers(const Job& job, const scene::Scene& scene) {
   if (!job.outputs.has_exr() && job.keep == nullptr && job.merge.shards.empty() && !scene.output.layers.empty() &&
       job.scene.overrides.sets("output.layers"))
-    throw base::Error(base::ErrorKind::kUsage, "no output can hold the requested layers; add -o FILE.exr");
+    base::refuse("no output can hold the requested layers; add -o FILE.exr");
 }
 
 void check_scene(const Job& job, const compile::CompiledScene& compiled) {
   if (job.sampling.sample_end > static_cast<std::uint32_t>(compiled.samples))
-    throw base::Error(
-        base::ErrorKind::kUsage,
-        fmt::format("--sample-range {}:{} exceeds the scene's {} samples; raise them with --samples {}",
-                    job.sampling.sample_begin, job.sampling.sample_end, compiled.samples, job.sampling.sample_end));
+    base::refuse(fmt::format("--sample-range {}:{} exceeds the scene's {} samples; raise them with --samples {}",
+                             job.sampling.sample_begin, job.sampling.sample_end, compiled.samples,
+                             job.sampling.sample_end));
   for (const ImageFile& output : job.outputs.images) image::check_size(output.path, compiled.width, compiled.height);
 }
 

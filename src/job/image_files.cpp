@@ -28,11 +28,9 @@ namespace {
 void check_kinds(const Development& development) {
   for (const auto& output : development.outputs)
     if (!image::is_display_format(image::format_of(output)))
-      throw base::Error(base::ErrorKind::kUsage,
-                        output.string() + " has a scene-linear format; write png, tiff, jpg or ppm");
+      base::refuse(output.string() + " has a scene-linear format; write png, tiff, jpg or ppm");
   if (image::is_display_format(image::format_of(development.input)))
-    throw base::Error(base::ErrorKind::kUsage,
-                      development.input.string() + " is already display-encoded; the input must be exr or hdr");
+    base::refuse(development.input.string() + " is already display-encoded; the input must be exr or hdr");
 }
 
 }  // namespace
@@ -65,8 +63,7 @@ DevelopReport develop_file(const Development& development) {
 DenoisedFile denoise_file(const Denoising& denoising) {
   for (const std::filesystem::path& file : {denoising.input, denoising.output})
     if (image::format_of(file) != image::Format::kExr)
-      throw base::Error(base::ErrorKind::kUsage,
-                        file.string() + " is not an EXR file; denoising needs scene-linear EXR");
+      base::refuse(file.string() + " is not an EXR file; denoising needs scene-linear EXR");
   base::FileSet files;
   files.add_input(denoising.input, "image");
   files.add_output(denoising.output, "-o");
@@ -89,8 +86,7 @@ DenoisedFile denoise_file(const Denoising& denoising) {
 void bake_file(const display::Settings& display, int cube_size, const std::filesystem::path& file) {
   const std::string extension = base::extension(file);
   if (extension != ".cube" && extension != ".clf")
-    throw base::Error(base::ErrorKind::kUsage,
-                      file.string() + " is not a display transform file; use the extension .cube or .clf");
+    base::refuse(file.string() + " is not a display transform file; use the extension .cube or .clf");
   base::FileSet files;
   load::add_ocio_configs(display.config, files);
   files.add_output(file, "-o");

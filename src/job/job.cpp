@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "job/job.h"
 
-#include <chrono>
 #include <new>
 #include <optional>
 #include <utility>
@@ -12,6 +11,7 @@
 #include "base/atomic_file.h"
 #include "base/available_memory.h"
 #include "base/stop_point.h"
+#include "base/stopwatch.h"
 #include "base/text.h"
 #include "compile/compiled_scene.h"
 #include "denoise/denoise.h"
@@ -42,20 +42,6 @@
 
 namespace orrery::job {
 namespace {
-
-/// Seconds since the last call.
-class Stopwatch {
- public:
-  double lap() {
-    const auto now = std::chrono::steady_clock::now();
-    const double seconds = std::chrono::duration<double>(now - last_).count();
-    last_ = now;
-    return seconds;
-  }
-
- private:
-  std::chrono::steady_clock::time_point last_ = std::chrono::steady_clock::now();
-};
 
 [[noreturn]] void stop_job(const std::string& remedy = "") {
   throw base::Error(base::ErrorKind::kStopped, "stopped; no image was written" + remedy);
@@ -266,7 +252,7 @@ class Run {
   /// Result     null if the job was cancelled meanwhile
   accel::Accel* build() {
     const bool is_built = prepared_->has_accelerator();
-    Stopwatch watch;
+    base::Stopwatch watch;
     accel::Accel* accel = nullptr;
     try {
       accel = &prepared_->accelerator(settings_.threads, [this](double fraction) {
@@ -401,8 +387,8 @@ class Run {
   annotation::Drawing drawing_;   ///< over the image
   render::Settings settings_;
   std::optional<Checkpoint> checkpoint_;
-  Stopwatch watch_;  ///< of the phases
-  Stopwatch since_begin_;
+  base::Stopwatch watch_;  ///< of the phases
+  base::Stopwatch since_begin_;
 };
 
 /// True if a failure may be written to the statistics file. It may not if the request is invalid, since the error may
@@ -441,7 +427,7 @@ JobReport run_job(const Job& job) {
     if (may_report(job, report, error, files)) write_failure(job.outputs.statistics, report, error);
     throw error;
   }
-  if (!job.outputs.statistics.empty() && !report.was_skipped) write_statistics(job.outputs.statistics, report, {});
+  if (!job.outputs.statistics.empty() && !report.was_skipped) write_statistics(job.outputs.statistics, report);
   return report;
 }
 

@@ -17,6 +17,7 @@
 #include "film/picture.h"
 #include "image/header.h"
 #include "image/write.h"
+#include "job/check_job.h"
 #include "job/outputs.h"
 #include "job/resources.h"
 #include "job/shards.h"
@@ -133,5 +134,20 @@ struct JobReport {
 /// Domain     at least one output, or `keep` and none: no deep image, no checkpoint, no shard
 /// Errors     base::Error of any kind; kStopped if `cancel` stopped the job, in which case no image was written
 JobReport run_job(const Job& job);
+
+/// Frames and scenes to render with one command.
+struct Batch {
+  Job job;  ///< the settings that all jobs share; its file names have patterns for the frame and the scene
+  std::vector<std::filesystem::path> scenes;
+  std::vector<int> frames;         ///< empty: one still image per scene
+  std::vector<OutputFile> others;  ///< files that the caller writes
+};
+
+/// Creates one job per frame and scene. In file names, replaces `####` and `%04d` by the frame, and `{scene}` by the
+/// scene's file name without its extension. The jobs share one set of files, which detects conflicts between them.
+///
+/// Errors     base::Error(kUsage) if a file would be written twice, if an output is an input, or if a name lacks a
+///            needed pattern or has a frame pattern without frames
+std::vector<Job> jobs_of(const Batch& batch);
 
 }  // namespace orrery::job

@@ -2,10 +2,8 @@
 #include "job/resources.h"
 
 #include <algorithm>
-#include <charconv>
 #include <cstdint>
 #include <cstdlib>
-#include <cstring>
 #include <string>
 
 #include <fmt/core.h>
@@ -13,6 +11,7 @@
 #include "accel/accel.h"
 #include "base/available_memory.h"
 #include "base/error.h"
+#include "base/file_name.h"
 #include "base/text.h"
 #include "compile/compiled_scene.h"
 #include "compile/environment.h"
@@ -32,11 +31,7 @@ namespace {
 /// Threads that a scheduler grants; 0 if the variable is unset or not a positive integer.
 int granted_by(const char* variable) {
   const char* const text = std::getenv(variable);
-  if (text == nullptr) return 0;
-  int granted = 0;
-  const char* const end = text + std::strlen(text);
-  const auto [stopped, error] = std::from_chars(text, end, granted);
-  return error == std::errc() && stopped == end ? std::max(granted, 0) : 0;
+  return text != nullptr ? std::max(base::number_of<int>(text).value_or(0), 0) : 0;
 }
 
 using base::bytes_text;
@@ -121,10 +116,6 @@ double bytes_per_pixel(const Job& job, image::Format format, const film::LayerRe
   return bytes;
 }
 
-std::filesystem::path folder_of(const std::filesystem::path& file) {
-  return file.has_parent_path() ? file.parent_path() : ".";
-}
-
 }  // namespace
 
 int default_threads(const std::filesystem::path& root) {
@@ -135,14 +126,11 @@ int default_threads(const std::filesystem::path& root) {
   return threads;
 }
 
-void choose_isa(const std::string& name) {
-  const char* const of_environment = std::getenv("ORRERY_ISA");
-  const bool is_of_environment = name.empty() && of_environment != nullptr;
-  const std::string isa = is_of_environment ? of_environment : name;
-  if (kernel::limit_isa(isa)) return;
-  throw base::Error(base::ErrorKind::kUsage,
-                    fmt::format("{}instruction set {} is not available; this processor and program have {}",
-                                is_of_environment ? "$ORRERY_ISA: " : "", isa, base::joined(kernel::available_isas())));
+void choose_isa() {
+  const char* const isa = std::getenv("ORRERY_ISA");
+  if (!kernel::limit_isa(isa != nullptr ? isa : ""))
+    base::refuse(fmt::format("$ORRERY_ISA: instruction set {} is not available; this processor and program have {}",
+                             isa, base::joined(kernel::available_isas())));
 }
 
 MemoryEstimate estimate_memory(const MemoryNeeds& needs) {
@@ -223,8 +211,8 @@ std::map<std::filesystem::path, double> estimate_disk_space(const Job& job, int 
   const double pixels = static_cast<double>(width_px) * height_px;
   std::map<std::filesystem::path, double> needed;
   for (const auto& [file, format] : job.outputs.images)
-    needed[folder_of(file)] += pixels * bytes_per_pixel(job, format, layers);
-  if (!job.outputs.deep.empty()) needed[folder_of(job.outputs.deep)] += pixels * kDeepBytes;
+    needed[base::folder_of(file)] += pixels * bytes_per_pixel(job, format, layers);
+  if (!job.outputs.deep.empty()) needed[base::folder_of(job.outputs.deep)] += pixels * kDeepBytes;
   return needed;
 }
 

@@ -20,7 +20,6 @@ struct Resources {
   int threads = 0;                 ///< 0: default_threads()
   std::uint64_t memory_limit = 0;  ///< bytes; 0: the free memory
   std::uint64_t disk_limit = 0;    ///< bytes per file system; 0: its free space
-  std::string isa;                 ///< best instruction set to use, "avx2"; empty: see choose_isa()
 };
 
 /// Default thread count: the minimum of the affinity mask's CPUs, the CPU quotas of the process's control groups,
@@ -29,11 +28,11 @@ struct Resources {
 /// Domain     see base::control_groups
 int default_threads(const std::filesystem::path& root = "/");
 
-/// Limits kernel and accelerators to this instruction set; empty: that of the environment variable ORRERY_ISA, which is
-/// for tests and comparisons, or else the best available.
+/// Limits kernel and accelerators to the instruction set of the environment variable ORRERY_ISA, which is for tests and
+/// comparisons; unset: the best available.
 ///
 /// Errors     base::Error(kUsage) if the program or the processor lacks it; the message lists the available ones
-void choose_isa(const std::string& name = {});
+void choose_isa();
 
 /// Estimated peak memory of a render, in bytes, computed without building anything.
 struct MemoryEstimate {

@@ -47,8 +47,7 @@ base::Diagnostic as_left_out(base::Diagnostic diagnostic) {
 
 [[noreturn]] void refuse(ErrorKind kind, std::vector<base::Diagnostic> diagnostics) {
   const std::size_t count = diagnostics.size();
-  throw base::Error(kind, fmt::format("the shards cannot be merged: {} {}", count, count == 1 ? "error" : "errors"),
-                    std::move(diagnostics));
+  throw base::Error(kind, "the shards cannot be merged: " + base::counted(count, "error"), std::move(diagnostics));
 }
 
 /// The samples that each pixel has so far, and the shards they came from.
@@ -212,7 +211,7 @@ std::vector<ShardFile> read_shards(const std::vector<std::filesystem::path>& fil
   const base::StopPoint stop;
   for (const std::filesystem::path& file : files) {
     stop.check();
-    if (!seen.add_input(file, "shard")) throw base::Error(ErrorKind::kUsage, file.string() + " is given twice");
+    if (!seen.add_input(file, "shard")) base::refuse(file.string() + " is given twice");
     try {
       shards.push_back({file, image::read_provenance(file)});
     } catch (const base::Error& error) {
@@ -252,8 +251,7 @@ void take_scene(const ShardFile& shard, Job& job) {
   if (job.scene.file.empty()) job.scene.file = value("scene");
   std::istringstream lines(value("overrides"));
   for (std::string line; std::getline(lines, line);) job.scene.overrides.add(line);
-  const std::string frame = value("frame");
-  std::from_chars(frame.data(), frame.data() + frame.size(), job.scene.frame);
+  job.scene.frame = base::number_of<int>(value("frame")).value_or(job.scene.frame);
   for (ImageFile& output : job.outputs.images) output.path = base::with_frame(output.path.string(), job.scene.frame);
   if (!job.outputs.statistics.empty())
     job.outputs.statistics = base::with_frame(job.outputs.statistics.string(), job.scene.frame);

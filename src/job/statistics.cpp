@@ -27,16 +27,19 @@ nlohmann::json bad_values_json(const film::BadValues& bad) {
 
 }  // namespace
 
-std::string statistics_json(const JobReport& report, const Outcome& outcome) {
+std::string statistics_json(const JobReport& report, const base::Error* error) {
   using nlohmann::json;
   const render::Statistics& r = report.render;
   const auto per_second = [&](std::uint64_t n) { return r.render_s > 0 ? static_cast<double>(n) / r.render_s : 0.0; };
+  const char* const reason = error == nullptr                             ? "completed"
+                             : error->kind() == base::ErrorKind::kStopped ? "stopped"
+                                                                          : "failed";
   const double pixels = static_cast<double>(report.width) * report.height;
   json versions = {{"orrery", program_version()}};
   for (const auto& [name, version] : library_versions()) versions[name] = version;
   json out = {{"schema", "orrery.stats/1"},
-              {"exit_reason", outcome.reason},
-              {"exit_status", outcome.exit_status},
+              {"exit_reason", reason},
+              {"exit_status", error != nullptr ? base::exit_status(error->kind()) : 0},
               {"scene_hash", report.scene_hash},
               {"width", report.width},
               {"height", report.height},
@@ -77,19 +80,18 @@ std::string statistics_json(const JobReport& report, const Outcome& outcome) {
               {"accelerator", r.accelerator},
               {"versions", versions}};
   for (const auto& [layer, bad] : report.bad_layers) out["bad_pixels"]["layers"][layer] = bad_values_json(bad);
-  if (!outcome.error.empty()) out["error"] = outcome.error;
+  if (error != nullptr) out["error"] = error->what();
   return json_text(out);
 }
 
-void write_statistics(const std::filesystem::path& file, const JobReport& report, const Outcome& outcome) {
-  base::write_text_file(file, statistics_json(report, outcome));
+void write_statistics(const std::filesystem::path& file, const JobReport& report, const base::Error* error) {
+  base::write_text_file(file, statistics_json(report, error));
 }
 
 void write_failure(const std::filesystem::path& file, const JobReport& report, const base::Error& error) {
   if (file.empty()) return;
-  const bool stopped = error.kind() == base::ErrorKind::kStopped;
   try {
-    write_statistics(file, report, {stopped ? "stopped" : "failed", base::exit_status(error.kind()), error.what()});
+    write_statistics(file, report, &error);
   } catch (const base::Error&) {
   }
 }

@@ -10,20 +10,15 @@ namespace orrery::job {
 
 struct JobReport;
 
-/// Outcome of a job.
-struct Outcome {
-  std::string reason = "completed";  ///< "completed", "stopped", "failed"
-  int exit_status = 0;               ///< exit status of the program
-  std::string error;                 ///< message; empty: none
-};
-
 /// Statistics of a job as JSON, schema "orrery.stats/1": docs/statistics.md.
-std::string statistics_json(const JobReport& report, const Outcome& outcome);
+///
+/// `error`    that ended the job; null: it is complete
+std::string statistics_json(const JobReport& report, const base::Error* error = nullptr);
 
 /// Writes statistics_json to a file.
 ///
 /// Errors     base::Error: kCannotCreate, kIo
-void write_statistics(const std::filesystem::path& file, const JobReport& report, const Outcome& outcome);
+void write_statistics(const std::filesystem::path& file, const JobReport& report, const base::Error* error = nullptr);
 
 /// Writes the statistics of a job that ended with an error, if it has a file for them. Errors of writing are dropped.
 void write_failure(const std::filesystem::path& file, const JobReport& report, const base::Error& error);

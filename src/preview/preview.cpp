@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "preview/preview.h"
 
-#include <charconv>
 #include <chrono>
 #include <exception>
 #include <string>
@@ -14,6 +13,7 @@
 #include "base/error.h"
 #include "base/file_name.h"
 #include "base/frames.h"
+#include "base/text.h"
 #include "preview/file_sink.h"
 #include "preview/tev.h"
 
@@ -22,14 +22,12 @@ namespace orrery::preview {
 namespace {
 
 [[noreturn]] void refuse(const std::string& text) {
-  throw base::Error(base::ErrorKind::kUsage,
-                    fmt::format("--preview: {}; write tev, tev:HOST:PORT, or the name of a .png file", text));
+  base::refuse(fmt::format("--preview: {}; write tev, tev:HOST:PORT, or the name of a .png file", text));
 }
 
 bool is_port(const std::string& text) {
-  int number = 0;
-  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), number);
-  return error == std::errc() && end == text.data() + text.size() && number > 0 && number < 65536;
+  const int number = base::number_of<int>(text).value_or(0);
+  return number > 0 && number < 65536;
 }
 
 /// Parses HOST, HOST:PORT or [IPV6]:PORT.
@@ -59,8 +57,7 @@ Target parse_target(const std::string& text) {
   if (text.empty()) return {};
   if (text == "tev") return {TargetKind::kTev, kTevHost, kTevPort, {}};
   if (base::has_frame_pattern(text))
-    throw base::Error(
-        base::ErrorKind::kUsage,
+    base::refuse(
         fmt::format("--preview: {} has a frame pattern; all frames share one preview, so write one name", text));
   if (base::extension(text) == ".png") return {TargetKind::kFile, {}, {}, text};
   if (text.starts_with("tev:")) return tev_at(text.substr(4));
@@ -161,21 +158,24 @@ void Preview::answer() {
 }
 
 void Preview::serve(Request request) {
-  try {
-    if (request == Request::kBegin && !failed_) sink_->begin(picture_, *canvas_);
-    if (request == Request::kEnd) refresh();
-    if (request == Request::kEnd && !failed_) sink_->finish();
-  } catch (const std::exception& error) {
-    failed_ = true;
-    on_note_(base::warning_line(fmt::format("the preview ended: {}", error.what())));
-  }
+  if (request == Request::kBegin) attempt([this] { sink_->begin(picture_, *canvas_); });
+  if (request != Request::kEnd) return;
+  refresh();
+  attempt([this] { sink_->finish(); });
 }
 
 void Preview::refresh() {
-  if (failed_) return;
-  const std::vector<std::size_t> cells = canvas_->take_changed();
-  try {
+  attempt([this] {
+    const std::vector<std::size_t> cells = canvas_->take_changed();
     if (!cells.empty()) sink_->update(cells);
+  });
+}
+
+/// Does something with the sink, whose failure ends the preview.
+void Preview::attempt(const std::function<void()>& what) {
+  if (failed_) return;
+  try {
+    what();
   } catch (const std::exception& error) {
     failed_ = true;
     on_note_(base::warning_line(fmt::format("the preview ended: {}", error.what())));

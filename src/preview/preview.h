@@ -3,6 +3,7 @@
 
 #include <condition_variable>
 #include <filesystem>
+#include <functional>
 #include <memory>
 #include <mutex>
 #include <optional>
@@ -109,6 +110,7 @@ class Preview {
   void answer();
   void serve(Request request);
   void refresh();
+  void attempt(const std::function<void()>& what);
 
   std::unique_ptr<Sink> sink_;
   OnNote on_note_;

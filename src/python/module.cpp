@@ -119,7 +119,7 @@ struct Prepared {
 };
 
 Picture render_scene(const SceneData& scene, Prepared& prepared, double noise, double seconds, int threads,
-                     std::uint64_t memory_limit, const std::string& isa, bool denoise, const py::object& on_progress,
+                     std::uint64_t memory_limit, bool denoise, const py::object& on_progress,
                      const py::object& on_warning) {
   job::Job job;
   job.scene = scene.source();
@@ -127,7 +127,6 @@ Picture render_scene(const SceneData& scene, Prepared& prepared, double noise, d
   job.sampling.seconds = seconds;
   job.resources.threads = threads;
   job.resources.memory_limit = memory_limit;
-  job.resources.isa = isa;
   job.denoise = denoise;
   const auto make_job = [&job] { return std::move(job); };
   if (prepared.is_in_use.exchange(true)) return render(make_job, on_progress, on_warning);

@@ -23,7 +23,6 @@
 #include "cli/subject.h"
 #include "data/table_file.h"
 #include "formats/open.h"
-#include "job/batch.h"
 #include "job/job.h"
 #include "python/arrays.h"
 #include "python/picture.h"

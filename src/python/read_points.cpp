@@ -11,6 +11,8 @@
 #include <string>
 #include <vector>
 
+#include <fmt/core.h>
+
 #include "base/available_memory.h"
 #include "base/error.h"
 #include "base/text.h"
@@ -41,9 +43,8 @@ ReadPoints read(const std::filesystem::path& file, int frame, std::optional<int>
   ReadPoints out;
   out.frames = opened->frame_count();
   if (frame < 1 || frame > out.frames)
-    throw base::Error(base::ErrorKind::kUsage, "there is no frame " + std::to_string(frame) + "; " + file.string() +
-                                                   " has " + std::to_string(out.frames) +
-                                                   (out.frames == 1 ? " frame" : " frames"));
+    base::refuse(fmt::format("there is no frame {}; {} has {}", frame, file.string(),
+                             base::counted(static_cast<std::uint64_t>(out.frames), "frame")));
   out.info = opened->describe(frame - 1);
   points::add_derived_columns(out.info);
   std::vector<std::string> known, wanted, sources;
@@ -55,8 +56,7 @@ ReadPoints read(const std::filesystem::path& file, int frame, std::optional<int>
   }
   for (const std::string& name : names)
     if (!base::contains(known, name))
-      throw base::Error(base::ErrorKind::kUsage,
-                        file.string() + " has no column `" + name + "`; its columns are " + base::joined(known));
+      base::refuse(file.string() + " has no column `" + name + "`; its columns are " + base::joined(known));
   for (const std::string& source : sources)
     if (!base::contains(wanted, source)) wanted.push_back(source);
   out.table = opened->read(frame - 1, wanted);

@@ -1,23 +1,21 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "python/view.h"
 
-#include <charconv>
 #include <cstddef>
 #include <utility>
 
 #include <fmt/core.h>
 
 #include "base/error.h"
+#include "base/text.h"
 #include "view/wish.h"
 
 namespace orrery::python {
 namespace {
 
 double noise_of(const std::string& text) {
-  double out = 0;
-  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), out);
-  if (error != std::errc() || end != text.data() + text.size() || !(out >= 1e-6 && out <= 1))
-    base::refuse(fmt::format("--noise {}: must be a number from 0.000001 to 1", text));
+  const double out = base::number_of<double>(text).value_or(0);
+  if (!(out >= 1e-6 && out <= 1)) base::refuse(fmt::format("--noise {}: must be a number from 0.000001 to 1", text));
   return out;
 }
 

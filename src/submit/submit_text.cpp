@@ -12,11 +12,7 @@ namespace {
 
 using Words = std::vector<std::string>;
 
-std::string replaced(std::string text, const std::string& what, const std::string& by) {
-  for (std::size_t at = text.find(what); at != std::string::npos; at = text.find(what, at + by.size()))
-    text.replace(at, what.size(), by);
-  return text;
-}
+using base::replaced;
 
 /// One shell command line. `frame` and `shard` replace their placeholders, outside quotes so that the shell expands
 /// them.
@@ -150,7 +146,7 @@ std::string openjd_text(const Submission& s, const Commands& c) {
   const auto step = [&](const char* name, const Words& words, ordered_json parameters) {
     Words arguments = words;
     for (std::string& word : arguments)
-      word = replaced(replaced(word, {Commands::kFrame}, frame), {Commands::kShard}, shard);
+      word = replaced(replaced(word, {&Commands::kFrame, 1}, frame), {&Commands::kShard, 1}, shard);
     const std::string command = arguments.front();
     arguments.erase(arguments.begin());
     return ordered_json{

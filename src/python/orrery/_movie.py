@@ -13,8 +13,8 @@ import numpy as np
 
 from orrery import _arguments, _orrery
 from orrery._arguments import Path
-from orrery._plot import _limits, _named, _source, _warn, _words
-from orrery._scene import Progress
+from orrery._plot import _named, _source, _warn, _words
+from orrery._scene import Progress, _limits
 
 
 class Movie:

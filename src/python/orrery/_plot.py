@@ -13,7 +13,7 @@ import numpy as np
 from orrery import _arguments, _arrays, _keys, _orrery
 from orrery._errors import SceneWarning
 from orrery._picture import Picture
-from orrery._scene import Progress, _limit
+from orrery._scene import Progress, _limits
 
 _REPEATED = ("select", "slice", "opacity", "label")  # options that can be given several times
 _PER_PARTICLE = ("radius", "color_by", "opacity")  # options that arrays may replace
@@ -51,19 +51,6 @@ def plot(
     limits, report = _limits(threads, memory_limit, on_progress)
     native, notes = _orrery.plot(source, _words(options), *limits, report, _warn)
     return Picture(native, notes)
-
-
-def _limits(threads, memory_limit, on_progress):
-    """Returns threads and memory limit, and the function that receives progress, as the extension module takes them."""
-    threads = 0 if threads is None else _arguments.whole("threads", threads, 1, 1024)
-    memory = int(_limit("memory_limit", memory_limit, 1, 2**63))
-    if on_progress is not None and not callable(on_progress):
-        raise TypeError(f"on_progress is {on_progress!r}; must be a function")
-
-    def report(*values):
-        on_progress(Progress(*values))
-
-    return (threads, memory), report if on_progress else None
 
 
 def _warn(text):

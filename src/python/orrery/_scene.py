@@ -224,23 +224,16 @@ class Scene:
 
         Other Python threads can run in the meantime. KeyboardInterrupt, and an exception in on_progress, stop the render.
         """
-        sizes = [None if n is None else _arguments.whole(name, n) for name, n in (("width", width), ("height", height))]
-        samples = None if samples is None else _arguments.whole("samples", samples)
+        counts = _counts(width, height, samples)
         frame = _arguments.whole("frame", frame)
-        limits = [_limit("noise", noise, 1e-6, 1), _limit("time", time, 1e-3, 1e9)]
-        threads = 0 if threads is None else _arguments.whole("threads", threads, 1, 1024)
-        memory = int(_limit("memory_limit", memory_limit, 1, 2**63))
-        if on_progress is not None and not callable(on_progress):
-            raise TypeError(f"on_progress is {on_progress!r}; must be a function")
-        data = self._data(*sizes, samples, frame, memory)
-
-        def report(*values):
-            on_progress(Progress(*values))
+        targets = [_limit("noise", noise, 1e-6, 1), _limit("time", time, 1e-3, 1e9)]
+        (threads, memory), report = _limits(threads, memory_limit, on_progress)
+        data = self._data(*counts, frame, memory)
 
         def warn(text):
             warnings.warn(text.rstrip("\n"), SceneWarning, stacklevel=3)
 
-        return Picture(data.render(self._prepared, *limits, threads, memory, "", bool(denoise), report if on_progress else None, warn))
+        return Picture(data.render(self._prepared, *targets, threads, memory, bool(denoise), report, warn))
 
     def view(
         self,
@@ -264,13 +257,11 @@ class Scene:
 
         A notebook shows the page if the browser runs on the same machine, or reaches the port through a tunnel.
         """
-        sizes = [None if n is None else _arguments.whole(name, n) for name, n in (("width", width), ("height", height))]
-        samples = None if samples is None else _arguments.whole("samples", samples)
+        width, height, samples = _counts(width, height, samples)
         noise = None if noise is None else _limit("noise", noise, 1e-6, 1)
-        threads = 0 if threads is None else _arguments.whole("threads", threads, 1, 1024)
-        memory = int(_limit("memory_limit", memory_limit, 1, 2**63))
-        data = self._data(*sizes, None, _arguments.whole("frame", frame), memory)
-        options = {"--width": sizes[0], "--height": sizes[1], "--samples": samples, "--noise": noise}
+        (threads, memory), _ = _limits(threads, memory_limit, None)
+        data = self._data(width, height, None, _arguments.whole("frame", frame), memory)
+        options = {"--width": width, "--height": height, "--samples": samples, "--noise": noise}
         options = {name: repr(value) for name, value in options.items() if value is not None}
         if denoise:
             options["--denoise"] = "on"
@@ -340,6 +331,25 @@ def _is_ordinary(center, radius, material, name, group):
 def _limit(name, value, low, high):
     """Returns a limit of a render; 0 if it is not set."""
     return 0 if value is None else _arguments.number(name, value, low, high)
+
+
+def _limits(threads, memory_limit, on_progress):
+    """Returns threads and memory limit, and the function that receives progress, as the extension module takes them."""
+    threads = 0 if threads is None else _arguments.whole("threads", threads, 1, 1024)
+    memory = int(_limit("memory_limit", memory_limit, 1, 2**63))
+    if on_progress is not None and not callable(on_progress):
+        raise TypeError(f"on_progress is {on_progress!r}; must be a function")
+
+    def report(*values):
+        on_progress(Progress(*values))
+
+    return (threads, memory), report if on_progress else None
+
+
+def _counts(width, height, samples):
+    """Returns integers; None stays."""
+    values = {"width": width, "height": height, "samples": samples}
+    return [None if value is None else _arguments.whole(name, value) for name, value in values.items()]
 
 
 def _add_column(table, name, values):

@@ -113,9 +113,9 @@ TEST_F(JobRun, RejectsInvalidRequestsBeforeRendering) {
   job_.outputs.exr.compression = "zipps";
   EXPECT_EQ(kind_of_error("a.exr"), base::ErrorKind::kUsage);
   job_.outputs.exr.compression = "zip";
-  job_.resources.isa = "mmx";
+  ::setenv("ORRERY_ISA", "mmx", 1);
   EXPECT_EQ(kind_of_error("a.exr"), base::ErrorKind::kUsage);
-  job_.resources.isa.clear();
+  ::unsetenv("ORRERY_ISA");
   job_.outputs.display.view = "none such";
   EXPECT_EQ(kind_of_error("a.png"), base::ErrorKind::kUsage);
   job_.outputs.display.view.clear();

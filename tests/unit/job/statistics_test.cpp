@@ -19,20 +19,21 @@ TEST(JobStatistics, RatesAreOverTheRenderTime) {
   report.render.rays = 1500;
   report.render.render_s = 3;
   report.phases.write_s = 100;
-  const auto json = nlohmann::json::parse(statistics_json(report, {}));
+  const auto json = nlohmann::json::parse(statistics_json(report));
   EXPECT_EQ(json["paths_per_second"], 200);
   EXPECT_EQ(json["rays_per_second"], 500);
   EXPECT_EQ(json["seconds"]["write"], 100);
 }
 
 TEST(JobStatistics, RatesAreZeroWithoutRenderTime) {
-  const auto json = nlohmann::json::parse(statistics_json({}, {}));
+  const auto json = nlohmann::json::parse(statistics_json({}));
   EXPECT_EQ(json["paths_per_second"], 0);
   EXPECT_EQ(json["rays_per_second"], 0);
 }
 
 TEST(JobStatistics, HasEveryKeyOfTheSchema) {
-  const auto json = nlohmann::json::parse(statistics_json({}, {"failed", 74, "disk full"}));
+  const base::Error full(base::ErrorKind::kIo, "disk full");
+  const auto json = nlohmann::json::parse(statistics_json({}, &full));
   EXPECT_EQ(json["schema"], "orrery.stats/1");
   EXPECT_EQ(json["exit_reason"], "failed");
   EXPECT_EQ(json["exit_status"], 74);
