@@ -33,7 +33,6 @@
 #include "points/color_map.h"
 #include "python/arrays.h"
 #include "python/picture.h"
-#include "python/plot.h"
 #include "python/render.h"
 #include "python/scene_data.h"
 #include "python/view.h"
