@@ -20,58 +20,56 @@
 namespace orrery::cli {
 namespace {
 
-ProgressStyle style_of(bool quiet) { return quiet ? ProgressStyle::kNone : ProgressStyle::kAuto; }
-
 constexpr std::uint64_t kMaxRounds = 1000;
 constexpr double kMaxSeconds = 3600;  // of one measurement
 
-struct BenchOptions {
-  study::BenchRequest request;
+template <class Request>
+struct MeasureOptions {
+  Request request;
   SceneOptions scene;
   bool json = false, quiet = false;
+
+  void add_scene_to(Command& command) {
+    command.add_option("SCENE", request.scene.file, "FILE", "Scene file")->required();
+  }
+  void add_output_to(Command& command, const char* schema) {
+    command.add_flag("--json", json, "Print JSON")->details(schema);
+    command.add_flag("-q,--quiet", quiet, "Do not show progress");
+  }
+
+  /// Completes the request. Returns the printer of its progress.
+  ProgressPrinter begin() {
+    request.scene.overrides = scene.overrides();
+    request.scene.frame = scene.frame();
+    request.cancel = &stop_on_signals();
+    return ProgressPrinter(quiet ? ProgressStyle::kNone : ProgressStyle::kAuto, stderr);
+  }
 };
 
-int bench(BenchOptions& options) {
-  study::BenchRequest& request = options.request;
-  request.scene.overrides = options.scene.overrides();
-  request.scene.frame = options.scene.frame();
-  request.cancel = &stop_on_signals();
-  ProgressPrinter printer(style_of(options.quiet), stderr);
-  request.on_progress = [&](int done, int total) {
+int bench(MeasureOptions<study::BenchRequest>& options) {
+  ProgressPrinter printer = options.begin();
+  options.request.on_progress = [&](int done, int total) {
     printer.update({static_cast<std::uint64_t>(done), static_cast<std::uint64_t>(total), 0,
                     fmt::format("measurement {} of {}", done, total)});
   };
-  const study::Benchmark found = study::bench_scene(request);
+  const study::Benchmark found = study::bench_scene(options.request);
   printer.finish();
   print_result(options.json ? study::benchmark_json(found) : study::benchmark_text(found));
   return 0;
 }
 
-struct StudyOptions {
-  study::Request request;
-  SceneOptions scene;
-  bool json = false, quiet = false;
-};
-
-void check_report_name(const std::filesystem::path& file) {
-  if (base::extension(file) != ".html" && base::extension(file) != ".htm")
-    base::refuse(file.string() + ": the report is an HTML file; name it .html, or print numbers with --json");
-}
-
-int study(StudyOptions& options) {
-  study::Request& request = options.request;
-  request.scene.overrides = options.scene.overrides();
-  request.scene.frame = options.scene.frame();
-  request.cancel = &stop_on_signals();
-  ProgressPrinter printer(style_of(options.quiet), stderr);
-  request.on_progress = [&](const std::string& what, double fraction) {
+int study(MeasureOptions<study::Request>& options) {
+  ProgressPrinter printer = options.begin();
+  options.request.on_progress = [&](const std::string& what, double fraction) {
     constexpr std::uint64_t kSteps = 1000;
     printer.update({static_cast<std::uint64_t>(fraction * kSteps), kSteps, 0, what});
   };
-  if (!request.report.empty()) check_report_name(request.report);
-  const study::Study found = study::run_study(request);
+  const std::filesystem::path& report = options.request.report;
+  if (!report.empty() && base::extension(report) != ".html" && base::extension(report) != ".htm")
+    base::refuse(report.string() + ": the report is an HTML file; name it .html, or print numbers with --json");
+  const study::Study found = study::run_study(options.request);
   printer.finish();
-  if (!request.report.empty()) base::write_text_file(request.report, study::study_html(found));
+  if (!report.empty()) base::write_text_file(report, study::study_html(found));
   print_result(options.json ? study::study_json(found) : study::study_text(found));
   return 0;
 }
@@ -79,10 +77,10 @@ int study(StudyOptions& options) {
 }  // namespace
 
 void add_bench(Command& program) {
-  const auto options = std::make_shared<BenchOptions>();
+  const auto options = std::make_shared<MeasureOptions<study::BenchRequest>>();
   Command& command =
       *program.add_subcommand("bench", "Benchmark a scene in each precision, with Embree and with a list of spheres");
-  command.add_option("SCENE", options->request.scene.file, "FILE", "Scene file")->required();
+  options->add_scene_to(command);
   options->scene.add_to(command, SceneOptions::Short::kSize);
   options->scene.add_frame_to(command);
   add_threads_option(command, options->request.threads, "1");
@@ -92,16 +90,14 @@ void add_bench(Command& program) {
       .add_option("--seconds", options->request.seconds, "SECONDS",
                   "Minimum duration of each repetition, in seconds; default: 0.25")
       ->check(real_number(0.001, kMaxSeconds));
-  command.add_flag("--json", options->json, "Print JSON")->details("Schema orrery.bench/1.");
-  command.add_flag("-q,--quiet", options->quiet, "Do not show progress");
+  options->add_output_to(command, "Schema orrery.bench/1.");
   command.details(
       "Lists of spheres are skipped if they would take too long. Each round measures all cases; results are the ratios "
       "to \"embree exact\" of the same round. With one thread, it also prints the fraction of time spent on ray "
       "tracing alone, and the cost of each feature that the scene lacks.");
   command.footer(
       "Samples, precision, accelerator and layers of the scene have no effect. Larger images are reduced to about "
-      "5,184 "
-      "pixels.\n"
+      "5,184 pixels.\n"
       "Examples:\n"
       "  orrery bench scenes/book/final.toml\n"
       "  orrery bench cloud.toml --threads 8 --rounds 15 --json");
@@ -109,10 +105,10 @@ void add_bench(Command& program) {
 }
 
 void add_study(Command& program) {
-  const auto options = std::make_shared<StudyOptions>();
+  const auto options = std::make_shared<MeasureOptions<study::Request>>();
   Command& command = *program.add_subcommand(
       "study", "Measure the trade-off between render time and error on a scene, and recommend settings");
-  command.add_option("SCENE", options->request.scene.file, "FILE", "Scene file")->required();
+  options->add_scene_to(command);
   command
       .add_option("-o,--output", options->request.report, "FILE",
                   "Write a report: a self-contained HTML file with plots and images")
@@ -129,8 +125,7 @@ void add_study(Command& program) {
   command.add_option("--noise", options->request.noise, "X", "Target noise of the recommendation; default: 0.01")
       ->transform(real_number(1e-4, 1));
   add_threads_option(command, options->request.threads);
-  command.add_flag("--json", options->json, "Print JSON")->details("Schema orrery.study/1.");
-  command.add_flag("-q,--quiet", options->quiet, "Do not show progress");
+  options->add_output_to(command, "Schema orrery.study/1.");
   command.details(
       "Renders a reference, then varies the settings that affect this scene (samples, sampler, --noise, precision, "
       "Russian roulette, depth, Fresnel model, accelerator, file options), and recommends a command, which it has "
