@@ -7,6 +7,7 @@
 #include <optional>
 #include <string>
 #include <string_view>
+#include <system_error>
 #include <vector>
 
 namespace orrery::base {
@@ -63,6 +64,17 @@ std::string closest(std::string_view wrong, const std::vector<std::string>& cand
 
 /// Returns "did you mean `samples`?", or an empty string if no candidate is close.
 std::string did_you_mean(std::string_view wrong, const std::vector<std::string>& candidates);
+
+/// Parses a whole text as a number, as std::from_chars does: regardless of the locale.
+///
+/// `base`     of an integer; default: 10
+/// Result     false for any other text
+template <class T, class... Base>
+bool from_text(std::string_view text, T& value, Base... base) {
+  const char* const end = text.data() + text.size();
+  const auto [stop, error] = std::from_chars(text.data(), end, value, base...);
+  return error == std::errc() && stop == end;
+}
 
 /// Returns whether a list contains a name.
 bool contains(const std::vector<std::string>& names, std::string_view name);

@@ -116,6 +116,17 @@ class BytesInMemory final : public ByteSource {
 
 using Archive = std::unique_ptr<archive, decltype(&archive_read_free)>;
 
+Archive new_archive() {
+  Archive out(archive_read_new(), &archive_read_free);
+  if (!out) throw std::bad_alloc();
+  return out;
+}
+
+std::string error_of(const Archive& archive) {
+  const char* const why = archive_error_string(archive.get());
+  return why != nullptr ? why : "unknown error";
+}
+
 bool is_gzip(std::string_view head) { return head.starts_with("\x1f\x8b"); }
 
 bool is_of_archive_library(std::string_view head) {
@@ -202,13 +213,9 @@ class GzipFile {
 };
 
 ByteBlocks decompressed(const std::filesystem::path& file, std::uint64_t limit) {
-  const Archive in(archive_read_new(), &archive_read_free);
-  if (!in) throw std::bad_alloc();
+  const Archive in = new_archive();
   const auto check = [&](la_ssize_t status) {
-    if (status < ARCHIVE_OK) {
-      const char* const why = archive_error_string(in.get());
-      fail_as_damaged(file, why != nullptr ? why : "unknown error");
-    }
+    if (status < ARCHIVE_OK) fail_as_damaged(file, error_of(in));
     return status;
   };
   archive_read_support_filter_zstd(in.get());
@@ -306,22 +313,19 @@ bool is_compressed(std::string_view head) { return is_gzip(head) || is_of_archiv
 
 /// Connects libarchive to a byte source.
 struct ZipReader::State {
-  explicit State(const ByteSource& source) : bytes(source), in(archive_read_new(), &archive_read_free) {
-    if (!in) throw std::bad_alloc();
-  }
+  explicit State(const ByteSource& source) : bytes(source) {}
 
   /// Raises libarchive's error, or the exception that stopped a callback.
   la_ssize_t check(la_ssize_t status) {
     if (failure) std::rethrow_exception(failure);
     if (status >= ARCHIVE_OK) return status;
-    const char* const why = archive_error_string(in.get());
-    Faults(bytes.file()).fail(0, std::string("damaged ZIP archive: ") + (why != nullptr ? why : "unknown error"));
+    Faults(bytes.file()).fail(0, "damaged ZIP archive: " + error_of(in));
   }
 
   static la_ssize_t read(archive*, void* data, const void** out) {
     State& state = *static_cast<State*>(data);
     try {
-      state.block = state.bytes.text(state.at, kBlockBytes);
+      state.block = state.bytes.text(state.at, kBlock);
     } catch (...) {
       state.failure = std::current_exception();
       return ARCHIVE_FATAL;
@@ -346,10 +350,8 @@ struct ZipReader::State {
     return static_cast<la_int64_t>(state.at);
   }
 
-  static constexpr std::size_t kBlockBytes = std::size_t{1} << 20;
-
   const ByteSource& bytes;
-  std::unique_ptr<archive, decltype(&archive_read_free)> in;
+  Archive in = new_archive();
   std::uint64_t at = 0;
   std::string block;
   std::exception_ptr failure;

@@ -2,109 +2,78 @@
 #include "data/columns.h"
 
 #include <algorithm>
-#include <array>
-#include <charconv>
 #include <utility>
 
 #include <fmt/core.h>
 
 #include "base/text.h"
-#include "data/faults.h"
 #include "data/text_lines.h"
 
 namespace orrery::data {
 
 namespace {
 
-/// ASCII only, whatever the locale is.
-char lower(char c) { return c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c; }
-
-bool equals(std::string_view a, std::string_view b) {
-  return std::equal(a.begin(), a.end(), b.begin(), b.end(), [](char x, char y) { return lower(x) == lower(y); });
-}
-
 using Triple = std::array<const char*, 3>;
 
-/// The columns of a file by name.
-class Names {
- public:
-  explicit Names(const std::vector<ColumnInfo>& columns) : columns_(columns) {}
+/// Returns the column with one of the names, of which earlier ones have priority; null if there is none.
+const ColumnInfo* find(const std::vector<ColumnInfo>& columns, std::initializer_list<const char*> names,
+                       bool (*is_suitable)(const ColumnInfo&)) {
+  for (const char* name : names)
+    for (const ColumnInfo& column : columns)
+      if (base::lower(column.name) == name && is_suitable(column)) return &column;
+  return nullptr;
+}
 
-  /// Returns the column with one of the names, of which earlier ones have priority; null if there is none.
-  const ColumnInfo* find(std::initializer_list<const char*> names) const {
-    for (const char* name : names)
-      for (const ColumnInfo& column : columns_)
-        if (equals(column.name, name)) return &column;
-    return nullptr;
+/// Returns the first three columns of numbers with the names of a triple; empty if there are none.
+std::array<std::string, 3> numbers(const std::vector<ColumnInfo>& columns, std::initializer_list<Triple> triples) {
+  for (const auto& [x, y, z] : triples) {
+    std::array<std::string, 3> out = {number_column(columns, {x}), number_column(columns, {y}),
+                                      number_column(columns, {z})};
+    if (std::find(out.begin(), out.end(), "") == out.end()) return out;
   }
-  bool is_number(const char* name) const {
-    const ColumnInfo* const column = find({name});
-    return column != nullptr && column->type != ColumnType::kText;
-  }
-  std::string number(std::initializer_list<const char*> names) const {
-    for (const char* name : names)
-      if (is_number(name)) return find({name})->name;
-    return {};
-  }
-  std::array<std::string, 3> numbers(std::initializer_list<Triple> triples) const {
-    for (const Triple& t : triples)
-      if (is_number(t[0]) && is_number(t[1]) && is_number(t[2]))
-        return {number({t[0]}), number({t[1]}), number({t[2]})};
-    return {};
-  }
-
- private:
-  const std::vector<ColumnInfo>& columns_;
-};
+  return {};
+}
 
 double full_intensity(ColumnType type) {
-  switch (type) {
-    case ColumnType::kFloat64:
-    case ColumnType::kFloat32: return 1;
-    case ColumnType::kUint16: return 65535;
-    case ColumnType::kInt64:
-    case ColumnType::kInt32:
-    case ColumnType::kUint8:
-    case ColumnType::kText: break;
-  }
-  return 255;
+  const bool is_float = type == ColumnType::kFloat64 || type == ColumnType::kFloat32;
+  return is_float ? 1 : type == ColumnType::kUint16 ? 65535 : 255;
 }
 
 }  // namespace
 
 Roles customary_roles(const std::vector<ColumnInfo>& columns) {
-  const Names names(columns);
+  const auto is_any = [](const ColumnInfo&) { return true; };
+  const auto is_text = [](const ColumnInfo& column) { return column.type == ColumnType::kText; };
   Roles roles;
-  roles.position = names.numbers({{"x", "y", "z"},
-                                  {"pos_x", "pos_y", "pos_z"},
-                                  {"position_x", "position_y", "position_z"},
-                                  {"points:0", "points:1", "points:2"},
-                                  {"points_0", "points_1", "points_2"},
-                                  {"x0", "y0", "z0"}});  // the first ends of segments
-  roles.radius = names.number({"radius", "scalar_radius"});
-  const bool r_is_color = names.find({"g"}) != nullptr && names.find({"b"}) != nullptr;
-  if (roles.radius.empty() && !r_is_color) roles.radius = names.number({"r"});
+  roles.position = numbers(columns, {{"x", "y", "z"},
+                                     {"pos_x", "pos_y", "pos_z"},
+                                     {"position_x", "position_y", "position_z"},
+                                     {"points:0", "points:1", "points:2"},
+                                     {"points_0", "points_1", "points_2"},
+                                     {"x0", "y0", "z0"}});  // the first ends of segments
+  roles.radius = number_column(columns, {"radius", "scalar_radius"});
+  const bool r_is_color = find(columns, {"g"}, is_any) != nullptr && find(columns, {"b"}, is_any) != nullptr;
+  if (roles.radius.empty() && !r_is_color) roles.radius = number_column(columns, {"r"});
   if (roles.radius.empty()) {
-    roles.radius = names.number({"diameter"});
+    roles.radius = number_column(columns, {"diameter"});
     if (!roles.radius.empty()) roles.radius_scale = 0.5;
   }
-  for (const char* name : {"element", "species", "symbol"})
-    if (const ColumnInfo* const column = names.find({name});
-        roles.element.empty() && column != nullptr && column->type == ColumnType::kText)
-      roles.element = column->name;
-  if (const ColumnInfo* const type = names.find({"type", "class", "classification"})) roles.type = type->name;
-  roles.id = names.number({"id"});
-  roles.rgb = names.numbers({{"red", "green", "blue"},
-                             {"r", "g", "b"},
-                             {"diffuse_red", "diffuse_green", "diffuse_blue"},
-                             {"rgb[1]", "rgb[2]", "rgb[3]"},
-                             {"rgba[1]", "rgba[2]", "rgba[3]"},
-                             {"color[1]", "color[2]", "color[3]"},
-                             {"colors[1]", "colors[2]", "colors[3]"},
-                             {"colour[1]", "colour[2]", "colour[3]"},
-                             {"colours[1]", "colours[2]", "colours[3]"}});
-  for (const ColumnInfo& column : columns)
-    if (!roles.rgb[0].empty() && column.name == roles.rgb[0]) roles.rgb_maximum = full_intensity(column.type);
+  if (const ColumnInfo* const element = find(columns, {"element", "species", "symbol"}, is_text))
+    roles.element = element->name;
+  if (const ColumnInfo* const type = find(columns, {"type", "class", "classification"}, is_any))
+    roles.type = type->name;
+  roles.id = number_column(columns, {"id"});
+  roles.rgb = numbers(columns, {{"red", "green", "blue"},
+                                {"r", "g", "b"},
+                                {"diffuse_red", "diffuse_green", "diffuse_blue"},
+                                {"rgb[1]", "rgb[2]", "rgb[3]"},
+                                {"rgba[1]", "rgba[2]", "rgba[3]"},
+                                {"color[1]", "color[2]", "color[3]"},
+                                {"colors[1]", "colors[2]", "colors[3]"},
+                                {"colour[1]", "colour[2]", "colour[3]"},
+                                {"colours[1]", "colours[2]", "colours[3]"}});
+  if (const ColumnInfo* const red = find_named(columns, roles.rgb[0]); red != nullptr && !roles.rgb[0].empty())
+    roles.rgb_maximum = full_intensity(red->type);
   return roles;
 }
 
@@ -117,13 +86,13 @@ Roles required_roles(const std::vector<ColumnInfo>& columns, Faults& faults) {
 }
 
 std::string number_column(const std::vector<ColumnInfo>& columns, std::initializer_list<const char*> names) {
-  return Names(columns).number(names);
+  const ColumnInfo* const found =
+      find(columns, names, [](const ColumnInfo& column) { return column.type != ColumnType::kText; });
+  return found != nullptr ? found->name : "";
 }
 
 bool is_position_name(std::string_view name) {
-  for (const char* known : {"pos", "position", "positions", "coords", "coordinates", "points", "xyz"})
-    if (equals(name, known)) return true;
-  return false;
+  return base::contains({"pos", "position", "positions", "coords", "coordinates", "points", "xyz"}, base::lower(name));
 }
 
 std::vector<std::string> component_names(const std::string& name, std::size_t components,
@@ -163,9 +132,7 @@ int atomic_number(std::string_view word) {
     if (symbol == base::lower(kElementSymbols[i])) return static_cast<int>(i) + 1;
   constexpr auto kLast = static_cast<int>(kElementSymbols.size());
   int number = 0;
-  const auto [end, status] = std::from_chars(word.data(), word.data() + word.size(), number);
-  const bool is_number = status == std::errc() && end == word.data() + word.size();
-  return is_number && number >= 1 && number <= kLast ? number : 0;
+  return base::from_text(word, number) && number >= 1 && number <= kLast ? number : 0;
 }
 
 void settle_element(const std::vector<std::string>& names, Roles& roles) {

@@ -76,17 +76,4 @@ class DataFile {
   virtual std::uint64_t memory() const { return 0; }
 };
 
-/// The first bytes of a file and its extension, used to recognise formats.
-struct Signature {
-  std::string head;       ///< up to 64 KiB, decompressed
-  std::string extension;  ///< lower case, without ".gz", ".zst": ".xyz"; may be empty
-};
-
-/// A format that is read.
-struct FormatReader {
-  const char* name;
-  bool (*recognises)(const Signature& signature);
-  std::unique_ptr<DataFile> (*open)(const Bytes& bytes, const OpenOptions& options);
-};
-
 }  // namespace orrery::data

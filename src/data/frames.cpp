@@ -8,8 +8,6 @@
 #include <fmt/core.h>
 
 #include "base/error.h"
-#include "data/byte_source.h"
-#include "data/faults.h"
 #include "data/text_rows.h"
 
 namespace orrery::data {

@@ -10,7 +10,6 @@
 #include <variant>
 #include <vector>
 
-#include "data/byte_source.h"
 #include "data/columns.h"
 #include "data/data_file.h"
 #include "data/text_lines.h"

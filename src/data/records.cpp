@@ -11,8 +11,6 @@
 #include <fmt/core.h>
 
 #include "base/stop_point.h"
-#include "data/byte_source.h"
-#include "data/faults.h"
 
 namespace orrery::data {
 

@@ -6,7 +6,9 @@
 #include <cstddef>
 #include <cstdint>
 #include <cstring>
+#include <optional>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "data/byte_source.h"
@@ -44,33 +46,36 @@ constexpr std::size_t size_of(NumberType type) {
 /// Returns the column type that stores such numbers: the same type, or the next larger one that represents all of them.
 /// Unsigned 64-bit integers become int64.
 constexpr ColumnType column_type(NumberType type) {
-  switch (type) {
-    case NumberType::kUint8: return ColumnType::kUint8;
-    case NumberType::kUint16: return ColumnType::kUint16;
-    case NumberType::kInt8:
-    case NumberType::kInt16:
-    case NumberType::kInt32: return ColumnType::kInt32;
-    case NumberType::kUint32:
-    case NumberType::kInt64:
-    case NumberType::kUint64: return ColumnType::kInt64;
-    case NumberType::kFloat32: return ColumnType::kFloat32;
-    case NumberType::kFloat64: break;
-  }
-  return ColumnType::kFloat64;
+  constexpr ColumnType kTypes[] = {ColumnType::kInt32,   ColumnType::kUint8,  ColumnType::kInt32, ColumnType::kUint16,
+                                   ColumnType::kInt32,   ColumnType::kInt64,  ColumnType::kInt64, ColumnType::kInt64,
+                                   ColumnType::kFloat32, ColumnType::kFloat64};
+  return kTypes[static_cast<std::size_t>(type)];
+}
+
+/// A file format's name of a number type.
+struct NumberTypeName {
+  std::string_view name;
+  NumberType type;
+};
+
+/// Returns the number type with a name; none if no type has it.
+template <std::size_t count>
+constexpr std::optional<NumberType> number_type(const NumberTypeName (&names)[count], std::string_view name) {
+  for (const NumberTypeName& known : names)
+    if (known.name == name) return known.type;
+  return {};
 }
 
 /// Returns an empty column of a type.
 inline Values empty_values(ColumnType type) {
-  switch (type) {
-    case ColumnType::kFloat64: break;
-    case ColumnType::kFloat32: return std::vector<float>();
-    case ColumnType::kInt64: return std::vector<std::int64_t>();
-    case ColumnType::kInt32: return std::vector<std::int32_t>();
-    case ColumnType::kUint16: return std::vector<std::uint16_t>();
-    case ColumnType::kUint8: return std::vector<std::uint8_t>();
-    case ColumnType::kText: return Words();
-  }
-  return std::vector<double>();
+  static const Values kEmpty[] = {std::vector<double>(),
+                                  std::vector<float>(),
+                                  std::vector<std::int64_t>(),
+                                  std::vector<std::int32_t>(),
+                                  std::vector<std::uint16_t>(),
+                                  std::vector<std::uint8_t>(),
+                                  Words()};
+  return kEmpty[static_cast<std::size_t>(type)];
 }
 
 /// Loads a number of either byte order.

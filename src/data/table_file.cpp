@@ -5,7 +5,6 @@
 #include <utility>
 
 #include "data/columns.h"
-#include "data/faults.h"
 
 namespace orrery::data {
 namespace {

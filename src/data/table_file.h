@@ -6,7 +6,6 @@
 #include <optional>
 
 #include "data/data_file.h"
-#include "data/table.h"
 
 namespace orrery::data {
 

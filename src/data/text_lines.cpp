@@ -6,9 +6,6 @@
 #include <cstring>
 #include <limits>
 
-#include "data/byte_source.h"
-#include "data/faults.h"
-
 namespace orrery::data {
 
 namespace {
@@ -72,8 +69,7 @@ void TextLines::read(const ByteSource& bytes, std::uint64_t first, std::uint64_t
       buffer_[end_++] = '\n';
       break;
     }
-    if (count - static_cast<std::size_t>(last - offset_) > kMaxLineBytes)
-      Faults(bytes.file()).fail(0, "a line is longer than 1 MiB", "the file is damaged, or not a text file");
+    if (count - static_cast<std::size_t>(last - offset_) > kMaxLineBytes) fail_as_too_long(bytes, 0);
     reserve(count + more + kStep + kTextPadding);
     bytes.read(offset_ + count, more, buffer_.get() + count);
     const char* const newline = find_newline(buffer_.get() + count, buffer_.get() + count + more);
@@ -114,9 +110,7 @@ bool TextCursor::next(std::string& text) {
     const auto taken = static_cast<std::size_t>(newline - begin) + (is_complete ? 1 : 0);
     begin_ += taken;
     place_.offset += taken;
-    if (text.size() > kMaxLineBytes)
-      Faults(bytes_->file())
-          .fail(place_.line, "a line is longer than 1 MiB", "the file is damaged, or not a text file");
+    if (text.size() > kMaxLineBytes) fail_as_too_long(*bytes_, place_.line);
   }
   if (place_.offset == start) return false;
   ++place_.line;

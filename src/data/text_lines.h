@@ -18,6 +18,13 @@ namespace orrery::data {
 /// Maximum length of a line, bytes; a file with longer lines is not a text table.
 inline constexpr std::size_t kMaxLineBytes = std::size_t{1} << 20;
 
+/// Throws an error for a line that is longer.
+///
+/// `line`     its number; 0: unknown
+[[noreturn]] inline void fail_as_too_long(const ByteSource& bytes, std::uint64_t line) {
+  Faults(bytes.file()).fail(line, "a line is longer than 1 MiB", "the file is damaged, or not a text file");
+}
+
 /// Number of newlines in [begin, end).
 std::uint64_t newline_count(const char* begin, const char* end);
 

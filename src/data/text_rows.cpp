@@ -24,9 +24,7 @@
 #include <fmt/core.h>
 
 #include "base/stop_point.h"
-#include "data/byte_source.h"
 #include "data/dictionary.h"
-#include "data/faults.h"
 #include "data/text_lines.h"
 
 namespace orrery::data {

@@ -49,8 +49,7 @@ std::size_t AtomTable::add(const Atom& atom) {
   b_factors_.emplace_back();
   occupancies_.emplace_back();
   numbers_.emplace_back();
-  for (std::size_t i = 0; i < kTexts.size(); ++i)
-    texts_[i].index.push_back(texts_[i].words.index_of(atom.*kTexts[i].member));
+  for (Texts& texts : texts_) texts.index.emplace_back();
   set(row, atom);
   return row;
 }

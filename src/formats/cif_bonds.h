@@ -8,9 +8,6 @@
 #include <utility>
 #include <vector>
 
-#include "data/dictionary.h"
-#include "data/faults.h"
-#include "data/table.h"
 #include "formats/atom_table.h"
 
 namespace orrery::formats {

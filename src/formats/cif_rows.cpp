@@ -6,7 +6,6 @@
 #include <gemmi/cif.hpp>
 
 #include "base/text.h"
-#include "data/faults.h"
 
 namespace orrery::formats {
 
@@ -30,27 +29,29 @@ class RowReader {
     has_items_.resize(tables_.size());
   }
 
-  void begin_loop() {
+  void begin_block(std::string_view, std::uint64_t) { end_block(); }
+
+  void begin_loop(std::string_view, std::uint64_t) {
     loop_.clear();
     column_ = 0;
   }
-  void add_loop_tag(const std::string& tag) { loop_.push_back(slot_of(tag)); }
-  void add_loop_value(const std::string& value, std::uint64_t line) {
+  void add_loop_tag(std::string_view tag, std::uint64_t) { loop_.push_back(slot_of(tag)); }
+  void add_loop_value(std::string_view value, std::uint64_t line) {
     const Slot slot = loop_[column_];
-    if (slot.is_wanted) rows_[slot.table][slot.item] = gemmi::cif::as_string(value);
+    if (slot.is_wanted) rows_[slot.table][slot.item] = gemmi::cif::as_string(std::string(value));
     if (++column_ < loop_.size()) return;
     column_ = 0;
     const auto wanted = std::find_if(loop_.begin(), loop_.end(), [](const Slot& s) { return s.is_wanted; });
     if (wanted != loop_.end()) finish_row(wanted->table, line);
   }
-  void end_loop(std::uint64_t line) {
+  void end_loop(std::string_view, std::uint64_t line) {
     if (column_ != 0) faults_.fail(line, "the last row of the table is incomplete");
   }
 
-  void set_tag(const std::string& tag) { item_ = slot_of(tag); }
-  void set_value(const std::string& value, std::uint64_t line) {
+  void set_tag(std::string_view tag, std::uint64_t) { item_ = slot_of(tag); }
+  void set_value(std::string_view value, std::uint64_t line) {
     if (!item_.is_wanted) return;
-    rows_[item_.table][item_.item] = gemmi::cif::as_string(value);
+    rows_[item_.table][item_.item] = gemmi::cif::as_string(std::string(value));
     has_items_[item_.table] = true;
     last_line_ = line;
   }
@@ -62,10 +63,10 @@ class RowReader {
   }
 
  private:
-  Slot slot_of(const std::string& name) const {
+  Slot slot_of(std::string_view name) const {
     const std::string tag = base::lower(name);
     for (std::size_t t = 0; t < tables_.size(); ++t) {
-      if (tag.rfind(tables_[t].category, 0) != 0) continue;
+      if (!tag.starts_with(tables_[t].category)) continue;
       const auto& items = tables_[t].items;
       const auto item = std::find(items.begin(), items.end(), tag.substr(tables_[t].category.size()));
       if (item != items.end()) return {t, static_cast<std::size_t>(item - items.begin()), true};
@@ -87,58 +88,31 @@ class RowReader {
   std::uint64_t last_line_ = 0;
 };
 
+/// Calls a method with the text that a rule has matched, and the number of its first line.
+template <auto method>
+struct Calls {
+  template <typename Input>
+  static void apply(const Input& in, RowReader& reader) {
+    (reader.*method)(std::string_view(in.begin(), in.size()), in.iterator().line);
+  }
+};
+
 template <typename Rule>
 struct Action : pegtl::nothing<Rule> {};
-
 template <>
-struct Action<rules::datablockname> {
-  template <typename Input>
-  static void apply(const Input&, RowReader& reader) {
-    reader.end_block();
-  }
-};
+struct Action<rules::datablockname> : Calls<&RowReader::begin_block> {};
 template <>
-struct Action<rules::str_loop> {
-  template <typename Input>
-  static void apply(const Input&, RowReader& reader) {
-    reader.begin_loop();
-  }
-};
+struct Action<rules::str_loop> : Calls<&RowReader::begin_loop> {};
 template <>
-struct Action<rules::loop_tag> {
-  template <typename Input>
-  static void apply(const Input& in, RowReader& reader) {
-    reader.add_loop_tag(in.string());
-  }
-};
+struct Action<rules::loop_tag> : Calls<&RowReader::add_loop_tag> {};
 template <>
-struct Action<rules::loop_value> {
-  template <typename Input>
-  static void apply(const Input& in, RowReader& reader) {
-    reader.add_loop_value(in.string(), in.iterator().line);
-  }
-};
+struct Action<rules::loop_value> : Calls<&RowReader::add_loop_value> {};
 template <>
-struct Action<rules::loop> {
-  template <typename Input>
-  static void apply(const Input& in, RowReader& reader) {
-    reader.end_loop(in.iterator().line);
-  }
-};
+struct Action<rules::loop> : Calls<&RowReader::end_loop> {};
 template <>
-struct Action<rules::item_tag> {
-  template <typename Input>
-  static void apply(const Input& in, RowReader& reader) {
-    reader.set_tag(in.string());
-  }
-};
+struct Action<rules::item_tag> : Calls<&RowReader::set_tag> {};
 template <>
-struct Action<rules::item_value> {
-  template <typename Input>
-  static void apply(const Input& in, RowReader& reader) {
-    reader.set_value(in.string(), in.iterator().line);
-  }
-};
+struct Action<rules::item_value> : Calls<&RowReader::set_value> {};
 
 }  // namespace
 

@@ -13,12 +13,8 @@
 
 #include <fmt/core.h>
 
-#include "data/byte_source.h"
-#include "data/columns.h"
-#include "data/faults.h"
+#include "base/text.h"
 #include "data/frames.h"
-#include "data/table.h"
-#include "data/text_lines.h"
 #include "data/text_rows.h"
 #include "formats/readers.h"
 
@@ -30,11 +26,11 @@ namespace {
 
 /// Layout of a text table, determined from its first lines.
 struct CsvShape {
-  char separator = ',';                   ///< ' ': any number of spaces and tabs
-  std::uint64_t begin = 0;                ///< offset of the first row of values
-  std::uint64_t first_line = 1;           ///< its line number
-  bool has_header = false;                ///< otherwise the columns are named column1, column2 ..
-  std::vector<data::ColumnInfo> columns;  ///< kFloat64, kInt64 or kText
+  char separator = ',';             ///< ' ': any number of spaces and tabs
+  std::uint64_t begin = 0;          ///< offset of the first row of values
+  std::uint64_t first_line = 1;     ///< its line number
+  bool has_header = false;          ///< otherwise the columns are named column1, column2 ..
+  std::vector<ColumnInfo> columns;  ///< kFloat64, kInt64 or kText
 };
 
 /// A value of a row, without surrounding quotes and spaces.
@@ -269,7 +265,7 @@ class CsvFile final : public SingleFrame {
     std::vector<std::string> wanted = names;
     if (equatorial_)
       for (const std::string& axis : equatorial_->xyz)
-        if (std::find(names.begin(), names.end(), axis) != names.end())
+        if (base::contains(names, axis))
           wanted.insert(wanted.end(), {equatorial_->ra, equatorial_->dec, equatorial_->distance});
     Faults faults(bytes_->file());
     TextTable text = read_text_rows(*bytes_, layout(wanted), faults);
@@ -296,7 +292,7 @@ class CsvFile final : public SingleFrame {
       const std::string& name = shape_.columns[i].name;
       const bool has_comma = has_decimal_comma(survey.first_word);
       if (survey.first_word_line == 0 || !(survey.has_numbers || has_comma)) continue;
-      if (std::find(coordinates.begin(), coordinates.end(), name) != coordinates.end())
+      if (base::contains(coordinates, name))
         faults.add(survey.first_word_line, fmt::format("column {}: '{}' is not a number", name, survey.first_word),
                    has_comma ? kDecimalPoints : "correct it, or leave it empty");
       if (name == roles.radius || std::find(roles.rgb.begin(), roles.rgb.end(), name) != roles.rgb.end())
@@ -342,7 +338,7 @@ class CsvFile final : public SingleFrame {
     layout.allows_missing = true;
     layout.allows_comments = true;
     for (const ColumnInfo& column : shape_.columns)
-      layout.columns.push_back({column.type, std::find(names.begin(), names.end(), column.name) != names.end()});
+      layout.columns.push_back({column.type, base::contains(names, column.name)});
     return layout;
   }
 
@@ -363,11 +359,8 @@ class CsvFile final : public SingleFrame {
     Table out;
     out.rows = table.rows;
     for (const std::string& name : names)
-      for (Column& column : table.columns)
-        if (column.name == name) {
-          out.columns.push_back(std::move(column));
-          break;
-        }
+      out.columns.push_back(std::move(*std::find_if(table.columns.begin(), table.columns.end(),
+                                                    [&](const Column& column) { return column.name == name; })));
     return out;
   }
 

@@ -17,12 +17,7 @@
 #include <fmt/core.h>
 
 #include "base/text.h"
-#include "data/byte_source.h"
-#include "data/columns.h"
-#include "data/faults.h"
 #include "data/frames.h"
-#include "data/table.h"
-#include "data/text_lines.h"
 #include "data/text_rows.h"
 #include "formats/bonds.h"
 #include "formats/readers.h"
@@ -38,7 +33,7 @@ struct LammpsFrame {
   double step = 0;
   std::uint64_t rows = 0;
   std::uint64_t rows_line = 0;  ///< number of the line that declares `rows`
-  std::optional<data::Box> box;
+  std::optional<Box> box;
   std::vector<std::string> columns;
   bool has_labels = false;  ///< the column `type` contains labels instead of numbers
 };
@@ -54,6 +49,7 @@ Box lammps_box(const Vec3d& low, const Vec3d& high, double xy, double xz, double
 constexpr const char* kTruncatedHeader = "the file ends within the header of a frame";
 constexpr const char* kTruncatedRemedy = "remove the incomplete frame at the end of the file";
 
+/// Reads the items of a frame up to and including `ITEM: ATOMS`.
 class FrameReader {
  public:
   FrameReader(TextCursor& cursor, Faults& faults) : cursor_(cursor), faults_(faults) {}
@@ -175,11 +171,6 @@ class FrameReader {
   std::optional<std::uint64_t> rows_;
 };
 
-/// Reads the items of a frame up to and including `ITEM: ATOMS`.
-///
-/// Errors     base::Error(kBadData), thrown through `faults`
-LammpsFrame read_lammps_frame(TextCursor& cursor, Faults& faults) { return FrameReader(cursor, faults).read(); }
-
 using Axes = std::array<std::string, 3>;
 
 const Axes kAxes = {"x", "y", "z"};
@@ -191,12 +182,11 @@ bool contain(const std::vector<std::string>& names, const Axes& axes) {
   return std::all_of(axes.begin(), axes.end(), [&](const std::string& axis) { return base::contains(names, axis); });
 }
 
-/// The type of a column of numbers, unless the types of atoms are labels.
-ColumnType type_of_dump_column(std::string_view column, bool has_labels) {
-  constexpr std::string_view kIntegers[] = {"id", "type", "mol", "ix", "iy", "iz", "proc", "procp1"};
+/// `has_labels`  the types of atoms are labels instead of numbers
+ColumnType type_of_column(std::string_view column, bool has_labels) {
   if (column == "element" || column == "typelabel" || (has_labels && column == "type")) return ColumnType::kText;
-  return std::find(std::begin(kIntegers), std::end(kIntegers), column) != std::end(kIntegers) ? ColumnType::kInt64
-                                                                                              : ColumnType::kFloat64;
+  const bool is_integer = base::contains({"id", "type", "mol", "ix", "iy", "iz", "proc", "procp1"}, column);
+  return is_integer ? ColumnType::kInt64 : ColumnType::kFloat64;
 }
 
 /// The scaled columns from which positions are computed; null if the file has positions.
@@ -212,7 +202,7 @@ FrameInfo described(const LammpsFrame& frame) {
   info.box = frame.box;
   info.step = frame.step;
   for (const std::string& column : frame.columns)
-    info.columns.push_back({column, type_of_dump_column(column, frame.has_labels)});
+    info.columns.push_back({column, type_of_column(column, frame.has_labels)});
   if (scaled_position(frame) != nullptr)
     for (const std::string& axis : kAxes)
       if (!base::contains(frame.columns, axis)) info.columns.push_back({axis, ColumnType::kFloat64});
@@ -296,7 +286,7 @@ class LammpsDump final : public TextFrames {
     for (const std::string& name : frame.columns) {
       const bool is_scaled = needs_scaled && std::count(scaled->begin(), scaled->end(), name) > 0;
       const bool is_wanted = !is_computed(name) && base::contains(columns, name);
-      layout.columns.push_back({type_of_dump_column(name, frame.has_labels), is_wanted || is_scaled});
+      layout.columns.push_back({type_of_column(name, frame.has_labels), is_wanted || is_scaled});
     }
     Faults faults(bytes().file());
     TextTable text = read_text_rows(bytes(), layout, faults);
@@ -307,7 +297,7 @@ class LammpsDump final : public TextFrames {
  private:
   std::uint64_t skip_header(TextCursor& cursor) const override {
     Faults faults(bytes().file());
-    return read_lammps_frame(cursor, faults).rows;
+    return FrameReader(cursor, faults).read().rows;
   }
 
   bool begins_frame(std::string_view line) const override { return line.starts_with("ITEM:"); }
@@ -336,7 +326,7 @@ class LammpsDump final : public TextFrames {
   std::pair<LammpsFrame, TextCursor> header(int number) {
     TextCursor cursor = frame(number);
     Faults faults(bytes().file());
-    LammpsFrame header = read_lammps_frame(cursor, faults);
+    LammpsFrame header = FrameReader(cursor, faults).read();
     header.has_labels = has_labels(header, cursor);
     const std::uint64_t line = cursor.line() - 1;
     if (!contain(header.columns, kAxes) && !contain(header.columns, kUnwrapped) && scaled_position(header) == nullptr)
@@ -371,12 +361,6 @@ constexpr Style kStyles[] = {
 
 /// A line without its comment.
 std::string_view content(std::string_view line) { return line.substr(0, line.find('#')); }
-
-ColumnType type_of_style_column(std::string_view column) {
-  constexpr std::string_view kIntegers[] = {"id", "mol", "type", "ix", "iy", "iz"};
-  return std::find(std::begin(kIntegers), std::end(kIntegers), column) != std::end(kIntegers) ? ColumnType::kInt64
-                                                                                              : ColumnType::kFloat64;
-}
 
 /// Skips the blank lines after the title of a section, and reads its first row.
 ///
@@ -426,17 +410,14 @@ class DataHeader {
 
   void read_property(const Parts& words) {
     const std::string_view last = words.back();
-    if (words.size() == 2 && last == "atoms") {
+    if (words.size() == 2 && (last == "atoms" || last == "bonds")) {
       std::int64_t count = 0;
       if (!parse_integer(words[0], count) || count < 0)
-        faults_.fail(line(), fmt::format("'{}' is not a number of atoms", words[0]));
-      rows_ = static_cast<std::uint64_t>(count);
-    }
-    if (words.size() == 2 && last == "bonds") {
-      std::int64_t count = 0;
-      if (!parse_integer(words[0], count) || count < 0)
-        faults_.fail(line(), fmt::format("'{}' is not a number of bonds", words[0]));
-      info_.bonds = static_cast<std::uint64_t>(count);
+        faults_.fail(line(), fmt::format("'{}' is not a number of {}", words[0], last));
+      if (last == "atoms")
+        rows_ = static_cast<std::uint64_t>(count);
+      else
+        info_.bonds = static_cast<std::uint64_t>(count);
     }
     constexpr std::array<std::string_view, 3> kLow = {"xlo", "ylo", "zlo"};
     constexpr std::array<std::string_view, 3> kHigh = {"xhi", "yhi", "zhi"};
@@ -459,9 +440,8 @@ class DataHeader {
 
   void read_atoms(const std::string& title) {
     if (!rows_) faults_.fail(line(), "no line \"N atoms\" before the section \"Atoms\"");
-    const auto hash = title.find('#');
-    const Parts style =
-        words_of(hash == std::string::npos ? std::string_view() : std::string_view(title).substr(hash + 1));
+    const std::size_t hash = title.find('#');
+    const Parts style = hash == std::string::npos ? Parts() : words_of(std::string_view(title).substr(hash + 1));
     std::string known;
     for (const Style& s : kStyles) known += (known.empty() ? "" : ", ") + std::string(s.name);
     if (style.empty())
@@ -490,7 +470,7 @@ class DataHeader {
     for (const Style& s : kStyles)
       if (s.name == style) {
         for (const std::string_view name : words_of(s.columns))
-          info_.columns.push_back({std::string(name), type_of_style_column(name)});
+          info_.columns.push_back({std::string(name), type_of_column(name, false)});
         return true;
       }
     return false;
@@ -528,13 +508,9 @@ class DataHeader {
   bool has_labels_ = false;
 };
 
-class LammpsData final : public DataFile {
+class LammpsData final : public SingleFrame {
  public:
-  explicit LammpsData(Bytes bytes) : bytes_(std::move(bytes)), info_(DataHeader(*bytes_, layout_).read()) {}
-
-  int frame_count() override { return 1; }
-  FrameInfo describe(int) override { return info_; }
-  std::uint64_t memory() const override { return bytes_->memory(); }
+  explicit LammpsData(const Bytes& bytes) : SingleFrame(bytes) { info_ = DataHeader(*bytes_, layout_).read(); }
 
   Table read(int, const std::vector<std::string>& columns) override {
     TextTable text = read_atoms(columns);
@@ -612,9 +588,7 @@ class LammpsData final : public DataFile {
     }
   }
 
-  Bytes bytes_;
-  TextLayout layout_;  ///< without columns
-  FrameInfo info_;
+  TextLayout layout_;             ///< without columns
   std::uint64_t bonds_line_ = 0;  ///< of the first bond
 };
 

@@ -8,8 +8,6 @@
 
 #include <fmt/core.h>
 
-#include "data/byte_source.h"
-#include "data/faults.h"
 #include "data/frames.h"
 #include "data/records.h"
 #include "formats/readers.h"

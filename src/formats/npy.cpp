@@ -5,9 +5,6 @@
 #include <fmt/core.h>
 
 #include "base/text.h"
-#include "data/byte_source.h"
-#include "data/columns.h"
-#include "data/faults.h"
 #include "data/frames.h"
 #include "formats/npy_array.h"
 #include "formats/readers.h"

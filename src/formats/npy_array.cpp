@@ -13,11 +13,9 @@
 
 #include <fmt/core.h>
 
-#include "data/byte_source.h"
+#include "base/text.h"
 #include "data/columns.h"
 #include "data/dictionary.h"
-#include "data/faults.h"
-#include "data/records.h"
 
 namespace orrery::formats {
 
@@ -167,14 +165,11 @@ constexpr std::size_t kMaxDimensions = 64;
 std::string parse_type(const std::string& code, NpyField& field) {
   const std::string type = "the type " + quoted_word(code);
   const std::string unsupported = type + " is not supported; convert the array to numbers, e.g. with `astype('f8')`";
-  if (code.size() < 3 || std::string_view("<>|=").find(code[0]) == std::string_view::npos) {
-    if (code == "|O" || code == "O") return "it contains Python objects; convert them, e.g. with `astype('f8')`";
+  const bool has_order = !code.empty() && std::string_view("<>|=").find(code[0]) != std::string_view::npos;
+  if (code == "O" || (has_order && code.size() > 1 && code[1] == 'O'))
+    return "it contains Python objects; convert them, e.g. with `astype('f8')`";
+  if (!has_order || code.size() < 3 || !base::from_text(std::string_view(code).substr(2), field.size))
     return unsupported;
-  }
-  if (code[1] == 'O') return "it contains Python objects; convert them, e.g. with `astype('f8')`";
-  const char* const last = code.data() + code.size();
-  const auto [end, error] = std::from_chars(code.data() + 2, last, field.size);
-  if (error != std::errc() || end != last) return unsupported;
   field.is_big_endian = code[0] == '>';
   if (code[1] == 'S' || code[1] == 'a' || code[1] == 'U' || code[1] == 'V') {
     if (field.size > kLongestNpyText) return fmt::format("{} is longer than {}", type, kLongestNpyText);
@@ -183,21 +178,15 @@ std::string parse_type(const std::string& code, NpyField& field) {
     if (code[1] == 'V') field.components = 0;
     return {};
   }
-  struct Name {
-    std::string_view code;
-    NumberType type;
-  };
-  static constexpr Name kNames[] = {
+  static constexpr NumberTypeName kNames[] = {
       {"i1", NumberType::kInt8},    {"u1", NumberType::kUint8},  {"b1", NumberType::kUint8},
       {"i2", NumberType::kInt16},   {"u2", NumberType::kUint16}, {"i4", NumberType::kInt32},
       {"u4", NumberType::kUint32},  {"i8", NumberType::kInt64},  {"u8", NumberType::kUint64},
       {"f4", NumberType::kFloat32}, {"f8", NumberType::kFloat64}};
-  for (const Name& known : kNames) {
-    if (known.code != std::string_view(code).substr(1)) continue;
-    field.type = known.type;
-    return {};
-  }
-  return unsupported;
+  const std::optional<NumberType> known = number_type(kNames, std::string_view(code).substr(1));
+  if (!known) return unsupported;
+  field.type = *known;
+  return {};
 }
 
 /// Parses one field of a record: (name, type) or (name, type, shape); a name may be (title, name).

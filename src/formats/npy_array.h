@@ -6,9 +6,7 @@
 #include <string_view>
 #include <vector>
 
-#include "data/byte_source.h"
 #include "data/records.h"
-#include "data/table.h"
 
 namespace orrery::formats {
 

@@ -10,8 +10,6 @@
 
 #include "base/file_name.h"
 #include "base/text.h"
-#include "data/byte_source.h"
-#include "data/data_file.h"
 #include "data/faults.h"
 #include "formats/readers.h"
 

@@ -14,9 +14,7 @@
 
 #include <fmt/core.h>
 
-#include "data/byte_source.h"
-#include "data/faults.h"
-#include "data/table.h"
+#include "base/text.h"
 #include "data/text_lines.h"
 #include "formats/atom_table.h"
 #include "formats/bonds.h"
@@ -37,67 +35,59 @@ class BiomtReader {
   /// Takes the text of a line after "REMARK 350".
   ///
   /// Errors     base::Error(kBadData): malformed or incomplete transforms
-  void take(std::string_view text, std::uint64_t line, data::Faults& faults);
+  void take(std::string_view text, std::uint64_t line, Faults& faults) {
+    text = trimmed(text);
+    constexpr std::string_view kName = "BIOMOLECULE:", kChains = "CHAINS:", kRow = "BIOMT";
+    if (text.starts_with(kName)) {
+      assemblies_.push_back({std::string(trimmed(text.substr(kName.size()))), {}});
+    } else if (const std::size_t at = text.find(kChains); at != std::string_view::npos) {
+      if (text.starts_with("APPLY")) {
+        part();
+        auto& parts = assemblies_.back().parts;
+        if (!parts.back().chains.empty() || !parts.back().transforms.empty()) parts.emplace_back();
+      }
+      for (const std::string_view name : words_of(text.substr(at + kChains.size()), ", \t"))
+        part().chains.emplace_back(name);
+    } else if (text.starts_with(kRow)) {
+      const std::vector<std::string_view> words = words_of(text);
+      const std::size_t row = static_cast<std::size_t>(row_);
+      double values[4];
+      bool is_good = words.size() == 6;
+      for (std::size_t i = 0; i < 4 && is_good; ++i)
+        is_good = base::from_text(words[2 + i], values[i]) && std::isfinite(values[i]);
+      if (!is_good) faults.fail(line, "malformed BIOMT row: expected a serial number and four numbers");
+      if (words[0] != "BIOMT" + std::to_string(row + 1) || (row > 0 && words[1] != serial_))
+        faults.fail(line, fmt::format("BIOMT row out of order: expected row {}{}", row + 1,
+                                      row > 0 ? " of transform " + serial_ : " of a transform"));
+      serial_ = words[1];
+      transform_.rows[row] = {values[0], values[1], values[2]};
+      (row == 0   ? transform_.translation.x
+       : row == 1 ? transform_.translation.y
+                  : transform_.translation.z) = values[3];
+      row_ = (row_ + 1) % 3;
+      if (row_ == 0) part().transforms.push_back(transform_);
+    }
+  }
 
   /// Returns the assemblies after the last line.
-  std::vector<data::Assembly> finish(data::Faults& faults);
+  std::vector<Assembly> finish(Faults& faults) {
+    if (row_ != 0) faults.fail(0, fmt::format("truncated: transform {} of REMARK 350 is incomplete", serial_));
+    return std::move(assemblies_);
+  }
 
  private:
-  data::AssemblyPart& part();
+  /// The part that the next transform belongs to.
+  AssemblyPart& part() {
+    if (assemblies_.empty()) assemblies_.push_back({"1", {}});
+    if (assemblies_.back().parts.empty()) assemblies_.back().parts.emplace_back();
+    return assemblies_.back().parts.back();
+  }
 
-  std::vector<data::Assembly> assemblies_;
-  data::Transform transform_;
+  std::vector<Assembly> assemblies_;
+  Transform transform_;
   int row_ = 0;  ///< number of rows of `transform_` that have been read
   std::string serial_;
 };
-
-bool is_finite_number(std::string_view word, double& value) {
-  const auto [end, error] = std::from_chars(word.data(), word.data() + word.size(), value);
-  return error == std::errc() && end == word.data() + word.size() && std::isfinite(value);
-}
-
-/// The part that the next transform belongs to.
-AssemblyPart& BiomtReader::part() {
-  if (assemblies_.empty()) assemblies_.push_back({"1", {}});
-  if (assemblies_.back().parts.empty()) assemblies_.back().parts.emplace_back();
-  return assemblies_.back().parts.back();
-}
-
-void BiomtReader::take(std::string_view text, std::uint64_t line, Faults& faults) {
-  text = trimmed(text);
-  constexpr std::string_view kName = "BIOMOLECULE:", kChains = "CHAINS:", kRow = "BIOMT";
-  if (text.starts_with(kName)) {
-    assemblies_.push_back({std::string(trimmed(text.substr(kName.size()))), {}});
-  } else if (const std::size_t at = text.find(kChains); at != std::string_view::npos) {
-    if (text.starts_with("APPLY")) {
-      part();
-      auto& parts = assemblies_.back().parts;
-      if (!parts.back().chains.empty() || !parts.back().transforms.empty()) parts.emplace_back();
-    }
-    for (const std::string_view name : words_of(text.substr(at + kChains.size()), ", \t"))
-      part().chains.emplace_back(name);
-  } else if (text.starts_with(kRow)) {
-    const std::vector<std::string_view> words = words_of(text);
-    const std::size_t row = static_cast<std::size_t>(row_);
-    double values[4];
-    bool is_good = words.size() == 6;
-    for (std::size_t i = 0; i < 4 && is_good; ++i) is_good = is_finite_number(words[2 + i], values[i]);
-    if (!is_good) faults.fail(line, "malformed BIOMT row: expected a serial number and four numbers");
-    if (words[0] != "BIOMT" + std::to_string(row + 1) || (row > 0 && words[1] != serial_))
-      faults.fail(line, fmt::format("BIOMT row out of order: expected row {}{}", row + 1,
-                                    row > 0 ? " of transform " + serial_ : " of a transform"));
-    serial_ = words[1];
-    transform_.rows[row] = {values[0], values[1], values[2]};
-    (row == 0 ? transform_.translation.x : row == 1 ? transform_.translation.y : transform_.translation.z) = values[3];
-    row_ = (row_ + 1) % 3;
-    if (row_ == 0) part().transforms.push_back(transform_);
-  }
-}
-
-std::vector<Assembly> BiomtReader::finish(Faults& faults) {
-  if (row_ != 0) faults.fail(0, fmt::format("truncated: transform {} of REMARK 350 is incomplete", serial_));
-  return std::move(assemblies_);
-}
 
 /// Location of a model in a PDB file.
 struct PdbModel {
@@ -110,7 +100,7 @@ struct PdbModel {
 /// The models and assemblies of a PDB file.
 struct PdbIndex {
   std::vector<PdbModel> models;  ///< at least one
-  std::vector<data::Assembly> assemblies;
+  std::vector<Assembly> assemblies;
   std::string title;
   PdbModel rest;                  ///< what follows the last model
   std::uint64_t connections = 0;  ///< number of CONECT records
@@ -127,17 +117,12 @@ constexpr std::size_t kRecordWidth = 80, kRecordName = 6;
 
 /// The text in a range of a record's columns, 1-based and inclusive, without surrounding spaces.
 std::string columns(std::string_view line, std::size_t first, std::size_t last) {
-  const std::string_view field = line.substr(std::min(first - 1, line.size()), last - first + 1);
-  const std::size_t begin = field.find_first_not_of(' ');
-  if (begin == std::string_view::npos) return {};
-  return std::string(field.substr(begin, field.find_last_not_of(' ') + 1 - begin));
+  return std::string(trimmed(line.substr(std::min(first - 1, line.size()), last - first + 1)));
 }
 
 std::optional<double> number(const std::string& text) {
   int value = 0;
-  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
-  if (error != std::errc() || end != text.data() + text.size()) return std::nullopt;
-  return value;
+  return base::from_text(text, value) ? std::optional<double>(value) : std::nullopt;
 }
 
 class Indexer {
@@ -271,8 +256,7 @@ bool has_coordinates(std::string_view line) {
     field.remove_prefix(std::min(field.find_first_not_of(' '), field.size()));
     field = field.substr(0, field.find(' '));
     double value = 0;
-    const auto [end, error] = std::from_chars(field.data(), field.data() + field.size(), value);
-    if (error != std::errc() || end != field.data() + field.size()) return false;
+    if (!base::from_text(field, value)) return false;
   }
   return true;
 }
@@ -285,8 +269,7 @@ std::optional<std::int64_t> serial_number(std::string_view word) {
   constexpr std::int64_t kFirst = 10 * 36 * 36 * 36 * 36, kFirstSerial = 100'000;
   const bool is_hybrid = word[0] >= 'A' && word.size() == kSerialWidth;
   std::int64_t value = 0;
-  const auto [end, error] = std::from_chars(word.data(), word.data() + word.size(), value, is_hybrid ? 36 : 10);
-  if (error != std::errc() || end != word.data() + word.size()) return std::nullopt;
+  if (!base::from_text(word, value, is_hybrid ? 36 : 10)) return std::nullopt;
   return is_hybrid ? value - kFirst + kFirstSerial : value;
 }
 
@@ -318,12 +301,110 @@ class PdbReader final : public DataFile {
     return atoms_.table(columns);
   }
 
-  std::vector<Bond> bonds(int frame) override;
+  std::vector<Bond> bonds(int frame) override {
+    if (index_.connections == 0) return {};
+    load(frame);
+    Faults faults(bytes_->file());
+    BondsById out(serials_, faults);
+    // Records within a model belong to it, those after the last model to all.
+    for (const PdbModel& part : {index_.models[static_cast<std::size_t>(frame)], index_.rest}) {
+      std::uint64_t line_number = part.first_line - 1;
+      for_each_pdb_line(*bytes_, part.begin, part.end, [&](std::string_view line, std::uint64_t) {
+        ++line_number;
+        if (!line.starts_with(kConnection)) return;
+        std::optional<std::int64_t> from;
+        for (std::size_t i = 0; i <= kMaxBonded; ++i) {
+          const std::size_t column = kRecordName + 1 + i * kSerialWidth;
+          const std::string word = columns(line, column, column + kSerialWidth - 1);
+          if (word.empty()) continue;
+          const std::optional<std::int64_t> serial = serial_number(word);
+          if (!serial)
+            faults.add_of_many(line_number, fmt::format("{} is not the serial number of an atom", quoted_word(word)));
+          else if (i == 0)
+            from = serial;
+          else if (from)
+            out.add(*from, *serial, line_number);
+        }
+      });
+    }
+    return out.take();
+  }
 
  private:
-  std::string text_of(const PdbModel& model);
-  void load(int frame);
-  void set_box(const gemmi::Structure& structure);
+  /// Returns the cell and the atoms of a model, the records that gemmi has to read, checked.
+  std::string text_of(const PdbModel& model) {
+    std::string text = model.cell.empty() ? "" : model.cell + '\n';
+    std::uint64_t line_number = model.first_line - 1;
+    Faults faults(bytes_->file());
+    for_each_pdb_line(*bytes_, model.begin, model.end, [&](std::string_view line, std::uint64_t) {
+      ++line_number;
+      if (!is_pdb_atom(line)) return;
+      if (line.size() < kShortestAtom)
+        faults.add_of_many(line_number, "truncated atom: the line ends before column 54");
+      else if (!has_coordinates(line))
+        faults.add_of_many(line_number, "malformed coordinates in columns 31 to 54");
+      else
+        text.append(line.substr(0, kLastColumn)) += '\n';
+    });
+    faults.raise_if_any();
+    return text;
+  }
+
+  void load(int frame) {
+    if (frame == loaded_) return;
+    loaded_ = -1;
+    atoms_ = {};
+    serials_.clear();
+    const PdbModel& model = index_.models[static_cast<std::size_t>(frame)];
+    // Measured: 3.7 with residues of 8 atoms, 5.5 if all are water.
+    constexpr double kMemoryPerByte = 5.5;
+    require_parse_memory(bytes_->file(), model.end - model.begin, kMemoryPerByte, bytes_->memory(), memory_limit_);
+    const std::string text = text_of(model);
+    gemmi::Structure structure;
+    try {
+      structure = gemmi::read_pdb_from_memory(text.data(), text.size(), bytes_->file().string());
+    } catch (const std::exception& error) {
+      Faults(bytes_->file()).fail(model.first_line, error.what());
+    }
+    set_box(structure);
+    Atom atom;
+    for (const gemmi::Chain& chain : structure.models.at(0).chains) {
+      atom.chain = chain.name;
+      for (const gemmi::Residue& residue : chain.residues) {
+        atom.residue = residue.name;
+        atom.residue_number = residue.seqid.num.has_value() ? *residue.seqid.num : 0;
+        atom.insertion = residue.seqid.icode;
+        atom.record = residue.het_flag == 'H' ? "HETATM" : "ATOM";
+        for (const gemmi::Atom& source : residue.atoms) {
+          atom.position = {source.pos.x, source.pos.y, source.pos.z};
+          atom.b_factor = static_cast<double>(source.b_iso);
+          atom.occupancy = static_cast<double>(source.occ);
+          atom.element = source.element.name();
+          atom.name = source.name;
+          atom.altloc = source.altloc == '\0' ? std::string() : std::string(1, source.altloc);
+          const std::size_t row = atoms_.add(atom);
+          if (index_.connections > 0) serials_.emplace_back(source.serial, static_cast<std::uint32_t>(row));
+        }
+      }
+    }
+    loaded_ = frame;
+  }
+
+  /// The cell is a simulation box only without crystal symmetry; otherwise, it contains more than the atoms of the
+  /// file.
+  void set_box(const gemmi::Structure& structure) {
+    box_.reset();
+    const bool has_symmetry = structure.spacegroup_hm != "P 1" && !structure.spacegroup_hm.empty();
+    // Programs write a cell of zeros for structures without one.
+    if (has_symmetry || !structure.cell.is_crystal() || !(structure.cell.volume > 0)) return;
+    Box box;
+    for (int i = 0; i < 3; ++i) {
+      const gemmi::Vec3 edge = structure.cell.orth.mat.column_copy(i);
+      box.edges[static_cast<std::size_t>(i)] = {edge.x, edge.y, edge.z};
+      if (!math::is_finite(box.edges[static_cast<std::size_t>(i)])) return;
+    }
+    box_ = box;
+  }
 
   Bytes bytes_;
   PdbIndex index_;
@@ -333,109 +414,6 @@ class PdbReader final : public DataFile {
   std::optional<Box> box_;
   std::vector<std::pair<std::int64_t, std::uint32_t>> serials_;  ///< serial number and row of the atoms, for bonds
 };
-
-/// Returns the cell and the atoms of a model, the records that gemmi has to read, checked.
-std::string PdbReader::text_of(const PdbModel& model) {
-  std::string text = model.cell.empty() ? "" : model.cell + '\n';
-  std::uint64_t line_number = model.first_line - 1;
-  Faults faults(bytes_->file());
-  for_each_pdb_line(*bytes_, model.begin, model.end, [&](std::string_view line, std::uint64_t) {
-    ++line_number;
-    if (!is_pdb_atom(line)) return;
-    if (line.size() < kShortestAtom)
-      faults.add_of_many(line_number, "truncated atom: the line ends before column 54");
-    else if (!has_coordinates(line))
-      faults.add_of_many(line_number, "malformed coordinates in columns 31 to 54");
-    else
-      text.append(line.substr(0, kLastColumn)) += '\n';
-  });
-  faults.raise_if_any();
-  return text;
-}
-
-/// The cell is a simulation box only without crystal symmetry; otherwise, it contains more than the atoms of the file.
-void PdbReader::set_box(const gemmi::Structure& structure) {
-  box_.reset();
-  const bool has_symmetry = structure.spacegroup_hm != "P 1" && !structure.spacegroup_hm.empty();
-  // Programs write a cell of zeros for structures without one.
-  if (has_symmetry || !structure.cell.is_crystal() || !(structure.cell.volume > 0)) return;
-  Box box;
-  for (int i = 0; i < 3; ++i) {
-    const gemmi::Vec3 edge = structure.cell.orth.mat.column_copy(i);
-    box.edges[static_cast<std::size_t>(i)] = {edge.x, edge.y, edge.z};
-    if (!math::is_finite(box.edges[static_cast<std::size_t>(i)])) return;
-  }
-  box_ = box;
-}
-
-void PdbReader::load(int frame) {
-  if (frame == loaded_) return;
-  loaded_ = -1;
-  atoms_ = {};
-  serials_.clear();
-  const PdbModel& model = index_.models[static_cast<std::size_t>(frame)];
-  // Measured: 3.7 with residues of 8 atoms, 5.5 if all are water.
-  constexpr double kMemoryPerByte = 5.5;
-  require_parse_memory(bytes_->file(), model.end - model.begin, kMemoryPerByte, bytes_->memory(), memory_limit_);
-  const std::string text = text_of(model);
-  gemmi::Structure structure;
-  try {
-    structure = gemmi::read_pdb_from_memory(text.data(), text.size(), bytes_->file().string());
-  } catch (const std::exception& error) {
-    Faults(bytes_->file()).fail(model.first_line, error.what());
-  }
-  set_box(structure);
-  Atom atom;
-  for (const gemmi::Chain& chain : structure.models.at(0).chains) {
-    atom.chain = chain.name;
-    for (const gemmi::Residue& residue : chain.residues) {
-      atom.residue = residue.name;
-      atom.residue_number = residue.seqid.num.has_value() ? *residue.seqid.num : 0;
-      atom.insertion = residue.seqid.icode;
-      atom.record = residue.het_flag == 'H' ? "HETATM" : "ATOM";
-      for (const gemmi::Atom& source : residue.atoms) {
-        atom.position = {source.pos.x, source.pos.y, source.pos.z};
-        atom.b_factor = static_cast<double>(source.b_iso);
-        atom.occupancy = static_cast<double>(source.occ);
-        atom.element = source.element.name();
-        atom.name = source.name;
-        atom.altloc = source.altloc == '\0' ? std::string() : std::string(1, source.altloc);
-        const std::size_t row = atoms_.add(atom);
-        if (index_.connections > 0) serials_.emplace_back(source.serial, static_cast<std::uint32_t>(row));
-      }
-    }
-  }
-  loaded_ = frame;
-}
-
-std::vector<Bond> PdbReader::bonds(int frame) {
-  if (index_.connections == 0) return {};
-  load(frame);
-  Faults faults(bytes_->file());
-  BondsById out(serials_, faults);
-  // Records within a model belong to it, those after the last model to all.
-  for (const PdbModel& part : {index_.models[static_cast<std::size_t>(frame)], index_.rest}) {
-    std::uint64_t line_number = part.first_line - 1;
-    for_each_pdb_line(*bytes_, part.begin, part.end, [&](std::string_view line, std::uint64_t) {
-      ++line_number;
-      if (!line.starts_with(kConnection)) return;
-      std::optional<std::int64_t> from;
-      for (std::size_t i = 0; i <= kMaxBonded; ++i) {
-        const std::size_t column = kRecordName + 1 + i * kSerialWidth;
-        const std::string word = columns(line, column, column + kSerialWidth - 1);
-        if (word.empty()) continue;
-        const std::optional<std::int64_t> serial = serial_number(word);
-        if (!serial)
-          faults.add_of_many(line_number, fmt::format("{} is not the serial number of an atom", quoted_word(word)));
-        else if (i == 0)
-          from = serial;
-        else if (from)
-          out.add(*from, *serial, line_number);
-      }
-    });
-  }
-  return out.take();
-}
 
 bool is_pdb(const Signature& signature) {
   // Its columns are not those of PDB: a charge and a radius.

@@ -12,12 +12,9 @@
 
 #include <fmt/core.h>
 
-#include "data/byte_source.h"
-#include "data/columns.h"
-#include "data/faults.h"
+#include "base/text.h"
 #include "data/frames.h"
 #include "data/records.h"
-#include "data/text_lines.h"
 #include "data/text_rows.h"
 #include "formats/readers.h"
 
@@ -32,9 +29,9 @@ enum class PlyEncoding { kAscii, kLittleEndian, kBigEndian };
 
 struct PlyProperty {
   std::string name;
-  data::NumberType type = data::NumberType::kFloat32;
+  NumberType type = NumberType::kFloat32;
   bool is_list = false;
-  data::NumberType count_type = data::NumberType::kUint8;  ///< type of the list length
+  NumberType count_type = NumberType::kUint8;  ///< type of the list length
 };
 
 struct PlyElement {
@@ -44,9 +41,7 @@ struct PlyElement {
   std::vector<PlyProperty> properties;
 
   bool has_list() const {
-    for (const PlyProperty& p : properties)
-      if (p.is_list) return true;
-    return false;
+    return std::any_of(properties.begin(), properties.end(), [](const PlyProperty& p) { return p.is_list; });
   }
 };
 
@@ -61,38 +56,22 @@ struct PlyHeader {
 /// end_header.
 inline constexpr std::size_t kLongestHeader = std::size_t{1} << 20;
 
-bool parse_type(std::string_view word, NumberType& type) {
-  struct Name {
-    std::string_view name;
-    NumberType type;
-  };
-  static constexpr Name kNames[] = {
-      {"char", NumberType::kInt8},      {"int8", NumberType::kInt8},       {"uchar", NumberType::kUint8},
-      {"uint8", NumberType::kUint8},    {"short", NumberType::kInt16},     {"int16", NumberType::kInt16},
-      {"ushort", NumberType::kUint16},  {"uint16", NumberType::kUint16},   {"int", NumberType::kInt32},
-      {"int32", NumberType::kInt32},    {"uint", NumberType::kUint32},     {"uint32", NumberType::kUint32},
-      {"float", NumberType::kFloat32},  {"float32", NumberType::kFloat32}, {"double", NumberType::kFloat64},
-      {"float64", NumberType::kFloat64}};
-  for (const Name& known : kNames) {
-    if (known.name != word) continue;
-    type = known.type;
-    return true;
-  }
-  return false;
-}
+constexpr NumberTypeName kTypeNames[] = {
+    {"char", NumberType::kInt8},      {"int8", NumberType::kInt8},       {"uchar", NumberType::kUint8},
+    {"uint8", NumberType::kUint8},    {"short", NumberType::kInt16},     {"int16", NumberType::kInt16},
+    {"ushort", NumberType::kUint16},  {"uint16", NumberType::kUint16},   {"int", NumberType::kInt32},
+    {"int32", NumberType::kInt32},    {"uint", NumberType::kUint32},     {"uint32", NumberType::kUint32},
+    {"float", NumberType::kFloat32},  {"float32", NumberType::kFloat32}, {"double", NumberType::kFloat64},
+    {"float64", NumberType::kFloat64}};
 
 std::string parse_format(const std::vector<std::string_view>& words, PlyHeader& header) {
   if (words.size() != 3) return "a format line must be `format ENCODING 1.0`";
   if (words[2] != "1.0") return fmt::format("unsupported format version `{}`; supported is 1.0", words[2]);
-  if (words[1] == "ascii") {
-    header.encoding = PlyEncoding::kAscii;
-  } else if (words[1] == "binary_little_endian") {
-    header.encoding = PlyEncoding::kLittleEndian;
-  } else if (words[1] == "binary_big_endian") {
-    header.encoding = PlyEncoding::kBigEndian;
-  } else {
+  constexpr std::string_view kEncodings[] = {"ascii", "binary_little_endian", "binary_big_endian"};
+  const auto* const encoding = std::find(std::begin(kEncodings), std::end(kEncodings), words[1]);
+  if (encoding == std::end(kEncodings))
     return "unknown encoding; allowed are ascii, binary_little_endian, binary_big_endian";
-  }
+  header.encoding = static_cast<PlyEncoding>(encoding - std::begin(kEncodings));
   return {};
 }
 
@@ -101,9 +80,7 @@ std::string parse_element(const std::vector<std::string_view>& words, int line, 
   element.line = line;
   if (words.size() != 3) return "an element line must be `element NAME COUNT`";
   element.name = words[1];
-  const auto [end, error] = std::from_chars(words[2].data(), words[2].data() + words[2].size(), element.count);
-  if (error != std::errc() || end != words[2].data() + words[2].size())
-    return "the count of an element must be a non-negative integer";
+  if (!base::from_text(words[2], element.count)) return "the count of an element must be a non-negative integer";
   if (find_named(header.elements, element.name) != nullptr) return fmt::format("duplicate element `{}`", element.name);
   header.elements.push_back(element);
   return {};
@@ -114,9 +91,12 @@ std::string parse_property(const std::vector<std::string_view>& words, PlyHeader
   PlyProperty property;
   property.is_list = words.size() == 5 && words[1] == "list";
   if (!property.is_list && words.size() != 3) return "a property line must be `property TYPE NAME`";
-  if (property.is_list && !parse_type(words[2], property.count_type)) return "unknown type of the list length";
-  if (!parse_type(words[words.size() - 2], property.type))
-    return "unknown type; allowed are char .. double, int8 .. float64";
+  const auto count_type = number_type(kTypeNames, words[property.is_list ? 2 : 1]);
+  const auto type = number_type(kTypeNames, words[words.size() - 2]);
+  if (property.is_list && !count_type) return "unknown type of the list length";
+  if (!type) return "unknown type; allowed are char .. double, int8 .. float64";
+  property.count_type = *count_type;
+  property.type = *type;
   property.name = words.back();
   if (find_named(header.elements.back().properties, property.name) != nullptr)
     return fmt::format("duplicate property `{}`", property.name);
@@ -162,46 +142,151 @@ std::string parse_ply_header(std::string_view file, PlyHeader& header, int& line
   }
 }
 
+bool is_white_space(char c) { return c == ' ' || (c >= '\t' && c <= '\r'); }
+
 /// Reads values in sequence from the data after the header. In an ASCII file, each row is one line.
 ///
 /// Cost       2 MiB of memory
 class PlyCursor {
  public:
   /// `begin`    offset of the first data byte, `line` its line number
-  PlyCursor(const data::ByteSource& bytes, std::uint64_t begin, PlyEncoding encoding, int line);
+  PlyCursor(const ByteSource& bytes, std::uint64_t begin, PlyEncoding encoding, int line)
+      : bytes_(&bytes),
+        next_(std::min(begin, bytes.size())),
+        buffer_(2 * kMaxLineBytes),
+        line_(line),
+        ascii_(encoding == PlyEncoding::kAscii),
+        is_big_endian_(encoding == PlyEncoding::kBigEndian) {
+    fill();
+  }
 
   /// Advances to the next row; skips blank lines.
   ///
   /// Errors     base::Error: kIo; kBadData for a line that is too long
-  void begin_row();
+  void begin_row() {
+    if (!ascii_) return;
+    for (row_line_ = line_; bytes_left() > 0; row_line_ = line_) {
+      find_row_end();
+      skip_blanks();
+      if (at_ < row_end_) return;
+      step_over_line_end();
+    }
+    row_end_ = end_;
+  }
+
   /// Ends a row; false if the row has unread values left.
-  bool end_row();
+  bool end_row() {
+    if (!ascii_) return true;
+    skip_blanks();
+    if (at_ < row_end_) return false;
+    step_over_line_end();
+    return true;
+  }
+
   /// Returns the line number of the row; 0 in a binary file.
   int line() const { return row_line_; }
 
   /// Reads a value; false at the end of the row or the data, or if an ASCII value is not a number.
-  bool take(data::NumberType type, double& value);
+  bool take(NumberType type, double& value) {
+    if (ascii_) return take_word(value);
+    const std::size_t size = size_of(type);
+    if (bytes_left() < size) return false;
+    if (static_cast<std::size_t>(end_ - at_) < size) fill();
+    value =
+        with_type(type, [&](auto number) { return static_cast<double>(load<decltype(number)>(at_, is_big_endian_)); });
+    at_ += size;
+    return true;
+  }
+
   /// Skips a value or a list; false as for take(), and if the length of the list is invalid.
-  bool skip(const PlyProperty& property);
+  bool skip(const PlyProperty& property) {
+    double value = 0;
+    if (!property.is_list) return take(property.type, value);
+    if (!take(property.count_type, value)) return false;
+    is_bad_length_ = !(value >= 0) || value != std::floor(value);
+    if (is_bad_length_) return false;
+    if (!ascii_) {
+      const std::size_t size = size_of(property.type);
+      if (value > static_cast<double>(bytes_left() / size)) return false;
+      skip_bytes(static_cast<std::uint64_t>(value) * size);
+      return true;
+    }
+    for (double i = 0; i < value; ++i) {
+      double ignored = 0;
+      if (!take(property.type, ignored)) return false;  // stops at the end of the row, regardless of the length
+    }
+    return true;
+  }
+
   /// Skips bytes of a binary file.
   ///
   /// Domain     bytes <= bytes_left()
-  void skip_bytes(std::uint64_t bytes);
+  void skip_bytes(std::uint64_t bytes) {
+    const std::uint64_t some = std::min(bytes, static_cast<std::uint64_t>(end_ - at_));
+    at_ += some;
+    next_ += bytes - some;
+  }
 
   std::uint64_t bytes_left() const { return static_cast<std::uint64_t>(end_ - at_) + bytes_->size() - next_; }
+
   /// Returns why the last take or skip failed.
-  std::string fault() const;
+  std::string fault() const {
+    if (is_bad_length_) return "the length of the list is not a non-negative integer";
+    if (ascii_ && at_ < row_end_) return fmt::format("`{}` is not a number", word());
+    return ascii_ && bytes_left() > 0 ? "unexpected end of line; a row must be one line" : "unexpected end of file";
+  }
+
   /// Returns the next word in the row, truncated if it is long.
-  std::string word() const;
+  std::string word() const {
+    constexpr std::ptrdiff_t kLongestShown = 40;
+    const char* const most = at_ + std::min(kLongestShown, row_end_ - at_);
+    return {at_, std::find_if(at_, most, is_white_space)};
+  }
 
  private:
-  void fill();
-  void find_row_end();
-  void skip_blanks();
-  void step_over_line_end();
-  bool take_word(double& value);
+  /// Moves the unread bytes to the front of the buffer, and reads more.
+  void fill() {
+    const auto left = static_cast<std::size_t>(end_ - at_);
+    if (left > 0) std::memmove(buffer_.data(), at_, left);
+    const auto more = static_cast<std::size_t>(std::min<std::uint64_t>(buffer_.size() - left, bytes_->size() - next_));
+    bytes_->read(next_, more, buffer_.data() + left);
+    next_ += more;
+    at_ = buffer_.data();
+    end_ = row_end_ = at_ + left + more;
+  }
 
-  const data::ByteSource* bytes_;
+  void find_row_end() {
+    const auto found = [&] { return std::memchr(at_, '\n', static_cast<std::size_t>(end_ - at_)); };
+    const void* newline = found();
+    while (newline == nullptr && next_ < bytes_->size()) {
+      if (static_cast<std::size_t>(end_ - at_) > kMaxLineBytes)
+        fail_as_too_long(*bytes_, static_cast<std::uint64_t>(line_));
+      fill();
+      newline = found();
+    }
+    row_end_ = newline != nullptr ? static_cast<const char*>(newline) : end_;
+  }
+
+  void skip_blanks() {
+    while (at_ < row_end_ && is_white_space(*at_)) ++at_;
+  }
+
+  void step_over_line_end() {
+    at_ = row_end_;
+    if (at_ == end_) return;
+    ++at_;
+    ++line_;
+  }
+
+  bool take_word(double& value) {
+    skip_blanks();
+    const char* const end = std::find_if(at_, row_end_, is_white_space);
+    if (!parse_number({at_, end}, value)) return false;
+    at_ = end;
+    return true;
+  }
+
+  const ByteSource* bytes_;
   std::uint64_t next_;  ///< offset of the first byte behind the buffer
   std::vector<char> buffer_;
   const char* at_ = nullptr;
@@ -211,137 +296,12 @@ class PlyCursor {
   bool ascii_, is_big_endian_, is_bad_length_ = false;
 };
 
-double binary_value(const char* at, NumberType type, bool is_big_endian) {
-  return with_type(type, [=](auto number) { return static_cast<double>(load<decltype(number)>(at, is_big_endian)); });
-}
-
-bool is_white_space(char c) { return c == ' ' || (c >= '\t' && c <= '\r'); }
-
-PlyCursor::PlyCursor(const ByteSource& bytes, std::uint64_t begin, PlyEncoding encoding, int line)
-    : bytes_(&bytes),
-      next_(std::min(begin, bytes.size())),
-      buffer_(2 * kMaxLineBytes),
-      line_(line),
-      ascii_(encoding == PlyEncoding::kAscii),
-      is_big_endian_(encoding == PlyEncoding::kBigEndian) {
-  fill();
-}
-
-/// Moves the unread bytes to the front of the buffer, and reads more.
-void PlyCursor::fill() {
-  const auto left = static_cast<std::size_t>(end_ - at_);
-  if (left > 0) std::memmove(buffer_.data(), at_, left);
-  const auto more = static_cast<std::size_t>(std::min<std::uint64_t>(buffer_.size() - left, bytes_->size() - next_));
-  bytes_->read(next_, more, buffer_.data() + left);
-  next_ += more;
-  at_ = buffer_.data();
-  end_ = row_end_ = at_ + left + more;
-}
-
-void PlyCursor::find_row_end() {
-  const auto found = [&] { return std::memchr(at_, '\n', static_cast<std::size_t>(end_ - at_)); };
-  const void* newline = found();
-  while (newline == nullptr && next_ < bytes_->size()) {
-    if (static_cast<std::size_t>(end_ - at_) > kMaxLineBytes)
-      Faults(bytes_->file())
-          .fail(static_cast<std::uint64_t>(line_), "a line is longer than 1 MiB", "the file is damaged");
-    fill();
-    newline = found();
-  }
-  row_end_ = newline != nullptr ? static_cast<const char*>(newline) : end_;
-}
-
-void PlyCursor::begin_row() {
-  if (!ascii_) return;
-  for (row_line_ = line_; bytes_left() > 0; row_line_ = line_) {
-    find_row_end();
-    skip_blanks();
-    if (at_ < row_end_) return;
-    step_over_line_end();
-  }
-  row_end_ = end_;
-}
-
-bool PlyCursor::end_row() {
-  if (!ascii_) return true;
-  skip_blanks();
-  if (at_ < row_end_) return false;
-  step_over_line_end();
-  return true;
-}
-
-bool PlyCursor::take(NumberType type, double& value) {
-  if (ascii_) return take_word(value);
-  const std::size_t size = size_of(type);
-  if (bytes_left() < size) return false;
-  if (static_cast<std::size_t>(end_ - at_) < size) fill();
-  value = binary_value(at_, type, is_big_endian_);
-  at_ += size;
-  return true;
-}
-
-bool PlyCursor::skip(const PlyProperty& property) {
-  double value = 0;
-  if (!property.is_list) return take(property.type, value);
-  if (!take(property.count_type, value)) return false;
-  is_bad_length_ = !(value >= 0) || value != std::floor(value);
-  if (is_bad_length_) return false;
-  if (!ascii_) {
-    const std::size_t size = size_of(property.type);
-    if (value > static_cast<double>(bytes_left() / size)) return false;
-    skip_bytes(static_cast<std::uint64_t>(value) * size);
-    return true;
-  }
-  for (double i = 0; i < value; ++i) {
-    double ignored = 0;
-    if (!take(property.type, ignored)) return false;  // stops at the end of the row, regardless of the length
-  }
-  return true;
-}
-
-void PlyCursor::skip_bytes(std::uint64_t bytes) {
-  const std::uint64_t some = std::min(bytes, static_cast<std::uint64_t>(end_ - at_));
-  at_ += some;
-  next_ += bytes - some;
-}
-
-std::string PlyCursor::fault() const {
-  if (is_bad_length_) return "the length of the list is not a non-negative integer";
-  if (ascii_ && at_ < row_end_) return fmt::format("`{}` is not a number", word());
-  return ascii_ && bytes_left() > 0 ? "unexpected end of line; a row must be one line" : "unexpected end of file";
-}
-
-std::string PlyCursor::word() const {
-  constexpr std::ptrdiff_t kLongestShown = 40;
-  const char* const most = at_ + std::min(kLongestShown, row_end_ - at_);
-  return {at_, std::find_if(at_, most, is_white_space)};
-}
-
-void PlyCursor::skip_blanks() {
-  while (at_ < row_end_ && is_white_space(*at_)) ++at_;
-}
-
-void PlyCursor::step_over_line_end() {
-  at_ = row_end_;
-  if (at_ == end_) return;
-  ++at_;
-  ++line_;
-}
-
-bool PlyCursor::take_word(double& value) {
-  skip_blanks();
-  const char* const end = std::find_if(at_, row_end_, is_white_space);
-  if (!parse_number({at_, end}, value)) return false;
-  at_ = end;
-  return true;
-}
-
 /// Reads one row. Errors refer to its line; in a binary file, to that of the element. Calls `take(property, index)` for
 /// each property, which returns false if the value is invalid.
 ///
 /// `name()`   name of the row, for messages
 template <class Name, class Take>
-void read_row(data::Faults& faults, const PlyElement& element, PlyCursor& cursor, Name name, Take take) {
+void read_row(Faults& faults, const PlyElement& element, PlyCursor& cursor, Name name, Take take) {
   cursor.begin_row();
   for (std::size_t k = 0; k < element.properties.size(); ++k)
     if (!take(element.properties[k], k))

@@ -1,16 +1,30 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <memory>
+#include <string>
+
 #include "data/data_file.h"
 
 /// The formats that are read, each defined in a separate file. Used only by open().
 namespace orrery::formats {
 
-extern const data::FormatReader kLammpsDump, kLammpsData, kXyz, kPly, kCsv;
-extern const data::FormatReader kNpy, kNpz, kLas, kGsd, kHdf5, kVtk;
-extern const data::FormatReader kPdb, kMmcif;
+/// The first bytes of a file and its extension, used to recognise formats.
+struct Signature {
+  std::string head;       ///< up to 64 KiB, decompressed
+  std::string extension;  ///< lower case, without ".gz", ".zst": ".xyz"; may be empty
+};
 
+struct FormatReader {
+  const char* name;
+  bool (*recognises)(const Signature& signature);
+  std::unique_ptr<data::DataFile> (*open)(const data::Bytes& bytes, const data::OpenOptions& options);
+};
+
+extern const FormatReader kLammpsDump, kLammpsData, kXyz, kPly, kCsv;
+extern const FormatReader kNpy, kNpz, kLas, kGsd, kHdf5, kVtk;
+extern const FormatReader kPdb, kMmcif;
 /// CSV, as selected by the extension alone.
-extern const data::FormatReader kNamedCsv;
+extern const FormatReader kNamedCsv;
 
 }  // namespace orrery::formats

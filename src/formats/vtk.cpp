@@ -22,12 +22,8 @@
 #include <fmt/core.h>
 
 #include "base/text.h"
-#include "data/byte_source.h"
-#include "data/columns.h"
-#include "data/faults.h"
 #include "data/frames.h"
 #include "data/records.h"
-#include "data/text_number.h"
 #include "formats/readers.h"
 
 // Reference  vtk-formats
@@ -47,7 +43,7 @@ struct VtkStorage {
 
 /// The numbers of an array: a range of a file or of memory.
 struct VtkBytes {
-  std::shared_ptr<const data::ByteSource> source;
+  Bytes source;
   std::uint64_t begin = 0;
   std::uint64_t size = 0;
   bool is_big_endian = false;
@@ -111,9 +107,7 @@ class Base64Stream final : public Stream {
     std::uint32_t bits = 0;
     std::size_t digits = 0, padding = 0;
     while (digits + padding < 4) {
-      while (at_ < text_.size() &&
-             (text_[at_] == ' ' || text_[at_] == '\n' || text_[at_] == '\r' || text_[at_] == '\t'))
-        ++at_;
+      at_ = std::min(text_.find_first_not_of(" \n\r\t", at_), text_.size());
       if (at_ == text_.size()) return false;
       const char c = text_[at_++];
       const int value = base64_value(c);
@@ -215,8 +209,7 @@ bool append_number(std::string_view word, ByteBlocks& out) {
     if (!parse_number(word, number)) return false;
     value = static_cast<T>(number);
   } else {
-    const auto [end, error] = std::from_chars(word.data(), word.data() + word.size(), value);
-    if (error != std::errc() || end != word.data() + word.size()) return false;
+    if (!base::from_text(word, value)) return false;
   }
   out.append(std::string_view(reinterpret_cast<const char*>(&value), sizeof(T)));
   return true;
@@ -227,8 +220,7 @@ bool append_number(std::string_view word, ByteBlocks& out) {
 /// Result     an empty string, or what is wrong
 /// Cost       memory for the bytes that exist, regardless of the size that the array's header declares; none if it is
 ///            not compressed
-std::string find_vtk_raw(const std::shared_ptr<const ByteSource>& file, std::uint64_t offset, const VtkStorage& storage,
-                         VtkBytes& out) {
+std::string find_vtk_raw(const Bytes& file, std::uint64_t offset, const VtkStorage& storage, VtkBytes& out) {
   RawStream stream(*file, offset);
   if (storage.is_compressed) {
     ByteBlocks bytes;
@@ -290,48 +282,6 @@ std::string vtk_attribute(pugi::xml_node node, const char* name, const char* sta
   return node.attribute(name).as_string(standard);
 }
 
-/// The XML of a VTP or VTU file, and access to its arrays.
-class VtkDocument {
- public:
-  /// Parses the XML.
-  ///
-  /// `limit`    maximum size of the decompressed data of an array, bytes
-  /// Errors     base::Error(kBadData) for malformed XML, and with a remedy for other types and compressions
-  /// Cost       memory for the file, excluding appended raw data
-  VtkDocument(std::shared_ptr<const data::ByteSource> bytes, std::uint64_t limit);
-
-  /// Memory of the text.
-  std::uint64_t memory() const { return text_.size(); }
-
-  /// Returns <PolyData> or <UnstructuredGrid>.
-  pugi::xml_node data() const;
-
-  /// Locates the numbers of a <DataArray>, and decodes them if necessary. `name` is for messages.
-  ///
-  /// Errors     base::Error(kBadData)
-  VtkBytes array(pugi::xml_node node, const std::string& name, data::NumberType type) const;
-
-  /// Returns an attribute that is a non-negative integer.
-  ///
-  /// `standard` text to use if the attribute is missing
-  /// Errors     base::Error(kBadData)
-  std::uint64_t integer(pugi::xml_node node, const char* name, const char* standard = "") const;
-
-  [[noreturn]] void fail(const std::string& text, const std::string& remedy = {}) const;
-
- private:
-  void parse();
-  void check_root();
-
-  std::shared_ptr<const data::ByteSource> bytes_;
-  std::string text_;  ///< referenced by document_
-  pugi::xml_document document_;
-  pugi::xml_node root_;
-  std::uint64_t raw_begin_ = 0;  ///< offset of appended raw data; 0: there are none
-  std::string_view base64_;      ///< appended data in base64
-  VtkStorage storage_;
-};
-
 /// Returns the offset of a string in a file; the size of the file if it does not occur.
 std::uint64_t find(const ByteSource& bytes, std::string_view text) {
   constexpr std::size_t kBlockBytes = std::size_t{1} << 20;
@@ -342,98 +292,125 @@ std::uint64_t find(const ByteSource& bytes, std::string_view text) {
   return bytes.size();
 }
 
-VtkDocument::VtkDocument(std::shared_ptr<const ByteSource> bytes, std::uint64_t limit) : bytes_(std::move(bytes)) {
-  storage_.limit = limit;
-  parse();
-  check_root();
-}
-
-void VtkDocument::parse() {
-  constexpr std::string_view kTag = "<AppendedData";
-  constexpr std::size_t kLongestTag = 1000;
-  const std::uint64_t tag = find(*bytes_, kTag);
-  const std::string head = bytes_->text(tag, kLongestTag);
-  const std::size_t tag_end = head.find('>');
-  // Raw data are cut off: they are not XML.
-  if (head.substr(0, tag_end).find("raw") != std::string::npos) {
-    const std::size_t underscore = head.find('_', tag_end);
-    if (tag_end == std::string::npos || underscore == std::string::npos)
-      fail("<AppendedData> has no data that begin with an underscore");
-    raw_begin_ = tag + underscore + 1;
-    text_ = bytes_->text(0, static_cast<std::size_t>(tag)) + "</VTKFile>";
-  } else {
-    text_ = bytes_->text(0, static_cast<std::size_t>(bytes_->size()));
+/// The XML of a VTP or VTU file, and access to its arrays.
+class VtkDocument {
+ public:
+  /// Parses the XML.
+  ///
+  /// `limit`    maximum size of the decompressed data of an array, bytes
+  /// Errors     base::Error(kBadData) for malformed XML, and with a remedy for other types and compressions
+  /// Cost       memory for the file, excluding appended raw data
+  VtkDocument(Bytes bytes, std::uint64_t limit) : bytes_(std::move(bytes)) {
+    storage_.limit = limit;
+    parse();
+    check_root();
   }
-  const pugi::xml_parse_result result =
-      document_.load_buffer_inplace(text_.data(), text_.size(), pugi::parse_minimal | pugi::parse_escapes);
-  if (!result) {
-    const std::string before = bytes_->text(0, static_cast<std::size_t>(result.offset));
-    Faults(bytes_->file())
-        .fail(static_cast<std::uint64_t>(std::count(before.begin(), before.end(), '\n')) + 1,
-              std::string("malformed XML: ") + result.description());
-  }
-  root_ = document_.child("VTKFile");
-  base64_ = root_.child("AppendedData").child_value();
-  base64_.remove_prefix(std::min(base64_.find('_') + 1, base64_.size()));
-}
 
-void VtkDocument::check_root() {
-  const std::string type = vtk_attribute(root_, "type"), order = vtk_attribute(root_, "byte_order", "LittleEndian"),
-                    header = vtk_attribute(root_, "header_type", "UInt32"),
-                    compressor = vtk_attribute(root_, "compressor");
-  if (type == "PPolyData" || type == "PUnstructuredGrid")
-    fail("the file only names the files of its pieces", "use these, or save one .vtp file with ParaView");
-  if (type != "PolyData" && type != "UnstructuredGrid")
-    fail(fmt::format("VTK type {} is not supported; supported: PolyData and UnstructuredGrid", quoted_word(type)),
-         "save the points as a .vtp file with ParaView");
-  if (order != "LittleEndian" && order != "BigEndian") fail("unknown byte order " + quoted_word(order));
-  if (header != "UInt32" && header != "UInt64") fail("unknown header type " + quoted_word(header));
-  if (!compressor.empty() && compressor != "vtkZLibDataCompressor")
-    fail(fmt::format("the compression {} is not supported", quoted_word(compressor)),
-         "save the file with zlib compression, or without");
-  storage_.is_big_endian = order == "BigEndian";
-  storage_.has_long_headers = header == "UInt64";
-  storage_.is_compressed = !compressor.empty();
-}
+  /// Memory of the text.
+  std::uint64_t memory() const { return text_.size(); }
 
-pugi::xml_node VtkDocument::data() const { return root_.child(vtk_attribute(root_, "type").c_str()); }
+  /// Returns <PolyData> or <UnstructuredGrid>.
+  pugi::xml_node data() const { return root_.child(vtk_attribute(root_, "type").c_str()); }
 
-VtkBytes VtkDocument::array(pugi::xml_node node, const std::string& name, NumberType type) const {
-  const std::string format = vtk_attribute(node, "format", "ascii");
-  VtkBytes out;
-  std::string fault;
-  if (format == "ascii") {
-    fault = parse_vtk_ascii(bytes_->file(), node.child_value(), type, out);
-  } else if (format == "binary") {
-    fault = decode_vtk_base64(bytes_->file(), node.child_value(), storage_, out);
-  } else if (format == "appended") {
-    const std::uint64_t offset = integer(node, "offset");
-    if (offset > (raw_begin_ > 0 ? bytes_->size() : base64_.size())) {
-      fault = "its offset is wrong";
-    } else if (raw_begin_ > 0) {
-      fault = find_vtk_raw(bytes_, raw_begin_ + offset, storage_, out);
+  /// Locates the numbers of a <DataArray>, and decodes them if necessary. `name` is for messages.
+  ///
+  /// Errors     base::Error(kBadData)
+  VtkBytes array(pugi::xml_node node, const std::string& name, NumberType type) const {
+    const std::string format = vtk_attribute(node, "format", "ascii");
+    VtkBytes out;
+    std::string fault;
+    if (format == "ascii") {
+      fault = parse_vtk_ascii(bytes_->file(), node.child_value(), type, out);
+    } else if (format == "binary") {
+      fault = decode_vtk_base64(bytes_->file(), node.child_value(), storage_, out);
+    } else if (format == "appended") {
+      const std::uint64_t offset = integer(node, "offset");
+      if (offset > (raw_begin_ > 0 ? bytes_->size() : base64_.size())) {
+        fault = "its offset is wrong";
+      } else if (raw_begin_ > 0) {
+        fault = find_vtk_raw(bytes_, raw_begin_ + offset, storage_, out);
+      } else {
+        fault = decode_vtk_base64(bytes_->file(), base64_.substr(static_cast<std::size_t>(offset)), storage_, out);
+      }
     } else {
-      fault = decode_vtk_base64(bytes_->file(), base64_.substr(static_cast<std::size_t>(offset)), storage_, out);
+      fault = "unknown format " + quoted_word(format);
     }
-  } else {
-    fault = "unknown format " + quoted_word(format);
+    if (!fault.empty()) fail(fmt::format("array {}: {}", quoted_word(name), fault));
+    return out;
   }
-  if (!fault.empty()) fail(fmt::format("array {}: {}", quoted_word(name), fault));
-  return out;
-}
 
-std::uint64_t VtkDocument::integer(pugi::xml_node node, const char* name, const char* standard) const {
-  const std::string text = vtk_attribute(node, name, standard);
-  std::uint64_t out = 0;
-  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), out);
-  if (error != std::errc() || end != text.data() + text.size())
-    fail(fmt::format("{} is {}, not a non-negative integer", name, quoted_word(text)));
-  return out;
-}
+  /// Returns an attribute that is a non-negative integer.
+  ///
+  /// `standard` text to use if the attribute is missing
+  /// Errors     base::Error(kBadData)
+  std::uint64_t integer(pugi::xml_node node, const char* name, const char* standard = "") const {
+    const std::string text = vtk_attribute(node, name, standard);
+    std::uint64_t out = 0;
+    if (!base::from_text(text, out)) fail(fmt::format("{} is {}, not a non-negative integer", name, quoted_word(text)));
+    return out;
+  }
 
-void VtkDocument::fail(const std::string& text, const std::string& remedy) const {
-  Faults(bytes_->file()).fail(0, text, remedy);
-}
+  [[noreturn]] void fail(const std::string& text, const std::string& remedy = {}) const {
+    Faults(bytes_->file()).fail(0, text, remedy);
+  }
+
+ private:
+  void parse() {
+    constexpr std::string_view kTag = "<AppendedData";
+    constexpr std::size_t kLongestTag = 1000;
+    const std::uint64_t tag = find(*bytes_, kTag);
+    const std::string head = bytes_->text(tag, kLongestTag);
+    const std::size_t tag_end = head.find('>');
+    // Raw data are cut off: they are not XML.
+    if (head.substr(0, tag_end).find("raw") != std::string::npos) {
+      const std::size_t underscore = head.find('_', tag_end);
+      if (tag_end == std::string::npos || underscore == std::string::npos)
+        fail("<AppendedData> has no data that begin with an underscore");
+      raw_begin_ = tag + underscore + 1;
+      text_ = bytes_->text(0, static_cast<std::size_t>(tag)) + "</VTKFile>";
+    } else {
+      text_ = bytes_->text(0, static_cast<std::size_t>(bytes_->size()));
+    }
+    const pugi::xml_parse_result result =
+        document_.load_buffer_inplace(text_.data(), text_.size(), pugi::parse_minimal | pugi::parse_escapes);
+    if (!result) {
+      const std::string before = bytes_->text(0, static_cast<std::size_t>(result.offset));
+      Faults(bytes_->file())
+          .fail(static_cast<std::uint64_t>(std::count(before.begin(), before.end(), '\n')) + 1,
+                std::string("malformed XML: ") + result.description());
+    }
+    root_ = document_.child("VTKFile");
+    base64_ = root_.child("AppendedData").child_value();
+    base64_.remove_prefix(std::min(base64_.find('_') + 1, base64_.size()));
+  }
+
+  void check_root() {
+    const std::string type = vtk_attribute(root_, "type"), order = vtk_attribute(root_, "byte_order", "LittleEndian"),
+                      header = vtk_attribute(root_, "header_type", "UInt32"),
+                      compressor = vtk_attribute(root_, "compressor");
+    if (type == "PPolyData" || type == "PUnstructuredGrid")
+      fail("the file only names the files of its pieces", "use these, or save one .vtp file with ParaView");
+    if (type != "PolyData" && type != "UnstructuredGrid")
+      fail(fmt::format("VTK type {} is not supported; supported: PolyData and UnstructuredGrid", quoted_word(type)),
+           "save the points as a .vtp file with ParaView");
+    if (order != "LittleEndian" && order != "BigEndian") fail("unknown byte order " + quoted_word(order));
+    if (header != "UInt32" && header != "UInt64") fail("unknown header type " + quoted_word(header));
+    if (!compressor.empty() && compressor != "vtkZLibDataCompressor")
+      fail(fmt::format("the compression {} is not supported", quoted_word(compressor)),
+           "save the file with zlib compression, or without");
+    storage_.is_big_endian = order == "BigEndian";
+    storage_.has_long_headers = header == "UInt64";
+    storage_.is_compressed = !compressor.empty();
+  }
+
+  Bytes bytes_;
+  std::string text_;  ///< referenced by document_
+  pugi::xml_document document_;
+  pugi::xml_node root_;
+  std::uint64_t raw_begin_ = 0;  ///< offset of appended raw data; 0: there are none
+  std::string_view base64_;      ///< appended data in base64
+  VtkStorage storage_;
+};
 
 /// An array of all pieces: the points, or data of them.
 struct VtkArray {
@@ -449,20 +426,11 @@ struct VtkColumn {
   std::uint64_t component = 0;
 };
 
-std::optional<NumberType> vtk_number_type(std::string_view name) {
-  struct Name {
-    std::string_view name;
-    NumberType type;
-  };
-  static constexpr Name kNames[] = {{"Int8", NumberType::kInt8},       {"UInt8", NumberType::kUint8},
-                                    {"Int16", NumberType::kInt16},     {"UInt16", NumberType::kUint16},
-                                    {"Int32", NumberType::kInt32},     {"UInt32", NumberType::kUint32},
-                                    {"Int64", NumberType::kInt64},     {"UInt64", NumberType::kUint64},
-                                    {"Float32", NumberType::kFloat32}, {"Float64", NumberType::kFloat64}};
-  for (const Name& known : kNames)
-    if (known.name == name) return known.type;
-  return std::nullopt;
-}
+constexpr NumberTypeName kTypeNames[] = {{"Int8", NumberType::kInt8},       {"UInt8", NumberType::kUint8},
+                                         {"Int16", NumberType::kInt16},     {"UInt16", NumberType::kUint16},
+                                         {"Int32", NumberType::kInt32},     {"UInt32", NumberType::kUint32},
+                                         {"Int64", NumberType::kInt64},     {"UInt64", NumberType::kUint64},
+                                         {"Float32", NumberType::kFloat32}, {"Float64", NumberType::kFloat64}};
 
 class VtkFile final : public SingleFrame {
  public:
@@ -529,18 +497,18 @@ class VtkFile final : public SingleFrame {
 
   void add_array(pugi::xml_node node, const std::string& name) {
     const std::string type = vtk_attribute(node, "type");
+    const std::optional<NumberType> number = number_type(kTypeNames, type);
     const std::uint64_t components = document_.integer(node, "NumberOfComponents", "1");
     if (!node) document_.fail("a piece has no <Points>");
     if (type == "String" || components == 0) return;
-    if (!vtk_number_type(type))
-      document_.fail(fmt::format("array {} has the unknown type {}", quoted_word(name), quoted_word(type)));
+    if (!number) document_.fail(fmt::format("array {} has the unknown type {}", quoted_word(name), quoted_word(type)));
     auto array = std::find_if(arrays_.begin(), arrays_.end(), [&](const VtkArray& a) { return a.name == name; });
     if (array == arrays_.end()) {
       if (arrays_.size() == kMaxColumns) document_.fail(fmt::format("there are more than {} arrays", kMaxColumns));
-      arrays_.push_back({name, *vtk_number_type(type), components, {}});
+      arrays_.push_back({name, *number, components, {}});
       array = arrays_.end() - 1;
     }
-    if (array->type != *vtk_number_type(type) || array->components != components)
+    if (array->type != *number || array->components != components)
       document_.fail(fmt::format("the pieces have arrays {} of different types or sizes", quoted_word(name)));
     array->pieces.push_back(node);
   }

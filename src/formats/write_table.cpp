@@ -17,8 +17,6 @@
 #include "base/atomic_file.h"
 #include "base/error.h"
 #include "base/file_name.h"
-#include "data/byte_source.h"
-#include "data/faults.h"
 #include "formats/npy_array.h"
 
 namespace orrery::formats {
@@ -29,7 +27,7 @@ namespace {
 
 /// Throws base::Error(kUsage): "cannot write FILE: TEXT".
 [[noreturn]] void refuse_to_write(const std::filesystem::path& file, const std::string& text) {
-  throw base::Error(base::ErrorKind::kUsage, fmt::format("cannot write {}: {}", file.string(), text));
+  base::refuse(fmt::format("cannot write {}: {}", file.string(), text));
 }
 
 template <class T>
@@ -41,15 +39,15 @@ void append_little_endian(std::string& out, T value) {
 
 const Words* words_in(const Column& column) { return std::get_if<Words>(&column.values); }
 
-/// Appends the numbers of a row of a column in the column's type; `append_text(words, row)` appends a string.
-template <class AppendText>
-void append_bytes(std::string& out, const Column& column, std::size_t row, AppendText append_text) {
+/// Calls `on_number(number)` or `on_text(string)` with the value of a row.
+template <class OnNumber, class OnText>
+void visit_value(const Column& column, std::size_t row, OnNumber on_number, OnText on_text) {
   std::visit(
       [&](const auto& values) {
         if constexpr (requires { values.index; }) {
-          append_text(values, row);
+          on_text(values.words[values.index[row]]);
         } else {
-          append_little_endian(out, values[row]);
+          on_number(values[row]);
         }
       },
       column.values);
@@ -79,23 +77,15 @@ const char* ply_type(PlyOutput output, ColumnType type) {
   if (output == PlyOutput::kInt32) return "int";
   if (output == PlyOutput::kUint32) return "uint";
   if (output == PlyOutput::kFloat64) return "double";
-  switch (type) {
-    case ColumnType::kFloat32: return "float";
-    case ColumnType::kInt32: return "int";
-    case ColumnType::kUint16: return "ushort";
-    case ColumnType::kUint8: return "uchar";
-    case ColumnType::kFloat64:
-    case ColumnType::kInt64:
-    case ColumnType::kText: break;
-  }
-  return "double";
+  constexpr const char* kNames[] = {"double", "float", "double", "int", "ushort", "uchar", "double"};
+  return kNames[static_cast<std::size_t>(type)];
 }
 
-/// Returns the name of a property: without spaces, and different from the previous ones.
-std::string ply_name(std::string name, std::set<std::string>& used) {
+/// Returns a name with underscores for some characters, and different from the previous ones.
+std::string distinct_name(std::string name, std::string_view replaced, std::set<std::string>& used) {
   if (name.empty()) name = "_";
-  for (char& c : name)
-    if (c == ' ' || (c >= '\t' && c <= '\r')) c = '_';
+  std::replace_if(
+      name.begin(), name.end(), [&](char c) { return replaced.find(c) != std::string_view::npos; }, '_');
   while (!used.insert(name).second) name += '_';
   return name;
 }
@@ -121,19 +111,10 @@ NpyText npy_text(const base::OutputFile& out, const Column& column) {
 }
 
 std::string npy_type(const base::OutputFile& out, const Column& column) {
-  switch (column.type()) {
-    case ColumnType::kFloat64: break;
-    case ColumnType::kFloat32: return "<f4";
-    case ColumnType::kInt64: return "<i8";
-    case ColumnType::kInt32: return "<i4";
-    case ColumnType::kUint16: return "<u2";
-    case ColumnType::kUint8: return "|u1";
-    case ColumnType::kText: {
-      const NpyText text = npy_text(out, column);
-      return (text.is_ascii ? "<U" : "|S") + std::to_string(text.length);
-    }
-  }
-  return "<f8";
+  constexpr const char* kNames[] = {"<f8", "<f4", "<i8", "<i4", "<u2", "|u1"};
+  if (column.type() != ColumnType::kText) return kNames[static_cast<std::size_t>(column.type())];
+  const NpyText text = npy_text(out, column);
+  return (text.is_ascii ? "<U" : "|S") + std::to_string(text.length);
 }
 
 /// Quotes a string in Python's syntax.
@@ -161,11 +142,10 @@ std::string npy_header(const base::OutputFile& out, const Table& table) {
   std::string header = "\x93NUMPY";
   header += version;
   header += '\0';
-  if (version == 1) {
+  if (version == 1)
     append_little_endian(header, static_cast<std::uint16_t>(literal.size()));
-  } else {
+  else
     append_little_endian(header, static_cast<std::uint32_t>(literal.size()));
-  }
   return header + literal;
 }
 
@@ -186,20 +166,6 @@ void append_number(std::string& out, T value) {
   }
 }
 
-/// Appends a value; `append_text(out, word)` appends a string.
-template <class AppendText>
-void append_value(std::string& out, const Column& column, std::size_t row, AppendText append_text) {
-  std::visit(
-      [&](const auto& values) {
-        if constexpr (requires { values.index; }) {
-          append_text(out, values.words[values.index[row]]);
-        } else {
-          append_number(out, values[row]);
-        }
-      },
-      column.values);
-}
-
 void append_quoted(std::string& out, std::string_view text) {
   out += '"';
   for (const char c : text) {
@@ -211,7 +177,7 @@ void append_quoted(std::string& out, std::string_view text) {
 
 /// Refuses strings with line breaks.
 void check_csv_texts(const base::OutputFile& out, const Column& column, std::string_view line_ends) {
-  const auto* const words = std::get_if<Words>(&column.values);
+  const Words* const words = words_in(column);
   if (words == nullptr) return;
   for (const std::string& word : words->words)
     if (word.find_first_of(line_ends) != std::string::npos)
@@ -222,11 +188,14 @@ void check_csv_texts(const base::OutputFile& out, const Column& column, std::str
 
 /// Returns whether XYZ, in which spaces separate values, can store the values of a column.
 bool is_storable_in_xyz(const Column& column) {
-  const auto* const words = std::get_if<Words>(&column.values);
+  const Words* const words = words_in(column);
   return words == nullptr || std::all_of(words->words.begin(), words->words.end(), [](const std::string& word) {
            return !word.empty() && word.find_first_of(" \t\r\n\"") == std::string::npos;
          });
 }
+
+/// Characters that separate names and values in extended XYZ.
+constexpr std::string_view kXyzSeparators = " \t\r\n:=\"'{}[]\\,";
 
 /// A property of extended XYZ: one or more columns.
 struct XyzOutput {
@@ -240,15 +209,6 @@ char xyz_type(const Column& column) {
   const ColumnType type = column.type();
   if (type == ColumnType::kText) return 'S';
   return type == ColumnType::kFloat64 || type == ColumnType::kFloat32 ? 'R' : 'I';
-}
-
-/// Returns a name without separator characters, and different from the previous ones.
-std::string xyz_name(std::string name, std::set<std::string>& used) {
-  if (name.empty()) name = "_";
-  for (char& c : name)
-    if (std::string_view(" \t\r\n:=\"'{}[]\\,").find(c) != std::string_view::npos) c = '_';
-  while (!used.insert(name).second) name += '_';
-  return name;
 }
 
 /// Returns the columns from `first` on that are the components of one property, name[1], name[2] ..; else the first.
@@ -312,7 +272,7 @@ std::vector<XyzOutput> xyz_outputs(const Table& table, std::vector<std::string>&
     const std::optional<XyzOutput> color = color_at(table, i);
     XyzOutput property = color ? *color : property_at(table, i);
     i += property.columns.size();
-    property.name = xyz_name(property.name, used);
+    property.name = distinct_name(property.name, kXyzSeparators, used);
     out.push_back(std::move(property));
   }
   return out;
@@ -335,18 +295,20 @@ std::vector<std::string> write_ply_table(base::OutputFile& out, const Table& tab
     if (outputs.back() == PlyOutput::kNone) {
       left_out.push_back(column.name);
     } else {
-      bytes += fmt::format("property {} {}\n", ply_type(outputs.back(), column.type()), ply_name(column.name, used));
+      bytes += fmt::format("property {} {}\n", ply_type(outputs.back(), column.type()),
+                           distinct_name(column.name, " \t\n\v\f\r", used));
     }
   }
   bytes += "end_header\n";
+  const auto append = [&](auto number) { append_little_endian(bytes, number); };
   for (std::size_t row = 0; row < table.rows; ++row) {
     for (std::size_t c = 0; c < table.columns.size(); ++c) {
       const auto integer = [&] { return std::get<std::vector<std::int64_t>>(table.columns[c].values)[row]; };
       switch (outputs[c]) {
-        case PlyOutput::kSame: append_bytes(bytes, table.columns[c], row, [](const Words&, std::size_t) {}); break;
-        case PlyOutput::kInt32: append_little_endian(bytes, static_cast<std::int32_t>(integer())); break;
-        case PlyOutput::kUint32: append_little_endian(bytes, static_cast<std::uint32_t>(integer())); break;
-        case PlyOutput::kFloat64: append_little_endian(bytes, static_cast<double>(integer())); break;
+        case PlyOutput::kSame: visit_value(table.columns[c], row, append, [](const std::string&) {}); break;
+        case PlyOutput::kInt32: append(static_cast<std::int32_t>(integer())); break;
+        case PlyOutput::kUint32: append(static_cast<std::uint32_t>(integer())); break;
+        case PlyOutput::kFloat64: append(static_cast<double>(integer())); break;
         case PlyOutput::kNone: break;
       }
     }
@@ -362,9 +324,8 @@ void write_npy_table(base::OutputFile& out, const Table& table) {
   for (const Column& column : table.columns)
     texts.push_back(words_in(column) != nullptr ? npy_text(out, column) : NpyText());
   for (std::size_t row = 0; row < table.rows; ++row) {
-    for (std::size_t c = 0; c < table.columns.size(); ++c)
-      append_bytes(bytes, table.columns[c], row, [&](const Words& words, std::size_t r) {
-        const std::string& word = words.words[words.index[r]];
+    for (std::size_t c = 0; c < table.columns.size(); ++c) {
+      const auto append_text = [&](const std::string& word) {
         const std::size_t padding = texts[c].length - word.size();
         if (texts[c].is_ascii) {
           for (const char character : word) append_little_endian(bytes, static_cast<std::uint32_t>(character));
@@ -373,7 +334,10 @@ void write_npy_table(base::OutputFile& out, const Table& table) {
           bytes += word;
           bytes.append(padding, '\0');
         }
-      });
+      };
+      visit_value(
+          table.columns[c], row, [&](auto number) { append_little_endian(bytes, number); }, append_text);
+    }
     out.flush();
   }
 }
@@ -397,7 +361,9 @@ void write_csv_table(base::OutputFile& out, const Table& table) {
   for (std::size_t row = 0; row < table.rows; ++row) {
     for (std::size_t c = 0; c < table.columns.size(); ++c) {
       if (c > 0) text += ',';
-      append_value(text, table.columns[c], row, append_quoted);
+      visit_value(
+          table.columns[c], row, [&](auto number) { append_number(text, number); },
+          [&](const std::string& word) { append_quoted(text, word); });
     }
     text += '\n';
     out.flush();
@@ -424,7 +390,9 @@ std::vector<std::string> write_xyz_table(base::OutputFile& out, const Table& tab
         if (property.is_color)
           append_number(text, column->number(row) / std::numeric_limits<std::uint8_t>::max());
         else
-          append_value(text, *column, row, [](std::string& to, const std::string& word) { to += word; });
+          visit_value(
+              *column, row, [&](auto number) { append_number(text, number); },
+              [&](const std::string& word) { text += word; });
       }
     text += '\n';
     out.flush();

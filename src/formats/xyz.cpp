@@ -12,12 +12,8 @@
 
 #include <fmt/core.h>
 
-#include "data/byte_source.h"
-#include "data/columns.h"
-#include "data/faults.h"
+#include "base/text.h"
 #include "data/frames.h"
-#include "data/table.h"
-#include "data/text_lines.h"
 #include "data/text_rows.h"
 #include "formats/readers.h"
 
@@ -34,19 +30,11 @@ using XyzValues = std::map<std::string, std::string, std::less<>>;
 /// A property of the atoms: one column or several.
 struct XyzProperty {
   std::string name;
-  data::ColumnType type = data::ColumnType::kFloat64;
+  ColumnType type = ColumnType::kFloat64;
   std::size_t count = 1;
 };
 
 constexpr std::string_view kSpace = " \t\r";
-
-char closing(char opening) {
-  switch (opening) {
-    case '{': return '}';
-    case '[': return ']';
-    default: return opening;
-  }
-}
 
 /// Removes a word, or a quoted or bracketed part, from the front of a string and returns it.
 std::string taken(std::string_view& text, std::string_view separators) {
@@ -59,7 +47,7 @@ std::string taken(std::string_view& text, std::string_view separators) {
     text.remove_prefix(end);
     return out;
   }
-  const char end = closing(opening);
+  const char end = opening == '{' ? '}' : opening == '[' ? ']' : opening;
   std::size_t depth = 0;
   std::size_t at = 1;
   for (; at < text.size(); ++at) {
@@ -119,7 +107,7 @@ XyzValues xyz_values(std::string_view line) {
 ///
 /// Errors     base::Error(kBadData), thrown through `faults`
 std::vector<XyzProperty> xyz_properties(std::string_view text, std::uint64_t line, Faults& faults) {
-  constexpr std::string_view kRemedy = "expected name:type:columns, repeated; types are S, I, R and L";
+  const std::string remedy = "expected name:type:columns, repeated; types are S, I, R and L";
   std::vector<std::string_view> parts;
   for (std::size_t begin = 0; begin <= text.size();) {
     const std::size_t end = std::min(text.find(':', begin), text.size());
@@ -134,7 +122,7 @@ std::vector<XyzProperty> xyz_properties(std::string_view text, std::uint64_t lin
     property.name = parts[i];
     const std::string shown = fmt::format("property \"{}\": ", property.name);
     if (property.name.empty() || parts.size() - i < 3)
-      faults.fail(line, shown + "its name, type or number of columns is missing", std::string(kRemedy));
+      faults.fail(line, shown + "its name, type or number of columns is missing", remedy);
     if (parts[i + 1] == "R")
       property.type = ColumnType::kFloat64;
     else if (parts[i + 1] == "I")
@@ -142,12 +130,12 @@ std::vector<XyzProperty> xyz_properties(std::string_view text, std::uint64_t lin
     else if (parts[i + 1] == "S" || parts[i + 1] == "L")
       property.type = ColumnType::kText;
     else
-      faults.fail(line, fmt::format("{}unknown type '{}'", shown, parts[i + 1]), std::string(kRemedy));
+      faults.fail(line, fmt::format("{}unknown type '{}'", shown, parts[i + 1]), remedy);
     std::int64_t count = 0;
     if (!parse_integer(parts[i + 2], count) || count < 1 || count > kMaxCount || (columns += count) > kMaxCount)
       faults.fail(line,
                   fmt::format("{}'{}' is not a number of columns; at most {} in all", shown, parts[i + 2], kMaxCount),
-                  std::string(kRemedy));
+                  remedy);
     property.count = static_cast<std::size_t>(count);
     out.push_back(std::move(property));
   }
@@ -334,7 +322,7 @@ class Xyz final : public TextFrames {
     layout.rows = header.info.rows;
     std::vector<std::string> names;
     for (const ColumnInfo& column : header.info.columns) {
-      layout.columns.push_back({column.type, std::find(columns.begin(), columns.end(), column.name) != columns.end()});
+      layout.columns.push_back({column.type, base::contains(columns, column.name)});
       names.push_back(column.name);
     }
     // Rows of plain XYZ may have anything after the position.
