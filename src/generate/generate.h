@@ -27,10 +27,8 @@ struct FinalScene {
 };
 
 /// Returns the scene: three large spheres among many small ones on a huge ground sphere. Of the small spheres, 80 % are
-/// diffuse, 15 % metal and 5 % glass. The same seed gives the same scene on every machine. Random numbers are rounded
-/// to four decimals, for readability.
+/// diffuse, 15 % metal and 5 % glass. The same seed gives the same scene on every machine.
 ///
-/// Units      scene units, degrees
 /// Result     `spheres`: the ground, the small ones, the three large ones; the small ones are in `points[0]` instead if
 ///            `grid` exceeds kLargestWrittenGrid
 /// Errors     base::Error(kUsage) for a grid outside 0..kLargestFinalGrid, or above kLargestWrittenGrid if `moving`
@@ -51,10 +49,9 @@ struct Cloud {
   std::optional<double> radius = {};
 };
 
-/// Returns the scene of a cloud. By default, the total cross-section does not depend on the number of spheres: a few
-/// form a heap of balls, thousands a swarm, millions a mist, and about as much sky shows through in each case.
+/// Returns the scene of a cloud, about 4 wide. By default, the total cross-section does not depend on the number of
+/// spheres: a few form a heap of balls, millions a mist, and about as much sky shows through.
 ///
-/// Units      scene units; the cloud is about 4 wide
 /// Result     `points[0]` holds exactly `count` spheres of four materials; there are no others
 /// Errors     base::Error(kUsage) for a count outside 1..kLargestCloud, or a radius outside
 ///            scene::kSmallestRadius..kLargestCloudRadius
@@ -67,9 +64,8 @@ inline constexpr int kSmallestEnvironment = 16, kLargestEnvironment = 8192;
 /// Default width of a generated environment, px: a texel is about two thirds of the sun's disc wide.
 inline constexpr int kEnvironmentWidth = 1024;
 
-/// Returns a latitude-longitude image of a photo studio, for tests of materials: a dark room with a grey floor, three
-/// soft boxes and an overhead one. The light that they cast on the floor, the walls and the ceiling is computed. The
-/// camera is expected at +z.
+/// Returns a latitude-longitude image of a photo studio, for tests of materials: a dark room with a grey floor and four
+/// soft boxes, with the light that they cast on it. The camera is expected at +z.
 ///
 /// Space      metres: the ball is at the origin, the floor at y = -1.2; orientation as for scene::EnvironmentImage
 /// Units      lin_rec709. The key light's irradiance at the ball is about pi: there, a white diffuse surface that faces

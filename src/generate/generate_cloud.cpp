@@ -3,7 +3,6 @@
 #include <array>
 #include <cmath>
 #include <numbers>
-#include <string>
 
 #include <fmt/core.h>
 
@@ -12,7 +11,6 @@
 #include "generate/generate_random.h"
 #include "scene/limits.h"
 #include "scene/schema.h"
-#include "scene/value_text.h"
 
 namespace orrery::generate {
 namespace {
@@ -73,13 +71,11 @@ std::uint32_t pick_material(double u) { return u < 0.75 ? 0 : u < 0.87 ? 1 : u <
 
 void check(const Cloud& options) {
   if (options.count < 1 || options.count > kLargestCloud)
-    throw base::Error(base::ErrorKind::kUsage,
-                      fmt::format("count is {}; must be in 1..{}", options.count, kLargestCloud));
+    base::refuse(fmt::format("count is {}; must be in 1..{}", options.count, kLargestCloud));
   // Negated, so that NaN is refused too.
   if (options.radius && !(*options.radius >= scene::kSmallestRadius && *options.radius <= kLargestCloudRadius))
-    throw base::Error(base::ErrorKind::kUsage,
-                      fmt::format("radius is {}; must be in {}..{}", scene::number_text(*options.radius),
-                                  scene::number_text(scene::kSmallestRadius), scene::number_text(kLargestCloudRadius)));
+    base::refuse(fmt::format("radius is {}; must be in {}..{}", scene::number_text(*options.radius),
+                             scene::number_text(scene::kSmallestRadius), scene::number_text(kLargestCloudRadius)));
 }
 
 }  // namespace

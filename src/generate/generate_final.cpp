@@ -11,7 +11,6 @@
 #include "base/error.h"
 #include "generate/generate.h"
 #include "generate/generate_random.h"
-#include "scene/scene.h"
 #include "scene/texture.h"
 
 namespace orrery::generate {
@@ -142,12 +141,10 @@ void set_view(scene::Scene& scene) {
 
 scene::Scene make_final_scene(const FinalScene& options, const std::filesystem::path& points_file) {
   if (options.grid < 0 || options.grid > kLargestFinalGrid)
-    throw base::Error(base::ErrorKind::kUsage,
-                      fmt::format("grid is {}; must be in 0..{}", options.grid, kLargestFinalGrid));
+    base::refuse(fmt::format("grid is {}; must be in 0..{}", options.grid, kLargestFinalGrid));
   if (options.moving && options.grid > kLargestWrittenGrid)
-    throw base::Error(base::ErrorKind::kUsage,
-                      fmt::format("grid is {}; moving spheres are written as tables, so it must be in 0..{}",
-                                  options.grid, kLargestWrittenGrid));
+    base::refuse(fmt::format("grid is {}; moving spheres are written as tables, so it must be in 0..{}", options.grid,
+                             kLargestWrittenGrid));
   scene::Scene scene;
   set_view(scene);
   const std::uint32_t ground =

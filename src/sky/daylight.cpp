@@ -2,7 +2,6 @@
 #include "sky/daylight.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <numbers>
 #include <vector>

@@ -3,16 +3,15 @@
 #include <array>
 #include <cmath>
 #include <numbers>
-#include <string>
 
 #include <fmt/core.h>
 
 #include "base/error.h"
 #include "film/picture.h"
 #include "generate/generate.h"
+#include "generate/generate_random.h"
 #include "math/scalar.h"
 #include "scene/limits.h"
-#include "scene/scene.h"
 #include "scene/value_text.h"
 #include "sky/daylight.h"
 
@@ -25,20 +24,17 @@ using math::Vec3d;
 
 constexpr double kPi = std::numbers::pi;
 
-void check_width(int width) {
-  if (width < kSmallestEnvironment || width > kLargestEnvironment || width % 4 != 0)
-    throw base::Error(base::ErrorKind::kUsage, fmt::format("width is {}; must be a multiple of 4 in {}..{}", width,
-                                                           kSmallestEnvironment, kLargestEnvironment));
-}
-
 void check_range(const char* name, double value, double from, double to) {
   if (!(value >= from && value <= to))
-    throw base::Error(base::ErrorKind::kUsage,
-                      fmt::format("{} is {}; must be in {}..{}", name, scene::number_text(value),
-                                  scene::number_text(from), scene::number_text(to)));
+    base::refuse(fmt::format("{} is {}; must be in {}..{}", name, scene::number_text(value), scene::number_text(from),
+                             scene::number_text(to)));
 }
 
+/// Returns a black latitude-longitude image.
 film::Picture picture_of(int width) {
+  if (width < kSmallestEnvironment || width > kLargestEnvironment || width % 4 != 0)
+    base::refuse(fmt::format("width is {}; must be a multiple of 4 in {}..{}", width, kSmallestEnvironment,
+                             kLargestEnvironment));
   film::Picture out;
   out.width = width;
   out.height = width / 2;
@@ -204,14 +200,65 @@ void add_sun(const scene::Sun& sun, film::Picture& picture) {
   }
 }
 
+Vec3d mixed(Vec3d a, Vec3d b, double t) { return a + (b - a) * t; }
+
+/// 0 up to `from`, 1 from `to` on, and smooth between them.
+double step_between(double from, double to, double x) {
+  const double t = std::clamp((x - from) / (to - from), 0.0, 1.0);
+  return t * t * (3 - 2 * t);
+}
+
+/// Reflectances of a planet's surface and clouds by direction.
+class Planet {
+ public:
+  explicit Planet(std::uint64_t seed)
+      : relief_(4 * seed), climate_(4 * seed + 1), clouds_(4 * seed + 2), wind_(4 * seed + 3) {}
+
+  Vec3d color(Vec3d p) const {
+    constexpr Vec3d kCloud{0.85, 0.86, 0.88};
+    return mixed(surface(p), kCloud, 0.9 * cloud_cover(p));
+  }
+
+ private:
+  /// A point displaced by noise, so that what is computed from it has no round shapes.
+  static Vec3d displaced(const GenerateNoise& noise, Vec3d p, double frequency, double by) {
+    const Vec3d q = frequency * p;
+    return p + by * Vec3d{noise.octaves(q, 4), noise.octaves(q + Vec3d{17.3, 5.1, 9.7}, 4),
+                          noise.octaves(q + Vec3d{3.9, 31.7, 23.3}, 4)};
+  }
+
+  Vec3d surface(Vec3d p) const {
+    constexpr Vec3d kDeep{0.008, 0.025, 0.09}, kShallow{0.03, 0.12, 0.19}, kIce{0.82, 0.85, 0.88};
+    constexpr Vec3d kForest{0.035, 0.09, 0.025}, kSteppe{0.16, 0.15, 0.06}, kDesert{0.42, 0.31, 0.17},
+        kRock{0.21, 0.18, 0.15};
+    const double height = relief_.octaves(displaced(climate_, 1.7 * p, 1.3, 0.35), 9) - 0.06;
+    const double rough = climate_.octaves(6 * p, 5), latitude = std::abs(p.y);
+    const double ice = step_between(0.84, 0.9, latitude + 0.09 * rough + 0.25 * std::max(height, 0.0));
+    if (height < 0) return mixed(mixed(kShallow, kDeep, step_between(0, 0.12, -height)), kIce, ice);
+    // Dry around the tropics, wet at the equator and in middle latitudes.
+    const double wet = std::abs(latitude - 0.38) * 3.2 - 0.45 + 0.8 * climate_.octaves(2.1 * p, 5);
+    const Vec3d plain = wet < 0 ? mixed(kSteppe, kDesert, step_between(0, 0.4, -wet))
+                                : mixed(kSteppe, kForest, step_between(0, 0.35, wet));
+    return mixed(mixed(plain, kRock, step_between(0.25, 0.55, height + 0.2 * rough)), kIce, ice);
+  }
+
+  double cloud_cover(Vec3d p) const {
+    // Streaks along the parallels, distorted by whirls.
+    const Vec3d q = displaced(wind_, p, 2.2, 0.3);
+    const double cover = clouds_.octaves({2.3 * q.x, 3.9 * q.y, 2.3 * q.z}, 8);
+    return step_between(0.08, 0.65, cover + 0.12 * wind_.octaves(9 * p, 5));
+  }
+
+  GenerateNoise relief_, climate_, clouds_, wind_;
+};
+
 }  // namespace
 
 film::Picture make_studio(int width) {
-  check_width(width);
   constexpr int kPositions = 4;
+  film::Picture picture = picture_of(width);
   const Directions centers(width, 1), directions(width, kPositions);
   const std::array<SoftBox, 4> boxes = soft_boxes();
-  film::Picture picture = picture_of(width);
   std::size_t at = 0;
   for (int y = 0; y < picture.height; ++y) {
     for (int x = 0; x < picture.width; ++x, ++at) {
@@ -228,13 +275,12 @@ film::Picture make_studio(int width) {
 }
 
 film::Picture make_sky(const scene::Background& sky, int width) {
-  check_width(width);
+  film::Picture picture = picture_of(width);
   check_range("sun elevation", sky.sun_elevation, -90, 90);
   check_range("sun azimuth", sky.sun_azimuth, -scene::kLargestRotation, scene::kLargestRotation);
   check_range("turbidity", sky.turbidity, scene::kLowestTurbidity, scene::kHighestTurbidity);
   check_range("ground albedo", sky.ground_albedo.x, 0, 1);
   const scene::EnvironmentImage image = sky::bake_sky(sky, {width});
-  film::Picture picture = picture_of(width);
   for (int y = 0; y < picture.height; ++y) {
     const float* from = image.row(y);
     const std::size_t at = static_cast<std::size_t>(y) * static_cast<std::size_t>(width);
@@ -243,6 +289,28 @@ film::Picture make_sky(const scene::Background& sky, int width) {
   }
   add_sun(image.sun, picture);
   return picture;
+}
+
+film::Picture make_planet(std::uint64_t seed, int width) {
+  const Planet planet(seed);
+  film::Picture out = picture_of(width);
+  // Rounded from long double, so that they do not depend on the math library.
+  const auto sine = [](long double angle) { return static_cast<double>(std::sin(angle)); };
+  const auto cosine = [](long double angle) { return static_cast<double>(std::cos(angle)); };
+  const long double turn = 2 * std::numbers::pi_v<long double>;
+  for (int y = 0; y < out.height; ++y) {
+    const long double colatitude = turn * (y + 0.5L) / (2 * out.height);
+    const double up = cosine(colatitude), aside = sine(colatitude);
+    for (int x = 0; x < out.width; ++x) {
+      const long double longitude = turn * ((x + 0.5L) / out.width - 0.25L);
+      const Vec3d color = planet.color({aside * sine(longitude), up, aside * cosine(longitude)});
+      const auto at = static_cast<std::size_t>(y) * static_cast<std::size_t>(width) + static_cast<std::size_t>(x);
+      out.planes[0].values[at] = static_cast<float>(color.x);
+      out.planes[1].values[at] = static_cast<float>(color.y);
+      out.planes[2].values[at] = static_cast<float>(color.z);
+    }
+  }
+  return out;
 }
 
 }  // namespace orrery::generate
