@@ -11,7 +11,6 @@
 
 #include "annotation/legend.h"
 #include "base/error.h"
-#include "data/table.h"
 #include "display/develop.h"
 #include "display/settings.h"
 #include "points/selection.h"

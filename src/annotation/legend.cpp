@@ -19,7 +19,6 @@
 #include "film/picture.h"
 #include "image/format.h"
 #include "image/write.h"
-#include "points/ticks.h"
 
 namespace orrery::annotation {
 namespace {
@@ -54,12 +53,12 @@ class LegendLayout {
   }
 
   void add_bar(const LegendColors& colors) {
-    const points::ValueScale scale{colors.range->low, colors.range->high, colors.is_log};
+    const ValueScale scale{colors.range->low, colors.range->high, colors.is_log};
     const double right = kColorWidth * em_;
     const double height = std::max(1.0, std::min(kBarHeight * em_, style_.height_px - y_ - em_));
     add_frame(right, height);
     out_.bars.push_back({0, y_, right, y_ + height, colors.bar});
-    for (const points::Tick& tick : points::ticks_of(scale)) {
+    for (const Tick& tick : ticks_of(scale)) {
       const double y = y_ + height * (1 - scale.share_of(tick.value)), end = right + kTickLength * em_;
       out_.boxes.push_back({right, y - line_ / 2, end, y + line_ / 2, out_.ink});
       add_text(tick.label, end + kColorGap * em_, y + kMiddleOfText * em_);
@@ -128,8 +127,7 @@ Vec3d same(const Vec3d& color) { return color; }
 
 std::optional<double> number_of(std::string_view label) {
   double value = 0;
-  const auto [end, error] = std::from_chars(label.data(), label.data() + label.size(), value);
-  if (error != std::errc() || end != label.data() + label.size() || std::isnan(value)) return {};
+  if (!base::from_text(label, value) || std::isnan(value)) return {};
   return value;
 }
 
@@ -176,14 +174,11 @@ std::string legend_svg(const LegendColors& colors, const display::Settings& disp
 }
 
 void write_legend(const std::filesystem::path& file, const LegendColors& colors, const display::Settings& display) {
-  if (colors.is_empty())
-    throw base::Error(base::ErrorKind::kUsage, "--legend: the colours are not those of a column, types or elements");
+  if (colors.is_empty()) base::refuse("--legend: the colours are not those of a column, types or elements");
   if (base::extension(file) == ".svg") return base::write_text_file(file, legend_svg(colors, display));
-  if (!image::is_display_format(image::format_of(file)))
-    throw base::Error(base::ErrorKind::kUsage, "--legend: name an .svg or .png file");
+  if (!image::is_display_format(image::format_of(file))) base::refuse("--legend: name an .svg or .png file");
   if (colors.labels.size() > kMaxImageLabels)
-    throw base::Error(base::ErrorKind::kUsage,
-                      fmt::format("--legend: an image shows up to {} values; name an .svg file", kMaxImageLabels));
+    base::refuse(fmt::format("--legend: an image shows up to {} values; name an .svg file", kMaxImageLabels));
   const Drawing drawing = page(colors, display, kImageFont);
   film::EncodedPicture picture;
   picture.width = drawing.width;

@@ -15,6 +15,33 @@
 
 namespace orrery::annotation {
 
+/// The values along a colour bar.
+struct ValueScale {
+  double first = 0, last = 1;  ///< finite, in any order
+  bool is_log = false;         ///< equal steps are those of logarithms; both ends are above 0
+
+  /// The position of a value: 0 at `first` to 1 at `last`; 0.5 if both are equal.
+  double share_of(double value) const;
+};
+
+struct Tick {
+  double value = 0;
+  std::string label;
+};
+
+/// Returns ticks at multiples of 1, 2 or 5 times a power of ten in a range, with as many digits as distinguish them.
+/// All labels are fixed ("0.25"), or, if the range reaches 1e6 or is below 1e-3, scientific with a common exponent
+/// ("0.5e-7").
+///
+/// Domain     finite ends in any order
+/// Result     4 to 11 ascending ticks; one if the ends are equal or too close to be distinguished; the ends if their
+///            difference is not finite
+std::vector<Tick> nice_ticks(double first, double last);
+
+/// Returns the ticks of a scale: nice_ticks(), or on a logarithmic one of at least a decade powers of ten, with their
+/// double and fivefold on less than three decades.
+std::vector<Tick> ticks_of(const ValueScale& scale);
+
 /// Orders numbers by value, before other strings.
 struct LabelOrder {
   bool operator()(std::string_view a, std::string_view b) const;
@@ -49,10 +76,7 @@ struct LegendStyle {
 /// Errors     those of image::text_width()
 Drawing legend_drawing(const LegendColors& colors, const LegendStyle& style, const std::filesystem::path& font);
 
-/// The legend of a plot's colours as SVG; empty if there are none.
-///
-/// `display`  see write_legend()
-/// Errors     those of display::develop and image::font_file
+/// The legend of a plot's colours as SVG, see write_legend(); empty if there are none.
 std::string legend_svg(const LegendColors& colors, const display::Settings& display);
 
 /// Writes the legend of a plot's colours as SVG or as an image. Applies the display transform of the plot's images, so

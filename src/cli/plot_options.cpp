@@ -17,7 +17,7 @@
 #include "base/text.h"
 #include "job/job.h"
 #include "plot/range.h"
-#include "points/point_opacity.h"
+#include "points/sources.h"
 #include "scene/limits.h"
 #include "scene/value_text.h"
 

@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "job/resources.h"
-#include "points/open_data.h"
+#include "points/load_points.h"
 #include "view/viewer.h"
 
 namespace orrery::cli {

@@ -15,7 +15,6 @@
 #include <exception>
 #include <mutex>
 #include <new>
-#include <vector>
 
 #include <fmt/core.h>
 

@@ -24,11 +24,8 @@ class ByteBlocks {
   std::span<char> room(std::uint64_t most);
   /// Appends the first `count` bytes of the room.
   void append(std::size_t count) { size_ += count; }
-  /// Appends a copy of some bytes.
   void append(std::string_view bytes);
 
-  /// Copies bytes.
-  ///
   /// Domain     offset + count <= size()
   void read(std::uint64_t offset, std::size_t count, char* out) const;
 
@@ -105,7 +102,6 @@ class ZipReader {
   ///
   /// Errors     base::Error(kBadData) if the archive is damaged
   bool next();
-  /// Returns the name of the member.
   const std::string& name() const { return name_; }
   /// Reads the next bytes of the member, fewer than `count` only at its end.
   ///

@@ -7,13 +7,12 @@
 #include <fmt/core.h>
 
 #include "base/text.h"
+#include "data/elements.h"
 #include "data/text_lines.h"
 
 namespace orrery::data {
 
 namespace {
-
-using Triple = std::array<const char*, 3>;
 
 /// Returns the column with one of the names, of which earlier ones have priority; null if there is none.
 const ColumnInfo* find(const std::vector<ColumnInfo>& columns, std::initializer_list<const char*> names,
@@ -24,14 +23,9 @@ const ColumnInfo* find(const std::vector<ColumnInfo>& columns, std::initializer_
   return nullptr;
 }
 
-/// Returns the first three columns of numbers with the names of a triple; empty if there are none.
-std::array<std::string, 3> numbers(const std::vector<ColumnInfo>& columns, std::initializer_list<Triple> triples) {
-  for (const auto& [x, y, z] : triples) {
-    std::array<std::string, 3> out = {number_column(columns, {x}), number_column(columns, {y}),
-                                      number_column(columns, {z})};
-    if (std::find(out.begin(), out.end(), "") == out.end()) return out;
-  }
-  return {};
+/// Whether an array of three components with this name contains positions.
+bool is_position_name(std::string_view name) {
+  return base::contains({"pos", "position", "positions", "coords", "coordinates", "points", "xyz"}, base::lower(name));
 }
 
 double full_intensity(ColumnType type) {
@@ -45,12 +39,12 @@ Roles customary_roles(const std::vector<ColumnInfo>& columns) {
   const auto is_any = [](const ColumnInfo&) { return true; };
   const auto is_text = [](const ColumnInfo& column) { return column.type == ColumnType::kText; };
   Roles roles;
-  roles.position = numbers(columns, {{"x", "y", "z"},
-                                     {"pos_x", "pos_y", "pos_z"},
-                                     {"position_x", "position_y", "position_z"},
-                                     {"points:0", "points:1", "points:2"},
-                                     {"points_0", "points_1", "points_2"},
-                                     {"x0", "y0", "z0"}});  // the first ends of segments
+  roles.position = number_columns(columns, {{"x", "y", "z"},
+                                            {"pos_x", "pos_y", "pos_z"},
+                                            {"position_x", "position_y", "position_z"},
+                                            {"points:0", "points:1", "points:2"},
+                                            {"points_0", "points_1", "points_2"},
+                                            {"x0", "y0", "z0"}});  // the first ends of segments
   roles.radius = number_column(columns, {"radius", "scalar_radius"});
   const bool r_is_color = find(columns, {"g"}, is_any) != nullptr && find(columns, {"b"}, is_any) != nullptr;
   if (roles.radius.empty() && !r_is_color) roles.radius = number_column(columns, {"r"});
@@ -63,15 +57,15 @@ Roles customary_roles(const std::vector<ColumnInfo>& columns) {
   if (const ColumnInfo* const type = find(columns, {"type", "class", "classification"}, is_any))
     roles.type = type->name;
   roles.id = number_column(columns, {"id"});
-  roles.rgb = numbers(columns, {{"red", "green", "blue"},
-                                {"r", "g", "b"},
-                                {"diffuse_red", "diffuse_green", "diffuse_blue"},
-                                {"rgb[1]", "rgb[2]", "rgb[3]"},
-                                {"rgba[1]", "rgba[2]", "rgba[3]"},
-                                {"color[1]", "color[2]", "color[3]"},
-                                {"colors[1]", "colors[2]", "colors[3]"},
-                                {"colour[1]", "colour[2]", "colour[3]"},
-                                {"colours[1]", "colours[2]", "colours[3]"}});
+  roles.rgb = number_columns(columns, {{"red", "green", "blue"},
+                                       {"r", "g", "b"},
+                                       {"diffuse_red", "diffuse_green", "diffuse_blue"},
+                                       {"rgb[1]", "rgb[2]", "rgb[3]"},
+                                       {"rgba[1]", "rgba[2]", "rgba[3]"},
+                                       {"color[1]", "color[2]", "color[3]"},
+                                       {"colors[1]", "colors[2]", "colors[3]"},
+                                       {"colour[1]", "colour[2]", "colour[3]"},
+                                       {"colours[1]", "colours[2]", "colours[3]"}});
   if (const ColumnInfo* const red = find_named(columns, roles.rgb[0]); red != nullptr && !roles.rgb[0].empty())
     roles.rgb_maximum = full_intensity(red->type);
   return roles;
@@ -91,8 +85,14 @@ std::string number_column(const std::vector<ColumnInfo>& columns, std::initializ
   return found != nullptr ? found->name : "";
 }
 
-bool is_position_name(std::string_view name) {
-  return base::contains({"pos", "position", "positions", "coords", "coordinates", "points", "xyz"}, base::lower(name));
+std::array<std::string, 3> number_columns(const std::vector<ColumnInfo>& columns,
+                                          std::initializer_list<std::array<const char*, 3>> triples) {
+  for (const auto& [x, y, z] : triples) {
+    std::array<std::string, 3> out = {number_column(columns, {x}), number_column(columns, {y}),
+                                      number_column(columns, {z})};
+    if (std::find(out.begin(), out.end(), "") == out.end()) return out;
+  }
+  return {};
 }
 
 std::vector<std::string> component_names(const std::string& name, std::size_t components,
@@ -124,19 +124,9 @@ std::string listed(const std::vector<ColumnInfo>& columns) {
   return out;
 }
 
-int atomic_number(std::string_view word) {
-  word = trimmed(word);
-  const std::string symbol = base::lower(word);
-  if (symbol == "d") return 1;
-  for (std::size_t i = 0; i < kElementSymbols.size(); ++i)
-    if (symbol == base::lower(kElementSymbols[i])) return static_cast<int>(i) + 1;
-  constexpr auto kLast = static_cast<int>(kElementSymbols.size());
-  int number = 0;
-  return base::from_text(word, number) && number >= 1 && number <= kLast ? number : 0;
-}
-
 void settle_element(const std::vector<std::string>& names, Roles& roles) {
-  if (std::all_of(names.begin(), names.end(), [](const std::string& name) { return atomic_number(name) != 0; })) return;
+  if (std::all_of(names.begin(), names.end(), [](const std::string& name) { return find_element(name) != nullptr; }))
+    return;
   const std::string column = std::exchange(roles.element, {});
   if (roles.type.empty()) roles.type = column;
 }

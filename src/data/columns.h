@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include <array>
 #include <cstddef>
 #include <cstdint>
 #include <initializer_list>
@@ -32,21 +31,19 @@ inline constexpr std::uint64_t kMaxColumns = 4096;
 /// Result     roles without a column are empty, even the position
 Roles customary_roles(const std::vector<ColumnInfo>& columns);
 
-/// Like customary_roles(), but requires a position.
-///
-/// Errors     base::Error(kBadData), thrown through `faults`; lists the columns
+/// Like customary_roles(), but throws an error that lists the columns if there is no position.
 Roles required_roles(const std::vector<ColumnInfo>& columns, Faults& faults);
 
 /// Returns the first numeric column with one of the names, in order of priority and ignoring case; empty if there is
 /// none.
 std::string number_column(const std::vector<ColumnInfo>& columns, std::initializer_list<const char*> names);
 
-/// Returns whether an array of three components with this name contains positions: pos, position, positions, coords,
-/// coordinates, points, xyz; regardless of case.
-bool is_position_name(std::string_view name);
+/// Returns the first three numeric columns with the names of a triple, as number_column(); empty if there are none.
+std::array<std::string, 3> number_columns(const std::vector<ColumnInfo>& columns,
+                                          std::initializer_list<std::array<const char*, 3>> triples);
 
 /// Returns the names of the components of an array: its name if there is one, `x`, `y`, `z` for the first array of
-/// positions, otherwise `name[1]`, `name[2]` ...
+/// three that is named pos, position, positions, coords, coordinates, points or xyz, otherwise `name[1]`, `name[2]` ...
 ///
 /// `columns`  existing columns
 std::vector<std::string> component_names(const std::string& name, std::size_t components,
@@ -76,24 +73,6 @@ inline bool has_column(const std::vector<ColumnInfo>& columns, std::string_view 
 
 /// Returns the names of columns for messages, shortened if there are many: "a, b, c, ... (200 in all)".
 std::string listed(const std::vector<ColumnInfo>& columns);
-
-/// Symbols of the chemical elements, by atomic number from 1.
-// clang-format off
-inline constexpr std::array<std::string_view, 118> kElementSymbols = {
-    "H", "He", "Li", "Be", "B", "C", "N", "O", "F", "Ne", "Na", "Mg", "Al", "Si", "P", "S", "Cl", "Ar", "K", "Ca",
-    "Sc", "Ti", "V", "Cr", "Mn", "Fe", "Co", "Ni", "Cu", "Zn", "Ga", "Ge", "As", "Se", "Br", "Kr", "Rb", "Sr", "Y",
-    "Zr", "Nb", "Mo", "Tc", "Ru", "Rh", "Pd", "Ag", "Cd", "In", "Sn", "Sb", "Te", "I", "Xe", "Cs", "Ba", "La", "Ce",
-    "Pr", "Nd", "Pm", "Sm", "Eu", "Gd", "Tb", "Dy", "Ho", "Er", "Tm", "Yb", "Lu", "Hf", "Ta", "W", "Re", "Os", "Ir",
-    "Pt", "Au", "Hg", "Tl", "Pb", "Bi", "Po", "At", "Rn", "Fr", "Ra", "Ac", "Th", "Pa", "U", "Np", "Pu", "Am", "Cm",
-    "Bk", "Cf", "Es", "Fm", "Md", "No", "Lr", "Rf", "Db", "Sg", "Bh", "Hs", "Mt", "Ds", "Rg", "Cn", "Nh", "Fl", "Mc",
-    "Lv", "Ts", "Og"};
-// clang-format on
-
-/// Returns the atomic number of an element given by symbol, ignoring case and surrounding spaces, or by atomic number
-/// as text: "Fe", " FE", "26". D is hydrogen.
-///
-/// Result     0 if there is none
-int atomic_number(std::string_view word);
 
 /// Assigns the role of the element to a column of names only if all of them are elements; otherwise, they are types:
 /// coarse-grained models and mixtures have particles named A, B or C1.

@@ -2,7 +2,6 @@
 #pragma once
 
 #include <algorithm>
-#include <cstddef>
 #include <cstdint>
 #include <filesystem>
 #include <memory>
@@ -75,5 +74,15 @@ class DataFile {
   /// Memory that the file takes while it is open and read, bytes, in addition to the tables that are read.
   virtual std::uint64_t memory() const { return 0; }
 };
+
+/// Returns a table in memory as a data file of one frame, equivalent to the PLY file that write_table() would write, or
+/// to the NPY file if it has columns of strings. Columns that are views stay views.
+///
+/// `name`     for messages
+/// `box`      simulation box, which files of these formats do not have
+/// Domain     columns with table.rows rows and distinct names
+/// Errors     base::Error(kBadData): there are no columns x, y and z
+std::unique_ptr<DataFile> open_table(const std::filesystem::path& name, std::shared_ptr<const Table> table,
+                                     const std::optional<Box>& box = {});
 
 }  // namespace orrery::data

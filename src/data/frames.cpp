@@ -2,8 +2,6 @@
 #include "data/frames.h"
 
 #include <limits>
-#include <utility>
-#include <variant>
 
 #include <fmt/core.h>
 

@@ -64,10 +64,9 @@ class TextFrames : public DataFile {
   /// names_of() returns none, and if they cannot be read, which is reported when their frame is read.
   const std::vector<std::string>& names();
 
-  /// Checks that the rows of a frame are followed by another frame or by the end of the file.
+  /// Checks that the rows of a frame, from an offset to a place, are followed by another frame or by the end of the
+  /// file.
   ///
-  /// `rows`         offset of the rows
-  /// `rows_end`     place after them
   /// `count_line`   the line that declares their number
   void require_end(std::uint64_t rows, TextCursor::Place rows_end, std::uint64_t count_line);
 

@@ -1,10 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "data/table_file.h"
-
 #include <algorithm>
 #include <utility>
 
 #include "data/columns.h"
+#include "data/data_file.h"
 
 namespace orrery::data {
 namespace {

@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "data/text_lines.h"
 
-#include <algorithm>
-#include <charconv>
 #include <cstring>
 #include <limits>
 
@@ -146,16 +144,6 @@ std::uint64_t TextCursor::skip(std::uint64_t count) {
   if (is_inside && skipped < count) ++skipped;  // the last line may lack its newline
   place_.line += skipped;
   return skipped;
-}
-
-std::vector<std::string_view> words_of(std::string_view text, std::string_view separators) {
-  std::vector<std::string_view> words;
-  for (std::size_t at = 0; at < text.size();) {
-    const std::size_t begin = std::min(text.find_first_not_of(separators, at), text.size());
-    at = std::min(text.find_first_of(separators, begin), text.size());
-    if (begin < at) words.push_back(text.substr(begin, at - begin));
-  }
-  return words;
 }
 
 }  // namespace orrery::data

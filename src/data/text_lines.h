@@ -130,6 +130,14 @@ inline std::string_view trimmed(std::string_view text) {
 }
 
 /// Splits a string into words separated by any of these characters.
-std::vector<std::string_view> words_of(std::string_view text, std::string_view separators = " \t\r");
+inline std::vector<std::string_view> words_of(std::string_view text, std::string_view separators = " \t\r") {
+  std::vector<std::string_view> words;
+  for (std::size_t at = 0; at < text.size();) {
+    const std::size_t begin = std::min(text.find_first_not_of(separators, at), text.size());
+    at = std::min(text.find_first_of(separators, begin), text.size());
+    if (begin < at) words.push_back(text.substr(begin, at - begin));
+  }
+  return words;
+}
 
 }  // namespace orrery::data

@@ -3,11 +3,9 @@
 
 #include <algorithm>
 #include <charconv>
-#include <cstring>
 #include <iterator>
 #include <limits>
 #include <string>
-#include <string_view>
 #include <system_error>
 
 namespace orrery::data {

@@ -115,14 +115,8 @@ inline const char* scan_integer(const char* at, std::int64_t& value) {
   return end;
 }
 
-/// Parses a word as a number, as read_text_rows() does.
-///
-/// Result     false unless the whole word is a number
+/// Parses a word as a number, as read_text_rows() does, or as an integer; false unless the whole word is one.
 bool parse_number(std::string_view word, double& value);
-
-/// Parses a word as an integer.
-///
-/// Result     false unless the whole word is an integer
 bool parse_integer(std::string_view word, std::int64_t& value);
 
 }  // namespace orrery::data

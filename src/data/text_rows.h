@@ -29,8 +29,7 @@ struct ColumnSurvey {
 
   /// True if all values are numbers or missing; also if there are no values.
   bool is_number() const { return first_word_line == 0 && (has_numbers || !has_markers); }
-  /// True if all values are integers, some of which a float64 cannot represent. An int64 cannot represent missing
-  /// values.
+  /// True if all values are integers, some of which a float64 cannot represent, and none is missing.
   bool is_large_integer() const { return is_number() && has_large_integers && !has_fractions && !has_missing; }
 };
 

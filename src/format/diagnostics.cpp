@@ -2,7 +2,6 @@
 #include "format/diagnostics.h"
 
 #include <algorithm>
-#include <utility>
 
 #include <fmt/core.h>
 

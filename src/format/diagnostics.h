@@ -5,6 +5,7 @@
 #include <iterator>
 #include <map>
 #include <optional>
+#include <set>
 #include <string>
 #include <string_view>
 #include <tuple>
@@ -95,8 +96,7 @@ class Diagnostics {
   /// Throws if there are errors.
   ///
   /// Errors     base::Error with the diagnostics: kMissingInput if all errors are inputs that cannot be opened, with
-  /// the
-  ///            first of add_missing(); else kBadData
+  ///            the first of add_missing(); else kBadData
   void raise_errors(const std::string& file) const;
 
  private:
@@ -106,6 +106,22 @@ class Diagnostics {
   std::vector<base::Diagnostic> warnings_;
   std::size_t errors_ = 0, missing_ = 0;
   std::optional<base::FileError> missing_file_;
+};
+
+/// State while a tree is read: its source text and the diagnostics so far.
+struct ReadState {
+  SourceText source;
+  Diagnostics diagnostics;
+  std::set<std::string> unread;  ///< full names of keys that kept their defaults because of an error
+
+  void error(const Place& place, const std::string& text, const std::string& remedy = {},
+             base::ErrorKind kind = base::ErrorKind::kBadData) {
+    add(base::Severity::kError, place, text, remedy, kind);
+  }
+  void add(base::Severity severity, const Place& place, const std::string& text, const std::string& remedy = {},
+           base::ErrorKind kind = base::ErrorKind::kBadData) {
+    diagnostics.add(severity, place, kind, [&] { return source.diagnostic(severity, place, text, remedy); });
+  }
 };
 
 }  // namespace orrery::format

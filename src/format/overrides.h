@@ -67,8 +67,6 @@ class Overrides {
   /// "material.\"my gold\".fuzz=0.3", "sphere[2].radius=0.5", "output.layers=[Z,N]".
   ///
   /// A value is TOML; words and lists of words need no quotes.
-  ///
-  /// `replaces`  see Override
   void add(const std::string& key_and_value, bool replaces = false);
 
   /// Adds a short form of a key: add_option("--samples", "render.samples", "20").

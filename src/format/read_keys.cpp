@@ -5,8 +5,6 @@
 
 #include <fmt/core.h>
 
-#include "scene/value_text.h"
-
 namespace orrery::format {
 namespace {
 
@@ -14,19 +12,11 @@ using scene::Value;
 using scene::ValueType;
 
 std::string type_name(const toml::node& node) {
-  switch (node.type()) {
-    case toml::node_type::table: return "a table";
-    case toml::node_type::array: return "a list";
-    case toml::node_type::string: return "a string";
-    case toml::node_type::integer: return "an integer";
-    case toml::node_type::floating_point: return "a floating-point number";
-    case toml::node_type::boolean: return "a boolean";
-    case toml::node_type::date: return "a date";
-    case toml::node_type::time: return "a time";
-    case toml::node_type::date_time: return "a date";
-    case toml::node_type::none: break;
-  }
-  return "nothing";
+  // In the order of toml::node_type.
+  constexpr const char* kNames[] = {
+      "nothing",   "a table", "a list", "a string", "an integer", "a floating-point number",
+      "a boolean", "a date",  "a time", "a date"};
+  return kNames[static_cast<std::size_t>(node.type())];
 }
 
 void wrong_type(ReadState& state, const toml::node& node, const std::string& name, const std::string& wanted) {
@@ -58,19 +48,22 @@ std::optional<double> read_number(ReadState& state, const toml::node& node, cons
   return x;
 }
 
-/// What stands in place of a list of another length: "a string", "a list of 2".
-std::string text_of(const toml::node& node) {
+/// Returns a list of a given length; null, and an error is reported, if the node is anything else.
+///
+/// `wanted`   "three numbers like [0, 1, 0]"
+const toml::array* list_of(ReadState& state, const toml::node& node, const std::string& name, std::size_t size,
+                           const char* wanted) {
   const toml::array* const array = node.as_array();
-  return array == nullptr ? type_name(node) : fmt::format("a list of {}", array->size());
+  if (array != nullptr && array->size() == size) return array;
+  const std::string found = array == nullptr ? type_name(node) : fmt::format("a list of {}", array->size());
+  state.error(place_of(node), fmt::format("{} must be {}, not {}", name, wanted, found));
+  return nullptr;
 }
 
 std::optional<Value> read_vector(ReadState& state, const toml::node& node, const std::string& name,
                                  const scene::Range& range) {
-  const toml::array* array = node.as_array();
-  if (array == nullptr || array->size() != 3) {
-    state.error(place_of(node), fmt::format("{} must be three numbers like [0, 1, 0], not {}", name, text_of(node)));
-    return {};
-  }
+  const toml::array* const array = list_of(state, node, name, 3, "three numbers like [0, 1, 0]");
+  if (array == nullptr) return {};
   double v[3];
   bool good = true;
   for (std::size_t i = 0; i < 3; ++i) {
@@ -105,7 +98,7 @@ std::optional<Value> read_text(ReadState& state, const toml::node& node, const s
     return {};
   }
   const std::string& text = node.as_string()->get();
-  if (!choices.empty() && std::find(choices.begin(), choices.end(), text) == choices.end()) {
+  if (!choices.empty() && !base::contains(choices, text)) {
     state.error(place_of(node), fmt::format("{} is \"{}\"; must be one of {}", name, text, base::joined(choices)),
                 base::did_you_mean(text, choices));
     return {};
@@ -115,12 +108,8 @@ std::optional<Value> read_text(ReadState& state, const toml::node& node, const s
 
 std::optional<Value> read_window(ReadState& state, const toml::node& node, const std::string& name,
                                  const scene::Range& range) {
-  const toml::array* array = node.as_array();
-  if (array == nullptr || array->size() != 4) {
-    state.error(place_of(node),
-                fmt::format("{} must be x, y, width and height like [0, 0, 640, 360], not {}", name, text_of(node)));
-    return {};
-  }
+  const toml::array* const array = list_of(state, node, name, 4, "x, y, width and height like [0, 0, 640, 360]");
+  if (array == nullptr) return {};
   std::int64_t v[4];
   for (std::size_t i = 0; i < 4; ++i) {
     const auto x = read_integer(state, *array->get(i), fmt::format("{}[{}]", name, i), range);
@@ -132,11 +121,8 @@ std::optional<Value> read_window(ReadState& state, const toml::node& node, const
 
 std::optional<Value> read_interval(ReadState& state, const toml::node& node, const std::string& name,
                                    const scene::Range& range) {
-  const toml::array* array = node.as_array();
-  if (array == nullptr || array->size() != 2) {
-    state.error(place_of(node), fmt::format("{} must be two numbers like [0, 1], not {}", name, text_of(node)));
-    return {};
-  }
+  const toml::array* const array = list_of(state, node, name, 2, "two numbers like [0, 1]");
+  if (array == nullptr) return {};
   const auto low = read_number(state, *array->get(0), name + "[0]", range);
   const auto high = read_number(state, *array->get(1), name + "[1]", range);
   if (!low || !high) return {};
@@ -170,7 +156,7 @@ std::optional<Value> read_words(ReadState& state, const toml::node& node, const 
     const auto word = read_text(state, element, element_name, choices);
     good = good && word.has_value();
     if (!word) continue;
-    if (std::find(words.begin(), words.end(), std::get<std::string>(*word)) != words.end()) {
+    if (base::contains(words, std::get<std::string>(*word))) {
       state.error(place_of(element), element_name + " is a duplicate", "remove it");
       good = false;
     }
@@ -256,12 +242,10 @@ void report_unknown_keys(ReadState& state, const toml::table& table, const std::
       for (const std::string& k : known)
         if (k.starts_with(name + ".")) inner.push_back(k.substr(name.size() + 1));
       report_unknown_keys(state, *node.as_table(), fmt::format("{}.{}", table_name, name), inner);
-    } else if (std::find(known.begin(), known.end(), name) == known.end()) {
+    } else if (!base::contains(known, name)) {
       std::vector<std::string> direct;
       for (const std::string& k : known)
-        if (const std::string first = k.substr(0, k.find('.'));
-            std::find(direct.begin(), direct.end(), first) == direct.end())
-          direct.push_back(first);
+        if (const std::string first = k.substr(0, k.find('.')); !base::contains(direct, first)) direct.push_back(first);
       report_unknown_key(state, key, table_name, direct);
     }
   }

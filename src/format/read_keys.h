@@ -1,11 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include <algorithm>
 #include <optional>
-#include <set>
 #include <string>
-#include <utility>
 #include <vector>
 
 #include "base/text.h"
@@ -13,22 +10,6 @@
 #include "scene/schema.h"
 
 namespace orrery::format {
-
-/// State while a tree is read: its source text and the diagnostics so far.
-struct ReadState {
-  SourceText source;
-  Diagnostics diagnostics;
-  std::set<std::string> unread;  ///< full names of keys that kept their defaults because of an error
-
-  void error(const Place& place, const std::string& text, const std::string& remedy = {},
-             base::ErrorKind kind = base::ErrorKind::kBadData) {
-    add(base::Severity::kError, place, text, remedy, kind);
-  }
-  void add(base::Severity severity, const Place& place, const std::string& text, const std::string& remedy = {},
-           base::ErrorKind kind = base::ErrorKind::kBadData) {
-    diagnostics.add(severity, place, kind, [&] { return source.diagnostic(severity, place, text, remedy); });
-  }
-};
 
 /// Converts a node to the type of a key and checks its range or choices.
 ///

@@ -79,7 +79,7 @@ void read_material(ReadState& state, const toml::table& table, scene::Material& 
   std::vector<std::string> also = {"type"};  // and keys of other types, which are reported here with the types' names
   for (const auto& [key, node] : table) {
     const std::string word(key.str());
-    if (std::find(known.begin(), known.end(), word) != known.end() || other_type_with(word).empty()) continue;
+    if (base::contains(known, word) || other_type_with(word).empty()) continue;
     report_unknown_key(state, key, fmt::format("{} of type {}", full_name, type->name), known, other_type_with(word));
     also.push_back(word);
   }

@@ -18,13 +18,10 @@
 #include "base/file_name.h"
 #include "base/frames.h"
 #include "base/input_file.h"
-#include "format/overrides.h"
 #include "format/read_keys.h"
 #include "formats/open.h"
 #include "scene/animation.h"
-#include "scene/diagnostic.h"
 #include "scene/limits.h"
-#include "scene/named_files.h"
 #include "scene/validate.h"
 
 namespace orrery::format {
@@ -40,9 +37,6 @@ File opened(const std::filesystem::path& file) {
                           fmt::format("cannot open {}: {}", file.string(), std::strerror(errno)), file, errno);
   return in;
 }
-
-/// Material indices by name.
-using MaterialIndex = std::unordered_map<std::string, std::uint32_t>;
 
 /// Returns an array of tables; null if it is absent, or if it is not an array of tables, which is reported once.
 const toml::array* tables_under(ReadState& state, const toml::table& root, const char* name) {
@@ -70,89 +64,94 @@ void read_single_tables(ReadState& state, const toml::table& root, scene::Scene&
   }
 }
 
-/// Returns the index of the material that a node names; 0, and an error is reported, if it does not exist.
-std::uint32_t material_named(ReadState& state, const toml::node& node, const std::string& full_name,
-                             const scene::Scene& scene, const MaterialIndex& index) {
-  const auto value = read_value(state, node, full_name, scene::ValueType::kText, {}, {});
-  if (value) {
-    if (const auto found = index.find(std::get<std::string>(*value)); found != index.end()) return found->second;
-    const auto& name = std::get<std::string>(*value);
-    std::vector<std::string> names;
-    for (const scene::Material& material : scene.materials) names.push_back(material.name);
-    constexpr std::size_t kMaxNamed = 12;
-    std::string remedy = base::did_you_mean(name, names);
-    if (remedy.empty() && names.empty()) remedy = "the scene defines no materials";
-    if (remedy.empty() && names.size() <= kMaxNamed) remedy = "defined are " + base::joined(names);
-    state.error(place_of(node), fmt::format("{} is \"{}\", which is not defined", full_name, name), remedy);
-  }
-  state.unread.insert(full_name);
-  return 0;
+/// Calls `read(table, its full name)` for each table of an array of tables.
+template <class Read>
+void for_each_table(ReadState& state, const toml::table& root, const char* name, Read read) {
+  const toml::array* const list = tables_under(state, root, name);
+  for (std::size_t i = 0; list != nullptr && i < list->size(); ++i)
+    read(*list->get(i)->as_table(), fmt::format("{}[{}]", name, i));
 }
 
-/// Returns the node of the key `material`; null, and an error is reported, if there is none.
-const toml::node* material_node(ReadState& state, const toml::table& table, const std::string& table_name) {
-  const toml::node* const node = table.get("material");
-  if (node == nullptr) {
-    state.error(place_of(table), table_name + " needs `material`");
-    state.unread.insert(table_name + ".material");
+/// Reads the keys that name materials, as indices into the materials of the scene. A name that is not defined, which is
+/// reported, has index 0.
+class MaterialNames {
+ public:
+  MaterialNames(ReadState& state, const std::vector<scene::Material>& materials) : state_(state) {
+    for (const scene::Material& material : materials) {
+      index_.emplace(material.name, static_cast<std::uint32_t>(index_.size()));
+      names_.push_back(material.name);
+    }
   }
-  return node;
+
+  /// The material that a node names.
+  std::uint32_t at(const toml::node& node, const std::string& full_name) {
+    const auto value = read_value(state_, node, full_name, scene::ValueType::kText, {}, {});
+    if (value) {
+      const auto& name = std::get<std::string>(*value);
+      if (const auto found = index_.find(name); found != index_.end()) return found->second;
+      constexpr std::size_t kMaxNamed = 12;
+      std::string remedy = base::did_you_mean(name, names_);
+      if (remedy.empty() && names_.empty()) remedy = "the scene defines no materials";
+      if (remedy.empty() && names_.size() <= kMaxNamed) remedy = "defined are " + base::joined(names_);
+      state_.error(place_of(node), fmt::format("{} is \"{}\", which is not defined", full_name, name), remedy);
+    }
+    state_.unread.insert(full_name);
+    return 0;
+  }
+
+  /// The material of a sphere or a points file.
+  std::uint32_t of(const toml::table& table, const std::string& table_name) {
+    const toml::node* const node = node_of(table, table_name);
+    return node != nullptr ? at(*node, table_name + ".material") : 0;
+  }
+
+  /// The materials of a rod's halves, which may have one name for both.
+  std::array<std::uint32_t, 2> of_halves(const toml::table& table, const std::string& table_name) {
+    const toml::node* const node = node_of(table, table_name);
+    if (node == nullptr) return {0, 0};
+    const std::string full_name = table_name + ".material";
+    const toml::array* const names = node->as_array();
+    if (names == nullptr) {
+      const std::uint32_t both = at(*node, full_name);
+      return {both, both};
+    }
+    if (names->size() == 2) return {at(*names->get(0), full_name + "[0]"), at(*names->get(1), full_name + "[1]")};
+    state_.error(place_of(*node), fmt::format("{} has {} names", full_name, names->size()),
+                 "write one name, or two: those of the halves at `from` and at `to`");
+    state_.unread.insert(full_name);
+    return {0, 0};
+  }
+
+ private:
+  /// Returns the node of the key `material`; null, and an error is reported, if there is none.
+  const toml::node* node_of(const toml::table& table, const std::string& table_name) {
+    const toml::node* const node = table.get("material");
+    if (node == nullptr) {
+      state_.error(place_of(table), table_name + " needs `material`");
+      state_.unread.insert(table_name + ".material");
+    }
+    return node;
+  }
+
+  ReadState& state_;
+  std::unordered_map<std::string, std::uint32_t> index_;
+  std::vector<std::string> names_;
+};
+
+void read_spheres(ReadState& state, const toml::table& root, MaterialNames& materials, scene::Scene& scene) {
+  for_each_table(state, root, "sphere", [&](const toml::table& table, const std::string& name) {
+    scene::Sphere& sphere = scene.spheres.emplace_back();
+    read_keys(state, table, name, scene::sphere_keys(), {"material"}, sphere);
+    sphere.material = materials.of(table, name);
+  });
 }
 
-/// Returns the index of the material that a sphere or a points file names.
-std::uint32_t read_material_name(ReadState& state, const toml::table& table, const std::string& table_name,
-                                 const scene::Scene& scene, const MaterialIndex& index) {
-  const toml::node* const node = material_node(state, table, table_name);
-  return node != nullptr ? material_named(state, *node, table_name + ".material", scene, index) : 0;
-}
-
-/// Returns the indices of the materials of a rod's halves, which may have one name for both.
-std::array<std::uint32_t, 2> read_rod_materials(ReadState& state, const toml::table& table,
-                                                const std::string& table_name, const scene::Scene& scene,
-                                                const MaterialIndex& index) {
-  const toml::node* const node = material_node(state, table, table_name);
-  if (node == nullptr) return {0, 0};
-  const std::string full_name = table_name + ".material";
-  const toml::array* const names = node->as_array();
-  if (names == nullptr) {
-    const std::uint32_t both = material_named(state, *node, full_name, scene, index);
-    return {both, both};
-  }
-  if (names->size() == 2)
-    return {material_named(state, *names->get(0), full_name + "[0]", scene, index),
-            material_named(state, *names->get(1), full_name + "[1]", scene, index)};
-  state.error(place_of(*node), fmt::format("{} has {} names", full_name, names->size()),
-              "write one name, or two: those of the halves at `from` and at `to`");
-  state.unread.insert(full_name);
-  return {0, 0};
-}
-
-void read_spheres(ReadState& state, const toml::table& root, const MaterialIndex& index, scene::Scene& scene) {
-  const toml::array* list = tables_under(state, root, "sphere");
-  if (list == nullptr) return;
-  scene.spheres.reserve(list->size());
-  for (std::size_t i = 0; i < list->size(); ++i) {
-    const toml::table& table = *list->get(i)->as_table();
-    const std::string full_name = fmt::format("sphere[{}]", i);
-    scene::Sphere sphere;
-    read_keys(state, table, full_name, scene::sphere_keys(), {"material"}, sphere);
-    sphere.material = read_material_name(state, table, full_name, scene, index);
-    scene.spheres.push_back(std::move(sphere));
-  }
-}
-
-void read_rods(ReadState& state, const toml::table& root, const MaterialIndex& index, scene::Scene& scene) {
-  const toml::array* list = tables_under(state, root, "rod");
-  if (list == nullptr) return;
-  scene.rods.reserve(list->size());
-  for (std::size_t i = 0; i < list->size(); ++i) {
-    const toml::table& table = *list->get(i)->as_table();
-    const std::string full_name = fmt::format("rod[{}]", i);
-    scene::Rod rod;
-    read_keys(state, table, full_name, scene::rod_keys(), {"material"}, rod);
-    rod.materials = read_rod_materials(state, table, full_name, scene, index);
-    scene.rods.push_back(std::move(rod));
-  }
+void read_rods(ReadState& state, const toml::table& root, MaterialNames& materials, scene::Scene& scene) {
+  for_each_table(state, root, "rod", [&](const toml::table& table, const std::string& name) {
+    scene::Rod& rod = scene.rods.emplace_back();
+    read_keys(state, table, name, scene::rod_keys(), {"material"}, rod);
+    rod.materials = materials.of_halves(table, name);
+  });
 }
 
 /// Returns the node that a diagnostic's key names, or the closest enclosing table; null if there is none.
@@ -184,35 +183,25 @@ void add_problem(ReadState& state, const toml::table& root, const std::string& f
 }
 
 void read_points(ReadState& state, const toml::table& root, const std::filesystem::path& folder,
-                 const MaterialIndex& index, scene::Scene& scene) {
-  const toml::array* list = tables_under(state, root, "points");
-  if (list == nullptr) return;
-  for (std::size_t i = 0; i < list->size(); ++i) {
-    const toml::table& table = *list->get(i)->as_table();
-    const std::string full_name = fmt::format("points[{}]", i);
-    scene::Points points;
-    read_keys(state, table, full_name, scene::points_keys(), {"material", "bonds.material"}, points);
-    points.material = read_material_name(state, table, full_name, scene, index);
+                 MaterialNames& materials, scene::Scene& scene) {
+  for_each_table(state, root, "points", [&](const toml::table& table, const std::string& name) {
+    scene::Points& points = scene.points.emplace_back();
+    read_keys(state, table, name, scene::points_keys(), {"material", "bonds.material"}, points);
+    points.material = materials.of(table, name);
     if (const toml::node* const bonds = table.get("bonds"); bonds != nullptr && bonds->is_table())
       points.bonds.are_drawn = true;
     if (const toml::node* const node = node_at(table, "bonds.material"); node != nullptr)
-      points.bonds.material = material_named(state, *node, full_name + ".bonds.material", scene, index);
+      points.bonds.material = materials.at(*node, name + ".bonds.material");
     points.is_sequence = base::is_sequence(folder / points.file);
-    scene.points.push_back(std::move(points));
-  }
+  });
 }
 
-void read_rod_files(ReadState& state, const toml::table& root, const MaterialIndex& index, scene::Scene& scene) {
-  const toml::array* list = tables_under(state, root, "rods");
-  if (list == nullptr) return;
-  for (std::size_t i = 0; i < list->size(); ++i) {
-    const toml::table& table = *list->get(i)->as_table();
-    const std::string full_name = fmt::format("rods[{}]", i);
-    scene::RodFile rods;
-    read_keys(state, table, full_name, scene::rod_file_keys(), {"material"}, rods);
-    rods.materials = read_rod_materials(state, table, full_name, scene, index);
-    scene.rod_files.push_back(std::move(rods));
-  }
+void read_rod_files(ReadState& state, const toml::table& root, MaterialNames& materials, scene::Scene& scene) {
+  for_each_table(state, root, "rods", [&](const toml::table& table, const std::string& name) {
+    scene::RodFile& rods = scene.rod_files.emplace_back();
+    read_keys(state, table, name, scene::rod_file_keys(), {"material"}, rods);
+    rods.materials = materials.of_halves(table, name);
+  });
 }
 
 /// The errors of the pose at shutter close that the pose at shutter open does not have. Only camera, spheres and rods
@@ -289,8 +278,7 @@ void report_unknown_tables(ReadState& state, const toml::table& root) {
   for (const scene::Table& table : scene::tables()) known.push_back(table.name);
   known.insert(known.end(), {"material", "sphere", "points", "rod", "rods", "key"});
   for (const auto& [key, node] : root)
-    if (std::find(known.begin(), known.end(), key.str()) == known.end())
-      report_unknown_key(state, key, "the scene", known);
+    if (!base::contains(known, key.str())) report_unknown_key(state, key, "the scene", known);
 }
 
 std::vector<Setting> settings_of(const SourceText& source, const toml::table& root, const scene::Scene& scene) {
@@ -327,7 +315,7 @@ SceneReader::SceneReader(const std::filesystem::path& file, const Overrides& ove
   State& state = *state_;
   const std::string text = options.text ? *options.text : read_file(file, kLargestSceneFile);
   state.file = file.string();
-  state.root = parse_tree(state.file, text, overrides, state.source, state.diagnostics);
+  state.root = parse_tree(state.file, text, overrides, state);
   const toml::table& root = state.root;
   if (root.empty() && state.diagnostics.has_errors()) {
     refuse_data_file(file, text);
@@ -338,11 +326,9 @@ SceneReader::SceneReader(const std::filesystem::path& file, const Overrides& ove
   report_unknown_tables(state, root);
   read_single_tables(state, root, scene);
   read_materials(state, root, scene.materials);
-  MaterialIndex index;
-  for (const scene::Material& material : scene.materials)
-    index.emplace(material.name, static_cast<std::uint32_t>(index.size()));
-  read_spheres(state, root, index, scene);
-  read_rods(state, root, index, scene);
+  MaterialNames materials(state, scene.materials);
+  read_spheres(state, root, materials, scene);
+  read_rods(state, root, materials, scene);
   if (const toml::array* keys = tables_under(state, root, "key")) read_tracks(state, *keys, scene);
   warn_of_animated_overrides(state, overrides, scene);
   const std::filesystem::path folder = file.parent_path();
@@ -350,8 +336,8 @@ SceneReader::SceneReader(const std::filesystem::path& file, const Overrides& ove
     choose_files(folder, *options.frame, scene);
     if (!state.diagnostics.has_errors()) pose(state, root, state.file, *options.frame, state.result);
   }
-  read_points(state, root, folder, index, scene);
-  read_rod_files(state, root, index, scene);
+  read_points(state, root, folder, materials, scene);
+  read_rod_files(state, root, materials, scene);
   if (options.frame) choose_files(folder, *options.frame, scene);
 }
 

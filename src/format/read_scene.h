@@ -46,9 +46,6 @@ struct ReadOptions {
 /// A scene file that is being read: the scene that it describes, and the places of its keys for diagnostics, which are
 /// collected until finish(). Reads no other file: the points tables have no spheres.
 ///
-/// `overrides` are "key=value", with the value as in the file; words need no quotes. Keys are dotted, spheres are
-/// counted from 0: "camera.vfov=30", "material.gold.fuzz=0.3", "sphere[2].radius=0.5".
-///
 /// Reference  docs/scene-format.md
 class SceneReader {
  public:
@@ -61,7 +58,7 @@ class SceneReader {
 
   /// Keys that cannot be read have their defaults.
   scene::Scene& scene();
-  /// The scene at shutter close, without points; `scene` is then the scene at shutter open. Empty without motion blur.
+  /// See ReadResult::closing.
   std::optional<scene::Scene>& closing();
 
   bool has_errors() const;

@@ -2,7 +2,6 @@
 #include "format/read_keys.h"
 
 #include <algorithm>
-#include <cmath>
 #include <utility>
 
 #include <fmt/core.h>
@@ -10,7 +9,6 @@
 #include "base/text.h"
 #include "scene/animation.h"
 #include "scene/limits.h"
-#include "scene/value_text.h"
 
 namespace orrery::format {
 namespace {
@@ -80,8 +78,7 @@ std::optional<scene::Animated> read_target(ReadState& state, const toml::table& 
   }
   if (target) return target;
   const std::vector<std::string> names = scene::animated_names(scene);
-  const bool is_textured = std::find(names.begin(), names.end(), name) != names.end();
-  if (is_textured) {
+  if (base::contains(names, name)) {
     state.error(place_of(*node), fmt::format("{}.target: \"{}\" has a texture and cannot be animated", full_name, name),
                 "animate a number of the material that has no texture");
     return {};
@@ -103,8 +100,7 @@ void read_tracks(ReadState& state, const toml::array& list, scene::Scene& scene)
     const toml::table& table = *list.get(i)->as_table();
     const std::string full_name = fmt::format("key[{}]", i);
     for (const auto& [key, node] : table)
-      if (std::find(known.begin(), known.end(), key.str()) == known.end())
-        report_unknown_key(state, key, full_name, known);
+      if (!base::contains(known, key.str())) report_unknown_key(state, key, full_name, known);
     Track track;
     if (const toml::node* node = table.get("interpolation"))
       if (const auto value =

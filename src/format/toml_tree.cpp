@@ -11,7 +11,6 @@
 
 #include "scene/schema.h"
 #include "scene/texture.h"
-#include "scene/value_text.h"
 
 namespace orrery::format {
 namespace {
@@ -72,8 +71,7 @@ void apply_override(toml::table& root, const Override& override, int line) {
   merge(target, tree, override.replaces);
 }
 
-void apply_overrides(toml::table& root, const Overrides& overrides, const SourceText& source,
-                     Diagnostics& diagnostics) {
+void apply_overrides(toml::table& root, const Overrides& overrides, ReadState& state) {
   int line = 0;
   for (const Override& override : overrides) {
     ++line;
@@ -82,8 +80,7 @@ void apply_overrides(toml::table& root, const Overrides& overrides, const Source
     } catch (const Fault& fault) {
       Place place{kOverrideName, line, std::max(fault.column, 1), 1};
       if (fault.column == 0) place.width = static_cast<int>(override.toml.size());
-      diagnostics.add(base::Severity::kError, place, base::ErrorKind::kBadData,
-                      [&] { return source.diagnostic(base::Severity::kError, place, fault.text, fault.remedy); });
+      state.error(place, fault.text, fault.remedy);
     }
   }
 }
@@ -262,15 +259,12 @@ Place too_deep_key(std::string_view text) {
 }
 
 toml::table parse_tree(const std::string& file_name, const std::string& text, const Overrides& overrides,
-                       SourceText& source, Diagnostics& diagnostics) {
-  source.add(file_name, text);
-  source.set_overrides(overrides);
+                       ReadState& state) {
+  state.source.add(file_name, text);
+  state.source.set_overrides(overrides);
   if (Place place = too_deep_key(text); place.line > 0) {
     place.text_name = file_name;
-    diagnostics.add(base::Severity::kError, place, base::ErrorKind::kBadData, [&] {
-      return source.diagnostic(base::Severity::kError, place,
-                               fmt::format("the key has more than {} parts", kDeepestKey));
-    });
+    state.error(place, fmt::format("the key has more than {} parts", kDeepestKey));
     return {};
   }
   toml::table root;
@@ -280,11 +274,10 @@ toml::table parse_tree(const std::string& file_name, const std::string& text, co
     Place place = place_of_region(error.source());
     place.width = 1;
     const Fault fault = fault_of(error);
-    diagnostics.add(base::Severity::kError, place, base::ErrorKind::kBadData,
-                    [&] { return source.diagnostic(base::Severity::kError, place, fault.text, fault.remedy); });
+    state.error(place, fault.text, fault.remedy);
     return {};
   }
-  apply_overrides(root, overrides, source, diagnostics);
+  apply_overrides(root, overrides, state);
   drop_keys_of_old_types(root);
   return root;
 }

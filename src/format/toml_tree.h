@@ -8,7 +8,6 @@
 #include <vector>
 
 #include "format/diagnostics.h"
-#include "format/overrides.h"
 
 namespace orrery::format {
 
@@ -44,13 +43,13 @@ inline constexpr int kDeepestKey = 8;
 /// Result     location of the first excess dot; line 0 if there is no such key; text_name is not set
 Place too_deep_key(std::string_view text);
 
-/// Parses the text of a scene file and applies the overrides; failures are added to `diagnostics`.
+/// Parses the text of a scene file and applies the overrides; failures are added to `state`.
 ///
 /// Overrides are merged into the tables of the file; missing tables are created, list elements must exist.
 ///
-/// Domain     `overrides` exists as long as `source`
+/// Domain     `overrides` exists as long as `state`
 /// Result     the tree, empty if the text is invalid; nodes have their locations, including those in overrides
 toml::table parse_tree(const std::string& file_name, const std::string& text, const Overrides& overrides,
-                       SourceText& source, Diagnostics& diagnostics);
+                       ReadState& state);
 
 }  // namespace orrery::format

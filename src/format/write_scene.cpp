@@ -14,11 +14,10 @@
 #include "base/atomic_file.h"
 #include "base/error.h"
 #include "base/hash.h"
-#include "format/write_ply.h"
+#include "data/records.h"
 #include "scene/animation.h"
 #include "scene/schema.h"
 #include "scene/texture.h"
-#include "scene/value_text.h"
 
 namespace orrery::format {
 namespace {
@@ -143,6 +142,18 @@ const std::string& material_name(const scene::Scene& scene, std::uint32_t materi
   return scene.materials[material].name;
 }
 
+/// The header up to the comment that names the writer, as in formats::write_table.
+std::string ply_header_begin(std::string_view writer) {
+  return fmt::format("ply\nformat binary_little_endian 1.0\ncomment made by {}\n", writer);
+}
+
+std::string ply_header(const scene::Points& points) {
+  std::string out = fmt::format("{}element vertex {}\n", ply_header_begin(kPlyWriter), points.centers.size());
+  for (const char* name : {"x", "y", "z", "radius"}) out += fmt::format("property double {}\n", name);
+  if (!points.materials.empty()) out += "property uint material\n";
+  return out + "end_header\n";
+}
+
 }  // namespace
 
 std::string scene_text(const scene::Scene& scene, const std::string& comment) {
@@ -193,6 +204,31 @@ void check_unedited(const std::filesystem::path& file) {
                     fmt::format("cannot create {}: the existing file was {}; choose another name, or replace it with "
                                 "--force",
                                 file.string(), is_ours ? "edited since orrery wrote it" : "not written by orrery"));
+}
+
+void write_ply(const scene::Points& points, const std::filesystem::path& file) {
+  base::OutputFile output(file);
+  std::string& out = output.buffer();
+  out = ply_header(points);
+  const auto append = [&](auto value) {
+    char bytes[sizeof(value)];
+    data::store(value, bytes, false);
+    out.append(bytes, sizeof(value));
+  };
+  for (std::size_t i = 0; i < points.centers.size(); ++i) {
+    const math::Vec3d c = points.centers[i];
+    for (const double x : {c.x, c.y, c.z, points.radii[i]}) append(x);
+    if (!points.materials.empty()) append(points.materials[i]);
+    output.flush();
+  }
+  output.finish();
+}
+
+bool is_ply_of(std::string_view writer, const std::filesystem::path& file) {
+  const std::string begin = ply_header_begin(writer);
+  std::string found(begin.size(), '\0');
+  std::ifstream in(file, std::ios::binary);
+  return in.read(found.data(), static_cast<std::streamsize>(found.size())) && found == begin;
 }
 
 void write_scene(const scene::Scene& scene, const std::string& comment, const std::filesystem::path& file) {

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // gemmi's grammar of CIF with our own actions: gemmi's document would store every value of the file as a string.
-#include "formats/cif_rows.h"
+#include "formats/cif_bonds.h"
 
 #include <algorithm>
 #include <gemmi/cif.hpp>

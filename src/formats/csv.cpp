@@ -383,11 +383,9 @@ bool is_csv(const Signature& signature) {
                                                   [](const ColumnInfo& c) { return c.type == ColumnType::kFloat64; });
 }
 
-std::unique_ptr<DataFile> open_csv(const Bytes& bytes, const OpenOptions&) { return std::make_unique<CsvFile>(bytes); }
-
 }  // namespace
 
-const FormatReader kCsv = {"CSV", is_csv, open_csv};
-const FormatReader kNamedCsv = {"CSV", has_csv_extension, open_csv};
+const FormatReader kCsv = {"CSV", is_csv, open_as<CsvFile>};
+const FormatReader kNamedCsv = {"CSV", has_csv_extension, open_as<CsvFile>};
 
 }  // namespace orrery::formats

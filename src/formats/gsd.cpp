@@ -7,7 +7,6 @@
 #include <filesystem>
 #include <iterator>
 #include <limits>
-#include <memory>
 #include <string>
 #include <unordered_map>
 #include <vector>
@@ -388,12 +387,8 @@ class GsdReader final : public DataFile {
 
 bool is_gsd(const Signature& signature) { return signature.head.starts_with("\xdf\x65\xdf\x65\xdf\x65\xdf\x65"); }
 
-std::unique_ptr<DataFile> open_gsd(const Bytes& bytes, const OpenOptions&) {
-  return std::make_unique<GsdReader>(bytes);
-}
-
 }  // namespace
 
-const FormatReader kGsd = {"GSD", is_gsd, open_gsd};
+const FormatReader kGsd = {"GSD", is_gsd, open_as<GsdReader>};
 
 }  // namespace orrery::formats

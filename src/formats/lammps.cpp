@@ -7,7 +7,6 @@
 #include <cmath>
 #include <cstdint>
 #include <cstring>
-#include <iterator>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -618,13 +617,9 @@ bool is_lammps_data(const Signature& signature) {
   return false;
 }
 
-std::unique_ptr<DataFile> open_lammps_data(const Bytes& bytes, const OpenOptions&) {
-  return std::make_unique<LammpsData>(bytes);
-}
-
 }  // namespace
 
 const FormatReader kLammpsDump = {"LAMMPS dump", is_lammps_dump, open_lammps_dump};
-const FormatReader kLammpsData = {"LAMMPS data", is_lammps_data, open_lammps_data};
+const FormatReader kLammpsData = {"LAMMPS data", is_lammps_data, open_as<LammpsData>};
 
 }  // namespace orrery::formats

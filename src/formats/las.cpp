@@ -2,7 +2,6 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <optional>
 #include <string_view>
 #include <utility>
 
@@ -240,10 +239,8 @@ class LasFile final : public SingleFrame {
 
 bool is_las(const Signature& signature) { return signature.head.starts_with(kLasSignature); }
 
-std::unique_ptr<DataFile> open_las(const Bytes& bytes, const OpenOptions&) { return std::make_unique<LasFile>(bytes); }
-
 }  // namespace
 
-const FormatReader kLas = {"LAS", is_las, open_las};
+const FormatReader kLas = {"LAS", is_las, open_as<LasFile>};
 
 }  // namespace orrery::formats

@@ -15,7 +15,6 @@
 #include "base/text.h"
 #include "data/text_lines.h"
 #include "formats/cif_bonds.h"
-#include "formats/cif_rows.h"
 #include "formats/readers.h"
 
 namespace orrery::formats {
@@ -368,12 +367,8 @@ bool is_mmcif(const Signature& signature) {
   return second.starts_with('_') || second == "loop_" || second.starts_with("save_");
 }
 
-std::unique_ptr<DataFile> open_mmcif(const Bytes& bytes, const OpenOptions& options) {
-  return std::make_unique<MmcifReader>(bytes, options);
-}
-
 }  // namespace
 
-const FormatReader kMmcif = {"mmCIF", is_mmcif, open_mmcif};
+const FormatReader kMmcif = {"mmCIF", is_mmcif, open_as<MmcifReader>};
 
 }  // namespace orrery::formats

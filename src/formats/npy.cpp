@@ -120,7 +120,7 @@ bool has_positions(const Member& member) {
 
 class NpzFile final : public SingleFrame {
  public:
-  NpzFile(const Bytes& bytes, std::uint64_t limit) : SingleFrame(bytes), limit_(limit) {
+  NpzFile(const Bytes& bytes, const OpenOptions& options) : SingleFrame(bytes), limit_(options.decompressed_limit) {
     Faults faults(bytes->file());
     for (ZipReader zip(*bytes); zip.next();) {
       members_.push_back(described(zip));
@@ -216,8 +216,6 @@ class NpzFile final : public SingleFrame {
 
 bool is_npy(const Signature& signature) { return has_npy_signature(signature.head); }
 
-std::unique_ptr<DataFile> open_npy(const Bytes& bytes, const OpenOptions&) { return std::make_unique<NpyFile>(bytes); }
-
 bool is_npz(const Signature& signature) {
   // Local file header of a ZIP archive: the length of the name at byte 26, the name at byte 30.
   constexpr std::size_t kNameLength = 26, kName = 30;
@@ -227,13 +225,9 @@ bool is_npz(const Signature& signature) {
          head.substr(kName, load<std::uint16_t>(head.data() + kNameLength, false)).ends_with(".npy");
 }
 
-std::unique_ptr<DataFile> open_npz(const Bytes& bytes, const OpenOptions& options) {
-  return std::make_unique<NpzFile>(bytes, options.decompressed_limit);
-}
-
 }  // namespace
 
-const FormatReader kNpy = {"NPY", is_npy, open_npy};
-const FormatReader kNpz = {"NPZ", is_npz, open_npz};
+const FormatReader kNpy = {"NPY", is_npy, open_as<NpyFile>};
+const FormatReader kNpz = {"NPZ", is_npz, open_as<NpzFile>};
 
 }  // namespace orrery::formats

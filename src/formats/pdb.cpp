@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <algorithm>
 #include <array>
-#include <charconv>
 #include <cmath>
 #include <cstdint>
 #include <functional>
@@ -433,12 +432,8 @@ bool is_pdb(const Signature& signature) {
                              second.starts_with("END") || second.starts_with("ANISOU"));
 }
 
-std::unique_ptr<DataFile> open_pdb(const Bytes& bytes, const OpenOptions& options) {
-  return std::make_unique<PdbReader>(bytes, options);
-}
-
 }  // namespace
 
-const FormatReader kPdb = {"PDB", is_pdb, open_pdb};
+const FormatReader kPdb = {"PDB", is_pdb, open_as<PdbReader>};
 
 }  // namespace orrery::formats

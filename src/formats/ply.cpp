@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <algorithm>
-#include <charconv>
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
@@ -183,7 +182,7 @@ class PlyCursor {
     return true;
   }
 
-  /// Returns the line number of the row; 0 in a binary file.
+  /// The line number of the row; 0 in a binary file.
   int line() const { return row_line_; }
 
   /// Reads a value; false at the end of the row or the data, or if an ASCII value is not a number.
@@ -541,10 +540,8 @@ bool is_ply(const Signature& signature) {
   return signature.head.starts_with("ply\n") || signature.head.starts_with("ply\r\n");
 }
 
-std::unique_ptr<DataFile> open_ply(const Bytes& bytes, const OpenOptions&) { return std::make_unique<PlyFile>(bytes); }
-
 }  // namespace
 
-const FormatReader kPly = {"PLY", is_ply, open_ply};
+const FormatReader kPly = {"PLY", is_ply, open_as<PlyFile>};
 
 }  // namespace orrery::formats

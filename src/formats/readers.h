@@ -3,6 +3,7 @@
 
 #include <memory>
 #include <string>
+#include <type_traits>
 
 #include "data/data_file.h"
 
@@ -20,6 +21,15 @@ struct FormatReader {
   bool (*recognises)(const Signature& signature);
   std::unique_ptr<data::DataFile> (*open)(const data::Bytes& bytes, const data::OpenOptions& options);
 };
+
+/// Opens a file with a reader, whose constructor takes the bytes, or the bytes and the options.
+template <class File>
+std::unique_ptr<data::DataFile> open_as(const data::Bytes& bytes, const data::OpenOptions& options) {
+  if constexpr (std::is_constructible_v<File, const data::Bytes&, const data::OpenOptions&>)
+    return std::make_unique<File>(bytes, options);
+  else
+    return std::make_unique<File>(bytes);
+}
 
 extern const FormatReader kLammpsDump, kLammpsData, kXyz, kPly, kCsv;
 extern const FormatReader kNpy, kNpz, kLas, kGsd, kHdf5, kVtk;

@@ -3,6 +3,7 @@
 #include <array>
 #include <cmath>
 #include <cstdint>
+#include <functional>
 #include <map>
 #include <optional>
 #include <string>
@@ -386,10 +387,8 @@ bool is_xyz(const Signature& signature) {
   return comment.find("Properties=") != std::string_view::npos;
 }
 
-std::unique_ptr<DataFile> open_xyz(const Bytes& bytes, const OpenOptions&) { return std::make_unique<Xyz>(bytes); }
-
 }  // namespace
 
-const FormatReader kXyz = {"XYZ", is_xyz, open_xyz};
+const FormatReader kXyz = {"XYZ", is_xyz, open_as<Xyz>};
 
 }  // namespace orrery::formats

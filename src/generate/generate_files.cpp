@@ -9,14 +9,12 @@
 #include "base/file_name.h"
 #include "base/file_set.h"
 #include "film/picture.h"
-#include "format/write_ply.h"
 #include "format/write_scene.h"
 #include "generate/generate.h"
 #include "image/format.h"
 #include "image/header.h"
 #include "image/write.h"
 #include "scene/schema.h"
-#include "scene/value_text.h"
 
 namespace orrery::generate {
 namespace {
@@ -68,9 +66,8 @@ std::filesystem::path points_file_of(const std::filesystem::path& file) {
 /// only if an earlier run wrote it.
 void check(const std::filesystem::path& file, bool has_points, bool force) {
   if (base::extension(file) == ".ply")
-    throw base::Error(base::ErrorKind::kUsage,
-                      fmt::format("{}: .ply is the extension of the points file; name the scene, e.g. {}",
-                                  file.string(), std::filesystem::path(file).replace_extension(".toml").string()));
+    base::refuse(fmt::format("{}: .ply is the extension of the points file; name the scene, e.g. {}", file.string(),
+                             std::filesystem::path(file).replace_extension(".toml").string()));
   base::check_creatable(file);
   if (!force) format::check_unedited(file);
   if (!has_points) return;
@@ -90,9 +87,8 @@ void check(const std::filesystem::path& file, bool has_points, bool force) {
 
 void check_environment(const std::filesystem::path& file) {
   if (image::format_of(file) != image::Format::kExr)
-    throw base::Error(base::ErrorKind::kUsage,
-                      fmt::format("{}: the image is written as EXR; name it, e.g. {}", file.string(),
-                                  std::filesystem::path(file).replace_extension(".exr").string()));
+    base::refuse(fmt::format("{}: the image is written as EXR; name it, e.g. {}", file.string(),
+                             std::filesystem::path(file).replace_extension(".exr").string()));
   base::check_creatable(file);
 }
 

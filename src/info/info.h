@@ -13,7 +13,7 @@
 #include "format/read_scene.h"
 #include "job/forward.h"
 #include "job/resources.h"
-#include "load/load_map.h"
+#include "load/load_images.h"
 #include "load/load_scene.h"
 
 namespace orrery::info {

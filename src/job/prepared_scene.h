@@ -10,7 +10,7 @@
 #include "compile/compiled_scene.h"
 #include "job/scene_hash.h"
 #include "load/load_scene.h"
-#include "points/open_data.h"
+#include "points/load_points.h"
 
 namespace orrery::job {
 

@@ -3,7 +3,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <string>
 #include <utility>
 
 #include <fmt/core.h>
@@ -12,12 +11,7 @@
 #include "base/error.h"
 #include "base/input_file.h"
 #include "display/settings.h"
-#include "format/read_scene.h"
-#include "load/load_background.h"
-#include "load/load_textures.h"
-#include "load/working_space.h"
-#include "points/load_points.h"
-#include "points/load_rods.h"
+#include "load/load_images.h"
 #include "scene/validate.h"
 
 namespace orrery::load {
@@ -92,22 +86,20 @@ class ColorCheck {
   /// Errors in the scene's names.
   std::vector<scene::SceneDiagnostic> operator()(const scene::Scene& scene) {
     const display::Settings settings = settings_of(request_, scene.color);
-    std::vector<scene::SceneDiagnostic> diagnostics;
-    if (!request_.develops && !names_anything(settings, scene.color)) return diagnostics;
+    if (!request_.develops && !names_anything(settings, scene.color)) return {};
+    scene::KeyFaults faults;
     display::LookUp found = display::look_up(settings, scene.color.space);
     for (const display::NameFault& fault : found.faults) {
       const Origin origin = origin_of(fault.name, request_.display, scene.color);
       if (!origin.key.empty()) {
-        const bool is_missing = fault.error.kind() == base::ErrorKind::kMissingInput;
-        diagnostics.push_back({base::Severity::kError, origin.key, fault.error.what(),
-                               is_missing ? base::ErrorKind::kMissingInput : base::ErrorKind::kBadData});
+        faults.error(origin.key, fault.error);
       } else if (!other_) {
         const std::string begin = origin.option.empty() ? "" : origin.option + ": ";
         other_.emplace(fault.error.kind(), begin + fault.error.what());
       }
     }
     choice_ = std::move(found.choice);
-    return diagnostics;
+    return faults.take();
   }
 
   /// The chosen display transform.
@@ -126,10 +118,9 @@ class ColorCheck {
 
 /// Errors where a light whose brightness depends on an image or a sky is too bright for its exposure.
 std::vector<scene::SceneDiagnostic> check_exposures(const scene::Scene& scene, const LoadedScene& loaded) {
-  std::vector<scene::SceneDiagnostic> out;
+  scene::KeyFaults faults;
   const auto check = [&](const std::string& table, const LoadedMap& map, double exposure) {
-    const std::string fault = scene::exposure_fault(static_cast<double>(map.brightest), exposure);
-    if (!fault.empty()) out.push_back({base::Severity::kError, table + ".exposure", fault});
+    faults.error_if_any(table + ".exposure", scene::exposure_fault(static_cast<double>(map.brightest), exposure));
   };
   for (const scene::Material& material : scene.materials) {
     const auto* const emitter = std::get_if<scene::Emitter>(&material.model);
@@ -140,7 +131,7 @@ std::vector<scene::SceneDiagnostic> check_exposures(const scene::Scene& scene, c
       if (texture.key == key) check(table, texture.map, emitter->exposure);
   }
   if (loaded.background) check("background", *loaded.background, scene.background.exposure);
-  return out;
+  return faults.take();
 }
 
 /// A pointer to the scene at shutter close; null without motion blur.
@@ -234,42 +225,26 @@ class SceneLoader {
     const std::uint64_t limit =
         request_.memory_limit > 0 ? request_.memory_limit : base::available_memory().value_or(0);
     std::uint64_t used = 0;
-    for (std::size_t i = 0; i < scene_.points.size(); ++i) {
-      points::LoadRequest data = data_request(i);
-      if (!reader_.is_read(data.key + ".file")) continue;
+    const auto load = [&](points::LoadRequest data, auto& table, auto load_table) {
+      if (!reader_.is_read(data.key + ".file")) return;
       data.memory_limit = rest_of(limit, used);
       try {
-        const std::vector<scene::SceneDiagnostic> found = points::load_points(data, scene_.points[i]);
+        const std::vector<scene::SceneDiagnostic> found = load_table(data, table);
         reader_.add(found);
         out_.data_warnings.insert(out_.data_warnings.end(), found.begin(), found.end());
       } catch (const base::Error& error) {
         if (error.kind() != base::ErrorKind::kBadData && error.kind() != base::ErrorKind::kMissingInput) throw;
         reader_.add_file_error(data.key + ".file", error);
       }
-      used += scene_.points[i].bytes();
-    }
-    load_rods(limit, used);
+      used += table.bytes();
+    };
+    for (std::size_t i = 0; i < scene_.points.size(); ++i) load(data_request(i), scene_.points[i], points::load_points);
+    for (std::size_t i = 0; i < scene_.rod_files.size(); ++i)
+      load(rods_request(i), scene_.rod_files[i], points::load_rods);
   }
 
   points::LoadRequest rods_request(std::size_t index) const {
     return request_for(request_.source, scene_.rod_files[index].file, fmt::format("rods[{}]", index));
-  }
-
-  void load_rods(std::uint64_t limit, std::uint64_t used) {
-    for (std::size_t i = 0; i < scene_.rod_files.size(); ++i) {
-      points::LoadRequest data = rods_request(i);
-      if (!reader_.is_read(data.key + ".file")) continue;
-      data.memory_limit = rest_of(limit, used);
-      try {
-        const std::vector<scene::SceneDiagnostic> found = points::load_rods(data, scene_.rod_files[i]);
-        reader_.add(found);
-        out_.data_warnings.insert(out_.data_warnings.end(), found.begin(), found.end());
-      } catch (const base::Error& error) {
-        if (error.kind() != base::ErrorKind::kBadData && error.kind() != base::ErrorKind::kMissingInput) throw;
-        reader_.add_file_error(data.key + ".file", error);
-      }
-      used += scene_.rod_files[i].bytes();
-    }
   }
 
   /// Takes what is known of a points table besides its spheres.
@@ -306,37 +281,35 @@ class SceneLoader {
       diagnostics.insert(diagnostics.end(), more.begin(), more.end());
     };
     if (diagnostics.empty()) {
-      const std::string config = settings_of(request_, scene_.color).config;
-      load_textures(config);
+      const ImageRequest images{request_.source.file.parent_path(), settings_of(request_, scene_.color).config,
+                                request_.memory_limit, request_.skips_large_background};
+      load_textures(images);
       for (const LoadedTexture& texture : out_.textures) add(texture.map.diagnostics);
-      load_background(config);
+      load_background(images);
       if (out_.background) add(out_.background->diagnostics);
       add(check_exposures(scene_, out_));
     }
     reader_.add(diagnostics);
   }
 
-  void load_textures(const std::string& config) {
+  void load_textures(const ImageRequest& images) {
     static const std::vector<LoadedTexture> kNone;
     const std::vector<LoadedTexture>& known = previous_ ? previous_->textures : kNone;
-    out_.textures = load::load_textures(request_.source.file, config, request_.memory_limit,
-                                        request_.skips_large_background, known, scene_);
+    out_.textures = load::load_textures(images, known, scene_);
     const auto is_same = [](const LoadedTexture& a, const LoadedTexture& b) { return a.map.image == b.map.image; };
     if (!std::equal(known.begin(), known.end(), out_.textures.begin(), out_.textures.end(), is_same))
       out_.changed.add(scene::Part::kLook);
   }
 
-  void load_background(const std::string& config) {
+  void load_background(const ImageRequest& images) {
     const scene::Background& background = scene_.background;
     const bool is_sky = background.type == scene::BackgroundType::kSky;
     if (!is_sky && !has_image(background)) return;
-    const BackgroundRequest wanted{request_.source.file.parent_path() / background.file, config, request_.memory_limit,
-                                   request_.skips_large_background};
     std::optional<LoadedBackground> known;
     if (previous_) known = std::move(previous_->background);
     const bool is_known = known && known->image &&
                           (is_sky ? !out_.changed.look && !out_.changed.assignment && !out_.changed.geometry
-                                  : known->version == background_version(wanted, scene_));
+                                  : known->version == background_version(images, scene_));
     if (is_known) {
       out_.background = std::move(known);
       return;
@@ -346,7 +319,7 @@ class SceneLoader {
       out_.changed.add(scene::Part::kLook);
       if (request_.on_change) request_.on_change(out_.changed);
     }
-    out_.background = is_sky ? load_sky(config, scene_) : load::load_background(wanted, scene_);
+    out_.background = is_sky ? load_sky(images.ocio_config, scene_) : load::load_background(images, scene_);
   }
 
   /// Completes the scene: its images, display transform and working space.

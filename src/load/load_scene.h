@@ -12,14 +12,10 @@
 
 #include "base/error.h"
 #include "display/settings.h"
-#include "format/overrides.h"
 #include "format/read_scene.h"
-#include "load/load_map.h"
-#include "load/load_textures.h"
+#include "load/load_images.h"
 #include "points/load_points.h"
-#include "points/open_data.h"
 #include "scene/changed_parts.h"
-#include "scene/scene.h"
 
 namespace orrery::load {
 
@@ -42,7 +38,7 @@ struct SceneRequest {
   display::Settings display;            ///< from the command line; the scene's [color] replaces empty values
   bool develops = false;                ///< true if display formats will be written
   std::uint64_t memory_limit = 0;       ///< bytes that an image may take; 0: the free memory
-  bool skips_large_background = false;  ///< see BackgroundRequest::skips_large; also applies to textures
+  bool skips_large_background = false;  ///< see ImageRequest::skips_large; also applies to textures
   bool keeps_authored = false;          ///< fill LoadedScene::authored, for a later load
   /// Called before data or images are read that replace those of an earlier load, so that their memory is released.
   std::function<void(const scene::Parts& changed)> on_change = {};

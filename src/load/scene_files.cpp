@@ -4,11 +4,7 @@
 #include "base/file_set.h"
 #include "base/frames.h"
 #include "display/settings.h"
-#include "format/read_scene.h"
-#include "load/load_scene.h"
-#include "load/working_space.h"
-#include "scene/named_files.h"
-#include "scene/scene.h"
+#include "load/load_images.h"
 #include "scene/schema.h"
 
 namespace orrery::load {

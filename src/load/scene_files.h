@@ -7,7 +7,6 @@
 
 #include "base/file_set.h"
 #include "load/load_scene.h"
-#include "scene/scene.h"
 
 namespace orrery::load {
 

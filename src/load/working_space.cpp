@@ -1,13 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "load/working_space.h"
-
 #include <algorithm>
 #include <array>
 #include <limits>
 #include <vector>
 
 #include "display/color_space.h"
-#include "scene/scene.h"
+#include "load/load_images.h"
 #include "scene/texture.h"
 
 namespace orrery::load {

@@ -5,7 +5,6 @@
 #include <array>
 #include <cmath>
 #include <cstdint>
-#include <optional>
 #include <type_traits>
 #include <utility>
 
@@ -131,7 +130,7 @@ class OutputTable {
   }
 
   void add_other(const std::string& name) {
-    if (std::find(replaced_.begin(), replaced_.end(), name) != replaced_.end()) return;
+    if (base::contains(replaced_, name)) return;
     if (table_.find(name) != nullptr) {
       left_out_.push_back(name);
       return;
@@ -144,9 +143,8 @@ class OutputTable {
 
   points::SourceRows& source_;
   data::Table table_;
-  bool takes_all_ = false;  ///< the spheres are all rows, in their order
-  std::vector<std::string>
-      replaced_;  ///< columns of the file whose values are stored in columns that the output defines
+  bool takes_all_ = false;             ///< the spheres are all rows, in their order
+  std::vector<std::string> replaced_;  ///< columns of the file that columns of the output stand for
   std::vector<std::string> left_out_;
 };
 
@@ -213,8 +211,7 @@ class Converter {
     if (!unwritten.empty())
       out.notes.push_back(fmt::format("left out {}: the format cannot store these strings", base::joined(unwritten)));
     for (const data::Column& column : output.table().columns)
-      if (std::find(unwritten.begin(), unwritten.end(), column.name) == unwritten.end())
-        out.columns.push_back(column.name);
+      if (!base::contains(unwritten, column.name)) out.columns.push_back(column.name);
     return out;
   }
 

@@ -3,16 +3,13 @@
 
 #include <algorithm>
 #include <numeric>
-#include <utility>
 
 #include <fmt/core.h>
 
 #include "base/error.h"
 #include "base/frames.h"
-#include "data/data_file.h"
 #include "points/color_map.h"
 #include "points/derived.h"
-#include "points/load_points.h"
 #include "points/selection.h"
 #include "points/spacing.h"
 
@@ -154,9 +151,7 @@ std::string all_of(const std::vector<std::string>& conditions) {
     try {
       points::require_closed(condition);
     } catch (const base::Error& error) {
-      for (const base::Diagnostic& d : error.diagnostics())
-        throw base::Error(error.kind(), fmt::format("--select `{}`: at character {}: {}{}", condition, d.column, d.text,
-                                                    d.remedy.empty() ? "" : "; " + d.remedy));
+      throw base::Error(error.kind(), fmt::format("--select `{}`: {}", condition, points::fault_text(error)));
     }
     out += fmt::format("{}({})", out.empty() ? "" : " && ", condition);
   }

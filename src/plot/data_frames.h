@@ -11,13 +11,9 @@
 #include <vector>
 
 #include "base/error.h"
-#include "data/data_file.h"
-#include "data/table.h"
 #include "plot/range.h"
 #include "points/load_points.h"
-#include "points/open_data.h"
 #include "scene/forward.h"
-#include "scene/scene.h"
 
 namespace orrery::plot {
 
@@ -95,7 +91,7 @@ class DataFrames {
   std::filesystem::path folder_;
   bool is_sequence_;
   points::OpenData open_;
-  std::unique_ptr<data::DataFile> file_;
+  std::shared_ptr<data::DataFile> file_;
   data::FrameInfo info_;
   int described_ = 1;
   std::vector<int> numbers_;

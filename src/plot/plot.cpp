@@ -11,14 +11,10 @@
 #include "base/error.h"
 #include "base/image_limits.h"
 #include "base/text.h"
-#include "data/data_file.h"
 #include "display/settings.h"
-#include "format/read_scene.h"
 #include "format/write_scene.h"
-#include "load/load_scene.h"
-#include "load/working_space.h"
+#include "load/load_images.h"
 #include "plot/data_frames.h"
-#include "plot/guides.h"
 #include "plot/range.h"
 #include "plot/scene_text.h"
 #include "plot/view.h"
@@ -148,12 +144,19 @@ class PlotMaker {
                       is_turntable_ ? " and the whole orbit" : "",
                       options_.zoom == 1 ? "" : ", times " + number_text(options_.zoom)));
     choose_display_view();
-    PlotParts parts{options_,        width_,          height_, out_.points,           camera, out_.view, axes,
-                    extent.center(), extent.radius(), {},      annotation_of(camera), {}};
+    scene::Scene scene;
+    scene.image.width = width_;
+    scene.image.height = height_;
+    scene.camera = camera;
+    scene.annotation = annotation_of(camera);
+    scene.color.view = out_.view;
+    scene.points = {out_.points};
+    scene.rods = guides_->rods();
+    Stage stage{axes, extent.center(), extent.radius(), {}};
     if (options_.ground && !extent.is_empty()) {
-      parts.ground = ground_below(guides_->lowest(), up, extent);
-      if (hides_view(*parts.ground, camera, aspect)) {
-        parts.ground.reset();
+      stage.ground = ground_below(guides_->lowest(), up, extent);
+      if (hides_view(*stage.ground, camera, aspect)) {
+        stage.ground.reset();
         chose("no ground",
               fmt::format("it would hide the spheres from {}; look from further above", options_.look_from));
       }
@@ -161,11 +164,10 @@ class PlotMaker {
     if (!options_.style) chose("style studio", "a key light from the upper left, and white light from all directions");
     if (!options_.overrides.sets("image.width") && !options_.overrides.sets("image.height"))
       chose(fmt::format("size {} x {}", width_, height_), "--width and --height change it");
-    choose_samples(parts.samples);
+    choose_samples(scene.render.samples);
     if (options_.develops && display_of(options_).view.empty() && out_.view == kPlainView)
       chose(fmt::format("view transform {}", out_.view), "colours match the colour map");
-    parts.guides = guides_->rods();
-    out_.text = scene_text(parts);
+    out_.text = scene_text(options_, stage, std::move(scene));
     // A still image is made of one frame, whose file need not stay open.
     out_.open_data = out_.frames.empty() ? points::handed_over(data_.open_data()) : data_.open_data();
     return std::move(out_);
@@ -223,10 +225,9 @@ class PlotMaker {
     else if (count == 1 || data_.is_sequence())
       out_.warnings.emplace_back("nothing to render: the file has no spheres");
     else
-      out_.warnings.push_back(
-          fmt::format("nothing to render: frame {}{} has no spheres; --frame N selects another, "
-                      "--frames all renders all",
-                      data_.described_frame(), count ? fmt::format(" of {}", *count) : ""));
+      out_.warnings.push_back(fmt::format(
+          "nothing to render: frame {}{} has no spheres; --frame N selects another, --frames all renders all",
+          data_.described_frame(), count ? fmt::format(" of {}", *count) : ""));
   }
 
   scene::Points load(int frame) const { return data_.load(frame, out_.points).points; }
@@ -375,7 +376,7 @@ class PlotMaker {
       chose("display view " + out_.view, std::string("the default; the OCIO config has no view ") + kPlainView);
   }
 
-  void choose_samples(std::optional<int>& samples) {
+  void choose_samples(int& samples) {
     if (options_.has_target || options_.overrides.sets("render.samples")) {
       if (options_.quality) base::refuse("--quality excludes --noise, --time and --samples: it sets them");
       return;

@@ -9,10 +9,8 @@
 
 #include "annotation/legend.h"
 #include "display/settings.h"
-#include "format/overrides.h"
 #include "load/load_scene.h"
 #include "plot/data_frames.h"
-#include "scene/scene.h"
 
 /// Makes a scene for a data file: settings that the user did not choose are chosen from the data, and reported.
 namespace orrery::plot {
@@ -39,14 +37,8 @@ const std::vector<std::string>& quality_names();
 /// Materials of the spheres, by name.
 const std::vector<std::string>& material_names();
 
-/// The style with this name; none for an empty name.
-///
-/// Domain     empty, or one of style_names()
+/// The style or quality with one of these names; none for an empty name.
 std::optional<Style> style_of(const std::string& name);
-
-/// The quality with this name; none for an empty name.
-///
-/// Domain     empty, or one of quality_names()
 std::optional<Quality> quality_of(const std::string& name);
 
 /// The colour with a name or in the form #rrggbb, as a display shows it.

@@ -12,6 +12,7 @@
 #include <fmt/core.h>
 
 #include "base/error.h"
+#include "base/text.h"
 #include "scene/limits.h"
 #include "scene/value_text.h"
 
@@ -26,8 +27,7 @@ std::optional<RangeChoice::End> parse_end(std::string_view text) {
   const bool is_percentile = text.ends_with('%');
   if (is_percentile) text.remove_suffix(1);
   RangeChoice::End out{0, is_percentile};
-  const auto [stopped, error] = std::from_chars(text.data(), text.data() + text.size(), out.value);
-  if (error != std::errc() || stopped != text.data() + text.size() || !std::isfinite(out.value)) return {};
+  if (!base::from_text(text, out.value) || !std::isfinite(out.value)) return {};
   return out;
 }
 

@@ -2,13 +2,17 @@
 #include "plot/scene_text.h"
 
 #include <algorithm>
+#include <optional>
+#include <string>
 #include <utility>
+#include <vector>
 
 #include <fmt/core.h>
 
+#include "base/error.h"
 #include "format/write_scene.h"
 #include "plot/plot.h"
-#include "scene/scene.h"
+#include "points/color_map.h"
 #include "scene/value_text.h"
 
 namespace orrery::plot {
@@ -53,9 +57,9 @@ const Lighting& lighting_of(Style style) {
   return kWhite;
 }
 
-scene::Sphere lamp_of(const PlotParts& parts, const Lighting& light) {
-  const Vec3d toward = math::normalized(parts.axes.back + parts.axes.up * light.up - parts.axes.right * light.left);
-  return {parts.center + toward * (light.distance * parts.radius), light.radius * parts.radius};
+scene::Sphere lamp_of(const Stage& stage, const Lighting& light) {
+  const Vec3d toward = math::normalized(stage.axes.back + stage.axes.up * light.up - stage.axes.right * light.left);
+  return {stage.center + toward * (light.distance * stage.radius), light.radius * stage.radius};
 }
 
 /// Materials of the spheres. Colours replace the albedo.
@@ -67,7 +71,44 @@ const std::vector<scene::Material>& sphere_materials() {
   return all;
 }
 
+/// The enumerator with a name; none for an empty name.
+template <class Enum>
+std::optional<Enum> enumerator_of(const std::string& name, const std::vector<std::string>& names) {
+  if (name.empty()) return {};
+  return static_cast<Enum>(std::find(names.begin(), names.end(), name) - names.begin());
+}
+
 }  // namespace
+
+const std::vector<std::string>& representation_names() {
+  static const std::vector<std::string> names = {"spheres", "ball-and-stick", "sticks"};
+  return names;
+}
+
+const std::vector<std::string>& style_names() {
+  static const std::vector<std::string> names = {"studio", "soft", "flat", "night", "ambient"};
+  return names;
+}
+
+const std::vector<std::string>& quality_names() {
+  static const std::vector<std::string> names = {"draft", "good", "final"};
+  return names;
+}
+
+std::optional<Style> style_of(const std::string& name) { return enumerator_of<Style>(name, style_names()); }
+
+std::optional<Quality> quality_of(const std::string& name) { return enumerator_of<Quality>(name, quality_names()); }
+
+math::Vec3d color_of(const std::string& text) {
+  constexpr std::pair<const char*, const char*> kNames[] = {
+      {"white", "#ffffff"}, {"black", "#000000"}, {"grey", "#808080"}, {"gray", "#808080"}};
+  const auto* const known =
+      std::find_if(std::begin(kNames), std::end(kNames), [&](const auto& n) { return n.first == text; });
+  const std::optional<math::Vec3d> srgb = points::parse_hex(known == std::end(kNames) ? text : known->second);
+  if (!srgb)
+    base::refuse(fmt::format("`{}` is not a colour; write white, black, grey or #rrggbb, e.g. '#202030'", text));
+  return points::linear_from_srgb(*srgb / 255);
+}
 
 const std::vector<std::string>& material_names() {
   static const std::vector<std::string> names = [] {
@@ -78,22 +119,13 @@ const std::vector<std::string>& material_names() {
   return names;
 }
 
-std::string scene_text(const PlotParts& parts) {
-  const PlotOptions& options = parts.options;
+std::string scene_text(const PlotOptions& options, const Stage& stage, scene::Scene scene) {
   const Lighting& light = lighting_of(options.style.value_or(Style::kStudio));
-  scene::Scene scene;
-  scene.image.width = parts.width;
-  scene.image.height = parts.height;
-  scene.camera = parts.camera;
   scene.background.type = scene::BackgroundType::kConstant;
   scene.background.color = light.background;
   scene.background.backdrop = options.background ? options.background : light.backdrop;
   scene.background.alpha = options.transparent ? 0 : 1;
-  scene.annotation = parts.annotation;
-  if (parts.samples) scene.render.samples = *parts.samples;
   if (options.style == Style::kFlat) scene.render.shading = scene::Shading::kFlat;
-  scene.color.view = parts.view;
-  scene.points = {parts.points};
   const auto material = [&](const char* name, const scene::MaterialModel& model) {
     scene.materials.push_back({name, model});
     return static_cast<std::uint32_t>(scene.materials.size() - 1);
@@ -101,14 +133,14 @@ std::string scene_text(const PlotParts& parts) {
   for (const scene::Material& of_spheres : sphere_materials())
     if (of_spheres.name == options.material)
       scene.points[0].material = material(options.material.c_str(), of_spheres.model);
-  if (parts.ground)
+  if (stage.ground)
     scene.spheres.push_back(
-        {parts.ground->center, parts.ground->radius, material("ground", scene::Lambertian{light.ground}), "ground"});
+        {stage.ground->center, stage.ground->radius, material("ground", scene::Lambertian{light.ground}), "ground"});
   constexpr std::pair<const char*, Vec3d> kGuides[] = {{"box", {0.1, 0.1, 0.1}},
                                                        {"axis_x", {0.7, 0.03, 0.03}},
                                                        {"axis_y", {0.03, 0.5, 0.03}},
                                                        {"axis_z", {0.03, 0.1, 0.8}}};
-  for (scene::Rod rod : parts.guides) {
+  for (scene::Rod& rod : scene.rods) {
     const auto& [name, color] = kGuides[rod.materials[0]];
     const auto known = std::find_if(scene.materials.begin(), scene.materials.end(),
                                     [&](const scene::Material& m) { return m.name == name; });
@@ -117,10 +149,9 @@ std::string scene_text(const PlotParts& parts) {
                                     : static_cast<std::uint32_t>(known - scene.materials.begin());
     rod.materials = {index, index};
     rod.name = name;
-    scene.rods.push_back(rod);
   }
   if (light.has_lamp()) {
-    scene.spheres.push_back(lamp_of(parts, light));
+    scene.spheres.push_back(lamp_of(stage, light));
     scene.spheres.back().material = material("lamp", scene::Emitter{light.radiance});
   }
   return format::scene_text(

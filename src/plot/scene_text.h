@@ -2,10 +2,12 @@
 #pragma once
 
 #include <cstdint>
+#include <limits>
 #include <optional>
 #include <string>
 #include <vector>
 
+#include "data/table.h"
 #include "plot/view.h"
 #include "scene/scene.h"
 
@@ -16,24 +18,49 @@ struct PlotOptions;
 /// Materials of the rods beside the spheres.
 enum GuideMaterial : std::uint32_t { kBoxMaterial, kXMaterial, kYMaterial, kZMaterial };
 
-/// The parts of the scene of a plot.
-struct PlotParts {
-  const PlotOptions& options;
-  int width, height;  ///< px
-  const scene::Points& points;
-  const scene::Camera& camera;
-  const std::string& view;       ///< view of the display
+/// Where the spheres of a plot are, and how they are seen.
+struct Stage {
   const ViewAxes& axes;          ///< axes of the image
   Vec3d center;                  ///< centre of the spheres
   double radius = 1;             ///< radius of a sphere around `center` that contains all spheres
-  std::optional<int> samples;    ///< per pixel; default: that of scenes
-  scene::Annotation annotation;  ///< text and lines over the image
   std::optional<Ground> ground;  ///< ground below the spheres
-  /// Edges of the simulation box and axes; their materials are GuideMaterial.
-  std::vector<scene::Rod> guides = {};
 };
 
 /// Returns the text of the scene file of a plot.
-std::string scene_text(const PlotParts& parts);
+///
+/// `scene`    camera, points and annotation; its rods are the edges of the simulation box and the axes, with materials
+///            of GuideMaterial
+std::string scene_text(const PlotOptions& options, const Stage& stage, scene::Scene scene);
+
+/// Rods beside the spheres: the edges of the simulation box, and the axes in the lower corner of what is shown.
+class Guides {
+ public:
+  explicit Guides(const Vec3d& up) : up_(up) {}
+
+  /// Includes spheres in what is shown.
+  void surround(const scene::Points& points);
+  /// Adds the edges of a periodic box, repeated along each edge, and includes it in `extent`.
+  void add_box(const data::Box& box, const Vec3d& counts, ViewExtent& extent);
+  /// Adds a tripod outside the lower corner of what is shown, whose radius is `size`.
+  void add_axes(double size);
+
+  /// The rods. Their materials are GuideMaterial.
+  const std::vector<scene::Rod>& rods() const { return rods_; }
+  /// The ends of the rods, as spheres.
+  const scene::Points& ends() const { return ends_; }
+  /// Lowest point of the spheres and the rods along the up axis, scene units.
+  double lowest() const { return lowest_; }
+
+ private:
+  void surround(const Vec3d& center, double radius);
+  void add(const Vec3d& from, const Vec3d& to, double radius, std::uint32_t material);
+
+  static constexpr double kInfinity = std::numeric_limits<double>::infinity();
+  Vec3d up_;
+  Vec3d corner_{kInfinity, kInfinity, kInfinity};  ///< lower corner of all that is shown along x, y and z
+  double lowest_ = kInfinity;
+  std::vector<scene::Rod> rods_;
+  scene::Points ends_;
+};
 
 }  // namespace orrery::plot

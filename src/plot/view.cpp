@@ -6,11 +6,11 @@
 #include <cmath>
 #include <numbers>
 #include <optional>
-#include <utility>
 
 #include <fmt/core.h>
 
 #include "base/error.h"
+#include "base/text.h"
 #include "scene/limits.h"
 #include "scene/scene.h"
 
@@ -21,13 +21,12 @@ namespace {
 constexpr double kMargin = 0.05;
 
 std::optional<std::pair<double, double>> parse_angles(const std::string& text) {
-  const char *const begin = text.data(), *const end = begin + text.size();
+  const std::string_view view = text;
+  const std::size_t comma = std::min(view.find(','), view.size());
   std::pair<double, double> out;
-  const auto [comma, error] = std::from_chars(begin, end, out.first);
-  if (error != std::errc() || comma == end || *comma != ',') return {};
-  const auto [stop, second_error] = std::from_chars(comma + 1, end, out.second);
-  if (second_error != std::errc() || stop != end || !std::isfinite(out.first) || !(std::abs(out.second) <= 90))
-    return {};
+  const bool is_pair = comma < view.size() && base::from_text(view.substr(0, comma), out.first) &&
+                       base::from_text(view.substr(comma + 1), out.second);
+  if (!is_pair || !std::isfinite(out.first) || !(std::abs(out.second) <= 90)) return {};
   return out;
 }
 
@@ -40,7 +39,7 @@ SceneAxes scene_axes(const std::string& up) {
   if (up == "x") return {{0, 1, 0}, {1, 0, 0}, {0, 0, -1}};
   if (up == "y") return {{1, 0, 0}, {0, 1, 0}, {0, 0, 1}};
   if (up == "z") return {{1, 0, 0}, {0, 0, 1}, {0, -1, 0}};
-  throw base::Error(base::ErrorKind::kUsage, fmt::format("--up: `{}` is not an axis; write x, y or z", up));
+  base::refuse(fmt::format("--up: `{}` is not an axis; write x, y or z", up));
 }
 
 /// Rounds away the residue of sines and cosines of right angles.
@@ -73,9 +72,10 @@ ViewAxes view_axes(const std::string& look_from, const std::string& up) {
   else
     angles = parse_angles(look_from);
   if (!angles)
-    throw base::Error(base::ErrorKind::kUsage, fmt::format("--look-from: `{}` is not a view; write iso, +x, -x, +y, "
-                                                           "-y, +z, -z, or AZIMUTH,ELEVATION in degrees, e.g. 30,20",
-                                                           look_from));
+    base::refuse(
+        fmt::format("--look-from: `{}` is not a view; write iso, +x, -x, +y, "
+                    "-y, +z, -z, or AZIMUTH,ELEVATION in degrees, e.g. 30,20",
+                    look_from));
   const double azimuth = angles->first / 180 * std::numbers::pi, elevation = angles->second / 180 * std::numbers::pi;
   const Vec3d level = scene.front * std::cos(azimuth) + scene.right * std::sin(azimuth);
   ViewAxes out;

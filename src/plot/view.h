@@ -24,9 +24,7 @@ struct ViewAxes {
 /// Errors       base::Error(kUsage)
 ViewAxes view_axes(const std::string& look_from, const std::string& up);
 
-/// Removes the spheres on the camera's side of a plane: narrows the clip of `points`.
-///
-/// `plane`    axis 0, 1 or 2, and position
+/// Removes the spheres on the camera's side of a plane, given by axis 0, 1 or 2, and position: narrows their clip.
 void slice(std::pair<int, double> plane, const ViewAxes& axes, scene::Points& points);
 
 /// Extent of spheres along the axes of a view.
@@ -36,10 +34,8 @@ class ViewExtent {
 
   void add(const scene::Points& points);
   void add(Vec3d center, double radius);
-  /// Adds the space that the spheres pass through when they, or the camera, turn about an axis through a point, which
-  /// stays the centre.
-  ///
-  /// `axis`     unit vector
+  /// Adds the space that the spheres pass through when they, or the camera, turn about an axis, a unit vector, through
+  /// a point, which stays the centre.
   void add_orbits(const scene::Points& points, Vec3d pivot, Vec3d axis);
   bool is_empty() const { return is_empty_; }
 
@@ -52,9 +48,6 @@ class ViewExtent {
   scene::Camera camera(double aspect) const;
 
   /// Returns a perspective camera in the same direction, far enough away to see all spheres with this margin.
-  ///
-  /// `aspect`     image width divided by its height, as displayed
-  /// `vfov_deg`   vertical field of view, between 0 and 180 degrees
   scene::Camera perspective_camera(double aspect, double vfov_deg) const;
 
   Vec3d center() const;   ///< centre of the box along the axes
@@ -75,15 +68,11 @@ struct Ground {
   double radius = 0;
 };
 
-/// Returns a ground that touches the lowest sphere from below.
-///
-/// `lowest`   height of the spheres' lowest point along `up`, a unit vector
+/// Returns a ground below the lowest point of the spheres, at the height `lowest` along `up`, a unit vector.
 Ground ground_below(double lowest, Vec3d up, const ViewExtent& extent);
 
 /// Returns whether a ground hides spheres or part of the background from a camera of ViewExtent, because camera rays
 /// start below it. That is the case if an orthographic camera looks horizontally or upwards.
-///
-/// `aspect`   image width divided by its height
 bool hides_view(const Ground& ground, const scene::Camera& camera, double aspect);
 
 /// Moves the camera, in the plane of its image, so that a point is at the centre of the image, and makes that point the

@@ -1,6 +1,4 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "points/arrows.h"
-
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
@@ -10,8 +8,7 @@
 #include <fmt/core.h>
 
 #include "base/stop_point.h"
-#include "points/rows.h"
-#include "scene/scene.h"
+#include "points/copies.h"
 
 namespace orrery::points {
 namespace {

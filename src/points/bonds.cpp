@@ -10,10 +10,8 @@
 #include <fmt/core.h>
 
 #include "base/text.h"
-#include "points/elements.h"
-#include "points/rows.h"
+#include "data/elements.h"
 #include "scene/limits.h"
-#include "scene/number_array.h"
 
 namespace orrery::points {
 namespace {
@@ -25,9 +23,6 @@ using data::Vec3d;
 constexpr double kSmallestFraction = 1.0 / 3;
 
 constexpr double kElementBondRadius = 0.15, kBondRadiusOfSphere = 0.3;
-
-/// Maximum number of distinct strings in a column of elements, in any spelling.
-constexpr std::size_t kMaxElementNames = 65536;
 
 template <class T>
 void sort_unique(std::vector<T>& values) {
@@ -68,10 +63,10 @@ Reach reach_of(const data::Table& table, const Rows& rows, const BondSource& sou
     return out;
   }
   out.smallest = kSmallestFraction;
-  Labels labels = labels_of(*table.find(source.element), rows, kMaxElementNames);
+  Labels labels = labels_of(*table.find(source.element), rows, kMaxTypes);
   std::vector<std::string> missing;
   for (const std::string& name : labels.names) {
-    const Element* const element = find_element(name);
+    const data::Element* const element = data::find_element(name);
     if (element == nullptr) missing.push_back(fmt::format("`{}`", name));
     out.of_label.push_back(element == nullptr ? 0
                                               : element->covalent * bonds.factor.value_or(scene::kDefaultBondFactor));

@@ -5,16 +5,11 @@
 #include <string>
 #include <vector>
 
-#include "data/table.h"
 #include "points/bond_search.h"
 #include "points/copies.h"
-#include "scene/forward.h"
 
 /// The bonds of a points table. Used only within this room.
 namespace orrery::points {
-
-class KeyFaults;
-class Rows;
 
 /// How the bonds of a file's particles are determined.
 struct BondSource {
@@ -30,8 +25,6 @@ BondSource bond_source(const data::FrameInfo& info, const scene::PointsBonds& bo
 inline constexpr std::uint64_t kBondSearchBytes = 100, kFileBondBytes = 64;
 
 /// Returns how close the spheres of the rows must be to be bonded. Reports elements without a covalent radius.
-///
-/// Domain     a table with the source's column
 Reach reach_of(const data::Table& table, const Rows& rows, const BondSource& source, const scene::PointsBonds& bonds,
                KeyFaults& faults);
 
@@ -49,9 +42,7 @@ void merge(BondSet& bonds, BondSet more);
 /// times the mean radius.
 double bond_radius(const data::FrameInfo& info, const scene::PointsBonds& bonds, const scene::NumberArray& radii);
 
-/// Number of rods that copy_bonds() makes.
-///
-/// `images`   number of periodic images
+/// Number of rods that copy_bonds() makes in a number of periodic images.
 double copied_bond_count(const BondSet& bonds, double images, std::size_t copies);
 
 /// Sets the bonds of `points`, for each copy of the spheres. Bonds to an image of the box that is not drawn become two

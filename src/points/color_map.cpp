@@ -2,19 +2,16 @@
 #include "points/color_map.h"
 
 #include <algorithm>
-#include <charconv>
 #include <cmath>
 #include <fstream>
 #include <iterator>
-#include <string>
 
 #include <fmt/core.h>
 
 #include "base/error.h"
 #include "base/input_file.h"
 #include "base/text.h"
-#include "data/faults.h"
-#include "data/table.h"
+#include "data/text_lines.h"
 
 namespace orrery::points {
 
@@ -29,11 +26,7 @@ std::vector<ColorMap> make_maps() {
   }
   for (const CategoricalTable& table : kCategoricalTables) {
     ColorMap map{table.name, true, {}};
-    for (const std::uint32_t code : table.colors) {
-      const Vec3d bytes{static_cast<double>(code >> 16 & 255u), static_cast<double>(code >> 8 & 255u),
-                        static_cast<double>(code & 255u)};
-      map.knots.push_back({0, bytes / 255});
-    }
+    for (const std::uint32_t code : table.colors) map.knots.push_back({0, bytes_of(code) / 255});
     out.push_back(std::move(map));
   }
   return out;
@@ -57,26 +50,10 @@ constexpr std::size_t kMaxBytes = kMaxColors * 128;
 
 constexpr const char* kForms = "a line is `r g b`, `t r g b` or `#rrggbb`";
 
-bool is_separator(char c) { return c == ' ' || c == '\t' || c == ',' || c == '\r'; }
-
-std::vector<std::string_view> words_of(std::string_view line) {
-  std::vector<std::string_view> words;
-  for (std::size_t i = 0; i < line.size();) {
-    const std::size_t begin = i;
-    while (i < line.size() && !is_separator(line[i])) ++i;
-    if (i > begin) words.push_back(line.substr(begin, i - begin));
-    while (i < line.size() && is_separator(line[i])) ++i;
-  }
-  return words;
-}
-
 bool parse_numbers(const std::vector<std::string_view>& words, std::vector<double>& numbers) {
   numbers.resize(words.size());
-  for (std::size_t i = 0; i < words.size(); ++i) {
-    const char* last = words[i].data() + words[i].size();
-    const auto [end, status] = std::from_chars(words[i].data(), last, numbers[i]);
-    if (status != std::errc() || end != last || !std::isfinite(numbers[i])) return false;
-  }
+  for (std::size_t i = 0; i < words.size(); ++i)
+    if (!base::from_text(words[i], numbers[i]) || !std::isfinite(numbers[i])) return false;
   return true;
 }
 
@@ -86,7 +63,7 @@ class Reader {
   explicit Reader(data::Faults& faults) : faults_(faults) {}
 
   void add(std::uint64_t line, std::string_view text) {
-    const std::vector<std::string_view> words = words_of(text);
+    const std::vector<std::string_view> words = data::words_of(text, " \t,\r");
     if (words.empty()) return;
     if (words[0][0] == '#') {
       const std::optional<Vec3d> color = words.size() == 1 ? parse_hex(words[0]) : std::nullopt;
@@ -154,13 +131,15 @@ class Reader {
 
 const ColorMap* find_color_map(std::string_view name) { return data::find_named(maps(), name); }
 
+Vec3d bytes_of(std::uint32_t code) {
+  return {static_cast<double>(code >> 16 & 255u), static_cast<double>(code >> 8 & 255u),
+          static_cast<double>(code & 255u)};
+}
+
 std::optional<Vec3d> parse_hex(std::string_view text) {
-  unsigned code = 0;
-  if (text.size() != 7 || text[0] != '#') return {};
-  const auto [end, status] = std::from_chars(text.data() + 1, text.data() + 7, code, 16);
-  if (status != std::errc() || end != text.data() + 7) return {};
-  return Vec3d{static_cast<double>(code >> 16 & 255u), static_cast<double>(code >> 8 & 255u),
-               static_cast<double>(code & 255u)};
+  std::uint32_t code = 0;
+  if (text.size() != 7 || text[0] != '#' || !base::from_text(text.substr(1), code, 16)) return {};
+  return bytes_of(code);
 }
 
 const std::vector<std::string>& color_map_names() {
@@ -216,7 +195,7 @@ ColorMap read_color_map(const std::filesystem::path& file) {
 
   Reader reader(faults);
   std::string_view rest = text;
-  if (rest.substr(0, 3) == "\xEF\xBB\xBF") rest.remove_prefix(3);
+  if (rest.starts_with("\xEF\xBB\xBF")) rest.remove_prefix(3);
   for (std::uint64_t line = 1; !rest.empty(); ++line) {
     const std::size_t end = std::min(rest.find('\n'), rest.size());
     reader.add(line, rest.substr(0, end));

@@ -34,6 +34,9 @@ struct ColorMap {
 /// Reference  docs/references.md, colour maps
 const ColorMap* find_color_map(std::string_view name);
 
+/// Returns a colour 0xRRGGBB as components of 0 to 255.
+Vec3d bytes_of(std::uint32_t code);
+
 /// The colour `#rrggbb`, 0 to 255; none for other text.
 std::optional<Vec3d> parse_hex(std::string_view text);
 
@@ -46,18 +49,13 @@ const std::vector<std::string>& color_map_names();
 /// Domain     t is not NaN
 Vec3d srgb_at(const ColorMap& map, double t);
 
-/// Returns the colours at t = i / (count - 1). A categorical map repeats its colours.
-///
-/// Units      scene-linear Rec.709
-/// Domain     count >= 1
+/// Returns the colours at t = i / (count - 1) as scene-linear Rec.709. A categorical map repeats its colours.
 std::vector<Vec3d> palette(const ColorMap& map, std::size_t count);
 
 /// Decodes display-referred sRGB to scene-linear Rec.709.
 Vec3d linear_from_srgb(Vec3d srgb);
 
-/// Encodes scene-linear Rec.709 as display-referred sRGB.
-///
-/// Domain     0 to 1
+/// Encodes scene-linear Rec.709, 0 to 1, as display-referred sRGB.
 Vec3d srgb_from_linear(Vec3d linear);
 
 /// Reads a colour map from a text file. Each line is a colour: `r g b`, or `t r g b` with ascending t, or `#rrggbb`.

@@ -11,9 +11,6 @@
 
 #include "base/text.h"
 #include "math/scalar.h"
-#include "points/rows.h"
-#include "scene/number_array.h"
-#include "scene/scene.h"
 
 namespace orrery::points {
 namespace {

@@ -6,18 +6,11 @@
 #include <string>
 #include <vector>
 
-#include "data/table.h"
-#include "scene/forward.h"
+#include "points/rows.h"
 
 namespace orrery::points {
 
-class KeyFaults;
-class Rows;
-struct Labels;
-
-/// Unwraps the coordinates of particles: p + i a + j b + k c, with the periodic image flags i, j, k of the file.
-///
-/// Domain     `centers` are the positions of the rows
+/// Unwraps the positions of the rows: p + i a + j b + k c, with the periodic image flags i, j, k of the file.
 void unwrap(const data::Table& table, const Rows& rows, const data::FrameInfo& info, scene::PointArray& centers);
 
 /// The transform of a points table: scale, then rotations about x, y and z, then translation.
@@ -38,9 +31,8 @@ struct Copy {
 /// define, and replication without a box.
 std::vector<Copy> copies_of(const data::FrameInfo& info, const scene::Points& points, KeyFaults& faults);
 
-/// Repeats the copies in each periodic image of the box.
+/// Repeats the copies in each periodic image of the box, of which there are `counts` along each edge.
 ///
-/// `counts`   number of images along each edge
 /// Cost       100 bytes per copy and image: callers check the memory first
 std::vector<Copy> replicated(const std::vector<Copy>& copies, const data::Box& box, data::Vec3d counts);
 
@@ -49,10 +41,7 @@ std::vector<Copy> outermost(const std::vector<Copy>& copies, const data::Box& bo
 
 /// Whether make_copies() rounds the centres to single precision, in which they take half the memory: those of an
 /// assembly, unless its only transform changes nothing, or the rounding could move a sphere by more than a thousandth
-/// of the smallest radius.
-///
-/// `copies`   all copies, or the outermost ones
-/// `centers`  spheres of the file, before they are copied
+/// of the smallest radius. `copies` may be only the outermost ones.
 bool are_rounded(const std::vector<Copy>& copies, const scene::Points& points, const scene::PointArray& centers,
                  const scene::NumberArray& radii);
 
@@ -86,16 +75,27 @@ class CopyIndex {
   std::vector<std::vector<std::uint32_t>> subsets_;  ///< of each set of chains: the place of each sphere in it
 };
 
-/// Replaces the spheres with their copies, copy by copy, and applies the transform of the points table.
+/// Replaces the spheres, and the row number of each, with their copies, copy by copy, and applies the transform of the
+/// points table.
 ///
 /// `chains`   chain of each sphere; ignored unless a copy is limited to some chains
-/// `rows`     row number of each sphere, copied along with it; may be null
 void make_copies(const std::vector<Copy>& copies, const Labels& chains, scene::Points& points,
                  std::vector<std::uint32_t>* rows = nullptr);
 
-/// Removes the spheres whose centres are outside `points.clip`, and the bonds of those.
-///
-/// `rows`     row number of each sphere, removed along with it; may be null
+/// Removes the spheres whose centres are outside `points.clip`, their row numbers, and their bonds.
 void clip(scene::Points& points, std::vector<std::uint32_t>* rows = nullptr);
+
+/// Spheres of the head of an arrow.
+inline constexpr std::size_t kHeadSpheres = 12;
+
+/// Adds an arrow at each sphere of `points`, along its vector: a bond as the shaft, and spheres of falling radius as
+/// the head, after all other spheres. They have the colour, material and opacity of the sphere. Consumes
+/// `points.sphere_vectors`, and sets `points.arrow_count` and `points.rms_vector`.
+///
+/// Vectors that are not finite, and those no longer than the shaft is thick, have no arrow; the former are reported.
+///
+/// `rows`     row number of each sphere, extended to the spheres of the heads; may be null
+/// Domain     after transform.scale; `points.bond_radius` is that of the shafts
+void add_arrows(scene::Points& points, std::vector<std::uint32_t>* rows, KeyFaults& faults);
 
 }  // namespace orrery::points

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "points/derived.h"
 
-#include <algorithm>
+#include <array>
 #include <cmath>
 
-#include "base/text.h"
+#include "data/columns.h"
 #include "points/rows.h"
 
 namespace orrery::points {
@@ -12,23 +12,13 @@ namespace {
 
 /// The file's names of the three components of the velocity; empty if it has none.
 std::vector<std::string> velocity_of(const data::FrameInfo& info) {
-  const auto find = [&](const std::string& name) -> std::string {
-    for (const data::ColumnInfo& c : info.columns)
-      if (c.type != data::ColumnType::kText && base::lower(c.name) == name) return c.name;
-    return {};
-  };
-  const std::vector<std::vector<std::string>> candidates = {{"vx", "vy", "vz"},
-                                                            {"velocity[1]", "velocity[2]", "velocity[3]"},
-                                                            {"velocities[1]", "velocities[2]", "velocities[3]"},
-                                                            {"vel[1]", "vel[2]", "vel[3]"},
-                                                            {"velo[1]", "velo[2]", "velo[3]"}};
-  for (const std::vector<std::string>& names : candidates) {
-    std::vector<std::string> found;
-    for (const std::string& name : names)
-      if (std::string own = find(name); !own.empty()) found.push_back(std::move(own));
-    if (found.size() == names.size()) return found;
-  }
-  return {};
+  const std::array<std::string, 3> names =
+      data::number_columns(info.columns, {{"vx", "vy", "vz"},
+                                          {"velocity[1]", "velocity[2]", "velocity[3]"},
+                                          {"velocities[1]", "velocities[2]", "velocities[3]"},
+                                          {"vel[1]", "vel[2]", "vel[3]"},
+                                          {"velo[1]", "velo[2]", "velo[3]"}});
+  return names[0].empty() ? std::vector<std::string>() : std::vector<std::string>(names.begin(), names.end());
 }
 
 }  // namespace

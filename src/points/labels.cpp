@@ -1,6 +1,4 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "points/labels.h"
-
 #include <algorithm>
 #include <limits>
 
@@ -8,16 +6,21 @@
 
 #include "base/error.h"
 #include "points/copies.h"
-#include "points/rows.h"
+#include "points/sources.h"
 
 namespace orrery::points {
 
+namespace {
+
+/// Splits "CONDITION: TEXT" at the first colon that a space follows: ranges in conditions contain colons, too.
 std::pair<std::string, std::string> parse_label(const std::string& text) {
   const std::size_t colon = text.find(": ");
   if (colon == std::string::npos || colon == 0 || colon + 2 == text.size())
     base::refuse(fmt::format("`{}` is not a label; write CONDITION: TEXT, e.g. 'id == 5: Fe'", text));
   return {text.substr(0, colon), text.substr(colon + 2)};
 }
+
+}  // namespace
 
 std::vector<LabelRule> label_rules(const data::FrameInfo& info, const scene::Points& points, KeyFaults& faults) {
   std::vector<LabelRule> out;
@@ -27,7 +30,7 @@ std::vector<LabelRule> label_rules(const data::FrameInfo& info, const scene::Poi
       const auto [condition, text] = parse_label(points.labels[i]);
       out.push_back({parse_selection(condition, info.columns), text});
     } catch (const base::Error& error) {
-      faults.error(key, error);
+      faults.error(key, fault_text(error));
     }
   }
   return out;

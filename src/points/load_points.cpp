@@ -5,29 +5,19 @@
 #include <cmath>
 #include <limits>
 #include <map>
-#include <memory>
 #include <optional>
-#include <string>
 #include <utility>
 
 #include <fmt/core.h>
 
 #include "base/error.h"
+#include "base/text.h"
 #include "data/columns.h"
-#include "data/data_file.h"
 #include "formats/open.h"
-#include "points/arrows.h"
 #include "points/bonds.h"
 #include "points/copies.h"
 #include "points/derived.h"
-#include "points/labels.h"
-#include "points/point_colors.h"
-#include "points/point_opacity.h"
-#include "points/point_radii.h"
-#include "points/read_memory.h"
-#include "points/rows.h"
-#include "points/selection.h"
-#include "points/valid_spheres.h"
+#include "points/sources.h"
 #include "scene/limits.h"
 #include "scene/validate.h"
 #include "scene/value_text.h"
@@ -41,7 +31,7 @@ using data::Vec3d;
 /// Rows are numbered by 32 bits.
 constexpr std::uint64_t kMaxRows = std::numeric_limits<std::uint32_t>::max();
 
-std::unique_ptr<data::DataFile> open(const LoadRequest& request, const scene::Points& points) {
+std::shared_ptr<data::DataFile> open(const LoadRequest& request, const scene::Points& points) {
   data::OpenOptions options;
   options.component = points.component;
   options.limit_memory(request.memory_limit);
@@ -111,8 +101,7 @@ class Loader {
       for (const std::string& source : sources) need(source);
       return;
     }
-    if (!column.empty() && std::find(columns_.begin(), columns_.end(), column) == columns_.end())
-      columns_.push_back(column);
+    if (!column.empty() && !base::contains(columns_, column)) columns_.push_back(column);
   }
 
   /// Determines the sources of radii, colours and opacities, and the columns to read.
@@ -147,8 +136,7 @@ class Loader {
       for (const data::ColumnInfo& column : info_.columns)
         if (!column.is_derived) need(column.name);
     for (const data::ColumnInfo& column : info_.columns)
-      if (!column.is_derived && std::find(columns_.begin(), columns_.end(), column.name) == columns_.end())
-        points_.unused.push_back(column.name);
+      if (!column.is_derived && !base::contains(columns_, column.name)) points_.unused.push_back(column.name);
     if (info_.rows > kMaxRows)
       faults_.error(".file", fmt::format("has {} rows; the maximum is {}", info_.rows, kMaxRows));
   }
@@ -157,7 +145,7 @@ class Loader {
     try {
       selection_ = parse_selection(points_.select, info_.columns);
     } catch (const base::Error& error) {
-      return faults_.error(".select", error);
+      return faults_.error(".select", fault_text(error));
     }
     for (const std::string& column : selection_.columns) need(column);
   }
@@ -232,7 +220,7 @@ class Loader {
           table.rows == 0 ? "the frame has no particles" : fmt::format("selects none of the {} particles", table.rows));
     const bool is_all = rows.is_all();
     scene::NumberArray radii = radii_of(table, rows, radius_, points_.radius, faults_);
-    scene::PointArray centers = centers_of(table, rows);
+    scene::PointArray centers = points_of(table, rows, info_.roles.position);
     if (points_.unwrap) unwrap(table, rows, info_, centers);
     if (faults_.has_errors()) return;
     // A radius below 0 makes hollow glass, in a scene or in a PLY file that was made for one. In other data it is an
@@ -266,7 +254,8 @@ class Loader {
     points_.color_range = colors.range;
     points_.color_names = std::move(colors.names);
     if (!material_.empty()) set_materials(table, rows);
-    if (!points_.vectors.columns.empty()) points_.sphere_vectors = vectors_of(table, rows);
+    if (const std::vector<std::string>& columns = points_.vectors.columns; !columns.empty())
+      points_.sphere_vectors = points_of(table, rows, {columns[0], columns[1], columns[2]}, points_.vectors.scale);
     if (is_replicated) copies_ = replicated(copies_, *info_.box, points_.replicate);
     std::vector<std::uint32_t>* const row_of_sphere = request_.source == nullptr ? nullptr : &request_.source->rows;
     if (row_of_sphere != nullptr) *row_of_sphere = rows.list();
@@ -334,23 +323,6 @@ class Loader {
     return rows;
   }
 
-  scene::PointArray vectors_of(const data::Table& table, const Rows& rows) const {
-    const double scale = points_.vectors.scale;
-    scene::PointArray out(rows.size());
-    for (std::size_t axis = 0; axis < 3; ++axis)
-      for_each_number(*table.find(points_.vectors.columns[axis]), rows,
-                      [&](std::size_t i, double v) { out.set(i, axis, v * scale); });
-    return out;
-  }
-
-  scene::PointArray centers_of(const data::Table& table, const Rows& rows) const {
-    scene::PointArray out(rows.size());
-    for (std::size_t axis = 0; axis < 3; ++axis)
-      for_each_number(*table.find(info_.roles.position[axis]), rows,
-                      [&](std::size_t i, double v) { out.set(i, axis, v); });
-    return out;
-  }
-
   /// Makes an object of each combination of values in the columns of `cryptomatte`.
   void divide_into_objects(const data::Table& table, const Rows& rows) {
     points_.objects.assign(rows.size(), 0);
@@ -381,13 +353,13 @@ class Loader {
         faults_.error(".file", fmt::format("{} has material {}; the scene has {}, counted from 0",
                                            row_name(points_, rows[i]), scene::number_text(v), request_.materials));
     });
-    report_rest(bad, faults_);
+    faults_.error_if_any(".file", scene::rest_text(bad));
   }
 
   const LoadRequest& request_;
   scene::Points& points_;
   KeyFaults faults_;
-  std::unique_ptr<data::DataFile> file_;
+  std::shared_ptr<data::DataFile> file_;
   data::FrameInfo info_;
   std::vector<std::string> columns_;
   RadiusSource radius_;

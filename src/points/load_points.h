@@ -9,12 +9,14 @@
 #include <string>
 #include <vector>
 
-#include "data/table.h"
-#include "points/open_data.h"
+#include "data/data_file.h"
 #include "scene/diagnostic.h"
 #include "scene/scene.h"
 
 namespace orrery::points {
+
+/// Opens a data file, as formats::open() does.
+using OpenData = std::function<std::shared_ptr<data::DataFile>(const std::filesystem::path&, const data::OpenOptions&)>;
 
 /// The data from which spheres were made.
 struct SourceRows {
@@ -47,11 +49,29 @@ struct LoadRequest {
 /// Cost       one read of the needed columns, or of all columns for `source`
 std::vector<scene::SceneDiagnostic> load_points(const LoadRequest& request, scene::Points& points);
 
+/// Reads the rods of a data file, one per row: ends from the columns x0, y0, z0, x1, y1, z1, radii from `radius`,
+/// unless the scene file sets it.
+///
+/// Result     diagnostics about keys of the scene file: missing columns; `rods` has none if one of them is an error
+/// Errors     base::Error: those of formats::open and data::DataFile; kNoMemory
+std::vector<scene::SceneDiagnostic> load_rods(const LoadRequest& request, scene::RodFile& rods);
+
 /// Returns the frame of the file, from 1, that load_points() would read.
 ///
 /// Result     beyond the last frame if the file does not have the requested one
 /// Errors     those of formats::open
 /// Cost       opens the file if it may have several frames; counting them may read all of it
 int chosen_frame(const LoadRequest& request, const scene::Points& points);
+
+/// Returns a function that opens data files for several frames. It keeps the most recent files open, so that each frame
+/// is searched from the end of the previous one and compressed data are decompressed only once. A file that has changed
+/// is reopened.
+///
+/// Result     not thread-safe; copies share the open files
+/// Errors     those of formats::open()
+OpenData open_once();
+
+/// Returns a function that opens a file by `open`, but only the first time: the file is closed after its first use.
+OpenData handed_over(OpenData open);
 
 }  // namespace orrery::points

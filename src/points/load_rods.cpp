@@ -1,36 +1,20 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "points/load_rods.h"
-
-#include <algorithm>
 #include <memory>
 #include <string>
-#include <utility>
 
 #include <fmt/core.h>
 
 #include "data/columns.h"
-#include "data/data_file.h"
 #include "formats/open.h"
-#include "points/read_memory.h"
 #include "points/rows.h"
+#include "points/sources.h"
 #include "scene/limits.h"
-#include "scene/scene.h"
 
 namespace orrery::points {
 namespace {
 
-constexpr const char* kFromColumns[] = {"x0", "y0", "z0"};
-constexpr const char* kToColumns[] = {"x1", "y1", "z1"};
+const std::array<std::string, 3> kFromColumns = {"x0", "y0", "z0"}, kToColumns = {"x1", "y1", "z1"};
 constexpr const char* kRadiusColumn = "radius";
-
-/// Sets points from three columns.
-scene::PointArray points_of(const data::Table& table, const char* const (&columns)[3]) {
-  scene::PointArray out(table.rows);
-  for (std::size_t axis = 0; axis < 3; ++axis)
-    for_each_number(*table.find(columns[axis]), Rows(table.rows),
-                    [&](std::size_t i, double v) { out.set(i, axis, v); });
-  return out;
-}
 
 }  // namespace
 
@@ -41,8 +25,8 @@ std::vector<scene::SceneDiagnostic> load_rods(const LoadRequest& request, scene:
   options.limit_memory(request.memory_limit);
   const std::unique_ptr<data::DataFile> file = formats::open(request.file, options);
   const data::FrameInfo info = file->describe(0);
-  std::vector<std::string> columns(kFromColumns, kFromColumns + 3);
-  columns.insert(columns.end(), kToColumns, kToColumns + 3);
+  std::vector<std::string> columns(kFromColumns.begin(), kFromColumns.end());
+  columns.insert(columns.end(), kToColumns.begin(), kToColumns.end());
   if (!rods.radius) columns.emplace_back(kRadiusColumn);
   for (const std::string& name : columns) {
     const data::ColumnInfo* const column = data::find_named(info.columns, name);
@@ -68,8 +52,8 @@ std::vector<scene::SceneDiagnostic> load_rods(const LoadRequest& request, scene:
   require_memory(need, request.memory_limit, request.file);
   const data::Table table = file->read(0, columns);
   if (table.rows == 0) faults.warning(".file", "has no rows");
-  rods.from = points_of(table, kFromColumns);
-  rods.to = points_of(table, kToColumns);
+  rods.from = points_of(table, Rows(table.rows), kFromColumns);
+  rods.to = points_of(table, Rows(table.rows), kToColumns);
   rods.radii = scene::NumberArray(table.rows, rods.radius.value_or(0));
   if (!rods.radius)
     for_each_number(*table.find(kRadiusColumn), Rows(table.rows),

@@ -1,6 +1,4 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "points/open_data.h"
-
 #include <algorithm>
 #include <optional>
 #include <string>
@@ -8,8 +6,8 @@
 #include <vector>
 
 #include "base/input_file.h"
-#include "data/data_file.h"
 #include "formats/open.h"
+#include "points/load_points.h"
 
 namespace orrery::points {
 namespace {
@@ -24,26 +22,11 @@ struct OpenFile {
   std::shared_ptr<data::DataFile> file;
 };
 
-/// A file that stays open when this is destroyed.
-class SharedFile final : public data::DataFile {
- public:
-  explicit SharedFile(std::shared_ptr<data::DataFile> file) : file_(std::move(file)) { format = file_->format; }
-
-  int frame_count() override { return file_->frame_count(); }
-  data::FrameInfo describe(int frame) override { return file_->describe(frame); }
-  data::Table read(int frame, const std::vector<std::string>& columns) override { return file_->read(frame, columns); }
-  std::vector<data::Bond> bonds(int frame) override { return file_->bonds(frame); }
-  std::uint64_t memory() const override { return file_->memory(); }
-
- private:
-  std::shared_ptr<data::DataFile> file_;
-};
-
 }  // namespace
 
 OpenData open_once() {
-  return [open = std::make_shared<std::vector<OpenFile>>()](const std::filesystem::path& path,
-                                                            const data::OpenOptions& options) {
+  return [open = std::make_shared<std::vector<OpenFile>>()](
+             const std::filesystem::path& path, const data::OpenOptions& options) -> std::shared_ptr<data::DataFile> {
     const std::string name = std::filesystem::absolute(path).lexically_normal().string();
     OpenFile wanted{name, base::file_version(name), options.component, nullptr};
     const auto found = std::find_if(open->begin(), open->end(), [&](const OpenFile& o) {
@@ -59,14 +42,14 @@ OpenData open_once() {
       wanted.file = formats::open(path, options);
     }
     open->push_back(std::move(wanted));
-    return std::make_unique<SharedFile>(open->back().file);
+    return open->back().file;
   };
 }
 
 OpenData handed_over(OpenData open) {
   return [open = std::make_shared<OpenData>(std::move(open))](const std::filesystem::path& path,
                                                               const data::OpenOptions& options) {
-    std::unique_ptr<data::DataFile> file = (*open)(path, options);
+    std::shared_ptr<data::DataFile> file = (*open)(path, options);
     *open = open_once();
     return file;
   };

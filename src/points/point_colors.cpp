@@ -1,6 +1,4 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "points/point_colors.h"
-
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -12,10 +10,8 @@
 
 #include "base/error.h"
 #include "base/text.h"
-#include "data/table.h"
-#include "points/color_map.h"
-#include "points/elements.h"
-#include "points/rows.h"
+#include "data/elements.h"
+#include "points/sources.h"
 #include "scene/value_text.h"
 
 namespace orrery::points {
@@ -27,21 +23,14 @@ constexpr std::size_t kMapColors = 256;
 constexpr std::size_t kMaxLabels = 4096;
 constexpr std::size_t kMaxPalette = 65536;
 
-Vec3d linear_from_bytes(const std::array<std::uint8_t, 3>& c) {
-  constexpr double kFull = 255;
-  return linear_from_srgb({c[0] / kFull, c[1] / kFull, c[2] / kFull});
-}
+Vec3d linear_from_code(std::uint32_t code) { return linear_from_srgb(bytes_of(code) / 255); }
 
 /// Labels of a column, or an error if it has too many distinct values.
 std::optional<Labels> labels_or_fault(const data::Table& table, const Rows& rows, const std::string& column,
                                       const char* part, KeyFaults& faults) {
-  Labels labels = labels_of(*table.find(column), rows, kMaxLabels);
-  if (labels.of_rows.size() == rows.size()) return labels;
-  faults.error(part, fmt::format("column `{}` has more than {} distinct values{}", column, kMaxLabels,
-                                 table.find(column)->type() == data::ColumnType::kText
-                                     ? "; colour by another column"
-                                     : "; use a continuous map, e.g. viridis, or another column"));
-  return {};
+  const bool is_text = table.find(column)->type() == data::ColumnType::kText;
+  return require_labels(table, rows, column, kMaxLabels, part, faults,
+                        is_text ? "colour by another column" : "use a continuous map, e.g. viridis, or another column");
 }
 
 /// Gives each label the colour with its index.
@@ -149,10 +138,10 @@ PointColors colors_by_element(const data::Table& table, const Rows& rows, const 
   const auto labels = labels_or_fault(table, rows, source.columns[0], ".color.element", faults);
   if (!labels) return out;
   // Unknown elements have Jmol's colour of unknown elements.
-  constexpr std::array<std::uint8_t, 3> kUnknown = {255, 20, 147};
+  constexpr std::uint32_t kUnknown = 0xFF1493;
   for (const std::string& name : labels->names) {
-    const Element* const element = find_element(name);
-    out.palette.push_back(linear_from_bytes(element != nullptr ? element->color : kUnknown));
+    const data::Element* const element = data::find_element(name);
+    out.palette.push_back(linear_from_code(element != nullptr ? element->color : kUnknown));
   }
   out.rec709 = out.palette.size();
   out.indices = indices_of(*labels);
@@ -245,9 +234,7 @@ PointColors colors_by_rgb(const data::Table& table, const Rows& rows, const Colo
     if (distinct.size() <= kMaxPalette) break;
   }
   PointColors out;
-  for (const std::uint32_t b : distinct)
-    out.palette.push_back(linear_from_bytes(
-        {static_cast<std::uint8_t>(b >> 16), static_cast<std::uint8_t>(b >> 8), static_cast<std::uint8_t>(b)}));
+  for (const std::uint32_t code : distinct) out.palette.push_back(linear_from_code(code));
   out.rec709 = out.palette.size();
   out.indices.resize(bytes.size());
   for (std::size_t i = 0; i < bytes.size(); ++i) out.indices[i] = static_cast<std::uint16_t>(index[bytes[i]]);
@@ -279,9 +266,7 @@ void parse_color(const std::string& text, const data::FrameInfo& info, ColorSour
     out.expression = parse_expression(text, info.columns);
     out.columns = out.expression->columns();
   } catch (const base::Error& error) {
-    for (const base::Diagnostic& d : error.diagnostics())
-      faults.error(".color.column", fmt::format("`{}` is no column, and no expression: at character {}: {}{}", text,
-                                                d.column, d.text, d.remedy.empty() ? "" : "; " + d.remedy));
+    faults.error(".color.column", fmt::format("`{}` is no column, and no expression: {}", text, fault_text(error)));
   }
 }
 
@@ -319,21 +304,15 @@ ColorSource color_source(const data::FrameInfo& info, const scene::PointsColor& 
     }
   } else if (!color.element.empty()) {
     out.kind = ColorSource::Kind::kElement;
-    out.columns = {info.roles.element};
-    if (info.roles.element.empty())
-      faults.error(".color.element",
-                   "the file has no column of chemical elements; its columns are " + column_names(info));
+    out.columns = {require_role(info, info.roles.element, "column of chemical elements", ".color.element", faults)};
   } else if (!color.types.empty()) {
     out.kind = ColorSource::Kind::kType;
-    out.columns = {info.roles.type};
-    if (info.roles.type.empty())
-      faults.error(".color.type", "the file has no column of particle types; its columns are " + column_names(info));
+    out.columns = {require_role(info, info.roles.type, "column of particle types", ".color.type", faults)};
   } else if (color.rgb) {
     out.kind = ColorSource::Kind::kRgb;
     out.columns = {info.roles.rgb.begin(), info.roles.rgb.end()};
     out.rgb_maximum = info.roles.rgb_maximum;
-    if (info.roles.rgb[0].empty())
-      faults.error(".color.rgb", "the file has no colours; its columns are " + column_names(info));
+    require_role(info, info.roles.rgb[0], "colours", ".color.rgb", faults);
   }
   return out;
 }

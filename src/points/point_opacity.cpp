@@ -1,15 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "points/point_opacity.h"
-
-#include <charconv>
 #include <cstddef>
 #include <cstdint>
 
 #include <fmt/core.h>
 
 #include "base/error.h"
-#include "points/rows.h"
-#include "points/valid_spheres.h"
+#include "points/sources.h"
 #include "scene/limits.h"
 #include "scene/validate.h"
 #include "scene/value_text.h"
@@ -17,19 +13,10 @@
 namespace orrery::points {
 namespace {
 
-/// Maximum number of distinct types; a column with more does not contain types.
-constexpr std::size_t kMostTypes = 65536;
-
 /// Marks spheres with the opacity of their material.
 constexpr float kOfMaterial = -1;
 
 bool is_opacity(double x) { return x >= 0 && x <= 1; }  // false for NaN
-
-/// A text without the spaces around it.
-std::string trimmed(const std::string& text) {
-  const std::size_t begin = text.find_first_not_of(' ');
-  return begin == std::string::npos ? "" : text.substr(begin, text.find_last_not_of(' ') + 1 - begin);
-}
 
 [[noreturn]] void refuse_rule(const std::string& text, const std::string& fault) {
   base::refuse(fmt::format("`{}` {}; write CONDITION:NUMBER, e.g. 'type == 2: 0.2'", text, fault));
@@ -41,11 +28,9 @@ OpacityRule parse_opacity_rule(const std::string& text) {
   const std::size_t colon = text.rfind(':');
   const bool has_condition = colon != std::string::npos;
   OpacityRule out;
-  if (has_condition) out.condition = trimmed(text.substr(0, colon));
-  const std::string number = trimmed(has_condition ? text.substr(colon + 1) : text);
-  const char* const end = number.data() + number.size();
-  const auto [stop, error] = std::from_chars(number.data(), end, out.opacity);
-  if (error != std::errc() || stop != end || !is_opacity(out.opacity))
+  if (has_condition) out.condition = data::trimmed(std::string_view(text).substr(0, colon));
+  const std::string_view number = std::string_view(text).substr(has_condition ? colon + 1 : 0);
+  if (!base::from_text(data::trimmed(number), out.opacity) || !is_opacity(out.opacity))
     refuse_rule(text, has_condition ? "does not end in a number in 0..1" : "has no colon, and is no number in 0..1");
   if (has_condition && out.condition.empty()) refuse_rule(text, "has no condition before its last colon");
   return out;
@@ -59,9 +44,7 @@ OpacitySource opacity_source(const data::FrameInfo& info, const scene::PointsOpa
     out.column = opacity.column;
     require_column(info, opacity.column, true, ".opacity.column", faults);
   } else if (!opacity.types.empty()) {
-    out.column = info.roles.type;
-    if (out.column.empty())
-      faults.error(".opacity.type", "the file has no column of particle types; its columns are " + column_names(info));
+    out.column = require_role(info, info.roles.type, "column of particle types", ".opacity.type", faults);
   }
   if (!out.column.empty()) out.needed.push_back(out.column);
   for (std::size_t i = 0; i < opacity.where.size(); ++i) {
@@ -71,7 +54,7 @@ OpacitySource opacity_source(const data::FrameInfo& info, const scene::PointsOpa
       out.rules.push_back({parse_selection(rule.condition, info.columns), static_cast<float>(rule.opacity)});
       for (const std::string& column : out.rules.back().condition.columns) out.needed.push_back(column);
     } catch (const base::Error& error) {
-      faults.error(key, error);
+      faults.error(key, fault_text(error));
     }
   }
   return out;
@@ -91,22 +74,19 @@ std::vector<float> opacities_of(const data::Table& table, const Rows& rows, cons
       }
   }
   if (source.column.empty()) return out;
-  const data::Column& column = *table.find(source.column);
   if (!opacity.types.empty()) {
-    const Labels labels = labels_of(column, rows, kMostTypes);
-    if (labels.of_rows.size() != rows.size())
-      faults.error(".opacity.type",
-                   fmt::format("column `{}` has more than {} distinct values", source.column, kMostTypes));
-    std::vector<float> of_labels(labels.names.size(), kOfMaterial);
+    const std::optional<Labels> labels = require_labels(table, rows, source.column, kMaxTypes, ".opacity.type", faults);
+    if (!labels) return out;
+    std::vector<float> of_labels(labels->names.size(), kOfMaterial);
     for (std::size_t l = 0; l < of_labels.size(); ++l)
       for (const auto& [type, value] : opacity.types)
-        if (type == labels.names[l]) of_labels[l] = static_cast<float>(value);
-    for (std::size_t i = 0; i < labels.of_rows.size(); ++i)
-      if (has_rule[i] == 0) out[i] = of_labels[labels.of_rows[i]];
+        if (type == labels->names[l]) of_labels[l] = static_cast<float>(value);
+    for (std::size_t i = 0; i < rows.size(); ++i)
+      if (has_rule[i] == 0) out[i] = of_labels[labels->of_rows[i]];
     return out;
   }
   std::size_t bad = 0;
-  for_each_number(column, rows, [&](std::size_t i, double v) {
+  for_each_number(*table.find(source.column), rows, [&](std::size_t i, double v) {
     if (has_rule[i] != 0) return;
     if (is_opacity(v))
       out[i] = static_cast<float>(v);

@@ -1,27 +1,21 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "points/point_radii.h"
-
 #include <algorithm>
 
 #include <fmt/core.h>
 
 #include "base/text.h"
-#include "data/table.h"
-#include "points/elements.h"
-#include "points/rows.h"
-#include "scene/number_array.h"
-#include "scene/scene.h"
+#include "data/elements.h"
+#include "points/sources.h"
 #include "scene/value_text.h"
 
 namespace orrery::points {
 namespace {
 
-/// Maximum number of distinct types or elements; a column with more does not contain types.
-constexpr std::size_t kMaxTypes = 65536;
-
-ElementRadius kind_of(const std::string& name) {
-  if (name == "covalent") return ElementRadius::kCovalent;
-  return name == "ball" ? ElementRadius::kBall : ElementRadius::kVanDerWaals;
+/// The radius of an element: "vdw", "covalent" or "ball".
+double radius_of(const data::Element& element, const std::string& kind) {
+  constexpr double kBallScale = 0.25;  // viewers draw balls and sticks with 0.2 to 0.3
+  if (kind == "covalent") return element.covalent;
+  return kind == "ball" ? kBallScale * element.van_der_waals : element.van_der_waals;
 }
 
 /// Returns the radius of each label; reports labels without a radius, all in one message.
@@ -32,7 +26,8 @@ std::vector<double> radii_of_labels(const Labels& labels, const RadiusSource& so
   for (const std::string& name : labels.names) {
     double r = 0;
     if (source.kind == RadiusSource::Kind::kElement) {
-      if (const Element* element = find_element(name)) r = element->radius(kind_of(radius.element)) * source.scale;
+      if (const data::Element* element = data::find_element(name))
+        r = radius_of(*element, radius.element) * source.scale;
     } else {
       for (const auto& [type, value] : radius.types)
         if (type == name) r = value;
@@ -77,15 +72,10 @@ RadiusSource radius_source(const data::FrameInfo& info, const scene::PointsRadiu
                                                    scene::number_text(info.roles.radius_scale)));
   } else if (!radius.element.empty()) {
     out.kind = RadiusSource::Kind::kElement;
-    out.column = info.roles.element;
-    if (out.column.empty())
-      faults.error(".radius.element",
-                   "the file has no column of chemical elements; its columns are " + column_names(info));
+    out.column = require_role(info, info.roles.element, "column of chemical elements", ".radius.element", faults);
   } else if (!radius.types.empty()) {
     out.kind = RadiusSource::Kind::kType;
-    out.column = info.roles.type;
-    if (out.column.empty())
-      faults.error(".radius.type", "the file has no column of particle types; its columns are " + column_names(info));
+    out.column = require_role(info, info.roles.type, "column of particle types", ".radius.type", faults);
   } else if (!info.roles.radius.empty()) {
     out.kind = RadiusSource::Kind::kColumn;
     out.column = info.roles.radius;
@@ -105,18 +95,14 @@ scene::NumberArray radii_of(const data::Table& table, const Rows& rows, const Ra
   if (source.kind == RadiusSource::Kind::kValue) return scene::NumberArray(rows.size(), radius.value.value_or(1));
   scene::NumberArray out;
   out.reserve(rows.size());
-  const data::Column& column = *table.find(source.column);
   if (source.kind == RadiusSource::Kind::kColumn) {
-    for_each_number(column, rows, [&](std::size_t, double v) { out.push_back(v * source.scale); });
+    for_each_number(*table.find(source.column), rows, [&](std::size_t, double v) { out.push_back(v * source.scale); });
     return out;
   }
-  const Labels labels = labels_of(column, rows, kMaxTypes);
-  if (labels.of_rows.size() != rows.size()) {
-    faults.error(".radius", fmt::format("column `{}` has more than {} distinct values", source.column, kMaxTypes));
-    return out;
-  }
-  const std::vector<double> of_labels = radii_of_labels(labels, source, radius, faults);
-  for (std::size_t i = 0; i < rows.size(); ++i) out.push_back(of_labels[labels.of_rows[i]]);
+  const std::optional<Labels> labels = require_labels(table, rows, source.column, kMaxTypes, ".radius", faults);
+  if (!labels) return out;
+  const std::vector<double> of_labels = radii_of_labels(*labels, source, radius, faults);
+  for (std::size_t i = 0; i < rows.size(); ++i) out.push_back(of_labels[labels->of_rows[i]]);
   return out;
 }
 

@@ -1,6 +1,4 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "points/read_memory.h"
-
 #include <algorithm>
 
 #include <fmt/core.h>
@@ -8,8 +6,7 @@
 #include "base/error.h"
 #include "base/text.h"
 #include "points/copies.h"
-#include "points/point_radii.h"
-#include "scene/scene.h"
+#include "points/sources.h"
 
 namespace orrery::points {
 namespace {
@@ -28,14 +25,11 @@ data::ColumnType type_of(const data::FrameInfo& info, const std::string& column)
 
 std::uint64_t bytes_per_sphere(const data::FrameInfo& info, const scene::Points& points, const RadiusSource& radius,
                                bool are_rounded) {
-  const scene::PointsTransform unchanged;
-  const scene::PointsTransform& t = points.transform;
-  const bool is_placed =
-      t.scale != unchanged.scale || !(t.rotate == unchanged.rotate) || !(t.translate == unchanged.translate);
-  bool all_single = points.assembly.empty() && !is_placed && !points.unwrap && points.replicate == math::Vec3d{1, 1, 1};
+  bool all_single = points.assembly.empty() && points.transform == scene::PointsTransform{} && !points.unwrap &&
+                    points.replicate == math::Vec3d{1, 1, 1};
   for (const std::string& column : info.roles.position) all_single = all_single && fits_single(type_of(info, column));
   std::uint64_t bytes = 3 * (are_rounded || all_single ? sizeof(float) : sizeof(double));
-  const bool same = radius.scale == 1 && t.scale == unchanged.scale;
+  const bool same = radius.scale == 1 && points.transform.scale == 1;
   if (radius.kind != RadiusSource::Kind::kValue)
     bytes += same && fits_single(type_of(info, radius.column)) ? sizeof(float) : sizeof(double);
   return bytes;

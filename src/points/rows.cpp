@@ -5,15 +5,11 @@
 #include <cmath>
 #include <map>
 #include <numeric>
-#include <type_traits>
-#include <utility>
-#include <variant>
 
 #include <fmt/core.h>
 
 #include "base/stop_point.h"
 #include "base/text.h"
-#include "data/table.h"
 #include "scene/value_text.h"
 
 namespace orrery::points {
@@ -145,6 +141,28 @@ Labels labels_of(const data::Column& column, const Rows& rows, std::size_t limit
   return out;
 }
 
+std::optional<Labels> require_labels(const data::Table& table, const Rows& rows, const std::string& column,
+                                     std::size_t limit, const char* part, KeyFaults& faults,
+                                     const std::string& remedy) {
+  Labels labels = labels_of(*table.find(column), rows, limit);
+  if (labels.of_rows.size() == rows.size()) return labels;
+  faults.error(part, fmt::format("column `{}` has more than {} distinct values{}{}", column, limit,
+                                 remedy.empty() ? "" : "; ", remedy));
+  return {};
+}
+
+scene::PointArray points_of(const data::Table& table, const Rows& rows, const std::array<std::string, 3>& columns,
+                            double scale) {
+  scene::PointArray out(rows.size());
+  for (std::size_t axis = 0; axis < 3; ++axis)
+    for_each_number(*table.find(columns[axis]), rows, [&](std::size_t i, double v) { out.set(i, axis, v * scale); });
+  return out;
+}
+
+std::string row_name(const scene::Points& points, std::size_t row) {
+  return fmt::format("row {} of {}", row + 1, points.file.string());
+}
+
 std::string column_names(const data::FrameInfo& info) {
   constexpr std::size_t kMaxNamed = 30;
   std::vector<std::string> names;
@@ -155,10 +173,11 @@ std::string column_names(const data::FrameInfo& info) {
   return out;
 }
 
-void KeyFaults::error(const std::string& part, const base::Error& thrown) {
-  if (thrown.diagnostics().empty()) error(part, thrown.what());
-  for (const base::Diagnostic& d : thrown.diagnostics())
-    error(part, fmt::format("at character {}: {}{}", d.column, d.text, d.remedy.empty() ? "" : "; " + d.remedy));
+std::string require_role(const data::FrameInfo& info, const std::string& role, const char* meaning, const char* part,
+                         KeyFaults& faults) {
+  if (role.empty())
+    faults.error(part, fmt::format("the file has no {}; its columns are {}", meaning, column_names(info)));
+  return role;
 }
 
 bool require_column(const data::FrameInfo& info, const std::string& name, bool is_number, const std::string& part,

@@ -1,21 +1,24 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <array>
 #include <cstddef>
 #include <cstdint>
+#include <optional>
 #include <string>
-#include <string_view>
 #include <type_traits>
 #include <utility>
 #include <variant>
 #include <vector>
 
-#include "base/error.h"
 #include "base/stop_point.h"
 #include "data/table.h"
 #include "scene/diagnostic.h"
+#include "scene/scene.h"
 
 namespace orrery::points {
+
+using scene::KeyFaults;
 
 /// Selected rows of a table, in the order of the spheres.
 class Rows {
@@ -70,35 +73,37 @@ struct Labels {
 /// Result     no rows if there are more
 Labels labels_of(const data::Column& column, const Rows& rows, std::size_t limit);
 
-/// Diagnostics about the keys of a points table.
-class KeyFaults {
- public:
-  explicit KeyFaults(std::string key) : key_(std::move(key)) {}
+/// Maximum number of distinct types or elements; a column with more does not contain types.
+inline constexpr std::size_t kMaxTypes = 65536;
 
-  /// Adds an error about a key.
-  ///
-  /// `part`     part of the key: ".radius.column"; empty: the whole table
-  void error(const std::string& part, std::string text, base::ErrorKind kind = base::ErrorKind::kBadData) {
-    diagnostics_.push_back({base::Severity::kError, key_ + part, std::move(text), kind});
-    has_errors_ = true;
-  }
-  /// Adds the errors that parsing the text of a key has thrown, with their places in the text.
-  void error(const std::string& part, const base::Error& thrown);
-  void warning(const std::string& part, std::string text) {
-    diagnostics_.push_back({base::Severity::kWarning, key_ + part, std::move(text)});
-  }
-  bool has_errors() const { return has_errors_; }
-  std::vector<scene::SceneDiagnostic> take() { return std::move(diagnostics_); }
+/// The same; none, and an error is reported, if there are more values.
+///
+/// `part`     key of the error, see KeyFaults::error()
+/// Domain     a table with this column
+std::optional<Labels> require_labels(const data::Table& table, const Rows& rows, const std::string& column,
+                                     std::size_t limit, const char* part, KeyFaults& faults,
+                                     const std::string& remedy = {});
 
- private:
-  std::string key_;
-  std::vector<scene::SceneDiagnostic> diagnostics_;
-  bool has_errors_ = false;
-};
+/// Returns the points whose coordinates are in three columns of numbers, multiplied by a factor.
+///
+/// Domain     a table with these columns
+scene::PointArray points_of(const data::Table& table, const Rows& rows, const std::array<std::string, 3>& columns,
+                            double scale = 1);
+
+/// "row 3 of melt.dump"
+std::string row_name(const scene::Points& points, std::size_t row);
 
 /// Checks that a file has a column, and that it is numeric if `is_number`. If not, reports the available columns.
 bool require_column(const data::FrameInfo& info, const std::string& name, bool is_number, const std::string& part,
                     KeyFaults& faults);
+
+/// Returns a column to which the format of the file gives a meaning; empty, and an error is reported, if the file has
+/// none.
+///
+/// `role`     the column of data::Roles
+/// `meaning`  "column of particle types"
+std::string require_role(const data::FrameInfo& info, const std::string& role, const char* meaning, const char* part,
+                         KeyFaults& faults);
 
 /// Returns "x, y, z, ... (3 more)".
 std::string column_names(const data::FrameInfo& info);
@@ -106,7 +111,7 @@ std::string column_names(const data::FrameInfo& info);
 /// Returns rows ascending by particle id; rows with equal ids keep their order, and those without an id are last.
 ///
 /// `selected`  ascending; empty: all rows
-/// `repeated`  receives the number of rows with the same id as the preceding row in this order
+/// `repeated`  receives the number of rows with the same id as the one before
 /// Cost        one pass if the ids ascend, or are 1 to N in any order; else a sort
 Rows rows_by_id(const data::Column& ids, std::vector<std::uint32_t> selected, std::size_t& repeated);
 

@@ -2,7 +2,6 @@
 #include "points/selection.h"
 
 #include <algorithm>
-#include <string_view>
 #include <unordered_map>
 #include <variant>
 

@@ -17,9 +17,7 @@
 
 #include <fmt/core.h>
 
-#include "base/error.h"
 #include "base/text.h"
-#include "points/selection.h"
 #include "points/selection_run.h"
 
 namespace orrery::points {
@@ -52,6 +50,14 @@ struct Token {
   double number = 0;
 };
 
+bool is_digit(char c) { return c >= '0' && c <= '9'; }
+/// Bytes of UTF-8 beyond ASCII count as letters.
+bool is_letter(char c) {
+  return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || c == '_' || static_cast<unsigned char>(c) >= 0x80;
+}
+bool is_name(char c) { return is_letter(c) || is_digit(c) || c == '.'; }
+bool is_blank(char c) { return c == ' ' || c == '\t' || c == '\n' || c == '\r'; }
+
 /// The tokens of a selection, one after the other.
 class SelectionLexer {
  public:
@@ -64,115 +70,98 @@ class SelectionLexer {
   ///
   /// `takes_word`   names may begin with a digit
   /// Errors         those of fail_selection()
-  Token next(bool takes_word = false);
+  Token next(bool takes_word = false) {
+    std::size_t at = next_;
+    while (at < text_.size() && is_blank(text_[at])) ++at;
+    Token token;
+    token.span = {at, at};
+    next_ = at;
+    if (at == text_.size()) return token;
+    const char c = text_[at];
+    if (is_letter(c) || (takes_word && is_name(c))) {
+      read_name(token);
+    } else if (is_digit(c) || (c == '.' && at + 1 < text_.size() && is_digit(text_[at + 1]))) {
+      read_number(token);
+    } else if (c == '"' || c == '\'' || c == '`') {
+      read_quoted(c, token);
+    } else {
+      read_symbol(token);
+    }
+    next_ = token.span.end;
+    return token;
+  }
 
  private:
-  void read_number(Token& token) const;
-  void read_quoted(char quote, Token& token) const;
-  void read_name(Token& token) const;
-  void read_symbol(Token& token) const;
-  std::string_view verbatim(Span span) const;
-  [[noreturn]] void fail(const Token& token, const std::string& text, const std::string& remedy) const;
+  void read_number(Token& token) const {
+    const char* begin = text_.data() + token.span.begin;
+    const char* end = text_.data() + text_.size();
+    const auto [stop, status] = std::from_chars(begin, end, token.number);
+    token.kind = TokenKind::kNumber;
+    token.span.end = token.span.begin + static_cast<std::size_t>(stop - begin);
+    if (status != std::errc()) fail(token, "number is out of range", "at most 1.8e308");
+    if (stop != end && is_name(*stop)) {
+      while (token.span.end < text_.size() && is_name(text_[token.span.end])) ++token.span.end;
+      fail(token, "malformed number " + std::string(verbatim(token.span)),
+           "a column whose name begins with a digit is written in backquotes");
+    }
+  }
+
+  void read_quoted(char quote, Token& token) const {
+    const std::size_t begin = token.span.begin + 1, end = text_.find(quote, begin);
+    token.span.end = text_.size();
+    if (end == std::string::npos) fail(token, "quote is not closed", std::string("add ") + quote);
+    token.kind = quote == '`' ? TokenKind::kQuotedName : TokenKind::kText;
+    token.span.end = end + 1;
+    token.text = verbatim({begin, end});
+    if (quote == '`' && end == begin) fail(token, "no name between the backquotes", "write the name of a column");
+  }
+
+  void read_name(Token& token) const {
+    const std::string& all = text_;
+    std::size_t end = token.span.begin;
+    while (end < all.size() && is_name(all[end])) ++end;
+    // The index of c_stress[1]; `in[` begins a list.
+    while (end < all.size() && all[end] == '[' && verbatim({token.span.begin, end}) != "in") {
+      std::size_t close = end + 1;
+      while (close < all.size() && is_name(all[close])) ++close;
+      if (close == end + 1 || close >= all.size() || all[close] != ']') break;
+      end = close + 1;
+    }
+    token.kind = TokenKind::kName;
+    token.span.end = end;
+    token.text = verbatim(token.span);
+  }
+
+  void read_symbol(Token& token) const {
+    static constexpr std::string_view kSymbols[] = {"==", "!=", "<=", ">=", "&&", "||", "<", ">", "+", "-", "*",
+                                                    "/",  "^",  "!",  "(",  ")",  "[",  "]", "{", "}", ":", ","};
+    static constexpr std::pair<std::string_view, std::string_view> kForeign[] = {
+        {"=", "equality is =="}, {"&", "write &&"}, {"|", "write ||"}, {"~", "write !"}};
+    const std::string_view rest = std::string_view(text_).substr(token.span.begin);
+    token.kind = TokenKind::kSymbol;
+    for (const std::string_view symbol : kSymbols)
+      if (rest.substr(0, symbol.size()) == symbol) {
+        token.span.end = token.span.begin + symbol.size();
+        token.text = verbatim(token.span);
+        return;
+      }
+    token.span.end = token.span.begin + 1;
+    for (const auto& [symbol, remedy] : kForeign)
+      if (rest[0] == symbol[0]) fail(token, "unknown operator " + std::string(symbol), std::string(remedy));
+    fail(token, "unexpected character", "columns with such names are written in backquotes");
+  }
+
+  std::string_view verbatim(Span span) const {
+    return std::string_view(text_).substr(span.begin, span.end - span.begin);
+  }
+
+  [[noreturn]] void fail(const Token& token, const std::string& text, const std::string& remedy) const {
+    fail_selection(text_, token.span, text, remedy);
+  }
 
   const std::string& text_;
   std::size_t next_ = 0;  ///< first byte after the last token
 };
-
-bool is_digit(char c) { return c >= '0' && c <= '9'; }
-/// Bytes of UTF-8 beyond ASCII count as letters.
-bool is_letter(char c) {
-  return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || c == '_' || static_cast<unsigned char>(c) >= 0x80;
-}
-bool is_name(char c) { return is_letter(c) || is_digit(c) || c == '.'; }
-bool is_blank(char c) { return c == ' ' || c == '\t' || c == '\n' || c == '\r'; }
-
-Token SelectionLexer::next(bool takes_word) {
-  std::size_t at = next_;
-  while (at < text_.size() && is_blank(text_[at])) ++at;
-  Token token;
-  token.span = {at, at};
-  next_ = at;
-  if (at == text_.size()) return token;
-  const char c = text_[at];
-  if (is_letter(c) || (takes_word && is_name(c))) {
-    read_name(token);
-  } else if (is_digit(c) || (c == '.' && at + 1 < text_.size() && is_digit(text_[at + 1]))) {
-    read_number(token);
-  } else if (c == '"' || c == '\'' || c == '`') {
-    read_quoted(c, token);
-  } else {
-    read_symbol(token);
-  }
-  next_ = token.span.end;
-  return token;
-}
-
-void SelectionLexer::read_number(Token& token) const {
-  const char* begin = text_.data() + token.span.begin;
-  const char* end = text_.data() + text_.size();
-  const auto [stop, status] = std::from_chars(begin, end, token.number);
-  token.kind = TokenKind::kNumber;
-  token.span.end = token.span.begin + static_cast<std::size_t>(stop - begin);
-  if (status != std::errc()) fail(token, "number is out of range", "at most 1.8e308");
-  if (stop != end && is_name(*stop)) {
-    while (token.span.end < text_.size() && is_name(text_[token.span.end])) ++token.span.end;
-    fail(token, "malformed number " + std::string(verbatim(token.span)),
-         "a column whose name begins with a digit is written in backquotes");
-  }
-}
-
-void SelectionLexer::read_quoted(char quote, Token& token) const {
-  const std::size_t begin = token.span.begin + 1, end = text_.find(quote, begin);
-  token.span.end = text_.size();
-  if (end == std::string::npos) fail(token, "quote is not closed", std::string("add ") + quote);
-  token.kind = quote == '`' ? TokenKind::kQuotedName : TokenKind::kText;
-  token.span.end = end + 1;
-  token.text = verbatim({begin, end});
-  if (quote == '`' && end == begin) fail(token, "no name between the backquotes", "write the name of a column");
-}
-
-void SelectionLexer::read_name(Token& token) const {
-  const std::string& all = text_;
-  std::size_t end = token.span.begin;
-  while (end < all.size() && is_name(all[end])) ++end;
-  // The index of c_stress[1]; `in[` begins a list.
-  while (end < all.size() && all[end] == '[' && verbatim({token.span.begin, end}) != "in") {
-    std::size_t close = end + 1;
-    while (close < all.size() && is_name(all[close])) ++close;
-    if (close == end + 1 || close >= all.size() || all[close] != ']') break;
-    end = close + 1;
-  }
-  token.kind = TokenKind::kName;
-  token.span.end = end;
-  token.text = verbatim(token.span);
-}
-
-void SelectionLexer::read_symbol(Token& token) const {
-  static constexpr std::string_view kSymbols[] = {"==", "!=", "<=", ">=", "&&", "||", "<", ">", "+", "-", "*",
-                                                  "/",  "^",  "!",  "(",  ")",  "[",  "]", "{", "}", ":", ","};
-  static constexpr std::pair<std::string_view, std::string_view> kForeign[] = {
-      {"=", "equality is =="}, {"&", "write &&"}, {"|", "write ||"}, {"~", "write !"}};
-  const std::string_view rest = std::string_view(text_).substr(token.span.begin);
-  token.kind = TokenKind::kSymbol;
-  for (const std::string_view symbol : kSymbols)
-    if (rest.substr(0, symbol.size()) == symbol) {
-      token.span.end = token.span.begin + symbol.size();
-      token.text = verbatim(token.span);
-      return;
-    }
-  token.span.end = token.span.begin + 1;
-  for (const auto& [symbol, remedy] : kForeign)
-    if (rest[0] == symbol[0]) fail(token, "unknown operator " + std::string(symbol), std::string(remedy));
-  fail(token, "unexpected character", "columns with such names are written in backquotes");
-}
-
-std::string_view SelectionLexer::verbatim(Span span) const {
-  return std::string_view(text_).substr(span.begin, span.end - span.begin);
-}
-
-void SelectionLexer::fail(const Token& token, const std::string& text, const std::string& remedy) const {
-  fail_selection(text_, token.span, text, remedy);
-}
 
 /// Maximum length of a selection, bytes. Long lists of ids are pasted; a file passed by mistake is larger.
 constexpr std::size_t kMaxLength = std::size_t{1} << 20;
@@ -600,6 +589,13 @@ Selection parse_selection(std::string_view text, const std::vector<data::ColumnI
 
 Expression parse_expression(std::string_view text, const std::vector<data::ColumnInfo>& columns) {
   return Parser(text, columns).parse_number_of_row();
+}
+
+std::string fault_text(const base::Error& error) {
+  std::string out;
+  for (const base::Diagnostic& d : error.diagnostics())
+    out += fmt::format("at character {}: {}{}{}", d.column, d.text, d.remedy.empty() ? "" : "; ", d.remedy);
+  return out.empty() ? error.what() : out;
 }
 
 void require_closed(const std::string& selection) {

@@ -1,6 +1,4 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "points/valid_spheres.h"
-
 #include <cmath>
 #include <cstdint>
 #include <utility>
@@ -9,8 +7,8 @@
 #include <fmt/core.h>
 
 #include "points/copies.h"
+#include "points/sources.h"
 #include "scene/limits.h"
-#include "scene/scene.h"
 #include "scene/validate.h"
 #include "scene/value_text.h"
 
@@ -49,7 +47,7 @@ class Checks {
         if (++bad <= scene::kMaxReported)
           faults_.error(".file", fmt::format("{}: {}", row_name(points_, rows[i]), fault));
     }
-    report_rest(bad, faults_);
+    faults_.error_if_any(".file", scene::rest_text(bad));
   }
 
   /// Returns the indices of valid rows. Reports the others.
@@ -113,15 +111,6 @@ void keep_valid(const scene::Points& points, bool may_be_hollow, Rows& rows, sce
   checks.check_domain(rows);
   const std::vector<std::uint32_t> good = checks.valid_rows(rows);
   if (!faults.has_errors()) rows = kept(rows, good, centers, radii);
-}
-
-std::string row_name(const scene::Points& points, std::size_t row) {
-  return fmt::format("row {} of {}", row + 1, points.file.string());
-}
-
-void report_rest(std::size_t count, KeyFaults& faults) {
-  if (count > scene::kMaxReported)
-    faults.error(".file", fmt::format("and {} more ({} in all)", count - scene::kMaxReported, count));
 }
 
 }  // namespace orrery::points

@@ -19,7 +19,7 @@
 #include "base/error.h"
 #include "cli/film.h"
 #include "cli/subject.h"
-#include "data/table_file.h"
+#include "data/data_file.h"
 #include "formats/open.h"
 #include "job/job.h"
 #include "python/arrays.h"

@@ -18,15 +18,14 @@
 #include "base/hash.h"
 #include "base/input_file.h"
 #include "base/text.h"
-#include "data/table_file.h"
+#include "data/data_file.h"
 #include "format/read_scene.h"
-#include "format/write_ply.h"
 #include "format/write_scene.h"
 #include "formats/open.h"
 #include "formats/write_table.h"
 #include "load/load_scene.h"
 #include "load/scene_files.h"
-#include "scene/named_files.h"
+#include "scene/schema.h"
 
 namespace orrery::python {
 namespace {

@@ -2,14 +2,12 @@
 #include "scene/animation.h"
 
 #include <algorithm>
-#include <charconv>
 #include <cmath>
-#include <cstddef>
 #include <numbers>
-#include <utility>
 
 #include <fmt/core.h>
 
+#include "base/text.h"
 #include "scene/schema.h"
 
 namespace orrery::scene {
@@ -34,9 +32,7 @@ template <class Object>
 std::optional<std::size_t> find_object(const std::vector<Object>& objects, const std::string& name, bool is_index) {
   if (is_index) {
     std::size_t i = 0;
-    const auto [end, error] = std::from_chars(name.data(), name.data() + name.size(), i);
-    const bool found = error == std::errc() && end == name.data() + name.size() && i < objects.size();
-    return found ? std::optional(i) : std::nullopt;
+    return base::from_text(name, i) && i < objects.size() ? std::optional(i) : std::nullopt;
   }
   for (std::size_t i = 0; i < objects.size(); ++i)
     if (objects[i].name == name) return i;

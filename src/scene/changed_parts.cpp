@@ -5,7 +5,6 @@
 #include <variant>
 #include <vector>
 
-#include "scene/scene.h"
 #include "scene/schema.h"
 #include "scene/texture.h"
 
@@ -53,26 +52,30 @@ void compare_materials(const std::vector<Material>& before, const std::vector<Ma
   }
 }
 
-/// The keys of [[sphere]], compared as members: there may be a million tables.
-void compare_spheres(const std::vector<Sphere>& before, const std::vector<Sphere>& after, Parts& parts) {
+/// Compares the elements of two lists; another number of them changes the geometry.
+template <class Item, class Compare>
+void compare_lists(const std::vector<Item>& before, const std::vector<Item>& after, Parts& parts, Compare compare) {
   if (before.size() != after.size()) return parts.add(Part::kGeometry);
-  for (std::size_t i = 0; i < before.size(); ++i) {
-    const Sphere &a = before[i], &b = after[i];
-    parts.geometry = parts.geometry || !(a.center == b.center) || a.radius != b.radius;
-    parts.assignment = parts.assignment || a.material != b.material;
-    parts.output = parts.output || a.name != b.name || a.group != b.group;
-  }
+  for (std::size_t i = 0; i < before.size(); ++i) compare(before[i], after[i], parts);
+}
+
+/// The keys of [[sphere]], compared as members: there may be a million tables.
+void compare_spheres(const Sphere& a, const Sphere& b, Parts& parts) {
+  parts.geometry = parts.geometry || !(a.center == b.center) || a.radius != b.radius;
+  parts.assignment = parts.assignment || a.material != b.material;
+  parts.output = parts.output || a.name != b.name || a.group != b.group;
 }
 
 /// The keys of [[rod]].
-void compare_rods(const std::vector<Rod>& before, const std::vector<Rod>& after, Parts& parts) {
-  if (before.size() != after.size()) return parts.add(Part::kGeometry);
-  for (std::size_t i = 0; i < before.size(); ++i) {
-    const Rod &a = before[i], &b = after[i];
-    parts.geometry = parts.geometry || !(a.from == b.from) || !(a.to == b.to) || a.radius != b.radius;
-    parts.assignment = parts.assignment || a.materials != b.materials;
-    parts.output = parts.output || a.name != b.name || a.group != b.group;
-  }
+void compare_rods(const Rod& a, const Rod& b, Parts& parts) {
+  parts.geometry = parts.geometry || !(a.from == b.from) || !(a.to == b.to) || a.radius != b.radius;
+  parts.assignment = parts.assignment || a.materials != b.materials;
+  parts.output = parts.output || a.name != b.name || a.group != b.group;
+}
+
+void compare_rod_files(const RodFile& before, const RodFile& after, Parts& parts) {
+  compare(rod_file_keys(), Part::kGeometry, before, after, parts);
+  if (before.materials != after.materials) parts.add(Part::kAssignment);
 }
 
 void compare_points(const Points& before, const Points& after, Parts& parts) {
@@ -83,40 +86,24 @@ void compare_points(const Points& before, const Points& after, Parts& parts) {
 
 void compare_scenes(const Scene& before, const Scene& after, Parts& parts) {
   for (const Table& table : tables()) compare(table.keys, table.part, before, after, parts);
-  compare_spheres(before.spheres, after.spheres, parts);
-  compare_rods(before.rods, after.rods, parts);
+  compare_lists(before.spheres, after.spheres, parts, compare_spheres);
+  compare_lists(before.rods, after.rods, parts, compare_rods);
 }
 
 }  // namespace
 
 void Parts::add(Part part) {
-  switch (part) {
-    case Part::kGeometry: geometry = true; break;
-    case Part::kAssignment: assignment = true; break;
-    case Part::kLook: look = true; break;
-    case Part::kView: view = true; break;
-    case Part::kOutput: output = true; break;
-  }
+  constexpr bool Parts::*kMembers[] = {&Parts::geometry, &Parts::assignment, &Parts::look, &Parts::view,
+                                       &Parts::output};
+  this->*kMembers[static_cast<std::size_t>(part)] = true;
 }
 
 Parts changed_parts(const Scene& before, const Scene* closing_before, const Scene& after, const Scene* closing_after) {
   Parts parts;
   compare_scenes(before, after, parts);
   compare_materials(before.materials, after.materials, parts);
-  if (before.rod_files.size() != after.rod_files.size()) {
-    parts.add(Part::kGeometry);
-  } else {
-    for (std::size_t i = 0; i < before.rod_files.size(); ++i) {
-      const RodFile &a = before.rod_files[i], &b = after.rod_files[i];
-      compare(rod_file_keys(), Part::kGeometry, a, b, parts);
-      if (a.materials != b.materials) parts.add(Part::kAssignment);
-    }
-  }
-  if (before.points.size() != after.points.size()) {
-    parts.add(Part::kGeometry);
-  } else {
-    for (std::size_t i = 0; i < before.points.size(); ++i) compare_points(before.points[i], after.points[i], parts);
-  }
+  compare_lists(before.rod_files, after.rod_files, parts, compare_rod_files);
+  compare_lists(before.points, after.points, parts, compare_points);
   if ((closing_before == nullptr) != (closing_after == nullptr)) {
     parts.add(Part::kGeometry);
     parts.add(Part::kView);

@@ -1,6 +1,4 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "scene/coincident.h"
-
 #include <array>
 #include <cmath>
 
@@ -48,13 +46,16 @@ std::string key_of(const Place& place) {
   return place.is_table ? fmt::format("sphere[{}]", place.index) : fmt::format("points[{}].file", place.points);
 }
 
-std::string name_of(const Scene& scene, const Place& place) {
-  return place.is_table ? "" : sphere_name(scene, place.points, place.index);
+/// A sphere in the text of a message about another one.
+std::string text_of(const Scene& scene, const Place& place) {
+  return place.is_table ? key_of(place) : sphere_name(scene, place.points, place.index);
 }
 
 }  // namespace
 
-Coincidents coincident_spheres(const Scene& scene, std::size_t max_reported, const Scene* closing) {
+std::vector<SceneDiagnostic> warn_of_coincident(const Scene& scene, const Scene* closing) {
+  for (const Points& p : scene.points)
+    if (p.radii.size() != p.centers.size()) return {};  // an error of validate(); the arrays must not be indexed
   const bool is_fast = scene.render.precision == Precision::kFast;
   const auto rounded = [is_fast](auto key) {
     if (is_fast)
@@ -82,14 +83,17 @@ Coincidents coincident_spheres(const Scene& scene, std::size_t max_reported, con
   };
   const std::vector<base::Duplicate> found = closing != nullptr ? base::find_duplicates<8>(spheres.count(), path_of)
                                                                 : base::find_duplicates<4>(spheres.count(), place_of);
-  Coincidents out;
-  out.count = found.size();
-  for (std::size_t i = 0; i < found.size() && i < max_reported; ++i) {
+  KeyFaults faults;
+  for (std::size_t i = 0; i < std::min(found.size(), kMaxReported); ++i) {
     const Place place = spheres.at(found[i].index), first = spheres.at(found[i].first);
-    out.reported.push_back(
-        {key_of(place), name_of(scene, place), first.is_table ? key_of(first) : name_of(scene, first)});
+    faults.warning(key_of(place),
+                   fmt::format("{}has exactly the same centre and radius as {}; only the first is rendered",
+                               place.is_table ? "" : text_of(scene, place) + " ", text_of(scene, first)));
   }
-  return out;
+  if (found.size() > kMaxReported)
+    faults.warning(
+        "", fmt::format("and {} more coincident spheres ({} in all)", found.size() - kMaxReported, found.size()));
+  return faults.take();
 }
 
 }  // namespace orrery::scene

@@ -11,6 +11,8 @@
 #include <utility>
 #include <vector>
 
+#include <fmt/core.h>
+
 #include "scene/limits.h"
 #include "scene/schema.h"
 
@@ -25,16 +27,10 @@ inline constexpr Range kLength{kSmallestRadius, kLargestLength};
 
 /// Documentation of a key.
 struct KeyDoc {
-  const char* unit;
   const char* doc;
+  const char* unit = "";
   const char* cost = "";
 };
-
-/// A member of a member of a target: in(&Scene::camera, &Camera::vfov).
-template <class Target, class Table, class Member>
-auto in(Table Target::*table, Member Table::*member) {
-  return [table, member](Target& target) -> Member& { return target.*table.*member; };
-}
 
 /// The value of a member, and the member set to a value. An optional member may have none.
 template <class T>
@@ -68,10 +64,9 @@ void assign(std::optional<T>& member, const Value& value) {
   assign(member.emplace(), value);
 }
 
-/// Builds a key for the member that `at` returns a reference to; `at` is a function that does not modify its target, or
-/// a pointer to a member.
+/// Builds a key for the member that `at` returns a reference to, a function that does not modify its target.
 template <class Target, class At>
-Key<Target> key_of(const char* name, ValueType type, Range range, const KeyDoc& about, At at,
+Key<Target> key_at(const char* name, ValueType type, Range range, const KeyDoc& about, At at,
                    std::vector<std::string> choices = {}) {
   return {name,
           type,
@@ -83,60 +78,62 @@ Key<Target> key_of(const char* name, ValueType type, Range range, const KeyDoc& 
           [at](Target& t, const Value& v) { assign(std::invoke(at, t), v); },
           [at](const Target& t) { return value_of(std::invoke(at, const_cast<Target&>(t))); }};
 }
-template <class Target, class At>
-Key<Target> integer(const char* name, Range range, const KeyDoc& about, At at) {
-  return key_of<Target>(name, ValueType::kInteger, range, about, at);
+
+template <class Target, class Member>
+Key<Target> key_of(const char* name, ValueType type, Range range, const KeyDoc& about, Member Target::*at,
+                   std::vector<std::string> choices = {}) {
+  return key_at<Target>(name, type, range, about, at, std::move(choices));
 }
-template <class Target, class At>
-Key<Target> number(const char* name, Range range, const KeyDoc& about, At at) {
-  return key_of<Target>(name, ValueType::kNumber, range, about, at);
+
+template <class Target, class Member>
+Key<Target> integer(const char* name, Range range, const KeyDoc& about, Member Target::*at) {
+  return key_of(name, ValueType::kInteger, range, about, at);
 }
-template <class Target, class At>
-Key<Target> vector(const char* name, Range range, const KeyDoc& about, At at) {
-  return key_of<Target>(name, ValueType::kVector, range, about, at);
+
+template <class Target, class Member>
+Key<Target> number(const char* name, Range range, const KeyDoc& about, Member Target::*at) {
+  return key_of(name, ValueType::kNumber, range, about, at);
 }
-template <class Target, class At>
-Key<Target> interval(const char* name, Range range, const KeyDoc& about, At at) {
-  return key_of<Target>(name, ValueType::kInterval, range, about, at);
+
+template <class Target, class Member>
+Key<Target> vector(const char* name, Range range, const KeyDoc& about, Member Target::*at) {
+  return key_of(name, ValueType::kVector, range, about, at);
 }
-template <class Target, class At>
-Key<Target> text(const char* name, const KeyDoc& about, At at) {
-  return key_of<Target>(name, ValueType::kText, {}, about, at);
+
+template <class Target, class Member>
+Key<Target> text(const char* name, const KeyDoc& about, Member Target::*at) {
+  return key_of(name, ValueType::kText, {}, about, at);
 }
-template <class Target, class At>
-Key<Target> boolean(const char* name, const KeyDoc& about, At at) {
-  return key_of<Target>(name, ValueType::kBoolean, {}, about, at);
+
+template <class Target, class Member>
+Key<Target> boolean(const char* name, const KeyDoc& about, Member Target::*at) {
+  return key_of(name, ValueType::kBoolean, {}, about, at);
 }
+
 /// Builds a key for the name of a file.
-template <class Target, class At>
-Key<Target> file(const char* name, const FileRole& role, const KeyDoc& about, At at) {
-  Key<Target> key = text<Target>(name, about, at);
+template <class Target, class Member>
+Key<Target> file(const char* name, const FileRole& role, const KeyDoc& about, Member Target::*at) {
+  Key<Target> key = text(name, about, at);
   key.file = &role;
   return key;
 }
 /// Builds a key for an enumeration; `choices` are in enumerator order.
-template <class Target, class At>
-Key<Target> choice(const char* name, const std::vector<std::string>& choices, const KeyDoc& about, At at) {
-  return {name,
-          ValueType::kChoice,
-          {},
-          choices,
-          about.unit,
-          about.doc,
-          about.cost,
-          [at, choices](Target& t, const Value& v) {
-            auto& member = std::invoke(at, t);
-            for (std::size_t i = 0; i < choices.size(); ++i)
-              if (choices[i] == std::get<std::string>(v)) member = static_cast<std::decay_t<decltype(member)>>(i);
-          },
-          [at, choices](const Target& t) -> std::optional<Value> {
-            return choices[static_cast<std::size_t>(std::invoke(at, const_cast<Target&>(t)))];
-          }};
+template <class Target, class Member>
+Key<Target> choice(const char* name, const std::vector<std::string>& choices, const KeyDoc& about, Member Target::*at) {
+  Key<Target> key{name, ValueType::kChoice, {}, choices, about.unit, about.doc, about.cost, {}, {}};
+  key.set = [at, choices](Target& t, const Value& v) {
+    for (std::size_t i = 0; i < choices.size(); ++i)
+      if (choices[i] == std::get<std::string>(v)) t.*at = static_cast<Member>(i);
+  };
+  key.get = [at, choices](const Target& t) -> std::optional<Value> { return choices[static_cast<std::size_t>(t.*at)]; };
+  return key;
 }
+
 /// Builds a key for one of several words, stored as a string; empty: none.
-template <class Target, class At>
-Key<Target> choice_of_text(const char* name, std::vector<std::string> choices, const KeyDoc& about, At at) {
-  return key_of<Target>(name, ValueType::kChoice, {}, about, at, std::move(choices));
+template <class Target, class Member>
+Key<Target> choice_of_text(const char* name, std::vector<std::string> choices, const KeyDoc& about,
+                           Member Target::*at) {
+  return key_of(name, ValueType::kChoice, {}, about, at, std::move(choices));
 }
 
 /// States the default of a key that may have no value.
@@ -155,6 +152,33 @@ template <class Target>
 Key<Target> required(Key<Target> key) {
   key.required = true;
   return key;
+}
+
+/// The keys of a part of a target, which `at` returns, as keys of the target; see key_at().
+template <class Target, class Inner, class At>
+std::vector<Key<Target>> keys_at(At at, std::vector<Key<Inner>> keys) {
+  std::vector<Key<Target>> out;
+  for (Key<Inner>& key : keys)
+    out.push_back({std::move(key.name), key.type, key.range, std::move(key.choices), std::move(key.unit),
+                   std::move(key.doc), std::move(key.cost),
+                   [at, set = key.set](Target& t, const Value& v) { set(std::invoke(at, t), v); },
+                   [at, get = key.get](const Target& t) { return get(std::invoke(at, const_cast<Target&>(t))); },
+                   key.required, std::move(key.otherwise), key.part, key.file});
+  return out;
+}
+
+/// The keys of a member as keys in a subtable: `column` as `radius.column`. A key without a name has that of the
+/// subtable.
+///
+/// `part`     what they change; empty: as the other keys of the table
+template <class Target, class Inner>
+std::vector<Key<Target>> subtable(const char* name, std::optional<Part> part, Inner Target::*member,
+                                  std::vector<Key<Inner>> keys) {
+  for (Key<Inner>& key : keys) {
+    key.name = key.name.empty() ? name : fmt::format("{}.{}", name, key.name);
+    if (part) key.part = part;
+  }
+  return keys_at<Target>(member, std::move(keys));
 }
 
 }  // namespace orrery::scene

@@ -1,7 +1,4 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "scene/named_files.h"
-
-#include "scene/scene.h"
 #include "scene/schema.h"
 #include "scene/texture.h"
 

@@ -196,6 +196,7 @@ class PointArray {
   Vec3d operator[](std::size_t i) const noexcept { return {numbers_[3 * i], numbers_[3 * i + 1], numbers_[3 * i + 2]}; }
   const_iterator begin() const { return {*this, 0}; }
   const_iterator end() const { return {*this, size()}; }
+  std::size_t bytes() const noexcept { return numbers_.bytes(); }
   /// x, y, z of each point.
   const NumberArray& numbers() const noexcept { return numbers_; }
 

@@ -290,6 +290,7 @@ struct PointsTransform {
   double scale = 1;
   Vec3d rotate{0, 0, 0};  ///< degrees
   Vec3d translate{0, 0, 0};
+  bool operator==(const PointsTransform&) const = default;
 };
 
 /// Spheres of a points file, in flat arrays because there may be a hundred million. Filled by format::read_scene.
@@ -348,7 +349,7 @@ struct Points {
   std::size_t bond_count() const { return bond_pairs.size() + bond_stubs.size(); }
   /// Bytes of the spheres and bonds.
   std::size_t bytes() const {
-    return centers.numbers().bytes() + radii.bytes() + materials.size() * sizeof(materials[0]) +
+    return centers.bytes() + radii.bytes() + materials.size() * sizeof(materials[0]) +
            colors.size() * sizeof(colors[0]) + bond_pairs.size() * sizeof(bond_pairs[0]) +
            bond_stubs.size() * sizeof(bond_stubs[0]) + opacities.size() * sizeof(opacities[0]) +
            objects.size() * sizeof(objects[0]);
@@ -376,7 +377,7 @@ struct RodFile {
   NumberArray radii = {};                           ///< one per rod
 
   /// Bytes of the rods.
-  std::size_t bytes() const { return from.numbers().bytes() + to.numbers().bytes() + radii.bytes(); }
+  std::size_t bytes() const { return from.bytes() + to.bytes() + radii.bytes(); }
   /// Frees the memory of the rods; keeps the keys.
   void release_rods() {
     from.clear();

@@ -1,11 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include <cstdint>
 #include <functional>
 #include <optional>
 #include <string>
-#include <variant>
 #include <vector>
 
 #include "scene/changed_parts.h"
@@ -99,8 +97,16 @@ const std::vector<Key<Points>>& points_keys();
 const std::vector<Key<Rod>>& rod_keys();
 const std::vector<Key<RodFile>>& rod_file_keys();
 
-/// Returns the "Keys" section of docs/scene-format.md: Markdown tables of all keys with type, range, unit, default and
-/// cost, generated from the schema. A test compares the two.
-std::string reference_markdown();
+/// A file that a scene names.
+struct NamedFile {
+  const FileRole* role;
+  std::string name;  ///< as in the scene: relative to its folder
+};
+
+/// All files that a scene names.
+std::vector<NamedFile> named_files(const Scene& scene);
+
+/// Replaces the name of every file by the one that `renamed` returns.
+void rename_files(Scene& scene, const std::function<std::string(const NamedFile& file)>& renamed);
 
 }  // namespace orrery::scene

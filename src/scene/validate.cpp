@@ -14,8 +14,6 @@
 #include "base/error.h"
 
 #include "base/stop_point.h"
-#include "scene/coincident.h"
-#include "scene/diagnostic.h"
 #include "scene/layers.h"
 #include "scene/limits.h"
 #include "scene/texture.h"
@@ -23,20 +21,6 @@
 
 namespace orrery::scene {
 namespace {
-
-class DiagnosticList {
- public:
-  void error(std::string key, std::string text) {
-    list_.push_back({base::Severity::kError, std::move(key), std::move(text), base::ErrorKind::kBadData});
-  }
-  void warning(std::string key, std::string text) {
-    list_.push_back({base::Severity::kWarning, std::move(key), std::move(text), base::ErrorKind::kBadData});
-  }
-  std::vector<SceneDiagnostic> take() { return std::move(list_); }
-
- private:
-  std::vector<SceneDiagnostic> list_;
-};
 
 std::string length_range() { return fmt::format("{}..{}", number_text(kSmallestRadius), number_text(kLargestLength)); }
 
@@ -47,7 +31,7 @@ bool in_domain(Vec3d c) {
 double max(Vec3d v) { return std::max({v.x, v.y, v.z}); }
 bool has_direction(Vec3d v) { return math::length(v) >= kSmallestRadius; }
 
-void check_image(const Image& image, DiagnosticList& diagnostics) {
+void check_image(const Image& image, KeyFaults& diagnostics) {
   if (image.crop) {
     const Window& w = *image.crop;
     if (w.width < 1 || w.height < 1 || w.x < 0 || w.y < 0 || w.width > image.width - w.x ||
@@ -62,7 +46,7 @@ void check_image(const Image& image, DiagnosticList& diagnostics) {
                       fmt::format("frame plus overscan exceeds the limit of {} pixels per side", kLargestSide));
 }
 
-void check_annotation(const Scene& scene, DiagnosticList& diagnostics) {
+void check_annotation(const Scene& scene, KeyFaults& diagnostics) {
   const bool has_labels =
       std::any_of(scene.points.begin(), scene.points.end(), [](const Points& p) { return !p.labels.empty(); });
   if (scene.annotation.scale_bar && scene.camera.projection == Projection::kPerspective)
@@ -73,7 +57,7 @@ void check_annotation(const Scene& scene, DiagnosticList& diagnostics) {
     diagnostics.error("annotation", "cannot be combined with image.crop or image.overscan");
 }
 
-void check_camera(const Camera& camera, DiagnosticList& diagnostics) {
+void check_camera(const Camera& camera, KeyFaults& diagnostics) {
   bool usable = true;
   for (const auto& [name, v] :
        {std::pair{"look_from", camera.look_from}, {"look_at", camera.look_at}, {"up", camera.up}}) {
@@ -102,7 +86,7 @@ void check_camera(const Camera& camera, DiagnosticList& diagnostics) {
 }
 
 /// Checks that the keys of the camera belong to its projection.
-void check_projection(const Camera& camera, DiagnosticList& diagnostics) {
+void check_projection(const Camera& camera, KeyFaults& diagnostics) {
   const bool is_orthographic = camera.projection == Projection::kOrthographic;
   if (is_orthographic && !camera.width)
     diagnostics.error("camera.projection", "orthographic needs `width`, the width of the image in scene units");
@@ -112,7 +96,7 @@ void check_projection(const Camera& camera, DiagnosticList& diagnostics) {
     diagnostics.warning("camera.width", "has no effect; set camera.projection to \"orthographic\"");
 }
 
-void check_shutter(const Camera& camera, DiagnosticList& diagnostics) {
+void check_shutter(const Camera& camera, KeyFaults& diagnostics) {
   if (camera.shutter_close < camera.shutter_open)
     diagnostics.error("camera.shutter_close",
                       fmt::format("the shutter closes at {}, before it opens at {}", number_text(camera.shutter_close),
@@ -122,7 +106,7 @@ void check_shutter(const Camera& camera, DiagnosticList& diagnostics) {
 /// Checks that the keys of the background belong to its type. The colours of other types are ignored silently, so that
 /// switching the type with --set is convenient; a setting of an image or a sky that is not used is probably
 /// a mistake.
-void check_background(const Background& background, DiagnosticList& diagnostics) {
+void check_background(const Background& background, KeyFaults& diagnostics) {
   const bool is_image = background.type == BackgroundType::kImage;
   const bool is_sky = background.type == BackgroundType::kSky, has_map = is_image || is_sky;
   const Background unset;
@@ -148,7 +132,7 @@ void check_background(const Background& background, DiagnosticList& diagnostics)
 }
 
 /// Checks the exposure of emitters, except where the radiance is an image.
-void check_emitters(const Scene& scene, DiagnosticList& diagnostics) {
+void check_emitters(const Scene& scene, KeyFaults& diagnostics) {
   for (const Material& material : scene.materials) {
     const auto* const emitter = std::get_if<Emitter>(&material.model);
     if (emitter == nullptr) continue;
@@ -156,13 +140,13 @@ void check_emitters(const Scene& scene, DiagnosticList& diagnostics) {
     if (texture != nullptr && texture->type == TextureType::kImage) continue;
     const double radiance =
         texture != nullptr ? std::max(max(texture->low), max(texture->high)) : max(emitter->radiance);
-    if (const std::string fault = exposure_fault(radiance, emitter->exposure); !fault.empty())
-      diagnostics.error(fmt::format("material.{}.exposure", material.name), fault);
+    diagnostics.error_if_any(fmt::format("material.{}.exposure", material.name),
+                             exposure_fault(radiance, emitter->exposure));
   }
 }
 
 /// Ray origins on the lens must be inside the domain of coordinates.
-void check_lens(const Camera& camera, DiagnosticList& diagnostics) {
+void check_lens(const Camera& camera, KeyFaults& diagnostics) {
   if (!(camera.defocus_angle > 0)) return;
   const double focus = camera.focus_distance.value_or(math::length(camera.look_at - camera.look_from));
   const double radius = std::tan(camera.defocus_angle / 360 * std::numbers::pi) * focus;
@@ -203,7 +187,7 @@ void check_sphere(Vec3d center, double radius, std::uint32_t material, const Sce
   if (const std::string fault = material_fault(material, scene); !fault.empty()) report(".material", fault);
 }
 
-void check_spheres(const Scene& scene, DiagnosticList& diagnostics) {
+void check_spheres(const Scene& scene, KeyFaults& diagnostics) {
   for (std::size_t i = 0; i < scene.spheres.size(); ++i) {
     const Sphere& s = scene.spheres[i];
     check_sphere(s.center, s.radius, s.material, scene, [&](const char* part, std::string text) {
@@ -238,15 +222,14 @@ void check_rod(Vec3d from, Vec3d to, double radius, Precision precision, Report 
 }
 
 void check_rod_materials(const std::string& key, const std::array<std::uint32_t, 2>& materials, const Scene& scene,
-                         DiagnosticList& diagnostics) {
+                         KeyFaults& diagnostics) {
   for (std::size_t half = 0; half < 2; ++half) {
     if (half > 0 && materials[1] == materials[0]) continue;
-    if (const std::string fault = rod_material_fault(materials[half], scene); !fault.empty())
-      diagnostics.error(key + ".material", fault);
+    diagnostics.error_if_any(key + ".material", rod_material_fault(materials[half], scene));
   }
 }
 
-void check_rods(const Scene& scene, DiagnosticList& diagnostics) {
+void check_rods(const Scene& scene, KeyFaults& diagnostics) {
   for (std::size_t i = 0; i < scene.rods.size(); ++i) {
     const Rod& rod = scene.rods[i];
     const std::string key = fmt::format("rod[{}]", i);
@@ -271,19 +254,17 @@ void check_rods(const Scene& scene, DiagnosticList& diagnostics) {
                                     part == std::string(".radius") ? "" : std::string(part).substr(1) + " ", text));
                 });
     }
-    if (faults > kMaxReported)
-      diagnostics.error(key + ".file", fmt::format("and {} more ({} in all)", faults - kMaxReported, faults));
+    diagnostics.error_if_any(key + ".file", rest_text(faults));
   }
 }
 
 /// Checks the rods of bonds and arrows.
-void check_bonds(const Points& points, const std::string& key, const Scene& scene, DiagnosticList& diagnostics) {
+void check_bonds(const Points& points, const std::string& key, const Scene& scene, KeyFaults& diagnostics) {
   const bool are_bonds = points.bonds.are_drawn;
   if (!are_bonds && points.vectors.columns.empty()) return;
   const std::string part = key + (are_bonds ? ".bonds" : ".vectors");
   if (points.bonds.material) {
-    if (const std::string fault = rod_material_fault(*points.bonds.material, scene); !fault.empty())
-      diagnostics.error(key + ".bonds.material", fault);
+    diagnostics.error_if_any(key + ".bonds.material", rod_material_fault(*points.bonds.material, scene));
   } else {
     std::vector<bool> is_used(scene.materials.size());
     const auto use = [&](std::uint32_t material) {
@@ -299,8 +280,7 @@ void check_bonds(const Points& points, const std::string& key, const Scene& scen
                                             are_bonds ? "set `bonds.material`" : "use another material"));
   }
   if (points.bond_count() == 0) return;
-  if (const std::string fault = rod_radius_fault(points.bond_radius, scene.render.precision); !fault.empty())
-    diagnostics.error(part + ".radius", fault);
+  diagnostics.error_if_any(part + ".radius", rod_radius_fault(points.bond_radius, scene.render.precision));
   for (const BondStub& stub : points.bond_stubs)
     if (!in_domain(stub.end))
       return diagnostics.error(key + ".bonds", fmt::format("the middle of a bond, {}, is not finite or exceeds {}",
@@ -308,7 +288,7 @@ void check_bonds(const Points& points, const std::string& key, const Scene& scen
 }
 
 /// Reports spheres of dielectrics with an opacity below 1, the first one of a table.
-void check_opacity(std::size_t number, const Scene& scene, DiagnosticList& diagnostics) {
+void check_opacity(std::size_t number, const Scene& scene, KeyFaults& diagnostics) {
   const Points& points = scene.points[number];
   if (!points.opacity.is_set()) return;
   const base::StopPoint stop;
@@ -327,7 +307,7 @@ void check_opacity(std::size_t number, const Scene& scene, DiagnosticList& diagn
   }
 }
 
-void check_points(std::size_t number, const Scene& scene, DiagnosticList& diagnostics) {
+void check_points(std::size_t number, const Scene& scene, KeyFaults& diagnostics) {
   const Points& points = scene.points[number];
   const std::string key = fmt::format("points[{}]", number);
   if (points.radii.size() != points.centers.size() ||
@@ -339,9 +319,7 @@ void check_points(std::size_t number, const Scene& scene, DiagnosticList& diagno
                                        points.radii.size(), points.materials.size()));
     return;
   }
-  if (points.materials.empty())
-    if (const std::string fault = material_fault(points.material, scene); !fault.empty())
-      diagnostics.error(key + ".material", fault);
+  if (points.materials.empty()) diagnostics.error_if_any(key + ".material", material_fault(points.material, scene));
   std::size_t faults = 0;
   const base::StopPoint stop;
   for (std::size_t i = 0; i < points.centers.size(); ++i) {
@@ -353,18 +331,16 @@ void check_points(std::size_t number, const Scene& scene, DiagnosticList& diagno
         diagnostics.error(key + ".file", fmt::format("{}: {}", sphere_name(scene, number, i), text));
     });
   }
-  if (faults > kMaxReported)
-    diagnostics.error(key + ".file", fmt::format("and {} more ({} in all)", faults - kMaxReported, faults));
+  diagnostics.error_if_any(key + ".file", rest_text(faults));
   check_opacity(number, scene, diagnostics);
 }
 
-void check_layers(const Scene& scene, DiagnosticList& diagnostics) {
+void check_layers(const Scene& scene, KeyFaults& diagnostics) {
   for (std::size_t i = 0; i < scene.output.layers.size(); ++i)
-    if (const std::string fault = layer_fault(scene, scene.output.layers[i]); !fault.empty())
-      diagnostics.error(fmt::format("output.layers[{}]", i), fault);
+    diagnostics.error_if_any(fmt::format("output.layers[{}]", i), layer_fault(scene, scene.output.layers[i]));
 }
 
-void check_light_groups(const Scene& scene, DiagnosticList& diagnostics) {
+void check_light_groups(const Scene& scene, KeyFaults& diagnostics) {
   std::set<std::string> names = {kDefaultLightGroup};  // the background's light, or that of an emitter without a group
   const auto check = [&](const std::string& key, const std::string& name) {
     if (const std::string fault = light_group_fault(name); !fault.empty())
@@ -404,7 +380,7 @@ std::string sphere_name(const Scene& scene, std::size_t points, std::size_t inde
 }
 
 std::vector<SceneDiagnostic> validate(const Scene& scene) {
-  DiagnosticList diagnostics;
+  KeyFaults diagnostics;
   check_image(scene.image, diagnostics);
   check_camera(scene.camera, diagnostics);
   check_annotation(scene, diagnostics);
@@ -427,20 +403,6 @@ std::vector<SceneDiagnostic> validate(const Scene& scene) {
                                         scene.sphere_count(), scene.rod_count(), kMaxSpheres));
   check_light_groups(scene, diagnostics);
   check_layers(scene, diagnostics);
-  return diagnostics.take();
-}
-
-std::vector<SceneDiagnostic> warn_of_coincident(const Scene& scene, const Scene* closing) {
-  for (const Points& p : scene.points)
-    if (p.radii.size() != p.centers.size()) return {};  // an error of validate(); the arrays must not be indexed
-  DiagnosticList diagnostics;
-  const Coincidents found = coincident_spheres(scene, kMaxReported, closing);
-  for (const Coincident& c : found.reported)
-    diagnostics.warning(c.key, fmt::format("{}has exactly the same centre and radius as {}; only the first is rendered",
-                                           c.name.empty() ? "" : c.name + " ", c.first));
-  if (found.count > kMaxReported)
-    diagnostics.warning(
-        "", fmt::format("and {} more coincident spheres ({} in all)", found.count - kMaxReported, found.count));
   return diagnostics.take();
 }
 

@@ -11,9 +11,6 @@
 
 namespace orrery::scene {
 
-/// Maximum number of similar diagnostics of bulk data; only the number of the others is reported.
-inline constexpr std::size_t kMaxReported = 10;
-
 /// Returns what is wrong with the exposure of a light; empty if the light is not too bright.
 ///
 /// `radiance`  largest component of the radiance
@@ -41,9 +38,10 @@ std::string sphere_name(const Scene& scene, std::size_t points, std::size_t inde
 /// Cost       linear in the number of spheres
 std::vector<SceneDiagnostic> validate(const Scene& scene);
 
-/// Warns of coincident spheres: of two identical surfaces only the first is rendered.
+/// Warns of spheres with exactly the same centre and absolute radius as an earlier one, of which only the first is
+/// rendered. With `precision = "fast"`, spheres coincide if they are equal in single precision.
 ///
-/// `closing`  the scene at shutter close; null: no motion
+/// `closing`  the scene at shutter close: spheres that coincide only at shutter open are not counted; null: no motion
 /// Result     the first kMaxReported, and the number of the others; empty if there are none
 /// Errors     base::Error(kStopped) in a base::StopScope
 /// Cost       see base::find_duplicates

@@ -1,6 +1,4 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "data/table_file.h"
-
 #include <gtest/gtest.h>
 
 #include <cstddef>
@@ -8,6 +6,7 @@
 #include <vector>
 
 #include "base/error.h"
+#include "data/data_file.h"
 #include "formats/open.h"
 #include "formats/write_table.h"
 #include "support/temp_dir.h"

@@ -1,11 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "format/write_ply.h"
-
 #include <gtest/gtest.h>
 
 #include <random>
 
 #include "base/error.h"
+#include "format/write_scene.h"
 #include "points/load_points.h"
 #include "support/temp_dir.h"
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "load/load_background.h"
+#include "load/load_images.h"
 
 #include <gtest/gtest.h>
 
@@ -25,7 +25,7 @@ class LoadBackground : public testing::Test {
     ::unsetenv("OCIO");
     scene_.background.type = scene::BackgroundType::kImage;
     scene_.background.file = "a.exr";
-    request_.file = folder_ / "a.exr";
+    request_.folder = (folder_ / "a.exr").parent_path();
   }
   LoadedBackground load(const ExrFile& exr) {
     support::write_bytes(folder_ / "a.exr", exr.bytes());
@@ -41,7 +41,7 @@ class LoadBackground : public testing::Test {
 
   support::TempDir folder_;
   scene::Scene scene_;
-  BackgroundRequest request_;
+  ImageRequest request_;
 };
 
 TEST_F(LoadBackground, TexelsAreThoseOfTheFile) {
@@ -160,7 +160,7 @@ TEST_F(LoadBackground, TexelsOutsideTheDataWindowAreAWarning) {
 
 TEST_F(LoadBackground, MemoryIsCheckedBeforePixelsAreRead) {
   support::write_bytes(folder_ / "a.hdr", "#?RADIANCE\nFORMAT=32-bit_rle_rgbe\n\n-Y 32768 +X 65536\n");
-  request_.file = folder_ / "a.hdr";
+  scene_.background.file = "a.hdr";
   request_.memory_limit = 1 << 30;
   try {
     load_background(request_, scene_);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "load/load_textures.h"
+#include "load/load_images.h"
 
 #include <gtest/gtest.h>
 
@@ -55,7 +55,7 @@ class LoadTextures : public testing::Test {
   }
   void truncate(const std::string& name, std::uintmax_t bytes) { std::filesystem::resize_file(folder_ / name, bytes); }
   std::vector<LoadedTexture> load(const std::vector<LoadedTexture>& known = {}, std::uint64_t limit = 0) {
-    return load_textures(folder_ / "scene.toml", "", limit, false, known, scene_);
+    return load_textures({(folder_ / "a").parent_path(), "", limit}, known, scene_);
   }
   static std::string text(const LoadedTexture& texture) {
     std::string out;

@@ -1,11 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "load/working_space.h"
-
 #include <gtest/gtest.h>
 
 #include <cstdlib>
 
 #include "base/error.h"
+#include "load/load_images.h"
 #include "support/everything.h"
 
 namespace orrery::load {

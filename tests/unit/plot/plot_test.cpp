@@ -11,13 +11,13 @@
 #include <fmt/core.h>
 
 #include "base/error.h"
+#include "data/elements.h"
 #include "display/develop.h"
 #include "film/picture.h"
 #include "format/read_scene.h"
 #include "load/load_scene.h"
 #include "plot/data_frames.h"
 #include "points/color_map.h"
-#include "points/elements.h"
 #include "scene/animation.h"
 #include "support/temp_dir.h"
 
@@ -310,7 +310,7 @@ std::vector<std::array<int, 3>> shown(const scene::Scene& scene) {
 TEST_F(PlotPlot, ElementsDifferFromTheBackground) {
   std::string text = "119\nall elements and an unknown one\nXx 0 0 0\n";
   for (int z = 1; z <= 118; ++z)
-    text += std::string(points::find_element(z)->symbol) + " " + std::to_string(z) + " 0 0\n";
+    text += std::string(data::find_element(z)->symbol) + " " + std::to_string(z) + " 0 0\n";
   write("a.xyz", text);
   options.points.radius.value = 1;
   for (const Style style : {Style::kStudio, Style::kSoft, Style::kFlat, Style::kNight}) {

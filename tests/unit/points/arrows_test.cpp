@@ -1,6 +1,4 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "points/arrows.h"
-
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -9,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "points/copies.h"
 #include "points_file.h"
 #include "scene/scene.h"
 

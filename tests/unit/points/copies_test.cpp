@@ -1,8 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "points/copies.h"
-
 #include <gtest/gtest.h>
 
+#include "points/copies.h"
 #include "points_file.h"
 #include "scene/number_array.h"
 #include "scene/scene.h"

@@ -1,9 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "points/labels.h"
-
 #include <gtest/gtest.h>
 
 #include "base/error.h"
+#include "points/sources.h"
 #include "points_file.h"
 
 namespace orrery::points {

@@ -1,6 +1,4 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "points/point_colors.h"
-
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -10,7 +8,7 @@
 
 #include "base/error.h"
 #include "points/color_map.h"
-#include "points/elements.h"
+#include "points/sources.h"
 #include "points_file.h"
 
 namespace orrery::points {
@@ -61,7 +59,7 @@ class PointsPointColors : public testing::Test {
   support::TempDir folder_;
 };
 
-void expect_near(Vec3d a, Vec3d b) { EXPECT_LT(math::length(a - b), 1e-9) << a.x << ' ' << a.y << ' ' << a.z; }
+void expect_color(Vec3d a, Vec3d b) { EXPECT_LT(math::length(a - b), 1e-9) << a.x << ' ' << a.y << ' ' << a.z; }
 
 /// sRGB bytes to linear Rec.709, by the definition of sRGB.
 Vec3d light(int r, int g, int b) {
@@ -137,10 +135,10 @@ TEST_F(PointsPointColors, AGivenRangeClampsValues) {
 
 TEST_F(PointsPointColors, NanHasItsOwnColor) {
   keys.nan_color = {0.1, 0.2, 0.3};
-  expect_near(color_of(table_of(std::vector<float>{1, NAN, 2}), 1), {0.1, 0.2, 0.3});
+  expect_color(color_of(table_of(std::vector<float>{1, NAN, 2}), 1), {0.1, 0.2, 0.3});
   const PointColors all = colors(table_of(std::vector<double>{kNan, kNan}));
   EXPECT_FALSE(all.range) << "there is no range of no numbers";
-  expect_near(all.palette[all.indices[0]], {0.1, 0.2, 0.3});
+  expect_color(all.palette[all.indices[0]], {0.1, 0.2, 0.3});
 }
 
 TEST_F(PointsPointColors, AConstantColumnHasTheMiddleColor) {
@@ -232,9 +230,9 @@ TEST_F(PointsPointColors, ElementsOfJmol) {
   keys.element = "jmol";
   roles.element = "c";
   const PointColors out = colors(table_of(data::Words{{"Qq", "O", "fe"}, {2, 1, 0, 1}}));
-  expect_near(out.palette.at(out.indices[0]), light(0xE0, 0x66, 0x33));
-  expect_near(out.palette.at(out.indices[1]), light(0xFF, 0x0D, 0x0D));
-  expect_near(out.palette.at(out.indices[2]), light(255, 20, 147));
+  expect_color(out.palette.at(out.indices[0]), light(0xE0, 0x66, 0x33));
+  expect_color(out.palette.at(out.indices[1]), light(0xFF, 0x0D, 0x0D));
+  expect_color(out.palette.at(out.indices[2]), light(255, 20, 147));
   EXPECT_EQ(out.rec709, out.palette.size());
   EXPECT_EQ(out.names, (std::vector<std::string>{"O", "Qq", "fe"}));
 }
@@ -265,16 +263,16 @@ TEST_F(PointsPointColors, RgbIsDecoded) {
   keys.rgb = true;
   roles.rgb = {"r", "g", "b"};
   const PointColors out = colors(rgb_table<std::uint8_t>({255, 0, 128}, {0, 0, 64}, {10, 0, 32}));
-  expect_near(out.palette.at(out.indices[0]), light(255, 0, 10));
-  expect_near(out.palette.at(out.indices[1]), {0, 0, 0});
-  expect_near(out.palette.at(out.indices[2]), light(128, 64, 32));
+  expect_color(out.palette.at(out.indices[0]), light(255, 0, 10));
+  expect_color(out.palette.at(out.indices[1]), {0, 0, 0});
+  expect_color(out.palette.at(out.indices[2]), light(128, 64, 32));
   EXPECT_EQ(out.rec709, 3u);
   EXPECT_TRUE(out.names.empty());
 
   roles.rgb_maximum = 65535;
-  expect_near(color_of(rgb_table<std::uint16_t>({65535}, {257 * 100}, {0}), 0), light(255, 100, 0));
+  expect_color(color_of(rgb_table<std::uint16_t>({65535}, {257 * 100}, {0}), 0), light(255, 100, 0));
   roles.rgb_maximum = 1;
-  expect_near(color_of(rgb_table<float>({2, 0}, {-1, 0}, {NAN, 0}), 0), light(255, 0, 0));
+  expect_color(color_of(rgb_table<float>({2, 0}, {-1, 0}, {NAN, 0}), 0), light(255, 0, 0));
   EXPECT_EQ(diagnostics,
             "warning points[0].color.rgb: 1 values are NaN and are replaced by 0\n"
             "warning points[0].color.rgb: 2 values are outside 0..1 and were clamped\n");
@@ -286,10 +284,10 @@ TEST_F(PointsPointColors, TheRangeOfFloatingPointColorsIsThatOfTheirValues) {
   keys.rgb = true;
   roles.rgb = {"r", "g", "b"};
   roles.rgb_maximum = 1;
-  expect_near(color_of(rgb_table<float>({0, 200}, {0, 100}, {0, 50}), 1), light(200, 100, 50));
-  expect_near(color_of(rgb_table<float>({0, 25700}, {0, 257}, {0, 0}), 1), light(100, 1, 0));
+  expect_color(color_of(rgb_table<float>({0, 200}, {0, 100}, {0, 50}), 1), light(200, 100, 50));
+  expect_color(color_of(rgb_table<float>({0, 25700}, {0, 257}, {0, 0}), 1), light(100, 1, 0));
   EXPECT_EQ(diagnostics, "warning points[0].color.rgb: most values exceed 1; full intensity is taken as 65535\n");
-  expect_near(color_of(rgb_table<float>({0.2F, 2.5F}, {0.4F, 0.2F}, {0.6F, 0.2F}), 0), light(51, 102, 153));
+  expect_color(color_of(rgb_table<float>({0.2F, 2.5F}, {0.4F, 0.2F}, {0.6F, 0.2F}), 0), light(51, 102, 153));
   EXPECT_EQ(diagnostics, "warning points[0].color.rgb: 1 values are outside 0..1 and were clamped\n") << "one outlier";
 }
 
@@ -309,7 +307,7 @@ TEST_F(PointsPointColors, ManyRgbColorsAreReduced) {
   b.push_back(50);
   const PointColors out = colors(rgb_table(r, g, b));
   EXPECT_EQ(out.palette.size(), 128u * 128 + 1);
-  expect_near(out.palette.at(out.indices.back()), light(201, 101, 51));
+  expect_color(out.palette.at(out.indices.back()), light(201, 101, 51));
   for (const Vec3d& c : {out.palette[out.indices[0]], out.palette[out.indices[256 * 255 + 255]]})
     EXPECT_LE(std::min(math::length(c - light(0, 0, 0)), math::length(c - light(255, 255, 0))), 0.01);
 }
@@ -318,8 +316,8 @@ TEST_F(PointsPointColors, MapFromAFile) {
   support::write_bytes(folder_ / "two.txt", "0 0 0\n1 0 0\n");
   keys.map = "two.txt";
   const PointColors out = colors(table_of(std::vector<double>{0, 1}));
-  expect_near(out.palette[255], {1, 0, 0});
-  expect_near(out.palette[51], light(51, 0, 0));
+  expect_color(out.palette[255], {1, 0, 0});
+  expect_color(out.palette[51], light(51, 0, 0));
   keys.map = "missing.txt";
   EXPECT_THROW(colors(table_of(std::vector<double>{0, 1})), base::Error);
 }

@@ -1,12 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "points/point_opacity.h"
-
 #include <gtest/gtest.h>
 
 #include <string>
 #include <vector>
 
 #include "base/error.h"
+#include "points/sources.h"
 #include "points_file.h"
 #include "scene/scene.h"
 

@@ -1,9 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "points/point_radii.h"
-
 #include <gtest/gtest.h>
 
-#include "points/elements.h"
+#include "points/sources.h"
 #include "points_file.h"
 #include "scene/number_array.h"
 #include "scene/scene.h"
@@ -84,7 +82,7 @@ TEST(PointsPointRadii, Elements) {
   EXPECT_EQ(radii(keys, {1, 0}), (Radii{0.31, 0.66}));
   keys.element = "ball";
   keys.scale = 2;
-  EXPECT_EQ(radii(keys, {0}), Radii{2 * kBallScale * 1.52});
+  EXPECT_EQ(radii(keys, {0}), Radii{2 * 0.25 * 1.52});
 }
 
 TEST(PointsPointRadii, UnknownElementsOfTheRowsAreReported) {

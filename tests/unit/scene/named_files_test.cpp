@@ -1,6 +1,4 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "scene/named_files.h"
-
 #include <gtest/gtest.h>
 
 #include <memory>

@@ -1,15 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "points/ticks.h"
-
 #include <algorithm>
 #include <charconv>
 #include <cmath>
-#include <cstddef>
 #include <utility>
 
 #include <fmt/core.h>
 
-namespace orrery::points {
+#include "annotation/legend.h"
+
+namespace orrery::annotation {
 
 namespace {
 
@@ -102,4 +101,4 @@ double ValueScale::share_of(double value) const {
   return range != 0 ? std::clamp((value / 2 - first / 2) / range, 0.0, 1.0) : 0.5;
 }
 
-}  // namespace orrery::points
+}  // namespace orrery::annotation

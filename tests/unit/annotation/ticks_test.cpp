@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "points/ticks.h"
-
 #include <gtest/gtest.h>
 
 #include <algorithm>
 #include <cmath>
 #include <random>
 
-namespace orrery::points {
+#include "annotation/legend.h"
+
+namespace orrery::annotation {
 namespace {
 
 std::string labels(double first, double last) {
@@ -16,7 +16,7 @@ std::string labels(double first, double last) {
   return out;
 }
 
-TEST(PointsTicks, AreAtRoundNumbers) {
+TEST(AnnotationTicks, AreAtRoundNumbers) {
   EXPECT_EQ(labels(0, 12), "0 2 4 6 8 10 12");
   EXPECT_EQ(labels(-2, 2), "-2.0 -1.5 -1.0 -0.5 0.0 0.5 1.0 1.5 2.0");
   EXPECT_EQ(labels(0.013, 0.087), "0.02 0.03 0.04 0.05 0.06 0.07 0.08");
@@ -37,7 +37,7 @@ std::string log_labels(double first, double last) {
   return out;
 }
 
-TEST(PointsTicks, LogarithmicBarsHaveDecades) {
+TEST(AnnotationTicks, LogarithmicBarsHaveDecades) {
   EXPECT_EQ(log_labels(1e-3, 1e4), "0.001 0.01 0.1 1 10 100 1000 10000");
   EXPECT_EQ(log_labels(0.3, 40), "0.5 1 2 5 10 20");
   EXPECT_EQ(log_labels(1e-20, 1e12), "1e-20 1e-16 1e-12 1e-08 1e-04 1 10000 1e08 1e12");
@@ -45,7 +45,7 @@ TEST(PointsTicks, LogarithmicBarsHaveDecades) {
   EXPECT_NEAR((ValueScale{1e-3, 1e3, true}.share_of(1)), 0.5, 1e-12);
 }
 
-TEST(PointsTicks, SharesOfAScale) {
+TEST(AnnotationTicks, SharesOfAScale) {
   EXPECT_EQ((ValueScale{2, 6}.share_of(3)), 0.25);
   EXPECT_EQ((ValueScale{6, 2}.share_of(3)), 0.75);
   EXPECT_EQ((ValueScale{2, 6}.share_of(7)), 1);
@@ -53,14 +53,14 @@ TEST(PointsTicks, SharesOfAScale) {
   EXPECT_EQ((ValueScale{-1e308, 1e308}.share_of(0)), 0.5) << "the difference of the ends is not finite";
 }
 
-TEST(PointsTicks, LargeAndSmallNumbersHaveExponents) {
+TEST(AnnotationTicks, LargeAndSmallNumbersHaveExponents) {
   EXPECT_EQ(labels(0, 3e7), "0 0.5e7 1.0e7 1.5e7 2.0e7 2.5e7 3.0e7");
   EXPECT_EQ(labels(-1e-9, 1e-9), "-1.0e-9 -0.8e-9 -0.6e-9 -0.4e-9 -0.2e-9 0 0.2e-9 0.4e-9 0.6e-9 0.8e-9 1.0e-9");
   EXPECT_EQ(labels(1.9e100, 2.4e100),
             "1.90e100 1.95e100 2.00e100 2.05e100 2.10e100 2.15e100 2.20e100 2.25e100 2.30e100 2.35e100 2.40e100");
 }
 
-TEST(PointsTicks, OneTickIfNothingCanBeDistinguished) {
+TEST(AnnotationTicks, OneTickIfNothingCanBeDistinguished) {
   EXPECT_EQ(labels(3.5, 3.5), "3.5");
   EXPECT_EQ(labels(0, 0), "0");
   EXPECT_EQ(labels(1, std::nextafter(1, 2)), "1");
@@ -68,7 +68,7 @@ TEST(PointsTicks, OneTickIfNothingCanBeDistinguished) {
   EXPECT_EQ(labels(0, 2e-310), "0");
 }
 
-TEST(PointsTicks, RangesThatOverflowHaveTheirEnds) {
+TEST(AnnotationTicks, RangesThatOverflowHaveTheirEnds) {
   const std::vector<Tick> ticks = nice_ticks(1e308, -1e308);
   ASSERT_EQ(ticks.size(), 2u);
   EXPECT_EQ(ticks[0].value, -1e308);
@@ -76,7 +76,7 @@ TEST(PointsTicks, RangesThatOverflowHaveTheirEnds) {
   EXPECT_EQ(ticks[1].label, "1e308");
 }
 
-TEST(PointsTicks, AnyRangeHasAFewTicksInside) {
+TEST(AnnotationTicks, AnyRangeHasAFewTicksInside) {
   std::mt19937_64 engine(18);
   std::uniform_real_distribution<double> uniform(-1, 1), exponent(-285, 290);
   for (int i = 0; i < 20'000; ++i) {
@@ -100,4 +100,4 @@ TEST(PointsTicks, AnyRangeHasAFewTicksInside) {
 }
 
 }  // namespace
-}  // namespace orrery::points
+}  // namespace orrery::annotation

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "points/elements.h"
+#include "data/elements.h"
 
 #include <gtest/gtest.h>
 
@@ -7,10 +7,10 @@
 #include <set>
 #include <string>
 
-namespace orrery::points {
+namespace orrery::data {
 namespace {
 
-TEST(PointsElements, SymbolsAreThoseOfGemmi) {
+TEST(DataElements, SymbolsAreThoseOfGemmi) {
   for (int number = 1; number <= 118; ++number) {
     const Element* element = find_element(number);
     ASSERT_NE(element, nullptr) << number;
@@ -20,7 +20,7 @@ TEST(PointsElements, SymbolsAreThoseOfGemmi) {
   }
 }
 
-TEST(PointsElements, LookUpIgnoresCaseAndBlanks) {
+TEST(DataElements, LookUpIgnoresCaseAndBlanks) {
   const Element* iron = find_element(26);
   for (const char* text : {"Fe", "FE", "fe", " fe ", "FE ", "\tFe", "26"}) EXPECT_EQ(find_element(text), iron) << text;
   EXPECT_EQ(find_element("D"), find_element(1));
@@ -28,7 +28,7 @@ TEST(PointsElements, LookUpIgnoresCaseAndBlanks) {
   EXPECT_EQ(find_element("CA"), find_element(20)) << "not a C-alpha atom: the caller passes elements";
 }
 
-TEST(PointsElements, UnknownIsNull) {
+TEST(DataElements, UnknownIsNull) {
   for (const char* text : {"", " ", "X", "Xx", "Fe2", "Fe2+", "0", "119", "-1", "6.0", "99999999999999999999", "F e"})
     EXPECT_EQ(find_element(text), nullptr) << text;
   EXPECT_EQ(find_element(0), nullptr);
@@ -42,7 +42,7 @@ bool is_main_group(int number) {
          (number >= 81 && number <= 88);
 }
 
-TEST(PointsElements, VanDerWaalsRadiiOfTheMainGroupAreThoseOfGemmi) {
+TEST(DataElements, VanDerWaalsRadiiOfTheMainGroupAreThoseOfGemmi) {
   // gemmi cites Bondi and Mantina for the main group, and other sources for the metals.
   for (int number = 1; number <= 118; ++number) {
     if (!is_main_group(number)) continue;
@@ -52,7 +52,7 @@ TEST(PointsElements, VanDerWaalsRadiiOfTheMainGroupAreThoseOfGemmi) {
   }
 }
 
-TEST(PointsElements, OtherVanDerWaalsRadiiAreThoseOfAlvarez) {
+TEST(DataElements, OtherVanDerWaalsRadiiAreThoseOfAlvarez) {
   EXPECT_EQ(find_element("Sc")->van_der_waals, 2.58);
   EXPECT_EQ(find_element("Fe")->van_der_waals, 2.44);
   EXPECT_EQ(find_element("Zn")->van_der_waals, 2.39);
@@ -65,7 +65,7 @@ TEST(PointsElements, OtherVanDerWaalsRadiiAreThoseOfAlvarez) {
   EXPECT_EQ(find_element("Og")->van_der_waals, 2.00);
 }
 
-TEST(PointsElements, CovalentRadiiAreThoseOfGemmiExceptItsErrors) {
+TEST(DataElements, CovalentRadiiAreThoseOfGemmiExceptItsErrors) {
   // gemmi has the sp2 radius of carbon, has Lu and Hf interchanged, and rounds from Nh on.
   const std::set<std::string_view> others = {"C", "Lu", "Hf", "Nh", "Fl", "Mc", "Lv", "Ts", "Og"};
   for (int number = 1; number <= 118; ++number) {
@@ -80,20 +80,13 @@ TEST(PointsElements, CovalentRadiiAreThoseOfGemmiExceptItsErrors) {
   EXPECT_EQ(find_element("Og")->covalent, 1.57);
 }
 
-TEST(PointsElements, RadiusKinds) {
-  const Element& carbon = *find_element("C");
-  EXPECT_EQ(carbon.radius(ElementRadius::kVanDerWaals), 1.70);
-  EXPECT_EQ(carbon.radius(ElementRadius::kCovalent), 0.76);
-  EXPECT_EQ(carbon.radius(ElementRadius::kBall), 0.25 * 1.70);
-}
-
-TEST(PointsElements, Colors) {
-  EXPECT_EQ(find_element("C")->color, (Srgb8{144, 144, 144}));
-  EXPECT_EQ(find_element("N")->color, (Srgb8{48, 80, 248}));
-  EXPECT_EQ(find_element("O")->color, (Srgb8{255, 13, 13}));
-  EXPECT_EQ(find_element("Mt")->color, (Srgb8{235, 0, 38}));
-  EXPECT_EQ(find_element("Og")->color, (Srgb8{235, 0, 38}));
+TEST(DataElements, Colors) {
+  EXPECT_EQ(find_element("C")->color, 0x909090u);
+  EXPECT_EQ(find_element("N")->color, 0x3050F8u);
+  EXPECT_EQ(find_element("O")->color, 0xFF0D0Du);
+  EXPECT_EQ(find_element("Mt")->color, 0xEB0026u);
+  EXPECT_EQ(find_element("Og")->color, 0xEB0026u);
 }
 
 }  // namespace
-}  // namespace orrery::points
+}  // namespace orrery::data

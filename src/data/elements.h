@@ -1,23 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include <array>
 #include <cstdint>
 #include <string_view>
 
-namespace orrery::points {
-
-/// A colour in display-referred sRGB, 8 bits per channel.
-using Srgb8 = std::array<std::uint8_t, 3>;
-
-/// Ratio of the radii of ElementRadius::kBall to van der Waals radii. Viewers draw balls and sticks with 0.2 to 0.3.
-inline constexpr double kBallScale = 0.25;
-
-enum class ElementRadius {
-  kVanDerWaals,
-  kCovalent,
-  kBall,  ///< kBallScale times the van der Waals radius
-};
+namespace orrery::data {
 
 /// A chemical element.
 struct Element {
@@ -35,13 +22,11 @@ struct Element {
   /// Units      angstrom
   /// Reference  cordero2008, pyykko2009
   double covalent;
-  /// The colour that viewers give it by default.
+  /// The colour that viewers give it by default, 0xRRGGBB in display-referred sRGB.
   ///
   /// Reference  jmol-colors; from Ds on that of Mt. Hydrogen is PyMOL's light grey instead of white, because white
   /// atoms are invisible against the white background of a plot.
-  Srgb8 color;
-
-  double radius(ElementRadius kind) const;
+  std::uint32_t color;
 };
 
 /// Returns the element with an atomic number; null unless 1 <= number <= 118.
@@ -51,6 +36,6 @@ const Element* find_element(int number);
 /// FE", "26". D is hydrogen.
 ///
 /// Result     null if there is none
-const Element* find_element(std::string_view symbol);
+const Element* find_element(std::string_view word);
 
-}  // namespace orrery::points
+}  // namespace orrery::data

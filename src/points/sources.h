@@ -1,0 +1,169 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cmath>
+#include <cstddef>
+#include <cstdint>
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "points/color_map.h"
+#include "points/copies.h"
+#include "points/rows.h"
+#include "points/selection.h"
+#include "scene/forward.h"
+
+/// How the radii, colours, opacities and labels of a file's spheres are determined. A source says which columns have to
+/// be read; when they have been, it gives the values.
+namespace orrery::points {
+
+/// How the radii of a file's spheres are determined: one of the alternatives of scene::PointsRadius, or the file's own.
+struct RadiusSource {
+  enum class Kind { kValue, kColumn, kElement, kType };
+  Kind kind = Kind::kValue;
+  std::string column;  ///< column to read; empty: none
+  double scale = 1;    ///< multiplies column and element radii
+};
+
+/// Determines the source of the radii. Reports a missing radius, unknown columns, and mutually exclusive keys.
+RadiusSource radius_source(const data::FrameInfo& info, const scene::PointsRadius& radius, KeyFaults& faults);
+
+/// Returns the radii of the rows, of a table with the source's column. Reports elements and types without a radius.
+scene::NumberArray radii_of(const data::Table& table, const Rows& rows, const RadiusSource& source,
+                            const scene::PointsRadius& radius, KeyFaults& faults);
+
+/// Keeps the rows whose centres and radii are finite, and whose radii are above 0. Reports the others, as errors unless
+/// `points.skip_bad`, and spheres that are outside the domain of scenes, while their rows are known.
+///
+/// `may_be_hollow`  accepts radii below 0
+/// Result           unchanged after an error
+void keep_valid(const scene::Points& points, bool may_be_hollow, Rows& rows, scene::PointArray& centers,
+                scene::NumberArray& radii, KeyFaults& faults);
+
+/// How the colours of a file's spheres are determined: one of the alternatives of scene::PointsColor.
+struct ColorSource {
+  enum class Kind { kNone, kMap, kElement, kType, kRgb };
+  Kind kind = Kind::kNone;
+  std::vector<std::string> columns;      ///< columns to read
+  std::optional<Expression> expression;  ///< kMap: of these columns; none: the column itself
+  double rgb_maximum = 255;
+  std::optional<ColorMap> map;
+};
+
+/// Colours of spheres: a palette and one index per sphere.
+struct PointColors {
+  std::vector<math::Vec3d> palette;
+  std::size_t rec709 = 0;  ///< leading colours that are linear Rec.709; the others are in the scene's colour space
+  std::vector<std::uint16_t> indices;
+  std::vector<std::string> names;        ///< names of the colours, if they represent types, elements or strings
+  std::optional<scene::Interval> range;  ///< range of a continuous colour map; empty if all values are NaN
+};
+
+/// Determines the source of the colours. Reports unknown columns and maps, and mutually exclusive keys.
+///
+/// `folder`   folder of the scene file, for a map in a file
+/// Errors     base::Error: those of read_color_map()
+ColorSource color_source(const data::FrameInfo& info, const scene::PointsColor& color,
+                         const std::filesystem::path& folder, KeyFaults& faults);
+
+/// Adds the values of the source's expression, if it has one, to a table as the column scene::PointsColor::column.
+/// Those that are not finite become NaN, and are counted in a warning.
+void add_expression(const ColorSource& source, const scene::PointsColor& color, data::Table& table, KeyFaults& faults);
+
+/// Calls `f(value)` for each value of a column that a continuous map shows: finite, and above 0 if `is_log`.
+template <class F>
+void for_each_shown(const data::Column& column, const Rows& rows, bool is_log, F f) {
+  for_each_number(column, rows, [&](std::size_t, double v) {
+    if (std::isfinite(v) && (v > 0 || !is_log)) f(v);
+  });
+}
+
+/// Returns the colours of the rows. A map becomes 256 colours. More than 65,536 distinct RGB colours are reduced to 7,
+/// 6 or 5 bits per channel, whichever fits.
+///
+/// Domain     a table with the source's columns, after add_expression()
+PointColors colors_of(const data::Table& table, const Rows& rows, const ColorSource& source,
+                      const scene::PointsColor& color, KeyFaults& faults);
+
+/// An opacity, and the condition under which a sphere has it; empty: always.
+struct OpacityRule {
+  std::string condition;
+  double opacity = 1;
+};
+
+/// Parses an element of scene::PointsOpacity::where: a selection, a colon, a number in 0..1; or the number alone. The
+/// last colon counts, because selections contain colons, too.
+///
+/// Errors     base::Error(kUsage)
+OpacityRule parse_opacity_rule(const std::string& text);
+
+/// How the opacities of a file's spheres are determined.
+struct OpacitySource {
+  /// A rule with its condition.
+  struct Rule {
+    Selection condition;
+    float opacity;
+  };
+  std::string column;               ///< of opacities or of types; empty: none
+  std::vector<std::string> needed;  ///< columns to read, of the conditions, too
+  std::vector<Rule> rules;
+
+  /// Whether spheres have opacities of their own.
+  bool is_set() const { return !column.empty() || !rules.empty(); }
+};
+
+/// Determines the source of the opacities. Reports unknown columns, rules that are not valid, and mutually exclusive
+/// keys.
+OpacitySource opacity_source(const data::FrameInfo& info, const scene::PointsOpacity& opacity, KeyFaults& faults);
+
+/// Returns the opacities of the rows, as scene::Points::opacities, for a source that is set. Reports values of a column
+/// outside 0..1 in rows that match no rule.
+std::vector<float> opacities_of(const data::Table& table, const Rows& rows, const OpacitySource& source,
+                                const scene::Points& points, KeyFaults& faults);
+
+/// A label of a points table, and the condition on the particles that it labels.
+struct LabelRule {
+  Selection condition;
+  std::string text;
+};
+
+/// Parses scene::Points::labels. Reports those that are not valid.
+std::vector<LabelRule> label_rules(const data::FrameInfo& info, const scene::Points& points, KeyFaults& faults);
+
+/// Places each label at the middle of the rows that match, in the first copy of the particles. Reports labels that
+/// match none, and omits them.
+std::vector<scene::Label> placed_labels(const data::Table& table, const Rows& rows, const scene::PointArray& centers,
+                                        const std::vector<LabelRule>& rules, const Copy& first,
+                                        const scene::Points& points, KeyFaults& faults);
+
+/// Memory that is needed to read the spheres of a data file.
+struct ReadMemory {
+  std::uint64_t file_bytes = 0;    ///< bytes of the open file, see data::DataFile::memory()
+  std::uint64_t rows = 0;          ///< number of rows in the file
+  std::uint64_t row_bytes = 0;     ///< bytes per row of the columns that are read
+  std::uint64_t sphere_bytes = 0;  ///< bytes per sphere of scene data
+  double bond_bytes = 0;           ///< bytes of all bonds, and for finding them
+  double images = 1;               ///< number of periodic images of the box; may exceed 64 bits
+  double spheres = 0;              ///< number of spheres in all images; 0: not known yet
+  std::size_t copies = 0;          ///< copies of an assembly in one image
+};
+
+/// Returns the type of a column of a frame.
+data::ColumnType type_of(const data::FrameInfo& info, const std::string& column);
+
+/// Upper bound of the size of a sphere's centre and radius as scene data, bytes. Numbers that do not need double
+/// precision are stored as floats.
+///
+/// `are_rounded`   whether make_copies() rounds the centres
+std::uint64_t bytes_per_sphere(const data::FrameInfo& info, const scene::Points& points, const RadiusSource& radius,
+                               bool are_rounded);
+
+/// Checks that there is enough memory to read the spheres.
+///
+/// `limit`    bytes; 0: none
+/// Errors     base::Error(kNoMemory) with the needed size
+void require_memory(const ReadMemory& need, std::uint64_t limit, const std::filesystem::path& file);
+
+}  // namespace orrery::points
