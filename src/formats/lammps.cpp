@@ -39,14 +39,15 @@ struct LammpsFrame {
 
 /// Converts a LAMMPS box, given by low and high coordinates and tilt factors.
 Box lammps_box(const Vec3d& low, const Vec3d& high, double xy, double xz, double yz) {
-  Box box;
-  box.origin = low;
-  box.edges = {Vec3d{high.x - low.x, 0, 0}, Vec3d{xy, high.y - low.y, 0}, Vec3d{xz, yz, high.z - low.z}};
-  return box;
+  return {low, {Vec3d{high.x - low.x, 0, 0}, Vec3d{xy, high.y - low.y, 0}, Vec3d{xz, yz, high.z - low.z}}};
 }
 
-constexpr const char* kTruncatedHeader = "the file ends within the header of a frame";
-constexpr const char* kTruncatedRemedy = "remove the incomplete frame at the end of the file";
+/// The number of rows that a word gives; none if it gives none.
+std::optional<std::uint64_t> count_of(std::string_view word) {
+  std::int64_t count = 0;
+  if (!parse_integer(word, count) || count < 0) return std::nullopt;
+  return static_cast<std::uint64_t>(count);
+}
 
 /// Reads the items of a frame up to and including `ITEM: ATOMS`.
 class FrameReader {
@@ -86,7 +87,9 @@ class FrameReader {
 
   std::string next_line() {
     std::string line;
-    if (!cursor_.next(line)) faults_.fail(cursor_.line(), kTruncatedHeader, kTruncatedRemedy);
+    if (!cursor_.next(line))
+      faults_.fail(cursor_.line(), "the file ends within the header of a frame",
+                   "remove the incomplete frame at the end of the file");
     return line;
   }
 
@@ -108,10 +111,9 @@ class FrameReader {
   void read_count() {
     const std::string line = next_line();
     const auto words = words_of(line);
-    std::int64_t count = 0;
-    if (words.size() != 1 || !parse_integer(words[0], count) || count < 0)
+    if (words.size() == 1) rows_ = count_of(words[0]);
+    if (words.size() != 1 || !rows_)
       faults_.fail(item_line(), fmt::format("expected a number of atoms, found '{}'", line.substr(0, kMaxShown)));
-    rows_ = static_cast<std::uint64_t>(count);
     frame_.rows_line = item_line();
   }
 
@@ -122,10 +124,8 @@ class FrameReader {
     std::array<std::vector<double>, 3> v;
     for (auto& row : v) row = read_numbers(count, std::to_string(count) + " numbers of the box");
     if (is_general) {
-      Box box;
-      for (std::size_t i = 0; i < 3; ++i) box.edges[i] = {v[i][0], v[i][1], v[i][2]};
-      box.origin = {v[0][3], v[1][3], v[2][3]};
-      frame_.box = box;
+      frame_.box = Box{{v[0][3], v[1][3], v[2][3]}, {}};
+      for (std::size_t i = 0; i < 3; ++i) frame_.box->edges[i] = {v[i][0], v[i][1], v[i][2]};
     } else {
       const double xy = is_tilted ? v[0][2] : 0;
       const double xz = is_tilted ? v[1][2] : 0;
@@ -137,10 +137,9 @@ class FrameReader {
         faults_.fail(item_line(), "a lower bound of the box exceeds the upper bound");
       frame_.box = lammps_box(low, high, xy, xz, yz);
     }
-    const auto words = words_of(name);
     // Old files have no boundary flags.
     std::vector<std::string_view> flags;
-    for (const std::string_view word : words)
+    for (const std::string_view word : words_of(name))
       if (word.size() == 2 && word.find_first_not_of("pfsm") == std::string_view::npos) flags.push_back(word);
     if (flags.size() == 3)
       for (std::size_t i = 0; i < 3; ++i) frame_.box->periodic[i] = flags[i][0] == 'p';
@@ -410,13 +409,9 @@ class DataHeader {
   void read_property(const Parts& words) {
     const std::string_view last = words.back();
     if (words.size() == 2 && (last == "atoms" || last == "bonds")) {
-      std::int64_t count = 0;
-      if (!parse_integer(words[0], count) || count < 0)
-        faults_.fail(line(), fmt::format("'{}' is not a number of {}", words[0], last));
-      if (last == "atoms")
-        rows_ = static_cast<std::uint64_t>(count);
-      else
-        info_.bonds = static_cast<std::uint64_t>(count);
+      const std::optional<std::uint64_t> count = count_of(words[0]);
+      if (!count) faults_.fail(line(), fmt::format("'{}' is not a number of {}", words[0], last));
+      (last == "atoms" ? rows_.emplace() : info_.bonds) = *count;
     }
     constexpr std::array<std::string_view, 3> kLow = {"xlo", "ylo", "zlo"};
     constexpr std::array<std::string_view, 3> kHigh = {"xhi", "yhi", "zhi"};
@@ -467,23 +462,20 @@ class DataHeader {
 
   bool set_columns(std::string_view style) {
     for (const Style& s : kStyles)
-      if (s.name == style) {
+      if (s.name == style)
         for (const std::string_view name : words_of(s.columns))
           info_.columns.push_back({std::string(name), type_of_column(name, false)});
-        return true;
-      }
-    return false;
+    return !info_.columns.empty();
   }
 
   FrameInfo finished() {
     info_.rows = *rows_;
-    if (edges_[0] && edges_[1] && edges_[2]) {
+    const auto [x, y, z] = bounds_;
+    if (edges_[0] && edges_[1] && edges_[2])
       info_.box = Box{origin_, {*edges_[0], *edges_[1], *edges_[2]}};
-    } else if (bounds_[0] && bounds_[1] && bounds_[2]) {
-      const auto [x, y, z] = bounds_;
+    else if (x && y && z)
       info_.box =
           lammps_box({x->first, y->first, z->first}, {x->second, y->second, z->second}, tilt_[0], tilt_[1], tilt_[2]);
-    }
     for (const ColumnInfo& column : info_.columns) {
       if (column.name == "diameter") info_.roles.radius = column.name;
       if (column.name == "ix") info_.roles.image = {"ix", "iy", "iz"};

@@ -540,13 +540,10 @@ class VtkFile final : public SingleFrame {
           [&](auto& column) {
             if constexpr (requires { column.resize(1); }) {
               auto& read = std::get<std::decay_t<decltype(column)>>(values[i]);
-              if (column.empty()) {
+              if (column.empty())
                 column = std::move(read);
-              } else {
-                const std::size_t before = column.size();
-                column.resize(before + read.size());
-                std::copy(read.begin(), read.end(), column.begin() + static_cast<std::ptrdiff_t>(before));
-              }
+              else
+                column.insert(column.end(), read.begin(), read.end());
             }
           },
           table.columns[targets[i]].values);
