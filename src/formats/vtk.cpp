@@ -425,7 +425,7 @@ struct VtkColumn {
   std::uint64_t component = 0;
 };
 
-constexpr NumberTypeName kTypeNames[] = {{"Int8", NumberType::kInt8},       {"UInt8", NumberType::kUint8},
+constexpr NumberTypeName kVtkTypeNames[] = {{"Int8", NumberType::kInt8},       {"UInt8", NumberType::kUint8},
                                          {"Int16", NumberType::kInt16},     {"UInt16", NumberType::kUint16},
                                          {"Int32", NumberType::kInt32},     {"UInt32", NumberType::kUint32},
                                          {"Int64", NumberType::kInt64},     {"UInt64", NumberType::kUint64},
@@ -496,7 +496,7 @@ class VtkFile final : public SingleFrame {
 
   void add_array(pugi::xml_node node, const std::string& name) {
     const std::string type = vtk_attribute(node, "type");
-    const std::optional<NumberType> number = number_type(kTypeNames, type);
+    const std::optional<NumberType> number = number_type(kVtkTypeNames, type);
     const std::uint64_t components = document_.integer(node, "NumberOfComponents", "1");
     if (!node) document_.fail("a piece has no <Points>");
     if (type == "String" || components == 0) return;
