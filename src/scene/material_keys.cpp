@@ -82,7 +82,7 @@ std::vector<MaterialType> make_material_types() {
           {textured("radiance", TextureUse::kRadiance, &Emitter::radiance_texture)}),
       material<Plastic>("plastic", "Plastic or paint: a clear coat over a diffuse base",
                         {required(vector("albedo", kUnit,
-                                         {"Fraction of the light which reaches the base that is scattered, per colour "
+                                         {"Fraction of the light at the base that is scattered, per colour "
                                           "channel; or a [texture](#textures)",
                                           "scene-linear"},
                                          &Plastic::albedo)),

@@ -15,7 +15,7 @@ constexpr int kMaxFrameOfFile = std::numeric_limits<int>::max();
 Key<PointsBonds> key_of_bonds() {
   Key<PointsBonds> key = boolean("",
                                  {"Draws bonds as rods between spheres that are drawn, each half with the material and "
-                                  "colour of its sphere. A table of the following keys is the same as `true`"},
+                                  "colour of its sphere. A table of the following keys implies `true`"},
                                  &PointsBonds::are_drawn);
   key.get = [](const PointsBonds& bonds) -> std::optional<Value> {
     if (!bonds.are_drawn || bonds.has_keys()) return std::nullopt;
@@ -126,7 +126,7 @@ std::vector<Key<P>> make_keys() {
               &PointsOpacity::types),
        key_of("where", ValueType::kTexts, {},
               {"Opacities of the spheres that match a [condition](data.md#selections), e.g. `[\"type == 2: 0.2\"]`. A "
-               "number alone matches all. The last that matches decides, before the other opacities"},
+               "number alone matches all. The last that matches decides, with precedence over the other opacities"},
               &PointsOpacity::where)}));
   add({text("select", {"Condition on the columns, e.g. `type == 2 && z > 0`; see [Selections](data.md#selections)"},
             &P::select),
@@ -157,8 +157,8 @@ std::vector<Key<P>> make_keys() {
        changes(Part::kAssignment,
                key_of("cryptomatte", ValueType::kTexts, {},
                       {"Columns that divide the file into objects of the CryptoObject matte: `[\"chain\"]` makes one "
-                       "of each chain, with the name of the file, a dot and the name of the chain. Several columns: "
-                       "one for each combination of their values",
+                       "for each chain, named after the file and the chain with a dot between. Several columns: one "
+                       "for each combination of their values",
                        "", "4 bytes per sphere"},
                       &P::cryptomatte)),
        boolean("skip_bad", {"Skips rows with non-finite coordinates or radii"}, &P::skip_bad),

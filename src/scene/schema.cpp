@@ -192,9 +192,9 @@ Table render_table() {
        changes(
            Part::kLook,
            boolean("caustics",
-                   {"Sample the light that reaches diffuse surfaces by way of a mirror ball or a ball of clear glass, "
-                    "from lamps and the sun. `false`: it is found by BSDF sampling, as without light sampling. Has no "
-                    "effect with `direct_lighting = \"bsdf\"`",
+                   {"Sample caustics: light from lamps and the sun that reaches diffuse surfaces via a mirror ball or "
+                    "a ball of clear glass. `false`: it is found by BSDF sampling only. Has no effect with "
+                    "`direct_lighting = \"bsdf\"`",
                     "", "2 to 4 rays per vertex on a diffuse material; none in scenes without such a ball or light"},
                    &Render::caustics)),
        choice("filter", {"box", "gaussian", "blackman-harris", "mitchell"},
@@ -220,8 +220,8 @@ Table annotation_table() {
        boolean("color_bar", {"Legend of the first points table that is coloured by a column, type or element"},
                &Annotation::color_bar),
        number("outline", {0, kWidestOutline},
-              {"Width of the outlines of objects, drawn at discontinuities of the depth. 0: none. Spheres and rods at "
-               "shutter open, seen without a lens",
+              {"Width of the outlines of objects, drawn at discontinuities of the depth. 0: none. Drawn as at shutter "
+               "open, without a lens",
                "px", "16 rays per pixel"},
               &Annotation::outline),
        file("font", kFontFile,
