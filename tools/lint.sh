@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: Apache-2.0
 # Checks the source without building it: C++ formatting (clang-format 14, as in Debian 12), scripts (shellcheck), the
-# licence line of every file, and words. Exit status: 0 no findings, 1 findings, 77 a tool is missing.
+# licence line of every file, mutants, and words. Exit status: 0 no findings, 1 findings, 77 a tool is missing.
 #
 #   tools/lint.sh           prints findings
 #   tools/lint.sh --fix     formats the C++ first
@@ -41,6 +41,8 @@ if ! awk -F '[ :]' '
     /^```/ { inside = !inside }
     inside && index($0, "-o " name ".jpg") { writes = 1 }
     END { check(); exit bad }' docs/gallery.md >&2; then status=1; fi
+# Mutants that no longer match the source would be missed until the next release.
+tools/mutants/stale.py || status=1
 # Words and phrases that the project does not use.
 tools/terms.pl || status=1
 exit "$status"

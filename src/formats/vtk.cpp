@@ -426,10 +426,10 @@ struct VtkColumn {
 };
 
 constexpr NumberTypeName kVtkTypeNames[] = {{"Int8", NumberType::kInt8},       {"UInt8", NumberType::kUint8},
-                                         {"Int16", NumberType::kInt16},     {"UInt16", NumberType::kUint16},
-                                         {"Int32", NumberType::kInt32},     {"UInt32", NumberType::kUint32},
-                                         {"Int64", NumberType::kInt64},     {"UInt64", NumberType::kUint64},
-                                         {"Float32", NumberType::kFloat32}, {"Float64", NumberType::kFloat64}};
+                                            {"Int16", NumberType::kInt16},     {"UInt16", NumberType::kUint16},
+                                            {"Int32", NumberType::kInt32},     {"UInt32", NumberType::kUint32},
+                                            {"Int64", NumberType::kInt64},     {"UInt64", NumberType::kUint64},
+                                            {"Float32", NumberType::kFloat32}, {"Float64", NumberType::kFloat64}};
 
 class VtkFile final : public SingleFrame {
  public:
