@@ -155,7 +155,7 @@ int parse_and_act(int argc, const char* const* argv) {
   const std::vector<std::string> words(argv + (argc > 0 ? 1 : 0), argv + argc);
   if (const std::string option = option_without_value(words); !option.empty())
     base::refuse(fmt::format("{} needs a value; none follows `{}=`", option, option));
-  CLI::App program("orrery is a path tracer for scenes made of spheres.", "orrery");
+  CLI::App program("orrery is a path tracer for scenes made of spheres and rods.", "orrery");
   configure(program);
   Command commands(program);
   add_commands(commands);
