@@ -161,9 +161,14 @@ void unwrap(const data::Table& table, const Rows& rows, const data::FrameInfo& i
 std::vector<Copy> copies_of(const data::FrameInfo& info, const scene::Points& points, KeyFaults& faults) {
   std::vector<Copy> out;
   if (!points.assembly.empty()) {
-    if (const data::Assembly* assembly = find_assembly(info, points.assembly, faults))
+    if (const data::Assembly* assembly = find_assembly(info, points.assembly, faults)) {
       for (const data::AssemblyPart& part : assembly->parts)
         for (const Transform& t : part.transforms) out.push_back({t, part.chains.empty() ? nullptr : &part.chains});
+      if (out.empty())
+        faults.error(".assembly", fmt::format("assembly {} of the file has no transforms, for example because it was "
+                                              "edited; leave it out to show the particles of the file",
+                                              points.assembly));
+    }
   } else {
     out.push_back({});
   }

@@ -28,7 +28,7 @@ struct Copy {
 };
 
 /// The copies of an assembly; without an assembly, a single identity copy. Reports an assembly that the file does not
-/// define, and replication without a box.
+/// define or that has no transforms, and replication without a box.
 std::vector<Copy> copies_of(const data::FrameInfo& info, const scene::Points& points, KeyFaults& faults);
 
 /// Repeats the copies in each periodic image of the box, of which there are `counts` along each edge.

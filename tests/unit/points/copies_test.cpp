@@ -186,6 +186,16 @@ TEST(PointsCopies, AnAssemblyIsFoundByName) {
             "error points[0].assembly: the file has no assembly 3; it has none\n");
 }
 
+TEST(PointsCopies, AnAssemblyWithoutTransformsIsAnError) {
+  data::FrameInfo info;
+  info.assemblies = {{"1", {{{"A"}, {}}}}};
+  KeyFaults faults("points[0]");
+  scene::Points points;
+  points.assembly = "1";
+  EXPECT_TRUE(copies_of(info, points, faults).empty());
+  EXPECT_NE(text_of(faults).find("assembly 1 of the file has no transforms"), std::string::npos);
+}
+
 TEST(PointsCopies, ReplicationNeedsABoxAndIntegers) {
   KeyFaults faults("points[0]");
   scene::Points points;
