@@ -159,6 +159,13 @@ std::string base64(std::string_view bytes) {
   return out;
 }
 
+/// The font of a drawing and a replacement, for an attribute in double quotes.
+std::string svg_font(const std::filesystem::path& font) {
+  std::string family = font.empty() ? "" : image::font_family(font);
+  std::erase_if(family, [](char c) { return c == '"' || c == '\'' || c == '\\'; });
+  return family.empty() ? "sans-serif" : fmt::format("'{}', sans-serif", xml(family));
+}
+
 Vec3d opposite(const Vec3d& ink) { return Vec3d{1, 1, 1} - ink; }
 
 }  // namespace
@@ -247,8 +254,8 @@ std::string svg(const Drawing& drawing, const std::function<Vec3d(const Vec3d&)>
   for (const image::TextLine& line : drawing.labels) body += svg_text(line, ink, contour);
   return fmt::format(
       "<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"{0}\" height=\"{1}\" viewBox=\"0 0 {0} {1}\" "
-      "font-family=\"DejaVu Sans, sans-serif\">\n{2}</svg>\n",
-      drawing.width, drawing.height, body);
+      "font-family=\"{2}\">\n{3}</svg>\n",
+      drawing.width, drawing.height, svg_font(drawing.font), body);
 }
 
 }  // namespace orrery::annotation

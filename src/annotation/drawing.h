@@ -70,6 +70,7 @@ void add_layer(const Overlay& overlay, film::Picture& picture);
 ///
 /// `shown`    converts colours to display values, 0..1
 /// `png`      the image below, with the lines; empty: a transparent background
+/// Errors     those of image::font_family()
 std::string svg(const Drawing& drawing, const std::function<Vec3d(const Vec3d&)>& shown, std::string_view png = {});
 
 }  // namespace orrery::annotation

@@ -126,9 +126,8 @@ Drawing page(const LegendColors& colors, const display::Settings& display, doubl
 Vec3d same(const Vec3d& color) { return color; }
 
 std::optional<double> number_of(std::string_view label) {
-  double value = 0;
-  if (!base::from_text(label, value) || std::isnan(value)) return {};
-  return value;
+  const auto value = base::number_of<double>(label);
+  return value && !std::isnan(*value) ? value : std::nullopt;
 }
 
 }  // namespace

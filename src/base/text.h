@@ -12,14 +12,22 @@
 
 namespace orrery::base {
 
-/// The number that is the whole text, as std::from_chars reads it; empty if it is not one.
+/// Parses a whole text as a number, as std::from_chars does: regardless of the locale.
+///
+/// `base`     of an integer; default: 10
+/// Result     false for any other text
+template <class T, class... Base>
+bool from_text(std::string_view text, T& value, Base... base) {
+  const char* const end = text.data() + text.size();
+  const auto [stop, error] = std::from_chars(text.data(), end, value, base...);
+  return error == std::errc() && stop == end;
+}
+
+/// Returns the number that is the whole text, as from_text() parses it; empty if it is none.
 template <class Number>
 std::optional<Number> number_of(std::string_view text) {
   Number number{};
-  const char* const end = text.data() + text.size();
-  const auto [stop, error] = std::from_chars(text.data(), end, number);
-  if (error != std::errc() || stop != end) return {};
-  return number;
+  return from_text(text, number) ? std::optional(number) : std::nullopt;
 }
 
 /// "1 sphere", "2 spheres".
@@ -64,17 +72,6 @@ std::string closest(std::string_view wrong, const std::vector<std::string>& cand
 
 /// Returns "did you mean `samples`?", or an empty string if no candidate is close.
 std::string did_you_mean(std::string_view wrong, const std::vector<std::string>& candidates);
-
-/// Parses a whole text as a number, as std::from_chars does: regardless of the locale.
-///
-/// `base`     of an integer; default: 10
-/// Result     false for any other text
-template <class T, class... Base>
-bool from_text(std::string_view text, T& value, Base... base) {
-  const char* const end = text.data() + text.size();
-  const auto [stop, error] = std::from_chars(text.data(), end, value, base...);
-  return error == std::errc() && stop == end;
-}
 
 /// Returns whether a list contains a name.
 bool contains(const std::vector<std::string>& names, std::string_view name);

@@ -239,7 +239,7 @@ void PlotArguments::add_look_to(Command& command) {
       ->choices(plot::style_names());
   command.add_option("--background", look_.background, "COLOR",
                      "Colour behind the spheres: white, black, grey or #rrggbb; default: that of the style");
-  command.add_flag("--transparent", options.transparent, "Transparent background, in EXR, PNG and TIFF");
+  command.add_flag("--transparent", options.transparent, "Transparent background, in EXR, PNG, TIFF and SVG");
   command
       .add_option("--quality", look_.quality, "NAME",
                   "draft (--samples 8 --denoise), good (--noise 0.1 --denoise) or final (--noise 0.02); default: good")

@@ -64,6 +64,8 @@ class Face {
 
   bool has_glyph(std::string_view character) const { return FT_Get_Char_Index(face_.get(), code_of(character)) != 0; }
 
+  std::string family() const { return face_->family_name != nullptr ? face_->family_name : ""; }
+
   /// Calls `draw(x, glyph)` for each glyph of a text, with the position of its pen.
   ///
   /// Result     the width of the text, px
@@ -128,6 +130,8 @@ void draw_text(const TextLine& line, const fs::path& font, int width, int height
       }
   });
 }
+
+std::string font_family(const fs::path& font) { return Face(font, 16).family(); }
 
 std::vector<double> text_widths(const std::vector<std::string>& lines, double size_px, const fs::path& font) {
   const Face face(font, size_px);

@@ -21,6 +21,11 @@ struct TextLine {
 /// Errors     base::Error(kMissingInput)
 std::filesystem::path font_file(const std::string& font);
 
+/// The name of a font's family, as the file gives it: "DejaVu Sans". Not checked: it may contain any characters.
+///
+/// Errors     base::Error(kBadData) if the file is not a font
+std::string font_family(const std::filesystem::path& font);
+
 /// Draws the coverage of a line of text, 0..1, over that of an image.
 ///
 /// Shape      `coverage`: width * height, row by row from the top

@@ -6,7 +6,6 @@
 #include <limits>
 #include <utility>
 
-#include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
 #include <fmt/core.h>

@@ -82,8 +82,7 @@ std::vector<std::string> precision_advice(const compile::CompiledScene& compiled
     if (light > kVisible)
       advice.push_back(
           fmt::format("precision fast: light of a lamp of radius {:g}, partly inside a sphere of radius {:g}, has an "
-                      "error of about "
-                      "{:.1g} beside it; use exact",
+                      "error of about {:.1g} beside it; use exact",
                       lamp, ground.radius, light));
     return advice;
   }

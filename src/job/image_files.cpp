@@ -28,7 +28,7 @@ namespace {
 void check_kinds(const Development& development) {
   for (const auto& output : development.outputs)
     if (!image::is_display_format(image::format_of(output)))
-      base::refuse(output.string() + " has a scene-linear format; write png, tiff, jpg or ppm");
+      base::refuse(output.string() + " has a scene-linear format; write png, tiff, jpg, ppm or svg");
   if (image::is_display_format(image::format_of(development.input)))
     base::refuse(development.input.string() + " is already display-encoded; the input must be exr or hdr");
 }

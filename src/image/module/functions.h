@@ -30,6 +30,7 @@ struct Functions {
   decltype(&image::verified_stamp) verified_stamp;
   decltype(&image::font_file) font_file;
   decltype(&image::draw_text) draw_text;
+  decltype(&image::font_family) font_family;
   decltype(&image::text_widths) text_widths;
   decltype(&image::missing_glyphs) missing_glyphs;
 };

@@ -88,6 +88,8 @@ void draw_text(const TextLine& line, const std::filesystem::path& font, int widt
   module().draw_text(line, font, width, height, coverage);
 }
 
+std::string font_family(const std::filesystem::path& font) { return module().font_family(font); }
+
 std::vector<double> text_widths(const std::vector<std::string>& lines, double size_px,
                                 const std::filesystem::path& font) {
   return module().text_widths(lines, size_px, font);

@@ -82,6 +82,13 @@ TEST(AnnotationDrawing, TextInSvgIsEscaped) {
   EXPECT_NE(text.find("text-anchor=\"middle\""), std::string::npos) << text;
 }
 
+TEST(AnnotationDrawing, SvgNamesTheFont) {
+  Drawing drawing;
+  drawing.texts = {{"a", 1, 2, 10, 0}};
+  drawing.font = image::font_file("DejaVuSansMono");
+  EXPECT_NE(svg(drawing, same).find("font-family=\"'DejaVu Sans Mono', sans-serif\""), std::string::npos);
+}
+
 TEST(AnnotationDrawing, SvgHasTheImageBelowTheText) {
   Drawing drawing;
   drawing.width = 3;
