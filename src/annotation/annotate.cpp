@@ -9,7 +9,6 @@
 
 #include <fmt/core.h>
 
-#include "annotation/legend.h"
 #include "base/error.h"
 #include "display/develop.h"
 #include "display/settings.h"
@@ -37,21 +36,6 @@ Vec3d ink_over(const scene::Background& background) {
   return background.alpha != 0 && is_plain && luminance < kDark ? Vec3d{1, 1, 1} : Vec3d{0, 0, 0};
 }
 
-/// The colours of the first coloured points table; none if there is no such table.
-std::optional<LegendColors> legend_of(const scene::Scene& scene, const std::vector<std::vector<Vec3d>>& palettes) {
-  for (std::size_t i = 0; i < scene.points.size(); ++i) {
-    scene::Points keys;
-    keys.color = scene.points[i].color;
-    keys.color_names = scene.points[i].color_names;
-    keys.palette = palettes[i];
-    LegendColors out;
-    out.add(keys);
-    out.range = scene.points[i].color_range;
-    if (!out.labels.empty() || (!out.bar.empty() && out.range)) return out;
-  }
-  return {};
-}
-
 class Layout {
  public:
   Layout(const scene::Scene& scene, View view) : scene_(scene), view_(std::move(view)) {
@@ -64,7 +48,7 @@ class Layout {
     size_ = std::max(kSmallestFont, std::round(view_.height / kFontShare));
   }
 
-  Drawing run(const std::vector<std::vector<Vec3d>>& palettes) {
+  Drawing run(const LegendColors& legend) {
     const scene::Annotation& annotation = scene_.annotation;
     const bool has_labels = std::any_of(scene_.points.begin(), scene_.points.end(),
                                         [](const scene::Points& points) { return !points.placed_labels.empty(); });
@@ -76,8 +60,7 @@ class Layout {
       add_text(title_of(annotation.title, view_.frame, step), kMargin * size_, (kMargin + 0.8) * size_, 0);
     }
     if (annotation.scale_bar && scene_.camera.width) add_scale_bar(*annotation.scale_bar);
-    if (annotation.color_bar)
-      if (const std::optional<LegendColors> legend = legend_of(scene_, palettes)) add_legend(*legend);
+    if (annotation.color_bar && !legend.is_empty()) add_legend(legend);
     for (const scene::Points& points : scene_.points)
       for (const scene::Label& label : points.placed_labels)
         if (const auto at = view_.project(label.at))
@@ -158,8 +141,22 @@ std::string title_of(const std::string& title, int frame, std::optional<double> 
   return out;
 }
 
-Drawing drawing_of(const scene::Scene& scene, const std::vector<std::vector<Vec3d>>& palettes, View view) {
-  return Layout(scene, std::move(view)).run(palettes);
+LegendColors legend_of(const scene::Scene& scene, const std::vector<std::vector<Vec3d>>& palettes) {
+  for (std::size_t i = 0; i < scene.points.size(); ++i) {
+    scene::Points keys;
+    keys.color = scene.points[i].color;
+    keys.color_names = scene.points[i].color_names;
+    keys.palette = palettes[i];
+    LegendColors out;
+    out.add(keys);
+    out.range = scene.points[i].color_range;
+    if (!out.is_empty()) return out;
+  }
+  return {};
+}
+
+Drawing drawing_of(const scene::Scene& scene, const LegendColors& legend, View view) {
+  return Layout(scene, std::move(view)).run(legend);
 }
 
 std::string missing_glyphs(const Drawing& drawing) {

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "annotation/drawing.h"
+#include "annotation/legend.h"
 #include "display/settings.h"
 #include "scene/scene.h"
 
@@ -32,12 +33,17 @@ struct View {
 /// Errors     base::Error(kBadData)
 std::string title_of(const std::string& title, int frame, std::optional<double> step);
 
-/// Lays out the annotation of a scene at a frame.
+/// The colours of a scene's first coloured points table; empty if there is no such table.
 ///
 /// `palettes` those of the points tables, linear Rec.709
+LegendColors legend_of(const scene::Scene& scene, const std::vector<std::vector<Vec3d>>& palettes);
+
+/// Lays out the annotation of a scene at a frame.
+///
+/// `legend`   colours for the scene's colour bar; empty: it has none
 /// Result     empty if the scene has no annotation
-/// Errors     base::Error: those of title_of() and image::text_width()
-Drawing drawing_of(const scene::Scene& scene, const std::vector<std::vector<Vec3d>>& palettes, View view);
+/// Errors     base::Error: those of title_of() and image::text_widths()
+Drawing drawing_of(const scene::Scene& scene, const LegendColors& legend, View view);
 
 /// The characters of all texts of a drawing for which its font has no glyphs.
 std::string missing_glyphs(const Drawing& drawing);

@@ -184,6 +184,18 @@ void place(const Drawing& part, double x, double y, Drawing& into) {
   }
 }
 
+std::vector<Box> covered_by(const Drawing& drawing) {
+  constexpr double kDescent = 0.25;  // below the baseline, in font sizes
+  std::vector<Box> out = drawing.boxes;
+  for (const Bar& bar : drawing.bars) out.push_back({bar.left, bar.top, bar.right, bar.bottom, {}});
+  for (const image::TextLine& line : drawing.texts) {
+    const double width = image::text_widths({line.text}, line.size_px, drawing.font).front();
+    const double left = line.x - line.anchor * width;
+    out.push_back({left, line.y - line.size_px, left + width, line.y + kDescent * line.size_px, {}});
+  }
+  return out;
+}
+
 Overlay draw(const Drawing& drawing, const std::function<Vec3d(const Vec3d&)>& shown) {
   Canvas canvas(drawing.width, drawing.height);
   const Vec3d ink = shown(drawing.ink);

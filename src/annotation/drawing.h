@@ -45,6 +45,11 @@ struct Drawing {
 /// Adds the boxes, bars and texts of a part to a drawing, with the part's origin at a point.
 void place(const Drawing& part, double x, double y, Drawing& into);
 
+/// Rectangles that contain the boxes, bars and texts of a drawing, one each; not its lines and labels.
+///
+/// Errors     those of image::text_widths()
+std::vector<Box> covered_by(const Drawing& drawing);
+
 /// A drawing as pixels, premultiplied by alpha.
 struct Overlay {
   int width = 0, height = 0;  ///< px

@@ -57,7 +57,7 @@ struct LegendColors {
   bool is_log = false;                              ///< the map is logarithmic
   bool has_conflict = false;                        ///< a label has different colours in different frames
 
-  bool is_empty() const { return labels.empty() && !range; }
+  bool is_empty() const { return labels.empty() && (bar.empty() || !range); }
   /// Adds the colours of a loaded frame.
   void add(const scene::Points& frame);
 };

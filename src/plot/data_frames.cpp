@@ -122,13 +122,23 @@ std::vector<int> DataFrames::distinct() const {
   return out;
 }
 
+namespace {
+
+/// Keys that read all particles, whatever is selected.
+scene::Points everything(const scene::Points& keys) {
+  scene::Points out;
+  out.file = keys.file;
+  out.component = keys.component;
+  out.material_column = keys.material_column;
+  out.radius.value = 1;
+  out.skip_bad = true;
+  return out;
+}
+
+}  // namespace
+
 double DataFrames::spacing(const scene::Points& keys) const {
-  scene::Points all_particles;
-  all_particles.file = keys.file;
-  all_particles.component = keys.component;
-  all_particles.material_column = keys.material_column;
-  all_particles.radius.value = 1;
-  all_particles.skip_bad = true;
+  const scene::Points all_particles = everything(keys);
   const auto of_frame = [&](int frame) {
     return points::median_neighbor_distance(load(frame, all_particles).points.centers);
   };
@@ -142,6 +152,12 @@ double DataFrames::spacing(const scene::Points& keys) const {
   // Frames are counted only if that is necessary: it may read the whole file.
   for (int frame = 2; distance == 0 && frame <= file_->frame_count(); ++frame) distance = of_frame(frame);
   return distance;
+}
+
+bool DataFrames::has_one_element(const scene::Points& keys) const {
+  scene::Points all_particles = everything(keys);
+  all_particles.color.element = "jmol";
+  return load(described_, all_particles).points.color_names.size() == 1;
 }
 
 std::string all_of(const std::vector<std::string>& conditions) {

@@ -83,6 +83,10 @@ class DataFrames {
   ///
   /// `keys`     the scene's keys
   double spacing(const scene::Points& keys) const;
+  /// Whether all particles of the first frame are of one element, as those of a trace of C-alpha atoms.
+  ///
+  /// Errors     as load()
+  bool has_one_element(const scene::Points& keys) const;
 
  private:
   void require_frames() const;

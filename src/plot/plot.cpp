@@ -8,6 +8,7 @@
 
 #include <fmt/core.h>
 
+#include "annotation/annotate.h"
 #include "base/error.h"
 #include "base/image_limits.h"
 #include "base/text.h"
@@ -133,7 +134,15 @@ class PlotMaker {
     const std::optional<math::Vec3d> target = target_of(axes);
     if (is_turntable_ && !extent.is_empty()) extent = orbit(axes, target.value_or(extent.center()), pole);
     const double aspect = static_cast<double>(width_) / height_;
-    scene::Camera camera = vfov_ ? extent.perspective_camera(aspect, *vfov_) : extent.camera(aspect);
+    const auto fitted = [&](const std::vector<Reserved>& reserved) {
+      return vfov_ ? extent.perspective_camera(aspect, *vfov_, reserved) : extent.camera(aspect, reserved);
+    };
+    scene::Scene scene;
+    scene.image.width = width_;
+    scene.image.height = height_;
+    scene.camera = fitted({});
+    scene.camera = fitted(reserved_by_annotation(scene.camera));
+    scene::Camera& camera = scene.camera;
     camera.up = pole;
     if (target) look_at(*target, axes, camera);
     magnify(camera, options_.zoom);
@@ -144,11 +153,10 @@ class PlotMaker {
                       is_turntable_ ? " and the whole orbit" : "",
                       options_.zoom == 1 ? "" : ", times " + number_text(options_.zoom)));
     choose_display_view();
-    scene::Scene scene;
-    scene.image.width = width_;
-    scene.image.height = height_;
-    scene.camera = camera;
     scene.annotation = annotation_of(camera);
+    if (options_.annotation.scale_bar == 0)
+      chose("scale bar " + number_text(*scene.annotation.scale_bar),
+            "in units of the file; --scale-bar 'LENGTH UNIT' changes it");
     scene.color.view = out_.view;
     scene.points = {out_.points};
     scene.rods = guides_->rods();
@@ -327,19 +335,22 @@ class PlotMaker {
     if (by.empty()) {
       const bool has_chains = !roles.chain.empty() && !options_.has_map;
       const bool is_assembly = !options_.points.assembly.empty(), has_many = info_.rows >= kManyAtoms;
-      by = is_glass                                  ? "none"
-           : !roles.rgb[0].empty()                   ? "rgb"
-           : has_chains && (is_assembly || has_many) ? roles.chain
-           : !roles.element.empty()                  ? "element"
-           : !roles.type.empty()                     ? "type"
-                                                     : "none";
+      const bool by_chain = has_chains && !is_glass && roles.rgb[0].empty() &&
+                            (is_assembly || has_many || (!roles.element.empty() && data_.has_one_element(out_.points)));
+      by = is_glass                 ? "none"
+           : !roles.rgb[0].empty()  ? "rgb"
+           : by_chain               ? roles.chain
+           : !roles.element.empty() ? "element"
+           : !roles.type.empty()    ? "type"
+                                    : "none";
       why = is_glass          ? "glass has none"
             : by == "rgb"     ? "the file's own; --color-by changes it"
             : by == "none"    ? "light grey; --color-by COLUMN shows values"
             : by == "element" ? "the file has no colours; --color-by changes it"
             : by == "type"    ? "the file has no colours; --color-by changes it"
             : is_assembly     ? "an assembly; --color-by element shows elements"
-                              : "many atoms; --color-by element shows elements";
+            : has_many        ? "many atoms; --color-by element shows elements"
+                              : "all atoms are of one element; --color-by element shows it";
       out.push_back(fmt::format("{}: {}", by == "none" ? "no colour" : "colour by " + by, why));
     }
     if (set_color(options_, by, info_, color))
@@ -349,20 +360,35 @@ class PlotMaker {
     return out;
   }
 
-  /// The annotation, with a scale bar of a suitable length.
-  scene::Annotation annotation_of(const scene::Camera& camera) {
+  /// The annotation, with paths relative to the scene. A scale bar without a length gets the largest of 1, 2 and 5
+  /// times a power of ten that takes up to a fifth of the image.
+  scene::Annotation annotation_of(const scene::Camera& camera) const {
+    constexpr double kLargestShare = 0.2;
     scene::Annotation out = options_.annotation;
     const std::filesystem::path folder = options_.scene_file.parent_path();
     if (out.font.string().find_first_of("./") != std::string::npos)
       out.font = std::filesystem::proximate(out.font, folder.empty() ? "." : folder);
-    if (out.scale_bar && *out.scale_bar == 0) {
-      // The largest of 1, 2 and 5 times a power of ten that takes up to a fifth of the image.
-      constexpr double kLargestShare = 0.2;
+    if (out.scale_bar == 0) {
       const double most = kLargestShare * camera.width.value_or(1), power = std::pow(10, std::floor(std::log10(most)));
       const double digit = std::floor(most / power);
       out.scale_bar = rounded((digit >= 5 ? 5 : digit >= 2 ? 2 : 1) * power);
-      chose("scale bar " + number_text(*out.scale_bar), "in units of the file; --scale-bar 'LENGTH UNIT' changes it");
     }
+    return out;
+  }
+
+  /// What text and bars take from the image that a camera sees.
+  std::vector<Reserved> reserved_by_annotation(const scene::Camera& camera) const {
+    constexpr double kGap = 0.01;  // between annotation and spheres, in heights of the image
+    scene::Scene scene;
+    scene.camera = camera;
+    scene.annotation = annotation_of(camera);
+    scene.points.emplace_back().step = step_;
+    const annotation::View view{width_, height_, data_.described_frame(), options_.scene_file.parent_path(), {}};
+    const double gap = kGap * height_, middle_x = width_ / 2.0, middle_y = height_ / 2.0;
+    std::vector<Reserved> out;
+    for (const annotation::Box& box : annotation::covered_by(annotation::drawing_of(scene, out_.legend, view)))
+      out.push_back({(std::max(box.left - middle_x, middle_x - box.right) - gap) / width_,
+                     (std::max(box.top - middle_y, middle_y - box.bottom) - gap) / height_});
     return out;
   }
 
@@ -427,6 +453,7 @@ class PlotMaker {
       fewest_bonds = std::min(fewest_bonds, bonds);
       most_bonds = std::max(most_bonds, bonds);
       bonds_from_ = points.bonds_from;
+      step_ = points.step;
       extent.add(points);
       guides_->surround(points);
       if (points.centers.empty()) continue;
@@ -505,7 +532,8 @@ class PlotMaker {
   std::optional<double> vfov_;  ///< degrees: a perspective camera; otherwise orthographic
   bool is_turntable_;           ///< the camera orbits around the up axis
   std::optional<Guides> guides_;
-  std::string bonds_from_;  ///< see scene::Points
+  std::string bonds_from_;      ///< see scene::Points
+  std::optional<double> step_;  ///< see scene::Points
   PlotScene out_;
 };
 

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <charconv>
 #include <cmath>
+#include <limits>
 #include <numbers>
 #include <optional>
 
@@ -19,6 +20,8 @@ namespace {
 
 /// Part of the image's width and height that stays free on each side.
 constexpr double kMargin = 0.05;
+
+constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
 std::optional<std::pair<double, double>> parse_angles(const std::string& text) {
   const std::string_view view = text;
@@ -181,28 +184,41 @@ ViewExtent ViewExtent::grown(double length) const {
   return out;
 }
 
-scene::Camera ViewExtent::camera(double aspect) const {
+double ViewExtent::image_width(double aspect, const std::vector<Reserved>& reserved) const {
+  constexpr double kSmallest = 0.25;  // of `beside` and `above`
+  const double wide = high_[0] - low_[0], high = (high_[1] - low_[1]) * aspect;
+  const double fitted = std::max(wide, high);
+  if (is_empty_ || !(fitted > 0)) return 2;  // a single point has no extent
+  double out = fitted / (1 - 2 * kMargin);
+  for (const Reserved& rectangle : reserved) {
+    const double by_width = rectangle.beside < kSmallest ? kInfinity : wide / (2 * rectangle.beside),
+                 by_height = rectangle.above < kSmallest ? kInfinity : high / (2 * rectangle.above);
+    const double needed = std::min(by_width, by_height);
+    if (needed < kInfinity) out = std::max(out, needed);
+  }
+  return out;
+}
+
+scene::Camera ViewExtent::camera(double aspect, const std::vector<Reserved>& reserved) const {
   scene::Camera camera;
   camera.projection = scene::Projection::kOrthographic;
   camera.up = axes_.up;
   camera.look_at = center();
   // Parallel rays may start anywhere in front of all spheres.
   camera.look_from = camera.look_at + axes_.back * (2 * radius());
-  const double width = std::max(high_[0] - low_[0], (high_[1] - low_[1]) * aspect);
-  // A single point has no extent.
-  camera.width = is_empty_ || !(width > 0) ? 2 : width / (1 - 2 * kMargin);
+  camera.width = image_width(aspect, reserved);
   return camera;
 }
 
-scene::Camera ViewExtent::perspective_camera(double aspect, double vfov_deg) const {
+scene::Camera ViewExtent::perspective_camera(double aspect, double vfov_deg,
+                                             const std::vector<Reserved>& reserved) const {
   scene::Camera camera;
   camera.up = axes_.up;
   camera.look_at = center();
   camera.vfov = vfov_deg;
   // The box that contains the spheres is seen if its face in front is.
-  const double half_height = std::max((high_[0] - low_[0]) / aspect, high_[1] - low_[1]) / 2;
-  const double seen = std::tan(vfov_deg / 360 * std::numbers::pi) * (1 - 2 * kMargin);  // half height at distance 1
-  const double from_face = half_height > 0 ? half_height / seen : 1 / seen;             // a single point has no extent
+  const double half_height = image_width(aspect, reserved) / aspect / 2;
+  const double from_face = half_height / std::tan(vfov_deg / 360 * std::numbers::pi);
   camera.look_from = camera.look_at + axes_.back * ((high_[2] - low_[2]) / 2 + from_face);
   return camera;
 }

@@ -3,6 +3,7 @@
 
 #include <string>
 #include <utility>
+#include <vector>
 
 #include "math/vec3.h"
 #include "scene/forward.h"
@@ -27,6 +28,13 @@ ViewAxes view_axes(const std::string& look_from, const std::string& up);
 /// Removes the spheres on the camera's side of a plane, given by axis 0, 1 or 2, and position: narrows their clip.
 void slice(std::pair<int, double> plane, const ViewAxes& axes, scene::Points& points);
 
+/// A rectangle of an image that spheres shall not reach. Spheres around the centre of the image do not reach it if they
+/// extend to less than `beside` to each side, or to less than `above` upwards and downwards.
+struct Reserved {
+  double beside = 0;  ///< in widths of the image
+  double above = 0;   ///< in heights of the image
+};
+
 /// Extent of spheres along the axes of a view.
 class ViewExtent {
  public:
@@ -45,15 +53,18 @@ class ViewExtent {
   /// Returns an orthographic camera that sees all spheres, with a margin of 5 % of the image on each side.
   ///
   /// `aspect`   image width divided by its height, as displayed
-  scene::Camera camera(double aspect) const;
+  /// `reserved` rectangles that the spheres shall not reach; one that would halve the image is ignored
+  scene::Camera camera(double aspect, const std::vector<Reserved>& reserved = {}) const;
 
   /// Returns a perspective camera in the same direction, far enough away to see all spheres with this margin.
-  scene::Camera perspective_camera(double aspect, double vfov_deg) const;
+  scene::Camera perspective_camera(double aspect, double vfov_deg, const std::vector<Reserved>& reserved = {}) const;
 
   Vec3d center() const;   ///< centre of the box along the axes
   double radius() const;  ///< radius of a sphere around center() that contains all spheres, scene units
 
  private:
+  /// The width of the image in front of the spheres.
+  double image_width(double aspect, const std::vector<Reserved>& reserved) const;
   /// Adds an interval along axis `k`.
   void add(int k, double at, double reach);
 

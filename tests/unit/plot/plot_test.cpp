@@ -10,6 +10,7 @@
 
 #include <fmt/core.h>
 
+#include "annotation/annotate.h"
 #include "base/error.h"
 #include "data/elements.h"
 #include "display/develop.h"
@@ -829,6 +830,51 @@ TEST_F(PlotPlot, ManyAtomsAreColoredByChain) {
   options.points.assembly = "1";
   make("b.pdb", assembly + text.substr(0, 81 * 2) + "END\n");
   EXPECT_TRUE(chose("colour by chain: an assembly; --color-by element shows elements")) << choices();
+}
+
+TEST_F(PlotPlot, AtomsOfOneElementAreColoredByChain) {
+  const auto atom = [](int i, char element) {
+    return fmt::format("ATOM  {:5}  CA  ALA {} {:3}    {:8.3f}{:8.3f}{:8.3f}  1.00  0.00           {}\n", i,
+                       i % 2 == 0 ? 'A' : 'B', i, i * 2.0, 0.0, 0.0, element);
+  };
+  make("a.pdb", atom(1, 'C') + atom(2, 'C') + "END\n");
+  EXPECT_TRUE(chose("colour by chain: all atoms are of one element; --color-by element shows it")) << choices();
+  EXPECT_EQ(read().points[0].palette.size(), 2u);
+  options.points.select = "element == \"C\"";  // not what is shown decides
+  make("a.pdb", atom(1, 'C') + atom(2, 'O') + "END\n");
+  EXPECT_TRUE(chose("colour by element: the file has no colours; --color-by changes it")) << choices();
+}
+
+/// The columns of a long row would reach below the colour bar.
+TEST_F(PlotPlot, SpheresAreBesideTheAnnotation) {
+  set("image={width=640,height=360}");
+  options.color_by = "mass";
+  options.look_from = "-y";
+  std::string row = "x,y,z,mass\n";
+  for (int x = 0; x < 40; ++x)
+    for (int z = 0; z < 12; ++z) row += fmt::format("{},0,{},{}\n", x, z, x);
+  make("a.csv", row);
+  const double fitted = *read().camera.width;
+  options.annotation.color_bar = true;
+  options.annotation.scale_bar = 0;
+  options.annotation.title = "frame {frame}, from the side";
+  make();
+  const scene::Scene scene = read();
+  EXPECT_GT(*scene.camera.width, fitted);
+  EXPECT_LT(*scene.camera.width, fitted * 1.3);
+  const annotation::View view{640, 360, 1, folder_.path(), {}};
+  const std::vector<annotation::Box> boxes = annotation::covered_by(
+      annotation::drawing_of(scene, annotation::legend_of(scene, {scene.points[0].palette}), view));
+  ASSERT_GT(boxes.size(), 10u);
+  const double scale = 640 / *scene.camera.width;
+  for (const Vec3d& center : scene.points[0].centers) {
+    const Vec3d at = (center - scene.camera.look_at) * scale;  // x to the right, z up
+    for (const annotation::Box& box : boxes) {
+      const double beside = std::max(box.left - (320 + at.x), 320 + at.x - box.right),
+                   above = std::max(box.top - (180 - at.z), 180 - at.z - box.bottom);
+      EXPECT_GT(std::max(beside, above), 0.5 * scale) << center.x << ' ' << center.z;
+    }
+  }
 }
 
 TEST_F(PlotPlot, APerspectiveCameraIsFitted) {

@@ -177,6 +177,37 @@ TEST(PlotView, TheCameraFitsTheSpheresWithAMargin) {
     }
 }
 
+TEST(PlotView, ReservedRectanglesStayFree) {
+  const scene::Points points = cloud();
+  const ViewAxes axes = view_axes("iso", "z");
+  ViewExtent extent(axes);
+  extent.add(points);
+  constexpr double kRounding = 1e-12;
+  for (const double aspect : {16.0 / 9, 1.0, 0.2}) {
+    const double fitted = *extent.camera(aspect).width;
+    bool is_smaller = false;
+    for (const Reserved rectangle : {Reserved{0.3, -0.4}, {-0.4, 0.3}, {0.3, 0.4}, {0.4, 0.3}, {0.44, 0.25}}) {
+      const scene::Camera camera = extent.camera(aspect, {rectangle});
+      const Reach reach = reach_of(points, camera, aspect);
+      const double beside = reach.right / 2 / rectangle.beside, above = reach.top / 2 / rectangle.above;
+      const bool is_beside = rectangle.beside > 0 && beside <= 1 + kRounding,
+                 is_above = rectangle.above > 0 && above <= 1 + kRounding;
+      EXPECT_TRUE(is_beside || is_above) << beside << ' ' << above;
+      is_smaller |= *camera.width > fitted;
+      if (*camera.width > fitted) {
+        EXPECT_NEAR(std::max(is_beside ? beside : 0, is_above ? above : 0), 1, kRounding) << "as large as possible";
+      }
+      EXPECT_GE(*camera.width, fitted);
+      const scene::Camera perspective = extent.perspective_camera(aspect, 30, {rectangle});
+      EXPECT_EQ(math::length(perspective.look_from - perspective.look_at) >
+                    math::length(extent.perspective_camera(aspect, 30).look_from - perspective.look_at),
+                *camera.width > fitted);
+    }
+    EXPECT_TRUE(is_smaller);
+    EXPECT_EQ(*extent.camera(aspect, {{0.2, 0.1}, {-0.1, -0.1}}).width, fitted) << "would leave too little";
+  }
+}
+
 TEST(PlotView, ExtentsOfFramesAreJoined) {
   const ViewAxes axes = view_axes("+z", "y");
   ViewExtent extent(axes);
