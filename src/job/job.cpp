@@ -173,7 +173,7 @@ class Run {
   void annotate(film::Picture& picture) {
     if (drawing_.is_empty()) return;
     if (drawing_.outline_px > 0)
-      if (const accel::Accel* const accel = build(); accel != nullptr)
+      if (accel::Accel* const accel = build(); accel != nullptr)
         drawing_.lines = render::outlines(compiled(), *accel, drawing_.outline_px, settings_.threads);
     const auto same = [](const math::Vec3d& color) { return color; };
     if (job_.outputs.has_exr() || is_kept()) annotation::add_layer(annotation::draw(drawing_, same), picture);

@@ -24,6 +24,10 @@ constexpr int kRays = 4;
 constexpr int kTileSide = 64;
 /// Depth of an edge, in radii of the object in front, and in pixels.
 constexpr double kEdgeRadii = 0.25, kEdgePixels = 3;
+/// Opacity from which an object hides the outlines behind it.
+constexpr float kSolid = 0.5f;
+/// Of a line of full strength.
+constexpr int kFullInk = 255;
 
 /// What a ray sees.
 struct Seen {
@@ -60,7 +64,6 @@ void trace_grid(const compile::CompiledScene& scene, const accel::Accel& accel, 
     for (int lane = 0; lane < packet.count; ++lane) {
       const int column = (begin + lane) % grid.width, row = (begin + lane) / grid.width;
       const double x = (grid.x + column + 0.5) / kRays, y = (grid.y + row + 0.5) / kRays;
-      // One key for all: which translucent objects are visible does not change from ray to ray.
       set_film_ray(camera, x, y, packet, lane);
     }
     kernel::trace(tracer, packet);
@@ -73,8 +76,10 @@ void trace_grid(const compile::CompiledScene& scene, const accel::Accel& accel, 
 
 class TileOutlines {
  public:
-  TileOutlines(const compile::CompiledScene& scene, const accel::Accel& accel, double width_px)
+  /// `strength` of the outlines of each object; null: all have full strength
+  TileOutlines(const compile::CompiledScene& scene, const accel::Accel& accel, const float* strength, double width_px)
       : scene_(scene),
+        strength_(strength),
         view_(scene.view()),
         accel_(accel),
         reach_(width_px / 2 * kRays),
@@ -83,6 +88,7 @@ class TileOutlines {
     pixel_ = std::sqrt(pixel_);
   }
 
+  /// Draws the outlines over those that `coverage` has.
   void draw(int left, int top, int right, int bottom, std::vector<float>& coverage) const {
     Grid grid{(left - border_) * kRays,
               (top - border_) * kRays,
@@ -96,13 +102,18 @@ class TileOutlines {
     std::vector<std::uint8_t> inked(grid.seen.size());
     for (int row = 0; row < grid.height; ++row)
       for (int column = 0; column < grid.width; ++column) {
-        if (column + 1 < grid.width && is_edge(grid.at(column, row), grid.at(column + 1, row)))
-          ink(grid, column + 0.5, row, inked);
-        if (row + 1 < grid.height && is_edge(grid.at(column, row), grid.at(column, row + 1)))
-          ink(grid, column, row + 0.5, inked);
+        if (column + 1 < grid.width)
+          if (const auto strength = edge(grid.at(column, row), grid.at(column + 1, row)); strength > 0)
+            ink(grid, column + 0.5, row, strength, inked);
+        if (row + 1 < grid.height)
+          if (const auto strength = edge(grid.at(column, row), grid.at(column, row + 1)); strength > 0)
+            ink(grid, column, row + 0.5, strength, inked);
       }
     for (int y = top; y < bottom; ++y)
-      for (int x = left; x < right; ++x) coverage[index(x, y, scene_.width)] = share(grid, x, y, inked);
+      for (int x = left; x < right; ++x) {
+        float& pixel = coverage[index(x, y, scene_.width)];
+        pixel = std::max(pixel, share(grid, x, y, inked));
+      }
   }
 
  private:
@@ -110,36 +121,41 @@ class TileOutlines {
     return static_cast<std::size_t>(y) * static_cast<std::size_t>(width) + static_cast<std::size_t>(x);
   }
 
-  bool is_edge(const Seen& a, const Seen& b) const {
-    if (a.id == b.id) return false;
+  /// The strength of the edge between neighbouring rays; 0: there is none.
+  std::uint8_t edge(const Seen& a, const Seen& b) const {
+    if (a.id == b.id) return 0;
     const Seen& front = a.depth <= b.depth ? a : b;
     const double jump = std::abs(a.depth - b.depth);
     // A pixel of a perspective image is as wide as the distance times its width at distance 1.
     const double pixel = scene_.camera.is_orthographic ? pixel_ : pixel_ * front.depth;
-    return jump > std::max(kEdgeRadii * radius_of(view_, front.id), kEdgePixels * pixel);
+    if (!(jump > std::max(kEdgeRadii * radius_of(view_, front.id), kEdgePixels * pixel))) return 0;
+    return static_cast<std::uint8_t>(strength_ == nullptr ? kFullInk : std::lround(kFullInk * strength_[front.id]));
   }
 
   /// Marks the rays within reach of a point between two rays.
-  void ink(const Grid& grid, double column, double row, std::vector<std::uint8_t>& inked) const {
+  void ink(const Grid& grid, double column, double row, std::uint8_t strength, std::vector<std::uint8_t>& inked) const {
     for (int y = std::max(0, static_cast<int>(std::ceil(row - reach_)));
          y <= std::min(grid.height - 1, static_cast<int>(std::floor(row + reach_))); ++y) {
       const double half = std::sqrt(reach_ * reach_ - (y - row) * (y - row));
       for (int x = std::max(0, static_cast<int>(std::ceil(column - half)));
-           x <= std::min(grid.width - 1, static_cast<int>(std::floor(column + half))); ++x)
-        inked[index(x, y, grid.width)] = 1;
+           x <= std::min(grid.width - 1, static_cast<int>(std::floor(column + half))); ++x) {
+        std::uint8_t& mark = inked[index(x, y, grid.width)];
+        mark = std::max(mark, strength);
+      }
     }
   }
 
-  /// The part of a pixel's rays that are marked.
+  /// The mean of the marks of a pixel's rays.
   float share(const Grid& grid, int x, int y, const std::vector<std::uint8_t>& inked) const {
     int count = 0;
     for (int row = 0; row < kRays; ++row)
       for (int column = 0; column < kRays; ++column)
         count += inked[index(x * kRays - grid.x + column, y * kRays - grid.y + row, grid.width)];
-    return static_cast<float>(count) / (kRays * kRays);
+    return static_cast<float>(count) / (kFullInk * kRays * kRays);
   }
 
   const compile::CompiledScene& scene_;
+  const float* strength_;
   kernel::SceneView view_;
   const accel::Accel& accel_;
   double reach_;      ///< half of the lines' width, rays
@@ -147,12 +163,9 @@ class TileOutlines {
   double pixel_ = 0;  ///< width of a pixel, scene units; of a perspective image, at distance 1
 };
 
-}  // namespace
-
-std::vector<float> outlines(const compile::CompiledScene& scene, const accel::Accel& accel, double width_px,
-                            int threads) {
-  std::vector<float> coverage(static_cast<std::size_t>(scene.width) * static_cast<std::size_t>(scene.height));
-  const TileOutlines tile_outlines(scene, accel, width_px);
+/// Draws the outlines of the objects that the accelerator has over those that `coverage` has.
+void draw_outlines(const TileOutlines& tile_outlines, const compile::CompiledScene& scene, int threads,
+                   std::vector<float>& coverage) {
   const int columns = (scene.width + kTileSide - 1) / kTileSide, rows = (scene.height + kTileSide - 1) / kTileSide;
   tbb::task_arena arena(threads);
   arena.execute([&] {
@@ -162,6 +175,26 @@ std::vector<float> outlines(const compile::CompiledScene& scene, const accel::Ac
                          coverage);
     });
   });
+}
+
+}  // namespace
+
+std::vector<float> outlines(const compile::CompiledScene& scene, accel::Accel& accel, double width_px, int threads) {
+  std::vector<float> coverage(static_cast<std::size_t>(scene.width) * static_cast<std::size_t>(scene.height));
+  const float* const opacity = scene.view().opacity;
+  if (opacity != nullptr) {
+    // Rays decide at random what is visible. For outlines, first all objects are, then the solid ones.
+    accel.set_opacity(nullptr);
+    draw_outlines({scene, accel, opacity, width_px}, scene, threads, coverage);
+    std::vector<float> solid(scene.opacity.size());
+    std::transform(scene.opacity.begin(), scene.opacity.end(), solid.begin(),
+                   [](float value) { return value < kSolid ? 0.0f : 1.0f; });
+    accel.set_opacity(solid.data());
+    draw_outlines({scene, accel, opacity, width_px}, scene, threads, coverage);
+    accel.set_opacity(opacity);
+  } else {
+    draw_outlines({scene, accel, nullptr, width_px}, scene, threads, coverage);
+  }
   return coverage;
 }
 

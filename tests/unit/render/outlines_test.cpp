@@ -7,12 +7,15 @@
 #include <cmath>
 #include <cstddef>
 #include <numbers>
+#include <utility>
 #include <vector>
 
 #include "compile/compile.h"
 #include "compile/compiled_scene.h"
 #include "render/render.h"
+#include "render/settings.h"
 #include "scene/scene.h"
+#include "support/plane_values.h"
 
 namespace orrery::render {
 namespace {
@@ -81,6 +84,47 @@ TEST(RenderOutlines, SmallSpheresThatTouchHaveNone) {
   for (int x = -40; x <= 40; ++x)
     for (int y = -40; y <= 40; ++y) many.push_back({{x * 0.1, y * 0.1, (x * 7 + y * 3) % 5 * 0.02}, 0.07});
   EXPECT_EQ(sum(lines_of(scene_of(many, 64), 2)), 0);
+}
+
+/// The densest pixel near the upper limb of a sphere, and near that of a smaller one behind it.
+std::pair<float, float> limbs(double opacity) {
+  scene::Scene scene = scene_of({{{0, 0, 0}, 1}, {{0, 0, -3}, 0.5}}, 101);
+  scene::Lambertian ghost;
+  ghost.opacity = opacity;
+  scene.materials.push_back({"ghost", ghost});
+  scene.spheres[0].material = 1;
+  const std::vector<float> lines = lines_of(scene, 2);
+  const auto densest = [&](int row) {
+    float out = 0;
+    for (int y = row - 2; y <= row + 2; ++y) out = std::max(out, lines[static_cast<std::size_t>(y * 101 + 50)]);
+    return out;
+  };
+  return {densest(25), densest(38)};
+}
+
+TEST(RenderOutlines, OfTranslucentObjectsAreAsWeakAsTheObjects) {
+  const auto [opaque, hidden] = limbs(1);
+  EXPECT_GT(opaque, 0.9f);
+  EXPECT_EQ(hidden, 0);
+  const auto [weak, behind] = limbs(0.25);
+  EXPECT_NEAR(weak, opaque / 4, 0.01);
+  EXPECT_GT(behind, 0.9f);
+  const auto [strong, hidden_by_strong] = limbs(0.75);
+  EXPECT_NEAR(strong, opaque * 0.75, 0.01);
+  EXPECT_EQ(hidden_by_strong, 0);
+}
+
+/// The image after the outlines has the scene's opacities.
+TEST(RenderOutlines, LeaveTheOpacities) {
+  scene::Scene scene = scene_of({{{0, 0, 0}, 1}}, 20);
+  scene::Lambertian ghost;
+  ghost.opacity = 0.3;
+  scene.materials = {{"ghost", ghost}};
+  const compile::CompiledScene compiled = compile::compile(scene);
+  const auto used = build(compiled, 1), fresh = build(compiled, 1);
+  outlines(compiled, *used, 2, 1);
+  EXPECT_EQ(test::plane_values(render(compiled, *used, {}).picture),
+            test::plane_values(render(compiled, *fresh, {}).picture));
 }
 
 }  // namespace
