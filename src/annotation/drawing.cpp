@@ -168,6 +168,16 @@ std::string svg_font(const std::filesystem::path& font) {
 
 Vec3d opposite(const Vec3d& ink) { return Vec3d{1, 1, 1} - ink; }
 
+/// Puts a pixel of an overlay over the codes of a pixel, which are R, G, B and, if it has alpha, A.
+template <class Code>
+void blend_pixel(const float* over, double largest, bool has_alpha, Code* pixel) {
+  if (!(over[3] > 0)) return;
+  const auto code = [&](double v) { return static_cast<Code>(std::lround(std::clamp(v, 0.0, 1.0) * largest)); };
+  const double below = (has_alpha ? pixel[3] / largest : 1) * (1 - over[3]), alpha = below + over[3];
+  for (std::size_t c = 0; c < 3; ++c) pixel[c] = code((pixel[c] / largest * below + over[c]) / alpha);
+  if (has_alpha) pixel[3] = code(alpha);
+}
+
 }  // namespace
 
 void place(const Drawing& part, double x, double y, Drawing& into) {
@@ -230,17 +240,14 @@ std::string stamped(const std::string& stamp, const Drawing& drawing) {
 void blend(const Overlay& overlay, film::EncodedPicture& picture) {
   const auto channels = static_cast<std::size_t>(picture.channels);
   const double largest = picture.bits == 8 ? 255 : 65535;
-  const auto code = [&](double v) {
-    return static_cast<std::uint16_t>(std::lround(std::clamp(v, 0.0, 1.0) * largest));
-  };
-  for (std::size_t i = 0; i < overlay.rgba.size() / 4; ++i) {
-    const float* const over = &overlay.rgba[4 * i];
-    std::uint16_t* const pixel = &picture.values[channels * i];
-    if (!(over[3] > 0)) continue;
-    const double below = (channels == 4 ? pixel[3] / largest : 1) * (1 - over[3]), alpha = below + over[3];
-    for (std::size_t c = 0; c < 3; ++c) pixel[c] = code((pixel[c] / largest * below + over[c]) / alpha);
-    if (channels == 4) pixel[3] = code(alpha);
-  }
+  for (std::size_t i = 0; i < overlay.rgba.size() / 4; ++i)
+    blend_pixel(&overlay.rgba[4 * i], largest, channels == 4, &picture.values[channels * i]);
+}
+
+void blend(const Overlay& overlay, int x, int y, std::span<std::uint8_t> rgb) {
+  const auto first =
+      static_cast<std::size_t>(y) * static_cast<std::size_t>(overlay.width) + static_cast<std::size_t>(x);
+  for (std::size_t i = 0; i < rgb.size() / 3; ++i) blend_pixel(&overlay.rgba[4 * (first + i)], 255, false, &rgb[3 * i]);
 }
 
 void add_layer(const Overlay& overlay, film::Picture& picture) {

@@ -1,8 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <cstdint>
 #include <filesystem>
 #include <functional>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -67,6 +69,9 @@ std::string stamped(const std::string& stamp, const Drawing& drawing);
 
 /// Puts an overlay of display values, 0..1, over an image of the same size. Keeps alpha unassociated.
 void blend(const Overlay& overlay, film::EncodedPicture& picture);
+
+/// Puts a part of one of its rows, from pixel `x` of row `y` on, over 8-bit RGB.
+void blend(const Overlay& overlay, int x, int y, std::span<std::uint8_t> rgb);
 
 /// Adds a scene-linear overlay to an image as the layer `annotation`.
 void add_layer(const Overlay& overlay, film::Picture& picture);

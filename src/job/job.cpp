@@ -204,6 +204,7 @@ class Run {
     settings_.on_progress = job_.hooks.on_progress;
     settings_.on_pixels = job_.hooks.on_pixels;
     settings_.cancel = job_.hooks.cancel;
+    if (is_kept()) job_.keep->drawing = drawing_;
     if (job_.hooks.on_start && !is_merge())
       job_.hooks.on_start({job_.scene.file.filename().string(), compiled().width, compiled().height,
                            compiled().pixel_aspect, loaded().display});

@@ -81,8 +81,10 @@ struct Job {
   std::shared_ptr<base::FileSet> files = nullptr;
   /// The scene of an earlier job, of which this job prepares only what has changed; null: nothing is kept.
   std::shared_ptr<PreparedScene> prepared = nullptr;
-  Rendering* keep = nullptr;  ///< receives the image and all layers of the scene; no file is written
-  double prepare_s = 0;       ///< time taken to create the scene, for the report
+  /// Receives the image and all layers of the scene; before `on_start`, what is drawn over the image, without outlines.
+  /// No file is written.
+  Rendering* keep = nullptr;
+  double prepare_s = 0;  ///< time taken to create the scene, for the report
 };
 
 /// True if the scene's sample count limits adaptive sampling, because an override sets it.

@@ -5,10 +5,14 @@
 #include <cmath>
 #include <exception>
 #include <new>
+#include <optional>
+#include <span>
 #include <utility>
 
 #include <fmt/core.h>
 
+#include "annotation/annotate.h"
+#include "annotation/drawing.h"
 #include "base/error.h"
 #include "base/stop_point.h"
 #include "base/stopwatch.h"
@@ -46,14 +50,17 @@ double pixels_of(int width, int height) { return static_cast<double>(width) * st
 
 /// An image that is being rendered, and its development so far.
 struct Viewer::Live {
-  explicit Live(const display::PictureInfo& info)
+  Live(const display::PictureInfo& info, const annotation::Drawing& drawing)
       : canvas(info.width, info.height),
         develop(info.display),
-        codes(3 * static_cast<std::size_t>(info.width) * static_cast<std::size_t>(info.height)) {}
+        codes(3 * static_cast<std::size_t>(info.width) * static_cast<std::size_t>(info.height)) {
+    if (!drawing.is_empty()) overlay = annotation::draw(drawing, annotation::shown_by(info.display));
+  }
 
   preview::Canvas canvas;
   display::PixelDeveloper develop;
-  std::mutex mutex;  // guards what follows
+  std::optional<annotation::Overlay> overlay;  ///< without outlines, which are found when the image is complete
+  std::mutex mutex;                            // guards what follows
   std::vector<std::uint8_t> codes;
   Clock::time_point next = Clock::now();
   std::atomic<double> samples{0};  ///< per pixel
@@ -147,9 +154,11 @@ void Viewer::refresh(Live& live) {
   for (const std::size_t index : cells) {
     const preview::Cell cell = live.canvas.cell(index);
     for (int y = cell.y; y < cell.y + cell.height; ++y) {
+      const std::span codes(&live.codes[static_cast<std::size_t>(y) * row_codes + 3 * static_cast<std::size_t>(cell.x)],
+                            3 * static_cast<std::size_t>(cell.width));
       live.canvas.read(cell.x, y, cell.width, rgb.data());
-      live.develop(rgb.data(), static_cast<std::size_t>(cell.width),
-                   &live.codes[static_cast<std::size_t>(y) * row_codes + 3 * static_cast<std::size_t>(cell.x)]);
+      live.develop(rgb.data(), static_cast<std::size_t>(cell.width), codes.data());
+      if (live.overlay) annotation::blend(*live.overlay, cell.x, y, codes);
     }
   }
   Frame frame;
@@ -224,6 +233,7 @@ struct Viewer::Image {
   std::uint64_t wish = 0;  ///< its number
   bool moves = false;
   std::vector<std::string> warnings = {};
+  std::shared_ptr<job::Rendering> rendering = std::make_shared<job::Rendering>();
   std::shared_ptr<Live> live = nullptr;  ///< null for a moving image
   double build_reported = -1;            ///< fraction of the BVH build that the state tells; negative: none
 };
@@ -254,16 +264,15 @@ void Viewer::render(const Wish& wish, std::uint64_t number) {
     job.denoise = false;
   }
   picker_.close(job.scene, std::exchange(is_new_subject_, false));
-  const auto rendering = std::make_shared<job::Rendering>();
   job.prepared = prepared_;
   job.hooks = hooks_for(image);
-  job.keep = rendering.get();
+  job.keep = image.rendering.get();
   const base::Stopwatch watch;
   job::run_job(job);
   picker_.open();
-  finish(image, rendering);
+  finish(image);
   if (image.moves)
-    pixels_per_second_ = pixels_of(rendering->picture.width, rendering->picture.height) / watch.seconds();
+    pixels_per_second_ = pixels_of(image.rendering->picture.width, image.rendering->picture.height) / watch.seconds();
 }
 
 job::Hooks Viewer::hooks_for(Image& image) {
@@ -293,7 +302,7 @@ job::Hooks Viewer::hooks_for(Image& image) {
 /// Tells clients about an image whose scene has been read.
 void Viewer::begin(Image& image, const display::PictureInfo& info) {
   if (!image.moves) {
-    image.live = std::make_shared<Live>(info);
+    image.live = std::make_shared<Live>(info, image.rendering->drawing);
     image.live->wish = image.wish;
   }
   const scene::Scene& scene = prepared_->loaded().read.scene;
@@ -313,12 +322,12 @@ void Viewer::begin(Image& image, const display::PictureInfo& info) {
 }
 
 /// Publishes a finished image.
-void Viewer::finish(Image& image, std::shared_ptr<const job::Rendering> rendering) {
+void Viewer::finish(Image& image) {
+  const job::Rendering& rendering = *image.rendering;
   const film::EncodedPicture picture =
-      job::develop_annotated(rendering->picture, image.moves ? nullptr : &rendering->drawing, rendering->display, 8,
-                             display::Alpha::kOverBlack);
+      job::develop_annotated(rendering.picture, &rendering.drawing, rendering.display, 8, display::Alpha::kOverBlack);
   const std::vector<std::uint8_t> codes(picture.values.begin(), picture.values.end());
-  const render::Statistics& statistics = rendering->report.render;
+  const render::Statistics& statistics = rendering.report.render;
   Frame frame;
   frame.width = picture.width;
   frame.height = picture.height;
@@ -332,7 +341,7 @@ void Viewer::finish(Image& image, std::shared_ptr<const job::Rendering> renderin
                   : preview::encode_png({picture.width, picture.height, codes}));
   const std::lock_guard lock(mutex_);
   live_ = nullptr;
-  if (!image.moves) finished_ = std::move(rendering);
+  if (!image.moves) finished_ = image.rendering;
   frame.number = frame_.number + 1;
   frame_ = std::move(frame);
   state_.warnings = std::move(image.warnings);  // more may have come while it was rendered

@@ -107,7 +107,7 @@ class Viewer {
   void render(const Wish& wish, std::uint64_t number);
   job::Hooks hooks_for(Image& image);
   void begin(Image& image, const display::PictureInfo& info);
-  void finish(Image& image, std::shared_ptr<const job::Rendering> rendering);
+  void finish(Image& image);
   void announce();
   void set_activity(const std::string& activity);
   void set_served(std::uint64_t wish, const std::string& problem);

@@ -18,8 +18,10 @@
 
 #include "base/error.h"
 #include "film/picture.h"
+#include "image/read.h"
 #include "job/job.h"
 #include "support/peak_memory.h"
+#include "support/temp_dir.h"
 
 namespace orrery::view {
 namespace {
@@ -269,6 +271,41 @@ TEST(ViewViewer, ARenderThatIsNotWantedAnyMoreStops) {
   viewer.ask({{{"--samples", "100000000"}}, {}, false});
   viewer.frame(viewer.frame(0, 0ms).number, 60s);
   // The destructor also stops it.
+}
+
+/// The darkest value at the upper left of an image, where only the sky is, and the title.
+float darkest_at_title(const Frame& frame) {
+  const support::TempDir folder;
+  const std::filesystem::path file = folder / (frame.type == "image/png" ? "frame.png" : "frame.jpg");
+  support::write_bytes(file, *frame.bytes);
+  float out = 1;
+  image::read_map(
+      file,
+      [&](int row, const float* rgb) {
+        for (int i = 0; i < 3 * 24 && row < 12; ++i) out = std::min(out, rgb[i]);
+      },
+      image::MapFormats::kAll);
+  return out;
+}
+
+TEST(ViewViewer, TextIsDrawnOverEveryImage) {
+  const Wish plain{{{"--samples", "100000000"}}, {}, false};
+  Wish titled = plain;
+  titled.options["--set"] = "annotation.title=MMMM";
+  Viewer viewer(subject_of, {}, titled);
+  const Frame live = viewer.frame(0, 60s);
+  EXPECT_FALSE(live.is_finished);
+  EXPECT_LT(darkest_at_title(live), 0.3f);
+  titled.camera = camera_at(0.1);
+  titled.moves = true;
+  const auto first_of = [&](const Wish& wish) {
+    const std::uint64_t number = viewer.ask(wish);
+    Frame frame = viewer.frame(live.number, 60s);
+    while (frame.wish != number) frame = viewer.frame(frame.number, 60s);
+    return frame;
+  };
+  EXPECT_LT(darkest_at_title(first_of(titled)), 0.3f);
+  EXPECT_GT(darkest_at_title(first_of(plain)), 0.4f);
 }
 
 TEST(ViewViewer, LinesOfAControlAreSeparateSettings) {
