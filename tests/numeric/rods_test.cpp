@@ -34,11 +34,10 @@ using kernel::Rod;
 constexpr double kUndecided = 1e-15;
 
 // The bounds that docs/numerics.md states.
-constexpr double kRodPointBound = 7e-16;  ///< |point - true point| x cos(incidence), in radii
-constexpr double kRodDistanceBound =
-    6.5e-16;                                  ///< |t - true t| x cos(incidence), relative to the larger of t and radius
+constexpr double kRodPointBound = 8e-16;      ///< |point - true point| x cos(incidence), in radii
+constexpr double kRodDistanceBound = 8e-16;   ///< |t - true t| x cos(incidence), relative to the larger of t and radius
 constexpr double kRodSurfaceBound = 4.5e-16;  ///< distance of the point from the rod's surface, in radii
-constexpr double kRodNormalBound = 5e-16;     ///< |normal - true normal| x cos(incidence)
+constexpr double kRodNormalBound = 6e-16;     ///< |normal - true normal| x cos(incidence)
 
 int rods_per_regime(int otherwise) {
   const char* wanted = std::getenv("ORRERY_NUMERIC_RAYS");
