@@ -128,7 +128,9 @@ class Run {
     choose_layers();
     for (const auto& manifest : manifest_files(layers_.mattes, job_.outputs)) base::check_creatable(manifest);
     provenance_ = provenance_of(job_, loaded().read, compiled(), prepared_->hashes(), layers_);
-    drawing_ = annotation::drawing_of(scene(), annotation::legend_of(scene(), loaded().palettes), annotated_view());
+    annotation::LegendColors legend;
+    if (scene().annotation.color_bar) legend = annotation::legend_of(scene(), loaded().palettes);
+    drawing_ = annotation::drawing_of(scene(), legend, annotated_view());
     if (const std::string missing = annotation::missing_glyphs(drawing_); !missing.empty())
       warn(base::file_diagnostic(base::Severity::kWarning, job_.scene.file.string(),
                                  fmt::format("the font {} has no glyphs for `{}`", drawing_.font.string(), missing),

@@ -32,7 +32,10 @@ class AnnotationAnnotate : public testing::Test {
     view.height = 320;
     view.project = [](const Vec3d& at) { return std::pair{at.x, at.y}; };
   }
-  Drawing drawing() { return drawing_of(scene, legend_of(scene, palettes), view); }
+  Drawing drawing() {
+    palettes.resize(scene.points.size());
+    return drawing_of(scene, legend_of(scene, palettes), view);
+  }
   /// The line with a text.
   image::TextLine line(const std::string& text) {
     const Drawing all = drawing();
