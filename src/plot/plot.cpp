@@ -322,6 +322,15 @@ class PlotMaker {
           base::joined(from));
   }
 
+  /// The number of particles that the first frame shows.
+  std::uint64_t shown_count() const {
+    if (selection().empty()) return info_.rows;
+    scene::Points keys = out_.points;
+    keys.radius = {};
+    keys.radius.value = 1;  // any: the radius is chosen later
+    return data_.load(data_.described_frame(), keys).points.particle_count();
+  }
+
   /// Result     the choices, to be printed after those of the radius
   std::vector<std::string> choose_color() {
     scene::PointsColor& color = out_.points.color;
@@ -334,7 +343,7 @@ class PlotMaker {
       base::refuse(fmt::format("--color-by {} has no effect: glass has no colour; use another --material", by));
     if (by.empty()) {
       const bool has_chains = !roles.chain.empty() && !options_.has_map;
-      const bool is_assembly = !options_.points.assembly.empty(), has_many = info_.rows >= kManyAtoms;
+      const bool is_assembly = !options_.points.assembly.empty(), has_many = has_chains && shown_count() >= kManyAtoms;
       const bool by_chain = has_chains && !is_glass && roles.rgb[0].empty() &&
                             (is_assembly || has_many || (!roles.element.empty() && data_.has_one_element(out_.points)));
       by = is_glass                 ? "none"
