@@ -36,6 +36,10 @@ for name in "${names[@]}"; do
     exit 2
   fi
   (cd "$work/$name" && bash -euo pipefail "$work/$name.sh")
+  if [ -f "$work/$name/$name.gif" ]; then
+    cp "$work/$name/$name.gif" "$root/docs/gallery/"
+    continue
+  fi
   # Less detail than orrery writes, for pages that load quickly.
   # Attributes hold the command with its paths.
   oiiotool --nosoftwareattrib "$work/$name/$name.jpg" --eraseattrib ".*" --compression jpeg:70 \

@@ -35,11 +35,11 @@ if grep -nE '[|] *(head|grep -[a-zA-Z]*q)\b' "${scripts[@]}"; then
 fi
 # tools/gallery.sh runs the commands of each image of the gallery, and expects them to write it.
 if ! awk -F '[ :]' '
-    function check() { if (name != "" && !(shows && writes)) { print FILENAME ": " name ": " (shows ? "no command writes" : "the page does not show") " " name ".jpg"; bad = 1 } }
+    function check() { if (name != "" && !(shows && writes)) { print FILENAME ": " name ": " (shows ? "no command writes" : "the page does not show") " it"; bad = 1 } }
     /^## / { check(); name = $2; shows = writes = 0 }
-    index($0, "](gallery/" name ".jpg)") { shows = 1 }
+    index($0, "](gallery/" name ".jpg)") || index($0, "](gallery/" name ".gif)") { shows = 1 }
     /^```/ { inside = !inside }
-    inside && index($0, "-o " name ".jpg") { writes = 1 }
+    inside && (index($0, "-o " name ".jpg") || index($0, "-o " name ".gif")) { writes = 1 }
     END { check(); exit bad }' docs/gallery.md >&2; then status=1; fi
 # Mutants that no longer match the source would be missed until the next release.
 tools/mutants/stale.py || status=1

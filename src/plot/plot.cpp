@@ -342,7 +342,7 @@ class PlotMaker {
     if (is_glass && !by.empty() && by != "none")
       base::refuse(fmt::format("--color-by {} has no effect: glass has no colour; use another --material", by));
     if (by.empty()) {
-      const bool has_chains = !roles.chain.empty() && !options_.has_map;
+      const bool has_chains = !roles.chain.empty();
       const bool is_assembly = !options_.points.assembly.empty(), has_many = has_chains && shown_count() >= kManyAtoms;
       const bool by_chain = has_chains && !is_glass && roles.rgb[0].empty() &&
                             (is_assembly || has_many || (!roles.element.empty() && data_.has_one_element(out_.points)));

@@ -818,6 +818,12 @@ TEST_F(PlotPlot, ManyAtomsAreColoredByChain) {
   EXPECT_TRUE(chose("colour by chain: many atoms; --color-by element shows elements")) << choices();
   EXPECT_EQ(read().points[0].color.map, "tab10");
   EXPECT_EQ(read().points[0].palette.size(), 2u);
+  options.has_map = true;
+  options.points.color.map = "set2";
+  make();
+  EXPECT_EQ(read().points[0].palette.size(), 2u) << "with any map";
+  options.has_map = false;
+  options.points.color.map = {};
   options.points.select = "residue_number < 10";  // few of them are shown
   make("few.pdb", text + "ATOM   5000  O   ALA A 999      90.000  90.000  90.000  1.00  0.00           O\nEND\n");
   EXPECT_TRUE(chose("colour by element: the file has no colours; --color-by changes it")) << choices();
