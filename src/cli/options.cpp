@@ -10,8 +10,8 @@
 #include "base/frames.h"
 #include "base/text.h"
 #include "display/settings.h"
-#include "format/read_scene.h"
 #include "job/job.h"
+#include "load/read_scene.h"
 #include "scene/limits.h"
 
 namespace orrery::cli {
@@ -40,17 +40,17 @@ void SceneOptions::add_to(Command& command, Short forms) {
   short_forms_.back().flag->may_be_empty();
 }
 
-format::Overrides SceneOptions::overrides() const {
-  format::Overrides out, set;
+load::Overrides SceneOptions::overrides() const {
+  load::Overrides out, set;
   for (const std::string& setting : set_) set.add(setting);
   for (const ShortForm& option : short_forms_) {
     if (option.flag->count() == 0) continue;
-    for (const format::Override& other : set)
+    for (const load::Override& other : set)
       if (other.sets(option.key))
         base::refuse(fmt::format("{} and --set {} set the same key; omit one of them", option.name, other.typed));
     out.add_option(option.name, option.key, option.value, option.is_list);
   }
-  for (const format::Override& other : set) out.add(other);
+  for (const load::Override& other : set) out.add(other);
   return out;
 }
 
@@ -59,7 +59,7 @@ void SceneOptions::add_frame_to(Command& command) {
 }
 
 int SceneOptions::frame() const {
-  if (frame_.empty()) return format::kFirstFrame;
+  if (frame_.empty()) return load::kFirstFrame;
   const std::vector<int> frames = base::parse_frames(frame_);
   if (frames.size() != 1)
     base::refuse(fmt::format("--frame {} selects {} frames, but this command takes one; orrery check takes several",

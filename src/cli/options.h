@@ -9,8 +9,8 @@
 
 #include "cli/arguments.h"
 #include "display/forward.h"
-#include "format/overrides.h"
 #include "job/forward.h"
+#include "load/overrides.h"
 
 namespace orrery::cli {
 
@@ -39,7 +39,7 @@ class SceneOptions {
   void set(const std::string& setting) { set_.push_back(setting); }
 
   /// All overrides, short forms first, so that --set wins.
-  format::Overrides overrides() const;
+  load::Overrides overrides() const;
 
   /// Adds --frame, for a command that uses one frame.
   void add_frame_to(Command& command);

@@ -19,13 +19,13 @@
 #include "cli/plot_options.h"
 #include "cli/render_options.h"
 #include "cli/signals.h"
-#include "format/write_scene.h"
 #include "image/library.h"
 #include "job/check_job.h"
 #include "job/job.h"
 #include "job/statistics.h"
 #include "load/load_scene.h"
 #include "load/scene_files.h"
+#include "load/write_scene.h"
 #include "plot/plot.h"
 #include "preview/preview.h"
 
@@ -127,7 +127,7 @@ void check_outputs(const PlotCommand& arguments) {
     files.add_output(output.path, output.role);
     base::check_creatable(output.path);
   }
-  if (!arguments.save_scene.empty() && !arguments.force) format::check_unedited(arguments.save_scene);
+  if (!arguments.save_scene.empty() && !arguments.force) load::check_unedited(arguments.save_scene);
   if (const std::filesystem::path stats = statistics_of(arguments); !stats.empty()) {
     files.add_output(stats, "--stats");
     base::check_creatable(stats);
@@ -177,7 +177,7 @@ int run_plot(PlotCommand& arguments) {
   const plot::PlotScene made = prepare(arguments);
   print_choices(made, arguments);
   const auto text =
-      std::make_shared<const std::string>(saves ? format::marked_text(plot::saved_text(plot, made)) : made.text);
+      std::make_shared<const std::string>(saves ? load::marked_text(plot::saved_text(plot, made)) : made.text);
   show(made, text, job);
   job.scene.open_data = made.open_data;
   if (!saves) job.scene.typed_lines = 0;

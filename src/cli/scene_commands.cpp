@@ -14,11 +14,11 @@
 #include "cli/commands.h"
 #include "cli/messages.h"
 #include "cli/options.h"
-#include "format/read_scene.h"
 #include "info/data_info.h"
 #include "info/info.h"
 #include "job/prepared_scene.h"
 #include "load/load_scene.h"
+#include "load/read_scene.h"
 
 namespace orrery::cli {
 namespace {
@@ -52,7 +52,7 @@ int data_info(const InfoOptions& options) {
   constexpr const char* kKind = "data file; the option applies to scenes, which are *.toml";
   refuse_option(options.settings, "--settings", options, kKind);
   refuse_option(options.measure, "--measure", options, kKind);
-  for (const format::Override& override : options.overrides.overrides())
+  for (const load::Override& override : options.overrides.overrides())
     refuse_option(true, override.option, options, kKind);
   info::DataInfoRequest request;
   request.file = options.file;
@@ -134,7 +134,7 @@ class FrameChecks {
 /// Checks all scenes, even if some have errors. Returns the largest exit status.
 int check(const CheckOptions& options) {
   const std::vector<int> frames =
-      options.frames.empty() ? std::vector<int>{format::kFirstFrame} : base::parse_frames(options.frames);
+      options.frames.empty() ? std::vector<int>{load::kFirstFrame} : base::parse_frames(options.frames);
   int status = 0;
   for (const auto& scene : options.scenes) {
     load::SceneRequest request;

@@ -9,11 +9,11 @@
 #include "base/file_name.h"
 #include "base/file_set.h"
 #include "film/picture.h"
-#include "format/write_scene.h"
 #include "generate/generate.h"
 #include "image/format.h"
 #include "image/header.h"
 #include "image/write.h"
+#include "load/write_scene.h"
 #include "scene/schema.h"
 
 namespace orrery::generate {
@@ -69,7 +69,7 @@ void check(const std::filesystem::path& file, bool has_points, bool force) {
     base::refuse(fmt::format("{}: .ply is the extension of the points file; name the scene, e.g. {}", file.string(),
                              std::filesystem::path(file).replace_extension(".toml").string()));
   base::check_creatable(file);
-  if (!force) format::check_unedited(file);
+  if (!force) load::check_unedited(file);
   if (!has_points) return;
   const std::filesystem::path points = file.parent_path() / points_file_of(file);
   base::FileSet files;
@@ -77,7 +77,7 @@ void check(const std::filesystem::path& file, bool has_points, bool force) {
   files.add_output(points, "points file");
   base::check_creatable(points);
   std::error_code ignored;
-  if (std::filesystem::exists(points, ignored) && !format::is_ply_of(format::kPlyWriter, points))
+  if (std::filesystem::exists(points, ignored) && !load::is_ply_of(load::kPlyWriter, points))
     throw base::Error(
         base::ErrorKind::kCannotCreate,
         fmt::format(
@@ -109,13 +109,12 @@ void write_environment(const film::Picture& picture, const std::string& command,
 
 void generate_final(const FinalScene& options, const std::filesystem::path& file, bool force) {
   check(file, options.grid > kLargestWrittenGrid, force);
-  format::write_scene(make_final_scene(options, points_file_of(file)), comment(options, file.filename().string()),
-                      file);
+  load::write_scene(make_final_scene(options, points_file_of(file)), comment(options, file.filename().string()), file);
 }
 
 void generate_cloud(const Cloud& options, const std::filesystem::path& file, bool force) {
   check(file, true, force);
-  format::write_scene(make_cloud(options, points_file_of(file)), comment(options, file.filename().string()), file);
+  load::write_scene(make_cloud(options, points_file_of(file)), comment(options, file.filename().string()), file);
 }
 
 void generate_studio(int width, const std::filesystem::path& file) {

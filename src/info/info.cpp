@@ -15,7 +15,6 @@
 #include "compile/emitters.h"
 #include "compile/environment.h"
 #include "film/layer_film.h"
-#include "format/read_scene.h"
 #include "job/layers.h"
 #include "job/prepared_scene.h"
 #include "job/report_text.h"
@@ -23,6 +22,7 @@
 #include "kernel/lights.h"
 #include "load/load_images.h"
 #include "load/load_scene.h"
+#include "load/read_scene.h"
 #include "scene/layers.h"
 #include "scene/schema.h"
 #include "scene/texture.h"
@@ -236,7 +236,7 @@ SceneInfo scene_info(const load::SceneRequest& request, job::PreparedScene& prep
   load::SceneRequest with_any_background = request;
   with_any_background.skips_large_background = true;
   const load::LoadedScene& loaded = prepared.load(with_any_background);
-  const format::ReadResult& read = loaded.read;
+  const load::ReadResult& read = loaded.read;
   const compile::CompiledScene& compiled = prepared.compile(request.memory_limit);
   const film::LayerRequest layers = job::choose_layers(read.scene, compiled).request;
   SceneInfo info;
@@ -274,7 +274,7 @@ SceneInfo scene_info(const load::SceneRequest& request, job::PreparedScene& prep
   info.available_layers = scene::available_layers(read.scene);
   info.features = features_of(compiled, layers.any());
   info.settings = read.settings;
-  for (const format::Setting& s : read.settings) {
+  for (const load::Setting& s : read.settings) {
     if (s.key == "render.precision") info.precision = scene::unquoted(s.value);
     if (s.key == "render.accelerator") info.accelerator = scene::unquoted(s.value);
   }
@@ -350,13 +350,13 @@ std::string info_text(const SceneInfo& info) {
 
 std::string settings_text(const SceneInfo& info) {
   std::string out;
-  for (const format::Setting& s : info.settings) out += fmt::format("{:26} {:24} {}\n", s.key, s.value, s.origin);
+  for (const load::Setting& s : info.settings) out += fmt::format("{:26} {:24} {}\n", s.key, s.value, s.origin);
   return out;
 }
 
 std::string info_json(const SceneInfo& info) {
   json settings = json::array(), materials = json::object(), warnings = json::array(), background, bounds, radius;
-  for (const format::Setting& s : info.settings)
+  for (const load::Setting& s : info.settings)
     settings.push_back({{"key", s.key}, {"value", s.value}, {"origin", s.origin}});
   for (const auto& [name, count] : info.materials) materials[name] = count;
   for (const base::Diagnostic& w : info.warnings)

@@ -10,11 +10,11 @@
 
 #include "base/error.h"
 #include "compile/forward.h"
-#include "format/read_scene.h"
 #include "job/forward.h"
 #include "job/resources.h"
 #include "load/load_images.h"
 #include "load/load_scene.h"
+#include "load/read_scene.h"
 
 namespace orrery::info {
 
@@ -65,7 +65,7 @@ struct SceneInfo {
   std::optional<load::LoadedBackground> background;  ///< set for an image background
   std::string background_file;
   std::vector<TextureInfo> textures;
-  std::vector<format::Setting> settings;
+  std::vector<load::Setting> settings;
   std::vector<base::Diagnostic> warnings;
 };
 

@@ -52,7 +52,7 @@ void add_readable_files(const load::SceneSource& scene, const std::vector<int>& 
 std::vector<Job> jobs_of(const Batch& batch) {
   Job common = batch.job;
   for (const fs::path* name : names_of(common)) check_name(batch, name->string());
-  const std::vector<int> frames = batch.frames.empty() ? std::vector<int>{load::SceneSource().frame} : batch.frames;
+  const std::vector<int> frames = batch.frames.empty() ? std::vector<int>{load::kFirstFrame} : batch.frames;
   std::vector<Job> jobs;
   common.files = std::make_shared<base::FileSet>();
   if (frames.size() > 1) common.prepared = std::make_shared<PreparedScene>(true);

@@ -19,7 +19,6 @@
 #include "display/settings.h"
 #include "film/layer_film.h"
 #include "film/partial.h"
-#include "format/read_scene.h"
 #include "image/partial_file.h"
 #include "image/read.h"
 #include "job/job.h"
@@ -27,6 +26,7 @@
 #include "job/picture_header.h"
 #include "job/scene_hash.h"
 #include "job/version.h"
+#include "load/read_scene.h"
 #include "render/settings.h"
 
 namespace orrery::job {
@@ -98,7 +98,7 @@ std::chrono::steady_clock::duration interval(const CheckpointSettings& settings)
 
 }  // namespace
 
-image::Provenance provenance_of(const Job& job, const format::ReadResult& read, const compile::CompiledScene& compiled,
+image::Provenance provenance_of(const Job& job, const load::ReadResult& read, const compile::CompiledScene& compiled,
                                 const SceneHashes& hashes, const Layers& layers) {
   const std::uint32_t end =
       job.sampling.sample_end > 0 ? job.sampling.sample_end : static_cast<std::uint32_t>(compiled.samples);
@@ -118,7 +118,7 @@ image::Provenance provenance_of(const Job& job, const format::ReadResult& read, 
   out["layers"] = layers_text(layers);
   out["scene"] = std::filesystem::absolute(job.scene.file).lexically_normal().string();
   std::string& overrides = out["overrides"];
-  for (const format::KeyValue& set : job.scene.overrides.values()) overrides += set.text + "\n";
+  for (const load::KeyValue& set : job.scene.overrides.values()) overrides += set.text + "\n";
   out["frame"] = std::to_string(job.scene.frame);
   char host[256] = "";
   gethostname(host, sizeof(host) - 1);
@@ -137,7 +137,7 @@ std::string stamp_of(const Job& job, const image::Provenance& provenance, const 
   for (const std::string& word : {job.outputs.exr.compression, display.config, choice.config_id, choice.transform_id,
                                   display.display, display.view, display.look, display.working_space})
     all += word + "\n";
-  for (const format::KeyValue& set : job.scene.overrides.values())
+  for (const load::KeyValue& set : job.scene.overrides.values())
     if (set.key != "render.accelerator" && set.key != "render.traversal")  // they change no bits
       all += set.text + "\n";
   return base::text_hash(all);

@@ -12,9 +12,9 @@
 #include "compile/forward.h"
 #include "display/forward.h"
 #include "film/forward.h"
-#include "format/read_scene.h"
 #include "image/forward.h"
 #include "image/header.h"
+#include "load/read_scene.h"
 #include "render/forward.h"
 
 namespace orrery::job {
@@ -27,7 +27,7 @@ struct SceneHashes;
 
 /// The provenance of a shard or checkpoint of this job: program version, scene, and every setting that its sums depend
 /// on. It prevents merging or resuming incompatible files.
-image::Provenance provenance_of(const Job& job, const format::ReadResult& read, const compile::CompiledScene& compiled,
+image::Provenance provenance_of(const Job& job, const load::ReadResult& read, const compile::CompiledScene& compiled,
                                 const SceneHashes& hashes, const Layers& layers);
 
 /// Hash of everything that determines the images of a job. An image with this stamp in its header is up to date.

@@ -11,10 +11,10 @@
 #include "compile/camera_basis.h"
 #include "compile/compiled_scene.h"
 #include "display/color_space.h"
-#include "format/read_scene.h"
 #include "image/header.h"
 #include "job/job.h"
 #include "job/version.h"
+#include "load/read_scene.h"
 #include "scene/scene.h"
 #include "scene/schema.h"
 #include "scene/value_text.h"
@@ -94,15 +94,15 @@ CameraMatrices camera_matrices(const scene::Camera& camera, const scene::Image& 
   return {as_float(view), as_float(product(view, projection))};
 }
 
-std::string settings_lines(const format::ReadResult& read, bool reproducible) {
+std::string settings_lines(const load::ReadResult& read, bool reproducible) {
   std::string lines;
-  for (const format::Setting& setting : read.settings)
+  for (const load::Setting& setting : read.settings)
     if (!reproducible || setting.key != "render.accelerator")
       lines += fmt::format("{} = {}\n", setting.key, setting.value);
   return lines;
 }
 
-image::Header picture_header(const format::ReadResult& read, const compile::CompiledScene& compiled,
+image::Header picture_header(const load::ReadResult& read, const compile::CompiledScene& compiled,
                              const JobReport& report, bool reproducible) {
   image::Header header;
   header.software = "orrery " + program_version();
@@ -125,7 +125,7 @@ image::Header picture_header(const format::ReadResult& read, const compile::Comp
     if (const std::string text = color_text(read.scene.points[i]); !text.empty())
       header.attributes.push_back({fmt::format("orrery/points[{}].color", i), text});
   if (report.render.noise) header.attributes.push_back({"orrery/noise", static_cast<float>(*report.render.noise)});
-  for (const format::Setting& setting : read.settings)
+  for (const load::Setting& setting : read.settings)
     if (setting.key == "render.precision" || setting.key == "render.shading" || setting.key == "render.sampler")
       header.attributes.push_back({"orrery/" + setting.key.substr(7), scene::unquoted(setting.value)});
   for (const auto& [layer, bad] : report.bad_layers)

@@ -5,8 +5,8 @@
 #include <string>
 
 #include "compile/forward.h"
-#include "format/read_scene.h"
 #include "image/forward.h"
+#include "load/read_scene.h"
 #include "scene/forward.h"
 
 namespace orrery::job {
@@ -27,12 +27,12 @@ struct JobReport;
 /// The header of a job's images: camera, colour space, settings, statistics.
 ///
 /// `reproducible` omits everything that depends on the machine, the thread count or the accelerator.
-image::Header picture_header(const format::ReadResult& read, const compile::CompiledScene& compiled,
+image::Header picture_header(const load::ReadResult& read, const compile::CompiledScene& compiled,
                              const JobReport& report, bool reproducible);
 
 /// All settings as lines of a scene file: "camera.vfov = 20".
 ///
 /// `reproducible` omits the accelerator.
-std::string settings_lines(const format::ReadResult& read, bool reproducible);
+std::string settings_lines(const load::ReadResult& read, bool reproducible);
 
 }  // namespace orrery::job

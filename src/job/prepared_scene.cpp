@@ -41,7 +41,7 @@ const load::LoadedScene& PreparedScene::load(load::SceneRequest request) {
 }
 
 const compile::CompiledScene& PreparedScene::compile(std::uint64_t memory_limit) {
-  format::ReadResult& read = loaded_->read;
+  load::ReadResult& read = loaded_->read;
   const scene::Parts& changed = loaded_->changed;
   if (changed.geometry) {
     accel_.reset();

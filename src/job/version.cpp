@@ -6,9 +6,9 @@
 
 #include "accel/accel.h"
 #include "display/develop.h"
-#include "format/read_scene.h"
 #include "image/write.h"
 #include "kernel/isa.h"
+#include "load/read_scene.h"
 #include "render/render.h"
 
 namespace orrery::job {
@@ -21,7 +21,7 @@ std::vector<std::pair<std::string, std::string>> library_versions() {
           {"OpenImageIO", ORRERY_OIIO_VERSION},
           {"OpenColorIO", display::ocio_version()},
           {"Highway", kernel::highway_version()},
-          {"toml++", format::toml_version()},
+          {"toml++", load::toml_version()},
           {"fmt", fmt::format("{}.{}.{}", FMT_VERSION / 10000, FMT_VERSION / 100 % 100, FMT_VERSION % 100)},
           {"nlohmann-json", fmt::format("{}.{}.{}", NLOHMANN_JSON_VERSION_MAJOR, NLOHMANN_JSON_VERSION_MINOR,
                                         NLOHMANN_JSON_VERSION_PATCH)}};

@@ -149,11 +149,10 @@ class SceneLoader {
       : request_(request),
         previous_(std::move(previous)),
         check_colors_(request),
-        reader_(request.source.file, request.source.overrides,
-                {request.source.text, request.source.frame, request.source.typed_lines}),
+        reader_(request.source),
         scene_(reader_.scene()) {}
 
-  format::ReadResult read_with_data() {
+  ReadResult read_with_data() {
     load_data();
     reader_.add(scene::validate(scene_));
     find_coincident();
@@ -342,7 +341,7 @@ class SceneLoader {
   const SceneRequest& request_;
   std::optional<LoadedScene> previous_;
   ColorCheck check_colors_;
-  format::SceneReader reader_;
+  SceneReader reader_;
   scene::Scene& scene_;
   LoadedScene out_;
 };
@@ -355,7 +354,7 @@ LoadedScene load_scene(const SceneRequest& request, LoadedScene previous) {
   return SceneLoader(request, std::move(previous)).run();
 }
 
-format::ReadResult read_with_data(const SceneRequest& request) { return SceneLoader(request, {}).read_with_data(); }
+ReadResult read_with_data(const SceneRequest& request) { return SceneLoader(request, {}).read_with_data(); }
 
 points::SourceRows read_source_rows(const SceneSource& source, const scene::Scene& scene, std::size_t table) {
   points::SourceRows out;
@@ -369,7 +368,7 @@ points::SourceRows read_source_rows(const SceneSource& source, const scene::Scen
   return out;
 }
 
-void reduce_picture(format::ReadResult& scene, double pixels) {
+void reduce_picture(ReadResult& scene, double pixels) {
   scene::Image& image = scene.scene.image;
   const double scale = std::min(1.0, std::sqrt(pixels / (static_cast<double>(image.width) * image.height)));
   image.crop.reset();

@@ -12,25 +12,12 @@
 
 #include "base/error.h"
 #include "display/settings.h"
-#include "format/read_scene.h"
 #include "load/load_images.h"
+#include "load/read_scene.h"
 #include "points/load_points.h"
 #include "scene/changed_parts.h"
 
 namespace orrery::load {
-
-/// A scene as specified on the command line: file, overrides, and a frame of its animation.
-struct SceneSource {
-  std::filesystem::path file;
-  format::Overrides overrides;
-  int frame = 1;
-  std::shared_ptr<const std::string> text = {};  ///< text of the scene; null: read the file
-  bool has_file = true;                          ///< false: `file` is only a name
-  points::OpenData open_data = {};               ///< see points::LoadRequest
-  /// Identifies the contents of a data file; empty: base::file_version.
-  std::function<std::string(const std::filesystem::path&)> data_version = {};
-  std::optional<int> typed_lines = {};  ///< see format::ReadOptions
-};
 
 /// A scene to load, and the display transform of its images.
 struct SceneRequest {
@@ -46,7 +33,7 @@ struct SceneRequest {
 
 /// A scene that is ready to be compiled, and what was determined while loading it.
 struct LoadedScene {
-  format::ReadResult read;                     ///< colours are in the working space
+  ReadResult read;                             ///< colours are in the working space
   display::Settings display;                   ///< from the command line and the scene
   std::optional<display::Choice> choice;       ///< if `develops`, or if a colour name is set
   std::optional<LoadedBackground> background;  ///< image background or sky; the scene refers to its image
@@ -66,7 +53,7 @@ struct LoadedScene {
 ///
 /// Names in [color] are always looked up. A default config is loaded only if `develops`.
 ///
-/// Errors     those of format::read_scene, with unknown names in [color] among its diagnostics; base::Error: kUsage
+/// Errors     those of SceneReader, with unknown names in [color] among its diagnostics; base::Error: kUsage
 ///            for an unknown name from the command line, kMissingInput and kBadData for a config from there or from
 ///            $OCIO
 LoadedScene load_scene(const SceneRequest& request);
@@ -80,7 +67,7 @@ LoadedScene load_scene(const SceneRequest& request, LoadedScene previous);
 /// Reads a scene file and its data files, but no images; colours are as in the file.
 ///
 /// Errors     those of load_scene(), except those about images and names in [color]
-format::ReadResult read_with_data(const SceneRequest& request);
+ReadResult read_with_data(const SceneRequest& request);
 
 /// Reads the data again from which the spheres of a points table were made.
 ///
@@ -92,6 +79,6 @@ points::SourceRows read_source_rows(const SceneSource& source, const scene::Scen
 /// and overscan.
 ///
 /// Domain     pixels >= 1
-void reduce_picture(format::ReadResult& scene, double pixels);
+void reduce_picture(ReadResult& scene, double pixels);
 
 }  // namespace orrery::load

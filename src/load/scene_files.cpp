@@ -12,7 +12,7 @@ namespace orrery::load {
 namespace fs = std::filesystem;
 
 void add_named_files(const SceneSource& scene, const std::vector<int>& frames, base::FileSet& files) {
-  add_scene_files(scene.file, format::authored_scene(scene.file, scene.overrides, scene.text), files, frames);
+  add_scene_files(scene.file, authored_scene(scene), files, frames);
 }
 
 void add_scene_files(const fs::path& scene_file, const scene::Scene& scene, base::FileSet& files,

@@ -12,7 +12,7 @@ namespace orrery::load {
 
 /// Adds the files that a scene references at these frames. Reads the scene file, but no other file.
 ///
-/// Errors     those of add_scene_files and format::authored_scene
+/// Errors     those of add_scene_files and authored_scene
 void add_named_files(const SceneSource& scene, const std::vector<int>& frames, base::FileSet& files);
 
 /// Adds the files that a scene references.

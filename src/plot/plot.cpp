@@ -13,8 +13,8 @@
 #include "base/image_limits.h"
 #include "base/text.h"
 #include "display/settings.h"
-#include "format/write_scene.h"
 #include "load/load_images.h"
+#include "load/write_scene.h"
 #include "plot/data_frames.h"
 #include "plot/range.h"
 #include "plot/scene_text.h"
@@ -45,14 +45,14 @@ constexpr double kBallFraction = 0.5, kStickFraction = 0.3, kStickRadius = 0.2;
 constexpr double kArrowLength = 1.2, kShaftRadius = 0.07, kArrowSphereFraction = 0.25;
 
 /// A side of the image, which the camera must know. An invalid one is reported when the scene is read.
-int side_of(const format::Overrides& overrides, const char* key, int otherwise) {
+int side_of(const load::Overrides& overrides, const char* key, int otherwise) {
   return static_cast<int>(std::clamp<std::int64_t>(overrides.integer(key).value_or(otherwise), 1, base::kLargestSide));
 }
 
 /// The vertical field of view of a perspective camera, which overrides can also select, by a field of view alone. An
 /// invalid one is reported when the scene is read.
 std::optional<double> vfov_of(const PlotOptions& options) {
-  const format::Overrides& overrides = options.overrides;
+  const load::Overrides& overrides = options.overrides;
   const std::optional<std::string> projection = overrides.string("camera.projection");
   const std::optional<double> vfov = overrides.number("camera.vfov");
   if (projection != "perspective" && (projection || !vfov)) return projection ? std::nullopt : options.vfov_deg;
@@ -555,7 +555,7 @@ PlotScene make_plot(const PlotOptions& options, const std::function<void(const s
 }
 
 display::Settings display_of(const PlotOptions& options) {
-  const format::Overrides& overrides = options.overrides;
+  const load::Overrides& overrides = options.overrides;
   display::Settings out;
   scene::Color color;
   color.config = overrides.string("color.config").value_or("");
@@ -573,7 +573,7 @@ load::LoadedScene settings_of(const PlotOptions& options, bool develops) {
   request.source.text = std::make_shared<const std::string>();
   request.source.typed_lines = 0;
   request.source.has_file = false;
-  for (const format::Override& override : options.overrides) {
+  for (const load::Override& override : options.overrides) {
     const std::string table = override.values.empty() ? "" : override.values.front().key;  // all keys are of one table
     const std::string name = table.substr(0, table.find('.'));
     if (override.fault || name == "color" || name == "image" || name == "output" || name == "render")
@@ -583,17 +583,19 @@ load::LoadedScene settings_of(const PlotOptions& options, bool develops) {
 }
 
 std::string saved_text(const PlotOptions& options, const PlotScene& made) {
-  format::Overrides settings;
-  for (const format::Override& override : options.overrides) {
-    const auto is_of_plot = [](const format::KeyValue& set) {  // make_plot() handles these two
+  load::Overrides settings;
+  for (const load::Override& override : options.overrides) {
+    const auto is_of_plot = [](const load::KeyValue& set) {  // make_plot() handles these two
       return set.key == "image.width" || set.key == "image.height";
     };
     if (!std::all_of(override.values.begin(), override.values.end(), is_of_plot)) settings.add(override);
   }
   if (settings.empty()) return made.text;
-  format::SceneReader reader("plot", settings, {std::make_shared<const std::string>(made.text), std::nullopt});
+  const load::SceneSource source{
+      .file = "plot", .overrides = settings, .text = std::make_shared<const std::string>(made.text)};
+  load::SceneReader reader(source, load::Pose::kAuthored);
   if (reader.has_errors()) return made.text;  // reported when the scene is rendered
-  return format::scene_text(reader.scene(), made.text.substr(2, made.text.find('\n') - 2));
+  return load::scene_text(reader.scene(), made.text.substr(2, made.text.find('\n') - 2));
 }
 
 }  // namespace orrery::plot

@@ -70,7 +70,7 @@ struct PlotOptions : DataOptions {
   bool develops = false;             ///< an image has a display format
   std::filesystem::path scene_file;  ///< paths in the scene, and the OCIO config, are relative to its folder
   /// Keys that the user has set. They are not part of the scene's text, but size, camera and display view follow them.
-  format::Overrides overrides;
+  load::Overrides overrides;
 };
 
 /// The view that reproduces the colours of the colour map, if the OCIO config defines it.

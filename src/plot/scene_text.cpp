@@ -10,7 +10,7 @@
 #include <fmt/core.h>
 
 #include "base/error.h"
-#include "format/write_scene.h"
+#include "load/write_scene.h"
 #include "plot/plot.h"
 #include "points/color_map.h"
 #include "scene/value_text.h"
@@ -154,7 +154,7 @@ std::string scene_text(const PlotOptions& options, const Stage& stage, scene::Sc
     scene.spheres.push_back(lamp_of(stage, light));
     scene.spheres.back().material = material("lamp", scene::Emitter{light.radiance});
   }
-  return format::scene_text(
+  return load::scene_text(
       scene, fmt::format("Written by orrery plot for {}", scene::string_text(options.file.filename().string())));
 }
 

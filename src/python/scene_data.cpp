@@ -19,12 +19,12 @@
 #include "base/input_file.h"
 #include "base/text.h"
 #include "data/data_file.h"
-#include "format/read_scene.h"
-#include "format/write_scene.h"
 #include "formats/open.h"
 #include "formats/write_table.h"
 #include "load/load_scene.h"
+#include "load/read_scene.h"
 #include "load/scene_files.h"
+#include "load/write_scene.h"
 #include "scene/schema.h"
 
 namespace orrery::python {
@@ -53,9 +53,9 @@ std::string table_file_name(const fs::path& scene_file, const std::string& name,
 /// Returns whether save() wrote an existing data file. NPY cannot store the writer's name; such a file belongs to the
 /// scene file that names it, which save() replaces.
 bool is_saved_data(const fs::path& file, const fs::path& scene_file) {
-  if (file.extension() == ".ply") return format::is_ply_of(kWriter, file);
+  if (file.extension() == ".ply") return load::is_ply_of(kWriter, file);
   try {
-    const std::vector<scene::Points> points = format::authored_scene(scene_file).points;
+    const std::vector<scene::Points> points = load::authored_scene({.file = scene_file}).points;
     return std::any_of(points.begin(), points.end(), [&](const auto& p) { return p.file == file.filename(); });
   } catch (const base::Error&) {
     return false;
@@ -98,7 +98,7 @@ std::string contents_of(const data::Table& table) {
   return out;
 }
 
-format::ReadResult read(const SceneData& scene, std::uint64_t memory_limit) {
+load::ReadResult read(const SceneData& scene, std::uint64_t memory_limit) {
   load::SceneRequest request;
   request.source = scene.source();
   request.memory_limit = memory_limit;
@@ -132,8 +132,8 @@ load::SceneSource SceneData::source() const {
 }
 
 std::string read_scene_text(const fs::path& file) {
-  std::string text = format::read_file(file, format::kLargestSceneFile);
-  static_cast<void>(format::authored_scene(file, {}, std::make_shared<const std::string>(text)));
+  std::string text = load::read_file(file, load::kLargestSceneFile);
+  static_cast<void>(load::authored_scene({.file = file, .text = std::make_shared<const std::string>(text)}));
   return text;
 }
 
@@ -146,8 +146,7 @@ std::vector<base::Diagnostic> check(const SceneData& scene) {
 }
 
 double aspect(const SceneData& scene) {
-  const load::SceneSource source = scene.source();
-  const scene::Image image = format::authored_scene(source.file, source.overrides, source.text).image;
+  const scene::Image image = load::authored_scene(scene.source()).image;
   return image.pixel_aspect * image.width / image.height;
 }
 
@@ -176,13 +175,13 @@ void save(const SceneData& scene, const fs::path& file) {
     files.add_output(data, "points file");
     check_data_file(data, file);
   }
-  scene::Scene saved = format::authored_scene(source.file, source.overrides, source.text);
+  scene::Scene saved = load::authored_scene(source);
   scene::rename_files(saved, [&](const scene::NamedFile& named) {
     const auto table = scene.tables.find(named.name);
     return table != scene.tables.end() ? table_file_name(file, named.name, *table->second)
                                        : moved(named.name, scene.file.parent_path(), folder);
   });
-  const std::string text = format::scene_text(saved, {});
+  const std::string text = load::scene_text(saved, {});
   for (const auto& [name, table] : scene.tables)
     static_cast<void>(formats::write_table(folder / table_file_name(file, name, *table), *table, kWriter));
   base::write_text_file(file, text);

@@ -33,17 +33,17 @@ struct SceneData {
 
 /// Reads the text of a scene file and checks that it is TOML.
 ///
-/// Errors     base::Error: those of format::read_scene, except those for keys and data files
+/// Errors     base::Error: those of load::read_scene, except those for keys and data files
 std::string read_scene_text(const std::filesystem::path& file);
 
 /// Checks the keys of [[sphere]] and [[points]], and the names of columns and colour maps.
 ///
-/// Errors     those of format::read_scene
+/// Errors     those of load::read_scene
 void check_keys(const SceneData& scene);
 
 /// Returns the width of the image divided by its height, as displayed. Keys that cannot be read have their defaults.
 ///
-/// Errors     those of format::authored_scene
+/// Errors     those of load::authored_scene
 double aspect(const SceneData& scene);
 
 /// Checks everything that a render would reject.

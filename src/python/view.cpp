@@ -24,7 +24,7 @@ view::Subject subject_of(const SceneData& scene, const job::Job& job, const std:
   view::Subject out;
   out.job = job;
   out.job.scene = scene.source();
-  format::Overrides own;  // of the page
+  load::Overrides own;  // of the page
   for (std::size_t i = 0; i < words.size(); ++i) {
     const std::string& option = words[i];
     if (option == "--denoise") {
@@ -36,7 +36,7 @@ view::Subject subject_of(const SceneData& scene, const job::Job& job, const std:
       out.job.sampling.noise = noise_of(value);
       continue;
     }
-    for (format::Overrides* const overrides : {&own, &out.job.scene.overrides}) {
+    for (load::Overrides* const overrides : {&own, &out.job.scene.overrides}) {
       if (option == "--set")
         overrides->add(value);
       else

@@ -293,7 +293,7 @@ struct PointsTransform {
   bool operator==(const PointsTransform&) const = default;
 };
 
-/// Spheres of a points file, in flat arrays because there may be a hundred million. Filled by format::read_scene.
+/// Spheres of a points file, in flat arrays because there may be a hundred million. Filled by load::read_scene.
 struct Points {
   std::filesystem::path file;    ///< as in the scene file, relative to it
   std::uint32_t material = 0;    ///< index into Scene::materials; used if the file has no materials

@@ -15,12 +15,12 @@
 #include "base/text.h"
 #include "compile/compile.h"
 #include "compile/compiled_scene.h"
-#include "format/read_scene.h"
 #include "job/resources.h"
 #include "job/scene_hash.h"
 #include "kernel/ray_packet.h"
 #include "kernel/render_tile.h"
 #include "load/load_scene.h"
+#include "load/read_scene.h"
 #include "render/recorded_rays.h"
 #include "render/render.h"
 #include "render/result.h"
@@ -73,7 +73,7 @@ const std::vector<std::pair<const char*, bool kernel::Features::*>>& known_featu
 compile::CompiledScene reduced_scene(const BenchRequest& request) {
   load::SceneRequest load;
   load.source = request.scene;
-  format::ReadResult read = std::move(load::load_scene(load).read);
+  load::ReadResult read = std::move(load::load_scene(load).read);
   load::reduce_picture(read, kPixels);
   return compile::compile(read.scene, read.closing ? &*read.closing : nullptr);
 }

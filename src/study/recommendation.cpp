@@ -10,7 +10,7 @@
 
 #include "base/text.h"
 #include "compile/compiled_scene.h"
-#include "format/read_scene.h"
+#include "load/read_scene.h"
 #include "render/result.h"
 #include "render/settings.h"
 #include "study/study.h"
@@ -104,15 +104,15 @@ class Recommender {
   /// The scene options of the study as text, without --samples, which would limit --noise.
   std::string scene_flags() const {
     std::string flags;
-    for (const format::Override& override : request_.scene.overrides) {
+    for (const load::Override& override : request_.scene.overrides) {
       if (!override.sets("render.samples")) {
         flags += fmt::format("{} {} ", override.option, base::shell_quoted(override.typed));
         continue;
       }
-      for (const format::KeyValue& set : override.values)
+      for (const load::KeyValue& set : override.values)
         if (set.key != "render.samples") flags += fmt::format("--set {} ", base::shell_quoted(set.text));
     }
-    if (request_.scene.frame != format::kFirstFrame) flags += fmt::format("--frames {} ", request_.scene.frame);
+    if (request_.scene.frame != load::kFirstFrame) flags += fmt::format("--frames {} ", request_.scene.frame);
     return flags;
   }
 

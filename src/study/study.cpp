@@ -21,7 +21,6 @@
 #include "compile/compile.h"
 #include "compile/compiled_scene.h"
 #include "compile/environment.h"
-#include "format/read_scene.h"
 #include "image/format.h"
 #include "image/header.h"
 #include "image/read.h"
@@ -31,6 +30,7 @@
 #include "job/scene_hash.h"
 #include "job/version.h"
 #include "load/load_scene.h"
+#include "load/read_scene.h"
 #include "load/scene_files.h"
 #include "render/render.h"
 #include "render/result.h"
@@ -190,7 +190,7 @@ class Runner {
 
   /// Reduces an image to at most `pixels` pixels, with the same view.
   void resize(CompiledScene& compiled, double pixels) const {
-    format::ReadResult small;
+    load::ReadResult small;
     small.scene = read_.scene;
     small.closing = read_.closing;
     load::reduce_picture(small, pixels);
@@ -323,7 +323,7 @@ class Runner {
 
   const Request& request_;
   StudyRenderer renderer_;
-  format::ReadResult read_;                        ///< without spheres
+  load::ReadResult read_;                          ///< without spheres
   CompiledScene reduced_, full_;                   ///< at the study's size and at full resolution, both without spheres
   job::MemoryNeeds memory_needs_, denoise_needs_;  ///< without and with --denoise
   Pair reference_;

@@ -8,8 +8,8 @@
 
 #include "base/error.h"
 #include "base/text.h"
-#include "format/read_scene.h"
 #include "load/load_scene.h"
+#include "load/read_scene.h"
 #include "load/scene_files.h"
 
 namespace orrery::submit {
@@ -70,7 +70,7 @@ Commands commands_of(const Submission& submission) {
   const std::vector<job::Job> jobs = job::jobs_of(batch);
   const std::filesystem::path& scene_file = batch.scenes.front();
   Commands out;
-  out.frames = batch.frames.empty() ? std::vector<int>{format::kFirstFrame} : batch.frames;
+  out.frames = batch.frames.empty() ? std::vector<int>{load::kFirstFrame} : batch.frames;
   out.name = job_name_of(scene_file);
   // Named after the image: jobs that render one scene with different settings must not share shards.
   const std::filesystem::path& image = job.outputs.images.front().path;

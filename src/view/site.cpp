@@ -18,9 +18,9 @@
 #include "base/error.h"
 #include "base/temp_dir.h"
 #include "base/text.h"
-#include "format/read_scene.h"
-#include "format/write_scene.h"
 #include "job/rendering.h"
+#include "load/read_scene.h"
+#include "load/write_scene.h"
 
 namespace orrery::view {
 
@@ -297,8 +297,7 @@ http::Response Site::scene() const {
   if (!rendering) return text(409, "the image is not finished yet");
   const load::SceneSource& source = rendering->job.scene;
   return download("scene.toml", "application/toml",
-                  format::marked_text(format::scene_text(
-                      format::authored_scene(source.file, source.overrides, source.text), "Written by orrery view")));
+                  load::marked_text(load::scene_text(load::authored_scene(source), "Written by orrery view")));
 }
 
 }  // namespace orrery::view

@@ -95,10 +95,10 @@ Wish read_wish(const std::string& json, const std::function<bool(const std::stri
   return out;
 }
 
-std::set<std::string> named_files(const format::Overrides& overrides) {
+std::set<std::string> named_files(const load::Overrides& overrides) {
   static const std::set<std::string> file_keys = last_parts_of_file_keys();
   std::set<std::string> out;
-  for (const format::KeyValue& set : overrides.values()) {
+  for (const load::KeyValue& set : overrides.values()) {
     const bool is_file = file_keys.count(last_part(set.key)) > 0;
     const bool may_hold_files =
         std::holds_alternative<std::monostate>(set.value) && set.text.find('{') != std::string::npos;

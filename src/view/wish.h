@@ -8,7 +8,7 @@
 #include <string>
 #include <vector>
 
-#include "format/overrides.h"
+#include "load/overrides.h"
 #include "scene/scene.h"
 
 namespace orrery::view {
@@ -28,7 +28,7 @@ struct Wish {
 Wish read_wish(const std::string& json, const std::function<bool(const std::string& option)>& is_control);
 
 /// The files that settings may name. A page may set only those that were given on the command line.
-std::set<std::string> named_files(const format::Overrides& overrides);
+std::set<std::string> named_files(const load::Overrides& overrides);
 
 /// Whether a control is an option without a value.
 bool is_flag(const std::string& option);

@@ -13,10 +13,10 @@
 
 #include "base/error.h"
 #include "data/data_file.h"
-#include "format/read_scene.h"
-#include "format/write_scene.h"
 #include "formats/open.h"
 #include "load/load_scene.h"
+#include "load/read_scene.h"
+#include "load/write_scene.h"
 #include "points/color_map.h"
 #include "points/load_points.h"
 #include "points/selection.h"
@@ -49,7 +49,7 @@ std::string fault_with_error(const base::Error& error, bool has_file) {
   return {};
 }
 
-std::string fault_with_result(const format::ReadResult& read) {
+std::string fault_with_result(const load::ReadResult& read) {
   for (const scene::SceneDiagnostic& diagnostic : scene::validate(read.scene))
     if (diagnostic.severity == base::Severity::kError)
       return "accepted despite " + diagnostic.key + ": " + diagnostic.text;
@@ -59,16 +59,18 @@ std::string fault_with_result(const format::ReadResult& read) {
 
 /// Checks that a written scene reads back and writes the same text again.
 std::string fault_with_round_trip(const std::filesystem::path& folder, scene::Scene scene) {
-  const std::string text = format::scene_text(scene, "");
+  const std::string text = load::scene_text(scene, "");
   write(folder / "again.toml", text);
-  if (format::scene_text(format::read_scene(folder / "again.toml").scene, "") != text)
-    return "changes when it is read back";
+  const load::SceneSource again{.file = folder / "again.toml"};
+  load::SceneReader reader(again);
+  reader.add(scene::validate(reader.scene()));
+  if (load::scene_text(reader.finish().scene, "") != text) return "changes when it is read back";
   return {};
 }
 
 std::string fault_with(const std::filesystem::path& folder, const std::filesystem::path& file,
-                       const format::Overrides& overrides) {
-  format::ReadResult read;
+                       const load::Overrides& overrides) {
+  load::ReadResult read;
   try {
     load::SceneRequest request;
     request.source.file = file;
@@ -231,7 +233,7 @@ std::string fault_with_overrides(const std::filesystem::path& folder, const std:
   write(folder / "base.toml",
         "[material.a]\ntype = \"metal\"\nalbedo = [1, 1, 1]\n[[sphere]]\ncenter = [0, 0, 0]\nradius = 1\nmaterial = "
         "\"a\"\n");
-  format::Overrides overrides;
+  load::Overrides overrides;
   std::istringstream lines(bytes);
   for (std::string line; std::getline(lines, line);) overrides.add(line);
   return fault_with(folder, folder / "base.toml", overrides);
@@ -305,7 +307,7 @@ std::string fault_with_wish(const std::filesystem::path&, const std::string& byt
   for (std::size_t i = 0; i < words.size(); i += 2)
     if (words[i] != "--select" && words[i] != "--set") return "an option that is no control";
   if (!wish.camera) return "";
-  format::Overrides overrides;
+  load::Overrides overrides;
   for (const std::string& setting : view::camera_settings(*wish.camera)) overrides.add(setting);
   return overrides.values().size() == 4 ? "" : "a camera of other keys";
 }

@@ -8,8 +8,8 @@
 #include <vector>
 
 #include "base/error.h"
-#include "format/read_scene.h"
 #include "generate/generate.h"
+#include "load/read_scene.h"
 #include "support/read_scene_file.h"
 
 namespace orrery {

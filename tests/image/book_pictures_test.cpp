@@ -10,8 +10,8 @@
 
 #include "compile/compile.h"
 #include "film/picture.h"
-#include "format/read_scene.h"
 #include "image/render_scene.h"
+#include "load/read_scene.h"
 #include "math/vec3.h"
 #include "render/render.h"
 #include "support/read_scene_file.h"
@@ -23,7 +23,7 @@ using math::Vec3d;
 
 constexpr int kWidth = 160, kHeight = 90;
 
-film::Picture picture_of(const std::string& name, format::Overrides overrides = {}) {
+film::Picture picture_of(const std::string& name, load::Overrides overrides = {}) {
   overrides.add("image.width=" + std::to_string(kWidth));
   overrides.add("image.height=" + std::to_string(kHeight));
   return test::render_scene(

@@ -14,9 +14,9 @@
 #include "compile/compile.h"
 #include "compile/compiled_scene.h"
 #include "film/picture.h"
-#include "format/read_scene.h"
 #include "generate/generate.h"
 #include "image/render_scene.h"
+#include "load/read_scene.h"
 #include "render/render.h"
 #include "render/result.h"
 #include "render/settings.h"
@@ -44,7 +44,7 @@ void set_planet(scene::Scene& scene) {
   scene::modify_textures(scene, [&](scene::Texture& texture, scene::TextureUse) { texture.image = image; });
 }
 
-film::Picture picture_of_scene(const std::string& name, format::Overrides overrides = {}) {
+film::Picture picture_of_scene(const std::string& name, load::Overrides overrides = {}) {
   overrides.add("image.width=" + std::to_string(kSceneWidth));
   overrides.add("image.height=" + std::to_string(kSceneHeight));
   auto read =
@@ -78,7 +78,7 @@ Spread spread(const film::Picture& p, double left, double top, double right, dou
   return {mean, std::sqrt(std::max(squares / count - mean * mean, 0.0))};
 }
 
-const format::Overrides kFlat = {"render.shading=flat", "render.samples=1"};
+const load::Overrides kFlat = {"render.shading=flat", "render.samples=1"};
 
 TEST(ImageNextWeekPictures, ACheckerHasTwoColours) {
   const film::Picture p = picture_of_scene("02-checkered-spheres", kFlat);

@@ -4,13 +4,13 @@
 #include <filesystem>
 #include <vector>
 
-#include "format/read_scene.h"
 #include "load/load_scene.h"
+#include "load/read_scene.h"
 
 namespace orrery::support {
 
 /// Reads a scene file and its data files, but no images.
-inline format::ReadResult read_scene_file(const std::filesystem::path& file, const format::Overrides& overrides = {}) {
+inline load::ReadResult read_scene_file(const std::filesystem::path& file, const load::Overrides& overrides = {}) {
   load::SceneRequest request;
   request.source.file = file;
   request.source.overrides = overrides;

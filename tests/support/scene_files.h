@@ -3,31 +3,41 @@
 
 #include <filesystem>
 #include <functional>
+#include <optional>
 #include <string>
 #include <utility>
 #include <vector>
 
 #include "base/error.h"
-#include "format/read_scene.h"
+#include "load/read_scene.h"
+#include "scene/validate.h"
 #include "support/temp_dir.h"
 
 namespace orrery::support {
 
+/// Reads and checks a scene file, without the files that it names.
+inline load::ReadResult read_scene(const std::filesystem::path& file, const load::Overrides& overrides = {}) {
+  const load::SceneSource source{.file = file, .overrides = overrides};
+  load::SceneReader reader(source);
+  const std::optional<scene::Scene>& closing = reader.closing();
+  reader.add(scene::validate(reader.scene()));
+  reader.add(scene::warn_of_coincident(reader.scene(), closing ? &*closing : nullptr));
+  return reader.finish();
+}
+
 /// Temporary scene files of one test, and the reader's diagnostics.
 class SceneFiles {
  public:
-  using Reader = std::function<format::ReadResult(const std::filesystem::path&, const format::Overrides&)>;
+  using Reader = std::function<load::ReadResult(const std::filesystem::path&, const load::Overrides&)>;
 
-  /// `read`     format::read_scene by default, which reads no data files; see support/read_scene_file.h
-  explicit SceneFiles(Reader read = [](const auto& file,
-                                       const auto& overrides) { return format::read_scene(file, overrides); })
-      : read_(std::move(read)) {}
+  /// `read`     read_scene() reads no data files; see support/read_scene_file.h
+  explicit SceneFiles(Reader read = read_scene) : read_(std::move(read)) {}
 
   /// Writes a file next to scene.toml.
   void add(const std::string& name, const std::string& bytes) { write_bytes(folder_ / name, bytes); }
 
   /// Reads `text` as scene.toml; fails the test if the reader rejects it.
-  format::ReadResult read(const std::string& text, const format::Overrides& overrides = {}) {
+  load::ReadResult read(const std::string& text, const load::Overrides& overrides = {}) {
     add("scene.toml", text);
     try {
       return read_(folder_ / "scene.toml", overrides);
@@ -38,7 +48,7 @@ class SceneFiles {
   }
 
   /// Returns the errors as the user sees them, without the folder; without errors, the warnings.
-  std::string diagnostics(const std::string& text, const format::Overrides& overrides = {}) {
+  std::string diagnostics(const std::string& text, const load::Overrides& overrides = {}) {
     add("scene.toml", text);
     try {
       std::string out;

@@ -22,7 +22,7 @@ Texts overrides_of(const std::vector<const char*>& words) {
   argv.insert(argv.end(), words.begin(), words.end());
   app.parse(static_cast<int>(argv.size()), argv.data());
   Texts texts;
-  for (const format::KeyValue& set : options.overrides().values()) texts.push_back(set.text);
+  for (const load::KeyValue& set : options.overrides().values()) texts.push_back(set.text);
   return texts;
 }
 

@@ -8,10 +8,10 @@
 #include <string>
 
 #include "base/error.h"
-#include "format/read_scene.h"
-#include "format/write_scene.h"
 #include "generate/generate.h"
 #include "image/read.h"
+#include "load/read_scene.h"
+#include "load/write_scene.h"
 #include "support/read_scene_file.h"
 
 namespace orrery::generate {
@@ -45,7 +45,7 @@ TEST_F(GenerateFiles, FinalReadsBackAsTheSameScene) {
   generate_final({5, 3}, file);
   const auto read = support::read_scene_file(file);
   EXPECT_TRUE(read.warnings.empty());
-  EXPECT_EQ(format::scene_text(read.scene, ""), format::scene_text(make_final_scene({5, 3}), ""));
+  EXPECT_EQ(load::scene_text(read.scene, ""), load::scene_text(make_final_scene({5, 3}), ""));
   EXPECT_EQ(files(), 1u);
 }
 

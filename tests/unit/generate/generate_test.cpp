@@ -10,8 +10,8 @@
 #include <variant>
 
 #include "base/error.h"
-#include "format/write_scene.h"
 #include "generate/generate_random.h"
+#include "load/write_scene.h"
 #include "scene/diagnostic.h"
 #include "scene/validate.h"
 
@@ -67,8 +67,8 @@ TEST(GenerateRandom, BallIsUniformByVolume) {
 }
 
 TEST(GenerateFinal, TheSameSeedGivesTheSameScene) {
-  EXPECT_EQ(format::scene_text(make_final_scene({}), ""), format::scene_text(make_final_scene({}), ""));
-  EXPECT_NE(format::scene_text(make_final_scene({1, 11}), ""), format::scene_text(make_final_scene({2, 11}), ""));
+  EXPECT_EQ(load::scene_text(make_final_scene({}), ""), load::scene_text(make_final_scene({}), ""));
+  EXPECT_NE(load::scene_text(make_final_scene({1, 11}), ""), load::scene_text(make_final_scene({2, 11}), ""));
 }
 
 TEST(GenerateFinal, HasTheBooksLargeSpheresAndCamera) {

@@ -5,8 +5,8 @@
 
 #include <nlohmann/json.hpp>
 
-#include "format/overrides.h"
 #include "load/load_scene.h"
+#include "load/overrides.h"
 #include "support/temp_dir.h"
 
 namespace orrery::info {
@@ -45,7 +45,7 @@ material = "grey"
 
 class Info : public testing::Test {
  protected:
-  SceneInfo info(const std::string& scene, const format::Overrides& overrides = {}) {
+  SceneInfo info(const std::string& scene, const load::Overrides& overrides = {}) {
     support::write_bytes(folder_ / "scene.toml", scene);
     load::SceneRequest request;
     request.source.file = folder_ / "scene.toml";

@@ -9,17 +9,17 @@
 #include "compile/camera_basis.h"
 #include "compile/compile.h"
 #include "compile/compiled_scene.h"
-#include "format/read_scene.h"
 #include "image/header.h"
 #include "job/job.h"
 #include "job/version.h"
+#include "load/read_scene.h"
 #include "scene/scene.h"
 
 namespace orrery::job {
 namespace {
 
 image::Header header_of(const scene::Scene& scene, bool reproducible = true,
-                        const std::vector<format::Setting>& settings = {}) {
+                        const std::vector<load::Setting>& settings = {}) {
   JobReport report;
   report.scene_hash = "0123456789abcdef";
   report.phases.render_s = 1.5;
@@ -55,9 +55,9 @@ TEST(JobPictureHeader, IdentifiesTheRender) {
 }
 
 TEST(JobPictureHeader, HoldsTheSettings) {
-  const std::vector<format::Setting> settings = {{"camera.vfov", "20", "scene.toml:3"},
-                                                 {"render.precision", "\"fast\"", "--set"},
-                                                 {"render.accelerator", "\"list\"", "default"}};
+  const std::vector<load::Setting> settings = {{"camera.vfov", "20", "scene.toml:3"},
+                                               {"render.precision", "\"fast\"", "--set"},
+                                               {"render.accelerator", "\"list\"", "default"}};
   EXPECT_EQ(text_of(header_of({}, false, settings), "orrery/settings"),
             "camera.vfov = 20\nrender.precision = \"fast\"\nrender.accelerator = \"list\"\n");
   EXPECT_EQ(text_of(header_of({}, false, settings), "orrery/precision"), "fast");

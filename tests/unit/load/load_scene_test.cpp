@@ -11,7 +11,7 @@
 #include "base/error.h"
 #include "compile/compile.h"
 #include "compile/compiled_scene.h"
-#include "format/write_scene.h"
+#include "load/write_scene.h"
 #include "support/read_scene_file.h"
 #include "support/scene_files.h"
 #include "support/temp_dir.h"
@@ -205,7 +205,7 @@ TEST(LoadScene, WritesPointsFilesNextToTheScene) {
   s.points[1].radius.value = 0.25;
   s.points[1].centers = {{7, 8, 9}};
   s.points[1].radii = {0.25};
-  format::write_scene(s, "", folder / "s.toml");
+  write_scene(s, "", folder / "s.toml");
   const auto read = read_scene_file(folder / "s.toml").scene;
   ASSERT_EQ(read.points.size(), 2u);
   for (std::size_t i = 0; i < 2; ++i) {

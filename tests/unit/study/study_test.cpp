@@ -214,7 +214,7 @@ TEST_F(StudyRun, JsonAndPageHoldAllPoints) {
             std::string::npos);
 }
 
-Study small_study(const std::filesystem::path& scene, double budget_s, format::Overrides overrides = {}) {
+Study small_study(const std::filesystem::path& scene, double budget_s, load::Overrides overrides = {}) {
   Request request;
   request.scene.file = scene;
   request.scene.overrides = std::move(overrides);

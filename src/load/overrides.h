@@ -10,7 +10,7 @@
 #include <variant>
 #include <vector>
 
-namespace orrery::format {
+namespace orrery::load {
 
 /// Remedy of an override that cannot be understood.
 inline constexpr const char* kOverrideExample = "write KEY=VALUE, e.g. camera.vfov=30 or sphere[0].radius=2";
@@ -100,4 +100,4 @@ class Overrides {
   std::vector<Override> list_;
 };
 
-}  // namespace orrery::format
+}  // namespace orrery::load

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "format/read_scene.h"
+#include "load/read_scene.h"
 
 #include <algorithm>
 #include <array>
@@ -18,13 +18,13 @@
 #include "base/file_name.h"
 #include "base/frames.h"
 #include "base/input_file.h"
-#include "format/read_keys.h"
 #include "formats/open.h"
+#include "load/read_keys.h"
 #include "scene/animation.h"
 #include "scene/limits.h"
 #include "scene/validate.h"
 
-namespace orrery::format {
+namespace orrery::load {
 namespace {
 
 using File = std::unique_ptr<std::FILE, int (*)(std::FILE*)>;
@@ -228,7 +228,7 @@ void choose_files(const std::filesystem::path& folder, int frame, scene::Scene& 
 }
 
 /// Poses the scene at the frame; with motion blur, at shutter open and at shutter close.
-void pose(ReadState& state, const toml::table& root, const std::string& file, int frame, ReadResult& result) {
+void pose_scene(ReadState& state, const toml::table& root, const std::string& file, int frame, ReadResult& result) {
   scene::Scene& scene = result.scene;
   const scene::Camera& shutter = scene.camera;
   const bool is_open = shutter.shutter_close > shutter.shutter_open;
@@ -310,18 +310,17 @@ struct SceneReader::State : ReadState {
   ReadResult result;
 };
 
-SceneReader::SceneReader(const std::filesystem::path& file, const Overrides& overrides, const ReadOptions& options)
-    : state_(std::make_unique<State>()) {
+SceneReader::SceneReader(const SceneSource& source, Pose pose) : state_(std::make_unique<State>()) {
   State& state = *state_;
-  const std::string text = options.text ? *options.text : read_file(file, kLargestSceneFile);
-  state.file = file.string();
-  state.root = parse_tree(state.file, text, overrides, state);
+  const std::string text = source.text ? *source.text : read_file(source.file, kLargestSceneFile);
+  state.file = source.file.string();
+  state.root = parse_tree(state.file, text, source.overrides, state);
   const toml::table& root = state.root;
   if (root.empty() && state.diagnostics.has_errors()) {
-    refuse_data_file(file, text);
+    refuse_data_file(source.file, text);
     state.diagnostics.raise_errors(state.file);
   }
-  if (options.typed_lines) state.source.add(state.file, text, options.typed_lines);
+  if (source.typed_lines) state.source.add(state.file, text, source.typed_lines);
   scene::Scene& scene = state.result.scene;
   report_unknown_tables(state, root);
   read_single_tables(state, root, scene);
@@ -330,15 +329,15 @@ SceneReader::SceneReader(const std::filesystem::path& file, const Overrides& ove
   read_spheres(state, root, materials, scene);
   read_rods(state, root, materials, scene);
   if (const toml::array* keys = tables_under(state, root, "key")) read_tracks(state, *keys, scene);
-  warn_of_animated_overrides(state, overrides, scene);
-  const std::filesystem::path folder = file.parent_path();
-  if (options.frame) {
-    choose_files(folder, *options.frame, scene);
-    if (!state.diagnostics.has_errors()) pose(state, root, state.file, *options.frame, state.result);
+  warn_of_animated_overrides(state, source.overrides, scene);
+  const std::filesystem::path folder = source.file.parent_path();
+  if (pose == Pose::kAtFrame) {
+    choose_files(folder, source.frame, scene);
+    if (!state.diagnostics.has_errors()) pose_scene(state, root, state.file, source.frame, state.result);
   }
   read_points(state, root, folder, materials, scene);
   read_rod_files(state, root, materials, scene);
-  if (options.frame) choose_files(folder, *options.frame, scene);
+  if (pose == Pose::kAtFrame) choose_files(folder, source.frame, scene);
 }
 
 SceneReader::~SceneReader() = default;
@@ -384,17 +383,8 @@ ReadResult SceneReader::finish() {
   return std::move(state.result);
 }
 
-ReadResult read_scene(const std::filesystem::path& file, const Overrides& overrides, const ReadOptions& options) {
-  SceneReader reader(file, overrides, options);
-  const std::optional<scene::Scene>& closing = reader.closing();
-  reader.add(scene::validate(reader.scene()));
-  reader.add(scene::warn_of_coincident(reader.scene(), closing ? &*closing : nullptr));
-  return reader.finish();
-}
-
-scene::Scene authored_scene(const std::filesystem::path& file, const Overrides& overrides,
-                            std::shared_ptr<const std::string> text) {
-  return std::move(SceneReader(file, overrides, {std::move(text), std::nullopt}).scene());
+scene::Scene authored_scene(const SceneSource& source) {
+  return std::move(SceneReader(source, Pose::kAuthored).scene());
 }
 
 void refuse_data_file(const std::filesystem::path& file, std::string_view text) {
@@ -429,4 +419,4 @@ std::string read_file(const std::filesystem::path& file, std::uint64_t largest_b
 
 std::string toml_version() { return fmt::format("{}.{}.{}", TOML_LIB_MAJOR, TOML_LIB_MINOR, TOML_LIB_PATCH); }
 
-}  // namespace orrery::format
+}  // namespace orrery::load

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "format/read_keys.h"
+#include "load/read_keys.h"
 
 #include <algorithm>
 #include <memory>
@@ -10,7 +10,7 @@
 #include "base/text.h"
 #include "scene/texture.h"
 
-namespace orrery::format {
+namespace orrery::load {
 namespace {
 
 /// Returns which material types have a key: "`fuzz` belongs to metal".
@@ -113,4 +113,4 @@ void read_materials(ReadState& state, const toml::table& root, std::vector<scene
   }
 }
 
-}  // namespace orrery::format
+}  // namespace orrery::load

@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "format/read_keys.h"
+#include "load/read_keys.h"
 
 #include <gtest/gtest.h>
 
 #include "scene/texture.h"
 #include "support/scene_files.h"
 
-namespace orrery::format {
+namespace orrery::load {
 namespace {
 
 using support::SceneFiles;
@@ -153,4 +153,4 @@ TEST(FormatReadMaterials, MistakesInTexturesAreReportedOnce) {
 }
 
 }  // namespace
-}  // namespace orrery::format
+}  // namespace orrery::load

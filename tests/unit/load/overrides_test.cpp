@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "format/overrides.h"
+#include "load/overrides.h"
 
 #include <gtest/gtest.h>
 
@@ -9,7 +9,7 @@
 
 #include "support/scene_files.h"
 
-namespace orrery::format {
+namespace orrery::load {
 namespace {
 
 using support::SceneFiles;
@@ -332,4 +332,4 @@ TEST(FormatOverrides, ListElementsMustExist) {
 }
 
 }  // namespace
-}  // namespace orrery::format
+}  // namespace orrery::load

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "format/read_keys.h"
+#include "load/read_keys.h"
 
 #include <algorithm>
 #include <utility>
@@ -10,7 +10,7 @@
 #include "scene/animation.h"
 #include "scene/limits.h"
 
-namespace orrery::format {
+namespace orrery::load {
 namespace {
 
 using scene::interpolation_names;
@@ -143,4 +143,4 @@ void check_tracks(ReadState& state, const toml::array& list, const scene::Scene&
   }
 }
 
-}  // namespace orrery::format
+}  // namespace orrery::load

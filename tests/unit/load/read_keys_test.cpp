@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "format/read_keys.h"
+#include "load/read_keys.h"
 
 #include <gtest/gtest.h>
 
 #include "support/scene_files.h"
 
-namespace orrery::format {
+namespace orrery::load {
 namespace {
 
 using support::SceneFiles;
@@ -107,4 +107,4 @@ TEST(FormatReadKeys, UnknownKeysWithoutASuggestionListTheKnownKeys) {
 }
 
 }  // namespace
-}  // namespace orrery::format
+}  // namespace orrery::load

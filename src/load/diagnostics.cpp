@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "format/diagnostics.h"
+#include "load/diagnostics.h"
 
 #include <algorithm>
 
 #include <fmt/core.h>
 
-namespace orrery::format {
+namespace orrery::load {
 namespace {
 
 /// Lines per stored offset: in a file of empty lines, an offset per line would take eight times the size of the file.
@@ -119,4 +119,4 @@ void Diagnostics::raise_errors(const std::string& file) const {
                     std::move(diagnostics));
 }
 
-}  // namespace orrery::format
+}  // namespace orrery::load

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "format/toml_tree.h"
+#include "load/toml_tree.h"
 
 #include <algorithm>
 #include <cstdint>
@@ -12,7 +12,7 @@
 #include "scene/schema.h"
 #include "scene/texture.h"
 
-namespace orrery::format {
+namespace orrery::load {
 namespace {
 
 Place place_of_region(const toml::source_region& region) {
@@ -282,4 +282,4 @@ toml::table parse_tree(const std::string& file_name, const std::string& text, co
   return root;
 }
 
-}  // namespace orrery::format
+}  // namespace orrery::load

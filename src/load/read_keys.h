@@ -6,10 +6,10 @@
 #include <vector>
 
 #include "base/text.h"
-#include "format/toml_tree.h"
+#include "load/toml_tree.h"
 #include "scene/schema.h"
 
-namespace orrery::format {
+namespace orrery::load {
 
 /// Converts a node to the type of a key and checks its range or choices.
 ///
@@ -68,4 +68,4 @@ void read_tracks(ReadState& state, const toml::array& list, scene::Scene& scene)
 /// Reports the tracks whose values are out of range at a frame: cubic tracks may overshoot between their keys.
 void check_tracks(ReadState& state, const toml::array& list, const scene::Scene& scene, double frame);
 
-}  // namespace orrery::format
+}  // namespace orrery::load

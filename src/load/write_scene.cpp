@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "format/write_scene.h"
+#include "load/write_scene.h"
 
 #include <algorithm>
 #include <array>
@@ -19,7 +19,7 @@
 #include "scene/schema.h"
 #include "scene/texture.h"
 
-namespace orrery::format {
+namespace orrery::load {
 namespace {
 
 using scene::number_text;
@@ -236,4 +236,4 @@ void write_scene(const scene::Scene& scene, const std::string& comment, const st
   base::write_text_file(file, marked_text(scene_text(scene, comment)));
 }
 
-}  // namespace orrery::format
+}  // namespace orrery::load

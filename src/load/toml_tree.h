@@ -7,9 +7,9 @@
 #include <string_view>
 #include <vector>
 
-#include "format/diagnostics.h"
+#include "load/diagnostics.h"
 
-namespace orrery::format {
+namespace orrery::load {
 
 /// Returns the location of a node or a key.
 Place place_of(const toml::node& node);
@@ -52,4 +52,4 @@ Place too_deep_key(std::string_view text);
 toml::table parse_tree(const std::string& file_name, const std::string& text, const Overrides& overrides,
                        ReadState& state);
 
-}  // namespace orrery::format
+}  // namespace orrery::load

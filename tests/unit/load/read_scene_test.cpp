@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "format/read_scene.h"
+#include "load/read_scene.h"
 
 #include <gtest/gtest.h>
 
@@ -10,11 +10,11 @@
 #include <string>
 #include <utility>
 
-#include "format/diagnostics.h"
+#include "load/diagnostics.h"
 #include "scene/diagnostic.h"
 #include "support/scene_files.h"
 
-namespace orrery::format {
+namespace orrery::load {
 namespace {
 
 using scene::Vec3d;
@@ -215,7 +215,7 @@ TEST(FormatReadScene, TheMessageCountsTheErrors) {
   SceneFiles files;
   files.add("bad.toml", "camera.vfov = 0\nimage.width = 0\n");
   try {
-    read_scene(files.folder() / "bad.toml");
+    support::read_scene(files.folder() / "bad.toml");
     FAIL() << "no error";
   } catch (const base::Error& error) {
     EXPECT_EQ(error.kind(), base::ErrorKind::kBadData);
@@ -227,7 +227,7 @@ TEST(FormatReadScene, MissingFileIsMissingInput) {
   const SceneFiles files;
   for (const std::string name : {"none.toml", "."}) {
     try {
-      read_scene(files.folder() / name);
+      support::read_scene(files.folder() / name);
       FAIL() << "no error";
     } catch (const base::Error& error) {
       EXPECT_EQ(error.kind(), base::ErrorKind::kMissingInput) << error.what();
@@ -429,7 +429,7 @@ TEST(FormatReadScene, AHundredErrorsAreReportedAndTheRestCounted) {
   for (int i = 0; i < 50; ++i) text += "[[sphere]]\ncolor = 1\nradius = \"big\"\n";  // four errors each
   files.add("scene.toml", text);
   try {
-    read_scene(files.folder() / "scene.toml");
+    support::read_scene(files.folder() / "scene.toml");
     FAIL() << "no error";
   } catch (const base::Error& error) {
     ASSERT_EQ(error.diagnostics().size(), kMaxErrors + 1);
@@ -443,7 +443,8 @@ TEST(FormatReadScene, AHundredErrorsAreReportedAndTheRestCounted) {
 TEST(FormatReadScene, FurtherChecksAreReported) {
   SceneFiles files;
   files.add("scene.toml", "[color]\nspace = \"foo\"\n[image]\nwidth = 0\n");
-  SceneReader reader(files.folder() / "scene.toml", {}, {});
+  const SceneSource source{.file = files.folder() / "scene.toml"};
+  SceneReader reader(source);
   reader.add({{base::Severity::kError, "color.space", "no " + reader.scene().color.space}});
   try {
     reader.finish();
@@ -471,7 +472,7 @@ TEST(FormatReadScene, BookScenesReadWithoutDiagnostics) {
     if (entry.path().extension() != ".toml") continue;
     ++count;
     try {
-      EXPECT_TRUE(read_scene(entry.path()).warnings.empty()) << entry.path();
+      EXPECT_TRUE(support::read_scene(entry.path()).warnings.empty()) << entry.path();
     } catch (const base::Error& error) {
       ADD_FAILURE() << error.what() << "\n"
                     << (error.diagnostics().empty() ? "" : base::formatted(error.diagnostics()[0]));
@@ -502,4 +503,4 @@ frames = [1, 2]
 }
 
 }  // namespace
-}  // namespace orrery::format
+}  // namespace orrery::load

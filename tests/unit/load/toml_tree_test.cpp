@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "format/toml_tree.h"
+#include "load/toml_tree.h"
 
 #include <gtest/gtest.h>
 
 #include "support/scene_files.h"
 
-namespace orrery::format {
+namespace orrery::load {
 namespace {
 
 using support::SceneFiles;
@@ -117,4 +117,4 @@ TEST(FormatTomlTree, AcceptsTruncatedText) {
 }
 
 }  // namespace
-}  // namespace orrery::format
+}  // namespace orrery::load

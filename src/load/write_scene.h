@@ -7,7 +7,7 @@
 
 #include "scene/scene.h"
 
-namespace orrery::format {
+namespace orrery::load {
 
 /// Returns a scene file that authored_scene() reads back to the same scene, with every key that the schema describes.
 /// Keys with default values are omitted. The spheres of points tables are in their files.
@@ -44,4 +44,4 @@ bool is_ply_of(std::string_view writer, const std::filesystem::path& file);
 /// Errors     base::Error: kCannotCreate, kIo; kInternal as for scene_text
 void write_scene(const scene::Scene& scene, const std::string& comment, const std::filesystem::path& file);
 
-}  // namespace orrery::format
+}  // namespace orrery::load

@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "format/read_keys.h"
+#include "load/read_keys.h"
 
 #include <algorithm>
 
 #include <fmt/core.h>
 
-namespace orrery::format {
+namespace orrery::load {
 namespace {
 
 using scene::Value;
@@ -259,4 +259,4 @@ void report_unknown_key(ReadState& state, const toml::key& key, const std::strin
   state.error(place_of(key), fmt::format("unknown key `{}` in {}", name, table_name), remedy);
 }
 
-}  // namespace orrery::format
+}  // namespace orrery::load

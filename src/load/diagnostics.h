@@ -13,9 +13,9 @@
 #include <vector>
 
 #include "base/error.h"
-#include "format/overrides.h"
+#include "load/overrides.h"
 
-namespace orrery::format {
+namespace orrery::load {
 
 /// Name of the text that consists of all overrides, one per line.
 inline constexpr const char* kOverrideName = "--set";
@@ -124,4 +124,4 @@ struct ReadState {
   }
 };
 
-}  // namespace orrery::format
+}  // namespace orrery::load

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "format/diagnostics.h"
+#include "load/diagnostics.h"
 
 #include <gtest/gtest.h>
 #include <sys/stat.h>
@@ -7,10 +7,10 @@
 #include <string>
 
 #include "base/error.h"
-#include "format/read_scene.h"
+#include "load/read_scene.h"
 #include "support/temp_dir.h"
 
-namespace orrery::format {
+namespace orrery::load {
 namespace {
 
 std::string line_of(const SourceText& source, int line) {
@@ -118,4 +118,4 @@ TEST(FormatDiagnostics, OnlyRegularFilesAreRead) {
 }
 
 }  // namespace
-}  // namespace orrery::format
+}  // namespace orrery::load

@@ -4,11 +4,11 @@
 #include <random>
 
 #include "base/error.h"
-#include "format/write_scene.h"
+#include "load/write_scene.h"
 #include "points/load_points.h"
 #include "support/temp_dir.h"
 
-namespace orrery::format {
+namespace orrery::load {
 namespace {
 
 scene::Points some_points(std::size_t count, bool with_materials) {
@@ -71,4 +71,4 @@ TEST(FormatWritePly, MissingFolderIsCannotCreate) {
 }
 
 }  // namespace
-}  // namespace orrery::format
+}  // namespace orrery::load

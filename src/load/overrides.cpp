@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "format/overrides.h"
+#include "load/overrides.h"
 
 #include <algorithm>
 #include <cctype>
@@ -10,9 +10,9 @@
 
 #include <fmt/core.h>
 
-#include "format/toml_tree.h"
+#include "load/toml_tree.h"
 
-namespace orrery::format {
+namespace orrery::load {
 namespace {
 
 using Fault = Override::Fault;
@@ -257,4 +257,4 @@ std::optional<double> Overrides::number(std::string_view key) const {
 }
 std::optional<std::string> Overrides::string(std::string_view key) const { return value<std::string>(key); }
 
-}  // namespace orrery::format
+}  // namespace orrery::load

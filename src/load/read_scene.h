@@ -3,6 +3,7 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <functional>
 #include <memory>
 #include <optional>
 #include <string>
@@ -10,11 +11,12 @@
 #include <vector>
 
 #include "base/error.h"
-#include "format/overrides.h"
+#include "load/overrides.h"
+#include "points/load_points.h"
 #include "scene/diagnostic.h"
 #include "scene/scene.h"
 
-namespace orrery::format {
+namespace orrery::load {
 
 /// The value of a key, and its origin.
 struct Setting {
@@ -35,13 +37,22 @@ struct ReadResult {
 /// The frame that is read by default.
 inline constexpr int kFirstFrame = 1;
 
-struct ReadOptions {
+/// A scene as specified on the command line: file, overrides, and a frame of its animation.
+struct SceneSource {
+  std::filesystem::path file;
+  Overrides overrides = {};
+  int frame = kFirstFrame;  ///< selects the values of animated keys, and the files and frames of data
   std::shared_ptr<const std::string> text = {};  ///< text of the scene; null: read the file
-  /// Selects the values of animated keys, and the files and frames of data. Empty: the scene as authored, in which
-  /// animated keys have their own values and files their frame patterns.
-  std::optional<int> frame = kFirstFrame;
+  bool has_file = true;                          ///< false: `file` is only a name
+  points::OpenData open_data = {};               ///< see points::LoadRequest
+  /// Identifies the contents of a data file; empty: base::file_version.
+  std::function<std::string(const std::filesystem::path&)> data_version = {};
   std::optional<int> typed_lines = {};  ///< see SourceText::add
 };
+
+/// Whether a scene is posed at the frame of its source, or left as authored: animated keys then have their own values,
+/// and names of files their frame patterns.
+enum class Pose { kAtFrame, kAuthored };
 
 /// A scene file that is being read: the scene that it describes, and the places of its keys for diagnostics, which are
 /// collected until finish(). Reads no other file: the points tables have no spheres.
@@ -49,10 +60,11 @@ struct ReadOptions {
 /// Reference  docs/scene-format.md
 class SceneReader {
  public:
-  /// Reads the text, and poses the scene at the frame.
+  /// Reads the text, and poses the scene.
   ///
+  /// Domain     `source` outlives this
   /// Errors     base::Error: kMissingInput if the file cannot be opened; kIo; kBadData if it is not TOML
-  SceneReader(const std::filesystem::path& file, const Overrides& overrides, const ReadOptions& options);
+  explicit SceneReader(const SceneSource& source, Pose pose = Pose::kAtFrame);
   ~SceneReader();
   SceneReader(SceneReader&&) noexcept;
 
@@ -83,19 +95,11 @@ class SceneReader {
   std::unique_ptr<State> state_;
 };
 
-/// Reads and checks a scene file, without the files that it names.
-///
-/// Errors     those of SceneReader
-ReadResult read_scene(const std::filesystem::path& file, const Overrides& overrides = {},
-                      const ReadOptions& options = {});
-
 /// Returns the scene as authored, without checks: keys that cannot be read have their defaults. For the files that it
 /// names, and for writing it again.
 ///
-/// `text`     text of the scene; null: read the file
 /// Errors     base::Error(kBadData) for invalid TOML; kMissingInput, kIo
-scene::Scene authored_scene(const std::filesystem::path& file, const Overrides& overrides = {},
-                            std::shared_ptr<const std::string> text = {});
+scene::Scene authored_scene(const SceneSource& source);
 
 /// Maximum size of a scene file, bytes: a million [[sphere]] tables. Larger scenes use points files.
 inline constexpr std::uint64_t kLargestSceneFile = 256u << 20;
@@ -112,4 +116,4 @@ std::string read_file(const std::filesystem::path& file, std::uint64_t largest_b
 /// Returns the version of toml++.
 std::string toml_version();
 
-}  // namespace orrery::format
+}  // namespace orrery::load

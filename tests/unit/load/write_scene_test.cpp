@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "format/write_scene.h"
+#include "load/write_scene.h"
 
 #include <gtest/gtest.h>
 
@@ -18,7 +18,7 @@
 #include "scene/texture.h"
 #include "support/scene_files.h"
 
-namespace orrery::format {
+namespace orrery::load {
 namespace {
 
 using math::Vec3d;
@@ -207,7 +207,9 @@ void expect_same(const scene::Scene& a, const scene::Scene& b) {
 
 /// A scene file as authored; fails the test if the reader rejects it.
 scene::Scene read_authored(const std::string& text, const Overrides& overrides = {}) {
-  SceneReader reader("scene.toml", overrides, {std::make_shared<const std::string>(text), std::nullopt});
+  const SceneSource source{
+      .file = "scene.toml", .overrides = overrides, .text = std::make_shared<const std::string>(text)};
+  SceneReader reader(source, Pose::kAuthored);
   scene::Scene out = reader.scene();
   try {
     reader.finish();
@@ -349,4 +351,4 @@ TEST(FormatWriteScene, EditedAndForeignFilesMayNot) {
 }
 
 }  // namespace
-}  // namespace orrery::format
+}  // namespace orrery::load
