@@ -15,7 +15,6 @@
 #include "base/error.h"
 #include "data/byte_source.h"
 #include "data/data_file.h"
-#include "formats/open.h"
 
 namespace {
 
@@ -57,11 +56,11 @@ void measure(const std::string& file, std::vector<std::string> columns) {
   const auto bytes = data::ByteSource::open(file, std::uint64_t{16} << 30)->size();
   std::uint64_t rows = 0;
   if (columns.empty())
-    for (const auto& column : formats::open(file)->describe(0).columns) columns.push_back(column.name);
+    for (const auto& column : data::open(file)->describe(0).columns) columns.push_back(column.name);
   const auto read = [&](std::size_t threads) {
     const tbb::global_control limit(tbb::global_control::max_allowed_parallelism, threads);
     return seconds([&] {
-      const auto opened = formats::open(file);
+      const auto opened = data::open(file);
       rows = 0;
       for (int frame = 0; frame < opened->frame_count(); ++frame) rows += opened->read(frame, columns).rows;
     });

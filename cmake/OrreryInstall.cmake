@@ -13,7 +13,7 @@ endif()
 
 if(TARGET orrery)
   install(TARGETS orrery RUNTIME COMPONENT runtime)
-  install(TARGETS orrery_program orrery_http_module orrery_image_module orrery_formats_module
+  install(TARGETS orrery_program orrery_http_module orrery_image_module orrery_data_module
           RUNTIME DESTINATION ${CMAKE_INSTALL_LIBEXECDIR}/orrery COMPONENT runtime
           LIBRARY DESTINATION ${CMAKE_INSTALL_LIBEXECDIR}/orrery COMPONENT runtime)
 endif()

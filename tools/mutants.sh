@@ -16,7 +16,7 @@
 set -euo pipefail
 root=$(cd "$(dirname "${BASH_SOURCE[0]}")/.." && pwd)
 table="$root/tools/mutants/table.txt"
-programs=(unit_denoise unit_film unit_compare unit_compile unit_kernel unit_math unit_accel unit_render unit_points unit_plot unit_data unit_formats statistical numeric image)  # quickest first
+programs=(unit_denoise unit_film unit_compare unit_compile unit_kernel unit_math unit_accel unit_render unit_points unit_plot unit_data statistical numeric image)  # quickest first
 export ORRERY_NUMERIC_RAYS=${ORRERY_NUMERIC_RAYS:-100000} ORRERY_FURNACE_RAYS=${ORRERY_FURNACE_RAYS:-1e6}
 export ORRERY_STATISTICAL_SAMPLES=${ORRERY_STATISTICAL_SAMPLES:-4e6} ORRERY_ACCEL_RAYS=${ORRERY_ACCEL_RAYS:-100000}
 hung_after_s=600  # a mutant may loop forever

@@ -7,6 +7,7 @@
 #include <memory>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "data/byte_source.h"
@@ -74,6 +75,17 @@ class DataFile {
   /// Memory that the file takes while it is open and read, bytes, in addition to the tables that are read.
   virtual std::uint64_t memory() const { return 0; }
 };
+
+/// Opens a data file. Its format is recognised by its content; CSV, TSV and plain XYZ, which have no signature, also by
+/// the extension.
+///
+/// Errors     base::Error: kMissingInput, kIo; kBadData with a remedy for unknown formats, LAZ and ADIOS2; kNoMemory
+std::unique_ptr<DataFile> open(const std::filesystem::path& file, const OpenOptions& options = {});
+
+/// Returns whether open() recognises a file as a data file.
+///
+/// `head`     its first bytes: 64 KiB suffice
+bool is_data_file(const std::filesystem::path& file, std::string_view head);
 
 /// Returns a table in memory as a data file of one frame, equivalent to the PLY file that write_table() would write, or
 /// to the NPY file if it has columns of strings. Columns that are views stay views.

@@ -15,7 +15,7 @@
 #include "base/error.h"
 #include "base/file_name.h"
 #include "base/text.h"
-#include "formats/open.h"
+#include "data/data_file.h"
 #include "job/report_text.h"
 #include "points/derived.h"
 
@@ -75,7 +75,7 @@ DataInfo data_info(const DataInfoRequest& request) {
   data::OpenOptions options;
   options.component = request.component;
   options.limit_memory(base::available_memory().value_or(0));
-  const std::unique_ptr<data::DataFile> file = formats::open(request.file, options);
+  const std::unique_ptr<data::DataFile> file = data::open(request.file, options);
   DataInfo info;
   info.file = request.file;
   info.format = file->format;

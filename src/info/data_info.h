@@ -46,7 +46,7 @@ struct DataInfo {
 
 /// Reads a frame of a data file and summarizes its columns.
 ///
-/// Errors     base::Error: those of formats::open() and data::DataFile; kUsage if there is no such frame
+/// Errors     base::Error: those of data::open() and data::DataFile; kUsage if there is no such frame
 /// Cost       memory for the columns that are read together. A text file is parsed once for each such group: a dump of
 ///            25 million particles with 8 columns in 6 s with all columns at once (1.6 GB), 20 s with one (0.2 GB)
 DataInfo data_info(const DataInfoRequest& request);

@@ -65,7 +65,7 @@ class PreparedScene {
   std::string isa_;                      ///< instruction set that accel_ was built for
   base::Hash sphere_hash_;
   SceneHashes hashes_;
-  points::OpenData open_data_;  ///< empty: formats::open
+  points::OpenData open_data_;  ///< empty: data::open
   bool is_complete_ = false;    ///< loaded and compiled
 };
 

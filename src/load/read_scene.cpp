@@ -18,7 +18,7 @@
 #include "base/file_name.h"
 #include "base/frames.h"
 #include "base/input_file.h"
-#include "formats/open.h"
+#include "data/data_file.h"
 #include "load/read_keys.h"
 #include "scene/animation.h"
 #include "scene/limits.h"
@@ -388,7 +388,7 @@ scene::Scene authored_scene(const SceneSource& source) {
 }
 
 void refuse_data_file(const std::filesystem::path& file, std::string_view text) {
-  if (base::extension(file) != ".toml" && formats::is_data_file(file, text))
+  if (base::extension(file) != ".toml" && data::is_data_file(file, text))
     base::refuse(fmt::format("{0} is a data file, not a scene; render it: orrery plot {0} -o IMAGE", file.string()));
 }
 

@@ -142,7 +142,7 @@ const std::string& material_name(const scene::Scene& scene, std::uint32_t materi
   return scene.materials[material].name;
 }
 
-/// The header up to the comment that names the writer, as in formats::write_table.
+/// The header up to the comment that names the writer, as in data::write_table.
 std::string ply_header_begin(std::string_view writer) {
   return fmt::format("ply\nformat binary_little_endian 1.0\ncomment made by {}\n", writer);
 }

@@ -15,7 +15,7 @@
 #include "base/file_set.h"
 #include "base/frames.h"
 #include "base/text.h"
-#include "formats/write_table.h"
+#include "data/write_table.h"
 #include "plot/data_frames.h"
 #include "plot/view.h"
 #include "points/color_map.h"
@@ -207,7 +207,7 @@ class Converter {
                                       source.info.roles.element.empty() ? "" : " or --element-radii"));
     if (!output.left_out().empty())
       out.notes.push_back(fmt::format("left out {}: an earlier column has this name", base::joined(output.left_out())));
-    const std::vector<std::string> unwritten = formats::write_table(out.file, output.table());
+    const std::vector<std::string> unwritten = data::write_table(out.file, output.table());
     if (!unwritten.empty())
       out.notes.push_back(fmt::format("left out {}: the format cannot store these strings", base::joined(unwritten)));
     for (const data::Column& column : output.table().columns)
@@ -224,7 +224,7 @@ class Converter {
 }  // namespace
 
 void convert(const ConvertOptions& options, const std::function<void(const ConvertedFile&)>& written) {
-  formats::table_format(options.output);
+  data::table_format(options.output);
   Converter(options).run(written);
 }
 

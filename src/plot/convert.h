@@ -34,7 +34,7 @@ struct ConvertOptions : DataOptions {
 /// - The order is that of the particle ids, if the file has any.
 ///
 /// `written`  called for each file
-/// Errors     base::Error: those of points::load_points(), formats::open() and formats::write_table(); kUsage if an
+/// Errors     base::Error: those of points::load_points(), data::open() and data::write_table(); kUsage if an
 ///            output would replace an input, and for the wrong number of outputs
 /// Cost       one read of all columns per frame; with several frames and a colour map without a range, two
 void convert(const ConvertOptions& options, const std::function<void(const ConvertedFile&)>& written);

@@ -45,7 +45,7 @@ class DataFrames {
   ///
   /// `folder`   base folder of a colour-map file
   /// Domain     `options` outlive it
-  /// Errors     base::Error: those of formats::open(); kUsage for all frames of a sequence of files; kBadData for
+  /// Errors     base::Error: those of data::open(); kUsage for all frames of a sequence of files; kBadData for
   ///            frames that the file does not contain
   DataFrames(const DataOptions& options, const std::filesystem::path& folder);
   ~DataFrames();

@@ -94,7 +94,7 @@ struct PlotScene {
 /// Reads the data and writes a scene for it.
 ///
 /// `check`    called with PlotScene::frames before any row is read, so that an invalid request fails early
-/// Errors     base::Error: those of points::load_points() and formats::open(); kBadData with its errors, and if a
+/// Errors     base::Error: those of points::load_points() and data::open(); kBadData with its errors, and if a
 ///            selection or a slice leaves nothing; kUsage for an invalid view, and for options without effect; those of
 ///            `check`
 /// Cost       reads every frame once, to fit the camera and the colour map; twice for a turntable

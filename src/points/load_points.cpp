@@ -13,7 +13,7 @@
 #include "base/error.h"
 #include "base/text.h"
 #include "data/columns.h"
-#include "formats/open.h"
+#include "data/data_file.h"
 #include "points/bonds.h"
 #include "points/copies.h"
 #include "points/derived.h"
@@ -35,8 +35,7 @@ std::shared_ptr<data::DataFile> open(const LoadRequest& request, const scene::Po
   data::OpenOptions options;
   options.component = points.component;
   options.limit_memory(request.memory_limit);
-  return request.open && !points.is_sequence ? request.open(request.file, options)
-                                             : formats::open(request.file, options);
+  return request.open && !points.is_sequence ? request.open(request.file, options) : data::open(request.file, options);
 }
 
 /// The requested frame, from 1; before the file is opened.

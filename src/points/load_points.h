@@ -15,7 +15,7 @@
 
 namespace orrery::points {
 
-/// Opens a data file, as formats::open() does.
+/// Opens a data file, as data::open() does.
 using OpenData = std::function<std::shared_ptr<data::DataFile>(const std::filesystem::path&, const data::OpenOptions&)>;
 
 /// The data from which spheres were made.
@@ -36,7 +36,7 @@ struct LoadRequest {
   SourceRows* source = nullptr;          ///< if not null, receives the rows of the spheres
   std::function<void(double)> on_value;  ///< receives the values that a continuous colour map shows; may be empty
   std::uint64_t memory_limit = 0;        ///< maximum memory of the spheres, bytes; 0: no limit
-  OpenData open = {};                    ///< replaces formats::open(), except in a sequence of files
+  OpenData open = {};                    ///< replaces data::open(), except in a sequence of files
 };
 
 /// Reads the spheres of a data file into `points` according to its keys: selects rows, determines radii and colours,
@@ -45,7 +45,7 @@ struct LoadRequest {
 ///
 /// Result     diagnostics about keys of the scene file: unknown columns, missing radii, selections that match nothing;
 ///            `points` has no spheres if one of them is an error
-/// Errors     base::Error: those of formats::open and data::DataFile; kNoMemory
+/// Errors     base::Error: those of data::open and data::DataFile; kNoMemory
 /// Cost       one read of the needed columns, or of all columns for `source`
 std::vector<scene::SceneDiagnostic> load_points(const LoadRequest& request, scene::Points& points);
 
@@ -53,13 +53,13 @@ std::vector<scene::SceneDiagnostic> load_points(const LoadRequest& request, scen
 /// unless the scene file sets it.
 ///
 /// Result     diagnostics about keys of the scene file: missing columns; `rods` has none if one of them is an error
-/// Errors     base::Error: those of formats::open and data::DataFile; kNoMemory
+/// Errors     base::Error: those of data::open and data::DataFile; kNoMemory
 std::vector<scene::SceneDiagnostic> load_rods(const LoadRequest& request, scene::RodFile& rods);
 
 /// Returns the frame of the file, from 1, that load_points() would read.
 ///
 /// Result     beyond the last frame if the file does not have the requested one
-/// Errors     those of formats::open
+/// Errors     those of data::open
 /// Cost       opens the file if it may have several frames; counting them may read all of it
 int chosen_frame(const LoadRequest& request, const scene::Points& points);
 
@@ -68,7 +68,7 @@ int chosen_frame(const LoadRequest& request, const scene::Points& points);
 /// is reopened.
 ///
 /// Result     not thread-safe; copies share the open files
-/// Errors     those of formats::open()
+/// Errors     those of data::open()
 OpenData open_once();
 
 /// Returns a function that opens a file by `open`, but only the first time: the file is closed after its first use.

@@ -5,7 +5,7 @@
 #include <fmt/core.h>
 
 #include "data/columns.h"
-#include "formats/open.h"
+#include "data/data_file.h"
 #include "points/rows.h"
 #include "points/sources.h"
 #include "scene/limits.h"
@@ -23,7 +23,7 @@ std::vector<scene::SceneDiagnostic> load_rods(const LoadRequest& request, scene:
   KeyFaults faults(request.key);
   data::OpenOptions options;
   options.limit_memory(request.memory_limit);
-  const std::unique_ptr<data::DataFile> file = formats::open(request.file, options);
+  const std::unique_ptr<data::DataFile> file = data::open(request.file, options);
   const data::FrameInfo info = file->describe(0);
   std::vector<std::string> columns(kFromColumns.begin(), kFromColumns.end());
   columns.insert(columns.end(), kToColumns.begin(), kToColumns.end());

@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "base/input_file.h"
-#include "formats/open.h"
+#include "data/data_file.h"
 #include "points/load_points.h"
 
 namespace orrery::points {
@@ -39,7 +39,7 @@ OpenData open_once() {
       // Closed first: decompressed data take memory.
       std::erase_if(*open, [&](const OpenFile& o) { return o.name == name; });
       if (open->size() == kMaxOpen) open->erase(open->begin());
-      wanted.file = formats::open(path, options);
+      wanted.file = data::open(path, options);
     }
     open->push_back(std::move(wanted));
     return open->back().file;

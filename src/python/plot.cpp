@@ -20,7 +20,6 @@
 #include "cli/film.h"
 #include "cli/subject.h"
 #include "data/data_file.h"
-#include "formats/open.h"
 #include "job/job.h"
 #include "python/arrays.h"
 #include "python/picture.h"
@@ -98,7 +97,7 @@ std::pair<std::string, points::OpenData> opened(const Source& source) {
     make = [&source] { return std::make_unique<FramesFile>(std::get<ArraysOfFrames>(source)); };
   }
   return {kArraysName, [make](const std::filesystem::path& path, const data::OpenOptions& options) {
-            return path == kArraysName ? make() : formats::open(path, options);
+            return path == kArraysName ? make() : data::open(path, options);
           }};
 }
 

@@ -17,7 +17,6 @@
 #include "base/error.h"
 #include "base/text.h"
 #include "data/data_file.h"
-#include "formats/open.h"
 #include "points/derived.h"
 
 namespace py = pybind11;
@@ -39,7 +38,7 @@ ReadPoints read(const std::filesystem::path& file, int frame, std::optional<int>
   data::OpenOptions options;
   options.component = component;
   options.limit_memory(base::available_memory().value_or(0));
-  const std::unique_ptr<data::DataFile> opened = formats::open(file, options);
+  const std::unique_ptr<data::DataFile> opened = data::open(file, options);
   ReadPoints out;
   out.frames = opened->frame_count();
   if (frame < 1 || frame > out.frames)

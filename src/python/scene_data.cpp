@@ -19,8 +19,7 @@
 #include "base/input_file.h"
 #include "base/text.h"
 #include "data/data_file.h"
-#include "formats/open.h"
-#include "formats/write_table.h"
+#include "data/write_table.h"
 #include "load/load_scene.h"
 #include "load/read_scene.h"
 #include "load/scene_files.h"
@@ -122,7 +121,7 @@ load::SceneSource SceneData::source() const {
   };
   out.open_data = [find](const fs::path& path, const data::OpenOptions& options) {
     const auto* const own = find(path);
-    return own != nullptr ? data::open_table(own->first, own->second) : formats::open(path, options);
+    return own != nullptr ? data::open_table(own->first, own->second) : data::open(path, options);
   };
   out.data_version = [find](const fs::path& path) {
     const auto* const own = find(path);
@@ -183,7 +182,7 @@ void save(const SceneData& scene, const fs::path& file) {
   });
   const std::string text = load::scene_text(saved, {});
   for (const auto& [name, table] : scene.tables)
-    static_cast<void>(formats::write_table(folder / table_file_name(file, name, *table), *table, kWriter));
+    static_cast<void>(data::write_table(folder / table_file_name(file, name, *table), *table, kWriter));
   base::write_text_file(file, text);
 }
 

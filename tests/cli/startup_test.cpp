@@ -111,8 +111,7 @@ TEST_F(CliStartup, OnlyCommandsWithImagesLoadOpenImageIO) {
       std::filesystem::remove(entry.path());
     }
     EXPECT_NE(loaded.find("libOpenColorIO"), std::string::npos) << "LD_DEBUG has no effect";
-    for (const char* unused : {"orrery-formats", "libarchive"})
-      EXPECT_EQ(loaded.find(unused), std::string::npos) << words;
+    for (const char* unused : {"orrery-data", "libarchive"}) EXPECT_EQ(loaded.find(unused), std::string::npos) << words;
     return loaded.find("libOpenImageIO") != std::string::npos;
   };
   for (const char* words : {"--help", "--version", "info good.toml", "check good.toml", "generate final -o final.toml",
@@ -125,8 +124,7 @@ TEST_F(CliStartup, OnlyCommandsWithImagesLoadOpenImageIO) {
 TEST_F(CliStartup, AnImageLibraryThatCannotBeLoadedIsReportedBeforeRendering) {
   const std::filesystem::path copy = folder_ / "program", libexec = std::filesystem::path(ORRERY_MODULES);
   std::filesystem::create_directory(copy);
-  for (const char* file : {"orrery-program", "orrery-formats.so"})
-    std::filesystem::copy_file(libexec / file, copy / file);
+  for (const char* file : {"orrery-program", "orrery-data.so"}) std::filesystem::copy_file(libexec / file, copy / file);
   write("program/orrery-image.so", "no library");
   write("a.csv", "x,y,z\n0,0,0\n3,0,0\n");
   const std::string program = "'" + (copy / "orrery-program").string() + "' ";

@@ -13,7 +13,6 @@
 
 #include "base/error.h"
 #include "data/data_file.h"
-#include "formats/open.h"
 #include "load/load_scene.h"
 #include "load/read_scene.h"
 #include "load/write_scene.h"
@@ -190,7 +189,7 @@ std::unique_ptr<data::DataFile> open_data(const std::filesystem::path& folder, c
     file = folder / name;
     write(file, bytes);
     try {
-      return formats::open(file, options);
+      return data::open(file, options);
     } catch (const base::Error& error) {
       const bool is_unknown = !error.diagnostics().empty() && error.diagnostics()[0].text == "unknown file format";
       if (!is_unknown || file.extension() == ".csv") throw;

@@ -67,7 +67,7 @@ export -f compile
 export objects
 # The rooms that read files, and of `load` what reads a scene with its data. Images and displays, which it could load as
 # well, are not linked: no target gets there.
-printf '%s\0' tests/fuzz/readers.cpp src/{base,scene,format,data,formats,points}/*.cpp src/load/load_scene.cpp src/view/wish.cpp |
+printf '%s\0' tests/fuzz/readers.cpp src/{base,scene,data,points}/*.cpp src/load/{diagnostics,load_scene,overrides,read_*,toml_tree,write_scene}.cpp src/view/wish.cpp |
   xargs -0 -P "$(nproc)" -I{} bash -c 'compile "$@"' - {} "${compiler[@]}" "${flags[@]}"
 "$clang" -std=c++20 "${flags[@]}" -fsanitize=fuzzer -no-pie -Wl,--unresolved-symbols=ignore-in-object-files \
   -DFAULT="fault_with_${target/hdf5/data}" tests/fuzz/long_run.cpp "$objects"/*.o "${libraries[@]}" -o "$build/fuzz_$target"

@@ -10,7 +10,6 @@
 
 #include "base/error.h"
 #include "data/data_file.h"
-#include "formats/open.h"
 #include "support/temp_dir.h"
 
 namespace orrery::support {
@@ -25,7 +24,7 @@ class DataFileTest : public testing::Test {
     write_bytes(folder_ / name_, content);
     return folder_ / name_;
   }
-  std::unique_ptr<data::DataFile> open(const std::string& content) { return formats::open(write(content)); }
+  std::unique_ptr<data::DataFile> open(const std::string& content) { return data::open(write(content)); }
 
   /// The first diagnostic of opening the file and reading x; empty if there is none.
   base::Diagnostic error_of(const std::string& content) {

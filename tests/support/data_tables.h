@@ -14,7 +14,6 @@
 
 #include "base/error.h"
 #include "data/data_file.h"
-#include "formats/open.h"
 #include "support/temp_dir.h"
 
 namespace orrery::support {
@@ -39,7 +38,7 @@ inline std::vector<std::string> column_names(const data::FrameInfo& info) {
 inline data::Table read_table(data::DataFile& file, int frame = 0) {
   return file.read(frame, column_names(file.describe(frame)));
 }
-inline data::Table read_table(const std::filesystem::path& file) { return read_table(*formats::open(file)); }
+inline data::Table read_table(const std::filesystem::path& file) { return read_table(*data::open(file)); }
 
 /// The numbers of a column; fails if there is none.
 inline std::vector<double> numbers(const data::Table& table, std::string_view name) {
@@ -104,7 +103,7 @@ inline std::string columns_text(const data::FrameInfo& info) {
 inline std::string data_errors(const std::filesystem::path& file) {
   std::string all;
   try {
-    const auto opened = formats::open(file);
+    const auto opened = data::open(file);
     for (int frame = 0; frame < opened->frame_count(); ++frame) read_table(*opened, frame);
   } catch (const base::Error& error) {
     EXPECT_EQ(error.kind(), base::ErrorKind::kBadData) << error.what();
@@ -121,7 +120,7 @@ inline std::string data_errors(const std::filesystem::path& file) {
 inline std::string read_faults(const std::filesystem::path& file, const data::OpenOptions& options = {}) {
   std::string out;
   try {
-    read_table(*formats::open(file, options));
+    read_table(*data::open(file, options));
   } catch (const base::Error& error) {
     EXPECT_EQ(error.kind(), base::ErrorKind::kBadData) << error.what();
     for (const base::Diagnostic& d : error.diagnostics())

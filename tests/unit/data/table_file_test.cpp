@@ -7,8 +7,7 @@
 
 #include "base/error.h"
 #include "data/data_file.h"
-#include "formats/open.h"
-#include "formats/write_table.h"
+#include "data/write_table.h"
 #include "support/temp_dir.h"
 
 namespace orrery::data {
@@ -40,8 +39,8 @@ TEST(DataTableFile, DescribesAndReadsLikeThePlyFileOfTheTable) {
   const std::vector<float> xyz = {1, 2, 3, 4, 5, 6};
   const std::shared_ptr<const Table> table = views_of(xyz);
   support::TempDir folder;
-  EXPECT_TRUE(formats::write_table(folder / "a.ply", *table).empty());
-  const std::unique_ptr<DataFile> memory = open_table("a", table), file = formats::open(folder / "a.ply");
+  EXPECT_TRUE(data::write_table(folder / "a.ply", *table).empty());
+  const std::unique_ptr<DataFile> memory = open_table("a", table), file = data::open(folder / "a.ply");
   EXPECT_STREQ(memory->format, "arrays");
   EXPECT_EQ(memory->frame_count(), 1);
   const FrameInfo a = memory->describe(0), b = file->describe(0);

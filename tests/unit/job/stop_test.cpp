@@ -12,8 +12,7 @@
 #include "compile/compile.h"
 #include "compile/compiled_scene.h"
 #include "data/data_file.h"
-#include "formats/open.h"
-#include "formats/write_table.h"
+#include "data/write_table.h"
 #include "job/job.h"
 #include "job/scene_hash.h"
 #include "scene/diagnostic.h"
@@ -67,8 +66,8 @@ TEST(JobStop, EveryStageBeforeRenderingCanBeStopped) {
   const support::TempDir folder;
   const data::Table table = table_of(20'000);
   for (const char* name : {"a.ply", "a.csv", "a.npy"}) {
-    static_cast<void>(formats::write_table(folder / name, table));
-    expect_stoppable(name, [&] { formats::open(folder / name, {})->read(0, {"x", "y", "z"}); });
+    static_cast<void>(data::write_table(folder / name, table));
+    expect_stoppable(name, [&] { data::open(folder / name, {})->read(0, {"x", "y", "z"}); });
   }
   const scene::Scene scene = scene_of(table);
   expect_stoppable("validate", [&] { scene::validate(scene); });
@@ -81,7 +80,7 @@ TEST(JobStop, EveryStageBeforeRenderingCanBeStopped) {
 
 TEST(JobStop, AJobStopsWhileItReads) {
   const support::TempDir folder;
-  static_cast<void>(formats::write_table(folder / "a.ply", table_of(1000)));
+  static_cast<void>(data::write_table(folder / "a.ply", table_of(1000)));
   support::write_bytes(folder / "a.toml",
                        "[material.grey]\ntype = \"lambertian\"\nalbedo = [0.5, 0.5, 0.5]\n"
                        "[[points]]\nfile = \"a.ply\"\nradius = 0.001\nmaterial = \"grey\"\n");

@@ -17,7 +17,7 @@ std::string line_of(const SourceText& source, int line) {
   return source.diagnostic(base::Severity::kError, {"a", line, 1, 1}, "x").source_line;
 }
 
-TEST(FormatDiagnostics, FindsEveryLine) {
+TEST(LoadDiagnostics, FindsEveryLine) {
   std::string text;
   for (int i = 1; i <= 500; ++i) text += "line " + std::to_string(i) + (i % 2 == 0 ? "\r\n" : "\n");
   SourceText source;
@@ -28,7 +28,7 @@ TEST(FormatDiagnostics, FindsEveryLine) {
   EXPECT_EQ(line_of(source, 100000), "");
 }
 
-TEST(FormatDiagnostics, OverridesAreQuotedAsTyped) {
+TEST(LoadDiagnostics, OverridesAreQuotedAsTyped) {
   Overrides overrides;
   overrides.add_option("--samples", "render.samples", "0");
   overrides.add("camera.vfov=wide");
@@ -46,7 +46,7 @@ TEST(FormatDiagnostics, OverridesAreQuotedAsTyped) {
   EXPECT_EQ(source.option_at(3), "--layers");
 }
 
-TEST(FormatDiagnostics, ConvertsCharactersToBytes) {
+TEST(LoadDiagnostics, ConvertsCharactersToBytes) {
   SourceText source;
   source.add("a", "\xC3\xBC = \xE2\x82\xAC\xE2\x82\xAC\n");
   const base::Diagnostic f = source.diagnostic(base::Severity::kWarning, {"a", 1, 5, 2}, "text", "remedy");
@@ -57,7 +57,7 @@ TEST(FormatDiagnostics, ConvertsCharactersToBytes) {
   EXPECT_EQ(f.remedy, "remedy");
 }
 
-TEST(FormatDiagnostics, ALocationAfterTheEndOfALine) {
+TEST(LoadDiagnostics, ALocationAfterTheEndOfALine) {
   SourceText source;
   source.add("a", "ab\n");
   const base::Diagnostic f = source.diagnostic(base::Severity::kError, {"a", 1, 3, 1}, "text");
@@ -65,21 +65,21 @@ TEST(FormatDiagnostics, ALocationAfterTheEndOfALine) {
   EXPECT_EQ(f.source_line, "ab");
 }
 
-TEST(FormatDiagnostics, LocationsWithoutATextHaveNoLine) {
+TEST(LoadDiagnostics, LocationsWithoutATextHaveNoLine) {
   SourceText source;
   source.add("a", "one");
   EXPECT_EQ(source.diagnostic(base::Severity::kError, {"a", 0, 0, 1}, "x").source_line, "");
   EXPECT_EQ(source.diagnostic(base::Severity::kError, {"none", 1, 1, 1}, "x").source_line, "");
 }
 
-TEST(FormatDiagnostics, VeryLongLinesAreNotQuoted) {
+TEST(LoadDiagnostics, VeryLongLinesAreNotQuoted) {
   SourceText source;
   source.add("a", std::string(401, 'x') + "\n" + std::string(400, 'y'));
   EXPECT_EQ(line_of(source, 1), "");
   EXPECT_EQ(line_of(source, 2), std::string(400, 'y'));
 }
 
-TEST(FormatDiagnostics, ReadsAWholeFile) {
+TEST(LoadDiagnostics, ReadsAWholeFile) {
   const support::TempDir folder;
   const std::string bytes("a\0\r\n\xff", 5);
   support::write_bytes(folder / "a", bytes);
@@ -88,7 +88,7 @@ TEST(FormatDiagnostics, ReadsAWholeFile) {
   EXPECT_EQ(read_file(folder / "empty", 5), "");
 }
 
-TEST(FormatDiagnostics, AFileAboveTheLimitIsBadData) {
+TEST(LoadDiagnostics, AFileAboveTheLimitIsBadData) {
   const support::TempDir folder;
   support::write_bytes(folder / "a", std::string((1 << 20) + 1, 'x'));
   try {
@@ -100,7 +100,7 @@ TEST(FormatDiagnostics, AFileAboveTheLimitIsBadData) {
   }
 }
 
-TEST(FormatDiagnostics, OnlyRegularFilesAreRead) {
+TEST(LoadDiagnostics, OnlyRegularFilesAreRead) {
   const support::TempDir folder;
   ASSERT_EQ(::mkfifo((folder / "pipe").c_str(), 0600), 0);
   const auto reason = [](const std::filesystem::path& file) -> std::string {

@@ -39,7 +39,7 @@ std::string told(const std::string& override_text) {
   return all.substr(0, all.find('\n'));
 }
 
-TEST(FormatOverrides, ReplaceValuesOfTheFile) {
+TEST(LoadOverrides, ReplaceValuesOfTheFile) {
   SceneFiles files;
   const auto scene = files
                          .read(kScene, {"camera.vfov=30", "camera.look_from=[1, 2, 3]", "material.gold.fuzz=0.25",
@@ -55,14 +55,14 @@ TEST(FormatOverrides, ReplaceValuesOfTheFile) {
   EXPECT_EQ(std::get<scene::Metal>(scene.materials[1].model).albedo, (scene::Vec3d{1, 1, 1}));
 }
 
-TEST(FormatOverrides, CreateMissingTables) {
+TEST(LoadOverrides, CreateMissingTables) {
   SceneFiles files;
   const auto scene = files.read(kScene, {"image.width=7", "render.samples=3"}).scene;
   EXPECT_EQ(scene.image.width, 7);
   EXPECT_EQ(scene.render.samples, 3);
 }
 
-TEST(FormatOverrides, TablesAreMerged) {
+TEST(LoadOverrides, TablesAreMerged) {
   SceneFiles files;
   const auto scene = files.read(kScene, {"camera={look_from=[1,2,3]}", "material={gold={fuzz=0.5}}"}).scene;
   EXPECT_EQ(scene.camera.vfov, 20);
@@ -71,14 +71,14 @@ TEST(FormatOverrides, TablesAreMerged) {
   EXPECT_EQ(std::get<scene::Metal>(scene.materials[0].model).fuzz, 0.5);
 }
 
-TEST(FormatOverrides, AListOrNumberBecomesATable) {
+TEST(LoadOverrides, AListOrNumberBecomesATable) {
   SceneFiles files;
   for (const char* text : {"material.gold.albedo={texture=\"noise\"}", "material.gold.albedo.texture=noise"})
     EXPECT_NE(std::get<scene::Metal>(files.read(kScene, {text}).scene.materials[0].model).albedo_texture, nullptr)
         << text;
 }
 
-TEST(FormatOverrides, ANewTypeDropsTheKeysOfTheOldOne) {
+TEST(LoadOverrides, ANewTypeDropsTheKeysOfTheOldOne) {
   SceneFiles files;
   for (const char* text : {"material.gold={type=\"dielectric\"}", "material.gold.type=dielectric"}) {
     const auto scene = files.read(kScene, {text}).scene;
@@ -91,7 +91,7 @@ TEST(FormatOverrides, ANewTypeDropsTheKeysOfTheOldOne) {
   EXPECT_NE(own.find("unknown key `albedo` in material.gold of type dielectric"), std::string::npos) << own;
 }
 
-TEST(FormatOverrides, ANewTextureDropsTheKeysOfTheOldOne) {
+TEST(LoadOverrides, ANewTextureDropsTheKeysOfTheOldOne) {
   SceneFiles files;
   const std::string scene = std::string(kScene) +
                             "[material.wall]\ntype = \"lambertian\"\n"
@@ -137,7 +137,7 @@ class Spelling {
 };
 
 /// Limits, conflicts, framing, layers, headers and submitted jobs depend only on what this compares.
-TEST(FormatOverrides, EquivalentSpellingsAreEqual) {
+TEST(LoadOverrides, EquivalentSpellingsAreEqual) {
   struct Case {
     const char *table, *key;
     std::vector<std::string> values;
@@ -178,7 +178,7 @@ TEST(FormatOverrides, EquivalentSpellingsAreEqual) {
   }
 }
 
-TEST(FormatOverrides, ValuesAreReadByKey) {
+TEST(LoadOverrides, ValuesAreReadByKey) {
   const Overrides overrides = {"image={width=64,height=\"x\"}",    "image.width=65",         "color.view=\"a\\\"b\"",
                                "material.\"dark gold\".fuzz=1e-1", "\"sphere\"[1].radius=2", "render={}"};
   EXPECT_EQ(overrides.integer("image.width"), 65);
@@ -197,7 +197,7 @@ TEST(FormatOverrides, ValuesAreReadByKey) {
             "sphere[1].radius=2\n");
 }
 
-TEST(FormatOverrides, SpellingsOfAListElementAreEqual) {
+TEST(LoadOverrides, SpellingsOfAListElementAreEqual) {
   SceneFiles files;
   for (const char* text : {"sphere[1].radius=2", " sphere [1] . radius = 2 ", "\"sphere\"[1].'radius'=2"}) {
     const Overrides overrides = {text};
@@ -206,29 +206,29 @@ TEST(FormatOverrides, SpellingsOfAListElementAreEqual) {
   }
 }
 
-TEST(FormatOverrides, AListContainsItsElements) {
+TEST(LoadOverrides, AListContainsItsElements) {
   EXPECT_TRUE(Overrides({"sphere=[]"}).sets("sphere[2].radius"));
   EXPECT_FALSE(Overrides({"sphere=[]"}).sets("spheres"));
 }
 
-TEST(FormatOverrides, TheLastOneWins) {
+TEST(LoadOverrides, TheLastOneWins) {
   SceneFiles files;
   EXPECT_EQ(files.read(kScene, {"camera.vfov=30", "camera.vfov=40"}).scene.camera.vfov, 40);
 }
 
-TEST(FormatOverrides, WordsNeedNoQuotes) {
+TEST(LoadOverrides, WordsNeedNoQuotes) {
   SceneFiles files;
   EXPECT_EQ(files.read(kScene, {"render.precision=fast"}).scene.render.precision, scene::Precision::kFast);
   EXPECT_EQ(files.read(kScene, {"render.precision=\"fast\""}).scene.render.precision, scene::Precision::kFast);
   EXPECT_EQ(files.read(kScene, {"color.space=Utility - \\ \"x\""}).scene.color.space, "Utility - \\ \"x\"");
 }
 
-TEST(FormatOverrides, BlanksAreIgnored) {
+TEST(LoadOverrides, BlanksAreIgnored) {
   SceneFiles files;
   EXPECT_EQ(files.read(kScene, {" camera.vfov = 30 "}).scene.camera.vfov, 30);
 }
 
-TEST(FormatOverrides, ErrorsAreLocatedInTheOverride) {
+TEST(LoadOverrides, ErrorsAreLocatedInTheOverride) {
   SceneFiles files;
   EXPECT_EQ(files.diagnostics(kScene, {"image.width=5", "camera.vfov=300", "camera.vfow=3", "sphere[1].radius=0",
                                        "sphere[0].center=[0, 1]"}),
@@ -247,7 +247,7 @@ TEST(FormatOverrides, ErrorsAreLocatedInTheOverride) {
             "                           ^~~~~~\n");
 }
 
-TEST(FormatOverrides, MessagesNameTheShortOption) {
+TEST(LoadOverrides, MessagesNameTheShortOption) {
   SceneFiles files;
   Overrides overrides;
   overrides.add_option("--samples", "render.samples", "0");
@@ -268,7 +268,7 @@ TEST(FormatOverrides, MessagesNameTheShortOption) {
             "               ^\n");
 }
 
-TEST(FormatOverrides, ListsOfWordsNeedNoQuotes) {
+TEST(LoadOverrides, ListsOfWordsNeedNoQuotes) {
   SceneFiles files;
   using Names = std::vector<std::string>;
   const auto layers = [&](const std::string& value) {
@@ -288,7 +288,7 @@ TEST(FormatOverrides, ListsOfWordsNeedNoQuotes) {
   EXPECT_EQ(told("camera.up=[0,1,x]"), "--set: error: camera.up[2] must be a number, not a string");
 }
 
-TEST(FormatOverrides, AreCheckedLikeTheFile) {
+TEST(LoadOverrides, AreCheckedLikeTheFile) {
   EXPECT_EQ(told("material.gold.ior=1.5"),
             "--set: error: unknown key `ior` in material.gold of type metal; `ior` belongs to dielectric, plastic");
   EXPECT_EQ(told("sphere[0].material=glod"),
@@ -300,7 +300,7 @@ TEST(FormatOverrides, AreCheckedLikeTheFile) {
       "--set: error: material.new needs `type`; one of lambertian, hemisphere, metal, dielectric, emitter, plastic");
 }
 
-TEST(FormatOverrides, InvalidOverridesAreReported) {
+TEST(LoadOverrides, InvalidOverridesAreReported) {
   const std::string example = "; write KEY=VALUE, e.g. camera.vfov=30 or sphere[0].radius=2";
   EXPECT_EQ(told("camera.vfov"), "--set: error: not of the form KEY=VALUE" + example);
   EXPECT_EQ(told(""), "--set: error: not of the form KEY=VALUE" + example);
@@ -310,12 +310,12 @@ TEST(FormatOverrides, InvalidOverridesAreReported) {
   EXPECT_EQ(told("a.b.c.d.e.f.g.h.i=1"), "--set: error: the key has more than 8 parts" + example);
 }
 
-TEST(FormatOverrides, SyntaxErrorsInListsAreReported) {
+TEST(LoadOverrides, SyntaxErrorsInListsAreReported) {
   EXPECT_EQ(told("camera.up=[1,2"), "--set: error: array: encountered end-of-file");
   EXPECT_EQ(told("camera..vfov=1").rfind("--set: error: key: ", 0), 0u) << told("camera..vfov=1");
 }
 
-TEST(FormatOverrides, ListElementsMustExist) {
+TEST(LoadOverrides, ListElementsMustExist) {
   EXPECT_EQ(told("sphere[2].radius=1"),
             "--set: error: sphere[2] does not exist; the scene has 2 `sphere` tables, counted from 0");
   EXPECT_EQ(told("points[0].radius=1").rfind("--set: error: the scene has no list `points`", 0), 0u);

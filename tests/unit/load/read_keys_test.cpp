@@ -18,7 +18,7 @@ std::string text_of(const std::string& scene) {
   return begin == std::string::npos ? told : told.substr(begin + 7, told.find('\n') - begin - 7);
 }
 
-TEST(FormatReadKeys, WrongTypesAreNamed) {
+TEST(LoadReadKeys, WrongTypesAreNamed) {
   EXPECT_EQ(text_of("camera.vfov = \"20\""), "camera.vfov must be a number, not a string");
   EXPECT_EQ(text_of("camera.vfov = true"), "camera.vfov must be a number, not a boolean");
   EXPECT_EQ(text_of("camera.vfov = [20]"), "camera.vfov must be a number, not a list");
@@ -30,7 +30,7 @@ TEST(FormatReadKeys, WrongTypesAreNamed) {
   EXPECT_EQ(text_of("render.shading = 1"), "render.shading must be one of path, normal, flat, not an integer");
 }
 
-TEST(FormatReadKeys, BooleansAreTrueOrFalse) {
+TEST(LoadReadKeys, BooleansAreTrueOrFalse) {
   SceneFiles files;
   EXPECT_TRUE(files.read("").scene.background.visible);
   EXPECT_FALSE(files.read("background.visible = false").scene.background.visible);
@@ -38,13 +38,13 @@ TEST(FormatReadKeys, BooleansAreTrueOrFalse) {
   EXPECT_EQ(text_of("background.visible = \"no\""), "background.visible must be true or false, not a string");
 }
 
-TEST(FormatReadKeys, AnIntegerIsANumberButNotViceVersa) {
+TEST(LoadReadKeys, AnIntegerIsANumberButNotViceVersa) {
   SceneFiles files;
   EXPECT_EQ(files.read("camera.vfov = 20").scene.camera.vfov, 20);
   EXPECT_EQ(text_of("render.samples = 10.0"), "render.samples must be an integer, not a floating-point number");
 }
 
-TEST(FormatReadKeys, RangesAreClosedOrOpen) {
+TEST(LoadReadKeys, RangesAreClosedOrOpen) {
   EXPECT_EQ(text_of("camera.vfov = 0"), "camera.vfov is 0; must be above 0 and below 180");
   EXPECT_EQ(text_of("camera.vfov = 180"), "camera.vfov is 180; must be above 0 and below 180");
   EXPECT_EQ(text_of("camera.defocus_angle = 180"), "camera.defocus_angle is 180; must be at least 0 and below 180");
@@ -56,7 +56,7 @@ TEST(FormatReadKeys, RangesAreClosedOrOpen) {
   EXPECT_EQ(text_of("background.top = [0, -0.5, 0]"), "background.top[1] is -0.5; must be in 0..17179869184");
 }
 
-TEST(FormatReadKeys, TheSunMayBeWrittenInCandelaPerSquareMetre) {
+TEST(LoadReadKeys, TheSunMayBeWrittenInCandelaPerSquareMetre) {
   EXPECT_EQ(text_of("background.top = [1.6e9, 1.6e9, 17179869184]"), "");
   SceneFiles files;
   const std::string told = files.diagnostics("background.top = [0, 0, 2e10]");
@@ -64,13 +64,13 @@ TEST(FormatReadKeys, TheSunMayBeWrittenInCandelaPerSquareMetre) {
   EXPECT_NE(told.find("raise color.exposure"), std::string::npos) << told;
 }
 
-TEST(FormatReadKeys, NaNAndInfinityAreInNoRange) {
+TEST(LoadReadKeys, NaNAndInfinityAreInNoRange) {
   EXPECT_EQ(text_of("camera.vfov = nan"), "camera.vfov is nan; must be above 0 and below 180");
   EXPECT_EQ(text_of("camera.look_at = [0, 0, -inf]"), "camera.look_at[2] is -inf; must be in -1e+18..1e+18");
   EXPECT_EQ(text_of("camera.focus_distance = inf"), "camera.focus_distance is inf; must be in 1e-30..1e+18");
 }
 
-TEST(FormatReadKeys, EachInvalidComponentIsReported) {
+TEST(LoadReadKeys, EachInvalidComponentIsReported) {
   SceneFiles files;
   EXPECT_EQ(files.diagnostics("camera.up = [nan,\n inf, 0]"),
             "scene.toml:1:14: error: camera.up[0] is nan; must be in -1e+18..1e+18\n"
@@ -81,7 +81,7 @@ TEST(FormatReadKeys, EachInvalidComponentIsReported) {
             "     ^~~\n");
 }
 
-TEST(FormatReadKeys, ReadsListsOfWords) {
+TEST(LoadReadKeys, ReadsListsOfWords) {
   EXPECT_EQ(text_of("output.layers = []"), "");
   EXPECT_EQ(text_of("output.layers = \"Z\""), "output.layers must be a list like [\"Z\"], not a string");
   EXPECT_EQ(text_of("output.layers = [1]").substr(0, 31), "output.layers[0] must be one of");
@@ -90,7 +90,7 @@ TEST(FormatReadKeys, ReadsListsOfWords) {
   EXPECT_EQ(near.substr(near.find("; did")), "; did you mean `albedo`?");
 }
 
-TEST(FormatReadKeys, ParsesCropWindow) {
+TEST(LoadReadKeys, ParsesCropWindow) {
   EXPECT_EQ(text_of("image.crop = [0, 0, 8, 8]"), "");
   EXPECT_EQ(text_of("image.crop = [0, 0, 8]"),
             "image.crop must be x, y, width and height like [0, 0, 640, 360], not a list of 3");
@@ -100,7 +100,7 @@ TEST(FormatReadKeys, ParsesCropWindow) {
   EXPECT_EQ(text_of("image.crop = [-1, 0, 8, 8]"), "image.crop[0] is -1; must be in 0..65536");
 }
 
-TEST(FormatReadKeys, UnknownKeysWithoutASuggestionListTheKnownKeys) {
+TEST(LoadReadKeys, UnknownKeysWithoutASuggestionListTheKnownKeys) {
   EXPECT_EQ(text_of("color.gamma = 2.2"),
             "unknown key `gamma` in color; known keys are space, working, config, display, view, look, exposure");
   EXPECT_EQ(text_of("image.Width = 2"), "unknown key `Width` in image; did you mean `width`?");

@@ -18,7 +18,7 @@ std::vector<std::string> names_of(const scene::Scene& scene) {
 }
 using Names = std::vector<std::string>;
 
-TEST(FormatReadMaterials, AreInTheOrderOfTheFile) {
+TEST(LoadReadMaterials, AreInTheOrderOfTheFile) {
   SceneFiles files;
   EXPECT_EQ(names_of(files
                          .read("[material]\nz = { type = \"dielectric\" }\na = { type = \"dielectric\" }\n"
@@ -28,14 +28,14 @@ TEST(FormatReadMaterials, AreInTheOrderOfTheFile) {
 }
 
 // Points files have material indices: an override must not change those of the file.
-TEST(FormatReadMaterials, OverridesDoNotChangeTheIndicesOfTheFile) {
+TEST(LoadReadMaterials, OverridesDoNotChangeTheIndicesOfTheFile) {
   SceneFiles files;
   const std::string text = "\n\n[material.z]\ntype = \"dielectric\"\n[material.a]\ntype = \"dielectric\"\n";
   EXPECT_EQ(names_of(files.read(text, {"material.b={type=\"dielectric\"}", "material.a.ior=2"}).scene),
             (Names{"z", "a", "b"}));
 }
 
-TEST(FormatReadMaterials, AKeyOfAnotherTypeNamesThatType) {
+TEST(LoadReadMaterials, AKeyOfAnotherTypeNamesThatType) {
   SceneFiles files;
   EXPECT_EQ(
       files.diagnostics("[material.a]\ntype = \"lambertian\"\nalbedo = [1, 1, 1]\nfuzz = 0.5\n[material.b]\n"
@@ -50,7 +50,7 @@ TEST(FormatReadMaterials, AKeyOfAnotherTypeNamesThatType) {
       "    ^~~~~~\n");
 }
 
-TEST(FormatReadMaterials, WithoutATypeKeysAreCheckedAgainstAllTypes) {
+TEST(LoadReadMaterials, WithoutATypeKeysAreCheckedAgainstAllTypes) {
   SceneFiles files;
   EXPECT_EQ(files.diagnostics("[material.a]\nalbedo = [1, 1, 1]\nfuz = 0.5\n"),
             "scene.toml:1:1: error: material.a needs `type`; one of lambertian, hemisphere, metal, dielectric, "
@@ -62,7 +62,7 @@ TEST(FormatReadMaterials, WithoutATypeKeysAreCheckedAgainstAllTypes) {
             "    ^~~\n");
 }
 
-TEST(FormatReadMaterials, RangesOfValuesAreChecked) {
+TEST(LoadReadMaterials, RangesOfValuesAreChecked) {
   SceneFiles files;
   EXPECT_EQ(files.diagnostics("[material]\na = { type = \"metal\", albedo = [1, 1.5, 1], fuzz = 2 }\n"),
             "scene.toml:2:36: error: material.a.albedo[1] is 1.5; must be in 0..1\n"
@@ -73,7 +73,7 @@ TEST(FormatReadMaterials, RangesOfValuesAreChecked) {
             "                                                       ^\n");
 }
 
-TEST(FormatReadMaterials, AMaterialThatIsNotATableIsReportedOnce) {
+TEST(LoadReadMaterials, AMaterialThatIsNotATableIsReportedOnce) {
   SceneFiles files;
   EXPECT_EQ(files.diagnostics("[material]\na = 3\n[[sphere]]\ncenter = [0,0,0]\nradius = 1\nmaterial = \"a\"\n"),
             "scene.toml:2:5: error: material.a must be a table; write [material.a]\n"
@@ -81,7 +81,7 @@ TEST(FormatReadMaterials, AMaterialThatIsNotATableIsReportedOnce) {
             "        ^\n");
 }
 
-TEST(FormatReadMaterials, AcceptsAnyNameAndUnusedMaterials) {
+TEST(LoadReadMaterials, AcceptsAnyNameAndUnusedMaterials) {
   SceneFiles files;
   EXPECT_EQ(
       names_of(files.read("[material.\"dark gold\"]\ntype = \"dielectric\"\n[material.\"\"]\ntype = \"dielectric\"\n")
@@ -93,7 +93,7 @@ const scene::Texture& albedo_texture(const scene::Scene& scene) {
   return *std::get<scene::Lambertian>(scene.materials.at(0).model).albedo_texture;
 }
 
-TEST(FormatReadMaterials, TexturesHaveTheirKeys) {
+TEST(LoadReadMaterials, TexturesHaveTheirKeys) {
   SceneFiles files;
   const scene::Scene checker =
       files
@@ -122,7 +122,7 @@ TEST(FormatReadMaterials, TexturesHaveTheirKeys) {
   EXPECT_EQ(marble.seed, 7u);
 }
 
-TEST(FormatReadMaterials, AnOverrideChangesOrReplacesATexture) {
+TEST(LoadReadMaterials, AnOverrideChangesOrReplacesATexture) {
   SceneFiles files;
   const std::string text = "[material.a]\ntype = \"lambertian\"\nalbedo = { texture = \"noise\", scale = 4 }\n";
   EXPECT_EQ(albedo_texture(files.read(text, {"material.a.albedo.scale=8"}).scene).scale, 8);
@@ -130,7 +130,7 @@ TEST(FormatReadMaterials, AnOverrideChangesOrReplacesATexture) {
   EXPECT_EQ(std::get<scene::Lambertian>(plain.materials[0].model).albedo_texture, nullptr);
 }
 
-TEST(FormatReadMaterials, MistakesInTexturesAreReportedOnce) {
+TEST(LoadReadMaterials, MistakesInTexturesAreReportedOnce) {
   SceneFiles files;
   const std::string line = "albedo = { texture = \"checker\", scale = -1, evn = [0, 0, 0], odd = 0.5 }\n";
   EXPECT_EQ(files.diagnostics("[material.a]\ntype = \"lambertian\"\n" + line),

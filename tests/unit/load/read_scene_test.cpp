@@ -20,7 +20,7 @@ namespace {
 using scene::Vec3d;
 using support::SceneFiles;
 
-TEST(FormatReadScene, AnEmptyFileHasTheDefaults) {
+TEST(LoadReadScene, AnEmptyFileHasTheDefaults) {
   SceneFiles files;
   const auto read = files.read("");
   EXPECT_TRUE(read.scene.spheres.empty());
@@ -28,7 +28,7 @@ TEST(FormatReadScene, AnEmptyFileHasTheDefaults) {
   EXPECT_TRUE(read.warnings.empty());
 }
 
-TEST(FormatReadScene, ReadsEveryKey) {
+TEST(LoadReadScene, ReadsEveryKey) {
   SceneFiles files;
   const auto read = files.read(R"(
 [image]
@@ -115,7 +115,7 @@ material = "glass"
   EXPECT_EQ(s.spheres[1].material, 3u);
 }
 
-TEST(FormatReadScene, ReadsTheKeysOfOutput) {
+TEST(LoadReadScene, ReadsTheKeysOfOutput) {
   SceneFiles files;
   const auto read = files.read(R"(
 [image]
@@ -161,7 +161,7 @@ group = "left"
   EXPECT_EQ(s.spheres[0].group, "left");
 }
 
-TEST(FormatReadScene, ReportsAllErrorsInFileOrder) {
+TEST(LoadReadScene, ReportsAllErrorsInFileOrder) {
   SceneFiles files;
   EXPECT_EQ(
       files.diagnostics("[camera]\n"
@@ -211,7 +211,7 @@ TEST(FormatReadScene, ReportsAllErrorsInFileOrder) {
       "               ^~~~~~\n");
 }
 
-TEST(FormatReadScene, TheMessageCountsTheErrors) {
+TEST(LoadReadScene, TheMessageCountsTheErrors) {
   SceneFiles files;
   files.add("bad.toml", "camera.vfov = 0\nimage.width = 0\n");
   try {
@@ -223,7 +223,7 @@ TEST(FormatReadScene, TheMessageCountsTheErrors) {
   }
 }
 
-TEST(FormatReadScene, MissingFileIsMissingInput) {
+TEST(LoadReadScene, MissingFileIsMissingInput) {
   const SceneFiles files;
   for (const std::string name : {"none.toml", "."}) {
     try {
@@ -235,7 +235,7 @@ TEST(FormatReadScene, MissingFileIsMissingInput) {
   }
 }
 
-TEST(FormatReadScene, RequiredKeysOfASphere) {
+TEST(LoadReadScene, RequiredKeysOfASphere) {
   SceneFiles files;
   EXPECT_EQ(files.diagnostics("[[sphere]]\n"),
             "scene.toml:1:1: error: sphere[0] needs `center`\n"
@@ -246,7 +246,7 @@ TEST(FormatReadScene, RequiredKeysOfASphere) {
             "    [[sphere]]\n    ^~~~~~~~~~\n");
 }
 
-TEST(FormatReadScene, RodsHaveOneMaterialOrTwo) {
+TEST(LoadReadScene, RodsHaveOneMaterialOrTwo) {
   SceneFiles files;
   const std::string materials =
       "[material]\na = { type = \"lambertian\", albedo = [0, 0, 0] }\n"
@@ -277,7 +277,7 @@ material = "b"
   EXPECT_EQ(s.rods[1].materials, (std::array<std::uint32_t, 2>{1, 1}));
 }
 
-TEST(FormatReadScene, BondsAreAFlagOrATable) {
+TEST(LoadReadScene, BondsAreAFlagOrATable) {
   const auto bonds_of = [](const std::string& bonds) {
     SceneFiles files;
     return files
@@ -299,7 +299,7 @@ TEST(FormatReadScene, BondsAreAFlagOrATable) {
   EXPECT_EQ(bonds.material, 1u);
 }
 
-TEST(FormatReadScene, ErrorsOfRods) {
+TEST(LoadReadScene, ErrorsOfRods) {
   SceneFiles files;
   EXPECT_EQ(files.diagnostics("[[rod]]\n"),
             "scene.toml:1:1: error: rod[0] needs `from`\n    [[rod]]\n    ^~~~~~~\n"
@@ -332,7 +332,7 @@ TEST(FormatReadScene, ErrorsOfRods) {
   expect(files.diagnostics("rod = 3\n"), "scene.toml:1:7: error: `rod` must be an array of tables; write [[rod]]");
 }
 
-TEST(FormatReadScene, UndefinedMaterials) {
+TEST(LoadReadScene, UndefinedMaterials) {
   SceneFiles files;
   const std::string sphere = "[[sphere]]\ncenter = [0,0,0]\nradius = 1\nmaterial = \"chalk\"\n";
   EXPECT_EQ(
@@ -345,7 +345,7 @@ TEST(FormatReadScene, UndefinedMaterials) {
   EXPECT_NE(told.find("which is not defined; defined are ruby, gold\n"), std::string::npos) << told;
 }
 
-TEST(FormatReadScene, ValuesInPlaceOfTables) {
+TEST(LoadReadScene, ValuesInPlaceOfTables) {
   SceneFiles files;
   EXPECT_EQ(files.diagnostics("camera = 3\nsphere = 4\npoints = [1, 2]\nmaterial = 5\n"),
             "scene.toml:1:10: error: `camera` must be a table; write [camera]\n"
@@ -362,7 +362,7 @@ TEST(FormatReadScene, ValuesInPlaceOfTables) {
             "               ^\n");
 }
 
-TEST(FormatReadScene, SceneErrorsAreReportedAtTheirKey) {
+TEST(LoadReadScene, SceneErrorsAreReportedAtTheirKey) {
   SceneFiles files;
   EXPECT_EQ(files.diagnostics("[camera]\nup = [0, 0, 2]\n"),
             "scene.toml:2:6: error: camera.up: up is parallel to the view; choose another direction\n"
@@ -375,7 +375,7 @@ TEST(FormatReadScene, SceneErrorsAreReportedAtTheirKey) {
             "    ^~~~~~~~\n");
 }
 
-TEST(FormatReadScene, OneMistakeIsReportedOnce) {
+TEST(LoadReadScene, OneMistakeIsReportedOnce) {
   SceneFiles files;
   // look_at keeps its default, which equals look_from here: that is not a second mistake.
   const std::string told = files.diagnostics("[camera]\nlook_from = [0, 0, -1]\nlook_at = [0, nan, 0]\n");
@@ -394,7 +394,7 @@ TEST(FormatReadScene, OneMistakeIsReportedOnce) {
             "           ^~~~~~~~\n");
 }
 
-TEST(FormatReadScene, CoincidentSpheresAreAWarning) {
+TEST(LoadReadScene, CoincidentSpheresAreAWarning) {
   SceneFiles files;
   const std::string material = "[material.a]\ntype = \"dielectric\"\n";
   const std::string sphere = "[[sphere]]\ncenter = [1, 2, 3]\nradius = 1\nmaterial = \"a\"\n";
@@ -407,7 +407,7 @@ TEST(FormatReadScene, CoincidentSpheresAreAWarning) {
   EXPECT_EQ(wrong.find("warning"), std::string::npos) << "no warnings about a scene with errors";
 }
 
-TEST(FormatReadScene, SettingsHaveTheirOrigin) {
+TEST(LoadReadScene, SettingsHaveTheirOrigin) {
   SceneFiles files;
   const auto settings = files.read("[camera]\nvfov = 20\n", {"render.precision=fast"}).settings;
   const auto line = [&](const std::string& key) {
@@ -423,7 +423,7 @@ TEST(FormatReadScene, SettingsHaveTheirOrigin) {
   EXPECT_EQ(line("color.space"), "\"lin_rec709\" default");
 }
 
-TEST(FormatReadScene, AHundredErrorsAreReportedAndTheRestCounted) {
+TEST(LoadReadScene, AHundredErrorsAreReportedAndTheRestCounted) {
   SceneFiles files;
   std::string text;
   for (int i = 0; i < 50; ++i) text += "[[sphere]]\ncolor = 1\nradius = \"big\"\n";  // four errors each
@@ -440,7 +440,7 @@ TEST(FormatReadScene, AHundredErrorsAreReportedAndTheRestCounted) {
   }
 }
 
-TEST(FormatReadScene, FurtherChecksAreReported) {
+TEST(LoadReadScene, FurtherChecksAreReported) {
   SceneFiles files;
   files.add("scene.toml", "[color]\nspace = \"foo\"\n[image]\nwidth = 0\n");
   const SceneSource source{.file = files.folder() / "scene.toml"};
@@ -456,7 +456,7 @@ TEST(FormatReadScene, FurtherChecksAreReported) {
   }
 }
 
-TEST(FormatReadScene, ManyErrorsAreReportedQuickly) {
+TEST(LoadReadScene, ManyErrorsAreReportedQuickly) {
   SceneFiles files;
   std::string text;
   for (int i = 0; i < 3000; ++i) text += "[[sphere]]\ncenter = [0,0,0]\nradius = 0\nmaterial = \"x\"\n";
@@ -465,7 +465,7 @@ TEST(FormatReadScene, ManyErrorsAreReportedQuickly) {
   EXPECT_NE(told.find("and 5900 more (6000 in all)"), std::string::npos);
 }
 
-TEST(FormatReadScene, BookScenesReadWithoutDiagnostics) {
+TEST(LoadReadScene, BookScenesReadWithoutDiagnostics) {
   const auto folder = std::filesystem::path(ORRERY_ROOT) / "scenes" / "book";
   int count = 0;
   for (const auto& entry : std::filesystem::directory_iterator(folder)) {
@@ -481,7 +481,7 @@ TEST(FormatReadScene, BookScenesReadWithoutDiagnostics) {
   EXPECT_GE(count, 20);
 }
 
-TEST(FormatReadScene, OnlyWhatMovesIsCheckedAtShutterClose) {
+TEST(LoadReadScene, OnlyWhatMovesIsCheckedAtShutterClose) {
   SceneFiles files;
   const std::string text = R"([camera]
 shutter_close = 0.5

@@ -34,7 +34,7 @@ scene::Points read_back(const std::filesystem::path& file) {
   return points;
 }
 
-TEST(FormatWritePly, DoublesReadBackToTheSameBits) {
+TEST(LoadWritePly, DoublesReadBackToTheSameBits) {
   const support::TempDir folder;
   for (const bool with_materials : {false, true}) {
     const auto points = some_points(100, with_materials);
@@ -46,13 +46,13 @@ TEST(FormatWritePly, DoublesReadBackToTheSameBits) {
   }
 }
 
-TEST(FormatWritePly, WritesAFileWithoutPoints) {
+TEST(LoadWritePly, WritesAFileWithoutPoints) {
   const support::TempDir folder;
   write_ply({}, folder / "a.ply");
   EXPECT_TRUE(read_back(folder / "a.ply").centers.empty());
 }
 
-TEST(FormatWritePly, TheHeaderNamesTheWriter) {
+TEST(LoadWritePly, TheHeaderNamesTheWriter) {
   const support::TempDir folder;
   write_ply({}, folder / "a.ply");
   EXPECT_TRUE(is_ply_of(kPlyWriter, folder / "a.ply"));
@@ -60,7 +60,7 @@ TEST(FormatWritePly, TheHeaderNamesTheWriter) {
   EXPECT_FALSE(is_ply_of(kPlyWriter, folder / "none.ply"));
 }
 
-TEST(FormatWritePly, MissingFolderIsCannotCreate) {
+TEST(LoadWritePly, MissingFolderIsCannotCreate) {
   const support::TempDir folder;
   try {
     write_ply({}, folder / "none" / "a.ply");

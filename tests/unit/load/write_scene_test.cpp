@@ -219,7 +219,7 @@ scene::Scene read_authored(const std::string& text, const Overrides& overrides =
   return out;
 }
 
-TEST(FormatWriteScene, AnySceneReadsBackToTheSameScene) {
+TEST(LoadWriteScene, AnySceneReadsBackToTheSameScene) {
   for (std::uint64_t seed = 0; seed < 300 && !testing::Test::HasFailure(); ++seed) {
     const scene::Scene written = RandomScene(seed).make();
     const std::string text = scene_text(written, "a comment");
@@ -249,7 +249,7 @@ frames = [1, 2]
 values = [30, 40.5]
 )";
 
-TEST(FormatWriteScene, AnAuthoredSceneKeepsWhatDependsOnTheFrame) {
+TEST(LoadWriteScene, AnAuthoredSceneKeepsWhatDependsOnTheFrame) {
   const scene::Scene authored = read_authored(kAuthored);
   EXPECT_EQ(authored.camera.vfov, 12);
   const std::string text = scene_text(authored, {});
@@ -257,7 +257,7 @@ TEST(FormatWriteScene, AnAuthoredSceneKeepsWhatDependsOnTheFrame) {
     EXPECT_NE(text.find(kept), std::string::npos) << kept << "\n" << text;
 }
 
-TEST(FormatWriteScene, OverridesAreApplied) {
+TEST(LoadWriteScene, OverridesAreApplied) {
   const scene::Scene written = read_authored(kAuthored, {"camera.vfov=30", "material.zinc.type=dielectric",
                                                          "material.copper={type=\"metal\",albedo=[1,0,0]}"});
   expect_same(written, read_authored(scene_text(written, {})));
@@ -267,7 +267,7 @@ TEST(FormatWriteScene, OverridesAreApplied) {
   EXPECT_TRUE(std::holds_alternative<scene::Dielectric>(written.materials[0].model));
 }
 
-TEST(FormatWriteScene, DefaultsAreNotWritten) {
+TEST(LoadWriteScene, DefaultsAreNotWritten) {
   EXPECT_EQ(scene_text({}, ""), "");
   scene::Scene s;
   s.render.samples = 7;
@@ -276,7 +276,7 @@ TEST(FormatWriteScene, DefaultsAreNotWritten) {
             "# two\n#\n# lines\n\n[render]\nsamples = 7\n\n[material]\nglass = { type = \"dielectric\" }\n");
 }
 
-TEST(FormatWriteScene, CommentsAcceptAnyFileName) {
+TEST(LoadWriteScene, CommentsAcceptAnyFileName) {
   SceneFiles files;
   scene::Scene s;
   s.camera.vfov = 33;
@@ -285,7 +285,7 @@ TEST(FormatWriteScene, CommentsAcceptAnyFileName) {
   EXPECT_EQ(files.read(text).scene.camera.vfov, 33);
 }
 
-TEST(FormatWriteScene, AnUnwritableSceneIsAnInternalError) {
+TEST(LoadWriteScene, AnUnwritableSceneIsAnInternalError) {
   const auto kind_of = [](const scene::Scene& s) {
     try {
       scene_text(s, "");
@@ -302,7 +302,7 @@ TEST(FormatWriteScene, AnUnwritableSceneIsAnInternalError) {
   EXPECT_EQ(kind_of(s), base::ErrorKind::kInternal);
 }
 
-TEST(FormatWriteScene, MissingFolderIsCannotCreate) {
+TEST(LoadWriteScene, MissingFolderIsCannotCreate) {
   const support::TempDir folder;
   try {
     write_scene({}, "", folder / "none" / "s.toml");
@@ -325,21 +325,21 @@ std::string refusal(const std::string& bytes) {
   return "";
 }
 
-TEST(FormatWriteScene, AMarkedTextIsAComment) {
+TEST(LoadWriteScene, AMarkedTextIsAComment) {
   const std::string text = marked_text("[image]\n");
   EXPECT_TRUE(text.starts_with("# Written by orrery")) << text;
   EXPECT_TRUE(text.ends_with("\n[image]\n")) << text;
   EXPECT_EQ(text, marked_text("[image]\n"));
 }
 
-TEST(FormatWriteScene, UneditedAndMissingFilesMayBeReplaced) {
+TEST(LoadWriteScene, UneditedAndMissingFilesMayBeReplaced) {
   EXPECT_EQ(refusal(marked_text("[image]\nwidth = 3\n")), "");
   EXPECT_EQ(refusal(marked_text("")), "");
   const support::TempDir folder;
   EXPECT_NO_THROW(check_unedited(folder / "none.toml"));
 }
 
-TEST(FormatWriteScene, EditedAndForeignFilesMayNot) {
+TEST(LoadWriteScene, EditedAndForeignFilesMayNot) {
   const std::string text = marked_text("[image]\nwidth = 3\n");
   for (const std::string& edited : {text + "\n", text.substr(0, text.size() - 1), text + "# note\n"})
     EXPECT_NE(refusal(edited).find("edited since orrery wrote it"), std::string::npos) << edited;

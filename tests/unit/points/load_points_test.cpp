@@ -7,7 +7,6 @@
 
 #include "base/error.h"
 #include "data/data_file.h"
-#include "formats/open.h"
 #include "points/color_map.h"
 #include "points/sources.h"
 #include "points_file.h"
@@ -57,7 +56,7 @@ class ClaimsRows final : public data::DataFile {
 TEST_F(PointsLoadPoints, MoreSpheresThanIdsAreRefusedBeforeTheyAreRead) {
   write("a.csv", "x,y,z,radius\n1,2,3,0.5\n");
   request.open = [](const std::filesystem::path& file, const data::OpenOptions& options) {
-    return std::make_unique<ClaimsRows>(formats::open(file, options), std::uint64_t{1} << 32);
+    return std::make_unique<ClaimsRows>(data::open(file, options), std::uint64_t{1} << 32);
   };
   EXPECT_EQ(load(), "error points[0].file: has 4294967296 rows; the maximum is 4294967295\n");
 }
@@ -67,7 +66,7 @@ TEST_F(PointsLoadPoints, DecompressedDataCountAsMemory) {
   std::uint64_t limit = 0;
   request.open = [&](const std::filesystem::path& file, const data::OpenOptions& options) {
     limit = options.decompressed_limit;
-    return formats::open(file, options);
+    return data::open(file, options);
   };
   load();
   EXPECT_EQ(limit, data::OpenOptions().decompressed_limit);
@@ -561,7 +560,7 @@ class HeavyFile final : public data::DataFile {
 TEST_F(PointsLoadPointsMemory, TheOpenFileCounts) {
   write("a.csv", kCsv);
   request.open = [](const std::filesystem::path& file, const data::OpenOptions& options) {
-    return std::make_unique<HeavyFile>(formats::open(file, options));
+    return std::make_unique<HeavyFile>(data::open(file, options));
   };
   request.memory_limit = 1 << 20;
   EXPECT_NE(shortage().find("3 rows and 3 spheres need "), std::string::npos) << shortage();
@@ -601,7 +600,7 @@ TEST_F(PointsLoadPointsMemory, ChainsReduceTheNeed) {
   write("a.pdb", protein());
   request.memory_limit = 2000;
   // Parsing the text takes more than that.
-  request.open = [](const std::filesystem::path& file, const data::OpenOptions&) { return formats::open(file); };
+  request.open = [](const std::filesystem::path& file, const data::OpenOptions&) { return data::open(file); };
   EXPECT_EQ(shortage(), "");
   EXPECT_EQ(points.centers.size(), 3u);
 }
@@ -610,7 +609,7 @@ TEST_F(PointsLoadPointsMemory, ChainsReduceTheNeed) {
 TEST_F(PointsLoadPointsMemory, CopiesFarFromTheOriginNeedMore) {
   points.radius.value = 1;
   points.assembly = "1";
-  request.open = [](const std::filesystem::path& file, const data::OpenOptions&) { return formats::open(file); };
+  request.open = [](const std::filesystem::path& file, const data::OpenOptions&) { return data::open(file); };
   const auto needed = [&] {
     std::uint64_t too_little = 1, enough = 1 << 14;
     while (enough - too_little > 1) {

@@ -1,0 +1,615 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <tbb/blocked_range.h>
+#include <tbb/parallel_for.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstdint>
+#include <cstring>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <utility>
+#include <vector>
+
+#include <fmt/core.h>
+
+#include "base/text.h"
+#include "data/bonds.h"
+#include "data/frames.h"
+#include "data/readers.h"
+#include "data/text_rows.h"
+
+namespace orrery::data {
+
+namespace {
+
+/// Header of a frame in a LAMMPS dump: everything before its rows.
+struct LammpsFrame {
+  double step = 0;
+  std::uint64_t rows = 0;
+  std::uint64_t rows_line = 0;  ///< number of the line that declares `rows`
+  std::optional<Box> box;
+  std::vector<std::string> columns;
+  bool has_labels = false;  ///< the column `type` contains labels instead of numbers
+};
+
+/// Converts a LAMMPS box, given by low and high coordinates and tilt factors.
+Box lammps_box(const Vec3d& low, const Vec3d& high, double xy, double xz, double yz) {
+  return {low, {Vec3d{high.x - low.x, 0, 0}, Vec3d{xy, high.y - low.y, 0}, Vec3d{xz, yz, high.z - low.z}}};
+}
+
+/// The number of rows that a word gives; none if it gives none.
+std::optional<std::uint64_t> count_of(std::string_view word) {
+  std::int64_t count = 0;
+  if (!parse_integer(word, count) || count < 0) return std::nullopt;
+  return static_cast<std::uint64_t>(count);
+}
+
+/// Reads the items of a frame up to and including `ITEM: ATOMS`.
+class FrameReader {
+ public:
+  FrameReader(TextCursor& cursor, Faults& faults) : cursor_(cursor), faults_(faults) {}
+
+  LammpsFrame read() {
+    for (;;) {
+      const std::string item = next_line();
+      if (item.find_first_not_of(" \t") == std::string::npos) continue;
+      if (!item.starts_with("ITEM:"))
+        faults_.fail(item_line(), fmt::format("expected a line \"ITEM: ...\", found '{}'", item.substr(0, kMaxShown)),
+                     "check the number of atoms of the previous frame, and the lines of its header");
+      const std::string name = item.substr(std::min(item.find_first_not_of(" \t", 5), item.size()));
+      if (name.starts_with("ATOMS")) {
+        read_columns(name);
+        return finished();
+      }
+      if (name.starts_with("TIMESTEP"))
+        step_ = read_number("a time step");
+      else if (name.starts_with("NUMBER OF ATOMS"))
+        read_count();
+      else if (name.starts_with("BOX BOUNDS"))
+        read_box(name);
+      else if (name.starts_with("UNITS") || name.starts_with("TIME"))
+        next_line();
+      else
+        faults_.fail(item_line(), fmt::format("'ITEM: {}' is not an item of an atom dump", name.substr(0, kMaxShown)),
+                     "supported: dumps of style atom and custom");
+    }
+  }
+
+ private:
+  static constexpr std::size_t kMaxShown = 60;
+
+  std::uint64_t item_line() const { return cursor_.line() - 1; }
+
+  std::string next_line() {
+    std::string line;
+    if (!cursor_.next(line))
+      faults_.fail(cursor_.line(), "the file ends within the header of a frame",
+                   "remove the incomplete frame at the end of the file");
+    return line;
+  }
+
+  std::vector<double> read_numbers(std::size_t count, const std::string& what) {
+    const std::string line = next_line();
+    std::vector<double> numbers;
+    for (const std::string_view word : words_of(line)) {
+      double number = 0;
+      if (!parse_number(word, number) || !std::isfinite(number)) break;
+      numbers.push_back(number);
+    }
+    if (numbers.size() != count || words_of(line).size() != count)
+      faults_.fail(item_line(), fmt::format("expected {}, found '{}'", what, line.substr(0, kMaxShown)));
+    return numbers;
+  }
+
+  double read_number(const std::string& what) { return read_numbers(1, what)[0]; }
+
+  void read_count() {
+    const std::string line = next_line();
+    const auto words = words_of(line);
+    if (words.size() == 1) rows_ = count_of(words[0]);
+    if (words.size() != 1 || !rows_)
+      faults_.fail(item_line(), fmt::format("expected a number of atoms, found '{}'", line.substr(0, kMaxShown)));
+    frame_.rows_line = item_line();
+  }
+
+  void read_box(const std::string& name) {
+    const bool is_general = name.find(" abc") != std::string::npos;
+    const bool is_tilted = name.find(" xy xz yz") != std::string::npos;
+    const std::size_t count = is_general ? 4 : is_tilted ? 3 : 2;
+    std::array<std::vector<double>, 3> v;
+    for (auto& row : v) row = read_numbers(count, std::to_string(count) + " numbers of the box");
+    if (is_general) {
+      frame_.box = Box{{v[0][3], v[1][3], v[2][3]}, {}};
+      for (std::size_t i = 0; i < 3; ++i) frame_.box->edges[i] = {v[i][0], v[i][1], v[i][2]};
+    } else {
+      const double xy = is_tilted ? v[0][2] : 0;
+      const double xz = is_tilted ? v[1][2] : 0;
+      const double yz = is_tilted ? v[2][2] : 0;
+      // The file has the bounds of the tilted box.
+      const Vec3d low{v[0][0] - std::min({0.0, xy, xz, xy + xz}), v[1][0] - std::min(0.0, yz), v[2][0]};
+      const Vec3d high{v[0][1] - std::max({0.0, xy, xz, xy + xz}), v[1][1] - std::max(0.0, yz), v[2][1]};
+      if (!(low.x <= high.x && low.y <= high.y && low.z <= high.z))
+        faults_.fail(item_line(), "a lower bound of the box exceeds the upper bound");
+      frame_.box = lammps_box(low, high, xy, xz, yz);
+    }
+    // Old files have no boundary flags.
+    std::vector<std::string_view> flags;
+    for (const std::string_view word : words_of(name))
+      if (word.size() == 2 && word.find_first_not_of("pfsm") == std::string_view::npos) flags.push_back(word);
+    if (flags.size() == 3)
+      for (std::size_t i = 0; i < 3; ++i) frame_.box->periodic[i] = flags[i][0] == 'p';
+  }
+
+  void read_columns(const std::string& name) {
+    const auto words = words_of(name);
+    if (words.size() > kMaxColumns)
+      faults_.fail(item_line(), fmt::format("there are more than {} columns", kMaxColumns));
+    UniqueNames names;
+    for (std::size_t i = 1; i < words.size(); ++i) frame_.columns.push_back(names.add(std::string(words[i])));
+  }
+
+  LammpsFrame finished() {
+    const char* const missing = !step_ ? "TIMESTEP" : !rows_ ? "NUMBER OF ATOMS" : nullptr;
+    if (missing != nullptr)
+      faults_.fail(item_line(), fmt::format("the frame has no item \"{}\" before its atoms", missing));
+    frame_.step = *step_;
+    frame_.rows = *rows_;
+    return frame_;
+  }
+
+  TextCursor& cursor_;
+  Faults& faults_;
+  LammpsFrame frame_;
+  std::optional<double> step_;
+  std::optional<std::uint64_t> rows_;
+};
+
+using Axes = std::array<std::string, 3>;
+
+const Axes kAxes = {"x", "y", "z"};
+const Axes kUnwrapped = {"xu", "yu", "zu"};
+const Axes kScaled = {"xs", "ys", "zs"};
+const Axes kScaledUnwrapped = {"xsu", "ysu", "zsu"};
+
+bool contain(const std::vector<std::string>& names, const Axes& axes) {
+  return std::all_of(axes.begin(), axes.end(), [&](const std::string& axis) { return base::contains(names, axis); });
+}
+
+/// `has_labels`  the types of atoms are labels instead of numbers
+ColumnType type_of_column(std::string_view column, bool has_labels) {
+  if (column == "element" || column == "typelabel" || (has_labels && column == "type")) return ColumnType::kText;
+  const bool is_integer = base::contains({"id", "type", "mol", "ix", "iy", "iz", "proc", "procp1"}, column);
+  return is_integer ? ColumnType::kInt64 : ColumnType::kFloat64;
+}
+
+/// The scaled columns from which positions are computed; null if the file has positions.
+const Axes* scaled_position(const LammpsFrame& frame) {
+  if (contain(frame.columns, kAxes) || contain(frame.columns, kUnwrapped)) return nullptr;
+  if (contain(frame.columns, kScaled)) return &kScaled;
+  return contain(frame.columns, kScaledUnwrapped) ? &kScaledUnwrapped : nullptr;
+}
+
+FrameInfo described(const LammpsFrame& frame) {
+  FrameInfo info;
+  info.rows = frame.rows;
+  info.box = frame.box;
+  info.step = frame.step;
+  for (const std::string& column : frame.columns)
+    info.columns.push_back({column, type_of_column(column, frame.has_labels)});
+  if (scaled_position(frame) != nullptr)
+    for (const std::string& axis : kAxes)
+      if (!base::contains(frame.columns, axis)) info.columns.push_back({axis, ColumnType::kFloat64});
+  const auto if_there = [&](const char* name) { return base::contains(frame.columns, name) ? name : std::string(); };
+  Roles& roles = info.roles;
+  roles.position = scaled_position(frame) != nullptr || contain(frame.columns, kAxes) ? kAxes : kUnwrapped;
+  roles.radius = if_there("radius");
+  if (roles.radius.empty() && base::contains(frame.columns, "diameter")) {
+    roles.radius = "diameter";
+    roles.radius_scale = 0.5;
+  }
+  roles.element = if_there("element");
+  roles.type = base::contains(frame.columns, "type") ? "type" : if_there("typelabel");
+  roles.id = if_there("id");
+  // Periodic image flags apply to wrapped coordinates only.
+  const bool is_wrapped = contain(frame.columns, kAxes) || scaled_position(frame) == &kScaled;
+  if (is_wrapped && contain(frame.columns, Axes{"ix", "iy", "iz"})) roles.image = {"ix", "iy", "iz"};
+  return info;
+}
+
+/// One coordinate of positions that the file stores in units of the box.
+std::vector<double> unscaled(const Box& box, std::size_t axis, const std::array<const double*, 3>& scaled,
+                             std::size_t rows) {
+  const auto part = [axis](const Vec3d& v) { return axis == 0 ? v.x : axis == 1 ? v.y : v.z; };
+  const double origin = part(box.origin);
+  const double a = part(box.edges[0]);
+  const double b = part(box.edges[1]);
+  const double c = part(box.edges[2]);
+  std::vector<double> out(rows);
+  constexpr std::size_t kGrain = std::size_t{1} << 16;
+  tbb::parallel_for(tbb::blocked_range<std::size_t>(0, rows, kGrain), [&](const auto& range) {
+    for (std::size_t i = range.begin(); i < range.end(); ++i)
+      out[i] = origin + scaled[0][i] * a + scaled[1][i] * b + scaled[2][i] * c;
+  });
+  return out;
+}
+
+/// The requested columns, out of those that were read.
+Table taken(const std::vector<std::string>& columns, const LammpsFrame& frame, TextTable text) {
+  Table table;
+  table.rows = text.rows;
+  const auto values = [&](const std::string& name) -> Values& {
+    const auto at = std::find(frame.columns.begin(), frame.columns.end(), name);
+    return text.values[static_cast<std::size_t>(at - frame.columns.begin())];
+  };
+  // Computed columns first: the others are moved.
+  if (const Axes* const names = scaled_position(frame); names != nullptr)
+    for (std::size_t axis = 0; axis < kAxes.size(); ++axis) {
+      if (!base::contains(columns, kAxes[axis])) continue;
+      std::array<const double*, 3> scaled{};
+      for (std::size_t i = 0; i < scaled.size(); ++i)
+        scaled[i] = std::get<std::vector<double>>(values((*names)[i])).data();
+      table.columns.push_back({kAxes[axis], unscaled(*frame.box, axis, scaled, table.rows)});
+    }
+  for (const std::string& name : columns)
+    if (table.find(name) == nullptr) table.columns.push_back({name, std::move(values(name))});
+  return table;
+}
+
+class LammpsDump final : public TextFrames {
+ public:
+  explicit LammpsDump(const Bytes& bytes) : TextFrames(bytes) {}
+
+  FrameInfo describe(int frame) override {
+    FrameInfo info = described(header(frame).first);
+    if (!info.roles.element.empty()) settle_element(names(), info.roles);
+    return info;
+  }
+
+  Table read(int number, const std::vector<std::string>& columns) override {
+    const auto [frame, cursor] = header(number);
+    const Axes* const scaled = scaled_position(frame);
+    const auto is_computed = [&](const std::string& name) {
+      return scaled != nullptr && std::count(kAxes.begin(), kAxes.end(), name) > 0;
+    };
+    const bool needs_scaled = std::any_of(columns.begin(), columns.end(), is_computed);
+    TextLayout layout;
+    layout.begin = cursor.offset();
+    layout.rows = frame.rows;
+    layout.first_line = cursor.line();
+    for (const std::string& name : frame.columns) {
+      const bool is_scaled = needs_scaled && std::count(scaled->begin(), scaled->end(), name) > 0;
+      const bool is_wanted = !is_computed(name) && base::contains(columns, name);
+      layout.columns.push_back({type_of_column(name, frame.has_labels), is_wanted || is_scaled});
+    }
+    Faults faults(bytes().file());
+    TextTable text = read_text_rows(bytes(), layout, faults);
+    require_end(layout.begin, {text.end, layout.first_line + text.rows}, frame.rows_line);
+    return taken(columns, frame, std::move(text));
+  }
+
+ private:
+  std::uint64_t skip_header(TextCursor& cursor) const override {
+    Faults faults(bytes().file());
+    return FrameReader(cursor, faults).read().rows;
+  }
+
+  bool begins_frame(std::string_view line) const override { return line.starts_with("ITEM:"); }
+
+  std::optional<Names> names_of(int number) override {
+    const auto [frame, cursor] = header(number);
+    const auto element = std::find(frame.columns.begin(), frame.columns.end(), "element");
+    if (element == frame.columns.end()) return std::nullopt;
+    return Names{cursor.place(), frame.rows, static_cast<std::size_t>(element - frame.columns.begin())};
+  }
+
+  /// Whether the types of atoms are labels, as with `dump_modify types labels`: the first one is not a number.
+  ///
+  /// `rows`     at the first row
+  static bool has_labels(const LammpsFrame& frame, TextCursor rows) {
+    const auto type = std::find(frame.columns.begin(), frame.columns.end(), "type");
+    std::string row;
+    if (type == frame.columns.end() || frame.rows == 0 || !rows.next(row)) return false;
+    const auto words = words_of(row);
+    const auto column = static_cast<std::size_t>(type - frame.columns.begin());
+    std::int64_t ignored = 0;
+    return column < words.size() && !parse_integer(words[column], ignored);
+  }
+
+  /// The header of a frame, and the cursor at its rows.
+  std::pair<LammpsFrame, TextCursor> header(int number) {
+    TextCursor cursor = frame(number);
+    Faults faults(bytes().file());
+    LammpsFrame header = FrameReader(cursor, faults).read();
+    header.has_labels = has_labels(header, cursor);
+    const std::uint64_t line = cursor.line() - 1;
+    if (!contain(header.columns, kAxes) && !contain(header.columns, kUnwrapped) && scaled_position(header) == nullptr)
+      faults.fail(line, "no columns with positions", "write x y z, xu yu zu, xs ys zs or xsu ysu zsu");
+    if (scaled_position(header) != nullptr && !header.box)
+      faults.fail(line, "positions are scaled, but the frame has no item \"BOX BOUNDS\"");
+    return {std::move(header), cursor};
+  }
+};
+
+/// Binary dumps since 2020 begin with a negative length and the style; older ones have no signature.
+bool is_binary(std::string_view head) {
+  return head.substr(0, 32).find("DUMPATOM") == 8 || head.substr(0, 32).find("DUMPCUSTOM") == 8;
+}
+
+struct Style {
+  std::string_view name;
+  std::string_view columns;
+};
+
+constexpr Style kStyles[] = {
+    {"atomic", "id type x y z"},
+    {"charge", "id type q x y z"},
+    {"dipole", "id type q x y z mux muy muz"},
+    {"molecular", "id mol type x y z"},
+    {"bond", "id mol type x y z"},
+    {"angle", "id mol type x y z"},
+    {"full", "id mol type q x y z"},
+    {"sphere", "id type diameter density x y z"},
+    {"bpm/sphere", "id mol type diameter density x y z"},
+};
+
+/// A line without its comment.
+std::string_view content(std::string_view line) { return line.substr(0, line.find('#')); }
+
+/// Skips the blank lines after the title of a section, and reads its first row.
+///
+/// Result     the place of the row
+TextCursor::Place first_row(TextCursor& cursor, std::string& row) {
+  TextCursor::Place place = cursor.place();
+  while (cursor.next(row) && words_of(row).empty()) place = cursor.place();
+  return place;
+}
+
+/// Reads the file up to the first atom.
+class DataHeader {
+ public:
+  DataHeader(const ByteSource& bytes, TextLayout& layout) : cursor_(bytes), faults_(bytes.file()), layout_(layout) {}
+
+  FrameInfo read() {
+    std::string line;
+    if (cursor_.next(line)) info_.title = line;  // LAMMPS ignores the first line
+    while (cursor_.next_filled(line)) {
+      const auto words = words_of(content(line));
+      if (words.empty()) continue;
+      if (words[0] == "Atoms") {
+        read_atoms(line);
+        return finished();
+      }
+      read_property(words);
+    }
+    if (!rows_) faults_.fail(0, "no line \"N atoms\"");
+    if (*rows_ > 0) faults_.fail(0, "no section \"Atoms\"", "the file is truncated");
+    set_columns("atomic");
+    layout_.rows = 0;
+    return finished();
+  }
+
+ private:
+  using Parts = std::vector<std::string_view>;
+
+  std::uint64_t line() const { return cursor_.line() - 1; }
+
+  /// A number of the header; lines of sections look different.
+  double number(std::string_view word) {
+    double value = 0;
+    if (!parse_number(word, value) || !std::isfinite(value))
+      faults_.fail(line(), fmt::format("'{}' is not a number", word));
+    return value;
+  }
+
+  void read_property(const Parts& words) {
+    const std::string_view last = words.back();
+    if (words.size() == 2 && (last == "atoms" || last == "bonds")) {
+      const std::optional<std::uint64_t> count = count_of(words[0]);
+      if (!count) faults_.fail(line(), fmt::format("'{}' is not a number of {}", words[0], last));
+      (last == "atoms" ? rows_.emplace() : info_.bonds) = *count;
+    }
+    constexpr std::array<std::string_view, 3> kLow = {"xlo", "ylo", "zlo"};
+    constexpr std::array<std::string_view, 3> kHigh = {"xhi", "yhi", "zhi"};
+    constexpr std::array<std::string_view, 3> kEdges = {"avec", "bvec", "cvec"};
+    for (std::size_t i = 0; i < 3; ++i) {
+      if (words.size() == 4 && words[2] == kLow[i] && last == kHigh[i]) {
+        bounds_[i] = {number(words[0]), number(words[1])};
+        if (bounds_[i]->first > bounds_[i]->second)
+          faults_.fail(line(), "a lower bound of the box exceeds the upper bound");
+      }
+      if (words.size() == 4 && last == kEdges[i])
+        edges_[i] = Vec3d{number(words[0]), number(words[1]), number(words[2])};
+    }
+    if (words.size() == 6 && words[3] == "xy" && last == "yz")
+      for (std::size_t i = 0; i < 3; ++i) tilt_[i] = number(words[i]);
+    if (words.size() == 5 && words[3] == "abc" && last == "origin")
+      origin_ = Vec3d{number(words[0]), number(words[1]), number(words[2])};
+    if (words.size() == 3 && words[0] == "Atom" && words[1] == "Type" && last == "Labels") has_labels_ = true;
+  }
+
+  void read_atoms(const std::string& title) {
+    if (!rows_) faults_.fail(line(), "no line \"N atoms\" before the section \"Atoms\"");
+    const std::size_t hash = title.find('#');
+    const Parts style = hash == std::string::npos ? Parts() : words_of(std::string_view(title).substr(hash + 1));
+    std::string known;
+    for (const Style& s : kStyles) known += (known.empty() ? "" : ", ") + std::string(s.name);
+    if (style.empty())
+      faults_.fail(line(), "the section \"Atoms\" does not name its style, which determines the meaning of its columns",
+                   "write for example \"Atoms # full\"; styles: " + known);
+    if (style.size() != 1 || !set_columns(style[0]))
+      faults_.fail(line(), fmt::format("atom style \"{}\" is not supported", style[0]), "supported: " + known);
+    std::string row;
+    const TextCursor::Place place = first_row(cursor_, row);
+    layout_.begin = place.offset;
+    layout_.first_line = place.line;
+    layout_.rows = *rows_;
+    if (*rows_ == 0) return;
+    layout_.comment = '#';
+    const Parts words = words_of(content(row));
+    if (words.size() == info_.columns.size() + 3)
+      for (const char* const name : {"ix", "iy", "iz"}) info_.columns.push_back({name, ColumnType::kInt64});
+    for (std::size_t c = 0; c < std::min(words.size(), info_.columns.size()); ++c) {
+      std::int64_t ignored = 0;
+      const bool is_label = has_labels_ && info_.columns[c].name == "type" && !parse_integer(words[c], ignored);
+      if (is_label) info_.columns[c].type = ColumnType::kText;
+    }
+  }
+
+  bool set_columns(std::string_view style) {
+    for (const Style& s : kStyles)
+      if (s.name == style)
+        for (const std::string_view name : words_of(s.columns))
+          info_.columns.push_back({std::string(name), type_of_column(name, false)});
+    return !info_.columns.empty();
+  }
+
+  FrameInfo finished() {
+    info_.rows = *rows_;
+    const auto [x, y, z] = bounds_;
+    if (edges_[0] && edges_[1] && edges_[2])
+      info_.box = Box{origin_, {*edges_[0], *edges_[1], *edges_[2]}};
+    else if (x && y && z)
+      info_.box =
+          lammps_box({x->first, y->first, z->first}, {x->second, y->second, z->second}, tilt_[0], tilt_[1], tilt_[2]);
+    for (const ColumnInfo& column : info_.columns) {
+      if (column.name == "diameter") info_.roles.radius = column.name;
+      if (column.name == "ix") info_.roles.image = {"ix", "iy", "iz"};
+    }
+    info_.roles.radius_scale = info_.roles.radius.empty() ? 1 : 0.5;
+    info_.roles.position = {"x", "y", "z"};
+    info_.roles.id = "id";
+    info_.roles.type = "type";
+    return info_;
+  }
+
+  TextCursor cursor_;
+  Faults faults_;
+  TextLayout& layout_;
+  FrameInfo info_;
+  std::optional<std::uint64_t> rows_;
+  std::array<std::optional<std::pair<double, double>>, 3> bounds_;
+  std::array<double, 3> tilt_ = {0, 0, 0};
+  std::array<std::optional<Vec3d>, 3> edges_;
+  Vec3d origin_{0, 0, 0};
+  bool has_labels_ = false;
+};
+
+class LammpsData final : public SingleFrame {
+ public:
+  explicit LammpsData(const Bytes& bytes) : SingleFrame(bytes) { info_ = DataHeader(*bytes_, layout_).read(); }
+
+  Table read(int, const std::vector<std::string>& columns) override {
+    TextTable text = read_atoms(columns);
+    require_end(atoms_end(text), info_.rows, "atoms");
+    Table table;
+    table.rows = text.rows;
+    for (std::size_t c = 0; c < info_.columns.size(); ++c)
+      if (base::contains(columns, info_.columns[c].name))
+        table.columns.push_back({info_.columns[c].name, std::move(text.values[c])});
+    return table;
+  }
+
+  std::vector<Bond> bonds(int) override {
+    if (info_.bonds == 0) return {};
+    const TextTable atoms = read_atoms({"id"});
+    const TextTable text = read_bonds(atoms_end(atoms));
+    Faults faults(bytes_->file());
+    BondsById out(std::get<std::vector<std::int64_t>>(atoms.values[0]), faults);  // the first column of all styles
+    const auto& first = std::get<std::vector<std::int64_t>>(text.values[2]);
+    const auto& second = std::get<std::vector<std::int64_t>>(text.values[3]);
+    for (std::size_t i = 0; i < text.rows; ++i) out.add(first[i], second[i], bonds_line_ + i);
+    return out.take();
+  }
+
+ private:
+  TextTable read_atoms(const std::vector<std::string>& columns) const {
+    TextLayout layout = layout_;
+    for (const ColumnInfo& column : info_.columns)
+      layout.columns.push_back({column.type, base::contains(columns, column.name)});
+    Faults faults(bytes_->file());
+    return read_text_rows(*bytes_, layout, faults);
+  }
+
+  TextCursor atoms_end(const TextTable& atoms) const {
+    return TextCursor(*bytes_, {atoms.end, layout_.first_line + atoms.rows});
+  }
+
+  /// Reads the rows of the section "Bonds": a number, a type, and two ids of atoms.
+  ///
+  /// `cursor`   after the atoms, which LAMMPS requires to come first
+  TextTable read_bonds(TextCursor cursor) {
+    Faults faults(bytes_->file());
+    std::string line;
+    do {
+      if (!cursor.next_filled(line))
+        faults.fail(0, fmt::format("no section \"Bonds\", but a line \"{} bonds\"", info_.bonds),
+                    "the file is truncated");
+    } while (words_of(content(line)) != std::vector<std::string_view>{"Bonds"});
+    const TextCursor::Place place = first_row(cursor, line);
+    bonds_line_ = place.line;
+    TextLayout layout;
+    layout.begin = place.offset;
+    layout.first_line = place.line;
+    layout.rows = info_.bonds;
+    layout.comment = '#';
+    layout.columns.assign(4, {ColumnType::kInt64, true});
+    layout.columns[0].is_wanted = layout.columns[1].is_wanted = false;
+    TextTable out = read_text_rows(*bytes_, layout, faults);
+    require_end(TextCursor(*bytes_, {out.end, layout.first_line + out.rows}), info_.bonds, "bonds");
+    return out;
+  }
+
+  /// Checks that the rows of a section are followed by another section or by the end of the file.
+  void require_end(TextCursor cursor, std::uint64_t count, const char* what) const {
+    std::string line;
+    while (cursor.next_filled(line)) {
+      const auto words = words_of(content(line));
+      double number = 0;
+      if (words.empty()) continue;
+      if (parse_number(words[0], number))
+        Faults(bytes_->file())
+            .fail(cursor.line() - 1, fmt::format("more rows than {} {}", count, what),
+                  fmt::format("correct the line \"{} {}\", or remove the rows", count, what));
+      return;
+    }
+  }
+
+  TextLayout layout_;             ///< without columns
+  std::uint64_t bonds_line_ = 0;  ///< of the first bond
+};
+
+bool is_lammps_dump(const Signature& signature) {
+  return signature.head.starts_with("ITEM:") || is_binary(signature.head);
+}
+
+std::unique_ptr<DataFile> open_lammps_dump(const Bytes& bytes, const OpenOptions&) {
+  constexpr std::size_t kSignatureBytes = 32;
+  if (is_binary(bytes->text(0, kSignatureBytes)))
+    Faults(bytes->file())
+        .fail(0, "binary LAMMPS dumps are not supported",
+              "convert it with the tool binary2txt of LAMMPS, or write a text dump, which may be compressed: *.gz, "
+              "*.zst");
+  return std::make_unique<LammpsDump>(bytes);
+}
+
+bool is_lammps_data(const Signature& signature) {
+  // The only line that each of these files has.
+  std::string_view text = signature.head;
+  for (std::size_t at = text.find('\n'); at != std::string_view::npos; at = text.find('\n')) {
+    text.remove_prefix(at + 1);
+    const auto words = words_of(content(text.substr(0, text.find('\n'))));
+    if (words.size() == 2 && words[1] == "atoms" && words[0].find_first_not_of("0123456789") == std::string_view::npos)
+      return true;
+  }
+  return false;
+}
+
+}  // namespace
+
+const FormatReader kLammpsDump = {"LAMMPS dump", is_lammps_dump, open_lammps_dump};
+const FormatReader kLammpsData = {"LAMMPS data", is_lammps_data, open_as<LammpsData>};
+
+}  // namespace orrery::data

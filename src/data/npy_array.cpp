@@ -1,0 +1,419 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "data/npy_array.h"
+
+#include <algorithm>
+#include <charconv>
+#include <cstddef>
+#include <limits>
+#include <utility>
+
+#include <fmt/core.h>
+
+#include "base/text.h"
+#include "data/columns.h"
+#include "data/dictionary.h"
+
+namespace orrery::data {
+
+namespace {
+
+/// A value of Python's syntax, as NumPy writes it in the header of an array.
+struct PythonLiteral {
+  enum class Kind { kText, kInteger, kBool, kSequence, kDict };
+
+  Kind kind = Kind::kText;
+  std::string text;
+  std::uint64_t integer = 0;         ///< for a kBool, 0 or 1
+  std::vector<PythonLiteral> items;  ///< elements of a list or tuple; keys and values of a dict alternate
+
+  bool is(Kind k) const { return kind == k; }
+  /// Returns the value of a key of a dict; null if there is none.
+  const PythonLiteral* find(std::string_view key) const;
+};
+
+constexpr int kMaxDepth = 16;
+
+using Kind = PythonLiteral::Kind;
+
+class Parser {
+ public:
+  explicit Parser(std::string_view source) : source_(source) {}
+
+  bool value(PythonLiteral& out, int depth) {
+    skip_blanks();
+    if (depth > kMaxDepth) return fail("it is nested too deeply");
+    if (at_end()) return fail("it ends too early");
+    switch (source_[at_]) {
+      case '\'':
+      case '"': return text(out);
+      case '(': return sequence(out, Kind::kSequence, ')', depth);
+      case '[': return sequence(out, Kind::kSequence, ']', depth);
+      case '{': return sequence(out, Kind::kDict, '}', depth);
+      default: return word(out);
+    }
+  }
+  void skip_blanks() {
+    while (!at_end() && std::string_view(" \t\r\n").find(source_[at_]) != std::string_view::npos) ++at_;
+  }
+  bool at_end() const { return at_ == source_.size(); }
+  bool fail(const std::string& text) {
+    if (fault_.empty()) fault_ = text;
+    return false;
+  }
+  const std::string& fault() const { return fault_; }
+
+ private:
+  bool take(char c) {
+    skip_blanks();
+    if (at_end() || source_[at_] != c) return false;
+    ++at_;
+    return true;
+  }
+
+  bool sequence(PythonLiteral& out, Kind kind, char closing, int depth) {
+    out.kind = kind;
+    ++at_;
+    while (!take(closing)) {
+      PythonLiteral item;
+      if (!value(item, depth + 1)) return false;
+      out.items.push_back(std::move(item));
+      if (kind == Kind::kDict) {
+        if (!take(':')) return fail("`:` is missing after a key");
+        PythonLiteral mapped;
+        if (!value(mapped, depth + 1)) return false;
+        out.items.push_back(std::move(mapped));
+      }
+      if (!take(',')) {
+        if (!take(closing)) return fail(fmt::format("`{}` is missing", closing));
+        return true;
+      }
+    }
+    return true;
+  }
+
+  bool text(PythonLiteral& out) {
+    out.kind = Kind::kText;
+    const char quote = source_[at_++];
+    while (!at_end() && source_[at_] != quote) {
+      char c = source_[at_++];
+      if (c == '\\') {
+        if (at_end() || (source_[at_] != '\\' && source_[at_] != '\'' && source_[at_] != '"'))
+          return fail("a string contains an escape sequence that is not supported");
+        c = source_[at_++];
+      }
+      out.text += c;
+    }
+    if (at_end()) return fail("a string has no end");
+    ++at_;
+    return true;
+  }
+
+  bool word(PythonLiteral& out) {
+    const std::string_view rest = source_.substr(at_);
+    for (const std::string_view name : {"True", "False"})
+      if (rest.starts_with(name)) {
+        out.kind = Kind::kBool;
+        out.integer = name == "True" ? 1 : 0;
+        at_ += name.size();
+        return true;
+      }
+    out.kind = Kind::kInteger;
+    const auto [end, error] = std::from_chars(rest.data(), rest.data() + rest.size(), out.integer);
+    if (error == std::errc::result_out_of_range) return fail("an integer is too large");
+    if (error != std::errc()) return fail(fmt::format("unexpected `{}`", std::string(1, rest.front())));
+    at_ += static_cast<std::size_t>(end - rest.data());
+    if (!at_end() && source_[at_] == 'L') ++at_;  // Python 2
+    return true;
+  }
+
+  std::string_view source_;
+  std::size_t at_ = 0;
+  std::string fault_;
+};
+
+const PythonLiteral* PythonLiteral::find(std::string_view key) const {
+  for (std::size_t i = 0; kind == Kind::kDict && i + 1 < items.size(); i += 2)
+    if (items[i].is(Kind::kText) && items[i].text == key) return &items[i + 1];
+  return nullptr;
+}
+
+/// Parses strings, non-negative integers, True, False, lists, tuples and dicts, up to 16 levels deep.
+///
+/// Result     an empty string, or what is wrong
+std::string parse_python_literal(std::string_view source, PythonLiteral& out) {
+  Parser parser(source);
+  if (!parser.value(out, 0)) return parser.fault();
+  parser.skip_blanks();
+  return parser.at_end() ? "" : "unexpected characters after its end";
+}
+
+using namespace std::string_view_literals;
+
+constexpr std::string_view kNpySignature = "\x93NUMPY"sv;
+/// NumPy's own limit.
+constexpr std::size_t kMaxDimensions = 64;
+
+/// Parses the type of an item, e.g. `<f4`.
+///
+/// Result     an empty string, or what is wrong; a field of padding has size 0 components
+std::string parse_type(const std::string& code, NpyField& field) {
+  const std::string type = "the type " + quoted_word(code);
+  const std::string unsupported = type + " is not supported; convert the array to numbers, e.g. with `astype('f8')`";
+  const bool has_order = !code.empty() && std::string_view("<>|=").find(code[0]) != std::string_view::npos;
+  if (code == "O" || (has_order && code.size() > 1 && code[1] == 'O'))
+    return "it contains Python objects; convert them, e.g. with `astype('f8')`";
+  if (!has_order || code.size() < 3 || !base::from_text(std::string_view(code).substr(2), field.size))
+    return unsupported;
+  field.is_big_endian = code[0] == '>';
+  if (code[1] == 'S' || code[1] == 'a' || code[1] == 'U' || code[1] == 'V') {
+    if (field.size > kLongestNpyText) return fmt::format("{} is longer than {}", type, kLongestNpyText);
+    field.kind = code[1] == 'U' ? NpyField::Kind::kUtf32 : NpyField::Kind::kBytes;
+    if (code[1] == 'U') field.size *= 4;
+    if (code[1] == 'V') field.components = 0;
+    return {};
+  }
+  static constexpr NumberTypeName kNames[] = {
+      {"i1", NumberType::kInt8},    {"u1", NumberType::kUint8},  {"b1", NumberType::kUint8},
+      {"i2", NumberType::kInt16},   {"u2", NumberType::kUint16}, {"i4", NumberType::kInt32},
+      {"u4", NumberType::kUint32},  {"i8", NumberType::kInt64},  {"u8", NumberType::kUint64},
+      {"f4", NumberType::kFloat32}, {"f8", NumberType::kFloat64}};
+  const std::optional<NumberType> known = number_type(kNames, std::string_view(code).substr(1));
+  if (!known) return unsupported;
+  field.type = *known;
+  return {};
+}
+
+/// Parses one field of a record: (name, type) or (name, type, shape); a name may be (title, name).
+std::string parse_field(const PythonLiteral& source, NpyHeader& header) {
+  if (!source.is(Kind::kSequence) || source.items.size() < 2 || source.items.size() > 3)
+    return "a field is not (name, type) or (name, type, shape)";
+  const PythonLiteral& first = source.items[0];
+  const PythonLiteral& name = first.is(Kind::kSequence) && first.items.size() == 2 ? first.items[1] : first;
+  if (!name.is(Kind::kText)) return "the name of a field is not a string";
+  NpyField field;
+  field.name = name.text;
+  if (!source.items[1].is(Kind::kText))
+    return fmt::format("field {} is a record; save its fields separately", quoted_word(field.name));
+  if (const std::string fault = parse_type(source.items[1].text, field); !fault.empty())
+    return fmt::format("field {}: {}", quoted_word(field.name), fault);
+  const bool is_padding = field.components == 0;
+  std::uint64_t count = 1;
+  if (source.items.size() == 3) {
+    if (!source.items[2].is(Kind::kSequence))
+      return fmt::format("the shape of field {} is not a tuple", quoted_word(field.name));
+    for (const PythonLiteral& length : source.items[2].items) {
+      if (!length.is(Kind::kInteger))
+        return fmt::format("the shape of field {} is not integers", quoted_word(field.name));
+      if (length.integer > kMaxColumns || (count *= length.integer) > kMaxColumns)
+        return fmt::format("field {} has more than {} components", quoted_word(field.name), kMaxColumns);
+    }
+  }
+  field.offset = header.item_size;
+  header.item_size += field.size * count;
+  if (is_padding || count == 0) return {};
+  field.components = count;
+  header.fields.push_back(std::move(field));
+  return {};
+}
+
+std::string parse_description(const PythonLiteral& source, NpyHeader& header) {
+  if (source.is(Kind::kText)) {
+    NpyField field;
+    if (std::string fault = parse_type(source.text, field); !fault.empty()) return fault;
+    if (field.components == 0) return "its items are raw bytes (dtype void)";
+    header.item_size = field.size;
+    header.fields.push_back(field);
+    return {};
+  }
+  if (!source.is(Kind::kSequence)) return "`descr` is neither a type nor a list of fields";
+  header.is_structured = true;
+  std::uint64_t columns = 0;
+  for (const PythonLiteral& field : source.items) {
+    const std::size_t fields = header.fields.size();
+    if (std::string fault = parse_field(field, header); !fault.empty()) return fault;
+    if (header.fields.size() > fields) columns += header.fields.back().components;
+    if (columns > kMaxColumns) return fmt::format("it has more than {} components", kMaxColumns);
+  }
+  return {};
+}
+
+std::string parse_shape(const PythonLiteral& source, NpyHeader& header) {
+  if (!source.is(Kind::kSequence)) return "`shape` is not a tuple";
+  if (source.items.size() > kMaxDimensions) return fmt::format("it has more than {} dimensions", kMaxDimensions);
+  for (const PythonLiteral& length : source.items) {
+    if (!length.is(Kind::kInteger)) return "`shape` is not a tuple of integers";
+    header.shape.push_back(length.integer);
+  }
+  return {};
+}
+
+std::uint64_t length_bytes(std::string_view head) { return head[kNpySignature.size()] == 1 ? 2 : 4; }
+
+/// Appends a character in UTF-8; false if the code point is invalid.
+bool append_utf8(std::string& out, std::uint32_t c) {
+  const auto add = [&out](std::uint32_t byte) { out += static_cast<char>(byte); };
+  if (c < 0x80) {
+    add(c);
+  } else if (c < 0x800) {
+    add(0xC0 | c >> 6);
+    add(0x80 | (c & 0x3F));
+  } else if (c < 0x10000) {
+    if (c >= 0xD800 && c < 0xE000) return false;  // half of a surrogate pair
+    add(0xE0 | c >> 12);
+    add(0x80 | (c >> 6 & 0x3F));
+    add(0x80 | (c & 0x3F));
+  } else if (c < 0x110000) {
+    add(0xF0 | c >> 18);
+    add(0x80 | (c >> 12 & 0x3F));
+    add(0x80 | (c >> 6 & 0x3F));
+    add(0x80 | (c & 0x3F));
+  } else {
+    return false;
+  }
+  return true;
+}
+
+/// Decodes a zero-padded string; false if a character is invalid.
+bool decode_text(const NpyField& field, const char* from, std::string& out) {
+  out.clear();
+  if (field.kind == NpyField::Kind::kBytes) {
+    out.assign(from, field.size);
+    out.erase(out.find_last_not_of('\0') + 1);
+    return true;
+  }
+  const auto at = [&](std::size_t i) { return load<std::uint32_t>(from + 4 * i, field.is_big_endian); };
+  std::size_t length = static_cast<std::size_t>(field.size / 4);
+  while (length > 0 && at(length - 1) == 0) --length;
+  for (std::size_t i = 0; i < length; ++i)
+    if (!append_utf8(out, at(i))) return false;
+  return true;
+}
+
+Values read_texts(const ByteSource& bytes, std::uint64_t rows, const NpyColumn& column, Faults& faults) {
+  constexpr std::uint64_t kBlockBytes = std::uint64_t{1} << 20;
+  const std::uint64_t stride = column.stride;
+  const std::uint64_t block_rows = std::max<std::uint64_t>(1, stride > 0 ? kBlockBytes / stride : kBlockBytes);
+  Dictionary words;
+  Words out;
+  std::string word;
+  for (std::uint64_t first = 0; first < rows; first += block_rows) {
+    const std::uint64_t count = std::min(block_rows, rows - first);
+    const std::string block = bytes.text(column.begin + first * stride, static_cast<std::size_t>(count * stride));
+    for (std::uint64_t i = 0; i < count; ++i) {
+      if (!decode_text(column.field, block.data() + i * stride + column.offset, word))
+        faults.add_of_many(0, fmt::format("row {}: `{}` has an invalid character", first + i + 1, column.name));
+      out.index.push_back(words.index_of(word));
+    }
+  }
+  out.words = words.take();
+  return out;
+}
+
+bool has_record_of(const NpyColumn& a, const NpyColumn& b) { return a.begin == b.begin && a.stride == b.stride; }
+
+}  // namespace
+
+bool has_npy_signature(std::string_view head) { return head.starts_with(kNpySignature); }
+
+std::uint64_t npy_header_end(std::string_view head) {
+  constexpr std::uint64_t kLengthAt = 8;  // after signature and version
+  if (head.size() < kLengthAt + 4) return 0;
+  const char* const at = head.data() + kLengthAt;
+  const std::uint64_t length =
+      length_bytes(head) == 2 ? load<std::uint16_t>(at, false) : load<std::uint32_t>(at, false);
+  return kLengthAt + length_bytes(head) + length;
+}
+
+std::string parse_npy_header(std::string_view head, NpyHeader& header) {
+  header.begin = npy_header_end(head);
+  if (header.begin == 0) return "the file ends within the header";
+  const int version = head[kNpySignature.size()];
+  if (version < 1 || version > 3) return fmt::format("version {} of the format; supported: 1 to 3", version);
+  if (header.begin > kLongestNpyHeader)
+    return fmt::format("the header exceeds the limit of {} bytes", kLongestNpyHeader);
+  if (header.begin > head.size()) return "the file ends within the header";
+  const std::size_t text = 8 + length_bytes(head);
+  PythonLiteral source;
+  if (const std::string fault =
+          parse_python_literal(head.substr(text, static_cast<std::size_t>(header.begin) - text), source);
+      !fault.empty())
+    return "the header is malformed: " + fault;
+  const PythonLiteral* const description = source.find("descr");
+  const PythonLiteral* const order = source.find("fortran_order");
+  const PythonLiteral* const shape = source.find("shape");
+  if (description == nullptr || order == nullptr || shape == nullptr || !order->is(Kind::kBool))
+    return "the header needs `descr`, `fortran_order` and `shape`";
+  header.is_fortran_order = order->integer == 1;
+  if (std::string fault = parse_shape(*shape, header); !fault.empty()) return fault;
+  return parse_description(*description, header);
+}
+
+std::vector<NpyColumn> npy_columns(const NpyHeader& header, const std::string& name, std::vector<ColumnInfo>& so_far) {
+  std::vector<NpyColumn> out;
+  const auto add = [&](const NpyField& field, const std::string& column, std::uint64_t begin, std::uint64_t offset,
+                       std::uint64_t stride) {
+    out.push_back({column, field, begin, offset, stride});
+    so_far.push_back({column, out.back().type()});
+  };
+  for (const NpyField& field : header.fields) {
+    const std::uint64_t width = header.shape.size() == 2 ? header.shape[1] : field.components;
+    const std::vector<std::string> names =
+        component_names(header.is_structured ? field.name : name, static_cast<std::size_t>(width), so_far);
+    for (std::uint64_t i = 0; i < width; ++i) {
+      const std::string& column = names[static_cast<std::size_t>(i)];
+      if (header.is_structured) {
+        add(field, column, header.begin, field.offset + i * field.size, header.item_size);
+      } else if (header.is_fortran_order) {
+        add(field, column, header.begin + i * header.rows() * field.size, 0, field.size);
+      } else {
+        add(field, column, header.begin, i * field.size, width * field.size);
+      }
+    }
+  }
+  return out;
+}
+
+std::uint64_t npy_data_bytes(const NpyHeader& header) {
+  // Any number of zero-size items would fit into any file.
+  std::uint64_t bytes = header.item_size > 0 ? header.item_size : std::numeric_limits<std::uint64_t>::max();
+  for (const std::uint64_t length : header.shape) {
+    if (length == 0) return 0;
+    if (bytes > std::numeric_limits<std::uint64_t>::max() / length) return std::numeric_limits<std::uint64_t>::max();
+    bytes *= length;
+  }
+  return bytes;
+}
+
+std::string shape_text(const NpyHeader& header) {
+  std::string out;
+  for (const std::uint64_t length : header.shape) out += (out.empty() ? "" : ", ") + std::to_string(length);
+  return fmt::format("({}{}", out, header.shape.size() == 1 ? ",)" : ")");
+}
+
+std::vector<Column> read_npy_columns(const ByteSource& bytes, std::uint64_t rows, const std::vector<NpyColumn>& columns,
+                                     Faults& faults) {
+  std::vector<Column> out(columns.size());
+  std::vector<bool> is_read(columns.size());
+  for (std::size_t c = 0; c < columns.size(); ++c) {
+    if (is_read[c]) continue;
+    out[c].name = columns[c].name;
+    if (columns[c].type() == ColumnType::kText) {
+      out[c].values = read_texts(bytes, rows, columns[c], faults);
+      continue;
+    }
+    // All columns of the same records are read in one pass.
+    std::vector<RecordField> fields;
+    std::vector<std::size_t> targets;
+    for (std::size_t k = c; k < columns.size(); ++k) {
+      if (columns[k].type() == ColumnType::kText || !has_record_of(columns[k], columns[c])) continue;
+      fields.push_back({columns[k].name, columns[k].field.type, columns[k].offset, columns[k].field.is_big_endian});
+      targets.push_back(k);
+      is_read[k] = true;
+    }
+    std::vector<Values> values = read_records(bytes, {columns[c].begin, columns[c].stride, rows}, fields, faults);
+    for (std::size_t k = 0; k < targets.size(); ++k) out[targets[k]] = {fields[k].name, std::move(values[k])};
+  }
+  return out;
+}
+
+}  // namespace orrery::data

@@ -1,0 +1,545 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <cstdint>
+#include <cstring>
+#include <string>
+#include <string_view>
+#include <utility>
+#include <vector>
+
+#include <fmt/core.h>
+
+#include "base/text.h"
+#include "data/frames.h"
+#include "data/readers.h"
+#include "data/records.h"
+#include "data/text_rows.h"
+
+// Reference  turk1994
+namespace orrery::data {
+
+namespace {
+
+enum class PlyEncoding { kAscii, kLittleEndian, kBigEndian };
+
+struct PlyProperty {
+  std::string name;
+  NumberType type = NumberType::kFloat32;
+  bool is_list = false;
+  NumberType count_type = NumberType::kUint8;  ///< type of the list length
+};
+
+struct PlyElement {
+  std::string name;
+  std::uint64_t count = 0;
+  int line = 0;  ///< line of its declaration
+  std::vector<PlyProperty> properties;
+
+  bool has_list() const {
+    return std::any_of(properties.begin(), properties.end(), [](const PlyProperty& p) { return p.is_list; });
+  }
+};
+
+struct PlyHeader {
+  PlyEncoding encoding = PlyEncoding::kAscii;
+  std::vector<PlyElement> elements;
+  std::size_t bytes = 0;  ///< length of the header; the data follow
+  int lines = 0;
+};
+
+/// Maximum length of a header, bytes: room for ten thousand properties. Avoids scanning a whole file that has no
+/// end_header.
+inline constexpr std::size_t kLongestHeader = std::size_t{1} << 20;
+
+constexpr NumberTypeName kTypeNames[] = {
+    {"char", NumberType::kInt8},      {"int8", NumberType::kInt8},       {"uchar", NumberType::kUint8},
+    {"uint8", NumberType::kUint8},    {"short", NumberType::kInt16},     {"int16", NumberType::kInt16},
+    {"ushort", NumberType::kUint16},  {"uint16", NumberType::kUint16},   {"int", NumberType::kInt32},
+    {"int32", NumberType::kInt32},    {"uint", NumberType::kUint32},     {"uint32", NumberType::kUint32},
+    {"float", NumberType::kFloat32},  {"float32", NumberType::kFloat32}, {"double", NumberType::kFloat64},
+    {"float64", NumberType::kFloat64}};
+
+std::string parse_format(const std::vector<std::string_view>& words, PlyHeader& header) {
+  if (words.size() != 3) return "a format line must be `format ENCODING 1.0`";
+  if (words[2] != "1.0") return fmt::format("unsupported format version `{}`; supported is 1.0", words[2]);
+  constexpr std::string_view kEncodings[] = {"ascii", "binary_little_endian", "binary_big_endian"};
+  const auto* const encoding = std::find(std::begin(kEncodings), std::end(kEncodings), words[1]);
+  if (encoding == std::end(kEncodings))
+    return "unknown encoding; allowed are ascii, binary_little_endian, binary_big_endian";
+  header.encoding = static_cast<PlyEncoding>(encoding - std::begin(kEncodings));
+  return {};
+}
+
+std::string parse_element(const std::vector<std::string_view>& words, int line, PlyHeader& header) {
+  PlyElement element;
+  element.line = line;
+  if (words.size() != 3) return "an element line must be `element NAME COUNT`";
+  element.name = words[1];
+  if (!base::from_text(words[2], element.count)) return "the count of an element must be a non-negative integer";
+  if (find_named(header.elements, element.name) != nullptr) return fmt::format("duplicate element `{}`", element.name);
+  header.elements.push_back(element);
+  return {};
+}
+
+std::string parse_property(const std::vector<std::string_view>& words, PlyHeader& header) {
+  if (header.elements.empty()) return "property before the first element";
+  PlyProperty property;
+  property.is_list = words.size() == 5 && words[1] == "list";
+  if (!property.is_list && words.size() != 3) return "a property line must be `property TYPE NAME`";
+  const auto count_type = number_type(kTypeNames, words[property.is_list ? 2 : 1]);
+  const auto type = number_type(kTypeNames, words[words.size() - 2]);
+  if (property.is_list && !count_type) return "unknown type of the list length";
+  if (!type) return "unknown type; allowed are char .. double, int8 .. float64";
+  property.count_type = *count_type;
+  property.type = *type;
+  property.name = words.back();
+  if (find_named(header.elements.back().properties, property.name) != nullptr)
+    return fmt::format("duplicate property `{}`", property.name);
+  if (header.elements.back().properties.size() == kMaxColumns)
+    return fmt::format("more than {} properties of an element", kMaxColumns);
+  header.elements.back().properties.push_back(property);
+  return {};
+}
+
+/// Parses a PLY header. The first line is `ply`, see is_ply().
+///
+/// Result     an empty string; on failure the fault, with its line number in `line`
+std::string parse_ply_header(std::string_view file, PlyHeader& header, int& line) {
+  const std::string_view head = file.substr(0, kLongestHeader);
+  std::size_t at = 0;
+  bool has_format = false;
+  for (line = 1;; ++line) {
+    const std::size_t end = head.find('\n', at);
+    if (end == std::string_view::npos) {
+      if (file.size() == head.size()) return "the header has no end_header";
+      return fmt::format("the header exceeds the limit of {} bytes", kLongestHeader);
+    }
+    const auto words = words_of(head.substr(at, end - at));
+    at = end + 1;
+    std::string fault;
+    if (line == 1 || words.empty() || words[0] == "comment" || words[0] == "obj_info") {
+      continue;
+    } else if (words[0] == "format") {
+      fault = has_format ? "duplicate format line" : parse_format(words, header);
+      has_format = true;
+    } else if (words[0] == "element") {
+      fault = parse_element(words, line, header);
+    } else if (words[0] == "property") {
+      fault = parse_property(words, header);
+    } else if (words[0] == "end_header") {
+      header.bytes = at;
+      header.lines = line;
+      return has_format ? "" : "the header has no format line";
+    } else {
+      fault = "unknown keyword in the header";
+    }
+    if (!fault.empty()) return fault;
+  }
+}
+
+bool is_white_space(char c) { return c == ' ' || (c >= '\t' && c <= '\r'); }
+
+/// Reads values in sequence from the data after the header. In an ASCII file, each row is one line.
+///
+/// Cost       2 MiB of memory
+class PlyCursor {
+ public:
+  /// `begin`    offset of the first data byte, `line` its line number
+  PlyCursor(const ByteSource& bytes, std::uint64_t begin, PlyEncoding encoding, int line)
+      : bytes_(&bytes),
+        next_(std::min(begin, bytes.size())),
+        buffer_(2 * kMaxLineBytes),
+        line_(line),
+        ascii_(encoding == PlyEncoding::kAscii),
+        is_big_endian_(encoding == PlyEncoding::kBigEndian) {
+    fill();
+  }
+
+  /// Advances to the next row; skips blank lines.
+  ///
+  /// Errors     base::Error: kIo; kBadData for a line that is too long
+  void begin_row() {
+    if (!ascii_) return;
+    for (row_line_ = line_; bytes_left() > 0; row_line_ = line_) {
+      find_row_end();
+      skip_blanks();
+      if (at_ < row_end_) return;
+      step_over_line_end();
+    }
+    row_end_ = end_;
+  }
+
+  /// Ends a row; false if the row has unread values left.
+  bool end_row() {
+    if (!ascii_) return true;
+    skip_blanks();
+    if (at_ < row_end_) return false;
+    step_over_line_end();
+    return true;
+  }
+
+  /// The line number of the row; 0 in a binary file.
+  int line() const { return row_line_; }
+
+  /// Reads a value; false at the end of the row or the data, or if an ASCII value is not a number.
+  bool take(NumberType type, double& value) {
+    if (ascii_) return take_word(value);
+    const std::size_t size = size_of(type);
+    if (bytes_left() < size) return false;
+    if (static_cast<std::size_t>(end_ - at_) < size) fill();
+    value =
+        with_type(type, [&](auto number) { return static_cast<double>(load<decltype(number)>(at_, is_big_endian_)); });
+    at_ += size;
+    return true;
+  }
+
+  /// Skips a value or a list; false as for take(), and if the length of the list is invalid.
+  bool skip(const PlyProperty& property) {
+    double value = 0;
+    if (!property.is_list) return take(property.type, value);
+    if (!take(property.count_type, value)) return false;
+    is_bad_length_ = !(value >= 0) || value != std::floor(value);
+    if (is_bad_length_) return false;
+    if (!ascii_) {
+      const std::size_t size = size_of(property.type);
+      if (value > static_cast<double>(bytes_left() / size)) return false;
+      skip_bytes(static_cast<std::uint64_t>(value) * size);
+      return true;
+    }
+    for (double i = 0; i < value; ++i) {
+      double ignored = 0;
+      if (!take(property.type, ignored)) return false;  // stops at the end of the row, regardless of the length
+    }
+    return true;
+  }
+
+  /// Skips bytes of a binary file.
+  ///
+  /// Domain     bytes <= bytes_left()
+  void skip_bytes(std::uint64_t bytes) {
+    const std::uint64_t some = std::min(bytes, static_cast<std::uint64_t>(end_ - at_));
+    at_ += some;
+    next_ += bytes - some;
+  }
+
+  std::uint64_t bytes_left() const { return static_cast<std::uint64_t>(end_ - at_) + bytes_->size() - next_; }
+
+  /// Returns why the last take or skip failed.
+  std::string fault() const {
+    if (is_bad_length_) return "the length of the list is not a non-negative integer";
+    if (ascii_ && at_ < row_end_) return fmt::format("`{}` is not a number", word());
+    return ascii_ && bytes_left() > 0 ? "unexpected end of line; a row must be one line" : "unexpected end of file";
+  }
+
+  /// Returns the next word in the row, truncated if it is long.
+  std::string word() const {
+    constexpr std::ptrdiff_t kLongestShown = 40;
+    const char* const most = at_ + std::min(kLongestShown, row_end_ - at_);
+    return {at_, std::find_if(at_, most, is_white_space)};
+  }
+
+ private:
+  /// Moves the unread bytes to the front of the buffer, and reads more.
+  void fill() {
+    const auto left = static_cast<std::size_t>(end_ - at_);
+    if (left > 0) std::memmove(buffer_.data(), at_, left);
+    const auto more = static_cast<std::size_t>(std::min<std::uint64_t>(buffer_.size() - left, bytes_->size() - next_));
+    bytes_->read(next_, more, buffer_.data() + left);
+    next_ += more;
+    at_ = buffer_.data();
+    end_ = row_end_ = at_ + left + more;
+  }
+
+  void find_row_end() {
+    const auto found = [&] { return std::memchr(at_, '\n', static_cast<std::size_t>(end_ - at_)); };
+    const void* newline = found();
+    while (newline == nullptr && next_ < bytes_->size()) {
+      if (static_cast<std::size_t>(end_ - at_) > kMaxLineBytes)
+        fail_as_too_long(*bytes_, static_cast<std::uint64_t>(line_));
+      fill();
+      newline = found();
+    }
+    row_end_ = newline != nullptr ? static_cast<const char*>(newline) : end_;
+  }
+
+  void skip_blanks() {
+    while (at_ < row_end_ && is_white_space(*at_)) ++at_;
+  }
+
+  void step_over_line_end() {
+    at_ = row_end_;
+    if (at_ == end_) return;
+    ++at_;
+    ++line_;
+  }
+
+  bool take_word(double& value) {
+    skip_blanks();
+    const char* const end = std::find_if(at_, row_end_, is_white_space);
+    if (!parse_number({at_, end}, value)) return false;
+    at_ = end;
+    return true;
+  }
+
+  const ByteSource* bytes_;
+  std::uint64_t next_;  ///< offset of the first byte behind the buffer
+  std::vector<char> buffer_;
+  const char* at_ = nullptr;
+  const char* end_ = nullptr;  ///< of the bytes in the buffer
+  const char* row_end_ = nullptr;
+  int line_, row_line_ = 0;
+  bool ascii_, is_big_endian_, is_bad_length_ = false;
+};
+
+/// Reads one row. Errors refer to its line; in a binary file, to that of the element. Calls `take(property, index)` for
+/// each property, which returns false if the value is invalid.
+///
+/// `name()`   name of the row, for messages
+template <class Name, class Take>
+void read_row(Faults& faults, const PlyElement& element, PlyCursor& cursor, Name name, Take take) {
+  cursor.begin_row();
+  for (std::size_t k = 0; k < element.properties.size(); ++k)
+    if (!take(element.properties[k], k))
+      fail_in_row(faults, element, cursor, name() + ", `" + element.properties[k].name + "`: " + cursor.fault());
+  if (!cursor.end_row())
+    fail_in_row(faults, element, cursor,
+                name() + ": unexpected `" + cursor.word() + "` after the last value that the header declares");
+}
+
+/// Returns the minimum size of an element's row, in bytes; exact in a binary file if the element has no lists. Used to
+/// check counts before memory is allocated.
+std::uint64_t min_bytes(const PlyElement& element, PlyEncoding encoding) {
+  std::uint64_t bytes = 0;
+  for (const PlyProperty& p : element.properties)
+    bytes += encoding == PlyEncoding::kAscii ? 2 : p.is_list ? size_of(p.count_type) : size_of(p.type);
+  return bytes;
+}
+
+/// Throws an error at the line of an element if fewer bytes follow than its rows need.
+void check_count(Faults& faults, const PlyElement& element, const PlyHeader& header, std::uint64_t bytes_left) {
+  const std::uint64_t each = std::max<std::uint64_t>(1, min_bytes(element, header.encoding));
+  // The last ASCII word need not be followed by a space.
+  const std::uint64_t bytes = bytes_left + (header.encoding == PlyEncoding::kAscii ? 1 : 0);
+  if (element.count > bytes / each)
+    faults.fail(static_cast<std::uint64_t>(element.line),
+                fmt::format("the header declares {} rows of `{}`, but only {} bytes follow; the file is truncated, or "
+                            "the count is wrong",
+                            element.count, element.name, bytes_left));
+}
+
+/// Throws an error at the line of the cursor; in a binary file, at that of the element.
+void fail_in_row(Faults& faults, const PlyElement& element, const PlyCursor& cursor, const std::string& text) {
+  faults.fail(static_cast<std::uint64_t>(cursor.line() > 0 ? cursor.line() : element.line), text);
+}
+
+/// Skips an element other than `vertex`.
+void skip_element(Faults& faults, const PlyElement& element, const PlyHeader& header, PlyCursor& cursor) {
+  if (element.properties.empty()) return;
+  if (header.encoding != PlyEncoding::kAscii && !element.has_list())
+    return cursor.skip_bytes(element.count * min_bytes(element, header.encoding));
+  for (std::uint64_t i = 0; i < element.count; ++i)
+    read_row(
+        faults, element, cursor, [&] { return fmt::format("row {} of `{}`", i + 1, element.name); },
+        [&](const PlyProperty& property, std::size_t) { return cursor.skip(property); });
+}
+
+/// Throws an error, at the line of the last element with rows, if data follow the last row that the header declares.
+void check_end(Faults& faults, const PlyHeader& header, PlyCursor& cursor) {
+  cursor.begin_row();
+  if (cursor.bytes_left() == 0) return;
+  const auto last = std::find_if(header.elements.rbegin(), header.elements.rend(),
+                                 [](const PlyElement& element) { return element.count > 0; });
+  const PlyElement& element = last != header.elements.rend() ? *last : header.elements.back();
+  faults.fail(static_cast<std::uint64_t>(element.line),
+              fmt::format("{} bytes follow the last row that the header declares; the counts are wrong, or the "
+                          "file is damaged",
+                          cursor.bytes_left()));
+}
+
+bool is_float(NumberType type) { return type == NumberType::kFloat32 || type == NumberType::kFloat64; }
+
+/// The columns of a `vertex` element: all properties but lists.
+class PlyFile final : public SingleFrame {
+ public:
+  explicit PlyFile(const Bytes& bytes) : SingleFrame(bytes) {
+    Faults faults(bytes->file());
+    int line = 0;
+    if (const std::string fault = parse_ply_header(bytes->text(0, kLongestHeader + 1), header_, line); !fault.empty())
+      faults.fail(static_cast<std::uint64_t>(line), fault);
+    const PlyElement* const vertex = find_named(header_.elements, "vertex");
+    if (vertex == nullptr) faults.fail(0, "there is no element `vertex`");
+    vertex_ = static_cast<std::size_t>(vertex - header_.elements.data());
+    std::uint64_t left = bytes->size() - header_.bytes;
+    for (const PlyElement& element : header_.elements) {
+      check_count(faults, element, header_, left);
+      left -= std::min(left, element.count * min_bytes(element, header_.encoding));
+    }
+    describe_columns(faults);
+  }
+
+  Table read(int, const std::vector<std::string>& names) override {
+    Faults faults(bytes_->file());
+    std::vector<std::size_t> wanted;  // indices of properties
+    for (const std::string& name : names) {
+      const auto& all = vertex().properties;
+      wanted.push_back(static_cast<std::size_t>(find_named(all, name) - all.data()));
+    }
+    std::vector<Values> values = !has_plain_rows() ? read_rows(wanted, faults)
+                                 : is_ascii()      ? read_lines(wanted, faults)
+                                                   : read_binary(wanted, faults);
+    faults.raise_if_any();
+    Table table;
+    table.rows = static_cast<std::size_t>(info_.rows);
+    for (std::size_t i = 0; i < names.size(); ++i) table.columns.push_back({names[i], std::move(values[i])});
+    return table;
+  }
+
+ private:
+  const PlyElement& vertex() const { return header_.elements[vertex_]; }
+  bool is_ascii() const { return header_.encoding == PlyEncoding::kAscii; }
+  /// Numbers of an ASCII file are read as float64 or int64.
+  ColumnType type_of(const PlyProperty& property) const {
+    if (!is_ascii()) return column_type(property.type);
+    return is_float(property.type) ? ColumnType::kFloat64 : ColumnType::kInt64;
+  }
+
+  void describe_columns(Faults& faults) {
+    std::vector<ColumnInfo> declared;  // full intensity depends on the declared type
+    for (const PlyProperty& property : vertex().properties)
+      if (!property.is_list) {
+        declared.push_back({property.name, column_type(property.type)});
+        info_.columns.push_back({property.name, type_of(property)});
+      }
+    info_.rows = vertex().count;
+    info_.may_be_of_scene = true;
+    info_.roles = required_roles(declared, faults);
+  }
+
+  /// Returns whether the vertices can be read without following lists or lines of other elements.
+  bool has_plain_rows() const {
+    if (vertex().has_list()) return false;
+    for (std::size_t e = 0; e < header_.elements.size(); ++e) {
+      const PlyElement& element = header_.elements[e];
+      if (e != vertex_ && element.count > 0 && (is_ascii() || (e < vertex_ && element.has_list()))) return false;
+    }
+    return true;
+  }
+
+  std::vector<Values> read_binary(const std::vector<std::size_t>& wanted, Faults& faults) const {
+    RecordLayout layout;
+    layout.begin = header_.bytes;
+    for (std::size_t e = 0; e < vertex_; ++e)
+      layout.begin += header_.elements[e].count * min_bytes(header_.elements[e], header_.encoding);
+    layout.stride = min_bytes(vertex(), header_.encoding);
+    layout.rows = vertex().count;
+    check_rest(layout.begin + layout.rows * layout.stride, faults);
+    std::vector<std::uint64_t> offsets;
+    std::uint64_t offset = 0;
+    for (const PlyProperty& property : vertex().properties) {
+      offsets.push_back(offset);
+      offset += size_of(property.type);
+    }
+    std::vector<RecordField> fields;
+    for (const std::size_t p : wanted)
+      fields.push_back({vertex().properties[p].name, vertex().properties[p].type, offsets[p],
+                        header_.encoding == PlyEncoding::kBigEndian});
+    return read_records(*bytes_, layout, fields, faults);
+  }
+
+  /// Checks that the elements after the vertices are complete.
+  void check_rest(std::uint64_t at, Faults& faults) const {
+    std::size_t e = vertex_ + 1;
+    for (; e < header_.elements.size() && !header_.elements[e].has_list(); ++e)
+      at += header_.elements[e].count * min_bytes(header_.elements[e], header_.encoding);
+    PlyCursor cursor(*bytes_, at, header_.encoding, 0);
+    for (; e < header_.elements.size(); ++e) {
+      check_count(faults, header_.elements[e], header_, cursor.bytes_left());
+      skip_element(faults, header_.elements[e], header_, cursor);
+    }
+    check_end(faults, header_, cursor);
+  }
+
+  /// Reads an ASCII file that contains only vertices.
+  std::vector<Values> read_lines(const std::vector<std::size_t>& wanted, Faults& faults) const {
+    TextLayout layout;
+    layout.begin = header_.bytes;
+    layout.first_line = static_cast<std::uint64_t>(header_.lines) + 1;
+    for (const PlyProperty& property : vertex().properties) layout.columns.push_back({type_of(property), false});
+    for (const std::size_t p : wanted) layout.columns[p].is_wanted = true;
+    TextTable text = read_text_rows(*bytes_, layout, faults);
+    if (text.rows != vertex().count)
+      faults.fail(
+          static_cast<std::uint64_t>(vertex().line),
+          fmt::format(
+              "the header declares {} rows of `vertex`, but there are {}; the file is truncated, or the count is wrong",
+              vertex().count, text.rows));
+    std::vector<Values> out;
+    for (const std::size_t p : wanted) out.push_back(std::move(text.values[p]));
+    return out;
+  }
+
+  /// Reads all rows one by one, with lists and with other elements between them.
+  std::vector<Values> read_rows(const std::vector<std::size_t>& wanted, Faults& faults) const {
+    PlyCursor cursor(*bytes_, header_.bytes, header_.encoding, header_.lines + 1);
+    std::vector<Values> out;
+    for (const std::size_t p : wanted) out.push_back(empty_values(type_of(vertex().properties[p])));
+    for (const PlyElement& element : header_.elements) {
+      check_count(faults, element, header_, cursor.bytes_left());
+      if (&element != &vertex()) {
+        skip_element(faults, element, header_, cursor);
+        continue;
+      }
+      std::vector<double> row(element.properties.size());
+      for (Values& values : out)
+        std::visit(
+            [&](auto& column) {
+              if constexpr (requires { column.reserve(0); }) column.reserve(static_cast<std::size_t>(element.count));
+            },
+            values);
+      for (std::uint64_t i = 0; i < element.count; ++i) {
+        const auto name = [&] { return fmt::format("vertex {} of {}", i + 1, element.count); };
+        read_row(faults, element, cursor, name, [&](const PlyProperty& property, std::size_t k) {
+          return property.is_list ? cursor.skip(property) : cursor.take(property.type, row[k]);
+        });
+        for (std::size_t w = 0; w < wanted.size(); ++w)
+          if (!append(out[w], row[wanted[w]]))
+            faults.fail(static_cast<std::uint64_t>(cursor.line()),
+                        fmt::format("{}, `{}`: not a 64-bit integer", name(), element.properties[wanted[w]].name));
+      }
+    }
+    check_end(faults, header_, cursor);
+    return out;
+  }
+
+  /// Appends a number to a column; false if the column has integers and the number is not one.
+  static bool append(Values& values, double number) {
+    return std::visit(
+        [number](auto& column) {
+          if constexpr (requires { column.push_back({}); }) {
+            using T = typename std::decay_t<decltype(column)>::value_type;
+            if constexpr (std::is_same_v<T, std::int64_t>) {
+              constexpr double kBound = 9223372036854775808.0;  // 2^63
+              if (!(number >= -kBound && number < kBound) || number != std::floor(number)) return false;
+            }
+            column.push_back(static_cast<T>(number));
+          }
+          return true;
+        },
+        values);
+  }
+
+  PlyHeader header_;
+  std::size_t vertex_ = 0;  ///< index of the element
+};
+
+bool is_ply(const Signature& signature) {
+  return signature.head.starts_with("ply\n") || signature.head.starts_with("ply\r\n");
+}
+
+}  // namespace
+
+const FormatReader kPly = {"PLY", is_ply, open_as<PlyFile>};
+
+}  // namespace orrery::data

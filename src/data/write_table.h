@@ -1,0 +1,39 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "data/table.h"
+
+namespace orrery::data {
+
+/// Output formats.
+enum class TableFormat { kPly, kXyz, kNpy, kCsv };
+
+/// Returns the format that the extension of a file selects: .ply, .xyz, .npy, .csv.
+///
+/// Errors     base::Error(kUsage) for another extension
+TableFormat table_format(const std::filesystem::path& file);
+
+/// Writes a table. Reading the file with open() gives the same values.
+///
+/// - .ply: binary, little-endian. It cannot store strings.
+/// - .xyz: extended XYZ. Columns x, y, z are `pos`; name[1], name[2] .. are one property `name`. It cannot store empty
+///   strings, spaces or quotes.
+/// - .npy: a structured array.
+/// - .csv: a header row; strings are quoted, and numbers have as many digits as needed.
+///
+/// Text formats do not preserve number types: reading returns float64 or int64. An integer column of a CSV file is read
+/// as int64 only if float64 cannot represent all of its values.
+///
+/// `writer`   program name for the header comment of .ply
+/// Domain     columns x, y, z of numbers; all columns have table.rows rows and distinct names
+/// Result     names of the columns that were omitted because the format cannot store their strings
+/// Errors     base::Error: kUsage for another extension, and for values that the format cannot store, with a remedy;
+///            kCannotCreate; kIo
+[[nodiscard]] std::vector<std::string> write_table(const std::filesystem::path& file, const Table& table,
+                                                   const std::string& writer = "orrery");
+
+}  // namespace orrery::data

@@ -1,0 +1,283 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <string>
+#include <vector>
+
+#include "data/data_file.h"
+#include "support/data_file_test.h"
+#include "support/data_tables.h"
+#include "support/shared_data.h"
+#include "support/temp_dir.h"
+
+namespace orrery::data {
+
+namespace {
+
+using support::column_names;
+using support::data_errors;
+using support::numbers;
+using support::texts;
+using Numbers = std::vector<double>;
+
+const std::string kFrameHead = "ITEM: TIMESTEP\n7\nITEM: NUMBER OF ATOMS\n2\n";
+const std::string kBox = "ITEM: BOX BOUNDS pp ff mm\n-1 3\n0 10\n2 4\n";
+
+class DataLammpsDump : public support::DataFileTest {
+ protected:
+  DataLammpsDump() : DataFileTest("a.dump") {}
+  std::string errors(const std::string& text) { return data_errors(write(text)); }
+};
+
+/// As with `dump_modify types labels`.
+TEST_F(DataLammpsDump, TypesMayBeLabels) {
+  const std::string head = kFrameHead + kBox + "ITEM: ATOMS id type x y z\n";
+  const auto file = open(head + "1 C 0 0 0\n2 O 1 1 1\n" + head + "1 1 0 0 0\n2 2 1 1 1\n");
+  EXPECT_EQ(file->describe(0).columns[1].type, ColumnType::kText);
+  EXPECT_EQ(file->describe(0).roles.type, "type");
+  EXPECT_EQ(texts(file->read(0, {"type"}), "type"), (std::vector<std::string>{"C", "O"}));
+  EXPECT_EQ(file->describe(1).columns[1].type, ColumnType::kInt64) << "each frame has its own";
+  EXPECT_NE(errors(head + "1 1 0 0 0\n2 O 1 1 1\n"), "");
+}
+
+TEST_F(DataLammpsDump, ReadsColumnsWithTheirTypesAndRoles) {
+  const auto file = open("ITEM: UNITS\nlj\nITEM: TIME\n0.5\n" + kFrameHead + kBox +
+                         "ITEM: ATOMS id type element x y z radius c_stress[1] ix iy iz \n"
+                         "2 1 Na 0.5 1 3 0.25 -1e-3 0 -1 1 \n1 2 Cl 1 2 4 0.5 nan 0 0 0 \n");
+  EXPECT_STREQ(file->format, "LAMMPS dump");
+  EXPECT_EQ(file->frame_count(), 1);
+  const FrameInfo info = file->describe(0);
+  EXPECT_EQ(info.rows, 2u);
+  EXPECT_EQ(info.step, 7);
+  EXPECT_TRUE(info.z_up);
+  EXPECT_EQ(column_names(info), (std::vector<std::string>{"id", "type", "element", "x", "y", "z", "radius",
+                                                          "c_stress[1]", "ix", "iy", "iz"}));
+  EXPECT_EQ(info.columns[0].type, ColumnType::kInt64);
+  EXPECT_EQ(info.columns[2].type, ColumnType::kText);
+  EXPECT_EQ(info.columns[3].type, ColumnType::kFloat64);
+  EXPECT_EQ(info.roles.position[2], "z");
+  EXPECT_EQ(info.roles.radius, "radius");
+  EXPECT_EQ(info.roles.radius_scale, 1);
+  EXPECT_EQ(info.roles.element, "element");
+  EXPECT_EQ(info.roles.type, "type");
+  EXPECT_EQ(info.roles.id, "id");
+  EXPECT_EQ(info.roles.image[1], "iy");
+  const Table table = file->read(0, column_names(info));
+  EXPECT_EQ(numbers(table, "id"), (Numbers{2, 1}));
+  EXPECT_EQ(texts(table, "element"), (std::vector<std::string>{"Na", "Cl"}));
+  EXPECT_EQ(numbers(table, "y"), (Numbers{1, 2}));
+  EXPECT_EQ(numbers(table, "c_stress[1]")[0], -1e-3);
+  EXPECT_TRUE(std::isnan(numbers(table, "c_stress[1]")[1]));
+  EXPECT_EQ(numbers(table, "iy"), (Numbers{-1, 0}));
+  EXPECT_EQ(file->read(0, {"z"}).columns.size(), 1u);
+}
+
+TEST_F(DataLammpsDump, BoxIsOrthogonal) {
+  const auto box = open(kFrameHead + kBox + "ITEM: ATOMS x y z\n0 0 0\n0 0 0\n")->describe(0).box;
+  ASSERT_TRUE(box);
+  EXPECT_EQ(box->origin.x, -1);
+  EXPECT_EQ(box->edges[0].x, 4);
+  EXPECT_EQ(box->edges[1].x, 0);
+  EXPECT_EQ(box->edges[1].y, 10);
+  EXPECT_EQ(box->edges[2].z, 2);
+  EXPECT_EQ(box->periodic, (std::array<bool, 3>{true, false, false}));
+}
+
+TEST_F(DataLammpsDump, DiameterIsTwiceTheRadius) {
+  const Roles roles = open(kFrameHead + kBox + "ITEM: ATOMS x y z diameter\n0 0 0 1\n0 0 0 1\n")->describe(0).roles;
+  EXPECT_EQ(roles.radius, "diameter");
+  EXPECT_EQ(roles.radius_scale, 0.5);
+}
+
+TEST_F(DataLammpsDump, ScaledPositionsBecomePositions) {
+  const auto file = open(kFrameHead + kBox + "ITEM: ATOMS xs ys zs\n0 0 0\n0.5 0.25 1\n");
+  const FrameInfo info = file->describe(0);
+  EXPECT_EQ(info.roles.position[0], "x");
+  EXPECT_EQ(column_names(info), (std::vector<std::string>{"xs", "ys", "zs", "x", "y", "z"}));
+  const Table table = file->read(0, column_names(info));
+  EXPECT_EQ(numbers(table, "x"), (Numbers{-1, 1}));
+  EXPECT_EQ(numbers(table, "y"), (Numbers{0, 2.5}));
+  EXPECT_EQ(numbers(table, "z"), (Numbers{2, 4}));
+  EXPECT_EQ(numbers(table, "xs"), (Numbers{0, 0.5}));
+  EXPECT_EQ(file->read(0, {"y"}).columns.size(), 1u);
+}
+
+TEST_F(DataLammpsDump, ScaledUnwrappedPositionsBecomePositions) {
+  const auto file = open(kFrameHead + kBox + "ITEM: ATOMS xsu ysu zsu\n0 0 0\n1.5 -0.25 1\n");
+  EXPECT_EQ(numbers(file->read(0, {"x", "y"}), "y"), (Numbers{0, -2.5}));
+}
+
+TEST_F(DataLammpsDump, UnwrappedPositionsStayAsTheyAre) {
+  const auto file = open(kFrameHead + kBox + "ITEM: ATOMS xu yu zu xs ys zs\n1 2 3 0 0 0\n4 5 6 0 0 0\n");
+  EXPECT_EQ(file->describe(0).roles.position, (std::array<std::string, 3>{"xu", "yu", "zu"}));
+  EXPECT_EQ(numbers(file->read(0, {"yu"}), "yu"), (Numbers{2, 5}));
+}
+
+/// A cell with a = (4, 0, 0), b = (xy, 5, 0), c = (xz, yz, 6) at (-1, 2, 3), as LAMMPS writes it: xlo_bound is
+/// xlo + min(0, xy, xz, xy + xz).
+TEST_F(DataLammpsDump, ImageCountsApplyToWrappedPositionsOnly) {
+  const auto image = [&](const std::string& columns) {
+    return open(kFrameHead + kBox + "ITEM: ATOMS " + columns + " ix iy iz\n1 2 3 0 0 0\n1 2 3 0 0 0\n")
+        ->describe(0)
+        .roles.image[0];
+  };
+  EXPECT_EQ(image("x y z"), "ix");
+  EXPECT_EQ(image("xs ys zs"), "ix");
+  EXPECT_EQ(image("xu yu zu"), "");
+  EXPECT_EQ(image("xsu ysu zsu"), "");
+}
+
+TEST_F(DataLammpsDump, ColumnsOfOneNameAreNumbered) {
+  const auto file = open(kFrameHead + kBox + "ITEM: ATOMS x y z v v v\n1 2 3 4 5 6\n1 2 3 7 8 9\n");
+  EXPECT_EQ(column_names(file->describe(0)), (std::vector<std::string>{"x", "y", "z", "v", "v_2", "v_3"}));
+  EXPECT_EQ(numbers(file->read(0, {"v_3"}), "v_3"), (Numbers{6, 9}));
+  std::string many = "ITEM: ATOMS x y z";
+  for (int i = 0; i < 4094; ++i) many += " v";
+  EXPECT_EQ(errors(kFrameHead + kBox + many + "\n"), "9: there are more than 4096 columns\n");
+}
+
+TEST_F(DataLammpsDump, TiltedBoxIsRecoveredFromItsBounds) {
+  struct Tilt {
+    double xy, xz, yz;
+  };
+  for (const Tilt& t : {Tilt{1, 2, 1}, Tilt{-1, -2, -1}, Tilt{1, -2, 0.5}, Tilt{-1, 2, -0.5}}) {
+    const auto row = [](double low, double high, double tilt) {
+      return std::to_string(low) + " " + std::to_string(high) + " " + std::to_string(tilt) + "\n";
+    };
+    const double least = std::min({0.0, t.xy, t.xz, t.xy + t.xz});
+    const double most = std::max({0.0, t.xy, t.xz, t.xy + t.xz});
+    const auto file = open(kFrameHead + "ITEM: BOX BOUNDS xy xz yz pp pp ff\n" + row(-1 + least, 3 + most, t.xy) +
+                           row(2 + std::min(0.0, t.yz), 7 + std::max(0.0, t.yz), t.xz) + row(3, 9, t.yz) +
+                           "ITEM: ATOMS xs ys zs\n0 0 0\n1 1 1\n");
+    const Box box = file->describe(0).box.value();
+    EXPECT_EQ(box.origin.x, -1);
+    EXPECT_EQ(box.origin.y, 2);
+    EXPECT_EQ(box.origin.z, 3);
+    EXPECT_EQ(box.edges[0].x, 4);
+    EXPECT_EQ(box.edges[1].x, t.xy);
+    EXPECT_EQ(box.edges[1].y, 5);
+    EXPECT_EQ(box.edges[2].x, t.xz);
+    EXPECT_EQ(box.edges[2].y, t.yz);
+    EXPECT_EQ(box.edges[2].z, 6);
+    EXPECT_EQ(box.periodic, (std::array<bool, 3>{true, true, false}));
+    const Table table = file->read(0, {"x", "y", "z"});
+    EXPECT_EQ(numbers(table, "x"), (Numbers{-1, 3 + t.xy + t.xz}));
+    EXPECT_EQ(numbers(table, "y"), (Numbers{2, 7 + t.yz}));
+    EXPECT_EQ(numbers(table, "z"), (Numbers{3, 9}));
+  }
+}
+
+TEST_F(DataLammpsDump, BoxMayBeGeneral) {
+  const auto file = open(kFrameHead + "ITEM: BOX BOUNDS abc origin pp fs pp\n1 2 3 10\n-2 1 0 20\n0 0.5 4 30\n" +
+                         "ITEM: ATOMS xs ys zs\n0 0 0\n1 1 0.5\n");
+  const Box box = file->describe(0).box.value();
+  EXPECT_EQ(box.origin.y, 20);
+  EXPECT_EQ(box.edges[0].z, 3);
+  EXPECT_EQ(box.edges[2].y, 0.5);
+  EXPECT_EQ(box.periodic, (std::array<bool, 3>{true, false, true}));
+  const Table table = file->read(0, {"x", "y", "z"});
+  EXPECT_EQ(numbers(table, "x"), (Numbers{10, 9}));
+  EXPECT_EQ(numbers(table, "y"), (Numbers{20, 23.25}));
+  EXPECT_EQ(numbers(table, "z"), (Numbers{30, 35}));
+}
+
+/// Frames of different numbers of rows, the first one empty.
+std::string trajectory(int frames, const std::string& line_end) {
+  std::string text;
+  for (int frame = 0; frame < frames; ++frame) {
+    text += "ITEM: TIMESTEP" + line_end + std::to_string(10 * frame) + line_end + "ITEM: NUMBER OF ATOMS" + line_end +
+            std::to_string(frame) + line_end + "ITEM: BOX BOUNDS pp pp pp" + line_end;
+    for (int axis = 0; axis < 3; ++axis) text += "0 1" + line_end;
+    text += "ITEM: ATOMS id x y z" + line_end;
+    for (int row = 0; row < frame; ++row) text += std::to_string(row) + " 0 0 " + std::to_string(frame) + line_end;
+  }
+  return text;
+}
+
+TEST_F(DataLammpsDump, FramesAreReadInAnyOrder) {
+  for (const char* const line_end : {"\n", "\r\n"}) {
+    const auto file = open(trajectory(200, line_end));
+    EXPECT_EQ(file->describe(3).step, 30);
+    EXPECT_EQ(file->frame_count(), 200);
+    for (const int frame : {199, 5, 0, 1, 198}) {
+      EXPECT_EQ(file->describe(frame).rows, static_cast<std::uint64_t>(frame));
+      EXPECT_EQ(numbers(file->read(frame, {"z"}), "z"),
+                Numbers(static_cast<std::size_t>(frame), static_cast<double>(frame)));
+    }
+  }
+}
+
+TEST_F(DataLammpsDump, FramesBeforeATruncatedOneAreUsable) {
+  const std::string whole = trajectory(4, "\n");
+  const auto file = open(whole.substr(0, whole.size() - 8));
+  EXPECT_EQ(file->frame_count(), 4);
+  EXPECT_EQ(file->read(2, {"z"}).rows, 2u);
+  EXPECT_EQ(errors(whole.substr(0, whole.size() - 8)), "42: the file ends after 2 of 3 rows\n");
+}
+
+TEST_F(DataLammpsDump, ErrorsHaveLines) {
+  const std::string atoms = "ITEM: ATOMS x y z\n";
+  EXPECT_EQ(errors(kFrameHead + kBox + atoms + "0 0 0\n0 0 a\n"), "11: column 3: 'a' is not a number\n");
+  EXPECT_EQ(errors(kFrameHead + kBox + atoms + "0 0 0\n0 0 0\n0 0 0\n"),
+            "12: expected a line \"ITEM: ...\", found '0 0 0'\n");
+  EXPECT_EQ(errors(kFrameHead + kBox + "ITEM: ATOMS id vx\n0 0\n0 0\n"), "9: no columns with positions\n");
+  EXPECT_EQ(errors(kFrameHead + "ITEM: ATOMS xs ys zs\n0 0 0\n0 0 0\n"),
+            "5: positions are scaled, but the frame has no item \"BOX BOUNDS\"\n");
+  EXPECT_EQ(errors(kFrameHead), "5: the file ends within the header of a frame\n");
+  EXPECT_EQ(errors(kFrameHead + "ITEM: BOX BOUNDS pp pp pp\n1 0\n0 1\n0 1\n" + atoms + "0 0 0\n0 0 0\n"),
+            "8: a lower bound of the box exceeds the upper bound\n");
+  EXPECT_EQ(errors("ITEM: TIMESTEP\n0\nITEM: NUMBER OF ATOMS\n-1\n"), "4: expected a number of atoms, found '-1'\n");
+  EXPECT_EQ(errors("ITEM: TIMESTEP\n0\nITEM: NUMBER OF ENTRIES\n1\n"),
+            "3: 'ITEM: NUMBER OF ENTRIES' is not an item of an atom dump\n");
+  EXPECT_EQ(errors("ITEM: TIMESTEP\n0\n" + kBox + atoms + "0 0 0\n"),
+            "7: the frame has no item \"NUMBER OF ATOMS\" before its atoms\n");
+  EXPECT_EQ(errors("ITEM: TIMESTEP\n0\nITEM: NUMBER OF ATOMS\n9000000000000000000\n" + atoms + "0 0 0\n"),
+            "7: the file ends after 1 of 9000000000000000000 rows\n");
+}
+
+TEST_F(DataLammpsDump, RowsAfterTheFrameAreNotIgnored) {
+  const auto file = open(kFrameHead + kBox + "ITEM: ATOMS x y z\n0 0 0\n0 0 0\n0 0 0\n");
+  try {
+    file->read(0, {"x"});
+    FAIL();
+  } catch (const base::Error& error) {
+    EXPECT_EQ(error.diagnostics().at(0).line, 12);
+    EXPECT_EQ(error.diagnostics().at(0).text, "more rows than line 4 declares");
+  }
+}
+
+TEST_F(DataLammpsDump, BinaryDumpsAreRefused) {
+  const std::string text(
+      "\xf6\xff\xff\xff\xff\xff\xff\xff"
+      "DUMPCUSTOM\1\0\0\0",
+      22);
+  EXPECT_EQ(errors(text), "0: binary LAMMPS dumps are not supported\n");
+}
+
+TEST_F(DataLammpsDump, ReadsFilesOfOtherPrograms) {
+  const auto folder = support::shared_data() / "lammps";
+  if (!std::filesystem::exists(folder)) GTEST_SKIP() << "no " << folder;
+  const auto salt = data::open(folder / "nacl.lammpstrj");
+  const Table table = salt->read(0, {"x", "z", "vx"});
+  EXPECT_EQ(table.rows, 512u);
+  EXPECT_NEAR(numbers(table, "z")[1], -1.41005 + 0.1875 * (21.15075 + 1.41005), 1e-5);
+  const auto properties = data::open(folder / "properties.lammpstrj");
+  const Table stress = properties->read(properties->frame_count() - 1, {"c_stress[3]", "v_sq_pos", "i_flag"});
+  EXPECT_EQ(stress.rows, 4000u);
+  EXPECT_EQ(data_errors(folder / "properties.lammpstrj"), "");
+}
+
+TEST_F(DataLammpsDump, MalformedFilesOfOtherProgramsAreRefused) {
+  const auto folder = support::shared_data() / "lammps" / "bad";
+  if (!std::filesystem::exists(folder)) GTEST_SKIP() << "no " << folder;
+  for (const auto& entry : std::filesystem::directory_iterator(folder)) {
+    const std::string errors = data_errors(entry.path());
+    // Two rows with one id are no matter of this reader.
+    EXPECT_EQ(errors.empty(), entry.path().stem() == "atom-duplicated-id") << entry.path() << "\n" << errors;
+  }
+}
+
+}  // namespace
+}  // namespace orrery::data

@@ -1,0 +1,290 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <gtest/gtest.h>
+
+#include <cstdlib>
+#include <filesystem>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "data/data_file.h"
+#include "support/data_file_test.h"
+#include "support/data_tables.h"
+#include "support/peak_memory.h"
+#include "support/temp_dir.h"
+
+namespace orrery::data {
+
+namespace {
+
+using support::number_bytes;
+using support::numbers;
+
+constexpr const char* kXyz = "property float x\nproperty float y\nproperty float z\n";
+constexpr const char* kXyzr = "property float x\nproperty float y\nproperty float z\nproperty float radius\n";
+
+std::string header(const std::string& encoding, const std::string& elements) {
+  return "ply\nformat " + encoding + " 1.0\n" + elements + "end_header\n";
+}
+
+class DataPly : public support::DataFileTest {
+ protected:
+  DataPly() : DataFileTest("a.ply") {}
+  Table read(const std::string& bytes) { return support::read_table(*open(bytes)); }
+  Roles roles(const std::string& properties) {
+    return open(header("ascii", "element vertex 0\n" + properties))->describe(0).roles;
+  }
+  std::string faults(const std::string& bytes) { return support::read_faults(write(bytes)); }
+};
+
+TEST_F(DataPly, AsciiNumbersAreFloat64OrInt64) {
+  const auto file = open(header("ascii", std::string("element vertex 2\n") + kXyzr + "property uchar red\n") +
+                         "1 2 .3 0.5 7\r\n\n-4e2 +5 .25 -1 255");
+  EXPECT_STREQ(file->format, "PLY");
+  EXPECT_EQ(support::columns_text(file->describe(0)), "x:float64 y:float64 z:float64 radius:float64 red:int64");
+  const Table table = support::read_table(*file);
+  EXPECT_EQ(numbers(table, "x"), (std::vector<double>{1, -400}));
+  EXPECT_EQ(numbers(table, "z"), (std::vector<double>{0.3, 0.25}));
+  EXPECT_EQ(numbers(table, "red"), (std::vector<double>{7, 255}));
+  EXPECT_EQ(file->read(0, {"red", "y"}).columns[0].name, "red");
+  EXPECT_EQ(numbers(file->read(0, {"red", "y"}), "y"), (std::vector<double>{2, 5}));
+}
+
+TEST_F(DataPly, HeadersMayHaveCommentsTabsAndOtherLineEnds) {
+  const std::string text =
+      "ply\r\ncomment made by hand\nformat binary_big_endian 1.0\nobj_info x\nelement vertex 1\nproperty float x\n"
+      "property  double\ty\nproperty short z\nproperty list uchar int neighbours\nelement face 0\nend_header\n";
+  const Table table = read(text + number_bytes(0.5F, true) + number_bytes(0.1, true) +
+                           number_bytes(std::int16_t{-3}, true) + '\1' + number_bytes(std::int32_t{7}, true));
+  EXPECT_EQ(numbers(table, "x"), std::vector<double>{0.5});
+  EXPECT_EQ(numbers(table, "y"), std::vector<double>{0.1});
+  EXPECT_EQ(numbers(table, "z"), std::vector<double>{-3});
+}
+
+TEST_F(DataPly, TypesHaveTheirSizes) {
+  const std::pair<const char*, std::size_t> types[] = {{"char", 1},  {"int8", 1},    {"uchar", 1},  {"uint8", 1},
+                                                       {"short", 2}, {"int16", 2},   {"ushort", 2}, {"uint16", 2},
+                                                       {"int", 4},   {"int32", 4},   {"uint", 4},   {"uint32", 4},
+                                                       {"float", 4}, {"float32", 4}, {"double", 8}, {"float64", 8}};
+  for (const auto& [name, size] : types) {
+    const std::string begin =
+        header("binary_little_endian", std::string("element vertex 1\n") + kXyz + "property " + name + " p\n");
+    EXPECT_EQ(faults(begin + std::string(12 + size, '\0')), "") << name;
+    EXPECT_NE(faults(begin + std::string(11 + size, '\0')), "") << name;
+    EXPECT_NE(faults(begin + std::string(13 + size, '\0')), "") << name;
+  }
+}
+
+TEST_F(DataPly, FaultsOfTheHeaderHaveTheirLine) {
+  const std::string begin = "ply\nformat ascii 1.0\n";
+  EXPECT_EQ(faults("ply\nend_header\n"), "2: the header has no format line\n");
+  EXPECT_EQ(faults("ply\nformat ascii\n"), "2: a format line must be `format ENCODING 1.0`\n");
+  EXPECT_EQ(faults("ply\nformat text 1.0\n"),
+            "2: unknown encoding; allowed are ascii, binary_little_endian, binary_big_endian\n");
+  EXPECT_EQ(faults("ply\nformat ascii 2.0\n"), "2: unsupported format version `2.0`; supported is 1.0\n");
+  EXPECT_EQ(faults(begin + "format ascii 1.0\n"), "3: duplicate format line\n");
+  EXPECT_EQ(faults(begin + "element vertex\n"), "3: an element line must be `element NAME COUNT`\n");
+  for (const char* count : {"-1", "1.5", "many", "18446744073709551616"})
+    EXPECT_EQ(faults(begin + "element vertex " + count + "\n"),
+              "3: the count of an element must be a non-negative integer\n")
+        << count;
+  EXPECT_EQ(faults(begin + "element a 1\nelement a 1\n"), "4: duplicate element `a`\n");
+  EXPECT_EQ(faults(begin + "property float x\n"), "3: property before the first element\n");
+  EXPECT_EQ(faults(begin + "element a 1\nproperty float\n"), "4: a property line must be `property TYPE NAME`\n");
+  EXPECT_EQ(faults(begin + "element a 1\nproperty half x\n"),
+            "4: unknown type; allowed are char .. double, int8 .. float64\n");
+  EXPECT_EQ(faults(begin + "element a 1\nproperty list half int x\n"), "4: unknown type of the list length\n");
+  EXPECT_EQ(faults(begin + "element a 1\nproperty int x\nproperty float x\n"), "5: duplicate property `x`\n");
+  EXPECT_EQ(faults(begin + "texture a\n"), "3: unknown keyword in the header\n");
+  EXPECT_EQ(faults(begin + "element a 1\n"), "4: the header has no end_header\n");
+}
+
+TEST_F(DataPly, TheLengthOfTheHeaderIsLimited) {
+  constexpr std::size_t kLongest = std::size_t{1} << 20;
+  std::string text = "ply\nformat ascii 1.0\n";
+  const std::string end = "end_header\n";
+  text += "comment " + std::string(kLongest - text.size() - end.size() - 9, 'x') + "\n";
+  EXPECT_EQ(faults(text + end), "there is no element `vertex`\n") << "the maximum length";
+  EXPECT_EQ(faults(text + "\n" + end), "5: the header exceeds the limit of 1048576 bytes\n");
+}
+
+TEST_F(DataPly, BinaryColumnsKeepTheirTypesInBothByteOrders) {
+  const char* const properties =
+      "element other 2\nproperty short s\nelement vertex 1\nproperty double x\nproperty float y\nproperty char z\n"
+      "property uchar a\nproperty short b\nproperty ushort c\nproperty int d\nproperty uint e\nelement edge 1\n"
+      "property int f\n";
+  for (const bool big : {false, true}) {
+    const auto file =
+        open(header(big ? "binary_big_endian" : "binary_little_endian", properties) + "1234" + number_bytes(0.1, big) +
+             number_bytes(2.5f, big) + number_bytes<std::int8_t>(-7) + number_bytes<std::uint8_t>(200) +
+             number_bytes<std::int16_t>(-3000, big) + number_bytes<std::uint16_t>(60000, big) +
+             number_bytes<std::int32_t>(-100000, big) + number_bytes<std::uint32_t>(4000000000u, big) + "edge");
+    EXPECT_EQ(support::columns_text(file->describe(0)),
+              "x:float64 y:float32 z:int32 a:uint8 b:int32 c:uint16 d:int32 e:int64");
+    const Table table = support::read_table(*file);
+    std::vector<double> row;
+    for (const Column& column : table.columns) row.push_back(column.number(0));
+    EXPECT_EQ(row, (std::vector<double>{0.1, 2.5, -7, 200, -3000, 60000, -100000, 4000000000}));
+  }
+}
+
+TEST_F(DataPly, ListsAndOtherElementsAreSkipped) {
+  const std::string elements =
+      "element face 2\nproperty list uchar int corners\nproperty uchar flag\nelement vertex 2\nproperty float nx\n"
+      "property float x\nproperty list ushort float weights\nproperty float y\nproperty int z\nelement edge 9\n"
+      "property int a\n";
+  std::string data = number_bytes<std::uint8_t>(2) + number_bytes(1) + number_bytes(2) + number_bytes<std::uint8_t>(9) +
+                     number_bytes<std::uint8_t>(0) + number_bytes<std::uint8_t>(9);
+  for (const float x : {1.f, 5.f})
+    data += number_bytes(99.f) + number_bytes(x) + number_bytes<std::uint16_t>(1) + number_bytes(77.f) +
+            number_bytes(x + 1) + number_bytes(static_cast<int>(x) + 2);
+  data += std::string(36, 'e');
+  const auto binary = open(header("binary_little_endian", elements) + data);
+  EXPECT_EQ(support::columns_text(binary->describe(0)), "nx:float32 x:float32 y:float32 z:int32");
+  EXPECT_EQ(numbers(support::read_table(*binary), "x"), (std::vector<double>{1, 5}));
+  EXPECT_EQ(numbers(binary->read(0, {"z"}), "z"), (std::vector<double>{3, 7}));
+  const auto ascii =
+      open(header("ascii", elements) + "2 1 2 9\n0 9\n99 1 1 77 2 3\n\n99 5 1 77 6 7\n1\n2\n3\n4\n5\n6\n7\n8\n9\n");
+  EXPECT_EQ(support::columns_text(ascii->describe(0)), "nx:float64 x:float64 y:float64 z:int64");
+  EXPECT_EQ(numbers(support::read_table(*ascii), "y"), (std::vector<double>{2, 6}));
+  EXPECT_EQ(numbers(support::read_table(*ascii), "z"), (std::vector<double>{3, 7}));
+}
+
+TEST_F(DataPly, CustomaryNames) {
+  EXPECT_EQ(roles(kXyz).radius, "");
+  EXPECT_EQ(roles(std::string(kXyz) + "property float r\n").radius, "r");
+  EXPECT_EQ(roles(std::string(kXyz) + "property float scalar_radius\n").radius, "scalar_radius");
+  EXPECT_EQ(roles(std::string(kXyz) + "property float r\nproperty float radius\n").radius, "radius");
+  const Roles color = roles(std::string(kXyz) + "property uchar r\nproperty uchar g\nproperty uchar b\n");
+  EXPECT_EQ(color.radius, "");
+  EXPECT_EQ(color.rgb[1], "g");
+  EXPECT_EQ(color.rgb_maximum, 255);
+  const Roles diameter = roles(std::string(kXyz) + "property float diameter\nproperty int id\nproperty uchar class\n");
+  EXPECT_EQ(diameter.radius, "diameter");
+  EXPECT_EQ(diameter.radius_scale, 0.5);
+  EXPECT_EQ(diameter.id, "id");
+  EXPECT_EQ(diameter.type, "class");
+  EXPECT_EQ(roles(std::string(kXyz) + "property float red\nproperty float green\nproperty float blue\n").rgb_maximum,
+            1);
+  EXPECT_EQ(roles(std::string(kXyz) + "property ushort red\nproperty ushort green\nproperty ushort blue\n").rgb_maximum,
+            65535);
+  EXPECT_EQ(roles(std::string(kXyz) +
+                  "property uchar diffuse_red\nproperty uchar diffuse_green\nproperty uchar diffuse_blue\n")
+                .rgb[0],
+            "diffuse_red");
+}
+
+TEST_F(DataPly, ManyBinaryRows) {
+  constexpr int kRows = 200000;
+  std::string data;
+  for (int i = 0; i < kRows; ++i)
+    data += number_bytes(static_cast<double>(i)) + number_bytes(0.5) + number_bytes(static_cast<float>(i));
+  const Table table = read(header("binary_little_endian",
+                                  "element vertex 200000\nproperty double x\nproperty double y\nproperty float z\n"
+                                  "element face 1\nproperty list uchar int v\n") +
+                           data + std::string(1, '\0'));
+  const auto x = numbers(table, "x"), z = numbers(table, "z");
+  for (std::size_t i = 0; i < kRows; ++i) {
+    ASSERT_EQ(x[i], static_cast<double>(i));
+    ASSERT_EQ(z[i], static_cast<double>(i));
+  }
+}
+
+TEST_F(DataPly, NoVertices) { EXPECT_EQ(read(header("ascii", std::string("element vertex 0\n") + kXyzr)).rows, 0u); }
+
+TEST_F(DataPly, HeadersWithoutPositionsAreRefused) {
+  EXPECT_EQ(faults(header("ascii", "element face 0\n")), "there is no element `vertex`\n");
+  EXPECT_EQ(
+      faults(header("ascii", "element vertex 0\nproperty float x\nproperty float y\nproperty list uchar float z\n")),
+      "there are no columns x, y and z of numbers; the columns are: x, y; name the coordinates x, y and z\n");
+  EXPECT_EQ(faults("ply\nformat ascii 1.0\nelement vertex many\n"),
+            "3: the count of an element must be a non-negative integer\n");
+}
+
+TEST_F(DataPly, AnExcessiveCountIsRefusedBeforeAllocation) {
+  const std::string data(31, '\0');
+  for (const char* encoding : {"binary_little_endian", "ascii"})
+    for (const char* count : {"1152921504606846976", "18446744073709551615", "17"})
+      EXPECT_EQ(faults(header(encoding, "element vertex " + std::string(count) + "\n" + kXyzr) + data),
+                "3: the header declares " + std::string(count) +
+                    " rows of `vertex`, but only 31 bytes follow; the file is truncated, or the count is wrong\n");
+  EXPECT_EQ(faults(header("binary_little_endian", std::string("element vertex 1\n") + kXyzr) + data.substr(0, 16)), "");
+  EXPECT_NE(faults(header("binary_little_endian",
+                          std::string("element vertex 1\n") + kXyzr + "element e 3\nproperty double d\n") +
+                   data),
+            "")
+      << "an element after the vertices";
+}
+
+// The rows are on lines 9 and 10.
+constexpr const char* kTwo =
+    "element vertex 2\nproperty float x\nproperty float y\nproperty float z\nproperty float radius\n";
+
+TEST_F(DataPly, RowsThatDifferFromTheHeaderAreRefused) {
+  EXPECT_EQ(faults(header("ascii", kTwo) + "1 2 3 4\n1 2 3 4\n \n\r\n"), "") << "blank lines are not rows";
+  EXPECT_EQ(
+      faults(header("ascii", kTwo) + "1 2 3 4\n1 2 3 4\n5 6 7 8\n"),
+      "3: the header declares 2 rows of `vertex`, but there are 3; the file is truncated, or the count is wrong\n");
+  EXPECT_EQ(
+      faults(header("ascii", kTwo) + "1 2 3 4       \n"),
+      "3: the header declares 2 rows of `vertex`, but there are 1; the file is truncated, or the count is wrong\n");
+  EXPECT_EQ(faults(header("binary_little_endian", kTwo) + std::string(2 * 16 + 3, '\0')),
+            "3: 3 bytes follow the last row that the header declares; the counts are wrong, or the file is damaged\n");
+  for (const char* wrong : {"1 2 3 4\n1 2 3\n4\n", "1 2 3 4 1\n2 3 4\n", "1 2 3 4\n1 2 three 4\n"})
+    EXPECT_NE(faults(header("ascii", kTwo) + wrong), "") << wrong;
+  const std::string colors = "element vertex 1\n" + std::string(kXyz) + "property uchar red\n";
+  EXPECT_NE(faults(header("ascii", colors) + "1 2 3 0.5\n"), "");
+  EXPECT_EQ(faults(header("ascii", colors + "element e 1\nproperty int e\n") + "1 2 3 0.5\n7\n"),
+            "11: vertex 1 of 1, `red`: not a 64-bit integer\n");
+}
+
+TEST_F(DataPly, ElementsAfterTheVerticesMustBeComplete) {
+  const std::string elements = std::string(kTwo) + "element face 1\nproperty list uchar int v\n";
+  EXPECT_EQ(faults(header("ascii", elements) + "1 2 3 4\n1 2 3 4\n3 1 2 3\n"), "");
+  EXPECT_EQ(faults(header("ascii", elements) + "1 2 3 4\n1 2 3 4\n3 1 2\n"),
+            "13: row 1 of `face`, `v`: unexpected end of line; a row must be one line\n");
+  EXPECT_EQ(faults(header("binary_little_endian", elements) + std::string(2 * 16, '\0') + "\2abcd"),
+            "8: row 1 of `face`, `v`: unexpected end of file\n");
+  EXPECT_EQ(faults(header("binary_little_endian", elements + "element none 0\nproperty int n\n") +
+                   std::string(2 * 16, '\0') + std::string("\1abcde")),
+            "8: 1 bytes follow the last row that the header declares; the counts are wrong, or the file is damaged\n")
+      << "the last element that has rows";
+  EXPECT_EQ(
+      faults(header("binary_little_endian", std::string(kTwo) + "element e 3\nproperty double d\n") +
+             std::string(2 * 16, '\0')),
+      "8: the header declares 3 rows of `e`, but only 0 bytes follow; the file is truncated, or the count is wrong\n");
+}
+
+/// Faces are checked, but neither kept nor counted.
+TEST_F(DataPly, FacesTakeNoMemory) {
+  if (!support::kMeasuresMemory) GTEST_SKIP() << "sanitizers take memory of their own";
+  constexpr std::size_t kFaces = 2'000'000;
+  const std::string begin = "element vertex 1\n" + std::string(kXyz) + "element face ";
+  const std::string end = "\nproperty list uchar int v\n", vertex = std::string(12, '\0');
+  std::string binary = header("binary_little_endian", begin + std::to_string(kFaces) + end) + vertex;
+  std::string ascii = header("ascii", begin + std::to_string(kFaces) + end) + "1 2 3\n";
+  for (std::size_t i = 0; i < kFaces; ++i) {
+    binary += number_bytes<std::uint8_t>(3) + vertex;
+    ascii += "3 1000 2000 3000\n";
+  }
+  const std::string small = header("binary_little_endian", begin + "1" + end) + vertex + '\3' + vertex;
+  const auto path = [&](const std::string& name, const std::string& bytes) {
+    support::write_bytes(folder_ / name, bytes);
+    return folder_ / name;
+  };
+  const std::filesystem::path files[] = {path("binary.ply", binary), path("ascii.ply", ascii),
+                                         path("small.ply", small)};
+  const std::size_t size = binary.size();
+  binary = ascii = {};
+  const auto peak = [](const std::filesystem::path& file) {
+    return support::peak_memory([&] {
+      if (support::read_table(file).rows != 1) std::abort();
+    });
+  };
+  const std::uint64_t before = peak(files[2]);
+  EXPECT_LT(peak(files[0]), before + size / 4);
+  EXPECT_LT(peak(files[1]), before + size / 4);
+}
+
+}  // namespace
+}  // namespace orrery::data
