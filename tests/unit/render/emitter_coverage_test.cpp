@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "compile/compile.h"
+#include "compile/compiled_scene.h"
 #include "render/render.h"
 #include "support/lit_scenes.h"
 
