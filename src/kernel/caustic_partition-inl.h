@@ -35,15 +35,15 @@ HWY_INLINE hn::Mask<D> is_diffuse(D d, const Surface<D>& at) {
                 hn::Or(is_kind(d, at.kind, MaterialKind::kHemisphere), is_kind(d, at.kind, MaterialKind::kPlastic)));
 }
 
-/// The chain of paths after a surface has scattered them. The surface is passed by value: a reference to it would keep it
-/// in memory in scenes without caustics too.
+/// The chain of paths after a surface has scattered them. The surface is passed by value: a reference to it would keep
+/// it in memory in scenes without caustics too.
 ///
 /// `chain`    before
 /// `is_self`  the surface is that of the sphere that the ray has left
 /// `diffuse`  lanes in which a diffuse lobe has scattered
 template <class D>
-HWY_NOINLINE hn::Vec<IdTag<D>> continued_chain(D d, hn::Vec<IdTag<D>> chain, Surface<D> at,
-                                               Vec3<hn::Vec<D>> direction, hn::Mask<D> is_self, hn::Mask<D> diffuse) {
+HWY_NOINLINE hn::Vec<IdTag<D>> continued_chain(D d, hn::Vec<IdTag<D>> chain, Surface<D> at, Vec3<hn::Vec<D>> direction,
+                                               hn::Mask<D> is_self, hn::Mask<D> diffuse) {
   const IdTag<D> du;
   const auto was = [&](unsigned state) { return hn::RebindMask(d, chain == state); };
   const auto sharp = hn::And(is_delta(d, at), at.fuzz == 0);
