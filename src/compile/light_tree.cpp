@@ -8,7 +8,8 @@
 #include <numeric>
 #include <utility>
 
-#include "compile/emitters.h"
+#include "base/duplicates.h"
+#include "kernel/coincidence.h"
 #include "kernel/scene_view.h"
 
 namespace orrery::compile {
@@ -131,6 +132,22 @@ std::size_t LightTree::bytes() const noexcept {
 }
 
 std::size_t LightTree::bytes_of_build() const noexcept { return bytes() + spheres.size() * sizeof(Leaf); }
+
+std::vector<std::uint32_t> without_coincident(const kernel::SceneView& scene, kernel::Precision precision,
+                                              std::vector<std::uint32_t> ids) {
+  if (ids.empty() || kernel::is_distinct(scene, precision)) return ids;
+  const std::size_t count = std::size_t{ids.back()} + 1;
+  const auto place = [&](std::size_t id) { return kernel::coincidence_key<4>(scene, id, precision); };
+  const auto path = [&](std::size_t id) { return kernel::coincidence_key<8>(scene, id, precision); };
+  const std::vector<base::Duplicate> found =
+      scene.moving_count > 0 ? base::find_duplicates<8>(count, path) : base::find_duplicates<4>(count, place);
+  auto next = found.begin();
+  std::erase_if(ids, [&](std::uint32_t id) {
+    while (next != found.end() && next->index < id) ++next;
+    return next != found.end() && next->index == id;
+  });
+  return ids;
+}
 
 LightTree build_light_tree(const kernel::SceneView& scene, kernel::Precision precision) {
   LightTree tree;

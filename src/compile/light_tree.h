@@ -31,6 +31,16 @@ struct LightTree {
   std::size_t bytes_of_build() const noexcept;
 };
 
+/// Removes spheres that coincide with an earlier sphere of the scene, whether that emits or not. The accelerators skip
+/// them (see accel::duplicates), so they emit no light.
+///
+/// `ids`      ascending
+/// Result     ascending
+/// Cost       none if there are no ids, or if the scene is known to have no coincident spheres; else see
+///            base::find_duplicates, for the spheres up to the last id
+std::vector<std::uint32_t> without_coincident(const kernel::SceneView& scene, kernel::Precision precision,
+                                              std::vector<std::uint32_t> ids);
+
 /// Builds the tree of all spheres that emit and do not coincide with an earlier sphere, which in `fast` depends on the
 /// precision. Deterministic; scaling the scene by a power of two changes no choice.
 ///

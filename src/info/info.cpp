@@ -12,8 +12,8 @@
 
 #include "base/text.h"
 #include "compile/compiled_scene.h"
-#include "compile/emitters.h"
 #include "compile/environment.h"
+#include "compile/light_tree.h"
 #include "film/layer_film.h"
 #include "job/layers.h"
 #include "job/prepared_scene.h"
