@@ -1,0 +1,127 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "cli/subject.h"
+
+#include <functional>
+#include <memory>
+#include <utility>
+
+#include <fmt/core.h>
+
+#include "annotation/legend.h"
+#include "base/error.h"
+#include "base/file_name.h"
+#include "base/text.h"
+#include "cli/film.h"
+#include "cli/render_options.h"
+#include "cli/run.h"
+#include "plot/plot.h"
+#include "view/wish.h"
+
+namespace orrery::cli {
+namespace {
+
+view::Subject scene_subject(const ShownOptions& shown) {
+  for (const Option& option : shown.command->options())
+    if (option.count() > 0 &&
+        base::contains({kDataOptions, kViewOptions, kLookOptions, kAnnotationOptions}, option.heading()))
+      base::refuse(fmt::format("{} is an option for data files; a scene has its keys: --set KEY=VALUE", option.name()));
+  view::Subject out;
+  out.job = shown.job;
+  out.job.scene.file = shown.plot.options.file;
+  out.job.scene.overrides = shown.scene.overrides();
+  return out;
+}
+
+view::Subject data_subject(ShownOptions& shown, const FilmSettings* film) {
+  plot::PlotOptions& plot = shown.plot.options;
+  if (!film && shown.plot.has_frames())
+    base::refuse("--frames: the page has a slider; --frame N selects the first one");
+  shown.plot.read_data();
+  if (film) film->apply(shown.scene, plot);
+  shown.plot.read(shown.scene, shown.job);
+  plot.scene_file = plot.file;
+  plot.develops = true;
+  const plot::PlotScene made = plot::make_plot(plot);
+  view::Subject out;
+  out.job = shown.job;
+  out.job.scene.file = plot.file;
+  show(made, std::make_shared<const std::string>(made.text), out.job);
+  out.job.scene.typed_lines = 0;
+  out.job.scene.overrides = plot.overrides;
+  out.notes = made.choices;
+  for (const std::string& warning : made.warnings) out.notes.push_back("warning: " + warning);
+  out.columns = made.columns;
+  out.frame_count = made.frame_count;
+  out.frames = made.frames;
+  const scene::PointsColor& color = made.points.color;
+  out.chosen["--map"] = color.map;
+  if (color.range)
+    out.chosen["--range"] = fmt::format("{}{}:{}", color.log ? "log," : "", color.range->low, color.range->high);
+  out.chosen["--representation"] = plot::representation_names()[static_cast<std::size_t>(plot.representation)];
+  out.chosen["--bonds"] = made.points.bonds.are_drawn ? "auto" : "none";
+  out.chosen["--style"] = plot::style_names()[static_cast<std::size_t>(plot.style.value_or(plot::Style::kStudio))];
+  out.chosen["--material"] = plot.material;
+  if (plot.quality || made.noise)
+    out.chosen["--quality"] =
+        plot::quality_names()[static_cast<std::size_t>(plot.quality.value_or(plot::Quality::kGood))];
+  display::Settings display = plot::settings_of(plot, true).display;
+  display.view = made.view;
+  out.legend = annotation::legend_svg(made.legend, display);
+  return out;
+}
+
+/// Parses words, and calls `use` with the options.
+void parse_shown(const std::string& file, std::vector<std::string> words,
+                 const std::function<void(ShownOptions& shown)>& use) {
+  ShownOptions shown;
+  words.insert(words.begin(), file);
+  parse_words(
+      words, [&](Command& parsed) { shown.add_to(parsed); }, [&] { use(shown); });
+}
+
+}  // namespace
+
+void ShownOptions::add_to(Command& parsed) {
+  command = &parsed;
+  plot.add_data_to(parsed, "Scene file, or data file");
+  plot.add_look_to(parsed);
+  plot.add_annotations_to(parsed);
+  scene.add_to(parsed);
+  add_sampling_options(parsed, job);
+  add_denoise_option(parsed, job);
+}
+
+bool is_scene(const std::filesystem::path& file) { return base::extension(file) == ".toml"; }
+
+std::set<std::string> files_of(const ShownOptions& shown) {
+  std::set<std::string> out = view::named_files(shown.scene.overrides());
+  if (shown.plot.options.points.color.has_map_file()) out.insert(shown.plot.options.points.color.map);
+  return out;
+}
+
+view::Subject subject_of(const std::filesystem::path& file, const std::vector<std::string>& words,
+                         const std::set<std::string>& allowed) {
+  view::Subject out;
+  parse_shown(file.string(), words, [&](ShownOptions& shown) {
+    // The page may name no files but those given on the command line.
+    for (const std::string& name : files_of(shown))
+      if (allowed.count(name) == 0)
+        base::refuse(fmt::format("`{}` names a file; start orrery view with this option", name));
+    out = is_scene(file) ? scene_subject(shown) : data_subject(shown, nullptr);
+  });
+  return out;
+}
+
+view::Subject data_subject(const std::string& file, const std::vector<std::string>& words,
+                           const job::Resources& resources, const points::OpenData& open, const FilmSettings* film) {
+  view::Subject out;
+  parse_shown(file, words, [&](ShownOptions& shown) {
+    shown.job.resources = resources;
+    shown.plot.options.open = open;
+    out = data_subject(shown, film);
+    out.job.scene.open_data = open;
+  });
+  return out;
+}
+
+}  // namespace orrery::cli
