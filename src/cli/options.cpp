@@ -158,7 +158,7 @@ std::string PictureOptions::unused_options(const job::Job& job) const {
 }
 
 void PictureOptions::finish(job::Job& job) const {
-  job.outputs.images = job::image_files(files_);
+  job.outputs.images.assign(files_.begin(), files_.end());
   job.outputs.exr.as_float = type_ == "float";
 }
 

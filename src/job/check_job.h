@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include <filesystem>
 #include <string>
 
 #include "base/file_set.h"
@@ -11,12 +10,6 @@
 namespace orrery::job {
 
 struct Job;
-
-/// A file that a job writes, and its role.
-struct OutputFile {
-  std::filesystem::path path;
-  std::string role;  ///< "-o", "--stats", "checkpoint"
-};
 
 /// Adds the files that a job reads and writes according to its command line. The names of Cryptomatte manifests are
 /// reserved for every EXR image, because the scene has not been read yet.

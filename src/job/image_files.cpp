@@ -37,7 +37,7 @@ void check_kinds(const Development& development) {
 
 DevelopReport develop_file(const Development& development) {
   check_kinds(development);
-  check_bits(image_files(development.outputs), development.bits);
+  check_bits({development.outputs.begin(), development.outputs.end()}, development.bits);
   base::FileSet files;
   files.add_input(development.input, "image");
   load::add_ocio_configs(development.display.config, files);

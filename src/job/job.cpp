@@ -75,7 +75,7 @@ class Run {
     report_.phases.read_s = watch_.lap();
     stop_if_cancelled();
 
-    prepare();
+    compile();
     if (report_.was_skipped) return;
     report_.phases.compile_s = watch_.lap();
     stop_if_cancelled();
@@ -122,7 +122,7 @@ class Run {
   }
 
   /// Compiles the scene, and checks everything that can be known before rendering.
-  void prepare() {
+  void compile() {
     prepared_->compile(job_.resources.memory_limit);
     check_scene(job_, compiled());
     choose_layers();

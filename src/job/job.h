@@ -17,7 +17,6 @@
 #include "film/picture.h"
 #include "image/header.h"
 #include "image/write.h"
-#include "job/check_job.h"
 #include "job/outputs.h"
 #include "job/resources.h"
 #include "job/shards.h"

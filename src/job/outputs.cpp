@@ -17,12 +17,6 @@
 
 namespace orrery::job {
 
-std::vector<ImageFile> image_files(const std::vector<std::filesystem::path>& files) {
-  std::vector<ImageFile> out;
-  for (const std::filesystem::path& file : files) out.emplace_back(file);
-  return out;
-}
-
 void check_bits(const std::vector<ImageFile>& images, int bits) {
   for (const ImageFile& image : images)
     if (image::is_display_format(image.format) && bits > image::max_bits(image.format))

@@ -31,10 +31,11 @@ struct ImageFile {
   ImageFile(std::filesystem::path file) : path(std::move(file)), format(image::format_of(path)) {}
 };
 
-/// The formats of several files.
-///
-/// Errors     those of ImageFile
-std::vector<ImageFile> image_files(const std::vector<std::filesystem::path>& files);
+/// A file that a job writes, and its role.
+struct OutputFile {
+  std::filesystem::path path;
+  std::string role;  ///< "-o", "--stats", "checkpoint"
+};
 
 /// Checks that every display format among these supports `bits` per channel; 0 always passes.
 ///

@@ -141,7 +141,7 @@ void write_picture(const Picture& picture, const std::vector<std::filesystem::pa
                    const display::Settings& display, bool as_float, const std::string& compression, bool multipart,
                    bool reproducible) {
   job::Outputs outputs;
-  outputs.images = job::image_files(files);
+  outputs.images.assign(files.begin(), files.end());
   outputs.display = display;
   outputs.bits = bits;
   outputs.exr.as_float = as_float;

@@ -144,7 +144,7 @@ view::Subject make_film(const FilmFile& to, const std::string& data, const std::
   view::Subject subject = cli::data_subject(data, words, resources, open, &to.settings);
   job::Batch batch;
   batch.job = subject.job;
-  batch.job.outputs.images = job::image_files({film.frame_pattern()});
+  batch.job.outputs.images = {film.frame_pattern()};
   batch.job.skip_existing = true;  // frames of a stopped call
   batch.job.hooks = hooks;
   batch.scenes = {subject.job.scene.file};

@@ -285,7 +285,7 @@ http::Response Site::picture(const std::string& extension) const {
   const base::TempDir folder;
   const std::filesystem::path file = folder.path() / ("picture" + extension);
   job::Outputs outputs;
-  outputs.images = job::image_files({file});
+  outputs.images = {file};
   job::write_rendering(*rendering, outputs);
   std::ifstream in(file, std::ios::binary);
   std::string bytes((std::istreambuf_iterator<char>(in)), std::istreambuf_iterator<char>());

@@ -277,7 +277,7 @@ TEST(JobMatteManifest, LargeMattesOfExrFilesHaveManifestFiles) {
   large.layer = "CryptoObject";
   large.things.resize(kMaxNamesInHeader + 1);
   Outputs outputs;
-  outputs.images = image_files({"a/shot.exr", "shot.png", "b.exr"});
+  outputs.images = {{"a/shot.exr"}, {"shot.png"}, {"b.exr"}};
   const std::vector<std::filesystem::path> files = manifest_files({small, large}, outputs);
   EXPECT_EQ(files, (std::vector<std::filesystem::path>{"a/shot.CryptoObject.json", "b.CryptoObject.json"}));
   EXPECT_EQ(possible_manifest_files(outputs),

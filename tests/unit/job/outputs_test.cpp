@@ -19,7 +19,7 @@ namespace {
 /// The error message for these files; empty: none.
 std::string verdict(const std::vector<std::filesystem::path>& pictures, int bits = 0) {
   try {
-    check_bits(image_files(pictures), bits);
+    check_bits({pictures.begin(), pictures.end()}, bits);
   } catch (const base::Error& error) {
     EXPECT_EQ(error.kind(), base::ErrorKind::kUsage);
     return error.what();
