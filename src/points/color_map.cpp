@@ -11,6 +11,7 @@
 #include "base/error.h"
 #include "base/input_file.h"
 #include "base/text.h"
+#include "data/table.h"
 #include "data/text_lines.h"
 
 namespace orrery::points {

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
+#include <array>
 #include <memory>
 #include <string>
 
@@ -6,6 +7,7 @@
 
 #include "data/columns.h"
 #include "data/data_file.h"
+#include "points/load_points.h"
 #include "points/rows.h"
 #include "points/sources.h"
 #include "scene/limits.h"
