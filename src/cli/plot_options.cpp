@@ -136,7 +136,7 @@ void DataArguments::add_to(Command& command, plot::DataOptions& data, const std:
                   kind + ": LAMMPS, XYZ, PDB, mmCIF, PLY, CSV, NPY, NPZ, LAS, GSD, HDF5, VTK")
       ->required();
   const OptionGroup group(command, kDataOptions);
-  scene::Points& points = data.points;
+  scene::PointsKeys& points = data.points;
   command.add_option("--frame", frame, "N", "Frame of the file, from 1; default: 1")
       ->check(whole_number(1, 2'000'000'000));
   command
@@ -192,7 +192,7 @@ void DataArguments::read(plot::DataOptions& data) const {
   data.all_frames = frames == "all";
   if (!frames.empty() && !data.all_frames) data.frames = base::parse_frames(frames);
   data.has_map = map->count() > 0;
-  scene::Points& points = data.points;
+  scene::PointsKeys& points = data.points;
   if (!frame.empty()) points.frame = integer_of(frame);
   if (!component.empty()) points.component = integer_of(component);
   if (!radius.empty()) read_radius(radius, points.radius);

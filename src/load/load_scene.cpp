@@ -154,8 +154,6 @@ class SceneLoader {
 
   ReadResult read_with_data() {
     load_data();
-    reader_.add(scene::validate(scene_));
-    find_coincident();
     return reader_.finish();
   }
 
@@ -166,8 +164,6 @@ class SceneLoader {
     }
     compare();
     load_data();
-    reader_.add(scene::validate(scene_));
-    find_coincident();
     if (reader_.is_read("color.")) load_images();
     out_.read = reader_.finish();
     out_.choice = check_colors_.take();
@@ -213,14 +209,20 @@ class SceneLoader {
     return out;
   }
 
-  /// Reads the data files, or takes what was determined when they were read.
+  /// Reads the data files, or takes what was determined when they were read, and checks the scene with its data.
   void load_data() {
-    if (!has_new_data()) {
+    if (has_new_data()) {
+      read_data();
+    } else {
       for (std::size_t i = 0; i < scene_.points.size(); ++i) take_loaded(i);
       out_.data_warnings = std::move(previous_->data_warnings);
       reader_.add(out_.data_warnings);
-      return;
     }
+    reader_.add(scene::validate(scene_));
+    find_coincident();
+  }
+
+  void read_data() {
     const std::uint64_t limit =
         request_.memory_limit > 0 ? request_.memory_limit : base::available_memory().value_or(0);
     std::uint64_t used = 0;
@@ -248,17 +250,9 @@ class SceneLoader {
 
   /// Takes what is known of a points table besides its spheres.
   void take_loaded(std::size_t index) {
-    scene::Points &from = previous_->read.scene.points[index], &to = scene_.points[index];
-    to.palette = std::move(previous_->palettes[index]);
-    to.palette_rec709 = from.palette_rec709;
-    to.color_range = from.color_range;
-    to.color_names = std::move(from.color_names);
-    to.objects = std::move(from.objects);
-    to.object_names = std::move(from.object_names);
-    to.unused = std::move(from.unused);
-    to.step = from.step;
-    to.placed_labels = std::move(from.placed_labels);
-    to.spheres_are_rows = from.spheres_are_rows;
+    scene::PointsFindings& known = scene_.points[index];
+    known = std::move(previous_->read.scene.points[index]);
+    known.palette = std::move(previous_->palettes[index]);
   }
 
   void find_coincident() {

@@ -185,7 +185,7 @@ void add_problem(ReadState& state, const toml::table& root, const std::string& f
 void read_points(ReadState& state, const toml::table& root, const std::filesystem::path& folder,
                  MaterialNames& materials, scene::Scene& scene) {
   for_each_table(state, root, "points", [&](const toml::table& table, const std::string& name) {
-    scene::Points& points = scene.points.emplace_back();
+    scene::PointsKeys& points = scene.points.emplace_back();
     read_keys(state, table, name, scene::points_keys(), {"material", "bonds.material"}, points);
     points.material = materials.of(table, name);
     if (const toml::node* const bonds = table.get("bonds"); bonds != nullptr && bonds->is_table())

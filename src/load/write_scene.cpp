@@ -178,7 +178,7 @@ std::string scene_text(const scene::Scene& scene, const std::string& comment) {
   };
   for (const scene::Rod& rod : scene.rods) add_rods("[[rod]]", texts_of(scene::rod_keys(), rod, {}), rod.materials);
   add_tracks(out, scene);
-  for (const scene::Points& points : scene.points) {
+  for (const scene::PointsKeys& points : scene.points) {
     KeyTexts keys = texts_of(scene::points_keys(), points, {});
     if (points.bonds.material) keys.emplace_back("bonds.material", name_text(*points.bonds.material));
     add("[[points]]", keys, points.material);

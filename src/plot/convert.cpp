@@ -217,7 +217,7 @@ class Converter {
 
   const ConvertOptions& options_;
   DataFrames data_;
-  scene::Points keys_;
+  scene::PointsKeys keys_;
   bool has_radius_ = false;
 };
 

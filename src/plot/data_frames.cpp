@@ -89,7 +89,7 @@ std::filesystem::path DataFrames::file_of(int frame) const {
   return is_sequence_ ? std::filesystem::path(base::with_frame(options_.file.string(), frame)) : options_.file;
 }
 
-LoadedFrame DataFrames::load(int frame, const scene::Points& keys, points::SourceRows* source,
+LoadedFrame DataFrames::load(int frame, const scene::PointsKeys& keys, points::SourceRows* source,
                              const std::function<void(double)>& on_value) const {
   points::LoadRequest request;
   request.file = file_of(frame);
@@ -100,7 +100,7 @@ LoadedFrame DataFrames::load(int frame, const scene::Points& keys, points::Sourc
   request.source = source;
   request.on_value = on_value;
   request.open = open_;
-  LoadedFrame out{keys, {}};
+  LoadedFrame out{{keys, {}, {}}, {}};
   out.points.is_sequence = is_sequence_;
   if (keys.file.empty()) out.points.file = request.file;
   std::vector<base::Diagnostic> errors;
@@ -125,8 +125,8 @@ std::vector<int> DataFrames::distinct() const {
 namespace {
 
 /// Keys that read all particles, whatever is selected.
-scene::Points everything(const scene::Points& keys) {
-  scene::Points out;
+scene::PointsKeys everything(const scene::PointsKeys& keys) {
+  scene::PointsKeys out;
   out.file = keys.file;
   out.component = keys.component;
   out.material_column = keys.material_column;
@@ -137,8 +137,8 @@ scene::Points everything(const scene::Points& keys) {
 
 }  // namespace
 
-double DataFrames::spacing(const scene::Points& keys) const {
-  const scene::Points all_particles = everything(keys);
+double DataFrames::spacing(const scene::PointsKeys& keys) const {
+  const scene::PointsKeys all_particles = everything(keys);
   const auto of_frame = [&](int frame) {
     return points::median_neighbor_distance(load(frame, all_particles).points.centers);
   };
@@ -154,8 +154,8 @@ double DataFrames::spacing(const scene::Points& keys) const {
   return distance;
 }
 
-bool DataFrames::has_one_element(const scene::Points& keys) const {
-  scene::Points all_particles = everything(keys);
+bool DataFrames::has_one_element(const scene::PointsKeys& keys) const {
+  scene::PointsKeys all_particles = everything(keys);
   all_particles.color.element = "jmol";
   return load(described_, all_particles).points.color_names.size() == 1;
 }

@@ -22,7 +22,7 @@ struct DataOptions {
   std::filesystem::path file;  ///< data file, may contain a frame pattern
   std::vector<int> frames;     ///< empty: one frame
   bool all_frames = false;     ///< all frames of the file
-  scene::Points points;        ///< keys that the user has set; `file` and the spheres are not used
+  scene::PointsKeys points;    ///< that the user has set; `file` is not used
   std::string color_by;        ///< "element", "type", "rgb", "none" or a column; empty: not set
   bool has_map = false;        ///< the user set `points.color.map`
   RangeChoice range;           ///< of the colour map, where `points.color.range` is not set
@@ -74,7 +74,7 @@ class DataFrames {
   /// `keys`     the scene's keys: what to read, and how
   /// `source`, `on_value`   see points::LoadRequest
   /// Errors     base::Error: those of points::load_points(); kBadData with its errors
-  LoadedFrame load(int frame, const scene::Points& keys, points::SourceRows* source = nullptr,
+  LoadedFrame load(int frame, const scene::PointsKeys& keys, points::SourceRows* source = nullptr,
                    const std::function<void(double)>& on_value = {}) const;
 
   /// The median distance between neighbours in the first frame in which particles have neighbours; 0: in none. It
@@ -82,11 +82,11 @@ class DataFrames {
   /// in one size. Of a sequence of files, the frames to use are measured.
   ///
   /// `keys`     the scene's keys
-  double spacing(const scene::Points& keys) const;
+  double spacing(const scene::PointsKeys& keys) const;
   /// Whether all particles of the first frame are of one element, as those of a trace of C-alpha atoms.
   ///
   /// Errors     as load()
-  bool has_one_element(const scene::Points& keys) const;
+  bool has_one_element(const scene::PointsKeys& keys) const;
 
  private:
   void require_frames() const;

@@ -79,7 +79,10 @@ class PlotMaker {
         width_(side_of(options.overrides, "image.width", 1920)),
         height_(side_of(options.overrides, "image.height", 1080)),
         vfov_(vfov_of(options)),
-        is_turntable_(options.overrides.number("animation.turntable").value_or(0) != 0) {
+        is_turntable_(options.overrides.number("animation.turntable").value_or(0) != 0),
+        up_name_(options.up.empty() ? (info_.z_up ? "z" : "y") : options.up),
+        up_(axis_of(up_name_)),
+        guides_(up_) {
     const std::filesystem::path folder = options.scene_file.parent_path();
     out_.points = options.points;
     out_.points.material_column = "";  // the scene of a plot has one material
@@ -88,7 +91,7 @@ class PlotMaker {
     if (std::string& map = out_.points.color.map; options_.has_map && map.find_first_of("./") != std::string::npos)
       map = std::filesystem::proximate(map, folder.empty() ? "." : folder).string();
     out_.frames = data_.numbers();
-    const scene::Points& points = out_.points;
+    const scene::PointsKeys& points = out_.points;
     for (const std::string& text :
          {points.file.string(), options.color_by, points.color.column, points.color.map, points.radius.column,
           points.opacity.column, points.select, points.assembly, options.center})
@@ -105,70 +108,39 @@ class PlotMaker {
     if (vfov_ && options_.annotation.scale_bar)
       base::refuse(
           "--scale-bar: in a perspective image, the length of an object depends on its distance; omit --perspective");
-    const int frame = data_.described_frame();
-    const std::string which = frame > 1 ? fmt::format(" in frame {}", frame) : "";
-    chose(data_.format(), fmt::format("{} particles{}", info_.rows, which));
-    choose_frame();
-    for (const data::ColumnInfo& column : info_.columns) out_.columns.push_back(column.name);
-    out_.frame_count = data_.frame_count();
-    // Determining the radius from the spacing requires reading the file, so the colour options are checked first.
-    const std::vector<std::string> color_choices = choose_color();
-    choose_radius();
-    choose_bonds();
-    choose_arrows();
-    out_.choices.insert(out_.choices.end(), color_choices.begin(), color_choices.end());
-    const std::string up_name = options_.up.empty() ? (info_.z_up ? "z" : "y") : options_.up;
+    describe_data();
+    choose_spheres();
     if (options_.up.empty())
-      chose("up " + up_name, info_.z_up ? "customary for simulations and scans" : "customary for molecules");
-    const math::Vec3d up = axis_of(up_name);
-    const ViewAxes axes = view_axes(options_.look_from, up_name);
+      chose("up " + up_name_, info_.z_up ? "customary for simulations and scans" : "customary for molecules");
+    const ViewAxes axes = view_axes(options_.look_from, up_name_);
     for (const auto& plane : options_.slices) slice(plane, axes, out_.points);
     // A camera that looks along the up axis orbits around the vertical of its image.
-    const bool is_vertical = math::length(math::cross(up, axes.back)) < kSmallestSine;
-    const math::Vec3d pole = is_turntable_ && !is_vertical ? up : axes.up;
+    const bool is_vertical = math::length(math::cross(up_, axes.back)) < kSmallestSine;
+    const math::Vec3d pole = is_turntable_ && !is_vertical ? up_ : axes.up;
     ViewExtent extent(is_turntable_ ? turned(axes, pole) : axes);
-    guides_.emplace(up);
     visit_frames(extent);
     if (extent.is_empty()) report_empty();
     add_guides(extent);
     const std::optional<math::Vec3d> target = target_of(axes);
     if (is_turntable_ && !extent.is_empty()) extent = orbit(axes, target.value_or(extent.center()), pole);
-    const double aspect = static_cast<double>(width_) / height_;
-    const auto fitted = [&](const std::vector<Reserved>& reserved) {
-      return vfov_ ? extent.perspective_camera(aspect, *vfov_, reserved) : extent.camera(aspect, reserved);
-    };
-    scene::Scene scene;
-    scene.image.width = width_;
-    scene.image.height = height_;
-    scene.camera = fitted({});
-    scene.camera = fitted(reserved_by_annotation(scene.camera));
-    scene::Camera& camera = scene.camera;
+    scene::Camera camera = fitted_to(extent);
     camera.up = pole;
     if (target) look_at(*target, axes, camera);
     magnify(camera, options_.zoom);
-    chose(fmt::format("view {}, {}", options_.look_from,
-                      vfov_ ? fmt::format("vertical field of view {}", number_text(rounded(camera.vfov)))
-                            : number_text(rounded(*camera.width)) + " wide"),
-          fmt::format("fitted to the spheres{}{}{}", out_.frames.size() > 1 ? " of all frames" : "",
-                      is_turntable_ ? " and the whole orbit" : "",
-                      options_.zoom == 1 ? "" : ", times " + number_text(options_.zoom)));
+    report_view(camera);
     choose_display_view();
+    scene::Scene scene;
+    scene.image.width = width_;
+    scene.image.height = height_;
+    scene.camera = camera;
     scene.annotation = annotation_of(camera);
     if (options_.annotation.scale_bar == 0)
       chose("scale bar " + number_text(*scene.annotation.scale_bar),
             "in units of the file; --scale-bar 'LENGTH UNIT' changes it");
     scene.color.view = out_.view;
-    scene.points = {out_.points};
-    scene.rods = guides_->rods();
-    Stage stage{axes, extent.center(), extent.radius(), {}};
-    if (options_.ground && !extent.is_empty()) {
-      stage.ground = ground_below(guides_->lowest(), up, extent);
-      if (hides_view(*stage.ground, camera, aspect)) {
-        stage.ground.reset();
-        chose("no ground",
-              fmt::format("it would hide the spheres from {}; look from further above", options_.look_from));
-      }
-    }
+    scene.points.push_back({out_.points, {}, {}});
+    scene.rods = guides_.rods();
+    const Stage stage{axes, extent.center(), extent.radius(), choose_ground(extent, camera)};
     if (!options_.style) chose("style studio", "a key light from the upper left, and white light from all directions");
     if (!options_.overrides.sets("image.width") && !options_.overrides.sets("image.height"))
       chose(fmt::format("size {} x {}", width_, height_), "--width and --height change it");
@@ -192,6 +164,44 @@ class PlotMaker {
 
   void chose(const std::string& what, const std::string& why) {
     out_.choices.push_back(fmt::format("{}: {}", what, why));
+  }
+
+  /// Image width divided by its height.
+  double aspect() const { return static_cast<double>(width_) / height_; }
+
+  void describe_data() {
+    const int frame = data_.described_frame();
+    const std::string which = frame > 1 ? fmt::format(" in frame {}", frame) : "";
+    chose(data_.format(), fmt::format("{} particles{}", info_.rows, which));
+    choose_frame();
+    for (const data::ColumnInfo& column : info_.columns) out_.columns.push_back(column.name);
+    out_.frame_count = data_.frame_count();
+  }
+
+  void choose_spheres() {
+    // Determining the radius from the spacing requires reading the file, so the colour options are checked first.
+    const std::vector<std::string> color_choices = choose_color();
+    choose_radius();
+    choose_bonds();
+    choose_arrows();
+    out_.choices.insert(out_.choices.end(), color_choices.begin(), color_choices.end());
+  }
+
+  void report_view(const scene::Camera& camera) {
+    chose(fmt::format("view {}, {}", options_.look_from,
+                      vfov_ ? fmt::format("vertical field of view {}", number_text(rounded(camera.vfov)))
+                            : number_text(rounded(*camera.width)) + " wide"),
+          fmt::format("fitted to the spheres{}{}{}", out_.frames.size() > 1 ? " of all frames" : "",
+                      is_turntable_ ? " and the whole orbit" : "",
+                      options_.zoom == 1 ? "" : ", times " + number_text(options_.zoom)));
+  }
+
+  std::optional<Ground> choose_ground(const ViewExtent& extent, const scene::Camera& camera) {
+    if (!options_.ground || extent.is_empty()) return {};
+    const Ground out = ground_below(guides_.lowest(), up_, extent);
+    if (!hides_view(out, camera, aspect())) return out;
+    chose("no ground", fmt::format("it would hide the spheres from {}; look from further above", options_.look_from));
+    return {};
   }
 
   /// A still image of a file with several frames: which one it shows.
@@ -325,7 +335,7 @@ class PlotMaker {
   /// The number of particles that the first frame shows.
   std::uint64_t shown_count() const {
     if (selection().empty()) return info_.rows;
-    scene::Points keys = out_.points;
+    scene::PointsKeys keys = out_.points;
     keys.radius = {};
     keys.radius.value = 1;  // any: the radius is chosen later
     return data_.load(data_.described_frame(), keys).points.particle_count();
@@ -385,6 +395,14 @@ class PlotMaker {
     return out;
   }
 
+  /// The camera that sees all spheres beside the annotation.
+  scene::Camera fitted_to(const ViewExtent& extent) const {
+    const auto camera = [&](const std::vector<Reserved>& reserved) {
+      return vfov_ ? extent.perspective_camera(aspect(), *vfov_, reserved) : extent.camera(aspect(), reserved);
+    };
+    return camera(reserved_by_annotation(camera({})));
+  }
+
   /// What text and bars take from the image that a camera sees.
   std::vector<Reserved> reserved_by_annotation(const scene::Camera& camera) const {
     constexpr double kGap = 0.01;  // between annotation and spheres, in heights of the image
@@ -436,7 +454,7 @@ class PlotMaker {
   /// The middle of the particles that --center selects, in all frames; none without it.
   std::optional<math::Vec3d> target_of(const ViewAxes& axes) const {
     if (options_.center.empty()) return {};
-    scene::Points selected = out_.points;
+    scene::PointsKeys selected = out_.points;
     selected.select =
         all_of(selected.select.empty() ? std::vector{options_.center} : std::vector{selected.select, options_.center});
     ViewExtent extent(axes);
@@ -464,7 +482,7 @@ class PlotMaker {
       bonds_from_ = points.bonds_from;
       step_ = points.step;
       extent.add(points);
-      guides_->surround(points);
+      guides_.surround(points);
       if (points.centers.empty()) continue;
       out_.legend.add(points);
     }
@@ -516,21 +534,21 @@ class PlotMaker {
       if (!info_.box)
         throw base::Error(base::ErrorKind::kBadData,
                           fmt::format("--box: {} has no simulation box", options_.file.string()));
-      guides_->add_box(*info_.box, options_.points.replicate, extent);
+      guides_.add_box(*info_.box, options_.points.replicate, extent);
       if (out_.frames.size() > 1) chose("box", fmt::format("that of frame {}", data_.described_frame()));
     }
     if (options_.axes && !extent.is_empty()) {
-      guides_->add_axes(extent.radius());
+      guides_.add_axes(extent.radius());
       chose("axes", "x red, y green, z blue");
     }
-    extent.add(guides_->ends());
+    extent.add(guides_.ends());
   }
 
   /// The space that the spheres of all frames pass through on the orbit of the camera.
   ViewExtent orbit(const ViewAxes& axes, const math::Vec3d& pivot, const math::Vec3d& pole) const {
     ViewExtent out(axes);
     for (const int frame : data_.distinct()) out.add_orbits(load(frame), pivot, pole);
-    out.add_orbits(guides_->ends(), pivot, pole);
+    out.add_orbits(guides_.ends(), pivot, pole);
     return out;
   }
 
@@ -540,9 +558,11 @@ class PlotMaker {
   int width_, height_;          ///< px
   std::optional<double> vfov_;  ///< degrees: a perspective camera; otherwise orthographic
   bool is_turntable_;           ///< the camera orbits around the up axis
-  std::optional<Guides> guides_;
-  std::string bonds_from_;      ///< see scene::Points
-  std::optional<double> step_;  ///< see scene::Points
+  std::string up_name_;         ///< "x", "y" or "z"
+  math::Vec3d up_;
+  Guides guides_;
+  std::string bonds_from_;      ///< see scene::PointsFindings
+  std::optional<double> step_;  ///< see scene::PointsFindings
   PlotScene out_;
 };
 

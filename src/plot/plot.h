@@ -81,7 +81,7 @@ struct PlotScene {
   std::vector<std::string> choices;  ///< "radius 0.53: half the median distance to the nearest neighbour"
   std::vector<std::string> warnings;
   std::vector<int> frames;  ///< frames to render; empty: one still image
-  scene::Points points;     ///< keys of the scene's points
+  scene::PointsKeys points;
   annotation::LegendColors legend;
   std::string view;                  ///< view of the display
   std::vector<std::string> columns;  ///< columns of the data that can be colours

@@ -88,7 +88,7 @@ ViewAxes view_axes(const std::string& look_from, const std::string& up) {
   return out;
 }
 
-void slice(std::pair<int, double> plane, const ViewAxes& axes, scene::Points& points) {
+void slice(std::pair<int, double> plane, const ViewAxes& axes, scene::PointsKeys& points) {
   const auto [axis, place] = plane;
   const double back[3] = {axes.back.x, axes.back.y, axes.back.z};
   std::optional<scene::Interval>& clip = points.clip[static_cast<std::size_t>(axis)];

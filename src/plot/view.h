@@ -26,7 +26,7 @@ struct ViewAxes {
 ViewAxes view_axes(const std::string& look_from, const std::string& up);
 
 /// Removes the spheres on the camera's side of a plane, given by axis 0, 1 or 2, and position: narrows their clip.
-void slice(std::pair<int, double> plane, const ViewAxes& axes, scene::Points& points);
+void slice(std::pair<int, double> plane, const ViewAxes& axes, scene::PointsKeys& points);
 
 /// A rectangle of an image that spheres shall not reach. Spheres around the centre of the image do not reach it if they
 /// extend to less than `beside` to each side, or to less than `above` upwards and downwards.

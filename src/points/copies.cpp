@@ -158,7 +158,7 @@ void unwrap(const data::Table& table, const Rows& rows, const data::FrameInfo& i
                     [&](std::size_t i, double n) { centers.set(i, centers[i] + info.box->edges[axis] * n); });
 }
 
-std::vector<Copy> copies_of(const data::FrameInfo& info, const scene::Points& points, KeyFaults& faults) {
+std::vector<Copy> copies_of(const data::FrameInfo& info, const scene::PointsKeys& points, KeyFaults& faults) {
   std::vector<Copy> out;
   if (!points.assembly.empty()) {
     if (const data::Assembly* assembly = find_assembly(info, points.assembly, faults)) {
@@ -203,7 +203,7 @@ std::vector<Copy> outermost(const std::vector<Copy>& copies, const data::Box& bo
   return replicated(copies, whole, {2, 2, 2});
 }
 
-bool are_rounded(const std::vector<Copy>& copies, const scene::Points& points, const scene::PointArray& centers,
+bool are_rounded(const std::vector<Copy>& copies, const scene::PointsKeys& points, const scene::PointArray& centers,
                  const scene::NumberArray& radii) {
   if (points.assembly.empty() || leaves_unchanged(copies) || centers.empty()) return false;
   double smallest = std::abs(radii[0]);

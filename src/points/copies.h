@@ -29,7 +29,7 @@ struct Copy {
 
 /// The copies of an assembly; without an assembly, a single identity copy. Reports an assembly that the file does not
 /// define or that has no transforms, and replication without a box.
-std::vector<Copy> copies_of(const data::FrameInfo& info, const scene::Points& points, KeyFaults& faults);
+std::vector<Copy> copies_of(const data::FrameInfo& info, const scene::PointsKeys& points, KeyFaults& faults);
 
 /// Repeats the copies in each periodic image of the box, of which there are `counts` along each edge.
 ///
@@ -42,7 +42,7 @@ std::vector<Copy> outermost(const std::vector<Copy>& copies, const data::Box& bo
 /// Whether make_copies() rounds the centres to single precision, in which they take half the memory: those of an
 /// assembly, unless its only transform changes nothing, or the rounding could move a sphere by more than a thousandth
 /// of the smallest radius. `copies` may be only the outermost ones.
-bool are_rounded(const std::vector<Copy>& copies, const scene::Points& points, const scene::PointArray& centers,
+bool are_rounded(const std::vector<Copy>& copies, const scene::PointsKeys& points, const scene::PointArray& centers,
                  const scene::NumberArray& radii);
 
 /// The number of spheres that make_copies() creates from `count` spheres; an upper bound if a copy lists a chain twice.

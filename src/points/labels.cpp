@@ -22,7 +22,7 @@ std::pair<std::string, std::string> parse_label(const std::string& text) {
 
 }  // namespace
 
-std::vector<LabelRule> label_rules(const data::FrameInfo& info, const scene::Points& points, KeyFaults& faults) {
+std::vector<LabelRule> label_rules(const data::FrameInfo& info, const scene::PointsKeys& points, KeyFaults& faults) {
   std::vector<LabelRule> out;
   for (std::size_t i = 0; i < points.labels.size(); ++i) {
     const std::string key = fmt::format(".labels[{}]", i);
@@ -38,7 +38,7 @@ std::vector<LabelRule> label_rules(const data::FrameInfo& info, const scene::Poi
 
 std::vector<scene::Label> placed_labels(const data::Table& table, const Rows& rows, const scene::PointArray& centers,
                                         const std::vector<LabelRule>& rules, const Copy& first,
-                                        const scene::Points& points, KeyFaults& faults) {
+                                        const scene::PointsKeys& points, KeyFaults& faults) {
   std::vector<scene::Label> out;
   const data::Transform placement = transform_of(points.transform);
   for (std::size_t r = 0; r < rules.size(); ++r) {

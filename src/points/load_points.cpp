@@ -31,7 +31,7 @@ using data::Vec3d;
 /// Rows are numbered by 32 bits.
 constexpr std::uint64_t kMaxRows = std::numeric_limits<std::uint32_t>::max();
 
-std::shared_ptr<data::DataFile> open(const LoadRequest& request, const scene::Points& points) {
+std::shared_ptr<data::DataFile> open(const LoadRequest& request, const scene::PointsKeys& points) {
   data::OpenOptions options;
   options.component = points.component;
   options.limit_memory(request.memory_limit);
@@ -39,12 +39,12 @@ std::shared_ptr<data::DataFile> open(const LoadRequest& request, const scene::Po
 }
 
 /// The requested frame, from 1; before the file is opened.
-int requested_frame(const LoadRequest& request, const scene::Points& points) {
+int requested_frame(const LoadRequest& request, const scene::PointsKeys& points) {
   return points.frame ? *points.frame : points.is_sequence ? 1 : request.frame;
 }
 
 /// The frame to read, from 1. A file of a single frame is the same in all rendered frames.
-int frame_in(data::DataFile& file, const LoadRequest& request, const scene::Points& points) {
+int frame_in(data::DataFile& file, const LoadRequest& request, const scene::PointsKeys& points) {
   const int frame = requested_frame(request, points);
   if (frame == 1 || points.frame) return frame;  // without counting: that may read the whole file
   return file.frame_count() == 1 ? 1 : frame;
@@ -66,18 +66,7 @@ class Loader {
       plan();
       if (!faults_.has_errors()) load(*frame);
     }
-    if (faults_.has_errors()) {
-      points_.centers.clear();
-      points_.radii.clear();
-      points_.materials.clear();
-      points_.colors.clear();
-      points_.opacities.clear();
-      points_.objects.clear();
-      points_.palette.clear();
-      points_.sphere_vectors.clear();
-      points_.bond_pairs.clear();
-      points_.bond_stubs.clear();
-    }
+    if (faults_.has_errors()) points_.release_data();
     return faults_.take();
   }
 
@@ -378,7 +367,7 @@ std::vector<scene::SceneDiagnostic> load_points(const LoadRequest& request, scen
   return Loader(request, points).run();
 }
 
-int chosen_frame(const LoadRequest& request, const scene::Points& points) {
+int chosen_frame(const LoadRequest& request, const scene::PointsKeys& points) {
   const int frame = requested_frame(request, points);
   return frame == 1 || points.frame ? frame : frame_in(*open(request, points), request, points);
 }

@@ -61,7 +61,7 @@ std::vector<scene::SceneDiagnostic> load_rods(const LoadRequest& request, scene:
 /// Result     beyond the last frame if the file does not have the requested one
 /// Errors     those of data::open
 /// Cost       opens the file if it may have several frames; counting them may read all of it
-int chosen_frame(const LoadRequest& request, const scene::Points& points);
+int chosen_frame(const LoadRequest& request, const scene::PointsKeys& points);
 
 /// Returns a function that opens data files for several frames. It keeps the most recent files open, so that each frame
 /// is searched from the end of the previous one and compressed data are decompressed only once. A file that has changed

@@ -5,6 +5,8 @@
 #include <fmt/core.h>
 
 #include "base/error.h"
+#include "base/text.h"
+#include "data/text_lines.h"
 #include "points/sources.h"
 #include "scene/limits.h"
 #include "scene/validate.h"
@@ -61,7 +63,7 @@ OpacitySource opacity_source(const data::FrameInfo& info, const scene::PointsOpa
 }
 
 std::vector<float> opacities_of(const data::Table& table, const Rows& rows, const OpacitySource& source,
-                                const scene::Points& points, KeyFaults& faults) {
+                                const scene::PointsKeys& points, KeyFaults& faults) {
   const scene::PointsOpacity& opacity = points.opacity;
   std::vector<float> out(rows.size(), kOfMaterial);
   std::vector<std::uint8_t> has_rule(rows.size());

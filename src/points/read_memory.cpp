@@ -23,7 +23,7 @@ data::ColumnType type_of(const data::FrameInfo& info, const std::string& column)
   return known != nullptr ? known->type : data::ColumnType::kFloat64;
 }
 
-std::uint64_t bytes_per_sphere(const data::FrameInfo& info, const scene::Points& points, const RadiusSource& radius,
+std::uint64_t bytes_per_sphere(const data::FrameInfo& info, const scene::PointsKeys& points, const RadiusSource& radius,
                                bool are_rounded) {
   bool all_single = points.assembly.empty() && points.transform == scene::PointsTransform{} && !points.unwrap &&
                     points.replicate == math::Vec3d{1, 1, 1};

@@ -159,7 +159,7 @@ scene::PointArray points_of(const data::Table& table, const Rows& rows, const st
   return out;
 }
 
-std::string row_name(const scene::Points& points, std::size_t row) {
+std::string row_name(const scene::PointsKeys& points, std::size_t row) {
   return fmt::format("row {} of {}", row + 1, points.file.string());
 }
 

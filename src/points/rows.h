@@ -91,7 +91,7 @@ scene::PointArray points_of(const data::Table& table, const Rows& rows, const st
                             double scale = 1);
 
 /// "row 3 of melt.dump"
-std::string row_name(const scene::Points& points, std::size_t row);
+std::string row_name(const scene::PointsKeys& points, std::size_t row);
 
 /// Checks that a file has a column, and that it is numeric if `is_number`. If not, reports the available columns.
 bool require_column(const data::FrameInfo& info, const std::string& name, bool is_number, const std::string& part,

@@ -39,7 +39,7 @@ scene::NumberArray radii_of(const data::Table& table, const Rows& rows, const Ra
 ///
 /// `may_be_hollow`  accepts radii below 0
 /// Result           unchanged after an error
-void keep_valid(const scene::Points& points, bool may_be_hollow, Rows& rows, scene::PointArray& centers,
+void keep_valid(const scene::PointsKeys& points, bool may_be_hollow, Rows& rows, scene::PointArray& centers,
                 scene::NumberArray& radii, KeyFaults& faults);
 
 /// How the colours of a file's spheres are determined: one of the alternatives of scene::PointsColor.
@@ -121,7 +121,7 @@ OpacitySource opacity_source(const data::FrameInfo& info, const scene::PointsOpa
 /// Returns the opacities of the rows, as scene::Points::opacities, for a source that is set. Reports values of a column
 /// outside 0..1 in rows that match no rule.
 std::vector<float> opacities_of(const data::Table& table, const Rows& rows, const OpacitySource& source,
-                                const scene::Points& points, KeyFaults& faults);
+                                const scene::PointsKeys& points, KeyFaults& faults);
 
 /// A label of a points table, and the condition on the particles that it labels.
 struct LabelRule {
@@ -130,13 +130,13 @@ struct LabelRule {
 };
 
 /// Parses scene::Points::labels. Reports those that are not valid.
-std::vector<LabelRule> label_rules(const data::FrameInfo& info, const scene::Points& points, KeyFaults& faults);
+std::vector<LabelRule> label_rules(const data::FrameInfo& info, const scene::PointsKeys& points, KeyFaults& faults);
 
 /// Places each label at the middle of the rows that match, in the first copy of the particles. Reports labels that
 /// match none, and omits them.
 std::vector<scene::Label> placed_labels(const data::Table& table, const Rows& rows, const scene::PointArray& centers,
                                         const std::vector<LabelRule>& rules, const Copy& first,
-                                        const scene::Points& points, KeyFaults& faults);
+                                        const scene::PointsKeys& points, KeyFaults& faults);
 
 /// Memory that is needed to read the spheres of a data file.
 struct ReadMemory {
@@ -157,7 +157,7 @@ data::ColumnType type_of(const data::FrameInfo& info, const std::string& column)
 /// precision are stored as floats.
 ///
 /// `are_rounded`   whether make_copies() rounds the centres
-std::uint64_t bytes_per_sphere(const data::FrameInfo& info, const scene::Points& points, const RadiusSource& radius,
+std::uint64_t bytes_per_sphere(const data::FrameInfo& info, const scene::PointsKeys& points, const RadiusSource& radius,
                                bool are_rounded);
 
 /// Checks that there is enough memory to read the spheres.

@@ -19,7 +19,7 @@ using data::Vec3d;
 
 class Checks {
  public:
-  Checks(const scene::Points& points, bool may_be_hollow, const scene::PointArray& centers,
+  Checks(const scene::PointsKeys& points, bool may_be_hollow, const scene::PointArray& centers,
          const scene::NumberArray& radii, KeyFaults& faults)
       : points_(points), may_be_hollow_(may_be_hollow), centers_(centers), radii_(radii), faults_(faults) {}
 
@@ -81,7 +81,7 @@ class Checks {
     return math::is_finite(centers_[i]) && std::isfinite(radius) && (radius > 0 || (radius < 0 && may_be_hollow_));
   }
 
-  const scene::Points& points_;
+  const scene::PointsKeys& points_;
   const bool may_be_hollow_;
   const scene::PointArray& centers_;
   const scene::NumberArray& radii_;
@@ -104,7 +104,7 @@ Rows kept(const Rows& rows, const std::vector<std::uint32_t>& good, scene::Point
 
 }  // namespace
 
-void keep_valid(const scene::Points& points, bool may_be_hollow, Rows& rows, scene::PointArray& centers,
+void keep_valid(const scene::PointsKeys& points, bool may_be_hollow, Rows& rows, scene::PointArray& centers,
                 scene::NumberArray& radii, KeyFaults& faults) {
   Checks checks(points, may_be_hollow, centers, radii, faults);
   if (checks.are_good()) return;

@@ -78,7 +78,7 @@ void compare_rod_files(const RodFile& before, const RodFile& after, Parts& parts
   if (before.materials != after.materials) parts.add(Part::kAssignment);
 }
 
-void compare_points(const Points& before, const Points& after, Parts& parts) {
+void compare_points(const PointsKeys& before, const PointsKeys& after, Parts& parts) {
   compare(points_keys(), Part::kGeometry, before, after, parts);
   if (before.bonds.are_drawn != after.bonds.are_drawn) parts.add(Part::kGeometry);
   if (before.material != after.material || before.bonds.material != after.bonds.material) parts.add(Part::kAssignment);

@@ -18,6 +18,7 @@ struct Image;
 struct Interval;
 struct Points;
 struct PointsColor;
+struct PointsKeys;
 struct PointsRadius;
 struct PointsTransform;
 struct Render;

@@ -28,7 +28,7 @@ std::vector<NamedFile> named_files(const Scene& scene) {
   const auto add = [&](const auto&, const NamedFile& file) { out.push_back(file); };
   for (const Table& table : tables()) visit_files(table.keys, scene, add);
   for (const NamedTexture& t : textures(scene)) visit_files(keys_of(*t.texture, t.use), *t.texture, add);
-  for (const Points& points : scene.points) visit_files(points_keys(), points, add);
+  for (const PointsKeys& points : scene.points) visit_files(points_keys(), points, add);
   for (const RodFile& rods : scene.rod_files) visit_files(rod_file_keys(), rods, add);
   return out;
 }
@@ -39,7 +39,7 @@ void rename_files(Scene& scene, const std::function<std::string(const NamedFile&
   };
   for (const Table& table : tables()) rename_in(table.keys, scene);
   modify_textures(scene, [&](Texture& texture, TextureUse use) { rename_in(keys_of(texture, use), texture); });
-  for (Points& points : scene.points) rename_in(points_keys(), points);
+  for (PointsKeys& points : scene.points) rename_in(points_keys(), points);
   for (RodFile& rods : scene.rod_files) rename_in(rod_file_keys(), rods);
 }
 

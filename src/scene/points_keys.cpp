@@ -6,7 +6,7 @@
 namespace orrery::scene {
 namespace {
 
-using P = Points;
+using P = PointsKeys;
 
 constexpr Range kAnyValue{-kLargestValue, kLargestValue};
 constexpr int kMaxFrameOfFile = std::numeric_limits<int>::max();
@@ -172,8 +172,8 @@ std::vector<Key<P>> make_keys() {
 
 }  // namespace
 
-const std::vector<Key<Points>>& points_keys() {
-  static const std::vector<Key<Points>> keys = make_keys();
+const std::vector<Key<PointsKeys>>& points_keys() {
+  static const std::vector<Key<PointsKeys>> keys = make_keys();
   return keys;
 }
 

@@ -293,8 +293,8 @@ struct PointsTransform {
   bool operator==(const PointsTransform&) const = default;
 };
 
-/// Spheres of a points file, in flat arrays because there may be a hundred million. Filled by load::read_scene.
-struct Points {
+/// The keys of a [[points]] table.
+struct PointsKeys {
   std::filesystem::path file;    ///< as in the scene file, relative to it
   std::uint32_t material = 0;    ///< index into Scene::materials; used if the file has no materials
   std::string name = {};         ///< optional, for mattes: all spheres share it; default: the file name
@@ -317,52 +317,60 @@ struct Points {
   bool skip_bad = false;                             ///< skips rows with non-finite coordinates or radii
   std::vector<std::string> labels;                   ///< "CONDITION: TEXT", at the middle of the particles that match
   std::vector<std::string> cryptomatte;              ///< columns; each combination of their values is an object
+};
+
+/// The spheres of a points table, in flat arrays because there may be a hundred million, and the bonds between them.
+struct PointsSpheres {
   PointArray centers = {};
   NumberArray radii = {};                     ///< one per centre
-  std::vector<std::uint32_t> materials = {};  ///< one per centre; empty: `material` for all
+  std::vector<std::uint32_t> materials = {};  ///< one per centre; empty: PointsKeys::material for all
   std::vector<std::uint16_t> colors = {};     ///< one per centre, index into `palette`; empty: the material's colour
-  /// One per centre; below 0: that of the material. Empty: opacity.value, or that of the material, for all.
+  /// One per centre; below 0: that of the material. Empty: PointsOpacity::value, or that of the material, for all.
   std::vector<float> opacities = {};
-  std::vector<Vec3d> palette = {};  ///< colours that replace those of the material
-  std::size_t palette_rec709 = 0;   ///< leading colours that are linear Rec.709; the others are in Color::space
-  std::optional<Interval> color_range = {};  ///< range of the colour map, if there is one
-  std::vector<std::string> color_names =
-      {};                                   ///< names of the colours in `palette`, if they represent types or elements
-  std::vector<std::string> unused = {};     ///< unused columns of the file, such as colours
-  std::optional<double> step = {};          ///< time step of the frame, or its number in the file
-  std::vector<Label> placed_labels = {};    ///< those of `labels`
-  PointArray sphere_vectors = {};           ///< one per centre, while arrows are to be added
-  std::size_t arrow_count = 0;              ///< number of arrows; their shafts are the last of `bond_pairs`
-  std::size_t arrow_spheres = 0;            ///< number of spheres of their heads, after all others
-  double rms_vector = 0;                    ///< root mean square length of the vectors, times their scale
-  std::vector<std::uint32_t> objects = {};  ///< with `cryptomatte`: indices into `object_names`, of centres, then stubs
-  std::vector<std::string> object_names = {};  ///< ".A", appended to the name of the table
   std::vector<SphereBond> bond_pairs = {};
   std::vector<BondStub> bond_stubs = {};
-  std::string bonds_from = {};   ///< resolved PointsBonds::from; empty: bonds are not drawn
-  double bond_radius = 0;        ///< of the rods of all bonds, scene units
-  bool spheres_are_rows = true;  ///< sphere i is row i of the file: no selection, sorting, copying or clipping
+  PointArray sphere_vectors = {};  ///< one per centre, while arrows are to be added
 
-  /// Number of spheres without those of arrows.
-  std::size_t particle_count() const { return centers.size() - arrow_spheres; }
-  /// Number of rods of the bonds and arrows.
-  std::size_t bond_count() const { return bond_pairs.size() + bond_stubs.size(); }
   /// Bytes of the spheres and bonds.
   std::size_t bytes() const {
     return centers.bytes() + radii.bytes() + materials.size() * sizeof(materials[0]) +
            colors.size() * sizeof(colors[0]) + bond_pairs.size() * sizeof(bond_pairs[0]) +
-           bond_stubs.size() * sizeof(bond_stubs[0]) + opacities.size() * sizeof(opacities[0]) +
-           objects.size() * sizeof(objects[0]);
+           bond_stubs.size() * sizeof(bond_stubs[0]) + opacities.size() * sizeof(opacities[0]);
   }
-  /// Frees the memory of the spheres and bonds; keeps the keys, and the objects, which the mattes need.
-  void release_spheres() {
-    centers.clear();
-    radii.clear();
-    std::vector<std::uint32_t>().swap(materials);
-    std::vector<std::uint16_t>().swap(colors);
-    std::vector<SphereBond>().swap(bond_pairs);
-    std::vector<BondStub>().swap(bond_stubs);
-    std::vector<float>().swap(opacities);
+};
+
+/// What else the data of a points table determine: it is kept when the spheres are released.
+struct PointsFindings {
+  std::vector<Vec3d> palette = {};            ///< colours that replace those of the material
+  std::size_t palette_rec709 = 0;             ///< leading colours that are linear Rec.709; others are in Color::space
+  std::vector<std::string> color_names = {};  ///< of the colours in `palette`, if they represent types or elements
+  std::optional<Interval> color_range = {};   ///< range of the colour map, if there is one
+  std::vector<std::string> unused = {};       ///< unused columns of the file, such as colours
+  std::optional<double> step = {};            ///< time step of the frame, or its number in the file
+  std::vector<Label> placed_labels = {};      ///< those of PointsKeys::labels
+  std::size_t arrow_count = 0;                ///< number of arrows; their shafts are the last of `bond_pairs`
+  std::size_t arrow_spheres = 0;              ///< number of spheres of their heads, after all others
+  double rms_vector = 0;                      ///< root mean square length of the vectors, times their scale
+  std::vector<std::uint32_t> objects = {};  ///< with `cryptomatte`: indices into `object_names`, of centres, then stubs
+  std::vector<std::string> object_names = {};  ///< ".A", appended to the name of the table
+  std::string bonds_from = {};                 ///< resolved PointsBonds::from; empty: bonds are not drawn
+  double bond_radius = 0;                      ///< of the rods of all bonds, scene units
+  bool spheres_are_rows = true;  ///< sphere i is row i of the file: no selection, sorting, copying or clipping
+};
+
+/// A [[points]] table, with its data if they have been read, see points::load_points().
+struct Points : PointsKeys, PointsSpheres, PointsFindings {
+  /// Number of spheres without those of arrows.
+  std::size_t particle_count() const { return centers.size() - arrow_spheres; }
+  /// Number of rods of the bonds and arrows.
+  std::size_t bond_count() const { return bond_pairs.size() + bond_stubs.size(); }
+  std::size_t bytes() const { return PointsSpheres::bytes() + objects.size() * sizeof(objects[0]); }
+  /// Frees the memory of the spheres and bonds.
+  void release_spheres() { static_cast<PointsSpheres&>(*this) = {}; }
+  /// Keeps the keys alone.
+  void release_data() {
+    release_spheres();
+    static_cast<PointsFindings&>(*this) = {};
   }
 };
 

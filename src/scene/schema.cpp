@@ -222,7 +222,7 @@ Table annotation_table() {
        number("outline", {0, kWidestOutline},
               {"Width of the outlines of objects, drawn at discontinuities of the depth. 0: none. Drawn as at shutter "
                "open, without a lens",
-               "px", "16 rays per pixel"},
+               "px", "16 rays per pixel, 32 with translucent objects"},
               &Annotation::outline),
        file("font", kFontFile,
             {"Font of all texts: a name, or a file relative to the scene file. Default: DejaVu Sans"},

@@ -92,7 +92,7 @@ const std::vector<MaterialType>& material_types();
 
 /// Keys of [[sphere]] and [[points]], except `material`. They change the geometry, unless they say otherwise.
 const std::vector<Key<Sphere>>& sphere_keys();
-const std::vector<Key<Points>>& points_keys();
+const std::vector<Key<PointsKeys>>& points_keys();
 /// Keys of [[rod]] and [[rods]], except `material`.
 const std::vector<Key<Rod>>& rod_keys();
 const std::vector<Key<RodFile>>& rod_file_keys();

@@ -239,6 +239,18 @@ TEST_F(JobPreparedScene, TheAcceleratorOutlivesWhatDoesNotMoveSpheres) {
   EXPECT_FALSE((set({}), prepared.load({job_.scene, {}}), prepared.has_accelerator()));
 }
 
+TEST_F(JobPreparedScene, ArrowsAreKnownAfterAChangeOfTheCamera) {
+  PreparedScene prepared;
+  const auto arrows = [&](const char* setting) {
+    set({R"(points[0].vectors.columns=["x", "y", "z"])", setting});
+    prepared.load({job_.scene, {}});
+    prepared.compile(0);
+    return prepared.loaded().read.scene.points[0].arrow_count;
+  };
+  EXPECT_EQ(arrows("camera.vfov=40"), 8u) << "one of nine vectors is null";
+  EXPECT_EQ(arrows("camera.vfov=20"), 8u);
+}
+
 TEST_F(JobPreparedScene, ALargerImageMustFitIntoMemory) {
   const auto prepared = std::make_shared<PreparedScene>();
   Rendering rendering;

@@ -52,7 +52,7 @@ class RandomScene {
     }
     for (std::size_t i = below(4); i < 3; ++i) {
       scene::Points points;
-      fill(scene::points_keys(), points);
+      fill<scene::PointsKeys>(scene::points_keys(), points);
       points.file = word() + ".ply";
       points.material = static_cast<std::uint32_t>(below(s.materials.size()));
       if (below(2) == 0) points.bonds.material = static_cast<std::uint32_t>(below(s.materials.size()));
@@ -193,7 +193,7 @@ void expect_same(const scene::Scene& a, const scene::Scene& b) {
   }
   ASSERT_EQ(a.points.size(), b.points.size());
   for (std::size_t i = 0; i < a.points.size(); ++i) {
-    expect_same(scene::points_keys(), a.points[i], b.points[i]);
+    expect_same<scene::PointsKeys>(scene::points_keys(), a.points[i], b.points[i]);
     EXPECT_EQ(a.points[i].material, b.points[i].material);
   }
   ASSERT_EQ(a.tracks.size(), b.tracks.size());

@@ -118,7 +118,7 @@ std::string markdown() {
   out += fmt::format("{}\n{}\n### [[sphere]]\n\n{}", material_section(), texture_section(), header());
   for (const auto& key : sphere_keys()) out += row(key, Sphere{});
   out += fmt::format("{}\n### [[points]]\n\n{}", material_row(), header());
-  for (const auto& key : points_keys()) out += row(key, Points{});
+  for (const auto& key : points_keys()) out += row(key, PointsKeys{});
   out +=
       "| `bonds.material` | string | name of a `[material.NAME]`, not of type `dielectric` | - | as the spheres, half "
       "by "

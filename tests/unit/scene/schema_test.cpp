@@ -65,9 +65,9 @@ TEST(SceneSchema, EachKeySetsItsOwnMemberAndNoOther) {
 }
 
 TEST(SceneSchema, EachPointsKeySetsItsOwnMemberAndNoOther) {
-  const Points defaults;
+  const PointsKeys defaults;
   for (const auto& key : points_keys()) {
-    Points points;
+    PointsKeys points;
     key.set(points, key.type == ValueType::kBoolean ? Value(true) : other_value(key));
     for (const auto& other : points_keys())
       EXPECT_EQ(other.text(points) == other.text(defaults), &other != &key) << key.name << " and " << other.name;
