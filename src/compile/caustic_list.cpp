@@ -45,6 +45,12 @@ bool is_sampled(const SceneView& scene, std::size_t index) {
   return material.albedo[0] + material.albedo[1] + material.albedo[2] > 0;
 }
 
+/// Whether spheres of a sharp material may be the void of a hollow ball.
+bool is_void(const SceneView& scene, std::size_t index) {
+  const Material& material = scene.materials[index];
+  return material.kind == MaterialKind::kDielectric && material.eta[1] < 1 && !is_textured(scene, index);
+}
+
 bool is_visible(const SceneView& scene, std::size_t sphere) {
   return scene.opacity == nullptr || scene.opacity[sphere] > 0;
 }
@@ -52,24 +58,26 @@ bool is_visible(const SceneView& scene, std::size_t sphere) {
 /// Balls of sharp materials.
 struct SharpBalls {
   std::vector<std::uint32_t> sampled;  ///< sphere ids, ascending
+  std::vector<std::uint32_t> voids;    ///< clear glass of an index below 1, which may make others hollow
   std::uint64_t count = 0;             ///< with those that are not sampled
 };
 
 SharpBalls sharp_balls(const SceneView& scene) {
-  enum : std::uint8_t { kOther, kSharp, kSampled };
+  enum : std::uint8_t { kOther, kSharp, kSampled, kVoid };
   SharpBalls out;
   if (scene.sphere_count == 0) return out;
   std::uint32_t last = 0;
   for (std::size_t i = 0; i < scene.sphere_count; ++i) last = std::max(last, scene.sphere_materials[i]);
   std::vector<std::uint8_t> uses;
   for (std::size_t m = 0; m <= last; ++m)
-    uses.push_back(!is_sharp(scene, m) ? kOther : is_sampled(scene, m) ? kSampled : kSharp);
+    uses.push_back(!is_sharp(scene, m) ? kOther : is_sampled(scene, m) ? kSampled : is_void(scene, m) ? kVoid : kSharp);
   if (std::all_of(uses.begin(), uses.end(), [](std::uint8_t use) { return use == kOther; })) return out;
   for (std::uint32_t i = 0; i < scene.sphere_count; ++i) {
     const std::uint8_t use = uses[scene.sphere_materials[i]];
     if (use == kOther || !is_visible(scene, i)) continue;
     ++out.count;
     if (use == kSampled) out.sampled.push_back(i);
+    if (use == kVoid) out.voids.push_back(i);
   }
   return out;
 }
@@ -157,32 +165,51 @@ struct Irradiances {
   }
 };
 
-/// Appends a ball and its lights, unless it has none.
-void add_ball(const SceneView& scene, std::uint32_t id, const std::vector<Emitter>& emitters, bool has_sun,
-              const Irradiances& irradiance, CausticList& list) {
-  const Moving moves = moving(scene, id);
-  CausticBall ball;
-  ball.sphere = id;
-  ball.begin = static_cast<std::uint32_t>(list.lights.size());
+/// Appends the lights of a ball to `lights`, with the sum of their irradiances before each as `cumulative`.
+///
+/// Result     their sum
+double append_lights(const Irradiances& irradiance, const Moving& ball, const std::vector<Emitter>& emitters,
+                     bool has_sun, std::vector<CausticLight>& lights) {
   double sum = 0;
   const auto add = [&](std::uint32_t light, double value) {
     if (!(value > 0)) return;
     sum += value;
-    list.lights.push_back({light, sum, value});
+    lights.push_back({light, sum, value});
   };
-  for (const Emitter& emitter : emitters) add(emitter.sphere, irradiance.from_emitter(moves, emitter));
+  for (const Emitter& emitter : emitters) add(emitter.sphere, irradiance.from_emitter(ball, emitter));
   if (has_sun) add(kernel::kNoSphere, irradiance.from_sun());
-  ball.end = static_cast<std::uint32_t>(list.lights.size());
-  if (ball.begin == ball.end) return;
-  for (std::uint32_t i = ball.begin; i < ball.end; ++i) {
-    list.lights[i].cumulative /= sum;
-    list.lights[i].probability /= sum;
-  }
+  return sum;
+}
+
+/// A ball without its lights.
+CausticBall ball_of(const SceneView& scene, std::uint32_t id, const Moving& moves, double irradiance) {
+  CausticBall ball;
+  ball.sphere = id;
   const Vec3d half = moves.displacement / 2;
   math::set(ball.center, moves.center + half);
   ball.radius = std::max(moves.radius, moves.radius + moves.growth) + length(half);
-  ball.power = sum * scattered_part(scene, id) * ball.radius * ball.radius;
-  list.balls.push_back(ball);
+  ball.power = irradiance * scattered_part(scene, id) * ball.radius * ball.radius;
+  return ball;
+}
+
+/// The largest void that is concentric with a ball of glass and smaller at all times, and whose index is the reciprocal
+/// of the ball's; kNoSphere: there is none.
+std::uint32_t void_of(const SceneView& scene, std::uint32_t ball, const std::vector<std::uint32_t>& voids) {
+  constexpr double kSameIndex = 1e-9;  // indices are authored with fewer digits
+  const auto eta = [&](std::uint32_t id) { return scene.materials[scene.sphere_materials[id]].eta[1]; };
+  if (scene.materials[scene.sphere_materials[ball]].kind != MaterialKind::kDielectric) return kernel::kNoSphere;
+  const Moving outer = moving(scene, ball);
+  std::uint32_t found = kernel::kNoSphere;
+  double largest = 0;
+  for (const std::uint32_t id : voids) {
+    const Moving inner = moving(scene, id);
+    if (inner.center != outer.center || inner.displacement != outer.displacement) continue;
+    if (!(inner.radius < outer.radius && inner.radius + inner.growth < outer.radius + outer.growth)) continue;
+    if (std::abs(eta(ball) * eta(id) - 1) > kSameIndex || !(inner.radius > largest)) continue;
+    found = id;
+    largest = inner.radius;
+  }
+  return found;
 }
 
 /// Keeps the kMaxBalls of greatest power, and none if they have less than half of the power.
@@ -214,6 +241,8 @@ kernel::Caustics CausticList::view() const noexcept {
   out.balls = balls.data();
   out.count = static_cast<std::uint32_t>(balls.size());
   out.lights = lights.data();
+  out.has_hollow =
+      std::any_of(balls.begin(), balls.end(), [](const CausticBall& ball) { return ball.inner != kernel::kNoSphere; });
   out.inverse_reference = kernel::kCausticReach * kernel::kCausticReach / strongest;
   return out;
 }
@@ -228,10 +257,24 @@ CausticList caustic_list(const SceneView& scene, kernel::Precision precision) {
   if (balls.sampled.empty()) return out;
   const std::vector<Emitter> emitters = emitters_of(scene);
   const Irradiances irradiance{scene, precision == kernel::Precision::kFast ? kSmallestLightInFast : 0};
-  for (const std::uint32_t ball : balls.sampled) add_ball(scene, ball, emitters, has_sun, irradiance, out);
+  for (const std::uint32_t id : balls.sampled) {
+    const Moving moves = moving(scene, id);
+    const double sum = append_lights(irradiance, moves, emitters, has_sun, out.lights);
+    out.lights.clear();  // those of the balls that are kept are added later, since all would take too much memory
+    if (sum > 0) out.balls.push_back(ball_of(scene, id, moves, sum));
+  }
   keep_strongest(out);
-  for (const CausticBall& ball : out.balls)
+  for (CausticBall& ball : out.balls) {
+    ball.begin = static_cast<std::uint32_t>(out.lights.size());
+    const double sum = append_lights(irradiance, moving(scene, ball.sphere), emitters, has_sun, out.lights);
+    ball.end = static_cast<std::uint32_t>(out.lights.size());
+    for (std::uint32_t i = ball.begin; i < ball.end; ++i) {
+      out.lights[i].cumulative /= sum;
+      out.lights[i].probability /= sum;
+    }
+    ball.inner = void_of(scene, ball.sphere, balls.voids);
     out.strongest = std::max(out.strongest, ball.power / (ball.radius * ball.radius));
+  }
   return out;
 }
 

@@ -30,12 +30,16 @@ struct CausticList {
 /// Finds the pairs of sharp balls, which are perfect mirrors or clear glass, with emitters and with the sun. Motion
 /// between shutter open and close is included.
 ///
+/// A ball of glass is hollow if a sphere in it has the same centre, moves with it, is smaller and has the reciprocal
+/// index: clear glass of a negative radius, or of an index below 1.
+///
 /// Not listed: glass of an index below 1; textured materials and emitters; invisible objects; lights that touch the
 /// ball or are inside it; in `fast`, lights below kSmallestLightInFast; balls beyond the kMaxBalls of greatest power.
 /// If these have less than half of the power of all, the list is empty, since it would cost more than it gains.
 ///
 /// Domain     the view has its lights and its environment
-/// Cost       linear in the number of spheres, and in that of sharp balls times that of lights up to kMaxCausticLights
+/// Cost       linear in the number of spheres, and in that of sharp balls times that of lights up to kMaxCausticLights;
+///            memory for kMaxBalls balls with their lights
 CausticList caustic_list(const kernel::SceneView& scene, kernel::Precision precision);
 
 }  // namespace orrery::compile

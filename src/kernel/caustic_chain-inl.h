@@ -33,6 +33,12 @@ using namespace math::HWY_NAMESPACE;  // NOLINT(google-build-using-namespace): S
 /// Radians per turn.
 inline constexpr double kTurn = 4 * math::HWY_NAMESPACE::kHalfPi;
 
+/// asin(s), radians, with the cosine sqrt(1 - s^2) computed elsewhere.
+template <class D, class V = hn::Vec<D>>
+HWY_INLINE V angle_of(D d, V sin, V cos) {
+  return atan2_turn(d, sin, cos) * kTurn;
+}
+
 /// A term asin(b / rho) of Theta, by the reciprocal of rho.
 template <class V>
 struct CausticShell {

@@ -12,6 +12,7 @@
 #include <limits>
 
 #include "kernel/caustic_chain-inl.h"
+#include "kernel/caustic_hollow-inl.h"
 #include "kernel/caustics.h"
 #include "kernel/sample-inl.h"
 #include "kernel/scatter-inl.h"
@@ -29,7 +30,8 @@ struct BallAndLight {
   V light_sin;          ///< sine of the half angle that the light subtends at the ball's centre
   V eta;                ///< index of the glass
   V r0;                 ///< Schlick's constant of the glass
-  hn::Mask<D> is_glass;
+  V inner;              ///< radius of the void of a hollow ball, in units of the ball's radius; else any
+  hn::Mask<D> is_glass, is_hollow;
 };
 
 /// The values that the images of a light depend on.
@@ -44,12 +46,6 @@ struct CausticView {
   V light_sin;
   V asin_point, asin_light, asin_glass;
 };
-
-/// asin(s), radians, with the cosine sqrt(1 - s^2) computed elsewhere.
-template <class D, class V = hn::Vec<D>>
-HWY_INLINE V angle_of(D d, V sin, V cos) {
-  return atan2_turn(d, sin, cos) * kTurn;
-}
 
 template <class D, class V = hn::Vec<D>>
 HWY_INLINE CausticView<D> caustic_view(D d, const BallAndLight<D>& from) {
@@ -124,13 +120,18 @@ HWY_INLINE V versine_of(V s) {
 }
 
 /// The part of the light that the events of a chain let through, for weights: Schlick's approximation.
-template <int k, class D, class V = hn::Vec<D>>
+template <int kChain, class D, class V = hn::Vec<D>>
 HWY_INLINE V approximate_throughput(D d, const BallAndLight<D>& from, V b) {
   const auto reflected = [&](V sin) { return schlick(from.r0, hn::Sqrt(max((1 - sin) * (1 + sin), 0))); };
   const V outside = reflected(min(b, 1));
-  if constexpr (k == 0) return select(from.is_glass, outside, set(d, 1));
+  if constexpr (kChain == kReflection) return select(from.is_glass, outside, set(d, 1));
   const V inside = reflected(min(b / from.eta, 1));
-  return (1 - outside) * (1 - inside) * (k == 1 ? set(d, 1) : inside);
+  const V through_ball = (1 - outside) * (1 - inside);
+  if constexpr (kChain == kRefraction) return through_ball;
+  if constexpr (kChain == kRainbow) return through_ball * inside;
+  const V at_void = reflected(min(b / from.inner, 1));
+  if constexpr (kChain == kOffVoid) return through_ball * at_void;
+  return through_ball * (1 - at_void) * (1 - at_void);
 }
 
 /// A direction in an image of a light.
@@ -147,19 +148,22 @@ class CausticPieces {
   using V = hn::Vec<D>;
 
  public:
-  /// `chains`   number of chains, from the shortest on
-  HWY_INLINE CausticPieces(D d, const BallAndLight<D>& from, const CausticView<D>& at, int chains, hn::Mask<D> lanes)
+  /// `events`   maximum number of events of a chain
+  HWY_INLINE CausticPieces(D d, const BallAndLight<D>& from, const CausticView<D>& at, int events, hn::Mask<D> lanes)
       : total_(hn::Zero(d)) {
-    add<0>(d, from, at, lanes);
-    const auto glass = hn::And(lanes, from.is_glass);
+    add<kReflection>(d, from, at, lanes);
+    const auto glass = hn::And(lanes, from.is_glass), hollow = hn::And(glass, from.is_hollow);
     if (hn::AllFalse(d, glass)) return;
-    if (chains > 1) add<1>(d, from, at, glass);
-    if (chains > 2) add<2>(d, from, at, glass);
+    if (events > 1) add<kRefraction>(d, from, at, glass);
+    if (events > 2) add<kRainbow>(d, from, at, glass);
+    if (hn::AllFalse(d, hollow)) return;
+    if (events > 2) add_hollow<kOffVoid>(d, from, at, hollow);
+    if (events > 3) add_hollow<kThroughVoid>(d, from, at, hollow);
   }
 
   /// A direction of the piece that `choice` selects in proportion to the weights.
-  HWY_INLINE CausticSample<D> sample(D d, const CausticView<D>& at, V u, V v, V choice) const {
-    constexpr double kEpsilon = std::numeric_limits<hn::TFromD<D>>::epsilon();
+  HWY_INLINE CausticSample<D> sample(D d, const BallAndLight<D>& from, const CausticView<D>& at, V u, V v,
+                                     V choice) const {
     const V zero = hn::Zero(d), target = choice * total_;
     V before = zero, weight = zero, low = zero, width = zero, chain = zero;
     for (int i = 0; i < count_; ++i) {
@@ -174,13 +178,18 @@ class CausticPieces {
     const V versine = mul_add(width, u, low), sine = hn::Sqrt(versine * (2 - versine));
     const V b = min(at.distance * sine, 1), c = hn::Sqrt((1 - b) * (1 + b));
     auto swept = swept_angle<0, false>(d, at.shells, b, c);
-    const auto take = [&](int k, const SweptAngle<V>& of_chain) {
-      const auto is_it = chain == k;
+    const auto take = [&](int of, const SweptAngle<V>& of_chain) {
+      const auto is_it = chain == of;
       swept.cos = select(is_it, of_chain.cos, swept.cos);
       swept.sin = select(is_it, of_chain.sin, swept.sin);
     };
-    if (count_ > kFirst[1]) take(1, swept_angle<1, false>(d, at.shells, b, c));
-    if (count_ > kFirst[2]) take(2, swept_angle<2, false>(d, at.shells, b, c));
+    if (count_ > kFirst[kRefraction]) {
+      const auto refracted = swept_angle<1, false>(d, at.shells, b, c);
+      take(kRefraction, refracted);
+      if (count_ > kFirst[kOffVoid]) take(kOffVoid, hollow_swept<false>(at.shells, refracted, from.inner, b));
+      if (count_ > kFirst[kThroughVoid]) take(kThroughVoid, hollow_swept<true>(at.shells, refracted, from.inner, b));
+    }
+    if (count_ > kFirst[kRainbow]) take(kRainbow, swept_angle<2, false>(d, at.shells, b, c));
     const auto range = azimuth_range(d, at, b, swept);
     const V half_versine = range.versine * 0.5;
     const V turns = atan2_turn(d, hn::Sqrt(half_versine), hn::Sqrt(max(1 - half_versine, 0))) * 2;
@@ -195,38 +204,62 @@ class CausticPieces {
     const auto found = hn::And(weight > 0, range.versine > 0);
     out.inverse_pdf = hn::IfThenElseZero(found, width * half_turns * (2 * kTurn) * total_ / weight);
     const IdTag<D> du;
-    const auto is = [&](int k) { return hn::RebindMask(du, chain == k); };
-    out.events = select(is(0), set(du, caustic_events(0)),
-                        select(is(1), set(du, caustic_events(1)), set(du, caustic_events(2))));
+    out.events = set(du, kCausticEvents[0]);
+    for (int i = 1; i < kCausticChains; ++i)
+      out.events = select(hn::RebindMask(du, chain == i), set(du, kCausticEvents[i]), out.events);
     return out;
   }
 
  private:
+  static constexpr double kEpsilon = std::numeric_limits<hn::TFromD<D>>::epsilon();
+
   struct Piece {
     V low, width;  ///< 1 - cos of the angle to -e1
     V weight;
     V chain;
   };
-  static constexpr int kFirst[kCausticChains + 1] = {0, 2, 6, 12};  ///< pieces of the shorter chains
+  static constexpr int kFirst[kCausticChains + 1] = {0, 2, 6, 12, 14, 15};  ///< pieces of the chains before
 
-  /// Pieces are weighted by width and throughput, which is bounded from below. Their ranges of azimuth are about the
-  /// same, unless the point is near the axis.
   template <int k>
   HWY_INLINE void add(D d, const BallAndLight<D>& from, const CausticView<D>& at, hn::Mask<D> lanes) {
     const auto ends = graph_ends<k>(d, at.shells, at.asin_point, at.asin_light, at.asin_glass);
     const auto band = caustic_band<k>(d, at.shells, ends, at.theta, at.kappa, lanes);
-    count_ = kFirst[k];
-    for (const CausticPiece<V>& b : band.piece) {
-      Piece& piece = piece_[count_++];
-      piece = {hn::Zero(d), hn::Zero(d), hn::Zero(d), set(d, k)};
-      const auto exists = hn::And(lanes, b.low < b.high);
-      if (hn::AllFalse(d, exists)) continue;
-      const V inverse = at.shells.point.inverse;
-      piece.low = versine_of(b.low * inverse);
-      piece.width = hn::IfThenElseZero(exists, max(versine_of(b.high * inverse) - piece.low, 0));
-      piece.weight = piece.width * max(approximate_throughput<k>(d, from, (b.low + b.high) * 0.5), 0.02);
-      total_ = total_ + piece.weight;
-    }
+    // Rays that enter a hollow ball with a smaller b hit the void.
+    const V clear = from.inner * from.eta * (1 - 8 * kEpsilon);
+    const V least = hn::IfThenElseZero(from.is_hollow, k == 0 ? hn::Zero(d) : clear);
+    for (const CausticPiece<V>& b : band.piece) add_piece<k>(d, from, at, {max(b.low, least), b.high}, lanes);
+  }
+
+  template <int kChain>
+  HWY_INLINE void add_hollow(D d, const BallAndLight<D>& from, const CausticView<D>& at, hn::Mask<D> lanes) {
+    constexpr bool kThrough = kChain == kThroughVoid;
+    const auto shells = hollow_shells<kThrough>(d, at.shells, from.inner);
+    const V tolerance = mul_add(at.kappa, set(d, 0.02), 32 * kEpsilon);
+    const V width = mul_add(at.kappa, set(d, 1.001), 32 * kEpsilon);
+    const auto near = [&](V theta) {
+      return hollow_piece<kThrough>(d, shells, theta - width, theta + width, tolerance, lanes);
+    };
+    const auto direct = near(at.theta);
+    add_piece<kChain>(d, from, at, direct, lanes);
+    if constexpr (kThrough) return;
+    const auto around = near(kTurn - at.theta);
+    add_piece<kChain>(d, from, at, {max(around.low, direct.high), around.high}, lanes);
+  }
+
+  /// Pieces are weighted by width and throughput, which is bounded from below. Their ranges of azimuth are about the
+  /// same, unless the point is near the axis.
+  template <int kChain>
+  HWY_INLINE void add_piece(D d, const BallAndLight<D>& from, const CausticView<D>& at, const CausticPiece<V>& b,
+                            hn::Mask<D> lanes) {
+    Piece& piece = piece_[count_++];
+    piece = {hn::Zero(d), hn::Zero(d), hn::Zero(d), set(d, kChain)};
+    const auto exists = hn::And(lanes, b.low < b.high);
+    if (hn::AllFalse(d, exists)) return;
+    const V inverse = at.shells.point.inverse;
+    piece.low = versine_of(b.low * inverse);
+    piece.width = hn::IfThenElseZero(exists, max(versine_of(b.high * inverse) - piece.low, 0));
+    piece.weight = piece.width * max(approximate_throughput<kChain>(d, from, (b.low + b.high) * 0.5), 0.02);
+    total_ = total_ + piece.weight;
   }
 
   Piece piece_[kFirst[kCausticChains]];
@@ -237,14 +270,14 @@ class CausticPieces {
 /// Samples a direction in the images of a light: first one of the pieces of b, then b uniformly by solid angle, then
 /// the azimuth within the range in which the light is hit. Directions that miss the light are rare.
 ///
-/// `chains`   number of chains, from the shortest on
+/// `events`   maximum number of events of a chain
 /// `lanes`    lanes in which the result is needed
 /// Reference  docs/decisions/0040
 template <class D, class V = hn::Vec<D>>
-HWY_NOINLINE CausticSample<D> sample_caustic(D d, const BallAndLight<D>& from, int chains, hn::Mask<D> lanes, V u, V v,
+HWY_NOINLINE CausticSample<D> sample_caustic(D d, const BallAndLight<D>& from, int events, hn::Mask<D> lanes, V u, V v,
                                              V choice) {
   const auto at = caustic_view(d, from);
-  return CausticPieces<D>(d, from, at, chains, lanes).sample(d, at, u, v, choice);
+  return CausticPieces<D>(d, from, at, events, lanes).sample(d, from, at, u, v, choice);
 }
 
 }  // namespace orrery::kernel::HWY_NAMESPACE

@@ -66,11 +66,11 @@ HWY_NOINLINE ChosenBalls<D> choose_ball(D d, const Caustics& caustics, const Ver
   return {index, hn::IfThenElseZero(some, chosen / whole), min(max(rest, 0), 1), whole};
 }
 
-/// Number of chains that are sampled at a depth, from the shortest on: those that a path could follow to the light
-/// before its depth ends.
-inline int sampled_chains(const SceneView& scene, std::uint32_t depth) {
+/// Maximum number of events of the chains that are sampled at a depth: a path could follow them to the light before its
+/// depth ends.
+inline int sampled_events(const SceneView& scene, std::uint32_t depth) {
   const std::uint32_t rays_left = scene.max_depth > depth + 2 ? scene.max_depth - depth - 2 : 0;
-  return static_cast<int>(std::min<std::uint32_t>(rays_left, kCausticChains));
+  return static_cast<int>(std::min<std::uint32_t>(rays_left, kMaxCausticEvents));
 }
 
 /// Least probability of sampling a vertex: what is saved beyond is small, and a sample's weight is bounded.
@@ -87,8 +87,9 @@ HWY_INLINE V caustic_chance(const Caustics& caustics, V importance, V throughput
 template <class D>
 struct CausticChoice {
   static constexpr std::size_t kMax = hn::MaxLanes(D());
-  HWY_ALIGN hn::TFromD<IdTag<D>> ball[kMax], light[kMax];  ///< sphere ids; light kNoSphere: the sun
-  HWY_ALIGN hn::TFromD<D> inverse_probability[kMax];       ///< of the choice of the light
+  /// Sphere ids. Light kNoSphere: the sun; inner kNoSphere: the ball is not hollow.
+  HWY_ALIGN hn::TFromD<IdTag<D>> ball[kMax], inner[kMax], light[kMax];
+  HWY_ALIGN hn::TFromD<D> inverse_probability[kMax];  ///< of the choice of the light
 };
 
 /// Chooses a light for each ball, by power.
@@ -108,21 +109,23 @@ HWY_INLINE CausticChoice<D> choose_lights(D d, const Caustics& caustics, const h
         std::lower_bound(caustics.lights + ball.begin, last, target,
                          [](const CausticLight& at, double share) { return at.cumulative < share; });
     out.ball[i] = ball.sphere;
+    out.inner[i] = ball.inner;
     out.light[i] = light->id;
     out.inverse_probability[i] = static_cast<T>(1 / light->probability);
   }
   return out;
 }
 
-/// Loads balls and lights of pairs as they appear from vertices. The ids are those of CausticChoice.
+/// Loads balls and lights of pairs as they appear from vertices.
 template <class D>
-HWY_INLINE BallAndLight<D> load_pairs(D d, const SceneView& scene, const Vertex<D>& at,
-                                      const hn::TFromD<IdTag<D>>* ball, const hn::TFromD<IdTag<D>>* light) {
+HWY_INLINE BallAndLight<D> load_pairs(D d, const SceneView& scene, const Vertex<D>& at, const CausticChoice<D>& pairs) {
   using T = hn::TFromD<D>;
   using V = hn::Vec<D>;
   constexpr std::size_t kMax = hn::MaxLanes(D());
-  HWY_ALIGN hn::TFromD<IdTag<D>> emitter[kMax];
-  HWY_ALIGN T eta[kMax], r0[kMax], glass[kMax], sun[kMax];
+  const auto& ball = pairs.ball;
+  const auto& light = pairs.light;
+  HWY_ALIGN hn::TFromD<IdTag<D>> emitter[kMax], inner[kMax];
+  HWY_ALIGN T eta[kMax], r0[kMax], glass[kMax], hollow[kMax], sun[kMax];
   for (std::size_t i = 0; i < hn::Lanes(d); ++i) {
     const Material& material = scene.materials[scene.sphere_materials[ball[i]]];
     eta[i] = static_cast<T>(material.eta[1]);
@@ -130,6 +133,8 @@ HWY_INLINE BallAndLight<D> load_pairs(D d, const SceneView& scene, const Vertex<
     glass[i] = material.kind == MaterialKind::kDielectric ? T(1) : T(0);
     sun[i] = light[i] == kNoSphere ? T(1) : T(0);
     emitter[i] = light[i] == kNoSphere ? ball[i] : light[i];
+    hollow[i] = pairs.inner[i] != kNoSphere ? T(1) : T(0);
+    inner[i] = pairs.inner[i] != kNoSphere ? pairs.inner[i] : ball[i];
   }
   const auto sphere = load_spheres(d, scene, ball, at.times), lamp = load_spheres(d, scene, emitter, at.times);
   const V inverse_radius = 1 / sphere.radius;
@@ -150,6 +155,9 @@ HWY_INLINE BallAndLight<D> load_pairs(D d, const SceneView& scene, const Vertex<
   out.is_glass = hn::Load(d, glass) != 0;
   out.eta = select(out.is_glass, hn::Load(d, eta), 1.5);  // in other lanes any index will do
   out.r0 = hn::Load(d, r0);
+  out.is_hollow = hn::Load(d, hollow) != 0;
+  out.inner = set(d, 1);
+  if (scene.caustics.has_hollow) out.inner = load_spheres(d, scene, inner, at.times).radius * inverse_radius;
   return out;
 }
 
@@ -168,9 +176,9 @@ HWY_INLINE Emitted<D> load_lights(D d, const SceneView& scene, hn::Vec<IdTag<D>>
 
 /// Samples directions at the waiting vertices and appends their rays to the stream of chains.
 ///
-/// `chains`   number of chains that are sampled, from the shortest on
+/// `events`   maximum number of events of a chain
 template <class D, bool kRecords>
-HWY_NOINLINE void sample_caustics(const SceneView& scene, LitPathsOf<hn::TFromD<D>>& lit, int chains) {
+HWY_NOINLINE void sample_caustics(const SceneView& scene, LitPathsOf<hn::TFromD<D>>& lit, int events) {
   using T = hn::TFromD<D>;
   using V = hn::Vec<D>;
   const D d;
@@ -187,9 +195,9 @@ HWY_NOINLINE void sample_caustics(const SceneView& scene, LitPathsOf<hn::TFromD<
     const T* const times = scene.features.motion ? vertices.time + v : nullptr;
     const Vertex<D> at{origin, sum_error(base, offset, origin), normalized(offset) * side, {}, times};
     const auto source = load_lights(d, scene, lights);
-    const auto sample = sample_caustic(d, load_pairs(d, scene, at, chosen.ball, chosen.light), chains, active,
-                                       hn::Load(d, vertices.random[0] + v), hn::Load(d, vertices.random[1] + v),
-                                       hn::Load(d, vertices.random[3] + v));
+    const auto sample =
+        sample_caustic(d, load_pairs(d, scene, at, chosen), events, active, hn::Load(d, vertices.random[0] + v),
+                       hn::Load(d, vertices.random[1] + v), hn::Load(d, vertices.random[3] + v));
     // The density of the diffuse lobes, as in pdf_bsdf.
     const V cosine = dot(sample.direction, at.normal);
     const auto uniform = hn::Load(d, vertices.uniform + v) != 0;
@@ -212,6 +220,7 @@ HWY_NOINLINE void sample_caustics(const SceneView& scene, LitPathsOf<hn::TFromD<
     keep(vertices.path, rays.path);
     compactor.store_ids(d, sample.events, rays.events + n);
     compactor.store_ids(d, hn::Load(du, chosen.ball), rays.ball + n);
+    compactor.store_ids(d, hn::Load(du, chosen.inner), rays.inner + n);
     compactor.store_ids(d, lights, rays.light + n);
     if (kRecords) {
       keep(vertices.history, rays.history);

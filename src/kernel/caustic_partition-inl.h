@@ -27,6 +27,8 @@ inline constexpr unsigned kFromDiffuse = 1;  ///< nothing
 inline constexpr unsigned kInside = 2;       ///< inside a ball, since it was refracted into it
 inline constexpr unsigned kInsideTwice = 3;  ///< inside a ball, reflected once
 inline constexpr unsigned kCompleted = 4;    ///< a chain that is sampled, if the ball and the light are a pair
+inline constexpr unsigned kInVoid = 5;       ///< inside the void of a hollow ball
+inline constexpr unsigned kFromVoid = 6;     ///< in the glass of a hollow ball, after the void
 
 /// Lanes whose lobe is diffuse; their light by way of balls is sampled.
 template <class D>
@@ -35,21 +37,48 @@ HWY_INLINE hn::Mask<D> is_diffuse(D d, const Surface<D>& at) {
                 hn::Or(is_kind(d, at.kind, MaterialKind::kHemisphere), is_kind(d, at.kind, MaterialKind::kPlastic)));
 }
 
+/// Lanes in which a relation holds between two ids.
+template <class D, class Holds>
+HWY_INLINE hn::Mask<D> related(D d, hn::Mask<D> lanes, hn::Vec<IdTag<D>> first, hn::Vec<IdTag<D>> second, Holds holds) {
+  using T = hn::TFromD<D>;
+  HWY_ALIGN hn::TFromD<IdTag<D>> a[hn::MaxLanes(D())], b[hn::MaxLanes(D())];
+  HWY_ALIGN T found[hn::MaxLanes(D())] = {};
+  hn::Store(first, IdTag<D>(), a);
+  hn::Store(second, IdTag<D>(), b);
+  each_lane(d, lanes, [&](int i) {
+    found[i] = holds(static_cast<std::uint32_t>(a[i]), static_cast<std::uint32_t>(b[i])) ? T(1) : T(0);
+  });
+  return hn::Load(d, found) != 0;
+}
+
+/// Lanes in which an id is that of a hollow ball and the other that of its inner sphere.
+template <class D>
+HWY_NOINLINE hn::Mask<D> are_hollow(D d, const Caustics& caustics, hn::Mask<D> lanes, hn::Vec<IdTag<D>> balls,
+                                    hn::Vec<IdTag<D>> inner) {
+  return related(d, lanes, balls, inner, [&](std::uint32_t a, std::uint32_t b) { return caustics.is_hollow(a, b); });
+}
+
+/// What paths have passed before a hit, and the spheres of the hit.
+template <class D>
+struct ChainAtHit {
+  hn::Vec<IdTag<D>> chain;
+  hn::Vec<IdTag<D>> self;  ///< sphere that the ray has left
+  hn::Vec<IdTag<D>> hit;
+};
+
 /// The chain of paths after a surface has scattered them. The surface is passed by value: a reference to it would keep
 /// it in memory in scenes without caustics too.
 ///
-/// `chain`    before
-/// `is_self`  the surface is that of the sphere that the ray has left
 /// `diffuse`  lanes in which a diffuse lobe has scattered
 template <class D>
-HWY_NOINLINE hn::Vec<IdTag<D>> continued_chain(D d, hn::Vec<IdTag<D>> chain, Surface<D> at, Vec3<hn::Vec<D>> direction,
-                                               hn::Mask<D> is_self, hn::Mask<D> diffuse) {
+HWY_NOINLINE hn::Vec<IdTag<D>> continued_chain(D d, const Caustics& caustics, ChainAtHit<D> before, Surface<D> at,
+                                               Vec3<hn::Vec<D>> direction, hn::Mask<D> diffuse) {
   const IdTag<D> du;
-  const auto was = [&](unsigned state) { return hn::RebindMask(d, chain == state); };
-  const auto sharp = hn::And(is_delta(d, at), at.fuzz == 0);
+  const auto sharp = hn::And(is_delta(d, at), at.fuzz == 0), is_self = hn::RebindMask(d, before.self == before.hit);
+  const auto was = [&](unsigned state) { return hn::And(sharp, hn::RebindMask(d, before.chain == state)); };
   const auto transmits = is_transmitted(d, at, direction), reflects = hn::Not(transmits);
-  const auto enters = hn::And(hn::And(sharp, was(kFromDiffuse)), at.from_outside);
-  const auto within = hn::And(hn::And(sharp, is_self), hn::Or(was(kInside), was(kInsideTwice)));
+  const auto enters = hn::And(was(kFromDiffuse), at.from_outside);
+  const auto within = hn::And(is_self, hn::Or(was(kInside), was(kInsideTwice)));
   const auto completes = hn::Or(hn::And(enters, reflects), hn::And(within, transmits));
   auto out = hn::Zero(du);
   const auto put = [&](hn::Mask<D> lanes, unsigned state) {
@@ -58,6 +87,15 @@ HWY_NOINLINE hn::Vec<IdTag<D>> continued_chain(D d, hn::Vec<IdTag<D>> chain, Sur
   put(completes, kCompleted);
   put(hn::And(enters, transmits), kInside);
   put(hn::And(hn::And(within, reflects), was(kInside)), kInsideTwice);
+  if (caustics.has_hollow) {
+    const auto to_void = hn::And(hn::AndNot(is_self, was(kInside)), at.from_outside);
+    const auto to_ball = hn::AndNot(at.from_outside, hn::AndNot(is_self, was(kFromVoid)));
+    const auto at_void = are_hollow(d, caustics, to_void, before.self, before.hit);
+    const auto at_ball = are_hollow(d, caustics, to_ball, before.hit, before.self);
+    put(hn::And(at_void, transmits), kInVoid);
+    put(hn::Or(hn::And(at_void, reflects), hn::And(hn::And(is_self, was(kInVoid)), transmits)), kFromVoid);
+    put(hn::And(at_ball, transmits), kCompleted);
+  }
   put(diffuse, kFromDiffuse);
   return out;
 }
@@ -68,16 +106,7 @@ HWY_NOINLINE hn::Vec<IdTag<D>> continued_chain(D d, hn::Vec<IdTag<D>> chain, Sur
 template <class D>
 HWY_NOINLINE hn::Mask<D> are_paired(D d, const Caustics& caustics, hn::Mask<D> lanes, hn::Vec<IdTag<D>> balls,
                                     hn::Vec<IdTag<D>> lights) {
-  using T = hn::TFromD<D>;
-  HWY_ALIGN hn::TFromD<IdTag<D>> ball[hn::MaxLanes(D())], light[hn::MaxLanes(D())];
-  HWY_ALIGN T found[hn::MaxLanes(D())] = {};
-  hn::Store(balls, IdTag<D>(), ball);
-  hn::Store(lights, IdTag<D>(), light);
-  each_lane(d, lanes, [&](int i) {
-    const auto sphere = static_cast<std::uint32_t>(ball[i]), to = static_cast<std::uint32_t>(light[i]);
-    found[i] = caustics.has(sphere, to) ? T(1) : T(0);
-  });
-  return hn::Load(d, found) != 0;
+  return related(d, lanes, balls, lights, [&](std::uint32_t a, std::uint32_t b) { return caustics.has(a, b); });
 }
 
 /// Lanes whose paths have completed a sampled chain to these lights.

@@ -95,8 +95,9 @@ class ChainTracer {
       arrived = hn::And(arrived, hn::Or(sees_sun, hn::RebindMask(d, light != kNoSphere)));
     }
     if (!hn::AllFalse(d, arrived)) arrive(i, arrived);
-    const auto on_ball = hn::RebindMask(d, hits == hn::LoadU(du, chains_.ball + i));
-    const auto scattered = hn::And(hn::AndNot(is_last, active), on_ball);
+    const auto at_void = hn::And(events, set(du, kAtVoid)) != 0;
+    const auto expected = select(at_void, hn::LoadU(du, chains_.inner + i), hn::LoadU(du, chains_.ball + i));
+    const auto scattered = hn::And(hn::AndNot(is_last, active), hn::RebindMask(d, hits == expected));
     if (!hn::AllFalse(d, scattered)) scatter(i, v, ray, hits, events, scattered);
   }
 
@@ -120,10 +121,11 @@ class ChainTracer {
     const T* const times = scene_.features.motion ? packet_.time + v : nullptr;
     const auto look = reach_surface<D, kPrecision>(d, scene_, ray, hits, hn::Load(d, packet_.distance + v), times);
     const Surface<D>& surface = look.surface;
-    // The first event is outside the ball, the others are inside.
-    const auto is_self = hn::RebindMask(d, hits == ray.self);
-    const auto is_on_side = hn::Xor(surface.from_outside, is_self);
-    const auto reflects = hn::RebindMask(d, hn::And(events, set(du, (1U << kCausticEventBits) - 1)) == kReflect);
+    // Rays that leave a sphere of the ball reach the sphere from inside, unless they go from the ball to its void.
+    const auto from_void = hn::RebindMask(d, ray.self == hn::LoadU(du, chains_.inner + i));
+    const auto is_within = hn::Or(hn::RebindMask(d, hits == ray.self), from_void);
+    const auto is_on_side = hn::Xor(surface.from_outside, is_within);
+    const auto reflects = hn::RebindMask(d, hn::And(events, set(du, kReflect)) != 0);
     const auto glass = refraction(d, surface);
     const V reflected_part = select(glass.is_total, 1, glass.reflectance);
     const V part = select(reflects, reflected_part, 1 - reflected_part);
@@ -144,6 +146,7 @@ class ChainTracer {
     if (scene_.features.motion) compactor.store(d, hn::LoadU(d, chains_.time + i), chains_.time + to);
     if (scene_.features.opacity) compactor.store_ids(d, next_key(du, hn::LoadU(du, chains_.key + i)), chains_.key + to);
     keep(chains_.ball);
+    keep(chains_.inner);
     keep(chains_.light);
     keep(chains_.path);
     if (kRecords) {

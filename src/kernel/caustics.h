@@ -3,6 +3,10 @@
 
 #include <algorithm>
 #include <cstdint>
+#include <initializer_list>
+#include <ranges>
+
+#include "kernel/sphere.h"
 
 namespace orrery::kernel {
 
@@ -12,6 +16,7 @@ struct CausticBall {
   double radius = 1;                 ///< of that sphere
   double power = 0;                  ///< estimate of the light that the ball scatters
   std::uint32_t sphere = 0;          ///< id
+  std::uint32_t inner = kNoSphere;   ///< id of the concentric sphere that makes it hollow
   std::uint32_t begin = 0, end = 0;  ///< range of Caustics::lights
 };
 
@@ -35,34 +40,57 @@ struct Caustics {
   const CausticLight* lights = nullptr;
   /// Reciprocal of the importance, power / distance^2, from which on every vertex is sampled.
   double inverse_reference = 0;
+  bool has_hollow = false;  ///< a ball has an inner sphere
 
   /// Whether a ball and a light are a pair.
   bool has(std::uint32_t sphere, std::uint32_t light) const noexcept {
-    const CausticBall* const ball = std::lower_bound(
-        balls, balls + count, sphere, [](const CausticBall& at, std::uint32_t id) { return at.sphere < id; });
-    if (ball == balls + count || ball->sphere != sphere) return false;
+    const CausticBall* const ball = find(sphere);
+    if (ball == nullptr) return false;
     const CausticLight* const end = lights + ball->end;
     const CausticLight* const found = std::lower_bound(
         lights + ball->begin, end, light, [](const CausticLight& at, std::uint32_t id) { return at.id < id; });
     return found != end && found->id == light;
   }
+
+  /// Whether a sphere is the inner one of a ball.
+  bool is_hollow(std::uint32_t sphere, std::uint32_t inner) const noexcept {
+    const CausticBall* const ball = find(sphere);
+    return ball != nullptr && ball->inner == inner;
+  }
+
+ private:
+  /// Null: not listed.
+  const CausticBall* find(std::uint32_t sphere) const noexcept {
+    const CausticBall* const ball = std::lower_bound(
+        balls, balls + count, sphere, [](const CausticBall& at, std::uint32_t id) { return at.sphere < id; });
+    return ball != balls + count && ball->sphere == sphere ? ball : nullptr;
+  }
 };
 
-/// An event of a chain: what the ball does to the ray. Chains are sequences of events, the first in the lowest bits.
-enum CausticEvent : std::uint32_t { kReflect = 1, kTransmit = 2 };
-inline constexpr int kCausticEventBits = 2;
+/// An event of a chain: what the ball, or with kAtVoid the inner sphere of a hollow ball, does to the ray. Chains are
+/// sequences of events, the first in the lowest bits.
+enum CausticEvent : std::uint32_t { kReflect = 1, kTransmit = 2, kAtVoid = 4 };
+inline constexpr int kCausticEventBits = 3;
 
-/// The events of the chain that enters the ball, is reflected `k - 1` times inside and leaves it; k = 0: is reflected.
-constexpr std::uint32_t caustic_events(int k) {
-  if (k == 0) return kReflect;
-  std::uint32_t events = kTransmit;
-  for (int i = 1; i < k; ++i) events = events << kCausticEventBits | kReflect;
-  return events << kCausticEventBits | kTransmit;
+/// Chains that are sampled: reflection; refraction into the ball and out of it; the same with one reflection inside;
+/// the same with a reflection on the void of a hollow ball; the same through the void.
+enum CausticChain : int { kReflection, kRefraction, kRainbow, kOffVoid, kThroughVoid };
+inline constexpr int kCausticChains = 5;
+
+constexpr std::uint32_t in_sequence(std::initializer_list<std::uint32_t> events) {
+  std::uint32_t out = 0;
+  for (const std::uint32_t event : std::views::reverse(events)) out = out << kCausticEventBits | event;
+  return out;
 }
 
-/// Number of chains that are sampled: reflection; refraction into the ball and out of it; the same with one reflection
-/// inside.
-inline constexpr int kCausticChains = 3;
+/// The events of each chain.
+inline constexpr std::uint32_t kCausticEvents[kCausticChains] = {
+    in_sequence({kReflect}), in_sequence({kTransmit, kTransmit}), in_sequence({kTransmit, kReflect, kTransmit}),
+    in_sequence({kTransmit, kReflect | kAtVoid, kTransmit}),
+    in_sequence({kTransmit, kTransmit | kAtVoid, kTransmit | kAtVoid, kTransmit})};
+
+/// Number of events of the longest chain.
+inline constexpr int kMaxCausticEvents = 4;
 
 /// Distance of a ball, in its radii, up to which every vertex is sampled.
 inline constexpr double kCausticReach = 4;

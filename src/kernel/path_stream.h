@@ -73,6 +73,7 @@ struct alignas(64) ChainStreamOf {
   Id self[kCapacity];         ///< sphere that the ray leaves
   Id events[kCapacity];       ///< that are left; see CausticEvent
   Id ball[kCapacity];         ///< that causes them
+  Id inner[kCapacity];        ///< its inner sphere, if it is hollow
   Id light[kCapacity];        ///< the emitter, or kNoSphere: the sun
   Id path[kCapacity];         ///< index into LitPathsOf
   Id history[kCapacity];      ///< only in loops that record paths

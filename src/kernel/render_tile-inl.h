@@ -158,7 +158,7 @@ TileCounts render_tile(const SceneView& scene, const Tracer& tracer, const Tile&
   const auto trace_caustics = [&](std::uint32_t depth, int waiting, int fewest) {
     if (!kLoop.full || !scene.features.caustics || stream.lit.vertices.count < waiting) return;
     trace_shadows(1);
-    sample_caustics<D, kLoop.records>(scene, stream.lit, sampled_chains(scene, depth));
+    sample_caustics<D, kLoop.records>(scene, stream.lit, sampled_events(scene, depth));
     trace_chains<D, kLoop.precision, kLoop.records>(scene, tracer, tile, stream, fewest, counts);
   };
   const auto trace_and_shade = [&](std::uint32_t depth, int packets, int alive) {

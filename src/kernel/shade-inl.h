@@ -375,7 +375,7 @@ class Shader {
   HWY_INLINE void caustics(const Arrivals<D>& at, const Lookup<D>& look, const Vec3<V>& tinted) {
     const Surface<D>& surface = look.surface;
     const auto diffuse = hn::And(at.hit, is_diffuse(d, surface));
-    if (sampled_chains(scene_, depth_) < 1 || hn::AllFalse(d, diffuse)) return;
+    if (sampled_events(scene_, depth_) < 1 || hn::AllFalse(d, diffuse)) return;
     const auto random = second_random_at_vertex(d, scene_.sampler, at.pixels, at.samples, depth_ + 1, true);
     const auto chosen = choose_ball(d, scene_.caustics, vertex_at(at, look), random.v[2]);
     Vec3<V> value = tinted;
@@ -446,9 +446,9 @@ class Shader {
       compactor.store(d, pdf, stream_.lit.pdf + alive);
     }
     if (features_.caustics) {
-      const auto is_self = hn::RebindMask(d, at.hits == at.ray.self);
       const auto diffuse = hn::AndNot(scattered.in_coat, is_diffuse(d, surface));
-      const Ids chain = continued_chain(d, at.chain, surface, scattered.direction, is_self, diffuse);
+      const Ids chain =
+          continued_chain(d, scene_.caustics, {at.chain, at.ray.self, at.hits}, surface, scattered.direction, diffuse);
       compactor.store_ids(d, chain, stream_.lit.chain + alive);
     }
     if constexpr (kLoop.plastic) look.surface.kind = lobe_kinds(surface, scattered.in_coat);

@@ -55,10 +55,12 @@ std::vector<NamedScene> caustic_scenes() {
   add_ball(blocked, {0.6, 0.9, 0.5}, 0.9, glass);
   add_ball(blocked, {0.8, 1.0, 0.6}, 0.3, scene::Lambertian{{0.8, 0.2, 0.2}});
   add_ball(blocked, {1.3, 2.0, 1.2}, 0.25, scene::Lambertian{{0.2, 0.2, 0.8}});
-  scene::Scene& hollow = add("hollow glass");
+  scene::Scene& hollow = add("hollow glass beside glass in glass");
   lamp(hollow);
-  add_ball(hollow, {0.6, 0.9, 0.5}, 0.9, glass);
-  hollow.spheres.push_back({{0.6, 0.9, 0.5}, -0.7, static_cast<std::uint32_t>(hollow.materials.size() - 1)});
+  add_ball(hollow, {1.9, 0.5, 0.8}, 0.5, glass);
+  add_ball(hollow, {1.9, 0.5, 0.9}, 0.35, scene::Dielectric{1.4, scene::Fresnel::kExact});
+  add_ball(hollow, {0.4, 0.9, 0.5}, 0.9, glass);
+  hollow.spheres.push_back({{0.4, 0.9, 0.5}, -0.7, static_cast<std::uint32_t>(hollow.materials.size() - 1)});
   scene::Scene& bubble = add("a ball of lower index, and glass in glass");
   lamp(bubble);
   add_ball(bubble, {1.3, 0.6, 0.8}, 0.6, scene::Dielectric{0.8, scene::Fresnel::kExact});

@@ -17,7 +17,7 @@ namespace hn = hwy::HWY_NAMESPACE;
 namespace k = kernel::HWY_NAMESPACE;
 
 template <class D>
-CausticDirection sampled(D d, const CausticPlace& place, int chains, double u, double v, double choice) {
+CausticDirection sampled(D d, const CausticPlace& place, int events, double u, double v, double choice) {
   using T = hn::TFromD<D>;
   const auto all = [&](double x) { return hn::Set(d, static_cast<T>(x)); };
   const auto all3 = [&](math::Vec3d x) { return k::Vec3<hn::Vec<D>>{all(x.x), all(x.y), all(x.z)}; };
@@ -28,19 +28,21 @@ CausticDirection sampled(D d, const CausticPlace& place, int chains, double u, d
                                 all(place.light_sin),
                                 all(place.eta),
                                 all(r0 * r0),
-                                hn::FirstN(d, place.is_glass ? hn::Lanes(d) : 0)};
-  const auto sample = k::sample_caustic(d, from, chains, hn::FirstN(d, hn::Lanes(d)), all(u), all(v), all(choice));
+                                all(place.inner > 0 ? place.inner : 1),
+                                hn::FirstN(d, place.is_glass ? hn::Lanes(d) : 0),
+                                hn::FirstN(d, place.inner > 0 ? hn::Lanes(d) : 0)};
+  const auto sample = k::sample_caustic(d, from, events, hn::FirstN(d, hn::Lanes(d)), all(u), all(v), all(choice));
   const auto first = [](auto x) { return static_cast<double>(hn::GetLane(x)); };
   return {{first(sample.direction.x), first(sample.direction.y), first(sample.direction.z)},
           first(sample.inverse_pdf),
           static_cast<std::uint32_t>(hn::GetLane(sample.events))};
 }
 
-CausticDirection in_double(const CausticPlace& place, int chains, double u, double v, double choice) {
-  return sampled(hn::ScalableTag<double>(), place, chains, u, v, choice);
+CausticDirection in_double(const CausticPlace& place, int events, double u, double v, double choice) {
+  return sampled(hn::ScalableTag<double>(), place, events, u, v, choice);
 }
-CausticDirection in_float(const CausticPlace& place, int chains, double u, double v, double choice) {
-  return sampled(hn::ScalableTag<float>(), place, chains, u, v, choice);
+CausticDirection in_float(const CausticPlace& place, int events, double u, double v, double choice) {
+  return sampled(hn::ScalableTag<float>(), place, events, u, v, choice);
 }
 
 }  // namespace orrery::test::HWY_NAMESPACE
@@ -52,11 +54,11 @@ namespace orrery::test {
 HWY_EXPORT(in_double);
 HWY_EXPORT(in_float);
 
-CausticDirection caustic_direction(const CausticPlace& place, int chains, double u, double v, double choice) {
-  return ORRERY_BEST(in_double)(place, chains, u, v, choice);
+CausticDirection caustic_direction(const CausticPlace& place, int events, double u, double v, double choice) {
+  return ORRERY_BEST(in_double)(place, events, u, v, choice);
 }
-CausticDirection caustic_direction_in_float(const CausticPlace& place, int chains, double u, double v, double choice) {
-  return ORRERY_BEST(in_float)(place, chains, u, v, choice);
+CausticDirection caustic_direction_in_float(const CausticPlace& place, int events, double u, double v, double choice) {
+  return ORRERY_BEST(in_float)(place, events, u, v, choice);
 }
 
 }  // namespace orrery::test

@@ -16,6 +16,7 @@ struct CausticPlace {
   double light_sin = 0;         ///< sine of the half angle that the light subtends at the origin
   bool is_glass = true;         ///< false: a mirror
   double eta = 1.5;
+  double inner = 0;  ///< radius of the void; 0: the ball is not hollow
 };
 
 struct CausticDirection {
@@ -26,9 +27,9 @@ struct CausticDirection {
 
 /// Samples a direction in double precision.
 ///
-/// `chains`   number of chains, from the shortest on
-CausticDirection caustic_direction(const CausticPlace& place, int chains, double u, double v, double choice);
+/// `events`   maximum number of events of a chain
+CausticDirection caustic_direction(const CausticPlace& place, int events, double u, double v, double choice);
 /// The same in single precision.
-CausticDirection caustic_direction_in_float(const CausticPlace& place, int chains, double u, double v, double choice);
+CausticDirection caustic_direction_in_float(const CausticPlace& place, int events, double u, double v, double choice);
 
 }  // namespace orrery::test

@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <cstddef>
+#include <cstdint>
 #include <functional>
 #include <memory>
 #include <string>
@@ -110,6 +111,40 @@ TEST(CompileCausticList, LeavesOutWhatIsNotSampled) {
       },
   };
   for (std::size_t i = 0; i < std::size(leave_out_all); ++i) EXPECT_EQ(pairs_of(leave_out_all[i]), 0u) << i;
+}
+
+/// The sphere that makes ball 2 hollow.
+std::uint32_t void_in(const scene::Scene& opening, const scene::Scene* closing = nullptr) {
+  return compile(opening, closing).caustics.balls.back().inner;
+}
+
+TEST(CompileCausticList, ConcentricVoidsMakeBallsHollow) {
+  scene::Scene s = stage();
+  EXPECT_EQ(void_in(s), kernel::kNoSphere);
+  s.spheres.push_back({{2, 1, 0}, -0.5, 2, ""});
+  EXPECT_EQ(void_in(s), 4u);
+  s.materials.push_back({"air", scene::Dielectric{1 / 1.5}});
+  s.spheres.push_back({{2, 1, 0}, 0.7, 4, ""});
+  EXPECT_EQ(void_in(s), 5u) << "the larger one";
+  s.spheres[5].radius = 1;
+  EXPECT_EQ(void_in(s), 4u);
+  s.spheres[5] = {{2, 1, 1e-9}, 0.7, 4, ""};
+  EXPECT_EQ(void_in(s), 4u);
+  s.spheres[5] = {{2, 1, 0}, 0.7, 4, ""};
+  s.materials[4].model = scene::Dielectric{0.7};
+  EXPECT_EQ(void_in(s), 4u) << "another index";
+}
+
+TEST(CompileCausticList, VoidsMoveWithTheirBalls) {
+  scene::Scene opening = stage();
+  opening.spheres.push_back({{2, 1, 0}, -0.5, 2, ""});
+  scene::Scene closing = opening;
+  closing.spheres[2].center = closing.spheres[4].center = {3, 1, 0};
+  EXPECT_EQ(void_in(opening, &closing), 4u);
+  closing.spheres[4].radius = -1;
+  EXPECT_EQ(void_in(opening, &closing), kernel::kNoSphere);
+  closing.spheres[4] = {{3, 1, 0.1}, -0.5, 2, ""};
+  EXPECT_EQ(void_in(opening, &closing), kernel::kNoSphere);
 }
 
 TEST(CompileCausticList, LightsThatTouchABallDuringTheShutterAreLeftOut) {

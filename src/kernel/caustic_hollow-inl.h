@@ -1,0 +1,134 @@
+// SPDX-License-Identifier: Apache-2.0
+// The angle by which a hollow ball turns light via its inner sphere, and its level sets. Compiled once per instruction
+// set.
+#if defined(ORRERY_KERNEL_CAUSTIC_HOLLOW_INL_H_) == defined(HWY_TARGET_TOGGLE)
+#ifdef ORRERY_KERNEL_CAUSTIC_HOLLOW_INL_H_
+#undef ORRERY_KERNEL_CAUSTIC_HOLLOW_INL_H_
+#else
+#define ORRERY_KERNEL_CAUSTIC_HOLLOW_INL_H_
+#endif
+
+#include <hwy/highway.h>
+
+#include <limits>
+
+#include "kernel/caustic_chain-inl.h"
+
+HWY_BEFORE_NAMESPACE();
+namespace orrery::kernel::HWY_NAMESPACE {
+
+// A ball of glass with a concentric void of radius q, in units of the ball's radius, adds terms to Theta (see
+// caustic_chain-inl.h). A ray that the void's sphere reflects turns by
+//
+//     Theta(b) = 2 asin(b) - 2 asin(b / n) + 2 asin(b / (n q)) - asin(b / p) - asin(b / d),
+//
+// which increases in b, 0..min(1, n q); a ray that crosses the void turns by pi - 2 asin(b / q) more, in total by less
+// for each larger b, 0..q. Neither is convex. But each term's derivative by j, where b is the greatest b times sin(j),
+// decreases, so that the derivatives at the ends of an interval bound the slope within: a step of Newton's method with
+// the bound never passes a root, and the two ends close in on the band.
+
+/// The spheres of a hollow ball, the point and the light, in units of the greatest b.
+template <class V>
+struct HollowShells {
+  V greatest;  ///< in units of the ball's radius
+  CausticShell<V> ball, glass, inner_glass, inner, point, light;
+};
+
+/// `inner`    radius of the void
+template <bool kThrough, class D, class V = hn::Vec<D>>
+HWY_INLINE HollowShells<V> hollow_shells(D d, const CausticShells<V>& at, V inner) {
+  const V one = set(d, 1), inverse = 1 / inner;
+  const V inner_glass = at.glass.inverse * inverse;
+  const V greatest = kThrough ? inner : min(1 / inner_glass, 1);
+  const auto shell = [&](V of_unit) {
+    const V g = min(of_unit * greatest, 1);
+    return CausticShell<V>{g, (1 - g) * (1 + g)};
+  };
+  return {greatest,
+          shell(one),
+          shell(at.glass.inverse),
+          shell(inner_glass),
+          shell(inverse),
+          shell(at.point.inverse),
+          shell(at.light.inverse)};
+}
+
+/// Theta, and the derivatives by j of its increasing and of its decreasing terms.
+template <class V>
+struct HollowAngle {
+  V theta, rising, falling;
+};
+
+template <bool kThrough, class D, class V = hn::Vec<D>>
+HWY_INLINE HollowAngle<V> hollow_angle(D d, const HollowShells<V>& at, V j_turns) {
+  const auto j = sin_cos_turn(d, j_turns);
+  HollowAngle<V> out = {set(d, kThrough ? kTurn / 2 : 0), hn::Zero(d), hn::Zero(d)};
+  const auto term = [&](double weight, const CausticShell<V>& shell) {
+    const V gc = shell.inverse * j.cos, cos = hn::Sqrt(mul_add(gc, gc, shell.rest));
+    out.theta = mul_add(angle_of(d, shell.inverse * j.sin, cos), set(d, weight), out.theta);
+    // At grazing incidence on the smallest sphere, the derivative is 1.
+    const V slope = select(cos > 0, gc / cos, 1);
+    if (weight > 0)
+      out.rising = mul_add(slope, set(d, weight), out.rising);
+    else
+      out.falling = neg_mul_add(slope, set(d, weight), out.falling);
+  };
+  term(2, at.ball);
+  term(-2, at.glass);
+  term(2, at.inner_glass);
+  if constexpr (kThrough) term(-2, at.inner);
+  term(-1, at.point);
+  term(-1, at.light);
+  return out;
+}
+
+/// The direction of Theta without the light's term, by that of rays that are refracted into a ball without a void and
+/// out of it.
+template <bool kThrough, class V>
+HWY_INLINE SweptAngle<V> hollow_swept(const CausticShells<V>& at, SweptAngle<V> refracted, V inner, V b) {
+  const auto turn = [&](V sin, double way) {
+    const V s = min(sin, 1), cos = hn::Sqrt((1 - s) * (1 + s));
+    const V twice_cos = mul_add(cos, cos, -(s * s)), twice_sin = cos * s * (2 * way);
+    const V turned = neg_mul_add(refracted.sin, twice_sin, refracted.cos * twice_cos);
+    refracted.sin = mul_add(refracted.cos, twice_sin, refracted.sin * twice_cos);
+    refracted.cos = turned;
+  };
+  const V to_inner = b / inner;
+  turn(to_inner * at.glass.inverse, 1);
+  if constexpr (kThrough)
+    turn(to_inner, -1);
+  else
+    refracted.cos = -refracted.cos, refracted.sin = -refracted.sin;
+  return refracted;
+}
+
+/// Maximum number of steps. Fewer lead to wider pieces, not to errors.
+inline constexpr int kHollowSteps = 12;
+
+/// Finds the values of b for which Theta is between two angles, or a few more.
+///
+/// `tolerance` of the angles: ends that are less too far out stay
+template <bool kThrough, class D, class V = hn::Vec<D>>
+HWY_INLINE CausticPiece<V> hollow_piece(D d, const HollowShells<V>& at, V lowest, V highest, V tolerance,
+                                        hn::Mask<D> lanes) {
+  constexpr double kEpsilon = std::numeric_limits<hn::TFromD<D>>::epsilon();
+  V first = hn::Zero(d), last = set(d, 0.25);
+  for (int step = 0; step < kHollowSteps; ++step) {
+    const auto from = hollow_angle<kThrough>(d, at, first), to = hollow_angle<kThrough>(d, at, last);
+    const V before = kThrough ? from.theta - highest : lowest - from.theta;
+    const V after = kThrough ? lowest - to.theta : to.theta - highest;
+    const V steepest = kThrough ? from.falling - to.rising : from.rising - to.falling;
+    const V turns = (1 / kTurn) / max(steepest, kEpsilon);
+    first = mul_add(max(before, 0), turns, first);
+    last = neg_mul_add(max(after, 0), turns, last);
+    lanes = hn::And(lanes, first <= last);
+    if (hn::AllFalse(d, hn::And(lanes, max(before, after) > tolerance))) break;
+  }
+  const auto b = [&](V turns) { return at.greatest * sin_cos_turn(d, min(max(turns, 0), 0.25)).sin; };
+  return {hn::IfThenElseZero(lanes, b(first) * (1 - 8 * kEpsilon)),
+          hn::IfThenElseZero(lanes, min(mul_add(b(last), set(d, 1 + 8 * kEpsilon), kEpsilon), 1))};
+}
+
+}  // namespace orrery::kernel::HWY_NAMESPACE
+HWY_AFTER_NAMESPACE();
+#endif
