@@ -11,6 +11,11 @@ namespace orrery::kernel {
 /// Number of paths in a stream: enough to fill packets at deep bounces, few enough to stay in the cache.
 inline constexpr int kStreamSize = 1024;
 
+/// Number of bits of a path's index within the batch. Its chain, see caustic_partition-inl.h, is in the bits above, so
+/// that paths cost nothing more in scenes without caustics.
+inline constexpr int kPathBits = 16;
+static_assert(kStreamSize < 1 << kPathBits);
+
 /// Shadow rays that wait until they fill packets, and the light that they carry if they are not occluded.
 ///
 /// The arrays are padded, because whole vectors are stored at their ends.
@@ -90,12 +95,11 @@ template <class T>
 struct alignas(64) LitPathsOf {
   using Id = IdOf<T>;
   static constexpr int kCapacity = kStreamSize + kPacketSize;
-  Id path[kCapacity];        ///< index within the batch of each path of the stream
+  Id path[kCapacity];        ///< of each path of the stream: its index within the batch and its chain, see kPathBits
   T pdf[kCapacity];          ///< density of the direction of each path of the stream, per steradian; infinite: delta
   T radiance[3][kCapacity];  ///< by index within the batch
   Id pixel[kCapacity];       ///< by index within the batch
   Id sample[kCapacity];      ///< by index within the batch
-  Id chain[kCapacity];       ///< of each path of the stream, only with features.caustics; see caustic_partition-inl.h
   ShadowStreamOf<T> shadow;
   CausticVerticesOf<T> vertices;
   ChainStreamOf<T> chains;

@@ -89,7 +89,6 @@ HWY_INLINE void load_camera_rays(D d, const SceneView& scene, PathCounter& count
     hn::Store(1 / dot(ray.direction, ray.direction), d, packet.inverse_square + v);
     hn::Store(set(du, kNoSphere), du, packet.self + v);
     if (kLoop.records) hn::Store(set(du, kOnlyDeltaBit), du, carried.history + v);
-    if (features.caustics) hn::Store(set(du, kNoChain), du, carried.chain + v);
     if (features.extended && scene.cone_width > 0) {
       const auto cone = camera_cone(d, scene, camera, ray.direction, scene.cone_width);
       store(Vec3<hn::Vec<D>>{cone.width2, cone.mixed, cone.slope2}, carried.cone);
@@ -126,7 +125,6 @@ HWY_INLINE void load_secondary_rays(D d, const SceneView& scene, const Stream& s
     if (kLoop.records) hn::Store(hn::LoadU(du, stream.history + i), du, carried.history + v);
     if (kLoop.full) hn::Store(hn::LoadU(du, stream.lit.path + i), du, carried.path + v);
     if (features.lit) hn::Store(hn::LoadU(d, stream.lit.pdf + i), d, carried.pdf + v);
-    if (features.caustics) hn::Store(hn::LoadU(du, stream.lit.chain + i), du, carried.chain + v);
     if (features.extended && scene.cone_width > 0) store(at(stream.cone), carried.cone);
   }
 }

@@ -55,9 +55,8 @@ struct alignas(64) PathPayload {
   Id pixel[kPacketSize];
   Id sample[kPacketSize];
   Id history[kPacketSize];  ///< in loops that record paths; see record-inl.h
-  Id path[kPacketSize];     ///< in full loops: index within the batch
+  Id path[kPacketSize];     ///< in full loops: see LitPathsOf
   T pdf[kPacketSize];       ///< in full loops: see LitPathsOf
-  Id chain[kPacketSize];    ///< with features.caustics: see LitPathsOf
   T cone[3][kPacketSize];   ///< in full loops: see PathStreamOf
 };
 
@@ -98,9 +97,8 @@ struct Arrivals {
   Ids pixels, samples;
   Vec3<V> throughput;  ///< before the hit
   Ids history;         ///< only in loops that record paths
-  Ids paths;           ///< only in full loops: index within the batch
+  Ids paths;           ///< only in full loops: see LitPathsOf
   V pdf;               ///< only in full loops: see LitPathsOf
-  Ids chain;           ///< only with features.caustics: see LitPathsOf
   RayCone<V> cone;     ///< at the hits; only in scenes with ray cones
 };
 
@@ -180,7 +178,6 @@ class Shader {
   /// Samples lights and BSDFs at hits; see scatter() and light().
   HWY_INLINE int scatter_and_light(const Arrivals<D>& at, Lookup<D>& look, const Vec3<V>& tinted, int alive) {
     if (features_.lit && samples_lights(scene_)) light(at, look, tinted);
-    if (features_.caustics) caustics(at, look, tinted);
     return scatter(at, look, tinted, alive);
   }
 
@@ -208,7 +205,6 @@ class Shader {
     if (kLoop.full) {
       at.paths = hn::Load(du, carried.path + v);
       at.pdf = hn::Load(d, carried.pdf + v);
-      if (features_.caustics) at.chain = hn::Load(du, carried.chain + v);
     }
     at.cone = {hn::Zero(d), hn::Zero(d), hn::Zero(d)};
     if (has_cones()) {
@@ -229,7 +225,7 @@ class Shader {
       radiance = depth_ == 0 ? environment_radiance(d, *scene_.environment, at.ray.direction)
                              : weighted_environment(d, scene_, at.ray.direction, at.pdf);
       if (features_.caustics)
-        radiance = without_sampled_sun(d, scene_, radiance, at.ray.direction, at.missed, at.chain, at.ray.self);
+        radiance = without_sampled_sun(d, scene_, radiance, at.ray.direction, at.missed, chain_of(at), at.ray.self);
       groups = set(du, scene_.environment->light_group);
     } else {
       radiance = background(d, scene_.background, features_.sky, at.ray.direction);
@@ -249,9 +245,9 @@ class Shader {
     auto source = emitted(d, scene_, at.hits, at.hit);
     const auto dark = hn::And(hn::And(source.radiance.x == 0, source.radiance.y == 0), source.radiance.z == 0);
     auto shines = hn::AndNot(dark, at.hit);
-    if (features_.caustics)
-      shines = hn::AndNot(is_sampled_caustic(d, scene_, shines, at.chain, at.ray.self, at.hits), shines);
     if (hn::AllFalse(d, shines)) return;
+    if (features_.caustics)
+      shines = hn::AndNot(is_sampled_caustic(d, scene_, shines, chain_of(at), at.ray.self, at.hits), shines);
     if (features_.extended && scene_.textures != nullptr)
       source.radiance = textured_radiance<D, kLoop.precision>(d, scene_, at.ray, at.hits, shines, at.distance,
                                                               at.cone.width2, at.times, source.radiance);
@@ -355,7 +351,7 @@ class Shader {
     compactor.store3(d, arriving, shadow.light, n);
     compactor.store_ids(d, at.hits, shadow.self + n);
     compactor.store_ids(d, sample.target, shadow.target + n);
-    compactor.store_ids(d, at.paths, shadow.path + n);
+    compactor.store_ids(d, index_of(at), shadow.path + n);
     if (kLoop.records) {
       Ids history = history_after(at, surface, surface.normal);
       if constexpr (kLoop.plastic) {
@@ -405,7 +401,7 @@ class Shader {
     }
     compactor.store_ids(d, at.hits, waiting.self + n);
     compactor.store_ids(d, chosen.index, waiting.ball + n);
-    compactor.store_ids(d, at.paths, waiting.path + n);
+    compactor.store_ids(d, index_of(at), waiting.path + n);
     if (kLoop.records) {
       // The light has the lobe of this vertex and is indirect, like that of a path which finds it.
       const auto history = history_after(at, surface, surface.normal);
@@ -414,7 +410,8 @@ class Shader {
     waiting.count += compactor.count();
   }
 
-  /// Samples the BSDF and appends the surviving paths to the stream.
+  /// Samples the BSDF, appends the surviving paths to the stream, and samples caustics: together, since the test of a
+  /// feature counts in scenes without it.
   ///
   /// Result     their number
   HWY_INLINE int scatter(const Arrivals<D>& at, Lookup<D>& look, const Vec3<V>& tinted, int alive) {
@@ -435,7 +432,17 @@ class Shader {
     compactor.store_ids(d, at.hits, stream_.self + alive);
     compactor.store_ids(d, at.pixels, stream_.pixel + alive);
     compactor.store_ids(d, at.samples, stream_.sample + alive);
-    if (kLoop.full) compactor.store_ids(d, at.paths, stream_.lit.path + alive);
+    if (kLoop.full) {
+      Ids paths = at.paths;
+      if (features_.caustics) {
+        caustics(at, look, tinted);
+        const auto diffuse = hn::AndNot(scattered.in_coat, is_diffuse(d, surface));
+        const Ids chain = continued_chain(d, scene_.caustics, {chain_of(at), at.ray.self, at.hits}, surface,
+                                          scattered.direction, diffuse);
+        paths = hn::Or(index_of(at), hn::ShiftLeft<kPathBits>(chain));
+      }
+      compactor.store_ids(d, paths, stream_.lit.path + alive);
+    }
     if (features_.lit) {
       const V delta = hn::Set(d, std::numeric_limits<T>::infinity());
       V pdf = select(has_pdf(at, look), pdf_bsdf<kLoop.plastic>(d, features_, surface, scattered.direction), delta);
@@ -444,12 +451,6 @@ class Shader {
         pdf = select(scattered.in_coat, coat, pdf);
       }
       compactor.store(d, pdf, stream_.lit.pdf + alive);
-    }
-    if (features_.caustics) {
-      const auto diffuse = hn::AndNot(scattered.in_coat, is_diffuse(d, surface));
-      const Ids chain =
-          continued_chain(d, scene_.caustics, {at.chain, at.ray.self, at.hits}, surface, scattered.direction, diffuse);
-      compactor.store_ids(d, chain, stream_.lit.chain + alive);
     }
     if constexpr (kLoop.plastic) look.surface.kind = lobe_kinds(surface, scattered.in_coat);
     if (has_cones()) {
@@ -474,7 +475,7 @@ class Shader {
     auto record = recorder(at);
     record.event(d, lanes, light, at.history, groups, unscattered);
     if (kLoop.full) {
-      gain(d, lanes, light, at.paths, stream_.lit);
+      gain(d, lanes, light, index_of(at), stream_.lit);
     } else {
       deposit(d, lanes, light, at.pixels, at.samples, scene_, tile_, counts_);
       record.light(d, lanes, light);
@@ -496,6 +497,8 @@ class Shader {
   static HWY_INLINE Ids lobe_kinds(const Surface<D>& surface, hn::Mask<D> in_coat) {
     return select(hn::RebindMask(du, in_coat), set(du, MaterialKind::kMetal), surface.kind);
   }
+  static HWY_INLINE Ids index_of(const Arrivals<D>& at) { return hn::And(at.paths, set(du, (1U << kPathBits) - 1)); }
+  static HWY_INLINE Ids chain_of(const Arrivals<D>& at) { return hn::ShiftRight<kPathBits>(at.paths); }
   HWY_INLINE bool has_cones() const { return features_.extended && scene_.cone_width > 0; }
   HWY_INLINE hn::Mask<D> has_pdf(const Arrivals<D>& at, const Lookup<D>& look) const {
     return hn::AndNot(is_delta(d, look.surface), at.hit);
