@@ -118,11 +118,13 @@ HWY_INLINE CausticPiece<V> hollow_piece(D d, const HollowShells<V>& at, V lowest
     const V before = kThrough ? from.theta - highest : lowest - from.theta;
     const V after = kThrough ? lowest - to.theta : to.theta - highest;
     const V steepest = kThrough ? from.falling - to.rising : from.rising - to.falling;
-    const V turns = (1 / kTurn) / max(steepest, kEpsilon);
+    // A lane ends on its own, so that its result does not depend on the others.
+    const auto open = hn::And(lanes, max(before, after) > tolerance);
+    if (hn::AllFalse(d, open)) break;
+    const V turns = hn::IfThenElseZero(open, (1 / kTurn) / max(steepest, kEpsilon));
     first = mul_add(max(before, 0), turns, first);
     last = neg_mul_add(max(after, 0), turns, last);
     lanes = hn::And(lanes, first <= last);
-    if (hn::AllFalse(d, hn::And(lanes, max(before, after) > tolerance))) break;
   }
   const auto b = [&](V turns) { return at.greatest * sin_cos_turn(d, min(max(turns, 0), 0.25)).sin; };
   return {hn::IfThenElseZero(lanes, b(first) * (1 - 8 * kEpsilon)),
