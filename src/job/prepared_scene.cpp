@@ -35,8 +35,7 @@ const load::LoadedScene& PreparedScene::load(load::SceneRequest request) {
     }
     if (changed.look) compiled_.environment = nullptr;
   };
-  std::optional<load::LoadedScene> previous = std::exchange(loaded_, {});
-  loaded_ = previous ? load::load_scene(request, std::move(*previous)) : load::load_scene(request);
+  loaded_ = load::load_scene(request, std::exchange(loaded_, {}));
   return *loaded_;
 }
 

@@ -78,10 +78,6 @@ void add_textures(Hash& hash, const compile::TextureStore& store) {
 
 }  // namespace
 
-SceneHashes scene_hashes(const compile::CompiledScene& compiled) {
-  return scene_hashes(compiled, hash_of_spheres(compiled));
-}
-
 Hash hash_of_spheres(const compile::CompiledScene& compiled) {
   Hash hash;
   hash.add_bits(compiled.spheres.size());

@@ -14,7 +14,6 @@ struct SceneHashes {
   std::string of_samples;  ///< without the number of samples: what determines each sample of each pixel
   std::string of_image;    ///< with the number of samples
 };
-SceneHashes scene_hashes(const compile::CompiledScene& compiled);
 
 /// The part of the hashes that depends on the spheres and on which material each has; it takes longest.
 base::Hash hash_of_spheres(const compile::CompiledScene& compiled);
@@ -23,6 +22,8 @@ base::Hash hash_of_spheres(const compile::CompiledScene& compiled);
 SceneHashes scene_hashes(const compile::CompiledScene& compiled, base::Hash spheres);
 
 /// SceneHashes::of_image, which identifies the scene.
-inline std::string scene_hash(const compile::CompiledScene& compiled) { return scene_hashes(compiled).of_image; }
+inline std::string scene_hash(const compile::CompiledScene& compiled) {
+  return scene_hashes(compiled, hash_of_spheres(compiled)).of_image;
+}
 
 }  // namespace orrery::job

@@ -342,9 +342,7 @@ class SceneLoader {
 
 }  // namespace
 
-LoadedScene load_scene(const SceneRequest& request) { return SceneLoader(request, {}).run(); }
-
-LoadedScene load_scene(const SceneRequest& request, LoadedScene previous) {
+LoadedScene load_scene(const SceneRequest& request, std::optional<LoadedScene> previous) {
   return SceneLoader(request, std::move(previous)).run();
 }
 

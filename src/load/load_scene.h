@@ -53,16 +53,13 @@ struct LoadedScene {
 ///
 /// Names in [color] are always looked up. A default config is loaded only if `develops`.
 ///
+/// `previous`  an earlier load with keeps_authored, after which only what has changed is read: the result is the same,
+///             except that points tables have no spheres unless `changed` contains geometry or assignment. Its images
+///             move to the result
 /// Errors     those of SceneReader, with unknown names in [color] among its diagnostics; base::Error: kUsage
 ///            for an unknown name from the command line, kMissingInput and kBadData for a config from there or from
 ///            $OCIO
-LoadedScene load_scene(const SceneRequest& request);
-
-/// Loads a scene after another, and reads only what has changed since. The result is that of load_scene(request),
-/// except that points tables have no spheres unless `changed` contains geometry or assignment.
-///
-/// `previous`  loaded with keeps_authored; its images move to the result
-LoadedScene load_scene(const SceneRequest& request, LoadedScene previous);
+LoadedScene load_scene(const SceneRequest& request, std::optional<LoadedScene> previous = {});
 
 /// Reads a scene file and its data files, but no images; colours are as in the file.
 ///

@@ -149,8 +149,7 @@ Result render(const compile::CompiledScene& compiled, const accel::Accel& accel,
 
 Result render(const compile::CompiledScene& compiled, const Settings& settings, std::optional<film::Partial> from) {
   const auto start = Clock::now();
-  const accel::BuildMonitor monitor = [&settings](double fraction) {
-    if (settings.on_build) settings.on_build(fraction);
+  const accel::BuildMonitor monitor = [&settings](double) {
     return settings.cancel == nullptr || !settings.cancel->load(std::memory_order_relaxed);
   };
   std::unique_ptr<accel::Accel> accel;

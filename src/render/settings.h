@@ -70,8 +70,6 @@ struct Settings {
   /// Replaces the clock: seconds as a function of rendered samples, so that tests do not depend on the machine's speed.
   /// Empty: the steady clock. Called from any thread.
   std::function<double(std::uint64_t samples_done)> clock;
-  /// Called from any thread with the progress of the BVH build, 0..1.
-  std::function<void(double fraction)> on_build;
   const std::atomic<bool>* cancel = nullptr;  ///< polled during the build and between tiles; true stops the render
   /// Polled often, from any thread. If true, the threads wait while `on_snapshot` receives the current state.
   std::function<bool()> snapshot_is_due;
