@@ -55,6 +55,7 @@ std::vector<NamedScene> caustic_scenes() {
   add_ball(blocked, {0.6, 0.9, 0.5}, 0.9, glass);
   add_ball(blocked, {0.8, 1.0, 0.6}, 0.3, scene::Lambertian{{0.8, 0.2, 0.2}});
   add_ball(blocked, {1.3, 2.0, 1.2}, 0.25, scene::Lambertian{{0.2, 0.2, 0.8}});
+  add_ball(blocked, {0.35, 1.6, 0.85}, 0.35, glass);  // half in the other ball
   scene::Scene& hollow = add("hollow glass beside glass in glass");
   lamp(hollow);
   add_ball(hollow, {1.9, 0.5, 0.8}, 0.5, glass);
