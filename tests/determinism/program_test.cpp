@@ -168,8 +168,8 @@ TEST_P(DeterminismProgram, OptionsThatMatterChangeTheImage) {
 
 INSTANTIATE_TEST_SUITE_P(, DeterminismProgram,
                          testing::Values(StoredImage{"everything.toml", 0x3fa6a00f7e524967u},
-                                         StoredImage{"lights.toml", 0xd8d69f6136275d11u},
-                                         StoredImage{"sky-and-lights.toml", 0xff17943a1948c0eau},
+                                         StoredImage{"lights.toml", 0x5e1133e0e9b006bfu},
+                                         StoredImage{"sky-and-lights.toml", 0x429d4cc86b6695a2u},
                                          StoredImage{"textures.toml", 0xf986224e4a21d9f2u},
                                          StoredImage{"image-textures.toml", 0xfcae157c25f25d31u},
                                          StoredImage{"rods.toml", 0x89e9970c4046d412u},
