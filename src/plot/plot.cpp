@@ -352,10 +352,11 @@ class PlotMaker {
     if (is_glass && !by.empty() && by != "none")
       base::refuse(fmt::format("--color-by {} has no effect: glass has no colour; use another --material", by));
     if (by.empty()) {
-      const bool has_chains = !roles.chain.empty();
-      const bool is_assembly = !options_.points.assembly.empty(), has_many = has_chains && shown_count() >= kManyAtoms;
-      const bool by_chain = has_chains && !is_glass && roles.rgb[0].empty() &&
-                            (is_assembly || has_many || (!roles.element.empty() && data_.has_one_element(out_.points)));
+      const bool may_be_chain = !roles.chain.empty() && !is_glass && roles.rgb[0].empty();
+      const bool is_assembly = !options_.points.assembly.empty();
+      const bool has_many = may_be_chain && !is_assembly && shown_count() >= kManyAtoms;
+      const bool by_chain =
+          may_be_chain && (is_assembly || has_many || (!roles.element.empty() && data_.has_one_element(out_.points)));
       by = is_glass                 ? "none"
            : !roles.rgb[0].empty()  ? "rgb"
            : by_chain               ? roles.chain

@@ -9,6 +9,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <limits>
+#include <utility>
 
 #include "compile/compiled_scene.h"
 #include "kernel/ray_packet.h"
@@ -183,15 +184,21 @@ std::vector<float> outlines(const compile::CompiledScene& scene, accel::Accel& a
   std::vector<float> coverage(static_cast<std::size_t>(scene.width) * static_cast<std::size_t>(scene.height));
   const float* const opacity = scene.view().opacity;
   if (opacity != nullptr) {
-    // Rays decide at random what is visible. For outlines, first all objects are, then the solid ones.
-    accel.set_opacity(nullptr);
-    draw_outlines({scene, accel, opacity, width_px}, scene, threads, coverage);
+    // Rays decide at random what is visible. For outlines, first all objects are, then the solid ones. An image after
+    // an error must have the scene's opacities, too.
+    struct Restore {
+      accel::Accel& accel;
+      const float* opacity;
+      ~Restore() { accel.set_opacity(opacity); }
+    };
     std::vector<float> solid(scene.opacity.size());
     std::transform(scene.opacity.begin(), scene.opacity.end(), solid.begin(),
                    [](float value) { return value < kSolid ? 0.0f : 1.0f; });
-    accel.set_opacity(solid.data());
-    draw_outlines({scene, accel, opacity, width_px}, scene, threads, coverage);
-    accel.set_opacity(opacity);
+    const Restore restore{accel, opacity};
+    for (const float* const visible : {static_cast<const float*>(nullptr), std::as_const(solid).data()}) {
+      accel.set_opacity(visible);
+      draw_outlines({scene, accel, opacity, width_px}, scene, threads, coverage);
+    }
   } else {
     draw_outlines({scene, accel, nullptr, width_px}, scene, threads, coverage);
   }

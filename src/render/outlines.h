@@ -13,7 +13,8 @@ namespace orrery::render {
 /// the blur of the lens. Outlines of translucent objects are as weak as their objects, and objects less than half
 /// opaque do not hide the outlines behind them.
 ///
-/// `accel`      of the objects of `scene`; has the scene's opacities at the end
+/// `accel`      of the objects of `scene`; has the scene's opacities at the end, and others meanwhile: no query of
+///              another thread may be under way if objects are translucent
 /// `width_px`   of the lines, half of it on either side of the edge
 /// Shape        scene.width * scene.height, row by row from the top
 /// Precision    the width of a straight line, over all pixels, within 0.3 px (test RenderOutlines)

@@ -291,7 +291,9 @@ job::Hooks Viewer::hooks_for(Image& image) {
     image.live->canvas.write(state, rendered);
   };
   hooks.on_progress = [this, &image](const render::Progress& progress) {
-    picker_.open();  // there is no progress before the BVH has been built
+    // There is no progress before the BVH has been built. Outlines of translucent objects replace the opacities that a
+    // pick would read, see render::outlines(): it is then possible when the image is complete.
+    if (image.rendering->drawing.outline_px == 0 || prepared_->compiled().opacity.empty()) picker_.open();
     if (std::exchange(image.build_reported, -1) >= 0) set_activity("");
     const preview::Canvas& canvas = image.live->canvas;
     image.live->samples = static_cast<double>(progress.samples_done) / pixels_of(canvas.width(), canvas.height());
