@@ -5,7 +5,7 @@
 #include <cmath>
 #include <limits>
 
-#include "base/stop_point.h"
+#include "base/parallel.h"
 #include "math/scalar.h"
 
 namespace orrery::accel {
@@ -30,44 +30,61 @@ BoxFrame::BoxFrame(const BoundedSpheres& spheres, const std::vector<std::uint32_
     const kernel::Sphere s = spheres[id], change = motion[id];
     return kernel::Sphere{s.x + change.x, s.y + change.y, s.z + change.z, s.radius + change.radius};
   };
-  const base::StopPoint stop;
-  const auto each = [&](auto f) {
-    for (const std::uint32_t id : ids) {
-      stop.check(id);
-      f(spheres[id]);
-      if (id < moving_count) f(at_closing(id));
-    }
-    for (std::size_t i = 0; i < rods.rods.count; ++i) {
-      stop.check(i);
-      for (int step = 0; step < (i < rods.rods.moving_count ? 2 : 1); ++step) {
-        const kernel::Rod rod = rods.at(i, step);
-        f(kernel::Sphere{rod.a[0], rod.a[1], rod.a[2], rod.radius});
-        f(kernel::Sphere{rod.b[0], rod.b[1], rod.b[2], rod.radius});
-      }
-    }
+  // Includes the spheres, the ends of rods, and where they move, in a value.
+  const auto accumulated = [&](const auto& start, auto add, auto join) {
+    auto out = base::accumulate_parallel(
+        ids.size(), start,
+        [&](auto& value, std::size_t i) {
+          add(value, spheres[ids[i]]);
+          if (ids[i] < moving_count) add(value, at_closing(ids[i]));
+        },
+        join);
+    const auto of_rods = base::accumulate_parallel(
+        rods.rods.count, start,
+        [&](auto& value, std::size_t i) {
+          for (int step = 0; step < (i < rods.rods.moving_count ? 2 : 1); ++step) {
+            const kernel::Rod rod = rods.at(i, step);
+            add(value, kernel::Sphere{rod.a[0], rod.a[1], rod.a[2], rod.radius});
+            add(value, kernel::Sphere{rod.b[0], rod.b[1], rod.b[2], rod.radius});
+          }
+        },
+        join);
+    join(out, of_rods);
+    return out;
   };
   const bool moves = moving_count > 0 || rods.rods.moving_count > 0;
-  double lower[3], upper[3];
-  std::fill_n(lower, 3, std::numeric_limits<double>::infinity());
-  std::fill_n(upper, 3, -std::numeric_limits<double>::infinity());
-  each([&](const kernel::Sphere& s) {
-    const double center[3] = {s.x, s.y, s.z};
-    for (int axis = 0; axis < 3; ++axis) {
-      lower[axis] = std::min(lower[axis], center[axis] - s.radius);
-      upper[axis] = std::max(upper[axis], center[axis] + s.radius);
-    }
-  });
+  constexpr double kInfinity = std::numeric_limits<double>::infinity();
+  struct Corners {
+    double lower[3], upper[3];
+  };
+  const auto [lower, upper] = accumulated(
+      Corners{{kInfinity, kInfinity, kInfinity}, {-kInfinity, -kInfinity, -kInfinity}},
+      [](Corners& all, const kernel::Sphere& s) {
+        const double center[3] = {s.x, s.y, s.z};
+        for (int axis = 0; axis < 3; ++axis) {
+          all.lower[axis] = std::min(all.lower[axis], center[axis] - s.radius);
+          all.upper[axis] = std::max(all.upper[axis], center[axis] + s.radius);
+        }
+      },
+      [](Corners& a, const Corners& b) {
+        for (int axis = 0; axis < 3; ++axis) {
+          a.lower[axis] = std::min(a.lower[axis], b.lower[axis]);
+          a.upper[axis] = std::max(a.upper[axis], b.upper[axis]);
+        }
+      });
   for (int axis = 0; axis < 3; ++axis) {
     middle[axis] = lower[axis] / 2 + upper[axis] / 2;
     if (spheres.in_single)
       middle[axis] = math::in_single_precision(middle[axis]);  // rays are translated by the same value
   }
   // Measured from the rounded centre, which far from the world origin differs from that of the corners.
-  double half = 0;
-  each([&](const kernel::Sphere& s) {
-    half = std::max({half, std::abs(s.x - middle[0]) + s.radius, std::abs(s.y - middle[1]) + s.radius,
-                     std::abs(s.z - middle[2]) + s.radius});
-  });
+  const double half = accumulated(
+      0.0,
+      [&](double& most, const kernel::Sphere& s) {
+        most = std::max({most, std::abs(s.x - middle[0]) + s.radius, std::abs(s.y - middle[1]) + s.radius,
+                         std::abs(s.z - middle[2]) + s.radius});
+      },
+      [](double& a, double b) { a = std::max(a, b); });
   scale = std::ldexp(1.0, -std::ilogb(half));
   reach = half * scale * 1.8;  // sqrt(3) for the box's corners, plus room for the padding
   // Embree also interpolates motion-blurred bounds in single precision, which costs some more bits.

@@ -28,6 +28,12 @@ struct BoundedSpheres {
     return {in_single_precision(s.x), in_single_precision(s.y), in_single_precision(s.z),
             in_single_precision(s.radius)};
   }
+
+  /// See kernel::SphereArray.
+  double coordinate(std::size_t id, int axis) const noexcept {
+    const double x = spheres.coordinate(id, axis);
+    return in_single ? math::in_single_precision(x) : x;
+  }
 };
 
 /// Rods as the kernel intersects them, see BoundedSpheres.

@@ -1,10 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "accel/sphere_bvh.h"
 
-#include <sys/mman.h>
 #include <tbb/blocked_range.h>
 #include <tbb/parallel_for.h>
-#include <unistd.h>
 
 #include <algorithm>
 #include <array>
@@ -16,6 +14,10 @@
 #include <span>
 #include <utility>
 
+#include "accel/sphere_codes.h"
+#include "accel/sphere_sort.h"
+#include "base/huge_pages.h"
+#include "base/parallel.h"
 #include "base/stop_point.h"
 #include "math/scalar.h"
 
@@ -28,132 +30,194 @@ using math::rounded_up;
 /// ray by at most 40 x 2^-24 relative to a sphere and by at most 19 x 2^-24 relative to a box.
 constexpr double kSpherePadding = 0x1.4p-17, kBoxPadding = 0x1p-18;
 
-/// The components of the half axes of rods are -127 to 127 steps.
-constexpr double kHalfCodes = 127;
-
 /// Rounding error of the triple product of a ray's direction, the half axis of a rod, and the vector between them, in
 /// units of the frame's reach times the length of the half axis: at most 8 x 2^-24 of that vector, whose length is at
 /// most 2.5 reaches. The half axis is at most sqrt(3) x 127 steps long.
-constexpr double kAxisSlack = 0x1p-18 * 1.7321 * kHalfCodes;
+constexpr double kAxisSlack = 0x1p-18 * 1.7321 * kLargestHalfCode;
 
-/// Number of leaves that are created before the memory of their items is released, and of items before that of their
-/// ids.
-constexpr std::size_t kReleasedLeaves = 1 << 16, kReleasedIds = kReleasedLeaves * kArity;
+/// With more spheres there are no start nodes: rays start at the root, which costs a few percent of their time and
+/// saves 3 bytes of 24 per sphere.
+constexpr std::size_t kMostStartNodes = std::size_t{1} << 27;
 
-struct Bounds {
-  float lower[3] = {kInfinity, kInfinity, kInfinity};
-  float upper[3] = {-kInfinity, -kInfinity, -kInfinity};
+/// Builds a SphereBvh.
+class Builder {
+ public:
+  Builder(SphereBvh& bvh, const EnclosingSpheres& spheres, std::vector<std::uint32_t> ids)
+      : bvh_(bvh), spheres_(spheres), ids_(std::move(ids)) {}
 
-  void add(const float (&low)[3], const float (&high)[3]) {
-    for (int k = 0; k < 3; ++k) {
-      lower[k] = std::min(lower[k], low[k]);
-      upper[k] = std::max(upper[k], high[k]);
+  void run(const SphereSort::Monitor& monitor, std::size_t part_size) {
+    measure();
+    reserve();
+    SphereSort sort(bvh_.count, part_size, static_cast<float>(mean_radius_), bvh_.radius + 2 * box_padding_, monitor);
+    for (const SphereSort::Part& part : sort.divide(spheres_, ids_)) {
+      const std::span<SphereItem> items = take_items(part);
+      sort.sort(part, items);
+      add_leaves(part, items);
     }
+    base::HugeVector<SphereItem>().swap(items_);
+    add_nodes(sort);
   }
-  void add(const Bounds& b) { add(b.lower, b.upper); }
-};
 
-/// Returns memory to the operating system. The elements are zero from then on.
-template <class T>
-void release(T* begin, T* end) {
-  const auto page = static_cast<std::uintptr_t>(sysconf(_SC_PAGESIZE));
-  const auto first = (reinterpret_cast<std::uintptr_t>(begin) + page - 1) / page * page,
-             last = reinterpret_cast<std::uintptr_t>(end) / page * page;
-  if (first < last) madvise(reinterpret_cast<void*>(first), last - first, MADV_DONTNEED);
-}
+ private:
+  using Range = tbb::blocked_range<std::size_t>;
 
-/// Quantizes a bound, rounding down and up respectively: the decoded bound is at most, or at least, `bound`.
-///
-/// Domain     `bound` is between the origin and the decoded value of 255
-std::uint8_t code_below(float bound, float origin, float step) {
-  int code = std::clamp(static_cast<int>((bound - origin) / step), 0, 255);
-  while (code > 0 && std::fma(static_cast<float>(code), step, origin) > bound) --code;
-  return static_cast<std::uint8_t>(code);
-}
-std::uint8_t code_above(float bound, float origin, float step) {
-  int code = std::clamp(static_cast<int>((bound - origin) / step), 0, 255);
-  while (code < 255 && std::fma(static_cast<float>(code), step, origin) < bound) ++code;
-  return static_cast<std::uint8_t>(code);
-}
+  /// Determines the radii, and whether there are rods.
+  void measure() {
+    struct Radii {
+      double least = std::numeric_limits<double>::infinity(), largest = 0, sum = 0;
+      bool has_rods = false;
+    };
+    const Radii radii = base::accumulate_parallel(
+        ids_.size(), Radii(),
+        [&](Radii& all, std::size_t i) {
+          const double r = spheres_[ids_[i]].radius;
+          all.has_rods = all.has_rods || spheres_.rods.rods.contains(ids_[i]);
+          all.least = std::min(all.least, r);
+          all.largest = std::max(all.largest, r);
+          all.sum += r;
+        },
+        [](Radii& a, const Radii& b) {
+          a = {std::min(a.least, b.least), std::max(a.largest, b.largest), a.sum + b.sum, a.has_rods || b.has_rods};
+        });
+    has_rods_ = radii.has_rods;
+    own_radii_ = radii.least < radii.largest || has_rods_;
+    mean_radius_ = radii.sum / static_cast<double>(ids_.size()) * spheres_.frame.scale;
+    bvh_.radius = rounded_up(radii.largest * spheres_.frame.scale);
+    bvh_.padding = rounded_up(kSpherePadding * spheres_.frame.reach);
+    bvh_.axis_slack = rounded_up(kAxisSlack * spheres_.frame.reach);
+    box_padding_ = rounded_up(kBoxPadding * spheres_.frame.reach);
+  }
 
-/// The smallest step with which 255 steps from `lower` reach `upper`.
-float step_between(float lower, float upper) {
-  float step = std::max((upper - lower) / 255, std::numeric_limits<float>::min());
-  while (std::fma(255.0F, step, lower) < upper) step = std::nextafter(step * (1 + 0x1p-23F), kInfinity);
-  return step;
-}
+  /// Reserves memory, which is touched when it is needed.
+  void reserve() {
+    const std::size_t leaves = parents_of(bvh_.count);
+    std::size_t nodes = 0;
+    for (std::size_t level = leaves; level > 1 || nodes == 0; nodes += level) level = parents_of(level);
+    bvh_.leaves.reserve(leaves);
+    if (own_radii_) bvh_.radii.reserve(leaves);
+    if (has_rods_) bvh_.rods.reserve(leaves);
+    bvh_.nodes.reserve(nodes);
+    bvh_.cells.reserve(nodes);
+    above_leaves_.reserve(parents_of(leaves));
+    bvh_.last_leaf = static_cast<std::uint32_t>(leaves - 1);
+    bvh_.no_start_node = static_cast<std::uint32_t>(parents_of(leaves));
+    if (bvh_.count > kMostStartNodes) return;
+    const std::size_t last = spheres_.rods.rods.object(*std::max_element(ids_.begin(), ids_.end()));
+    bvh_.start_nodes = base::PackedArray(last + 1, bvh_.no_start_node);
+  }
 
-SphereBvh::Node make_node(const Bounds* children, std::size_t count, std::uint32_t first) {
-  Bounds all;
-  for (std::size_t i = 0; i < count; ++i) all.add(children[i]);
-  SphereBvh::Node node{};
-  node.first = first;
-  node.count = static_cast<std::uint32_t>(count);
-  for (int axis = 0; axis < 3; ++axis) {
-    const float origin = all.lower[axis], step = step_between(origin, all.upper[axis]);
-    node.origin[axis] = origin;
-    node.step[axis] = step;
-    std::fill_n(node.bound[0][axis], kArity, std::uint8_t{255});
-    for (std::size_t i = 0; i < count; ++i) {
-      node.bound[0][axis][i] = code_below(children[i].lower[axis], origin, step);
-      node.bound[1][axis][i] = code_above(children[i].upper[axis], origin, step);
+  /// Replaces the ids of a part by items, and returns their memory.
+  std::span<SphereItem> take_items(const SphereSort::Part& part) {
+    items_.resize(std::max(items_.size(), part.count));
+    const std::span items(items_.data(), part.count);
+    const std::span<std::uint32_t> ids(&ids_[part.begin], part.count);
+    const base::StopPoint stop;
+    tbb::parallel_for(Range(0, part.count, 4096), [&](const Range& range) {
+      stop.check();
+      for (std::size_t i = range.begin(); i < range.end(); ++i) items[i] = spheres_.item(ids[i]);
+    });
+    base::release_memory(ids);
+    return items;
+  }
+
+  /// Adds the leaves of a part and the nodes above them.
+  void add_leaves(const SphereSort::Part& part, std::span<const SphereItem> items) {
+    const std::size_t first = bvh_.leaves.size(), count = parents_of(part.count), first_node = bvh_.nodes.size();
+    bvh_.leaves.resize(first + count);
+    if (own_radii_) bvh_.radii.resize(first + count);
+    if (has_rods_) bvh_.rods.resize(first + count);
+    bvh_.nodes.resize(first_node + parents_of(count));
+    above_leaves_.resize(bvh_.nodes.size());
+    const base::StopPoint stop;
+    tbb::parallel_for(Range(0, parents_of(count), 16), [&](const Range& range) {
+      stop.check();
+      for (std::size_t n = range.begin(); n < range.end(); ++n) {
+        Bounds children[kArity];
+        const std::size_t below = n * kArity, here = std::min(kArity, count - below);
+        for (std::size_t i = 0; i < here; ++i) {
+          const std::size_t begin = (below + i) * kArity;
+          children[i] = add_leaf(first + below + i, items.subspan(begin, std::min(kArity, items.size() - begin)));
+        }
+        const auto child = static_cast<std::uint32_t>(first + below);
+        add_node(first_node + n, std::span(children, here), child | SphereBvh::kLeafBit, above_leaves_[first_node + n]);
+      }
+    });
+  }
+
+  /// Sets a leaf.
+  ///
+  /// Result     padded bounds of its spheres
+  Bounds add_leaf(std::size_t index, std::span<const SphereItem> items) {
+    const kernel::RodArray& rods = spheres_.rods.rods;
+    const BoxFrame& frame = spheres_.frame;
+    bvh_.leaves[index] = make_leaf(items);
+    Bounds bounds;
+    float r[kArity], most = 0;
+    for (std::size_t i = 0; i < items.size(); ++i) {
+      const auto& [center, id] = items[i];
+      if (bvh_.start_nodes.size() > 0)
+        bvh_.start_nodes.set(rods.object(id), static_cast<std::uint32_t>(index / kArity));
+      r[i] = own_radii_ ? rounded_up(spheres_[id].radius * frame.scale) : bvh_.radius;
+      most = std::max(most, r[i]);
+      float reach[3] = {r[i], r[i], r[i]}, lower[3], upper[3];
+      if (rods.contains(id)) {
+        const RodExtent rod(spheres_.rods.at(rods.index(id), 0), frame);
+        for (int axis = 0; axis < 3; ++axis) reach[axis] = rounded_up(std::abs(rod.half[axis]) + rod.radius);
+      }
+      for (int axis = 0; axis < 3; ++axis) {
+        lower[axis] = center[axis] - (reach[axis] + box_padding_);
+        upper[axis] = center[axis] + (reach[axis] + box_padding_);
+      }
+      bounds.add(lower, upper);
     }
+    if (!own_radii_) return bounds;
+    bvh_.radii[index] = {{}, step_between(0, most)};
+    for (std::size_t i = 0; i < items.size(); ++i)
+      bvh_.radii[index].radius[i] = code_above(r[i], 0, bvh_.radii[index].step);
+    if (has_rods_) bvh_.rods[index] = make_leaf_rods(bvh_.leaves[index], items.size(), spheres_.rods, frame);
+    return bounds;
   }
-  return node;
-}
 
-SphereBvh::Leaf make_leaf(const SphereItem* items, std::size_t count) {
-  Bounds all;
-  for (std::size_t i = 0; i < count; ++i) all.add(items[i].center, items[i].center);
-  SphereBvh::Leaf leaf{};
-  leaf.step = 0;
-  for (int axis = 0; axis < 3; ++axis) {
-    leaf.origin[axis] = all.lower[axis];
-    leaf.step = std::max(leaf.step, step_between(all.lower[axis], all.upper[axis]));
+  void add_node(std::size_t index, std::span<const Bounds> children, std::uint32_t first, Bounds& all) {
+    bvh_.nodes[index] = make_node(children, first);
+    for (const Bounds& child : children) all.add(child);
   }
-  std::fill_n(leaf.ids, kArity, kernel::kNoSphere);
-  for (std::size_t i = 0; i < count; ++i) {
-    leaf.ids[i] = items[i].id;
-    for (int axis = 0; axis < 3; ++axis)
-      leaf.center[axis][i] = static_cast<std::uint8_t>(
-          std::clamp(std::lround((items[i].center[axis] - leaf.origin[axis]) / leaf.step), 0L, 255L));
-  }
-  return leaf;
-}
 
-/// A rod's half axis and radius, in box space.
-struct RodExtent {
-  double half[3], radius;
-
-  RodExtent(const kernel::Rod& rod, const BoxFrame& frame) : radius(rod.radius * frame.scale) {
-    for (int axis = 0; axis < 3; ++axis) half[axis] = (rod.b[axis] - rod.a[axis]) / 2 * frame.scale;
+  /// Adds the nodes of the upper levels.
+  void add_nodes(const SphereSort& sort) {
+    std::vector<Bounds> below = std::move(above_leaves_);
+    std::size_t level = 0, first = 0;
+    while (true) {
+      bvh_.cells.insert(bvh_.cells.end(), sort.cells(level).begin(), sort.cells(level).end());
+      bvh_.level_begin[level++] = static_cast<std::uint32_t>(first);
+      if (below.size() == 1) break;
+      const std::size_t begin = bvh_.nodes.size();
+      std::vector<Bounds> above(parents_of(below.size()));
+      bvh_.nodes.resize(begin + above.size());
+      tbb::parallel_for(Range(0, above.size(), 64), [&](const Range& range) {
+        for (std::size_t n = range.begin(); n < range.end(); ++n) {
+          const std::size_t child = n * kArity, count = std::min(kArity, below.size() - child);
+          add_node(begin + n, std::span(&below[child], count), static_cast<std::uint32_t>(first + child), above[n]);
+        }
+      });
+      first = begin;
+      below = std::move(above);
+    }
+    std::copy_n(below[0].lower, 3, bvh_.box.lower);
+    std::copy_n(below[0].upper, 3, bvh_.box.upper);
   }
+
+  static std::size_t parents_of(std::size_t count) { return (count + kArity - 1) / kArity; }
+
+  SphereBvh& bvh_;
+  const EnclosingSpheres& spheres_;
+  std::vector<std::uint32_t> ids_;
+  base::HugeVector<SphereItem> items_;  ///< of the part that is being built
+  std::vector<Bounds> above_leaves_;    ///< of the nodes above the leaves
+  double mean_radius_ = 0;  ///< box space
+  float box_padding_ = 0;
+  bool has_rods_ = false, own_radii_ = false;
 };
-
-SphereBvh::LeafRods make_leaf_rods(const SphereBvh::Leaf& leaf, std::size_t count, const BoundedRods& rods,
-                                   const BoxFrame& frame) {
-  SphereBvh::LeafRods out{};
-  const auto each = [&](auto f) {
-    for (std::size_t i = 0; i < count; ++i)
-      if (rods.rods.contains(leaf.ids[i])) f(i, RodExtent(rods.at(rods.rods.index(leaf.ids[i]), 0), frame));
-  };
-  double most = 0, thickest = 0, thinnest = std::numeric_limits<double>::infinity();
-  each([&](std::size_t i, const RodExtent& rod) {
-    out.rods |= 1u << i;
-    for (const double x : rod.half) most = std::max(most, std::abs(x));
-    thickest = std::max(thickest, rod.radius);
-    thinnest = std::min(thinnest, rod.radius);
-  });
-  if (out.rods == 0) return out;
-  out.step = std::max(rounded_up(most / kHalfCodes), std::numeric_limits<float>::min());
-  out.radius = rounded_up(thickest);
-  out.least_radius = math::rounded_down(thinnest);
-  each([&](std::size_t i, const RodExtent& rod) {
-    for (int axis = 0; axis < 3; ++axis)
-      out.half[axis][i] = static_cast<std::int8_t>(std::lround(rod.half[axis] / out.step));
-  });
-  return out;
-}
 
 }  // namespace
 
@@ -164,124 +228,10 @@ kernel::Sphere enclosing_sphere(const kernel::Rod& rod) noexcept {
 }
 
 SphereBvh::SphereBvh(const BoundedSpheres& spheres, std::vector<std::uint32_t> ids, const BoxFrame& frame,
-                     const std::function<bool(double)>& monitor, const BoundedRods& bounded_rods)
+                     const std::function<bool(double)>& monitor, const BoundedRods& bounded_rods,
+                     std::size_t size_of_parts)
     : count(ids.size()) {
-  using Range = tbb::blocked_range<std::size_t>;
-  const std::size_t leaf_count = (count + kArity - 1) / kArity;
-  padding = rounded_up(kSpherePadding * frame.reach);
-  axis_slack = rounded_up(kAxisSlack * frame.reach);
-  const kernel::RodArray& all_rods = bounded_rods.rods;
-  const auto enclosing = [&](std::uint32_t id) {
-    return all_rods.contains(id) ? enclosing_sphere(bounded_rods.at(all_rods.index(id), 0)) : spheres[id];
-  };
-  double smallest = std::numeric_limits<double>::infinity(), largest = 0, sum = 0;
-  const base::StopPoint stop;
-  bool has_rods = false;
-  for (const std::uint32_t id : ids) {
-    const double r = enclosing(id).radius;
-    has_rods = has_rods || all_rods.contains(id);
-    smallest = std::min(smallest, r);
-    largest = std::max(largest, r);
-    sum += r;
-  }
-  const bool own_radii = smallest < largest || has_rods;
-  radius = rounded_up(largest * frame.scale);
-  const std::size_t object_count = all_rods.object(*std::max_element(ids.begin(), ids.end())) + 1;
-
-  stop.check();
-  using Allocator = base::HugePageAllocator<SphereItem>;
-  const auto free_items = [n = count](SphereItem* p) { Allocator().deallocate(p, n); };
-  // Its pages are first touched in parallel.
-  std::unique_ptr<SphereItem[], decltype(free_items)> storage(Allocator().allocate(count), free_items);
-  const std::span<SphereItem> items(storage.get(), count);
-  const auto make_items = [&](const Range& range) {
-    stop.check();
-    for (std::size_t i = range.begin(); i < range.end(); ++i) {
-      const kernel::Sphere s = enclosing(ids[i]);
-      items[i] = {{static_cast<float>((s.x - frame.middle[0]) * frame.scale),
-                   static_cast<float>((s.y - frame.middle[1]) * frame.scale),
-                   static_cast<float>((s.z - frame.middle[2]) * frame.scale)},
-                  ids[i]};
-    }
-  };
-  for (std::size_t begin = 0; begin < count; begin += kReleasedIds) {
-    const std::size_t end = std::min(count, begin + kReleasedIds);
-    tbb::parallel_for(Range(begin, end, 4096), make_items);
-    release(&ids[begin], &ids[0] + end);
-  }
-  std::vector<std::uint32_t>().swap(ids);  // copied to the items
-  const float box_padding = rounded_up(kBoxPadding * frame.reach);
-  const NodeCells node_cells = sort_spheres(items, static_cast<float>(sum / static_cast<double>(count) * frame.scale),
-                                            radius + 2 * box_padding, monitor);
-
-  leaves.reserve(leaf_count);
-  last_leaf = static_cast<std::uint32_t>(leaf_count - 1);
-  no_start_node = static_cast<std::uint32_t>((leaf_count + kArity - 1) / kArity);
-  start_nodes = base::PackedArray(object_count, no_start_node);
-  if (own_radii) radii.reserve(leaf_count);
-  if (has_rods) rods.reserve(leaf_count);
-  std::vector<Bounds> below;
-  below.reserve(leaf_count);
-  const auto make_leaves = [&](const Range& range) {
-    for (std::size_t l = range.begin(); l < range.end(); ++l) {
-      const std::size_t n = count_in(static_cast<std::uint32_t>(l));
-      const SphereItem* const in_leaf = &items[l * kArity];
-      leaves[l] = make_leaf(in_leaf, n);
-      float r[kArity], most = 0;
-      for (std::size_t i = 0; i < n; ++i) {
-        start_nodes.set(all_rods.object(in_leaf[i].id), static_cast<std::uint32_t>(l / kArity));
-        r[i] = own_radii ? rounded_up(enclosing(in_leaf[i].id).radius * frame.scale) : radius;
-        most = std::max(most, r[i]);
-        float reach[3] = {r[i], r[i], r[i]}, lower[3], upper[3];
-        if (all_rods.contains(in_leaf[i].id)) {
-          const RodExtent rod(bounded_rods.at(all_rods.index(in_leaf[i].id), 0), frame);
-          for (int axis = 0; axis < 3; ++axis) reach[axis] = rounded_up(std::abs(rod.half[axis]) + rod.radius);
-        }
-        for (int axis = 0; axis < 3; ++axis) {
-          lower[axis] = in_leaf[i].center[axis] - (reach[axis] + box_padding);
-          upper[axis] = in_leaf[i].center[axis] + (reach[axis] + box_padding);
-        }
-        below[l].add(lower, upper);
-      }
-      if (!own_radii) continue;
-      radii[l].step = step_between(0, most);
-      for (std::size_t i = 0; i < n; ++i) radii[l].radius[i] = code_above(r[i], 0, radii[l].step);
-      if (has_rods) rods[l] = make_leaf_rods(leaves[l], n, bounded_rods, frame);
-    }
-  };
-  // Leaves replace items step by step, so that both are never in memory completely.
-  for (std::size_t begin = 0; begin < leaf_count; begin += kReleasedLeaves) {
-    stop.check();
-    const std::size_t end = std::min(leaf_count, begin + kReleasedLeaves);
-    leaves.resize(end);
-    if (own_radii) radii.resize(end);
-    if (has_rods) rods.resize(end);
-    below.resize(end);
-    tbb::parallel_for(Range(begin, end, 256), make_leaves);
-    release(&items[begin * kArity], &items[0] + std::min(count, end * kArity));
-  }
-  storage.reset();
-
-  std::uint32_t first = 0;
-  std::size_t level = 0;
-  for (bool of_leaves = true; of_leaves || below.size() > 1; of_leaves = false) {
-    const std::size_t parents = (below.size() + kArity - 1) / kArity, begin = nodes.size();
-    std::vector<Bounds> above(parents);
-    nodes.resize(begin + parents);
-    tbb::parallel_for(Range(0, parents, 64), [&](const Range& range) {
-      for (std::size_t p = range.begin(); p < range.end(); ++p) {
-        const std::size_t n = std::min<std::size_t>(kArity, below.size() - p * kArity);
-        const auto child = static_cast<std::uint32_t>(first + p * kArity);
-        nodes[begin + p] = make_node(&below[p * kArity], n, of_leaves ? child | kLeafBit : child);
-        for (std::size_t i = 0; i < n; ++i) above[p].add(below[p * kArity + i]);
-      }
-    });
-    cells.insert(cells.end(), node_cells[level].begin(), node_cells[level].end());
-    level_begin[level++] = first = static_cast<std::uint32_t>(begin);
-    below = std::move(above);
-  }
-  std::copy_n(below[0].lower, 3, box.lower);
-  std::copy_n(below[0].upper, 3, box.upper);
+  Builder(*this, {spheres, bounded_rods, frame}, std::move(ids)).run(monitor, size_of_parts > 0 ? size_of_parts : part_size(count));
 }
 
 std::size_t SphereBvh::bytes() const noexcept {

@@ -5,8 +5,6 @@
 #include <cstddef>
 #include <cstdint>
 #include <functional>
-#include <limits>
-#include <span>
 #include <vector>
 
 #include "accel/box_frame.h"
@@ -77,14 +75,20 @@ class SphereBvh {
   /// Maximum number of spheres that references and kMaxDepth allow.
   static constexpr std::size_t kMaxSpheres = (std::size_t{1} << 31) - kArity;
 
+  /// Spheres that are in memory as items at a time while the BVH is built, see SphereSort: at most an eighth of all,
+  /// where that saves memory to speak of.
+  static constexpr std::size_t part_size(std::size_t count) { return std::size_t{1} << (count >> 27 > 0 ? 24 : 20); }
+
   SphereBvh() = default;
 
-  /// `ids`      of spheres and of the first halves of rods, which do not move
-  /// `monitor`  receives the progress, 0..1, on any thread; returns false to cancel
-  /// Domain     1 <= ids.size() <= kMaxSpheres; all spheres and rods lie in the frame
-  /// Errors     base::Error(kStopped) if the monitor cancelled the build
+  /// `ids`            of spheres and of the first halves of rods, which do not move
+  /// `monitor`        receives the progress, 0..1, on any thread; returns false to cancel
+  /// `size_of_parts`  a power of kArity, at least its square; 0: part_size(); the result does not depend on it
+  /// Domain           1 <= ids.size() <= kMaxSpheres; all spheres and rods lie in the frame
+  /// Errors           base::Error(kStopped) if the monitor cancelled the build
   SphereBvh(const BoundedSpheres& spheres, std::vector<std::uint32_t> ids, const BoxFrame& frame,
-            const std::function<bool(double)>& monitor = {}, const BoundedRods& rods = {});
+            const std::function<bool(double)>& monitor = {}, const BoundedRods& rods = {},
+            std::size_t size_of_parts = 0);
 
   bool empty() const noexcept { return leaves.empty(); }
   std::uint32_t root() const noexcept { return static_cast<std::uint32_t>(nodes.size() - 1); }
@@ -125,28 +129,5 @@ class SphereBvh {
 
 /// The sphere around a rod's middle that encloses the rod.
 kernel::Sphere enclosing_sphere(const kernel::Rod& rod) noexcept;
-
-// While the BVH is built:
-
-inline constexpr std::size_t kArity = SphereBvh::kArity;
-inline constexpr float kInfinity = std::numeric_limits<float>::infinity();
-
-/// A sphere while its BVH is built.
-struct SphereItem {
-  float center[3];  ///< box space
-  std::uint32_t id;
-};
-
-/// The cells of a BVH's nodes by level, starting with the level above the leaves.
-using NodeCells = std::array<std::vector<SphereBvh::Cell>, SphereBvh::kMaxDepth>;
-
-/// Sorts spheres into the order of the leaves of a BVH, using the surface area heuristic.
-///
-/// `margin`   average radius, for the surface area, box space
-/// `reach`    maximum distance of a sphere's surface from its centre, padded, box space
-/// `monitor`  receives the progress, 0..1, on any thread; returns false to cancel; or empty
-/// Errors     base::Error(kStopped) if the monitor or a base::StopScope cancelled
-NodeCells sort_spheres(std::span<SphereItem> items, float margin, float reach,
-                       const std::function<bool(double)>& monitor);
 
 }  // namespace orrery::accel

@@ -55,10 +55,24 @@ void append_indices(const scene::NumberArray& radii, const std::vector<double>& 
 }
 
 void append_singles(const scene::NumberArray& numbers, base::HugeVector<float>& out) {
-  if (const float* const singles = numbers.singles())
-    out.insert(out.end(), singles, singles + numbers.size());
+  if (const auto singles = numbers.singles())
+    out.insert(out.end(), singles->begin(), singles->end());
   else
     for (const double number : numbers) out.push_back(static_cast<float>(number));
+}
+
+/// Returns the centres of all sets, shared with the scene if possible.
+///
+/// `count`    number of spheres
+std::shared_ptr<const base::HugeVector<float>> centers_of(std::span<const scene::Points> sets, std::size_t count) {
+  base::HugeVector<float> out;
+  for (const scene::Points& points : sets) {
+    const auto singles = points.centers.numbers().singles();
+    if (singles && points.centers.size() == count) return singles;
+    out.reserve(3 * count);
+    append_singles(points.centers.numbers(), out);
+  }
+  return std::make_shared<const base::HugeVector<float>>(std::move(out));
 }
 
 /// How the spheres of points files are stored.
@@ -127,15 +141,13 @@ void SphereStore::append(std::span<const scene::Points> sets) {
   stop.check();
   radius_palette_ = std::move(layout.palette);
   if (count == 0) return;
-  centers_.reserve(3 * count + 1);
+  centers_ = centers_of(sets, count);
   if (radius_palette_.empty()) radii_.reserve(count);
   if (radius_palette_.size() > 1) radius_indices_.reserve(count);
   for (const scene::Points& points : sets) {
-    append_singles(points.centers.numbers(), centers_);
     if (radius_palette_.empty()) append_singles(points.radii, radii_);
     if (radius_palette_.size() > 1) append_indices(points.radii, radius_palette_, radius_indices_);
   }
-  centers_.push_back(0);
   for (float& radius : radii_) radius = std::abs(radius);
 }
 

@@ -3,6 +3,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <memory>
 #include <span>
 #include <vector>
 
@@ -42,7 +43,7 @@ class PackedIndices {
 /// The spheres of a compiled scene, stored in 12 or 13 bytes each where that is lossless.
 class SphereStore {
  public:
-  std::size_t size() const noexcept { return plain_.size() + centers_.size() / 3; }
+  std::size_t size() const noexcept { return plain_.size() + (centers_ ? centers_->size() / 3 : 0); }
   bool empty() const noexcept { return size() == 0; }
   kernel::Sphere operator[](std::size_t id) const noexcept { return view()[id]; }
 
@@ -50,7 +51,8 @@ class SphereStore {
   void push_back(const kernel::Sphere& sphere) { plain_.push_back(sphere); }
 
   /// Appends the spheres of points files, the last ones: compact if their centres are exact in single precision, and
-  /// their radii are exact as well or have few distinct values.
+  /// their radii are exact as well or have few distinct values. Compact centres of a single file are shared with the
+  /// scene, not copied.
   void append(std::span<const scene::Points> points);
 
   /// Bytes that append() adds.
@@ -59,9 +61,9 @@ class SphereStore {
   /// Returns a view that is valid until this is modified.
   kernel::SphereArray view() const noexcept {
     kernel::SphereArray v(plain_.data());
-    if (centers_.empty()) return v;
+    if (!centers_) return v;
     v.plain_count = plain_.size();
-    v.centers = centers_.data();
+    v.centers = centers_->data();
     v.radii = radii_.empty() ? nullptr : radii_.data();
     v.radius_indices = radius_indices_.empty() ? nullptr : radius_indices_.data();
     v.radius_palette = radius_palette_.data();
@@ -69,13 +71,13 @@ class SphereStore {
   }
 
   std::size_t bytes() const noexcept {
-    return plain_.size() * sizeof(kernel::Sphere) + (centers_.size() / 3 * 3 + radii_.size()) * sizeof(float) +
-           radius_indices_.size();
+    const std::size_t numbers = (centers_ ? centers_->size() : 0) + radii_.size();
+    return plain_.size() * sizeof(kernel::Sphere) + numbers * sizeof(float) + radius_indices_.size();
   }
 
  private:
   base::HugeVector<kernel::Sphere> plain_;
-  base::HugeVector<float> centers_;  ///< plus one element of padding: see kernel::SphereArray
+  std::shared_ptr<const base::HugeVector<float>> centers_;  ///< null: none are compact
   base::HugeVector<float> radii_;
   std::vector<std::uint8_t> radius_indices_;
   std::vector<double> radius_palette_;

@@ -48,7 +48,7 @@ struct IndexArray {
 struct SphereArray {
   const Sphere* plain = nullptr;
   std::size_t plain_count = std::numeric_limits<std::size_t>::max();  ///< number of spheres in `plain`, the first ones
-  const float* centers = nullptr;                ///< x, y, z of the others, plus one element of padding
+  const float* centers = nullptr;                ///< x, y, z of the others; one more float is readable
   const float* radii = nullptr;                  ///< radii of the others; null: from the palette
   const std::uint8_t* radius_indices = nullptr;  ///< palette indices of the others; null: the first radius for all
   const double* radius_palette = nullptr;
@@ -62,6 +62,14 @@ struct SphereArray {
     const std::size_t i = id - plain_count;
     return {static_cast<double>(centers[3 * i]), static_cast<double>(centers[3 * i + 1]),
             static_cast<double>(centers[3 * i + 2]), radius_of_compact(i)};
+  }
+
+  /// One coordinate of a centre.
+  ///
+  /// `axis`     0, 1 or 2
+  double coordinate(std::size_t id, int axis) const noexcept {
+    if (id >= plain_count) return static_cast<double>(centers[3 * (id - plain_count) + static_cast<std::size_t>(axis)]);
+    return axis == 0 ? plain[id].x : axis == 1 ? plain[id].y : plain[id].z;
   }
 
   /// The radius of a compact sphere.

@@ -89,12 +89,15 @@ class Loader {
       for (const std::string& source : sources) need(source);
       return;
     }
+    const std::array<std::string, 3>& position = info_.roles.position;
+    if (std::find(position.begin(), position.end(), column) != position.end()) is_for_centers_alone_ = false;
     if (!column.empty() && !base::contains(columns_, column)) columns_.push_back(column);
   }
 
   /// Determines the sources of radii, colours and opacities, and the columns to read.
   void plan() {
     for (const std::string& column : info_.roles.position) need(column);
+    is_for_centers_alone_ = request_.source == nullptr;
     radius_ = radius_source(info_, points_.radius, faults_);
     need(radius_.column);
     color_ = color_source(info_, points_.color, request_.folder, faults_);
@@ -208,7 +211,8 @@ class Loader {
           table.rows == 0 ? "the frame has no particles" : fmt::format("selects none of the {} particles", table.rows));
     const bool is_all = rows.is_all();
     scene::NumberArray radii = radii_of(table, rows, radius_, points_.radius, faults_);
-    scene::PointArray centers = points_of(table, rows, info_.roles.position);
+    scene::PointArray centers = is_for_centers_alone_ ? take_points(table, rows, info_.roles.position)
+                                                      : points_of(table, rows, info_.roles.position);
     if (points_.unwrap) unwrap(table, rows, info_, centers);
     if (faults_.has_errors()) return;
     // A radius below 0 makes hollow glass, in a scene or in a PLY file that was made for one. In other data it is an
@@ -350,6 +354,7 @@ class Loader {
   std::shared_ptr<data::DataFile> file_;
   data::FrameInfo info_;
   std::vector<std::string> columns_;
+  bool is_for_centers_alone_ = false;  ///< whether nothing else needs the columns of the position
   RadiusSource radius_;
   ColorSource color_;
   OpacitySource opacity_;

@@ -1,13 +1,18 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "points/rows.h"
 
+#include <tbb/blocked_range.h>
+#include <tbb/parallel_for.h>
+
 #include <algorithm>
 #include <cmath>
 #include <map>
 #include <numeric>
+#include <span>
 
 #include <fmt/core.h>
 
+#include "base/huge_pages.h"
 #include "base/stop_point.h"
 #include "base/text.h"
 #include "scene/value_text.h"
@@ -157,6 +162,36 @@ scene::PointArray points_of(const data::Table& table, const Rows& rows, const st
   for (std::size_t axis = 0; axis < 3; ++axis)
     for_each_number(*table.find(columns[axis]), rows, [&](std::size_t i, double v) { out.set(i, axis, v * scale); });
   return out;
+}
+
+scene::PointArray take_points(data::Table& table, const Rows& rows, const std::array<std::string, 3>& columns) {
+  /// Rows after which memory is returned.
+  constexpr std::size_t kBlock = std::size_t{1} << 22;
+  std::array<std::vector<float>*, 3> singles{};
+  for (std::size_t axis = 0; axis < 3; ++axis)
+    for (data::Column& column : table.columns)
+      if (column.name == columns[axis]) singles[axis] = std::get_if<std::vector<float>>(&column.values);
+  const auto is_read = [&](const data::Column& column) {
+    return std::find(columns.begin(), columns.end(), column.name) != columns.end();
+  };
+  if (!rows.is_all() || !singles[0] || !singles[1] || !singles[2]) {
+    scene::PointArray out = points_of(table, rows, columns);
+    std::erase_if(table.columns, is_read);
+    return out;
+  }
+  base::HugeVector<float> out(3 * rows.size());
+  const base::StopPoint stop;
+  for (std::size_t begin = 0; begin < rows.size(); begin += kBlock) {
+    stop.check();
+    const std::size_t end = std::min(rows.size(), begin + kBlock);
+    tbb::parallel_for(tbb::blocked_range<std::size_t>(begin, end, 4096), [&](const auto& range) {
+      for (std::size_t i = range.begin(); i < range.end(); ++i)
+        for (std::size_t axis = 0; axis < 3; ++axis) out[3 * i + axis] = (*singles[axis])[i];
+    });
+    for (std::vector<float>* const column : singles) base::release_memory(std::span(&(*column)[begin], end - begin));
+  }
+  std::erase_if(table.columns, is_read);
+  return scene::PointArray(std::move(out));
 }
 
 std::string row_name(const scene::PointsKeys& points, std::size_t row) {

@@ -90,6 +90,10 @@ std::optional<Labels> require_labels(const data::Table& table, const Rows& rows,
 scene::PointArray points_of(const data::Table& table, const Rows& rows, const std::array<std::string, 3>& columns,
                             double scale = 1);
 
+/// Returns the same, and removes the columns from the table. Their memory is returned piece by piece, so that they and
+/// the points do not exist in full at the same time.
+scene::PointArray take_points(data::Table& table, const Rows& rows, const std::array<std::string, 3>& columns);
+
 /// "row 3 of melt.dump"
 std::string row_name(const scene::PointsKeys& points, std::size_t row);
 

@@ -6,6 +6,7 @@
 
 #include <fmt/core.h>
 
+#include "base/parallel.h"
 #include "points/copies.h"
 #include "points/sources.h"
 #include "scene/limits.h"
@@ -26,14 +27,12 @@ class Checks {
   /// Whether all spheres are valid and within the domain of scenes: the common case, which is fast.
   bool are_good() const {
     const auto is_inside = [](double x) { return std::abs(x) <= scene::kLargestLength; };
-    for (std::size_t i = 0; i < centers_.size(); ++i) {
+    return base::are_all(centers_.size(), [&](std::size_t i) {
       const Vec3d center = centers_[i];
       const double radius = std::abs(radii_[i]);
-      if (!is_inside(center.x) || !is_inside(center.y) || !is_inside(center.z) || !is_inside(radius) ||
-          !(radius >= scene::kSmallestRadius) || (radii_[i] < 0 && !may_be_hollow_))
-        return false;
-    }
-    return true;
+      return is_inside(center.x) && is_inside(center.y) && is_inside(center.z) && is_inside(radius) &&
+             radius >= scene::kSmallestRadius && (radii_[i] >= 0 || may_be_hollow_);
+    });
   }
 
   /// Reports spheres that are outside the domain of scenes.

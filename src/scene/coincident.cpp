@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
+#include <algorithm>
 #include <array>
 #include <cmath>
+#include <vector>
 
 #include <fmt/core.h>
 
@@ -18,28 +20,23 @@ struct Place {
   bool is_table = true;
 };
 
-/// Maps sphere ids to locations; fastest for ascending ids.
+/// Maps sphere ids to locations.
 class SphereIndex {
  public:
-  explicit SphereIndex(const Scene& scene) : scene_(scene) {}
-
-  std::size_t count() const {
-    std::size_t count = scene_.spheres.size();
-    for (const Points& p : scene_.points) count += p.centers.size();
-    return count;
+  explicit SphereIndex(const Scene& scene) : ends_{scene.spheres.size()} {
+    for (const Points& p : scene.points) ends_.push_back(ends_.back() + p.centers.size());
   }
 
-  Place at(std::size_t id) {
-    if (id < scene_.spheres.size()) return {0, id, true};
-    if (id < begin_) begin_ = scene_.spheres.size(), file_ = 0;
-    while (id - begin_ >= scene_.points[file_].centers.size()) begin_ += scene_.points[file_++].centers.size();
-    return {file_, id - begin_, false};
+  std::size_t count() const { return ends_.back(); }
+
+  Place at(std::size_t id) const {
+    if (id < ends_[0]) return {0, id, true};
+    const auto file = static_cast<std::size_t>(std::upper_bound(ends_.begin(), ends_.end(), id) - ends_.begin()) - 1;
+    return {file, id - ends_[file], false};
   }
 
  private:
-  const Scene& scene_;
-  std::size_t file_ = 0;
-  std::size_t begin_ = scene_.spheres.size();  ///< id of the first sphere of `file_`
+  std::vector<std::size_t> ends_;  ///< of the ids in the [[sphere]] tables, then in each points file
 };
 
 std::string key_of(const Place& place) {
@@ -62,7 +59,7 @@ std::vector<SceneDiagnostic> warn_of_coincident(const Scene& scene, const Scene*
       for (double& x : key) x = math::in_single_precision(x);
     return key;
   };
-  SphereIndex spheres(scene);
+  const SphereIndex spheres(scene);
   const auto place_of = [&](std::size_t id) {
     const Place at = spheres.at(id);
     const Vec3d c = at.is_table ? scene.spheres[at.index].center : scene.points[at.points].centers[at.index];

@@ -2,6 +2,7 @@
 #include "scene/number_array.h"
 
 #include <algorithm>
+#include <memory>
 #include <utility>
 
 namespace orrery::scene {
@@ -32,13 +33,15 @@ void NumberArray::spread(double value) {
       numbers.push_back(static_cast<typename std::remove_reference_t<decltype(numbers)>::value_type>((*this)[i]));
   };
   if (storage_ == Storage::kPalette && fits_single() && is_single(value)) {
-    copy_to(singles_);
+    base::HugeVector<float> singles;
+    copy_to(singles);
+    singles_ = std::make_shared<base::HugeVector<float>>(std::move(singles));
     storage_ = Storage::kSingles;
   } else {
     std::vector<double> doubles;
     copy_to(doubles);
     doubles_ = std::move(doubles);
-    std::vector<float>().swap(singles_);
+    singles_ = nullptr;
     storage_ = Storage::kDoubles;
   }
   std::vector<std::uint8_t>().swap(indices_);

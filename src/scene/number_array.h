@@ -7,8 +7,11 @@
 #include <cstdint>
 #include <initializer_list>
 #include <iterator>
+#include <memory>
+#include <utility>
 #include <vector>
 
+#include "base/huge_pages.h"
 #include "math/scalar.h"
 #include "math/vec3.h"
 
@@ -38,7 +41,7 @@ class ValueIterator {
 };
 
 /// Numbers of double precision, stored compactly as long as that is lossless: as a single number if all are equal, as
-/// one-byte indices if there are few distinct values, or as floats.
+/// one-byte indices if there are few distinct values, or as floats. Copies share the floats until they are changed.
 ///
 /// Not thread-safe, even for writes to different elements.
 class NumberArray {
@@ -50,17 +53,22 @@ class NumberArray {
   NumberArray(std::size_t count, double value) : count_(count), value_(value) {}
   NumberArray(std::initializer_list<double> numbers) { append(numbers); }
   NumberArray(const std::vector<double>& numbers) { append(numbers); }  // NOLINT(google-explicit-constructor)
+  explicit NumberArray(base::HugeVector<float> singles)
+      : storage_(Storage::kSingles),
+        count_(singles.size()),
+        singles_(std::make_shared<base::HugeVector<float>>(std::move(singles))) {}
 
   std::size_t size() const noexcept { return count_; }
   bool empty() const noexcept { return count_ == 0; }
   std::size_t bytes() const noexcept {
-    return indices_.size() + singles_.size() * sizeof(float) + (palette_.size() + doubles_.size()) * sizeof(double);
+    const std::size_t singles = singles_ ? singles_->size() : 0;
+    return indices_.size() + singles * sizeof(float) + (palette_.size() + doubles_.size()) * sizeof(double);
   }
 
   double operator[](std::size_t i) const noexcept {
     switch (storage_) {
       case Storage::kPalette: return palette_[indices_[i]];
-      case Storage::kSingles: return static_cast<double>(singles_[i]);
+      case Storage::kSingles: return static_cast<double>((*singles_)[i]);
       case Storage::kDoubles: return doubles_[i];
       case Storage::kOne: break;
     }
@@ -74,7 +82,7 @@ class NumberArray {
   /// Returns whether no number needs double precision.
   bool fits_single() const noexcept;
   /// The numbers, if they are stored as floats; otherwise null.
-  const float* singles() const noexcept { return storage_ == Storage::kSingles ? singles_.data() : nullptr; }
+  std::shared_ptr<const base::HugeVector<float>> singles() const noexcept { return singles_; }
   /// The distinct numbers, if numbers are stored as indices; otherwise empty. May contain unused numbers.
   const std::vector<double>& palette() const noexcept { return palette_; }
   /// The index into the palette of each number.
@@ -84,7 +92,7 @@ class NumberArray {
     if (storage_ == Storage::kPalette && find(value)) {
       indices_[i] = last_found_;
     } else if (storage_ == Storage::kSingles && is_single(value)) {
-      singles_[i] = static_cast<float>(value);
+      own_singles()[i] = static_cast<float>(value);
     } else if (storage_ == Storage::kDoubles) {
       doubles_[i] = value;
     } else if (storage_ != Storage::kOne || !is_same(value, value_)) {
@@ -97,7 +105,7 @@ class NumberArray {
     if (storage_ == Storage::kPalette && find(value)) {
       indices_.push_back(last_found_);
     } else if (storage_ == Storage::kSingles && is_single(value)) {
-      singles_.push_back(static_cast<float>(value));
+      own_singles().push_back(static_cast<float>(value));
     } else if (storage_ == Storage::kDoubles) {
       doubles_.push_back(value);
     } else if (storage_ != Storage::kOne || !is_same(value, value_)) {
@@ -118,7 +126,7 @@ class NumberArray {
       }
       indices_.resize(count, last_found_);
     }
-    if (storage_ == Storage::kSingles) singles_.resize(count);
+    if (storage_ == Storage::kSingles) own_singles().resize(count, 0);
     if (storage_ == Storage::kDoubles) doubles_.resize(count);
     if (is_uniform() && count > count_ && !is_same(value_, 0)) {
       if (count_ == 0) {
@@ -170,13 +178,19 @@ class NumberArray {
   /// Changes the storage so that it can hold `value`.
   void spread(double value);
 
+  /// The floats, of this array alone.
+  base::HugeVector<float>& own_singles() {
+    if (singles_.use_count() > 1) singles_ = std::make_shared<base::HugeVector<float>>(*singles_);
+    return *singles_;
+  }
+
   Storage storage_ = Storage::kOne;
   std::size_t count_ = 0, reserved_ = 0;
   double value_ = 0;
   std::vector<double> palette_;
   std::uint8_t last_found_ = 0;
   std::vector<std::uint8_t> indices_;
-  std::vector<float> singles_;
+  std::shared_ptr<base::HugeVector<float>> singles_;  ///< null unless they are the storage
   std::vector<double> doubles_;
 };
 
@@ -190,6 +204,8 @@ class PointArray {
   explicit PointArray(std::size_t count) : numbers_(3 * count, 0) {}
   PointArray(std::initializer_list<Vec3d> points) { append(points); }
   PointArray(const std::vector<Vec3d>& points) { append(points); }  // NOLINT(google-explicit-constructor)
+  /// `numbers`  x, y, z of each point
+  explicit PointArray(base::HugeVector<float> numbers) : numbers_(std::move(numbers)) {}
 
   std::size_t size() const noexcept { return numbers_.size() / 3; }
   bool empty() const noexcept { return numbers_.empty(); }

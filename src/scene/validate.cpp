@@ -13,6 +13,7 @@
 
 #include "base/error.h"
 
+#include "base/parallel.h"
 #include "base/stop_point.h"
 #include "scene/layers.h"
 #include "scene/limits.h"
@@ -320,16 +321,25 @@ void check_points(std::size_t number, const Scene& scene, KeyFaults& diagnostics
     return;
   }
   if (points.materials.empty()) diagnostics.error_if_any(key + ".material", material_fault(points.material, scene));
-  std::size_t faults = 0;
-  const base::StopPoint stop;
-  for (std::size_t i = 0; i < points.centers.size(); ++i) {
-    stop.check(i);
+  const auto check = [&](std::size_t i, auto report) {
     const std::uint32_t material = points.materials.empty() ? 0 : points.materials[i];
     check_sphere(points.centers[i], points.radii[i], material, scene, [&](const std::string& part, std::string text) {
       if (points.materials.empty() && part == ".material") return;  // reported once, above
-      if (++faults <= kMaxReported)
-        diagnostics.error(key + ".file", fmt::format("{}: {}", sphere_name(scene, number, i), text));
+      report(std::move(text));
     });
+  };
+  const auto is_good = [&](std::size_t i) {
+    bool good = true;
+    check(i, [&](const std::string&) { good = false; });
+    return good;
+  };
+  std::size_t faults = 0;
+  if (!base::are_all(points.centers.size(), is_good)) {
+    for (std::size_t i = 0; i < points.centers.size(); ++i)
+      check(i, [&](const std::string& text) {
+        if (++faults <= kMaxReported)
+          diagnostics.error(key + ".file", fmt::format("{}: {}", sphere_name(scene, number, i), text));
+      });
   }
   diagnostics.error_if_any(key + ".file", rest_text(faults));
   check_opacity(number, scene, diagnostics);

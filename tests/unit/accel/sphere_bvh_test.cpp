@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
+#include <cstring>
 #include <numeric>
 #include <vector>
 
@@ -123,8 +124,29 @@ TEST(AccelSphereBvh, EverySphereIsInOneLeafAndBelowItsStartNode) {
   }
 }
 
-/// Memory of ids and of sorted spheres is released after each million.
-TEST(AccelSphereBvh, PiecesOfABuildAreReleasedWhenTheyAreFinished) {
+/// A build sorts ids first, then the spheres of one part after another.
+TEST(AccelSphereBvh, DoesNotDependOnTheSizeOfParts) {
+  for (const Tree& tree : trees())
+    for (const std::size_t part : {256u, 4096u}) {
+      std::vector<std::uint32_t> ids = all_of(tree.spheres);
+      for (std::size_t i = 0; i < tree.rods.size(); ++i) ids.push_back(tree.bounded.rods.id(i));
+      const SphereBvh other(tree.spheres.data(), ids, tree.frame, {}, tree.bounded, part);
+      const auto is_same = [](const auto& a, const auto& b) {
+        return a.size() == b.size() && std::memcmp(a.data(), b.data(), a.size() * sizeof(a[0])) == 0;
+      };
+      EXPECT_TRUE(is_same(other.leaves, tree.bvh.leaves));
+      EXPECT_TRUE(is_same(other.radii, tree.bvh.radii));
+      EXPECT_TRUE(is_same(other.rods, tree.bvh.rods));
+      EXPECT_TRUE(is_same(other.nodes, tree.bvh.nodes));
+      EXPECT_TRUE(is_same(other.cells, tree.bvh.cells));
+      EXPECT_EQ(other.level_begin, tree.bvh.level_begin);
+      for (std::size_t object = 0; object < tree.objects.size(); ++object)
+        ASSERT_EQ(other.start_node(object), tree.bvh.start_node(object));
+    }
+}
+
+/// Memory of ids is released after each part of a million.
+TEST(AccelSphereBvh, PartsOfABuildAreReleasedWhenTheyAreFinished) {
   Random random;
   const Tree tree(test::scattered(random, (1 << 20) + 1000, 1, 0.01, 0));
   std::vector<std::uint8_t> seen(tree.spheres.size(), 0);

@@ -29,13 +29,13 @@ TEST(BaseDuplicates, IgnoresTheSignOfZeroAndNaNEqualsNothing) {
   EXPECT_EQ(repeated({{0, 1}, {-0.0, 1}, {nan, 1}, {nan, 1}}), (Pairs{{1, 0}}));
 }
 
-/// Enough keys for false positives in the filters.
+/// Enough keys for false positives in the filters, and for several threads.
 TEST(BaseDuplicates, FindsExactlyTheRepeatedItemsAmongMany) {
   std::mt19937_64 engine{5};
   std::vector<std::array<double, 2>> keys;
-  for (int i = 0; i < 200'000; ++i) keys.push_back({static_cast<double>(engine() >> 11), 0});
+  for (int i = 0; i < 600'000; ++i) keys.push_back({static_cast<double>(engine() >> 11), 0});
   Pairs expected;
-  for (std::size_t i = 100'000; i < keys.size(); i += 1000) {
+  for (std::size_t i = 300'000; i < keys.size(); i += 1000) {
     keys[i] = keys[i / 3];
     expected.emplace_back(i, i / 3);
   }

@@ -52,6 +52,17 @@ TEST(CompileSphereStore, OneRadiusAndSinglePrecisionTakeTwelveBytes) {
   EXPECT_TRUE(std::signbit(store[4].z));
 }
 
+TEST(CompileSphereStore, SharesTheCentresOfASingleFile) {
+  std::vector<scene::Points> points(2);
+  for (int i = 0; i < 100; ++i) points[1].centers.push_back({i + 0.5, 2, 3});
+  points[1].radii.assign(100, 0.1);
+  SphereStore store;
+  store.append(points);
+  EXPECT_EQ(store.view().centers, points[1].centers.numbers().singles()->data());
+  points[1].centers.set(7, {9, 9, 9});
+  EXPECT_EQ(store[7].x, 7.5);
+}
+
 /// Spheres with so many different radii that these are not stored as indices.
 std::vector<Sphere> with_many_radii(double step) {
   std::vector<Sphere> out;

@@ -54,7 +54,7 @@ TEST(SceneNumberArray, FloatsTakeFourBytesAndOneDoubleMakesAllEight) {
   }
   EXPECT_EQ(numbers.bytes(), 400u);
   ASSERT_NE(numbers.singles(), nullptr);
-  EXPECT_EQ(numbers.singles()[1], 0.5F);
+  EXPECT_EQ((*numbers.singles())[1], 0.5F);
   EXPECT_TRUE(numbers.fits_single());
   numbers.push_back(0.1);
   want.push_back(0.1);
@@ -62,6 +62,22 @@ TEST(SceneNumberArray, FloatsTakeFourBytesAndOneDoubleMakesAllEight) {
   EXPECT_EQ(numbers.singles(), nullptr);
   EXPECT_FALSE(numbers.fits_single());
   EXPECT_EQ(numbers, want);
+}
+
+TEST(SceneNumberArray, CopiesShareFloatsUntilOneIsChanged) {
+  for (const auto change : {+[](NumberArray& numbers) { numbers.set(3, 7); },
+                            +[](NumberArray& numbers) { numbers.push_back(0.5); },
+                            +[](NumberArray& numbers) { numbers.push_back(0.1); },
+                            +[](NumberArray& numbers) { numbers.resize(10); }}) {
+    NumberArray numbers;
+    for (int i = 0; i < 100; ++i) numbers.push_back(i - 0.5);
+    const NumberArray copy = numbers;
+    EXPECT_EQ(copy.singles(), numbers.singles());
+    change(numbers);
+    EXPECT_NE(copy.singles(), numbers.singles());
+    EXPECT_EQ(copy.size(), 100u);
+    EXPECT_EQ(copy[3], 2.5);
+  }
 }
 
 TEST(SceneNumberArray, SignsOfZeroInfinitiesAndNansAreKept) {
