@@ -35,10 +35,6 @@ constexpr double kSpherePadding = 0x1.4p-17, kBoxPadding = 0x1p-18;
 /// most 2.5 reaches. The half axis is at most sqrt(3) x 127 steps long.
 constexpr double kAxisSlack = 0x1p-18 * 1.7321 * kLargestHalfCode;
 
-/// With more spheres there are no start nodes: rays start at the root, which costs a few percent of their time and
-/// saves 3 bytes of 24 per sphere.
-constexpr std::size_t kMostStartNodes = std::size_t{1} << 27;
-
 /// Builds a SphereBvh.
 class Builder {
  public:
@@ -101,7 +97,7 @@ class Builder {
     above_leaves_.reserve(parents_of(leaves));
     bvh_.last_leaf = static_cast<std::uint32_t>(leaves - 1);
     bvh_.no_start_node = static_cast<std::uint32_t>(parents_of(leaves));
-    if (bvh_.count > kMostStartNodes) return;
+    if (bvh_.count > SphereBvh::kMostStartNodes) return;
     const std::size_t last = spheres_.rods.rods.object(*std::max_element(ids_.begin(), ids_.end()));
     bvh_.start_nodes = base::PackedArray(last + 1, bvh_.no_start_node);
   }
@@ -214,7 +210,7 @@ class Builder {
   std::vector<std::uint32_t> ids_;
   base::HugeVector<SphereItem> items_;  ///< of the part that is being built
   std::vector<Bounds> above_leaves_;    ///< of the nodes above the leaves
-  double mean_radius_ = 0;  ///< box space
+  double mean_radius_ = 0;              ///< box space
   float box_padding_ = 0;
   bool has_rods_ = false, own_radii_ = false;
 };
@@ -231,7 +227,8 @@ SphereBvh::SphereBvh(const BoundedSpheres& spheres, std::vector<std::uint32_t> i
                      const std::function<bool(double)>& monitor, const BoundedRods& bounded_rods,
                      std::size_t size_of_parts)
     : count(ids.size()) {
-  Builder(*this, {spheres, bounded_rods, frame}, std::move(ids)).run(monitor, size_of_parts > 0 ? size_of_parts : part_size(count));
+  Builder(*this, {spheres, bounded_rods, frame}, std::move(ids))
+      .run(monitor, size_of_parts > 0 ? size_of_parts : part_size(count));
 }
 
 std::size_t SphereBvh::bytes() const noexcept {

@@ -43,8 +43,8 @@ struct EnclosingSpheres {
 
 /// Sorts spheres into the order of the leaves of a BVH, using the surface area heuristic.
 ///
-/// It takes two stages: items in memory are sorted fastest, but take four times the memory of ids. So divide() sorts ids
-/// until the spheres below one node are together, and sort() the items of one such part at a time.
+/// It takes two stages: items in memory are sorted fastest, but take four times the memory of ids. So divide() sorts
+/// ids until the spheres below one node are together, and sort() the items of one such part at a time.
 class SphereSort {
  public:
   using Monitor = std::function<bool(double)>;

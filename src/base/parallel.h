@@ -38,8 +38,7 @@ Value accumulate_parallel(std::size_t count, const Value& start, Add add, Join j
 template <class IsGood>
 bool are_all(std::size_t count, IsGood is_good) {
   return accumulate_parallel(
-      count, true, [&](bool& all, std::size_t i) { all = all && is_good(i); },
-      [](bool& a, bool b) { a = a && b; });
+      count, true, [&](bool& all, std::size_t i) { all = all && is_good(i); }, [](bool& a, bool b) { a = a && b; });
 }
 
 }  // namespace orrery::base

@@ -5,6 +5,7 @@
 #include <array>
 #include <bit>
 #include <cmath>
+#include <functional>
 #include <memory>
 #include <optional>
 #include <tuple>
@@ -33,46 +34,24 @@ kernel::Sphere sphere_of(Vec3d center, double radius) { return {center.x, center
 /// Whether the ends of a rod are exchanged: they are put in order, since the order changes roundings.
 bool is_reversed(Vec3d from, Vec3d to) { return std::tie(to.x, to.y, to.z) < std::tie(from.x, from.y, from.z); }
 
-/// Calls f(from, to, sphere) for the stubs of the bonds of a points table.
-template <class F>
-void each_stub(const scene::Points& points, F f) {
-  for (const scene::BondStub& stub : points.bond_stubs) f(points.centers[stub.sphere], stub.end, stub.sphere);
-}
-
-/// Calls f(a, b) for the bonds of a points table, with the spheres of the table in the order of the rods' ends.
-template <class F>
-void each_bond(const scene::Points& points, F f) {
-  const base::StopPoint stop;
-  for (std::size_t i = 0; i < points.bond_pairs.size(); ++i) {
-    stop.check(i);
-    auto [a, b] = points.bond_pairs[i];
-    if (is_reversed(points.centers[a], points.centers[b])) std::swap(a, b);
-    f(a, b);
-  }
-}
-
 /// Calls f(points, sphere) for each half of the rods of bonds, in the order of their ids, with the sphere of the scene
 /// that it belongs to.
 template <class F>
-void each_bond_half(const scene::Scene& scene, F f) {
-  const auto each_table = [&](auto g) {
-    std::size_t first = scene.spheres.size();
-    for (const scene::Points& points : scene.points) {
-      g(points, first);
-      first += points.centers.size();
+void each_bond_half(const scene::Scene& scene, const CompiledScene& compiled, F f) {
+  std::size_t first = scene.spheres.size();
+  for (const scene::Points& points : scene.points) {
+    for (const scene::BondStub& stub : points.bond_stubs)
+      for (int half = 0; half < 2; ++half) f(points, first + stub.sphere);
+    first += points.centers.size();
+  }
+  const base::StopPoint stop;
+  std::size_t bond = 0;
+  for (const scene::Points& points : scene.points)
+    for (const std::size_t end = bond + points.bond_pairs.size(); bond < end; ++bond) {
+      stop.check(bond);
+      f(points, compiled.bonds[bond].a);
+      f(points, compiled.bonds[bond].b);
     }
-  };
-  each_table([&](const scene::Points& points, std::size_t first) {
-    each_stub(points, [&](Vec3d, Vec3d, std::uint32_t sphere) {
-      for (int half = 0; half < 2; ++half) f(points, first + sphere);
-    });
-  });
-  each_table([&](const scene::Points& points, std::size_t first) {
-    each_bond(points, [&](std::uint32_t a, std::uint32_t b) {
-      f(points, first + a);
-      f(points, first + b);
-    });
-  });
 }
 
 /// Calls f(from, to, radius, materials) for each rod of a table, then for those of files.
@@ -118,13 +97,18 @@ void set_rods(const scene::Scene& scene, CompiledScene& compiled) {
   compiled.bond_counts.clear();
   compiled.bonds.clear();
   compiled.bond_radii.clear();
+  const base::StopPoint stop;
   auto first = static_cast<std::uint32_t>(scene.spheres.size());  // sphere of the points table
   for (const scene::Points& points : scene.points) {
-    each_stub(points, [&](Vec3d from, Vec3d to, std::uint32_t) { add(from, to, points.bond_radius); });
+    for (const scene::BondStub& stub : points.bond_stubs)
+      add(points.centers[stub.sphere], stub.end, points.bond_radius);
     const auto radius = static_cast<std::uint32_t>(compiled.bond_radii.size());
-    each_bond(points, [&](std::uint32_t a, std::uint32_t b) {
+    for (std::size_t i = 0; i < points.bond_pairs.size(); ++i) {
+      stop.check(i);
+      auto [a, b] = points.bond_pairs[i];
+      if (is_reversed(points.centers[a], points.centers[b])) std::swap(a, b);
       compiled.bonds.push_back({first + a, first + b, radius});
-    });
+    }
     compiled.stub_counts.push_back(points.bond_stubs.size());
     compiled.bond_counts.push_back(points.bond_pairs.size());
     compiled.bond_radii.push_back(points.bond_radius);
@@ -132,11 +116,13 @@ void set_rods(const scene::Scene& scene, CompiledScene& compiled) {
   }
 }
 
+using SpheresStored = std::function<void(std::size_t points, std::size_t begin, std::size_t end)>;
+
 /// Sets the spheres.
-void set_spheres(const scene::Scene& scene, CompiledScene& compiled) {
+void set_spheres(const scene::Scene& scene, const SpheresStored& on_stored, CompiledScene& compiled) {
   compiled.spheres = {};
   for (const scene::Sphere& s : scene.spheres) compiled.spheres.push_back(sphere_of(s.center, s.radius));
-  compiled.spheres.append(scene.points);
+  compiled.spheres.append(scene.points, on_stored);
   compiled.points_sizes.clear();
   for (const scene::Points& points : scene.points) compiled.points_sizes.push_back(points.centers.size());
   compiled.distinct_in = scene.distinct_in;
@@ -164,7 +150,7 @@ void set_sphere_materials(const scene::Scene& scene, CompiledScene& compiled) {
   }
   each_rod_half(scene,
                 [&](std::uint32_t material) { compiled.sphere_materials.push_back(table.index(material, false)); });
-  each_bond_half(scene, [&](const scene::Points& points, std::size_t sphere) {
+  each_bond_half(scene, compiled, [&](const scene::Points& points, std::size_t sphere) {
     const std::optional<std::uint32_t> material = points.bonds.material;
     compiled.sphere_materials.push_back(material ? table.index(*material, false) : compiled.sphere_materials[sphere]);
   });
@@ -197,7 +183,7 @@ void set_opacity(const scene::Scene& scene, CompiledScene& compiled) {
       add(own >= 0 ? own : of_materials[points.materials.empty() ? points.material : points.materials[i]]);
     }
   each_rod_half(scene, [&](std::uint32_t material) { add(of_materials[material]); });
-  each_bond_half(scene, [&](const scene::Points& points, std::size_t sphere) {
+  each_bond_half(scene, compiled, [&](const scene::Points& points, std::size_t sphere) {
     const std::optional<std::uint32_t> material = points.bonds.material;
     add(material ? of_materials[*material] : compiled.opacity.empty() ? 1 : double{compiled.opacity[sphere]});
   });
@@ -441,14 +427,17 @@ CompiledScene compile(const scene::Scene& scene, const scene::Scene* closing) {
   return compiled;
 }
 
-void update(const scene::Scene& scene, const scene::Scene* closing, scene::Parts changed, CompiledScene& compiled) {
+namespace {
+
+void update_parts(const scene::Scene& scene, const scene::Scene* closing, scene::Parts changed,
+                  const SpheresStored& on_stored, CompiledScene& compiled) {
   if (changed.geometry) {
     compiled.precision = precision_of(scene.render.precision);
     // The book's own method. It has no BVH, and the kernel has no vector loop for its precision.
     compiled.accelerator = compiled.precision == Precision::kBook ? Accelerator::kList : scene.render.accelerator;
-    set_spheres(scene, compiled);
-    set_sphere_motion(scene, closing, compiled);
     set_rods(scene, compiled);
+    set_spheres(scene, on_stored, compiled);
+    set_sphere_motion(scene, closing, compiled);
     set_rod_motion(scene, closing, compiled);
     compiled.features.rods = compiled.rod_count() > 0;
   }
@@ -467,6 +456,20 @@ void update(const scene::Scene& scene, const scene::Scene* closing, scene::Parts
     update_lights(compiled);
   }
   if (changed.geometry || changed.view) set_view(scene, closing, compiled);
+}
+
+}  // namespace
+
+void update(const scene::Scene& scene, const scene::Scene* closing, scene::Parts changed, CompiledScene& compiled) {
+  update_parts(scene, closing, changed, {}, compiled);
+}
+
+void update_and_release(scene::Scene& scene, const scene::Scene* closing, scene::Parts changed,
+                        CompiledScene& compiled) {
+  const auto release = [&](std::size_t points, std::size_t begin, std::size_t end) {
+    scene.points[points].centers.release(begin, end);
+  };
+  update_parts(scene, closing, changed, release, compiled);
 }
 
 }  // namespace orrery::compile

@@ -25,6 +25,11 @@ CompiledScene compile(const scene::Scene& scene, const scene::Scene* closing = n
 /// Domain     the points tables of `scene` have their spheres if `changed` contains geometry or assignment
 void update(const scene::Scene& scene, const scene::Scene* closing, scene::Parts changed, CompiledScene& compiled);
 
+/// The same, and releases the centres of the points tables as they are compiled, so that there is no second copy of
+/// them. Those of `scene` are indeterminate from then on.
+void update_and_release(scene::Scene& scene, const scene::Scene* closing, scene::Parts changed,
+                        CompiledScene& compiled);
+
 /// Builds the light tree and the list of caustics, if the scene samples its lights. Needed after a change of
 /// `precision`, since other spheres may coincide in another number type, of `direct_lighting` and `samples_caustics`.
 ///

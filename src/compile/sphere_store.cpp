@@ -61,18 +61,11 @@ void append_singles(const scene::NumberArray& numbers, base::HugeVector<float>& 
     for (const double number : numbers) out.push_back(static_cast<float>(number));
 }
 
-/// Returns the centres of all sets, shared with the scene if possible.
-///
-/// `count`    number of spheres
-std::shared_ptr<const base::HugeVector<float>> centers_of(std::span<const scene::Points> sets, std::size_t count) {
-  base::HugeVector<float> out;
-  for (const scene::Points& points : sets) {
-    const auto singles = points.centers.numbers().singles();
-    if (singles && points.centers.size() == count) return singles;
-    out.reserve(3 * count);
-    append_singles(points.centers.numbers(), out);
-  }
-  return std::make_shared<const base::HugeVector<float>>(std::move(out));
+/// The centres of all sets, if those are the floats of one of them; else null.
+std::shared_ptr<const base::HugeVector<float>> shared_centers(std::span<const scene::Points> sets, std::size_t count) {
+  for (const scene::Points& points : sets)
+    if (points.centers.size() == count) return points.centers.numbers().singles();
+  return nullptr;
 }
 
 /// How the spheres of points files are stored.
@@ -121,29 +114,54 @@ std::size_t SphereStore::bytes_of(std::span<const scene::Points> sets) {
   const Layout layout = layout_of(sets);
   if (!layout.is_compact) return layout.count * sizeof(kernel::Sphere);
   const std::size_t radius = layout.palette.empty() ? sizeof(float) : layout.palette.size() > 1 ? 1 : 0;
-  return layout.count * (3 * sizeof(float) + radius);
+  return layout.count * ((shared_centers(sets, layout.count) ? 0 : 3 * sizeof(float)) + radius);
 }
 
-void SphereStore::append(std::span<const scene::Points> sets) {
+std::size_t SphereStore::bytes_of_replacing(std::span<const scene::Points> sets) {
+  std::size_t bytes = bytes_of(sets);
+  if (!layout_of(sets).is_compact)
+    for (const scene::Points& points : sets) bytes -= points.centers.bytes();
+  return bytes;
+}
+
+void SphereStore::append(std::span<const scene::Points> sets,
+                         const std::function<void(std::size_t, std::size_t, std::size_t)>& on_stored) {
   Layout layout = layout_of(sets);
-  const std::size_t count = layout.count;
+  const auto stored = [&](std::size_t set, std::size_t begin, std::size_t end) {
+    if (on_stored && begin < end) on_stored(set, begin, end);
+  };
   const base::StopPoint stop;
   if (!layout.is_compact) {
-    plain_.reserve(plain_.size() + count);
-    for (const scene::Points& points : sets)
-      for (std::size_t i = 0; i < points.centers.size(); ++i) {
-        stop.check(i);
-        const math::Vec3d c = points.centers[i];
-        plain_.push_back({c.x, c.y, c.z, std::abs(points.radii[i])});
+    constexpr std::size_t kBlock = std::size_t{1} << 20;
+    plain_.reserve(plain_.size() + layout.count);
+    for (std::size_t set = 0; set < sets.size(); ++set)
+      for (std::size_t begin = 0; begin < sets[set].centers.size(); begin += kBlock) {
+        const scene::Points& points = sets[set];
+        const std::size_t end = std::min(points.centers.size(), begin + kBlock);
+        for (std::size_t i = begin; i < end; ++i) {
+          stop.check(i);
+          const math::Vec3d c = points.centers[i];
+          plain_.push_back({c.x, c.y, c.z, std::abs(points.radii[i])});
+        }
+        stored(set, begin, end);
       }
     return;
   }
   stop.check();
   radius_palette_ = std::move(layout.palette);
-  if (count == 0) return;
-  centers_ = centers_of(sets, count);
-  if (radius_palette_.empty()) radii_.reserve(count);
-  if (radius_palette_.size() > 1) radius_indices_.reserve(count);
+  if (layout.count == 0) return;
+  centers_ = shared_centers(sets, layout.count);
+  if (!centers_) {
+    base::HugeVector<float> centers;
+    centers.reserve(3 * layout.count);
+    for (std::size_t set = 0; set < sets.size(); ++set) {
+      append_singles(sets[set].centers.numbers(), centers);
+      stored(set, 0, sets[set].centers.size());
+    }
+    centers_ = std::make_shared<const base::HugeVector<float>>(std::move(centers));
+  }
+  if (radius_palette_.empty()) radii_.reserve(layout.count);
+  if (radius_palette_.size() > 1) radius_indices_.reserve(layout.count);
   for (const scene::Points& points : sets) {
     if (radius_palette_.empty()) append_singles(points.radii, radii_);
     if (radius_palette_.size() > 1) append_indices(points.radii, radius_palette_, radius_indices_);

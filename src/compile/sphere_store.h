@@ -3,6 +3,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <functional>
 #include <memory>
 #include <span>
 #include <vector>
@@ -53,10 +54,15 @@ class SphereStore {
   /// Appends the spheres of points files, the last ones: compact if their centres are exact in single precision, and
   /// their radii are exact as well or have few distinct values. Compact centres of a single file are shared with the
   /// scene, not copied.
-  void append(std::span<const scene::Points> points);
+  ///
+  /// `on_stored`  called after the spheres begin .. end - 1 of a set have been copied; may be empty
+  void append(std::span<const scene::Points> points,
+              const std::function<void(std::size_t set, std::size_t begin, std::size_t end)>& on_stored = {});
 
-  /// Bytes that append() adds.
+  /// Bytes that append() allocates.
   static std::size_t bytes_of(std::span<const scene::Points> points);
+  /// Bytes that it takes at its peak, if the centres are released as they are copied.
+  static std::size_t bytes_of_replacing(std::span<const scene::Points> points);
 
   /// Returns a view that is valid until this is modified.
   kernel::SphereArray view() const noexcept {

@@ -47,7 +47,7 @@ const compile::CompiledScene& PreparedScene::compile(std::uint64_t memory_limit)
     compiled_ = {};
     require_memory_to_compile(read.scene, memory_limit);
   }
-  compile::update(read.scene, read.closing ? &*read.closing : nullptr, changed, compiled_);
+  compile::update_and_release(read.scene, read.closing ? &*read.closing : nullptr, changed, compiled_);
   if (changed.geometry || changed.assignment) {
     sphere_hash_ = hash_of_spheres(compiled_);
     // Keep no second copy of the spheres during the BVH build.

@@ -9,6 +9,7 @@
 #include <fmt/core.h>
 
 #include "accel/accel.h"
+#include "accel/sphere_bvh.h"
 #include "base/available_memory.h"
 #include "base/error.h"
 #include "base/file_name.h"
@@ -39,13 +40,6 @@ using base::bytes_text;
 /// Embree's user geometry during the BVH build, one primitive per sphere, in addition to the sphere itself. Measured on
 /// clouds of one and three million spheres: peak_memory_bytes of --stats with embree minus that with list.
 constexpr std::uint64_t kAcceleratorBytesPerSphere = 130;
-
-/// A SphereBvh under construction, bytes per sphere: 16 for the items being sorted, up to 3 for the part of the
-/// finished tree that does not yet replace them, and up to 2 for memory that has not been released yet.
-constexpr std::uint64_t kBvhBytesPerSphere = 21;
-
-/// More bytes per sphere and rod for the axes of rods, if a SphereBvh has any.
-constexpr std::uint64_t kBvhBytesForAxes = 4;
 
 /// A pixel's sum and the four floats of the finished image.
 constexpr std::uint64_t kFilmBytesPerPixel = sizeof(kernel::PixelSum) + 4 * sizeof(float);
@@ -146,9 +140,9 @@ MemoryEstimate estimate_memory(const MemoryNeeds& needs) {
   m.textures = needs.textures;
   m.lights = needs.lights;
   const std::uint64_t outside = needs.spheres + needs.rods - needs.in_bvh;
-  m.accelerator = needs.embree ? needs.in_bvh * (kBvhBytesPerSphere + (needs.bvh_has_rods ? kBvhBytesForAxes : 0)) +
-                                     outside * kAcceleratorBytesPerSphere
-                               : 0;
+  if (needs.embree)
+    m.accelerator =
+        accel::SphereBvh::bytes_of_build(needs.in_bvh, needs.bvh_has_rods) + outside * kAcceleratorBytesPerSphere;
   return m;
 }
 
@@ -202,7 +196,7 @@ void require_memory_to_compile(const scene::Scene& scene, std::uint64_t limit) {
   for (const scene::Points& points : scene.points) loaded += points.bytes();
   for (const scene::RodFile& rods : scene.rod_files) loaded += rods.bytes();
   const std::uint64_t needed =
-      loaded + compile::SphereStore::bytes_of(scene.points) + scene.rod_count() * sizeof(kernel::Rod);
+      loaded + compile::SphereStore::bytes_of_replacing(scene.points) + scene.rod_count() * sizeof(kernel::Rod);
   require(needed, "the spheres need about " + bytes_text(needed) + " while they are compiled", limit, loaded);
 }
 

@@ -89,15 +89,14 @@ class Loader {
       for (const std::string& source : sources) need(source);
       return;
     }
-    const std::array<std::string, 3>& position = info_.roles.position;
-    if (std::find(position.begin(), position.end(), column) != position.end()) is_for_centers_alone_ = false;
-    if (!column.empty() && !base::contains(columns_, column)) columns_.push_back(column);
+    if (column.empty()) return;
+    if (!base::contains(columns_, column)) columns_.push_back(column);
+    ++uses_[column];
   }
 
   /// Determines the sources of radii, colours and opacities, and the columns to read.
   void plan() {
     for (const std::string& column : info_.roles.position) need(column);
-    is_for_centers_alone_ = request_.source == nullptr;
     radius_ = radius_source(info_, points_.radius, faults_);
     need(radius_.column);
     color_ = color_source(info_, points_.color, request_.folder, faults_);
@@ -162,6 +161,24 @@ class Loader {
     for (const std::string& column : info_.roles.image) need(column);
   }
 
+  /// Whether columns are needed once, so that their memory can be returned then.
+  bool are_needed_once(const auto& columns) const {
+    return request_.source == nullptr && std::all_of(columns.begin(), columns.end(), [&](const std::string& column) {
+             const auto uses = uses_.find(column);
+             return column.empty() || (uses != uses_.end() && uses->second == 1);
+           });
+  }
+
+  /// Whether the centres replace a column piece by piece, see take_points().
+  bool is_replaced_by_centers(const std::string& column) const {
+    const std::array<std::string, 3>& position = info_.roles.position;
+    const data::ColumnType type = type_of(info_, position[0]);
+    return are_needed_once(position) && points_.select.empty() && info_.roles.id.empty() &&
+           (type == data::ColumnType::kFloat32 || type == data::ColumnType::kFloat64) &&
+           type_of(info_, position[1]) == type && type_of(info_, position[2]) == type &&
+           std::find(position.begin(), position.end(), column) != position.end();
+  }
+
   /// `count`         number of spheres in one image of the periodic box
   /// `are_rounded`   whether make_copies() rounds their centres
   /// `bonds`         number of bonds in all images
@@ -169,7 +186,8 @@ class Loader {
     ReadMemory need;
     need.file_bytes = file_->memory();
     need.rows = info_.rows;
-    for (const std::string& column : columns_) need.row_bytes += data::bytes_per_value(type_of(info_, column));
+    for (const std::string& column : columns_)
+      if (!is_replaced_by_centers(column)) need.row_bytes += data::bytes_per_value(type_of(info_, column));
     need.sphere_bytes = bytes_per_sphere(info_, points_, radius_, are_rounded);
     if (color_.expression) need.row_bytes += sizeof(double);
     if (!material_.empty()) need.sphere_bytes += sizeof(std::uint32_t);
@@ -211,8 +229,11 @@ class Loader {
           table.rows == 0 ? "the frame has no particles" : fmt::format("selects none of the {} particles", table.rows));
     const bool is_all = rows.is_all();
     scene::NumberArray radii = radii_of(table, rows, radius_, points_.radius, faults_);
-    scene::PointArray centers = is_for_centers_alone_ ? take_points(table, rows, info_.roles.position)
-                                                      : points_of(table, rows, info_.roles.position);
+    if (are_needed_once(std::array{radius_.column}))
+      std::erase_if(table.columns, [&](const data::Column& column) { return column.name == radius_.column; });
+    const std::array<std::string, 3>& position = info_.roles.position;
+    scene::PointArray centers =
+        are_needed_once(position) ? take_points(table, rows, position) : points_of(table, rows, position);
     if (points_.unwrap) unwrap(table, rows, info_, centers);
     if (faults_.has_errors()) return;
     // A radius below 0 makes hollow glass, in a scene or in a PLY file that was made for one. In other data it is an
@@ -354,7 +375,7 @@ class Loader {
   std::shared_ptr<data::DataFile> file_;
   data::FrameInfo info_;
   std::vector<std::string> columns_;
-  bool is_for_centers_alone_ = false;  ///< whether nothing else needs the columns of the position
+  std::map<std::string, int> uses_;  ///< how often a column is needed
   RadiusSource radius_;
   ColorSource color_;
   OpacitySource opacity_;

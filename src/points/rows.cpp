@@ -13,6 +13,7 @@
 #include <fmt/core.h>
 
 #include "base/huge_pages.h"
+#include "base/parallel.h"
 #include "base/stop_point.h"
 #include "base/text.h"
 #include "scene/value_text.h"
@@ -164,34 +165,61 @@ scene::PointArray points_of(const data::Table& table, const Rows& rows, const st
   return out;
 }
 
-scene::PointArray take_points(data::Table& table, const Rows& rows, const std::array<std::string, 3>& columns) {
-  /// Rows after which memory is returned.
-  constexpr std::size_t kBlock = std::size_t{1} << 22;
-  std::array<std::vector<float>*, 3> singles{};
-  for (std::size_t axis = 0; axis < 3; ++axis)
+namespace {
+
+/// Three columns of floating-point numbers of the same type, all rows; empty if they are not.
+template <class Number>
+std::array<std::vector<Number>*, 3> columns_of(data::Table& table, const std::array<std::string, 3>& names) {
+  std::array<std::vector<Number>*, 3> out{};
+  for (std::size_t axis = 0; axis < 3; ++axis) {
     for (data::Column& column : table.columns)
-      if (column.name == columns[axis]) singles[axis] = std::get_if<std::vector<float>>(&column.values);
-  const auto is_read = [&](const data::Column& column) {
-    return std::find(columns.begin(), columns.end(), column.name) != columns.end();
-  };
-  if (!rows.is_all() || !singles[0] || !singles[1] || !singles[2]) {
-    scene::PointArray out = points_of(table, rows, columns);
-    std::erase_if(table.columns, is_read);
-    return out;
+      if (column.name == names[axis]) out[axis] = std::get_if<std::vector<Number>>(&column.values);
+    if (out[axis] == nullptr) return {};
   }
-  base::HugeVector<float> out(3 * rows.size());
+  return out;
+}
+
+/// Moves columns into an array of points, piece by piece.
+template <class To, class From>
+scene::PointArray moved(const std::array<std::vector<From>*, 3>& columns) {
+  /// Rows after which memory is returned.
+  constexpr std::size_t kBlock = std::size_t{1} << 20;
+  const std::size_t count = columns[0]->size();
+  base::HugeVector<To> out(3 * count);
   const base::StopPoint stop;
-  for (std::size_t begin = 0; begin < rows.size(); begin += kBlock) {
+  for (std::size_t begin = 0; begin < count; begin += kBlock) {
     stop.check();
-    const std::size_t end = std::min(rows.size(), begin + kBlock);
+    const std::size_t end = std::min(count, begin + kBlock);
     tbb::parallel_for(tbb::blocked_range<std::size_t>(begin, end, 4096), [&](const auto& range) {
       for (std::size_t i = range.begin(); i < range.end(); ++i)
-        for (std::size_t axis = 0; axis < 3; ++axis) out[3 * i + axis] = (*singles[axis])[i];
+        for (std::size_t axis = 0; axis < 3; ++axis) out[3 * i + axis] = static_cast<To>((*columns[axis])[i]);
     });
-    for (std::vector<float>* const column : singles) base::release_memory(std::span(&(*column)[begin], end - begin));
+    for (std::vector<From>* const column : columns) base::release_memory(std::span(&(*column)[begin], end - begin));
   }
-  std::erase_if(table.columns, is_read);
-  return scene::PointArray(std::move(out));
+  return scene::PointArray(scene::NumberArray(std::move(out)));
+}
+
+bool fit_single(const std::array<std::vector<double>*, 3>& columns) {
+  return base::are_all(columns[0]->size(), [&](std::size_t i) {
+    return std::all_of(columns.begin(), columns.end(),
+                       [i](const auto* column) { return scene::NumberArray::is_single((*column)[i]); });
+  });
+}
+
+}  // namespace
+
+scene::PointArray take_points(data::Table& table, const Rows& rows, const std::array<std::string, 3>& columns) {
+  const auto singles = columns_of<float>(table, columns);
+  const auto doubles = columns_of<double>(table, columns);
+  scene::PointArray out = !rows.is_all()          ? points_of(table, rows, columns)
+                          : singles[0] != nullptr ? moved<float>(singles)
+                          : doubles[0] == nullptr ? points_of(table, rows, columns)
+                          : fit_single(doubles)   ? moved<float>(doubles)
+                                                  : moved<double>(doubles);
+  std::erase_if(table.columns, [&](const data::Column& column) {
+    return std::find(columns.begin(), columns.end(), column.name) != columns.end();
+  });
+  return out;
 }
 
 std::string row_name(const scene::PointsKeys& points, std::size_t row) {

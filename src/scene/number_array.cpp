@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <memory>
+#include <span>
 #include <utility>
 
 namespace orrery::scene {
@@ -15,6 +16,12 @@ bool NumberArray::fits_single() const noexcept {
     case Storage::kDoubles: break;
   }
   return false;
+}
+
+void NumberArray::release(std::size_t begin, std::size_t end) {
+  if (storage_ == Storage::kDoubles) base::release_memory(std::span(doubles_).subspan(begin, end - begin));
+  if (storage_ == Storage::kSingles && singles_.use_count() == 1)
+    base::release_memory(std::span(*singles_).subspan(begin, end - begin));
 }
 
 void NumberArray::spread(double value) {
@@ -38,7 +45,7 @@ void NumberArray::spread(double value) {
     singles_ = std::make_shared<base::HugeVector<float>>(std::move(singles));
     storage_ = Storage::kSingles;
   } else {
-    std::vector<double> doubles;
+    base::HugeVector<double> doubles;
     copy_to(doubles);
     doubles_ = std::move(doubles);
     singles_ = nullptr;

@@ -57,6 +57,8 @@ class NumberArray {
       : storage_(Storage::kSingles),
         count_(singles.size()),
         singles_(std::make_shared<base::HugeVector<float>>(std::move(singles))) {}
+  explicit NumberArray(base::HugeVector<double> doubles)
+      : storage_(Storage::kDoubles), count_(doubles.size()), doubles_(std::move(doubles)) {}
 
   std::size_t size() const noexcept { return count_; }
   bool empty() const noexcept { return count_ == 0; }
@@ -77,6 +79,8 @@ class NumberArray {
   const_iterator begin() const { return {*this, 0}; }
   const_iterator end() const { return {*this, count_}; }
 
+  /// Returns whether a number does not need double precision.
+  static bool is_single(double x) { return math::in_single_precision(x) == x || std::isnan(x); }
   /// Returns whether all numbers are equal.
   bool is_uniform() const noexcept { return storage_ == Storage::kOne; }
   /// Returns whether no number needs double precision.
@@ -117,6 +121,8 @@ class NumberArray {
   }
   void assign(std::size_t count, double value) { *this = NumberArray(count, value); }
   void clear() { *this = NumberArray(); }
+  /// Returns the memory of the numbers begin .. end - 1, which are indeterminate from then on, unless copies share it.
+  void release(std::size_t begin, std::size_t end);
   void reserve(std::size_t count) { reserved_ = count; }
   void resize(std::size_t count) {
     if (storage_ == Storage::kPalette) {
@@ -127,7 +133,7 @@ class NumberArray {
       indices_.resize(count, last_found_);
     }
     if (storage_ == Storage::kSingles) own_singles().resize(count, 0);
-    if (storage_ == Storage::kDoubles) doubles_.resize(count);
+    if (storage_ == Storage::kDoubles) doubles_.resize(count, 0);
     if (is_uniform() && count > count_ && !is_same(value_, 0)) {
       if (count_ == 0) {
         value_ = 0;
@@ -152,7 +158,6 @@ class NumberArray {
   /// Maximum palette size; searching a larger one would cost too much time.
   static constexpr std::size_t kMaxPalette = 16;
 
-  static bool is_single(double x) { return math::in_single_precision(x) == x || std::isnan(x); }
   /// Distinguishes 0 from -0.
   static bool is_same(double a, double b) { return std::bit_cast<std::uint64_t>(a) == std::bit_cast<std::uint64_t>(b); }
 
@@ -191,7 +196,7 @@ class NumberArray {
   std::uint8_t last_found_ = 0;
   std::vector<std::uint8_t> indices_;
   std::shared_ptr<base::HugeVector<float>> singles_;  ///< null unless they are the storage
-  std::vector<double> doubles_;
+  base::HugeVector<double> doubles_;
 };
 
 /// Points, stored as NumberArray stores their coordinates.
@@ -205,7 +210,7 @@ class PointArray {
   PointArray(std::initializer_list<Vec3d> points) { append(points); }
   PointArray(const std::vector<Vec3d>& points) { append(points); }  // NOLINT(google-explicit-constructor)
   /// `numbers`  x, y, z of each point
-  explicit PointArray(base::HugeVector<float> numbers) : numbers_(std::move(numbers)) {}
+  explicit PointArray(NumberArray numbers) : numbers_(std::move(numbers)) {}
 
   std::size_t size() const noexcept { return numbers_.size() / 3; }
   bool empty() const noexcept { return numbers_.empty(); }
@@ -231,6 +236,8 @@ class PointArray {
     numbers_.push_back(p.z);
   }
   void clear() { numbers_.clear(); }
+  /// See NumberArray.
+  void release(std::size_t begin, std::size_t end) { numbers_.release(3 * begin, 3 * end); }
   void reserve(std::size_t count) { numbers_.reserve(3 * count); }
   void resize(std::size_t count) { numbers_.resize(3 * count); }
 

@@ -58,6 +58,7 @@ TEST(CompileSphereStore, SharesTheCentresOfASingleFile) {
   points[1].radii.assign(100, 0.1);
   SphereStore store;
   store.append(points);
+  EXPECT_EQ(SphereStore::bytes_of(points), 0u);
   EXPECT_EQ(store.view().centers, points[1].centers.numbers().singles()->data());
   points[1].centers.set(7, {9, 9, 9});
   EXPECT_EQ(store[7].x, 7.5);

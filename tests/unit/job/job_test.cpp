@@ -322,23 +322,24 @@ TEST_F(JobRun, RejectsACheckpointWithOtherSumsThanItsHeaderSays) {
   EXPECT_EQ(statistics()["resumed"], true);
 }
 
-/// While a scene is compiled, its spheres are in memory twice. With the list, the render needs less than that.
+/// While spheres of two files are compiled, they are in memory twice. With the list, the render needs less than that.
 TEST_F(JobRun, SpheresThatDoNotFitTwiceAreNotCompiled) {
   std::string rows = "x,y,z\n";
-  for (int i = 0; i < 1000; ++i) rows += "0." + std::to_string(1000 + i) + ",0.1,0.2\n";
+  for (int i = 0; i < 1000; ++i) rows += std::to_string(i) + ",0.5,0.25\n";
   support::write_bytes(folder_ / "a.csv", rows);
+  const std::string points = "[[points]]\nfile = \"a.csv\"\nradius = 0.01\nmaterial = \"grey\"\n";
   support::write_bytes(folder_ / "scene.toml",
-                       std::string(kScene) + "[[points]]\nfile = \"a.csv\"\nradius = 0.01\nmaterial = \"grey\"\n");
+                       std::string(kScene) + points + points + "transform = { translate = [0, 1, 0] }\n");
   for (const char* text : {"image.width=1", "image.height=1", "render.accelerator=\"list\""})
     job_.scene.overrides.add(text);
   job_.outputs.images = {folder_ / "a.exr"};
-  // 1,000 rows need 48,000 bytes while they are read; loaded and compiled spheres need 24 and 32 each.
-  job_.resources.memory_limit = 57'000;
+  // The 2,000 spheres take 12 bytes each, and need 24 while they are read.
+  job_.resources.memory_limit = 49'000;
   EXPECT_NO_THROW(run_job(job_));
-  job_.resources.memory_limit = 55'000;
+  job_.resources.memory_limit = 47'000;
   const base::Error refused = error();
   EXPECT_EQ(refused.kind(), base::ErrorKind::kNoMemory);
-  EXPECT_NE(std::string(refused.what()).find("the spheres need about 54.7 KiB while they are compiled"),
+  EXPECT_NE(std::string(refused.what()).find("the spheres need about 46.9 KiB while they are compiled"),
             std::string::npos)
       << refused.what();
 }

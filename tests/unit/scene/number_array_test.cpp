@@ -65,10 +65,9 @@ TEST(SceneNumberArray, FloatsTakeFourBytesAndOneDoubleMakesAllEight) {
 }
 
 TEST(SceneNumberArray, CopiesShareFloatsUntilOneIsChanged) {
-  for (const auto change : {+[](NumberArray& numbers) { numbers.set(3, 7); },
-                            +[](NumberArray& numbers) { numbers.push_back(0.5); },
-                            +[](NumberArray& numbers) { numbers.push_back(0.1); },
-                            +[](NumberArray& numbers) { numbers.resize(10); }}) {
+  for (const auto change :
+       {+[](NumberArray& numbers) { numbers.set(3, 7); }, +[](NumberArray& numbers) { numbers.push_back(0.5); },
+        +[](NumberArray& numbers) { numbers.push_back(0.1); }, +[](NumberArray& numbers) { numbers.resize(10); }}) {
     NumberArray numbers;
     for (int i = 0; i < 100; ++i) numbers.push_back(i - 0.5);
     const NumberArray copy = numbers;
