@@ -41,7 +41,15 @@ std::string json_line(const ProgressState& state) {
     line += fmt::format(", \"samples_per_second\": {:.0f}, \"seconds_left\": {:.1f}", state.samples_per_second(),
                         state.seconds_left());
   if (!state.goal.empty()) line += fmt::format(", \"goal\": \"{}\"", state.goal);
+  if (!state.phase.empty()) line += fmt::format(", \"phase\": \"{}\"", state.phase);
+  if (state.prepared > 0) line += fmt::format(", \"phase_progress\": {}", static_cast<int>(state.prepared * 100));
   return line + "}";
+}
+
+/// "building  10 %". The space keeps programs that look for "10%" from reading it.
+std::string phase_text(const ProgressState& state) {
+  return state.prepared > 0 ? fmt::format("{}  {} %", state.phase, static_cast<int>(state.prepared * 100))
+                            : state.phase;
 }
 
 /// Columns of the terminal; 80 if unknown.
@@ -89,7 +97,7 @@ std::string progress_line(ProgressStyle style, const ProgressState& state) {
     case ProgressStyle::kBar:
     case ProgressStyle::kNone: break;
   }
-  return fmt::format("{}% done", state.percent());
+  return fmt::format("{}% done", state.percent()) + (state.phase.empty() ? "" : ", " + phase_text(state));
 }
 
 std::string progress_bar(const ProgressState& state, int columns) {
@@ -125,13 +133,13 @@ void ProgressPrinter::update(const ProgressState& state) {
   }
 }
 
-void ProgressPrinter::building(double fraction) {
-  if (style_ != ProgressStyle::kBar) return;
+void ProgressPrinter::prepare(const std::string& phase, double fraction) {
   const std::lock_guard lock(mutex_);
-  const int percent = static_cast<int>(fraction * 100);
-  if (finished_ || state_.done > 0 || percent <= last_percent_) return;
-  last_percent_ = percent;
-  print_bar(fmt::format("building  {} %", percent));
+  if (finished_ || state_.done > 0 || (phase == state_.phase && fraction <= state_.prepared)) return;
+  const std::string before = phase_text(state_);
+  state_.phase = phase;
+  state_.prepared = fraction;
+  if (style_ == ProgressStyle::kBar && phase_text(state_) != before) print_bar(phase_text(state_));
 }
 
 void ProgressPrinter::note(const std::string& text) {

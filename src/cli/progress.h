@@ -37,6 +37,8 @@ struct ProgressState {
   std::uint64_t total = 1;  ///< samples
   double seconds = 0;       ///< since the start; 0: no rate and no time left are shown
   std::string goal = {};    ///< the target, as text; empty: the samples
+  std::string phase = {};   ///< what is done before the first sample, such as "building"; empty: nothing
+  double prepared = 0;      ///< progress of that phase, 0..1; 0: unknown
 
   double fraction() const;            ///< 0..1
   int percent() const;                ///< rounded down; 100 only when finished
@@ -70,8 +72,10 @@ class ProgressPrinter {
   /// Sets the progress to show. Thread-safe.
   void update(const ProgressState& state);
 
-  /// Shows the finished fraction of the BVH build, 0..1, in the bar; lines show samples only. Thread-safe.
-  void building(double fraction);
+  /// Shows what is done before the first sample: in the bar, and in the lines of heartbeats. Thread-safe.
+  ///
+  /// `fraction`  progress of the phase, 0..1; 0: unknown
+  void prepare(const std::string& phase, double fraction);
 
   /// Prints a message of whole lines between progress lines, or above the bar. Thread-safe.
   void note(const std::string& text);

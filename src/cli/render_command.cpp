@@ -227,7 +227,7 @@ int run_render(RenderOptions& options) {
   ProgressPrinter printer(style_of(options), stderr);
   BatchProgress progress(printer);
   job.hooks.on_progress = [&](const render::Progress& p) { progress.update(p); };
-  job.hooks.on_build = [&](double fraction) { printer.building(fraction); };
+  job.hooks.on_preparation = [&](const char* phase, double fraction) { printer.prepare(phase, fraction); };
   const auto note = [&](const std::string& text) {
     if (!options.quiet) printer.note(text);
   };

@@ -71,10 +71,12 @@ class Run {
         prepared_(job.prepared ? job.prepared : std::make_shared<PreparedScene>()) {}
 
   void run() {
+    prepare("reading");
     load();
     report_.phases.read_s = watch_.lap();
     stop_if_cancelled();
 
+    prepare("compiling");
     compile();
     if (report_.was_skipped) return;
     report_.phases.compile_s = watch_.lap();
@@ -250,6 +252,10 @@ class Run {
            from.has_known_spheres(compiled().sphere_materials.size());
   }
 
+  void prepare(const char* phase, double fraction = 0) const {
+    if (job_.hooks.on_preparation) job_.hooks.on_preparation(phase, fraction);
+  }
+
   /// Builds the BVH, unless the prepared scene has one.
   ///
   /// Result     null if the job was cancelled meanwhile
@@ -259,7 +265,7 @@ class Run {
     accel::Accel* accel = nullptr;
     try {
       accel = &prepared_->accelerator(settings_.threads, [this](double fraction) {
-        if (job_.hooks.on_build) job_.hooks.on_build(fraction);
+        prepare("building", fraction);
         return !is_cancelled();
       });
     } catch (const base::Error& error) {

@@ -52,7 +52,8 @@ struct MergeSettings {
 /// empty.
 struct Hooks {
   std::function<void(const render::Progress&)> on_progress;   ///< see render::Settings
-  std::function<void(double fraction)> on_build;              ///< called with the progress of the BVH build, 0..1
+  /// Called before the first sample with what is done, "reading", "compiling" or "building", and its progress, 0..1.
+  std::function<void(const char* phase, double fraction)> on_preparation;
   std::function<void(const display::PictureInfo&)> on_start;  ///< called before rendering starts
   /// See render::Settings. Not called for a merge.
   std::function<void(const film::Partial&, const film::RenderedPixels&)> on_pixels;

@@ -280,8 +280,8 @@ job::Hooks Viewer::hooks_for(Image& image) {
   hooks.cancel = &cancel_;
   hooks.develops_pixels = true;
   hooks.on_warning = [&image](const base::Diagnostic& warning) { image.warnings.push_back(base::formatted(warning)); };
-  hooks.on_build = [this, &image](double fraction) {
-    if (fraction - image.build_reported < 0.05) return;
+  hooks.on_preparation = [this, &image](const char*, double fraction) {
+    if (fraction - image.build_reported < 0.05) return;  // only a build reports more than its start
     image.build_reported = fraction;
     set_activity(fmt::format("building the BVH: {:.0f} %", 100 * fraction));
   };

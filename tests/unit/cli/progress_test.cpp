@@ -44,20 +44,21 @@ TEST_F(CliProgress, AutoPrintsLinesWithoutATerminal) {
   EXPECT_EQ(printed(), "42% done\n");
 }
 
-TEST_F(CliProgress, BuildProgressIsShownInPlaceOfTheBar) {
+TEST_F(CliProgress, PreparationIsShownInPlaceOfTheBar) {
   {
     ProgressPrinter printer(ProgressStyle::kBar, file_, kNever);
-    for (const double fraction : {0.1, 0.102, 0.05, 0.5}) printer.building(fraction);
+    printer.prepare("reading", 0);
+    for (const double fraction : {0.1, 0.102, 0.05, 0.5}) printer.prepare("building", fraction);
     printer.update({1, 2, 1});
-    printer.building(0.9);  // late, from another thread
+    printer.prepare("building", 0.9);  // late, from another thread
   }
   const std::string text = printed();
-  EXPECT_EQ(text.find("\rbuilding  10 %\033[K\rbuilding  50 %\033[K\r["), 0u) << text;
+  EXPECT_EQ(text.find("\rreading\033[K\rbuilding  10 %\033[K\rbuilding  50 %\033[K\r["), 0u) << text;
   EXPECT_EQ(text.find("90 %"), std::string::npos) << text;
 }
 
-TEST_F(CliProgress, LinesDoNotShowBuildProgress) {
-  { ProgressPrinter(ProgressStyle::kArnold, file_, kNever).building(0.5); }
+TEST_F(CliProgress, PreparationAddsNoLines) {
+  { ProgressPrinter(ProgressStyle::kArnold, file_, kNever).prepare("building", 0.5); }
   EXPECT_EQ(printed(), "");
 }
 
@@ -87,19 +88,27 @@ TEST_F(CliProgress, NothingIsPrintedAfterTheEnd) {
   EXPECT_EQ(printed(), "50% done\n");
 }
 
-TEST_F(CliProgress, HeartbeatRepeatsTheLastLine) {
-  // Expects some heartbeats, not a number of them, which depends on the machine.
-  ProgressPrinter printer(ProgressStyle::kOpenJd, file_, 2ms);
-  printer.update({42, 100, 1});
+/// Waits until the file contains a text. Expects some heartbeats, not a number of them, which depends on the machine.
+void wait_for(std::FILE* file, const std::string& wanted) {
   std::string text;
-  while (text.find("openjd_progress: 42\nopenjd_progress: 42\nopenjd_progress: 42\n") == std::string::npos) {
+  while (text.find(wanted) == std::string::npos) {
     std::this_thread::sleep_for(5ms);
     char buffer[4096];
-    const int descriptor = fileno(file_);
-    const auto length = ::pread(descriptor, buffer, sizeof(buffer), 0);
+    const auto length = ::pread(fileno(file), buffer, sizeof(buffer), 0);
     text.assign(buffer, static_cast<std::size_t>(length));
   }
-  SUCCEED();
+}
+
+TEST_F(CliProgress, HeartbeatRepeatsTheLastLine) {
+  ProgressPrinter printer(ProgressStyle::kOpenJd, file_, 2ms);
+  printer.update({42, 100, 1});
+  wait_for(file_, "openjd_progress: 42\nopenjd_progress: 42\nopenjd_progress: 42\n");
+}
+
+TEST_F(CliProgress, HeartbeatsNameThePhase) {
+  ProgressPrinter printer(ProgressStyle::kArnold, file_, 2ms);
+  printer.prepare("building", 0.5);
+  wait_for(file_, "0% done, building  50 %\n");
 }
 
 TEST_F(CliProgress, HeartbeatStartsBeforeTheFirstSample) {
@@ -134,6 +143,12 @@ TEST(CliProgressText, JsonHasTheRateOnceItIsKnown) {
             R"("seconds_left": 13.8})");
   EXPECT_EQ(progress_line(ProgressStyle::kJson, {0, 100, 0}),
             R"({"progress": 0, "samples_done": 0, "samples_total": 100, "seconds": 0.0})");
+  ProgressState building{0, 100, 0};
+  building.phase = "building";
+  building.prepared = 0.5;
+  EXPECT_EQ(progress_line(ProgressStyle::kJson, building),
+            R"({"progress": 0, "samples_done": 0, "samples_total": 100, "seconds": 0.0, "phase": "building", )"
+            R"("phase_progress": 50})");
 }
 
 TEST(CliProgressText, OnlyAFinishedRenderIsAtAHundredPercent) {
