@@ -224,7 +224,9 @@ def main():
     with tempfile.TemporaryDirectory(dir=options.folder) as name:
         folder = pathlib.Path(name)
         program = Program(options.program, options.isa)
-        whole = [(make, options.whole) for make in (uniform, crystal) if options.whole]
+        # A crystal of a billion would take hours to write.
+        makers = (uniform, crystal) if (options.whole or 0) <= 200_000_000 else (uniform,)
+        whole = [(make, options.whole) for make in makers if options.whole]
         if options.capsids:
             whole.append((capsids, options.capsids))
         for make, what in whole:
