@@ -231,6 +231,15 @@ SphereBvh::SphereBvh(const BoundedSpheres& spheres, std::vector<std::uint32_t> i
       .run(monitor, size_of_parts > 0 ? size_of_parts : part_size(count));
 }
 
+std::uint64_t SphereBvh::bytes_of_build(const ObjectCounts& objects) noexcept {
+  const std::uint64_t count = objects.all(), leaf_count = count / kArity + 1,
+                      node_count = leaf_count / (kArity - 1) + 1;
+  return leaf_count * (sizeof(Leaf) + (objects.have_one_radius ? 0 : sizeof(LeafRadii)) +
+                       (objects.rods > 0 ? sizeof(LeafRods) : 0)) +
+         node_count * (sizeof(Node) + sizeof(Cell)) + (count > kMostStartNodes ? 0 : 3 * count) +
+         std::min<std::uint64_t>(count, part_size(count)) * sizeof(SphereItem);
+}
+
 std::size_t SphereBvh::bytes() const noexcept {
   return start_nodes.bytes() + cells.size() * sizeof(Cell) + leaves.size() * sizeof(Leaf) +
          radii.size() * sizeof(LeafRadii) + rods.size() * sizeof(LeafRods) + nodes.size() * sizeof(Node);

@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include <algorithm>
 #include <array>
 #include <cstddef>
 #include <cstdint>
 #include <functional>
 #include <vector>
 
+#include "accel/accel.h"
 #include "accel/box_frame.h"
 #include "base/huge_pages.h"
 #include "kernel/rod.h"
@@ -84,13 +84,6 @@ class SphereBvh {
   /// where that saves memory to speak of.
   static constexpr std::size_t part_size(std::size_t count) { return std::size_t{1} << (count >> 27 > 0 ? 24 : 20); }
 
-  /// Memory at the peak of a build: leaves with radii take 9.3 bytes per sphere, nodes and cells 0.7, start nodes 3,
-  /// axes of rods 4, and the items of a part 16.
-  static constexpr std::uint64_t bytes_of_build(std::size_t count, bool has_rods) {
-    const std::uint64_t per_sphere = 10u + (count > kMostStartNodes ? 0u : 3u) + (has_rods ? 4u : 0u);
-    return per_sphere * count + std::uint64_t{16} * std::min(count, part_size(count));
-  }
-
   SphereBvh() = default;
 
   /// `ids`            of spheres and of the first halves of rods, which do not move
@@ -101,6 +94,9 @@ class SphereBvh {
   SphereBvh(const BoundedSpheres& spheres, std::vector<std::uint32_t> ids, const BoxFrame& frame,
             const std::function<bool(double)>& monitor = {}, const BoundedRods& rods = {},
             std::size_t size_of_parts = 0);
+
+  /// Memory at the peak of a build.
+  static std::uint64_t bytes_of_build(const ObjectCounts& objects) noexcept;
 
   bool empty() const noexcept { return leaves.empty(); }
   std::uint32_t root() const noexcept { return static_cast<std::uint32_t>(nodes.size() - 1); }

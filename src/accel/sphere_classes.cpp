@@ -157,15 +157,19 @@ ObjectCounts objects_in_bvh(const kernel::SceneView& scene) {
   const double limit = giant_radius(scene);
   const std::size_t rods = short_rods(scene.rods, limit);
   std::size_t count = 0;
+  double smallest = limit, largest = 0;
   std::vector<std::uint32_t> ids;  // enough of them to recognise a small layer
   for (std::size_t id = scene.moving_count; id < scene.sphere_count; ++id) {
-    if (scene.spheres[id].radius > limit) continue;
+    const double radius = scene.spheres[id].radius;
+    if (radius > limit) continue;
     ++count;
+    smallest = std::min(smallest, radius);
+    largest = std::max(largest, radius);
     if (ids.size() <= kMaxInSmallLayer) ids.push_back(static_cast<std::uint32_t>(id));
   }
   const bool fits = count + rods >= least && count + rods <= SphereBvh::kMaxSpheres;
   if (!fits || (rods < count && is_small_layer(scene.spheres, ids))) return {};
-  return {count, rods};
+  return {count, rods, rods == 0 && smallest == largest};
 }
 
 }  // namespace orrery::accel

@@ -262,6 +262,7 @@ void SphereSort::divide(const Items& items, std::span<typename Items::Item> rang
     parts->push_back(part);
     return;
   }
+  if (parts != nullptr && monitor_ && !monitor_(0)) stopped_ = true;
   for (; part.count <= part.unit && part.unit > kArity; part.unit /= kArity) {
     // The range is one node.
     std::size_t level = 0;

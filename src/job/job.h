@@ -51,7 +51,7 @@ struct MergeSettings {
 /// Callbacks by which a job reports to its caller, and flags by which the caller controls it. Every member may be
 /// empty.
 struct Hooks {
-  std::function<void(const render::Progress&)> on_progress;   ///< see render::Settings
+  std::function<void(const render::Progress&)> on_progress;  ///< see render::Settings
   /// Called before the first sample with what is done, "reading", "compiling" or "building", and its progress, 0..1.
   std::function<void(const char* phase, double fraction)> on_preparation;
   std::function<void(const display::PictureInfo&)> on_start;  ///< called before rendering starts

@@ -139,10 +139,10 @@ MemoryEstimate estimate_memory(const MemoryNeeds& needs) {
   m.background = needs.background;
   m.textures = needs.textures;
   m.lights = needs.lights;
-  const std::uint64_t outside = needs.spheres + needs.rods - needs.in_bvh;
+  const std::uint64_t outside = needs.spheres + needs.rods - needs.in_bvh.all();
   if (needs.embree)
-    m.accelerator =
-        accel::SphereBvh::bytes_of_build(needs.in_bvh, needs.bvh_has_rods) + outside * kAcceleratorBytesPerSphere;
+    m.accelerator = (needs.in_bvh.all() > 0 ? accel::SphereBvh::bytes_of_build(needs.in_bvh) : 0) +
+                    outside * kAcceleratorBytesPerSphere;
   return m;
 }
 
@@ -154,11 +154,7 @@ MemoryNeeds memory_needs(const compile::CompiledScene& compiled, const film::Lay
   needs.spheres = compiled.spheres.size();
   needs.rods = compiled.rod_count();
   needs.embree = compiled.accelerator == compile::Accelerator::kEmbree && !has_accelerator;
-  if (needs.embree) {
-    const accel::ObjectCounts in_bvh = accel::objects_in_bvh(compiled.view());
-    needs.in_bvh = in_bvh.all();
-    needs.bvh_has_rods = in_bvh.rods > 0;
-  }
+  if (needs.embree) needs.in_bvh = accel::objects_in_bvh(compiled.view());
   needs.sphere_bytes = compiled.spheres.bytes() + compiled.rods.size() * sizeof(kernel::Rod) +
                        compiled.bonds.size() * sizeof(kernel::Bond) + compiled.sphere_materials.bytes() +
                        compiled.opacity.size() * sizeof(compiled.opacity[0]) +

@@ -7,6 +7,7 @@
 #include <map>
 #include <string>
 
+#include "accel/accel.h"
 #include "compile/forward.h"
 #include "film/forward.h"
 #include "scene/forward.h"
@@ -46,8 +47,7 @@ struct MemoryNeeds {
   int width = 0, height = 0;  ///< px
   std::uint64_t spheres = 0;  ///< from tables and points files
   std::uint64_t rods = 0;
-  std::uint64_t in_bvh = 0;  ///< spheres and rods of accel::objects_in_bvh()
-  bool bvh_has_rods = false;
+  accel::ObjectCounts in_bvh;      ///< see accel::objects_in_bvh()
   std::uint64_t sphere_bytes = 0;  ///< bytes of the compiled spheres and rods, and their material indices
   std::uint64_t background = 0;    ///< bytes of an image background
   std::uint64_t textures = 0;      ///< bytes of image textures

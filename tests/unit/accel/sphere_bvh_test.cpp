@@ -247,22 +247,26 @@ TEST(AccelSphereBvh, TakesFewBytes) {
   EXPECT_LT(static_cast<double>(own.bvh.bytes()), 14.5 * static_cast<double>(spheres.size()));
 }
 
+/// Both while ids are sorted and while parts are.
 TEST(AccelSphereBvh, BuildsCanBeStopped) {
   Random random;
   const Tree tree(test::scattered(random, 20'000, 1, 0.01, 0));
-  double last = 0;
-  int calls = 0;
-  try {
-    SphereBvh(tree.spheres.data(), all_of(tree.spheres), tree.frame, [&](double fraction) {
+  for (const int calls_before : {1, 10}) {
+    double last = 0;
+    int calls = 0;
+    const auto monitor = [&](double fraction) {
       last = std::max(last, fraction);
-      return ++calls < 10;
-    });
-    FAIL() << "the build was not stopped";
-  } catch (const base::Error& error) {
-    EXPECT_EQ(error.kind(), base::ErrorKind::kStopped);
+      return ++calls < calls_before;
+    };
+    try {
+      SphereBvh(tree.spheres.data(), all_of(tree.spheres), tree.frame, monitor, {}, 4096);
+      FAIL() << "the build was not stopped";
+    } catch (const base::Error& error) {
+      EXPECT_EQ(error.kind(), base::ErrorKind::kStopped);
+    }
+    EXPECT_EQ(last > 0, calls_before > 1);
+    EXPECT_LT(last, 0.5);
   }
-  EXPECT_GT(last, 0);
-  EXPECT_LT(last, 0.5);
 }
 
 }  // namespace

@@ -126,12 +126,12 @@ TEST(LoadScene, TablesOfPointsShareTheMemoryLimit) {
       return false;
     }
   };
-  // 1,000 rows need 64,000 bytes while they are read, and 24,000 for the coordinates afterwards.
-  EXPECT_FALSE(fits(1, 60'000));
-  EXPECT_TRUE(fits(1, 80'000));
-  EXPECT_FALSE(fits(2, 80'000));
-  EXPECT_TRUE(fits(2, 90'000));
-  EXPECT_FALSE(fits(3, 90'000));
+  // 1,000 rows need 40,000 bytes while they are read, and 24,000 for the coordinates afterwards.
+  EXPECT_FALSE(fits(1, 35'000));
+  EXPECT_TRUE(fits(1, 45'000));
+  EXPECT_FALSE(fits(2, 60'000));
+  EXPECT_TRUE(fits(2, 70'000));
+  EXPECT_FALSE(fits(3, 80'000));
   EXPECT_TRUE(fits(3, 0)) << "no limit";
 }
 
