@@ -12,6 +12,7 @@
 #include <algorithm>
 #include <cstddef>
 #include <cstdint>
+#include <iterator>
 #include <limits>
 
 #include "accel/embree_scene.h"
@@ -213,11 +214,23 @@ HWY_INLINE hn::Mask<D> mask_of(D d, unsigned lanes) {
   return hn::RebindMask(d, hn::TestBit(hn::Set(du, U{lanes}), bit));
 }
 
-/// Calls f(i) for each bit i that is set, in ascending order.
-template <class F>
-HWY_INLINE void each_bit(std::uint64_t bits, F f) {
-  for (; bits != 0; bits &= bits - 1) f(static_cast<int>(hwy::Num0BitsBelowLS1Bit_Nonzero64(bits)));
-}
+/// The bits that are set in a word, ascending. Compilers inline the body of a loop over them, unlike a lambda.
+class SetBits {
+ public:
+  struct Iterator {
+    std::uint64_t rest;
+
+    HWY_INLINE int operator*() const { return static_cast<int>(hwy::Num0BitsBelowLS1Bit_Nonzero64(rest)); }
+    HWY_INLINE void operator++() { rest &= rest - 1; }
+    HWY_INLINE bool operator!=(std::default_sentinel_t) const { return rest != 0; }
+  };
+  HWY_INLINE explicit SetBits(std::uint64_t bits) : bits_(bits) {}
+  HWY_INLINE Iterator begin() const { return {bits_}; }
+  HWY_INLINE std::default_sentinel_t end() const { return {}; }
+
+ private:
+  std::uint64_t bits_;
+};
 
 /// Converts Embree's valid flags to a mask.
 template <class D>

@@ -181,7 +181,7 @@ class PacketTraversal {
     }
     const bool has_opacity = query_.scene->opacity != nullptr;
     auto limit = hn::Load(d_, limit_);
-    each_bit(entered_by_any(bound, bvh_.count_in(index)), [&](int i) {
+    for (const int i : SetBits(entered_by_any(bound, bvh_.count_in(index)))) {
       const std::uint32_t id = leaf.ids[i];
       const k::Vec3<hn::Vec<Wide>> at = {hn::Set(d_, center[0][i]), hn::Set(d_, center[1][i]),
                                          hn::Set(d_, center[2][i])};
@@ -197,18 +197,18 @@ class PacketTraversal {
       if (is_rod) hit = hn::And(hit, at_rod().may_hit(passed.along, limit));
       unsigned hitting = bits_of(d_, hit) & lanes;
       if constexpr (Packet::kIsShadow) {
-        each_bit(hitting, [&](int lane) {
+        for (const int lane : SetBits(hitting)) {
           if (query_.packet->target[query_.first + lane] == id) hitting &= ~(1u << lane);
-        });
+        }
         hit = mask_of(d_, hitting);
       }
-      if (hitting == 0) return;
+      if (hitting == 0) continue;
       if (has_opacity) {
         // The halves of a rod may have different opacities: its opacity is known only with the hit.
         if (!is_rod)
           hit = hn::And(hit, k::visible_lanes(d_, *query_.packet, query_.first, id, query_.scene->opacity[id]));
         hitting &= bits_of(d_, hit);
-        if (hitting == 0) return;
+        if (hitting == 0) continue;
       }
       const auto begin = is_rod ? at_rod().begin(passed.along) : passed.along - radius;
       const auto nearer = is_rod ? has_opacity ? limit : min(limit, at_rod().certain_distance(begin))
@@ -217,7 +217,7 @@ class PacketTraversal {
       const float nearest = hn::GetLane(hn::MinOfLanes(d_, select(hit, begin, infinite)));
       prefetcher_.prefetch_candidate(id);
       insert(candidates_, 0, candidate_count_, PacketVisit{nearest, id, hitting});
-    });
+    }
     hn::Store(limit, d_, limit_);
   }
 

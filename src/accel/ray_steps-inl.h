@@ -48,7 +48,7 @@ HWY_INLINE int store_chosen(D d, hn::Vec<D> v, hn::Mask<D> mask, hn::TFromD<D>* 
     HWY_ALIGN hn::TFromD<D> lanes[hn::MaxLanes(D())];
     hn::Store(v, d, lanes);
     int count = 0;
-    each_bit(bits_of(d, mask), [&](int i) { to[count++] = lanes[i]; });
+    for (const int i : SetBits(bits_of(d, mask))) to[count++] = lanes[i];
     hn::StoreU(hn::Zero(d), d, to + count);
     return count;
   }
@@ -112,6 +112,7 @@ struct alignas(64) SingleRay {
   // Vectors of four, of which the last is 0.
   float origin[4], direction[4], inverse[4];
   float limit;            ///< distance beyond which nothing is searched
+  std::uint32_t left;     ///< the sphere that the ray leaves outwards and so cannot hit; kNoSphere: none
   std::uint32_t target;   ///< shadow rays: a sphere that is never hit
   std::uint32_t key;      ///< decides which objects are visible; only if the scene has opacities
   std::uint32_t near[3];  ///< per axis: offset in Node::bound of the bounds at which the ray enters boxes
@@ -258,7 +259,6 @@ HWY_INLINE bool test_spheres(const SphereBvh& bvh, std::uint32_t index, SingleRa
   const auto origin =
       set3(leaf.origin[0] - ray.origin[0], leaf.origin[1] - ray.origin[1], leaf.origin[2] - ray.origin[2]);
   const hn::RebindToUnsigned<ChildTag> du;
-  const auto is_target = [&](int v) { return hn::RebindMask(d, hn::LoadU(du, leaf.ids + v) == ray.target); };
   const bool is_last = index == bvh.last_leaf;
   const bool has_rods = bvh.has_rods_in(index);
   bool any = false;
@@ -271,7 +271,9 @@ HWY_INLINE bool test_spheres(const SphereBvh& bvh, std::uint32_t index, SingleRa
     if (has_rods && !hn::AllFalse(d, rods))
       hit = hn::And(hit, hn::Or(hn::Not(rods), at_rods(bvh, index, v, ray).may_hit(passed.along, limit)));
     if (is_last) hit = hn::And(hit, hn::Iota(d, static_cast<float>(v)) < bvh.count_in(index));
-    if (kShadows) hit = hn::AndNot(is_target(v), hit);
+    const auto ids = hn::LoadU(du, leaf.ids + v);
+    hit = hn::And(hit, hn::RebindMask(d, ids != ray.left));
+    if (kShadows) hit = hn::And(hit, hn::RebindMask(d, ids != ray.target));
     hn::Store(passed.along, d, ray.along + v);
     hn::Store(select(hit, passed.offset_square, infinite), d, ray.offset_square + v);
     any |= !hn::AllFalse(d, hit);
@@ -295,7 +297,7 @@ inline bool keep_visible(const SphereBvh& bvh, std::uint32_t index, const float*
     auto hit = offset_square < infinite;
     alignas(64) float opacities[kChildLanes] = {};
     const unsigned rods = bvh.has_rods_in(index) ? bvh.rods[index].rods >> v : 0;
-    each_bit(bits_of(d, hit), [&](int i) { opacities[i] = (rods >> i & 1u) != 0 ? 1 : opacity[leaf.ids[v + i]]; });
+    for (const int i : SetBits(bits_of(d, hit))) opacities[i] = (rods >> i & 1u) != 0 ? 1 : opacity[leaf.ids[v + i]];
     hit = hn::And(hit, k::are_visible(d, hn::Set(d32, ray.key), hn::LoadU(d32, leaf.ids + v), hn::Load(d, opacities)));
     hn::Store(select(hit, offset_square, infinite), d, ray.offset_square + v);
     any |= !hn::AllFalse(d, hit);
@@ -336,10 +338,10 @@ HWY_INLINE void add_candidates(const SphereBvh& bvh, std::uint32_t index, bool h
     } else {
       alignas(64) float distances[SphereBvh::kArity];
       hn::Store(distance, d, distances);
-      each_bit(bits_of(d, hit), [&](int i) {
+      for (const int i : SetBits(bits_of(d, hit))) {
         ray.at[count] = distances[i];
         ray.candidate[count++] = leaf.ids[v + i];
-      });
+      }
     }
     nearest = certain_limit(passed, inner, begin, margin, nearest);
   }

@@ -56,7 +56,7 @@ HWY_INLINE void intersect_candidates(const EmbreeQuery<Packet>& query, unsigned 
   const EmbreeScene& scene = *query.scene;
   const kernel::RodArray& rods = scene.rods;
   unsigned waiting = 0;
-  each_bit(lanes, [&](int i) { waiting |= order_candidates(rays[i]) ? 1u << i : 0u; });
+  for (const int i : SetBits(lanes)) waiting |= order_candidates(rays[i]) ? 1u << i : 0u;
   for (int v = 0; v < kWidth; v += kStep) {
     unsigned rest = waiting & (((1u << kStep) - 1u) << v);
     if (rest == 0) continue;
@@ -67,7 +67,7 @@ HWY_INLINE void intersect_candidates(const EmbreeQuery<Packet>& query, unsigned 
       HWY_ALIGN Id ids[kStep];
       hn::Store(set(du, kernel::kNoSphere), du, ids);
       unsigned now = 0;
-      each_bit(rest, [&](int i) {
+      for (const int i : SetBits(rest)) {
         SingleRay& one = rays[i];
         const auto next = static_cast<unsigned>(one.keys[--one.key_count]) & (kMaxCandidates - 1);
         // If this one is beyond the limit, so are the others.
@@ -75,7 +75,7 @@ HWY_INLINE void intersect_candidates(const EmbreeQuery<Packet>& query, unsigned 
         if (within) ids[i - v] = one.candidate[next];
         now |= within ? 1u << i : 0u;
         rest &= within && one.key_count > 0 ? ~0u : ~(1u << i);
-      });
+      }
       if (now == 0) break;
       const auto found_ids = hn::Load(du, ids);
       const auto active = hn::RebindMask(d, found_ids != kernel::kNoSphere);
@@ -105,7 +105,7 @@ HWY_INLINE void intersect_candidates(const EmbreeQuery<Packet>& query, unsigned 
       if (hits == 0) continue;
       alignas(64) float limits[kWidth];
       store_float(d, found.limit(d, query, v), limits);
-      each_bit(hits, [&](int i) { rays[v + i].limit = limits[i]; });
+      for (const int i : SetBits(hits)) rays[v + i].limit = limits[i];
       if (Packet::kIsShadow) rest &= ~(hits << v);
     }
     found.store(d, packet, first);
@@ -138,38 +138,54 @@ HWY_INLINE void trace_rays(const SphereBvh& bvh, const EmbreeQuery<Packet>* quer
   // discard the arithmetic of the next rays, which is already in flight.
   while (true) {
     std::uint64_t at_leaves = 0, at_ends = 0;
-    each_bit(active, [&](int i) {
+    for (const int i : SetBits(active)) {
       const std::uint32_t next = next_visit(rays[i]);
       at_leaves |= std::uint64_t{(next >> kIndexWidth & kLeaf) != 0} << i;
       at_ends |= std::uint64_t{(next >> kIndexWidth & kEnd) != 0} << i;
       prefetcher.prefetch(next);
-    });
+    }
     const std::uint64_t at_nodes = active & ~(at_leaves | at_ends);
-    each_bit(at_ends, [&](int i) { at_ends &= ~(std::uint64_t{is_done(bvh, rays[i])} << i); });
+    for (const int i : SetBits(at_ends)) at_ends &= ~(std::uint64_t{is_done(bvh, rays[i])} << i);
     active = at_nodes | at_leaves | at_ends;
     if (active == 0) break;
-    each_bit(at_nodes, [&](int i) { test_children(bvh.nodes[rays[i].what[--rays[i].waiting]], rays[i]); });
-    each_bit(at_ends, [&](int i) { climb(bvh, rays[i]); });
-    each_bit(at_nodes | at_ends, [&](int i) { push_children(rays[i]); });
+    for (const int i : SetBits(at_nodes)) test_children(bvh.nodes[rays[i].what[--rays[i].waiting]], rays[i]);
+    for (const int i : SetBits(at_ends)) climb(bvh, rays[i]);
+    for (const int i : SetBits(at_nodes | at_ends)) push_children(rays[i]);
 
     bool full = false;
     std::uint64_t found = 0;
-    each_bit(at_leaves, [&](int i) {
+    for (const int i : SetBits(at_leaves)) {
       SingleRay& ray = rays[i];
       const std::uint32_t leaf = ray.what[--ray.waiting] & kIndexMask;
       bool any = test_spheres<Packet::kIsShadow>(bvh, leaf, ray);
       if (has_opacity) any = any && keep_visible(bvh, leaf, scene.opacity, ray);
       found |= std::uint64_t{any} << i;
-    });
-    each_bit(found, [&](int i) {
+    }
+    for (const int i : SetBits(found)) {
       SingleRay& ray = rays[i];
       add_candidates(bvh, ray.what[ray.waiting] & kIndexMask, has_opacity, ray);
       full = full || ray.candidates > kMaxCandidates - static_cast<int>(SphereBvh::kArity);
       prefetcher.prefetch_candidate(ray.candidate[ray.candidates - 1]);
-    });
+    }
     if (full) intersect_all();
   }
   intersect_all();
+}
+
+/// The spheres that rays leave outwards, one per lane; kNoSphere for other rays. A ray cannot hit such a sphere, see
+/// kernel::closest_distance().
+template <class Packet>
+HWY_INLINE void set_left_spheres(const EmbreeQuery<Packet>& query, typename Packet::Id* left) {
+  const hn::ScalableTag<typename Packet::Number> d;
+  const k::IdTag<std::remove_const_t<decltype(d)>> du;
+  const auto none = set(du, kernel::kNoSphere);
+  const kernel::RodArray& rods = query.scene->rods;
+  for (int v = 0; v < kWidth; v += static_cast<int>(hn::Lanes(d))) {
+    const auto ray = k::load_rays(d, *query.packet, query.first + v);
+    auto outwards = dot(ray.direction, ray.offset) >= 0;
+    if (!rods.empty()) outwards = hn::And(outwards, hn::RebindMask(d, ray.self < set(du, rods.first_id)));
+    hn::Store(select(hn::RebindMask(du, outwards), ray.self, none), du, left + v);
+  }
 }
 
 /// Starts the rays of a query.
@@ -184,6 +200,8 @@ HWY_INLINE unsigned start_rays(const SphereBvh& bvh, EmbreeQuery<Packet>& query,
   EmbreeShadowRays embree;
   alignas(64) int valid[kWidth];
   set_rays(query, embree, valid);
+  alignas(64) typename Packet::Id left[kWidth];
+  set_left_spheres(query, left);
   const float *const origin[3] = {embree.org_x, embree.org_y, embree.org_z}, *const direction[3] = {embree.dir_x,
                                                                                                     embree.dir_y,
                                                                                                     embree.dir_z};
@@ -197,7 +215,7 @@ HWY_INLINE unsigned start_rays(const SphereBvh& bvh, EmbreeQuery<Packet>& query,
   }
   unsigned lanes = 0;
   for (int i = 0; i < kWidth; ++i) lanes |= valid[i] != 0 ? 1u << i : 0u;
-  each_bit(lanes, [&](int i) {
+  for (const int i : SetBits(lanes)) {
     SingleRay& ray = rays[i];
     const int lane = query.first + i;
     for (int k = 0; k < 3; ++k) {
@@ -208,6 +226,7 @@ HWY_INLINE unsigned start_rays(const SphereBvh& bvh, EmbreeQuery<Packet>& query,
     }
     ray.origin[3] = ray.direction[3] = ray.inverse[3] = 0;
     ray.limit = embree.tfar[i];
+    ray.left = static_cast<std::uint32_t>(left[i]);
     if constexpr (Packet::kIsShadow) ray.target = static_cast<std::uint32_t>(packet.target[lane]);
     if (query.scene->opacity != nullptr) ray.key = packet.key[lane];
     ray.candidates = 0;
@@ -220,7 +239,7 @@ HWY_INLINE unsigned start_rays(const SphereBvh& bvh, EmbreeQuery<Packet>& query,
     if (ray.subtree == kernel::kNoSphere) ray.subtree = bvh.root();
     ray.what[1] = ray.subtree;
     ray.waiting = 2;
-  });
+  }
   return lanes;
 }
 
