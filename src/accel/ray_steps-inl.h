@@ -109,14 +109,14 @@ HWY_INLINE void sort_keys(std::int32_t* keys, int count) {
 
 /// The traversal state of a ray, in box space.
 struct alignas(64) SingleRay {
-  // Vectors of four, of which the last is 0.
-  float origin[4], direction[4], inverse[4];
-  float limit;            ///< distance beyond which nothing is searched
-  std::uint32_t left;     ///< the sphere that the ray leaves outwards and so cannot hit; kNoSphere: none
-  std::uint32_t target;   ///< shadow rays: a sphere that is never hit
-  std::uint32_t key;      ///< decides which objects are visible; only if the scene has opacities
-  std::uint32_t near[3];  ///< per axis: offset in Node::bound of the bounds at which the ray enters boxes
-  std::uint32_t subtree;  ///< the node below which everything has been visited once the stack is empty
+  float origin[4], direction[4];  ///< the fourth number is 0
+  float inverse[3];               ///< 1 / direction
+  float limit;                    ///< distance beyond which nothing is searched
+  std::uint32_t left;             ///< the sphere that the ray leaves outwards and so cannot hit; kNoSphere: none
+  std::uint32_t target;           ///< shadow rays: a sphere that is never hit
+  std::uint32_t key;              ///< decides which objects are visible; only if the scene has opacities
+  std::uint32_t near[3];          ///< per axis: offset in Node::bound of the bounds at which the ray enters boxes
+  std::uint32_t subtree;          ///< the node below which everything has been visited once the stack is empty
   unsigned subtree_level;
   std::size_t waiting;        ///< number of entries in `enter` and `what`: the end marker, then nodes, nearest last
   int candidates;             ///< number of entries in `at` and `candidate`: spheres that the ray may hit
@@ -154,14 +154,11 @@ template <bool kExcept = false>
 HWY_INLINE void test_children(const SphereBvh::Node& node, SingleRay& ray, int except = 0) {
   const ChildTag d;
   const hn::RebindToSigned<ChildTag> di;
-  const hn::FixedTag<float, 4> four;
-  alignas(16) static constexpr std::uint32_t kThree[4] = {~0u, ~0u, ~0u, 0};
-  const auto three = hn::BitCast(four, hn::Load(hn::RebindToUnsigned<decltype(four)>(), kThree));
-  const auto inverse = hn::Load(four, ray.inverse);
-  alignas(16) float scale[4], shift[4];
-  // The fourth number is none: `first` or `count`.
-  hn::Store(hn::And(hn::Load(four, node.step), three) * inverse, four, scale);
-  hn::Store((hn::And(hn::Load(four, node.origin), three) - hn::Load(four, ray.origin)) * inverse, four, shift);
+  const auto inverse = [&](int k) { return hn::Set(d, ray.inverse[k]); };
+  const auto scale_of = [&](int k) { return hn::Set(d, node.step[k]) * inverse(k); };
+  const auto shift_of = [&](int k) { return (hn::Set(d, node.origin[k]) - hn::Set(d, ray.origin[k])) * inverse(k); };
+  const hn::Vec<ChildTag> scale[3] = {scale_of(0), scale_of(1), scale_of(2)},
+                          shift[3] = {shift_of(0), shift_of(1), shift_of(2)};
   const auto zero = hn::Zero(d), limit = hn::Set(d, ray.limit);
   int count = 0;
   for (std::uint32_t v = 0; v < SphereBvh::kArity; v += kChildLanes) {
@@ -257,7 +254,7 @@ HWY_INLINE bool test_spheres(const SphereBvh& bvh, std::uint32_t index, SingleRa
   const auto infinite = hn::Set(d, std::numeric_limits<float>::infinity());
   const auto direction = set3(ray.direction[0], ray.direction[1], ray.direction[2]);
   const auto origin =
-      set3(leaf.origin[0] - ray.origin[0], leaf.origin[1] - ray.origin[1], leaf.origin[2] - ray.origin[2]);
+      set3(leaf.origin[0], leaf.origin[1], leaf.origin[2]) - set3(ray.origin[0], ray.origin[1], ray.origin[2]);
   const hn::RebindToUnsigned<ChildTag> du;
   const bool is_last = index == bvh.last_leaf;
   const bool has_rods = bvh.has_rods_in(index);

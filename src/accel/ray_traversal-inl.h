@@ -224,7 +224,7 @@ HWY_INLINE unsigned start_rays(const SphereBvh& bvh, EmbreeQuery<Packet>& query,
       ray.inverse[k] = inverse[k][i];
       ray.near[k] = near[k][i];
     }
-    ray.origin[3] = ray.direction[3] = ray.inverse[3] = 0;
+    ray.origin[3] = ray.direction[3] = 0;
     ray.limit = embree.tfar[i];
     ray.left = static_cast<std::uint32_t>(left[i]);
     if constexpr (Packet::kIsShadow) ray.target = static_cast<std::uint32_t>(packet.target[lane]);
