@@ -55,30 +55,33 @@ HWY_INLINE HollowShells<V> hollow_shells(D d, const CausticShells<V>& at, V inne
 
 /// Theta, and the derivatives by j of its increasing and of its decreasing terms.
 template <class V>
-struct HollowAngle {
+struct TurnedAngle {
   V theta, rising, falling;
-};
 
-template <bool kThrough, class D, class V = hn::Vec<D>>
-HWY_INLINE HollowAngle<V> hollow_angle(D d, const HollowShells<V>& at, V j_turns) {
-  const auto j = sin_cos_turn(d, j_turns);
-  HollowAngle<V> out = {set(d, kThrough ? kTurn / 2 : 0), hn::Zero(d), hn::Zero(d)};
-  const auto term = [&](double weight, const CausticShell<V>& shell) {
+  /// Adds a term, `weight` times the arcsine of a shell's reciprocal radius times sin(j).
+  template <class D>
+  HWY_INLINE void add(D d, double weight, const CausticShell<V>& shell, SinCos<V> j) {
     const V gc = shell.inverse * j.cos, cos = hn::Sqrt(mul_add(gc, gc, shell.rest));
-    out.theta = mul_add(angle_of(d, shell.inverse * j.sin, cos), set(d, weight), out.theta);
+    theta = mul_add(angle_of(d, shell.inverse * j.sin, cos), set(d, weight), theta);
     // At grazing incidence on the smallest sphere, the derivative is 1.
     const V slope = select(cos > 0, gc / cos, 1);
     if (weight > 0)
-      out.rising = mul_add(slope, set(d, weight), out.rising);
+      rising = mul_add(slope, set(d, weight), rising);
     else
-      out.falling = neg_mul_add(slope, set(d, weight), out.falling);
-  };
-  term(2, at.ball);
-  term(-2, at.glass);
-  term(2, at.inner_glass);
-  if constexpr (kThrough) term(-2, at.inner);
-  term(-1, at.point);
-  term(-1, at.light);
+      falling = neg_mul_add(slope, set(d, weight), falling);
+  }
+};
+
+template <bool kThrough, class D, class V = hn::Vec<D>>
+HWY_INLINE TurnedAngle<V> hollow_angle(D d, const HollowShells<V>& at, V j_turns) {
+  const auto j = sin_cos_turn(d, j_turns);
+  TurnedAngle<V> out = {set(d, kThrough ? kTurn / 2 : 0), hn::Zero(d), hn::Zero(d)};
+  out.add(d, 2, at.ball, j);
+  out.add(d, -2, at.glass, j);
+  out.add(d, 2, at.inner_glass, j);
+  if constexpr (kThrough) out.add(d, -2, at.inner, j);
+  out.add(d, -1, at.point, j);
+  out.add(d, -1, at.light, j);
   return out;
 }
 
@@ -105,30 +108,59 @@ HWY_INLINE SweptAngle<V> hollow_swept(const CausticShells<V>& at, SweptAngle<V> 
 /// Maximum number of steps. Fewer lead to wider pieces, not to errors.
 inline constexpr int kHollowSteps = 12;
 
-/// Finds the values of b for which Theta is between two angles, or a few more.
-///
-/// `tolerance` of the angles: ends that are less too far out stay
-template <bool kThrough, class D, class V = hn::Vec<D>>
-HWY_INLINE CausticPiece<V> hollow_piece(D d, const HollowShells<V>& at, V lowest, V highest, V tolerance,
-                                        hn::Mask<D> lanes) {
+/// Angles near one at which the light may lie.
+template <class V>
+struct AngleBand {
+  V lowest, highest;
+  V tolerance;  ///< ends of pieces that are less too far out stay
+};
+
+template <class D, class V = hn::Vec<D>>
+HWY_INLINE AngleBand<V> band_around(D d, V theta, V kappa) {
   constexpr double kEpsilon = std::numeric_limits<hn::TFromD<D>>::epsilon();
-  V first = hn::Zero(d), last = set(d, 0.25);
+  const V tolerance = mul_add(kappa, set(d, 0.02), 32 * kEpsilon);
+  const V width = mul_add(kappa, set(d, 1.001), 32 * kEpsilon);
+  return {theta - width, theta + width, tolerance};
+}
+
+/// Places on the graph of Theta, in turns of j, between which it decreases or increases.
+template <class V>
+struct GraphSection {
+  V first, last;
+  V greatest;  ///< b at a quarter turn
+};
+
+/// Finds the values of b in a section for which Theta is in a band, or a few more.
+///
+/// `angle`    TurnedAngle of a place
+template <bool kDecreases, class D, class Angle, class V = hn::Vec<D>>
+HWY_INLINE CausticPiece<V> section_piece(D d, const Angle& angle, const GraphSection<V>& section,
+                                         const AngleBand<V>& band, hn::Mask<D> lanes) {
+  constexpr double kEpsilon = std::numeric_limits<hn::TFromD<D>>::epsilon();
+  V first = section.first, last = section.last;
   for (int step = 0; step < kHollowSteps; ++step) {
-    const auto from = hollow_angle<kThrough>(d, at, first), to = hollow_angle<kThrough>(d, at, last);
-    const V before = kThrough ? from.theta - highest : lowest - from.theta;
-    const V after = kThrough ? lowest - to.theta : to.theta - highest;
-    const V steepest = kThrough ? from.falling - to.rising : from.rising - to.falling;
+    const TurnedAngle<V> from = angle(first), to = angle(last);
+    const V before = kDecreases ? from.theta - band.highest : band.lowest - from.theta;
+    const V after = kDecreases ? band.lowest - to.theta : to.theta - band.highest;
+    const V steepest = kDecreases ? from.falling - to.rising : from.rising - to.falling;
     // A lane ends on its own, so that its result does not depend on the others.
-    const auto open = hn::And(lanes, max(before, after) > tolerance);
+    const auto open = hn::And(lanes, max(before, after) > band.tolerance);
     if (hn::AllFalse(d, open)) break;
     const V turns = hn::IfThenElseZero(open, (1 / kTurn) / max(steepest, kEpsilon));
     first = mul_add(max(before, 0), turns, first);
     last = neg_mul_add(max(after, 0), turns, last);
     lanes = hn::And(lanes, first <= last);
   }
-  const auto b = [&](V turns) { return at.greatest * sin_cos_turn(d, min(max(turns, 0), 0.25)).sin; };
+  const auto b = [&](V turns) { return section.greatest * sin_cos_turn(d, min(max(turns, 0), 0.25)).sin; };
   return {hn::IfThenElseZero(lanes, b(first) * (1 - 8 * kEpsilon)),
           hn::IfThenElseZero(lanes, min(mul_add(b(last), set(d, 1 + 8 * kEpsilon), kEpsilon), 1))};
+}
+
+/// Finds the values of b for which Theta is in a band, or a few more.
+template <bool kThrough, class D, class V = hn::Vec<D>>
+HWY_INLINE CausticPiece<V> hollow_piece(D d, const HollowShells<V>& at, const AngleBand<V>& band, hn::Mask<D> lanes) {
+  const auto angle = [&](V j_turns) { return hollow_angle<kThrough>(d, at, j_turns); };
+  return section_piece<kThrough>(d, angle, {hn::Zero(d), set(d, 0.25), at.greatest}, band, lanes);
 }
 
 }  // namespace orrery::kernel::HWY_NAMESPACE

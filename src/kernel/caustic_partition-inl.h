@@ -79,7 +79,8 @@ HWY_NOINLINE hn::Vec<IdTag<D>> continued_chain(D d, const Caustics& caustics, Ch
   const auto transmits = is_transmitted(d, at, direction), reflects = hn::Not(transmits);
   const auto enters = hn::And(was(kFromDiffuse), at.from_outside);
   const auto within = hn::And(is_self, hn::Or(was(kInside), was(kInsideTwice)));
-  const auto completes = hn::Or(hn::And(enters, reflects), hn::And(within, transmits));
+  const auto from_glass = hn::AndNot(at.from_outside, was(kFromDiffuse));
+  const auto completes = hn::Or(hn::And(enters, reflects), hn::And(hn::Or(within, from_glass), transmits));
   auto out = hn::Zero(du);
   const auto put = [&](hn::Mask<D> lanes, unsigned state) {
     out = select(hn::RebindMask(du, lanes), set(du, state), out);

@@ -121,9 +121,9 @@ class ChainTracer {
     const T* const times = scene_.features.motion ? packet_.time + v : nullptr;
     const auto look = reach_surface<D, kPrecision>(d, scene_, ray, hits, hn::Load(d, packet_.distance + v), times);
     const Surface<D>& surface = look.surface;
-    // Rays that leave a sphere of the ball reach the sphere from inside, unless they go from the ball to its void.
-    const auto from_void = hn::RebindMask(d, ray.self == hn::LoadU(du, chains_.inner + i));
-    const auto is_within = hn::Or(hn::RebindMask(d, hits == ray.self), from_void);
+    // Rays reach a sphere from inside if they have left it, or if its refraction is the last event.
+    const auto leaves = hn::RebindMask(d, events == hn::Set(du, kTransmit));
+    const auto is_within = hn::Or(hn::RebindMask(d, hits == ray.self), leaves);
     const auto is_on_side = hn::Xor(surface.from_outside, is_within);
     const auto reflects = hn::RebindMask(d, hn::And(events, set(du, kReflect)) != 0);
     const auto glass = refraction(d, surface);

@@ -73,9 +73,10 @@ enum CausticEvent : std::uint32_t { kReflect = 1, kTransmit = 2, kAtVoid = 4 };
 inline constexpr int kCausticEventBits = 3;
 
 /// Chains that are sampled: reflection; refraction into the ball and out of it; the same with one reflection inside;
-/// the same with a reflection on the void of a hollow ball; the same through the void.
-enum CausticChain : int { kReflection, kRefraction, kRainbow, kOffVoid, kThroughVoid };
-inline constexpr int kCausticChains = 5;
+/// the same with a reflection on the void of a hollow ball; the same through the void; from a point in the glass,
+/// refraction out of it, away from the ball's centre or past it.
+enum CausticChain : int { kReflection, kRefraction, kRainbow, kOffVoid, kThroughVoid, kOutward, kInward };
+inline constexpr int kCausticChains = 7;
 
 constexpr std::uint32_t in_sequence(std::initializer_list<std::uint32_t> events) {
   std::uint32_t out = 0;
@@ -85,9 +86,13 @@ constexpr std::uint32_t in_sequence(std::initializer_list<std::uint32_t> events)
 
 /// The events of each chain.
 inline constexpr std::uint32_t kCausticEvents[kCausticChains] = {
-    in_sequence({kReflect}), in_sequence({kTransmit, kTransmit}), in_sequence({kTransmit, kReflect, kTransmit}),
+    in_sequence({kReflect}),
+    in_sequence({kTransmit, kTransmit}),
+    in_sequence({kTransmit, kReflect, kTransmit}),
     in_sequence({kTransmit, kReflect | kAtVoid, kTransmit}),
-    in_sequence({kTransmit, kTransmit | kAtVoid, kTransmit | kAtVoid, kTransmit})};
+    in_sequence({kTransmit, kTransmit | kAtVoid, kTransmit | kAtVoid, kTransmit}),
+    in_sequence({kTransmit}),
+    in_sequence({kTransmit})};
 
 /// Number of events of the longest chain.
 inline constexpr int kMaxCausticEvents = 4;

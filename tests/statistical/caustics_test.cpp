@@ -86,6 +86,16 @@ std::vector<NamedScene> caustic_scenes() {
   add_sun(sun, 0.2);
   add_ball(sun, {0.2, 0.6, 0.6}, 0.6, glass);
   add_ball(sun, {1.5, 0.6, 0.6}, 0.6, mirror);
+  scene::Scene& cores = add("objects in glass, also in that of a hollow ball, and a floor that cuts a ball");
+  lamp(cores);
+  add_sun(cores, 0.2);
+  add_ball(cores, {0, 0.7, 0.8}, 0.7, glass);
+  add_ball(cores, {0, 0.7, 0.8}, 0.5, scene::Plastic{{0.2, 0.6, 0.3}, 1.5, 0.3});
+  add_ball(cores, {1.5, 0.8, 0.6}, 0.8, glass);
+  cores.spheres.push_back({{1.5, 0.8, 0.6}, -0.4, static_cast<std::uint32_t>(cores.materials.size() - 1)});
+  add_ball(cores, {1.9, 0.95, 1.05}, 0.15, scene::Lambertian{{0.7, 0.5, 0.2}});
+  add_ball(cores, {1.4, 0.8, 0.7}, 0.2, scene::Lambertian{{0.2, 0.5, 0.7}});
+  add_ball(cores, {-1.2, 0.1, 1.8}, 0.5, scene::Dielectric{1.3, scene::Fresnel::kExact});
   scene::Scene& inside = add("the camera in glass");
   lamp(inside);
   add_ball(inside, {0, 2, 6}, 1, glass);

@@ -10,7 +10,7 @@ namespace orrery::test {
 
 /// A point, a ball of radius 1 at the origin and a light.
 struct CausticPlace {
-  math::Vec3d point;            ///< outside the ball
+  math::Vec3d point;            ///< outside the ball or in its glass
   math::Vec3d to_light;         ///< unit, from the origin
   double inverse_distance = 0;  ///< of the light's centre; 0: a sun
   double light_sin = 0;         ///< sine of the half angle that the light subtends at the origin
