@@ -67,7 +67,7 @@ THREE_LAMPS = (CAUSTICS + sphere([-1.1, 1, 0], 1, "glass") + sphere([1.2, 0.8, 0
                lamps(([-3, 5, 1.5], 0.05), ([3, 4, 2], 0.3), ([0, 5, -4], 1)))
 LIT = {"penumbra": PENUMBRA, "image-sky": IMAGE_SKY}
 WITH_CAUSTICS = {"small-lamp": SMALL_LAMP, "hollow": SMALL_LAMP + sphere([0, 1, 0], -0.8, "glass"),
-                 "three-lamps": THREE_LAMPS}
+                 "core": SMALL_LAMP + sphere([0, 1, 0], 0.5, "ball"), "three-lamps": THREE_LAMPS}
 
 
 def measure(program, scene, work, options, before, after):
@@ -116,7 +116,8 @@ def main():
         for name, text in (WITH_CAUSTICS if options.caustics else LIT).items():
             scenes[name] = work / f"{name}.toml"
             scenes[name].write_text(text)
-        for name in (("grey-and-chrome", "glass-in-the-sun", "caustic", "marbles", "three-point", "thousand-lamps")
+        for name in (("grey-and-chrome", "glass-in-the-sun", "caustic", "paperweights", "marbles", "three-point",
+                      "thousand-lamps")
                      if options.caustics else ("three-point", "thousand-lamps", "caustic", "eclipse-ground")):
             scenes[name] = ROOT / f"scenes/light/{name}.toml"
         before, after = [f"render.{setting}" for setting in (

@@ -44,7 +44,7 @@ for name in glass defocus contrast; do
   picture "scenes/trade/$name.toml" "trade-$name" --samples 400
 done
 picture scenes/molecules/ethanol.toml molecules-ethanol --samples 1000
-for name in three-point thousand-lamps caustic glass-in-the-sun marbles rainbow eclipse-ground eclipse-space; do
+for name in three-point thousand-lamps caustic glass-in-the-sun paperweights marbles rainbow eclipse-ground eclipse-space; do
   picture "scenes/light/$name.toml" "light-$name" --samples 1000
 done
 picture scenes/light/eclipse-ground.toml light-eclipse-ground-fast --samples 1000 --precision fast

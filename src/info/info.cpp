@@ -23,6 +23,7 @@
 #include "load/load_images.h"
 #include "load/load_scene.h"
 #include "load/read_scene.h"
+#include "math/vec3.h"
 #include "scene/layers.h"
 #include "scene/schema.h"
 #include "scene/texture.h"
@@ -95,6 +96,19 @@ std::string lights_text(const compile::CompiledScene& compiled, std::uint64_t co
 /// Maximum number of pairs of balls and lights that are named.
 constexpr std::size_t kNamedPairs = 4;
 
+/// Whether a listed ball is hollow or within another. Light passes two spheres to points in it, which is not sampled.
+bool has_glass_in_glass(const compile::CausticList& list) {
+  const auto is_within = [](const kernel::CausticBall& inner, const kernel::CausticBall& outer) {
+    const math::Vec3d between = math::vector_of(inner.center) - math::vector_of(outer.center);
+    return length(between) + inner.radius < outer.radius;
+  };
+  return std::any_of(list.balls.begin(), list.balls.end(), [&](const kernel::CausticBall& ball) {
+    return ball.inner != kernel::kNoSphere ||
+           std::any_of(list.balls.begin(), list.balls.end(),
+                       [&](const kernel::CausticBall& other) { return is_within(ball, other); });
+  });
+}
+
 /// Describes which pairs of a sharp ball and a light are sampled: "2 of 3 pairs of a ball and a light sampled:
 /// sphere[1] and sphere[3], sphere[1] and the sun". Empty if there is no pair, or lights are not sampled.
 std::string caustics_text(const compile::CompiledScene& compiled) {
@@ -111,8 +125,9 @@ std::string caustics_text(const compile::CompiledScene& compiled) {
     for (std::uint32_t i = ball.begin; i < ball.end; ++i)
       if (++listed <= kNamedPairs)
         names += fmt::format("{} {} and {}", listed == 1 ? ":" : ",", name(ball.sphere), name(list.lights[i].id));
-  return fmt::format("{} of {} of a ball and a light sampled{}{}", listed, base::counted(list.pairs, "pair"), names,
-                     listed > kNamedPairs ? ", ..." : "");
+  return fmt::format("{} of {} of a ball and a light sampled{}{}{}", listed, base::counted(list.pairs, "pair"), names,
+                     listed > kNamedPairs ? ", ..." : "",
+                     has_glass_in_glass(list) ? "; points in hollow or nested balls by BSDF sampling" : "");
 }
 
 std::vector<Feature> features_of(const compile::CompiledScene& compiled, bool has_layers) {

@@ -16,9 +16,9 @@
 HWY_BEFORE_NAMESPACE();
 namespace orrery::kernel::HWY_NAMESPACE {
 
-// A ray that leaves a point P in a ball of glass at an angle alpha to the line through P and the centre has, outside the
-// ball, the impact parameter b = n p sin(alpha), 0..min(1, n p): with n p for p, the geometry of a point outside. It is
-// refracted out of the ball and turns by
+// A ray that leaves a point P in a ball of glass at an angle alpha to the line through P and the centre has, outside
+// the ball, the impact parameter b = n p sin(alpha), 0..min(1, n p): with n p for p, the geometry of a point outside.
+// It is refracted out of the ball and turns by
 //
 //     Theta(b) =      asin(b / (n p)) - asin(b / n) + asin(b) - asin(b / d)    away from the centre: outward
 //     Theta(b) = pi - asin(b / (n p)) - asin(b / n) + asin(b) - asin(b / d)    past the centre: inward

@@ -172,10 +172,10 @@ INSTANTIATE_TEST_SUITE_P(, DeterminismProgram,
                                          StoredImage{"sky-and-lights.toml", 0x429d4cc86b6695a2u},
                                          StoredImage{"textures.toml", 0xf986224e4a21d9f2u},
                                          StoredImage{"image-textures.toml", 0xfcae157c25f25d31u},
-                                         StoredImage{"rods.toml", 0x89e9970c4046d412u},
-                                         StoredImage{"plastic.toml", 0xca721e37e6bab612u},
+                                         StoredImage{"rods.toml", 0x0c958d917a2553b9u},
+                                         StoredImage{"plastic.toml", 0x14ca8554b3ced38bu},
                                          StoredImage{"many.toml", 0xf0ce502a90666d53u},
-                                         StoredImage{"opacity.toml", 0x791bd4dc4a562f9cu}),
+                                         StoredImage{"opacity.toml", 0x09e37290acc8eebcu}),
                          [](const auto& instance) {
                            std::string name = instance.param.scene;
                            std::replace(name.begin(), name.end(), '-', '_');

@@ -150,6 +150,22 @@ sphere = [{ center = [0, 0, -1], radius = 0.5, material = "mirror" },
             "2 of 6 pairs of a ball and a light sampled: sphere[0] and sphere[2], sphere[0] and the sun")
       << "neither with a lamp that cuts the ball nor with a bubble";
   EXPECT_NE(info_text(found).find("\ncaustics    2 of 6"), std::string::npos);
+  const std::string hollow = R"(
+material.lamp = { type = "emitter", radiance = [1, 1, 1] }
+material.glass = { type = "dielectric" }
+sphere = [{ center = [0, 3, -1], radius = 0.5, material = "lamp" },
+  { center = [0, 0, -1], radius = 0.5, material = "glass" },
+  { center = [0, 0, RADIUS], radius = RADIUS, material = "glass" }]
+)";
+  const auto with = [&](const char* center, const char* radius) {
+    std::string text = hollow;
+    text.replace(text.find("RADIUS"), 6, center).replace(text.find("RADIUS"), 6, radius);
+    return info(text).caustics;
+  };
+  constexpr char kLeftOut[] = "; points in hollow or nested balls by BSDF sampling";
+  EXPECT_NE(with("-1", "-0.4").find(kLeftOut), std::string::npos);
+  EXPECT_NE(with("-1.1", "0.3").find(kLeftOut), std::string::npos);
+  EXPECT_EQ(with("-1.3", "0.3").find(kLeftOut), std::string::npos);
   EXPECT_EQ(info(balls, {"render.caustics=false"}).caustics, "");
   EXPECT_EQ(info(balls, {"render.direct_lighting=bsdf"}).caustics, "");
 }
