@@ -96,6 +96,8 @@ std::vector<NamedScene> caustic_scenes() {
   add_ball(cores, {1.9, 0.95, 1.05}, 0.15, scene::Lambertian{{0.7, 0.5, 0.2}});
   add_ball(cores, {1.4, 0.8, 0.7}, 0.2, scene::Lambertian{{0.2, 0.5, 0.7}});
   add_ball(cores, {-1.2, 0.1, 1.8}, 0.5, scene::Dielectric{1.3, scene::Fresnel::kExact});
+  add_ball(cores, {-0.9, 0.7, 0.8}, 0.5, glass);  // cuts another, which its lamp is outside of
+  add_lamp(cores, {-1.1, 0.7, 0.8}, 0.15, {9, 6, 3});
   scene::Scene& inside = add("the camera in glass");
   lamp(inside);
   add_ball(inside, {0, 2, 6}, 1, glass);
