@@ -80,9 +80,9 @@ class SphereBvh {
   /// saves 3 bytes of 24 per sphere.
   static constexpr std::size_t kMostStartNodes = std::size_t{1} << 27;
 
-  /// Spheres that are in memory as items at a time while the BVH is built, see SphereSort: at most an eighth of all,
+  /// Spheres that are in memory as items at a time while the BVH is built, see SphereSort: at most a quarter of all,
   /// where that saves memory to speak of.
-  static constexpr std::size_t part_size(std::size_t count) { return std::size_t{1} << (count >> 27 > 0 ? 24 : 20); }
+  static constexpr std::size_t part_size(std::size_t count) { return std::size_t{1} << (count >> 26 > 0 ? 24 : 20); }
 
   SphereBvh() = default;
 
