@@ -64,7 +64,7 @@ std::unique_ptr<Accel> make_embree(const kernel::SceneView& scene, kernel::Preci
 
 struct ObjectCounts {
   std::size_t spheres = 0, rods = 0;
-  bool have_one_radius = false;
+  bool have_one_radius = false;  ///< all spheres have the same radius, and there are no rods
 
   std::size_t all() const { return spheres + rods; }
 };

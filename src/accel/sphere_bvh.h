@@ -102,7 +102,7 @@ class SphereBvh {
   std::uint32_t root() const noexcept { return static_cast<std::uint32_t>(nodes.size() - 1); }
   std::size_t bytes() const noexcept;
 
-  /// The node above the leaf of a sphere or rod; kNoSphere if it is not in the tree.
+  /// The node above the leaf of a sphere or rod; kNoSphere if it is not in the tree, or if there are no start nodes.
   ///
   /// `object`   kernel::RodArray::object()
   std::uint32_t start_node(std::size_t object) const noexcept {
@@ -118,8 +118,9 @@ class SphereBvh {
 
   bool has_rods_in(std::uint32_t leaf) const noexcept { return !rods.empty() && rods[leaf].rods != 0; }
 
-  std::size_t count = 0;            ///< number of spheres and rods
-  base::PackedArray start_nodes;    ///< for each object of the scene, the node above its leaf, or no_start_node
+  std::size_t count = 0;  ///< number of spheres and rods
+  /// For each object of the scene, the node above its leaf, or no_start_node. Empty above kMostStartNodes.
+  base::PackedArray start_nodes;
   std::uint32_t no_start_node = 0;  ///< stands for spheres that are not in the tree
   base::HugeVector<Leaf> leaves;
   base::HugeVector<LeafRadii> radii;                   ///< one per leaf; empty if all spheres have `radius`

@@ -5,7 +5,6 @@
 #include <array>
 #include <bit>
 #include <cmath>
-#include <functional>
 #include <memory>
 #include <optional>
 #include <tuple>
@@ -35,7 +34,7 @@ kernel::Sphere sphere_of(Vec3d center, double radius) { return {center.x, center
 bool is_reversed(Vec3d from, Vec3d to) { return std::tie(to.x, to.y, to.z) < std::tie(from.x, from.y, from.z); }
 
 /// Calls f(points, sphere) for each half of the rods of bonds, in the order of their ids, with the sphere of the scene
-/// that it belongs to.
+/// that it belongs to. The rods are compiled.
 template <class F>
 void each_bond_half(const scene::Scene& scene, const CompiledScene& compiled, F f) {
   std::size_t first = scene.spheres.size();
@@ -116,13 +115,11 @@ void set_rods(const scene::Scene& scene, CompiledScene& compiled) {
   }
 }
 
-using SpheresStored = std::function<void(std::size_t points, std::size_t begin, std::size_t end)>;
-
 /// Sets the spheres.
-void set_spheres(const scene::Scene& scene, const SpheresStored& on_stored, CompiledScene& compiled) {
+void set_spheres(const scene::Scene& scene, const SphereStore::OnCopied& on_copied, CompiledScene& compiled) {
   compiled.spheres = {};
   for (const scene::Sphere& s : scene.spheres) compiled.spheres.push_back(sphere_of(s.center, s.radius));
-  compiled.spheres.append(scene.points, on_stored);
+  compiled.spheres.append(scene.points, on_copied);
   compiled.points_sizes.clear();
   for (const scene::Points& points : scene.points) compiled.points_sizes.push_back(points.centers.size());
   compiled.distinct_in = scene.distinct_in;
@@ -430,13 +427,13 @@ CompiledScene compile(const scene::Scene& scene, const scene::Scene* closing) {
 namespace {
 
 void update_parts(const scene::Scene& scene, const scene::Scene* closing, scene::Parts changed,
-                  const SpheresStored& on_stored, CompiledScene& compiled) {
+                  const SphereStore::OnCopied& on_copied, CompiledScene& compiled) {
   if (changed.geometry) {
     compiled.precision = precision_of(scene.render.precision);
     // The book's own method. It has no BVH, and the kernel has no vector loop for its precision.
     compiled.accelerator = compiled.precision == Precision::kBook ? Accelerator::kList : scene.render.accelerator;
     set_rods(scene, compiled);
-    set_spheres(scene, on_stored, compiled);
+    set_spheres(scene, on_copied, compiled);
     set_sphere_motion(scene, closing, compiled);
     set_rod_motion(scene, closing, compiled);
     compiled.features.rods = compiled.rod_count() > 0;

@@ -124,11 +124,10 @@ std::size_t SphereStore::bytes_of_replacing(std::span<const scene::Points> sets)
   return bytes;
 }
 
-void SphereStore::append(std::span<const scene::Points> sets,
-                         const std::function<void(std::size_t, std::size_t, std::size_t)>& on_stored) {
+void SphereStore::append(std::span<const scene::Points> sets, const OnCopied& on_copied) {
   Layout layout = layout_of(sets);
-  const auto stored = [&](std::size_t set, std::size_t begin, std::size_t end) {
-    if (on_stored && begin < end) on_stored(set, begin, end);
+  const auto copied = [&](std::size_t set, std::size_t begin, std::size_t end) {
+    if (on_copied && begin < end) on_copied(set, begin, end);
   };
   const base::StopPoint stop;
   if (!layout.is_compact) {
@@ -143,7 +142,7 @@ void SphereStore::append(std::span<const scene::Points> sets,
           const math::Vec3d c = points.centers[i];
           plain_.push_back({c.x, c.y, c.z, std::abs(points.radii[i])});
         }
-        stored(set, begin, end);
+        copied(set, begin, end);
       }
     return;
   }
@@ -156,7 +155,7 @@ void SphereStore::append(std::span<const scene::Points> sets,
     centers.reserve(3 * layout.count);
     for (std::size_t set = 0; set < sets.size(); ++set) {
       append_singles(sets[set].centers.numbers(), centers);
-      stored(set, 0, sets[set].centers.size());
+      copied(set, 0, sets[set].centers.size());
     }
     centers_ = std::make_shared<const base::HugeVector<float>>(std::move(centers));
   }

@@ -48,6 +48,9 @@ class SphereStore {
   bool empty() const noexcept { return size() == 0; }
   kernel::Sphere operator[](std::size_t id) const noexcept { return view()[id]; }
 
+  /// Called after the centres begin .. end - 1 of a set of points have been copied.
+  using OnCopied = std::function<void(std::size_t set, std::size_t begin, std::size_t end)>;
+
   /// Appends a sphere in full precision. Must not be called after compact spheres have been appended.
   void push_back(const kernel::Sphere& sphere) { plain_.push_back(sphere); }
 
@@ -55,9 +58,8 @@ class SphereStore {
   /// their radii are exact as well or have few distinct values. Compact centres of a single file are shared with the
   /// scene, not copied.
   ///
-  /// `on_stored`  called after the spheres begin .. end - 1 of a set have been copied; may be empty
-  void append(std::span<const scene::Points> points,
-              const std::function<void(std::size_t set, std::size_t begin, std::size_t end)>& on_stored = {});
+  /// `on_copied`  may be empty
+  void append(std::span<const scene::Points> points, const OnCopied& on_copied = {});
 
   /// Bytes that append() allocates.
   static std::size_t bytes_of(std::span<const scene::Points> points);

@@ -167,7 +167,7 @@ scene::PointArray points_of(const data::Table& table, const Rows& rows, const st
 
 namespace {
 
-/// Three columns of floating-point numbers of the same type, all rows; empty if they are not.
+/// The numbers of three columns; null unless all have this type.
 template <class Number>
 std::array<std::vector<Number>*, 3> columns_of(data::Table& table, const std::array<std::string, 3>& names) {
   std::array<std::vector<Number>*, 3> out{};

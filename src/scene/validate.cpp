@@ -335,11 +335,14 @@ void check_points(std::size_t number, const Scene& scene, KeyFaults& diagnostics
   };
   std::size_t faults = 0;
   if (!base::are_all(points.centers.size(), is_good)) {
-    for (std::size_t i = 0; i < points.centers.size(); ++i)
+    const base::StopPoint stop;
+    for (std::size_t i = 0; i < points.centers.size(); ++i) {
+      stop.check(i);
       check(i, [&](const std::string& text) {
         if (++faults <= kMaxReported)
           diagnostics.error(key + ".file", fmt::format("{}: {}", sphere_name(scene, number, i), text));
       });
+    }
   }
   diagnostics.error_if_any(key + ".file", rest_text(faults));
   check_opacity(number, scene, diagnostics);

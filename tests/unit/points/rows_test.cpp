@@ -3,8 +3,11 @@
 
 #include <gtest/gtest.h>
 
+#include <array>
 #include <cmath>
 #include <limits>
+#include <string>
+#include <vector>
 
 #include "points_file.h"
 
@@ -75,6 +78,34 @@ TEST(PointsRows, LabelsOfStringsAreThoseOfTheRows) {
   EXPECT_TRUE(labels.values.empty());
   EXPECT_EQ(labels.of_rows, (RowList{1, 1, 0}));
   EXPECT_TRUE(labels_of(column, Rows(4), 2).of_rows.empty()) << "more than the limit";
+}
+
+/// Also of more rows than are taken at a time.
+TEST(PointsRows, TakenPointsAreThoseOfTheColumns) {
+  const std::size_t count = (1 << 20) + 5000;  // the rest fills more than a page
+  std::vector<double> doubles, singles;
+  std::vector<float> floats;
+  for (std::size_t i = 0; i < count; ++i) {
+    floats.push_back(static_cast<float>(i) + 0.5F);
+    singles.push_back(static_cast<double>(floats.back()));
+    doubles.push_back(static_cast<double>(i) + 0.1);
+  }
+  const std::vector<std::int32_t> integers(count, 7);
+  const data::Values values[] = {floats, singles, doubles, integers};
+  const std::array<std::string, 3> names = {"a", "b", "c"};
+  for (const data::Values& a : values)
+    for (const data::Values& b : {values[0], values[2]})
+      for (const Rows& rows : {Rows(count), Rows(RowList{5, 0})}) {
+        data::Table table;
+        table.rows = count;
+        table.columns = {{"a", a}, {"mass", integers}, {"b", b}, {"c", b}};
+        const scene::PointArray expected = points_of(table, rows, names), points = take_points(table, rows, names);
+        EXPECT_TRUE(points == expected);
+        EXPECT_EQ(points.numbers().fits_single(), expected.numbers().fits_single());
+        ASSERT_EQ(table.columns.size(), 1u);
+        EXPECT_EQ(table.columns[0].name, "mass");
+        EXPECT_EQ(table.columns[0].number(count - 1), 7);
+      }
 }
 
 TEST(PointsRows, ColumnsAreRequired) {
