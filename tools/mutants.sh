@@ -11,12 +11,12 @@
 #   -w DIR    keep the copy of the tree and its build in DIR, which speeds up the next run
 #
 # Prints a line per mutant: name | killed by | seconds. Exit status 1 if a mutant survives, does not compile or no longer
-# matches the source. Tests run with fewer rays than usual where this can be set; a mutant found in this way is also
-# found with all rays.
+# matches the source. The test that docs/mutants.md names for a mutant runs before all others. Tests run with fewer rays
+# than usual where this can be set; a mutant found in this way is also found with all rays.
 set -euo pipefail
 root=$(cd "$(dirname "${BASH_SOURCE[0]}")/.." && pwd)
 table="$root/tools/mutants/table.txt"
-programs=(unit_denoise unit_film unit_compare unit_compile unit_kernel unit_math unit_accel unit_render unit_points unit_plot unit_data statistical numeric image)  # quickest first
+programs=(unit_base unit_scene unit_sky unit_denoise unit_film unit_compare unit_compile unit_kernel unit_math unit_accel unit_render unit_points unit_plot unit_data statistical numeric image)  # quickest first
 export ORRERY_NUMERIC_RAYS=${ORRERY_NUMERIC_RAYS:-100000} ORRERY_FURNACE_RAYS=${ORRERY_FURNACE_RAYS:-1e6}
 export ORRERY_STATISTICAL_SAMPLES=${ORRERY_STATISTICAL_SAMPLES:-4e6} ORRERY_ACCEL_RAYS=${ORRERY_ACCEL_RAYS:-100000}
 hung_after_s=600  # a mutant may loop forever
@@ -96,32 +96,51 @@ if command -v ccache >/dev/null; then launcher=(-DCMAKE_CXX_COMPILER_LAUNCHER=cc
 cmake -S "$work/tree" -B "$work/build" -G Ninja "${launcher[@]}" -DCMAKE_CXX_FLAGS_RELEASE="-O1 -DNDEBUG" \
   >"$work/configure.log" 2>&1 || { cat "$work/configure.log" >&2; exit 1; }
 
-# killer: builds and runs the programs in order; prints the first failure, or nothing.
-killer() {
-  local program path output status
-  for program in "${programs[@]}"; do
-    if ! cmake --build "$work/build" --target "$program" -j "${ORRERY_MUTANTS_JOBS:-2}" >"$work/build.log" 2>&1; then
-      echo "DOES NOT COMPILE"
-      return
-    fi
-    path="$work/build/tests/$program"
-    if [ -d "$path" ]; then path="$path/$program"; fi
-    status=0
-    output=$(timeout "$hung_after_s" "$path" --gtest_fail_fast --gtest_filter="$judges" 2>&1) || status=$?
-    if [ "$status" -eq 0 ]; then continue; fi
-    # A crash prints no result: report the test that was running.
-    { grep -oE '^\[  FAILED  \] [A-Za-z]+\.[A-Za-z0-9]+' <<<"$output" || grep -E '^\[ RUN ' <<<"$output" | tail -n 1; } |
-      awk -v status="$status" 'NR == 1 { print $NF (status > 1 ? " (status " status ")" : "") }'
+# path_of PROGRAM
+path_of() {
+  if [ -d "$work/build/tests/$1" ]; then echo "$work/build/tests/$1/$1"; else echo "$work/build/tests/$1"; fi
+}
+
+# failure_in PROGRAM FILTER: builds the program and runs the tests; prints the first failure, or nothing.
+failure_in() {
+  local output status=0
+  if ! cmake --build "$work/build" --target "$1" -j "${ORRERY_MUTANTS_JOBS:-2}" >"$work/build.log" 2>&1; then
+    echo "DOES NOT COMPILE"
     return
+  fi
+  output=$(timeout "$hung_after_s" "$(path_of "$1")" --gtest_fail_fast --gtest_filter="$2" 2>&1) || status=$?
+  if [ "$status" -eq 0 ]; then return; fi
+  # A crash prints no result: report the test that was running.
+  { grep -oE '^\[  FAILED  \] [A-Za-z]+\.[A-Za-z0-9]+' <<<"$output" || grep -E '^\[ RUN ' <<<"$output" | tail -n 1; } |
+    awk -v status="$status" 'NR == 1 { print $NF (status > 1 ? " (status " status ")" : "") }'
+}
+
+# killer [NAME]: prints the first failure of all programs, or nothing. The test that found the mutant NAME before comes first.
+killer() {
+  local found test program
+  test=$(awk -F' *[|] *' -v name="${1:-}" 'name != "" && $2 == name { split($3, words, " "); print words[1] }' "$root/docs/mutants.md")
+  program=$(awk -v suite="${test%.*}" '$1 == suite { print $2; exit }' "$work/suites")
+  if [ -n "$program" ]; then
+    found=$(failure_in "$program" "$test")
+    if [ -n "$found" ]; then echo "$found"; return; fi
+  fi
+  for program in "${programs[@]}"; do
+    found=$(failure_in "$program" "$judges")
+    if [ -n "$found" ]; then echo "$found"; return; fi
   done
 }
 
+touch "$work/suites"
 found=$(killer)
 if [ -n "$found" ]; then
   echo "mutants.sh: a test fails without any mutant: $found; logs are in $work" >&2
   trap - EXIT
   exit 1
 fi
+
+for program in "${programs[@]}"; do
+  "$(path_of "$program")" --gtest_list_tests | sed -n "s/^\([A-Za-z]*\)\.$/\1 $program/p"
+done >"$work/suites"
 
 printf '| mutant | killed by | seconds |\n|---|---|---|\n'
 killed=0 survivors=() broken=()
@@ -130,7 +149,7 @@ for i in "${chosen[@]}"; do
   start=$SECONDS
   cp -p "$file" "$work/original"
   mutated "$i" "$root" >"$file"
-  found=$(killer)
+  found=$(killer "${names[$i]}")
   cp "$work/original" "$file"  # with a new date, so that it is rebuilt
   printf '| %s | %s | %d |\n' "${names[$i]}" "${found:-**SURVIVED**}" $((SECONDS - start))
   case $found in
