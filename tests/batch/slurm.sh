@@ -41,13 +41,14 @@ munged --force --key-file="$folder/cluster/keys/key" --socket="$folder/cluster/k
 
 # Ports derived from the process id, so that two clusters do not collide, and below those that the system assigns.
 port=$((20000 + $$ % 2500 * 5))
+# A task of a lost node waits until its credentials have expired, by default after 120 seconds.
 cat > cluster/slurm.conf << END
 ClusterName=orrery
 SlurmctldHost=$host(127.0.0.1)
 SlurmUser=root
 AuthType=auth/munge
 CredType=cred/munge
-AuthInfo=socket=$folder/cluster/keys/socket
+AuthInfo=socket=$folder/cluster/keys/socket,cred_expire=20
 SlurmctldPort=$port
 SlurmctldPidFile=$folder/cluster/slurmctld.pid
 SlurmdPidFile=$folder/cluster/slurmd.%n.pid

@@ -45,10 +45,12 @@ std::vector<NamedScene> caustic_scenes() {
     return out.back().scene;
   };
   const auto lamp = [](scene::Scene& s) { add_lamp(s, {1.5, 3.5, 1.5}, 1, {10, 9, 8}); };
-  scene::Scene& touching = add("a mirror and glass balls that touch each other and the floor");
+  scene::Scene& touching = add("balls that touch each other and the floor, and mirrors in glass");
   lamp(touching);
-  add_ball(touching, {0.2, 0.6, 0.6}, 0.6, mirror);
-  add_ball(touching, {1.4, 0.6, 0.6}, 0.6, glass);
+  for (const double x : {0.2, 1.4}) {
+    add_ball(touching, {x, 0.6, 0.6}, 0.6, glass);
+    add_ball(touching, {x, 0.6, 0.6}, 0.5, mirror);  // light that it reflects through the glass is not sampled
+  }
   add_ball(touching, {0.8, 0.4, 1.6}, 0.4, scene::Dielectric{1.3, scene::Fresnel::kExact});
   scene::Scene& blocked = add("blockers inside and outside");
   lamp(blocked);

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "compile/compile.h"
+#include "compile/compiled_scene.h"
 #include "film/layers.h"
 #include "film/picture.h"
 #include "render/render.h"
@@ -51,6 +52,22 @@ TEST(RenderCaustics, ChainsThatExceedTheDepthAreNotSampled) {
   EXPECT_EQ(brightest(core), 0);
   core.render.max_depth = 4;
   EXPECT_GT(brightest(core), 0);
+}
+
+/// Vertices that carry little are sampled rarely, and weigh more.
+TEST(RenderCaustics, ADarkFloorReflectsItsShareOfTheLight) {
+  scene::Scene s = ball_below_a_lamp();
+  s.camera.look_at = {0, 0, 0};
+  s.render.max_depth = 4;
+  s.render.samples = 1024;
+  const auto share = [&](double albedo) {
+    s.materials[0].model = scene::Lambertian{{albedo, albedo, albedo}};
+    const std::vector<float> values = render(compile::compile(s), {}).picture.planes[0].values;
+    return std::accumulate(values.begin(), values.end(), 0.0) / albedo;
+  };
+  const double of_bright = share(0.25);
+  EXPECT_GT(of_bright, 0);
+  EXPECT_NEAR(share(0.02), of_bright, 0.05 * of_bright);
 }
 
 /// As if a path had found it.
