@@ -23,8 +23,11 @@ constexpr double kMargin = 1, kBarThickness = 0.3, kTextGap = 0.4, kMiddle = 0.3
 /// Font sizes in the height of the image, and smallest font.
 constexpr double kFontShare = 32;
 constexpr double kSmallestFont = 9;
-/// Names in a legend; the others are counted.
-constexpr std::size_t kMaxLabels = 20;
+/// Names in a legend; the others are counted. Distance of the names, in font sizes.
+constexpr double kMaxLabels = 20, kLabelPitch = 1.5;
+/// Width of the texts of a legend, in widths of the image; of a letter, in font sizes; and fewest letters that are
+/// shown.
+constexpr double kLegendWidth = 0.25, kLetterWidth = 0.6, kFewestLetters = 8;
 
 /// Luminance below which text is white.
 constexpr double kDark = 0.18;
@@ -56,8 +59,10 @@ class Layout {
       out_.font = image::font_file(font_);
     out_.outline_px = annotation.outline;
     if (!annotation.title.empty()) {
-      const std::optional<double> step = scene_.points.empty() ? std::nullopt : scene_.points[0].step;
-      add_text(title_of(annotation.title, view_.frame, step), kMargin * size_, (kMargin + 0.8) * size_, 0);
+      const scene::Points* const points = scene_.points.empty() ? nullptr : &scene_.points[0];
+      const int frame = points != nullptr ? points->frame.value_or(view_.frame) : view_.frame;
+      add_text(title_of(annotation.title, frame, points != nullptr ? points->step : std::nullopt), kMargin * size_,
+               (kMargin + 0.8) * size_, 0);
     }
     if (annotation.scale_bar && scene_.camera.width) add_scale_bar(*annotation.scale_bar);
     if (annotation.color_bar && !legend.is_empty()) add_legend(legend);
@@ -82,8 +87,11 @@ class Layout {
   }
 
   void add_legend(const LegendColors& colors) {
-    const double margin = kMargin * size_;
-    const Drawing legend = legend_drawing(colors, {size_, view_.height - 2 * margin, kMaxLabels, out_.ink}, out_.font);
+    const double margin = kMargin * size_, height = view_.height - 2 * margin;
+    const auto most_labels = static_cast<std::size_t>(std::clamp(height / (kLabelPitch * size_) - 1, 1.0, kMaxLabels));
+    const auto most_bytes =
+        static_cast<std::size_t>(std::max(kLegendWidth * view_.width / (kLetterWidth * size_), kFewestLetters));
+    const Drawing legend = legend_drawing(colors, {size_, height, most_labels, most_bytes, out_.ink}, out_.font);
     place(legend, view_.width - margin - legend.width, margin, out_);
   }
 
@@ -146,6 +154,7 @@ LegendColors legend_of(const scene::Scene& scene, const std::vector<std::vector<
     scene::Points keys;
     keys.color = scene.points[i].color;
     keys.color_names = scene.points[i].color_names;
+    keys.has_nan_color = scene.points[i].has_nan_color;
     keys.palette = palettes[i];
     LegendColors out;
     out.add(keys);

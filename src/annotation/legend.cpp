@@ -2,10 +2,8 @@
 #include "annotation/legend.h"
 
 #include <algorithm>
-#include <charconv>
 #include <cmath>
 #include <limits>
-#include <system_error>
 #include <utility>
 
 #include <fmt/core.h>
@@ -26,15 +24,15 @@ namespace {
 // Lengths in font sizes.
 constexpr double kTitleHeight = 1.5, kTitleBaseline = 0.8, kColorWidth = 1, kBarHeight = 12, kColorGap = 0.4,
                  kTickLength = 0.3, kLineWidth = 0.06, kPatchPitch = 1.5, kMiddleOfText = 0.36;
-constexpr std::size_t kMaxTextBytes = 60;
 
 /// Of legends in files, px. Screens and papers show SVG at its own size.
 constexpr double kSvgFont = 14, kImageFont = 28;
+constexpr std::size_t kMaxTextBytes = 60;
 /// Few programs could open a larger image.
 constexpr std::size_t kMaxImageLabels = 500;
 
-std::string shortened(const std::string& text) {
-  const std::string_view prefix = base::utf8_prefix(text, kMaxTextBytes);
+std::string shortened(const std::string& text, std::size_t most_bytes) {
+  const std::string_view prefix = base::utf8_prefix(text, most_bytes);
   return std::string(prefix) + (prefix.size() < text.size() ? "…" : "");
 }
 
@@ -87,7 +85,9 @@ class LegendLayout {
   }
 
  private:
-  void add_text(const std::string& text, double x, double y) { out_.texts.push_back({shortened(text), x, y, em_, 0}); }
+  void add_text(const std::string& text, double x, double y) {
+    out_.texts.push_back({shortened(text, style_.most_bytes), x, y, em_, 0});
+  }
 
   /// A frame about a bar or a patch at the left; a white one would not be seen on white.
   void add_frame(double width, double height) {
@@ -113,7 +113,8 @@ LegendColors seen(LegendColors colors, const display::Settings& display) {
 Drawing page(const LegendColors& colors, const display::Settings& display, double font_px) {
   constexpr double kAny = std::numeric_limits<double>::infinity();
   constexpr std::size_t kMany = std::numeric_limits<std::size_t>::max();
-  const Drawing legend = legend_drawing(seen(colors, display), {font_px, kAny, kMany}, image::font_file(kDefaultFont));
+  const Drawing legend =
+      legend_drawing(seen(colors, display), {font_px, kAny, kMany, kMaxTextBytes}, image::font_file(kDefaultFont));
   Drawing out;
   out.font = legend.font;
   out.width = legend.width + static_cast<int>(2 * font_px);
@@ -146,11 +147,9 @@ void LegendColors::add(const scene::Points& frame) {
     has_conflict = has_conflict || (!is_new && label->second != frame.palette[i]);
   }
   if (!frame.color_names.empty() || key.column.empty() || frame.palette.empty()) return;
-  // The last colour stands for values that are not numbers.
-  const std::size_t last = frame.palette.size() - 1;
   is_log = key.log;
   bar.assign(frame.palette.begin(), frame.palette.end() - 1);
-  if (std::find(frame.colors.begin(), frame.colors.end(), last) != frame.colors.end()) nan_color = frame.palette[last];
+  if (frame.has_nan_color) nan_color = frame.palette.back();
 }
 
 Drawing legend_drawing(const LegendColors& colors, const LegendStyle& style, const std::filesystem::path& font) {
@@ -173,7 +172,8 @@ std::string legend_svg(const LegendColors& colors, const display::Settings& disp
 }
 
 void write_legend(const std::filesystem::path& file, const LegendColors& colors, const display::Settings& display) {
-  if (colors.is_empty()) base::refuse("--legend: the colours are not those of a column, types or elements");
+  if (colors.is_empty())
+    base::refuse("--legend: there is no legend: no colour is that of a value of a column, of a type or of an element");
   if (base::extension(file) == ".svg") return base::write_text_file(file, legend_svg(colors, display));
   if (!image::is_display_format(image::format_of(file))) base::refuse("--legend: name an .svg or .png file");
   if (colors.labels.size() > kMaxImageLabels)

@@ -180,6 +180,7 @@ int run_plot(PlotCommand& arguments) {
       std::make_shared<const std::string>(saves ? load::marked_text(plot::saved_text(plot, made)) : made.text);
   show(made, text, job);
   job.scene.open_data = made.open_data;
+  job.scene.loaded = made.loaded;
   if (!saves) job.scene.typed_lines = 0;
   render.batch.frames = made.frames;
   render.batch.scenes = {plot.scene_file};
@@ -230,8 +231,9 @@ void add_plot(Command& program) {
   command.details(
       "Writes a scene for the data, and renders it. Settings that the options leave open are chosen from the data and "
       "printed: the radius is that of the file, else by chemical element, else half the median distance to the nearest "
-      "neighbour in the first frame; the colour is that of the file, else by element, else by type, else light grey; "
-      "an orthographic camera is fitted to the spheres of all frames; the view transform is Un-tone-mapped, or the "
+      "neighbour in the first frame; the colour is that of the file, else by chain for an assembly, for many atoms and "
+      "for atoms of one element, else by element, else by type, else light grey; an orthographic camera is fitted to "
+      "the spheres of all frames; the view transform is Un-tone-mapped, or the "
       "default view if the OpenColorIO config has none of this name; --quality is good, unless --noise, --time "
       "or --samples is given. docs/data.md describes data files.");
   command.footer(
@@ -239,10 +241,10 @@ void add_plot(Command& program) {
       "\n"
       "Examples:\n"
       "  orrery plot melt.dump -o melt.png\n"
-      "  orrery plot 1m4x.pdb -o virus.png --assembly 1\n"
+      "  orrery plot 1M4X.pdb -o virus.png --assembly 1\n"
       "  orrery plot caffeine.xyz -o caffeine.png --representation ball-and-stick\n"
       "  orrery plot grains.dump -o pour.mp4 --frames all --color-by vz --range -2:0 --color-bar\n"
-      "  orrery plot 1m4x.pdb -o turn.mp4 --turntable 4s --scale-bar '20 nm'\n"
+      "  orrery plot 1M4X.pdb -o turn.mp4 --turntable 4s --scale-bar '20 nm'\n"
       "  orrery plot scan.las -o scan.exr --color-by rgb");
   command.action([arguments] { return run_plot(*arguments); });
 }

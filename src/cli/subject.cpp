@@ -3,7 +3,6 @@
 
 #include <functional>
 #include <memory>
-#include <utility>
 
 #include <fmt/core.h>
 
@@ -48,6 +47,7 @@ view::Subject data_subject(ShownOptions& shown, const FilmSettings* film) {
   show(made, std::make_shared<const std::string>(made.text), out.job);
   out.job.scene.typed_lines = 0;
   out.job.scene.overrides = plot.overrides;
+  out.job.scene.loaded = made.loaded;
   out.notes = made.choices;
   for (const std::string& warning : made.warnings) out.notes.push_back("warning: " + warning);
   out.columns = made.columns;

@@ -45,6 +45,7 @@ points::LoadRequest points_request(const SceneSource& source, const scene::Scene
   out.frame = source.frame;
   out.materials = scene.materials.size();
   out.open = source.open_data;
+  out.loaded = source.loaded;
   return out;
 }
 

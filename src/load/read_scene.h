@@ -42,9 +42,10 @@ struct SceneSource {
   std::filesystem::path file;
   Overrides overrides = {};
   int frame = kFirstFrame;  ///< selects the values of animated keys, and the files and frames of data
-  std::shared_ptr<const std::string> text = {};  ///< text of the scene; null: read the file
-  bool has_file = true;                          ///< false: `file` is only a name
-  points::OpenData open_data = {};               ///< see points::LoadRequest
+  std::shared_ptr<const std::string> text = {};       ///< text of the scene; null: read the file
+  bool has_file = true;                               ///< false: `file` is only a name
+  points::OpenData open_data = {};                    ///< see points::LoadRequest
+  std::shared_ptr<points::LoadedPoints> loaded = {};  ///< see points::LoadRequest
   /// Identifies the contents of a data file; empty: base::file_version.
   std::function<std::string(const std::filesystem::path&)> data_version = {};
   std::optional<int> typed_lines = {};  ///< see SourceText::add

@@ -100,11 +100,12 @@ LoadedFrame DataFrames::load(int frame, const scene::PointsKeys& keys, points::S
   request.source = source;
   request.on_value = on_value;
   request.open = open_;
-  LoadedFrame out{{keys, {}, {}}, {}};
+  LoadedFrame out{{keys, {}, {}}, {}, {}};
   out.points.is_sequence = is_sequence_;
   if (keys.file.empty()) out.points.file = request.file;
   std::vector<base::Diagnostic> errors;
-  for (const scene::SceneDiagnostic& d : points::load_points(request, out.points)) {
+  out.diagnostics = points::load_points(request, out.points);
+  for (const scene::SceneDiagnostic& d : out.diagnostics) {
     const bool has_key = d.key.size() > request.key.size() && d.key != request.key + ".file";
     const std::string key = has_key ? d.key.substr(request.key.size() + 1) + ": " : "";
     const std::string number = numbers_.size() > 1 ? fmt::format("frame {}: ", frame) : "";

@@ -35,6 +35,7 @@ struct DataOptions {
 /// Spheres of a frame, and warnings about the data and the options.
 struct LoadedFrame {
   scene::Points points;
+  std::vector<scene::SceneDiagnostic> diagnostics;  ///< the warnings, with their keys
   std::vector<base::Diagnostic> warnings;
 };
 

@@ -69,7 +69,7 @@ void require_utf8(const std::string& text) {
   }
 }
 
-/// A points table of the scene as its author would write it, completed step by step.
+/// Makes the scene of a plot, in the order in which the choices are printed.
 class PlotMaker {
  public:
   explicit PlotMaker(const PlotOptions& options)
@@ -149,7 +149,7 @@ class PlotMaker {
       chose(fmt::format("view transform {}", out_.view), "colours match the colour map");
     out_.text = scene_text(options_, stage, std::move(scene));
     // A still image is made of one frame, whose file need not stay open.
-    out_.open_data = out_.frames.empty() ? points::handed_over(data_.open_data()) : data_.open_data();
+    if (!out_.loaded) out_.open_data = out_.frames.empty() ? points::handed_over(data_.open_data()) : data_.open_data();
     return std::move(out_);
   }
 
@@ -427,7 +427,7 @@ class PlotMaker {
     if (!out_.view.empty()) return;
     out_.view = display::view_or_default(display, kPlainView);
     if (out_.view != kPlainView)
-      chose("display view " + out_.view, std::string("the default; the OCIO config has no view ") + kPlainView);
+      chose("view transform " + out_.view, std::string("the default; the OCIO config has no view ") + kPlainView);
   }
 
   void choose_samples(int& samples) {
@@ -473,7 +473,8 @@ class PlotMaker {
     const auto on_value = needs_range ? [&](double value) { finder.add(value); } : std::function<void(double)>();
     std::size_t fewest = std::numeric_limits<std::size_t>::max(), most = 0, fewest_bonds = fewest, most_bonds = 0;
     for (const int frame : data_.distinct()) {
-      const scene::Points points = data_.load(frame, out_.points, nullptr, on_value).points;
+      LoadedFrame loaded = data_.load(frame, out_.points, nullptr, on_value);
+      const scene::Points& points = loaded.points;
       fewest = std::min(fewest, points.particle_count());
       most = std::max(most, points.particle_count());
       // Two stubs are a bond.
@@ -484,8 +485,10 @@ class PlotMaker {
       step_ = points.step;
       extent.add(points);
       guides_.surround(points);
-      if (points.centers.empty()) continue;
-      out_.legend.add(points);
+      if (!points.centers.empty()) out_.legend.add(points);
+      if (out_.frames.empty())
+        out_.loaded = std::make_shared<points::LoadedPoints>(
+            points::LoadedPoints{frame, std::move(loaded.points), std::move(loaded.diagnostics)});
     }
     report_count(fewest, most);
     report_bonds(fewest_bonds, most_bonds);
@@ -496,7 +499,10 @@ class PlotMaker {
           fmt::format("colour by {}: the frames do not have the same values, and one value has different colours in "
                       "different frames; colour by a column of integers",
                       out_.legend.title));
-    if (needs_range && !finder.is_empty()) choose_range(*out_.legend.range);
+    if (needs_range && !finder.is_empty()) {
+      choose_range(*out_.legend.range);
+      out_.loaded.reset();  // read without the range, so in other colours
+    }
   }
 
   void choose_range(const scene::Interval& range) {

@@ -2,7 +2,6 @@
 #include "plot/view.h"
 
 #include <algorithm>
-#include <charconv>
 #include <cmath>
 #include <limits>
 #include <numbers>
@@ -185,7 +184,7 @@ ViewExtent ViewExtent::grown(double length) const {
 }
 
 double ViewExtent::image_width(double aspect, const std::vector<Reserved>& reserved) const {
-  constexpr double kSmallest = 0.25;  // of `beside` and `above`
+  constexpr double kSmallest = 0.1;  // of `beside` and `above`
   const double wide = high_[0] - low_[0], high = (high_[1] - low_[1]) * aspect;
   const double fitted = std::max(wide, high);
   if (is_empty_ || !(fitted > 0)) return 2;  // a single point has no extent

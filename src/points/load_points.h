@@ -27,16 +27,25 @@ struct SourceRows {
   std::vector<scene::BondStub> bond_stubs;
 };
 
+/// The spheres of a frame, for the next call of load_points(): it takes them if its keys are the same, and else drops
+/// them.
+struct LoadedPoints {
+  int frame = 1;
+  scene::Points points;
+  std::vector<scene::SceneDiagnostic> diagnostics;
+};
+
 struct LoadRequest {
-  std::filesystem::path file;            ///< the data file
-  std::filesystem::path folder;          ///< folder of the scene file, for the file of a colour map
-  std::string key;                       ///< "points[0]", for diagnostics
-  int frame = 1;                         ///< the rendered frame
-  std::size_t materials = 0;             ///< number of materials of the scene
-  SourceRows* source = nullptr;          ///< if not null, receives the rows of the spheres
-  std::function<void(double)> on_value;  ///< receives the values that a continuous colour map shows; may be empty
-  std::uint64_t memory_limit = 0;        ///< maximum memory of the spheres, bytes; 0: no limit
-  OpenData open = {};                    ///< replaces data::open(), except in a sequence of files
+  std::filesystem::path file;                 ///< the data file
+  std::filesystem::path folder;               ///< folder of the scene file, for the file of a colour map
+  std::string key;                            ///< "points[0]", for diagnostics
+  int frame = 1;                              ///< the rendered frame
+  std::size_t materials = 0;                  ///< number of materials of the scene
+  SourceRows* source = nullptr;               ///< if not null, receives the rows of the spheres
+  std::function<void(double)> on_value;       ///< receives the values that a continuous colour map shows; may be empty
+  std::uint64_t memory_limit = 0;             ///< maximum memory of the spheres, bytes; 0: no limit
+  OpenData open = {};                         ///< replaces data::open(), except in a sequence of files
+  std::shared_ptr<LoadedPoints> loaded = {};  ///< spheres that were read before; may be null
 };
 
 /// Reads the spheres of a data file into `points` according to its keys: selects rows, determines radii and colours,
@@ -46,7 +55,7 @@ struct LoadRequest {
 /// Result     diagnostics about keys of the scene file: unknown columns, missing radii, selections that match nothing;
 ///            `points` has no spheres if one of them is an error
 /// Errors     base::Error: those of data::open and data::DataFile; kNoMemory
-/// Cost       one read of the needed columns, or of all columns for `source`
+/// Cost       one read of the needed columns, or of all columns for `source`; nothing for LoadRequest::loaded
 std::vector<scene::SceneDiagnostic> load_points(const LoadRequest& request, scene::Points& points);
 
 /// Reads the rods of a data file, one per row: ends from the columns x0, y0, z0, x1, y1, z1, radii from `radius`,

@@ -116,6 +116,7 @@ PointColors colors_by_number(const data::Column& column, const Rows& rows, const
     // A constant column has the colour in the middle.
     const double t = has_color && span > 0 ? (std::clamp(scaled(v), low, high) * unit - low * unit) / span : 0.5;
     out.indices[i] = has_color ? static_cast<std::uint16_t>(t * (kMapColors - 1) + 0.5) : kMapColors;
+    out.has_nan = out.has_nan || !has_color;
   });
   if (without_log > 0)
     faults.warning(".color.log", fmt::format("{} of {} values are not above 0, and have the colour of NaN", without_log,

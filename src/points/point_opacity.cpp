@@ -9,7 +9,6 @@
 #include "data/text_lines.h"
 #include "points/sources.h"
 #include "scene/limits.h"
-#include "scene/validate.h"
 #include "scene/value_text.h"
 
 namespace orrery::points {

@@ -59,6 +59,7 @@ struct PointColors {
   std::vector<std::uint16_t> indices;
   std::vector<std::string> names;        ///< names of the colours, if they represent types, elements or strings
   std::optional<scene::Interval> range;  ///< range of a continuous colour map; empty if all values are NaN
+  bool has_nan = false;                  ///< values have the colour of NaN, the last of the palette
 };
 
 /// Determines the source of the colours. Reports unknown columns and maps, and mutually exclusive keys.

@@ -202,6 +202,7 @@ struct Rod {
 /// An interval of numbers.
 struct Interval {
   double low = 0, high = 1;
+  bool operator==(const Interval&) const = default;
 };
 
 /// Numbers or colours by particle type, in the order of the types' names.
@@ -216,6 +217,7 @@ struct PointsRadius {
   std::string element;          ///< "vdw", "covalent" or "ball"
   NumbersByType types;          ///< scene units
   double scale = 1;             ///< multiplies column and element radii
+  bool operator==(const PointsRadius&) const = default;
 };
 
 /// Colours of the spheres of a points file, set by one of `column`, `element`, `types` and `rgb`; if none is set, those
@@ -233,6 +235,7 @@ struct PointsColor {
   bool is_set() const { return !column.empty() || !element.empty() || !types.empty() || rgb; }
   /// True if `map` is a file: names of colour maps contain neither dots nor slashes.
   bool has_map_file() const { return map.find_first_of("./\\") != std::string::npos; }
+  bool operator==(const PointsColor&) const = default;
 };
 
 /// Bonds between the particles of a points file. Lengths are in the unit of the file, as are its coordinates.
@@ -246,6 +249,7 @@ struct PointsBonds {
 
   /// True if a key other than `are_drawn` is set.
   bool has_keys() const { return !from.empty() || factor || length || radius || material; }
+  bool operator==(const PointsBonds&) const = default;
 };
 
 /// A bond between two spheres of a points table, by index: a < b.
@@ -272,6 +276,7 @@ struct PointsVectors {
   std::vector<std::string> columns;  ///< of the x, y and z component; empty: no arrows
   double scale = 1;                  ///< length of an arrow, in the unit of the file, divided by that of its vector
   std::optional<double> radius;      ///< of the shafts, unit of the file; default: as PointsBonds::radius
+  bool operator==(const PointsVectors&) const = default;
 };
 
 /// Opacities of the spheres of a points file, 0..1, in place of those of their materials: `value`, or that of the last
@@ -283,6 +288,7 @@ struct PointsOpacity {
   std::vector<std::string> where;  ///< "CONDITION: NUMBER" or "NUMBER", see points::parse_opacity_rule()
 
   bool is_set() const { return value || !column.empty() || !types.empty() || !where.empty(); }
+  bool operator==(const PointsOpacity&) const = default;
 };
 
 /// Transforms a point p of a file to scale * R p + translate, where R rotates about x, then y, then z.
@@ -317,6 +323,7 @@ struct PointsKeys {
   bool skip_bad = false;                             ///< skips rows with non-finite coordinates or radii
   std::vector<std::string> labels;                   ///< "CONDITION: TEXT", at the middle of the particles that match
   std::vector<std::string> cryptomatte;              ///< columns; each combination of their values is an object
+  bool operator==(const PointsKeys&) const = default;
 };
 
 /// The spheres of a points table, in flat arrays because there may be a hundred million, and the bonds between them.
@@ -345,6 +352,7 @@ struct PointsFindings {
   std::size_t palette_rec709 = 0;             ///< leading colours that are linear Rec.709; others are in Color::space
   std::vector<std::string> color_names = {};  ///< of the colours in `palette`, if they represent types or elements
   std::optional<Interval> color_range = {};   ///< range of the colour map, if there is one
+  bool has_nan_color = false;                 ///< values without a colour in the map have the last one of `palette`
   std::vector<std::string> unused = {};       ///< unused columns of the file, such as colours
   std::optional<double> step = {};            ///< time step of the frame, or its number in the file
   std::vector<Label> placed_labels = {};      ///< those of PointsKeys::labels

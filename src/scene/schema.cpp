@@ -211,7 +211,8 @@ Table annotation_table() {
       "annotation", Part::kOutput, &Scene::annotation,
       {text("title",
             {"Text at the top left. `{EXPRESSION}` is replaced by the value of an [expression](data.md#expressions) of "
-             "`frame` and `step`, the time step in the data file: `t = {step * 0.005:.1f} ps`"},
+             "`frame`, that of the first points table if it is set there, else the rendered one, and `step`, the time "
+             "step in the data file: `t = {step * 0.005:.1f} ps`"},
             &Annotation::title),
        otherwise("none", number("scale_bar", kLength,
                                 {"Length of a bar at the bottom left. Requires an orthographic camera", "scene units"},

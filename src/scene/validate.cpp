@@ -29,6 +29,9 @@ bool in_domain(Vec3d c) {
   // Written so that a NaN is outside.
   return std::abs(c.x) <= kLargestLength && std::abs(c.y) <= kLargestLength && std::abs(c.z) <= kLargestLength;
 }
+/// Length of a scale bar, in widths of the image.
+constexpr double kLargestScaleBar = 0.95;
+
 double max(Vec3d v) { return std::max({v.x, v.y, v.z}); }
 bool has_direction(Vec3d v) { return math::length(v) >= kSmallestRadius; }
 
@@ -54,6 +57,13 @@ void check_annotation(const Scene& scene, KeyFaults& diagnostics) {
     diagnostics.error("annotation.scale_bar",
                       "requires camera.projection = \"orthographic\": in a perspective image, the length of an object "
                       "depends on its distance");
+  if (scene.annotation.scale_bar && scene.camera.width) {
+    const double share = *scene.annotation.scale_bar / *scene.camera.width;
+    if (share > kLargestScaleBar || share * scene.image.width < 1)
+      diagnostics.warning("annotation.scale_bar",
+                          fmt::format("{} cannot be seen as a length in an image that is {} wide",
+                                      number_text(*scene.annotation.scale_bar), number_text(*scene.camera.width)));
+  }
   if ((scene.annotation.is_set() || has_labels) && (scene.image.crop || scene.image.overscan > 0))
     diagnostics.error("annotation", "cannot be combined with image.crop or image.overscan");
 }
@@ -208,8 +218,7 @@ std::string rod_material_fault(std::uint32_t material, const Scene& scene) {
   if (!std::holds_alternative<Dielectric>(scene.materials[material].model)) return {};
   return fmt::format(
       "{} is a dielectric, but rods transmit no light: a ray hits them from outside only; use another type of "
-      "material, "
-      "or spheres",
+      "material, or spheres",
       string_text(scene.materials[material].name));
 }
 

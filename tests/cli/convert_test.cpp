@@ -297,7 +297,7 @@ TEST_F(CliConvert, PlotsUseTheDefaultViewOfAConfigWithoutTheirOwn) {
         "colorspaces:\n  - !<ColorSpace> {name: lin_rec709}\n");
   write("a.csv", "x,y,z,q\n0,0,0,1\n1,0,0,2\n");
   const std::string plot = "plot a.csv -o a.ppm --color-by q --width 16 --height 9 --samples 1 --legend l.svg ";
-  const std::string choice = "plot: display view film: the default; the OCIO config has no view Un-tone-mapped";
+  const std::string choice = "plot: view transform film: the default; the OCIO config has no view Un-tone-mapped";
   for (const char* config : {"--set color.config=my.ocio", "--set color.config=my.ocio --save-scene s.toml"}) {
     const Outcome r = run(plot + config);
     EXPECT_EQ(r.status, 0) << config << r.err;

@@ -102,9 +102,35 @@ TEST_F(AnnotationAnnotate, CategoriesHavePatches) {
     scene.points[0].color_names.push_back(std::to_string(i));
     palettes[0].push_back({i / 30.0, 0, 0});
   }
-  EXPECT_EQ(drawing().boxes.size(), 2 * 19u) << "patches and their frames";
-  EXPECT_LT(line("1").y, line("19").y);
-  EXPECT_LT(line("19").y, line("11 more").y);
+  EXPECT_EQ(drawing().boxes.size(), 2 * 18u) << "patches and their frames";
+  EXPECT_LT(line("1").y, line("18").y);
+  EXPECT_LT(line("18").y, line("12 more").y);
+  EXPECT_LT(line("12 more").y, 310) << "within the margin";
+  view.width = 200;
+  scene.points[0].color_names = {"a name longer than a quarter of the image"};
+  line("a name l…");
+}
+
+TEST_F(AnnotationAnnotate, ValuesWithoutAColorAreInTheLegend) {
+  scene.annotation.color_bar = true;
+  scene.points.resize(1);
+  scene.points[0].color.column = "v";
+  scene.points[0].color_range = {1, 2};
+  palettes = {{{0, 0, 0}, {1, 1, 1}, {0.5, 0.5, 0.5}}};
+  const std::size_t texts = drawing().texts.size();
+  scene.points[0].has_nan_color = true;  // the spheres are released by now
+  EXPECT_EQ(drawing().texts.size(), texts + 1);
+  line("no value");
+}
+
+TEST_F(AnnotationAnnotate, TheFrameIsThatOfTheData) {
+  scene.annotation.title = "{frame}";
+  view.frame = 3;
+  line("3");
+  scene.points.resize(1);
+  line("3");
+  scene.points[0].frame = 7;
+  line("7");
 }
 
 TEST_F(AnnotationAnnotate, LabelsAreAtTheirPoints) {

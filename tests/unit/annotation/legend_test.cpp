@@ -24,7 +24,7 @@ LegendColors speed() {
 }
 
 Drawing drawing_of(const LegendColors& colors, std::size_t most_labels = 100) {
-  return legend_drawing(colors, {20, 1000, most_labels}, image::font_file("DejaVuSans"));
+  return legend_drawing(colors, {20, 1000, most_labels, 60}, image::font_file("DejaVuSans"));
 }
 
 /// The line that begins with a text.
@@ -50,10 +50,10 @@ TEST(AnnotationLegend, TicksAreBesideTheColorsOfTheirValues) {
 
 TEST(AnnotationLegend, BarsAreAtMostAsHighAsTheirSpace) {
   const LegendColors colors = speed();
-  const Drawing low = legend_drawing(colors, {20, 150, 100}, image::font_file("DejaVuSans"));
+  const Drawing low = legend_drawing(colors, {20, 150, 100, 60}, image::font_file("DejaVuSans"));
   EXPECT_LE(low.height, 150);
   EXPECT_LT(low.height, drawing_of(colors).height);
-  const Bar none = legend_drawing(colors, {20, 0, 100}, image::font_file("DejaVuSans")).bars[0];
+  const Bar none = legend_drawing(colors, {20, 0, 100, 60}, image::font_file("DejaVuSans")).bars[0];
   EXPECT_EQ(none.bottom - none.top, 1) << "an image of a few pixels";
 }
 

@@ -7,11 +7,13 @@
 #include <array>
 #include <cmath>
 #include <set>
+#include <utility>
 
 #include <fmt/core.h>
 
 #include "annotation/annotate.h"
 #include "base/error.h"
+#include "data/data_file.h"
 #include "data/elements.h"
 #include "display/develop.h"
 #include "film/picture.h"
@@ -61,7 +63,41 @@ class PlotPlot : public testing::Test {
     request.source.file = folder_ / "scene.toml";
     request.source.text = std::make_shared<const std::string>(made.text);
     request.source.frame = at;
-    return load::read_with_data(request).scene;
+    scene::Scene out = load::read_with_data(request).scene;
+    if (made.loaded && at == 1) check_loaded(request, out);
+    return out;
+  }
+  /// The spheres of a still image are not read again, and are those of the scene.
+  void check_loaded(load::SceneRequest request, const scene::Scene& expected) {
+    request.source.loaded = std::exchange(made.loaded, nullptr);
+    request.source.open_data = [](const std::filesystem::path& path, const data::OpenOptions& open) {
+      ADD_FAILURE() << path << " is opened again";
+      return data::open(path, open);
+    };
+    const scene::Points taken = load::read_with_data(request).scene.points.at(0), &fresh = expected.points.at(0);
+    EXPECT_TRUE(taken.centers == fresh.centers);
+    EXPECT_TRUE(taken.radii == fresh.radii);
+    EXPECT_EQ(taken.colors, fresh.colors);
+    EXPECT_EQ(taken.palette, fresh.palette);
+    EXPECT_EQ(taken.bond_pairs, fresh.bond_pairs);
+    EXPECT_EQ(taken.opacities, fresh.opacities);
+  }
+  /// Of an image of 640 x 360 pixels from -y.
+  void expect_spheres_beside_annotation() {
+    const scene::Scene scene = read();
+    const annotation::View view{640, 360, 1, folder_.path(), {}};
+    const std::vector<annotation::Box> boxes = annotation::covered_by(
+        annotation::drawing_of(scene, annotation::legend_of(scene, {scene.points[0].palette}), view));
+    ASSERT_GT(boxes.size(), 10u);
+    const double scale = 640 / *scene.camera.width;
+    for (const Vec3d& center : scene.points[0].centers) {
+      const Vec3d at = (center - scene.camera.look_at) * scale;  // x to the right, z up
+      for (const annotation::Box& box : boxes) {
+        const double beside = std::max(box.left - (320 + at.x), 320 + at.x - box.right),
+                     above = std::max(box.top - (180 - at.z), 180 - at.z - box.bottom);
+        EXPECT_GT(std::max(beside, above), 0.5 * scale) << center.x << ' ' << center.z;
+      }
+    }
   }
   bool chose(const std::string& choice) const {
     return std::count(made.choices.begin(), made.choices.end(), choice) == 1;
@@ -870,22 +906,18 @@ TEST_F(PlotPlot, SpheresAreBesideTheAnnotation) {
   options.annotation.scale_bar = 0;
   options.annotation.title = "frame {frame}, from the side";
   make();
-  const scene::Scene scene = read();
-  EXPECT_GT(*scene.camera.width, fitted);
-  EXPECT_LT(*scene.camera.width, fitted * 1.3);
-  const annotation::View view{640, 360, 1, folder_.path(), {}};
-  const std::vector<annotation::Box> boxes = annotation::covered_by(
-      annotation::drawing_of(scene, annotation::legend_of(scene, {scene.points[0].palette}), view));
-  ASSERT_GT(boxes.size(), 10u);
-  const double scale = 640 / *scene.camera.width;
-  for (const Vec3d& center : scene.points[0].centers) {
-    const Vec3d at = (center - scene.camera.look_at) * scale;  // x to the right, z up
-    for (const annotation::Box& box : boxes) {
-      const double beside = std::max(box.left - (320 + at.x), 320 + at.x - box.right),
-                   above = std::max(box.top - (180 - at.z), 180 - at.z - box.bottom);
-      EXPECT_GT(std::max(beside, above), 0.5 * scale) << center.x << ' ' << center.z;
-    }
-  }
+  const double beside_the_bar = *read().camera.width;
+  EXPECT_GT(beside_the_bar, fitted);
+  EXPECT_LT(beside_the_bar, fitted * 1.3);
+  expect_spheres_beside_annotation();
+  // Long names are cut off.
+  const std::string end(50, 'x');
+  for (int i = 0; i < 480; ++i)
+    row = i == 0 ? "x,y,z,type\n" : row + fmt::format("{},0,{},{}{}\n", i % 40, i / 40, i % 30, end);
+  options.color_by = "type";
+  make("b.csv", row);
+  EXPECT_GT(*read().camera.width, beside_the_bar);
+  expect_spheres_beside_annotation();
 }
 
 TEST_F(PlotPlot, APerspectiveCameraIsFitted) {

@@ -204,7 +204,7 @@ TEST(PlotView, ReservedRectanglesStayFree) {
                 *camera.width > fitted);
     }
     EXPECT_TRUE(is_smaller);
-    EXPECT_EQ(*extent.camera(aspect, {{0.2, 0.1}, {-0.1, -0.1}}).width, fitted) << "would leave too little";
+    EXPECT_EQ(*extent.camera(aspect, {{0.09, 0.05}, {-0.1, -0.1}}).width, fitted) << "would leave too little";
   }
 }
 

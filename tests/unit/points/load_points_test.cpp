@@ -61,6 +61,26 @@ TEST_F(PointsLoadPoints, MoreSpheresThanIdsAreRefusedBeforeTheyAreRead) {
   EXPECT_EQ(load(), "error points[0].file: has 4294967296 rows; the maximum is 4294967295\n");
 }
 
+TEST_F(PointsLoadPoints, LoadedSpheresAreTakenByTheSameKeysAlone) {
+  load("a.csv", kCsv);
+  const scene::Points loaded = points;
+  support::write_bytes(folder_ / "a.csv", "x,y,z,radius,type\n7,0,0,1,1\n");
+  const auto taken = [&](const std::string& select, int frame) {
+    request.loaded = std::make_shared<LoadedPoints>(LoadedPoints{frame, loaded, {}});
+    points = {};
+    points.file = "a.csv";
+    points.select = select;
+    load();
+    EXPECT_TRUE(request.loaded->points.centers.empty()) << "they are taken or dropped";
+    return x();
+  };
+  EXPECT_EQ(taken("", 1), (Numbers{1, 2, 3}));
+  load();
+  EXPECT_EQ(x(), Numbers{7}) << "they are gone";
+  EXPECT_EQ(taken("type == 1", 1), Numbers{7});
+  EXPECT_EQ(taken("", 2), Numbers{7});
+}
+
 TEST_F(PointsLoadPoints, DecompressedDataCountAsMemory) {
   write("a.csv", "x,y,z,radius\n1,2,3,0.5\n");
   std::uint64_t limit = 0;

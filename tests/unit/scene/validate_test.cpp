@@ -38,6 +38,19 @@ using Told = std::vector<std::string>;
 
 TEST(SceneValidate, AnEmptySceneIsValid) { EXPECT_EQ(told({}), Told{}); }
 
+TEST(SceneValidate, AScaleBarFitsTheImage) {
+  Scene scene;
+  scene.camera.projection = Projection::kOrthographic;
+  scene.camera.width = 10;
+  scene.image.width = 200;
+  scene.annotation.scale_bar = 9;
+  EXPECT_EQ(told(scene), Told{});
+  scene.annotation.scale_bar = 11;
+  EXPECT_EQ(told(scene), Told{"(annotation.scale_bar: 11 cannot be seen as a length in an image that is 10 wide)"});
+  scene.annotation.scale_bar = 0.04;
+  EXPECT_EQ(told(scene).size(), 1u) << "less than a pixel";
+}
+
 TEST(SceneValidate, Rods) {
   Scene scene;
   scene.materials = {{"grey", Lambertian{}}, {"glass", Dielectric{}}};
