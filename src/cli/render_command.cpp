@@ -1,5 +1,4 @@
 // SPDX-License-Identifier: Apache-2.0
-#include <algorithm>
 #include <cstdio>
 #include <limits>
 #include <memory>
@@ -137,8 +136,9 @@ void add_summary(std::string& out, const job::Job& job, const job::JobReport& re
   if (!detail.is_verbose) return;
   if (r.accelerator.empty()) return;  // a merge
   const std::string rods = report.rods > 0 ? ", " + base::counted(report.rods, "rod") : "";
-  out += fmt::format("{} spheres{}, {}, {}, traversal {}, {} threads, {} rays; scene {}\n", report.spheres, rods,
-                     r.accelerator, r.isa, r.traversal, r.threads, r.rays, report.scene_hash);
+  out += fmt::format("{} spheres{}, {}, {}, traversal {}, {}, {} rays; scene {}\n", report.spheres, rods, r.accelerator,
+                     r.isa, r.traversal, base::counted(static_cast<std::uint64_t>(r.threads), "thread"), r.rays,
+                     report.scene_hash);
   const job::Phases& p = report.phases;
   if (p.prepare_s > 0) out += fmt::format("prepare {:.3f} s\n", p.prepare_s);
   if (p.denoise_s > 0) out += fmt::format("denoise {:.3f} s\n", p.denoise_s);
@@ -170,10 +170,10 @@ int run_jobs(const std::vector<job::Job>& jobs, const RenderOptions& options, Pr
       const job::JobReport report = job::run_job(jobs[i]);
       ++(report.was_skipped ? skipped : rendered);
       if (!is_many) printer.finish();
-      const bool misses = options.strict && !report.target_missed.empty();
+      const bool misses = report.exit_status() != 0;
       if (misses) {
         printer.note(fmt::format("orrery: {}\n", report.target_missed));
-        if (status == 0) status = base::exit_status(base::ErrorKind::kStopped);
+        if (status == 0) status = report.exit_status();
       }
       if (options.quiet) continue;
       printer.note(report.was_skipped ? fmt::format("skipped {}: its files are up to date\n", name_of(jobs[i]))
@@ -283,7 +283,7 @@ void add_render_options(Command& command, RenderOptions& options) {
   command.add_flag("--keep-checkpoint", options.batch.job.checkpoint.keep,
                    "Keep a checkpoint of the finished render; with --resume, one with more samples continues from it");
   add_sampling_options(command, options.batch.job);
-  command.add_flag("--strict", options.strict,
+  command.add_flag("--strict", options.batch.job.is_strict,
                    "Exit with status 75 if the target noise was not reached or could not be estimated");
   command
       .add_option("--progress", options.progress, "STYLE",
@@ -299,8 +299,9 @@ void add_render_options(Command& command, RenderOptions& options) {
                   "Show the image while it is rendered: tev, tev:HOST:PORT, or a .png file to rewrite")
       ->details(
           "tev gets scene-linear pixels, by default at 127.0.0.1, port 14158; the PNG is rewritten every second, "
-          "through the display transform. It takes at most 1 % of the render time, unless the render is very short, "
-          "and the image has the same bits. A viewer that cannot be reached, hangs or disconnects is no error. "
+          "through the display transform. Updates take at most 0.3 % of the processor time of a render that is not "
+          "very "
+          "short, and the image has the same bits. A viewer that cannot be reached, hangs or disconnects is no error. "
           "docs/output.md describes what is shown.");
   command.add_option("--stats", options.batch.job.outputs.statistics, "FILE", "Write statistics of the render as JSON")
       ->details("docs/statistics.md lists the keys.");

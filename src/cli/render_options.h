@@ -15,7 +15,7 @@ struct RenderOptions {
   SceneOptions scene;
   PictureOptions picture;
   std::string preview, progress = "auto", sample_range, shard, frames;
-  bool quiet = false, verbose = false, strict = false;
+  bool quiet = false, verbose = false;
   std::function<void()> before_files;  ///< called when all names are checked, before any file is written
 };
 

@@ -10,6 +10,7 @@
 #include "base/error.h"
 #include "base/file_name.h"
 #include "base/file_set.h"
+#include "display/bake.h"
 #include "display/settings.h"
 #include "image/format.h"
 #include "image/header.h"

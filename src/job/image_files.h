@@ -5,7 +5,6 @@
 #include <vector>
 
 #include "denoise/denoise.h"
-#include "display/bake.h"
 #include "display/develop.h"
 #include "display/settings.h"
 #include "film/picture.h"

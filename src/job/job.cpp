@@ -9,7 +9,6 @@
 
 #include "annotation/annotate.h"
 #include "base/atomic_file.h"
-#include "base/available_memory.h"
 #include "base/stop_point.h"
 #include "base/stopwatch.h"
 #include "base/text.h"
@@ -295,6 +294,7 @@ class Run {
   void finish(render::Result& result) {
     report_.render = result.statistics;
     report_.target_missed = missed_target(job_, result.statistics);
+    report_.is_strict = job_.is_strict;
     if (job_.denoise && !is_shard(job_)) {
       denoise_picture(result.picture);
       report_.phases.denoise_s = watch_.lap();

@@ -2,7 +2,6 @@
 #include "job/shards.h"
 
 #include <algorithm>
-#include <charconv>
 #include <cstdint>
 #include <filesystem>
 #include <functional>

@@ -6,7 +6,6 @@
 
 #include "accel/accel.h"
 #include "display/develop.h"
-#include "image/write.h"
 #include "kernel/isa.h"
 #include "load/read_scene.h"
 #include "render/render.h"

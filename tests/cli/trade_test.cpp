@@ -29,8 +29,9 @@ TEST_F(CliTrade, MissedTargetNoiseIsReported) {
   EXPECT_NE(r.err.find("warning: noise 0.00"), std::string::npos) << r.err;
   EXPECT_NE(r.err.find(" instead of 0.0001: the pixels that need more samples reached the limit\n"), std::string::npos);
   EXPECT_NE(stats()["target_missed"], "");
-  const Outcome strict = run("render good.toml -o b.exr --noise 0.0001 --samples 32 --strict -q");
+  const Outcome strict = run("render good.toml -o b.exr --noise 0.0001 --samples 32 --strict --stats s.json -q");
   EXPECT_EQ(strict.status, 75);
+  EXPECT_EQ(stats()["exit_status"], 75);
   EXPECT_EQ(strict.err.rfind("orrery: noise 0.00", 0), 0u) << strict.err;
   // The image is written nevertheless, with the same pixels.
   EXPECT_EQ(run("compare a.exr b.exr --fail-above max=0 -q").status, 0);
