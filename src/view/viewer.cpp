@@ -5,6 +5,7 @@
 #include <cmath>
 #include <exception>
 #include <new>
+#include <numeric>
 #include <optional>
 #include <span>
 #include <utility>
@@ -34,6 +35,8 @@ constexpr double kMovingTime_s = 0.045;
 constexpr int kNarrowestMoving = 160;  // px
 constexpr int kMovingDepth = 4;        // of paths
 constexpr std::chrono::milliseconds kRefresh{150};
+/// Time for which an image with parts that are not rendered yet is held back: the one before is shown longer.
+constexpr std::chrono::milliseconds kHoldBack{1000};
 constexpr int kMovingQuality = 60, kQuality = 85;  // of JPEG
 
 /// Text of an error with its diagnostics, a line each.
@@ -55,6 +58,8 @@ struct Viewer::Live {
         develop(info.display),
         codes(3 * static_cast<std::size_t>(info.width) * static_cast<std::size_t>(info.height)) {
     if (!drawing.is_empty()) overlay = annotation::draw(drawing, annotation::shown_by(info.display));
+    empty_cells.resize(canvas.cell_count());
+    std::iota(empty_cells.begin(), empty_cells.end(), std::size_t{0});
   }
 
   preview::Canvas canvas;
@@ -62,7 +67,8 @@ struct Viewer::Live {
   std::optional<annotation::Overlay> overlay;  ///< without outlines, which are found when the image is complete
   std::mutex mutex;                            // guards what follows
   std::vector<std::uint8_t> codes;
-  Clock::time_point next = Clock::now();
+  std::vector<std::size_t> empty_cells = {};  ///< ascending
+  Clock::time_point next = Clock::now(), hold_end = next + kHoldBack;
   std::atomic<double> samples{0};  ///< per pixel
   std::uint64_t wish = 0;
 };
@@ -161,6 +167,9 @@ void Viewer::refresh(Live& live) {
       if (live.overlay) annotation::blend(*live.overlay, cell.x, y, codes);
     }
   }
+  std::erase_if(live.empty_cells,
+                [&](std::size_t cell) { return std::binary_search(cells.begin(), cells.end(), cell); });
+  if (!live.empty_cells.empty() && Clock::now() < live.hold_end) return;
   Frame frame;
   frame.width = live.canvas.width();
   frame.height = live.canvas.height();
@@ -320,6 +329,7 @@ void Viewer::begin(Image& image, const display::PictureInfo& info) {
     state_.height = info.height;
   }
   state_.activity.clear();
+  state_.problem.clear();  // that of a wish before
   announce();
 }
 

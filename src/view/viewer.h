@@ -12,7 +12,6 @@
 #include <optional>
 #include <string>
 #include <thread>
-#include <utility>
 #include <vector>
 
 #include "job/job.h"
@@ -70,7 +69,7 @@ struct State {
 
 /// Renders what clients want to see, on one thread, with one prepared scene.
 ///
-/// While a wish moves, images are as large as can be rendered in kMovingTime and have one sample per pixel. The last
+/// While a wish moves, images are as large as can be rendered in 45 ms and have one sample per pixel. The last
 /// wish is rendered completely; meanwhile, frame() returns what is finished so far.
 class Viewer {
  public:
