@@ -9,7 +9,6 @@
 
 #include "http/server.h"
 #include "python/scene_data.h"
-#include "scene/scene.h"
 #include "view/site.h"
 #include "view/viewer.h"
 

@@ -150,6 +150,12 @@ class Plot(PlotTest):
         wanted = render(table, color_by="q", radius="r", opacity="a").beauty
         self.assertTrue((render(points, color_by=values, radius=table["r"], opacity=table["a"]).beauty == wanted).all())
 
+    def test_opacities_may_be_conditions(self):
+        rules = ["0.5", "x > 0: 0.1"]
+        columns = dict(zip("xyz", positions().T))
+        self.assertTrue((render(positions(), opacity=rules).beauty == render(columns, opacity=rules).beauty).all())
+        self.assertFalse((render(positions(), opacity=rules).beauty == render(positions()).beauty).all())
+
     def test_errors_say_what_is_wrong(self):
         points = positions()
         for error, text, data, options in (

@@ -80,6 +80,16 @@ class FurtherRenders(unittest.TestCase):
         self.assertEqual(scene.render(*SIZE).statistics["build_seconds"], 0)
         self.assertEqual(beauty(scene), beauty(pickle.loads(pickle.dumps(scene))))
 
+    def test_a_copy_is_a_scene_of_its_own(self):
+        scene = small_scene(positions())
+        wanted = beauty(scene)
+        other = copy.copy(scene)
+        self.assertEqual(beauty(other), wanted)
+        other.add_sphere((0, 0, 0), 2)
+        other.set("camera.vfov", 20)
+        self.assertNotEqual(beauty(other), wanted)
+        self.assertEqual(beauty(scene), wanted)
+
     def test_a_render_may_start_in_on_progress(self):
         scene = small_scene(positions())
         pictures = []

@@ -61,10 +61,15 @@ def _named(data, columns, options):
     """Returns the columns with the arrays among the options, and the options with the names of these columns."""
     columns = dict(columns or {})
     if not isinstance(data, (str, bytes, os.PathLike)):
-        arrays = {name: values for name, values in options.items() if name in _PER_PARTICLE and np.ndim(values) == 1}
+        arrays = {name: values for name, values in options.items() if name in _PER_PARTICLE and _is_array(name, values)}
         columns.update(arrays)
         options = {**options, **{name: name for name in arrays}}
     return columns, options
+
+
+def _is_array(name, values):
+    """Whether an option has a value for each particle; texts are categories, but those of opacities are conditions."""
+    return np.ndim(values) == 1 and not (name in _REPEATED and np.asarray(values).dtype.kind == "U")
 
 
 def _source(data, columns, cell):

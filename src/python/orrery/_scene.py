@@ -3,6 +3,7 @@
 
 from __future__ import annotations
 
+import copy
 import math
 import re
 import warnings
@@ -79,6 +80,12 @@ class Scene:
 
     def __repr__(self):
         return f"Scene({self._file!r}, {len(self._settings)} settings, {len(self._arrays)} arrays of points)"
+
+    def __copy__(self):
+        """A separate scene with the same arrays."""
+        out = object.__new__(type(self))
+        out.__dict__.update((name, copy.copy(value)) for name, value in self.__dict__.items())
+        return out
 
     def set(self, key: str, value: Any) -> None:
         """Sets a key, as --set does: scene.set("camera.vfov", 30), scene.set("background", orrery.Constant(0)).
