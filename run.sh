@@ -8,7 +8,7 @@ root=$(cd "$(dirname "${BASH_SOURCE[0]}")" && pwd)
 usage() {
   cat <<'END'
 Usage: ./run.sh                      render the final scene of the book into out/
-       ./run.sh ARGUMENT...          run orrery with these arguments, e.g. ./run.sh plot melt.dump -o melt.png
+       ./run.sh ARGUMENT...          run orrery with these arguments, e.g. ./run.sh plot examples/protein/capsomer.pdb.xz -o capsomer.png
        ./run.sh --install [PREFIX]   install orrery below PREFIX (default: ~/.local), with manual page and completions
 
 Each form first installs missing packages of the system and builds what has changed.
