@@ -6,7 +6,8 @@
 #
 #   tools/minimal-root.sh bookworm|trixie [run|packages]
 #
-# With `run` only ./run.sh is run, for a Debian release on which ./test.sh runs anyway; `packages` leaves out ./test.sh.
+# With `run` only ./run.sh is run, for a Debian release on which ./test.sh runs anyway; `packages` leaves out ./test.sh,
+# and compiles each file by itself, which must include what it uses.
 #
 # KEEP=1          keep the root and print its path
 # ORRERY_DEBS=DIR package cache, kept between runs
@@ -78,6 +79,7 @@ prepare "$root"
 HOME=$work git config --global --add safe.directory '*'
 HOME=$work git clone -q --no-hardlinks "file://$repository" "$root/orrery"
 environment=(HOME=/root PATH=/usr/sbin:/usr/bin:/sbin:/bin LANG=C.UTF-8 ORRERY_WERROR=ON)
+if [ "$commands" = packages ]; then environment+=(ORRERY_UNITY=OFF); fi
 launcher=()  # only this root has ccache
 in_root() {
   chroot "$root" env -i "${environment[@]}" "${launcher[@]}" /bin/sh -c "cd /orrery && $1" </dev/null

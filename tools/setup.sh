@@ -57,10 +57,10 @@ Install them as root (apt-get install --no-install-recommends $missing) or insta
 }
 
 # configure OPTION...: configures build/ with these CMake options, unless it is already configured with the same ones.
-# Unity builds halve the time to compile everything.
+# Unity builds halve the time to compile everything. ORRERY_UNITY=OFF builds as developers and distributions do.
 configure() {
   local stamp="$root/build/.configured-with"
-  set -- "-DORRERY_WERROR=${ORRERY_WERROR:-OFF}" -DCMAKE_UNITY_BUILD=ON "$@"
+  set -- "-DORRERY_WERROR=${ORRERY_WERROR:-OFF}" "-DCMAKE_UNITY_BUILD=${ORRERY_UNITY:-ON}" "$@"
   if [ -f "$stamp" ] && [ "$(cat "$stamp")" = "$*" ]; then return 0; fi
   mkdir -p "$root/build"
   if ! cmake -S "$root" -B "$root/build" -G Ninja -DCMAKE_BUILD_TYPE=Release "$@" >"$root/build/configure.log" 2>&1; then

@@ -13,7 +13,7 @@
 
 namespace orrery::accel {
 
-/// Answers closest-hit and occlusion queries against a scene's spheres.
+/// Answers closest-hit and occlusion queries against a scene's spheres and rods.
 ///
 /// All implementations give the same results: the closest hit has the smallest distance as the kernel's arithmetic
 /// computes it, then the smallest id; occlusion uses the same intersections.

@@ -19,8 +19,8 @@
 namespace orrery::accel {
 namespace {
 
-/// Ids of the spheres in the BVH.
-std::vector<std::uint32_t> boxed(const EmbreeScene& scene, std::size_t count) {
+/// Ascending ids of the spheres that are neither outliers nor duplicates.
+std::vector<std::uint32_t> inliers(const EmbreeScene& scene, std::size_t count) {
   std::vector<std::uint32_t> without;
   std::set_union(scene.outliers.begin(), scene.outliers.end(), scene.duplicates.begin(), scene.duplicates.end(),
                  std::back_inserter(without));
@@ -109,8 +109,8 @@ class Embree final : public Accel {
   Embree(const kernel::SceneView& view, kernel::Precision precision, const BuildMonitor& monitor,
          std::size_t bvh_threshold)
       : functions_(embree_functions(precision)), scene_(make_scene(view, precision)) {
-    std::vector<std::uint32_t> ids =
-        boxed(scene_, view.sphere_count);  // not empty without rods: outliers are defined relative to other objects
+    // Not empty without rods: outliers are defined relative to other objects.
+    std::vector<std::uint32_t> ids = inliers(scene_, view.sphere_count);
     const std::size_t primitives = view.sphere_count - scene_.outliers.size();
     const auto share = [all = primitives + view.rods.count](std::size_t count) {
       return static_cast<double>(count) / static_cast<double>(all);

@@ -64,7 +64,7 @@ void add_convert(Command& program) {
       "\n"
       "Examples:\n"
       "  orrery convert melt.dump -o melt.ply --select 'type == 2' --radius 0.5\n"
-      "  orrery convert 1m4x.pdb -o virus.npy --assembly 1 --element-radii vdw\n"
+      "  orrery convert 1M4X.pdb -o virus.npy --assembly 1 --element-radii vdw\n"
       "  orrery convert pour.dump -o pour.####.ply --frames all --color-by speed --map viridis");
   command.act([arguments] { run_convert(*arguments); });
 }

@@ -10,6 +10,7 @@
 #include "cli/commands.h"
 #include "cli/messages.h"
 #include "cli/options.h"
+#include "display/bake.h"
 #include "display/settings.h"
 #include "job/image_files.h"
 

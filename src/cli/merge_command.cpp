@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <memory>
-#include <sstream>
 #include <vector>
 
 #include "base/stop_point.h"

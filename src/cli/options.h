@@ -38,7 +38,7 @@ class SceneOptions {
   /// Adds a --set that another option stands for.
   void set(const std::string& setting) { set_.push_back(setting); }
 
-  /// All overrides, short forms first, so that --set wins.
+  /// All overrides: those of --set, and of the options that stand for keys. Two for one key are an error.
   load::Overrides overrides() const;
 
   /// Adds --frame, for a command that uses one frame.

@@ -2,7 +2,6 @@
 #include "cli/plot_options.h"
 
 #include <algorithm>
-#include <charconv>
 #include <cmath>
 #include <memory>
 #include <sstream>

@@ -169,9 +169,9 @@ void add_view(Command& program) {
       command.add_flag("--once", arguments->once, "End when the page has been closed"),
   };
   command.details(
-      "Prints the address of a page and serves it until INT or TERM. The address contains a secret; only 127.0.0.1 is "
-      "served. On another machine: ssh -L PORT:127.0.0.1:PORT HOST, with --port PORT here. The page shows the command "
-      "that makes its picture. docs/view.md describes the page.");
+      "Prints the address of a page and serves it until INT or TERM. The address contains a secret; without --host, "
+      "only 127.0.0.1 is served. On another machine: ssh -L PORT:127.0.0.1:PORT HOST, with --port PORT here. The page "
+      "shows the command that makes its image. docs/view.md describes the page.");
   command.footer(
       "Examples:\n"
       "  orrery view melt.dump --color-by speed\n"

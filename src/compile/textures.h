@@ -6,7 +6,6 @@
 #include <memory>
 #include <vector>
 
-#include "kernel/lights.h"
 #include "kernel/material.h"
 #include "math/vec3.h"
 #include "scene/scene.h"

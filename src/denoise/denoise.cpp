@@ -6,12 +6,10 @@
 #include <cmath>
 #include <cstddef>
 #include <optional>
-#include <utility>
 
 #include <tbb/parallel_for.h>
 #include <tbb/task_arena.h>
 
-#include "base/error.h"
 #include "denoise/light_balance.h"
 #include "denoise/light_layers.h"
 #include "denoise/source_planes.h"

@@ -2,7 +2,6 @@
 // Compiled once per instruction set.
 #include "denoise/tile_filter.h"
 
-#include <array>
 #include <cstddef>
 
 #undef HWY_TARGET_INCLUDE

@@ -8,7 +8,6 @@
 #include <fmt/core.h>
 
 #include "base/error.h"
-#include "base/text.h"
 #include "display/config.h"
 #include "display/settings.h"
 

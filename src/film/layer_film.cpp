@@ -2,7 +2,6 @@
 #include "film/layer_film.h"
 
 #include <algorithm>
-#include <cmath>
 #include <cstring>
 #include <limits>
 #include <utility>

@@ -2,7 +2,6 @@
 #include "film/light_cells.h"
 
 #include <algorithm>
-#include <cmath>
 
 #include "film/layer_pixel.h"
 #include "film/layers.h"

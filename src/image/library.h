@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include <string>
-
 namespace orrery::image {
 
 /// Configures OpenImageIO: one thread, no image size limit, no console output. Every function of this room calls it.

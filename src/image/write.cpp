@@ -1,10 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "image/write.h"
 
-#include <algorithm>
-#include <cmath>
-
 #include <OpenImageIO/deepdata.h>
+#include <OpenImageIO/filesystem.h>
 #include <OpenImageIO/imageio.h>
 #include <fmt/core.h>
 
@@ -13,6 +11,7 @@
 #include "image/exr_spec.h"
 #include "image/format.h"
 #include "image/header.h"
+#include "image/library.h"
 #include "image/whole_file.h"
 
 namespace orrery::image {

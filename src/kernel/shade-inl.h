@@ -290,7 +290,7 @@ class Shader {
     record.guide(d, hn::AndNot(is_delta(d, look.surface), hn::And(at.hit, guided(at))), tinted, look.surface.normal);
   }
 
-  /// Ends paths at the hits with the color of a shading other than kPath.
+  /// Ends paths at the hits with the colour of a shading other than kPath.
   HWY_INLINE void show(const Arrivals<D>& at, const Lookup<D>& look) {
     const V half = set(d, 0.5);
     const bool flat = scene_.shading == Shading::kFlat;
@@ -410,8 +410,8 @@ class Shader {
     waiting.count += compactor.count();
   }
 
-  /// Samples the BSDF, appends the surviving paths to the stream, and samples caustics: together, since the test of a
-  /// feature counts in scenes without it.
+  /// Samples the BSDF, appends the surviving paths to the stream, and samples caustics: in one function, because
+  /// another branch on a feature slows scenes without it.
   ///
   /// Result     their number
   HWY_INLINE int scatter(const Arrivals<D>& at, Lookup<D>& look, const Vec3<V>& tinted, int alive) {

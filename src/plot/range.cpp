@@ -2,12 +2,10 @@
 #include "plot/range.h"
 
 #include <algorithm>
-#include <charconv>
 #include <cmath>
 #include <cstdio>
 #include <cstdlib>
 #include <string_view>
-#include <system_error>
 
 #include <fmt/core.h>
 

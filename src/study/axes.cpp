@@ -6,7 +6,6 @@
 
 #include <fmt/core.h>
 
-#include "base/text.h"
 #include "compile/compiled_scene.h"
 #include "compile/environment.h"
 #include "scene/scene.h"

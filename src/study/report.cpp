@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
 // Output of a study: text, JSON and a self-contained HTML page.
-#include <algorithm>
 #include <cmath>
 #include <fstream>
 #include <iterator>
@@ -143,9 +142,9 @@ class Encoder {
 std::string study_json(const Study& study) { return job::json_text(study_object(study)); }
 
 std::string study_text(const Study& s) {
-  std::string out =
-      fmt::format("{}, {} x {} of {} x {} pixels, {} threads, {}, {:.0f} s of {:.0f} s\n", s.scene, s.width, s.height,
-                  s.scene_width, s.scene_height, s.threads, s.isa, s.seconds, s.budget_s);
+  std::string out = fmt::format(
+      "{}, {} x {} of {} x {} pixels, {}, {}, {:.0f} s of {:.0f} s\n", s.scene, s.width, s.height, s.scene_width,
+      s.scene_height, base::counted(static_cast<std::uint64_t>(s.threads), "thread"), s.isa, s.seconds, s.budget_s);
   job::add_row(out, "reference", "{:.0f} samples per pixel, noise {:.2g} %\n", s.reference_samples,
                s.reference_noise * 100);
   out += fmt::format("{:12} {:22} {:>9} {:>9} {:>9} {:>9} {:>9} {:>9} {:>10}\n", "axis", "choice", "samples", "seconds",

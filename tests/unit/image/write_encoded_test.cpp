@@ -5,6 +5,7 @@
 #include <cerrno>
 #include <cmath>
 
+#include "image/checked_file.h"
 #include "image/read.h"
 #include "image/whole_file.h"
 #include "image/write.h"
