@@ -111,8 +111,7 @@ void PictureOptions::add_to(Command& command, job::Job& job) {
       ->details(
           "EXR and HDR are scene-linear, the others are display formats. An image with background.alpha = 0 has an "
           "alpha channel in PNG, TIFF and SVG, unassociated (not premultiplied). SVG files contain the image as PNG, "
-          "and "
-          "annotations as text and shapes that an editor can change.")
+          "and annotations as text and shapes that an editor can change.")
       ->required()
       ->repeatable();
   add_bits_option(command, job.outputs.bits);
