@@ -85,8 +85,9 @@ mkdir -p "$work/tree"
 (cd "$root" && tar -cf - --exclude=./.git --exclude=./build --exclude=./out .) | tar -xf - -C "$work/tree"
 # A kept build may contain a mutant of the last run, newer than the original file: rebuild these files.
 (cd "$work/tree" && touch "${files[@]}")
-# If the processor has AVX2, only this instruction set is built, in a third of the time.
-if grep -qw avx2 /proc/cpuinfo 2>/dev/null; then
+# If the processor has AVX2, only this instruction set is built, in a third of the time. Mutants of code for another one
+# then survive: ORRERY_MUTANTS_ISA=all.
+if [ "${ORRERY_MUTANTS_ISA:-avx2}" = avx2 ] && grep -qw avx2 /proc/cpuinfo 2>/dev/null; then
   printf 'set(ORRERY_SIMD -march=x86-64-v3 -maes -mpclmul "-DHWY_DISABLED_TARGETS=(HWY_AVX2-1)")\n' \
     >>"$work/tree/cmake/OrreryRoom.cmake"
 fi
