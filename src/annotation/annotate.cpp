@@ -23,8 +23,8 @@ constexpr double kMargin = 1, kBarThickness = 0.3, kTextGap = 0.4, kMiddle = 0.3
 /// Font sizes in the height of the image, and smallest font.
 constexpr double kFontShare = 32;
 constexpr double kSmallestFont = 9;
-/// Names in a legend; the others are counted. Distance of the names, in font sizes.
-constexpr double kMaxLabels = 20, kLabelPitch = 1.5;
+/// Names in a legend; the others are counted.
+constexpr std::size_t kMaxLabels = 20;
 /// Width of the texts of a legend, in widths of the image; of a letter, in font sizes; and fewest letters that are
 /// shown.
 constexpr double kLegendWidth = 0.25, kLetterWidth = 0.6, kFewestLetters = 8;
@@ -87,11 +87,11 @@ class Layout {
   }
 
   void add_legend(const LegendColors& colors) {
-    const double margin = kMargin * size_, height = view_.height - 2 * margin;
-    const auto most_labels = static_cast<std::size_t>(std::clamp(height / (kLabelPitch * size_) - 1, 1.0, kMaxLabels));
+    const double margin = kMargin * size_;
     const auto most_bytes =
         static_cast<std::size_t>(std::max(kLegendWidth * view_.width / (kLetterWidth * size_), kFewestLetters));
-    const Drawing legend = legend_drawing(colors, {size_, height, most_labels, most_bytes, out_.ink}, out_.font);
+    const Drawing legend =
+        legend_drawing(colors, {size_, view_.height - 2 * margin, kMaxLabels, most_bytes, out_.ink}, out_.font);
     place(legend, view_.width - margin - legend.width, margin, out_);
   }
 

@@ -160,10 +160,13 @@ Drawing legend_drawing(const LegendColors& colors, const LegendStyle& style, con
     if (colors.nan_color) layout.add_patch("no value", *colors.nan_color);
     return layout.take();
   }
-  const bool has_rest = colors.labels.size() > style.most_labels;
-  std::size_t left = has_rest ? style.most_labels - 1 : colors.labels.size();
+  const double room = std::max((style.height_px / style.font_px - kTitleHeight) / kPatchPitch, 1.0);
+  const std::size_t most =
+      room < static_cast<double>(style.most_labels) ? static_cast<std::size_t>(room) : style.most_labels;
+  const bool has_rest = colors.labels.size() > most;
+  std::size_t left = has_rest ? most - 1 : colors.labels.size();
   for (auto label = colors.labels.begin(); left > 0; ++label, --left) layout.add_patch(label->first, label->second);
-  if (has_rest) layout.add_patch(fmt::format("{} more", colors.labels.size() - style.most_labels + 1), {});
+  if (has_rest) layout.add_patch(fmt::format("{} more", colors.labels.size() - most + 1), {});
   return layout.take();
 }
 

@@ -65,7 +65,7 @@ struct LegendColors {
 /// How a legend is drawn.
 struct LegendStyle {
   double font_px = 0;
-  double height_px = 0;         ///< of a bar's legend, at most
+  double height_px = 0;         ///< at most
   std::size_t most_labels = 0;  ///< of further ones, the number is shown
   std::size_t most_bytes = 0;   ///< of a text; the rest is cut off
   Vec3d ink{0, 0, 0};           ///< of text, ticks and frames

@@ -170,10 +170,10 @@ int run_jobs(const std::vector<job::Job>& jobs, const RenderOptions& options, Pr
       const job::JobReport report = job::run_job(jobs[i]);
       ++(report.was_skipped ? skipped : rendered);
       if (!is_many) printer.finish();
-      const bool misses = report.exit_status() != 0;
+      const bool misses = report.exit_status != 0;
       if (misses) {
         printer.note(fmt::format("orrery: {}\n", report.target_missed));
-        if (status == 0) status = report.exit_status();
+        if (status == 0) status = report.exit_status;
       }
       if (options.quiet) continue;
       printer.note(report.was_skipped ? fmt::format("skipped {}: its files are up to date\n", name_of(jobs[i]))

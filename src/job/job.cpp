@@ -294,7 +294,8 @@ class Run {
   void finish(render::Result& result) {
     report_.render = result.statistics;
     report_.target_missed = missed_target(job_, result.statistics);
-    report_.is_strict = job_.is_strict;
+    if (job_.is_strict && !report_.target_missed.empty())
+      report_.exit_status = base::exit_status(base::ErrorKind::kStopped);
     if (job_.denoise && !is_shard(job_)) {
       denoise_picture(result.picture);
       report_.phases.denoise_s = watch_.lap();

@@ -76,7 +76,7 @@ struct Job {
   Hooks hooks;
   bool as_shard = false;       ///< write a shard even if it has all samples of all pixels
   bool denoise = false;        ///< denoise the images; a shard instead keeps the halves of its samples for denoising
-  bool is_strict = false;      ///< exit status 75 if a target is missed, see JobReport::exit_status()
+  bool is_strict = false;      ///< a missed target is a failure, see JobReport::exit_status
   bool skip_existing = false;  ///< do nothing if all files exist, are intact, and come from this job
   /// Files of the batch that this job belongs to; null: the job is not part of a batch.
   std::shared_ptr<base::FileSet> files = nullptr;
@@ -124,12 +124,7 @@ struct JobReport {
   std::string missing;               ///< samples that no merged shard has, as text; empty: none
   std::vector<std::string> hosts;    ///< machines that rendered the image
   bool was_skipped = false;          ///< its files existed and were up to date
-  bool is_strict = false;            ///< see Job::is_strict
-
-  /// Of the program, after a job without an error.
-  int exit_status() const {
-    return is_strict && !target_missed.empty() ? base::exit_status(base::ErrorKind::kStopped) : 0;
-  }
+  int exit_status = 0;               ///< of the program: not 0 if a target was missed with Job::is_strict
 };
 
 /// Renders a scene to files, or merges shards: load, prepare, render or merge, finish, write.

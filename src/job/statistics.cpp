@@ -39,7 +39,7 @@ std::string statistics_json(const JobReport& report, const base::Error* error) {
   for (const auto& [name, version] : library_versions()) versions[name] = version;
   json out = {{"schema", "orrery.stats/1"},
               {"exit_reason", reason},
-              {"exit_status", error != nullptr ? base::exit_status(error->kind()) : report.exit_status()},
+              {"exit_status", error != nullptr ? base::exit_status(error->kind()) : report.exit_status},
               {"scene_hash", report.scene_hash},
               {"width", report.width},
               {"height", report.height},

@@ -83,12 +83,12 @@ struct PlotScene {
   std::vector<int> frames;  ///< frames to render; empty: one still image
   scene::PointsKeys points;
   annotation::LegendColors legend;
-  std::string view;                              ///< view of the display
-  std::vector<std::string> columns;              ///< columns of the data that can be colours
-  std::optional<int> frame_count;                ///< of the file; empty: unknown, since counting would read it
-  std::optional<double> noise = {};              ///< target noise, unless the user limits samples, noise or time
-  bool denoise = false;                          ///< the quality is that of denoised images
-  points::OpenData open_data;                    ///< opens the data file for the render without reading it again
+  std::string view;                  ///< view of the display
+  std::vector<std::string> columns;  ///< columns of the data that can be colours
+  std::optional<int> frame_count;    ///< of the file; empty: unknown, since counting would read it
+  std::optional<double> noise = {};  ///< target noise, unless the user limits samples, noise or time
+  bool denoise = false;              ///< the quality is that of denoised images
+  points::OpenData open_data;  ///< opens the data file for the render without reading it again; empty with `loaded`
   std::shared_ptr<points::LoadedPoints> loaded;  ///< the spheres of a still image, if they are those of the scene
 };
 
