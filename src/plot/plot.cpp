@@ -19,7 +19,6 @@
 #include "plot/range.h"
 #include "plot/scene_text.h"
 #include "plot/view.h"
-#include "points/color_map.h"
 #include "scene/limits.h"
 #include "scene/value_text.h"
 
@@ -32,17 +31,6 @@ using scene::number_text;
 /// Drafts and good images are denoised: of a million atoms at 1920 x 1080, noise cannot be seen with 16 samples.
 constexpr int kDraftSamples = 8;
 constexpr double kGoodNoise = 0.1, kFinalNoise = 0.02;
-
-/// Atoms from which colours by element are noise, and chains are shown instead.
-constexpr std::uint64_t kManyAtoms = 5000;
-
-/// Radius of the spheres of a ball-and-stick model or of sticks without elements, as a fraction of that of spheres;
-/// radius of sticks between elements, in the unit of the file.
-constexpr double kBallFraction = 0.5, kStickFraction = 0.3, kStickRadius = 0.2;
-
-/// Length of arrows and radius of their shafts, in distances to the nearest neighbour; radius of spheres with arrows,
-/// as a fraction of that without.
-constexpr double kArrowLength = 1.2, kShaftRadius = 0.07, kArrowSphereFraction = 0.25;
 
 /// A side of the image, which the camera must know. An invalid one is reported when the scene is read.
 int side_of(const load::Overrides& overrides, const char* key, int otherwise) {
@@ -109,7 +97,8 @@ class PlotMaker {
       base::refuse(
           "--scale-bar: in a perspective image, the length of an object depends on its distance; omit --perspective");
     describe_data();
-    choose_spheres();
+    for (std::string& choice : choose_appearance(options_, data_, out_.points))
+      out_.choices.push_back(std::move(choice));
     if (options_.up.empty())
       chose("up " + up_name_, info_.z_up ? "customary for simulations and scans" : "customary for molecules");
     const ViewAxes axes = view_axes(options_.look_from, up_name_);
@@ -178,15 +167,6 @@ class PlotMaker {
     out_.frame_count = data_.frame_count();
   }
 
-  void choose_spheres() {
-    // Determining the radius from the spacing requires reading the file, so the colour options are checked first.
-    const std::vector<std::string> color_choices = choose_color();
-    choose_radius();
-    choose_bonds();
-    choose_arrows();
-    out_.choices.insert(out_.choices.end(), color_choices.begin(), color_choices.end());
-  }
-
   void report_view(const scene::Camera& camera) {
     chose(fmt::format("view {}, {}", options_.look_from,
                       vfov_ ? fmt::format("vertical field of view {}", number_text(rounded(camera.vfov)))
@@ -250,73 +230,6 @@ class PlotMaker {
 
   scene::Points load(int frame) const { return data_.load(frame, out_.points).points; }
 
-  void choose_radius() {
-    scene::PointsRadius& radius = out_.points.radius;
-    if (radius.value || !radius.column.empty() || !radius.element.empty() || !radius.types.empty()) return;
-    const bool has_elements = !info_.roles.element.empty();
-    const bool is_spheres = options_.representation == Representation::kSpheres;
-    const bool is_sticks = options_.representation == Representation::kSticks;
-    const bool has_arrows = !out_.points.vectors.columns.empty() && is_spheres;
-    const double fraction = has_arrows   ? kArrowSphereFraction
-                            : is_spheres ? 1
-                            : is_sticks  ? kStickFraction
-                                         : kBallFraction;
-    const std::string why =
-        has_arrows   ? fmt::format(", times {} beside arrows", number_text(fraction))
-        : is_spheres ? ""
-                     : fmt::format(", times {} for {}", number_text(fraction),
-                                   representation_names()[static_cast<std::size_t>(options_.representation)]);
-    if (is_sticks && has_elements) {
-      radius.value = rounded(kStickRadius * radius.scale);
-      chose("radius " + number_text(*radius.value), "that of sticks");
-    } else if (!info_.roles.radius.empty()) {
-      if (fraction != 1) {
-        radius.column = info_.roles.radius;
-        radius.scale *= info_.roles.radius_scale * fraction;
-      }
-      chose("radius by " + info_.roles.radius,
-            (info_.roles.radius_scale == 1 ? "a column of radii" : "a column of diameters, halved") + why);
-    } else if (has_elements) {
-      const bool is_full = is_spheres && !has_arrows;
-      radius.element = is_full ? "vdw" : "ball";
-      chose("radius " + radius.element,
-            is_full ? "van der Waals radii of the elements" : "a quarter of the van der Waals radii of the elements");
-    } else {
-      radius.value = 1;
-      const double distance = data_.spacing(out_.points);
-      if (distance > 0) radius.value = distance / 2;
-      radius.value = rounded(*radius.value * radius.scale * fraction);
-      chose("radius " + number_text(*radius.value),
-            std::string(distance > 0 ? "half the median distance to the nearest neighbour"
-                                     : "no particle has a neighbour") +
-                why + (radius.scale == 1 ? "" : "; scaled by " + number_text(radius.scale)));
-    }
-  }
-
-  /// Sticks have one radius, that of spheres and bonds.
-  void choose_bonds() {
-    scene::PointsBonds& bonds = out_.points.bonds;
-    bonds.are_drawn = options_.bonds.value_or(options_.representation != Representation::kSpheres);
-    if (bonds.are_drawn && options_.representation == Representation::kSticks) bonds.radius = out_.points.radius.value;
-  }
-
-  /// Arrows of a root mean square vector are somewhat longer than the distance to the nearest neighbour. All frames
-  /// have one scale.
-  void choose_arrows() {
-    scene::PointsVectors& vectors = out_.points.vectors;
-    if (vectors.columns.empty()) return;
-    if (options_.material == "glass")
-      base::refuse("--vectors: arrows of glass are not supported; use another --material");
-    scene::Points points = load(data_.described_frame());
-    const double spacing = data_.spacing(out_.points);
-    if (spacing > 0 && !out_.points.bonds.are_drawn) vectors.radius = rounded(kShaftRadius * spacing);
-    if (!(spacing > 0 && points.rms_vector > 0)) return;
-    vectors.scale = rounded(kArrowLength * spacing / points.rms_vector);
-    chose(fmt::format("arrows {} times {}", number_text(vectors.scale), base::joined(vectors.columns)),
-          fmt::format("the root mean square one is {} times the median distance to the nearest neighbour",
-                      number_text(kArrowLength)));
-  }
-
   /// Prints how many bonds are drawn, and from what.
   void report_bonds(std::size_t fewest, std::size_t most) {
     const scene::PointsBonds& bonds = out_.points.bonds;
@@ -330,54 +243,6 @@ class PlotMaker {
     chose(fmt::format("{} {}", fewest == most ? std::to_string(most) : fmt::format("{} to {}", fewest, most),
                       most == 1 ? "bond" : "bonds"),
           base::joined(from));
-  }
-
-  /// The number of particles that the first frame shows.
-  std::uint64_t shown_count() const {
-    if (selection().empty()) return info_.rows;
-    scene::PointsKeys keys = out_.points;
-    keys.radius = {};
-    keys.radius.value = 1;  // any: the radius is chosen later
-    return data_.load(data_.described_frame(), keys).points.particle_count();
-  }
-
-  /// Result     the choices, to be printed after those of the radius
-  std::vector<std::string> choose_color() {
-    scene::PointsColor& color = out_.points.color;
-    const data::Roles& roles = info_.roles;
-    std::string by = options_.color_by;
-    std::string why;
-    std::vector<std::string> out;
-    const bool is_glass = options_.material == "glass";
-    if (is_glass && !by.empty() && by != "none")
-      base::refuse(fmt::format("--color-by {} has no effect: glass has no colour; use another --material", by));
-    if (by.empty()) {
-      const bool may_be_chain = !roles.chain.empty() && !is_glass && roles.rgb[0].empty();
-      const bool is_assembly = !options_.points.assembly.empty();
-      const bool has_many = may_be_chain && !is_assembly && shown_count() >= kManyAtoms;
-      const bool by_chain =
-          may_be_chain && (is_assembly || has_many || (!roles.element.empty() && data_.has_one_element(out_.points)));
-      by = is_glass                 ? "none"
-           : !roles.rgb[0].empty()  ? "rgb"
-           : by_chain               ? roles.chain
-           : !roles.element.empty() ? "element"
-           : !roles.type.empty()    ? "type"
-                                    : "none";
-      why = is_glass          ? "glass has none"
-            : by == "rgb"     ? "the file's own; --color-by changes it"
-            : by == "none"    ? "light grey; --color-by COLUMN shows values"
-            : by == "element" ? "the file has no colours; --color-by changes it"
-            : by == "type"    ? "the file has no colours; --color-by changes it"
-            : is_assembly     ? "an assembly; --color-by element shows elements"
-            : has_many        ? "many atoms; --color-by element shows elements"
-                              : "all atoms are of one element; --color-by element shows it";
-      out.push_back(fmt::format("{}: {}", by == "none" ? "no colour" : "colour by " + by, why));
-    }
-    if (set_color(options_, by, info_, color))
-      out.push_back(fmt::format(
-          "map {}: {}", color.map,
-          points::find_color_map(color.map)->is_categorical ? "colours for categories" : "the default for numbers"));
-    return out;
   }
 
   /// The annotation, with paths relative to the scene. A scale bar without a length gets the largest of 1, 2 and 5

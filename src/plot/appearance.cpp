@@ -1,0 +1,180 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "plot/appearance.h"
+
+#include <cstddef>
+#include <cstdint>
+#include <utility>
+
+#include <fmt/core.h>
+
+#include "base/error.h"
+#include "base/text.h"
+#include "plot/range.h"
+#include "points/color_map.h"
+#include "scene/value_text.h"
+
+namespace orrery::plot {
+namespace {
+
+using scene::number_text;
+
+/// Atoms from which colours by element are noise, and chains are shown instead.
+constexpr std::uint64_t kManyAtoms = 5000;
+
+/// Radius of the spheres of a ball-and-stick model or of sticks without elements, as a fraction of that of spheres;
+/// radius of sticks between elements, in the unit of the file.
+constexpr double kBallFraction = 0.5, kStickFraction = 0.3, kStickRadius = 0.2;
+
+/// Length of arrows and radius of their shafts, in distances to the nearest neighbour; radius of spheres with arrows,
+/// as a fraction of that without.
+constexpr double kArrowLength = 1.2, kShaftRadius = 0.07, kArrowSphereFraction = 0.25;
+
+/// Makes the choices, one after another.
+class Appearance {
+ public:
+  Appearance(const PlotOptions& options, const DataFrames& data, scene::PointsKeys& points)
+      : options_(options), data_(data), info_(data.info()), points_(points) {}
+
+  std::vector<std::string> run() {
+    // Determining the radius from the spacing requires reading the file, so the colour options are checked first.
+    const std::vector<std::string> color_choices = choose_color();
+    choose_radius();
+    choose_bonds();
+    choose_arrows();
+    choices_.insert(choices_.end(), color_choices.begin(), color_choices.end());
+    return std::move(choices_);
+  }
+
+ private:
+  void chose(const std::string& what, const std::string& why) { choices_.push_back(fmt::format("{}: {}", what, why)); }
+
+  void choose_radius() {
+    scene::PointsRadius& radius = points_.radius;
+    if (radius.value || !radius.column.empty() || !radius.element.empty() || !radius.types.empty()) return;
+    const bool has_elements = !info_.roles.element.empty();
+    const bool is_spheres = options_.representation == Representation::kSpheres;
+    const bool is_sticks = options_.representation == Representation::kSticks;
+    const bool has_arrows = !points_.vectors.columns.empty() && is_spheres;
+    const double fraction = has_arrows   ? kArrowSphereFraction
+                            : is_spheres ? 1
+                            : is_sticks  ? kStickFraction
+                                         : kBallFraction;
+    const std::string why =
+        has_arrows   ? fmt::format(", times {} beside arrows", number_text(fraction))
+        : is_spheres ? ""
+                     : fmt::format(", times {} for {}", number_text(fraction),
+                                   representation_names()[static_cast<std::size_t>(options_.representation)]);
+    if (is_sticks && has_elements) {
+      radius.value = rounded(kStickRadius * radius.scale);
+      chose("radius " + number_text(*radius.value), "that of sticks");
+    } else if (!info_.roles.radius.empty()) {
+      if (fraction != 1) {
+        radius.column = info_.roles.radius;
+        radius.scale *= info_.roles.radius_scale * fraction;
+      }
+      chose("radius by " + info_.roles.radius,
+            (info_.roles.radius_scale == 1 ? "a column of radii" : "a column of diameters, halved") + why);
+    } else if (has_elements) {
+      const bool is_full = is_spheres && !has_arrows;
+      radius.element = is_full ? "vdw" : "ball";
+      chose("radius " + radius.element,
+            is_full ? "van der Waals radii of the elements" : "a quarter of the van der Waals radii of the elements");
+    } else {
+      radius.value = 1;
+      const double distance = data_.spacing(points_);
+      if (distance > 0) radius.value = distance / 2;
+      radius.value = rounded(*radius.value * radius.scale * fraction);
+      chose("radius " + number_text(*radius.value),
+            std::string(distance > 0 ? "half the median distance to the nearest neighbour"
+                                     : "no particle has a neighbour") +
+                why + (radius.scale == 1 ? "" : "; scaled by " + number_text(radius.scale)));
+    }
+  }
+
+  /// Sticks have one radius, that of spheres and bonds.
+  void choose_bonds() {
+    scene::PointsBonds& bonds = points_.bonds;
+    bonds.are_drawn = options_.bonds.value_or(options_.representation != Representation::kSpheres);
+    if (bonds.are_drawn && options_.representation == Representation::kSticks) bonds.radius = points_.radius.value;
+  }
+
+  /// Arrows of a root mean square vector are somewhat longer than the distance to the nearest neighbour. All frames
+  /// have one scale.
+  void choose_arrows() {
+    scene::PointsVectors& vectors = points_.vectors;
+    if (vectors.columns.empty()) return;
+    if (options_.material == "glass")
+      base::refuse("--vectors: arrows of glass are not supported; use another --material");
+    const scene::Points points = data_.load(data_.described_frame(), points_).points;
+    const double spacing = data_.spacing(points_);
+    if (spacing > 0 && !points_.bonds.are_drawn) vectors.radius = rounded(kShaftRadius * spacing);
+    if (!(spacing > 0 && points.rms_vector > 0)) return;
+    vectors.scale = rounded(kArrowLength * spacing / points.rms_vector);
+    chose(fmt::format("arrows {} times {}", number_text(vectors.scale), base::joined(vectors.columns)),
+          fmt::format("the root mean square one is {} times the median distance to the nearest neighbour",
+                      number_text(kArrowLength)));
+  }
+
+  /// The number of particles that the first frame shows.
+  std::uint64_t shown_count() const {
+    if (options_.points.select.empty() && options_.slices.empty()) return info_.rows;
+    scene::PointsKeys keys = points_;
+    keys.radius = {};
+    keys.radius.value = 1;  // any: the radius is chosen later
+    return data_.load(data_.described_frame(), keys).points.particle_count();
+  }
+
+  /// Result     the choices, to be printed after those of the radius
+  std::vector<std::string> choose_color() {
+    scene::PointsColor& color = points_.color;
+    const data::Roles& roles = info_.roles;
+    std::string by = options_.color_by;
+    std::string why;
+    std::vector<std::string> out;
+    const bool is_glass = options_.material == "glass";
+    if (is_glass && !by.empty() && by != "none")
+      base::refuse(fmt::format("--color-by {} has no effect: glass has no colour; use another --material", by));
+    if (by.empty()) {
+      const bool may_be_chain = !roles.chain.empty() && !is_glass && roles.rgb[0].empty();
+      const bool is_assembly = !options_.points.assembly.empty();
+      const bool has_many = may_be_chain && !is_assembly && shown_count() >= kManyAtoms;
+      const bool by_chain =
+          may_be_chain && (is_assembly || has_many || (!roles.element.empty() && data_.has_one_element(points_)));
+      by = is_glass                 ? "none"
+           : !roles.rgb[0].empty()  ? "rgb"
+           : by_chain               ? roles.chain
+           : !roles.element.empty() ? "element"
+           : !roles.type.empty()    ? "type"
+                                    : "none";
+      why = is_glass          ? "glass has none"
+            : by == "rgb"     ? "the file's own; --color-by changes it"
+            : by == "none"    ? "light grey; --color-by COLUMN shows values"
+            : by == "element" ? "the file has no colours; --color-by changes it"
+            : by == "type"    ? "the file has no colours; --color-by changes it"
+            : is_assembly     ? "an assembly; --color-by element shows elements"
+            : has_many        ? "many atoms; --color-by element shows elements"
+                              : "all atoms are of one element; --color-by element shows it";
+      out.push_back(fmt::format("{}: {}", by == "none" ? "no colour" : "colour by " + by, why));
+    }
+    if (set_color(options_, by, info_, color))
+      out.push_back(fmt::format(
+          "map {}: {}", color.map,
+          points::find_color_map(color.map)->is_categorical ? "colours for categories" : "the default for numbers"));
+    return out;
+  }
+
+  const PlotOptions& options_;
+  const DataFrames& data_;
+  const data::FrameInfo& info_;
+  scene::PointsKeys& points_;
+  std::vector<std::string> choices_;
+};
+
+}  // namespace
+
+std::vector<std::string> choose_appearance(const PlotOptions& options, const DataFrames& data,
+                                           scene::PointsKeys& points) {
+  return Appearance(options, data, points).run();
+}
+
+}  // namespace orrery::plot
