@@ -3,7 +3,9 @@
 #pragma once
 
 #include <cmath>
+#include <cstddef>
 #include <cstdint>
+#include <iterator>
 #include <random>
 #include <type_traits>
 #include <vector>
@@ -35,6 +37,14 @@ inline std::vector<Sphere> scattered(Random& random, int count, double spread, d
   for (int i = 0; i < count; ++i)
     out.push_back({offset + random.uniform(-spread, spread), random.uniform(-spread, spread),
                    offset + random.uniform(-spread, spread), radius * random.uniform(0.1, 1)});
+  return out;
+}
+
+inline std::vector<float> random_opacities(Random& random, std::size_t count) {
+  constexpr float kValues[] = {0, 0.05F, 0.3F, 0.5F, 0.9F, 1};
+  std::vector<float> out;
+  for (std::size_t i = 0; i < count; ++i)
+    out.push_back(kValues[static_cast<std::size_t>(random.uniform(0, std::size(kValues)))]);
   return out;
 }
 
@@ -103,6 +113,7 @@ void copy_rays(const From& from, To& to) {
     to.inverse_square[i] = static_cast<T>(from.inverse_square[i]);
     to.self[i] = static_cast<std::remove_reference_t<decltype(to.self[0])>>(from.self[i]);
     to.time[i] = static_cast<T>(from.time[i]);
+    to.key[i] = from.key[i];
   }
   to.count = from.count;
 }

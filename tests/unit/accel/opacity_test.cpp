@@ -30,14 +30,6 @@ kernel::SceneView view_of(const std::vector<kernel::Sphere>& spheres, const std:
   return view;
 }
 
-std::vector<float> random_opacities(Random& random, std::size_t count) {
-  constexpr float kValues[] = {0, 0.05F, 0.3F, 0.5F, 0.9F, 1};
-  std::vector<float> out;
-  for (std::size_t i = 0; i < count; ++i)
-    out.push_back(kValues[static_cast<std::size_t>(random.uniform(0, std::size(kValues)))]);
-  return out;
-}
-
 kernel::RayPacket<double> random_rays(Random& random, const test::Scene& scene) {
   kernel::RayPacket<double> packet;
   packet.count = kPacketSize;
@@ -73,7 +65,7 @@ long differences(const kernel::Tracer& one, const kernel::Tracer& other, const k
 TEST(AccelOpacity, AllWaysFindTheSameHitsAndOcclusion) {
   for (const test::Scene& scene : test::scenes()) {
     Random random;
-    const std::vector<float> opacity = random_opacities(random, scene.spheres.size());
+    const std::vector<float> opacity = test::random_opacities(random, scene.spheres.size());
     const kernel::SceneView view = view_of(scene.spheres, opacity);
     const auto list = make_list(view, Precision::kExact);
     for (const test::Way& way : test::kWaysBesideTheList) {
@@ -91,7 +83,7 @@ TEST(AccelOpacity, InvisibleObjectsAreNotThere) {
   const test::Scene scene = test::scenes()[1];
   Random random;
   const std::size_t count = scene.spheres.size();
-  const std::vector<float> opacity = random_opacities(random, count);
+  const std::vector<float> opacity = test::random_opacities(random, count);
   const auto list = make_list(view_of(scene.spheres, opacity), Precision::kExact);
   long hits = 0, changed = 0;
   for (int i = 0; i < 50; ++i) {
@@ -125,7 +117,7 @@ TEST(AccelOpacity, InvisibleObjectsAreNotThere) {
 TEST(AccelOpacity, CanChangeAfterTheBuild) {
   for (const test::Scene& scene : test::scenes()) {
     Random random;
-    const std::vector<float> opacity = random_opacities(random, scene.spheres.size());
+    const std::vector<float> opacity = test::random_opacities(random, scene.spheres.size());
     const auto list = make_list(view_of(scene.spheres, {}), Precision::kExact),
                translucent_list = make_list(view_of(scene.spheres, opacity), Precision::kExact);
     for (const test::Way& way : test::kWays) {

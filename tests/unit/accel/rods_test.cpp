@@ -4,6 +4,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstddef>
+#include <cstdint>
 #include <iterator>
 #include <limits>
 #include <memory>
@@ -30,6 +32,7 @@ struct RodScene {
   std::vector<Rod> motion = {};
   double camera_distance = 5;
   std::vector<kernel::Bond> bonds = {};
+  std::vector<float> opacity = {};  ///< of spheres and halves of rods
 
   kernel::SceneView view() const {
     static constexpr kernel::Sphere kReadable;
@@ -42,6 +45,7 @@ struct RodScene {
                  spheres.size(), bonds.data(),
                  bonds.size(),   kBondRadii,
                  view.spheres};
+    view.opacity = opacity.empty() ? nullptr : opacity.data();
     return view;
   }
 
@@ -54,6 +58,7 @@ struct RodScene {
   }
 };
 
+/// Every scene, and the same scene with opacities.
 std::vector<RodScene> rod_scenes() {
   Random random;
   std::vector<RodScene> list;
@@ -119,6 +124,11 @@ std::vector<RodScene> rod_scenes() {
   RodScene moving_long{"moving in pieces", test::random_rods(random, 40, 2, 0.002), {}};
   moving_long.motion = test::random_rods(random, 40, 0.6, 0.0001);
   list.push_back(moving_long);
+  for (std::size_t i = 0, opaque = list.size(); i < opaque; ++i) {
+    RodScene& scene = list.emplace_back(list[i]);
+    const kernel::SceneView view = scene.view();
+    scene.opacity = test::random_opacities(random, view.sphere_count + 2 * view.rods.count);
+  }
   return list;
 }
 
@@ -158,12 +168,13 @@ void compare_hits(const RodScene& scene, kernel::Precision precision, const test
   const auto list = make_list(rods.view(), precision), other = way.make(view, precision);
   Random random;
   long rod_hits = 0, different = 0, rays = 0;
-  for (; rays < 10000; rays += kPacketSize) {
+  for (; rays < 6000; rays += kPacketSize) {
     kernel::RayPacket<double> drawn;
     drawn.count = kPacketSize;
     for (int lane = 0; lane < kPacketSize; ++lane) {
       aim_at_rod(random, scene, drawn, lane);
       drawn.time[lane] = random.uniform(0, 1);
+      drawn.key[lane] = static_cast<std::uint32_t>(random.engine());
     }
     kernel::RayPacket<T> a;
     test::copy_rays(drawn, a);
@@ -179,8 +190,9 @@ void compare_hits(const RodScene& scene, kernel::Precision precision, const test
       different += a.hit[lane] != b.hit[lane] || a.distance[lane] != b.distance[lane];
     }
   }
-  EXPECT_EQ(different, 0) << scene.name << ", " << way.name << (sizeof(T) == 4 ? ", fast" : "");
-  EXPECT_GT(rod_hits, rays / 50) << scene.name;
+  EXPECT_EQ(different, 0) << scene.name << (scene.opacity.empty() ? ", " : ", opacities, ") << way.name
+                          << (sizeof(T) == 4 ? ", fast" : "");
+  EXPECT_GT(rod_hits, rays / 100) << scene.name;
 }
 
 TEST(AccelRods, EmbreeAndListFindTheSameHits) {
@@ -205,6 +217,7 @@ TEST(AccelRods, EmbreeAndListFindTheSameOcclusion) {
         for (int lane = 0; lane < kPacketSize; ++lane) {
           aim_at_rod(random, scene, aimed, lane);
           aimed.time[lane] = random.uniform(0, 1);
+          aimed.key[lane] = static_cast<std::uint32_t>(random.engine());
           a.target[lane] = kNoSphere;
         }
         static_cast<kernel::PacketRays<double>&>(a) = aimed;
@@ -218,7 +231,7 @@ TEST(AccelRods, EmbreeAndListFindTheSameOcclusion) {
           different += a.occluded[lane] != b.occluded[lane];
         }
       }
-      EXPECT_EQ(different, 0) << scene.name << ", " << way.name;
+      EXPECT_EQ(different, 0) << scene.name << (scene.opacity.empty() ? ", " : ", opacities, ") << way.name;
       EXPECT_GT(occluded, 0) << scene.name;
       EXPECT_LT(occluded, rays) << scene.name;
     }
