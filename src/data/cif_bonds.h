@@ -3,7 +3,6 @@
 
 #include <cstddef>
 #include <cstdint>
-#include <functional>
 #include <string>
 #include <unordered_map>
 #include <utility>
@@ -73,19 +72,5 @@ class CifBonds {
   std::unordered_map<std::string, std::vector<std::pair<std::string, std::string>>> components_;
   std::vector<Connection> connections_;
 };
-
-/// A table of a CIF file to be read, given as a loop or as single items.
-struct CifTable {
-  std::string category;            ///< "_atom_site."
-  std::vector<std::string> items;  ///< names of the items, lower case: "cartn_x"
-  /// Receives a row: the values of `items`, unquoted; empty where the file has no value, `?` or `.`. `line` is the
-  /// row's last line.
-  std::function<void(const std::vector<std::string>& values, std::uint64_t line)> take;
-};
-
-/// Reads tables of a CIF file row by row. Other tables are skipped without being stored.
-///
-/// Errors     base::Error(kBadData): syntax errors, incomplete rows; those of `take`
-void read_cif(const std::string& text, std::vector<CifTable> tables, Faults& faults);
 
 }  // namespace orrery::data

@@ -1,9 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 // gemmi's grammar of CIF with our own actions: gemmi's document would store every value of the file as a string.
-#include "data/cif_bonds.h"
+#include "data/cif_rows.h"
 
 #include <algorithm>
+#include <cstddef>
 #include <gemmi/cif.hpp>
+#include <string_view>
+#include <utility>
 
 #include "base/text.h"
 
@@ -64,7 +67,7 @@ class RowReader {
   Slot slot_of(std::string_view name) const {
     const std::string tag = base::lower(name);
     for (std::size_t t = 0; t < tables_.size(); ++t) {
-      if (!tag.starts_with(tables_[t].category)) continue;
+      if (tag.rfind(tables_[t].category, 0) != 0) continue;
       const auto& items = tables_[t].items;
       const auto item = std::find(items.begin(), items.end(), tag.substr(tables_[t].category.size()));
       if (item != items.end()) return {t, static_cast<std::size_t>(item - items.begin()), true};

@@ -14,6 +14,7 @@
 
 #include "base/text.h"
 #include "data/cif_bonds.h"
+#include "data/cif_rows.h"
 #include "data/readers.h"
 #include "data/text_lines.h"
 

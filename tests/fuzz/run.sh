@@ -56,7 +56,7 @@ clang=${CLANGXX:-clang++}
 compiler=("$clang")
 ! command -v ccache >/dev/null || compiler=(ccache "$clang")
 
-# Compiles a file. gemmi's CIF has vectors of an incomplete type, which clang before 16 rejects in C++20.
+# Compiles a file. gemmi's CIF has vectors of an incomplete type, which clang rejects in C++20 with libstdc++ 12.
 compile() {
   local file=$1 standard=c++20
   shift
