@@ -17,6 +17,7 @@ constexpr double kBoxRadius = 0.004, kAxisLength = 0.15, kAxisRadius = 0.01;
 void Guides::surround(const Vec3d& center, double radius) {
   corner_ = {std::min(corner_.x, center.x - radius), std::min(corner_.y, center.y - radius),
              std::min(corner_.z, center.z - radius)};
+  for (const double x : {center.x, center.y, center.z}) reach_ = std::max(reach_, std::abs(x) + radius);
 }
 
 void Guides::surround(const scene::Points& points) {

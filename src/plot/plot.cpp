@@ -129,7 +129,7 @@ class PlotMaker {
     scene.color.view = out_.view;
     scene.points.push_back({out_.points, {}, {}});
     scene.rods = guides_.rods();
-    const Stage stage{axes, extent.center(), extent.radius(), choose_ground(extent, camera)};
+    const Stage stage{axes, extent.center(), extent.radius(), guides_.reach(), choose_ground(extent, camera)};
     if (!options_.style) chose("style studio", "a key light from the upper left, and white light from all directions");
     if (!options_.overrides.sets("image.width") && !options_.overrides.sets("image.height"))
       chose(fmt::format("size {} x {}", width_, height_), "--width and --height change it");

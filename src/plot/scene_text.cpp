@@ -2,6 +2,8 @@
 #include "plot/scene_text.h"
 
 #include <algorithm>
+#include <cmath>
+#include <filesystem>
 #include <optional>
 #include <string>
 #include <utility>
@@ -13,6 +15,7 @@
 #include "load/write_scene.h"
 #include "plot/plot.h"
 #include "points/color_map.h"
+#include "scene/limits.h"
 #include "scene/value_text.h"
 
 namespace orrery::plot {
@@ -60,6 +63,33 @@ const Lighting& lighting_of(Style style) {
 scene::Sphere lamp_of(const Stage& stage, const Lighting& light) {
   const Vec3d toward = math::normalized(stage.axes.back + stage.axes.up * light.up - stage.axes.right * light.left);
   return {stage.center + toward * (light.distance * stage.radius), light.radius * stage.radius};
+}
+
+/// Rounds a number above 0 to two digits, so that what is within the result is within the number.
+double rounded_down(double x) {
+  const double unit = std::pow(10, std::floor(std::log10(x)) - 1);
+  return std::floor(x / unit) * unit;
+}
+
+/// The lamp, the ground and the camera may be much farther from the origin than the data, whose user knows none of
+/// them.
+void require_room(const scene::Scene& scene, double reach, const std::filesystem::path& data) {
+  double farthest = 0;
+  const auto include = [&](const Vec3d& at, double length) {
+    for (const double x : {at.x, at.y, at.z, length}) farthest = std::max(farthest, std::abs(x));
+  };
+  for (const scene::Sphere& sphere : scene.spheres) include(sphere.center, sphere.radius);
+  include(scene.camera.look_from, scene.camera.width.value_or(0));
+  if (farthest <= scene::kLargestLength) return;
+  throw base::Error(
+      base::ErrorKind::kBadData, "cannot use " + data.string(),
+      {base::file_diagnostic(
+          base::Severity::kError, data.string(),
+          fmt::format("the spheres reach the coordinate {:.2g}, and the lamp, ground and camera around them {:.2g}; "
+                      "the largest coordinate of a scene is {:g}",
+                      reach, farthest, scene::kLargestLength),
+          fmt::format("use a larger unit of length, in which the spheres are within {:.2g}",
+                      rounded_down(scene::kLargestLength * (reach / farthest))))});
 }
 
 /// Materials of the spheres. Colours replace the albedo.
@@ -154,6 +184,7 @@ std::string scene_text(const PlotOptions& options, const Stage& stage, scene::Sc
     scene.spheres.push_back(lamp_of(stage, light));
     scene.spheres.back().material = material("lamp", scene::Emitter{light.radiance});
   }
+  require_room(scene, stage.reach, options.file);
   return load::scene_text(
       scene, fmt::format("Written by orrery plot for {}", scene::string_text(options.file.filename().string())));
 }

@@ -23,6 +23,7 @@ struct Stage {
   const ViewAxes& axes;          ///< axes of the image
   Vec3d center;                  ///< centre of the spheres
   double radius = 1;             ///< radius of a sphere around `center` that contains all spheres
+  double reach = 0;              ///< largest absolute coordinate of a point of the spheres
   std::optional<Ground> ground;  ///< ground below the spheres
 };
 
@@ -30,6 +31,7 @@ struct Stage {
 ///
 /// `scene`    camera, points and annotation; its rods are the edges of the simulation box and the axes, with materials
 ///            of GuideMaterial
+/// Errors     base::Error(kBadData) if a scene has no room for the lamp, the ground or the camera around the spheres
 std::string scene_text(const PlotOptions& options, const Stage& stage, scene::Scene scene);
 
 /// Rods beside the spheres: the edges of the simulation box, and the axes in the lower corner of what is shown.
@@ -50,6 +52,8 @@ class Guides {
   const scene::Points& ends() const { return ends_; }
   /// Lowest point of the spheres and the rods along the up axis, scene units.
   double lowest() const { return lowest_; }
+  /// Largest absolute coordinate of a point of what is shown, scene units.
+  double reach() const { return reach_; }
 
  private:
   void surround(const Vec3d& center, double radius);
@@ -58,7 +62,7 @@ class Guides {
   static constexpr double kInfinity = std::numeric_limits<double>::infinity();
   Vec3d up_;
   Vec3d corner_{kInfinity, kInfinity, kInfinity};  ///< lower corner of all that is shown along x, y and z
-  double lowest_ = kInfinity;
+  double lowest_ = kInfinity, reach_ = 0;
   std::vector<scene::Rod> rods_;
   scene::Points ends_;
 };

@@ -1024,6 +1024,33 @@ TEST_F(PlotPlot, OptionsOfAMapWithoutAMapAreRefused) {
   EXPECT_EQ(error(), "no error") << "types have values";
 }
 
+TEST_F(PlotPlot, DataOutsideTheRangeOfAPlotAreNamed) {
+  const auto remedy_for = [&](const std::string& rows) -> std::string {
+    try {
+      make("a.csv", "x,y,z\n0,0,0\n" + rows);
+    } catch (const base::Error& e) {
+      return e.diagnostics().at(0).remedy;
+    }
+    return "no error";
+  };
+  options.points.radius.value = 1;
+  const std::string far = "0,-1e17,0\n";
+  EXPECT_EQ(remedy_for(far), "use a larger unit of length, in which the spheres are within 2.2e+16");
+  EXPECT_EQ(error(),
+            "the spheres reach the coordinate 1e+17, and the lamp, ground and camera around them 4.4e+18; the largest "
+            "coordinate of a scene is 1e+18");
+  EXPECT_EQ(remedy_for("0,-2.2e16,0\n"), "no error");
+  options.style = Style::kAmbient;
+  EXPECT_EQ(remedy_for(far), "no error") << "without a lamp";
+  options.ground = true;
+  EXPECT_EQ(remedy_for(far), "use a larger unit of length, in which the spheres are within 2e+15");
+  EXPECT_EQ(remedy_for("0,-1.9e15,0\n"), "no error");
+  options.ground = false;
+  options.vfov_deg = 0.1;
+  EXPECT_EQ(remedy_for(far), "use a larger unit of length, in which the spheres are within 6.6e+15");
+  EXPECT_EQ(remedy_for("0,-6.5e15,0\n"), "no error");
+}
+
 TEST_F(PlotPlot, ComponentsOfOtherFormatsAreRefused) {
   write("a.csv", kCorners);
   options.points.component = 1;
