@@ -160,6 +160,10 @@ class Appearance {
       out.push_back(fmt::format(
           "map {}: {}", color.map,
           points::find_color_map(color.map)->is_categorical ? "colours for categories" : "the default for numbers"));
+    if (options_.annotation.color_bar && !color.has_legend())
+      base::refuse(
+          "--color-bar has nothing to explain: the colours are not those of a column, of types or of elements; add "
+          "--color-by COLUMN");
     return out;
   }
 

@@ -232,7 +232,9 @@ struct PointsColor {
   ColorsByType types;
   bool rgb = false;  ///< the file's colours
 
-  bool is_set() const { return !column.empty() || !element.empty() || !types.empty() || rgb; }
+  bool is_set() const { return has_legend() || rgb; }
+  /// True if each colour stands for a value, a type or an element.
+  bool has_legend() const { return !column.empty() || !element.empty() || !types.empty(); }
   /// True if `map` is a file: names of colour maps contain neither dots nor slashes.
   bool has_map_file() const { return map.find_first_of("./\\") != std::string::npos; }
   bool operator==(const PointsColor&) const = default;

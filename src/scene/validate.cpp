@@ -64,6 +64,10 @@ void check_annotation(const Scene& scene, KeyFaults& diagnostics) {
                           fmt::format("{} cannot be seen as a length in an image that is {} wide",
                                       number_text(*scene.annotation.scale_bar), number_text(*scene.camera.width)));
   }
+  if (scene.annotation.color_bar &&
+      std::none_of(scene.points.begin(), scene.points.end(), [](const Points& p) { return p.color.has_legend(); }))
+    diagnostics.warning("annotation.color_bar",
+                        "has no effect: no points table is coloured by a column, by types or by elements");
   if ((scene.annotation.is_set() || has_labels) && (scene.image.crop || scene.image.overscan > 0))
     diagnostics.error("annotation", "cannot be combined with image.crop or image.overscan");
 }

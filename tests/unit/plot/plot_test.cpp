@@ -1024,6 +1024,19 @@ TEST_F(PlotPlot, OptionsOfAMapWithoutAMapAreRefused) {
   EXPECT_EQ(error(), "no error") << "types have values";
 }
 
+TEST_F(PlotPlot, AColorBarExplainsColors) {
+  write("a.csv", kCorners);
+  options.annotation.color_bar = true;
+  EXPECT_EQ(error(),
+            "--color-bar has nothing to explain: the colours are not those of a column, of types or of elements; add "
+            "--color-by COLUMN");
+  options.color_by = "mass";
+  EXPECT_EQ(error(), "no error");
+  options.color_by = "element";
+  write("a.xyz", "1\n\nC 0 0 0\n");
+  EXPECT_EQ(error(), "no error");
+}
+
 TEST_F(PlotPlot, DataOutsideTheRangeOfAPlotAreNamed) {
   const auto remedy_for = [&](const std::string& rows) -> std::string {
     try {

@@ -51,6 +51,19 @@ TEST(SceneValidate, AScaleBarFitsTheImage) {
   EXPECT_EQ(told(scene).size(), 1u) << "less than a pixel";
 }
 
+TEST(SceneValidate, AColorBarExplainsColors) {
+  Scene scene;
+  scene.materials = {{"grey", Lambertian{}}};
+  scene.annotation.color_bar = true;
+  scene.points.resize(1);
+  scene.points[0].color.rgb = true;
+  EXPECT_EQ(told(scene), Told{"(annotation.color_bar: has no effect: no points table is coloured by a column, by types "
+                              "or by elements)"});
+  scene.points[0].color.rgb = false;
+  scene.points[0].color.element = "jmol";
+  EXPECT_EQ(told(scene), Told{});
+}
+
 TEST(SceneValidate, Rods) {
   Scene scene;
   scene.materials = {{"grey", Lambertian{}}, {"glass", Dielectric{}}};
