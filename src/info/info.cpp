@@ -27,6 +27,7 @@
 #include "scene/layers.h"
 #include "scene/schema.h"
 #include "scene/texture.h"
+#include "scene/validate.h"
 #include "scene/value_text.h"
 #include "study/bench.h"
 
@@ -111,15 +112,17 @@ bool has_glass_in_glass(const compile::CausticList& list) {
 
 /// Describes which pairs of a sharp ball and a light are sampled: "2 of 3 pairs of a ball and a light sampled:
 /// sphere[1] and sphere[3], sphere[1] and the sun". Empty if there is no pair, or lights are not sampled.
-std::string caustics_text(const compile::CompiledScene& compiled) {
+std::string caustics_text(const scene::Scene& scene, const compile::CompiledScene& compiled) {
   const compile::CausticList& list = compiled.caustics;
   if (!compiled.samples_caustics || list.pairs == 0) return {};
-  std::size_t tables = compiled.spheres.size(), listed = 0;
-  for (const std::size_t size : compiled.points_sizes) tables -= size;
   const auto name = [&](std::uint32_t id) {
     if (id == kernel::kNoSphere) return std::string("the sun");
-    return id < tables ? fmt::format("sphere[{}]", id) : fmt::format("particle {}", id - tables);
+    if (id < scene.spheres.size()) return fmt::format("sphere[{}]", id);
+    std::size_t index = id - scene.spheres.size(), table = 0;
+    for (; index >= compiled.points_sizes[table]; ++table) index -= compiled.points_sizes[table];
+    return scene::sphere_name(scene, table, index);
   };
+  std::size_t listed = 0;
   std::string names;
   for (const kernel::CausticBall& ball : list.balls)
     for (std::uint32_t i = ball.begin; i < ball.end; ++i)
@@ -279,7 +282,7 @@ SceneInfo scene_info(const load::SceneRequest& request, job::PreparedScene& prep
   info.materials = count_materials(compiled);
   info.emitters = count_emitters(compiled);
   info.lights = lights_text(compiled, info.emitters);
-  info.caustics = caustics_text(compiled);
+  info.caustics = caustics_text(read.scene, compiled);
   for (std::size_t i = 0; i < read.scene.points.size(); ++i) {
     const scene::Points& p = read.scene.points[i];
     info.points.push_back({p.file.string(), compiled.points_sizes[i], p.unused,

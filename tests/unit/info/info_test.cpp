@@ -150,6 +150,18 @@ sphere = [{ center = [0, 0, -1], radius = 0.5, material = "mirror" },
             "2 of 6 pairs of a ball and a light sampled: sphere[0] and sphere[2], sphere[0] and the sun")
       << "neither with a lamp that cuts the ball nor with a bubble";
   EXPECT_NE(info_text(found).find("\ncaustics    2 of 6"), std::string::npos);
+  // Spheres of data files are those of a file's rows.
+  support::write_bytes(folder_ / "a.csv", "x,y,z\n9,0,0\n9,9,0\n");
+  support::write_bytes(folder_ / "b.csv", "x,y,z\n9,9,9\n0,0,-1\n");
+  const std::string files = R"(
+material.lamp = { type = "emitter", radiance = [1, 1, 1] }
+material.grey = { type = "lambertian", albedo = [0.5, 0.5, 0.5] }
+material.mirror = { type = "metal", albedo = [1, 1, 1], fuzz = 0 }
+sphere = [{ center = [0, 3, -1], radius = 0.5, material = "lamp" }]
+points = [{ file = "a.csv", radius = 0.5, material = "grey" }, { file = "b.csv", radius = 0.5, material = "mirror" }]
+)";
+  EXPECT_EQ(info(files).caustics,
+            "2 of 2 pairs of a ball and a light sampled: row 1 of b.csv and sphere[0], row 2 of b.csv and sphere[0]");
   const std::string hollow = R"(
 material.lamp = { type = "emitter", radiance = [1, 1, 1] }
 material.glass = { type = "dielectric" }
