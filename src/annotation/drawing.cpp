@@ -5,6 +5,8 @@
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
+#include <fstream>
+#include <iterator>
 #include <utility>
 
 #include <fmt/core.h>
@@ -233,8 +235,10 @@ Overlay draw(const Drawing& drawing, const std::function<Vec3d(const Vec3d&)>& s
 std::string stamped(const std::string& stamp, const Drawing& drawing) {
   if (drawing.is_empty()) return stamp;
   const auto same = [](const Vec3d& color) { return color; };
+  std::ifstream font(drawing.font, std::ios::binary);
+  const std::string glyphs(std::istreambuf_iterator<char>(font), {});
   return base::text_hash(
-      fmt::format("{}\n{}\n{}\n{}", stamp, drawing.font.string(), drawing.outline_px, svg(drawing, same)));
+      fmt::format("{}\n{}\n{}\n{}\n{}", stamp, drawing.font.string(), drawing.outline_px, svg(drawing, same), glyphs));
 }
 
 void blend(const Overlay& overlay, film::EncodedPicture& picture) {

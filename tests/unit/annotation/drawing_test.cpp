@@ -4,8 +4,11 @@
 #include <gtest/gtest.h>
 
 #include <cstddef>
+#include <filesystem>
 #include <string>
 #include <utility>
+
+#include "support/temp_dir.h"
 
 namespace orrery::annotation {
 namespace {
@@ -72,6 +75,13 @@ TEST(AnnotationDrawing, StampsDifferIfDrawingsDo) {
   EXPECT_EQ(stamped("s", drawing), two);
   drawing.texts = {{"a", 1, 2, 3, 0}};
   EXPECT_NE(stamped("s", drawing), two);
+  const support::TempDir folder;
+  drawing.font = folder / "font.ttf";
+  std::filesystem::copy_file(image::font_file("DejaVuSans"), drawing.font);
+  const std::string sans = stamped("s", drawing);
+  std::filesystem::copy_file(image::font_file("DejaVuSans-Bold"), drawing.font,
+                             std::filesystem::copy_options::overwrite_existing);
+  EXPECT_NE(stamped("s", drawing), sans) << "another font of the same name";
 }
 
 TEST(AnnotationDrawing, TextInSvgIsEscaped) {
