@@ -46,6 +46,15 @@ std::uint32_t code_of(std::string_view character) {
   return code;
 }
 
+constexpr const char* kSystemFonts[] = {"/usr/share/fonts", "/usr/local/share/fonts"};
+
+/// Reports that a font cannot be used.
+[[noreturn]] void refuse(base::ErrorKind kind, const std::string& what) {
+  throw base::Error(kind, fmt::format("{}; set --font (annotation.font) to a .ttf or .otf file, or to the name of a "
+                                      "font in {}, e.g. DejaVuSans",
+                                      what, kSystemFonts[0]));
+}
+
 /// A font at a size.
 class Face {
  public:
@@ -56,10 +65,10 @@ class Face {
       throw base::Error(base::ErrorKind::kInternal, "FreeType cannot be initialised");
     library_.reset(library);
     if (FT_New_Face(library, font.c_str(), 0, &face) != 0)
-      throw base::Error(base::ErrorKind::kBadData, fmt::format("{} is not a font", font.string()));
+      refuse(base::ErrorKind::kBadData, fmt::format("{} is not a font", font.string()));
     face_.reset(face);
     if (FT_Set_Char_Size(face, 0, static_cast<FT_F26Dot6>(std::lround(size_px * kUnitsPerPixel)), 72, 72) != 0)
-      throw base::Error(base::ErrorKind::kBadData, fmt::format("{} has no scalable glyphs", font.string()));
+      refuse(base::ErrorKind::kBadData, fmt::format("the font {} has no scalable glyphs", font.string()));
   }
 
   bool has_glyph(std::string_view character) const { return FT_Get_Char_Index(face_.get(), code_of(character)) != 0; }
@@ -100,18 +109,19 @@ double width_of(const Face& face, const std::string& text) {
 }  // namespace
 
 fs::path font_file(const std::string& font) {
-  const bool is_file = font.find_first_of("./\\") != std::string::npos;
   std::error_code error;
-  if (is_file && fs::is_regular_file(font, error)) return font;
-  for (const char* const folder : {"/usr/share/fonts", "/usr/local/share/fonts"})
+  if (font.find_first_of("./\\") != std::string::npos) {
+    if (fs::is_regular_file(font, error)) return font;
+    refuse(base::ErrorKind::kMissingInput, fmt::format("there is no font file {}", font));
+  }
+  for (const char* const folder : kSystemFonts)
     for (fs::recursive_directory_iterator at(folder, fs::directory_options::skip_permission_denied, error), end;
-         !is_file && at != end; at.increment(error))
+         at != end; at.increment(error))
       if (at->path().stem() == font && base::contains({".ttf", ".otf", ".ttc"}, at->path().extension().string()))
         return at->path();
-  throw base::Error(base::ErrorKind::kMissingInput,
-                    fmt::format("there is no font {}; install the package fonts-dejavu-core, or set annotation.font to "
-                                "the name or the file of another font",
-                                font));
+  refuse(base::ErrorKind::kMissingInput,
+         fmt::format("there is no font {}{}", font,
+                     font.starts_with("DejaVu") ? "; install the package fonts-dejavu-core" : ""));
 }
 
 void draw_text(const TextLine& line, const fs::path& font, int width, int height, std::vector<float>& coverage) {

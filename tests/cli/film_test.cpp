@@ -128,6 +128,7 @@ TEST_F(CliFilm, InvalidAnnotationsAreRefused) {
   EXPECT_EQ(film("-o a.png --title '{foo}'").status, 65);
   EXPECT_EQ(film("-o a.png --outline 65").status, 2);
   EXPECT_EQ(film("-o a.png --title a --font NoSuchFont").status, 66);
+  EXPECT_TRUE(contains(film("-o a.png --title a --font ./no.ttf").err, "there is no font file no.ttf; set --font"));
   EXPECT_EQ(run("render good.toml -o a.png --set annotation.scale_bar=1").status, 65) << "a perspective camera";
 }
 

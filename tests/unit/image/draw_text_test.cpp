@@ -59,8 +59,22 @@ TEST(ImageDrawText, TextBeyondTheImageIsCut) {
 }
 
 TEST(ImageDrawText, FilesThatAreNoFontsAreRefused) {
-  EXPECT_THROW(font_file("NoSuchFont"), base::Error);
-  EXPECT_THROW(text_widths({"a"}, 10, "/dev/null"), base::Error);
+  const auto error = [](auto use) {
+    try {
+      use();
+    } catch (const base::Error& e) {
+      return std::string(e.what());
+    }
+    return std::string("no error");
+  };
+  const std::string remedy =
+      "; set --font (annotation.font) to a .ttf or .otf file, or to the name of a font in /usr/share/fonts, e.g. "
+      "DejaVuSans";
+  EXPECT_EQ(error([] { font_file("NoSuchFont"); }), "there is no font NoSuchFont" + remedy);
+  EXPECT_EQ(error([] { font_file("DejaVuNone"); }),
+            "there is no font DejaVuNone; install the package fonts-dejavu-core" + remedy);
+  EXPECT_EQ(error([] { font_file("no/such.ttf"); }), "there is no font file no/such.ttf" + remedy);
+  EXPECT_EQ(error([] { text_widths({"a"}, 10, "/dev/null"); }), "/dev/null is not a font" + remedy);
 }
 
 }  // namespace
