@@ -48,9 +48,12 @@ std::optional<std::pair<Number, Number>> pair_of(const std::string& text, char s
 void read_shard(const RenderOptions& options, job::Job& job) {
   if (const std::string& text = options.sample_range; !text.empty()) {
     const auto range = pair_of<std::uint32_t>(text, ':');
-    if (!range || range->first >= range->second || range->second > std::numeric_limits<std::int32_t>::max())
-      base::refuse(fmt::format(
-          "--sample-range: `{}` is not a range of samples; write A:B, e.g. 0:100 and 100:200 for two shards", text));
+    constexpr std::uint32_t kMaxSamples = std::numeric_limits<std::int32_t>::max();
+    if (!range || range->first >= range->second || range->second > kMaxSamples)
+      base::refuse(
+          fmt::format("--sample-range: `{}` is not a range of samples; write A:B, e.g. 0:100 and 100:200 for two "
+                      "shards, with A below B and B up to {}",
+                      text, kMaxSamples));
     job.sampling.sample_begin = range->first;
     job.sampling.sample_end = range->second;
   }
@@ -58,7 +61,9 @@ void read_shard(const RenderOptions& options, job::Job& job) {
   const auto shard = pair_of<int>(options.shard, '/');
   if (!shard || shard->first < 1 || shard->first > shard->second || shard->second > job::kMaxShards)
     base::refuse(
-        fmt::format("--shard: `{}` is not a shard; write I/N, e.g. 1/2 and 2/2 for two shards", options.shard));
+        fmt::format("--shard: `{}` is not a shard; write I/N, e.g. 1/2 and 2/2 for two shards, with I from 1 to "
+                    "N and N up to {}",
+                    options.shard, job::kMaxShards));
   job.sampling.shard = {shard->first - 1, shard->second};
   job.as_shard = true;
 }

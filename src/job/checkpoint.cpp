@@ -146,7 +146,7 @@ std::string stamp_of(const Job& job, const image::Provenance& provenance, const 
 std::string difference(const image::Provenance& a, const image::Provenance& b, const std::vector<std::string>& keys) {
   static const std::vector<std::pair<std::string, std::string>> names = {
       {"version", "orrery version "},  {"sceneHash", ""},           {"sampleHash", ""},
-      {"samples", "--sample-range "},  {"shard", "--shard "},       {"noise", "--noise "},
+      {"samples", "samples "},         {"shard", "--shard "},       {"noise", "--noise "},
       {"time", "time budget: "},       {"limit", "sample limit: "}, {"layers", "layers "},
       {"total", "samples per pixel: "}};
   for (const auto& [key, name] : names) {

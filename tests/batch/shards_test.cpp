@@ -183,6 +183,7 @@ TEST_F(BatchShards, InvalidShardOptionsAreRejected) {
     refused(std::string("-o a.exr --sample-range ") + range);
   for (const char* tiles : {"0/2", "3/2", "1", "1/0", "a/b", "1/99999999"})
     refused(std::string("-o a.exr --shard ") + tiles);
+  EXPECT_TRUE(contains(run("render good.toml -o a.exr --shard 1/65537").err, "N up to 65536"));
   refused("-o a.png --shard 1/2");
   refused("-o a.exr -o b.exr --shard 1/2");
   refused("-o a.exr --shard 1/2 --noise 0.1");

@@ -280,7 +280,7 @@ TEST_F(JobRun, RejectsACheckpointOfAnotherRender) {
   job_.scene.overrides.add("sphere[0].radius=0.4");
   expect_refused("other spheres, materials, lights or images");
   job_.scene.overrides.add("render.samples=200");
-  expect_refused("--sample-range 0:300, not 0:200");
+  expect_refused("a.checkpoint.exr has samples 0:300, not 0:200");
   job_.sampling.noise = 0.0008;  // the nearest double is 0.00080000000000000004
   expect_refused("--noise 0, not 0.0008;");
   job_.sampling.shard = {0, 2};
