@@ -55,6 +55,7 @@ void add_convert(Command& program) {
       ->required();
   command.add_flag("-q,--quiet", arguments->quiet, "Print only errors and warnings");
   arguments->data.add_to(command, convert);
+  arguments->data.add_frames_to(command);
   command.details(
       "The spheres are selected, unwrapped, replicated and sliced. Colours are sRGB, 8 bits. Copies of a particle have "
       "the same values in the other columns. If the file has particle ids, they give the order. Columns that a format "

@@ -99,7 +99,7 @@ void add_threads_option(Command& command, int& threads, const char* otherwise) {
 }
 
 void add_denoise_option(Command& command, job::Job& job) {
-  command.add_flag("--denoise", job.denoise, "Denoise the images; shards store the data for merge --denoise")
+  command.add_flag("--denoise", job.denoise, "Denoise the images")
       ->details("As orrery denoise does, before they are written.");
 }
 

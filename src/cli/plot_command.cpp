@@ -216,6 +216,7 @@ void add_plot(Command& program) {
   const auto arguments = std::make_shared<PlotCommand>();
   Command& command = *program.add_subcommand("plot", "Render a particle data file");
   arguments->shown.add_data_to(command);
+  arguments->shown.add_frames_to(command);
   command.add_option("--legend", arguments->legend, "FILE", "Write a legend of the colours: .svg or .png")
       ->details("Its colours have the display transform of the image. It has at most 500 names.");
   command.add_option("--save-scene", arguments->save_scene, "FILE", "Also write the scene file")

@@ -139,9 +139,6 @@ void DataArguments::add_to(Command& command, plot::DataOptions& data, const std:
   command.add_option("--frame", frame, "N", "Frame of the file, from 1; default: 1")
       ->check(whole_number(1, 2'000'000'000));
   command
-      .add_option("--frames", frames, "RANGE", "Frames of the file: all, or e.g. 1-48; name outputs like out.####.png")
-      ->details("Names of outputs need a frame pattern, as for orrery render.");
-  command
       .add_option("--select", select, "CONDITION",
                   "Use only the rows that match, e.g. 'type == 2 && z > 0'; if repeated, all must match")
       ->details("For example 'id in [20:60] && chain in {A, B}'; docs/data.md describes conditions.")
@@ -184,6 +181,13 @@ void DataArguments::add_to(Command& command, plot::DataOptions& data, const std:
       ->details(
           "Numbers or percentiles of the values of all frames. log: a logarithmic scale; symmetric: -X:X; both also "
           "with a range, e.g. log,1%:99%.");
+}
+
+void DataArguments::add_frames_to(Command& command) {
+  const OptionGroup group(command, kDataOptions);
+  command
+      .add_option("--frames", frames, "RANGE", "Frames of the file: all, or e.g. 1-48; name outputs like out.####.png")
+      ->details("Names of outputs need a frame pattern, as for orrery render.");
 }
 
 void DataArguments::read(plot::DataOptions& data) const {

@@ -23,6 +23,8 @@ struct DataArguments {
   ///
   /// `kind`     of FILE, in the help
   void add_to(Command& command, plot::DataOptions& data, const std::string& kind = "Data file");
+  /// Adds the option of commands that use several frames.
+  void add_frames_to(Command& command);
   /// Sets the members of `data` from the parsed options.
   ///
   /// Errors     base::Error(kUsage)
@@ -36,12 +38,12 @@ class PlotArguments {
 
   /// Adds the data options; see DataArguments::add_to().
   void add_data_to(Command& command, const std::string& kind = "Data file") { data_.add_to(command, options, kind); }
+  void add_frames_to(Command& command) { data_.add_frames_to(command); }
   /// Adds the options that select view, style, representation, bonds and opacity.
   void add_look_to(Command& command);
   /// Adds the options of text, scales and lines over the image.
   void add_annotations_to(Command& command);
 
-  bool has_frames() const { return !data_.frames.empty(); }
   /// Sets the members of the options that come from the data options.
   void read_data() { data_.read(options); }
   /// Sets the others, except those for outputs. Called after read_data().

@@ -328,7 +328,9 @@ void add_render(Command& program) {
   command
       .add_option("--shard", options->shard, "I/N",
                   "Render shard I of N (I from 1): every N-th 16 x 16 tile; combine the shards with orrery merge")
-      ->details("It can be combined with --sample-range. The output of a shard is one EXR.");
+      ->details(
+          "It can be combined with --sample-range. The output of a shard is one EXR, which with --denoise also holds "
+          "what merge --denoise needs.");
   command
       .add_option("--frames", options->frames, "RANGE",
                   "Frames to render, e.g. 1-48, 1-48x2 or 1,3,7-9; name outputs like shot.####.exr")

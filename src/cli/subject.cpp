@@ -33,8 +33,6 @@ view::Subject scene_subject(const ShownOptions& shown) {
 
 view::Subject data_subject(ShownOptions& shown, const FilmSettings* film) {
   plot::PlotOptions& plot = shown.plot.options;
-  if (!film && shown.plot.has_frames())
-    base::refuse("--frames: the page has a slider; --frame N selects the first one");
   shown.plot.read_data();
   if (film) film->apply(shown.scene, plot);
   shown.plot.read(shown.scene, shown.job);
@@ -71,12 +69,15 @@ view::Subject data_subject(ShownOptions& shown, const FilmSettings* film) {
 }
 
 /// Parses words, and calls `use` with the options.
-void parse_shown(const std::string& file, std::vector<std::string> words,
+void parse_shown(const std::string& file, std::vector<std::string> words, bool has_frames,
                  const std::function<void(ShownOptions& shown)>& use) {
   ShownOptions shown;
   words.insert(words.begin(), file);
-  parse_words(
-      words, [&](Command& parsed) { shown.add_to(parsed); }, [&] { use(shown); });
+  const auto add = [&](Command& parsed) {
+    shown.add_to(parsed);
+    if (has_frames) shown.plot.add_frames_to(parsed);
+  };
+  parse_words(words, add, [&] { use(shown); });
 }
 
 }  // namespace
@@ -102,7 +103,7 @@ std::set<std::string> files_of(const ShownOptions& shown) {
 view::Subject subject_of(const std::filesystem::path& file, const std::vector<std::string>& words,
                          const std::set<std::string>& allowed) {
   view::Subject out;
-  parse_shown(file.string(), words, [&](ShownOptions& shown) {
+  parse_shown(file.string(), words, false, [&](ShownOptions& shown) {
     // The page may name no files but those given on the command line.
     for (const std::string& name : files_of(shown))
       if (allowed.count(name) == 0)
@@ -115,7 +116,7 @@ view::Subject subject_of(const std::filesystem::path& file, const std::vector<st
 view::Subject data_subject(const std::string& file, const std::vector<std::string>& words,
                            const job::Resources& resources, const points::OpenData& open, const FilmSettings* film) {
   view::Subject out;
-  parse_shown(file, words, [&](ShownOptions& shown) {
+  parse_shown(file, words, film != nullptr, [&](ShownOptions& shown) {
     shown.job.resources = resources;
     shown.plot.options.open = open;
     out = data_subject(shown, film);

@@ -217,6 +217,13 @@ TEST_F(CliView, AMissingFileIsAnErrorAtOnce) {
   EXPECT_TRUE(contains(r.err, "nothing.pdb")) << r.err;
 }
 
+TEST_F(CliView, FramesAreSelectedInThePage) {
+  EXPECT_FALSE(contains(run("view --help").out, "--frames"));
+  const Outcome r = run("view a.dump --frames 1-2");
+  EXPECT_EQ(r.status, 2);
+  EXPECT_TRUE(contains(r.err, "unknown option --frames; did you mean `--frame`")) << r.err;
+}
+
 TEST_F(CliView, OthersAreNotServed) {
   const Served view(folder_, {"good.toml"});
   EXPECT_EQ(support::http_request(view.port(), "GET", "/state").status, 403) << "without the secret";
