@@ -16,8 +16,9 @@
 namespace orrery::http {
 namespace {
 
-constexpr unsigned kMaxConnections = 32;
-constexpr unsigned kIdleLimit_s = 60;                 // longer than any handler waits
+constexpr unsigned kMaxConnections = 256;
+constexpr unsigned kSilenceLimit_s = 5;               // before a first request: other clients may be waiting
+constexpr unsigned kIdleLimit_s = 60;                 // from then on; longer than any handler waits
 constexpr std::size_t kConnectionMemory = 32 * 1024;  // limits the header of a request
 
 /// A request that is being received.
@@ -66,7 +67,7 @@ class MicroServer : public Server {
   MicroServer(const sockaddr_in& address, Handler handler) : handler_(std::move(handler)) {
     daemon_ = MHD_start_daemon(MHD_USE_INTERNAL_POLLING_THREAD | MHD_USE_THREAD_PER_CONNECTION, 0, nullptr, nullptr,
                                &MicroServer::receive, this, MHD_OPTION_SOCK_ADDR, &address, MHD_OPTION_CONNECTION_LIMIT,
-                               kMaxConnections, MHD_OPTION_CONNECTION_TIMEOUT, kIdleLimit_s,
+                               kMaxConnections, MHD_OPTION_CONNECTION_TIMEOUT, kSilenceLimit_s,
                                MHD_OPTION_CONNECTION_MEMORY_LIMIT, kConnectionMemory, MHD_OPTION_NOTIFY_COMPLETED,
                                &MicroServer::forget, nullptr, MHD_OPTION_STRICT_FOR_CLIENT, 1, MHD_OPTION_END);
     if (daemon_ == nullptr)
@@ -104,6 +105,7 @@ class MicroServer : public Server {
       *size = 0;
       return MHD_YES;
     }
+    MHD_set_connection_option(connection, MHD_CONNECTION_OPTION_TIMEOUT, kIdleLimit_s);
     if (exchange.is_too_large) return send(connection, {413});
     try {
       return send(connection, static_cast<MicroServer*>(self)->handler_(exchange.request));

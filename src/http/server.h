@@ -43,8 +43,8 @@ class Server {
   virtual int port() const = 0;
 };
 
-/// Starts to serve HTTP/1.1 on an IPv4 address. Each connection has a thread; the number and the idle time of
-/// connections are limited.
+/// Starts to serve HTTP/1.1 on an IPv4 address. Each connection has a thread. The number and the idle time of
+/// connections are limited; one that sends no request is closed after a few seconds.
 ///
 /// `port`     0: a free port
 /// Errors     base::Error: kUsage for an address that is not IPv4; kCannotCreate if the port is in use

@@ -5,6 +5,7 @@
 
 #include <atomic>
 #include <condition_variable>
+#include <deque>
 #include <mutex>
 #include <stdexcept>
 #include <thread>
@@ -100,6 +101,21 @@ TEST(HttpServer, AWaitingHandlerBlocksNobody) {
   }
   wake.notify_all();
   waits.join();
+}
+
+TEST(HttpServer, SilentConnectionsAreClosedBeforeThoseOfClients) {
+  const auto server = serve("127.0.0.1", 0, [](const Request& request) { return text(request.path); });
+  const support::HttpConnection client(server->port());
+  client.send("GET /first HTTP/1.1\r\nHost: a\r\n\r\n");
+  std::deque<support::HttpConnection> silent;
+  for (int i = 0; i < 300; ++i) silent.emplace_back(server->port());  // more than the server has at once
+  silent.front().send("GET / HT");
+  EXPECT_EQ(http_request(server->port(), "GET", "/other").body, "/other");
+  EXPECT_EQ(silent.front().receive(), "");
+  client.send("GET /second HTTP/1.1\r\nHost: a\r\nConnection: close\r\n\r\n");
+  const std::string answers = client.receive();
+  EXPECT_NE(answers.find("/first"), std::string::npos) << answers;
+  EXPECT_NE(answers.find("/second"), std::string::npos) << "it was closed with the silent ones";
 }
 
 TEST(HttpServer, APortInUseIsAnError) {
