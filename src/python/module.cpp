@@ -163,6 +163,12 @@ py::array srgb8(const py::object& self, const display::Settings& display) {
   return out;
 }
 
+[[noreturn]] void refuse_pickling(const Picture&) {
+  throw py::type_error(
+      "a Picture cannot be pickled; pass arrays to other processes, e.g. picture.beauty, or files: "
+      "picture.write(file)");
+}
+
 py::dict statistics(const Picture& picture) {
   const job::JobReport& report = picture.report();
   py::dict out;
@@ -268,6 +274,7 @@ void bind_picture(py::module_& m) {
       .def("statistics", &statistics)
       .def("array", &Picture::array)
       .def("srgb8", &srgb8)
+      .def("__reduce__", &refuse_pickling)
       .def("write", &write_picture, ReleaseGil());
 }
 

@@ -1,8 +1,10 @@
 # SPDX-License-Identifier: Apache-2.0
 """Rendered images as arrays, in files and in notebooks; interruption and other threads."""
 
+import copy
 import gc
 import os
+import pickle
 import signal
 import subprocess
 import sys
@@ -104,6 +106,11 @@ class Arrays(FolderTest):
             with self.assertRaises(ValueError):
                 self.picture.write("a.png", "b.exr", **keys)
         self.assertEqual(os.listdir(), [])
+
+    def test_pickling_names_the_remedy(self):
+        with self.assertRaisesRegex(TypeError, "a Picture cannot be pickled; pass arrays .* picture.beauty"):
+            pickle.dumps(self.picture)
+        self.assertTrue((copy.copy(self.picture).beauty == self.picture.beauty).all())
 
     def test_options_of_files(self):
         self.picture.write("a.exr")

@@ -62,6 +62,9 @@ def _named(data, columns, options):
     columns = dict(columns or {})
     if not isinstance(data, (str, bytes, os.PathLike)):
         arrays = {name: values for name, values in options.items() if name in _PER_PARTICLE and _is_array(name, values)}
+        radius = arrays.get("radius")
+        if radius is not None and np.asarray(radius).dtype.kind in "fi" and (np.asarray(radius) < 0).any():
+            raise ValueError(f"radius has values below 0, e.g. {np.min(radius)}; radii must be above 0")
         columns.update(arrays)
         options = {**options, **{name: name for name in arrays}}
     return columns, options
@@ -175,6 +178,8 @@ def _cell(edges):
         array = np.diag(array)
     if array.shape != (3, 3) or not np.isfinite(array).all():
         raise ValueError(f"cell must be finite numbers of shape (3, 3) or (3,), not {edges!r}")
+    if np.linalg.det(array) == 0:
+        raise ValueError(f"cell has no volume: its edges are {edges!r}")
     return _periodic_box(np.zeros(3), array)
 
 
