@@ -41,8 +41,8 @@ int main(int argc, char** argv) try {
   scene.image = {320, 180};
   scene.render.samples = argc > 2 ? std::atoi(argv[2]) : 64;
   scene.camera.look_from = {0, 5, 6};
-  scene.camera.look_at = {0, 0, 0};
-  scene.camera.vfov = 36;
+  scene.camera.look_at = {0, 0, 1};
+  scene.camera.vfov = 38;
   scene.background.bottom = {0.02, 0.02, 0.03};  // light from above, before a dark background
   scene.background.top = {1.6, 1.6, 1.6};
   scene.materials = {{"seed", orrery::scene::Plastic{}}};
