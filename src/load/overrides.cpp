@@ -59,7 +59,8 @@ Override::Element element_of(std::string_view text) {
     throw Fault{fmt::format("`{}` is not a list element", text), kOverrideExample};
   try {
     const toml::table name = toml::parse(std::string(text.substr(0, open)) + "=0");
-    if (name.begin()->second.is_integer()) out.list = name.begin()->first.str();
+    // A name that begins with # makes a comment, and an empty table.
+    if (!name.empty() && name.begin()->second.is_integer()) out.list = name.begin()->first.str();
   } catch (const toml::parse_error&) {  // no list has such a name
   }
   if (out.list.empty()) out.list = text.substr(0, open);
@@ -193,7 +194,9 @@ void read_override(const std::string& text, std::size_t inserted, Override& out)
       out.element = element_of(parts.list);
       name = prefix = fmt::format("{}[{}].", out.element->list, out.element->index);
     }
-    flatten(parse_override(text, parts, inserted, out), name, prefix, out.values);
+    const toml::table set = parse_override(text, parts, inserted, out);
+    if (set.empty()) throw Fault{"the key begins with #, as a comment does", kOverrideExample};
+    flatten(set, name, prefix, out.values);
   } catch (const Fault& found) {
     out.fault = found;
   } catch (const toml::parse_error& error) {

@@ -305,6 +305,8 @@ TEST(LoadOverrides, InvalidOverridesAreReported) {
   EXPECT_EQ(told("camera.vfov"), "--set: error: not of the form KEY=VALUE" + example);
   EXPECT_EQ(told(""), "--set: error: not of the form KEY=VALUE" + example);
   EXPECT_EQ(told("=3"), "--set: error: no key before the =" + example);
+  EXPECT_EQ(told(" #camera.vfov=3"), "--set: error: the key begins with #, as a comment does" + example);
+  EXPECT_EQ(told("sphere[0].#radius=3"), "--set: error: the key begins with #, as a comment does" + example);
   EXPECT_EQ(told("camera.vfov="), "--set: error: no value after the =" + example);
   EXPECT_EQ(told("camera.vfov=1\nimage.width=0"), "--set: error: an override must be one line" + example);
   EXPECT_EQ(told("a.b.c.d.e.f.g.h.i=1"), "--set: error: the key has more than 8 parts" + example);
@@ -325,6 +327,7 @@ TEST(LoadOverrides, ListElementsMustExist) {
   EXPECT_EQ(told("sphere[-1].radius=1").rfind("--set: error: `sphere[-1]` is not a list element", 0), 0u);
   EXPECT_EQ(told("sphere[0][1].radius=1").rfind("--set: error: `sphere[0][1]` is not a list element", 0), 0u);
   EXPECT_EQ(told("sphere[99999999999999999999].radius=1").rfind("--set: error: `sphere[9", 0), 0u);
+  EXPECT_EQ(told("#sphere[0].radius=1").rfind("--set: error: the scene has no list `#sphere`", 0), 0u);
   EXPECT_EQ(told("].radius=1").rfind("--set: error: `]` is not a list element", 0), 0u);
   EXPECT_EQ(told("sphere.radius=1"),
             "--set: error: `sphere` is not a table; name one of its elements, e.g. sphere[0].radius=2");
