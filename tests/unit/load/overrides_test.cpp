@@ -307,6 +307,9 @@ TEST(LoadOverrides, InvalidOverridesAreReported) {
   EXPECT_EQ(told("=3"), "--set: error: no key before the =" + example);
   EXPECT_EQ(told(" #camera.vfov=3"), "--set: error: the key begins with #, as a comment does" + example);
   EXPECT_EQ(told("sphere[0].#radius=3"), "--set: error: the key begins with #, as a comment does" + example);
+  EXPECT_EQ(told("\xEF\xBB\xBF"
+                 "camera.vfov=3"),
+            "--set: error: the key begins with a byte order mark" + example);
   EXPECT_EQ(told("camera.vfov="), "--set: error: no value after the =" + example);
   EXPECT_EQ(told("camera.vfov=1\nimage.width=0"), "--set: error: an override must be one line" + example);
   EXPECT_EQ(told("a.b.c.d.e.f.g.h.i=1"), "--set: error: the key has more than 8 parts" + example);
