@@ -52,13 +52,25 @@ void each_pixel(const PixelStatistics& s, TilePool& pool, Use use) {
   pool.run(static_cast<std::size_t>(s.height), row, [] { return false; });
 }
 
+/// Calls `use(begin, end)` for the indices of each row of the pixels within `reach`.
+template <class Use>
+void each_row(const PixelStatistics& s, int x, int y, int reach, Use use) {
+  const int left = std::max(x - reach, 0), right = std::min(x + reach, s.width - 1);
+  for (int v = std::max(y - reach, 0); v <= std::min(y + reach, s.height - 1); ++v)
+    use(s.at(left, v), s.at(right, v) + 1);
+}
+
+/// The index of a pixel, which is none of its neighbours; beyond all pixels if there are no others in the image.
+std::size_t excluded(const PixelStatistics& s, int x, int y) { return s.samples.size() == 1 ? 1 : s.at(x, y); }
+
 /// Calls `use(index)` for the other pixels within `reach`; for the pixel itself if there are no others in the image.
 template <class Use>
 void each_neighbour(const PixelStatistics& s, int x, int y, int reach, Use use) {
-  const bool is_only = s.samples.size() == 1;
-  for (int v = std::max(y - reach, 0); v <= std::min(y + reach, s.height - 1); ++v)
-    for (int u = std::max(x - reach, 0); u <= std::min(x + reach, s.width - 1); ++u)
-      if (u != x || v != y || is_only) use(s.at(u, v));
+  const std::size_t self = excluded(s, x, y);
+  each_row(s, x, y, reach, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t i = begin; i < end; ++i)
+      if (i != self) use(i);
+  });
 }
 
 float relative(float variance, float light) {
@@ -192,18 +204,27 @@ std::vector<float> errors_of_one_sample(const PixelStatistics& s, TilePool& pool
   });
   double mean = 0;
   for (const float e : own) mean += static_cast<double>(e) / static_cast<double>(own.size());
+  // For each pixel, how many before it have an error: in large parts of an image, such as a background, none has.
+  std::vector<std::uint32_t> noisy_before(own.size() + 1);
+  for (std::size_t i = 0; i < own.size(); ++i) noisy_before[i + 1] = noisy_before[i] + (own[i] > 0 ? 1 : 0);
 
   const auto around = [&](int x, int y) {
+    const std::size_t self = excluded(s, x, y);
     for (int reach = 1;; reach *= 2) {
       double sum = 0, squares = 0;
-      int count = 0;
-      each_neighbour(s, x, y, reach, [&](std::size_t i) {
-        const auto e = static_cast<double>(own[i]);
-        sum += e;
-        squares += e * e;
-        ++count;
+      std::size_t count = 0;
+      each_row(s, x, y, reach, [&](std::size_t begin, std::size_t end) {
+        count += end - begin;
+        if (noisy_before[begin] == noisy_before[end]) return;
+        for (std::size_t i = begin; i < end; ++i) {
+          if (i == self) continue;
+          const auto e = static_cast<double>(own[i]);
+          sum += e;
+          squares += e * e;
+        }
       });
-      if (sum > 0 && sum * sum >= kMinEffectiveCount * squares) return sum / count;
+      const auto others = static_cast<double>(self < own.size() ? count - 1 : count);
+      if (sum > 0 && sum * sum >= kMinEffectiveCount * squares) return sum / others;
       if (reach == kLargestReach) return sum > 0 ? mean : 0;  // any pixel may be another one of a few noisy ones
     }
   };
