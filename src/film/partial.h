@@ -56,7 +56,7 @@ struct Partial {
 
   Film film;          ///< sample sums; those of the first half in adaptive sampling
   Film second{0, 0};  ///< sample sums of the second half in adaptive sampling; else without pixels
-  /// Largest sample of each pixel in both halves, absolute value of the sum of the channels; else empty.
+  /// Largest sample of each pixel in both halves, sum of the channels; else empty.
   std::vector<float> largest;
   std::vector<std::uint32_t> counts;  ///< samples per pixel, row by row; with two halves, samples per half
   /// Target sample count of each pixel in the current pass; empty if it is the same for all.

@@ -35,7 +35,7 @@ HWY_INLINE void raise_largest(D d, hn::Mask<D> lanes, const Vec3<hn::Vec<D>>& li
   const auto is_valid = [&](hn::Vec<D> v) { return hn::Abs(v) <= set(d, kLargestSample); };
   const auto valid = hn::And(hn::And(is_valid(light.x), is_valid(light.y)), is_valid(light.z));
   HWY_ALIGN hn::TFromD<D> value[hn::MaxLanes(D())];
-  hn::Store(hn::Abs(light.x + light.y + light.z), d, value);
+  hn::Store(light.x + light.y + light.z, d, value);
   each_lane(d, hn::And(lanes, valid), [&](int i) {
     float& largest = tile.largest[index_of(pixel[i], scene, tile)];
     largest = std::max(largest, static_cast<float>(value[i]));

@@ -15,7 +15,7 @@ struct Tile {
   int width = 0, height = 0;
   std::uint32_t sample_begin = 0, sample_end = 0;
   PixelSum* sums = nullptr;  ///< sum of the upper left pixel
-  /// The pixels' largest samples (absolute value of the sum of the channels), laid out like the sums; null: not needed.
+  /// The pixels' largest samples (sum of the channels), laid out like the sums; null: not needed.
   float* largest = nullptr;
   std::int64_t row_stride = 0;         ///< distance from a pixel's sum to that of the pixel below, elements
   const PixelPlace* chosen = nullptr;  ///< the pixels to render, relative to the upper left one; null: all

@@ -29,7 +29,7 @@ struct PixelStatistics {
 
   /// Sets the statistics of pixel `i` from the sums of its halves, of `half` samples each.
   ///
-  /// `largest`  absolute value of the sum of the channels of its largest sample
+  /// `largest`  sum of the channels of its largest sample
   void set(std::size_t i, std::uint32_t half, const kernel::PixelSum& a, const kernel::PixelSum& b, float largest);
 
   std::size_t at(int x, int y) const {
