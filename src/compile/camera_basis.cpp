@@ -31,7 +31,7 @@ double focus_distance(const scene::Camera& camera) {
 
 double view_scale(const scene::Camera& camera) {
   constexpr int kMaxUnscaledExponent = 40;
-  if (camera.defocus_angle > 0 || camera.projection == scene::Projection::kOrthographic) return 1;
+  if (camera.projection == scene::Projection::kOrthographic) return 1;
   const int exponent = std::ilogb(focus_distance(camera));
   return std::abs(exponent) <= kMaxUnscaledExponent ? 1 : std::ldexp(1.0, -exponent);
 }

@@ -19,7 +19,9 @@ CameraAxes camera_axes(const scene::Camera& camera);
 double focus_distance(const scene::Camera& camera);
 
 /// Returns the power of two by which the view vectors of a camera are scaled: 1, unless their squares could overflow or
-/// underflow in single precision. Only their ratios matter without a lens.
+/// underflow in single precision. Only their ratios matter.
+///
+/// Domain     a camera without a lens
 double view_scale(const scene::Camera& camera);
 
 /// Returns the camera in the form in which the kernel generates rays.
