@@ -78,16 +78,14 @@ WITH_CAUSTICS = {"small-lamp": SMALL_LAMP, "hollow": SMALL_LAMP + sphere([0, 1, 
 def measure(program, scene, work, options, before, after):
     """Returns the time of a sample and the mean square error after a change of the settings, divided by those before."""
     size = ["--width", options.width, "--height", options.width * 9 // 16]
-    layer = ["--layer", "diffuse_indirect"] if options.caustics else []
-    if layer:
-        size += ["--layers", "diffuse"]
+    layers, layer = ((["--layers", "diffuse"], ["--layer", "diffuse_indirect"]) if options.caustics else ([], []))
     reference, picture = work / "reference.exr", work / "picture.exr"
-    render(program, scene, reference, [*size, "--samples", 64 * options.samples, "--set", "render.seed=999"])
+    render(program, scene, reference, [*size, *layers, "--samples", 64 * options.samples, "--set", "render.seed=999"])
     seconds, errors = {before: [], after: []}, {before: [], after: []}
     for seed in range(1, options.runs + 1):
         for setting in seconds:
             seconds[setting].append(render(program, scene, picture, [
-                *size, "--samples", options.samples, "--set", f"render.seed={seed}", "--set", setting]))
+                *size, *layers, "--samples", options.samples, "--set", f"render.seed={seed}", "--set", setting]))
             errors[setting].append(error(program, picture, reference, layer) ** 2)
     return (statistics.median(seconds[after]) / statistics.median(seconds[before]),
             statistics.fmean(errors[after]) / statistics.fmean(errors[before]))

@@ -186,7 +186,7 @@ void read_override(const std::string& text, std::size_t inserted, Override& out)
   std::iota(out.inserted.begin(), out.inserted.end(), std::size_t{0});
   try {
     if (text.find_first_of("\r\n") != std::string::npos) throw Fault{"an override must be one line", kOverrideExample};
-    // TOML skips it at the beginning of a file, but overrides have lines above.
+    // TOML allows one at the beginning of a file only, and an override is parsed below empty lines.
     if (text.starts_with("\xEF\xBB\xBF")) throw Fault{"the key begins with a byte order mark", kOverrideExample};
     if (too_deep_key(text).line > 0)
       throw Fault{fmt::format("the key has more than {} parts", kDeepestKey), kOverrideExample};

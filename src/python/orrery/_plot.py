@@ -62,9 +62,9 @@ def _named(data, columns, options):
     columns = dict(columns or {})
     if not isinstance(data, (str, bytes, os.PathLike)):
         arrays = {name: values for name, values in options.items() if name in _PER_PARTICLE and _is_array(name, values)}
-        radius = arrays.get("radius")
-        if radius is not None and np.asarray(radius).dtype.kind in "fi" and (np.asarray(radius) < 0).any():
-            raise ValueError(f"radius has values below 0, e.g. {np.min(radius)}; radii must be above 0")
+        radii = np.asarray(arrays.get("radius", []))
+        if radii.dtype.kind in "fi" and (radii < 0).any():
+            raise ValueError(f"radius has values below 0, e.g. {np.nanmin(radii)}; radii must be above 0")
         columns.update(arrays)
         options = {**options, **{name: name for name in arrays}}
     return columns, options
