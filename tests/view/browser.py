@@ -144,18 +144,22 @@ def play(browser):
 
 def main():
     scene = pathlib.Path(__file__).resolve().parents[2] / "scenes/book/final.toml"
-    program = Program("melt.dump", "--width", "320", "--height", "240", "--noise", "0.1")
+    program = Program("melt.dump", "--width", "320", "--height", "240", "--noise", "0.2")
     browser = Browser()
     try:
         look(browser, program, "melt", [("color-by", "speed"), ("map", "magma"), ("range", "0:100"), ("style", "night"),
                                         ("material", "plastic"), ("select", "type == 1"), ("radius-scale", "1.3"),
-                                        ("opacity", "0.5\ntype == 1: 0.3"), ("frame", "3"), ("size", "640 360")])
+                                        ("opacity", "0.5\ntype == 1: 0.3"), ("frame", "3")])
         choose(browser, "select", "nothing ==")
         settle(browser, problem="nothing")
         choose(browser, "select", "")
+        choose(browser, "opacity", "")
         settle(browser)
         pick(browser)
         play(browser)
+        choose(browser, "size", "640 360")
+        settle(browser)
+        check_command(browser, "melt-larger")
         first = browser.tabs()[0]
         browser.new_tab()
         browser.open(program.url)
