@@ -206,9 +206,8 @@ TileCounts render_tile(const SceneView& scene, const Tracer& tracer, const Tile&
 /// The instance for these options.
 template <class D, Precision kPrecision>
 RenderTile instance(bool full, bool records) {
-  if (full)
-    return records ? render_tile<D, Loop{kPrecision, true, true}> : render_tile<D, Loop{kPrecision, false, true}>;
-  return records ? render_tile<D, Loop{kPrecision, true, false}> : render_tile<D, Loop{kPrecision, false, false}>;
+  if (!full) return render_tile<D, Loop{kPrecision}>;
+  return records ? render_tile<D, Loop{kPrecision, true, true}> : render_tile<D, Loop{kPrecision, true, false}>;
 }
 
 }  // namespace orrery::kernel::HWY_NAMESPACE

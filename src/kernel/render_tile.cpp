@@ -6,7 +6,8 @@
 namespace orrery::kernel {
 
 RenderTile render_tile_function(const Features& features, Precision precision, bool records) {
-  const bool full = features.motion || features.lit || features.extended || features.rods || features.opacity;
+  const bool full =
+      records || features.motion || features.lit || features.extended || features.rods || features.opacity;
   switch (precision) {
     case Precision::kExact: return exact_tile_function(full, records);
     case Precision::kFast: return fast_tile_function(full, records);

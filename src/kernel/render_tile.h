@@ -52,13 +52,14 @@ enum class Lanes : std::uint8_t { kOne, kAll };
 
 /// Returns the path loop for the best enabled instruction set: the plain or the full one.
 ///
-/// `records`  false: a loop that ignores the tile's records, events and guides
+/// `records`  fills the tile's records, events and guides, by a full loop; false: ignores them
 /// Domain     the scene has these features
 /// Result     bit-identical images for any number of lanes, plain or full, with or without records, and on every
 ///            instruction set with fused multiply-add
 RenderTile render_tile_function(const Features& features, Precision precision, bool records);
 
-// The instances. Each precision is compiled separately, because they take most of the time to compile this room.
+// The instances; only full ones have records. Each precision is compiled separately, because they take most of the time
+// to compile this room.
 RenderTile exact_tile_function(bool full, bool records);
 RenderTile fast_tile_function(bool full, bool records);
 /// One lane, since Precision::kBook is for comparison with the book.

@@ -32,9 +32,9 @@ namespace orrery::kernel::HWY_NAMESPACE {
 /// Compile-time options of an instance of the path loop.
 struct Loop {
   Precision precision = Precision::kExact;
-  bool records = false;  ///< fills the tile's records, events and guides
   /// Renders all features; false: neither motion, lights, rods, opacity, textures, rough glass nor plastic.
   bool full = false;
+  bool records = false;  ///< fills the tile's records, events and guides; only in full loops
   bool plastic = false;  ///< scatters vectors in which a lane hit plastic; full loops have such a part
 };
 
@@ -472,13 +472,11 @@ class Shader {
   ///
   /// `groups`   light groups of the sources
   HWY_INLINE void add(const Arrivals<D>& at, hn::Mask<D> lanes, const Vec3<V>& light, Ids groups, Lobe unscattered) {
-    auto record = recorder(at);
-    record.event(d, lanes, light, at.history, groups, unscattered);
     if (kLoop.full) {
+      recorder(at).event(d, lanes, light, at.history, groups, unscattered);
       gain(d, lanes, light, index_of(at), stream_.lit);
     } else {
       deposit(d, lanes, light, at.pixels, at.samples, scene_, tile_, counts_);
-      record.light(d, lanes, light);
     }
   }
 
@@ -522,7 +520,7 @@ HWY_NOINLINE int shade_plastic(const SceneView& scene, const Tile& tile, std::ui
                                PathStreamOf<hn::TFromD<D>>& stream, TileCounts& counts,
                                const RayPacket<hn::TFromD<D>>& packet, const PathPayload<hn::TFromD<D>>& carried, int v,
                                int alive) {
-  constexpr Loop kPlastic{kLoop.precision, kLoop.records, kLoop.full, true};
+  constexpr Loop kPlastic{kLoop.precision, kLoop.full, kLoop.records, true};
   return Shader<D, kPlastic>(scene, tile, depth, stream, counts).sample_plastic_hits(packet, carried, v, alive);
 }
 

@@ -15,7 +15,7 @@ namespace orrery::test::HWY_NAMESPACE {
 namespace k = kernel::HWY_NAMESPACE;
 using One = hwy::HWY_NAMESPACE::FixedTag<double, 1>;
 
-kernel::RenderTile one_lane_instance() { return k::render_tile<One, k::Loop{kernel::Precision::kExact, false, false}>; }
+kernel::RenderTile one_lane_instance() { return k::render_tile<One, k::Loop{kernel::Precision::kExact}>; }
 
 }  // namespace orrery::test::HWY_NAMESPACE
 HWY_AFTER_NAMESPACE();
