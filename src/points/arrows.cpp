@@ -38,13 +38,6 @@ std::vector<HeadSphere> head() {
   return out;
 }
 
-template <class Array>
-void repeat(Array& values, std::size_t from) {
-  if (values.empty()) return;
-  const auto value = values[from];
-  values.insert(values.end(), kHeadSpheres, value);
-}
-
 }  // namespace
 
 void add_arrows(scene::Points& points, std::vector<std::uint32_t>* rows, KeyFaults& faults) {
@@ -71,11 +64,12 @@ void add_arrows(scene::Points& points, std::vector<std::uint32_t>* rows, KeyFaul
       points.centers.push_back(center + direction * (length - sphere.from_tip * size));
       points.radii.push_back(sphere.radius * size);
     }
-    repeat(points.materials, i);
-    repeat(points.colors, i);
-    repeat(points.opacities, i);
-    repeat(points.objects, i);
-    if (rows != nullptr) repeat(*rows, i);
+    const auto repeat = [i](auto& values) {
+      const auto value = values[i];
+      values.insert(values.end(), kHeadSpheres, value);
+    };
+    points.each_sphere_value(repeat);
+    if (rows != nullptr) repeat(*rows);
     ++points.arrow_count;
     points.arrow_spheres += kHeadSpheres;
   }

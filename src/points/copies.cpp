@@ -249,31 +249,18 @@ void clip(scene::Points& points, std::vector<std::uint32_t>* rows) {
   const auto holds = [](const std::optional<scene::Interval>& interval, double at) {
     return !interval || (at >= interval->low && at <= interval->high);
   };
-  const bool has_bonds = points.bond_count() > 0;
-  std::vector<std::uint32_t> new_index(has_bonds ? points.centers.size() : 0, CopyIndex::kNone);
-  std::size_t kept = 0;
-  for (std::size_t i = 0; i < points.centers.size(); ++i) {
-    const Vec3d c = points.centers[i];
-    if (!holds(x, c.x) || !holds(y, c.y) || !holds(z, c.z)) continue;
-    if (has_bonds) new_index[i] = static_cast<std::uint32_t>(kept);
-    points.centers.set(kept, c);
-    points.radii.set(kept, points.radii[i]);
-    if (!points.materials.empty()) points.materials[kept] = points.materials[i];
-    if (!points.colors.empty()) points.colors[kept] = points.colors[i];
-    if (!points.opacities.empty()) points.opacities[kept] = points.opacities[i];
-    if (!points.objects.empty()) points.objects[kept] = points.objects[i];
-    if (!points.sphere_vectors.empty()) points.sphere_vectors.set(kept, points.sphere_vectors[i]);
-    if (rows != nullptr) (*rows)[kept] = (*rows)[i];
-    ++kept;
-  }
-  points.centers.resize(kept);
-  points.radii.resize(kept);
-  if (!points.materials.empty()) points.materials.resize(kept);
-  if (!points.colors.empty()) points.colors.resize(kept);
-  if (!points.opacities.empty()) points.opacities.resize(kept);
-  if (!points.objects.empty()) points.objects.resize(kept);
-  if (!points.sphere_vectors.empty()) points.sphere_vectors.resize(kept);
-  if (rows != nullptr) rows->resize(kept);
+  const std::size_t count = points.centers.size();
+  std::vector<std::uint32_t> kept;
+  for (std::uint32_t i = 0; i < count; ++i)
+    if (const Vec3d c = points.centers[i]; holds(x, c.x) && holds(y, c.y) && holds(z, c.z)) kept.push_back(i);
+  keep(points.centers, kept);
+  keep(points.radii, kept);
+  points.each_sphere_value([&](auto& values) { keep(values, kept); });
+  if (!points.sphere_vectors.empty()) keep(points.sphere_vectors, kept);
+  if (rows != nullptr) keep(*rows, kept);
+  if (points.bond_count() == 0) return;
+  std::vector<std::uint32_t> new_index(count, CopyIndex::kNone);
+  for (std::uint32_t i = 0; i < kept.size(); ++i) new_index[kept[i]] = i;
   const auto renumber = [&](std::uint32_t& a, std::uint32_t& b) {
     a = new_index[a];
     b = new_index[b];
@@ -304,10 +291,7 @@ void make_copies(const std::vector<Copy>& copies, const Labels& chains, scene::P
     return rounds ? in_single_precision(center) : center;
   });
   spheres.repeat(points.radii);
-  spheres.repeat(points.materials);
-  spheres.repeat(points.colors);
-  spheres.repeat(points.opacities);
-  spheres.repeat(points.objects);
+  points.each_sphere_value([&](auto& values) { spheres.repeat(values); });
   spheres.repeat(points.sphere_vectors, [&](Vec3d vector, std::size_t copy) {
     return turned(placement, turned(copies[copy].transform, vector));
   });

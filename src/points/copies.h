@@ -82,6 +82,17 @@ class CopyIndex {
 void make_copies(const std::vector<Copy>& copies, const Labels& chains, scene::Points& points,
                  std::vector<std::uint32_t>* rows = nullptr);
 
+/// Keeps the values at these places, which ascend.
+template <class Array>
+void keep(Array& values, const std::vector<std::uint32_t>& places) {
+  for (std::size_t i = 0; i < places.size(); ++i)
+    if constexpr (requires { values.set(i, values[i]); })
+      values.set(i, values[places[i]]);
+    else
+      values[i] = values[places[i]];
+  values.resize(places.size());
+}
+
 /// Removes the spheres whose centres are outside `points.clip`, their row numbers, and their bonds.
 void clip(scene::Points& points, std::vector<std::uint32_t>* rows = nullptr);
 

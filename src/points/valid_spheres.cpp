@@ -87,20 +87,6 @@ class Checks {
   KeyFaults& faults_;
 };
 
-/// Keeps the listed rows with their centres and radii.
-Rows kept(const Rows& rows, const std::vector<std::uint32_t>& good, scene::PointArray& centers,
-          scene::NumberArray& radii) {
-  std::vector<std::uint32_t> list;
-  for (std::size_t i = 0; i < good.size(); ++i) {
-    list.push_back(static_cast<std::uint32_t>(rows[good[i]]));
-    centers.set(i, centers[good[i]]);
-    radii.set(i, radii[good[i]]);
-  }
-  centers.resize(good.size());
-  radii.resize(good.size());
-  return Rows(std::move(list));
-}
-
 }  // namespace
 
 void keep_valid(const scene::PointsKeys& points, bool may_be_hollow, Rows& rows, scene::PointArray& centers,
@@ -109,7 +95,12 @@ void keep_valid(const scene::PointsKeys& points, bool may_be_hollow, Rows& rows,
   if (checks.are_good()) return;
   checks.check_domain(rows);
   const std::vector<std::uint32_t> good = checks.valid_rows(rows);
-  if (!faults.has_errors()) rows = kept(rows, good, centers, radii);
+  if (faults.has_errors()) return;
+  std::vector<std::uint32_t> list = rows.list();
+  keep(list, good);
+  keep(centers, good);
+  keep(radii, good);
+  rows = Rows(std::move(list));
 }
 
 }  // namespace orrery::points

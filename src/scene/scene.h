@@ -375,6 +375,18 @@ struct Points : PointsKeys, PointsSpheres, PointsFindings {
   /// Number of rods of the bonds and arrows.
   std::size_t bond_count() const { return bond_pairs.size() + bond_stubs.size(); }
   std::size_t bytes() const { return PointsSpheres::bytes() + objects.size() * sizeof(objects[0]); }
+  /// Calls `f` with each array, besides centres, radii and vectors, that has a value of each sphere: those that are not
+  /// empty. Before `objects` has those of stubs.
+  template <class F>
+  void each_sphere_value(F f) {
+    const auto visit = [&](auto& values) {
+      if (!values.empty()) f(values);
+    };
+    visit(materials);
+    visit(colors);
+    visit(opacities);
+    visit(objects);
+  }
   /// Frees the memory of the spheres and bonds.
   void release_spheres() { static_cast<PointsSpheres&>(*this) = {}; }
   /// Keeps the keys alone.
