@@ -4,6 +4,7 @@
 #include <fmt/core.h>
 
 #include "base/text.h"
+#include "data/columns.h"
 #include "data/elements.h"
 #include "points/sources.h"
 #include "scene/value_text.h"
@@ -85,7 +86,7 @@ RadiusSource radius_source(const data::FrameInfo& info, const scene::PointsRadiu
         ".radius",
         "the file has no radius; set `radius` to a number, or to a column, an element table or types, e.g. `radius "
         "= { column = \"size\", scale = 0.5 }`; its columns are " +
-            column_names(info));
+            data::listed(info.columns));
   }
   return out;
 }

@@ -16,6 +16,7 @@
 #include "base/parallel.h"
 #include "base/stop_point.h"
 #include "base/text.h"
+#include "data/columns.h"
 #include "scene/value_text.h"
 
 namespace orrery::points {
@@ -226,20 +227,10 @@ std::string row_name(const scene::PointsKeys& points, std::size_t row) {
   return fmt::format("row {} of {}", row + 1, points.file.string());
 }
 
-std::string column_names(const data::FrameInfo& info) {
-  constexpr std::size_t kMaxNamed = 30;
-  std::vector<std::string> names;
-  for (const data::ColumnInfo& c : info.columns)
-    if (names.size() < kMaxNamed) names.push_back(c.name);
-  std::string out = base::joined(names);
-  if (info.columns.size() > kMaxNamed) out += fmt::format(" ({} more)", info.columns.size() - kMaxNamed);
-  return out;
-}
-
 std::string require_role(const data::FrameInfo& info, const std::string& role, const char* meaning, const char* part,
                          KeyFaults& faults) {
   if (role.empty())
-    faults.error(part, fmt::format("the file has no {}; its columns are {}", meaning, column_names(info)));
+    faults.error(part, fmt::format("the file has no {}; its columns are {}", meaning, data::listed(info.columns)));
   return role;
 }
 
@@ -254,7 +245,7 @@ bool require_column(const data::FrameInfo& info, const std::string& name, bool i
   for (const data::ColumnInfo& c : info.columns) names.push_back(c.name);
   const std::string suggestion = base::did_you_mean(name, names);
   faults.error(part, fmt::format("the file has no column `{}`; {}its columns are {}", name,
-                                 suggestion.empty() ? "" : suggestion + " ", column_names(info)));
+                                 suggestion.empty() ? "" : suggestion + " ", data::listed(info.columns)));
   return false;
 }
 

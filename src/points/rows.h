@@ -109,9 +109,6 @@ bool require_column(const data::FrameInfo& info, const std::string& name, bool i
 std::string require_role(const data::FrameInfo& info, const std::string& role, const char* meaning, const char* part,
                          KeyFaults& faults);
 
-/// Returns "x, y, z, ... (3 more)".
-std::string column_names(const data::FrameInfo& info);
-
 /// Returns rows ascending by particle id; rows with equal ids keep their order, and those without an id are last.
 ///
 /// `selected`  ascending; empty: all rows
