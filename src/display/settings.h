@@ -20,6 +20,8 @@ struct Settings {
   std::optional<double> exposure;            ///< stops; empty: none
 
   double stops() const { return exposure.value_or(0); }
+  /// Takes what is empty from others, and their working space.
+  void complete(const Settings& others);
 };
 
 /// The resolved display transform.

@@ -132,6 +132,13 @@ View find_view(const Config& source, const Settings& settings) {
   return out;
 }
 
+void Settings::complete(const Settings& others) {
+  for (std::string Settings::*const name : {&Settings::config, &Settings::display, &Settings::view, &Settings::look})
+    if ((this->*name).empty()) this->*name = others.*name;
+  if (!exposure) exposure = others.exposure;
+  working_space = others.working_space;
+}
+
 LookUp look_up(const Settings& settings, const std::string& space) {
   LookUp out;
   Config config;

@@ -45,16 +45,7 @@ void add_config_id(const std::string& config_id, image::Header& header) {
 }  // namespace
 
 display::Settings display_of(const Rendering& rendering, display::Settings display) {
-  const display::Settings& own = rendering.display;
-  const auto otherwise = [](std::string& name, const std::string& scene) {
-    if (name.empty()) name = scene;
-  };
-  otherwise(display.config, own.config);
-  otherwise(display.display, own.display);
-  otherwise(display.view, own.view);
-  otherwise(display.look, own.look);
-  if (!display.exposure) display.exposure = own.exposure;
-  display.working_space = own.working_space;
+  display.complete(rendering.display);
   return display;
 }
 

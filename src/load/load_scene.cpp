@@ -19,15 +19,8 @@ namespace {
 
 display::Settings settings_of(const SceneRequest& request, const scene::Color& color) {
   display::Settings out = request.display;
-  const auto otherwise = [](std::string& option, const std::string& key) {
-    if (option.empty()) option = key;
-  };
-  otherwise(out.config, config_of(request.source.file, color));
-  otherwise(out.display, color.display);
-  otherwise(out.view, color.view);
-  otherwise(out.look, color.look);
-  if (!out.exposure) out.exposure = color.exposure;
-  out.working_space = color.working_space();
+  out.complete({config_of(request.source.file, color), color.working_space(), color.display, color.view, color.look,
+                color.exposure});
   return out;
 }
 
