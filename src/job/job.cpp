@@ -59,7 +59,7 @@ std::string missed_target(const Job& job, const render::Statistics& statistics) 
   return out;
 }
 
-/// One run of a job. The methods are in the order in which run() calls them.
+/// One run of a job. The methods are in the order in which they are first called.
 class Run {
  public:
   /// `report`   receives what is known so far, also if the job fails
@@ -104,6 +104,10 @@ class Run {
   }
   void warn(const base::Diagnostic& diagnostic) const {
     if (job_.hooks.on_warning) job_.hooks.on_warning(diagnostic);
+  }
+
+  void prepare(const char* phase, double fraction = 0) const {
+    if (job_.hooks.on_preparation) job_.hooks.on_preparation(phase, fraction);
   }
 
   /// Reads the scene, and checks it against the output formats.
@@ -151,6 +155,22 @@ class Run {
     report_.rods = compiled().rod_count();
   }
 
+  /// The layers that an output of the job holds; others are not computed.
+  void choose_layers() {
+    layers_ = job::choose_layers(scene(), compiled());
+    film::LayerRequest& request = layers_.request;
+    request.deep = !job_.outputs.deep.empty();
+    request.halves = request.halves || job_.denoise;
+    image::check_lossless(film::planes_of(request), job_.outputs.exr);
+    check_layers(job_, scene());
+    if (job_.outputs.has_exr() || is_kept()) return;
+    Layers none;
+    none.request.coverage = request.coverage;
+    none.request.deep = request.deep;
+    none.request.halves = job_.denoise;
+    layers_ = std::move(none);
+  }
+
   /// The image to annotate.
   annotation::View annotated_view() const {
     const kernel::Camera& camera = compiled().camera;
@@ -170,32 +190,6 @@ class Run {
                        along(camera.down) / scale + camera.half_height};
     };
     return {compiled().width, compiled().height, job_.scene.frame, job_.scene.file.parent_path(), project};
-  }
-
-  /// Completes the drawing over the image, and adds it to EXR files as a layer.
-  void annotate(film::Picture& picture) {
-    if (drawing_.is_empty()) return;
-    if (drawing_.outline_px > 0)
-      if (accel::Accel* const accel = build(); accel != nullptr)
-        drawing_.lines = render::outlines(compiled(), *accel, drawing_.outline_px, settings_.threads);
-    const auto same = [](const math::Vec3d& color) { return color; };
-    if (job_.outputs.has_exr() || is_kept()) annotation::add_layer(annotation::draw(drawing_, same), picture);
-  }
-
-  /// The layers that an output of the job holds; others are not computed.
-  void choose_layers() {
-    layers_ = job::choose_layers(scene(), compiled());
-    film::LayerRequest& request = layers_.request;
-    request.deep = !job_.outputs.deep.empty();
-    request.halves = request.halves || job_.denoise;
-    image::check_lossless(film::planes_of(request), job_.outputs.exr);
-    check_layers(job_, scene());
-    if (job_.outputs.has_exr() || is_kept()) return;
-    Layers none;
-    none.request.coverage = request.coverage;
-    none.request.deep = request.deep;
-    none.request.halves = job_.denoise;
-    layers_ = std::move(none);
   }
 
   /// Opens what rendering needs.
@@ -249,10 +243,6 @@ class Run {
     return from.is_adaptive() == settings_.sampling.is_adaptive() &&
            from.layers.empty() != settings_.layers.records() && from.halves.empty() != settings_.layers.guides() &&
            from.has_known_spheres(compiled().sphere_materials.size());
-  }
-
-  void prepare(const char* phase, double fraction = 0) const {
-    if (job_.hooks.on_preparation) job_.hooks.on_preparation(phase, fraction);
   }
 
   /// Builds the BVH, unless the prepared scene has one.
@@ -338,6 +328,16 @@ class Run {
       if (!result.partial) throw;  // of a merge: the shards still exist
       save_samples(error, *result.partial);
     }
+  }
+
+  /// Completes the drawing over the image, and adds it to EXR files as a layer.
+  void annotate(film::Picture& picture) {
+    if (drawing_.is_empty()) return;
+    if (drawing_.outline_px > 0)
+      if (accel::Accel* const accel = build(); accel != nullptr)
+        drawing_.lines = render::outlines(compiled(), *accel, drawing_.outline_px, settings_.threads);
+    const auto same = [](const math::Vec3d& color) { return color; };
+    if (job_.outputs.has_exr() || is_kept()) annotation::add_layer(annotation::draw(drawing_, same), picture);
   }
 
   /// Keeps the image in memory.
