@@ -91,18 +91,20 @@ struct NewFile {
   int slot = -1;
 };
 
-std::string random_letters(std::size_t count) {
+/// Length of the random part of a temporary name.
+constexpr std::size_t kRandomLetters = 8;
+
+std::string random_letters() {
   constexpr std::string_view kLetters = "abcdefghijklmnopqrstuvwxyz0123456789";
   std::random_device random;
   std::uniform_int_distribution<std::size_t> letter(0, kLetters.size() - 1);
   std::string out;
-  while (out.size() < count) out += kLetters[letter(random)];
+  while (out.size() < kRandomLetters) out += kLetters[letter(random)];
   return out;
 }
 
 /// Creates a file in the directory of `target`; messages name it `path`.
 NewFile create_beside(const std::filesystem::path& path, const std::filesystem::path& target) {
-  constexpr std::size_t kLetters = 8;
   constexpr int kMaxAttempts = 16;
   std::error_code ignored;
   const std::filesystem::path directory = folder_of(target);
@@ -112,11 +114,11 @@ NewFile create_beside(const std::filesystem::path& path, const std::filesystem::
   // If the file system accepts a name, it must also accept the temporary name.
   const long limit = ::pathconf(directory.c_str(), _PC_NAME_MAX);
   const std::size_t longest = limit > 0 ? static_cast<std::size_t>(limit) : kLongestFileName;
-  const std::size_t room = longest - std::min(longest, 2 + kLetters);
+  const std::size_t room = longest - std::min(longest, 2 + kRandomLetters);
   const std::string stem(utf8_prefix(target.filename().string(), room));
   for (int i = 0; i < kMaxAttempts; ++i) {
     NewFile file;
-    file.name = (directory / ("." + stem + "." + random_letters(kLetters))).string();
+    file.name = (directory / ("." + stem + "." + random_letters())).string();
     // The slot is taken first: a signal right after the file is created must find its name.
     file.slot = take_slot(file.name);
     const int descriptor = ::open(file.name.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0666);

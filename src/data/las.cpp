@@ -166,7 +166,7 @@ class LasFile final : public SingleFrame {
     // The specification demands 16 bits, but many files have colours of 8 bits.
     if (!colors_are_described_ && find("red") != nullptr) {
       info_.roles.rgb = {"red", "green", "blue"};
-      info_.roles.rgb_maximum = has_colors_above(255) ? 65535 : 255;
+      info_.roles.rgb_maximum = has_16_bit_colors() ? 65535 : 255;
     }
     colors_are_described_ = true;
     return info_;
@@ -214,8 +214,8 @@ class LasFile final : public SingleFrame {
     return raw;
   }
 
-  /// Reads colours until one is larger than `limit`.
-  bool has_colors_above(std::uint16_t limit) {
+  /// Reads colours until one needs more than 8 bits.
+  bool has_16_bit_colors() const {
     constexpr std::uint64_t kRowsAtATime = 1 << 18;
     const std::vector<RecordField> fields = {find("red")->field, find("green")->field, find("blue")->field};
     for (std::uint64_t first = 0; first < header_.points.rows; first += kRowsAtATime) {
@@ -224,7 +224,7 @@ class LasFile final : public SingleFrame {
       some.rows = std::min(kRowsAtATime, header_.points.rows - first);
       for (const Values& values : read(some, fields)) {
         const auto& column = std::get<std::vector<std::uint16_t>>(values);
-        if (std::any_of(column.begin(), column.end(), [limit](std::uint16_t v) { return v > limit; })) return true;
+        if (std::any_of(column.begin(), column.end(), [](std::uint16_t v) { return v > 255; })) return true;
       }
     }
     return false;

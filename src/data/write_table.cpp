@@ -173,12 +173,14 @@ void append_quoted(std::string& out, std::string_view text) {
   out += '"';
 }
 
-/// Refuses strings with line breaks.
-void check_csv_texts(const base::OutputFile& out, const Column& column, std::string_view line_ends) {
+bool has_line_end(const std::string& text) { return text.find_first_of("\n\r") != std::string::npos; }
+
+/// Refuses strings with line ends.
+void check_csv_texts(const base::OutputFile& out, const Column& column) {
   const Words* const words = words_in(column);
   if (words == nullptr) return;
   for (const std::string& word : words->words)
-    if (word.find_first_of(line_ends) != std::string::npos)
+    if (has_line_end(word))
       refuse_to_write(out.path(),
                       fmt::format("CSV cannot store the text {} of column {}; write .npy, or leave the column out",
                                   quoted_word(word), quoted_word(column.name)));
@@ -341,11 +343,10 @@ void write_npy_table(base::OutputFile& out, const Table& table) {
 }
 
 void write_csv_table(base::OutputFile& out, const Table& table) {
-  constexpr std::string_view kLineEnds = "\n\r";
   std::string& text = out.buffer();
   for (const Column& column : table.columns) {
-    check_csv_texts(out, column, kLineEnds);
-    if (column.name.find_first_of(kLineEnds) != std::string::npos)
+    check_csv_texts(out, column);
+    if (has_line_end(column.name))
       refuse_to_write(out.path(),
                       fmt::format("the name of column {} has a line end; rename it", quoted_word(column.name)));
     if (!text.empty()) text += ',';
