@@ -26,7 +26,7 @@ class Film {
   /// Creates the folder of the frames.
   ///
   /// Errors     base::Error(kCannotCreate) if the program ffmpeg is not installed, or a file or folder cannot be
-  /// created
+  ///            created
   Film(std::filesystem::path file, double fps, bool keeps_frames);
   ~Film();
   Film(const Film&) = delete;

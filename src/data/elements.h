@@ -32,8 +32,8 @@ struct Element {
 /// Returns the element with an atomic number; null unless 1 <= number <= 118.
 const Element* find_element(int number);
 
-/// Returns the element with a symbol, ignoring case and surrounding spaces, or with an atomic number as text: "Fe", "
-/// FE", "26". D is hydrogen.
+/// Returns the element with a symbol, ignoring case and surrounding spaces, or with an atomic number as text: "fe" and
+/// "26" are iron. D is hydrogen.
 ///
 /// Result     null if there is none
 const Element* find_element(std::string_view word);

@@ -42,8 +42,7 @@ struct Commands {
 /// Reads and checks the scene, and composes the commands.
 ///
 /// Errors     those of jobs_of and load_scene; base::Error(kUsage) for settings that cannot be combined with shards,
-/// and
-///            for words that the engine would not pass on unchanged
+///            and for words that the engine would not pass on unchanged
 Commands commands_of(const Submission& submission);
 
 /// The whole job in the engine's format, as readable text.
