@@ -10,6 +10,7 @@
 #include "base/error.h"
 #include "base/text.h"
 #include "plot/range.h"
+#include "points/bonds.h"
 #include "points/color_map.h"
 #include "scene/value_text.h"
 
@@ -91,25 +92,31 @@ class Appearance {
     }
   }
 
-  /// Sticks have one radius, that of spheres and bonds.
+  /// Sticks have one radius, that of spheres and bonds. The radius of bonds between spheres with a column of radii is
+  /// that between all of them, whatever is selected; of sticks, their mean radius.
   void choose_bonds() {
     scene::PointsBonds& bonds = points_.bonds;
     bonds.are_drawn = options_.bonds.value_or(options_.representation != Representation::kSpheres);
     if (bonds.are_drawn && options_.representation == Representation::kSticks) bonds.radius = points_.radius.value;
+    const scene::PointsRadius& radius = points_.radius;
+    const bool varies = !radius.value && radius.element.empty() && radius.types.empty();
+    if (!bonds.are_drawn || bonds.radius || !varies || !info_.roles.element.empty()) return;
+    if (const double mean = data_.mean_radius(points_); mean > 0)
+      bonds.radius = rounded(
+          options_.representation == Representation::kSticks ? mean : points::bond_radius(info_, bonds, {mean}));
   }
 
   /// Arrows of a root mean square vector are somewhat longer than the distance to the nearest neighbour. All frames
-  /// have one scale.
+  /// and selections have one scale, as they have one radius.
   void choose_arrows() {
     scene::PointsVectors& vectors = points_.vectors;
     if (vectors.columns.empty()) return;
     if (options_.material == "glass")
       base::refuse("--vectors: arrows of glass are not supported; use another --material");
-    const scene::Points points = data_.load(data_.described_frame(), points_).points;
-    const double spacing = data_.spacing(points_);
+    const double spacing = data_.spacing(points_), rms_vector = data_.rms_vector(points_);
     if (spacing > 0 && !points_.bonds.are_drawn) vectors.radius = rounded(kShaftRadius * spacing);
-    if (!(spacing > 0 && points.rms_vector > 0)) return;
-    vectors.scale = rounded(kArrowLength * spacing / points.rms_vector);
+    if (!(spacing > 0 && rms_vector > 0)) return;
+    vectors.scale = rounded(kArrowLength * spacing / rms_vector);
     chose(fmt::format("arrows {} times {}", number_text(vectors.scale), base::joined(vectors.columns)),
           fmt::format("the root mean square one is {} times the median distance to the nearest neighbour",
                       number_text(kArrowLength)));

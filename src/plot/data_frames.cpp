@@ -2,6 +2,7 @@
 #include "plot/data_frames.h"
 
 #include <algorithm>
+#include <cmath>
 #include <numeric>
 
 #include <fmt/core.h>
@@ -12,6 +13,7 @@
 #include "points/derived.h"
 #include "points/selection.h"
 #include "points/spacing.h"
+#include "scene/limits.h"
 
 namespace orrery::plot {
 
@@ -138,21 +140,41 @@ scene::PointsKeys everything(const scene::PointsKeys& keys) {
 
 }  // namespace
 
-double DataFrames::spacing(const scene::PointsKeys& keys) const {
-  const scene::PointsKeys all_particles = everything(keys);
-  const auto of_frame = [&](int frame) {
-    return points::median_neighbor_distance(load(frame, all_particles).points.centers);
-  };
-  double distance = 0;
+double DataFrames::first_measure(const std::function<double(int frame)>& measure) const {
+  double value = 0;
   if (is_sequence_) {
     for (const int frame : all())
-      if (distance == 0) distance = of_frame(frame);
-    return distance;
+      if (value == 0) value = measure(frame);
+    return value;
   }
-  distance = of_frame(1);
+  value = measure(1);
   // Frames are counted only if that is necessary: it may read the whole file.
-  for (int frame = 2; distance == 0 && frame <= file_->frame_count(); ++frame) distance = of_frame(frame);
-  return distance;
+  for (int frame = 2; value == 0 && frame <= file_->frame_count(); ++frame) value = measure(frame);
+  return value;
+}
+
+double DataFrames::spacing(const scene::PointsKeys& keys) const {
+  const scene::PointsKeys all_particles = everything(keys);
+  return first_measure(
+      [&](int frame) { return points::median_neighbor_distance(load(frame, all_particles).points.centers); });
+}
+
+double DataFrames::mean_radius(const scene::PointsKeys& keys) const {
+  scene::PointsKeys all_particles = everything(keys);
+  all_particles.radius = keys.radius;
+  return first_measure([&](int frame) {
+    const scene::NumberArray radii = load(frame, all_particles).points.radii;
+    double sum = 0;
+    for (const double radius : radii) sum += std::abs(radius);
+    return radii.empty() ? 0 : sum / static_cast<double>(radii.size());
+  });
+}
+
+double DataFrames::rms_vector(const scene::PointsKeys& keys) const {
+  scene::PointsKeys all_particles = everything(keys);
+  all_particles.vectors.columns = keys.vectors.columns;
+  all_particles.vectors.radius = scene::kLargestLength;  // no vector is so long that an arrow is made
+  return first_measure([&](int frame) { return load(frame, all_particles).points.rms_vector; });
 }
 
 bool DataFrames::has_one_element(const scene::PointsKeys& keys) const {

@@ -84,6 +84,14 @@ class DataFrames {
   ///
   /// `keys`     the scene's keys
   double spacing(const scene::PointsKeys& keys) const;
+  /// The mean radius of the spheres, measured as spacing(); 0: there are none.
+  ///
+  /// Errors     as load()
+  double mean_radius(const scene::PointsKeys& keys) const;
+  /// The root mean square length of the vectors, measured as spacing(); 0: all are zero.
+  ///
+  /// Errors     as load()
+  double rms_vector(const scene::PointsKeys& keys) const;
   /// Whether all particles of the first frame are of one element, as those of a trace of C-alpha atoms.
   ///
   /// Errors     as load()
@@ -91,6 +99,8 @@ class DataFrames {
 
  private:
   void require_frames() const;
+  /// What `measure` returns for the first frame for which that is not 0; 0: for none.
+  double first_measure(const std::function<double(int frame)>& measure) const;
 
   const DataOptions& options_;
   std::filesystem::path folder_;

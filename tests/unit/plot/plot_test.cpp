@@ -290,6 +290,43 @@ TEST_F(PlotPlot, ArrowsAreAsLongAsTheirNeighborsAreFarInAllFrames) {
   EXPECT_EQ(choices().find("spheres:"), std::string::npos) << "those of heads are not counted: " << choices();
 }
 
+TEST_F(PlotPlot, ArrowsHaveOneScaleWhateverIsSelected) {
+  options.points.vectors.columns = {"vx", "vy", "vz"};
+  const auto frame = [](const char* velocities) {
+    return "ITEM: TIMESTEP\n0\nITEM: NUMBER OF ATOMS\n3\nITEM: BOX BOUNDS pp pp pp\n0 9\n0 9\n0 9\n"
+           "ITEM: ATOMS id type x y z vx vy vz\n" +
+           std::string(velocities);
+  };
+  make("a.dump", frame("1 1 1 1 1 1 0 0\n2 1 3 1 1 0 0 1\n3 2 5 1 1 20 0 0\n") +
+                     frame("1 1 1 1 1 3 0 0\n2 1 3 1 1 0 0 3\n3 2 5 1 1 3 0 0\n"));
+  const double scale = read().points[0].vectors.scale;
+  options.points.select = "type == 1";
+  make();
+  EXPECT_EQ(read().points[0].vectors.scale, scale);
+  options.points.select.clear();
+  options.slices = {{0, 4}};
+  make();
+  EXPECT_EQ(read().points[0].vectors.scale, scale);
+  options.slices.clear();
+  options.points.frame = 2;
+  make();
+  EXPECT_EQ(read().points[0].vectors.scale, scale);
+}
+
+TEST_F(PlotPlot, BondsBetweenRadiiOfAColumnHaveOneRadiusWhateverIsSelected) {
+  options.points.bonds.length = 1.5;
+  for (const auto& [representation, radius] :
+       {std::pair{Representation::kBallAndStick, 0.3}, std::pair{Representation::kSticks, 0.6}}) {
+    options.representation = representation;
+    options.points.select.clear();
+    make("a.csv", "x,y,z,radius,kind\n0,0,0,3,1\n1,0,0,3,1\n2,0,0,1,2\n3,0,0,1,2\n");
+    EXPECT_EQ(read().points[0].bond_radius, radius);
+    options.points.select = "kind == 2";
+    make();
+    EXPECT_EQ(read().points[0].bond_radius, radius);
+  }
+}
+
 TEST_F(PlotPlot, TheBoxIsTwelveRodsAndTheAxesAreOutsideIt) {
   options.box = options.axes = true;
   options.points.replicate = {2, 1, 1};
