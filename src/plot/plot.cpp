@@ -48,6 +48,13 @@ std::optional<double> vfov_of(const PlotOptions& options) {
   return vfov && *vfov > 0 && *vfov < 180 ? *vfov : scene::Camera().vfov;
 }
 
+/// A colour map or a font: the name of a file in the user's folder becomes relative to the scene's; other names stay.
+std::string from_scene(const std::string& name, const std::filesystem::path& scene_file) {
+  if (name.find_first_of("./") == std::string::npos) return name;
+  const std::filesystem::path folder = scene_file.parent_path();
+  return std::filesystem::proximate(name, folder.empty() ? "." : folder).string();
+}
+
 /// Scenes are TOML, which is UTF-8.
 void require_utf8(const std::string& text) {
   for (std::size_t at = 0, length = 1; at < text.size(); at += std::max<std::size_t>(length, 1)) {
@@ -76,9 +83,7 @@ class PlotMaker {
     out_.points = options.points;
     out_.points.material_column = "";  // the scene of a plot has one material
     out_.points.file = folder.empty() ? options.file : std::filesystem::proximate(options.file, folder);
-    // A colour map in a file is relative to the user's folder; in the scene it is relative to the scene's.
-    if (std::string& map = out_.points.color.map; options_.has_map && map.find_first_of("./") != std::string::npos)
-      map = std::filesystem::proximate(map, folder.empty() ? "." : folder).string();
+    if (std::string& map = out_.points.color.map; options_.has_map) map = from_scene(map, options.scene_file);
     out_.frames = data_.numbers();
     const scene::PointsKeys& points = out_.points;
     for (const std::string& text :
@@ -251,9 +256,7 @@ class PlotMaker {
   scene::Annotation annotation_of(const scene::Camera& camera) const {
     constexpr double kLargestShare = 0.2;
     scene::Annotation out = options_.annotation;
-    const std::filesystem::path folder = options_.scene_file.parent_path();
-    if (out.font.string().find_first_of("./") != std::string::npos)
-      out.font = std::filesystem::proximate(out.font, folder.empty() ? "." : folder);
+    out.font = from_scene(out.font.string(), options_.scene_file);
     if (out.scale_bar == 0) {
       const double most = kLargestShare * camera.width.value_or(1), power = std::pow(10, std::floor(std::log10(most)));
       const double digit = std::floor(most / power);
