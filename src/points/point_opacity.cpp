@@ -66,13 +66,18 @@ std::vector<float> opacities_of(const data::Table& table, const Rows& rows, cons
   const scene::PointsOpacity& opacity = points.opacity;
   std::vector<float> out(rows.size(), kOfMaterial);
   std::vector<std::uint8_t> has_rule(rows.size());
-  for (const OpacitySource::Rule& rule : source.rules) {
+  for (std::size_t r = 0; r < source.rules.size(); ++r) {
+    const OpacitySource::Rule& rule = source.rules[r];
     const std::vector<std::uint8_t> mask = rule.condition.evaluate(table);
+    bool matches = false;
     for (std::size_t i = 0; i < rows.size(); ++i)
       if (mask[rows[i]] != 0) {
+        matches = true;
         has_rule[i] = 1;
         out[i] = rule.opacity;
       }
+    if (!matches && rows.size() > 0)
+      faults.warning(fmt::format(".opacity.where[{}]", r), "matches none of the particles that are drawn");
   }
   if (source.column.empty()) return out;
   if (!opacity.types.empty()) {
