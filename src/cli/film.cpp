@@ -84,8 +84,13 @@ std::string encoded(const std::vector<fs::path>& images, const fs::path& film, c
 }  // namespace
 
 void FilmSettings::apply(SceneOptions& scene, plot::PlotOptions& plot) const {
-  if (fps != FilmSettings().fps) scene.set(fmt::format("animation.fps={}", fps));
+  const load::Overrides overrides = scene.overrides();
+  if (fps != FilmSettings().fps) {
+    refuse_second("--fps", overrides, "animation.fps");
+    scene.set(fmt::format("animation.fps={}", fps));
+  }
   if (turntable_s <= 0) return;
+  refuse_second("--turntable", overrides, "animation.turntable");
   const int count = std::max(1, static_cast<int>(std::lround(turntable_s * fps)));
   scene.set(fmt::format("animation.turntable={}", count));
   if (plot.all_frames || !plot.frames.empty()) return;

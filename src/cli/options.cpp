@@ -39,14 +39,18 @@ void SceneOptions::add_to(Command& command, Short forms) {
   short_forms_.back().flag->may_be_empty();
 }
 
+void refuse_second(const std::string& option, const load::Overrides& overrides, const char* key) {
+  for (const load::Override& other : overrides)
+    if (other.sets(key))
+      base::refuse(fmt::format("{} and --set {} set the same key; omit one of them", option, other.typed));
+}
+
 load::Overrides SceneOptions::overrides() const {
   load::Overrides out, set;
   for (const std::string& setting : set_) set.add(setting);
   for (const ShortForm& option : short_forms_) {
     if (option.flag->count() == 0) continue;
-    for (const load::Override& other : set)
-      if (other.sets(option.key))
-        base::refuse(fmt::format("{} and --set {} set the same key; omit one of them", option.name, other.typed));
+    refuse_second(option.name, set, option.key);
     out.add_option(option.name, option.key, option.value, option.is_list);
   }
   for (const load::Override& other : set) out.add(other);

@@ -24,6 +24,11 @@ inline constexpr const char* kViewOptions = "View options";
 inline constexpr const char* kLookOptions = "Look options";
 inline constexpr const char* kAnnotationOptions = "Annotation options";
 
+/// Refuses an option that sets the same key as an override.
+///
+/// Errors     base::Error(kUsage)
+void refuse_second(const std::string& option, const load::Overrides& overrides, const char* key);
+
 /// The options that override scene keys: --set, and short forms of frequent keys.
 class SceneOptions {
  public:

@@ -3,9 +3,11 @@
 
 #include <algorithm>
 #include <cmath>
+#include <initializer_list>
 #include <memory>
 #include <sstream>
 #include <string_view>
+#include <tuple>
 #include <utility>
 
 #include <fmt/core.h>
@@ -296,6 +298,15 @@ void PlotArguments::read(const SceneOptions& scene, const job::Job& job) {
     if (bonds != "none" && bonds != "auto") read_bonds(bonds, plot.points.bonds);
   }
   plot.overrides = scene.overrides();
+  const scene::Annotation& annotation = plot.annotation;
+  for (const auto& [is_given, option, key] : std::initializer_list<std::tuple<bool, const char*, const char*>>{
+           {!annotation.title.empty(), "--title", "annotation.title"},
+           {annotation.scale_bar.has_value(), "--scale-bar", "annotation.scale_bar"},
+           {annotation.color_bar, "--color-bar", "annotation.color_bar"},
+           {annotation.outline != 0, "--outline", "annotation.outline"},
+           {!annotation.font.empty(), "--font", "annotation.font"},
+           {plot.vfov_deg.has_value(), "--perspective", "camera.vfov"}})
+    if (is_given) refuse_second(option, plot.overrides, key);
   plot.has_target = job.sampling.noise || job.sampling.seconds;
   plot.memory_limit =
       job.resources.memory_limit > 0 ? job.resources.memory_limit : base::available_memory().value_or(0);

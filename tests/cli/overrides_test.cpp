@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Equivalent spellings of an override have the same effect in every command.
+#include <tuple>
+
 #include <nlohmann/json.hpp>
 
 #include "cli/program.h"
@@ -39,6 +41,27 @@ TEST_F(CliOverrides, ConflictWithOptions) {
     EXPECT_TRUE(contains(r.err, "set the same key; omit one of them")) << r.err;
   }
   EXPECT_EQ(run("info good.toml --samples 5 --set 'render={seed=9}'").status, 0);
+}
+
+TEST_F(CliOverrides, ConflictWithOptionsOfPlots) {
+  write("a.csv", "x,y,z,radius\n0,0,0,1\n3,0,0,1\n");
+  for (const auto& [option, table, key, value] :
+       std::vector<std::tuple<std::string, std::string, std::string, std::string>>{
+           {"--title a", "annotation", "title", "\"b\""},
+           {"--scale-bar 2", "annotation", "scale_bar", "1"},
+           {"--color-bar", "annotation", "color_bar", "false"},
+           {"--outline 1", "annotation", "outline", "2"},
+           {"--font DejaVuSans", "annotation", "font", "\"DejaVuSerif\""},
+           {"--perspective 30", "camera", "vfov", "40"},
+           {"--turntable 1s", "animation", "turntable", "2"},
+           {"--fps 5", "animation", "fps", "6"}}) {
+    for (const std::string& setting : spellings(table, key, value)) {
+      const Outcome r = run("plot a.csv -o a.####.png --samples 1 --frames 1 " + option + " --set " + setting);
+      EXPECT_EQ(r.status, 2) << option << ' ' << setting;
+      EXPECT_TRUE(contains(r.err, option.substr(0, option.find(' ')) + " and --set ")) << r.err;
+      EXPECT_TRUE(contains(r.err, "set the same key; omit one of them")) << r.err;
+    }
+  }
 }
 
 TEST_F(CliOverrides, FrameThePlot) {
