@@ -375,8 +375,9 @@ struct Points : PointsKeys, PointsSpheres, PointsFindings {
   /// Number of rods of the bonds and arrows.
   std::size_t bond_count() const { return bond_pairs.size() + bond_stubs.size(); }
   std::size_t bytes() const { return PointsSpheres::bytes() + objects.size() * sizeof(objects[0]); }
-  /// Calls `f` with each array, besides centres, radii and vectors, that has a value of each sphere: those that are not
-  /// empty. Before `objects` has those of stubs.
+  /// Calls `f` with each array that has a value of each sphere and is not empty, except centres, radii and vectors.
+  ///
+  /// Domain     `objects` does not yet have those of stubs
   template <class F>
   void each_sphere_value(F f) {
     const auto visit = [&](auto& values) {

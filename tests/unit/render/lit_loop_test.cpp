@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The lit path loop: bit for bit the same where nothing emits, closed forms where
-// something does.
+// The lit path loop: bit for bit the same where nothing emits, closed forms where something does.
 #include <gtest/gtest.h>
 
 #include <algorithm>
