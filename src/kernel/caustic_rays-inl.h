@@ -68,15 +68,8 @@ class ChainTracer {
     packet_.count = count;
     for (int v = 0; v < count; v += static_cast<int>(hn::Lanes(d))) {
       const int i = first + v;
-      const auto base = loadu3(d, chains_.base, i), offset = loadu3(d, chains_.offset, i);
-      const auto direction = loadu3(d, chains_.direction, i);
-      const auto origin = base + offset;
-      store3(d, origin, packet_.origin, v);
-      store3(d, sum_error(base, offset, origin), packet_.origin_low, v);
-      store3(d, offset, packet_.offset, v);
-      store3(d, direction, packet_.direction, v);
-      hn::Store(1 / dot(direction, direction), d, packet_.inverse_square + v);
-      hn::Store(hn::LoadU(du, chains_.self + i), du, packet_.self + v);
+      store_rays(d, loadu3(d, chains_.base, i), loadu3(d, chains_.offset, i), loadu3(d, chains_.direction, i),
+                 hn::LoadU(du, chains_.self + i), packet_, v);
       if (scene_.features.motion) hn::Store(hn::LoadU(d, chains_.time + i), d, packet_.time + v);
       if (scene_.features.opacity) store_keys(d, hn::LoadU(du, chains_.key + i), packet_.key + v);
     }

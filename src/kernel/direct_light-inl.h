@@ -224,16 +224,9 @@ HWY_INLINE void load_shadow_rays(D d, const SceneView& scene, const Shadow& shad
   packet.count = count;
   for (int v = 0; v < count; v += static_cast<int>(hn::Lanes(d))) {
     const int i = first + v;
-    const auto base = loadu3(d, shadow.base, i), offset = loadu3(d, shadow.offset, i);
-    const auto direction = loadu3(d, shadow.direction, i);
-    const auto origin = base + offset;
-    store3(d, origin, packet.origin, v);
-    store3(d, sum_error(base, offset, origin), packet.origin_low, v);
-    store3(d, offset, packet.offset, v);
-    store3(d, direction, packet.direction, v);
-    hn::Store(1 / dot(direction, direction), d, packet.inverse_square + v);
+    store_rays(d, loadu3(d, shadow.base, i), loadu3(d, shadow.offset, i), loadu3(d, shadow.direction, i),
+               hn::LoadU(du, shadow.self + i), packet, v);
     hn::Store(hn::LoadU(d, shadow.distance + i), d, packet.distance + v);
-    hn::Store(hn::LoadU(du, shadow.self + i), du, packet.self + v);
     hn::Store(hn::LoadU(du, shadow.target + i), du, packet.target + v);
     if (scene.features.motion) hn::Store(hn::LoadU(d, shadow.time + i), d, packet.time + v);
     if (scene.features.opacity) store_keys(d, hn::LoadU(du, shadow.key + i), packet.key + v);

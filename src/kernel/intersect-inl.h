@@ -45,6 +45,22 @@ HWY_INLINE Rays<D> load_rays(D d, const Packet& p, int first) {
           hn::Load(IdTag<D>(), p.self + first)};
 }
 
+/// Stores rays into a packet from `first` on.
+///
+/// `base`     centre of the sphere that a ray leaves, or the camera's position
+/// `offset`   from there to the ray's origin
+template <class D, class Packet>
+HWY_INLINE void store_rays(D d, const Vec3<hn::Vec<D>>& base, const Vec3<hn::Vec<D>>& offset,
+                           const Vec3<hn::Vec<D>>& direction, hn::Vec<IdTag<D>> self, Packet& p, int first) {
+  const auto origin = base + offset;
+  store3(d, origin, p.origin, first);
+  store3(d, sum_error(base, offset, origin), p.origin_low, first);
+  store3(d, offset, p.offset, first);
+  store3(d, direction, p.direction, first);
+  hn::Store(1 / dot(direction, direction), d, p.inverse_square + first);
+  hn::Store(self, IdTag<D>(), p.self + first);
+}
+
 /// One sphere per lane, or one sphere broadcast to all lanes.
 template <class D>
 struct Spheres {

@@ -80,14 +80,8 @@ HWY_INLINE void load_camera_rays(D d, const SceneView& scene, PathCounter& count
     if (features.opacity)
       store_keys(d, keys_at_vertex(du, scene.sampler.seed, pixels, samples, 0).next, packet.key + v);
     const auto ray = camera_ray(d, scene, camera, x, y, random);
-    const auto origin = camera.origin + ray.offset;
-    store(origin, packet.origin);
-    store(sum_error(camera.origin, ray.offset, origin), packet.origin_low);
-    store(ray.offset, packet.offset);
-    store(ray.direction, packet.direction);
+    store_rays(d, camera.origin, ray.offset, ray.direction, set(du, kNoSphere), packet, v);
     store(Vec3<hn::Vec<D>>{one, one, one}, carried.throughput);
-    hn::Store(1 / dot(ray.direction, ray.direction), d, packet.inverse_square + v);
-    hn::Store(set(du, kNoSphere), du, packet.self + v);
     if (kLoop.records) hn::Store(set(du, kOnlyDeltaBit), du, carried.history + v);
     if (features.extended && scene.cone_width > 0) {
       const auto cone = camera_cone(d, scene, camera, ray.direction, scene.cone_width);
@@ -107,15 +101,8 @@ HWY_INLINE void load_secondary_rays(D d, const SceneView& scene, const Stream& s
     const int i = first + v;
     const auto at = [&](const auto& component) { return loadu3(d, component, i); };
     const auto store = [&](const auto& value, auto& to) { store3(d, value, to, v); };
-    const auto base = at(stream.base), offset = at(stream.offset), direction = at(stream.direction);
-    const auto origin = base + offset;
-    store(origin, packet.origin);
-    store(sum_error(base, offset, origin), packet.origin_low);
-    store(offset, packet.offset);
-    store(direction, packet.direction);
+    store_rays(d, at(stream.base), at(stream.offset), at(stream.direction), hn::LoadU(du, stream.self + i), packet, v);
     store(at(stream.throughput), carried.throughput);
-    hn::Store(1 / dot(direction, direction), d, packet.inverse_square + v);
-    hn::Store(hn::LoadU(du, stream.self + i), du, packet.self + v);
     const auto pixels = hn::LoadU(du, stream.pixel + i), samples = hn::LoadU(du, stream.sample + i);
     hn::Store(pixels, du, carried.pixel + v);
     hn::Store(samples, du, carried.sample + v);
