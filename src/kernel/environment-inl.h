@@ -90,7 +90,7 @@ HWY_INLINE Vec3<V> radiance_of(D d, const Environment& env, const EnvironmentFoo
   return select(at.is_in_sun, map + set3(d, env.sun_radiance), map);
 }
 
-/// The density of sample_environment at footprints.
+/// The density per steradian with which sample_environment chooses directions; 0 if the environment is not sampled.
 template <class D, class V = hn::Vec<D>>
 HWY_INLINE V pdf_of(D d, const Environment& env, const EnvironmentFootprint<D>& at) {
   V pdf = hn::Zero(d);
@@ -109,15 +109,6 @@ HWY_INLINE V pdf_of(D d, const Environment& env, const EnvironmentFootprint<D>& 
 template <class D, class V = hn::Vec<D>>
 HWY_INLINE Vec3<V> environment_radiance(D d, const Environment& env, const Vec3<V>& direction) {
   return radiance_of(d, env, environment_footprint(d, env, direction));
-}
-
-/// The density per steradian with which sample_environment chooses directions.
-///
-/// Space      direction world, unit
-/// Result     zero if the environment is not sampled
-template <class D, class V = hn::Vec<D>>
-HWY_INLINE V environment_pdf(D d, const Environment& env, const Vec3<V>& direction) {
-  return pdf_of(d, env, environment_footprint(d, env, direction));
 }
 
 /// One of two parts, chosen with probabilities proportional to their weights. `rest` is the rescaled random number,
@@ -252,7 +243,7 @@ struct EnvironmentSample {
   V inverse_pdf;      ///< steradians; 0: rounding errors prevented a sample
 };
 
-/// Samples a direction with the density environment_pdf.
+/// Samples a direction with the density pdf_of.
 ///
 /// `u`, `v`   0..1. Nearby numbers give nearby directions, except across the boundary between sun and map, so
 ///            stratification is preserved.

@@ -79,7 +79,7 @@ template <class D>
 void judge_all(D d, const kernel::Environment& env, Rows& out) {
   for (std::size_t i = 0; i < out.u.size(); i += hn::Lanes(d)) {
     const k::Vec3<hn::Vec<D>> w = {load(d, out.x, i), load(d, out.y, i), load(d, out.z, i)};
-    store(d, k::environment_pdf(d, env, w), out.pdf, i);
+    store(d, k::pdf_of(d, env, k::environment_footprint(d, env, w)), out.pdf, i);
     const auto radiance = k::environment_radiance(d, env, w);
     store(d, radiance.x, out.r, i);
     store(d, radiance.y, out.g, i);
