@@ -15,13 +15,16 @@ namespace {
 std::string caret_line(const Diagnostic& diagnostic) {
   const std::string& source = diagnostic.source_line;
   const std::size_t begin = std::min(static_cast<std::size_t>(diagnostic.column) - 1, source.size());
-  const std::size_t end = std::min(begin + static_cast<std::size_t>(std::max(diagnostic.width, 1)), source.size());
+  std::size_t end = std::min(begin + static_cast<std::size_t>(std::max(diagnostic.width, 1)), source.size());
+  while (end < source.size() && continues_character(source[end])) ++end;
   std::string line;
-  for (std::size_t i = 0; i < begin; ++i)
-    if (!continues_character(source[i])) line += source[i] == '\t' ? '\t' : ' ';
-  line += '^';
-  for (std::size_t i = begin + 1; i < end; ++i)
-    if (!continues_character(source[i])) line += '~';
+  for (const char c : printable(source.substr(0, begin)))
+    if (!continues_character(c)) line += c == '\t' ? '\t' : ' ';
+  const std::size_t caret = line.size();
+  for (const char c : printable(source.substr(begin, end - begin)))
+    if (!continues_character(c)) line += '~';
+  line.resize(std::max(line.size(), caret + 1));
+  line[caret] = '^';
   return line;
 }
 

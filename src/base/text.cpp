@@ -26,12 +26,14 @@ std::string bytes_text(std::uint64_t bytes) {
 }
 
 std::string printable(std::string_view text) {
-  std::string out(text);
-  for (std::size_t i = 0; i < out.size(); ++i) {
-    const auto byte = static_cast<unsigned char>(out[i]);
-    if ((byte < 0x20 && out[i] != '\t') || byte == 0x7f) out[i] = '?';
-    // U+0080..U+009F in UTF-8: control characters as well.
-    if (byte >= 0x80 && byte < 0xA0 && i > 0 && out[i - 1] == '\xC2') out[i - 1] = out[i] = '?';
+  std::string out;
+  for (std::size_t at = 0; at < text.size();) {
+    const std::size_t length = text[at] == '\t' ? 1 : printable_length(text, at);
+    if (length > 0)
+      out += text.substr(at, length);
+    else
+      out += fmt::format("\\x{:02x}", static_cast<unsigned char>(text[at]));
+    at += std::max<std::size_t>(length, 1);
   }
   return out;
 }

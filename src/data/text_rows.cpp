@@ -219,6 +219,7 @@ class RowParser {
 
   std::nullptr_t fail_value(std::size_t c, const char* begin, const char* end) {
     constexpr std::ptrdiff_t kMaxShown = 40;
+    if (!ends_word(*end) && *end != layout_->separator) ++end;  // a control character, which ends the word
     const bool is_long = end - begin > kMaxShown;
     const std::string word(begin, is_long ? begin + kMaxShown : end);
     const ColumnType type = layout_->columns[c].type;

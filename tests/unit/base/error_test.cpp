@@ -71,12 +71,16 @@ TEST(BaseError, DoesNotUnderlineBeyondTheLine) {
   EXPECT_EQ(formatted(at(1, 90, 90, "bad", "ab")), "scene.toml:1:90: error: bad\n    ab\n      ^\n");
 }
 
-TEST(BaseError, ReplacesControlCharacters) {
+TEST(BaseError, PrintsValuesOfControlCharactersAndInvalidBytes) {
   const std::string shown = formatted(at(1, 1, 1,
                                          "name \"\x1b[2J\" \xC2\x9B"
                                          "31m",
                                          "\x1b[31mred\x7f"));
-  EXPECT_EQ(shown, "scene.toml:1:1: error: name \"?[2J\" ??31m\n    ?[31mred?\n    ^\n");
+  EXPECT_EQ(shown,
+            "scene.toml:1:1: error: name \"\\x1b[2J\" \\xc2\\x9b31m\n    \\x1b[31mred\\x7f\n    ^~~~\n");
+  EXPECT_EQ(formatted(at(1, 3, 2, "no \xff", "\x7f\xff=1\t")),
+            "scene.toml:1:3: error: no \\xff\n    \\x7f\\xff=1\t\n            ^~\n")
+      << "the caret is under its column of the line as printed";
 }
 
 TEST(BaseError, AWarningWithoutLocationIsOneLine) { EXPECT_EQ(warning_line("two words"), "warning: two words\n"); }

@@ -126,6 +126,13 @@ TEST_F(DataTextRows, RowsMayHaveMoreValuesIfAllowed) {
   EXPECT_EQ(numbers(read("1,x,y\n2\n", rows), 0), (std::vector<double>{1, 2}));
 }
 
+/// They end words, and messages print them as \x00.
+TEST_F(DataTextRows, ControlCharactersAreInTheMessage) {
+  const std::string nul(1, '\0');
+  EXPECT_EQ(errors("1 " + nul + "2\n1 2" + nul + "\n", layout({kNumber, kNumber})),
+            "1: column 2: '" + nul + "' is not a number\n2: column 2: '2" + nul + "' is not a number\n");
+}
+
 TEST_F(DataTextRows, CommentsMayFollowTheValues) {
   TextLayout rows = layout({kNumber, kNumber});
   rows.comment = '#';
