@@ -35,7 +35,10 @@ namespace {
 /// Channels of all layers, and everything that they depend on in addition to the scene hash.
 std::string layers_text(const Layers& layers) {
   std::string out;
-  for (const film::Plane& plane : film::planes_of(layers.request)) out += (out.empty() ? "" : " ") + plane.name;
+  film::LayerRequest visible = layers.request;
+  visible.halves = false;  // --denoise requests them; their sixteen channels would say nothing to its user
+  for (const film::Plane& plane : film::planes_of(visible)) out += (out.empty() ? "" : " ") + plane.name;
+  if (layers.request.halves) out += out.empty() ? "halves, as for --denoise" : " halves, as for --denoise";
   if (layers.request.coverage) out += " coverage";
   if (layers.request.deep) out += " deep";
   for (const MatteNames& matte : layers.mattes)

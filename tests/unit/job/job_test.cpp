@@ -288,7 +288,7 @@ TEST_F(JobRun, RejectsACheckpointOfAnotherRender) {
   job_.scene.overrides.add("output.layers=[\"N\"]");
   expect_refused("layers none, not N");
   job_.denoise = true;
-  expect_refused("layers none, not half_a.R");
+  expect_refused("layers none, not halves, as for --denoise;");
   support::write_bytes(folder_ / "a.checkpoint.exr", checkpoint.substr(0, checkpoint.size() / 2));
   EXPECT_EQ(error().kind(), base::ErrorKind::kBadData);
 }
