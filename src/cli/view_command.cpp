@@ -126,6 +126,7 @@ int run_view(ViewArguments& arguments, const Command& command) {
   const std::filesystem::path& file = arguments.shown.plot.options.file;
   // The page reports all other faults; without a file there is nothing that it could change.
   if (!base::has_frame_pattern(file.filename().string())) base::require_readable(file);
+  if (!is_scene(file)) plot::require_utf8(file.string());
   const std::set<std::string> allowed = files_of(arguments.shown);
   const view::Controls controls = controls_of(file);
   std::vector<std::string> fixed = words_of(command, arguments.own);

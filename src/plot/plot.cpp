@@ -55,16 +55,6 @@ std::string from_scene(const std::string& name, const std::filesystem::path& sce
   return std::filesystem::proximate(name, folder.empty() ? "." : folder).string();
 }
 
-/// Scenes are TOML, which is UTF-8.
-void require_utf8(const std::string& text) {
-  for (std::size_t at = 0, length = 1; at < text.size(); at += std::max<std::size_t>(length, 1)) {
-    length = base::printable_length(text, at);
-    if (length == 0 && static_cast<unsigned char>(text[at]) >= 0x80)
-      base::refuse(fmt::format("`{}` is not valid UTF-8, and a scene cannot name it; rename the file or the column",
-                               base::printable(text)));
-  }
-}
-
 /// Makes the scene of a plot, in the order in which the choices are printed.
 class PlotMaker {
  public:
@@ -443,6 +433,15 @@ class PlotMaker {
 };
 
 }  // namespace
+
+void require_utf8(const std::string& text) {
+  for (std::size_t at = 0, length = 1; at < text.size(); at += std::max<std::size_t>(length, 1)) {
+    length = base::printable_length(text, at);
+    if (length == 0 && static_cast<unsigned char>(text[at]) >= 0x80)
+      base::refuse(fmt::format("`{}` is not valid UTF-8, and a scene cannot name it; rename the file or the column",
+                               base::printable(text)));
+  }
+}
 
 PlotScene make_plot(const PlotOptions& options, const std::function<void(const std::vector<int>& frames)>& check) {
   PlotMaker maker(options);

@@ -101,6 +101,9 @@ struct PlotScene {
 /// Cost       reads every frame once, to fit the camera and the colour map; twice for a turntable
 PlotScene make_plot(const PlotOptions& options, const std::function<void(const std::vector<int>& frames)>& check = {});
 
+/// Refuses the name of a file or a column that is not UTF-8: scenes are TOML, which is.
+void require_utf8(const std::string& text);
+
 /// The display transform that the user has set.
 display::Settings display_of(const PlotOptions& options);
 

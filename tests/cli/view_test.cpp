@@ -217,6 +217,13 @@ TEST_F(CliView, AMissingFileIsAnErrorAtOnce) {
   EXPECT_TRUE(contains(r.err, "nothing.pdb")) << r.err;
 }
 
+TEST_F(CliView, ANameThatScenesCannotHoldIsAnErrorAtOnce) {
+  write("bad\xff.dump", "");
+  const Outcome r = run("view 'bad\xff.dump'");
+  EXPECT_EQ(r.status, 2);
+  EXPECT_TRUE(contains(r.err, "is not valid UTF-8, and a scene cannot name it")) << r.err;
+}
+
 TEST_F(CliView, FramesAreSelectedInThePage) {
   EXPECT_FALSE(contains(run("view --help").out, "--frames"));
   const Outcome r = run("view a.dump --frames 1-2");
