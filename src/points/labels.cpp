@@ -54,7 +54,8 @@ std::vector<scene::Label> placed_labels(const data::Table& table, const Rows& ro
     if (low.x <= high.x)
       out.push_back({applied(placement, applied(first.transform, (low + high) * 0.5)), rules[r].text});
     else
-      faults.warning(fmt::format(".labels[{}]", r), "matches none of the particles that are drawn");
+      faults.warning(fmt::format(".labels[{}]", r),
+                     fmt::format("`{}` matches none of the particles that are drawn", points.labels[r]));
   }
   return out;
 }

@@ -77,7 +77,8 @@ std::vector<float> opacities_of(const data::Table& table, const Rows& rows, cons
         out[i] = rule.opacity;
       }
     if (!matches && rows.size() > 0)
-      faults.warning(fmt::format(".opacity.where[{}]", r), "matches none of the particles that are drawn");
+      faults.warning(fmt::format(".opacity.where[{}]", r),
+                     fmt::format("`{}` matches none of the particles that are drawn", opacity.where[r]));
   }
   if (source.column.empty()) return out;
   if (!opacity.types.empty()) {

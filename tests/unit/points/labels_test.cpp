@@ -30,7 +30,7 @@ TEST_F(PointsLabels, AreInTheMiddleOfTheirParticles) {
 TEST_F(PointsLabels, OnlyParticlesThatAreDrawnCount) {
   points.labels = {"kind == 1: A", "kind == 2: B"};
   points.select = "x > 1 && kind == 1";
-  EXPECT_EQ(load(), "warning points[0].labels[1]: matches none of the particles that are drawn\n");
+  EXPECT_EQ(load(), "warning points[0].labels[1]: `kind == 2: B` matches none of the particles that are drawn\n");
   ASSERT_EQ(points.placed_labels.size(), 1u);
   EXPECT_EQ(points.placed_labels[0].at, (math::Vec3d{4, 2, 0}));
 }

@@ -43,7 +43,7 @@ TEST_F(PointsPointOpacity, NoneAndOneNumberNeedNoArray) {
 
 TEST_F(PointsPointOpacity, AConditionThatMatchesNothingIsAWarning) {
   points.opacity.where = {"type == 2: 0.2", "x > 99: 0.7"};
-  EXPECT_EQ(load(), "warning points[0].opacity.where[1]: matches none of the particles that are drawn\n");
+  EXPECT_EQ(load(), "warning points[0].opacity.where[1]: `x > 99: 0.7` matches none of the particles that are drawn\n");
   EXPECT_EQ(points.opacities, (Opacities{kMaterial, 0.2F, 0.2F, kMaterial, kMaterial}));
 }
 
