@@ -146,20 +146,6 @@ std::string svg_bar(const Bar& bar, std::size_t number, const std::function<Vec3
                    bar.left, bar.top, bar.right - bar.left, bar.bottom - bar.top, number);
 }
 
-/// Reference  RFC 4648
-std::string base64(std::string_view bytes) {
-  constexpr char kDigits[] = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
-  std::string out;
-  out.reserve((bytes.size() + 2) / 3 * 4);
-  for (std::size_t i = 0; i < bytes.size(); i += 3) {
-    std::uint32_t group = 0;
-    for (std::size_t k = i; k < i + 3; ++k)
-      group = group << 8 | (k < bytes.size() ? static_cast<unsigned char>(bytes[k]) : 0U);
-    for (unsigned digit = 0; digit < 4; ++digit)
-      out += i + digit > bytes.size() ? '=' : kDigits[group >> (18 - 6 * digit) & 63];
-  }
-  return out;
-}
 
 /// The font of a drawing and a replacement, for an attribute in double quotes.
 std::string svg_font(const std::filesystem::path& font) {
@@ -268,7 +254,7 @@ std::string svg(const Drawing& drawing, const std::function<Vec3d(const Vec3d&)>
   std::string body;
   if (!png.empty())
     body += fmt::format("<image width=\"{}\" height=\"{}\" href=\"data:image/png;base64,{}\"/>\n", drawing.width,
-                        drawing.height, base64(png));
+                        drawing.height, base::base64(png));
   for (const Box& box : drawing.boxes)
     body += fmt::format("<rect x=\"{:.3f}\" y=\"{:.3f}\" width=\"{:.3f}\" height=\"{:.3f}\" fill=\"{}\"/>\n", box.left,
                         box.top, box.right - box.left, box.bottom - box.top, hex(shown(box.color)));
