@@ -124,8 +124,6 @@ Drawing page(const LegendColors& colors, const display::Settings& display, doubl
   return out;
 }
 
-Vec3d same(const Vec3d& color) { return color; }
-
 std::optional<double> number_of(std::string_view label) {
   const auto value = base::number_of<double>(label);
   return value && !std::isnan(*value) ? value : std::nullopt;
@@ -171,7 +169,7 @@ Drawing legend_drawing(const LegendColors& colors, const LegendStyle& style, con
 }
 
 std::string legend_svg(const LegendColors& colors, const display::Settings& display) {
-  return colors.is_empty() ? "" : svg(page(colors, display, kSvgFont), same);
+  return colors.is_empty() ? "" : svg(page(colors, display, kSvgFont), std::identity());
 }
 
 void write_legend(const std::filesystem::path& file, const LegendColors& colors, const display::Settings& display) {
@@ -186,7 +184,7 @@ void write_legend(const std::filesystem::path& file, const LegendColors& colors,
   picture.width = drawing.width;
   picture.height = drawing.height;
   picture.values.resize(3 * static_cast<std::size_t>(drawing.width) * static_cast<std::size_t>(drawing.height));
-  blend(draw(drawing, same), picture);
+  blend(draw(drawing, std::identity()), picture);
   image::write_encoded(file, picture, "orrery");
 }
 

@@ -336,8 +336,8 @@ class Run {
     if (drawing_.outline_px > 0)
       if (accel::Accel* const accel = build(); accel != nullptr)
         drawing_.lines = render::outlines(compiled(), *accel, drawing_.outline_px, settings_.threads);
-    const auto same = [](const math::Vec3d& color) { return color; };
-    if (job_.outputs.has_exr() || is_kept()) annotation::add_layer(annotation::draw(drawing_, same), picture);
+    if (job_.outputs.has_exr() || is_kept())
+      annotation::add_layer(annotation::draw(drawing_, std::identity()), picture);
   }
 
   /// Keeps the image in memory.
