@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
 
 #include <nlohmann/json.hpp>
 
@@ -22,7 +23,6 @@
 #include "job/report_text.h"
 #include "job/resources.h"
 #include "job/version.h"
-#include "render/tiles.h"
 
 namespace orrery::compare {
 namespace {
@@ -80,15 +80,6 @@ film::Picture difference_picture(const ComparedChannels& c, bool for_display) {
     out.planes.push_back(std::move(plane));
   }
   return out;
-}
-
-/// A ForEach that runs on this many threads of the task scheduler.
-ForEach on_threads(int threads) {
-  return [threads](std::size_t count, const std::function<void(std::size_t)>& work) {
-    render::TilePool(threads > 0 ? threads : job::default_threads())
-        .run(
-            count, [&](std::size_t i, render::TileWorker&) { work(i); }, [] { return false; });
-  };
 }
 
 void write_codes(const std::filesystem::path& file, const film::Picture& codes) {
@@ -173,12 +164,12 @@ Comparison compare(const film::Picture& picture, const film::Picture& reference,
     v = std::clamp(v, 0.0f, 1.0f);
     return encoding == Encoding::kLight ? srgb_encoded(v) : v;
   };
-  const auto same = [](float v) { return v; };
   const ChangedImage code_a(c.picture, code), code_b(c.reference, code);
   out.ssim = ssim(code_a.view, code_b.view);
   out.flip_map = encoding == Encoding::kDisplay ? flip(code_a.view, code_b.view)
-                                                : hdr_flip(ChangedImage(c.picture, same).view,
-                                                           ChangedImage(c.reference, same).view, on_threads(threads));
+                                                : hdr_flip(ChangedImage(c.picture, std::identity()).view,
+                                                           ChangedImage(c.reference, std::identity()).view,
+                                                           threads > 0 ? threads : job::default_threads());
   out.flip = out.flip_map.mean();
   out.z_test = z_test(c.picture, color_of(picture, "variance"), c.reference, color_of(reference, "variance"));
   return out;

@@ -8,6 +8,7 @@
 #include <numbers>
 
 #include "compare/color_view.h"
+#include "render/tiles.h"
 
 namespace orrery::compare {
 
@@ -318,21 +319,17 @@ Map flip(const ColorView& picture, const ColorView& reference) {
   return flip(filtered_image(codes_of(picture)), filtered_image(codes_of(reference)));
 }
 
-Map hdr_flip(const ColorView& picture, const ColorView& reference, const ForEach& for_each) {
+Map hdr_flip(const ColorView& picture, const ColorView& reference, int threads) {
   const std::vector<double> exposures = exposures_for(reference);
   Map out{reference.width, reference.height, std::vector<float>(reference.pixels(), 0.0f)};
   std::mutex merging;
-  const auto merge = [&](std::size_t i) {
+  const auto merge = [&](std::size_t i, render::TileWorker&) {
     const Map map =
         flip(filtered_image(codes_at(picture, exposures[i])), filtered_image(codes_at(reference, exposures[i])));
     const std::lock_guard lock(merging);
     for (std::size_t p = 0; p < out.values.size(); ++p) out.values[p] = std::max(out.values[p], map.values[p]);
   };
-  if (for_each) {
-    for_each(exposures.size(), merge);
-  } else {
-    for (std::size_t i = 0; i < exposures.size(); ++i) merge(i);
-  }
+  render::TilePool(threads).run(exposures.size(), merge, [] { return false; });
   return out;
 }
 

@@ -33,9 +33,6 @@ double ssim(const ColorView& picture, const ColorView& reference);
 /// Pixels per degree of visual angle for a display 3840 pixels and 0.7 m wide, viewed from 0.7 m.
 inline constexpr double kPixelsPerDegree = 67.0206433;
 
-/// Calls work(i) for i = 0 .. count - 1 in any order, on any thread, and rethrows its exceptions.
-using ForEach = std::function<void(std::size_t count, const std::function<void(std::size_t i)>& work)>;
-
 /// The FLIP error map: the difference per pixel that a viewer perceives when alternating between two images.
 ///
 /// Domain     sRGB-encoded values 0..1; views of the same size
@@ -46,8 +43,9 @@ Map flip(const ColorView& picture, const ColorView& reference);
 /// The HDR-FLIP error map of scene-linear images: the maximum of flip() over a range of exposures, tone-mapped with the
 /// curve of the paper. The range extends from the exposure for the brightest pixel to that for the median.
 ///
-/// Domain     linear Rec. 709; negative values count as 0. `for_each` runs the exposures; default: one after another
+/// `threads`  on which the exposures run
+/// Domain     linear Rec. 709; negative values count as 0
 /// Reference  andersson2021
-Map hdr_flip(const ColorView& picture, const ColorView& reference, const ForEach& for_each = {});
+Map hdr_flip(const ColorView& picture, const ColorView& reference, int threads = 1);
 
 }  // namespace orrery::compare
