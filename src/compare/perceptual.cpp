@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <functional>
 #include <mutex>
 #include <numbers>
 
@@ -11,7 +12,9 @@
 #include "render/tiles.h"
 
 namespace orrery::compare {
+namespace {
 
+/// Samples `shape` at -radius .. radius and normalizes the taps to a sum of 1.
 Taps taps_of(int radius, const std::function<double(double)>& shape) {
   double sum = 0;
   for (int x = -radius; x <= radius; ++x) sum += shape(x);
@@ -20,9 +23,11 @@ Taps taps_of(int radius, const std::function<double(double)>& shape) {
   return taps;
 }
 
-Taps gaussian_taps(int radius, double sigma) {
-  return taps_of(radius, [sigma](double x) { return std::exp(-x * x / (2 * sigma * sigma)); });
+auto gaussian(double sigma) {
+  return [sigma](double x) { return std::exp(-x * x / (2 * sigma * sigma)); };
 }
+
+}  // namespace
 
 Map convolved(const Map& map, const Taps& along_x, const Taps& along_y) {
   const int w = map.width, h = map.height;
@@ -68,7 +73,7 @@ Map product(const Map& a, const Map& b) {
 
 double ssim(const ColorView& picture, const ColorView& reference) {
   constexpr double kC1 = 0.01 * 0.01, kC2 = 0.03 * 0.03;
-  const Taps taps = gaussian_taps(5, 1.5);
+  const Taps taps = taps_of(5, gaussian(1.5));
   const auto mean = [&](const Map& m) { return convolved(m, taps, taps); };
   const Map a = luma(picture), b = luma(reference);
   const Map mean_a = mean(a), mean_b = mean(b), aa = mean(product(a, a)), bb = mean(product(b, b)),
@@ -229,7 +234,7 @@ FilteredImage filtered_image(const Maps& codes) {
 
   const double sigma = kFeatureWidth / 2 * kPixelsPerDegree;
   const int radius = static_cast<int>(std::ceil(3 * sigma));
-  const auto bell = [sigma](double x) { return std::exp(-x * x / (2 * sigma * sigma)); };
+  const auto bell = gaussian(sigma);
   const Taps along = taps_of(radius, bell);
   out.features = feature_strength(brightness, balanced(radius, [&](double x) { return -x * bell(x); }), along);
   out.points = feature_strength(
