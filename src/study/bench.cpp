@@ -2,7 +2,6 @@
 #include "study/bench.h"
 
 #include <algorithm>
-#include <cmath>
 #include <map>
 #include <memory>
 #include <optional>
@@ -12,7 +11,6 @@
 
 #include "base/error.h"
 #include "base/stop_point.h"
-#include "base/text.h"
 #include "compile/compile.h"
 #include "compile/compiled_scene.h"
 #include "job/resources.h"
@@ -59,15 +57,11 @@ struct Case {
   std::vector<double> paths_per_s = {}, tracing = {};
 };
 
-const std::vector<std::pair<const char*, bool kernel::Features::*>>& known_features() {
-  static const std::vector<std::pair<const char*, bool kernel::Features::*>> known = {
-      {"thin lens", &kernel::Features::lens},
-      {"hemisphere", &kernel::Features::hemisphere},
-      {"gradient sky", &kernel::Features::sky},
-      {"lights", &kernel::Features::lit},
-      {"textures", &kernel::Features::extended}};
-  return known;
-}
+constexpr std::pair<const char*, bool kernel::Features::*> kFeatures[] = {{"thin lens", &kernel::Features::lens},
+                                                                          {"hemisphere", &kernel::Features::hemisphere},
+                                                                          {"gradient sky", &kernel::Features::sky},
+                                                                          {"lights", &kernel::Features::lit},
+                                                                          {"textures", &kernel::Features::extended}};
 
 /// The compiled scene at the reduced image size.
 compile::CompiledScene reduced_scene(const BenchRequest& request) {
@@ -205,7 +199,7 @@ std::vector<Case> cases_of(const compile::CompiledScene& compiled, Benchmark& ou
 std::vector<Case> feature_cases_of(const compile::CompiledScene& compiled) {
   std::vector<Case> cases;
   if (compiled.shading != kernel::Shading::kPath) return cases;
-  for (const auto& [name, feature] : known_features()) {
+  for (const auto& [name, feature] : kFeatures) {
     if (compiled.features.*feature) continue;
     cases.push_back({name, compiled.features});
     cases.back().features.*feature = true;
@@ -243,7 +237,7 @@ std::vector<FeatureCost> bench_features(const BenchRequest& request) {
   for (int round = 0; round < request.rounds; ++round)
     measure_round(cases, round, [&](Case& c) { measure(subject, c); });
   std::vector<FeatureCost> out;
-  for (const auto& [name, feature] : known_features()) {
+  for (const auto& [name, feature] : kFeatures) {
     FeatureCost& cost = out.emplace_back(FeatureCost{name, subject.required().*feature, 0});
     for (const Case& c : cases)
       if (c.name == name) cost.saves = 1 - ratios(c.paths_per_s, cases[0].paths_per_s).median;

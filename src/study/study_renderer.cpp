@@ -14,8 +14,7 @@
 namespace orrery::study {
 
 double StudyRenderer::elapsed() const {
-  return request_.paths_per_s > 0 ? paths_ / request_.paths_per_s
-                                  : std::chrono::duration<double>(Clock::now() - start_).count();
+  return request_.paths_per_s > 0 ? paths_ / request_.paths_per_s : since_start_.seconds();
 }
 
 double StudyRenderer::seconds_of(const render::Statistics& did) const {
@@ -47,9 +46,9 @@ render::Result StudyRenderer::render(compile::CompiledScene& scene, double noise
   render::Result result = render::render(scene, accel_of(scene), settings);
   if (!result.completed) throw base::Error(base::ErrorKind::kStopped, "stopped; the study is incomplete");
   if (is_denoised) {
-    const Clock::time_point begin = Clock::now();
+    const base::Stopwatch watch;
     denoise::denoise(result.picture, threads_);
-    result.statistics.render_s += std::chrono::duration<double>(Clock::now() - begin).count();
+    result.statistics.render_s += watch.seconds();
   }
   result.picture.planes.resize(3);
   isa_ = result.statistics.isa;

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include <chrono>
 #include <map>
 #include <memory>
 #include <optional>
@@ -10,6 +9,7 @@
 #include <vector>
 
 #include "accel/accel.h"
+#include "base/stopwatch.h"
 #include "compile/compiled_scene.h"
 #include "render/forward.h"
 
@@ -91,13 +91,11 @@ class StudyRenderer {
   const std::string& isa() const { return isa_; }
 
  private:
-  using Clock = std::chrono::steady_clock;
-
   accel::Accel& accel_of(const compile::CompiledScene& scene);
 
   const Request& request_;
   int threads_;
-  Clock::time_point start_ = Clock::now();
+  base::Stopwatch since_start_;
   Spheres spheres_;
   std::map<std::pair<compile::Precision, compile::Accelerator>, std::unique_ptr<accel::Accel>> accels_;
   std::string isa_;
