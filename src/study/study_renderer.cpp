@@ -34,7 +34,12 @@ accel::Accel& StudyRenderer::accel_of(const compile::CompiledScene& scene) {
 
 render::Result StudyRenderer::render(compile::CompiledScene& scene, double noise,
                                      std::optional<accel::Traversal> traversal, bool is_denoised) {
-  const Spheres::ScopedAttachment attachment(spheres_, scene);
+  spheres_.swap(scene);
+  struct Return {
+    Spheres& spheres;
+    compile::CompiledScene& from;
+    ~Return() { spheres.swap(from); }
+  } const end{spheres_, scene};
   compile::update_lights(scene);
   render::Settings settings;
   settings.threads = threads_;
