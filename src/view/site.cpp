@@ -256,6 +256,7 @@ http::Response Site::state() const {
               {"frames", state.subject.frame_count.value_or(0)},
               {"width", state.width},
               {"height", state.height},
+              {"first_size", state.first_size},
               {"notes", state.subject.notes},
               {"warnings", state.warnings},
               {"legend", state.subject.legend},

@@ -325,6 +325,7 @@ void Viewer::begin(Image& image, const display::PictureInfo& info) {
   if (!image.moves) {
     if (asked_ != image.wish) cancel_ = true;
     prepared_depth_ = scene.render.max_depth;
+    if (state_.width == 0) state_.first_size = {info.width, info.height};
     state_.width = info.width;
     state_.height = info.height;
   }
