@@ -123,8 +123,7 @@ Picture render_scene(const SceneData& scene, Prepared& prepared, double noise, d
   job.scene = scene.source();
   job.sampling.noise = noise;
   job.sampling.seconds = seconds;
-  job.resources.threads = threads;
-  job.resources.memory_limit = memory_limit;
+  job.resources = {threads, memory_limit};
   job.denoise = denoise;
   const auto make_job = [&job] { return std::move(job); };
   if (prepared.is_in_use.exchange(true)) return render(make_job, on_progress, on_warning);
@@ -179,7 +178,7 @@ py::dict statistics(const Picture& picture) {
   out["fewest_samples"] = report.render.min_samples;
   out["most_samples"] = report.render.max_samples;
   out["threads"] = report.render.threads;
-  out["noise"] = report.render.noise ? py::object(py::float_(*report.render.noise)) : py::none();
+  out["noise"] = report.render.noise;
   out["read_seconds"] = report.phases.read_s;
   out["compile_seconds"] = report.phases.compile_s;
   out["build_seconds"] = report.phases.build_s;

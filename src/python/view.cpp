@@ -81,8 +81,7 @@ std::string statements(const std::vector<std::string>& words) {
 ScenePage::ScenePage(SceneData scene, const std::string& title, std::map<std::string, std::string> options, int port,
                      int threads, std::uint64_t memory_limit) {
   job::Job job;
-  job.resources.threads = threads;
-  job.resources.memory_limit = memory_limit;
+  job.resources = {threads, memory_limit};
   viewer_ = std::make_unique<view::Viewer>(
       [scene = std::move(scene), job](const std::vector<std::string>& words) { return subject_of(scene, job, words); },
       std::vector<std::string>(), view::Wish{std::move(options)});
