@@ -11,7 +11,6 @@
 
 #include "base/error.h"
 #include "display/develop.h"
-#include "display/settings.h"
 #include "points/selection.h"
 #include "scene/value_text.h"
 

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "compare/compare_files.h"
 
-#include <algorithm>
 #include <cmath>
 #include <functional>
 
@@ -14,7 +13,6 @@
 #include "base/error.h"
 #include "base/file_set.h"
 #include "base/text.h"
-#include "compare/color_view.h"
 #include "compare/perceptual.h"
 #include "image/format.h"
 #include "image/header.h"

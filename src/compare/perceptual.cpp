@@ -8,7 +8,6 @@
 #include <mutex>
 #include <numbers>
 
-#include "compare/color_view.h"
 #include "render/tiles.h"
 
 namespace orrery::compare {

@@ -5,7 +5,6 @@
 #include <cstddef>
 #include <new>
 #include <stdexcept>
-#include <string>
 #include <utility>
 #include <vector>
 

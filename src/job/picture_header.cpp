@@ -14,7 +14,6 @@
 #include "image/header.h"
 #include "job/job.h"
 #include "job/version.h"
-#include "load/read_scene.h"
 #include "scene/scene.h"
 #include "scene/schema.h"
 #include "scene/value_text.h"

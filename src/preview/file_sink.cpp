@@ -3,18 +3,14 @@
 
 #include <algorithm>
 #include <cstddef>
-#include <cstdint>
-#include <string>
 #include <string_view>
 #include <utility>
-#include <vector>
 
 #include <zlib.h>
 
 #include "base/atomic_file.h"
 #include "display/develop.h"
 #include "display/settings.h"
-#include "preview/sink.h"
 
 namespace orrery::preview {
 

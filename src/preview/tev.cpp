@@ -16,7 +16,6 @@
 
 #include "base/error.h"
 #include "display/settings.h"
-#include "preview/sink.h"
 
 namespace orrery::preview {
 

@@ -4,7 +4,6 @@
 #include <algorithm>
 #include <map>
 #include <memory>
-#include <optional>
 #include <utility>
 
 #include <fmt/core.h>
@@ -17,7 +16,6 @@
 #include "job/scene_hash.h"
 #include "kernel/ray_packet.h"
 #include "kernel/render_tile.h"
-#include "load/load_scene.h"
 #include "load/read_scene.h"
 #include "render/recorded_rays.h"
 #include "render/render.h"

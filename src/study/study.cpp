@@ -4,7 +4,6 @@
 #include <algorithm>
 #include <bit>
 #include <cmath>
-#include <filesystem>
 #include <limits>
 #include <map>
 #include <utility>
@@ -29,14 +28,12 @@
 #include "job/resources.h"
 #include "job/scene_hash.h"
 #include "job/version.h"
-#include "load/load_scene.h"
 #include "load/read_scene.h"
 #include "load/scene_files.h"
 #include "render/render.h"
 #include "render/result.h"
 #include "render/settings.h"
 #include "study/axes.h"
-#include "study/bench.h"
 #include "study/biases.h"
 #include "study/recommendation.h"
 #include "study/study_renderer.h"

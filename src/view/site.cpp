@@ -4,7 +4,6 @@
 #include <sys/random.h>
 
 #include <array>
-#include <cstdint>
 #include <filesystem>
 #include <fstream>
 #include <optional>

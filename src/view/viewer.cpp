@@ -6,7 +6,6 @@
 #include <exception>
 #include <new>
 #include <numeric>
-#include <optional>
 #include <span>
 #include <utility>
 
@@ -21,7 +20,6 @@
 #include "display/settings.h"
 #include "film/picture.h"
 #include "image/write.h"
-#include "job/job.h"
 #include "job/outputs.h"
 #include "preview/file_sink.h"
 
