@@ -90,11 +90,6 @@ std::string scene_difference(const image::Provenance& a, const image::Provenance
   return out.empty() ? "other spheres, materials, lights or images" : out;
 }
 
-std::chrono::steady_clock::duration interval(const CheckpointSettings& settings) {
-  return std::chrono::duration_cast<std::chrono::steady_clock::duration>(
-      std::chrono::duration<double>(settings.interval_s));
-}
-
 }  // namespace
 
 image::Provenance provenance_of(const Job& job, const load::ReadResult& read, const compile::CompiledScene& compiled,
@@ -222,8 +217,7 @@ Checkpoint::Checkpoint(std::filesystem::path file, const CheckpointSettings& set
       hooks_(hooks),
       file_(std::move(file)),
       provenance_(std::move(provenance)),
-      write_(std::move(write)),
-      next_(Clock::now() + interval(settings)) {}
+      write_(std::move(write)) {}
 
 std::optional<film::Partial> Checkpoint::load(int width_px, int height_px) {
   if (!std::filesystem::exists(file_)) return {};
@@ -252,7 +246,7 @@ std::optional<film::Partial> Checkpoint::load(int width_px, int height_px) {
 
 bool Checkpoint::is_due() const {
   if (hooks_.snapshot != nullptr && hooks_.snapshot->load(std::memory_order_relaxed)) return true;
-  return settings_.interval_s > 0 && Clock::now() >= next_;
+  return settings_.interval_s > 0 && since_last_.seconds() >= settings_.interval_s;
 }
 
 void Checkpoint::write_snapshot(const film::Partial& partial) {
@@ -265,7 +259,7 @@ void Checkpoint::write_snapshot(const film::Partial& partial) {
       hooks_.on_warning(base::file_diagnostic(base::Severity::kWarning, file_.string(),
                                               std::string("checkpoint not written: ") + error.what()));
   }
-  next_ = Clock::now() + interval(settings_);
+  since_last_.lap();
 }
 
 void Checkpoint::write(const film::Partial& partial) {

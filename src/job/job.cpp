@@ -169,14 +169,9 @@ class Run {
   annotation::View annotated_view() const {
     const kernel::Camera& camera = compiled().camera;
     const auto project = [&camera](const math::Vec3d& at) -> std::optional<std::pair<double, double>> {
-      const double from[] = {at.x - camera.origin[0], at.y - camera.origin[1], at.z - camera.origin[2]};
-      const auto along = [&](const auto& axis) {
-        double dot = 0, square = 0;
-        for (int k = 0; k < 3; ++k) {
-          dot += from[k] * axis[k];
-          square += axis[k] * axis[k];
-        }
-        return dot / square;
+      const auto along = [from = at - math::vector_of(camera.origin)](const auto& axis) {
+        const math::Vec3d v = math::vector_of(axis);
+        return dot(from, v) / dot(v, v);
       };
       const double depth = along(camera.forward), scale = camera.is_orthographic ? 1 : depth;
       if (!(depth > 0)) return {};
