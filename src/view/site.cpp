@@ -4,6 +4,7 @@
 #include <sys/random.h>
 
 #include <array>
+#include <cstdint>
 #include <filesystem>
 #include <fstream>
 #include <optional>
@@ -61,15 +62,12 @@ Json json_of(const scene::Camera& camera) {
 }
 
 /// The value of a cookie in a header field: "a=1; b=2".
-std::string_view cookie_of(std::string_view cookies, std::string_view name) {
-  while (!cookies.empty()) {
-    const std::size_t end = cookies.find("; ");
-    const std::string_view one = cookies.substr(0, end);
-    if (one.size() > name.size() && one.substr(0, name.size()) == name && one[name.size()] == '=')
-      return one.substr(name.size() + 1);
-    cookies = end == std::string_view::npos ? std::string_view() : cookies.substr(end + 2);
-  }
-  return {};
+std::string cookie_of(const std::string& cookies, const std::string& name) {
+  const std::string all = "; " + cookies, before = "; " + name + "=";
+  const std::size_t begin = all.find(before);
+  if (begin == std::string::npos) return {};
+  const std::string value = all.substr(begin + before.size());
+  return value.substr(0, value.find("; "));
 }
 
 /// Compares in a time that does not depend on where the texts differ.
@@ -119,10 +117,9 @@ Site::Site(Viewer& viewer, Controls controls, std::string host, std::string secr
     : viewer_(viewer), controls_(std::move(controls)), host_(std::move(host)), secret_(std::move(secret)) {}
 
 std::chrono::seconds Site::idle() const {
-  const std::int64_t last = last_request_s_;
-  if (last < 0) return {};
-  return std::chrono::duration_cast<std::chrono::seconds>(std::chrono::steady_clock::now().time_since_epoch()) -
-         std::chrono::seconds(last);
+  const Clock::time_point last = last_request_;
+  if (last == Clock::time_point()) return {};
+  return std::chrono::duration_cast<std::chrono::seconds>(Clock::now() - last);
 }
 
 /// Whether a request names this host, and no other site made it.
@@ -161,8 +158,7 @@ http::Response Site::answer(const http::Request& request) {
     out = text(405, "method not allowed");
     out.fields.emplace_back("Allow", is_post ? "POST" : "GET");
   } else {
-    last_request_s_ =
-        std::chrono::duration_cast<std::chrono::seconds>(std::chrono::steady_clock::now().time_since_epoch()).count();
+    last_request_ = Clock::now();
     if (is_post)
       out = change(request);
     else if (request.path == "/frame")
