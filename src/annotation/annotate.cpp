@@ -150,13 +150,8 @@ std::string title_of(const std::string& title, int frame, std::optional<double> 
 
 LegendColors legend_of(const scene::Scene& scene, const std::vector<std::vector<Vec3d>>& palettes) {
   for (std::size_t i = 0; i < scene.points.size(); ++i) {
-    scene::Points keys;
-    keys.color = scene.points[i].color;
-    keys.color_names = scene.points[i].color_names;
-    keys.has_nan_color = scene.points[i].has_nan_color;
-    keys.palette = palettes[i];
     LegendColors out;
-    out.add(keys);
+    out.add(scene.points[i], palettes[i]);
     out.range = scene.points[i].color_range;
     if (!out.is_empty()) return out;
   }
