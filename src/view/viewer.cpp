@@ -224,10 +224,8 @@ void Viewer::make_subject(const Wish& wish) {
     state_.activity = "reading";
     announce();
   }
-  Wish without_camera = wish;
-  without_camera.camera.reset();
   const base::StopScope scope(&cancel_);
-  Subject subject = make_(words_of(fixed_, without_camera));
+  Subject subject = make_(words_of(fixed_, {wish.options}));  // without the camera
   made_options_ = wish.options;
   is_new_subject_ = true;
   const std::lock_guard lock(mutex_);
