@@ -19,7 +19,6 @@
 #include "display/settings.h"
 #include "film/layer_film.h"
 #include "film/partial.h"
-#include "image/partial_file.h"
 #include "image/read.h"
 #include "job/job.h"
 #include "job/layers.h"

@@ -12,8 +12,8 @@
 #include "compile/forward.h"
 #include "display/forward.h"
 #include "film/forward.h"
-#include "image/forward.h"
 #include "image/header.h"
+#include "image/partial_file.h"
 #include "load/read_scene.h"
 #include "render/forward.h"
 

@@ -9,7 +9,6 @@
 #include "base/atomic_file.h"
 #include "base/error.h"
 #include "image/header.h"
-#include "image/write.h"
 
 namespace orrery::job {
 

@@ -12,7 +12,7 @@
 #include "display/settings.h"
 #include "film/picture.h"
 #include "image/format.h"
-#include "image/forward.h"
+#include "image/write.h"
 #include "job/layers.h"
 
 namespace orrery::job {

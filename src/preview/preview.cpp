@@ -24,11 +24,6 @@ namespace {
   base::refuse(fmt::format("--preview: {}; write tev, tev:HOST:PORT, or the name of a .png file", text));
 }
 
-bool is_port(const std::string& text) {
-  const int number = base::number_of<int>(text).value_or(0);
-  return number > 0 && number < 65536;
-}
-
 /// Parses HOST, HOST:PORT or [IPV6]:PORT.
 Target tev_at(const std::string& address) {
   Target target{TargetKind::kTev, address, kTevPort, {}};
@@ -46,7 +41,8 @@ Target tev_at(const std::string& address) {
   }
   if (colon != std::string::npos) target.port = address.substr(colon + 1);
   if (target.host.empty()) refuse(fmt::format("`{}` has no host", address));
-  if (!is_port(target.port)) refuse(fmt::format("`{}` is not a port from 1 to 65535", target.port));
+  const int port = base::number_of<int>(target.port).value_or(0);
+  if (port < 1 || port > 65535) refuse(fmt::format("`{}` is not a port from 1 to 65535", target.port));
   return target;
 }
 

@@ -103,7 +103,8 @@ class Runner {
     render_reference();
     measure_axes();
     test_bias(out_.points);
-    measure_files();
+    report_progress("files");
+    out_.files = measure_file_axis(out_.reference);
     measure_features();
     out_.slopes = slopes_of(out_.points);
     mark_front(out_.points);
@@ -296,11 +297,6 @@ class Runner {
     point.energy = e.energy;
     point.picture = std::move(pair.first);
     out_.points.push_back(std::move(point));
-  }
-
-  void measure_files() {
-    report_progress("files");
-    out_.files = measure_file_axis(out_.reference);
   }
 
   void measure_features() {
