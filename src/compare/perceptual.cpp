@@ -275,21 +275,14 @@ double inverse_tone_curve(double t) {
   return -b / 2 + std::sqrt(b * b / 4 - c);
 }
 
-Maps codes_at(const ColorView& light, double exposure) {
-  const auto gain = static_cast<float>(std::exp2(exposure));
+/// The values of a view, changed by `f`.
+template <class F>
+Maps maps_of(const ColorView& v, F f) {
   Maps out;
   for (std::size_t c = 0; c < 3; ++c) {
-    out[c] = {light.width, light.height, std::vector<float>(light.pixels())};
-    for (std::size_t i = 0; i < out[c].values.size(); ++i)
-      out[c].values[i] = srgb_encoded(tone(std::max(light.channel[c][i], 0.0f) * gain));
+    out[c] = {v.width, v.height, std::vector<float>(v.pixels())};
+    std::transform(v.channel[c], v.channel[c] + v.pixels(), out[c].values.begin(), f);
   }
-  return out;
-}
-
-Maps codes_of(const ColorView& v) {
-  Maps out;
-  for (std::size_t c = 0; c < 3; ++c)
-    out[c] = {v.width, v.height, std::vector<float>(v.channel[c], v.channel[c] + v.pixels())};
   return out;
 }
 
@@ -320,7 +313,7 @@ std::vector<double> exposures_for(const ColorView& reference) {
 }  // namespace
 
 Map flip(const ColorView& picture, const ColorView& reference) {
-  return flip(filtered_image(codes_of(picture)), filtered_image(codes_of(reference)));
+  return flip(filtered_image(maps_of(picture, std::identity())), filtered_image(maps_of(reference, std::identity())));
 }
 
 Map hdr_flip(const ColorView& picture, const ColorView& reference, int threads) {
@@ -328,8 +321,10 @@ Map hdr_flip(const ColorView& picture, const ColorView& reference, int threads) 
   Map out{reference.width, reference.height, std::vector<float>(reference.pixels(), 0.0f)};
   std::mutex merging;
   const auto merge = [&](std::size_t i, render::TileWorker&) {
-    const Map map =
-        flip(filtered_image(codes_at(picture, exposures[i])), filtered_image(codes_at(reference, exposures[i])));
+    const auto code = [gain = static_cast<float>(std::exp2(exposures[i]))](float light) {
+      return srgb_encoded(tone(std::max(light, 0.0f) * gain));
+    };
+    const Map map = flip(filtered_image(maps_of(picture, code)), filtered_image(maps_of(reference, code)));
     const std::lock_guard lock(merging);
     for (std::size_t p = 0; p < out.values.size(); ++p) out.values[p] = std::max(out.values[p], map.values[p]);
   };
