@@ -16,7 +16,6 @@
 #include "image/format.h"
 #include "job/outputs.h"
 #include "scene/layers.h"
-#include "scene/limits.h"
 
 namespace orrery::job {
 namespace {

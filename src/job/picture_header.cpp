@@ -14,7 +14,6 @@
 #include "job/job.h"
 #include "job/version.h"
 #include "scene/scene.h"
-#include "scene/schema.h"
 #include "scene/value_text.h"
 
 namespace orrery::job {

@@ -2,7 +2,6 @@
 #include "study/bench.h"
 
 #include <algorithm>
-#include <functional>
 #include <map>
 #include <memory>
 #include <utility>

@@ -12,7 +12,6 @@
 #include "compile/compiled_scene.h"
 #include "load/read_scene.h"
 #include "render/result.h"
-#include "render/settings.h"
 #include "study/study.h"
 #include "study/study_renderer.h"
 
