@@ -128,7 +128,11 @@ void Preview::run() {
     if (request != Request::kNone) {
       start = Clock::now();
       processor_start = seconds_of(CLOCK_PROCESS_CPUTIME_ID);
-      serve(request);
+      if (request == Request::kBegin) attempt([this] { sink_->begin(picture_, *canvas_); });
+      if (request == Request::kEnd) {
+        refresh();
+        attempt([this] { sink_->finish(); });
+      }
       pacing.reset();
       if (request == Request::kBegin) pacing.emplace(sink_->interval_s());
       if (pacing) pacing->spend(cost());
@@ -150,13 +154,6 @@ void Preview::run() {
 void Preview::answer() {
   request_ = Request::kNone;
   served_.notify_one();
-}
-
-void Preview::serve(Request request) {
-  if (request == Request::kBegin) attempt([this] { sink_->begin(picture_, *canvas_); });
-  if (request != Request::kEnd) return;
-  refresh();
-  attempt([this] { sink_->finish(); });
 }
 
 void Preview::refresh() {

@@ -107,7 +107,6 @@ class Preview {
   void ask(Request request);
   void run();
   void answer();
-  void serve(Request request);
   void refresh();
   void attempt(const std::function<void()>& what);
 
