@@ -78,22 +78,11 @@ bool is_equal(std::string_view a, std::string_view b) {
   return difference == 0;
 }
 
-/// A file that the page loads.
-struct PageFile {
-  const char* path;
-  const char* type;
-  const char* const* text;
-};
-constexpr PageFile kPageFiles[] = {{"/view.js", "text/javascript; charset=utf-8", &kPageScript},
-                                   {"/camera.js", "text/javascript; charset=utf-8", &kCameraScript},
-                                   {"/view.css", "text/css; charset=utf-8", &kPageStyle}};
-
-/// Null: there is none.
-const PageFile* file_of_page(const std::string& path) {
-  for (const PageFile& file : kPageFiles)
-    if (path == file.path) return &file;
-  return nullptr;
-}
+/// The types and the texts of the files that the page loads.
+const std::map<std::string, std::pair<const char*, const char*>> kPageFiles = {
+    {"/view.js", {"text/javascript; charset=utf-8", kPageScript}},
+    {"/camera.js", {"text/javascript; charset=utf-8", kCameraScript}},
+    {"/view.css", {"text/css; charset=utf-8", kPageStyle}}};
 
 /// A number in the address of a request; empty if there is none.
 template <class T>
@@ -147,11 +136,11 @@ std::string Site::cookie_name() const { return fmt::format("orrery{}", port_.loa
 http::Response Site::answer(const http::Request& request) {
   http::Response out;
   const bool is_post = request.path == "/wish";
-  const PageFile* const file = request.method == "GET" ? file_of_page(request.path) : nullptr;
-  if (is_for_us(request) && file != nullptr) {
+  const auto file = request.method == "GET" ? kPageFiles.find(request.path) : kPageFiles.end();
+  if (is_for_us(request) && file != kPageFiles.end()) {
     // In a notebook, browsers may keep cookies from the page: it then sends the secret itself. Its files are not
     // secret.
-    out = {200, file->type, std::make_shared<const std::string>(*file->text)};
+    out = {200, file->second.first, std::make_shared<const std::string>(file->second.second)};
   } else if (!is_for_us(request) || !has_secret(request)) {
     out = text(403, "orrery view: open the address that the command printed");
   } else if (request.method != (is_post ? "POST" : "GET")) {
