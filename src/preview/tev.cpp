@@ -45,7 +45,6 @@ class Packet {
     add(kChannelCount);
     for (const char* const name : kChannels) add(std::string(name));
   }
-  void reserve(std::size_t size) { bytes_.reserve(size); }
 
   std::string finished() {
     for (std::size_t i = 0; i < 4; ++i) bytes_[i] = static_cast<char>(bytes_.size() >> (8 * i) & 0xff);
@@ -73,9 +72,7 @@ std::string tev_create(const std::string& name, int width, int height, bool grab
 }
 
 std::string tev_update(const std::string& name, int x, int y, int width, int height, const std::vector<float>& rgb) {
-  constexpr std::size_t kHeader = 128;
   Packet packet(kUpdateImageV3);
-  packet.reserve(kHeader + name.size() + rgb.size() * sizeof(float));
   packet.add(false);  // does not grab the focus
   packet.add(name);
   packet.add_channels();
