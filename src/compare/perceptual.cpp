@@ -26,6 +26,19 @@ auto gaussian(double sigma) {
   return [sigma](double x) { return std::exp(-x * x / (2 * sigma * sigma)); };
 }
 
+Map luma(const ColorView& v) {
+  Map out{v.width, v.height, std::vector<float>(v.pixels())};
+  for (std::size_t i = 0; i < out.values.size(); ++i)
+    out.values[i] = 0.299f * v.channel[0][i] + 0.587f * v.channel[1][i] + 0.114f * v.channel[2][i];
+  return out;
+}
+
+Map product(const Map& a, const Map& b) {
+  Map out = a;
+  for (std::size_t i = 0; i < out.values.size(); ++i) out.values[i] *= b.values[i];
+  return out;
+}
+
 }  // namespace
 
 Map convolved(const Map& map, const Taps& along_x, const Taps& along_y) {
@@ -52,23 +65,6 @@ Map convolved(const Map& map, const Taps& along_x, const Taps& along_y) {
   }
   return out;
 }
-
-namespace {
-
-Map luma(const ColorView& v) {
-  Map out{v.width, v.height, std::vector<float>(v.pixels())};
-  for (std::size_t i = 0; i < out.values.size(); ++i)
-    out.values[i] = 0.299f * v.channel[0][i] + 0.587f * v.channel[1][i] + 0.114f * v.channel[2][i];
-  return out;
-}
-
-Map product(const Map& a, const Map& b) {
-  Map out = a;
-  for (std::size_t i = 0; i < out.values.size(); ++i) out.values[i] *= b.values[i];
-  return out;
-}
-
-}  // namespace
 
 double ssim(const ColorView& picture, const ColorView& reference) {
   constexpr double kC1 = 0.01 * 0.01, kC2 = 0.03 * 0.03;
