@@ -20,6 +20,10 @@ namespace orrery::preview {
 
 namespace {
 
+/// Address on which tev listens unless it is started with --hostname.
+constexpr const char* kTevHost = "127.0.0.1";
+constexpr const char* kTevPort = "14158";
+
 [[noreturn]] void refuse(const std::string& text) {
   base::refuse(fmt::format("--preview: {}; write tev, tev:HOST:PORT, or the name of a .png file", text));
 }
@@ -46,6 +50,16 @@ Target tev_at(const std::string& address) {
   return target;
 }
 
+/// Time between two calls of Sink::poll.
+constexpr std::chrono::milliseconds kTick{50};
+
+/// Time of a processor clock: of this thread, or of the whole process.
+double seconds_of(clockid_t clock) {
+  timespec t{};
+  clock_gettime(clock, &t);
+  return static_cast<double>(t.tv_sec) + 1e-9 * static_cast<double>(t.tv_nsec);
+}
+
 }  // namespace
 
 Target parse_target(const std::string& text) {
@@ -67,20 +81,6 @@ std::unique_ptr<Sink> make_sink(const Target& target, const OnNote& note) {
   }
   return nullptr;
 }
-
-namespace {
-
-/// Time between two calls of Sink::poll.
-constexpr std::chrono::milliseconds kTick{50};
-
-/// Time of a processor clock: of this thread, or of the whole process.
-double seconds_of(clockid_t clock) {
-  timespec t{};
-  clock_gettime(clock, &t);
-  return static_cast<double>(t.tv_sec) + 1e-9 * static_cast<double>(t.tv_nsec);
-}
-
-}  // namespace
 
 Preview::Preview(std::unique_ptr<Sink> sink, OnNote on_note)
     : sink_(std::move(sink)), on_note_(std::move(on_note)), thread_([this] { run(); }) {}

@@ -25,6 +25,20 @@ constexpr char kCreateImage = 4, kUpdateImageV3 = 6;
 constexpr const char* kChannels[] = {"R", "G", "B"};
 constexpr std::int32_t kChannelCount = 3;
 
+using namespace std::chrono_literals;
+
+/// Cells in a packet, next to each other in a row: 400 KB.
+constexpr std::size_t kCellsPerPacket = 32;
+
+/// Time between attempts to connect.
+constexpr auto kRetry = 2s;
+
+/// A viewer that has read nothing for this long is considered hung.
+constexpr auto kViewerTimeout = 1s;
+
+/// Maximum time to send the last pixels of an image.
+constexpr auto kLongestFinish = 10s;
+
 /// A packet: its length in bytes, including these four, its type and its payload; numbers are little-endian.
 class Packet {
  public:
@@ -171,24 +185,6 @@ void Connection::close(const std::string& reason) {
   state_ = State::kClosed;
   reason_ = reason;
 }
-
-namespace {
-
-using namespace std::chrono_literals;
-
-/// Cells in a packet, next to each other in a row: 400 KB.
-constexpr std::size_t kCellsPerPacket = 32;
-
-/// Time between attempts to connect.
-constexpr auto kRetry = 2s;
-
-/// A viewer that has read nothing for this long is considered hung.
-constexpr auto kViewerTimeout = 1s;
-
-/// Maximum time to send the last pixels of an image.
-constexpr auto kLongestFinish = 10s;
-
-}  // namespace
 
 TevSink::TevSink(const std::string& host, const std::string& port, OnNote on_note)
     : connection_(host, port), on_note_(std::move(on_note)), address_(fmt::format("{}:{}", host, port)) {}
