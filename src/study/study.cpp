@@ -6,6 +6,7 @@
 #include <cmath>
 #include <limits>
 #include <map>
+#include <optional>
 #include <utility>
 
 #include <fmt/core.h>
@@ -119,11 +120,9 @@ class Runner {
  private:
   double elapsed() const { return renderer_.elapsed(); }
   double left() const { return request_.budget_s - elapsed(); }
-  void report_progress(const std::string& what, double fraction) const {
-    if (request_.on_progress) request_.on_progress(what, fraction);
-  }
-  void report_progress(const std::string& what) const {
-    report_progress(what, std::min(elapsed() / request_.budget_s, 0.99));
+  void report_progress(const std::string& what, std::optional<double> fraction = {}) const {
+    if (request_.on_progress)
+      request_.on_progress(what, fraction.value_or(std::min(elapsed() / request_.budget_s, 0.99)));
   }
 
   void load() {
@@ -141,7 +140,7 @@ class Runner {
     load::add_scene_files(request_.scene.file, scene, files);
     if (scene.render.shading != scene::Shading::kPath)
       base::refuse("a study needs render.shading = \"path\"; the other modes trace no light paths");
-    full_ = compile::compile(scene, closing());
+    full_ = compile::compile(scene, read_.closing ? &*read_.closing : nullptr);
     film::LayerRequest layers = job::choose_layers(scene, full_).request;
     memory_needs_ = job::memory_needs(full_, layers);
     layers.halves = true;
@@ -161,9 +160,6 @@ class Runner {
     renderer_.take_spheres(full_);
     reduced_ = full_;
   }
-
-  /// The scene at shutter close; null without motion.
-  const scene::Scene* closing() const { return read_.closing ? &*read_.closing : nullptr; }
 
   /// Measures the speed and reduces the image until the study fits into the budget, but not below kMinPixels. Beyond
   /// that, choices are skipped.
