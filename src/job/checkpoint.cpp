@@ -89,6 +89,18 @@ std::string scene_difference(const image::Provenance& a, const image::Provenance
   return out.empty() ? "other spheres, materials, lights or images" : out;
 }
 
+/// Describes why a job cannot continue from a checkpoint; empty: it can. It can have more samples than the checkpoint.
+std::string difference_of_checkpoint(const image::Provenance& checkpoint, const image::Provenance& job) {
+  // The sums count samples, so that they do not depend on how many there will be, unless `total` says so.
+  static const std::vector<std::string> keys = {"version", "sampleHash", "total", "shard",
+                                                "noise",   "time",       "limit", "layers"};
+  std::string out = difference(checkpoint, job, keys);
+  const SampleRange begun = sample_range(checkpoint), wanted = sample_range(job);
+  if (out.empty() && (begun.begin != wanted.begin || begun.end > wanted.end))
+    out = difference(checkpoint, job, {"samples"});
+  return out;
+}
+
 }  // namespace
 
 image::Provenance provenance_of(const Job& job, const load::ReadResult& read, const compile::CompiledScene& compiled,
@@ -189,22 +201,6 @@ bool is_up_to_date(const Job& job, const compile::CompiledScene& compiled, const
                      [&](const ImageFile& image) { return is_same(image.path); }) &&
          (job.outputs.deep.empty() || is_same(job.outputs.deep));
 }
-
-namespace {
-
-/// Describes why a job cannot continue from a checkpoint; empty: it can. It can have more samples than the checkpoint.
-std::string difference_of_checkpoint(const image::Provenance& checkpoint, const image::Provenance& job) {
-  // The sums count samples, so that they do not depend on how many there will be, unless `total` says so.
-  static const std::vector<std::string> keys = {"version", "sampleHash", "total", "shard",
-                                                "noise",   "time",       "limit", "layers"};
-  std::string out = difference(checkpoint, job, keys);
-  const SampleRange begun = sample_range(checkpoint), wanted = sample_range(job);
-  if (out.empty() && (begun.begin != wanted.begin || begun.end > wanted.end))
-    out = difference(checkpoint, job, {"samples"});
-  return out;
-}
-
-}  // namespace
 
 std::filesystem::path checkpoint_file(const std::filesystem::path& first_output) {
   return first_output.parent_path() / base::companion_name(first_output.stem().string(), ".checkpoint.exr");
