@@ -11,7 +11,6 @@
 
 #include "base/error.h"
 #include "display/develop.h"
-#include "display/settings.h"
 #include "points/selection.h"
 #include "scene/value_text.h"
 
@@ -39,68 +38,12 @@ Vec3d ink_over(const scene::Background& background) {
   return background.alpha != 0 && is_plain && luminance < kDark ? Vec3d{1, 1, 1} : Vec3d{0, 0, 0};
 }
 
-class Layout {
- public:
-  Layout(const scene::Scene& scene, View view) : scene_(scene), view_(std::move(view)) {
-    const std::string font = scene.annotation.font.string();
-    const bool is_file = font.find_first_of("./\\") != std::string::npos;
-    font_ = font.empty() ? kDefaultFont : is_file ? (view_.folder / font).string() : font;
-    out_.width = view_.width;
-    out_.height = view_.height;
-    out_.ink = ink_over(scene.background);
-    size_ = std::max(kSmallestFont, std::round(view_.height / kFontShare));
-  }
-
-  Drawing run(const LegendColors& legend) {
-    const scene::Annotation& annotation = scene_.annotation;
-    const bool has_labels = std::any_of(scene_.points.begin(), scene_.points.end(),
-                                        [](const scene::Points& points) { return !points.placed_labels.empty(); });
-    if (!annotation.title.empty() || annotation.scale_bar || annotation.color_bar || has_labels)
-      out_.font = image::font_file(font_);
-    out_.outline_px = annotation.outline;
-    if (!annotation.title.empty()) {
-      const scene::Points* const points = scene_.points.empty() ? nullptr : &scene_.points[0];
-      const int frame = points != nullptr ? points->frame.value_or(view_.frame) : view_.frame;
-      add_text(title_of(annotation.title, frame, points != nullptr ? points->step : std::nullopt), kMargin * size_,
-               (kMargin + 0.8) * size_, 0);
-    }
-    if (annotation.scale_bar && scene_.camera.width) add_scale_bar(*annotation.scale_bar);
-    if (annotation.color_bar && !legend.is_empty()) add_legend(legend);
-    for (const scene::Points& points : scene_.points)
-      for (const scene::Label& label : points.placed_labels)
-        if (const auto at = view_.project(label.at))
-          out_.labels.push_back({label.text, at->first, at->second + kMiddle * size_, size_, 0.5});
-    return std::move(out_);
-  }
-
- private:
-  void add_text(const std::string& text, double x, double y, double anchor) {
-    out_.texts.push_back({text, x, y, size_, anchor});
-  }
-
-  void add_scale_bar(double length) {
-    const double width = length / *scene_.camera.width * view_.width, left = kMargin * size_,
-                 bottom = view_.height - kMargin * size_, top = bottom - kBarThickness * size_;
-    out_.boxes.push_back({left, top, left + width, bottom, out_.ink});
-    const std::string& unit = scene_.annotation.unit;
-    add_text(scene::number_text(length) + (unit.empty() ? "" : " " + unit), left, top - kTextGap * size_, 0);
-  }
-
-  void add_legend(const LegendColors& colors) {
-    const double margin = kMargin * size_;
-    const auto most_bytes =
-        static_cast<std::size_t>(std::max(kLegendWidth * view_.width / (kLetterWidth * size_), kFewestLetters));
-    const Drawing legend =
-        legend_drawing(colors, {size_, view_.height - 2 * margin, kMaxLabels, most_bytes, out_.ink}, out_.font);
-    place(legend, view_.width - margin - legend.width, margin, out_);
-  }
-
-  const scene::Scene& scene_;
-  View view_;
-  std::string font_;
-  double size_;  ///< of the font, px
-  Drawing out_;
-};
+/// The name or the file of a scene's font.
+std::string font_of(const scene::Scene& scene, const View& view) {
+  const std::string font = scene.annotation.font.string();
+  const bool is_file = font.find_first_of("./\\") != std::string::npos;
+  return font.empty() ? kDefaultFont : is_file ? (view.folder / font).string() : font;
+}
 
 /// The number of decimals in ".2f"; none for other text.
 std::optional<int> decimals_of(const std::string& format) {
@@ -151,21 +94,51 @@ std::string title_of(const std::string& title, int frame, std::optional<double> 
 
 LegendColors legend_of(const scene::Scene& scene, const std::vector<std::vector<Vec3d>>& palettes) {
   for (std::size_t i = 0; i < scene.points.size(); ++i) {
-    scene::Points keys;
-    keys.color = scene.points[i].color;
-    keys.color_names = scene.points[i].color_names;
-    keys.has_nan_color = scene.points[i].has_nan_color;
-    keys.palette = palettes[i];
     LegendColors out;
-    out.add(keys);
+    out.add(scene.points[i], palettes[i]);
     out.range = scene.points[i].color_range;
     if (!out.is_empty()) return out;
   }
   return {};
 }
 
-Drawing drawing_of(const scene::Scene& scene, const LegendColors& legend, View view) {
-  return Layout(scene, std::move(view)).run(legend);
+Drawing drawing_of(const scene::Scene& scene, const LegendColors& legend, const View& view) {
+  const scene::Annotation& annotation = scene.annotation;
+  const double size = std::max(kSmallestFont, std::round(view.height / kFontShare)), margin = kMargin * size;
+  const bool has_labels = std::any_of(scene.points.begin(), scene.points.end(),
+                                      [](const scene::Points& points) { return !points.placed_labels.empty(); });
+  Drawing out;
+  out.width = view.width;
+  out.height = view.height;
+  out.ink = ink_over(scene.background);
+  out.outline_px = annotation.outline;
+  if (!annotation.title.empty() || annotation.scale_bar || annotation.color_bar || has_labels)
+    out.font = image::font_file(font_of(scene, view));
+  if (!annotation.title.empty()) {
+    const scene::Points* const points = scene.points.empty() ? nullptr : &scene.points[0];
+    const int frame = points != nullptr ? points->frame.value_or(view.frame) : view.frame;
+    const std::string title = title_of(annotation.title, frame, points != nullptr ? points->step : std::nullopt);
+    out.texts.push_back({title, margin, (kMargin + 0.8) * size, size, 0});
+  }
+  if (annotation.scale_bar && scene.camera.width) {
+    const double width = *annotation.scale_bar / *scene.camera.width * view.width, bottom = view.height - margin,
+                 top = bottom - kBarThickness * size;
+    const std::string unit = annotation.unit.empty() ? "" : " " + annotation.unit;
+    out.boxes.push_back({margin, top, margin + width, bottom, out.ink});
+    out.texts.push_back({scene::number_text(*annotation.scale_bar) + unit, margin, top - kTextGap * size, size, 0});
+  }
+  if (annotation.color_bar && !legend.is_empty()) {
+    const auto most_bytes =
+        static_cast<std::size_t>(std::max(kLegendWidth * view.width / (kLetterWidth * size), kFewestLetters));
+    const Drawing drawn =
+        legend_drawing(legend, {size, view.height - 2 * margin, kMaxLabels, most_bytes, out.ink}, out.font);
+    place(drawn, view.width - margin - drawn.width, margin, out);
+  }
+  for (const scene::Points& points : scene.points)
+    for (const scene::Label& label : points.placed_labels)
+      if (const auto at = view.project(label.at))
+        out.labels.push_back({label.text, at->first, at->second + kMiddle * size, size, 0.5});
+  return out;
 }
 
 std::string missing_glyphs(const Drawing& drawing) {

@@ -43,7 +43,7 @@ LegendColors legend_of(const scene::Scene& scene, const std::vector<std::vector<
 /// `legend`   colours for the scene's colour bar; empty: it has none
 /// Result     empty if the scene has no annotation
 /// Errors     base::Error: those of title_of() and image::text_widths()
-Drawing drawing_of(const scene::Scene& scene, const LegendColors& legend, View view);
+Drawing drawing_of(const scene::Scene& scene, const LegendColors& legend, const View& view);
 
 /// The characters of all texts of a drawing for which its font has no glyphs.
 std::string missing_glyphs(const Drawing& drawing);

@@ -4,7 +4,6 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
-#include <cstdint>
 #include <fstream>
 #include <iterator>
 #include <utility>
@@ -23,13 +22,11 @@ constexpr double kContour = 0.12;
 /// Layers of colour with coverage, one over the other.
 class Canvas {
  public:
-  Canvas(int width, int height) : width_(width), height_(height) {
-    overlay_.width = width;
-    overlay_.height = height;
-    overlay_.rgba.resize(4 * pixels());
-  }
+  Canvas(int width, int height) : overlay_{width, height, {}} { overlay_.rgba.resize(4 * pixels()); }
 
-  std::size_t pixels() const { return static_cast<std::size_t>(width_) * static_cast<std::size_t>(height_); }
+  std::size_t pixels() const {
+    return static_cast<std::size_t>(overlay_.width) * static_cast<std::size_t>(overlay_.height);
+  }
 
   /// Puts a colour over a pixel.
   void paint(std::size_t pixel, const Vec3d& color, double coverage) {
@@ -68,34 +65,29 @@ class Canvas {
       return std::max(0.0, std::min(end, at + 1.0) - std::max(begin, static_cast<double>(at)));
     };
     const auto first = [](double at) { return std::max(0, static_cast<int>(std::floor(at))); };
-    for (int y = first(top); y < std::min<double>(height_, bottom); ++y)
-      for (int x = first(left); x < std::min<double>(width_, right); ++x)
-        paint(static_cast<std::size_t>(y) * static_cast<std::size_t>(width_) + static_cast<std::size_t>(x), color_of(y),
-              covered(left, right, x) * covered(top, bottom, y));
+    for (int y = first(top); y < std::min<double>(overlay_.height, bottom); ++y)
+      for (int x = first(left); x < std::min<double>(overlay_.width, right); ++x)
+        paint(static_cast<std::size_t>(y) * static_cast<std::size_t>(overlay_.width) + static_cast<std::size_t>(x),
+              color_of(y), covered(left, right, x) * covered(top, bottom, y));
   }
 
-  int width_, height_;
   Overlay overlay_;
 };
 
 /// The largest coverage within a distance of each pixel.
 std::vector<float> dilated(const std::vector<float>& coverage, int width, int height, int reach) {
-  std::vector<float> rows(coverage.size()), out(coverage.size());
-  const auto pass = [&](const std::vector<float>& from, std::vector<float>& to, int step, int count, int position_step,
-                        int positions) {
-    for (int p = 0; p < positions; ++p)
-      for (int i = 0; i < count; ++i) {
-        float most = 0;
-        for (int k = std::max(0, i - reach); k <= std::min(count - 1, i + reach); ++k)
-          most = std::max(most, from[static_cast<std::size_t>(p) * static_cast<std::size_t>(position_step) +
-                                     static_cast<std::size_t>(k) * static_cast<std::size_t>(step)]);
-        to[static_cast<std::size_t>(p) * static_cast<std::size_t>(position_step) +
-           static_cast<std::size_t>(i) * static_cast<std::size_t>(step)] = most;
-      }
+  // Dilates rows, and makes them columns.
+  const auto pass = [reach](const std::vector<float>& from, int length, int rows) {
+    std::vector<float> to(from.size());
+    for (int y = 0; y < rows; ++y) {
+      const float* const row = &from[static_cast<std::size_t>(y) * static_cast<std::size_t>(length)];
+      for (int x = 0; x < length; ++x)
+        to[static_cast<std::size_t>(x) * static_cast<std::size_t>(rows) + static_cast<std::size_t>(y)] =
+            *std::max_element(row + std::max(0, x - reach), row + std::min(length, x + reach + 1));
+    }
+    return to;
   };
-  pass(coverage, rows, 1, width, width, height);
-  pass(rows, out, width, height, 1, width);
-  return out;
+  return pass(pass(coverage, width, height), height, width);
 }
 
 std::string hex(const Vec3d& color) {
@@ -146,21 +138,6 @@ std::string svg_bar(const Bar& bar, std::size_t number, const std::function<Vec3
                    bar.left, bar.top, bar.right - bar.left, bar.bottom - bar.top, number);
 }
 
-/// Reference  RFC 4648
-std::string base64(std::string_view bytes) {
-  constexpr char kDigits[] = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
-  std::string out;
-  out.reserve((bytes.size() + 2) / 3 * 4);
-  for (std::size_t i = 0; i < bytes.size(); i += 3) {
-    std::uint32_t group = 0;
-    for (std::size_t k = i; k < i + 3; ++k)
-      group = group << 8 | (k < bytes.size() ? static_cast<unsigned char>(bytes[k]) : 0U);
-    for (unsigned digit = 0; digit < 4; ++digit)
-      out += i + digit > bytes.size() ? '=' : kDigits[group >> (18 - 6 * digit) & 63];
-  }
-  return out;
-}
-
 /// The font of a drawing and a replacement, for an attribute in double quotes.
 std::string svg_font(const std::filesystem::path& font) {
   std::string family = font.empty() ? "" : image::font_family(font);
@@ -183,10 +160,8 @@ void blend_pixel(const float* over, double largest, bool has_alpha, Code* pixel)
 }  // namespace
 
 void place(const Drawing& part, double x, double y, Drawing& into) {
-  for (Box box : part.boxes) {
-    box = {box.left + x, box.top + y, box.right + x, box.bottom + y, box.color};
-    into.boxes.push_back(box);
-  }
+  for (const Box& box : part.boxes)
+    into.boxes.push_back({box.left + x, box.top + y, box.right + x, box.bottom + y, box.color});
   for (const Bar& bar : part.bars)
     into.bars.push_back({bar.left + x, bar.top + y, bar.right + x, bar.bottom + y, bar.colors});
   for (image::TextLine text : part.texts) {
@@ -234,11 +209,10 @@ Overlay draw(const Drawing& drawing, const std::function<Vec3d(const Vec3d&)>& s
 
 std::string stamped(const std::string& stamp, const Drawing& drawing) {
   if (drawing.is_empty()) return stamp;
-  const auto same = [](const Vec3d& color) { return color; };
   std::ifstream font(drawing.font, std::ios::binary);
   const std::string glyphs(std::istreambuf_iterator<char>(font), {});
-  return base::text_hash(
-      fmt::format("{}\n{}\n{}\n{}\n{}", stamp, drawing.font.string(), drawing.outline_px, svg(drawing, same), glyphs));
+  return base::text_hash(fmt::format("{}\n{}\n{}\n{}\n{}", stamp, drawing.font.string(), drawing.outline_px,
+                                     svg(drawing, std::identity()), glyphs));
 }
 
 void blend(const Overlay& overlay, film::EncodedPicture& picture) {
@@ -268,7 +242,7 @@ std::string svg(const Drawing& drawing, const std::function<Vec3d(const Vec3d&)>
   std::string body;
   if (!png.empty())
     body += fmt::format("<image width=\"{}\" height=\"{}\" href=\"data:image/png;base64,{}\"/>\n", drawing.width,
-                        drawing.height, base64(png));
+                        drawing.height, base::base64(png));
   for (const Box& box : drawing.boxes)
     body += fmt::format("<rect x=\"{:.3f}\" y=\"{:.3f}\" width=\"{:.3f}\" height=\"{:.3f}\" fill=\"{}\"/>\n", box.left,
                         box.top, box.right - box.left, box.bottom - box.top, hex(shown(box.color)));

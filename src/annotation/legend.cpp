@@ -124,8 +124,6 @@ Drawing page(const LegendColors& colors, const display::Settings& display, doubl
   return out;
 }
 
-Vec3d same(const Vec3d& color) { return color; }
-
 std::optional<double> number_of(std::string_view label) {
   const auto value = base::number_of<double>(label);
   return value && !std::isnan(*value) ? value : std::nullopt;
@@ -139,17 +137,17 @@ bool LabelOrder::operator()(std::string_view a, std::string_view b) const {
   return x.has_value() != y.has_value() ? x.has_value() : a < b;
 }
 
-void LegendColors::add(const scene::Points& frame) {
+void LegendColors::add(const scene::Points& frame, const std::vector<Vec3d>& palette) {
   const scene::PointsColor& key = frame.color;
   title = !key.column.empty() ? key.column : key.element.empty() ? "type" : "element";
-  for (std::size_t i = 0; i < std::min(frame.palette.size(), frame.color_names.size()); ++i) {
-    const auto [label, is_new] = labels.try_emplace(frame.color_names[i], frame.palette[i]);
-    has_conflict = has_conflict || (!is_new && label->second != frame.palette[i]);
+  for (std::size_t i = 0; i < std::min(palette.size(), frame.color_names.size()); ++i) {
+    const auto [label, is_new] = labels.try_emplace(frame.color_names[i], palette[i]);
+    has_conflict = has_conflict || (!is_new && label->second != palette[i]);
   }
-  if (!frame.color_names.empty() || key.column.empty() || frame.palette.empty()) return;
+  if (!frame.color_names.empty() || key.column.empty() || palette.empty()) return;
   is_log = key.log;
-  bar.assign(frame.palette.begin(), frame.palette.end() - 1);
-  if (frame.has_nan_color) nan_color = frame.palette.back();
+  bar.assign(palette.begin(), palette.end() - 1);
+  if (frame.has_nan_color) nan_color = palette.back();
 }
 
 Drawing legend_drawing(const LegendColors& colors, const LegendStyle& style, const std::filesystem::path& font) {
@@ -171,7 +169,7 @@ Drawing legend_drawing(const LegendColors& colors, const LegendStyle& style, con
 }
 
 std::string legend_svg(const LegendColors& colors, const display::Settings& display) {
-  return colors.is_empty() ? "" : svg(page(colors, display, kSvgFont), same);
+  return colors.is_empty() ? "" : svg(page(colors, display, kSvgFont), std::identity());
 }
 
 void write_legend(const std::filesystem::path& file, const LegendColors& colors, const display::Settings& display) {
@@ -186,7 +184,7 @@ void write_legend(const std::filesystem::path& file, const LegendColors& colors,
   picture.width = drawing.width;
   picture.height = drawing.height;
   picture.values.resize(3 * static_cast<std::size_t>(drawing.width) * static_cast<std::size_t>(drawing.height));
-  blend(draw(drawing, same), picture);
+  blend(draw(drawing, std::identity()), picture);
   image::write_encoded(file, picture, "orrery");
 }
 

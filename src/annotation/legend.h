@@ -58,8 +58,8 @@ struct LegendColors {
   bool has_conflict = false;                        ///< a label has different colours in different frames
 
   bool is_empty() const { return labels.empty() && (bar.empty() || !range); }
-  /// Adds the colours of a loaded frame.
-  void add(const scene::Points& frame);
+  /// Adds the colours of a loaded frame, of which `palette` is linear Rec.709.
+  void add(const scene::Points& frame, const std::vector<Vec3d>& palette);
 };
 
 /// How a legend is drawn.

@@ -7,6 +7,7 @@
 #include <fmt/core.h>
 
 #include "annotation/legend.h"
+#include "base/text.h"
 
 namespace orrery::annotation {
 
@@ -21,17 +22,11 @@ constexpr double kMinRange = 1e-290, kMinRelativeRange = 1e-12;
 
 int exponent_of(double value) { return static_cast<int>(std::floor(std::log10(std::abs(value)))); }
 
-std::string fixed_text(double value, int decimals) {
-  char text[400];
-  const auto [end, status] =
-      std::to_chars(text, text + sizeof text, value, std::chars_format::fixed, std::max(decimals, 0));
-  return status == std::errc() ? std::string(text, end) : "?";
-}
+std::string fixed_text(double value, int decimals) { return fmt::format("{:.{}f}", value, std::max(decimals, 0)); }
 
 std::string shortest_text(double value) {
-  char text[64];
-  const auto [end, status] = std::to_chars(text, text + sizeof text, value);
-  std::string out(text, status == std::errc() ? end : text);
+  char text[64];  // more than any
+  std::string out(text, std::to_chars(text, std::end(text), value).ptr);
   std::erase(out, '+');  // of "1e+300"
   return out;
 }
@@ -85,9 +80,8 @@ std::vector<Tick> ticks_of(const ValueScale& scale) {
     if (exponent % step != 0) continue;
     for (const int digit : {1, 2, 5}) {
       if (digit > 1 && decades >= 3) continue;
-      const std::string text = fmt::format("{}e{}", digit, exponent);
-      double value = 0;
-      std::from_chars(text.data(), text.data() + text.size(), value);  // the closest double
+      // The closest double; 0 if there is none.
+      const double value = base::number_of<double>(fmt::format("{}e{}", digit, exponent)).value_or(0);
       if (value >= low * (1 - kTiny) && value <= high * (1 + kTiny)) out.push_back({value, shortest_text(value)});
     }
   }

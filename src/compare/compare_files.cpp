@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "compare/compare_files.h"
 
-#include <algorithm>
 #include <cmath>
+#include <functional>
 
 #include <nlohmann/json.hpp>
 
@@ -13,7 +13,6 @@
 #include "base/error.h"
 #include "base/file_set.h"
 #include "base/text.h"
-#include "compare/color_view.h"
 #include "compare/perceptual.h"
 #include "image/format.h"
 #include "image/header.h"
@@ -22,7 +21,6 @@
 #include "job/report_text.h"
 #include "job/resources.h"
 #include "job/version.h"
-#include "render/tiles.h"
 
 namespace orrery::compare {
 namespace {
@@ -80,15 +78,6 @@ film::Picture difference_picture(const ComparedChannels& c, bool for_display) {
     out.planes.push_back(std::move(plane));
   }
   return out;
-}
-
-/// A ForEach that runs on this many threads of the task scheduler.
-ForEach on_threads(int threads) {
-  return [threads](std::size_t count, const std::function<void(std::size_t)>& work) {
-    render::TilePool(threads > 0 ? threads : job::default_threads())
-        .run(
-            count, [&](std::size_t i, render::TileWorker&) { work(i); }, [] { return false; });
-  };
 }
 
 void write_codes(const std::filesystem::path& file, const film::Picture& codes) {
@@ -173,12 +162,12 @@ Comparison compare(const film::Picture& picture, const film::Picture& reference,
     v = std::clamp(v, 0.0f, 1.0f);
     return encoding == Encoding::kLight ? srgb_encoded(v) : v;
   };
-  const auto same = [](float v) { return v; };
   const ChangedImage code_a(c.picture, code), code_b(c.reference, code);
   out.ssim = ssim(code_a.view, code_b.view);
   out.flip_map = encoding == Encoding::kDisplay ? flip(code_a.view, code_b.view)
-                                                : hdr_flip(ChangedImage(c.picture, same).view,
-                                                           ChangedImage(c.reference, same).view, on_threads(threads));
+                                                : hdr_flip(ChangedImage(c.picture, std::identity()).view,
+                                                           ChangedImage(c.reference, std::identity()).view,
+                                                           threads > 0 ? threads : job::default_threads());
   out.flip = out.flip_map.mean();
   out.z_test = z_test(c.picture, color_of(picture, "variance"), c.reference, color_of(reference, "variance"));
   return out;

@@ -9,6 +9,12 @@
 #include "film/display_error.h"
 
 namespace orrery::compare {
+namespace {
+
+/// Relative difference that storing one of the images in half precision can cause.
+constexpr double kHalfPrecision = 0x1p-10;
+
+}  // namespace
 
 double PixelErrors::psnr_db() const {
   return rmse > 0 ? -20 * std::log10(rmse) : std::numeric_limits<double>::infinity();
@@ -69,13 +75,6 @@ Map display_error_map(const ColorView& picture, const ColorView& reference, cons
   }
   return out;
 }
-
-namespace {
-
-/// Relative difference that storing one of the images in half precision can cause.
-constexpr double kHalfPrecision = 0x1p-10;
-
-}  // namespace
 
 double two_sided_quantile(double chance) {
   double low = 0, high = 40;

@@ -4,13 +4,16 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <functional>
 #include <mutex>
 #include <numbers>
 
-#include "compare/color_view.h"
+#include "render/tiles.h"
 
 namespace orrery::compare {
+namespace {
 
+/// Samples `shape` at -radius .. radius and normalizes the taps to a sum of 1.
 Taps taps_of(int radius, const std::function<double(double)>& shape) {
   double sum = 0;
   for (int x = -radius; x <= radius; ++x) sum += shape(x);
@@ -19,9 +22,24 @@ Taps taps_of(int radius, const std::function<double(double)>& shape) {
   return taps;
 }
 
-Taps gaussian_taps(int radius, double sigma) {
-  return taps_of(radius, [sigma](double x) { return std::exp(-x * x / (2 * sigma * sigma)); });
+auto gaussian(double sigma) {
+  return [sigma](double x) { return std::exp(-x * x / (2 * sigma * sigma)); };
 }
+
+Map luma(const ColorView& v) {
+  Map out{v.width, v.height, std::vector<float>(v.pixels())};
+  for (std::size_t i = 0; i < out.values.size(); ++i)
+    out.values[i] = 0.299f * v.channel[0][i] + 0.587f * v.channel[1][i] + 0.114f * v.channel[2][i];
+  return out;
+}
+
+Map product(const Map& a, const Map& b) {
+  Map out = a;
+  for (std::size_t i = 0; i < out.values.size(); ++i) out.values[i] *= b.values[i];
+  return out;
+}
+
+}  // namespace
 
 Map convolved(const Map& map, const Taps& along_x, const Taps& along_y) {
   const int w = map.width, h = map.height;
@@ -48,26 +66,9 @@ Map convolved(const Map& map, const Taps& along_x, const Taps& along_y) {
   return out;
 }
 
-namespace {
-
-Map luma(const ColorView& v) {
-  Map out{v.width, v.height, std::vector<float>(v.pixels())};
-  for (std::size_t i = 0; i < out.values.size(); ++i)
-    out.values[i] = 0.299f * v.channel[0][i] + 0.587f * v.channel[1][i] + 0.114f * v.channel[2][i];
-  return out;
-}
-
-Map product(const Map& a, const Map& b) {
-  Map out = a;
-  for (std::size_t i = 0; i < out.values.size(); ++i) out.values[i] *= b.values[i];
-  return out;
-}
-
-}  // namespace
-
 double ssim(const ColorView& picture, const ColorView& reference) {
   constexpr double kC1 = 0.01 * 0.01, kC2 = 0.03 * 0.03;
-  const Taps taps = gaussian_taps(5, 1.5);
+  const Taps taps = taps_of(5, gaussian(1.5));
   const auto mean = [&](const Map& m) { return convolved(m, taps, taps); };
   const Map a = luma(picture), b = luma(reference);
   const Map mean_a = mean(a), mean_b = mean(b), aa = mean(product(a, a)), bb = mean(product(b, b)),
@@ -228,7 +229,7 @@ FilteredImage filtered_image(const Maps& codes) {
 
   const double sigma = kFeatureWidth / 2 * kPixelsPerDegree;
   const int radius = static_cast<int>(std::ceil(3 * sigma));
-  const auto bell = [sigma](double x) { return std::exp(-x * x / (2 * sigma * sigma)); };
+  const auto bell = gaussian(sigma);
   const Taps along = taps_of(radius, bell);
   out.features = feature_strength(brightness, balanced(radius, [&](double x) { return -x * bell(x); }), along);
   out.points = feature_strength(
@@ -270,21 +271,14 @@ double inverse_tone_curve(double t) {
   return -b / 2 + std::sqrt(b * b / 4 - c);
 }
 
-Maps codes_at(const ColorView& light, double exposure) {
-  const auto gain = static_cast<float>(std::exp2(exposure));
+/// The values of a view, changed by `f`.
+template <class F>
+Maps maps_of(const ColorView& v, F f) {
   Maps out;
   for (std::size_t c = 0; c < 3; ++c) {
-    out[c] = {light.width, light.height, std::vector<float>(light.pixels())};
-    for (std::size_t i = 0; i < out[c].values.size(); ++i)
-      out[c].values[i] = srgb_encoded(tone(std::max(light.channel[c][i], 0.0f) * gain));
+    out[c] = {v.width, v.height, std::vector<float>(v.pixels())};
+    std::transform(v.channel[c], v.channel[c] + v.pixels(), out[c].values.begin(), f);
   }
-  return out;
-}
-
-Maps codes_of(const ColorView& v) {
-  Maps out;
-  for (std::size_t c = 0; c < 3; ++c)
-    out[c] = {v.width, v.height, std::vector<float>(v.channel[c], v.channel[c] + v.pixels())};
   return out;
 }
 
@@ -315,24 +309,22 @@ std::vector<double> exposures_for(const ColorView& reference) {
 }  // namespace
 
 Map flip(const ColorView& picture, const ColorView& reference) {
-  return flip(filtered_image(codes_of(picture)), filtered_image(codes_of(reference)));
+  return flip(filtered_image(maps_of(picture, std::identity())), filtered_image(maps_of(reference, std::identity())));
 }
 
-Map hdr_flip(const ColorView& picture, const ColorView& reference, const ForEach& for_each) {
+Map hdr_flip(const ColorView& picture, const ColorView& reference, int threads) {
   const std::vector<double> exposures = exposures_for(reference);
   Map out{reference.width, reference.height, std::vector<float>(reference.pixels(), 0.0f)};
   std::mutex merging;
-  const auto merge = [&](std::size_t i) {
-    const Map map =
-        flip(filtered_image(codes_at(picture, exposures[i])), filtered_image(codes_at(reference, exposures[i])));
+  const auto merge = [&](std::size_t i, render::TileWorker&) {
+    const auto code = [gain = static_cast<float>(std::exp2(exposures[i]))](float light) {
+      return srgb_encoded(tone(std::max(light, 0.0f) * gain));
+    };
+    const Map map = flip(filtered_image(maps_of(picture, code)), filtered_image(maps_of(reference, code)));
     const std::lock_guard lock(merging);
     for (std::size_t p = 0; p < out.values.size(); ++p) out.values[p] = std::max(out.values[p], map.values[p]);
   };
-  if (for_each) {
-    for_each(exposures.size(), merge);
-  } else {
-    for (std::size_t i = 0; i < exposures.size(); ++i) merge(i);
-  }
+  render::TilePool(threads).run(exposures.size(), merge, [] { return false; });
   return out;
 }
 

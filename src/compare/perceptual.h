@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include <cstddef>
-#include <functional>
 #include <vector>
 
 #include "compare/color_view.h"
@@ -11,14 +9,6 @@ namespace orrery::compare {
 
 /// A one-dimensional kernel of 2 * radius + 1 taps.
 using Taps = std::vector<float>;
-
-/// Samples `shape` at -radius .. radius and normalizes the taps to a sum of 1.
-Taps taps_of(int radius, const std::function<double(double)>& shape);
-
-/// A Gaussian kernel, normalized to a sum of 1.
-///
-/// Units      `radius` and `sigma` in pixels
-Taps gaussian_taps(int radius, double sigma);
 
 /// Convolves a map with a separable kernel. The edge pixels are extended beyond the border.
 Map convolved(const Map& map, const Taps& along_x, const Taps& along_y);
@@ -33,9 +23,6 @@ double ssim(const ColorView& picture, const ColorView& reference);
 /// Pixels per degree of visual angle for a display 3840 pixels and 0.7 m wide, viewed from 0.7 m.
 inline constexpr double kPixelsPerDegree = 67.0206433;
 
-/// Calls work(i) for i = 0 .. count - 1 in any order, on any thread, and rethrows its exceptions.
-using ForEach = std::function<void(std::size_t count, const std::function<void(std::size_t i)>& work)>;
-
 /// The FLIP error map: the difference per pixel that a viewer perceives when alternating between two images.
 ///
 /// Domain     sRGB-encoded values 0..1; views of the same size
@@ -46,8 +33,9 @@ Map flip(const ColorView& picture, const ColorView& reference);
 /// The HDR-FLIP error map of scene-linear images: the maximum of flip() over a range of exposures, tone-mapped with the
 /// curve of the paper. The range extends from the exposure for the brightest pixel to that for the median.
 ///
-/// Domain     linear Rec. 709; negative values count as 0. `for_each` runs the exposures; default: one after another
+/// `threads`  on which the exposures run
+/// Domain     linear Rec. 709; negative values count as 0
 /// Reference  andersson2021
-Map hdr_flip(const ColorView& picture, const ColorView& reference, const ForEach& for_each = {});
+Map hdr_flip(const ColorView& picture, const ColorView& reference, int threads = 1);
 
 }  // namespace orrery::compare

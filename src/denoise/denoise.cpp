@@ -3,7 +3,6 @@
 
 #include <algorithm>
 #include <array>
-#include <cmath>
 #include <cstddef>
 #include <optional>
 
@@ -123,7 +122,7 @@ WeightSource beauty_source(const SourcePlanes& planes, const FilteredHalves& hal
   WeightSource source;
   source.tolerance = planes.has_halves ? kTolerance : kToleranceOfImage;
   source.valid = &planes.valid;
-  source.target = planes.target();
+  source.target = {&planes.beauty[0], &planes.beauty[1], &planes.beauty[2]};
   source.variance = planes.has_halves ? &halves.variance : &planes.variance;
   for (std::size_t c = 0; c < 3; ++c)
     source.compared.push_back(planes.has_halves ? ComparedChannel{&halves.a[c], &halves.b[c]}

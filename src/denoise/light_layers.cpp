@@ -7,6 +7,7 @@
 #include <optional>
 #include <set>
 
+#include "base/text.h"
 #include "film/layers.h"
 #include "film/light_cells.h"
 
@@ -27,12 +28,10 @@ std::vector<std::string> light_groups(const film::Picture& picture) {
   for (const film::Plane& plane : picture.planes) {
     const std::string layer = plane.layer();
     const auto has_lobe = [&](const char* lobe) { return layers.count(layer + "_" + lobe) > 0; };
-    if (!layer.empty() && (out.empty() || out.back() != layer) &&
+    if (!layer.empty() && !base::contains(out, layer) &&
         std::any_of(std::begin(film::kLobeNames), std::end(film::kLobeNames), has_lobe))
       out.push_back(layer);
   }
-  std::set<std::string> seen;
-  std::erase_if(out, [&](const std::string& group) { return !seen.insert(group).second; });
   return out;
 }
 

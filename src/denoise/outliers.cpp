@@ -3,10 +3,7 @@
 
 #include <tbb/parallel_for.h>
 
-#include <algorithm>
-#include <array>
 #include <cmath>
-#include <vector>
 
 namespace orrery::denoise {
 namespace {

@@ -7,6 +7,7 @@
 #include <cmath>
 #include <cstddef>
 #include <deque>
+#include <string_view>
 
 namespace orrery::denoise {
 namespace {
@@ -39,25 +40,11 @@ Values variance_of_image(const Values& in, Frame frame) {
   });
 }
 
-/// The planes of a picture by name.
-class Planes {
- public:
-  explicit Planes(const film::Picture& picture) : picture_(picture) {}
-
-  const Values* find(const std::string& name) const {
-    const film::Plane* const plane = picture_.find(name);
-    return plane != nullptr ? &plane->values : nullptr;
-  }
-  const Values& at(const std::string& name) const { return *find(name); }
-  bool has(const std::string& layer, const char* letters) const {
-    for (const char* c = letters; *c != 0; ++c)
-      if (find(layer + "." + *c) == nullptr) return false;
-    return true;
-  }
-
- private:
-  const film::Picture& picture_;
-};
+/// Whether a picture has all channels of a layer.
+bool has_channels(const film::Picture& picture, const std::string& layer, std::string_view letters) {
+  return std::all_of(letters.begin(), letters.end(),
+                     [&](char letter) { return picture.find(layer + "." + letter) != nullptr; });
+}
 
 /// Name of a guide in a half, its name as a layer, its channel and its scale.
 struct GuideName {
@@ -87,8 +74,8 @@ struct HalfCounts {
 /// Maximum fraction of pixels with a single half: with more, the halves do not describe the noise reliably.
 constexpr double kMaxLonePixels = 1.0 / 16;
 
-HalfCounts count_halves(const Planes& planes, Frame frame) {
-  const Values &a = planes.at("half_a.inverse_depth.X"), &b = planes.at("half_b.inverse_depth.X");
+HalfCounts count_halves(const film::Picture& picture, Frame frame) {
+  const Values &a = picture.at("half_a.inverse_depth.X").values, &b = picture.at("half_b.inverse_depth.X").values;
   HalfCounts out;
   for (std::size_t i = 0; i < frame.pixels(); ++i) {
     out.with_one += std::isnan(a[i]) != std::isnan(b[i]) ? 1 : 0;
@@ -100,12 +87,13 @@ HalfCounts count_halves(const Planes& planes, Frame frame) {
 /// The halves of a channel. Where one has no samples, it is replaced by the other.
 class HalfPlanes {
  public:
-  HalfPlanes(const Planes& planes, HalfCounts counts, Frame frame) : planes_(planes), counts_(counts), frame_(frame) {}
+  HalfPlanes(const film::Picture& picture, HalfCounts counts, Frame frame)
+      : picture_(picture), counts_(counts), frame_(frame) {}
 
   /// `end`      suffix of the names, such as ".albedo.R"
   /// Result     valid as long as this
   HalfPair of(const std::string& end, float scale = 1) {
-    const Values &a = planes_.at("half_a" + end), &b = planes_.at("half_b" + end);
+    const Values &a = picture_.at("half_a" + end).values, &b = picture_.at("half_b" + end).values;
     return counts_.with_one == 0 ? HalfPair{&a, &b, scale} : HalfPair{&filled(a, b), &filled(b, a), scale};
   }
 
@@ -115,7 +103,7 @@ class HalfPlanes {
         frame_.each_index([&](std::size_t i) { return std::isnan(own[i]) ? other[i] : own[i]; }));
   }
 
-  const Planes& planes_;
+  const film::Picture& picture_;
   HalfCounts counts_;
   Frame frame_;
   std::deque<Values> filled_;
@@ -136,15 +124,16 @@ void add_guides_of_halves(SourcePlanes& out, HalfPlanes& planes, Frame frame) {
                                       : PaddedPlane(frame.width, frame.height);
 }
 
-void add_guides_of_layers(SourcePlanes& out, const Planes& planes, Frame frame) {
+void add_guides_of_layers(SourcePlanes& out, const film::Picture& picture, Frame frame) {
   for (const GuideName& name : kGuideNames) {
-    const Values* const plane = planes.find(std::string(name.layer) + "." + name.channel);
+    const film::Plane* const plane = picture.find(std::string(name.layer) + "." + name.channel);
     if (name.scale != kDepthScale) {
-      out.guides.push_back(padded(*plane, frame, name.scale));
+      out.guides.push_back(padded(plane->values, frame, name.scale));
     } else if (plane == nullptr) {
       out.guides.emplace_back(frame.width, frame.height);
     } else {
-      const Values inverse = frame.each_index([&](std::size_t i) { return (*plane)[i] > 0 ? 1 / (*plane)[i] : 0; });
+      const Values& depth = plane->values;
+      const Values inverse = frame.each_index([&](std::size_t i) { return depth[i] > 0 ? 1 / depth[i] : 0; });
       out.guides.push_back(padded(inverse, frame, relative_scale(inverse, name.scale)));
     }
   }
@@ -152,11 +141,12 @@ void add_guides_of_layers(SourcePlanes& out, const Planes& planes, Frame frame) 
 }
 
 /// Variance of the beauty without halves, from the layer `variance` or from the image itself; sum over the channels.
-Values variance_without_halves(const Planes& planes, bool has_variance, Frame frame) {
+Values variance_without_halves(const film::Picture& picture, bool has_variance, Frame frame) {
   Values sum(frame.pixels());
   for (const std::string letter : {"R", "G", "B"}) {
-    const Values variance = has_variance ? window_means(planes.at("variance." + letter), frame, kBeautyNoiseRadius)
-                                         : variance_of_image(planes.at(letter), frame);
+    const Values variance = has_variance
+                                ? window_means(picture.at("variance." + letter).values, frame, kBeautyNoiseRadius)
+                                : variance_of_image(picture.at(letter).values, frame);
     sum = frame.each_index([&](std::size_t i) { return sum[i] + variance[i]; });
   }
   return sum;
@@ -179,21 +169,20 @@ void reduce(SourcePlanes& planes, const std::vector<HalfPair>& halves, Frame fra
 SourcePlanes source_planes(const film::Picture& picture) {
   SourcePlanes out;
   const Frame frame{picture.width, picture.height};
-  const Planes planes(picture);
   const auto has_half = [&](const std::string& half) {
-    return planes.has(half, "RGB") && planes.has(half + ".albedo", "RGB") && planes.has(half + ".normal", "XYZ") &&
-           planes.has(half + ".inverse_depth", "X");
+    return has_channels(picture, half, "RGB") && has_channels(picture, half + ".albedo", "RGB") &&
+           has_channels(picture, half + ".normal", "XYZ") && has_channels(picture, half + ".inverse_depth", "X");
   };
   const bool has_planes = has_half("half_a") && has_half("half_b");
-  const HalfCounts counts = has_planes ? count_halves(planes, frame) : HalfCounts();
+  const HalfCounts counts = has_planes ? count_halves(picture, frame) : HalfCounts();
   const double lone = static_cast<double>(counts.with_one) / static_cast<double>(frame.pixels());
   out.has_halves = has_planes && lone <= kMaxLonePixels;
-  HalfPlanes half_planes(planes, counts, frame);
-  const bool has_variance = planes.has("variance", "RGB");
+  HalfPlanes half_planes(picture, counts, frame);
+  const bool has_variance = has_channels(picture, "variance", "RGB");
   std::vector<HalfPair> halves;
   for (std::size_t c = 0; c < 3; ++c) {
     const std::string letter(1, "RGB"[c]);
-    out.beauty[c] = padded(planes.at(letter), frame);
+    out.beauty[c] = padded(picture.at(letter).values, frame);
     if (!out.has_halves) continue;
     halves.push_back(half_planes.of("." + letter));
     out.a[c] = padded(*halves.back().a, frame);
@@ -204,30 +193,31 @@ SourcePlanes source_planes(const film::Picture& picture) {
     for (const Outlier& outlier : out.outliers.pixels) reduce(out, halves, frame, outlier);
   }
   out.variance = padded(out.has_halves ? variance_of(halves, frame, kBeautyNoiseRadius, &out.outliers.limits)
-                                       : variance_without_halves(planes, has_variance, frame),
+                                       : variance_without_halves(picture, has_variance, frame),
                         frame);
   if (!out.has_halves) out.missing.push_back(has_planes ? "halves (one half has no samples)" : "halves");
   if (has_planes) {
     add_guides_of_halves(out, half_planes, frame);
   } else {
     if (!has_variance) out.missing.push_back("variance");
-    const bool has_albedo = planes.has("denoise.albedo", "RGB"), has_normal = planes.has("denoise.normal", "XYZ");
+    const bool has_albedo = has_channels(picture, "denoise.albedo", "RGB"),
+               has_normal = has_channels(picture, "denoise.normal", "XYZ");
     if (!has_albedo) out.missing.push_back("denoise.albedo");
     if (!has_normal) out.missing.push_back("denoise.normal");
-    if (!planes.has("depth", "X")) out.missing.push_back("depth");
-    if (has_albedo && has_normal) add_guides_of_layers(out, planes, frame);
+    if (!has_channels(picture, "depth", "X")) out.missing.push_back("depth");
+    if (has_albedo && has_normal) add_guides_of_layers(out, picture, frame);
   }
   out.valid = PaddedPlane(frame.width, frame.height);
   tbb::parallel_for(0, frame.height, [&](int y) {
     for (int x = 0; x < frame.width; ++x) *out.valid.at(x, y) = 1;
     for (const char* name : {"R", "G", "B"}) {
-      const float* const row = planes.at(name).data() + frame.at(0, y);
+      const float* const row = picture.at(name).values.data() + frame.at(0, y);
       for (int x = 0; x < frame.width; ++x)
         if (!is_usable(row[x])) *out.valid.at(x, y) = 0;
     }
     if (counts.with_none == 0) return;
-    const float* const a = planes.at("half_a.inverse_depth.X").data() + frame.at(0, y);
-    const float* const b = planes.at("half_b.inverse_depth.X").data() + frame.at(0, y);
+    const float* const a = picture.at("half_a.inverse_depth.X").values.data() + frame.at(0, y);
+    const float* const b = picture.at("half_b.inverse_depth.X").values.data() + frame.at(0, y);
     for (int x = 0; x < frame.width; ++x)
       if (std::isnan(a[x]) && std::isnan(b[x])) *out.valid.at(x, y) = 0;
   });

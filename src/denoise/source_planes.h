@@ -22,8 +22,6 @@ struct SourcePlanes {
   PaddedPlane guide_variance;               ///< sum over the guides
   PaddedPlane valid;                        ///< 1; 0 outside the image and where the beauty is not finite
   std::vector<std::string> missing;         ///< layers that the image lacks
-
-  std::array<const PaddedPlane*, 3> target() const { return {&beauty[0], &beauty[1], &beauty[2]}; }
 };
 
 /// Prepares the planes of an image with a beauty R, G, B: halves, guides and variance, if present. Values that are not

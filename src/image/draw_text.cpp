@@ -9,7 +9,6 @@
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
-#include <filesystem>
 #include <memory>
 #include <string_view>
 #include <system_error>
@@ -91,15 +90,8 @@ class Face {
   }
 
  private:
-  template <auto kFree>
-  struct Free {
-    template <class T>
-    void operator()(T* owned) const {
-      kFree(owned);
-    }
-  };
-  std::unique_ptr<std::remove_pointer_t<FT_Library>, Free<FT_Done_FreeType>> library_;
-  std::unique_ptr<std::remove_pointer_t<FT_Face>, Free<FT_Done_Face>> face_;
+  std::unique_ptr<std::remove_pointer_t<FT_Library>, FT_Error (*)(FT_Library)> library_{nullptr, &FT_Done_FreeType};
+  std::unique_ptr<std::remove_pointer_t<FT_Face>, FT_Error (*)(FT_Face)> face_{nullptr, &FT_Done_Face};
 };
 
 double width_of(const Face& face, const std::string& text) {

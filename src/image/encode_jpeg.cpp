@@ -6,7 +6,7 @@
 #include <cstdio>  // jpeglib.h needs its types
 #include <functional>
 #include <memory>
-#include <string_view>
+#include <string>
 #include <utility>
 #include <vector>
 
@@ -85,36 +85,27 @@ struct Encoder {
 /// A JPEG marker segment.
 struct Marker {
   int number;
-  std::vector<char> bytes;
+  std::string bytes;
 };
-
-std::vector<char> bytes_of(std::string_view text) { return {text.begin(), text.end()}; }
 
 /// The comment, EXIF, IPTC and XMP markers as OpenImageIO writes them.
 std::vector<Marker> markers_of(const OIIO::ImageSpec& spec) {
+  using namespace std::string_literals;  // of texts with zeros
   constexpr int kComment = 0xFE, kExif = 0xE1, kPhotoshop = 0xED;
   std::vector<Marker> out;
-  if (std::string comment = spec.get_string_attribute("ImageDescription"); !comment.empty())
-    out.push_back({kComment, bytes_of(comment + '\0')});
-  Marker exif{kExif, bytes_of(std::string_view("Exif\0\0", 6))};
-  OIIO::encode_exif(spec, exif.bytes);
-  out.push_back(std::move(exif));
-  std::vector<char> iptc;
+  if (const std::string comment = spec.get_string_attribute("ImageDescription"); !comment.empty())
+    out.push_back({kComment, comment + '\0'});
+  std::vector<char> exif = {'E', 'x', 'i', 'f', 0, 0}, iptc;
+  OIIO::encode_exif(spec, exif);
+  out.push_back({kExif, {exif.begin(), exif.end()}});
   OIIO::encode_iptc_iim(spec, iptc);
   if (!iptc.empty()) {
-    Marker photoshop{kPhotoshop, bytes_of(std::string_view("Photoshop 3.0\0"
-                                                           "8BIM\4\4\0\0\0\0",
-                                                           24))};
-    photoshop.bytes.push_back(static_cast<char>(iptc.size() >> 8));
-    photoshop.bytes.push_back(static_cast<char>(iptc.size() & 0xff));
-    photoshop.bytes.insert(photoshop.bytes.end(), iptc.begin(), iptc.end());
-    out.push_back(std::move(photoshop));
+    const char size[] = {static_cast<char>(iptc.size() >> 8), static_cast<char>(iptc.size() & 0xff)};
+    const std::string begin = "Photoshop 3.0\0"s + "8BIM\4\4\0\0\0\0"s + std::string(size, 2);
+    out.push_back({kPhotoshop, begin + std::string(iptc.begin(), iptc.end())});
   }
-  if (const std::string xmp = OIIO::encode_xmp(spec, true); !xmp.empty()) {
-    Marker packet{kExif, bytes_of(std::string_view("http://ns.adobe.com/xap/1.0/\0", 29))};
-    packet.bytes.insert(packet.bytes.end(), xmp.begin(), xmp.end());
-    out.push_back(std::move(packet));
-  }
+  if (const std::string xmp = OIIO::encode_xmp(spec, true); !xmp.empty())
+    out.push_back({kExif, "http://ns.adobe.com/xap/1.0/\0"s + xmp});
   return out;
 }
 

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "image/format.h"
 
-#include <algorithm>
 #include <cmath>
 #include <cstddef>
 #include <string_view>
@@ -32,11 +31,6 @@ const std::vector<FormatInfo>& formats() {
       {Format::kPpm, {"ppm"}, "pnm", 65535, true, 8, false, 3, 3},
       {Format::kSvg, {"svg"}, "", 65535, true, 8, true, 2.4, 2.4}};
   return all;
-}
-
-bool is_level(std::string_view text) {
-  const auto level = base::number_of<float>(text);
-  return level && std::isfinite(*level) && *level >= 0;
 }
 
 }  // namespace
@@ -72,10 +66,13 @@ bool is_lossy(const std::string& compression) { return compression.rfind("dwa", 
 
 void check_compression(const std::string& name) {
   static const std::vector<std::string> plain = {"none", "rle", "zip", "zips", "piz", "dwaa", "dwab"};
-  if (std::find(plain.begin(), plain.end(), name) != plain.end()) return;
+  if (base::contains(plain, name)) return;
   const std::size_t colon = name.find(':');
   const std::string word = name.substr(0, colon);
-  if ((word == "dwaa" || word == "dwab") && is_level(std::string_view(name).substr(colon + 1))) return;
+  if (word == "dwaa" || word == "dwab") {
+    const auto level = base::number_of<float>(std::string_view(name).substr(colon + 1));
+    if (level && std::isfinite(*level) && *level >= 0) return;
+  }
   const std::string near = base::did_you_mean(word, plain);
   base::refuse(fmt::format("unknown EXR compression {}; {}known names are {}; dwaa and dwab take a level, e.g. dwaa:45",
                            name, near.empty() ? "" : near + " ", base::joined(plain)));

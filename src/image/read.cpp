@@ -5,7 +5,6 @@
 #include <cstddef>
 #include <new>
 #include <stdexcept>
-#include <string>
 #include <utility>
 #include <vector>
 
@@ -176,9 +175,8 @@ Input open_map(const std::filesystem::path& file, MapFormats formats) {
 
 /// The names with which OpenImageIO reports a file as scene-linear by assumption, without a declaration in the file.
 bool is_assumed(const std::string& color_space) {
-  static const std::vector<std::string> names = {"Linear",   "linear",     "scene_linear",
-                                                 "lin_srgb", "lin_rec709", "lin_rec709_scene"};
-  return std::find(names.begin(), names.end(), color_space) != names.end();
+  return base::contains({"Linear", "linear", "scene_linear", "lin_srgb", "lin_rec709", "lin_rec709_scene"},
+                        color_space);
 }
 
 /// Decodes all pixels of a part, which may be deep; false if that fails.

@@ -9,15 +9,14 @@
 #include <new>
 #include <set>
 #include <stdexcept>
-#include <string>
 #include <utility>
 
 #include <fmt/core.h>
 
 #include "base/error.h"
+#include "base/text.h"
 #include "image/exr_spec.h"
 #include "image/format.h"
-#include "image/header.h"
 #include "image/input.h"
 #include "image/partial_file.h"
 #include "image/whole_file.h"
@@ -40,24 +39,12 @@ struct Place {
   int channel;
 };
 
-std::size_t pixels_of(const ImageSpec& spec) {
-  return static_cast<std::size_t>(spec.width) * static_cast<std::size_t>(spec.height);
-}
-
-TypeDesc type_of(const ImageSpec& spec, int channel) { return spec.channelformat(channel); }
-
-std::size_t offset_of(const ImageSpec& spec, int channel) {
-  std::size_t offset = 0;
-  for (int c = 0; c < channel; ++c) offset += type_of(spec, c).size();
-  return offset;
-}
-
 /// Decodes the part of an input in its own types. Memory grows with the decoded rows, so that a damaged header cannot
 /// exhaust it.
 NativePart read_part(const std::filesystem::path& file, const Input& input) {
   NativePart out{input.spec, {}};
   const ImageSpec& spec = out.spec;
-  const std::size_t row_bytes = spec.pixel_bytes(true) * static_cast<std::size_t>(spec.width);
+  const std::size_t row_bytes = spec.scanline_bytes(true);
   const int last = spec.y + spec.height;
   for (int y = spec.y; y < last; y += input.row_step()) {
     const int end = std::min(y + input.row_step(), last);
@@ -85,26 +72,27 @@ std::vector<NativePart> read_parts(const std::filesystem::path& file) {
 }
 
 std::vector<float> values_of(const NativePart& part, int channel) {
-  std::vector<float> out(pixels_of(part.spec));
-  const auto stride = static_cast<OIIO::stride_t>(part.spec.pixel_bytes(true));
-  OIIO::convert_image(1, part.spec.width, part.spec.height, 1, part.bytes.data() + offset_of(part.spec, channel),
-                      type_of(part.spec, channel), stride, OIIO::AutoStride, OIIO::AutoStride, out.data(),
-                      TypeDesc::FLOAT, OIIO::AutoStride, OIIO::AutoStride, OIIO::AutoStride);
+  const ImageSpec& spec = part.spec;
+  std::vector<float> out(spec.image_pixels());
+  OIIO::convert_image(1, spec.width, spec.height, 1, &part.bytes[spec.pixel_bytes(0, channel, true)],
+                      spec.channelformat(channel), static_cast<OIIO::stride_t>(spec.pixel_bytes(true)),
+                      OIIO::AutoStride, OIIO::AutoStride, out.data(), TypeDesc::FLOAT, OIIO::AutoStride,
+                      OIIO::AutoStride, OIIO::AutoStride);
   return out;
 }
 
 void set_values(NativePart& part, int channel, std::vector<float>& values, RewriteReport& report) {
-  if (type_of(part.spec, channel) == TypeDesc::HALF) {
+  const ImageSpec& spec = part.spec;
+  if (spec.channelformat(channel) == TypeDesc::HALF) {
     for (float& v : values) {
       if (!std::isfinite(v) || std::abs(v) <= film::kLargestHalf) continue;
       v = std::clamp(v, -film::kLargestHalf, film::kLargestHalf);
       ++report.clamped;
     }
   }
-  const auto stride = static_cast<OIIO::stride_t>(part.spec.pixel_bytes(true));
-  OIIO::convert_image(1, part.spec.width, part.spec.height, 1, values.data(), TypeDesc::FLOAT, OIIO::AutoStride,
-                      OIIO::AutoStride, OIIO::AutoStride, part.bytes.data() + offset_of(part.spec, channel),
-                      type_of(part.spec, channel), stride, OIIO::AutoStride, OIIO::AutoStride);
+  OIIO::convert_image(1, spec.width, spec.height, 1, values.data(), TypeDesc::FLOAT, OIIO::AutoStride, OIIO::AutoStride,
+                      OIIO::AutoStride, &part.bytes[spec.pixel_bytes(0, channel, true)], spec.channelformat(channel),
+                      static_cast<OIIO::stride_t>(spec.pixel_bytes(true)), OIIO::AutoStride, OIIO::AutoStride);
 }
 
 std::string name_of(const NativePart& part) { return std::string(part.spec.get_string_attribute("oiio:subimagename")); }
@@ -118,8 +106,7 @@ std::vector<std::string> parts_with_own_colors(const std::vector<NativePart>& pa
   std::vector<std::string> out;
   bool is_first = true;
   for (std::size_t p = 0; p < parts.size(); ++p) {
-    const std::vector<std::string>& names = parts[p].spec.channelnames;
-    if (std::find(names.begin(), names.end(), "R") == names.end()) continue;
+    if (!base::contains(parts[p].spec.channelnames, "R")) continue;
     if (is_first && have_same_window(parts[p].spec, parts.front().spec)) {
       is_first = false;
     } else {
@@ -141,7 +128,7 @@ std::pair<film::Picture, std::vector<Place>> planes_of_parts(const std::vector<N
     const ImageSpec& spec = parts[p].spec;
     if (!have_same_window(spec, first)) continue;
     for (int c = 0; c < spec.nchannels; ++c) {
-      const TypeDesc type = type_of(spec, c);
+      const TypeDesc type = spec.channelformat(c);
       if (type != TypeDesc::HALF && type != TypeDesc::FLOAT) continue;
       std::string name = spec.channelnames[static_cast<std::size_t>(c)];
       if (names.count(name) > 0) name = fmt::format("{}.{}", name_of(parts[p]), name);

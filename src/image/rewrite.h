@@ -9,7 +9,6 @@
 
 #include "film/picture.h"
 #include "image/header.h"
-#include "image/write.h"
 
 namespace orrery::image {
 

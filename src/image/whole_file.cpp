@@ -2,12 +2,9 @@
 #include "image/whole_file.h"
 
 #include <cerrno>
-#include <cstdint>
 #include <cstdio>
 #include <cstring>
 #include <memory>
-#include <string>
-#include <vector>
 
 #include <OpenImageIO/deepdata.h>
 #include <OpenImageIO/hash.h>
@@ -16,6 +13,7 @@
 #include "base/atomic_file.h"
 #include "base/error.h"
 #include "base/input_file.h"
+#include "base/text.h"
 #include "image/checked_file.h"
 #include "image/library.h"
 
@@ -37,9 +35,7 @@ std::string encode(OIIO::ImageOutput& out, const std::string& name, OIIO::TypeDe
   };
   std::vector<OIIO::ImageSpec> specs;
   for (const WholePart& part : parts) specs.push_back(part.spec);
-  const bool opened =
-      specs.size() == 1 ? out.open(name, specs[0]) : out.open(name, static_cast<int>(specs.size()), specs.data());
-  if (!opened) return error_message("opening");
+  if (!out.open(name, static_cast<int>(specs.size()), specs.data())) return error_message("opening");
   std::string first_error;
   for (std::size_t i = 0; i < parts.size() && first_error.empty(); ++i) {
     if (i > 0 && !out.open(name, specs[i], OIIO::ImageOutput::AppendSubimage)) return error_message("opening a part");
@@ -107,15 +103,12 @@ std::string digest_line(std::FILE* in, std::uint64_t size) {
   OIIO::SHA1 digest;
   std::vector<char> bytes(std::size_t{1} << 20);
   while (size > 0) {
-    const std::size_t wanted = size < bytes.size() ? static_cast<std::size_t>(size) : bytes.size();
+    const std::size_t wanted = std::min(size, std::uint64_t{bytes.size()});
     if (std::fread(bytes.data(), 1, wanted, in) != wanted) return {};
     digest.append(bytes.data(), wanted);
     size -= wanted;
   }
-  std::string text = fmt::format("{}{}\n", kPrefix, digest.digest());
-  for (std::size_t i = kPrefixSize; i < text.size(); ++i)
-    if (text[i] >= 'A' && text[i] <= 'F') text[i] = static_cast<char>(text[i] - 'A' + 'a');
-  return text;
+  return fmt::format("{}{}\n", kPrefix, base::lower(digest.digest()));
 }
 
 /// Appends a digest of all bytes of a file, after the end of the image data. It detects any changed bit, including bits
@@ -124,9 +117,7 @@ std::string digest_line(std::FILE* in, std::uint64_t size) {
 /// Errors     base::Error(kIo); the message uses `name` for the file
 /// Reference  SHA-1, FIPS 180-4
 void append_digest(const std::filesystem::path& file, const std::filesystem::path& name) {
-  const auto fail = [&](int error) {
-    throw base::Error(base::ErrorKind::kIo, fmt::format("writing {} failed: {}", name.string(), std::strerror(error)));
-  };
+  const auto fail = [&](int error) { io_failed(name, std::strerror(error)); };
   File in(std::fopen(file.c_str(), "rb"), &std::fclose);
   std::error_code failed;
   const std::uint64_t size = std::filesystem::file_size(file, failed);

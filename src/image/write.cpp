@@ -60,15 +60,6 @@ ImageSpec spec_of(const film::Picture& picture, const Part& part, const ExrOptio
   return spec;
 }
 
-/// Sets the attributes of a format.
-void add_attributes_of(Format format, ImageSpec& spec) {
-  if (format != Format::kTiff) return;
-  spec.attribute("compression", "zip");
-  // To write EXIF data OpenImageIO reads back the unfinished file. That fails and loses the image's own directory.
-  spec.attribute("tiff:write_exif", 0);
-  leave_out_date(spec);
-}
-
 /// The layout and attributes of a display-encoded image.
 ImageSpec encoded_spec(const film::EncodedPicture& picture, const std::string& software, const std::string& stamp) {
   ImageSpec spec(picture.width, picture.height, picture.channels,
@@ -155,7 +146,12 @@ void write_encoded(const std::filesystem::path& file, const film::EncodedPicture
     throw base::Error(base::ErrorKind::kInternal,
                       fmt::format("the values of {} do not have the image's size", file.string()));
   ImageSpec spec = encoded_spec(picture, software, stamp);
-  add_attributes_of(format, spec);
+  if (format == Format::kTiff) {
+    spec.attribute("compression", "zip");
+    // To write EXIF data OpenImageIO reads back the unfinished file. That fails and loses the image's own directory.
+    spec.attribute("tiff:write_exif", 0);
+    leave_out_date(spec);
+  }
   const char* const name = info_of(format).library_name;
   if (picture.bits == 8) {
     const std::vector<std::uint8_t> bytes(picture.values.begin(), picture.values.end());
@@ -167,8 +163,7 @@ void write_encoded(const std::filesystem::path& file, const film::EncodedPicture
 
 std::string png_bytes(const film::EncodedPicture& picture) {
   prepare_library();
-  ImageSpec spec = encoded_spec(picture, "", "");
-  add_attributes_of(Format::kPng, spec);
+  const ImageSpec spec = encoded_spec(picture, "", "");
   const std::vector<std::uint8_t> codes(picture.values.begin(), picture.values.end());
   OIIO::Filesystem::IOVecOutput out;
   const auto encoder = OIIO::ImageOutput::create("png");

@@ -15,7 +15,6 @@
 #include "base/error.h"
 #include "base/file_name.h"
 #include "base/text.h"
-#include "data/data_file.h"
 #include "job/report_text.h"
 #include "points/derived.h"
 

@@ -2,7 +2,6 @@
 #include "job/check_job.h"
 
 #include <filesystem>
-#include <string>
 #include <vector>
 
 #include <fmt/core.h>

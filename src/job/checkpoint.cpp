@@ -19,14 +19,12 @@
 #include "display/settings.h"
 #include "film/layer_film.h"
 #include "film/partial.h"
-#include "image/partial_file.h"
 #include "image/read.h"
 #include "job/job.h"
 #include "job/layers.h"
 #include "job/picture_header.h"
 #include "job/scene_hash.h"
 #include "job/version.h"
-#include "load/read_scene.h"
 #include "render/settings.h"
 
 namespace orrery::job {
@@ -94,9 +92,16 @@ std::string scene_difference(const image::Provenance& a, const image::Provenance
   return out.empty() ? "other spheres, materials, lights or images" : out;
 }
 
-std::chrono::steady_clock::duration interval(const CheckpointSettings& settings) {
-  return std::chrono::duration_cast<std::chrono::steady_clock::duration>(
-      std::chrono::duration<double>(settings.interval_s));
+/// Describes why a job cannot continue from a checkpoint; empty: it can. It can have more samples than the checkpoint.
+std::string difference_of_checkpoint(const image::Provenance& checkpoint, const image::Provenance& job) {
+  // The sums count samples, so that they do not depend on how many there will be, unless `total` says so.
+  static const std::vector<std::string> keys = {"version", "sampleHash", "total", "shard",
+                                                "noise",   "time",       "limit", "layers"};
+  std::string out = difference(checkpoint, job, keys);
+  const SampleRange begun = sample_range(checkpoint), wanted = sample_range(job);
+  if (out.empty() && (begun.begin != wanted.begin || begun.end > wanted.end))
+    out = difference(checkpoint, job, {"samples"});
+  return out;
 }
 
 }  // namespace
@@ -200,22 +205,6 @@ bool is_up_to_date(const Job& job, const compile::CompiledScene& compiled, const
          (job.outputs.deep.empty() || is_same(job.outputs.deep));
 }
 
-namespace {
-
-/// Describes why a job cannot continue from a checkpoint; empty: it can. It can have more samples than the checkpoint.
-std::string difference_of_checkpoint(const image::Provenance& checkpoint, const image::Provenance& job) {
-  // The sums count samples, so that they do not depend on how many there will be, unless `total` says so.
-  static const std::vector<std::string> keys = {"version", "sampleHash", "total", "shard",
-                                                "noise",   "time",       "limit", "layers"};
-  std::string out = difference(checkpoint, job, keys);
-  const SampleRange begun = sample_range(checkpoint), wanted = sample_range(job);
-  if (out.empty() && (begun.begin != wanted.begin || begun.end > wanted.end))
-    out = difference(checkpoint, job, {"samples"});
-  return out;
-}
-
-}  // namespace
-
 std::filesystem::path checkpoint_file(const std::filesystem::path& first_output) {
   return first_output.parent_path() / base::companion_name(first_output.stem().string(), ".checkpoint.exr");
 }
@@ -226,8 +215,7 @@ Checkpoint::Checkpoint(std::filesystem::path file, const CheckpointSettings& set
       hooks_(hooks),
       file_(std::move(file)),
       provenance_(std::move(provenance)),
-      write_(std::move(write)),
-      next_(Clock::now() + interval(settings)) {}
+      write_(std::move(write)) {}
 
 std::optional<film::Partial> Checkpoint::load(int width_px, int height_px) {
   if (!std::filesystem::exists(file_)) return {};
@@ -256,7 +244,7 @@ std::optional<film::Partial> Checkpoint::load(int width_px, int height_px) {
 
 bool Checkpoint::is_due() const {
   if (hooks_.snapshot != nullptr && hooks_.snapshot->load(std::memory_order_relaxed)) return true;
-  return settings_.interval_s > 0 && Clock::now() >= next_;
+  return settings_.interval_s > 0 && since_last_.seconds() >= settings_.interval_s;
 }
 
 void Checkpoint::write_snapshot(const film::Partial& partial) {
@@ -269,7 +257,7 @@ void Checkpoint::write_snapshot(const film::Partial& partial) {
       hooks_.on_warning(base::file_diagnostic(base::Severity::kWarning, file_.string(),
                                               std::string("checkpoint not written: ") + error.what()));
   }
-  next_ = Clock::now() + interval(settings_);
+  since_last_.lap();
 }
 
 void Checkpoint::write(const film::Partial& partial) {

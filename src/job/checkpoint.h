@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include <chrono>
 #include <cstdint>
 #include <filesystem>
 #include <functional>
@@ -9,11 +8,12 @@
 #include <string>
 #include <vector>
 
+#include "base/stopwatch.h"
 #include "compile/forward.h"
 #include "display/forward.h"
 #include "film/forward.h"
-#include "image/forward.h"
 #include "image/header.h"
+#include "image/partial_file.h"
 #include "load/read_scene.h"
 #include "render/forward.h"
 
@@ -102,14 +102,12 @@ class Checkpoint {
   void finish(const film::Partial* partial);
 
  private:
-  using Clock = std::chrono::steady_clock;
-
   const CheckpointSettings& settings_;
   const Hooks& hooks_;
   std::filesystem::path file_;
   image::Provenance provenance_;
   Write write_;
-  Clock::time_point next_;
+  base::Stopwatch since_last_;  ///< checkpoint
   bool is_ours_ = false;
 };
 

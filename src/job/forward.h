@@ -6,9 +6,6 @@ namespace orrery::job {
 
 struct Hooks;
 struct Job;
-struct JobReport;
-struct Outputs;
 class PreparedScene;
-struct Rendering;
 
 }  // namespace orrery::job

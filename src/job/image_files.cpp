@@ -11,7 +11,6 @@
 #include "base/file_name.h"
 #include "base/file_set.h"
 #include "display/bake.h"
-#include "display/settings.h"
 #include "image/format.h"
 #include "image/header.h"
 #include "image/library.h"

@@ -3,7 +3,6 @@
 
 #include <new>
 #include <optional>
-#include <utility>
 
 #include <fmt/core.h>
 
@@ -14,7 +13,6 @@
 #include "base/text.h"
 #include "compile/compiled_scene.h"
 #include "denoise/denoise.h"
-#include "display/settings.h"
 #include "film/layer_film.h"
 #include "film/partial.h"
 #include "image/format.h"
@@ -26,16 +24,12 @@
 #include "job/picture_header.h"
 #include "job/prepared_scene.h"
 #include "job/rendering.h"
-#include "job/shards.h"
 #include "job/statistics.h"
 #include "job/version.h"
-#include "load/load_scene.h"
 #include "load/read_scene.h"
 #include "load/scene_files.h"
 #include "render/outlines.h"
 #include "render/render.h"
-#include "render/result.h"
-#include "render/settings.h"
 #include "scene/layers.h"
 #include "scene/scene.h"
 
@@ -175,14 +169,9 @@ class Run {
   annotation::View annotated_view() const {
     const kernel::Camera& camera = compiled().camera;
     const auto project = [&camera](const math::Vec3d& at) -> std::optional<std::pair<double, double>> {
-      const double from[] = {at.x - camera.origin[0], at.y - camera.origin[1], at.z - camera.origin[2]};
-      const auto along = [&](const auto& axis) {
-        double dot = 0, square = 0;
-        for (int k = 0; k < 3; ++k) {
-          dot += from[k] * axis[k];
-          square += axis[k] * axis[k];
-        }
-        return dot / square;
+      const auto along = [from = at - math::vector_of(camera.origin)](const auto& axis) {
+        const math::Vec3d v = math::vector_of(axis);
+        return dot(from, v) / dot(v, v);
       };
       const double depth = along(camera.forward), scale = camera.is_orthographic ? 1 : depth;
       if (!(depth > 0)) return {};
@@ -336,8 +325,8 @@ class Run {
     if (drawing_.outline_px > 0)
       if (accel::Accel* const accel = build(); accel != nullptr)
         drawing_.lines = render::outlines(compiled(), *accel, drawing_.outline_px, settings_.threads);
-    const auto same = [](const math::Vec3d& color) { return color; };
-    if (job_.outputs.has_exr() || is_kept()) annotation::add_layer(annotation::draw(drawing_, same), picture);
+    if (job_.outputs.has_exr() || is_kept())
+      annotation::add_layer(annotation::draw(drawing_, std::identity()), picture);
   }
 
   /// Keeps the image in memory.

@@ -12,7 +12,6 @@
 
 #include "base/error.h"
 #include "base/file_set.h"
-#include "display/forward.h"
 #include "display/settings.h"
 #include "film/picture.h"
 #include "image/header.h"

@@ -2,12 +2,9 @@
 #include "job/layers.h"
 
 #include <algorithm>
-#include <array>
 #include <map>
 #include <memory>
 #include <set>
-#include <string>
-#include <utility>
 
 #include <fmt/core.h>
 #include <nlohmann/json.hpp>
@@ -19,7 +16,6 @@
 #include "image/format.h"
 #include "job/outputs.h"
 #include "scene/layers.h"
-#include "scene/limits.h"
 
 namespace orrery::job {
 namespace {

@@ -11,12 +11,9 @@
 #include "compile/camera_basis.h"
 #include "compile/compiled_scene.h"
 #include "display/color_space.h"
-#include "image/header.h"
 #include "job/job.h"
 #include "job/version.h"
-#include "load/read_scene.h"
 #include "scene/scene.h"
-#include "scene/schema.h"
 #include "scene/value_text.h"
 
 namespace orrery::job {

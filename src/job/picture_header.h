@@ -5,7 +5,7 @@
 #include <string>
 
 #include "compile/forward.h"
-#include "image/forward.h"
+#include "image/header.h"
 #include "load/read_scene.h"
 #include "scene/forward.h"
 

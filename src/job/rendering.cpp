@@ -9,7 +9,6 @@
 #include "image/format.h"
 #include "job/check_job.h"
 #include "job/checkpoint.h"
-#include "job/layers.h"
 #include "job/outputs.h"
 #include "load/scene_files.h"
 

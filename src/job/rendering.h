@@ -7,7 +7,6 @@
 #include "base/file_set.h"
 #include "display/settings.h"
 #include "film/picture.h"
-#include "image/forward.h"
 #include "image/header.h"
 #include "job/job.h"
 #include "job/layers.h"

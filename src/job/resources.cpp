@@ -2,13 +2,10 @@
 #include "job/resources.h"
 
 #include <algorithm>
-#include <cstdint>
 #include <cstdlib>
-#include <string>
 
 #include <fmt/core.h>
 
-#include "accel/accel.h"
 #include "accel/sphere_bvh.h"
 #include "base/available_memory.h"
 #include "base/error.h"

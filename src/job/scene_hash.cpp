@@ -4,7 +4,6 @@
 #include <algorithm>
 #include <cstring>
 
-#include "base/hash.h"
 #include "base/stop_point.h"
 #include "compile/compiled_scene.h"
 #include "compile/environment.h"

@@ -344,7 +344,7 @@ class PlotMaker {
       step_ = points.step;
       extent.add(points);
       guides_.surround(points);
-      if (!points.centers.empty()) out_.legend.add(points);
+      if (!points.centers.empty()) out_.legend.add(points, points.palette);
       if (out_.frames.empty())
         out_.loaded = std::make_shared<points::LoadedPoints>(
             points::LoadedPoints{frame, std::move(loaded.points), std::move(loaded.diagnostics)});

@@ -3,18 +3,12 @@
 
 #include <algorithm>
 #include <cstddef>
-#include <cstdint>
-#include <string>
 #include <string_view>
-#include <utility>
-#include <vector>
 
 #include <zlib.h>
 
 #include "base/atomic_file.h"
-#include "display/develop.h"
 #include "display/settings.h"
-#include "preview/sink.h"
 
 namespace orrery::preview {
 
@@ -68,12 +62,9 @@ std::string encode_png(const Bitmap& bitmap) {
   return out;
 }
 
-FileSink::FileSink(std::filesystem::path file) : file_(std::move(file)) {}
-FileSink::~FileSink() = default;
-
 void FileSink::begin(const display::PictureInfo& picture, const Canvas& canvas) {
   canvas_ = &canvas;
-  develop_ = std::make_unique<display::PixelDeveloper>(picture.display);
+  develop_.emplace(picture.display);
   bitmap_.width = canvas.width();
   bitmap_.height = canvas.height();
   bitmap_.codes.assign(bitmap_.row_bytes() * static_cast<std::size_t>(bitmap_.height), 0);

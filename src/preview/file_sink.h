@@ -3,11 +3,12 @@
 
 #include <cstdint>
 #include <filesystem>
-#include <memory>
+#include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
-#include "display/forward.h"
+#include "display/develop.h"
 #include "preview/sink.h"
 
 namespace orrery::preview {
@@ -29,8 +30,7 @@ std::string encode_png(const Bitmap& bitmap);
 /// Rewrites a PNG, uncompressed and through the display transform. Its readers never see an incomplete file.
 class FileSink : public Sink {
  public:
-  explicit FileSink(std::filesystem::path file);
-  ~FileSink() override;
+  explicit FileSink(std::filesystem::path file) : file_(std::move(file)) {}
 
   double interval_s() const override { return 1; }
   void begin(const display::PictureInfo& picture, const Canvas& canvas) override;
@@ -43,7 +43,7 @@ class FileSink : public Sink {
  private:
   std::filesystem::path file_;
   const Canvas* canvas_ = nullptr;
-  std::unique_ptr<display::PixelDeveloper> develop_;
+  std::optional<display::PixelDeveloper> develop_;
   Bitmap bitmap_;
 };
 

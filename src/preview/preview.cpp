@@ -3,7 +3,6 @@
 
 #include <chrono>
 #include <exception>
-#include <string>
 #include <utility>
 
 #include <fmt/core.h>
@@ -21,13 +20,12 @@ namespace orrery::preview {
 
 namespace {
 
+/// Address on which tev listens unless it is started with --hostname.
+constexpr const char* kTevHost = "127.0.0.1";
+constexpr const char* kTevPort = "14158";
+
 [[noreturn]] void refuse(const std::string& text) {
   base::refuse(fmt::format("--preview: {}; write tev, tev:HOST:PORT, or the name of a .png file", text));
-}
-
-bool is_port(const std::string& text) {
-  const int number = base::number_of<int>(text).value_or(0);
-  return number > 0 && number < 65536;
 }
 
 /// Parses HOST, HOST:PORT or [IPV6]:PORT.
@@ -47,8 +45,19 @@ Target tev_at(const std::string& address) {
   }
   if (colon != std::string::npos) target.port = address.substr(colon + 1);
   if (target.host.empty()) refuse(fmt::format("`{}` has no host", address));
-  if (!is_port(target.port)) refuse(fmt::format("`{}` is not a port from 1 to 65535", target.port));
+  const int port = base::number_of<int>(target.port).value_or(0);
+  if (port < 1 || port > 65535) refuse(fmt::format("`{}` is not a port from 1 to 65535", target.port));
   return target;
+}
+
+/// Time between two calls of Sink::poll.
+constexpr std::chrono::milliseconds kTick{50};
+
+/// Time of a processor clock: of this thread, or of the whole process.
+double seconds_of(clockid_t clock) {
+  timespec t{};
+  clock_gettime(clock, &t);
+  return static_cast<double>(t.tv_sec) + 1e-9 * static_cast<double>(t.tv_nsec);
 }
 
 }  // namespace
@@ -72,20 +81,6 @@ std::unique_ptr<Sink> make_sink(const Target& target, const OnNote& note) {
   }
   return nullptr;
 }
-
-namespace {
-
-/// Time between two calls of Sink::poll.
-constexpr std::chrono::milliseconds kTick{50};
-
-/// Time of a processor clock: of this thread, or of the whole process.
-double seconds_of(clockid_t clock) {
-  timespec t{};
-  clock_gettime(clock, &t);
-  return static_cast<double>(t.tv_sec) + 1e-9 * static_cast<double>(t.tv_nsec);
-}
-
-}  // namespace
 
 Preview::Preview(std::unique_ptr<Sink> sink, OnNote on_note)
     : sink_(std::move(sink)), on_note_(std::move(on_note)), thread_([this] { run(); }) {}
@@ -133,7 +128,11 @@ void Preview::run() {
     if (request != Request::kNone) {
       start = Clock::now();
       processor_start = seconds_of(CLOCK_PROCESS_CPUTIME_ID);
-      serve(request);
+      if (request == Request::kBegin) attempt([this] { sink_->begin(picture_, *canvas_); });
+      if (request == Request::kEnd) {
+        refresh();
+        attempt([this] { sink_->finish(); });
+      }
       pacing.reset();
       if (request == Request::kBegin) pacing.emplace(sink_->interval_s());
       if (pacing) pacing->spend(cost());
@@ -155,13 +154,6 @@ void Preview::run() {
 void Preview::answer() {
   request_ = Request::kNone;
   served_.notify_one();
-}
-
-void Preview::serve(Request request) {
-  if (request == Request::kBegin) attempt([this] { sink_->begin(picture_, *canvas_); });
-  if (request != Request::kEnd) return;
-  refresh();
-  attempt([this] { sink_->finish(); });
 }
 
 void Preview::refresh() {

@@ -58,10 +58,6 @@ struct Target {
   std::filesystem::path file;  ///< PNG, for which the display transform is applied
 };
 
-/// Address on which tev listens unless it is started with --hostname.
-inline constexpr const char* kTevHost = "127.0.0.1";
-inline constexpr const char* kTevPort = "14158";
-
 /// Parses the value of --preview: empty, tev, tev:HOST, tev:HOST:PORT, tev:[IPV6]:PORT, or the name of a PNG.
 ///
 /// Errors     base::Error(kUsage)
@@ -107,7 +103,6 @@ class Preview {
   void ask(Request request);
   void run();
   void answer();
-  void serve(Request request);
   void refresh();
   void attempt(const std::function<void()>& what);
 

@@ -16,7 +16,6 @@
 
 #include "base/error.h"
 #include "display/settings.h"
-#include "preview/sink.h"
 
 namespace orrery::preview {
 
@@ -25,6 +24,20 @@ namespace {
 constexpr char kCreateImage = 4, kUpdateImageV3 = 6;
 constexpr const char* kChannels[] = {"R", "G", "B"};
 constexpr std::int32_t kChannelCount = 3;
+
+using namespace std::chrono_literals;
+
+/// Cells in a packet, next to each other in a row: 400 KB.
+constexpr std::size_t kCellsPerPacket = 32;
+
+/// Time between attempts to connect.
+constexpr auto kRetry = 2s;
+
+/// A viewer that has read nothing for this long is considered hung.
+constexpr auto kViewerTimeout = 1s;
+
+/// Maximum time to send the last pixels of an image.
+constexpr auto kLongestFinish = 10s;
 
 /// A packet: its length in bytes, including these four, its type and its payload; numbers are little-endian.
 class Packet {
@@ -43,9 +56,9 @@ class Packet {
     }
   }
   void add_channels() {
+    add(kChannelCount);
     for (const char* const name : kChannels) add(std::string(name));
   }
-  void reserve(std::size_t size) { bytes_.reserve(size); }
 
   std::string finished() {
     for (std::size_t i = 0; i < 4; ++i) bytes_[i] = static_cast<char>(bytes_.size() >> (8 * i) & 0xff);
@@ -68,18 +81,14 @@ std::string tev_create(const std::string& name, int width, int height, bool grab
   packet.add(name);
   packet.add(static_cast<std::int32_t>(width));
   packet.add(static_cast<std::int32_t>(height));
-  packet.add(kChannelCount);
   packet.add_channels();
   return packet.finished();
 }
 
 std::string tev_update(const std::string& name, int x, int y, int width, int height, const std::vector<float>& rgb) {
-  constexpr std::size_t kHeader = 128;
   Packet packet(kUpdateImageV3);
-  packet.reserve(kHeader + name.size() + rgb.size() * sizeof(float));
   packet.add(false);  // does not grab the focus
   packet.add(name);
-  packet.add(kChannelCount);
   packet.add_channels();
   for (const int number : {x, y, width, height}) packet.add(static_cast<std::int32_t>(number));
   for (std::int64_t offset = 0; offset < kChannelCount; ++offset) packet.add(offset);
@@ -177,40 +186,20 @@ void Connection::close(const std::string& reason) {
   reason_ = reason;
 }
 
-namespace {
-
-using namespace std::chrono_literals;
-
-/// Cells in a packet, next to each other in a row: 400 KB.
-constexpr std::size_t kCellsPerPacket = 32;
-
-/// Time between attempts to connect.
-constexpr auto kRetry = 2s;
-
-/// A viewer that has read nothing for this long is considered hung.
-constexpr auto kViewerTimeout = 1s;
-
-/// Maximum time to send the last pixels of an image.
-constexpr auto kLongestFinish = 10s;
-
-}  // namespace
-
 TevSink::TevSink(const std::string& host, const std::string& port, OnNote on_note)
     : connection_(host, port), on_note_(std::move(on_note)), address_(fmt::format("{}:{}", host, port)) {}
 
 void TevSink::begin(const display::PictureInfo& picture, const Canvas& canvas) {
   canvas_ = &canvas;
   name_ = picture.name;
-  seen_.assign(canvas.cell_count(), false);
+  seen_.clear();
   if (was_open_) begin_image();
   poll();
 }
 
 void TevSink::update(const std::vector<std::size_t>& cells) {
-  for (const std::size_t cell : cells) {
-    seen_[cell] = true;
-    if (was_open_) mark(cell);
-  }
+  seen_.insert(cells.begin(), cells.end());
+  if (was_open_) pending_.insert(cells.begin(), cells.end());
 }
 
 void TevSink::poll() {
@@ -237,7 +226,6 @@ void TevSink::finish() {
     on_note_(base::warning_line(fmt::format("tev at {} does not respond; its image is incomplete", address_)));
   // The rest of a packet must be sent before anything else.
   pending_.clear();
-  pending_count_ = 0;
   canvas_ = nullptr;
 }
 
@@ -248,7 +236,6 @@ void TevSink::check_connection() {
     if (std::exchange(was_open_, false)) {
       packet_.clear();
       pending_.clear();
-      pending_count_ = 0;
       retry_ = Clock::now() + kRetry;
       return;
     }
@@ -273,38 +260,23 @@ void TevSink::check_connection() {
 /// Sends the image with all cells that have content.
 void TevSink::begin_image() {
   if (canvas_ == nullptr) return;
-  pending_.assign(canvas_->cell_count(), false);
-  pending_count_ = 0;
+  pending_ = seen_;
   next_cell_ = 0;
   const std::string create = tev_create(name_, canvas_->width(), canvas_->height(), focused_ != name_);
   focused_ = name_;
   if (packet_.empty()) sent_ = 0;
   packet_ += create;  // after the rest of a packet of the previous image
-  for (std::size_t i = 0; i < seen_.size(); ++i)
-    if (seen_[i]) mark(i);
-}
-
-void TevSink::mark(std::size_t cell) {
-  if (pending_[cell]) return;
-  pending_[cell] = true;
-  ++pending_count_;
 }
 
 /// Makes a packet of the next pending cells. They are processed in rotation, so that none waits forever.
 bool TevSink::next_packet() {
-  if (pending_count_ == 0) return false;
-  const auto begin = pending_.begin();
-  auto found = std::find(begin + static_cast<std::ptrdiff_t>(next_cell_), pending_.end(), true);
-  if (found == pending_.end()) found = std::find(begin, pending_.end(), true);
-  const auto first = static_cast<std::size_t>(found - begin);
+  if (pending_.empty()) return false;
+  const auto found = pending_.lower_bound(next_cell_);
+  const std::size_t first = found != pending_.end() ? *found : *pending_.begin();
   const std::size_t row_end = (first / canvas_->cells_per_row() + 1) * canvas_->cells_per_row();
-  std::size_t last = first;
-  for (; last < std::min(row_end, first + kCellsPerPacket) && pending_[last]; ++last) {
-    pending_[last] = false;
-    --pending_count_;
-  }
-  next_cell_ = last % pending_.size();
-  const Cell left = canvas_->cell(first), right = canvas_->cell(last - 1);
+  next_cell_ = first;
+  while (next_cell_ < std::min(row_end, first + kCellsPerPacket) && pending_.erase(next_cell_) > 0) ++next_cell_;
+  const Cell left = canvas_->cell(first), right = canvas_->cell(next_cell_ - 1);
   const int width = right.x + right.width - left.x;
   std::vector<float> rgb(3 * static_cast<std::size_t>(width) * static_cast<std::size_t>(left.height));
   for (int y = 0; y < left.height; ++y)

@@ -5,6 +5,7 @@
 
 #include <chrono>
 #include <cstddef>
+#include <set>
 #include <string>
 #include <vector>
 
@@ -27,11 +28,7 @@ std::string tev_update(const std::string& name, int x, int y, int width, int hei
 /// A TCP connection that never blocks.
 class Connection {
  public:
-  enum class State {
-    kClosed,
-    kConnecting,
-    kOpen,
-  };
+  enum class State { kClosed, kConnecting, kOpen };
 
   /// Resolves the address. A name that cannot be resolved leaves a connection that always fails.
   Connection(const std::string& host, const std::string& port);
@@ -97,16 +94,15 @@ class TevSink : public Sink {
   void begin_image();
   bool next_packet();
   void flush();
-  bool is_done() const { return packet_.empty() && pending_count_ == 0; }
-  void mark(std::size_t cell);
+  bool is_done() const { return packet_.empty() && pending_.empty(); }
 
   Connection connection_;
   OnNote on_note_;
   std::string address_;  ///< "127.0.0.1:14158"
   std::string name_, focused_;
   const Canvas* canvas_ = nullptr;
-  std::vector<bool> seen_, pending_;  ///< by cell: has content; must be sent
-  std::size_t pending_count_ = 0, next_cell_ = 0;
+  std::set<std::size_t> seen_, pending_;  ///< cells that have content, and those that must be sent
+  std::size_t next_cell_ = 0;
   std::string packet_;  ///< packet that is being sent
   std::size_t sent_ = 0;
   bool was_open_ = false;

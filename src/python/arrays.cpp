@@ -21,19 +21,14 @@ std::vector<T> copied(const py::array& array) {
   return out;
 }
 
-template <class T>
-bool is_of(const py::array& array) {
-  return py::array_t<T>::check_(array);
-}
-
 data::Values values_of(const py::array& array) {
   const auto size = static_cast<std::size_t>(array.shape(0));
-  if (is_of<double>(array)) return data::ArrayView<double>(array.data(), array.strides(0), size);
-  if (is_of<float>(array)) return data::ArrayView<float>(array.data(), array.strides(0), size);
-  if (is_of<std::int64_t>(array)) return copied<std::int64_t>(array);
-  if (is_of<std::int32_t>(array)) return copied<std::int32_t>(array);
-  if (is_of<std::uint16_t>(array)) return copied<std::uint16_t>(array);
-  if (is_of<std::uint8_t>(array)) return copied<std::uint8_t>(array);
+  if (py::isinstance<py::array_t<double>>(array)) return data::ArrayView<double>(array.data(), array.strides(0), size);
+  if (py::isinstance<py::array_t<float>>(array)) return data::ArrayView<float>(array.data(), array.strides(0), size);
+  if (py::isinstance<py::array_t<std::int64_t>>(array)) return copied<std::int64_t>(array);
+  if (py::isinstance<py::array_t<std::int32_t>>(array)) return copied<std::int32_t>(array);
+  if (py::isinstance<py::array_t<std::uint16_t>>(array)) return copied<std::uint16_t>(array);
+  if (py::isinstance<py::array_t<std::uint8_t>>(array)) return copied<std::uint8_t>(array);
   throw base::Error(base::ErrorKind::kInternal, "array of an unexpected type");
 }
 
@@ -94,26 +89,22 @@ py::object array_of(data::Values values) {
 }
 
 void add_to_extent(const data::Table& positions, double radius, plot::ViewExtent& extent) {
-  const auto numbers = [&](std::size_t axis, auto take) {
-    std::visit(
-        [&](const auto& v) {
-          if constexpr (!requires { v.words; }) take(v);
-        },
-        positions.columns[axis].values);
-  };
-  // All three axes have the type of the array.
-  numbers(0, [&](const auto& x) {
+  const auto add = [&](const auto& x) {
+    // All three axes have the type of the array.
     using Numbers = std::decay_t<decltype(x)>;
-    const auto& y = std::get<Numbers>(positions.columns[1].values);
-    const auto& z = std::get<Numbers>(positions.columns[2].values);
-    for (std::size_t i = 0; i < positions.rows; ++i) {
-      const math::Vec3d center{static_cast<double>(x[i]), static_cast<double>(y[i]), static_cast<double>(z[i])};
-      if (!math::is_finite(center))
-        throw base::Error(base::ErrorKind::kBadData,
-                          "row " + std::to_string(i + 1) + " of positions is not finite; leave such rows out");
-      extent.add(center, radius);
+    if constexpr (!std::is_same_v<Numbers, data::Words>) {
+      const auto& y = std::get<Numbers>(positions.columns[1].values);
+      const auto& z = std::get<Numbers>(positions.columns[2].values);
+      for (std::size_t i = 0; i < positions.rows; ++i) {
+        const math::Vec3d center{static_cast<double>(x[i]), static_cast<double>(y[i]), static_cast<double>(z[i])};
+        if (!math::is_finite(center))
+          throw base::Error(base::ErrorKind::kBadData,
+                            "row " + std::to_string(i + 1) + " of positions is not finite; leave such rows out");
+        extent.add(center, radius);
+      }
     }
-  });
+  };
+  std::visit(add, positions.columns[0].values);
 }
 
 }  // namespace orrery::python

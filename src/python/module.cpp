@@ -2,7 +2,6 @@
 // The extension module orrery._orrery, on which the package orrery is built. Names and docstrings for users are there.
 #include <dlfcn.h>
 
-#include <pybind11/numpy.h>
 #include <pybind11/pybind11.h>
 #include <pybind11/stl.h>
 #include <pybind11/stl/filesystem.h>
@@ -23,8 +22,6 @@
 
 #include "base/error.h"
 #include "base/module.h"
-#include "display/settings.h"
-#include "film/picture.h"
 #include "job/job.h"
 #include "job/prepared_scene.h"
 #include "job/version.h"
@@ -34,7 +31,6 @@
 #include "python/picture.h"
 #include "python/render.h"
 #include "python/scene_data.h"
-#include "python/view.h"
 #include "scene/scene.h"
 
 namespace py = pybind11;
@@ -99,16 +95,6 @@ void translate(std::exception_ptr thrown) {
   }
 }
 
-display::Settings display_settings(const std::string& display, const std::string& view, const std::string& look,
-                                   std::optional<double> exposure) {
-  display::Settings out;
-  out.display = display;
-  out.view = view;
-  out.look = look;
-  out.exposure = exposure;
-  return out;
-}
-
 /// What the renders of a scene share. A copy of the scene begins with nothing.
 struct Prepared {
   std::shared_ptr<job::PreparedScene> scene = std::make_shared<job::PreparedScene>();
@@ -123,8 +109,7 @@ Picture render_scene(const SceneData& scene, Prepared& prepared, double noise, d
   job.scene = scene.source();
   job.sampling.noise = noise;
   job.sampling.seconds = seconds;
-  job.resources.threads = threads;
-  job.resources.memory_limit = memory_limit;
+  job.resources = {threads, memory_limit};
   job.denoise = denoise;
   const auto make_job = [&job] { return std::move(job); };
   if (prepared.is_in_use.exchange(true)) return render(make_job, on_progress, on_warning);
@@ -134,58 +119,6 @@ Picture render_scene(const SceneData& scene, Prepared& prepared, double noise, d
   } const release{prepared.is_in_use};
   job.prepared = prepared.scene;
   return render(make_job, on_progress, on_warning);
-}
-
-void write_picture(const Picture& picture, const std::vector<std::filesystem::path>& files, int bits,
-                   const display::Settings& display, bool as_float, const std::string& compression, bool multipart,
-                   bool reproducible) {
-  job::Outputs outputs;
-  outputs.images.assign(files.begin(), files.end());
-  outputs.display = display;
-  outputs.bits = bits;
-  outputs.exr.as_float = as_float;
-  if (!compression.empty()) outputs.exr.compression = compression;
-  outputs.exr.multipart = multipart;
-  outputs.reproducible = reproducible;
-  picture.write(outputs);
-}
-
-py::array srgb8(const py::object& self, const display::Settings& display) {
-  film::EncodedPicture encoded;
-  {
-    const auto& picture = self.cast<const Picture&>();
-    const py::gil_scoped_release released;
-    encoded = picture.srgb8(display);
-  }
-  py::array_t<std::uint8_t> out({encoded.height, encoded.width, encoded.channels});
-  std::uint8_t* to = out.mutable_data();
-  for (const std::uint16_t value : encoded.values) *to++ = static_cast<std::uint8_t>(value);
-  return out;
-}
-
-[[noreturn]] void refuse_pickling(const Picture&) {
-  throw py::type_error(
-      "a Picture cannot be pickled; pass arrays to other processes, e.g. picture.beauty, or files: "
-      "picture.write(file)");
-}
-
-py::dict statistics(const Picture& picture) {
-  const job::JobReport& report = picture.report();
-  py::dict out;
-  out["spheres"] = report.spheres;
-  out["rods"] = report.rods;
-  out["paths"] = report.render.paths;
-  out["rays"] = report.render.rays;
-  out["fewest_samples"] = report.render.min_samples;
-  out["most_samples"] = report.render.max_samples;
-  out["threads"] = report.render.threads;
-  out["noise"] = report.render.noise ? py::object(py::float_(*report.render.noise)) : py::none();
-  out["read_seconds"] = report.phases.read_s;
-  out["compile_seconds"] = report.phases.compile_s;
-  out["build_seconds"] = report.phases.build_s;
-  out["render_seconds"] = report.phases.render_s;
-  out["denoise_seconds"] = report.phases.denoise_s;
-  return out;
 }
 
 /// The camera that sees spheres of a larger radius around an extent, as keys of [camera]: a perspective camera if there
@@ -240,12 +173,6 @@ void bind_scene(py::module_& m) {
       .def("aspect", &aspect, ReleaseGil())
       .def("largest_radius", &largest_radius, ReleaseGil())
       .def("render", &render_scene);
-  py::class_<ScenePage>(m, "ScenePage")
-      .def(py::init<SceneData, const std::string&, std::map<std::string, std::string>, int, int, std::uint64_t>(),
-           ReleaseGil())
-      .def("address", &ScenePage::address)
-      .def("settings", &ScenePage::settings)
-      .def("close", &ScenePage::close, ReleaseGil());
   // Pickled as its bytes, for processes on the same machine.
   static_assert(std::is_trivially_copyable_v<plot::ViewExtent>);
   const auto bytes_of = [](const plot::ViewExtent& extent) {
@@ -264,20 +191,6 @@ void bind_scene(py::module_& m) {
       .def(py::pickle(bytes_of, of_bytes));
 }
 
-void bind_picture(py::module_& m) {
-  py::class_<display::Settings>(m, "Display").def(py::init(&display_settings));
-  py::class_<Picture>(m, "Picture")
-      .def_property_readonly("width", &Picture::width)
-      .def_property_readonly("height", &Picture::height)
-      .def_property_readonly("layers", &Picture::layers)
-      .def("channels", &Picture::channels)
-      .def("statistics", &statistics)
-      .def("array", &Picture::array)
-      .def("srgb8", &srgb8)
-      .def("__reduce__", &refuse_pickling)
-      .def("write", &write_picture, ReleaseGil());
-}
-
 }  // namespace
 
 PYBIND11_MODULE(_orrery, m) {
@@ -286,6 +199,7 @@ PYBIND11_MODULE(_orrery, m) {
   py::module_::import("atexit").attr("register")(py::cpp_function(&stop_renders));
   bind_scene(m);
   bind_picture(m);
+  bind_view(m);
   bind_read_points(m);
   bind_plot(m);
   m.def("read_scene_text", &read_scene_text, ReleaseGil());

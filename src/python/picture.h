@@ -3,13 +3,12 @@
 
 #include <pybind11/numpy.h>
 
-#include <memory>
+#include <filesystem>
 #include <string>
 #include <vector>
 
-#include "display/forward.h"
-#include "film/forward.h"
-#include "job/forward.h"
+#include "display/settings.h"
+#include "job/rendering.h"
 
 namespace orrery::python {
 
@@ -17,14 +16,12 @@ namespace orrery::python {
 class Picture {
  public:
   explicit Picture(job::Rendering rendering);
-  Picture(Picture&&) noexcept;
-  ~Picture();
 
-  int width() const;
-  int height() const;
-  const job::JobReport& report() const;
+  int width() const { return rendering_.picture.width; }
+  int height() const { return rendering_.picture.height; }
   std::vector<std::string> layers() const;
   std::vector<std::string> channels(const std::string& layer) const;
+  pybind11::dict statistics() const;
 
   /// A layer as a read-only array without a copy: (height, width) for one channel, else (height, width, channels).
   ///
@@ -35,13 +32,15 @@ class Picture {
 
   /// Writes image files.
   ///
-  /// Errors     those of job::write_rendering
-  void write(const job::Outputs& outputs) const;
+  /// `compression`  of EXR; empty: the default
+  /// Errors         those of job::write_rendering
+  void write(const std::vector<std::filesystem::path>& files, int bits, const display::Settings& display, bool as_float,
+             const std::string& compression, bool multipart, bool reproducible) const;
 
-  /// Returns the image as sRGB with 8 bits per channel.
+  /// Returns the image as sRGB with 8 bits per channel: (height, width, channels).
   ///
   /// Errors     those of display::develop; base::Error(kUsage) if the display is not sRGB
-  film::EncodedPicture srgb8(const display::Settings& display) const;
+  pybind11::array srgb8(const display::Settings& display) const;
 
  private:
   struct Layer {
@@ -53,8 +52,11 @@ class Picture {
   /// Returns the rendering with its planes, which are not stored otherwise.
   job::Rendering with_planes() const;
 
-  std::unique_ptr<job::Rendering> rendering_;
+  job::Rendering rendering_;
   std::vector<Layer> layers_;
 };
+
+/// Adds the class `Picture`, and `Display`, the settings of a display transform.
+void bind_picture(pybind11::module_& m);
 
 }  // namespace orrery::python

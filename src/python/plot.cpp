@@ -101,13 +101,6 @@ std::pair<std::string, points::OpenData> opened(const Source& source) {
           }};
 }
 
-job::Resources resources_of(int threads, std::uint64_t memory_limit) {
-  job::Resources out;
-  out.threads = threads;
-  out.memory_limit = memory_limit;
-  return out;
-}
-
 py::list strings_of(const std::vector<std::string>& texts) {
   py::list out;
   for (const std::string& text : texts) out.append(str_of(text));
@@ -119,7 +112,7 @@ py::tuple plot(const Source& source, const std::vector<std::string>& words, int 
   const auto [file, open] = opened(source);
   std::vector<std::string> notes;
   const auto make_job = [&, &name = file, &opener = open] {
-    view::Subject subject = cli::data_subject(name, words, resources_of(threads, memory_limit), opener);
+    view::Subject subject = cli::data_subject(name, words, {threads, memory_limit}, opener);
     notes = std::move(subject.notes);
     return std::move(subject.job);
   };
@@ -171,7 +164,7 @@ py::tuple movie(const FilmFile& film, const Source& source, const std::vector<st
   view::Subject made;
   run(
       [&, &name = file, &opener = open](const job::Hooks& hooks) {
-        made = make_film(film, name, words, resources_of(threads, memory_limit), opener, hooks);
+        made = make_film(film, name, words, {threads, memory_limit}, opener, hooks);
       },
       on_progress, on_warning);
   return py::make_tuple(made.frames, strings_of(made.notes));

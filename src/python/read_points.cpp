@@ -71,8 +71,8 @@ py::dict described(const data::FrameInfo& info, int frames) {
   py::dict out;
   out["frames"] = frames;
   out["title"] = str_of(info.title);
-  out["step"] = info.step ? py::object(py::float_(*info.step)) : py::none();
-  out["position"] = std::vector<std::string>(info.roles.position.begin(), info.roles.position.end());
+  out["step"] = info.step;
+  out["position"] = info.roles.position;
   out["radius"] = text_or_none(info.roles.radius);
   out["radius_scale"] = info.roles.radius_scale;
   out["box"] = py::none();

@@ -47,4 +47,12 @@ void stop_renders();
 /// `words`    options of the command line and their values
 void bind_plot(pybind11::module_& m);
 
+/// Adds the class `ScenePage(scene, title, options, port, threads, memory_limit)`, a page in a browser that shows a
+/// scene whose arrays outlive it.
+///
+/// `options`  first values of the controls, as in view::Wish
+/// `port`     0: a free one
+/// Errors     those of http::serve
+void bind_view(pybind11::module_& m);
+
 }  // namespace orrery::python

@@ -4,23 +4,17 @@
 #include <algorithm>
 #include <cerrno>
 #include <cmath>
-#include <cstdint>
-#include <memory>
-#include <string>
 #include <type_traits>
 #include <variant>
 
 #include <fmt/core.h>
 
 #include "base/atomic_file.h"
-#include "base/error.h"
 #include "base/file_set.h"
 #include "base/hash.h"
 #include "base/input_file.h"
 #include "base/text.h"
-#include "data/data_file.h"
 #include "data/write_table.h"
-#include "load/load_scene.h"
 #include "load/read_scene.h"
 #include "load/scene_files.h"
 #include "load/write_scene.h"
@@ -97,11 +91,11 @@ std::string contents_of(const data::Table& table) {
   return out;
 }
 
-load::ReadResult read(const SceneData& scene, std::uint64_t memory_limit) {
-  load::SceneRequest request;
-  request.source = scene.source();
-  request.memory_limit = memory_limit;
-  return load::read_with_data(request);
+load::SceneRequest request_of(const SceneData& scene, std::uint64_t memory_limit = 0) {
+  load::SceneRequest out;
+  out.source = scene.source();
+  out.memory_limit = memory_limit;
+  return out;
 }
 
 }  // namespace
@@ -136,13 +130,9 @@ std::string read_scene_text(const fs::path& file) {
   return text;
 }
 
-void check_keys(const SceneData& scene) { static_cast<void>(read(scene, 0)); }
+void check_keys(const SceneData& scene) { static_cast<void>(load::read_with_data(request_of(scene))); }
 
-std::vector<base::Diagnostic> check(const SceneData& scene) {
-  load::SceneRequest request;
-  request.source = scene.source();
-  return load::load_scene(request).warnings;
-}
+std::vector<base::Diagnostic> check(const SceneData& scene) { return load::load_scene(request_of(scene)).warnings; }
 
 double aspect(const SceneData& scene) {
   const scene::Image image = load::authored_scene(scene.source()).image;
@@ -152,7 +142,7 @@ double aspect(const SceneData& scene) {
 double largest_radius(const SceneData& scene, std::uint64_t memory_limit) {
   double out = 0;
   try {
-    for (const scene::Points& points : read(scene, memory_limit).scene.points)
+    for (const scene::Points& points : load::read_with_data(request_of(scene, memory_limit)).scene.points)
       for (const double radius : points.radii) out = std::max(out, std::abs(radius));
   } catch (const base::Error&) {
     return 0;

@@ -1,14 +1,26 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "python/view.h"
+#include <pybind11/stl.h>
 
 #include <cstddef>
+#include <cstdint>
+#include <map>
+#include <memory>
+#include <string>
 #include <utility>
+#include <vector>
 
 #include <fmt/core.h>
 
 #include "base/error.h"
 #include "base/text.h"
+#include "http/server.h"
+#include "python/render.h"
+#include "python/scene_data.h"
+#include "view/site.h"
+#include "view/viewer.h"
 #include "view/wish.h"
+
+namespace py = pybind11;
 
 namespace orrery::python {
 namespace {
@@ -76,43 +88,69 @@ std::string statements(const std::vector<std::string>& words) {
   return out + "scene.render(" + (rest.empty() ? rest : rest.substr(2)) + ")";
 }
 
+/// A page in a browser that shows a scene of Python, served by this process until it is closed.
+class ScenePage {
+ public:
+  ScenePage(SceneData scene, const std::string& title, std::map<std::string, std::string> options, int port,
+            int threads, std::uint64_t memory_limit) {
+    job::Job job;
+    job.resources = {threads, memory_limit};
+    viewer_ = std::make_unique<view::Viewer>(
+        [scene = std::move(scene), job](const std::vector<std::string>& words) {
+          return subject_of(scene, job, words);
+        },
+        std::vector<std::string>(), view::Wish{std::move(options)});
+    view::Controls controls;
+    controls.title = title;
+    controls.command = statements;
+    for (const char* option : {"--samples", "--noise", "--denoise", "--set", "--width", "--height"})
+      controls.options[option] = {};
+    const std::string secret = view::random_secret();
+    site_ = std::make_unique<view::Site>(*viewer_, std::move(controls), "127.0.0.1", secret);
+    server_ = http::serve("127.0.0.1", port, [this](const http::Request& request) { return site_->answer(request); });
+    site_->set_port(server_->port());
+    address_ = fmt::format("http://127.0.0.1:{}/?token={}", server_->port(), secret);
+  }
+
+  /// With the secret. Empty: closed.
+  const std::string& address() const { return address_; }
+
+  /// The settings of the scene that is shown: KEY=VALUE, those of the controls and the camera.
+  std::vector<std::string> settings() const {
+    std::vector<std::string> out;
+    if (!viewer_) return out;
+    const std::vector<std::string> words = viewer_->state().words;
+    for (std::size_t i = 0; i + 1 < words.size(); ++i)
+      if (words[i] == "--set") out.push_back(words[i + 1]);
+    return out;
+  }
+
+  /// Ends the render and the server. Must not hold the GIL.
+  void close() {
+    address_.clear();
+    if (viewer_) viewer_->stop();
+    server_.reset();
+    site_.reset();
+    viewer_.reset();
+  }
+
+ private:
+  std::string address_;
+  std::unique_ptr<view::Viewer> viewer_;
+  std::unique_ptr<view::Site> site_;
+  std::unique_ptr<http::Server> server_;
+};
+
 }  // namespace
 
-ScenePage::ScenePage(SceneData scene, const std::string& title, std::map<std::string, std::string> options, int port,
-                     int threads, std::uint64_t memory_limit) {
-  job::Job job;
-  job.resources.threads = threads;
-  job.resources.memory_limit = memory_limit;
-  viewer_ = std::make_unique<view::Viewer>(
-      [scene = std::move(scene), job](const std::vector<std::string>& words) { return subject_of(scene, job, words); },
-      std::vector<std::string>(), view::Wish{std::move(options)});
-  view::Controls controls;
-  controls.title = title;
-  controls.command = statements;
-  for (const char* option : {"--samples", "--noise", "--denoise", "--set", "--width", "--height"})
-    controls.options[option] = {};
-  const std::string secret = view::random_secret();
-  site_ = std::make_unique<view::Site>(*viewer_, std::move(controls), "127.0.0.1", secret);
-  server_ = http::serve("127.0.0.1", port, [this](const http::Request& request) { return site_->answer(request); });
-  site_->set_port(server_->port());
-  address_ = fmt::format("http://127.0.0.1:{}/?token={}", server_->port(), secret);
-}
-
-std::vector<std::string> ScenePage::settings() const {
-  std::vector<std::string> out;
-  if (!viewer_) return out;
-  const std::vector<std::string> words = viewer_->state().words;
-  for (std::size_t i = 0; i + 1 < words.size(); ++i)
-    if (words[i] == "--set") out.push_back(words[i + 1]);
-  return out;
-}
-
-void ScenePage::close() {
-  address_.clear();
-  if (viewer_) viewer_->stop();
-  server_.reset();
-  site_.reset();
-  viewer_.reset();
+void bind_view(py::module_& m) {
+  using ReleaseGil = py::call_guard<py::gil_scoped_release>;
+  py::class_<ScenePage>(m, "ScenePage")
+      .def(py::init<SceneData, const std::string&, std::map<std::string, std::string>, int, int, std::uint64_t>(),
+           ReleaseGil())
+      .def("address", &ScenePage::address)
+      .def("settings", &ScenePage::settings)
+      .def("close", &ScenePage::close, ReleaseGil());
 }
 
 }  // namespace orrery::python

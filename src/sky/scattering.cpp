@@ -46,7 +46,6 @@ double smoothstep(double u) { return u * u * (3 - 2 * u); }
 /// Returns a ray from an altitude to a distance `length`. `sine` is the sine of its elevation.
 Ray march(const Atmosphere& air, double altitude, double sine, double length, int steps, double (*end_of)(double)) {
   Ray ray;
-  ray.length = length;
   ray.segments.reserve(static_cast<std::size_t>(steps));
   const double start_radius = kGroundRadius + altitude;
   Densities path;

@@ -19,7 +19,6 @@ struct Ray {
   };
 
   std::vector<Segment> segments;
-  double length = 0;       ///< m
   Spectrum transmittance;  ///< transmittance of the whole ray, for light that may also be scattered forward
 };
 
@@ -58,8 +57,6 @@ class Scattering {
   Light toward_ground(const Ray& ray, double toward_sun) const;
 
  private:
-  struct Direction;
-
   /// Returns the light of the sun at a point, 0 where it is below the horizon.
   Spectrum sunlight(double radius, double local_sine) const;
   Spectrum multiple_scattering(double radius, double local_sine) const;

@@ -2,30 +2,28 @@
 #include "study/bench.h"
 
 #include <algorithm>
-#include <cmath>
 #include <map>
 #include <memory>
-#include <optional>
 #include <utility>
 
 #include <fmt/core.h>
 
+#include "accel/accel.h"
 #include "base/error.h"
 #include "base/stop_point.h"
-#include "base/text.h"
+#include "base/stopwatch.h"
 #include "compile/compile.h"
 #include "compile/compiled_scene.h"
 #include "job/resources.h"
 #include "job/scene_hash.h"
 #include "kernel/ray_packet.h"
 #include "kernel/render_tile.h"
-#include "load/load_scene.h"
+#include "kernel/scene_view.h"
 #include "load/read_scene.h"
 #include "render/recorded_rays.h"
 #include "render/render.h"
 #include "render/result.h"
 #include "render/settings.h"
-#include "study/bench_parts.h"
 
 namespace orrery::study {
 
@@ -46,6 +44,147 @@ constexpr double kListTests = 1e8;
 
 constexpr double kMaxSamples = 1 << 20;
 
+double quantile(const std::vector<double>& sorted, double q) {
+  const double at = q * static_cast<double>(sorted.size() - 1);
+  const auto below = static_cast<std::size_t>(at);
+  const std::size_t above = std::min(below + 1, sorted.size() - 1);
+  return sorted[below] + (sorted[above] - sorted[below]) * (at - static_cast<double>(below));
+}
+
+/// The quartiles of measurements, linearly interpolated between the two nearest values.
+///
+/// Domain     at least one value
+Quartiles quartiles(std::vector<double> values) {
+  std::sort(values.begin(), values.end());
+  return {quantile(values, 0.25), quantile(values, 0.5), quantile(values, 0.75)};
+}
+
+/// The quartiles of the quotients of measurements in the same rounds.
+Quartiles ratios(const std::vector<double>& values, const std::vector<double>& reference) {
+  std::vector<double> out;
+  for (std::size_t i = 0; i < reference.size(); ++i) out.push_back(values[i] / reference[i]);
+  return quartiles(std::move(out));
+}
+
+/// Calls `measure` for each item. Each round starts with a different one.
+template <class Item, class Measure>
+void measure_round(std::vector<Item>& items, int round, Measure measure) {
+  for (std::size_t i = 0; i < items.size(); ++i) measure(items[(i + static_cast<std::size_t>(round)) % items.size()]);
+}
+
+/// Seconds for tracing recorded rays without camera, shading and accumulation.
+template <class T>
+double trace_again(const kernel::Tracer& tracer, render::RecordedRays<T>& rays) {
+  return render::trace_again(tracer, rays.camera) + render::trace_again(tracer, rays.secondary);
+}
+
+/// No further round of builds begins after this time.
+constexpr double kLongest = 3;  // s
+
+/// The accelerator that a benchmark compares with the default one: one Embree primitive per sphere if the default has a
+/// BVH of many spheres, otherwise such a BVH.
+struct AlternativeAccelerator {
+  std::string name;
+  std::size_t bvh_threshold;  ///< for accel::make_embree
+};
+
+AlternativeAccelerator alternative_accelerator(const kernel::SceneView& view) {
+  if (accel::objects_in_bvh(view).all() > 0) return {"one by one", accel::kNoBvh};
+  return {"BVH", 1};
+}
+
+/// Benchmarks accelerator builds on all threads: the accelerator that renders the scene in `exact`, an alternative one
+/// (one Embree primitive per sphere, or a SphereBvh), and Embree's built-in sphere points.
+///
+/// `rounds`   maximum number of rounds; fewer are run if they take seconds
+/// Domain     at least one sphere
+/// Result     sphere points are last
+std::vector<BenchResult> bench_builds(const kernel::SceneView& view, int rounds) {
+  struct Method {
+    std::string name;
+    std::function<std::unique_ptr<accel::Accel>()> build;
+    std::vector<double> seconds = {}, spheres_per_s = {};
+    std::size_t bytes = 0;
+  };
+  const AlternativeAccelerator other = alternative_accelerator(view);
+  const auto embree = [&](std::size_t threshold) {
+    return [&view, threshold] { return accel::make_embree(view, kernel::Precision::kExact, {}, threshold); };
+  };
+  std::vector<Method> methods = {{"accelerator", embree(accel::bvh_threshold())},
+                                 {other.name, embree(other.bvh_threshold)},
+                                 {"sphere points", [&view] { return accel::make_native_points(view); }}};
+  const auto count = static_cast<double>(view.sphere_count);
+  const base::Stopwatch since_begin;
+  for (int round = 0; round < rounds && (round == 0 || since_begin.seconds() < kLongest); ++round)
+    measure_round(methods, round, [&](Method& method) {
+      const base::Stopwatch watch;
+      const std::unique_ptr<accel::Accel> built = method.build();
+      method.seconds.push_back(watch.seconds());
+      method.spheres_per_s.push_back(count / method.seconds.back());
+      method.bytes = built->bytes();
+    });
+  std::vector<BenchResult> out;
+  for (const Method& method : methods)
+    out.push_back({method.name,
+                   quartiles(method.spheres_per_s),
+                   ratios(method.seconds, methods.back().seconds),
+                   {},
+                   static_cast<double>(method.bytes) / count});
+  return out;
+}
+
+/// Benchmark of closest-hit queries on the same rays: packets and single rays with the structure that the number of
+/// spheres decides, then with the alternative one; single rays with Embree's built-in sphere points; and a SIMD list.
+class TracingBench {
+ public:
+  /// Builds the remaining accelerators.
+  ///
+  /// Domain     the view and the rays outlive this; at least one sphere
+  TracingBench(const kernel::SceneView& view, render::RecordedRays<float>& rays, bool with_list) : rays_(rays) {
+    for (const auto* packets : {&rays_.camera, &rays_.secondary})
+      for (const kernel::RayPacket<float>& packet : *packets) ray_count_ += packet.count;
+    const AlternativeAccelerator other = alternative_accelerator(view);
+    const std::shared_ptr<const accel::Accel> by_count = accel::make_embree(view, kernel::Precision::kFast);
+    const std::shared_ptr<const accel::Accel> alternative =
+        accel::make_embree(view, kernel::Precision::kFast, {}, other.bvh_threshold);
+    methods_ = {{"packets", by_count, accel::Traversal::kPacket},
+                {"single rays", by_count, accel::Traversal::kSingle},
+                {other.name + ", packets", alternative, accel::Traversal::kPacket},
+                {other.name + ", single", alternative, accel::Traversal::kSingle},
+                {"sphere points", accel::make_native_points(view), accel::Traversal::kSingle}};
+    if (with_list)
+      methods_.push_back(
+          {"SIMD list", accel::make_simd_list(view, kernel::Precision::kFast), accel::Traversal::kPacket});
+  }
+
+  /// Measures every method once.
+  void measure(int round) {
+    measure_round(methods_, round, [&](Method& method) {
+      method.rays_per_s.push_back(ray_count_ / trace_again(method.accel->tracer(method.traversal), rays_));
+    });
+  }
+
+  std::vector<BenchResult> results() const {
+    std::vector<BenchResult> out;
+    for (const Method& method : methods_)
+      out.push_back(
+          {method.name, quartiles(method.rays_per_s), ratios(method.rays_per_s, methods_.front().rays_per_s)});
+    return out;
+  }
+
+ private:
+  struct Method {
+    std::string name;
+    std::shared_ptr<const accel::Accel> accel;
+    accel::Traversal traversal;
+    std::vector<double> rays_per_s = {};
+  };
+
+  render::RecordedRays<float>& rays_;
+  double ray_count_ = 0;
+  std::vector<Method> methods_;
+};
+
 enum class Tracer { kEmbree, kList, kSimdList };
 
 struct Case {
@@ -59,15 +198,11 @@ struct Case {
   std::vector<double> paths_per_s = {}, tracing = {};
 };
 
-const std::vector<std::pair<const char*, bool kernel::Features::*>>& known_features() {
-  static const std::vector<std::pair<const char*, bool kernel::Features::*>> known = {
-      {"thin lens", &kernel::Features::lens},
-      {"hemisphere", &kernel::Features::hemisphere},
-      {"gradient sky", &kernel::Features::sky},
-      {"lights", &kernel::Features::lit},
-      {"textures", &kernel::Features::extended}};
-  return known;
-}
+constexpr std::pair<const char*, bool kernel::Features::*> kFeatures[] = {{"thin lens", &kernel::Features::lens},
+                                                                          {"hemisphere", &kernel::Features::hemisphere},
+                                                                          {"gradient sky", &kernel::Features::sky},
+                                                                          {"lights", &kernel::Features::lit},
+                                                                          {"textures", &kernel::Features::extended}};
 
 /// The compiled scene at the reduced image size.
 compile::CompiledScene reduced_scene(const BenchRequest& request) {
@@ -205,7 +340,7 @@ std::vector<Case> cases_of(const compile::CompiledScene& compiled, Benchmark& ou
 std::vector<Case> feature_cases_of(const compile::CompiledScene& compiled) {
   std::vector<Case> cases;
   if (compiled.shading != kernel::Shading::kPath) return cases;
-  for (const auto& [name, feature] : known_features()) {
+  for (const auto& [name, feature] : kFeatures) {
     if (compiled.features.*feature) continue;
     cases.push_back({name, compiled.features});
     cases.back().features.*feature = true;
@@ -243,7 +378,7 @@ std::vector<FeatureCost> bench_features(const BenchRequest& request) {
   for (int round = 0; round < request.rounds; ++round)
     measure_round(cases, round, [&](Case& c) { measure(subject, c); });
   std::vector<FeatureCost> out;
-  for (const auto& [name, feature] : known_features()) {
+  for (const auto& [name, feature] : kFeatures) {
     FeatureCost& cost = out.emplace_back(FeatureCost{name, subject.required().*feature, 0});
     for (const Case& c : cases)
       if (c.name == name) cost.saves = 1 - ratios(c.paths_per_s, cases[0].paths_per_s).median;

@@ -12,10 +12,7 @@
 
 namespace orrery::study {
 
-/// Called by the JSON library.
-static void to_json(nlohmann::json& out, const Quartiles& q) {
-  out = {{"low", q.low}, {"median", q.median}, {"high", q.high}};
-}
+NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(Quartiles, low, median, high)
 
 namespace {
 

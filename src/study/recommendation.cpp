@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -12,7 +13,6 @@
 #include "compile/compiled_scene.h"
 #include "load/read_scene.h"
 #include "render/result.h"
-#include "render/settings.h"
 #include "study/study.h"
 #include "study/study_renderer.h"
 
@@ -54,11 +54,10 @@ class Recommender {
       compiled.roulette_depth = 3;
       flags += " --set render.roulette_depth=3";
     }
-    const Pilots pilots = pilot(compiled);
-    const Pilot last = pilots.back();
+    const Pilot last = pilot(compiled);
     r.noise = std::min(last.noise, request_.noise);
-    r.seconds = last.seconds * growth(pilots, request_.noise, &Point::seconds);
-    r.samples = last.samples * growth(pilots, request_.noise, &Point::samples);
+    r.seconds = last.seconds * growth(last.noise, request_.noise, &Point::seconds);
+    r.samples = last.samples * growth(last.noise, request_.noise, &Point::samples);
     const Baseline baseline = this->baseline();
     r.baseline_seconds = baseline.seconds;
     const bool is_faster = baseline.seconds > r.seconds;
@@ -83,7 +82,6 @@ class Recommender {
   struct Pilot {
     double noise, seconds, samples;  ///< samples per pixel
   };
-  using Pilots = std::vector<Pilot>;
 
   /// Samples per pixel and time for the target noise at full resolution with the book's method: independent samples,
   /// uniform over the image. 0: not known.
@@ -118,21 +116,20 @@ class Recommender {
 
   /// Renders at full resolution with half the noise each time, until the target is reached or the next render would
   /// exceed the budget. If the first one would, scales a point of the study instead.
-  Pilots pilot(compile::CompiledScene& compiled) {
+  Pilot pilot(compile::CompiledScene& compiled) {
     const double full_pixels = static_cast<double>(compiled.width) * compiled.height;
-    Pilots out;
     if (kMinAdaptiveSamples * full_pixels / paths_per_s_ > 0.8 * left()) {
       study_.left_out.push_back("test of the recommendation at full resolution: exceeds the budget");
       const Point& p = point_near(request_.noise);
-      out.push_back({p.error, p.seconds * full_pixels / pixels(), p.samples});
-      return out;
+      return {p.error, p.seconds * full_pixels / pixels(), p.samples};
     }
+    std::optional<Pilot> last;
     for (double noise = 8 * request_.noise;; noise /= 2) {
-      if (!out.empty() && noise >= out.back().noise && noise > request_.noise) continue;
-      if (!out.empty() && out.back().seconds * growth(out, noise, &Point::seconds) > left()) return out;
+      if (last && noise >= last->noise && noise > request_.noise) continue;
+      if (last && last->seconds * growth(last->noise, noise, &Point::seconds) > left()) return *last;
       const render::Statistics did = renderer_.render(compiled, noise).statistics;
-      out.push_back({did.noise.value_or(0), renderer_.seconds_of(did), static_cast<double>(did.paths) / full_pixels});
-      if (out.back().noise <= request_.noise) return out;
+      last = {did.noise.value_or(0), renderer_.seconds_of(did), static_cast<double>(did.paths) / full_pixels};
+      if (last->noise <= request_.noise) return *last;
     }
   }
 
@@ -147,10 +144,11 @@ class Recommender {
     return *nearest;  // never null: the second choice has 16 samples
   }
 
-  /// The factor by which `what` grows from the last test render to a given noise, interpolated from the study's points
-  /// with --noise.
-  double growth(const Pilots& pilots, double noise, double Point::*what) const {
-    const double reached = pilots.back().noise;
+  /// The factor by which `what` grows from a test render to a given noise, interpolated from the study's points with
+  /// --noise.
+  ///
+  /// `reached`  noise of the test render
+  double growth(double reached, double noise, double Point::*what) const {
     if (reached <= noise) return 1;
     std::vector<const Point*> line;
     for (const Point& p : study_.points)

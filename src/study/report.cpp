@@ -36,24 +36,12 @@ static void to_json(json& out, const Point& p) {
          {"on_front", p.on_front}};
 }
 
-static void to_json(json& out, const FilePoint& f) {
-  out = {{"name", f.name}, {"flags", f.flags}, {"bytes", f.bytes}, {"write_s", f.write_s}, {"error", f.error}};
-}
-
-static void to_json(json& out, const Slope& l) { out = {{"name", l.name}, {"slope", l.slope}}; }
+NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(FilePoint, name, flags, bytes, write_s, error)
+NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(Slope, name, slope)
+NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(Recommendation, words, command, noise, bias, samples, seconds, baseline_seconds)
 
 static void to_json(json& out, const FeatureCost& f) {
   out = {{"name", f.name}, {"required", f.required}, {"saves", f.required ? json() : json(f.saves)}};
-}
-
-static void to_json(json& out, const Recommendation& r) {
-  out = {{"words", r.words},
-         {"command", r.command},
-         {"noise", r.noise},
-         {"bias", r.bias},
-         {"samples", r.samples},
-         {"seconds", r.seconds},
-         {"baseline_seconds", r.baseline_seconds}};
 }
 
 namespace {

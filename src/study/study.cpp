@@ -4,9 +4,9 @@
 #include <algorithm>
 #include <bit>
 #include <cmath>
-#include <filesystem>
 #include <limits>
 #include <map>
+#include <optional>
 #include <utility>
 
 #include <fmt/core.h>
@@ -29,14 +29,12 @@
 #include "job/resources.h"
 #include "job/scene_hash.h"
 #include "job/version.h"
-#include "load/load_scene.h"
 #include "load/read_scene.h"
 #include "load/scene_files.h"
 #include "render/render.h"
 #include "render/result.h"
 #include "render/settings.h"
 #include "study/axes.h"
-#include "study/bench.h"
 #include "study/biases.h"
 #include "study/recommendation.h"
 #include "study/study_renderer.h"
@@ -106,7 +104,8 @@ class Runner {
     render_reference();
     measure_axes();
     test_bias(out_.points);
-    measure_files();
+    report_progress("files");
+    out_.files = measure_file_axis(out_.reference);
     measure_features();
     out_.slopes = slopes_of(out_.points);
     mark_front(out_.points);
@@ -121,11 +120,9 @@ class Runner {
  private:
   double elapsed() const { return renderer_.elapsed(); }
   double left() const { return request_.budget_s - elapsed(); }
-  void report_progress(const std::string& what, double fraction) const {
-    if (request_.on_progress) request_.on_progress(what, fraction);
-  }
-  void report_progress(const std::string& what) const {
-    report_progress(what, std::min(elapsed() / request_.budget_s, 0.99));
+  void report_progress(const std::string& what, std::optional<double> fraction = {}) const {
+    if (request_.on_progress)
+      request_.on_progress(what, fraction.value_or(std::min(elapsed() / request_.budget_s, 0.99)));
   }
 
   void load() {
@@ -143,7 +140,7 @@ class Runner {
     load::add_scene_files(request_.scene.file, scene, files);
     if (scene.render.shading != scene::Shading::kPath)
       base::refuse("a study needs render.shading = \"path\"; the other modes trace no light paths");
-    full_ = compile::compile(scene, closing());
+    full_ = compile::compile(scene, read_.closing ? &*read_.closing : nullptr);
     film::LayerRequest layers = job::choose_layers(scene, full_).request;
     memory_needs_ = job::memory_needs(full_, layers);
     layers.halves = true;
@@ -163,9 +160,6 @@ class Runner {
     renderer_.take_spheres(full_);
     reduced_ = full_;
   }
-
-  /// The scene at shutter close; null without motion.
-  const scene::Scene* closing() const { return read_.closing ? &*read_.closing : nullptr; }
 
   /// Measures the speed and reduces the image until the study fits into the budget, but not below kMinPixels. Beyond
   /// that, choices are skipped.
@@ -299,11 +293,6 @@ class Runner {
     point.energy = e.energy;
     point.picture = std::move(pair.first);
     out_.points.push_back(std::move(point));
-  }
-
-  void measure_files() {
-    report_progress("files");
-    out_.files = measure_file_axis(out_.reference);
   }
 
   void measure_features() {

@@ -14,8 +14,7 @@
 namespace orrery::study {
 
 double StudyRenderer::elapsed() const {
-  return request_.paths_per_s > 0 ? paths_ / request_.paths_per_s
-                                  : std::chrono::duration<double>(Clock::now() - start_).count();
+  return request_.paths_per_s > 0 ? paths_ / request_.paths_per_s : since_start_.seconds();
 }
 
 double StudyRenderer::seconds_of(const render::Statistics& did) const {
@@ -35,7 +34,12 @@ accel::Accel& StudyRenderer::accel_of(const compile::CompiledScene& scene) {
 
 render::Result StudyRenderer::render(compile::CompiledScene& scene, double noise,
                                      std::optional<accel::Traversal> traversal, bool is_denoised) {
-  const Spheres::ScopedAttachment attachment(spheres_, scene);
+  spheres_.swap(scene);
+  struct Return {
+    Spheres& spheres;
+    compile::CompiledScene& from;
+    ~Return() { spheres.swap(from); }
+  } const end{spheres_, scene};
   compile::update_lights(scene);
   render::Settings settings;
   settings.threads = threads_;
@@ -47,9 +51,9 @@ render::Result StudyRenderer::render(compile::CompiledScene& scene, double noise
   render::Result result = render::render(scene, accel_of(scene), settings);
   if (!result.completed) throw base::Error(base::ErrorKind::kStopped, "stopped; the study is incomplete");
   if (is_denoised) {
-    const Clock::time_point begin = Clock::now();
+    const base::Stopwatch watch;
     denoise::denoise(result.picture, threads_);
-    result.statistics.render_s += std::chrono::duration<double>(Clock::now() - begin).count();
+    result.statistics.render_s += watch.seconds();
   }
   result.picture.planes.resize(3);
   isa_ = result.statistics.isa;

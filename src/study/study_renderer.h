@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include <chrono>
 #include <map>
 #include <memory>
 #include <optional>
@@ -10,6 +9,7 @@
 #include <vector>
 
 #include "accel/accel.h"
+#include "base/stopwatch.h"
 #include "compile/compiled_scene.h"
 #include "render/forward.h"
 
@@ -19,37 +19,22 @@ struct Request;
 
 /// The spheres and rods of a scene, lent to one CompiledScene at a time instead of copied, since there may be ten
 /// million.
-class Spheres {
- public:
-  /// Swaps the spheres with those of a compiled scene.
-  void take_from(compile::CompiledScene& compiled) {
-    std::swap(spheres_, compiled.spheres);
-    std::swap(materials_, compiled.sphere_materials);
-    std::swap(rods_, compiled.rods);
-    std::swap(rod_motion_, compiled.rod_motion);
-    std::swap(bonds_, compiled.bonds);
-    std::swap(bond_radii_, compiled.bond_radii);
+struct Spheres {
+  compile::SphereStore spheres;
+  compile::PackedIndices materials;
+  std::vector<kernel::Rod> rods, rod_motion;
+  std::vector<kernel::Bond> bonds;
+  std::vector<double> bond_radii;
+
+  /// Exchanges them with those of a compiled scene.
+  void swap(compile::CompiledScene& compiled) {
+    std::swap(spheres, compiled.spheres);
+    std::swap(materials, compiled.sphere_materials);
+    std::swap(rods, compiled.rods);
+    std::swap(rod_motion, compiled.rod_motion);
+    std::swap(bonds, compiled.bonds);
+    std::swap(bond_radii, compiled.bond_radii);
   }
-
-  /// Lends the spheres to a compiled scene until the ScopedAttachment is destroyed.
-  class ScopedAttachment {
-   public:
-    ScopedAttachment(Spheres& from, compile::CompiledScene& to) : from_(from), to_(to) { from_.take_from(to_); }
-    ~ScopedAttachment() { from_.take_from(to_); }
-    ScopedAttachment(const ScopedAttachment&) = delete;
-    ScopedAttachment& operator=(const ScopedAttachment&) = delete;
-
-   private:
-    Spheres& from_;
-    compile::CompiledScene& to_;
-  };
-
- private:
-  compile::SphereStore spheres_;
-  compile::PackedIndices materials_;
-  std::vector<kernel::Rod> rods_, rod_motion_;
-  std::vector<kernel::Bond> bonds_;
-  std::vector<double> bond_radii_;
 };
 
 /// Renders the images of a study and accumulates their render times.
@@ -63,7 +48,7 @@ class StudyRenderer {
   StudyRenderer(const Request& request, int threads) : request_(request), threads_(threads) {}
 
   /// Takes the spheres out of a scene. All scenes to render are copies of it.
-  void take_spheres(compile::CompiledScene& scene) { spheres_.take_from(scene); }
+  void take_spheres(compile::CompiledScene& scene) { spheres_.swap(scene); }
 
   /// Seconds since the study began; with Request::paths_per_s, computed from the number of paths instead.
   double elapsed() const;
@@ -91,13 +76,11 @@ class StudyRenderer {
   const std::string& isa() const { return isa_; }
 
  private:
-  using Clock = std::chrono::steady_clock;
-
   accel::Accel& accel_of(const compile::CompiledScene& scene);
 
   const Request& request_;
   int threads_;
-  Clock::time_point start_ = Clock::now();
+  base::Stopwatch since_start_;
   Spheres spheres_;
   std::map<std::pair<compile::Precision, compile::Accelerator>, std::unique_ptr<accel::Accel>> accels_;
   std::string isa_;

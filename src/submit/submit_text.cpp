@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Writes the job of `orrery submit` in the format of each engine.
-#include <fmt/core.h>
+#include <fmt/ranges.h>
 #include <nlohmann/json.hpp>
 
 #include "base/error.h"
@@ -39,9 +39,7 @@ std::string shell_line(const Words& words, const std::string& frame, const std::
 }
 
 std::string frame_list(const Commands& c, const char* separator) {
-  std::string out;
-  for (const int frame : c.frames) out += (out.empty() ? "" : separator) + std::to_string(frame);
-  return out;
+  return fmt::format("{}", fmt::join(c.frames, separator));
 }
 
 std::size_t render_tasks(const Submission& s, const Commands& c) {

@@ -62,15 +62,12 @@ Json json_of(const scene::Camera& camera) {
 }
 
 /// The value of a cookie in a header field: "a=1; b=2".
-std::string_view cookie_of(std::string_view cookies, std::string_view name) {
-  while (!cookies.empty()) {
-    const std::size_t end = cookies.find("; ");
-    const std::string_view one = cookies.substr(0, end);
-    if (one.size() > name.size() && one.substr(0, name.size()) == name && one[name.size()] == '=')
-      return one.substr(name.size() + 1);
-    cookies = end == std::string_view::npos ? std::string_view() : cookies.substr(end + 2);
-  }
-  return {};
+std::string cookie_of(const std::string& cookies, const std::string& name) {
+  const std::string all = "; " + cookies, before = "; " + name + "=";
+  const std::size_t begin = all.find(before);
+  if (begin == std::string::npos) return {};
+  const std::string value = all.substr(begin + before.size());
+  return value.substr(0, value.find("; "));
 }
 
 /// Compares in a time that does not depend on where the texts differ.
@@ -81,22 +78,11 @@ bool is_equal(std::string_view a, std::string_view b) {
   return difference == 0;
 }
 
-/// A file that the page loads.
-struct PageFile {
-  const char* path;
-  const char* type;
-  const char* const* text;
-};
-constexpr PageFile kPageFiles[] = {{"/view.js", "text/javascript; charset=utf-8", &kPageScript},
-                                   {"/camera.js", "text/javascript; charset=utf-8", &kCameraScript},
-                                   {"/view.css", "text/css; charset=utf-8", &kPageStyle}};
-
-/// Null: there is none.
-const PageFile* file_of_page(const std::string& path) {
-  for (const PageFile& file : kPageFiles)
-    if (path == file.path) return &file;
-  return nullptr;
-}
+/// The types and the texts of the files that the page loads.
+const std::map<std::string, std::pair<const char*, const char*>> kPageFiles = {
+    {"/view.js", {"text/javascript; charset=utf-8", kPageScript}},
+    {"/camera.js", {"text/javascript; charset=utf-8", kCameraScript}},
+    {"/view.css", {"text/css; charset=utf-8", kPageStyle}}};
 
 /// A number in the address of a request; empty if there is none.
 template <class T>
@@ -120,10 +106,9 @@ Site::Site(Viewer& viewer, Controls controls, std::string host, std::string secr
     : viewer_(viewer), controls_(std::move(controls)), host_(std::move(host)), secret_(std::move(secret)) {}
 
 std::chrono::seconds Site::idle() const {
-  const std::int64_t last = last_request_s_;
-  if (last < 0) return {};
-  return std::chrono::duration_cast<std::chrono::seconds>(std::chrono::steady_clock::now().time_since_epoch()) -
-         std::chrono::seconds(last);
+  const Clock::time_point last = last_request_;
+  if (last == Clock::time_point()) return {};
+  return std::chrono::duration_cast<std::chrono::seconds>(Clock::now() - last);
 }
 
 /// Whether a request names this host, and no other site made it.
@@ -151,19 +136,18 @@ std::string Site::cookie_name() const { return fmt::format("orrery{}", port_.loa
 http::Response Site::answer(const http::Request& request) {
   http::Response out;
   const bool is_post = request.path == "/wish";
-  const PageFile* const file = request.method == "GET" ? file_of_page(request.path) : nullptr;
-  if (is_for_us(request) && file != nullptr) {
+  const auto file = request.method == "GET" ? kPageFiles.find(request.path) : kPageFiles.end();
+  if (is_for_us(request) && file != kPageFiles.end()) {
     // In a notebook, browsers may keep cookies from the page: it then sends the secret itself. Its files are not
     // secret.
-    out = {200, file->type, std::make_shared<const std::string>(*file->text)};
+    out = {200, file->second.first, std::make_shared<const std::string>(file->second.second)};
   } else if (!is_for_us(request) || !has_secret(request)) {
     out = text(403, "orrery view: open the address that the command printed");
   } else if (request.method != (is_post ? "POST" : "GET")) {
     out = text(405, "method not allowed");
     out.fields.emplace_back("Allow", is_post ? "POST" : "GET");
   } else {
-    last_request_s_ =
-        std::chrono::duration_cast<std::chrono::seconds>(std::chrono::steady_clock::now().time_since_epoch()).count();
+    last_request_ = Clock::now();
     if (is_post)
       out = change(request);
     else if (request.path == "/frame")
@@ -256,6 +240,7 @@ http::Response Site::state() const {
               {"frames", state.subject.frame_count.value_or(0)},
               {"width", state.width},
               {"height", state.height},
+              {"first_size", state.first_size},
               {"notes", state.subject.notes},
               {"warnings", state.warnings},
               {"legend", state.subject.legend},

@@ -3,7 +3,6 @@
 
 #include <atomic>
 #include <chrono>
-#include <cstdint>
 #include <functional>
 #include <map>
 #include <string>
@@ -43,6 +42,8 @@ class Site {
   std::chrono::seconds idle() const;
 
  private:
+  using Clock = std::chrono::steady_clock;
+
   bool is_for_us(const http::Request& request) const;
   bool has_secret(const http::Request& request) const;
   std::string cookie_name() const;
@@ -58,7 +59,7 @@ class Site {
   const Controls controls_;
   const std::string host_, secret_;
   std::atomic<int> port_{0};
-  std::atomic<std::int64_t> last_request_s_{-1};
+  std::atomic<Clock::time_point> last_request_{};  ///< that carried the secret
 };
 
 /// 128 random bits as text.

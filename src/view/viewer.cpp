@@ -6,7 +6,6 @@
 #include <exception>
 #include <new>
 #include <numeric>
-#include <optional>
 #include <span>
 #include <utility>
 
@@ -21,7 +20,6 @@
 #include "display/settings.h"
 #include "film/picture.h"
 #include "image/write.h"
-#include "job/job.h"
 #include "job/outputs.h"
 #include "preview/file_sink.h"
 
@@ -226,10 +224,8 @@ void Viewer::make_subject(const Wish& wish) {
     state_.activity = "reading";
     announce();
   }
-  Wish without_camera = wish;
-  without_camera.camera.reset();
   const base::StopScope scope(&cancel_);
-  Subject subject = make_(words_of(fixed_, without_camera));
+  Subject subject = make_(words_of(fixed_, {wish.options}));  // without the camera
   made_options_ = wish.options;
   is_new_subject_ = true;
   const std::lock_guard lock(mutex_);
@@ -325,6 +321,7 @@ void Viewer::begin(Image& image, const display::PictureInfo& info) {
   if (!image.moves) {
     if (asked_ != image.wish) cancel_ = true;
     prepared_depth_ = scene.render.max_depth;
+    if (state_.width == 0) state_.first_size = {info.width, info.height};
     state_.width = info.width;
     state_.height = info.height;
   }

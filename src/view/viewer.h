@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <array>
 #include <atomic>
 #include <chrono>
 #include <condition_variable>
@@ -61,6 +62,7 @@ struct State {
   std::vector<std::string> words;       ///< of the command that makes this picture, without outputs
   std::optional<scene::Camera> camera;  ///< of the scene that is shown
   int width = 0, height = 0;            ///< of the finished image
+  std::array<int, 2> first_size = {};   ///< that of the first image
   std::uint64_t served = 0;             ///< number of the last wish that was granted, or refused as `problem` says
   std::string activity;                 ///< "reading", "building the BVH: 40 %"; empty: rendering or finished
   std::string problem;                  ///< why the last wish was not granted

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "view/wish.h"
 
-#include <algorithm>
 #include <array>
 #include <cmath>
 #include <cstddef>
+#include <sstream>
 #include <variant>
 
 #include <nlohmann/json.hpp>
@@ -140,11 +140,8 @@ std::vector<std::string> words_of(const std::vector<std::string>& fixed, const W
       add(option, value);
       continue;
     }
-    for (std::size_t begin = 0; begin < value.size();) {  // one for each line
-      const std::size_t end = std::min(value.find('\n', begin), value.size());
-      add(option, value.substr(begin, end - begin));
-      begin = end + 1;
-    }
+    std::istringstream lines(value);
+    for (std::string line; std::getline(lines, line);) add(option, line);
   }
   if (wish.camera)
     for (const std::string& setting : camera_settings(*wish.camera)) add("--set", setting);

@@ -164,6 +164,8 @@ def main():
         browser.new_tab()
         browser.open(program.url)
         settle(browser)
+        sizes = browser.run("return [...document.getElementById('size').options].map(option => option.value)")
+        expect(sizes[0] == "320 240" and sizes.count("640 360") == 1, f"the size of the start is not offered: {sizes}")
         command = command_of(browser)
         browser.switch(first)
         browser.wait("return document.getElementById('command').value === arguments[0]", command)

@@ -4,6 +4,7 @@
 from __future__ import annotations
 
 import base64
+import dataclasses
 import html
 import os
 from collections.abc import Callable, Mapping, Sequence
@@ -17,26 +18,18 @@ from orrery._plot import _named, _source, _warn, _words
 from orrery._scene import Progress, _limits
 
 
+@dataclasses.dataclass(frozen=True, repr=False, eq=False)
 class Movie:
-    """A film file that movie() has written. A notebook shows it."""
+    """A film file that movie() has written. A notebook shows it.
 
-    def __init__(self, file: str, frames: Sequence[int], notes: Sequence[str]) -> None:
-        self._file, self._frames, self._notes = file, tuple(frames), tuple(notes)
+    file    name of the file
+    frames  numbers of the frames that it shows
+    notes   what movie() chose from the data, and the reasons
+    """
 
-    @property
-    def file(self) -> str:
-        """Name of the file."""
-        return self._file
-
-    @property
-    def frames(self) -> tuple[int, ...]:
-        """Numbers of the frames that it shows."""
-        return self._frames
-
-    @property
-    def notes(self) -> tuple[str, ...]:
-        """What movie() chose from the data, and the reasons."""
-        return self._notes
+    file: str
+    frames: tuple[int, ...]
+    notes: tuple[str, ...]
 
     def __repr__(self):
         return f"Movie({self.file!r}, {len(self.frames)} frames)"
@@ -99,7 +92,7 @@ def movie(
     limits, report = _limits(threads, memory_limit, on_progress)
     film = _orrery.FilmFile(name, fps, orbit, bool(keep_frames))
     made, notes = _orrery.movie(film, source, _words({**options, "frames": selected}), *limits, report, _warn)
-    return Movie(name, made, notes)
+    return Movie(name, tuple(made), tuple(notes))
 
 
 def _text_of(frames):

@@ -3,6 +3,7 @@
 
 from __future__ import annotations
 
+import dataclasses
 import os
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from typing import Any
@@ -14,32 +15,22 @@ from orrery import _arguments, _arrays, _keys, _orrery
 from orrery._arguments import Path, Vector
 
 
+@dataclasses.dataclass(repr=False, eq=False)
 class ColorMap:
     """Values and the colour map that shows them; see colormap()."""
 
-    def __init__(
-        self,
-        values: NDArray[Any],
-        name: str,
-        range: Sequence[float] | None,
-        nan_color: Vector | None,
-    ) -> None:
-        self.values = values
-        self.name = name
-        self.range = range
-        self.nan_color = nan_color
+    values: NDArray[Any]
+    name: str
+    range: Sequence[float] | None
+    nan_color: Vector | None
 
     def __repr__(self):
         return f"ColorMap({len(self.values)} values, {self.name!r}, range={self.range})"
 
     def keys(self, column: str) -> dict[str, Any]:
         """Returns the keys of [points.color]."""
-        keys = {"column": column, "map": self.name}
-        if self.range is not None:
-            keys["range"] = self.range
-        if self.nan_color is not None:
-            keys["nan_color"] = self.nan_color
-        return keys
+        keys = {"column": column, "map": self.name, "range": self.range, "nan_color": self.nan_color}
+        return {key: value for key, value in keys.items() if value is not None}
 
 
 def colormap(

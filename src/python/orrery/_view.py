@@ -3,13 +3,10 @@
 
 from __future__ import annotations
 
-import atexit
 import html
 import tomllib
 import weakref
 from typing import Any
-
-_open_views = weakref.WeakSet()
 
 
 class View:
@@ -23,7 +20,7 @@ class View:
         self._page = page
         self._owner = owner  # of the arrays
         self._height = height
-        _open_views.add(self)
+        self._finalizer = weakref.finalize(self, page.close)  # also at the end of the process
 
     @property
     def address(self) -> str:
@@ -36,8 +33,7 @@ class View:
 
     def close(self) -> None:
         """Ends the page."""
-        self._page.close()
-        _open_views.discard(self)
+        self._finalizer()
 
     def __enter__(self) -> View:
         return self
@@ -60,9 +56,3 @@ def _value(text):
         return tomllib.loads(f"value = {text}")["value"]
     except tomllib.TOMLDecodeError:
         return text
-
-
-@atexit.register
-def _close_all():
-    for view in list(_open_views):
-        view.close()

@@ -219,8 +219,7 @@ function makeControls() {
     for (const [name, label] of known) addControl(name, label, row);
   }
   if (state.options["--width"]) {
-    const size = element("select", { id: "size" }, ...SIZES.map(([w, h]) =>
-      element("option", { value: `${w} ${h}`, textContent: `${w} × ${h}` })));
+    const size = element("select", { id: "size" }, ...SIZES.map(sizeOption));
     size.addEventListener("change", () => {
       const [width, height] = size.value.split(" ");
       options = { ...options, "--width": width, "--height": height };
@@ -251,6 +250,10 @@ function makeControls() {
   }
 }
 
+function sizeOption([width, height]) {
+  return element("option", { value: `${width} ${height}`, textContent: `${width} × ${height}` });
+}
+
 function fill(list, values) {
   list.replaceChildren(...values.map(value => element("option", { value, textContent: value })));
 }
@@ -270,10 +273,10 @@ function updateControls() {
     if (option.chosen && field.tagName !== "SELECT") field.placeholder = option.chosen;
   }
   if ($("size") && state.width > 0) {
-    const value = `${state.width} ${state.height}`;
-    if (![...$("size").options].some(option => option.value === value))
-      $("size").prepend(element("option", { value, textContent: `${state.width} × ${state.height}` }));
-    $("size").value = value;
+    const shown = sizeOption([state.width, state.height]);
+    for (const option of [shown, sizeOption(state.first_size)])
+      if (![...$("size").options].some(other => other.value === option.value)) $("size").prepend(option);
+    $("size").value = shown.value;
   }
   if ($("frame")) {
     const row = $("frame").parentElement;

@@ -238,15 +238,10 @@ TEST(CompareHdrFlip, TakesTheMaximumOverTheExposures) {
   EXPECT_NEAR(hdr_flip(b1000.view, a1000.view).mean(), map.mean(), 1e-5);
 }
 
-TEST(CompareHdrFlip, RunsExposuresWithForEachInAnyOrder) {
+TEST(CompareHdrFlip, IsTheSameOnAnyNumberOfThreads) {
   const Own a(24, 16, [](int x, int y, int c) { return (x + 1) * (y + 1) * 0.1 + c; });
   const Own b(24, 16, [](int x, int y, int c) { return (x + 2) * (y + 1) * 0.1 + c; });
-  std::size_t calls = 0;
-  const ForEach backwards = [&](std::size_t count, const std::function<void(std::size_t)>& work) {
-    for (std::size_t i = count; i-- > 0; ++calls) work(i);
-  };
-  EXPECT_EQ(hdr_flip(a.view, b.view, backwards).values, hdr_flip(a.view, b.view).values);
-  EXPECT_GT(calls, 1u);
+  EXPECT_EQ(hdr_flip(a.view, b.view, 3).values, hdr_flip(a.view, b.view).values);
 }
 
 TEST(ComparePixelErrors, ExcludedPixelsDoNotCount) {

@@ -158,6 +158,15 @@ TEST(ViewViewer, WarningsAreThoseOfTheImage) {
   EXPECT_EQ(viewer.state().warnings, std::vector<std::string>());
 }
 
+TEST(ViewViewer, TheFirstSizeIsKnownAfterAnotherOne) {
+  Viewer viewer(subject_of, {}, {});
+  const std::uint64_t before = finished(viewer).number;
+  viewer.ask({{{"--set", "image.width=32\nimage.height=24"}}, {}, false});
+  EXPECT_EQ(finished(viewer, before).width, 32);
+  EXPECT_EQ(viewer.state().width, 32);
+  EXPECT_EQ(viewer.state().first_size, (std::array{64, 48}));
+}
+
 TEST(ViewViewer, ASphereIsPicked) {
   Viewer viewer(subject_of, {}, {});
   finished(viewer);
