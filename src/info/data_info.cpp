@@ -17,7 +17,7 @@
 #include "base/text.h"
 #include "data/data_file.h"
 #include "job/report_text.h"
-#include "points/derived.h"
+#include "points/rows.h"
 
 namespace orrery::info {
 namespace {

@@ -10,7 +10,7 @@
 #include "base/error.h"
 #include "base/frames.h"
 #include "points/color_map.h"
-#include "points/derived.h"
+#include "points/rows.h"
 #include "points/selection.h"
 #include "points/spacing.h"
 #include "scene/limits.h"

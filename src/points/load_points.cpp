@@ -16,7 +16,6 @@
 #include "data/data_file.h"
 #include "points/bonds.h"
 #include "points/copies.h"
-#include "points/derived.h"
 #include "points/sources.h"
 #include "scene/limits.h"
 #include "scene/value_text.h"
