@@ -1,6 +1,4 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "plot/appearance.h"
-
 #include <cstddef>
 #include <cstdint>
 #include <utility>
@@ -9,6 +7,7 @@
 
 #include "base/error.h"
 #include "base/text.h"
+#include "plot/plot.h"
 #include "plot/range.h"
 #include "points/bonds.h"
 #include "points/color_map.h"

@@ -112,6 +112,17 @@ class DataFrames {
   std::vector<int> numbers_;
 };
 
+struct PlotOptions;
+
+/// Chooses radius, bonds, arrows and colours of a plot where the user has not.
+///
+/// `data`     that the plot shows
+/// `points`   in: the keys that the user has set; out: all of them
+/// Result     the choices and their reasons, as they are printed
+/// Errors     base::Error(kUsage) for options that exclude each other; those of DataFrames::load()
+std::vector<std::string> choose_appearance(const PlotOptions& options, const DataFrames& data,
+                                           scene::PointsKeys& points);
+
 /// Returns the condition that all conditions are met; empty if there are none.
 ///
 /// Errors     base::Error(kBadData) if one of several is not closed
