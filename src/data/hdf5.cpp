@@ -133,8 +133,8 @@ class Dataset {
     Handle handle(H5Dopen2(group.id(), name.c_str(), H5P_DEFAULT), H5Dclose);
     if (!handle) return;
     const Handle space(H5Dget_space(handle.id()), H5Sclose), stored(H5Dget_type(handle.id()), H5Tclose);
-    dimensions_ = H5Sget_simple_extent_ndims(space.id());
-    if (dimensions_ != 1 && dimensions_ != 2) return;
+    const int dimensions = H5Sget_simple_extent_ndims(space.id());
+    if (dimensions != 1 && dimensions != 2) return;
     hsize_t extent[2] = {0, 1};
     H5Sget_simple_extent_dims(space.id(), extent, nullptr);
     const Types types = types_of(stored);
@@ -180,21 +180,16 @@ class Dataset {
   /// Cost       one pass over the dataset, however many components are read
   void append(const std::vector<std::pair<std::uint64_t, Values*>>& columns, Faults& faults) const {
     if (rows_ == 0 || columns.empty()) return;
-    switch (type_) {
-      case ColumnType::kFloat64: return append_as<double>(columns, faults);
-      case ColumnType::kFloat32: return append_as<float>(columns, faults);
-      case ColumnType::kInt64:
-        append_as<std::int64_t>(columns, faults);
-        if (H5Tequal(memory_type_, H5T_NATIVE_UINT64) > 0)
-          for (const auto& [component, values] : columns)
-            check_unsigned(name_, std::get<std::vector<std::int64_t>>(*values), faults);
-        faults.raise_if_any();
-        return;
-      case ColumnType::kInt32: return append_as<std::int32_t>(columns, faults);
-      case ColumnType::kUint16: return append_as<std::uint16_t>(columns, faults);
-      case ColumnType::kUint8: return append_as<std::uint8_t>(columns, faults);
-      case ColumnType::kText: return;
-    }
+    std::visit(
+        [&](const auto& first) {
+          using Array = std::decay_t<decltype(first)>;
+          if constexpr (requires { first.data(); }) append_as<typename Array::value_type>(columns, faults);
+        },
+        *columns.front().second);
+    if (H5Tequal(memory_type_, H5T_NATIVE_UINT64) > 0)
+      for (const auto& [component, values] : columns)
+        check_unsigned(name_, std::get<std::vector<std::int64_t>>(*values), faults);
+    faults.raise_if_any();
   }
 
  private:
@@ -243,7 +238,6 @@ class Dataset {
 
   std::string name_;
   Handle handle_;
-  int dimensions_ = 0;
   std::uint64_t rows_ = 0, components_ = 1;
   std::size_t value_bytes_ = 0;
   ColumnType type_ = ColumnType::kFloat64;
