@@ -118,10 +118,6 @@ double bond_radius(const data::FrameInfo& info, const scene::PointsBonds& bonds,
   return radii.empty() ? 1 : kBondRadiusOfSphere * sum / static_cast<double>(radii.size());
 }
 
-double copied_bond_count(const BondSet& bonds, double images, std::size_t copies) {
-  return static_cast<double>(bonds.pairs.size() + 2 * bonds.crossing.size()) * images * static_cast<double>(copies);
-}
-
 void copy_bonds(const BondSet& bonds, const std::vector<Copy>& copies, const Labels& chains, const Lattice& lattice,
                 scene::Points& points) {
   const CopyIndex index(copies, chains, points.centers.size());

@@ -105,9 +105,6 @@ void merge(BondSet& bonds, BondSet more);
 /// times the mean radius.
 double bond_radius(const data::FrameInfo& info, const scene::PointsBonds& bonds, const scene::NumberArray& radii);
 
-/// Number of rods that copy_bonds() makes in a number of periodic images.
-double copied_bond_count(const BondSet& bonds, double images, std::size_t copies);
-
 /// Sets the bonds of `points`, for each copy of the spheres. Bonds to an image of the box that is not drawn become two
 /// stubs. Call before make_copies(), whose order of the spheres it assumes.
 ///

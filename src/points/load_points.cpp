@@ -179,8 +179,8 @@ class Loader {
 
   /// `count`         number of spheres in one image of the periodic box
   /// `are_rounded`   whether make_copies() rounds their centres
-  /// `bonds`         number of bonds in all images
-  void require_memory(std::uint64_t count, bool are_rounded, double bonds = 0) const {
+  /// `bonds`         of these spheres
+  void require_memory(std::uint64_t count, bool are_rounded, const BondSet& bonds = {}) const {
     std::uint64_t row_bytes = color_.expression ? sizeof(double) : 0;
     for (const std::string& column : columns_)
       if (!is_replaced_by_centers(column)) row_bytes += data::bytes_per_value(type_of(info_, column));
@@ -196,7 +196,8 @@ class Loader {
     double bytes = static_cast<double>(file_->memory() + info_.rows * row_bytes) +
                    images * static_cast<double>(copies_.size() * sizeof(Copy));
     if (points_.bonds.are_drawn) {
-      bytes += bonds * sizeof(scene::SphereBond);
+      const std::size_t rods = bonds.pairs.size() + 2 * bonds.crossing.size();  // those to other images are two stubs
+      bytes += images * static_cast<double>(copies_.size() * rods * sizeof(scene::SphereBond));
       if (bond_source_.is_file) bytes += static_cast<double>(info_.bonds * kFileBondBytes);
       if (bond_source_.is_distance) bytes += static_cast<double>(info_.rows * kBondSearchBytes);
     }
@@ -246,9 +247,7 @@ class Loader {
     const Lattice lattice(points_.assembly.empty() ? info_.box : std::nullopt);
     const BondSet bonds = points_.bonds.are_drawn ? bonds_of(table, rows, centers, lattice, frame) : BondSet();
     if (faults_.has_errors()) return;
-    const Vec3d images = points_.replicate;
-    require_memory(copied_count(copies_, chains, rows.size()), are_rounded(ends, points_, centers, radii),
-                   copied_bond_count(bonds, images.x * images.y * images.z, copies_.size()));
+    require_memory(copied_count(copies_, chains, rows.size()), are_rounded(ends, points_, centers, radii), bonds);
     PointColors colors = colors_of(table, rows, color_, points_.color, faults_);
     if (request_.on_value && colors.range)
       for_each_shown(*table.find(points_.color.column), rows, points_.color.log, request_.on_value);
