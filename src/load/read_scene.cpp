@@ -27,17 +27,6 @@
 namespace orrery::load {
 namespace {
 
-using File = std::unique_ptr<std::FILE, int (*)(std::FILE*)>;
-
-File opened(const std::filesystem::path& file) {
-  base::require_readable(file);
-  File in(std::fopen(file.c_str(), "rb"), &std::fclose);
-  if (!in)
-    throw base::FileError(base::ErrorKind::kMissingInput,
-                          fmt::format("cannot open {}: {}", file.string(), std::strerror(errno)), file, errno);
-  return in;
-}
-
 /// Returns an array of tables; null if it is absent, or if it is not an array of tables, which is reported once.
 const toml::array* tables_under(ReadState& state, const toml::table& root, const char* name) {
   const toml::node* node = root.get(name);
@@ -393,8 +382,12 @@ void refuse_data_file(const std::filesystem::path& file, std::string_view text) 
 }
 
 std::string read_file(const std::filesystem::path& file, std::uint64_t largest_bytes) {
+  base::require_readable(file);
+  const std::unique_ptr<std::FILE, int (*)(std::FILE*)> in(std::fopen(file.c_str(), "rb"), &std::fclose);
+  if (!in)
+    throw base::FileError(base::ErrorKind::kMissingInput,
+                          fmt::format("cannot open {}: {}", file.string(), std::strerror(errno)), file, errno);
   char more[65536];
-  const File in = opened(file);
   const auto too_large = [&](std::string_view head) {
     refuse_data_file(file, head);
     return base::Error(base::ErrorKind::kBadData,
@@ -404,11 +397,9 @@ std::string read_file(const std::filesystem::path& file, std::uint64_t largest_b
   const auto size = std::filesystem::file_size(file, error);
   if (!error && size > largest_bytes) throw too_large({more, std::fread(more, 1, sizeof(more), in.get())});
   std::string bytes;
-  bytes.resize(error ? 0 : static_cast<std::size_t>(size));
-  std::size_t got = std::fread(bytes.data(), 1, bytes.size(), in.get());
-  if (got < bytes.size()) bytes.resize(got);
-  // A file may have grown in the meantime, and files in /proc report a size of 0: read to the end.
-  while ((got = std::fread(more, 1, sizeof(more), in.get())) > 0) {
+  bytes.reserve(error ? 0 : static_cast<std::size_t>(size));
+  // A file may grow meanwhile, and files in /proc report a size of 0: read to the end.
+  while (const std::size_t got = std::fread(more, 1, sizeof(more), in.get())) {
     bytes.append(more, got);
     if (bytes.size() > largest_bytes) throw too_large(bytes);
   }
