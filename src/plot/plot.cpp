@@ -111,7 +111,8 @@ class PlotMaker {
     // A camera that looks along the up axis orbits around the vertical of its image.
     const bool is_vertical = math::length(math::cross(up_, axes.back)) < kSmallestSine;
     const math::Vec3d pole = is_turntable_ && !is_vertical ? up_ : axes.up;
-    ViewExtent extent(is_turntable_ ? turned(axes, pole) : axes);
+    // The axes of an orbit are those of the view at the height of its target.
+    ViewExtent extent(is_turntable_ ? ViewAxes{axes.right, pole, math::cross(axes.right, pole)} : axes);
     visit_frames(extent);
     if (extent.is_empty()) report_empty();
     add_guides(extent);
@@ -150,11 +151,6 @@ class PlotMaker {
  private:
   /// Minimum sine of the angle between the camera and the up axis for an orbit around that axis.
   static constexpr double kSmallestSine = 1e-6;
-
-  /// The axes of the same view at the height of its target.
-  static ViewAxes turned(const ViewAxes& axes, const math::Vec3d& pole) {
-    return {axes.right, pole, math::cross(axes.right, pole)};
-  }
 
   void chose(const std::string& what, const std::string& why) {
     out_.choices.push_back(fmt::format("{}: {}", what, why));
@@ -232,8 +228,6 @@ class PlotMaker {
           "nothing to render: frame {}{} has no spheres; --frame N selects another, --frames all renders all",
           data_.described_frame(), count ? fmt::format(" of {}", *count) : ""));
   }
-
-  scene::Points load(int frame) const { return data_.load(frame, out_.points).points; }
 
   /// Prints how many bonds are drawn, and from what.
   void report_bonds(std::size_t fewest, std::size_t most) {
@@ -422,7 +416,7 @@ class PlotMaker {
   /// The space that the spheres of all frames pass through on the orbit of the camera.
   ViewExtent orbit(const ViewAxes& axes, const math::Vec3d& pivot, const math::Vec3d& pole) const {
     ViewExtent out(axes);
-    for (const int frame : data_.distinct()) out.add_orbits(load(frame), pivot, pole);
+    for (const int frame : data_.distinct()) out.add_orbits(data_.load(frame, out_.points).points, pivot, pole);
     out.add_orbits(guides_.ends(), pivot, pole);
     return out;
   }
