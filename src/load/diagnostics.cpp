@@ -5,6 +5,8 @@
 
 #include <fmt/core.h>
 
+#include "base/text.h"
+
 namespace orrery::load {
 namespace {
 
@@ -18,8 +20,7 @@ constexpr std::size_t kLongestShown = 400;
 std::size_t byte_of_character(std::string_view line, std::size_t index) {
   std::size_t at = 0;
   for (; at < line.size(); ++at) {
-    const bool begins = (static_cast<unsigned char>(line[at]) & 0xC0u) != 0x80u;
-    if (begins && index-- == 0) return at;
+    if (!base::continues_character(line[at]) && index-- == 0) return at;
   }
   return at + index;
 }
