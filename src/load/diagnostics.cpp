@@ -71,10 +71,7 @@ void SourceText::point_into(const Override& override, const Place& place, base::
 
 base::Diagnostic SourceText::diagnostic(base::Severity severity, const Place& place, std::string text,
                                         std::string remedy) const {
-  base::Diagnostic out;
-  out.severity = severity;
-  out.text = std::move(text);
-  out.remedy = std::move(remedy);
+  base::Diagnostic out = base::file_diagnostic(severity, place.text_name, std::move(text), std::move(remedy));
   if (place.text_name == kOverrideName && overrides_ != nullptr && place.line >= 1 &&
       static_cast<std::size_t>(place.line) <= overrides_->size()) {
     const Override& override = (*overrides_)[static_cast<std::size_t>(place.line) - 1];
@@ -82,7 +79,6 @@ base::Diagnostic SourceText::diagnostic(base::Severity severity, const Place& pl
     if (place.column >= 1) point_into(override, place, out);
     return out;
   }
-  out.file = place.text_name;
   out.line = place.line;
   out.column = place.column;
   out.width = place.width;
@@ -105,12 +101,9 @@ void Diagnostics::raise_errors(const std::string& file) const {
   if (errors_ == 0) return;
   std::vector<base::Diagnostic> diagnostics;
   for (const auto& [key, diagnostic] : shown_) diagnostics.push_back(diagnostic);
-  if (errors_ > shown_.size()) {
-    base::Diagnostic rest;
-    rest.file = file;
-    rest.text = fmt::format("and {} more ({} in all)", errors_ - shown_.size(), errors_);
-    diagnostics.push_back(std::move(rest));
-  }
+  if (errors_ > shown_.size())
+    diagnostics.push_back(base::file_diagnostic(
+        base::Severity::kError, file, fmt::format("and {} more ({} in all)", errors_ - shown_.size(), errors_)));
   const std::string message = fmt::format("{}: {}{}", file, errors_, errors_ == 1 ? " error" : " errors");
   const bool all_missing = missing_ == errors_;
   if (all_missing && missing_file_)
