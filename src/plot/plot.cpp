@@ -64,6 +64,11 @@ void require_utf8(const std::string& text) {
   }
 }
 
+/// "3 to 5 bonds"
+std::string count_text(std::size_t fewest, std::size_t most, const char* noun) {
+  return (fewest == most ? "" : fmt::format("{} to ", fewest)) + base::counted(most, noun);
+}
+
 /// Makes the scene of a plot, in the order in which the choices are printed.
 class PlotMaker {
  public:
@@ -239,9 +244,7 @@ class PlotMaker {
       from.push_back(bonds.length ? "closer than " + number_text(*bonds.length)
                                   : fmt::format("closer than {} times the sum of the covalent radii",
                                                 number_text(bonds.factor.value_or(scene::kDefaultBondFactor))));
-    chose(fmt::format("{} {}", fewest == most ? std::to_string(most) : fmt::format("{} to {}", fewest, most),
-                      most == 1 ? "bond" : "bonds"),
-          base::joined(from));
+    chose(count_text(fewest, most, "bond"), base::joined(from));
   }
 
   /// The annotation, with paths relative to the scene. A scale bar without a length gets the largest of 1, 2 and 5
@@ -391,10 +394,8 @@ class PlotMaker {
     if (!(options_.points.replicate == math::Vec3d{1, 1, 1})) why.emplace_back("--replicate");
     if (const std::string options = selection(); !options.empty()) why.push_back(options);
     if (why.empty()) why.emplace_back(fewest == most ? "--skip-bad" : "the fewest and the most of all frames");
-    out_.choices.insert(
-        out_.choices.begin() + 1,
-        fmt::format("{} {}: {}", fewest == most ? std::to_string(most) : fmt::format("{} to {}", fewest, most),
-                    most == 1 ? "sphere" : "spheres", base::joined(why)));
+    out_.choices.insert(out_.choices.begin() + 1,
+                        fmt::format("{}: {}", count_text(fewest, most, "sphere"), base::joined(why)));
   }
 
   /// Adds the edges of the simulation box and the axes, and the space that they take.

@@ -129,6 +129,10 @@ const std::vector<std::string>& quality_names() {
   return names;
 }
 
+std::optional<Representation> representation_of(const std::string& name) {
+  return enumerator_of<Representation>(name, representation_names());
+}
+
 std::optional<Style> style_of(const std::string& name) { return enumerator_of<Style>(name, style_names()); }
 
 std::optional<Quality> quality_of(const std::string& name) { return enumerator_of<Quality>(name, quality_names()); }
