@@ -11,7 +11,7 @@
 #include "job/checkpoint.h"
 #include "job/layers.h"
 #include "job/outputs.h"
-#include "load/scene_files.h"
+#include "load/read_scene.h"
 
 namespace orrery::job {
 namespace {

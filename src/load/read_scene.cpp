@@ -19,6 +19,8 @@
 #include "base/frames.h"
 #include "base/input_file.h"
 #include "data/data_file.h"
+#include "display/settings.h"
+#include "load/load_images.h"
 #include "load/read_keys.h"
 #include "scene/animation.h"
 #include "scene/limits.h"
@@ -374,6 +376,32 @@ ReadResult SceneReader::finish() {
 
 scene::Scene authored_scene(const SceneSource& source) {
   return std::move(SceneReader(source, Pose::kAuthored).scene());
+}
+
+void add_named_files(const SceneSource& scene, const std::vector<int>& frames, base::FileSet& files) {
+  add_scene_files(scene.file, authored_scene(scene), files, frames);
+}
+
+void add_scene_files(const std::filesystem::path& scene_file, const scene::Scene& scene, base::FileSet& files,
+                     const std::vector<int>& frames) {
+  add_ocio_configs(config_of(scene_file, scene.color), files);
+  const std::filesystem::path folder = scene_file.parent_path();
+  for (const scene::NamedFile& file : scene::named_files(scene)) {
+    if (file.role == &scene::kOcioConfigFile) continue;
+    if (!base::is_sequence(folder / file.name)) {
+      files.add_input(folder / file.name, file.role->name);
+      continue;
+    }
+    for (const int frame : frames) files.add_input(folder / base::with_frame(file.name, frame), file.role->name);
+  }
+}
+
+void add_ocio_configs(const std::string& config, base::FileSet& files) {
+  for (const std::filesystem::path& file : display::config_files(config)) {
+    if (!files.add_input(file, "OCIO config")) continue;
+    for (const std::filesystem::path& table : display::table_files(file))
+      files.add_input(table, "table of the OCIO config");
+  }
 }
 
 void refuse_data_file(const std::filesystem::path& file, std::string_view text) {

@@ -22,7 +22,6 @@
 #include "data/write_table.h"
 #include "load/load_scene.h"
 #include "load/read_scene.h"
-#include "load/scene_files.h"
 #include "load/write_scene.h"
 #include "scene/schema.h"
 

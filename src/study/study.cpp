@@ -31,7 +31,6 @@
 #include "job/version.h"
 #include "load/load_scene.h"
 #include "load/read_scene.h"
-#include "load/scene_files.h"
 #include "render/render.h"
 #include "render/result.h"
 #include "render/settings.h"
