@@ -28,13 +28,6 @@ namespace {
   base::refuse(fmt::format("cannot write {}: {}", file.string(), text));
 }
 
-template <class T>
-void append_little_endian(std::string& out, T value) {
-  char bytes[sizeof(T)];
-  store(value, bytes, false);
-  out.append(bytes, sizeof(T));
-}
-
 const Words* words_in(const Column& column) { return std::get_if<Words>(&column.values); }
 
 /// Calls `on_number(number)` or `on_text(string)` with the value of a row.

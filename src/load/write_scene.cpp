@@ -205,15 +205,10 @@ void write_ply(const scene::Points& points, const std::filesystem::path& file) {
   base::OutputFile output(file);
   std::string& out = output.buffer();
   out = ply_header(points);
-  const auto append = [&](auto value) {
-    char bytes[sizeof(value)];
-    data::store(value, bytes, false);
-    out.append(bytes, sizeof(value));
-  };
   for (std::size_t i = 0; i < points.centers.size(); ++i) {
     const math::Vec3d c = points.centers[i];
-    for (const double x : {c.x, c.y, c.z, points.radii[i]}) append(x);
-    if (!points.materials.empty()) append(points.materials[i]);
+    for (const double x : {c.x, c.y, c.z, points.radii[i]}) data::append_little_endian(out, x);
+    if (!points.materials.empty()) data::append_little_endian(out, points.materials[i]);
     output.flush();
   }
   output.finish();
