@@ -332,7 +332,6 @@ SceneReader::SceneReader(const SceneSource& source, Pose pose) : state_(std::mak
 }
 
 SceneReader::~SceneReader() = default;
-SceneReader::SceneReader(SceneReader&&) noexcept = default;
 
 scene::Scene& SceneReader::scene() { return state_->result.scene; }
 

@@ -68,7 +68,6 @@ class SceneReader {
   /// Errors     base::Error: kMissingInput if the file cannot be opened; kIo; kBadData if it is not TOML
   explicit SceneReader(const SceneSource& source, Pose pose = Pose::kAtFrame);
   ~SceneReader();
-  SceneReader(SceneReader&&) noexcept;
 
   /// Keys that cannot be read have their defaults.
   scene::Scene& scene();

@@ -63,8 +63,6 @@ DataFrames::DataFrames(const DataOptions& options, const std::filesystem::path& 
   std::iota(numbers_.begin(), numbers_.end(), 1);
 }
 
-DataFrames::~DataFrames() = default;
-
 const char* DataFrames::format() const { return file_->format; }
 
 std::optional<int> DataFrames::frame_count() const {

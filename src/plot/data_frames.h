@@ -56,7 +56,6 @@ class DataFrames {
   /// Errors     base::Error: those of data::open(); kUsage for all frames of a sequence of files; kBadData for
   ///            frames that the file does not contain
   DataFrames(const DataOptions& options, const std::filesystem::path& folder);
-  ~DataFrames();
 
   const char* format() const;
   /// Opens data files: those that are open are not opened again.
