@@ -18,7 +18,6 @@
 #include "data/bonds.h"
 #include "data/frames.h"
 #include "data/readers.h"
-#include "data/text_rows.h"
 
 namespace orrery::data {
 
@@ -277,10 +276,7 @@ class LammpsDump final : public TextFrames {
       const bool is_wanted = !is_computed(name) && base::contains(columns, name);
       layout.columns.push_back({type_of_column(name, frame.has_labels), is_wanted || is_scaled});
     }
-    Faults faults(bytes().file());
-    TextTable text = read_text_rows(bytes(), layout, faults);
-    require_end(layout.begin, {text.end, layout.first_line + text.rows}, frame.rows_line);
-    return taken(columns, frame, std::move(text));
+    return taken(columns, frame, read_rows(layout, frame.rows_line));
   }
 
  private:

@@ -15,7 +15,6 @@
 #include "data/frames.h"
 #include "data/readers.h"
 #include "data/records.h"
-#include "data/text_rows.h"
 
 // Reference  turk1994
 namespace orrery::data {
