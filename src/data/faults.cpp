@@ -10,12 +10,6 @@
 #include "base/error.h"
 
 namespace orrery::data {
-namespace {
-
-/// Errors of one kind that are listed; the others are counted.
-constexpr std::uint64_t kMaxListed = 10;
-
-}  // namespace
 
 void Faults::add(std::uint64_t line, const std::string& text, const std::string& remedy) {
   diagnostics_.push_back(base::file_diagnostic(base::Severity::kError, file_, text, remedy));
