@@ -11,7 +11,7 @@
 #include "base/frames.h"
 #include "points/color_map.h"
 #include "points/rows.h"
-#include "points/selection.h"
+#include "points/sources.h"
 #include "points/spacing.h"
 #include "scene/limits.h"
 
@@ -26,9 +26,37 @@ constexpr const char* kCategoricalMap = "tab10";
 /// Frames of larger files are not counted for a message: that would read the whole file.
 constexpr std::uintmax_t kMaxCountedBytes = std::uintmax_t{2} << 30;
 
-bool is_text(const data::FrameInfo& info, const std::string& name) {
-  const data::ColumnInfo* const column = data::find_named(info.columns, name);
-  return column != nullptr && column->type == data::ColumnType::kText;
+/// Keys that read all particles, whatever is selected.
+scene::PointsKeys everything(const scene::PointsKeys& keys) {
+  scene::PointsKeys out;
+  out.file = keys.file;
+  out.component = keys.component;
+  out.material_column = keys.material_column;
+  out.radius.value = 1;
+  out.skip_bad = true;
+  return out;
+}
+
+/// set_color() without checks.
+bool choose_color(const DataOptions& options, const std::string& color_by, const data::FrameInfo& info,
+                  scene::PointsColor& color) {
+  const data::Roles& roles = info.roles;
+  if (color_by == "none") return false;
+  if (color_by == "rgb" && data::find_named(info.columns, "rgb") == nullptr) {
+    color.rgb = true;
+    return false;
+  }
+  if (color_by == "element" && !options.has_map) {
+    color.element = "jmol";
+    return false;
+  }
+  const bool is_type = color_by == "type";
+  color.column = is_type && !roles.type.empty()                    ? roles.type
+                 : color_by == "element" && !roles.element.empty() ? roles.element
+                                                                   : color_by;
+  if (options.has_map) return false;
+  color.map = is_type || points::type_of(info, color.column) == data::ColumnType::kText ? kCategoricalMap : kMap;
+  return true;
 }
 
 }  // namespace
@@ -123,21 +151,6 @@ std::vector<int> DataFrames::distinct() const {
   return out;
 }
 
-namespace {
-
-/// Keys that read all particles, whatever is selected.
-scene::PointsKeys everything(const scene::PointsKeys& keys) {
-  scene::PointsKeys out;
-  out.file = keys.file;
-  out.component = keys.component;
-  out.material_column = keys.material_column;
-  out.radius.value = 1;
-  out.skip_bad = true;
-  return out;
-}
-
-}  // namespace
-
 Measures DataFrames::measures(const scene::PointsKeys& keys, bool of_spacing, bool of_radii) const {
   const bool of_vectors = !keys.vectors.columns.empty();
   scene::PointsKeys all_particles = everything(keys);
@@ -188,32 +201,6 @@ std::string all_of(const std::vector<std::string>& conditions) {
   }
   return out;
 }
-
-namespace {
-
-/// set_color() without checks.
-bool choose_color(const DataOptions& options, const std::string& color_by, const data::FrameInfo& info,
-                  scene::PointsColor& color) {
-  const data::Roles& roles = info.roles;
-  if (color_by == "none") return false;
-  if (color_by == "rgb" && data::find_named(info.columns, "rgb") == nullptr) {
-    color.rgb = true;
-    return false;
-  }
-  if (color_by == "element" && !options.has_map) {
-    color.element = "jmol";
-    return false;
-  }
-  const bool is_type = color_by == "type";
-  color.column = is_type && !roles.type.empty()                    ? roles.type
-                 : color_by == "element" && !roles.element.empty() ? roles.element
-                                                                   : color_by;
-  if (options.has_map) return false;
-  color.map = is_type || is_text(info, color.column) ? kCategoricalMap : kMap;
-  return true;
-}
-
-}  // namespace
 
 bool set_color(const DataOptions& options, const std::string& color_by, const data::FrameInfo& info,
                scene::PointsColor& color) {

@@ -120,6 +120,45 @@ std::vector<std::string> velocity_of(const data::FrameInfo& info) {
   return names[0].empty() ? std::vector<std::string>() : std::vector<std::string>(names.begin(), names.end());
 }
 
+/// The numbers of three columns; null unless all have this type.
+template <class Number>
+std::array<std::vector<Number>*, 3> columns_of(data::Table& table, const std::array<std::string, 3>& names) {
+  std::array<std::vector<Number>*, 3> out{};
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    for (data::Column& column : table.columns)
+      if (column.name == names[axis]) out[axis] = std::get_if<std::vector<Number>>(&column.values);
+    if (out[axis] == nullptr) return {};
+  }
+  return out;
+}
+
+/// Moves columns into an array of points, piece by piece.
+template <class To, class From>
+scene::PointArray moved(const std::array<std::vector<From>*, 3>& columns) {
+  /// Rows after which memory is returned.
+  constexpr std::size_t kBlock = std::size_t{1} << 20;
+  const std::size_t count = columns[0]->size();
+  base::HugeVector<To> out(3 * count);
+  const base::StopPoint stop;
+  for (std::size_t begin = 0; begin < count; begin += kBlock) {
+    stop.check();
+    const std::size_t end = std::min(count, begin + kBlock);
+    tbb::parallel_for(tbb::blocked_range<std::size_t>(begin, end, 4096), [&](const auto& range) {
+      for (std::size_t i = range.begin(); i < range.end(); ++i)
+        for (std::size_t axis = 0; axis < 3; ++axis) out[3 * i + axis] = static_cast<To>((*columns[axis])[i]);
+    });
+    for (std::vector<From>* const column : columns) base::release_memory(std::span(&(*column)[begin], end - begin));
+  }
+  return scene::PointArray(scene::NumberArray(std::move(out)));
+}
+
+bool fit_single(const std::array<std::vector<double>*, 3>& columns) {
+  return base::are_all(columns[0]->size(), [&](std::size_t i) {
+    return std::all_of(columns.begin(), columns.end(),
+                       [i](const auto* column) { return scene::NumberArray::is_single((*column)[i]); });
+  });
+}
+
 }  // namespace
 
 Labels labels_of(const data::Column& column, const Rows& rows, std::size_t limit) {
@@ -178,49 +217,6 @@ scene::PointArray points_of(const data::Table& table, const Rows& rows, const st
     for_each_number(*table.find(columns[axis]), rows, [&](std::size_t i, double v) { out.set(i, axis, v * scale); });
   return out;
 }
-
-namespace {
-
-/// The numbers of three columns; null unless all have this type.
-template <class Number>
-std::array<std::vector<Number>*, 3> columns_of(data::Table& table, const std::array<std::string, 3>& names) {
-  std::array<std::vector<Number>*, 3> out{};
-  for (std::size_t axis = 0; axis < 3; ++axis) {
-    for (data::Column& column : table.columns)
-      if (column.name == names[axis]) out[axis] = std::get_if<std::vector<Number>>(&column.values);
-    if (out[axis] == nullptr) return {};
-  }
-  return out;
-}
-
-/// Moves columns into an array of points, piece by piece.
-template <class To, class From>
-scene::PointArray moved(const std::array<std::vector<From>*, 3>& columns) {
-  /// Rows after which memory is returned.
-  constexpr std::size_t kBlock = std::size_t{1} << 20;
-  const std::size_t count = columns[0]->size();
-  base::HugeVector<To> out(3 * count);
-  const base::StopPoint stop;
-  for (std::size_t begin = 0; begin < count; begin += kBlock) {
-    stop.check();
-    const std::size_t end = std::min(count, begin + kBlock);
-    tbb::parallel_for(tbb::blocked_range<std::size_t>(begin, end, 4096), [&](const auto& range) {
-      for (std::size_t i = range.begin(); i < range.end(); ++i)
-        for (std::size_t axis = 0; axis < 3; ++axis) out[3 * i + axis] = static_cast<To>((*columns[axis])[i]);
-    });
-    for (std::vector<From>* const column : columns) base::release_memory(std::span(&(*column)[begin], end - begin));
-  }
-  return scene::PointArray(scene::NumberArray(std::move(out)));
-}
-
-bool fit_single(const std::array<std::vector<double>*, 3>& columns) {
-  return base::are_all(columns[0]->size(), [&](std::size_t i) {
-    return std::all_of(columns.begin(), columns.end(),
-                       [i](const auto* column) { return scene::NumberArray::is_single((*column)[i]); });
-  });
-}
-
-}  // namespace
 
 scene::PointArray take_points(data::Table& table, const Rows& rows, const std::array<std::string, 3>& columns) {
   const auto singles = columns_of<float>(table, columns);
