@@ -104,7 +104,7 @@ void Diagnostics::raise_errors(const std::string& file) const {
   if (errors_ > shown_.size())
     diagnostics.push_back(base::file_diagnostic(
         base::Severity::kError, file, fmt::format("and {} more ({} in all)", errors_ - shown_.size(), errors_)));
-  const std::string message = fmt::format("{}: {}{}", file, errors_, errors_ == 1 ? " error" : " errors");
+  const std::string message = fmt::format("{}: {}", file, base::counted(errors_, "error"));
   const bool all_missing = missing_ == errors_;
   if (all_missing && missing_file_)
     throw base::FileError(base::ErrorKind::kMissingInput, message, missing_file_->file(), missing_file_->number(),

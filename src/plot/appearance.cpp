@@ -160,14 +160,13 @@ class Appearance {
            : !roles.element.empty() ? "element"
            : !roles.type.empty()    ? "type"
                                     : "none";
-      why = is_glass          ? "glass has none"
-            : by == "rgb"     ? "the file's own; --color-by changes it"
-            : by == "none"    ? "light grey; --color-by COLUMN shows values"
-            : by == "element" ? "the file has no colours; --color-by changes it"
-            : by == "type"    ? "the file has no colours; --color-by changes it"
-            : is_assembly     ? "an assembly; --color-by element shows elements"
-            : has_many        ? "many atoms; --color-by element shows elements"
-                              : "all atoms are of one element; --color-by element shows it";
+      why = is_glass                          ? "glass has none"
+            : by == "rgb"                     ? "the file's own; --color-by changes it"
+            : by == "none"                    ? "light grey; --color-by COLUMN shows values"
+            : by == "element" || by == "type" ? "the file has no colours; --color-by changes it"
+            : is_assembly                     ? "an assembly; --color-by element shows elements"
+            : has_many                        ? "many atoms; --color-by element shows elements"
+                                              : "all atoms are of one element; --color-by element shows it";
       out.push_back(fmt::format("{}: {}", by == "none" ? "no colour" : "colour by " + by, why));
     }
     if (set_color(options_, by, info_, color))
