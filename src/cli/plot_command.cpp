@@ -24,7 +24,6 @@
 #include "job/job.h"
 #include "job/statistics.h"
 #include "load/load_scene.h"
-#include "load/scene_files.h"
 #include "load/write_scene.h"
 #include "plot/plot.h"
 #include "preview/preview.h"

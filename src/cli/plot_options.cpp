@@ -285,11 +285,7 @@ void PlotArguments::read(const SceneOptions& scene, const job::Job& job) {
   plot.style = plot::style_of(look_.style);
   plot.quality = plot::quality_of(look_.quality);
   if (!look_.background.empty()) plot.background = plot::color_of(look_.background);
-  if (!look_.representation.empty()) {
-    const std::vector<std::string>& names = plot::representation_names();
-    plot.representation =
-        static_cast<plot::Representation>(std::find(names.begin(), names.end(), look_.representation) - names.begin());
-  }
+  plot.representation = plot::representation_of(look_.representation).value_or(plot.representation);
   std::istringstream columns(look_.vectors);
   for (std::string column; std::getline(columns, column, ',');) plot.points.vectors.columns.push_back(column);
   read_scale_bar(look_.scale_bar, plot.annotation);

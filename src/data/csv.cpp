@@ -16,7 +16,6 @@
 #include "base/text.h"
 #include "data/frames.h"
 #include "data/readers.h"
-#include "data/text_rows.h"
 
 namespace orrery::data {
 
@@ -213,10 +212,6 @@ std::array<double, 3> position(double ra_deg, double dec_deg, double distance) {
   return {in_plane * std::cos(ra), in_plane * std::sin(ra), distance * std::sin(dec)};
 }
 
-double distance_pc(double parallax_mas) {
-  return parallax_mas > 0 ? 1000 / parallax_mas : std::numeric_limits<double>::quiet_NaN();
-}
-
 /// Full intensity of colours in a text file, which has no types: the smallest customary value that no colour exceeds.
 double full_intensity(const std::vector<ColumnInfo>& columns, const std::vector<ColumnSurvey>& surveys,
                       const std::array<std::string, 3>& rgb) {
@@ -346,8 +341,9 @@ class CsvFile final : public SingleFrame {
     const Column &ra = *table.find(equatorial_->ra), &dec = *table.find(equatorial_->dec),
                  &distance = *table.find(equatorial_->distance);
     for (std::size_t row = 0; row < table.rows; ++row) {
-      const double d = distance.number(row);
-      const auto p = position(ra.number(row), dec.number(row), equatorial_->is_parallax ? distance_pc(d) : d);
+      double d = distance.number(row);
+      if (equatorial_->is_parallax) d = d > 0 ? 1000 / d : std::numeric_limits<double>::quiet_NaN();
+      const auto p = position(ra.number(row), dec.number(row), d);
       for (std::size_t i = 0; i < 3; ++i) xyz[i][row] = p[i];
     }
     for (std::size_t i = 0; i < 3; ++i) table.columns.push_back({equatorial_->xyz[i], std::move(xyz[i])});

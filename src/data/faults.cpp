@@ -10,20 +10,10 @@
 #include "base/error.h"
 
 namespace orrery::data {
-namespace {
-
-/// Errors of one kind that are listed; the others are counted.
-constexpr std::uint64_t kMaxListed = 10;
-
-}  // namespace
 
 void Faults::add(std::uint64_t line, const std::string& text, const std::string& remedy) {
-  base::Diagnostic diagnostic;
-  diagnostic.file = file_;
-  diagnostic.line = static_cast<int>(std::min<std::uint64_t>(line, std::numeric_limits<int>::max()));
-  diagnostic.text = text;
-  diagnostic.remedy = remedy;
-  diagnostics_.push_back(std::move(diagnostic));
+  diagnostics_.push_back(base::file_diagnostic(base::Severity::kError, file_, text, remedy));
+  diagnostics_.back().line = static_cast<int>(std::min<std::uint64_t>(line, std::numeric_limits<int>::max()));
 }
 
 void Faults::add_of_many(std::uint64_t line, const std::string& text) {

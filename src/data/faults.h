@@ -30,6 +30,9 @@ class Faults {
   void raise_if_any();
 
  private:
+  /// Errors of one kind that are listed; the others are counted.
+  static constexpr std::uint64_t kMaxListed = 10;
+
   [[noreturn]] void raise();
 
   std::string file_;

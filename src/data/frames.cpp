@@ -6,7 +6,6 @@
 #include <fmt/core.h>
 
 #include "base/error.h"
-#include "data/text_rows.h"
 
 namespace orrery::data {
 
@@ -49,17 +48,19 @@ const std::vector<std::string>& TextFrames::names() {
   return *names_;
 }
 
-void TextFrames::require_end(std::uint64_t rows, TextCursor::Place rows_end, std::uint64_t count_line) {
-  if (left_ > 0 && rows == end_.offset()) {  // saves the search for the next frame from reading the rows again
-    end_ = TextCursor(*bytes_, rows_end);
+TextTable TextFrames::read_rows(const TextLayout& layout, std::uint64_t count_line) {
+  Faults faults(bytes_->file());
+  TextTable out = read_text_rows(*bytes_, layout, faults);
+  TextCursor cursor(*bytes_, {out.end, layout.first_line + out.rows});
+  if (left_ > 0 && layout.begin == end_.offset()) {  // saves the search for the next frame from reading the rows again
+    end_ = cursor;
     left_ = 0;
   }
-  TextCursor cursor(*bytes_, rows_end);
   std::string line;
-  if (!cursor.next_filled(line) || begins_frame(line)) return;
-  Faults(bytes_->file())
-      .fail(cursor.line() - 1, fmt::format("more rows than line {} declares", count_line),
-            "correct the number of atoms, or remove the rows");
+  if (cursor.next_filled(line) && !begins_frame(line))
+    faults.fail(cursor.line() - 1, fmt::format("more rows than line {} declares", count_line),
+                "correct the number of atoms, or remove the rows");
+  return out;
 }
 
 /// Result     false if there are no more frames

@@ -13,6 +13,7 @@
 #include "data/columns.h"
 #include "data/data_file.h"
 #include "data/text_lines.h"
+#include "data/text_rows.h"
 
 namespace orrery::data {
 
@@ -64,11 +65,10 @@ class TextFrames : public DataFile {
   /// names_of() returns none, and if they cannot be read, which is reported when their frame is read.
   const std::vector<std::string>& names();
 
-  /// Checks that the rows of a frame, from an offset to a place, are followed by another frame or by the end of the
-  /// file.
+  /// Reads the rows of a frame, and checks that they are followed by another frame or by the end of the file.
   ///
   /// `count_line`   the line that declares their number
-  void require_end(std::uint64_t rows, TextCursor::Place rows_end, std::uint64_t count_line);
+  TextTable read_rows(const TextLayout& layout, std::uint64_t count_line);
 
  private:
   /// Reads a header, and returns the number of rows.

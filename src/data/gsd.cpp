@@ -158,22 +158,24 @@ class GsdFile {
   std::vector<GsdChunk> chunks_;  ///< ordered by frame
 };
 
-/// Columns from a chunk of the schema. Only positions, diameters and types are listed when a file lacks them.
+/// Columns from a chunk of the schema.
 struct ChunkColumns {
   const char* chunk;
   std::uint32_t components;
   std::array<const char*, 3> columns;
 };
 
-constexpr ChunkColumns kPosition{"particles/position", 3, {"x", "y", "z"}};
-constexpr ChunkColumns kOptional[] = {
+/// Only the first two, and types, are listed when a file lacks them.
+constexpr ChunkColumns kColumns[] = {
+    {"particles/position", 3, {"x", "y", "z"}},
+    {"particles/diameter", 1, {"diameter"}},
     {"particles/velocity", 3, {"velocity[1]", "velocity[2]", "velocity[3]"}},
     {"particles/image", 3, {"image[1]", "image[2]", "image[3]"}},
     {"particles/mass", 1, {"mass"}},
     {"particles/charge", 1, {"charge"}},
     {"particles/body", 1, {"body"}},
 };
-constexpr const char* kDiameter = "particles/diameter";
+constexpr std::size_t kAlwaysListed = 2;
 constexpr const char* kTypeId = "particles/typeid";
 /// Default diameter of particles, as defined by the schema.
 constexpr float kDefaultDiameter = 1;
@@ -192,19 +194,16 @@ class GsdReader final : public DataFile {
     const auto frame = static_cast<std::uint64_t>(index);
     FrameInfo info;
     info.rows = rows_of(frame);
-    const auto add = [&](const GsdChunk* chunk, const ChunkColumns& source) {
+    for (std::size_t c = 0; c < std::size(kColumns); ++c) {
+      const ChunkColumns& source = kColumns[c];
+      if (c == kAlwaysListed) info.columns.push_back({"type", ColumnType::kText});
+      const GsdChunk* const chunk = chunk_of(frame, source.chunk, source.components);
+      if (chunk == nullptr && c >= kAlwaysListed) continue;
       for (std::uint32_t i = 0; i < source.components; ++i)
         info.columns.push_back({source.columns[i], chunk != nullptr ? column_type(chunk->type) : ColumnType::kFloat32});
-    };
-    add(chunk_of(frame, kPosition.chunk, kPosition.components), kPosition);
-    add(chunk_of(frame, kDiameter, 1), {kDiameter, 1, {"diameter"}});
-    info.columns.push_back({"type", ColumnType::kText});
-    for (const ChunkColumns& source : kOptional)
-      if (const GsdChunk* const chunk = chunk_of(frame, source.chunk, source.components)) {
-        add(chunk, source);
-        if (source.chunk == std::string("particles/image"))
-          std::copy(source.columns.begin(), source.columns.end(), info.roles.image.begin());
-      }
+      if (source.chunk == std::string("particles/image"))
+        std::copy(source.columns.begin(), source.columns.end(), info.roles.image.begin());
+    }
     info.roles.position = {"x", "y", "z"};
     info.roles.radius = "diameter";
     info.roles.radius_scale = 0.5;
@@ -222,24 +221,16 @@ class GsdReader final : public DataFile {
     const auto frame = static_cast<std::uint64_t>(index);
     Table table;
     table.rows = static_cast<std::size_t>(rows_of(frame));
-    const auto from = [&](const ChunkColumns& source, const std::string& name) {
-      for (std::uint32_t i = 0; i < source.components; ++i)
-        if (name == source.columns[i]) {
-          const GsdChunk* const chunk = chunk_of(frame, source.chunk, source.components);
-          // Only a frame without particles has no positions.
-          table.columns.push_back({name, chunk != nullptr ? file_.component(*chunk, i) : Values(std::vector<float>())});
-        }
-    };
     for (const std::string& name : columns) {
-      if (name == "type") {
-        table.columns.push_back({name, types_of(frame, table.rows)});
-      } else if (name == "diameter" && chunk_of(frame, kDiameter, 1) == nullptr) {
-        table.columns.push_back({name, std::vector<float>(table.rows, kDefaultDiameter)});
-      } else {
-        from(kPosition, name);
-        from({kDiameter, 1, {"diameter"}}, name);
-        for (const ChunkColumns& source : kOptional) from(source, name);
-      }
+      if (name == "type") table.columns.push_back({name, types_of(frame, table.rows)});
+      for (const ChunkColumns& source : kColumns)
+        for (std::uint32_t i = 0; i < source.components; ++i) {
+          if (name != source.columns[i]) continue;
+          const GsdChunk* const chunk = chunk_of(frame, source.chunk, source.components);
+          // Without a chunk, there are no particles, or they have the default diameter.
+          table.columns.push_back({name, chunk != nullptr ? file_.component(*chunk, i)
+                                                          : Values(std::vector<float>(table.rows, kDefaultDiameter))});
+        }
     }
     return table;
   }
@@ -287,7 +278,7 @@ class GsdReader final : public DataFile {
   std::uint64_t rows_of(std::uint64_t frame) {
     const std::uint64_t rows = count_of(frame, "particles/N");
     if (rows > 0) {
-      const GsdChunk* const position = file_.find_or_first(frame, kPosition.chunk);
+      const GsdChunk* const position = file_.find_or_first(frame, kColumns[0].chunk);
       if (position == nullptr || position->rows != rows)
         fail(fmt::format("frame {} has {} particles, but {} positions", frame, rows,
                          position == nullptr ? 0 : position->rows));

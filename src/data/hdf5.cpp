@@ -133,8 +133,8 @@ class Dataset {
     Handle handle(H5Dopen2(group.id(), name.c_str(), H5P_DEFAULT), H5Dclose);
     if (!handle) return;
     const Handle space(H5Dget_space(handle.id()), H5Sclose), stored(H5Dget_type(handle.id()), H5Tclose);
-    dimensions_ = H5Sget_simple_extent_ndims(space.id());
-    if (dimensions_ != 1 && dimensions_ != 2) return;
+    const int dimensions = H5Sget_simple_extent_ndims(space.id());
+    if (dimensions != 1 && dimensions != 2) return;
     hsize_t extent[2] = {0, 1};
     H5Sget_simple_extent_dims(space.id(), extent, nullptr);
     const Types types = types_of(stored);
@@ -180,21 +180,16 @@ class Dataset {
   /// Cost       one pass over the dataset, however many components are read
   void append(const std::vector<std::pair<std::uint64_t, Values*>>& columns, Faults& faults) const {
     if (rows_ == 0 || columns.empty()) return;
-    switch (type_) {
-      case ColumnType::kFloat64: return append_as<double>(columns, faults);
-      case ColumnType::kFloat32: return append_as<float>(columns, faults);
-      case ColumnType::kInt64:
-        append_as<std::int64_t>(columns, faults);
-        if (H5Tequal(memory_type_, H5T_NATIVE_UINT64) > 0)
-          for (const auto& [component, values] : columns)
-            check_unsigned(name_, std::get<std::vector<std::int64_t>>(*values), faults);
-        faults.raise_if_any();
-        return;
-      case ColumnType::kInt32: return append_as<std::int32_t>(columns, faults);
-      case ColumnType::kUint16: return append_as<std::uint16_t>(columns, faults);
-      case ColumnType::kUint8: return append_as<std::uint8_t>(columns, faults);
-      case ColumnType::kText: return;
-    }
+    std::visit(
+        [&](const auto& first) {
+          using Array = std::decay_t<decltype(first)>;
+          if constexpr (requires { first.data(); }) append_as<typename Array::value_type>(columns, faults);
+        },
+        *columns.front().second);
+    if (H5Tequal(memory_type_, H5T_NATIVE_UINT64) > 0)
+      for (const auto& [component, values] : columns)
+        check_unsigned(name_, std::get<std::vector<std::int64_t>>(*values), faults);
+    faults.raise_if_any();
   }
 
  private:
@@ -243,7 +238,6 @@ class Dataset {
 
   std::string name_;
   Handle handle_;
-  int dimensions_ = 0;
   std::uint64_t rows_ = 0, components_ = 1;
   std::size_t value_bytes_ = 0;
   ColumnType type_ = ColumnType::kFloat64;
@@ -253,11 +247,11 @@ class Dataset {
 constexpr const char* kPositions = "Coordinates";
 constexpr const char* kIds = "ParticleIDs";
 /// Upper bound of particle type numbers. Simulation codes use up to 7.
-constexpr int kMaxTypes = 16;
+constexpr std::size_t kMaxTypes = 16;
 /// Maximum number of components of a quantity that are read as columns.
 constexpr std::uint64_t kMaxComponents = 64;
 
-std::string group_name(int type) { return "PartType" + std::to_string(type); }
+std::string group_name(std::size_t type) { return "PartType" + std::to_string(type); }
 
 /// One file of a snapshot.
 struct Part {
@@ -320,7 +314,7 @@ class SnapshotReader final : public DataFile {
           table.columns.push_back({name, empty_values(source.info.type)});
         }
     for (const Part& part : parts_) {
-      const std::uint64_t rows = part.rows[static_cast<std::size_t>(type_)];
+      const std::uint64_t rows = part.rows[type_];
       if (rows == 0) continue;
       Faults faults(part.file);
       const std::uint64_t file_size = std::filesystem::file_size(part.file);
@@ -374,25 +368,23 @@ class SnapshotReader final : public DataFile {
   void count_rows(Part& part) const {
     const Handle root = open_file(part.file);
     for (std::size_t type = 0; type < kMaxTypes; ++type) {
-      const Handle group = open_group(root, group_name(static_cast<int>(type)));
+      const Handle group = open_group(root, group_name(type));
       if (!group) continue;
       const Dataset positions(group, kPositions);
       if (!positions) continue;
       if (positions.components() != 3)
-        fail(part.file, fmt::format("{}/{} has {} components instead of 3", group_name(static_cast<int>(type)),
-                                    kPositions, positions.components()));
+        fail(part.file,
+             fmt::format("{}/{} has {} components instead of 3", group_name(type), kPositions, positions.components()));
       part.has_type[type] = true;
       part.rows[type] = positions.rows();
     }
   }
 
   void choose_type(std::optional<int> wanted, const Handle& header) {
-    std::vector<int> present, filled;
+    std::vector<std::size_t> present, filled;
     std::string list;
-    for (int type = 0; type < kMaxTypes; ++type) {
-      if (std::none_of(parts_.begin(), parts_.end(),
-                       [&](const Part& part) { return part.has_type[static_cast<std::size_t>(type)]; }))
-        continue;
+    for (std::size_t type = 0; type < kMaxTypes; ++type) {
+      if (std::none_of(parts_.begin(), parts_.end(), [&](const Part& part) { return part.has_type[type]; })) continue;
       present.push_back(type);
       if (rows_of(type) > 0) filled.push_back(type);
       list += fmt::format("{}{} ({} particles)", list.empty() ? "" : ", ", type, rows_of(type));
@@ -401,19 +393,18 @@ class SnapshotReader final : public DataFile {
       fail(file_, "no group /PartTypeN with a dataset `Coordinates`",
            "of HDF5, only snapshots in the layout of Gadget, SWIFT and AREPO are supported; write other data as NPY or "
            "CSV, e.g. with h5py and numpy.save");
-    if (wanted && std::find(present.begin(), present.end(), *wanted) == present.end())
+    if (wanted && std::find(present.begin(), present.end(), static_cast<std::size_t>(*wanted)) == present.end())
       fail(file_, fmt::format("there is no component {}", *wanted), "the file has " + list);
     if (!wanted && filled.size() > 1)
       fail(file_, "the snapshot has several components", "select one with --component: " + list);
-    type_ = wanted ? *wanted : filled.empty() ? present.front() : filled.front();
+    type_ = wanted ? static_cast<std::size_t>(*wanted) : filled.empty() ? present.front() : filled.front();
 
     // What the header declares, over all files. In older files, counts have 32 bits and an additional high word.
     info_.rows = rows_of(type_);
-    const auto at = static_cast<std::size_t>(type_);
     const std::vector<double> low = attribute(header, "NumPart_Total");
     const std::vector<double> high = attribute(header, "NumPart_Total_HighWord");
-    if (at >= low.size()) return;
-    const double declared = low[at] + (at < high.size() ? high[at] * 4294967296.0 : 0);
+    if (type_ >= low.size()) return;
+    const double declared = low[type_] + (type_ < high.size() ? high[type_] * 4294967296.0 : 0);
     if (declared != static_cast<double>(info_.rows)) {
       std::string text = std::to_string(declared);
       fail(file_, fmt::format("the header declares {} particles of {}, but there are {}",
@@ -423,8 +414,8 @@ class SnapshotReader final : public DataFile {
 
   void list_columns() {
     // Every file with particles of the type has the same datasets.
-    const auto has_type = [this](const Part& part) { return part.has_type[static_cast<std::size_t>(type_)]; };
-    const auto has_rows = [this](const Part& part) { return part.rows[static_cast<std::size_t>(type_)] > 0; };
+    const auto has_type = [this](const Part& part) { return part.has_type[type_]; };
+    const auto has_rows = [this](const Part& part) { return part.rows[type_] > 0; };
     auto part = std::find_if(parts_.begin(), parts_.end(), has_rows);
     if (part == parts_.end()) part = std::find_if(parts_.begin(), parts_.end(), has_type);
     const Handle root = open_file(part->file), group = open_group(root, group_name(type_));
@@ -432,7 +423,7 @@ class SnapshotReader final : public DataFile {
     std::stable_partition(names.begin(), names.end(), [](const std::string& name) { return name == kPositions; });
     for (const std::string& name : names) {
       const Dataset dataset(group, name);
-      if (!dataset || dataset.rows() != part->rows[static_cast<std::size_t>(type_)]) continue;
+      if (!dataset || dataset.rows() != part->rows[type_]) continue;
       const std::uint64_t components = dataset.components();
       if (components == 0 || components > kMaxComponents) continue;
       const std::vector<std::string> columns =
@@ -446,16 +437,16 @@ class SnapshotReader final : public DataFile {
     }
   }
 
-  std::uint64_t rows_of(int type) const {
+  std::uint64_t rows_of(std::size_t type) const {
     std::uint64_t rows = 0;
-    for (const Part& part : parts_) rows += part.rows[static_cast<std::size_t>(type)];
+    for (const Part& part : parts_) rows += part.rows[type];
     return rows;
   }
 
   std::filesystem::path file_;
   std::uint64_t decompressed_limit_;
   std::vector<Part> parts_;
-  int type_ = 0;
+  std::size_t type_ = 0;
   std::vector<SourceColumn> sources_;
   FrameInfo info_;
 };

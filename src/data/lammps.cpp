@@ -18,11 +18,17 @@
 #include "data/bonds.h"
 #include "data/frames.h"
 #include "data/readers.h"
-#include "data/text_rows.h"
 
 namespace orrery::data {
 
 namespace {
+
+using Axes = std::array<std::string, 3>;
+
+const Axes kAxes = {"x", "y", "z"};
+const Axes kUnwrapped = {"xu", "yu", "zu"};
+const Axes kScaled = {"xs", "ys", "zs"};
+const Axes kScaledUnwrapped = {"xsu", "ysu", "zsu"};
 
 /// Header of a frame in a LAMMPS dump: everything before its rows.
 struct LammpsFrame {
@@ -31,7 +37,8 @@ struct LammpsFrame {
   std::uint64_t rows_line = 0;  ///< number of the line that declares `rows`
   std::optional<Box> box;
   std::vector<std::string> columns;
-  bool has_labels = false;  ///< the column `type` contains labels instead of numbers
+  bool has_labels = false;       ///< the column `type` contains labels instead of numbers
+  const Axes* scaled = nullptr;  ///< columns from which positions are computed; null: the file has positions
 };
 
 /// Converts a LAMMPS box, given by low and high coordinates and tilt factors.
@@ -166,13 +173,6 @@ class FrameReader {
   std::optional<std::uint64_t> rows_;
 };
 
-using Axes = std::array<std::string, 3>;
-
-const Axes kAxes = {"x", "y", "z"};
-const Axes kUnwrapped = {"xu", "yu", "zu"};
-const Axes kScaled = {"xs", "ys", "zs"};
-const Axes kScaledUnwrapped = {"xsu", "ysu", "zsu"};
-
 bool contain(const std::vector<std::string>& names, const Axes& axes) {
   return std::all_of(axes.begin(), axes.end(), [&](const std::string& axis) { return base::contains(names, axis); });
 }
@@ -184,13 +184,6 @@ ColumnType type_of_column(std::string_view column, bool has_labels) {
   return is_integer ? ColumnType::kInt64 : ColumnType::kFloat64;
 }
 
-/// The scaled columns from which positions are computed; null if the file has positions.
-const Axes* scaled_position(const LammpsFrame& frame) {
-  if (contain(frame.columns, kAxes) || contain(frame.columns, kUnwrapped)) return nullptr;
-  if (contain(frame.columns, kScaled)) return &kScaled;
-  return contain(frame.columns, kScaledUnwrapped) ? &kScaledUnwrapped : nullptr;
-}
-
 FrameInfo described(const LammpsFrame& frame) {
   FrameInfo info;
   info.rows = frame.rows;
@@ -198,12 +191,12 @@ FrameInfo described(const LammpsFrame& frame) {
   info.step = frame.step;
   for (const std::string& column : frame.columns)
     info.columns.push_back({column, type_of_column(column, frame.has_labels)});
-  if (scaled_position(frame) != nullptr)
+  if (frame.scaled != nullptr)
     for (const std::string& axis : kAxes)
       if (!base::contains(frame.columns, axis)) info.columns.push_back({axis, ColumnType::kFloat64});
   const auto if_there = [&](const char* name) { return base::contains(frame.columns, name) ? name : std::string(); };
   Roles& roles = info.roles;
-  roles.position = scaled_position(frame) != nullptr || contain(frame.columns, kAxes) ? kAxes : kUnwrapped;
+  roles.position = frame.scaled != nullptr || contain(frame.columns, kAxes) ? kAxes : kUnwrapped;
   roles.radius = if_there("radius");
   if (roles.radius.empty() && base::contains(frame.columns, "diameter")) {
     roles.radius = "diameter";
@@ -213,7 +206,7 @@ FrameInfo described(const LammpsFrame& frame) {
   roles.type = base::contains(frame.columns, "type") ? "type" : if_there("typelabel");
   roles.id = if_there("id");
   // Periodic image flags apply to wrapped coordinates only.
-  const bool is_wrapped = contain(frame.columns, kAxes) || scaled_position(frame) == &kScaled;
+  const bool is_wrapped = contain(frame.columns, kAxes) || frame.scaled == &kScaled;
   if (is_wrapped && contain(frame.columns, Axes{"ix", "iy", "iz"})) roles.image = {"ix", "iy", "iz"};
   return info;
 }
@@ -244,12 +237,12 @@ Table taken(const std::vector<std::string>& columns, const LammpsFrame& frame, T
     return text.values[static_cast<std::size_t>(at - frame.columns.begin())];
   };
   // Computed columns first: the others are moved.
-  if (const Axes* const names = scaled_position(frame); names != nullptr)
+  if (frame.scaled != nullptr)
     for (std::size_t axis = 0; axis < kAxes.size(); ++axis) {
       if (!base::contains(columns, kAxes[axis])) continue;
       std::array<const double*, 3> scaled{};
       for (std::size_t i = 0; i < scaled.size(); ++i)
-        scaled[i] = std::get<std::vector<double>>(values((*names)[i])).data();
+        scaled[i] = std::get<std::vector<double>>(values((*frame.scaled)[i])).data();
       table.columns.push_back({kAxes[axis], unscaled(*frame.box, axis, scaled, table.rows)});
     }
   for (const std::string& name : columns)
@@ -269,7 +262,7 @@ class LammpsDump final : public TextFrames {
 
   Table read(int number, const std::vector<std::string>& columns) override {
     const auto [frame, cursor] = header(number);
-    const Axes* const scaled = scaled_position(frame);
+    const Axes* const scaled = frame.scaled;
     const auto is_computed = [&](const std::string& name) {
       return scaled != nullptr && std::count(kAxes.begin(), kAxes.end(), name) > 0;
     };
@@ -283,10 +276,7 @@ class LammpsDump final : public TextFrames {
       const bool is_wanted = !is_computed(name) && base::contains(columns, name);
       layout.columns.push_back({type_of_column(name, frame.has_labels), is_wanted || is_scaled});
     }
-    Faults faults(bytes().file());
-    TextTable text = read_text_rows(bytes(), layout, faults);
-    require_end(layout.begin, {text.end, layout.first_line + text.rows}, frame.rows_line);
-    return taken(columns, frame, std::move(text));
+    return taken(columns, frame, read_rows(layout, frame.rows_line));
   }
 
  private:
@@ -324,9 +314,12 @@ class LammpsDump final : public TextFrames {
     LammpsFrame header = FrameReader(cursor, faults).read();
     header.has_labels = has_labels(header, cursor);
     const std::uint64_t line = cursor.line() - 1;
-    if (!contain(header.columns, kAxes) && !contain(header.columns, kUnwrapped) && scaled_position(header) == nullptr)
+    const bool has_positions = contain(header.columns, kAxes) || contain(header.columns, kUnwrapped);
+    if (!has_positions && contain(header.columns, kScaledUnwrapped)) header.scaled = &kScaledUnwrapped;
+    if (!has_positions && contain(header.columns, kScaled)) header.scaled = &kScaled;
+    if (!has_positions && header.scaled == nullptr)
       faults.fail(line, "no columns with positions", "write x y z, xu yu zu, xs ys zs or xsu ysu zsu");
-    if (scaled_position(header) != nullptr && !header.box)
+    if (header.scaled != nullptr && !header.box)
       faults.fail(line, "positions are scaled, but the frame has no item \"BOX BOUNDS\"");
     return {std::move(header), cursor};
   }

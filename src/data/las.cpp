@@ -26,12 +26,11 @@ constexpr std::uint8_t kCompressedBits = 0xC0;  ///< bits of the point format th
 
 /// A column that is a number of the record, some bits of it, or a number times a scale plus an offset.
 struct LasColumn {
-  RecordField field;
+  RecordField field = {};
   std::uint8_t shift = 0, mask = 0xFF;  ///< bits of an 8-bit number
-  bool is_scaled = false;
-  double scale = 1, offset = 0;
+  double scale = 0, offset = 0;         ///< scale 0: the number itself
 
-  ColumnType type() const { return is_scaled ? ColumnType::kFloat64 : column_type(field.type); }
+  ColumnType type() const { return scale != 0 ? ColumnType::kFloat64 : column_type(field.type); }
 };
 
 struct LasHeader {
@@ -106,38 +105,27 @@ std::vector<LasColumn> columns_of(const LasHeader& header) {
   const int format = header.point_format;
   const bool is_long = format >= 6;
   std::vector<LasColumn> columns;
-  const auto add = [&](const char* name, NumberType type, std::uint64_t offset) -> LasColumn& {
-    columns.push_back({{name, type, offset, false}});
-    return columns.back();
-  };
-  const auto add_bits = [&](const char* name, std::uint64_t offset, std::uint8_t shift, std::uint8_t mask) {
-    LasColumn& column = add(name, NumberType::kUint8, offset);
-    column.shift = shift;
-    column.mask = mask;
-  };
-  const auto add_scaled = [&](const char* name, NumberType type, std::uint64_t at, double scale, double offset) {
-    LasColumn& column = add(name, type, at);
-    column.is_scaled = true;
-    column.scale = scale;
-    column.offset = offset;
+  const auto add = [&](const char* name, NumberType type, std::uint64_t at, LasColumn column = {}) {
+    column.field = {name, type, at, false};
+    columns.push_back(column);
   };
   constexpr const char* kCoordinates[] = {"x", "y", "z"};
   for (std::size_t i = 0; i < 3; ++i)
-    add_scaled(kCoordinates[i], NumberType::kInt32, 4 * i, header.scale[i], header.offset[i]);
+    add(kCoordinates[i], NumberType::kInt32, 4 * i, {.scale = header.scale[i], .offset = header.offset[i]});
   add("intensity", NumberType::kUint16, 12);
   if (is_long) {
     constexpr double kScanAngleUnit_deg = 0.006;
-    add_bits("return_number", 14, 0, 0x0F);
-    add_bits("number_of_returns", 14, 4, 0x0F);
+    add("return_number", NumberType::kUint8, 14, {.mask = 0x0F});
+    add("number_of_returns", NumberType::kUint8, 14, {.shift = 4, .mask = 0x0F});
     add("classification", NumberType::kUint8, 16);
-    add_scaled("scan_angle", NumberType::kInt16, 18, kScanAngleUnit_deg, 0);
+    add("scan_angle", NumberType::kInt16, 18, {.scale = kScanAngleUnit_deg});
     add("user_data", NumberType::kUint8, 17);
     add("point_source_id", NumberType::kUint16, 20);
   } else {
-    add_bits("return_number", 14, 0, 0x07);
-    add_bits("number_of_returns", 14, 3, 0x07);
-    add_bits("classification", 15, 0, 0x1F);  // the other bits are flags
-    add_scaled("scan_angle", NumberType::kInt8, 16, 1, 0);
+    add("return_number", NumberType::kUint8, 14, {.mask = 0x07});
+    add("number_of_returns", NumberType::kUint8, 14, {.shift = 3, .mask = 0x07});
+    add("classification", NumberType::kUint8, 15, {.mask = 0x1F});  // the other bits are flags
+    add("scan_angle", NumberType::kInt8, 16, {.scale = 1});
     add("user_data", NumberType::kUint8, 17);
     add("point_source_id", NumberType::kUint16, 18);
   }
@@ -175,11 +163,10 @@ class LasFile final : public SingleFrame {
   Table read(int, const std::vector<std::string>& names) override {
     std::vector<const LasColumn*> columns;
     std::vector<RecordField> fields;
-    for (const std::string& name : names)
-      if (const LasColumn* const column = find(name)) {
-        columns.push_back(column);
-        fields.push_back(column->field);
-      }
+    for (const std::string& name : names) {
+      columns.push_back(find(name));
+      fields.push_back(columns.back()->field);
+    }
     std::vector<Values> values = read(header_.points, fields);
     Table table;
     table.rows = static_cast<std::size_t>(header_.points.rows);
@@ -202,7 +189,7 @@ class LasFile final : public SingleFrame {
 
   /// Applies the bit mask or the scale.
   static Values finished(const LasColumn& column, Values raw) {
-    if (column.is_scaled) {
+    if (column.scale != 0) {
       const auto& numbers = std::get<std::vector<std::int32_t>>(raw);
       std::vector<double> out(numbers.size());
       for (std::size_t i = 0; i < out.size(); ++i) out[i] = numbers[i] * column.scale + column.offset;

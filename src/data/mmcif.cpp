@@ -7,13 +7,18 @@
 #include <gemmi/numb.hpp>
 #include <map>
 #include <string>
+#include <string_view>
+#include <tuple>
 #include <unordered_map>
+#include <utility>
+#include <variant>
 #include <vector>
 
 #include <fmt/core.h>
 
 #include "base/text.h"
-#include "data/cif_bonds.h"
+#include "data/atom_table.h"
+#include "data/bonds.h"
 #include "data/cif_rows.h"
 #include "data/readers.h"
 #include "data/text_lines.h"
@@ -137,6 +142,201 @@ class CifAssemblies {
 
   std::map<std::string, Transform> operators_;
   std::vector<Part> parts_;
+};
+
+/// The residues of a model: runs of rows with the same chain, number and insertion code.
+class CifResidues {
+ public:
+  /// Adds a row, the next one.
+  void add(std::size_t row, const Atom& atom) {
+    const std::uint32_t insertion = insertions_.index_of(atom.insertion);
+    if (!residues_.empty() && chain_ == atom.chain && number_ == atom.residue_number &&
+        residues_.back().insertion == insertion)
+      return;
+    residues_.push_back({static_cast<std::uint32_t>(row), insertion});
+    chain_ = atom.chain;
+    number_ = atom.residue_number;
+  }
+
+  std::uint64_t memory() const { return residues_.size() * sizeof(Residue); }
+
+  /// Calls f(insertion code, first row, row after the last) for each residue of a model with so many rows.
+  template <class F>
+  void each(std::size_t rows, F f) const {
+    for (std::size_t i = 0; i < residues_.size(); ++i) {
+      const std::size_t end = i + 1 < residues_.size() ? residues_[i + 1].first_row : rows;
+      f(insertions_.words()[residues_[i].insertion], residues_[i].first_row, static_cast<std::uint32_t>(end));
+    }
+  }
+
+ private:
+  struct Residue {
+    std::uint32_t first_row = 0;
+    std::uint32_t insertion = 0;  ///< index into `insertions_`
+  };
+
+  std::vector<Residue> residues_;
+  Dictionary<> insertions_;
+  std::string chain_;  ///< of the last row, as are these
+  std::int32_t number_ = 0;
+};
+
+/// An atom as the table _struct_conn names it.
+struct CifAtomName {
+  std::string chain;
+  std::int32_t number = 0;
+  std::string insertion, residue, name;
+
+  std::string text() const { return fmt::format("{} of {} {}{} in chain {}", name, residue, number, insertion, chain); }
+};
+
+/// The bonds of an mmCIF file: those that _struct_conn lists, and those within a residue, which _chem_comp_bond lists
+/// for each component.
+///
+/// Reference  mmcif
+class CifBonds {
+ public:
+  void add_component(const std::string& residue, const std::string& a, const std::string& b) {
+    components_[residue].emplace_back(a, b);
+  }
+  void add_connection(CifAtomName a, CifAtomName b, std::uint64_t line) {
+    connections_.push_back({std::move(a), std::move(b), line});
+  }
+
+  /// Estimates the number of bonds in a model.
+  std::uint64_t estimate(std::uint64_t rows) const { return connections_.size() + (components_.empty() ? 0 : rows); }
+
+  /// Returns the bonds of a model, see DataFile::bonds().
+  std::vector<Bond> of_model(const AtomTable& table, const CifResidues& residues, Faults& faults) const {
+    std::vector<Bond> out;
+    if (components_.empty() && connections_.empty()) return out;
+    const Atoms atoms(table);
+    add_within_residues(atoms, residues, faults, out);
+    add_connected(atoms, residues, faults, out);
+    finish_bonds(out, faults);
+    return out;
+  }
+
+ private:
+  struct Connection {
+    CifAtomName a, b;
+    std::uint64_t line = 0;
+  };
+
+  /// The columns that name the atoms of a model.
+  struct Atoms {
+    explicit Atoms(const AtomTable& atoms)
+        : table(atoms.table({"chain", "residue", "name", "residue_number"})),
+          chains(std::get<Words>(table.columns[0].values)),
+          components(std::get<Words>(table.columns[1].values)),
+          names(std::get<Words>(table.columns[2].values)),
+          numbers(std::get<std::vector<std::int32_t>>(table.columns[3].values)) {}
+
+    Table table;
+    const Words &chains, &components, &names;
+    const std::vector<std::int32_t>& numbers;
+  };
+
+  /// To the name of an atom in a component, the names of its partners, all as indices into the columns.
+  using Partners = std::unordered_map<std::uint64_t, std::vector<std::uint32_t>>;
+  static std::uint64_t partner_key(std::uint32_t component, std::uint32_t name) {
+    return std::uint64_t{component} << 32 | name;
+  }
+
+  static std::unordered_map<std::string_view, std::uint32_t> indices_of(const Words& column) {
+    std::unordered_map<std::string_view, std::uint32_t> out;
+    for (std::uint32_t i = 0; i < column.words.size(); ++i) out.emplace(column.words[i], i);
+    return out;
+  }
+
+  /// The partners in the components that occur in a model.
+  Partners partners_in(const Atoms& atoms, Faults& faults) const {
+    Partners out;
+    const auto components = indices_of(atoms.components), names = indices_of(atoms.names);
+    for (const auto& [residue, pairs] : components_) {
+      const auto component = components.find(residue);
+      if (component == components.end()) continue;
+      for (const auto& [a, b] : pairs) {
+        const auto first = names.find(a), second = names.find(b);
+        if (first == names.end() || second == names.end()) continue;
+        std::vector<std::uint32_t>& partners = out[partner_key(component->second, first->second)];
+        partners.push_back(second->second);
+        if (partners.size() > kMaxBondsInFile)
+          faults.fail(
+              0, fmt::format("_chem_comp_bond: atom {} of {} has more than {} bonds", a, residue, kMaxBondsInFile));
+      }
+    }
+    return out;
+  }
+
+  /// In files without residue numbers, all water is one residue: a name that occurs again begins the next molecule.
+  void add_within_residues(const Atoms& atoms, const CifResidues& residues, Faults& faults,
+                           std::vector<Bond>& out) const {
+    const Partners partners = partners_in(atoms, faults);
+    if (partners.empty()) return;
+    const std::vector<std::uint32_t>&component_of = atoms.components.index, &name_of = atoms.names.index;
+    std::unordered_map<std::uint32_t, std::uint32_t> rows;  // of a molecule, by name
+    const auto finish = [&] {
+      for (const auto& [name, row] : rows) {
+        const auto found = partners.find(partner_key(component_of[row], name));
+        if (found == partners.end()) continue;
+        for (const std::uint32_t partner : found->second)
+          if (const auto other = rows.find(partner);
+              other != rows.end() && other->second != row && component_of[other->second] == component_of[row])
+            out.push_back(ordered_bond(row, other->second));
+      }
+      rows.clear();
+    };
+    residues.each(atoms.table.rows, [&](const std::string&, std::uint32_t first, std::uint32_t end) {
+      for (std::uint32_t row = first; row < end; ++row) {
+        if (rows.count(name_of[row]) > 0) finish();
+        rows.emplace(name_of[row], row);
+      }
+      finish();
+    });
+  }
+
+  /// Chain, number and insertion code of a residue; component and name of one of its atoms.
+  using ResidueKey = std::tuple<std::string_view, std::int32_t, std::string_view>;
+  using AtomKey = std::pair<ResidueKey, std::pair<std::string_view, std::string_view>>;
+  static AtomKey key_of(const CifAtomName& atom) {
+    return {{atom.chain, atom.number, atom.insertion}, {atom.residue, atom.name}};
+  }
+
+  void add_connected(const Atoms& atoms, const CifResidues& residues, Faults& faults, std::vector<Bond>& out) const {
+    if (connections_.empty()) return;
+    std::map<AtomKey, std::vector<std::uint32_t>> rows_of;
+    for (const Connection& connection : connections_)
+      for (const CifAtomName* const atom : {&connection.a, &connection.b}) rows_of[key_of(*atom)] = {};
+    residues.each(atoms.table.rows, [&](const std::string& insertion, std::uint32_t first, std::uint32_t end) {
+      const ResidueKey residue{atoms.chains.words[atoms.chains.index[first]], atoms.numbers[first], insertion};
+      const auto next = rows_of.lower_bound({residue, {}});
+      if (next == rows_of.end() || next->first.first != residue) return;
+      for (std::uint32_t row = first; row < end; ++row) {
+        const auto found = rows_of.find(
+            {residue,
+             {atoms.components.words[atoms.components.index[row]], atoms.names.words[atoms.names.index[row]]}});
+        if (found != rows_of.end()) found->second.push_back(row);
+      }
+    });
+    const auto row_of = [&](const CifAtomName& atom, std::uint64_t line) -> std::optional<std::uint32_t> {
+      const std::vector<std::uint32_t>& rows = rows_of[key_of(atom)];
+      if (rows.size() == 1) return rows[0];
+      faults.add_of_many(line, fmt::format("a bond of atom {}, {}", atom.text(),
+                                           rows.empty() ? "which does not exist" : "but several atoms are named so"));
+      return std::nullopt;
+    };
+    for (const Connection& connection : connections_) {
+      const auto a = row_of(connection.a, connection.line), b = row_of(connection.b, connection.line);
+      if (a && b && *a == *b)
+        faults.add_of_many(connection.line, fmt::format("a bond of atom {} with itself", connection.a.text()));
+      else if (a && b)
+        out.push_back(ordered_bond(*a, *b));
+    }
+  }
+
+  std::unordered_map<std::string, std::vector<std::pair<std::string, std::string>>> components_;
+  std::vector<Connection> connections_;
 };
 
 /// Items of _atom_site., in the order of AtomItem.

@@ -31,38 +31,36 @@ struct PythonLiteral {
   const PythonLiteral* find(std::string_view key) const;
 };
 
+/// What is wrong with a header.
+struct NpyFault {
+  std::string text;
+};
+
 constexpr int kMaxDepth = 16;
 
 using Kind = PythonLiteral::Kind;
 
+/// Errors     NpyFault, after the words "the header is malformed"
 class Parser {
  public:
   explicit Parser(std::string_view source) : source_(source) {}
 
-  bool value(PythonLiteral& out, int depth) {
+  PythonLiteral whole() {
+    PythonLiteral out = value(0);
     skip_blanks();
-    if (depth > kMaxDepth) return fail("it is nested too deeply");
-    if (at_end()) return fail("it ends too early");
-    switch (source_[at_]) {
-      case '\'':
-      case '"': return text(out);
-      case '(': return sequence(out, Kind::kSequence, ')', depth);
-      case '[': return sequence(out, Kind::kSequence, ']', depth);
-      case '{': return sequence(out, Kind::kDict, '}', depth);
-      default: return word(out);
-    }
+    if (!at_end()) fail("unexpected characters after its end");
+    return out;
   }
+
+ private:
+  [[noreturn]] static void fail(const std::string& text) { throw NpyFault{"the header is malformed: " + text}; }
+
+  bool at_end() const { return at_ == source_.size(); }
+
   void skip_blanks() {
     while (!at_end() && std::string_view(" \t\r\n").find(source_[at_]) != std::string_view::npos) ++at_;
   }
-  bool at_end() const { return at_ == source_.size(); }
-  bool fail(const std::string& text) {
-    if (fault_.empty()) fault_ = text;
-    return false;
-  }
-  const std::string& fault() const { return fault_; }
 
- private:
   bool take(char c) {
     skip_blanks();
     if (at_end() || source_[at_] != c) return false;
@@ -70,81 +68,77 @@ class Parser {
     return true;
   }
 
-  bool sequence(PythonLiteral& out, Kind kind, char closing, int depth) {
-    out.kind = kind;
-    ++at_;
-    while (!take(closing)) {
-      PythonLiteral item;
-      if (!value(item, depth + 1)) return false;
-      out.items.push_back(std::move(item));
-      if (kind == Kind::kDict) {
-        if (!take(':')) return fail("`:` is missing after a key");
-        PythonLiteral mapped;
-        if (!value(mapped, depth + 1)) return false;
-        out.items.push_back(std::move(mapped));
-      }
-      if (!take(',')) {
-        if (!take(closing)) return fail(fmt::format("`{}` is missing", closing));
-        return true;
-      }
+  PythonLiteral value(int depth) {
+    skip_blanks();
+    if (depth > kMaxDepth) fail("it is nested too deeply");
+    if (at_end()) fail("it ends too early");
+    switch (source_[at_]) {
+      case '\'':
+      case '"': return text();
+      case '(': return sequence(Kind::kSequence, ')', depth);
+      case '[': return sequence(Kind::kSequence, ']', depth);
+      case '{': return sequence(Kind::kDict, '}', depth);
+      default: return word();
     }
-    return true;
   }
 
-  bool text(PythonLiteral& out) {
-    out.kind = Kind::kText;
+  PythonLiteral sequence(Kind kind, char closing, int depth) {
+    PythonLiteral out{kind, {}, 0, {}};
+    ++at_;
+    while (!take(closing)) {
+      out.items.push_back(value(depth + 1));
+      if (kind == Kind::kDict) {
+        if (!take(':')) fail("`:` is missing after a key");
+        out.items.push_back(value(depth + 1));
+      }
+      if (take(',')) continue;
+      if (!take(closing)) fail(fmt::format("`{}` is missing", closing));
+      break;
+    }
+    return out;
+  }
+
+  PythonLiteral text() {
+    PythonLiteral out;
     const char quote = source_[at_++];
     while (!at_end() && source_[at_] != quote) {
       char c = source_[at_++];
       if (c == '\\') {
         if (at_end() || (source_[at_] != '\\' && source_[at_] != '\'' && source_[at_] != '"'))
-          return fail("a string contains an escape sequence that is not supported");
+          fail("a string contains an escape sequence that is not supported");
         c = source_[at_++];
       }
       out.text += c;
     }
-    if (at_end()) return fail("a string has no end");
+    if (at_end()) fail("a string has no end");
     ++at_;
-    return true;
+    return out;
   }
 
-  bool word(PythonLiteral& out) {
+  PythonLiteral word() {
     const std::string_view rest = source_.substr(at_);
     for (const std::string_view name : {"True", "False"})
       if (rest.starts_with(name)) {
-        out.kind = Kind::kBool;
-        out.integer = name == "True" ? 1 : 0;
         at_ += name.size();
-        return true;
+        return {Kind::kBool, {}, name == "True" ? std::uint64_t{1} : 0, {}};
       }
-    out.kind = Kind::kInteger;
+    PythonLiteral out{Kind::kInteger, {}, 0, {}};
     const auto [end, error] = std::from_chars(rest.data(), rest.data() + rest.size(), out.integer);
-    if (error == std::errc::result_out_of_range) return fail("an integer is too large");
-    if (error != std::errc()) return fail(fmt::format("unexpected `{}`", std::string(1, rest.front())));
+    if (error == std::errc::result_out_of_range) fail("an integer is too large");
+    if (error != std::errc()) fail(fmt::format("unexpected `{}`", std::string(1, rest.front())));
     at_ += static_cast<std::size_t>(end - rest.data());
     if (!at_end() && source_[at_] == 'L') ++at_;  // Python 2
-    return true;
+    return out;
   }
 
   std::string_view source_;
   std::size_t at_ = 0;
-  std::string fault_;
 };
 
 const PythonLiteral* PythonLiteral::find(std::string_view key) const {
   for (std::size_t i = 0; kind == Kind::kDict && i + 1 < items.size(); i += 2)
     if (items[i].is(Kind::kText) && items[i].text == key) return &items[i + 1];
   return nullptr;
-}
-
-/// Parses strings, non-negative integers, True, False, lists, tuples and dicts, up to 16 levels deep.
-///
-/// Result     an empty string, or what is wrong
-std::string parse_python_literal(std::string_view source, PythonLiteral& out) {
-  Parser parser(source);
-  if (!parser.value(out, 0)) return parser.fault();
-  parser.skip_blanks();
-  return parser.at_end() ? "" : "unexpected characters after its end";
 }
 
 using namespace std::string_view_literals;
@@ -155,22 +149,25 @@ constexpr std::size_t kMaxDimensions = 64;
 
 /// Parses the type of an item, e.g. `<f4`.
 ///
-/// Result     an empty string, or what is wrong; a field of padding has size 0 components
-std::string parse_type(const std::string& code, NpyField& field) {
+/// `where`    precedes faults
+/// Result     a field of padding has 0 components
+NpyField parse_type(const std::string& code, const std::string& where = {}) {
+  const auto fail = [&](const std::string& text) { throw NpyFault{where + text}; };
   const std::string type = "the type " + quoted_word(code);
   const std::string unsupported = type + " is not supported; convert the array to numbers, e.g. with `astype('f8')`";
   const bool has_order = !code.empty() && std::string_view("<>|=").find(code[0]) != std::string_view::npos;
   if (code == "O" || (has_order && code.size() > 1 && code[1] == 'O'))
-    return "it contains Python objects; convert them, e.g. with `astype('f8')`";
+    fail("it contains Python objects; convert them, e.g. with `astype('f8')`");
+  NpyField field;
   if (!has_order || code.size() < 3 || !base::from_text(std::string_view(code).substr(2), field.size))
-    return unsupported;
+    fail(unsupported);
   field.is_big_endian = code[0] == '>';
   if (code[1] == 'S' || code[1] == 'a' || code[1] == 'U' || code[1] == 'V') {
-    if (field.size > kLongestNpyText) return fmt::format("{} is longer than {}", type, kLongestNpyText);
+    if (field.size > kLongestNpyText) fail(fmt::format("{} is longer than {}", type, kLongestNpyText));
     field.kind = code[1] == 'U' ? NpyField::Kind::kUtf32 : NpyField::Kind::kBytes;
     if (code[1] == 'U') field.size *= 4;
     if (code[1] == 'V') field.components = 0;
-    return {};
+    return field;
   }
   static constexpr NumberTypeName kNames[] = {
       {"i1", NumberType::kInt8},    {"u1", NumberType::kUint8},  {"b1", NumberType::kUint8},
@@ -178,73 +175,65 @@ std::string parse_type(const std::string& code, NpyField& field) {
       {"u4", NumberType::kUint32},  {"i8", NumberType::kInt64},  {"u8", NumberType::kUint64},
       {"f4", NumberType::kFloat32}, {"f8", NumberType::kFloat64}};
   const std::optional<NumberType> known = number_type(kNames, std::string_view(code).substr(1));
-  if (!known) return unsupported;
+  if (!known) fail(unsupported);
   field.type = *known;
-  return {};
+  return field;
 }
 
 /// Parses one field of a record: (name, type) or (name, type, shape); a name may be (title, name).
-std::string parse_field(const PythonLiteral& source, NpyHeader& header) {
+void parse_field(const PythonLiteral& source, NpyHeader& header) {
   if (!source.is(Kind::kSequence) || source.items.size() < 2 || source.items.size() > 3)
-    return "a field is not (name, type) or (name, type, shape)";
+    throw NpyFault{"a field is not (name, type) or (name, type, shape)"};
   const PythonLiteral& first = source.items[0];
   const PythonLiteral& name = first.is(Kind::kSequence) && first.items.size() == 2 ? first.items[1] : first;
-  if (!name.is(Kind::kText)) return "the name of a field is not a string";
-  NpyField field;
-  field.name = name.text;
+  if (!name.is(Kind::kText)) throw NpyFault{"the name of a field is not a string"};
+  const std::string shown = quoted_word(name.text);
   if (!source.items[1].is(Kind::kText))
-    return fmt::format("field {} is a record; save its fields separately", quoted_word(field.name));
-  if (const std::string fault = parse_type(source.items[1].text, field); !fault.empty())
-    return fmt::format("field {}: {}", quoted_word(field.name), fault);
-  const bool is_padding = field.components == 0;
+    throw NpyFault{fmt::format("field {} is a record; save its fields separately", shown)};
+  NpyField field = parse_type(source.items[1].text, fmt::format("field {}: ", shown));
+  field.name = name.text;
   std::uint64_t count = 1;
   if (source.items.size() == 3) {
     if (!source.items[2].is(Kind::kSequence))
-      return fmt::format("the shape of field {} is not a tuple", quoted_word(field.name));
+      throw NpyFault{fmt::format("the shape of field {} is not a tuple", shown)};
     for (const PythonLiteral& length : source.items[2].items) {
-      if (!length.is(Kind::kInteger))
-        return fmt::format("the shape of field {} is not integers", quoted_word(field.name));
+      if (!length.is(Kind::kInteger)) throw NpyFault{fmt::format("the shape of field {} is not integers", shown)};
       if (length.integer > kMaxColumns || (count *= length.integer) > kMaxColumns)
-        return fmt::format("field {} has more than {} components", quoted_word(field.name), kMaxColumns);
+        throw NpyFault{fmt::format("field {} has more than {} components", shown, kMaxColumns)};
     }
   }
   field.offset = header.item_size;
   header.item_size += field.size * count;
-  if (is_padding || count == 0) return {};
-  field.components = count;
-  header.fields.push_back(std::move(field));
-  return {};
+  field.components *= count;
+  if (field.components > 0) header.fields.push_back(std::move(field));
 }
 
-std::string parse_description(const PythonLiteral& source, NpyHeader& header) {
+void parse_description(const PythonLiteral& source, NpyHeader& header) {
   if (source.is(Kind::kText)) {
-    NpyField field;
-    if (std::string fault = parse_type(source.text, field); !fault.empty()) return fault;
-    if (field.components == 0) return "its items are raw bytes (dtype void)";
-    header.item_size = field.size;
-    header.fields.push_back(field);
-    return {};
+    header.fields.push_back(parse_type(source.text));
+    if (header.fields[0].components == 0) throw NpyFault{"its items are raw bytes (dtype void)"};
+    header.item_size = header.fields[0].size;
+    return;
   }
-  if (!source.is(Kind::kSequence)) return "`descr` is neither a type nor a list of fields";
+  if (!source.is(Kind::kSequence)) throw NpyFault{"`descr` is neither a type nor a list of fields"};
   header.is_structured = true;
   std::uint64_t columns = 0;
   for (const PythonLiteral& field : source.items) {
     const std::size_t fields = header.fields.size();
-    if (std::string fault = parse_field(field, header); !fault.empty()) return fault;
+    parse_field(field, header);
     if (header.fields.size() > fields) columns += header.fields.back().components;
-    if (columns > kMaxColumns) return fmt::format("it has more than {} components", kMaxColumns);
+    if (columns > kMaxColumns) throw NpyFault{fmt::format("it has more than {} components", kMaxColumns)};
   }
-  return {};
 }
 
-std::string parse_shape(const PythonLiteral& source, NpyHeader& header) {
-  if (!source.is(Kind::kSequence)) return "`shape` is not a tuple";
-  if (source.items.size() > kMaxDimensions) return fmt::format("it has more than {} dimensions", kMaxDimensions);
+void parse_shape(const PythonLiteral& source, NpyHeader& header) {
+  if (!source.is(Kind::kSequence)) throw NpyFault{"`shape` is not a tuple"};
+  if (source.items.size() > kMaxDimensions)
+    throw NpyFault{fmt::format("it has more than {} dimensions", kMaxDimensions)};
   for (const PythonLiteral& length : source.items) {
-    if (!length.is(Kind::kInteger)) return "`shape` is not a tuple of integers";
+    if (!length.is(Kind::kInteger)) throw NpyFault{"`shape` is not a tuple of integers"};
     header.shape.push_back(length.integer);
   }
-  return {};
 }
 
 std::uint64_t length_bytes(std::string_view head) { return head[kNpySignature.size()] == 1 ? 2 : 4; }
@@ -333,19 +322,20 @@ std::string parse_npy_header(std::string_view head, NpyHeader& header) {
     return fmt::format("the header exceeds the limit of {} bytes", kLongestNpyHeader);
   if (header.begin > head.size()) return "the file ends within the header";
   const std::size_t text = 8 + length_bytes(head);
-  PythonLiteral source;
-  if (const std::string fault =
-          parse_python_literal(head.substr(text, static_cast<std::size_t>(header.begin) - text), source);
-      !fault.empty())
-    return "the header is malformed: " + fault;
-  const PythonLiteral* const description = source.find("descr");
-  const PythonLiteral* const order = source.find("fortran_order");
-  const PythonLiteral* const shape = source.find("shape");
-  if (description == nullptr || order == nullptr || shape == nullptr || !order->is(Kind::kBool))
-    return "the header needs `descr`, `fortran_order` and `shape`";
-  header.is_fortran_order = order->integer == 1;
-  if (std::string fault = parse_shape(*shape, header); !fault.empty()) return fault;
-  return parse_description(*description, header);
+  try {
+    const PythonLiteral source = Parser(head.substr(text, static_cast<std::size_t>(header.begin) - text)).whole();
+    const PythonLiteral* const description = source.find("descr");
+    const PythonLiteral* const order = source.find("fortran_order");
+    const PythonLiteral* const shape = source.find("shape");
+    if (description == nullptr || order == nullptr || shape == nullptr || !order->is(Kind::kBool))
+      return "the header needs `descr`, `fortran_order` and `shape`";
+    header.is_fortran_order = order->integer == 1;
+    parse_shape(*shape, header);
+    parse_description(*description, header);
+  } catch (const NpyFault& fault) {
+    return fault.text;
+  }
+  return {};
 }
 
 std::vector<NpyColumn> npy_columns(const NpyHeader& header, const std::string& name, std::vector<ColumnInfo>& so_far) {

@@ -39,12 +39,6 @@ bool is_image(std::string_view head) {
 
 bool is_adios(const std::string& extension) { return extension == ".bp" || extension == ".bp4" || extension == ".bp5"; }
 
-/// ADIOS2 data are folders, which cannot be read as files.
-void refuse_folder(const std::filesystem::path& file) {
-  std::error_code ignored;
-  if (is_adios(extension_of(file)) && std::filesystem::is_directory(file, ignored)) refuse_adios(file);
-}
-
 /// Common formats without a reader, and what to do about each.
 [[noreturn]] void refuse(const ByteSource& bytes, const Signature& signature) {
   std::string text = "unknown file format";
@@ -101,7 +95,9 @@ const FormatReader* find(std::span<const FormatReader* const> readers, const Sig
 }  // namespace
 
 std::unique_ptr<DataFile> open(const std::filesystem::path& file, const OpenOptions& options) {
-  refuse_folder(file);
+  std::error_code ignored;
+  // These are folders, which cannot be read as files.
+  if (is_adios(extension_of(file)) && std::filesystem::is_directory(file, ignored)) refuse_adios(file);
   const Bytes bytes = ByteSource::open(file, options.decompressed_limit, options.kept_limit);
   const Signature signature{bytes->text(0, kHeadBytes), extension_of(file)};
   const FormatReader* reader = find(kBinary, signature);

@@ -124,7 +124,7 @@ std::optional<double> number(const std::string& text) {
 
 class Indexer {
  public:
-  Indexer(PdbIndex& index, Faults& faults) : index_(index), faults_(faults) {}
+  explicit Indexer(Faults& faults) : faults_(faults) {}
 
   void take(std::string_view line, std::uint64_t offset) {
     ++line_;
@@ -158,7 +158,7 @@ class Indexer {
     }
   }
 
-  void finish_file(std::uint64_t size) {
+  PdbIndex finish_file(std::uint64_t size) {
     faults_.raise_if_any();
     const bool has_all_atoms = declared_atoms_ && *declared_atoms_ == static_cast<double>(atoms_);
     if (has_header_ && !has_end_ && !has_all_atoms)
@@ -169,6 +169,7 @@ class Indexer {
     index_.rest.end = size;
     if (index_.models.empty()) index_.models.push_back({0, 0, 1, std::nullopt, {}});
     index_.assemblies = biomt_.finish(faults_);
+    return std::move(index_);
   }
 
  private:
@@ -182,7 +183,7 @@ class Indexer {
     has_atoms_ = is_declared_ = false;
   }
 
-  PdbIndex& index_;
+  PdbIndex index_;
   Faults& faults_;
   BiomtReader biomt_;
   PdbModel model_;
@@ -233,12 +234,10 @@ void for_each_pdb_line(const ByteSource& bytes, std::uint64_t begin, std::uint64
 PdbIndex index_pdb(const ByteSource& bytes) {
   Faults faults(bytes.file());
   require_text(bytes, faults);
-  PdbIndex index;
-  Indexer indexer(index, faults);
+  Indexer indexer(faults);
   for_each_pdb_line(bytes, 0, bytes.size(),
                     [&](std::string_view line, std::uint64_t offset) { indexer.take(line, offset); });
-  indexer.finish_file(bytes.size());
-  return index;
+  return indexer.finish_file(bytes.size());
 }
 
 /// Columns 31 to 54 hold the coordinates.

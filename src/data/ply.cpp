@@ -15,7 +15,6 @@
 #include "data/frames.h"
 #include "data/readers.h"
 #include "data/records.h"
-#include "data/text_rows.h"
 
 // Reference  turk1994
 namespace orrery::data {
@@ -34,7 +33,7 @@ struct PlyProperty {
 struct PlyElement {
   std::string name;
   std::uint64_t count = 0;
-  int line = 0;  ///< line of its declaration
+  std::uint64_t line = 0;  ///< line of its declaration
   std::vector<PlyProperty> properties;
 
   bool has_list() const {
@@ -46,7 +45,7 @@ struct PlyHeader {
   PlyEncoding encoding = PlyEncoding::kAscii;
   std::vector<PlyElement> elements;
   std::size_t bytes = 0;  ///< length of the header; the data follow
-  int lines = 0;
+  std::uint64_t lines = 0;
 };
 
 /// Maximum length of a header, bytes: room for ten thousand properties. Avoids scanning a whole file that has no
@@ -61,83 +60,83 @@ constexpr NumberTypeName kTypeNames[] = {
     {"float", NumberType::kFloat32},  {"float32", NumberType::kFloat32}, {"double", NumberType::kFloat64},
     {"float64", NumberType::kFloat64}};
 
-std::string parse_format(const std::vector<std::string_view>& words, PlyHeader& header) {
-  if (words.size() != 3) return "a format line must be `format ENCODING 1.0`";
-  if (words[2] != "1.0") return fmt::format("unsupported format version `{}`; supported is 1.0", words[2]);
-  constexpr std::string_view kEncodings[] = {"ascii", "binary_little_endian", "binary_big_endian"};
-  const auto* const encoding = std::find(std::begin(kEncodings), std::end(kEncodings), words[1]);
-  if (encoding == std::end(kEncodings))
-    return "unknown encoding; allowed are ascii, binary_little_endian, binary_big_endian";
-  header.encoding = static_cast<PlyEncoding>(encoding - std::begin(kEncodings));
-  return {};
-}
+/// Reads the header of a file. Its first line is `ply`, see is_ply().
+class PlyHeaderReader {
+ public:
+  explicit PlyHeaderReader(Faults& faults) : faults_(faults) {}
 
-std::string parse_element(const std::vector<std::string_view>& words, int line, PlyHeader& header) {
-  PlyElement element;
-  element.line = line;
-  if (words.size() != 3) return "an element line must be `element NAME COUNT`";
-  element.name = words[1];
-  if (!base::from_text(words[2], element.count)) return "the count of an element must be a non-negative integer";
-  if (find_named(header.elements, element.name) != nullptr) return fmt::format("duplicate element `{}`", element.name);
-  header.elements.push_back(element);
-  return {};
-}
-
-std::string parse_property(const std::vector<std::string_view>& words, PlyHeader& header) {
-  if (header.elements.empty()) return "property before the first element";
-  PlyProperty property;
-  property.is_list = words.size() == 5 && words[1] == "list";
-  if (!property.is_list && words.size() != 3) return "a property line must be `property TYPE NAME`";
-  const auto count_type = number_type(kTypeNames, words[property.is_list ? 2 : 1]);
-  const auto type = number_type(kTypeNames, words[words.size() - 2]);
-  if (property.is_list && !count_type) return "unknown type of the list length";
-  if (!type) return "unknown type; allowed are char .. double, int8 .. float64";
-  property.count_type = *count_type;
-  property.type = *type;
-  property.name = words.back();
-  if (find_named(header.elements.back().properties, property.name) != nullptr)
-    return fmt::format("duplicate property `{}`", property.name);
-  if (header.elements.back().properties.size() == kMaxColumns)
-    return fmt::format("more than {} properties of an element", kMaxColumns);
-  header.elements.back().properties.push_back(property);
-  return {};
-}
-
-/// Parses a PLY header. The first line is `ply`, see is_ply().
-///
-/// Result     an empty string; on failure the fault, with its line number in `line`
-std::string parse_ply_header(std::string_view file, PlyHeader& header, int& line) {
-  const std::string_view head = file.substr(0, kLongestHeader);
-  std::size_t at = 0;
-  bool has_format = false;
-  for (line = 1;; ++line) {
-    const std::size_t end = head.find('\n', at);
-    if (end == std::string_view::npos) {
-      if (file.size() == head.size()) return "the header has no end_header";
-      return fmt::format("the header exceeds the limit of {} bytes", kLongestHeader);
+  PlyHeader read(std::string_view file) {
+    const std::string_view head = file.substr(0, kLongestHeader);
+    std::size_t at = 0;
+    bool has_format = false;
+    for (line_ = 1;; ++line_) {
+      const std::size_t end = head.find('\n', at);
+      if (end == std::string_view::npos)
+        fail(file.size() == head.size() ? "the header has no end_header"
+                                        : fmt::format("the header exceeds the limit of {} bytes", kLongestHeader));
+      const Parts words = words_of(head.substr(at, end - at));
+      at = end + 1;
+      if (line_ == 1 || words.empty() || words[0] == "comment" || words[0] == "obj_info") continue;
+      if (words[0] == "format") {
+        if (has_format) fail("duplicate format line");
+        has_format = true;
+        read_format(words);
+      } else if (words[0] == "element") {
+        read_element(words);
+      } else if (words[0] == "property") {
+        read_property(words);
+      } else if (words[0] == "end_header") {
+        if (!has_format) fail("the header has no format line");
+        header_.bytes = at;
+        header_.lines = line_;
+        return std::move(header_);
+      } else {
+        fail("unknown keyword in the header");
+      }
     }
-    const auto words = words_of(head.substr(at, end - at));
-    at = end + 1;
-    std::string fault;
-    if (line == 1 || words.empty() || words[0] == "comment" || words[0] == "obj_info") {
-      continue;
-    } else if (words[0] == "format") {
-      fault = has_format ? "duplicate format line" : parse_format(words, header);
-      has_format = true;
-    } else if (words[0] == "element") {
-      fault = parse_element(words, line, header);
-    } else if (words[0] == "property") {
-      fault = parse_property(words, header);
-    } else if (words[0] == "end_header") {
-      header.bytes = at;
-      header.lines = line;
-      return has_format ? "" : "the header has no format line";
-    } else {
-      fault = "unknown keyword in the header";
-    }
-    if (!fault.empty()) return fault;
   }
-}
+
+ private:
+  using Parts = std::vector<std::string_view>;
+
+  [[noreturn]] void fail(const std::string& text) { faults_.fail(line_, text); }
+
+  void read_format(const Parts& words) {
+    if (words.size() != 3) fail("a format line must be `format ENCODING 1.0`");
+    if (words[2] != "1.0") fail(fmt::format("unsupported format version `{}`; supported is 1.0", words[2]));
+    constexpr std::string_view kEncodings[] = {"ascii", "binary_little_endian", "binary_big_endian"};
+    const auto* const encoding = std::find(std::begin(kEncodings), std::end(kEncodings), words[1]);
+    if (encoding == std::end(kEncodings))
+      fail("unknown encoding; allowed are ascii, binary_little_endian, binary_big_endian");
+    header_.encoding = static_cast<PlyEncoding>(encoding - std::begin(kEncodings));
+  }
+
+  void read_element(const Parts& words) {
+    std::uint64_t count = 0;
+    if (words.size() != 3) fail("an element line must be `element NAME COUNT`");
+    if (!base::from_text(words[2], count)) fail("the count of an element must be a non-negative integer");
+    if (find_named(header_.elements, words[1]) != nullptr) fail(fmt::format("duplicate element `{}`", words[1]));
+    header_.elements.push_back({std::string(words[1]), count, line_, {}});
+  }
+
+  void read_property(const Parts& words) {
+    if (header_.elements.empty()) fail("property before the first element");
+    std::vector<PlyProperty>& properties = header_.elements.back().properties;
+    const bool is_list = words.size() == 5 && words[1] == "list";
+    if (!is_list && words.size() != 3) fail("a property line must be `property TYPE NAME`");
+    const auto count_type = number_type(kTypeNames, words[is_list ? 2 : 1]);
+    const auto type = number_type(kTypeNames, words[words.size() - 2]);
+    if (is_list && !count_type) fail("unknown type of the list length");
+    if (!type) fail("unknown type; allowed are char .. double, int8 .. float64");
+    if (find_named(properties, words.back()) != nullptr) fail(fmt::format("duplicate property `{}`", words.back()));
+    if (properties.size() == kMaxColumns) fail(fmt::format("more than {} properties of an element", kMaxColumns));
+    properties.push_back({std::string(words.back()), *type, is_list, *count_type});
+  }
+
+  Faults& faults_;
+  std::uint64_t line_ = 0;
+  PlyHeader header_;
+};
 
 bool is_white_space(char c) { return c == ' ' || (c >= '\t' && c <= '\r'); }
 
@@ -147,7 +146,7 @@ bool is_white_space(char c) { return c == ' ' || (c >= '\t' && c <= '\r'); }
 class PlyCursor {
  public:
   /// `begin`    offset of the first data byte, `line` its line number
-  PlyCursor(const ByteSource& bytes, std::uint64_t begin, PlyEncoding encoding, int line)
+  PlyCursor(const ByteSource& bytes, std::uint64_t begin, PlyEncoding encoding, std::uint64_t line)
       : bytes_(&bytes),
         next_(std::min(begin, bytes.size())),
         buffer_(2 * kMaxLineBytes),
@@ -181,7 +180,7 @@ class PlyCursor {
   }
 
   /// The line number of the row; 0 in a binary file.
-  int line() const { return row_line_; }
+  std::uint64_t line() const { return row_line_; }
 
   /// Reads a value; false at the end of the row or the data, or if an ASCII value is not a number.
   bool take(NumberType type, double& value) {
@@ -256,8 +255,7 @@ class PlyCursor {
     const auto found = [&] { return std::memchr(at_, '\n', static_cast<std::size_t>(end_ - at_)); };
     const void* newline = found();
     while (newline == nullptr && next_ < bytes_->size()) {
-      if (static_cast<std::size_t>(end_ - at_) > kMaxLineBytes)
-        fail_as_too_long(*bytes_, static_cast<std::uint64_t>(line_));
+      if (static_cast<std::size_t>(end_ - at_) > kMaxLineBytes) fail_as_too_long(*bytes_, line_);
       fill();
       newline = found();
     }
@@ -289,7 +287,7 @@ class PlyCursor {
   const char* at_ = nullptr;
   const char* end_ = nullptr;  ///< of the bytes in the buffer
   const char* row_end_ = nullptr;
-  int line_, row_line_ = 0;
+  std::uint64_t line_, row_line_ = 0;
   bool ascii_, is_big_endian_, is_bad_length_ = false;
 };
 
@@ -299,13 +297,13 @@ class PlyCursor {
 /// `name()`   name of the row, for messages
 template <class Name, class Take>
 void read_row(Faults& faults, const PlyElement& element, PlyCursor& cursor, Name name, Take take) {
+  const auto fail = [&](const std::string& text) {
+    faults.fail(cursor.line() > 0 ? cursor.line() : element.line, name() + text);
+  };
   cursor.begin_row();
   for (std::size_t k = 0; k < element.properties.size(); ++k)
-    if (!take(element.properties[k], k))
-      fail_in_row(faults, element, cursor, name() + ", `" + element.properties[k].name + "`: " + cursor.fault());
-  if (!cursor.end_row())
-    fail_in_row(faults, element, cursor,
-                name() + ": unexpected `" + cursor.word() + "` after the last value that the header declares");
+    if (!take(element.properties[k], k)) fail(", `" + element.properties[k].name + "`: " + cursor.fault());
+  if (!cursor.end_row()) fail(": unexpected `" + cursor.word() + "` after the last value that the header declares");
 }
 
 /// Returns the minimum size of an element's row, in bytes; exact in a binary file if the element has no lists. Used to
@@ -323,15 +321,10 @@ void check_count(Faults& faults, const PlyElement& element, const PlyHeader& hea
   // The last ASCII word need not be followed by a space.
   const std::uint64_t bytes = bytes_left + (header.encoding == PlyEncoding::kAscii ? 1 : 0);
   if (element.count > bytes / each)
-    faults.fail(static_cast<std::uint64_t>(element.line),
+    faults.fail(element.line,
                 fmt::format("the header declares {} rows of `{}`, but only {} bytes follow; the file is truncated, or "
                             "the count is wrong",
                             element.count, element.name, bytes_left));
-}
-
-/// Throws an error at the line of the cursor; in a binary file, at that of the element.
-void fail_in_row(Faults& faults, const PlyElement& element, const PlyCursor& cursor, const std::string& text) {
-  faults.fail(static_cast<std::uint64_t>(cursor.line() > 0 ? cursor.line() : element.line), text);
 }
 
 /// Skips an element other than `vertex`.
@@ -352,7 +345,7 @@ void check_end(Faults& faults, const PlyHeader& header, PlyCursor& cursor) {
   const auto last = std::find_if(header.elements.rbegin(), header.elements.rend(),
                                  [](const PlyElement& element) { return element.count > 0; });
   const PlyElement& element = last != header.elements.rend() ? *last : header.elements.back();
-  faults.fail(static_cast<std::uint64_t>(element.line),
+  faults.fail(element.line,
               fmt::format("{} bytes follow the last row that the header declares; the counts are wrong, or the "
                           "file is damaged",
                           cursor.bytes_left()));
@@ -365,9 +358,7 @@ class PlyFile final : public SingleFrame {
  public:
   explicit PlyFile(const Bytes& bytes) : SingleFrame(bytes) {
     Faults faults(bytes->file());
-    int line = 0;
-    if (const std::string fault = parse_ply_header(bytes->text(0, kLongestHeader + 1), header_, line); !fault.empty())
-      faults.fail(static_cast<std::uint64_t>(line), fault);
+    header_ = PlyHeaderReader(faults).read(bytes->text(0, kLongestHeader + 1));
     const PlyElement* const vertex = find_named(header_.elements, "vertex");
     if (vertex == nullptr) faults.fail(0, "there is no element `vertex`");
     vertex_ = static_cast<std::size_t>(vertex - header_.elements.data());
@@ -465,13 +456,13 @@ class PlyFile final : public SingleFrame {
   std::vector<Values> read_lines(const std::vector<std::size_t>& wanted, Faults& faults) const {
     TextLayout layout;
     layout.begin = header_.bytes;
-    layout.first_line = static_cast<std::uint64_t>(header_.lines) + 1;
+    layout.first_line = header_.lines + 1;
     for (const PlyProperty& property : vertex().properties) layout.columns.push_back({type_of(property), false});
     for (const std::size_t p : wanted) layout.columns[p].is_wanted = true;
     TextTable text = read_text_rows(*bytes_, layout, faults);
     if (text.rows != vertex().count)
       faults.fail(
-          static_cast<std::uint64_t>(vertex().line),
+          vertex().line,
           fmt::format(
               "the header declares {} rows of `vertex`, but there are {}; the file is truncated, or the count is wrong",
               vertex().count, text.rows));
@@ -505,7 +496,7 @@ class PlyFile final : public SingleFrame {
         });
         for (std::size_t w = 0; w < wanted.size(); ++w)
           if (!append(out[w], row[wanted[w]]))
-            faults.fail(static_cast<std::uint64_t>(cursor.line()),
+            faults.fail(cursor.line(),
                         fmt::format("{}, `{}`: not a 64-bit integer", name(), element.properties[wanted[w]].name));
       }
     }

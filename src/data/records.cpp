@@ -60,14 +60,8 @@ std::vector<Values> read_records(const ByteSource& bytes, const RecordLayout& la
   const auto rows = static_cast<std::size_t>(layout.rows);
   const auto stride = static_cast<std::size_t>(layout.stride);
   std::vector<Values> out;
-  for (const RecordField& field : fields) {
-    out.push_back(empty_values(column_type(field.type)));
-    std::visit(
-        [rows](auto& values) {
-          if constexpr (requires { values.resize(rows); }) values.resize(rows);
-        },
-        out.back());
-  }
+  for (const RecordField& field : fields)
+    with_type(field.type, [&](auto number) { out.emplace_back(std::vector<Stored<decltype(number)>>(rows)); });
   if (rows == 0 || fields.empty()) return out;
   const std::size_t block_rows = std::max<std::size_t>(1, kRecordBlockBytes / stride);
   const base::StopPoint stop;

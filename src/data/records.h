@@ -89,11 +89,13 @@ T load(const char* from, bool is_big_endian) {
   return value;
 }
 
-/// Stores a number in either byte order.
+/// Appends the bytes of a number, the least significant one first.
 template <class T>
-void store(T value, char* to, bool is_big_endian) {
-  std::memcpy(to, &value, sizeof(T));
-  if (is_big_endian != (std::endian::native == std::endian::big)) std::reverse(to, to + sizeof(T));
+void append_little_endian(std::string& out, T value) {
+  char bytes[sizeof(T)];
+  std::memcpy(bytes, &value, sizeof(T));
+  if (std::endian::native == std::endian::big) std::reverse(bytes, bytes + sizeof(T));
+  out.append(bytes, sizeof(T));
 }
 
 /// A number in each record of a binary file.

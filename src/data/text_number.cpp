@@ -8,6 +8,8 @@
 #include <string>
 #include <system_error>
 
+#include "base/text.h"
+
 namespace orrery::data {
 namespace {
 
@@ -113,9 +115,7 @@ bool parse_number(std::string_view word, double& value) {
 
 bool parse_integer(std::string_view word, std::int64_t& value) {
   if (word.starts_with('+') && !word.starts_with("+-")) word.remove_prefix(1);
-  const char* const end = word.data() + word.size();
-  const auto result = std::from_chars(word.data(), end, value);
-  return result.ec == std::errc{} && result.ptr == end;
+  return base::from_text(word, value);
 }
 
 }  // namespace orrery::data

@@ -46,27 +46,33 @@ struct VtkBytes {
   bool is_big_endian = false;
 };
 
-constexpr const char* kTruncated = "the data end too early";
+/// What is wrong with an array; VtkDocument::array() adds its name.
+struct VtkFault {
+  std::string text;
+};
+
+[[noreturn]] void fail_as_truncated() { throw VtkFault{"the data end too early"}; }
 
 /// Bytes that are read from the front.
 class Stream {
  public:
   virtual ~Stream() = default;
-  /// Appends exactly `count` bytes; false if there are fewer.
-  virtual bool take(std::uint64_t count, std::vector<char>& out) = 0;
+  /// Appends exactly `count` bytes.
+  ///
+  /// Errors     VtkFault if there are fewer
+  virtual void take(std::uint64_t count, std::vector<char>& out) = 0;
 };
 
 class RawStream final : public Stream {
  public:
   RawStream(const ByteSource& source, std::uint64_t at) : source_(source), at_(std::min(at, source.size())) {}
 
-  bool take(std::uint64_t count, std::vector<char>& out) override {
-    if (count > source_.size() - at_) return false;
+  void take(std::uint64_t count, std::vector<char>& out) override {
+    if (count > source_.size() - at_) fail_as_truncated();
     const std::size_t begin = out.size();
     out.resize(begin + static_cast<std::size_t>(count));
     source_.read(at_, static_cast<std::size_t>(count), out.data() + begin);
     at_ += count;
-    return true;
   }
   std::uint64_t at() const { return at_; }
 
@@ -88,24 +94,24 @@ class Base64Stream final : public Stream {
  public:
   explicit Base64Stream(std::string_view text) : text_(text) {}
 
-  bool take(std::uint64_t count, std::vector<char>& out) override {
+  void take(std::uint64_t count, std::vector<char>& out) override {
     for (;;) {
       const auto some = static_cast<std::size_t>(std::min<std::uint64_t>(count, decoded_ - used_));
       out.insert(out.end(), group_ + used_, group_ + used_ + some);
       used_ += some;
       count -= some;
-      if (count == 0) return true;
-      if (!decode_group()) return false;
+      if (count == 0) return;
+      decode_group();
     }
   }
 
  private:
-  bool decode_group() {
+  void decode_group() {
     std::uint32_t bits = 0;
     std::size_t digits = 0, padding = 0;
     while (digits + padding < 4) {
       at_ = std::min(text_.find_first_not_of(" \n\r\t", at_), text_.size());
-      if (at_ == text_.size()) return false;
+      if (at_ == text_.size()) fail_as_truncated();
       const char c = text_[at_++];
       const int value = base64_value(c);
       if (c == '=' && digits >= 2) {
@@ -115,13 +121,12 @@ class Base64Stream final : public Stream {
         ++digits;
         bits = bits << 6 | static_cast<std::uint32_t>(value);
       } else {
-        return false;
+        fail_as_truncated();
       }
     }
     for (std::size_t i = 0; i < 3; ++i) group_[i] = static_cast<char>(bits >> (16 - 8 * i));
     decoded_ = digits - 1;
     used_ = 0;
-    return true;
   }
 
   std::string_view text_;
@@ -131,12 +136,11 @@ class Base64Stream final : public Stream {
 };
 
 /// Takes an integer of the array's header.
-bool take_length(Stream& stream, const VtkStorage& storage, std::uint64_t& out) {
+std::uint64_t take_length(Stream& stream, const VtkStorage& storage) {
   std::vector<char> bytes;
-  if (!stream.take(storage.has_long_headers ? 8 : 4, bytes)) return false;
-  out = storage.has_long_headers ? load<std::uint64_t>(bytes.data(), storage.is_big_endian)
-                                 : load<std::uint32_t>(bytes.data(), storage.is_big_endian);
-  return true;
+  stream.take(storage.has_long_headers ? 8 : 4, bytes);
+  return storage.has_long_headers ? load<std::uint64_t>(bytes.data(), storage.is_big_endian)
+                                  : load<std::uint32_t>(bytes.data(), storage.is_big_endian);
 }
 
 /// Appends a zlib stream of `bytes` decompressed bytes; false if it is damaged.
@@ -165,32 +169,29 @@ bool append_inflated(const std::vector<char>& compressed, std::uint64_t bytes, B
 
 /// Decompresses an array: number of blocks, size of a block, size of the last one if it is smaller, compressed sizes,
 /// blocks.
-std::string decompress(Stream& stream, const VtkStorage& storage, ByteBlocks& out) {
+ByteBlocks decompressed_array(Stream& stream, const VtkStorage& storage) {
   /// Maximum expansion of a zlib stream.
   constexpr std::uint64_t kMaxExpansion = 1040;
-  constexpr const char* kBadHeader = "the header of the compressed data is wrong";
-  std::uint64_t blocks = 0, block_bytes = 0, last_bytes = 0;
-  if (!take_length(stream, storage, blocks) || !take_length(stream, storage, block_bytes) ||
-      !take_length(stream, storage, last_bytes))
-    return kTruncated;
+  const VtkFault bad_header{"the header of the compressed data is wrong"};
+  const std::uint64_t blocks = take_length(stream, storage), block_bytes = take_length(stream, storage);
+  std::uint64_t last_bytes = take_length(stream, storage);
   if (last_bytes == 0) last_bytes = block_bytes;
-  if (last_bytes > block_bytes) return kBadHeader;
+  if (last_bytes > block_bytes) throw bad_header;
   std::vector<std::uint64_t> sizes;
-  for (std::uint64_t i = 0; i < blocks; ++i) {
-    sizes.emplace_back();
-    if (!take_length(stream, storage, sizes.back())) return kTruncated;
-  }
+  for (std::uint64_t i = 0; i < blocks; ++i) sizes.push_back(take_length(stream, storage));
+  ByteBlocks out;
   std::vector<char> compressed;
   for (std::size_t i = 0; i < sizes.size(); ++i) {
     const std::uint64_t bytes = i + 1 < sizes.size() ? block_bytes : last_bytes;
     compressed.clear();
-    if (!stream.take(sizes[i], compressed)) return kTruncated;
-    if (bytes > kMaxExpansion * (sizes[i] + 1)) return kBadHeader;
+    stream.take(sizes[i], compressed);
+    if (bytes > kMaxExpansion * (sizes[i] + 1)) throw bad_header;
     if (bytes > storage.limit - std::min<std::uint64_t>(storage.limit, out.size()))
-      return fmt::format("the array exceeds the limit of {} of decompressed data", base::bytes_text(storage.limit));
-    if (!append_inflated(compressed, bytes, out)) return "the compressed data are damaged";
+      throw VtkFault{
+          fmt::format("the array exceeds the limit of {} of decompressed data", base::bytes_text(storage.limit))};
+    if (!append_inflated(compressed, bytes, out)) throw VtkFault{"the compressed data are damaged"};
   }
-  return {};
+  return out;
 }
 
 VtkBytes in_memory(const std::filesystem::path& file, ByteBlocks bytes, bool is_big_endian) {
@@ -214,52 +215,38 @@ bool append_number(std::string_view word, ByteBlocks& out) {
 
 /// Finds the raw array at an offset of a file, and decompresses it.
 ///
-/// Result     an empty string, or what is wrong
+/// Errors     VtkFault
 /// Cost       memory for the bytes that exist, regardless of the size that the array's header declares; none if it is
 ///            not compressed
-std::string find_vtk_raw(const Bytes& file, std::uint64_t offset, const VtkStorage& storage, VtkBytes& out) {
+VtkBytes raw_array(const Bytes& file, std::uint64_t offset, const VtkStorage& storage) {
   RawStream stream(*file, offset);
-  if (storage.is_compressed) {
-    ByteBlocks bytes;
-    std::string fault = decompress(stream, storage, bytes);
-    out = in_memory(file->file(), std::move(bytes), storage.is_big_endian);
-    return fault;
-  }
-  std::uint64_t size = 0;
-  if (!take_length(stream, storage, size) || size > file->size() - stream.at()) return kTruncated;
-  out = {file, stream.at(), size, storage.is_big_endian};
-  return {};
+  if (storage.is_compressed) return in_memory(file->file(), decompressed_array(stream, storage), storage.is_big_endian);
+  const std::uint64_t size = take_length(stream, storage);
+  if (size > file->size() - stream.at()) fail_as_truncated();
+  return {file, stream.at(), size, storage.is_big_endian};
 }
 
 /// Decodes an array in base64, and decompresses it. `file` is for messages.
 ///
-/// Result     as for find_vtk_raw()
-std::string decode_vtk_base64(const std::filesystem::path& file, std::string_view text, const VtkStorage& storage,
-                              VtkBytes& out) {
+/// Errors     VtkFault
+VtkBytes base64_array(const std::filesystem::path& file, std::string_view text, const VtkStorage& storage) {
   Base64Stream stream(text);
+  if (storage.is_compressed) return in_memory(file, decompressed_array(stream, storage), storage.is_big_endian);
+  constexpr std::uint64_t kStep = std::uint64_t{1} << 20;
   ByteBlocks bytes;
-  std::string fault;
-  if (storage.is_compressed) {
-    fault = decompress(stream, storage, bytes);
-  } else {
-    std::uint64_t size = 0;
-    if (!take_length(stream, storage, size)) return kTruncated;
-    constexpr std::uint64_t kStep = std::uint64_t{1} << 20;
-    std::vector<char> some;
-    for (; size > 0; size -= some.size()) {
-      some.clear();
-      if (!stream.take(std::min(size, kStep), some)) return kTruncated;
-      bytes.append({some.data(), some.size()});
-    }
+  std::vector<char> some;
+  for (std::uint64_t size = take_length(stream, storage); size > 0; size -= some.size()) {
+    some.clear();
+    stream.take(std::min(size, kStep), some);
+    bytes.append({some.data(), some.size()});
   }
-  out = in_memory(file, std::move(bytes), storage.is_big_endian);
-  return fault;
+  return in_memory(file, std::move(bytes), storage.is_big_endian);
 }
 
 /// Parses numbers of a type, separated by white space.
 ///
-/// Result     as for find_vtk_raw()
-std::string parse_vtk_ascii(const std::filesystem::path& file, std::string_view text, NumberType type, VtkBytes& out) {
+/// Errors     VtkFault
+VtkBytes ascii_array(const std::filesystem::path& file, std::string_view text, NumberType type) {
   constexpr std::string_view kBlanks = " \t\r\n";
   ByteBlocks bytes;
   for (std::size_t at = text.find_first_not_of(kBlanks); at != std::string_view::npos;
@@ -267,11 +254,10 @@ std::string parse_vtk_ascii(const std::filesystem::path& file, std::string_view 
     const std::size_t end = std::min(text.find_first_of(kBlanks, at), text.size());
     const std::string_view word = text.substr(at, end - at);
     const bool is_number = with_type(type, [&](auto number) { return append_number<decltype(number)>(word, bytes); });
-    if (!is_number) return quoted_word(word) + " is not a number of its type";
+    if (!is_number) throw VtkFault{quoted_word(word) + " is not a number of its type"};
     at = end;
   }
-  out = in_memory(file, std::move(bytes), std::endian::native == std::endian::big);
-  return {};
+  return in_memory(file, std::move(bytes), std::endian::native == std::endian::big);
 }
 
 /// Returns an attribute, or `standard` if it is missing.
@@ -314,26 +300,17 @@ class VtkDocument {
   /// Errors     base::Error(kBadData)
   VtkBytes array(pugi::xml_node node, const std::string& name, NumberType type) const {
     const std::string format = vtk_attribute(node, "format", "ascii");
-    VtkBytes out;
-    std::string fault;
-    if (format == "ascii") {
-      fault = parse_vtk_ascii(bytes_->file(), node.child_value(), type, out);
-    } else if (format == "binary") {
-      fault = decode_vtk_base64(bytes_->file(), node.child_value(), storage_, out);
-    } else if (format == "appended") {
+    try {
+      if (format == "ascii") return ascii_array(bytes_->file(), node.child_value(), type);
+      if (format == "binary") return base64_array(bytes_->file(), node.child_value(), storage_);
+      if (format != "appended") throw VtkFault{"unknown format " + quoted_word(format)};
       const std::uint64_t offset = integer(node, "offset");
-      if (offset > (raw_begin_ > 0 ? bytes_->size() : base64_.size())) {
-        fault = "its offset is wrong";
-      } else if (raw_begin_ > 0) {
-        fault = find_vtk_raw(bytes_, raw_begin_ + offset, storage_, out);
-      } else {
-        fault = decode_vtk_base64(bytes_->file(), base64_.substr(static_cast<std::size_t>(offset)), storage_, out);
-      }
-    } else {
-      fault = "unknown format " + quoted_word(format);
+      if (offset > (raw_begin_ > 0 ? bytes_->size() : base64_.size())) throw VtkFault{"its offset is wrong"};
+      return raw_begin_ > 0 ? raw_array(bytes_, raw_begin_ + offset, storage_)
+                            : base64_array(bytes_->file(), base64_.substr(static_cast<std::size_t>(offset)), storage_);
+    } catch (const VtkFault& fault) {
+      fail(fmt::format("array {}: {}", quoted_word(name), fault.text));
     }
-    if (!fault.empty()) fail(fmt::format("array {}: {}", quoted_word(name), fault));
-    return out;
   }
 
   /// Returns an attribute that is a non-negative integer.
@@ -415,12 +392,7 @@ struct VtkArray {
   NumberType type = NumberType::kFloat32;
   std::uint64_t components = 1;
   std::vector<pugi::xml_node> pieces;  ///< its DataArray in each piece
-};
-
-struct VtkColumn {
-  std::string name;
-  std::size_t array = 0;
-  std::uint64_t component = 0;
+  std::vector<std::string> columns;    ///< of its components
 };
 
 constexpr NumberTypeName kVtkTypeNames[] = {{"Int8", NumberType::kInt8},       {"UInt8", NumberType::kUint8},
@@ -434,7 +406,7 @@ class VtkFile final : public SingleFrame {
   VtkFile(const Bytes& bytes, std::uint64_t limit) : SingleFrame(bytes), document_(bytes, limit) {
     for (const pugi::xml_node piece : document_.data().children("Piece")) add_piece(piece);
     if (pieces_.empty()) describe_no_points();
-    for (std::size_t i = 0; i < arrays_.size(); ++i) add_columns(i);
+    for (VtkArray& array : arrays_) add_columns(array);
     Faults faults(bytes->file());
     info_.roles = required_roles(info_.columns, faults);
   }
@@ -452,17 +424,17 @@ class VtkFile final : public SingleFrame {
     for (const std::string& name : names)
       table.columns.push_back({name, empty_values(find_named(info_.columns, name)->type)});
     Faults faults(bytes_->file());
-    for (std::size_t a = 0; a < arrays_.size(); ++a) {
+    for (const VtkArray& array : arrays_) {
       std::vector<RecordField> fields;
-      std::vector<std::size_t> targets;
-      for (std::size_t i = 0; i < names.size(); ++i)
-        for (const VtkColumn& column : columns_)
-          if (column.array == a && column.name == names[i]) {
-            fields.push_back({column.name, arrays_[a].type, column.component * size_of(arrays_[a].type)});
-            targets.push_back(i);
+      std::vector<Values*> targets;
+      for (std::size_t i = 0; i < array.columns.size(); ++i)
+        for (Column& column : table.columns)
+          if (column.name == array.columns[i]) {
+            fields.push_back({column.name, array.type, i * size_of(array.type)});
+            targets.push_back(&column.values);
           }
       for (std::size_t piece = 0; piece < pieces_.size() && !fields.empty(); ++piece)
-        append(arrays_[a], piece, fields, targets, table, faults);
+        append(array, piece, fields, targets, faults);
     }
     faults.raise_if_any();
     return table;
@@ -502,7 +474,7 @@ class VtkFile final : public SingleFrame {
     auto array = std::find_if(arrays_.begin(), arrays_.end(), [&](const VtkArray& a) { return a.name == name; });
     if (array == arrays_.end()) {
       if (arrays_.size() == kMaxColumns) document_.fail(fmt::format("there are more than {} arrays", kMaxColumns));
-      arrays_.push_back({name, *number, components, {}});
+      arrays_.push_back({name, *number, components, {}, {}});
       array = arrays_.end() - 1;
     }
     if (array->type != *number || array->components != components)
@@ -510,29 +482,26 @@ class VtkFile final : public SingleFrame {
     array->pieces.push_back(node);
   }
 
-  void add_columns(std::size_t index) {
-    const VtkArray& array = arrays_[index];
+  void add_columns(VtkArray& array) {
     if (info_.columns.size() + array.components > kMaxColumns || array.components > kMaxColumns)
       document_.fail(fmt::format("there are more than {} columns", kMaxColumns));
-    const auto names = component_names(array.name, static_cast<std::size_t>(array.components), info_.columns);
-    for (std::size_t i = 0; i < names.size(); ++i) {
-      const std::string name = names_.add(names[i]);
-      columns_.push_back({name, index, i});
-      info_.columns.push_back({name, column_type(array.type)});
+    for (const std::string& name :
+         component_names(array.name, static_cast<std::size_t>(array.components), info_.columns)) {
+      array.columns.push_back(names_.add(name));
+      info_.columns.push_back({array.columns.back(), column_type(array.type)});
     }
   }
 
   /// Appends a piece of an array to columns of a table.
-  void append(const VtkArray& array, std::size_t piece, const std::vector<RecordField>& fields,
-              const std::vector<std::size_t>& targets, Table& table, Faults& faults) const {
+  void append(const VtkArray& array, std::size_t piece, std::vector<RecordField> fields,
+              const std::vector<Values*>& targets, Faults& faults) const {
     const VtkBytes found = document_.array(array.pieces[piece], array.name, array.type);
     RecordLayout layout{found.begin, array.components * size_of(array.type), pieces_[piece]};
     if (found.size % layout.stride != 0 || found.size / layout.stride != layout.rows)
       faults.fail(0, fmt::format("array {} has {} bytes; {} points need {} each", quoted_word(array.name), found.size,
                                  layout.rows, layout.stride));
-    std::vector<RecordField> in_order = fields;
-    for (RecordField& field : in_order) field.is_big_endian = found.is_big_endian;
-    std::vector<Values> values = read_records(*found.source, layout, in_order, faults);
+    for (RecordField& field : fields) field.is_big_endian = found.is_big_endian;
+    std::vector<Values> values = read_records(*found.source, layout, fields, faults);
     for (std::size_t i = 0; i < targets.size(); ++i)
       std::visit(
           [&](auto& column) {
@@ -544,14 +513,13 @@ class VtkFile final : public SingleFrame {
                 column.insert(column.end(), read.begin(), read.end());
             }
           },
-          table.columns[targets[i]].values);
+          *targets[i]);
   }
 
   VtkDocument document_;
   std::vector<std::uint64_t> pieces_;  ///< number of points of each
   std::vector<VtkArray> arrays_;
   UniqueNames names_;
-  std::vector<VtkColumn> columns_;
 };
 
 constexpr std::string_view kLegacy = "# vtk DataFile";

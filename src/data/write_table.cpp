@@ -28,13 +28,6 @@ namespace {
   base::refuse(fmt::format("cannot write {}: {}", file.string(), text));
 }
 
-template <class T>
-void append_little_endian(std::string& out, T value) {
-  char bytes[sizeof(T)];
-  store(value, bytes, false);
-  out.append(bytes, sizeof(T));
-}
-
 const Words* words_in(const Column& column) { return std::get_if<Words>(&column.values); }
 
 /// Calls `on_number(number)` or `on_text(string)` with the value of a row.
@@ -174,17 +167,6 @@ void append_quoted(std::string& out, std::string_view text) {
 }
 
 bool has_line_end(const std::string& text) { return text.find_first_of("\n\r") != std::string::npos; }
-
-/// Refuses strings with line ends.
-void check_csv_texts(const base::OutputFile& out, const Column& column) {
-  const Words* const words = words_in(column);
-  if (words == nullptr) return;
-  for (const std::string& word : words->words)
-    if (has_line_end(word))
-      refuse_to_write(out.path(),
-                      fmt::format("CSV cannot store the text {} of column {}; write .npy, or leave the column out",
-                                  quoted_word(word), quoted_word(column.name)));
-}
 
 /// Returns whether XYZ, in which spaces separate values, can store the values of a column.
 bool is_storable_in_xyz(const Column& column) {
@@ -345,7 +327,12 @@ void write_npy_table(base::OutputFile& out, const Table& table) {
 void write_csv_table(base::OutputFile& out, const Table& table) {
   std::string& text = out.buffer();
   for (const Column& column : table.columns) {
-    check_csv_texts(out, column);
+    if (const Words* const words = words_in(column))
+      for (const std::string& word : words->words)
+        if (has_line_end(word))
+          refuse_to_write(out.path(),
+                          fmt::format("CSV cannot store the text {} of column {}; write .npy, or leave the column out",
+                                      quoted_word(word), quoted_word(column.name)));
     if (has_line_end(column.name))
       refuse_to_write(out.path(),
                       fmt::format("the name of column {} has a line end; rename it", quoted_word(column.name)));

@@ -16,7 +16,6 @@
 #include "base/text.h"
 #include "data/frames.h"
 #include "data/readers.h"
-#include "data/text_rows.h"
 
 namespace orrery::data {
 
@@ -329,9 +328,7 @@ class Xyz final : public TextFrames {
     layout.allows_more = !header.is_extended;
     while (!header.is_extended && layout.columns.size() > kPlainColumns && !layout.columns.back().is_wanted)
       layout.columns.pop_back();
-    Faults faults(bytes().file());
-    TextTable text = read_text_rows(bytes(), layout, faults);
-    require_end(layout.begin, {text.end, layout.first_line + text.rows}, header.count_line);
+    TextTable text = read_rows(layout, header.count_line);
     Table table;
     table.rows = text.rows;
     for (std::size_t c = 0; c < layout.columns.size(); ++c)

@@ -16,7 +16,7 @@
 #include "base/file_name.h"
 #include "base/text.h"
 #include "job/report_text.h"
-#include "points/derived.h"
+#include "points/rows.h"
 
 namespace orrery::info {
 namespace {

@@ -7,7 +7,7 @@
 #include "job/check_job.h"
 #include "job/job.h"
 #include "job/prepared_scene.h"
-#include "load/scene_files.h"
+#include "load/read_scene.h"
 
 namespace orrery::job {
 namespace {

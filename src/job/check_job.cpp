@@ -12,7 +12,7 @@
 #include "image/format.h"
 #include "job/checkpoint.h"
 #include "job/job.h"
-#include "load/scene_files.h"
+#include "load/read_scene.h"
 #include "scene/scene.h"
 
 namespace orrery::job {

@@ -19,7 +19,7 @@
 #include "job/outputs.h"
 #include "job/resources.h"
 #include "job/version.h"
-#include "load/scene_files.h"
+#include "load/read_scene.h"
 
 namespace orrery::job {
 

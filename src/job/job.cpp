@@ -27,7 +27,6 @@
 #include "job/statistics.h"
 #include "job/version.h"
 #include "load/read_scene.h"
-#include "load/scene_files.h"
 #include "render/outlines.h"
 #include "render/render.h"
 #include "scene/layers.h"

@@ -10,7 +10,7 @@
 #include "job/check_job.h"
 #include "job/checkpoint.h"
 #include "job/outputs.h"
-#include "load/scene_files.h"
+#include "load/read_scene.h"
 
 namespace orrery::job {
 namespace {

@@ -5,6 +5,8 @@
 
 #include <fmt/core.h>
 
+#include "base/text.h"
+
 namespace orrery::load {
 namespace {
 
@@ -18,8 +20,7 @@ constexpr std::size_t kLongestShown = 400;
 std::size_t byte_of_character(std::string_view line, std::size_t index) {
   std::size_t at = 0;
   for (; at < line.size(); ++at) {
-    const bool begins = (static_cast<unsigned char>(line[at]) & 0xC0u) != 0x80u;
-    if (begins && index-- == 0) return at;
+    if (!base::continues_character(line[at]) && index-- == 0) return at;
   }
   return at + index;
 }
@@ -70,10 +71,7 @@ void SourceText::point_into(const Override& override, const Place& place, base::
 
 base::Diagnostic SourceText::diagnostic(base::Severity severity, const Place& place, std::string text,
                                         std::string remedy) const {
-  base::Diagnostic out;
-  out.severity = severity;
-  out.text = std::move(text);
-  out.remedy = std::move(remedy);
+  base::Diagnostic out = base::file_diagnostic(severity, place.text_name, std::move(text), std::move(remedy));
   if (place.text_name == kOverrideName && overrides_ != nullptr && place.line >= 1 &&
       static_cast<std::size_t>(place.line) <= overrides_->size()) {
     const Override& override = (*overrides_)[static_cast<std::size_t>(place.line) - 1];
@@ -81,7 +79,6 @@ base::Diagnostic SourceText::diagnostic(base::Severity severity, const Place& pl
     if (place.column >= 1) point_into(override, place, out);
     return out;
   }
-  out.file = place.text_name;
   out.line = place.line;
   out.column = place.column;
   out.width = place.width;
@@ -104,13 +101,10 @@ void Diagnostics::raise_errors(const std::string& file) const {
   if (errors_ == 0) return;
   std::vector<base::Diagnostic> diagnostics;
   for (const auto& [key, diagnostic] : shown_) diagnostics.push_back(diagnostic);
-  if (errors_ > shown_.size()) {
-    base::Diagnostic rest;
-    rest.file = file;
-    rest.text = fmt::format("and {} more ({} in all)", errors_ - shown_.size(), errors_);
-    diagnostics.push_back(std::move(rest));
-  }
-  const std::string message = fmt::format("{}: {}{}", file, errors_, errors_ == 1 ? " error" : " errors");
+  if (errors_ > shown_.size())
+    diagnostics.push_back(base::file_diagnostic(
+        base::Severity::kError, file, fmt::format("and {} more ({} in all)", errors_ - shown_.size(), errors_)));
+  const std::string message = fmt::format("{}: {}", file, base::counted(errors_, "error"));
   const bool all_missing = missing_ == errors_;
   if (all_missing && missing_file_)
     throw base::FileError(base::ErrorKind::kMissingInput, message, missing_file_->file(), missing_file_->number(),

@@ -53,11 +53,6 @@ struct MapRequest {
   }
 };
 
-/// Values of texels that were replaced.
-struct Replaced {
-  std::uint64_t nan = 0, infinite = 0, negative = 0, out_of_range = 0;
-};
-
 /// Reads a map and converts it to the working space.
 class MapLoader {
  public:
@@ -110,8 +105,8 @@ class MapLoader {
         display::PixelConversion convert = display::pixel_conversion(request_.options.ocio_config, declared, working);
         const display::KnownSpace* const known = display::known_space(declared);
         if (!chosen.empty() && chosen != declared && (known == nullptr || known != display::known_space(chosen)))
-          faults_.warning(request_.space_key,
-                          fmt::format("is ignored: {} declares the colour space `{}`", name(), declared));
+          faults_.warning(request_.space_key, fmt::format("is ignored: {} declares the colour space `{}`",
+                                                          request_.file.filename().string(), declared));
         return convert;
       } catch (const base::Error& error) {
         if (error.kind() != base::ErrorKind::kUsage) throw;
@@ -127,8 +122,6 @@ class MapLoader {
       return {};
     }
   }
-
-  std::string name() const { return request_.file.filename().string(); }
 
   bool fits() {
     const std::uint64_t allowed = request_.options.memory_limit > 0 ? request_.options.memory_limit
@@ -148,19 +141,20 @@ class MapLoader {
     const auto image = std::make_shared<scene::EnvironmentImage>(header.width, header.height);
     const std::size_t values = 3 * static_cast<std::size_t>(header.width);
     // An infinite sun is one that did not fit into the file.
-    const float infinite = header.is_half ? std::min(kLargestHalf, request_.largest) : request_.largest;
+    const float largest = header.is_half ? std::min(kLargestHalf, request_.largest) : request_.largest;
+    std::uint64_t nan = 0, infinite = 0, negative = 0, out_of_range = 0;  // values that are replaced
     const auto take = [&](int y, float* rgb) {
       for (std::size_t i = 0; i < values; ++i) {
         if (rgb[i] >= 0 && std::isfinite(rgb[i])) continue;
         const bool is_infinite = rgb[i] > 0;
-        ++(std::isnan(rgb[i]) ? replaced_.nan : is_infinite ? replaced_.infinite : replaced_.negative);
-        rgb[i] = is_infinite ? infinite : 0;
+        ++(std::isnan(rgb[i]) ? nan : is_infinite ? infinite : negative);
+        rgb[i] = is_infinite ? largest : 0;
       }
       if (convert) convert(rgb, values / 3);
       float* const row = image->row(y);
       for (std::size_t i = 0; i < values; ++i) {
         const bool is_good = rgb[i] >= 0 && std::isfinite(rgb[i]);
-        if (!is_good || rgb[i] > request_.largest * kRoundingFactor) ++replaced_.out_of_range;
+        if (!is_good || rgb[i] > request_.largest * kRoundingFactor) ++out_of_range;
         row[i] = is_good ? std::min(rgb[i], request_.largest) : 0.0F;
         out_.brightest = std::max(out_.brightest, row[i]);
       }
@@ -168,22 +162,20 @@ class MapLoader {
     image::read_map(request_.file, take, request_.formats);
     if (request_.has_mip_map) sky::add_mip_map(*image);
     out_.image = image;
-    if (replaced_.nan + replaced_.negative > 0)
-      faults_.warning(request_.file_key, fmt::format("{} values are NaN and {} negative; they are replaced by 0",
-                                                     replaced_.nan, replaced_.negative));
-    if (replaced_.infinite > 0)
+    if (nan + negative > 0)
       faults_.warning(request_.file_key,
-                      fmt::format("{} values are infinite; they are replaced by {}{}", replaced_.infinite,
-                                  static_cast<double>(infinite),
-                                  header.is_half ? "; write brighter values in single precision" : ""));
-    if (replaced_.out_of_range > 0)
-      faults_.warning(request_.file_key,
-                      fmt::format("{} values are out of range{} and were clamped", replaced_.out_of_range,
-                                  request_.is_color ? " in " + request_.working_space : ""));
+                      fmt::format("{} values are NaN and {} negative; they are replaced by 0", nan, negative));
+    if (infinite > 0)
+      faults_.warning(
+          request_.file_key,
+          fmt::format("{} values are infinite; they are replaced by {}{}", infinite, static_cast<double>(largest),
+                      header.is_half ? "; write brighter values in single precision" : ""));
+    if (out_of_range > 0)
+      faults_.warning(request_.file_key, fmt::format("{} values are out of range{} and were clamped", out_of_range,
+                                                     request_.is_color ? " in " + request_.working_space : ""));
   }
 
   const MapRequest& request_;
-  Replaced replaced_;
   scene::KeyFaults faults_;
   LoadedMap out_;
 };

@@ -68,10 +68,6 @@ Origin origin_of(display::Name name, const display::Settings& options, const sce
   return {};
 }
 
-bool has_image(const scene::Background& background) {
-  return background.type == scene::BackgroundType::kImage && !background.file.empty();
-}
-
 /// Looks up the colour names of a scene's [color] and of the command line.
 class ColorCheck {
  public:
@@ -291,7 +287,7 @@ class SceneLoader {
   void load_background(const ImageRequest& images) {
     const scene::Background& background = scene_.background;
     const bool is_sky = background.type == scene::BackgroundType::kSky;
-    if (!is_sky && !has_image(background)) return;
+    if (!is_sky && (background.type != scene::BackgroundType::kImage || background.file.empty())) return;
     std::optional<LoadedBackground> known;
     if (previous_) known = std::move(previous_->background);
     const bool is_known = known && known->image &&

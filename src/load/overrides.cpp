@@ -130,12 +130,9 @@ bool quote_list(std::string_view value, Quoted& out) {
 }
 
 /// Parses key and value. Preceding text is replaced by blanks, so that locations are those of `text`.
-///
-/// `inserted`  number of bytes at the beginning of `text` that the user did not type
-toml::table parse_override(const std::string& text, const Parts& parts, std::size_t inserted, Override& out) {
-  Quoted key{std::string(parts.key_begin, ' ') + text.substr(parts.key_begin, parts.equals + 1 - parts.key_begin), {}};
-  key.inserted.resize(inserted);
-  std::iota(key.inserted.begin(), key.inserted.end(), std::size_t{0});
+toml::table parse_override(const std::string& text, const Parts& parts, Override& out) {
+  Quoted key{std::string(parts.key_begin, ' ') + text.substr(parts.key_begin, parts.equals + 1 - parts.key_begin),
+             out.inserted};
   const std::string value = text.substr(parts.equals + 1);
   if (is_blank(value)) throw Fault{"no value after the =", kOverrideExample};
   const auto parsed = [&](Quoted quoted) {
@@ -196,7 +193,7 @@ void read_override(const std::string& text, std::size_t inserted, Override& out)
       out.element = element_of(parts.list);
       name = prefix = fmt::format("{}[{}].", out.element->list, out.element->index);
     }
-    const toml::table set = parse_override(text, parts, inserted, out);
+    const toml::table set = parse_override(text, parts, out);
     if (set.empty()) throw Fault{"the key begins with #, as a comment does", kOverrideExample};
     flatten(set, name, prefix, out.values);
   } catch (const Fault& found) {

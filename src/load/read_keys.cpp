@@ -60,19 +60,23 @@ const toml::array* list_of(ReadState& state, const toml::node& node, const std::
   return nullptr;
 }
 
+/// Reads a list of numbers; none, and errors are reported, if it is anything else.
+///
+/// `wanted`   see list_of()
+std::optional<std::vector<double>> read_numbers(ReadState& state, const toml::node& node, const std::string& name,
+                                                const scene::Range& range, std::size_t size, const char* wanted) {
+  const toml::array* const array = list_of(state, node, name, size, wanted);
+  if (array == nullptr) return {};
+  std::vector<double> out;
+  for (std::size_t i = 0; i < size; ++i)
+    if (const auto x = read_number(state, *array->get(i), fmt::format("{}[{}]", name, i), range)) out.push_back(*x);
+  return out.size() == size ? std::optional(out) : std::nullopt;
+}
+
 std::optional<Value> read_vector(ReadState& state, const toml::node& node, const std::string& name,
                                  const scene::Range& range) {
-  const toml::array* const array = list_of(state, node, name, 3, "three numbers like [0, 1, 0]");
-  if (array == nullptr) return {};
-  double v[3];
-  bool good = true;
-  for (std::size_t i = 0; i < 3; ++i) {
-    const auto x = read_number(state, *array->get(i), fmt::format("{}[{}]", name, i), range);
-    good = good && x.has_value();
-    v[i] = x.value_or(0);
-  }
-  if (!good) return {};
-  return math::Vec3d{v[0], v[1], v[2]};
+  const auto v = read_numbers(state, node, name, range, 3, "three numbers like [0, 1, 0]");
+  return v ? std::optional<Value>(math::Vec3d{(*v)[0], (*v)[1], (*v)[2]}) : std::nullopt;
 }
 
 std::optional<Value> read_integer(ReadState& state, const toml::node& node, const std::string& name,
@@ -121,17 +125,13 @@ std::optional<Value> read_window(ReadState& state, const toml::node& node, const
 
 std::optional<Value> read_interval(ReadState& state, const toml::node& node, const std::string& name,
                                    const scene::Range& range) {
-  const toml::array* const array = list_of(state, node, name, 2, "two numbers like [0, 1]");
-  if (array == nullptr) return {};
-  const auto low = read_number(state, *array->get(0), name + "[0]", range);
-  const auto high = read_number(state, *array->get(1), name + "[1]", range);
-  if (!low || !high) return {};
-  if (!(*low < *high)) {
-    state.error(place_of(node), fmt::format("{} is {}; the first number must be less than the second", name,
-                                            scene::interval_text({*low, *high})));
-    return {};
-  }
-  return scene::Interval{*low, *high};
+  const auto ends = read_numbers(state, node, name, range, 2, "two numbers like [0, 1]");
+  if (!ends) return {};
+  const scene::Interval out{ends->front(), ends->back()};
+  if (out.low < out.high) return out;
+  state.error(place_of(node),
+              fmt::format("{} is {}; the first number must be less than the second", name, scene::interval_text(out)));
+  return {};
 }
 
 std::optional<Value> read_boolean(ReadState& state, const toml::node& node, const std::string& name) {
@@ -140,42 +140,30 @@ std::optional<Value> read_boolean(ReadState& state, const toml::node& node, cons
   return {};
 }
 
-/// Reads a list of enumerators. Reports each invalid element separately.
-std::optional<Value> read_words(ReadState& state, const toml::node& node, const std::string& name,
+/// Reads a list of strings; with choices, of different ones of them. Reports each invalid element separately.
+std::optional<Value> read_texts(ReadState& state, const toml::node& node, const std::string& name,
                                 const std::vector<std::string>& choices) {
-  const toml::array* array = node.as_array();
+  const toml::array* const array = node.as_array();
   if (array == nullptr) {
-    wrong_type(state, node, name, fmt::format("a list like [\"{}\"]", choices.front()));
+    wrong_type(state, node, name,
+               choices.empty() ? "a list of strings" : fmt::format("a list like [\"{}\"]", choices.front()));
     return {};
   }
-  std::vector<std::string> words;
+  std::vector<std::string> texts;
   bool good = true;
   for (std::size_t i = 0; i < array->size(); ++i) {
     const toml::node& element = *array->get(i);
     const std::string element_name = fmt::format("{}[{}]", name, i);
-    const auto word = read_text(state, element, element_name, choices);
-    good = good && word.has_value();
-    if (!word) continue;
-    if (base::contains(words, std::get<std::string>(*word))) {
+    const auto text = read_text(state, element, element_name, choices);
+    good = good && text.has_value();
+    if (!text) continue;
+    if (!choices.empty() && base::contains(texts, std::get<std::string>(*text))) {
       state.error(place_of(element), element_name + " is a duplicate", "remove it");
       good = false;
     }
-    words.push_back(std::get<std::string>(*word));
+    texts.push_back(std::get<std::string>(*text));
   }
-  return good ? std::optional<Value>(words) : std::nullopt;
-}
-
-std::optional<Value> read_texts(ReadState& state, const toml::node& node, const std::string& name) {
-  const toml::array* array = node.as_array();
-  if (array == nullptr) {
-    wrong_type(state, node, name, "a list of strings");
-    return {};
-  }
-  std::vector<std::string> texts;
-  for (std::size_t i = 0; i < array->size(); ++i)
-    if (const auto text = read_text(state, *array->get(i), fmt::format("{}[{}]", name, i), {}))
-      texts.push_back(std::get<std::string>(*text));
-  return texts.size() == array->size() ? std::optional<Value>(texts) : std::nullopt;
+  return good ? std::optional<Value>(texts) : std::nullopt;
 }
 
 /// Reads a table from particle types to numbers or colours: `type = { 1 = 0.5, 2 = 0.7 }`. Each fault drops a type.
@@ -209,12 +197,12 @@ std::optional<Value> read_value(ReadState& state, const toml::node& node, const 
     case ValueType::kChoice: return read_text(state, node, name, choices);
     case ValueType::kWindow: return read_window(state, node, name, range);
     case ValueType::kBoolean: return read_boolean(state, node, name);
-    case ValueType::kChoices: return read_words(state, node, name, choices);
+    case ValueType::kChoices: return read_texts(state, node, name, choices);
     case ValueType::kInterval: return read_interval(state, node, name, range);
     case ValueType::kName:
       if (const toml::value<std::int64_t>* number = node.as_integer()) return std::to_string(number->get());
       return read_text(state, node, name, {});
-    case ValueType::kTexts: return read_texts(state, node, name);
+    case ValueType::kTexts: return read_texts(state, node, name, {});
     case ValueType::kNumbersByType: return read_types<double>(state, node, name, ValueType::kNumber, range);
     case ValueType::kColorsByType: return read_types<math::Vec3d>(state, node, name, ValueType::kVector, range);
   }

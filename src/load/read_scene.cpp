@@ -19,6 +19,8 @@
 #include "base/frames.h"
 #include "base/input_file.h"
 #include "data/data_file.h"
+#include "display/settings.h"
+#include "load/load_images.h"
 #include "load/read_keys.h"
 #include "scene/animation.h"
 #include "scene/limits.h"
@@ -26,17 +28,6 @@
 
 namespace orrery::load {
 namespace {
-
-using File = std::unique_ptr<std::FILE, int (*)(std::FILE*)>;
-
-File opened(const std::filesystem::path& file) {
-  base::require_readable(file);
-  File in(std::fopen(file.c_str(), "rb"), &std::fclose);
-  if (!in)
-    throw base::FileError(base::ErrorKind::kMissingInput,
-                          fmt::format("cannot open {}: {}", file.string(), std::strerror(errno)), file, errno);
-  return in;
-}
 
 /// Returns an array of tables; null if it is absent, or if it is not an array of tables, which is reported once.
 const toml::array* tables_under(ReadState& state, const toml::table& root, const char* name) {
@@ -341,7 +332,6 @@ SceneReader::SceneReader(const SceneSource& source, Pose pose) : state_(std::mak
 }
 
 SceneReader::~SceneReader() = default;
-SceneReader::SceneReader(SceneReader&&) noexcept = default;
 
 scene::Scene& SceneReader::scene() { return state_->result.scene; }
 
@@ -387,14 +377,44 @@ scene::Scene authored_scene(const SceneSource& source) {
   return std::move(SceneReader(source, Pose::kAuthored).scene());
 }
 
+void add_named_files(const SceneSource& scene, const std::vector<int>& frames, base::FileSet& files) {
+  add_scene_files(scene.file, authored_scene(scene), files, frames);
+}
+
+void add_scene_files(const std::filesystem::path& scene_file, const scene::Scene& scene, base::FileSet& files,
+                     const std::vector<int>& frames) {
+  add_ocio_configs(config_of(scene_file, scene.color), files);
+  const std::filesystem::path folder = scene_file.parent_path();
+  for (const scene::NamedFile& file : scene::named_files(scene)) {
+    if (file.role == &scene::kOcioConfigFile) continue;
+    if (!base::is_sequence(folder / file.name)) {
+      files.add_input(folder / file.name, file.role->name);
+      continue;
+    }
+    for (const int frame : frames) files.add_input(folder / base::with_frame(file.name, frame), file.role->name);
+  }
+}
+
+void add_ocio_configs(const std::string& config, base::FileSet& files) {
+  for (const std::filesystem::path& file : display::config_files(config)) {
+    if (!files.add_input(file, "OCIO config")) continue;
+    for (const std::filesystem::path& table : display::table_files(file))
+      files.add_input(table, "table of the OCIO config");
+  }
+}
+
 void refuse_data_file(const std::filesystem::path& file, std::string_view text) {
   if (base::extension(file) != ".toml" && data::is_data_file(file, text))
     base::refuse(fmt::format("{0} is a data file, not a scene; render it: orrery plot {0} -o IMAGE", file.string()));
 }
 
 std::string read_file(const std::filesystem::path& file, std::uint64_t largest_bytes) {
+  base::require_readable(file);
+  const std::unique_ptr<std::FILE, int (*)(std::FILE*)> in(std::fopen(file.c_str(), "rb"), &std::fclose);
+  if (!in)
+    throw base::FileError(base::ErrorKind::kMissingInput,
+                          fmt::format("cannot open {}: {}", file.string(), std::strerror(errno)), file, errno);
   char more[65536];
-  const File in = opened(file);
   const auto too_large = [&](std::string_view head) {
     refuse_data_file(file, head);
     return base::Error(base::ErrorKind::kBadData,
@@ -404,11 +424,9 @@ std::string read_file(const std::filesystem::path& file, std::uint64_t largest_b
   const auto size = std::filesystem::file_size(file, error);
   if (!error && size > largest_bytes) throw too_large({more, std::fread(more, 1, sizeof(more), in.get())});
   std::string bytes;
-  bytes.resize(error ? 0 : static_cast<std::size_t>(size));
-  std::size_t got = std::fread(bytes.data(), 1, bytes.size(), in.get());
-  if (got < bytes.size()) bytes.resize(got);
-  // A file may have grown in the meantime, and files in /proc report a size of 0: read to the end.
-  while ((got = std::fread(more, 1, sizeof(more), in.get())) > 0) {
+  bytes.reserve(error ? 0 : static_cast<std::size_t>(size));
+  // A file may grow meanwhile, and files in /proc report a size of 0: read to the end.
+  while (const std::size_t got = std::fread(more, 1, sizeof(more), in.get())) {
     bytes.append(more, got);
     if (bytes.size() > largest_bytes) throw too_large(bytes);
   }

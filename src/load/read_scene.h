@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "base/error.h"
+#include "base/file_set.h"
 #include "load/overrides.h"
 #include "points/load_points.h"
 #include "scene/diagnostic.h"
@@ -67,7 +68,6 @@ class SceneReader {
   /// Errors     base::Error: kMissingInput if the file cannot be opened; kIo; kBadData if it is not TOML
   explicit SceneReader(const SceneSource& source, Pose pose = Pose::kAtFrame);
   ~SceneReader();
-  SceneReader(SceneReader&&) noexcept;
 
   /// Keys that cannot be read have their defaults.
   scene::Scene& scene();
@@ -101,6 +101,24 @@ class SceneReader {
 ///
 /// Errors     base::Error(kBadData) for invalid TOML; kMissingInput, kIo
 scene::Scene authored_scene(const SceneSource& source);
+
+/// Adds the files that a scene references at these frames. Reads the scene file, but no other file.
+///
+/// Errors     those of add_scene_files and authored_scene
+void add_named_files(const SceneSource& scene, const std::vector<int>& frames, base::FileSet& files);
+
+/// Adds the files that a scene references.
+///
+/// `frames`   of sequences of files; a scene that was read at a frame has none
+/// Errors     base::Error(kUsage) if one is an output
+void add_scene_files(const std::filesystem::path& scene_file, const scene::Scene& scene, base::FileSet& files,
+                     const std::vector<int>& frames = {});
+
+/// Adds an OCIO config, from --ocio or a scene, and the config in $OCIO, if they are files, and their LUT files.
+///
+/// Errors     those of add_scene_files
+/// Cost       loads a config that is not in the set
+void add_ocio_configs(const std::string& config, base::FileSet& files);
 
 /// Maximum size of a scene file, bytes: a million [[sphere]] tables. Larger scenes use points files.
 inline constexpr std::uint64_t kLargestSceneFile = 256u << 20;

@@ -9,6 +9,7 @@
 
 #include <fmt/core.h>
 
+#include "base/text.h"
 #include "scene/schema.h"
 #include "scene/texture.h"
 
@@ -85,60 +86,26 @@ void apply_overrides(toml::table& root, const Overrides& overrides, ReadState& s
   }
 }
 
-/// Position in a text, with line and column.
-class Cursor {
- public:
-  explicit Cursor(std::string_view text) : text_(text) {}
-
-  bool at_end() const { return at_ >= text_.size(); }
-  char now() const { return text_[at_]; }
-  bool begins(std::string_view word) const { return text_.substr(at_, word.size()) == word; }
-  void step() {
-    if (text_[at_] == '\n') {
-      ++line_;
-      column_ = 1;
-    } else if ((static_cast<unsigned char>(text_[at_]) & 0xC0u) != 0x80u) {
-      ++column_;
-    }
-    ++at_;
-  }
-  void step(std::size_t count) {
-    for (; count > 0 && !at_end(); --count) step();
-  }
-  Place place() const { return {"", line_, column_, 1}; }
-
- private:
-  std::string_view text_;
-  std::size_t at_ = 0;
-  int line_ = 1, column_ = 1;
-};
-
-void skip_comment(Cursor& cursor) {
-  while (!cursor.at_end() && cursor.now() != '\n') cursor.step();
-}
-
-/// Skips a TOML string of any of the four kinds. An unclosed string ends at the end of the line or of the text.
-void skip_string(Cursor& cursor) {
-  const char quote = cursor.now();
+/// Returns the end of the TOML string, of any of the four kinds, that begins at an offset. An unclosed string ends at
+/// the end of the line or of the text.
+std::size_t string_end(std::string_view text, std::size_t at) {
+  const char quote = text[at];
   const bool escapes = quote == '"';
   const std::string_view triple = escapes ? "\"\"\"" : "'''";
-  const bool is_long = cursor.begins(triple);
-  cursor.step(is_long ? 3 : 1);
-  while (!cursor.at_end()) {
-    if (escapes && cursor.now() == '\\') {
-      cursor.step(2);
-    } else if (is_long && cursor.begins(triple)) {
-      cursor.step(3);
+  const bool is_long = text.substr(at).starts_with(triple);
+  for (at += is_long ? 3 : 1; at < text.size(); ++at) {
+    if (escapes && text[at] == '\\') {
+      ++at;
+    } else if (is_long && text.substr(at).starts_with(triple)) {
+      at += 3;
       // Up to two more quotes belong to the string.
-      for (int i = 0; i < 2 && !cursor.at_end() && cursor.now() == quote; ++i) cursor.step();
-      return;
-    } else if (!is_long && (cursor.now() == quote || cursor.now() == '\n')) {
-      cursor.step();
-      return;
-    } else {
-      cursor.step();
+      for (int i = 0; i < 2 && at < text.size() && text[at] == quote; ++i) ++at;
+      return at;
+    } else if (!is_long && (text[at] == quote || text[at] == '\n')) {
+      return at + 1;
     }
   }
+  return text.size();
 }
 
 /// Removes the keys of the file that only other types have, if an override has replaced the type.
@@ -231,28 +198,23 @@ Override::Fault fault_of(const toml::parse_error& error) {
 }
 
 Place too_deep_key(std::string_view text) {
-  Cursor cursor(text);
-  // Keys are delimited by the other characters. Decimal points count as dots, too, which does no harm.
-  for (int parts = 1; !cursor.at_end();) {
-    switch (cursor.now()) {
-      case '#': skip_comment(cursor); break;
-      case '"':
-      case '\'': skip_string(cursor); break;
-      case '.':
-        if (++parts > kDeepestKey) return cursor.place();
-        cursor.step();
-        break;
-      case '=':
-      case ',':
-      case '[':
-      case ']':
-      case '{':
-      case '}':
-      case '\n':
-        parts = 1;
-        cursor.step();
-        break;
-      default: cursor.step();
+  int parts = 1;
+  for (std::size_t at = 0; at < text.size();) {
+    if (text[at] == '#') {
+      at = std::min(text.find('\n', at), text.size());
+    } else if (text[at] == '"' || text[at] == '\'') {
+      at = string_end(text, at);
+    } else if (text[at] != '.') {
+      if (std::string_view("=,[]{}\n").find(text[at]) != std::string_view::npos) parts = 1;  // delimits keys
+      ++at;
+    } else if (++parts <= kDeepestKey) {  // decimal points count, too, which does no harm
+      ++at;
+    } else {
+      const std::string_view before = text.substr(0, at), line = before.substr(before.rfind('\n') + 1);
+      const auto lines = std::count(before.begin(), before.end(), '\n');
+      const auto characters =
+          std::count_if(line.begin(), line.end(), [](char c) { return !base::continues_character(c); });
+      return {"", static_cast<int>(lines) + 1, static_cast<int>(characters) + 1, 1};
     }
   }
   return {};

@@ -2,7 +2,6 @@
 #include "load/write_scene.h"
 
 #include <algorithm>
-#include <array>
 #include <fstream>
 #include <iterator>
 #include <set>
@@ -164,27 +163,23 @@ std::string scene_text(const scene::Scene& scene, const std::string& comment) {
     add_table(out, fmt::format("[{}]", table.name), texts_of(table.keys, scene, defaults));
   add_materials(out, scene.materials);
   const auto name_text = [&](std::uint32_t material) { return string_text(material_name(scene, material)); };
-  const auto add = [&](const char* header, KeyTexts keys, std::uint32_t material) {
-    keys.emplace_back("material", name_text(material));
+  const auto add = [&](const char* header, KeyTexts keys, std::uint32_t from, std::uint32_t to) {
+    keys.emplace_back("material",
+                      from == to ? name_text(from) : fmt::format("[{}, {}]", name_text(from), name_text(to)));
     add_table(out, header, keys);
   };
   for (const scene::Sphere& sphere : scene.spheres)
-    add("[[sphere]]", texts_of(scene::sphere_keys(), sphere, {}), sphere.material);
-  const auto add_rods = [&](const char* header, KeyTexts keys, const std::array<std::uint32_t, 2>& materials) {
-    const auto [at_from, at_to] = materials;
-    keys.emplace_back("material", at_from == at_to ? name_text(at_from)
-                                                   : fmt::format("[{}, {}]", name_text(at_from), name_text(at_to)));
-    add_table(out, header, keys);
-  };
-  for (const scene::Rod& rod : scene.rods) add_rods("[[rod]]", texts_of(scene::rod_keys(), rod, {}), rod.materials);
+    add("[[sphere]]", texts_of(scene::sphere_keys(), sphere, {}), sphere.material, sphere.material);
+  for (const scene::Rod& rod : scene.rods)
+    add("[[rod]]", texts_of(scene::rod_keys(), rod, {}), rod.materials[0], rod.materials[1]);
   add_tracks(out, scene);
   for (const scene::PointsKeys& points : scene.points) {
     KeyTexts keys = texts_of(scene::points_keys(), points, {});
     if (points.bonds.material) keys.emplace_back("bonds.material", name_text(*points.bonds.material));
-    add("[[points]]", keys, points.material);
+    add("[[points]]", keys, points.material, points.material);
   }
   for (const scene::RodFile& rods : scene.rod_files)
-    add_rods("[[rods]]", texts_of(scene::rod_file_keys(), rods, {}), rods.materials);
+    add("[[rods]]", texts_of(scene::rod_file_keys(), rods, {}), rods.materials[0], rods.materials[1]);
   if (!out.empty()) out.pop_back();  // the blank line after the last block
   return out;
 }
@@ -210,15 +205,10 @@ void write_ply(const scene::Points& points, const std::filesystem::path& file) {
   base::OutputFile output(file);
   std::string& out = output.buffer();
   out = ply_header(points);
-  const auto append = [&](auto value) {
-    char bytes[sizeof(value)];
-    data::store(value, bytes, false);
-    out.append(bytes, sizeof(value));
-  };
   for (std::size_t i = 0; i < points.centers.size(); ++i) {
     const math::Vec3d c = points.centers[i];
-    for (const double x : {c.x, c.y, c.z, points.radii[i]}) append(x);
-    if (!points.materials.empty()) append(points.materials[i]);
+    for (const double x : {c.x, c.y, c.z, points.radii[i]}) data::append_little_endian(out, x);
+    if (!points.materials.empty()) data::append_little_endian(out, points.materials[i]);
     output.flush();
   }
   output.finish();

@@ -1,14 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "plot/appearance.h"
-
 #include <cstddef>
 #include <cstdint>
+#include <optional>
 #include <utility>
 
 #include <fmt/core.h>
 
 #include "base/error.h"
 #include "base/text.h"
+#include "plot/plot.h"
 #include "plot/range.h"
 #include "points/bonds.h"
 #include "points/color_map.h"
@@ -39,6 +39,8 @@ class Appearance {
   std::vector<std::string> run() {
     // Determining the radius from the spacing requires reading the file, so the colour options are checked first.
     const std::vector<std::string> color_choices = choose_color();
+    if (!points_.vectors.columns.empty() && options_.material == "glass")
+      base::refuse("--vectors: arrows of glass are not supported; use another --material");
     choose_radius();
     choose_bonds();
     choose_arrows();
@@ -47,6 +49,13 @@ class Appearance {
   }
 
  private:
+  /// Measures the file at the first call, for all choices: radii if they determine something, the spacing otherwise and
+  /// for arrows.
+  const Measures& measured(bool by_radii) {
+    if (!measures_) measures_ = data_.measures(points_, !by_radii || !points_.vectors.columns.empty(), by_radii);
+    return *measures_;
+  }
+
   void chose(const std::string& what, const std::string& why) { choices_.push_back(fmt::format("{}: {}", what, why)); }
 
   void choose_radius() {
@@ -82,7 +91,7 @@ class Appearance {
             is_full ? "van der Waals radii of the elements" : "a quarter of the van der Waals radii of the elements");
     } else {
       radius.value = 1;
-      const double distance = data_.spacing(points_);
+      const double distance = measured(false).spacing;
       if (distance > 0) radius.value = distance / 2;
       radius.value = rounded(*radius.value * radius.scale * fraction);
       chose("radius " + number_text(*radius.value),
@@ -101,7 +110,7 @@ class Appearance {
     const scene::PointsRadius& radius = points_.radius;
     const bool varies = !radius.value && radius.element.empty() && radius.types.empty();
     if (!bonds.are_drawn || bonds.radius || !varies || !info_.roles.element.empty()) return;
-    if (const double mean = data_.mean_radius(points_); mean > 0)
+    if (const double mean = measured(true).mean_radius; mean > 0)
       bonds.radius = rounded(
           options_.representation == Representation::kSticks ? mean : points::bond_radius(info_, bonds, {mean}));
   }
@@ -111,9 +120,7 @@ class Appearance {
   void choose_arrows() {
     scene::PointsVectors& vectors = points_.vectors;
     if (vectors.columns.empty()) return;
-    if (options_.material == "glass")
-      base::refuse("--vectors: arrows of glass are not supported; use another --material");
-    const double spacing = data_.spacing(points_), rms_vector = data_.rms_vector(points_);
+    const double spacing = measured(false).spacing, rms_vector = measured(false).rms_vector;
     if (spacing > 0 && !points_.bonds.are_drawn) vectors.radius = rounded(kShaftRadius * spacing);
     if (!(spacing > 0 && rms_vector > 0)) return;
     vectors.scale = rounded(kArrowLength * spacing / rms_vector);
@@ -153,14 +160,13 @@ class Appearance {
            : !roles.element.empty() ? "element"
            : !roles.type.empty()    ? "type"
                                     : "none";
-      why = is_glass          ? "glass has none"
-            : by == "rgb"     ? "the file's own; --color-by changes it"
-            : by == "none"    ? "light grey; --color-by COLUMN shows values"
-            : by == "element" ? "the file has no colours; --color-by changes it"
-            : by == "type"    ? "the file has no colours; --color-by changes it"
-            : is_assembly     ? "an assembly; --color-by element shows elements"
-            : has_many        ? "many atoms; --color-by element shows elements"
-                              : "all atoms are of one element; --color-by element shows it";
+      why = is_glass                          ? "glass has none"
+            : by == "rgb"                     ? "the file's own; --color-by changes it"
+            : by == "none"                    ? "light grey; --color-by COLUMN shows values"
+            : by == "element" || by == "type" ? "the file has no colours; --color-by changes it"
+            : is_assembly                     ? "an assembly; --color-by element shows elements"
+            : has_many                        ? "many atoms; --color-by element shows elements"
+                                              : "all atoms are of one element; --color-by element shows it";
       out.push_back(fmt::format("{}: {}", by == "none" ? "no colour" : "colour by " + by, why));
     }
     if (set_color(options_, by, info_, color))
@@ -179,6 +185,7 @@ class Appearance {
   const data::FrameInfo& info_;
   scene::PointsKeys& points_;
   std::vector<std::string> choices_;
+  std::optional<Measures> measures_;
 };
 
 }  // namespace

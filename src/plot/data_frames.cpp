@@ -10,8 +10,8 @@
 #include "base/error.h"
 #include "base/frames.h"
 #include "points/color_map.h"
-#include "points/derived.h"
-#include "points/selection.h"
+#include "points/rows.h"
+#include "points/sources.h"
 #include "points/spacing.h"
 #include "scene/limits.h"
 
@@ -26,9 +26,37 @@ constexpr const char* kCategoricalMap = "tab10";
 /// Frames of larger files are not counted for a message: that would read the whole file.
 constexpr std::uintmax_t kMaxCountedBytes = std::uintmax_t{2} << 30;
 
-bool is_text(const data::FrameInfo& info, const std::string& name) {
-  const data::ColumnInfo* const column = data::find_named(info.columns, name);
-  return column != nullptr && column->type == data::ColumnType::kText;
+/// Keys that read all particles, whatever is selected.
+scene::PointsKeys everything(const scene::PointsKeys& keys) {
+  scene::PointsKeys out;
+  out.file = keys.file;
+  out.component = keys.component;
+  out.material_column = keys.material_column;
+  out.radius.value = 1;
+  out.skip_bad = true;
+  return out;
+}
+
+/// set_color() without checks.
+bool choose_color(const DataOptions& options, const std::string& color_by, const data::FrameInfo& info,
+                  scene::PointsColor& color) {
+  const data::Roles& roles = info.roles;
+  if (color_by == "none") return false;
+  if (color_by == "rgb" && data::find_named(info.columns, "rgb") == nullptr) {
+    color.rgb = true;
+    return false;
+  }
+  if (color_by == "element" && !options.has_map) {
+    color.element = "jmol";
+    return false;
+  }
+  const bool is_type = color_by == "type";
+  color.column = is_type && !roles.type.empty()                    ? roles.type
+                 : color_by == "element" && !roles.element.empty() ? roles.element
+                                                                   : color_by;
+  if (options.has_map) return false;
+  color.map = is_type || points::type_of(info, color.column) == data::ColumnType::kText ? kCategoricalMap : kMap;
+  return true;
 }
 
 }  // namespace
@@ -62,8 +90,6 @@ DataFrames::DataFrames(const DataOptions& options, const std::filesystem::path& 
   numbers_.resize(static_cast<std::size_t>(file_->frame_count()));
   std::iota(numbers_.begin(), numbers_.end(), 1);
 }
-
-DataFrames::~DataFrames() = default;
 
 const char* DataFrames::format() const { return file_->format; }
 
@@ -125,56 +151,35 @@ std::vector<int> DataFrames::distinct() const {
   return out;
 }
 
-namespace {
-
-/// Keys that read all particles, whatever is selected.
-scene::PointsKeys everything(const scene::PointsKeys& keys) {
-  scene::PointsKeys out;
-  out.file = keys.file;
-  out.component = keys.component;
-  out.material_column = keys.material_column;
-  out.radius.value = 1;
-  out.skip_bad = true;
-  return out;
-}
-
-}  // namespace
-
-double DataFrames::first_measure(const std::function<double(int frame)>& measure) const {
-  double value = 0;
-  if (is_sequence_) {
-    for (const int frame : all())
-      if (value == 0) value = measure(frame);
-    return value;
-  }
-  value = measure(1);
-  // Frames are counted only if that is necessary: it may read the whole file.
-  for (int frame = 2; value == 0 && frame <= file_->frame_count(); ++frame) value = measure(frame);
-  return value;
-}
-
-double DataFrames::spacing(const scene::PointsKeys& keys) const {
-  const scene::PointsKeys all_particles = everything(keys);
-  return first_measure(
-      [&](int frame) { return points::median_neighbor_distance(load(frame, all_particles).points.centers); });
-}
-
-double DataFrames::mean_radius(const scene::PointsKeys& keys) const {
-  scene::PointsKeys all_particles = everything(keys);
-  all_particles.radius = keys.radius;
-  return first_measure([&](int frame) {
-    const scene::NumberArray radii = load(frame, all_particles).points.radii;
-    double sum = 0;
-    for (const double radius : radii) sum += std::abs(radius);
-    return radii.empty() ? 0 : sum / static_cast<double>(radii.size());
-  });
-}
-
-double DataFrames::rms_vector(const scene::PointsKeys& keys) const {
+Measures DataFrames::measures(const scene::PointsKeys& keys, bool of_spacing, bool of_radii) const {
+  const bool of_vectors = !keys.vectors.columns.empty();
   scene::PointsKeys all_particles = everything(keys);
   all_particles.vectors.columns = keys.vectors.columns;
   all_particles.vectors.radius = scene::kLargestLength;  // no vector is so long that an arrow is made
-  return first_measure([&](int frame) { return load(frame, all_particles).points.rms_vector; });
+  Measures out;
+  const auto is_complete_with = [&](int frame) {
+    scene::PointsKeys with_radii = all_particles;
+    if (of_radii) with_radii.radius = keys.radius;
+    LoadedFrame loaded = load(frame, with_radii);
+    if (of_radii && out.mean_radius == 0 && !loaded.points.radii.empty()) {
+      for (const double radius : loaded.points.radii) out.mean_radius += std::abs(radius);
+      out.mean_radius /= static_cast<double>(loaded.points.radii.size());
+    }
+    // Particles without a valid radius, of which there was a warning, count for the others.
+    if (of_radii && (of_spacing || of_vectors) && !loaded.warnings.empty()) loaded = load(frame, all_particles);
+    if (of_spacing && out.spacing == 0) out.spacing = points::median_neighbor_distance(loaded.points.centers);
+    if (out.rms_vector == 0) out.rms_vector = loaded.points.rms_vector;
+    return (!of_spacing || out.spacing > 0) && (!of_radii || out.mean_radius > 0) &&
+           (!of_vectors || out.rms_vector > 0);
+  };
+  if (is_sequence_) {
+    const std::vector<int> frames = all();
+    for (std::size_t i = 0; i < frames.size() && !is_complete_with(frames[i]);) ++i;
+    return out;
+  }
+  // Frames are counted only if that is necessary: it may read the whole file.
+  for (int frame = 1; !is_complete_with(frame) && frame < file_->frame_count();) ++frame;
+  return out;
 }
 
 bool DataFrames::has_one_element(const scene::PointsKeys& keys) const {
@@ -196,32 +201,6 @@ std::string all_of(const std::vector<std::string>& conditions) {
   }
   return out;
 }
-
-namespace {
-
-/// set_color() without checks.
-bool choose_color(const DataOptions& options, const std::string& color_by, const data::FrameInfo& info,
-                  scene::PointsColor& color) {
-  const data::Roles& roles = info.roles;
-  if (color_by == "none") return false;
-  if (color_by == "rgb" && data::find_named(info.columns, "rgb") == nullptr) {
-    color.rgb = true;
-    return false;
-  }
-  if (color_by == "element" && !options.has_map) {
-    color.element = "jmol";
-    return false;
-  }
-  const bool is_type = color_by == "type";
-  color.column = is_type && !roles.type.empty()                    ? roles.type
-                 : color_by == "element" && !roles.element.empty() ? roles.element
-                                                                   : color_by;
-  if (options.has_map) return false;
-  color.map = is_type || is_text(info, color.column) ? kCategoricalMap : kMap;
-  return true;
-}
-
-}  // namespace
 
 bool set_color(const DataOptions& options, const std::string& color_by, const data::FrameInfo& info,
                scene::PointsColor& color) {

@@ -39,6 +39,13 @@ struct LoadedFrame {
   std::vector<base::Diagnostic> warnings;
 };
 
+/// What DataFrames::measures() measures; 0: not requested, or 0 in all frames.
+struct Measures {
+  double spacing = 0;      ///< median distance between neighbours
+  double mean_radius = 0;  ///< of the spheres
+  double rms_vector = 0;   ///< root mean square length of the vectors
+};
+
 /// The frames of a data file, or of a sequence of files.
 class DataFrames {
  public:
@@ -49,7 +56,6 @@ class DataFrames {
   /// Errors     base::Error: those of data::open(); kUsage for all frames of a sequence of files; kBadData for
   ///            frames that the file does not contain
   DataFrames(const DataOptions& options, const std::filesystem::path& folder);
-  ~DataFrames();
 
   const char* format() const;
   /// Opens data files: those that are open are not opened again.
@@ -78,20 +84,14 @@ class DataFrames {
   LoadedFrame load(int frame, const scene::PointsKeys& keys, points::SourceRows* source = nullptr,
                    const std::function<void(double)>& on_value = {}) const;
 
-  /// The median distance between neighbours in the first frame in which particles have neighbours; 0: in none. It
-  /// depends on the file alone, not on which frame and which particles are used: all panels of a figure show a particle
-  /// in one size. Of a sequence of files, the frames to use are measured.
+  /// Measures all particles, each value in the first frame in which it is not 0. The values depend on the file alone,
+  /// not on which frame and which particles are used: all panels of a figure show a particle in one size. Of a sequence
+  /// of files, the frames to use are measured.
   ///
-  /// `keys`     the scene's keys
-  double spacing(const scene::PointsKeys& keys) const;
-  /// The mean radius of the spheres, measured as spacing(); 0: there are none.
-  ///
+  /// `keys`     the scene's keys, whose vectors are measured
   /// Errors     as load()
-  double mean_radius(const scene::PointsKeys& keys) const;
-  /// The root mean square length of the vectors, measured as spacing(); 0: all are zero.
-  ///
-  /// Errors     as load()
-  double rms_vector(const scene::PointsKeys& keys) const;
+  /// Cost       one pass over these frames; another over a frame that has particles without a valid radius
+  Measures measures(const scene::PointsKeys& keys, bool of_spacing, bool of_radii) const;
   /// Whether all particles of the first frame are of one element, as those of a trace of C-alpha atoms.
   ///
   /// Errors     as load()
@@ -99,8 +99,6 @@ class DataFrames {
 
  private:
   void require_frames() const;
-  /// What `measure` returns for the first frame for which that is not 0; 0: for none.
-  double first_measure(const std::function<double(int frame)>& measure) const;
 
   const DataOptions& options_;
   std::filesystem::path folder_;
@@ -111,6 +109,17 @@ class DataFrames {
   int described_ = 1;
   std::vector<int> numbers_;
 };
+
+struct PlotOptions;
+
+/// Chooses radius, bonds, arrows and colours of a plot where the user has not.
+///
+/// `data`     that the plot shows
+/// `points`   in: the keys that the user has set; out: all of them
+/// Result     the choices and their reasons, as they are printed
+/// Errors     base::Error(kUsage) for options that exclude each other; those of DataFrames::load()
+std::vector<std::string> choose_appearance(const PlotOptions& options, const DataFrames& data,
+                                           scene::PointsKeys& points);
 
 /// Returns the condition that all conditions are met; empty if there are none.
 ///

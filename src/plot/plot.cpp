@@ -15,7 +15,6 @@
 #include "display/settings.h"
 #include "load/load_images.h"
 #include "load/write_scene.h"
-#include "plot/appearance.h"
 #include "plot/data_frames.h"
 #include "plot/range.h"
 #include "plot/scene_text.h"
@@ -53,6 +52,11 @@ std::string from_scene(const std::string& name, const std::filesystem::path& sce
   if (name.find_first_of("./") == std::string::npos) return name;
   const std::filesystem::path folder = scene_file.parent_path();
   return std::filesystem::proximate(name, folder.empty() ? "." : folder).string();
+}
+
+/// "3 to 5 bonds"
+std::string count_text(std::size_t fewest, std::size_t most, const char* noun) {
+  return (fewest == most ? "" : fmt::format("{} to ", fewest)) + base::counted(most, noun);
 }
 
 /// Makes the scene of a plot, in the order in which the choices are printed.
@@ -102,7 +106,8 @@ class PlotMaker {
     // A camera that looks along the up axis orbits around the vertical of its image.
     const bool is_vertical = math::length(math::cross(up_, axes.back)) < kSmallestSine;
     const math::Vec3d pole = is_turntable_ && !is_vertical ? up_ : axes.up;
-    ViewExtent extent(is_turntable_ ? turned(axes, pole) : axes);
+    // The axes of an orbit are those of the view at the height of its target.
+    ViewExtent extent(is_turntable_ ? ViewAxes{axes.right, pole, math::cross(axes.right, pole)} : axes);
     visit_frames(extent);
     if (extent.is_empty()) report_empty();
     add_guides(extent);
@@ -141,11 +146,6 @@ class PlotMaker {
  private:
   /// Minimum sine of the angle between the camera and the up axis for an orbit around that axis.
   static constexpr double kSmallestSine = 1e-6;
-
-  /// The axes of the same view at the height of its target.
-  static ViewAxes turned(const ViewAxes& axes, const math::Vec3d& pole) {
-    return {axes.right, pole, math::cross(axes.right, pole)};
-  }
 
   void chose(const std::string& what, const std::string& why) {
     out_.choices.push_back(fmt::format("{}: {}", what, why));
@@ -224,8 +224,6 @@ class PlotMaker {
           data_.described_frame(), count ? fmt::format(" of {}", *count) : ""));
   }
 
-  scene::Points load(int frame) const { return data_.load(frame, out_.points).points; }
-
   /// Prints how many bonds are drawn, and from what.
   void report_bonds(std::size_t fewest, std::size_t most) {
     const scene::PointsBonds& bonds = out_.points.bonds;
@@ -236,9 +234,7 @@ class PlotMaker {
       from.push_back(bonds.length ? "closer than " + number_text(*bonds.length)
                                   : fmt::format("closer than {} times the sum of the covalent radii",
                                                 number_text(bonds.factor.value_or(scene::kDefaultBondFactor))));
-    chose(fmt::format("{} {}", fewest == most ? std::to_string(most) : fmt::format("{} to {}", fewest, most),
-                      most == 1 ? "bond" : "bonds"),
-          base::joined(from));
+    chose(count_text(fewest, most, "bond"), base::joined(from));
   }
 
   /// The annotation, with paths relative to the scene. A scale bar without a length gets the largest of 1, 2 and 5
@@ -388,10 +384,8 @@ class PlotMaker {
     if (!(options_.points.replicate == math::Vec3d{1, 1, 1})) why.emplace_back("--replicate");
     if (const std::string options = selection(); !options.empty()) why.push_back(options);
     if (why.empty()) why.emplace_back(fewest == most ? "--skip-bad" : "the fewest and the most of all frames");
-    out_.choices.insert(
-        out_.choices.begin() + 1,
-        fmt::format("{} {}: {}", fewest == most ? std::to_string(most) : fmt::format("{} to {}", fewest, most),
-                    most == 1 ? "sphere" : "spheres", base::joined(why)));
+    out_.choices.insert(out_.choices.begin() + 1,
+                        fmt::format("{}: {}", count_text(fewest, most, "sphere"), base::joined(why)));
   }
 
   /// Adds the edges of the simulation box and the axes, and the space that they take.
@@ -413,7 +407,7 @@ class PlotMaker {
   /// The space that the spheres of all frames pass through on the orbit of the camera.
   ViewExtent orbit(const ViewAxes& axes, const math::Vec3d& pivot, const math::Vec3d& pole) const {
     ViewExtent out(axes);
-    for (const int frame : data_.distinct()) out.add_orbits(load(frame), pivot, pole);
+    for (const int frame : data_.distinct()) out.add_orbits(data_.load(frame, out_.points).points, pivot, pole);
     out.add_orbits(guides_.ends(), pivot, pole);
     return out;
   }

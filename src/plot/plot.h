@@ -37,7 +37,8 @@ const std::vector<std::string>& quality_names();
 /// Materials of the spheres, by name.
 const std::vector<std::string>& material_names();
 
-/// The style or quality with one of these names; none for an empty name.
+/// The representation, style or quality with one of these names; none for an empty name.
+std::optional<Representation> representation_of(const std::string& name);
 std::optional<Style> style_of(const std::string& name);
 std::optional<Quality> quality_of(const std::string& name);
 

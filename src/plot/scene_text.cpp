@@ -14,6 +14,7 @@
 #include "base/error.h"
 #include "load/write_scene.h"
 #include "plot/plot.h"
+#include "plot/range.h"
 #include "points/color_map.h"
 #include "scene/limits.h"
 #include "scene/value_text.h"
@@ -108,6 +109,9 @@ std::optional<Enum> enumerator_of(const std::string& name, const std::vector<std
   return static_cast<Enum>(std::find(names.begin(), names.end(), name) - names.begin());
 }
 
+/// Radius of the edges of the box, and length and radius of the axes, as fractions of the radius of what is shown.
+constexpr double kBoxRadius = 0.004, kAxisLength = 0.15, kAxisRadius = 0.01;
+
 }  // namespace
 
 const std::vector<std::string>& representation_names() {
@@ -123,6 +127,10 @@ const std::vector<std::string>& style_names() {
 const std::vector<std::string>& quality_names() {
   static const std::vector<std::string> names = {"draft", "good", "final"};
   return names;
+}
+
+std::optional<Representation> representation_of(const std::string& name) {
+  return enumerator_of<Representation>(name, representation_names());
 }
 
 std::optional<Style> style_of(const std::string& name) { return enumerator_of<Style>(name, style_names()); }
@@ -187,6 +195,51 @@ std::string scene_text(const PlotOptions& options, const Stage& stage, scene::Sc
   require_room(scene, stage.reach, options.file);
   return load::scene_text(
       scene, fmt::format("Written by orrery plot for {}", scene::string_text(options.file.filename().string())));
+}
+
+void Guides::surround(const Vec3d& center, double radius) {
+  corner_ = {std::min(corner_.x, center.x - radius), std::min(corner_.y, center.y - radius),
+             std::min(corner_.z, center.z - radius)};
+  for (const double x : {center.x, center.y, center.z}) reach_ = std::max(reach_, std::abs(x) + radius);
+}
+
+void Guides::surround(const scene::Points& points) {
+  for (std::size_t i = 0; i < points.centers.size(); ++i) {
+    const Vec3d center = points.centers[i];
+    const double radius = std::abs(points.radii[i]);
+    lowest_ = std::min(lowest_, math::dot(center, up_) - radius);
+    surround(center, radius);
+  }
+}
+
+void Guides::add(const Vec3d& from, const Vec3d& to, double radius, std::uint32_t material) {
+  rods_.push_back({from, to, radius, {material, material}, {}, {}});
+  for (const Vec3d& end : {from, to}) {
+    ends_.centers.push_back(end);
+    ends_.radii.push_back(radius);
+    lowest_ = std::min(lowest_, math::dot(end, up_) - radius);
+  }
+}
+
+void Guides::add_box(const data::Box& box, const Vec3d& counts, ViewExtent& extent) {
+  const Vec3d a = box.edges[0] * counts.x, b = box.edges[1] * counts.y, c = box.edges[2] * counts.z;
+  const auto corner = [&](int i) { return box.origin + a * (i & 1) + b * (i >> 1 & 1) + c * (i >> 2 & 1); };
+  for (int i = 0; i < 8; ++i) {
+    extent.add(corner(i), 0);
+    surround(corner(i), 0);
+  }
+  const double radius = rounded(kBoxRadius * extent.radius());
+  for (int i = 0; i < 8; ++i)
+    for (const int edge : {1, 2, 4})
+      if ((i & edge) == 0) add(corner(i), corner(i | edge), radius, kBoxMaterial);
+}
+
+void Guides::add_axes(double size) {
+  const double length = rounded(kAxisLength * size), radius = rounded(kAxisRadius * size);
+  const Vec3d origin = corner_ - Vec3d{1, 1, 1} * (length + 2 * radius);
+  add(origin, origin + Vec3d{1, 0, 0} * length, radius, kXMaterial);
+  add(origin, origin + Vec3d{0, 1, 0} * length, radius, kYMaterial);
+  add(origin, origin + Vec3d{0, 0, 1} * length, radius, kZMaterial);
 }
 
 }  // namespace orrery::plot

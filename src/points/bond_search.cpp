@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "points/bond_search.h"
+#include "points/bonds.h"
 
 #include <tbb/blocked_range.h>
 #include <tbb/parallel_for.h>

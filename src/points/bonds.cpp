@@ -118,10 +118,6 @@ double bond_radius(const data::FrameInfo& info, const scene::PointsBonds& bonds,
   return radii.empty() ? 1 : kBondRadiusOfSphere * sum / static_cast<double>(radii.size());
 }
 
-double copied_bond_count(const BondSet& bonds, double images, std::size_t copies) {
-  return static_cast<double>(bonds.pairs.size() + 2 * bonds.crossing.size()) * images * static_cast<double>(copies);
-}
-
 void copy_bonds(const BondSet& bonds, const std::vector<Copy>& copies, const Labels& chains, const Lattice& lattice,
                 scene::Points& points) {
   const CopyIndex index(copies, chains, points.centers.size());
@@ -135,12 +131,11 @@ void copy_bonds(const BondSet& bonds, const std::vector<Copy>& copies, const Lab
   if (bonds.crossing.empty()) return;
   // There is one copy in each image.
   const data::Transform placement = transform_of(points.transform);
-  const std::array<std::int32_t, 3> counts = {static_cast<std::int32_t>(points.replicate.x),
-                                              static_cast<std::int32_t>(points.replicate.y),
-                                              static_cast<std::int32_t>(points.replicate.z)};
+  const auto whole = [](auto x) { return static_cast<std::int32_t>(x); };
+  const Shift counts = {whole(points.replicate.x), whole(points.replicate.y), whole(points.replicate.z)};
+  const std::int64_t in_row = counts[0], in_plane = in_row * counts[1];
   const auto copy_at = [&](const Shift& image) {
-    return static_cast<std::size_t>((static_cast<std::int64_t>(image[2]) * counts[1] + image[1]) * counts[0] +
-                                    image[0]);
+    return static_cast<std::size_t>(image[2] * in_plane + image[1] * in_row + image[0]);
   };
   const auto add_stub = [&](std::uint32_t from, const Shift& image, std::uint32_t to, const Shift& partner,
                             Vec3d half) {
@@ -148,26 +143,24 @@ void copy_bonds(const BondSet& bonds, const std::vector<Copy>& copies, const Lab
     points.bond_stubs.push_back(
         {index.at(copy_at(image), from), index.at(copy_at(partner), to), applied(placement, start + half)});
   };
-  for (Shift image{}; image[2] < counts[2]; ++image[2])
-    for (image[1] = 0; image[1] < counts[1]; ++image[1])
-      for (image[0] = 0; image[0] < counts[0]; ++image[0])
-        for (const CrossingBond& bond : bonds.crossing) {
-          Shift partner{};
-          bool is_inside = true;
-          for (std::size_t axis = 0; axis < 3; ++axis) {
-            const std::int32_t at = image[axis] + bond.shift[axis], count = counts[axis];
-            partner[axis] = (at % count + count) % count;
-            is_inside = is_inside && partner[axis] == at;
-          }
-          if (is_inside) {
-            const std::uint32_t a = index.at(copy_at(image), bond.a), b = index.at(copy_at(partner), bond.b);
-            points.bond_pairs.push_back({std::min(a, b), std::max(a, b)});
-            continue;
-          }
-          const Vec3d half = (points.centers[bond.b] + lattice.translation(bond.shift) - points.centers[bond.a]) * 0.5;
-          add_stub(bond.a, image, bond.b, partner, half);
-          add_stub(bond.b, partner, bond.a, image, half * -1.0);
-        }
+  for (std::int64_t copy = 0; copy < in_plane * counts[2]; ++copy) {
+    const Shift image = {whole(copy % in_row), whole(copy % in_plane / in_row), whole(copy / in_plane)};
+    for (const CrossingBond& bond : bonds.crossing) {
+      Shift at{}, partner{};
+      for (std::size_t axis = 0; axis < 3; ++axis) {
+        at[axis] = image[axis] + bond.shift[axis];
+        partner[axis] = (at[axis] % counts[axis] + counts[axis]) % counts[axis];
+      }
+      if (partner == at) {
+        const std::uint32_t a = index.at(copy_at(image), bond.a), b = index.at(copy_at(partner), bond.b);
+        points.bond_pairs.push_back({std::min(a, b), std::max(a, b)});
+        continue;
+      }
+      const Vec3d half = (points.centers[bond.b] + lattice.translation(bond.shift) - points.centers[bond.a]) * 0.5;
+      add_stub(bond.a, image, bond.b, partner, half);
+      add_stub(bond.b, partner, bond.a, image, half * -1.0);
+    }
+  }
 }
 
 }  // namespace orrery::points

@@ -16,7 +16,6 @@
 #include "data/data_file.h"
 #include "points/bonds.h"
 #include "points/copies.h"
-#include "points/derived.h"
 #include "points/sources.h"
 #include "scene/limits.h"
 #include "scene/value_text.h"
@@ -180,38 +179,38 @@ class Loader {
 
   /// `count`         number of spheres in one image of the periodic box
   /// `are_rounded`   whether make_copies() rounds their centres
-  /// `bonds`         number of bonds in all images
-  void require_memory(std::uint64_t count, bool are_rounded, double bonds = 0) const {
-    ReadMemory need;
-    need.file_bytes = file_->memory();
-    need.rows = info_.rows;
+  /// `bonds`         of these spheres
+  void require_memory(std::uint64_t count, bool are_rounded, const BondSet& bonds = {}) const {
+    std::uint64_t row_bytes = color_.expression ? sizeof(double) : 0;
     for (const std::string& column : columns_)
-      if (!is_replaced_by_centers(column)) need.row_bytes += data::bytes_per_value(type_of(info_, column));
-    need.sphere_bytes = bytes_per_sphere(info_, points_, radius_, are_rounded);
-    if (color_.expression) need.row_bytes += sizeof(double);
-    if (!material_.empty()) need.sphere_bytes += sizeof(std::uint32_t);
-    if (!color_.columns.empty()) need.sphere_bytes += sizeof(std::uint16_t);
-    if (opacity_.is_set()) need.sphere_bytes += sizeof(float);
-    if (!points_.cryptomatte.empty()) need.sphere_bytes += sizeof(std::uint32_t);
-    if (request_.source != nullptr) need.sphere_bytes += sizeof(std::uint32_t) + need.row_bytes;
-    if (points_.bonds.are_drawn) {
-      need.bond_bytes = bonds * sizeof(scene::SphereBond);
-      if (bond_source_.is_file) need.bond_bytes += static_cast<double>(info_.bonds * kFileBondBytes);
-      if (bond_source_.is_distance) need.bond_bytes += static_cast<double>(info_.rows * kBondSearchBytes);
-    }
+      if (!is_replaced_by_centers(column)) row_bytes += data::bytes_per_value(type_of(info_, column));
+    std::uint64_t sphere_bytes = bytes_per_sphere(info_, points_, radius_, are_rounded);
+    if (!material_.empty()) sphere_bytes += sizeof(std::uint32_t);
+    if (!color_.columns.empty()) sphere_bytes += sizeof(std::uint16_t);
+    if (opacity_.is_set()) sphere_bytes += sizeof(float);
+    if (!points_.cryptomatte.empty()) sphere_bytes += sizeof(std::uint32_t);
+    if (request_.source != nullptr) sphere_bytes += sizeof(std::uint32_t) + row_bytes;
     const Vec3d n = points_.replicate;
-    need.images = n.x * n.y * n.z;
-    need.spheres = static_cast<double>(count) * need.images;
-    if (!points_.vectors.columns.empty()) {
-      need.bond_bytes += need.spheres * (sizeof(scene::SphereBond) + sizeof(Vec3d));
-      need.spheres *= 1 + kHeadSpheres;
+    const double images = n.x * n.y * n.z;
+    double spheres = static_cast<double>(count) * images;
+    double bytes = static_cast<double>(file_->memory() + info_.rows * row_bytes) +
+                   images * static_cast<double>(copies_.size() * sizeof(Copy));
+    if (points_.bonds.are_drawn) {
+      const std::size_t rods = bonds.pairs.size() + 2 * bonds.crossing.size();  // those to other images are two stubs
+      bytes += images * static_cast<double>(copies_.size() * rods * sizeof(scene::SphereBond));
+      if (bond_source_.is_file) bytes += static_cast<double>(info_.bonds * kFileBondBytes);
+      if (bond_source_.is_distance) bytes += static_cast<double>(info_.rows * kBondSearchBytes);
     }
-    need.copies = copies_.size();
-    if (need.spheres > static_cast<double>(scene::kMaxSpheres))
+    if (!points_.vectors.columns.empty()) {
+      bytes += spheres * (sizeof(scene::SphereBond) + sizeof(Vec3d));
+      spheres *= 1 + kHeadSpheres;
+    }
+    bytes += spheres * static_cast<double>(sphere_bytes);
+    if (spheres > static_cast<double>(scene::kMaxSpheres))
       throw base::Error(base::ErrorKind::kBadData,
                         fmt::format("{} and its copies are {} spheres; the maximum is {}", request_.file.string(),
-                                    scene::number_text(need.spheres), scene::kMaxSpheres));
-    points::require_memory(need, request_.memory_limit, request_.file);
+                                    scene::number_text(spheres), scene::kMaxSpheres));
+    points::require_memory(request_.file, info_.rows, spheres, bytes, request_.memory_limit);
   }
 
   void load(int frame) {
@@ -248,9 +247,7 @@ class Loader {
     const Lattice lattice(points_.assembly.empty() ? info_.box : std::nullopt);
     const BondSet bonds = points_.bonds.are_drawn ? bonds_of(table, rows, centers, lattice, frame) : BondSet();
     if (faults_.has_errors()) return;
-    const Vec3d images = points_.replicate;
-    require_memory(copied_count(copies_, chains, rows.size()), are_rounded(ends, points_, centers, radii),
-                   copied_bond_count(bonds, images.x * images.y * images.z, copies_.size()));
+    require_memory(copied_count(copies_, chains, rows.size()), are_rounded(ends, points_, centers, radii), bonds);
     PointColors colors = colors_of(table, rows, color_, points_.color, faults_);
     if (request_.on_value && colors.range)
       for_each_shown(*table.find(points_.color.column), rows, points_.color.log, request_.on_value);

@@ -5,7 +5,6 @@
 
 #include <fmt/core.h>
 
-#include "data/columns.h"
 #include "data/data_file.h"
 #include "points/load_points.h"
 #include "points/rows.h"
@@ -45,13 +44,10 @@ std::vector<scene::SceneDiagnostic> load_rods(const LoadRequest& request, scene:
     faults.error(".file", fmt::format("has {} rows; the maximum is {}", info.rows, scene::kMaxSpheres / 2));
   if (faults.has_errors()) return faults.take();
 
-  ReadMemory need;
-  need.file_bytes = file->memory();
-  need.rows = info.rows;
-  for (const std::string& column : columns) need.row_bytes += data::bytes_per_value(type_of(info, column));
-  need.sphere_bytes = need.row_bytes;
-  need.spheres = static_cast<double>(info.rows);
-  require_memory(need, request.memory_limit, request.file);
+  std::uint64_t row_bytes = 0;  // of the columns, and of the rods
+  for (const std::string& column : columns) row_bytes += 2 * data::bytes_per_value(type_of(info, column));
+  require_memory(request.file, info.rows, static_cast<double>(info.rows),
+                 static_cast<double>(file->memory() + info.rows * row_bytes), request.memory_limit);
   const data::Table table = file->read(0, columns);
   if (table.rows == 0) faults.warning(".file", "has no rows");
   rods.from = points_of(table, Rows(table.rows), kFromColumns);

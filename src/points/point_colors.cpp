@@ -33,8 +33,13 @@ std::optional<Labels> labels_or_fault(const data::Table& table, const Rows& rows
                         is_text ? "colour by another column" : "use a continuous map, e.g. viridis, or another column");
 }
 
-/// Gives each label the colour with its index.
-std::vector<std::uint16_t> indices_of(const Labels& labels) { return {labels.of_rows.begin(), labels.of_rows.end()}; }
+/// Gives each label the colour with its index, of a palette that is still empty.
+PointColors colors_of_labels(const Labels& labels) {
+  PointColors out;
+  out.indices = {labels.of_rows.begin(), labels.of_rows.end()};
+  out.names = labels.names;
+  return out;
+}
 
 /// Returns the index of each label's colour in a categorical map, before it is reduced modulo the number of colours. If
 /// possible, the index does not depend on which labels occur, so that colours do not change between frames and
@@ -62,21 +67,18 @@ std::vector<std::size_t> categories_of(const Labels& labels, const data::Column&
 
 /// Distributes distinct strings evenly over a continuous map, or assigns the colours of a categorical one.
 PointColors colors_by_label(const Labels& labels, const data::Column& column, const ColorMap& map, Vec3d nan_color) {
-  PointColors out;
-  const std::size_t n = labels.names.size();
+  PointColors out = colors_of_labels(labels);
   if (map.is_categorical) {
     for (const std::size_t category : categories_of(labels, column, map.knots.size()))
       out.palette.push_back(linear_from_srgb(map.knots[category % map.knots.size()].srgb));
   } else {
-    out.palette = palette(map, std::max<std::size_t>(n, 1));
+    out.palette = palette(map, std::max<std::size_t>(labels.names.size(), 1));
   }
   out.rec709 = out.palette.size();
   if (!labels.values.empty() && std::isnan(labels.values.back())) {
     out.palette.back() = nan_color;
     --out.rec709;
   }
-  out.indices = indices_of(labels);
-  out.names = labels.names;
   return out;
 }
 
@@ -135,9 +137,9 @@ PointColors colors_by_map(const data::Table& table, const Rows& rows, const Colo
 
 PointColors colors_by_element(const data::Table& table, const Rows& rows, const ColorSource& source,
                               KeyFaults& faults) {
-  PointColors out;
   const auto labels = labels_or_fault(table, rows, source.columns[0], ".color.element", faults);
-  if (!labels) return out;
+  if (!labels) return {};
+  PointColors out = colors_of_labels(*labels);
   // Unknown elements have Jmol's colour of unknown elements.
   constexpr std::uint32_t kUnknown = 0xFF1493;
   for (const std::string& name : labels->names) {
@@ -145,16 +147,14 @@ PointColors colors_by_element(const data::Table& table, const Rows& rows, const 
     out.palette.push_back(linear_from_code(element != nullptr ? element->color : kUnknown));
   }
   out.rec709 = out.palette.size();
-  out.indices = indices_of(*labels);
-  out.names = labels->names;
   return out;
 }
 
 PointColors colors_by_type(const data::Table& table, const Rows& rows, const ColorSource& source,
                            const scene::PointsColor& color, KeyFaults& faults) {
-  PointColors out;
   const auto labels = labels_or_fault(table, rows, source.columns[0], ".color.type", faults);
-  if (!labels) return out;
+  if (!labels) return {};
+  PointColors out = colors_of_labels(*labels);
   std::vector<std::string> missing;
   for (const std::string& name : labels->names) {
     const auto found =
@@ -167,8 +167,6 @@ PointColors colors_by_type(const data::Table& table, const Rows& rows, const Col
     missing.resize(std::min(missing.size(), kMaxNamed));
     faults.error(".color.type", fmt::format("type {} has no colour; add it", base::joined(missing)));
   }
-  out.indices = indices_of(*labels);
-  out.names = labels->names;
   return out;
 }
 

@@ -5,7 +5,6 @@
 
 #include "base/error.h"
 #include "base/text.h"
-#include "points/copies.h"
 #include "points/sources.h"
 
 namespace orrery::points {
@@ -35,18 +34,16 @@ std::uint64_t bytes_per_sphere(const data::FrameInfo& info, const scene::PointsK
   return bytes;
 }
 
-void require_memory(const ReadMemory& need, std::uint64_t limit, const std::filesystem::path& file) {
-  const double bytes = static_cast<double>(need.file_bytes) + static_cast<double>(need.rows * need.row_bytes) +
-                       need.spheres * static_cast<double>(need.sphere_bytes) + need.bond_bytes +
-                       need.images * static_cast<double>(need.copies * sizeof(Copy));
+void require_memory(const std::filesystem::path& file, std::uint64_t rows, double spheres, double bytes,
+                    std::uint64_t limit) {
   if (limit == 0 || bytes <= static_cast<double>(limit)) return;
   const auto whole = [](double x) { return static_cast<std::uint64_t>(std::min(x, 1e18)); };
-  throw base::Error(base::ErrorKind::kNoMemory,
-                    fmt::format("{}: {} rows{} need {} while they are read; {} are available; select fewer rows, or "
-                                "render on a machine with more memory",
-                                file.string(), need.rows,
-                                need.spheres > 0 ? " and " + std::to_string(whole(need.spheres)) + " spheres" : "",
-                                base::bytes_text(whole(bytes)), base::bytes_text(limit)));
+  throw base::Error(
+      base::ErrorKind::kNoMemory,
+      fmt::format("{}: {} rows{} need {} while they are read; {} are available; select fewer rows, or "
+                  "render on a machine with more memory",
+                  file.string(), rows, spheres > 0 ? " and " + std::to_string(whole(spheres)) + " spheres" : "",
+                  base::bytes_text(whole(bytes)), base::bytes_text(limit)));
 }
 
 }  // namespace orrery::points

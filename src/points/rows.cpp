@@ -107,6 +107,58 @@ std::size_t count_repeated(const Ids& ids, const std::vector<std::uint32_t>& row
   return out;
 }
 
+constexpr const char* kSpeed = "speed";
+
+/// The file's names of the three components of the velocity; empty if it has none.
+std::vector<std::string> velocity_of(const data::FrameInfo& info) {
+  const std::array<std::string, 3> names =
+      data::number_columns(info.columns, {{"vx", "vy", "vz"},
+                                          {"velocity[1]", "velocity[2]", "velocity[3]"},
+                                          {"velocities[1]", "velocities[2]", "velocities[3]"},
+                                          {"vel[1]", "vel[2]", "vel[3]"},
+                                          {"velo[1]", "velo[2]", "velo[3]"}});
+  return names[0].empty() ? std::vector<std::string>() : std::vector<std::string>(names.begin(), names.end());
+}
+
+/// The numbers of three columns; null unless all have this type.
+template <class Number>
+std::array<std::vector<Number>*, 3> columns_of(data::Table& table, const std::array<std::string, 3>& names) {
+  std::array<std::vector<Number>*, 3> out{};
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    for (data::Column& column : table.columns)
+      if (column.name == names[axis]) out[axis] = std::get_if<std::vector<Number>>(&column.values);
+    if (out[axis] == nullptr) return {};
+  }
+  return out;
+}
+
+/// Moves columns into an array of points, piece by piece.
+template <class To, class From>
+scene::PointArray moved(const std::array<std::vector<From>*, 3>& columns) {
+  /// Rows after which memory is returned.
+  constexpr std::size_t kBlock = std::size_t{1} << 20;
+  const std::size_t count = columns[0]->size();
+  base::HugeVector<To> out(3 * count);
+  const base::StopPoint stop;
+  for (std::size_t begin = 0; begin < count; begin += kBlock) {
+    stop.check();
+    const std::size_t end = std::min(count, begin + kBlock);
+    tbb::parallel_for(tbb::blocked_range<std::size_t>(begin, end, 4096), [&](const auto& range) {
+      for (std::size_t i = range.begin(); i < range.end(); ++i)
+        for (std::size_t axis = 0; axis < 3; ++axis) out[3 * i + axis] = static_cast<To>((*columns[axis])[i]);
+    });
+    for (std::vector<From>* const column : columns) base::release_memory(std::span(&(*column)[begin], end - begin));
+  }
+  return scene::PointArray(scene::NumberArray(std::move(out)));
+}
+
+bool fit_single(const std::array<std::vector<double>*, 3>& columns) {
+  return base::are_all(columns[0]->size(), [&](std::size_t i) {
+    return std::all_of(columns.begin(), columns.end(),
+                       [i](const auto* column) { return scene::NumberArray::is_single((*column)[i]); });
+  });
+}
+
 }  // namespace
 
 Labels labels_of(const data::Column& column, const Rows& rows, std::size_t limit) {
@@ -166,49 +218,6 @@ scene::PointArray points_of(const data::Table& table, const Rows& rows, const st
   return out;
 }
 
-namespace {
-
-/// The numbers of three columns; null unless all have this type.
-template <class Number>
-std::array<std::vector<Number>*, 3> columns_of(data::Table& table, const std::array<std::string, 3>& names) {
-  std::array<std::vector<Number>*, 3> out{};
-  for (std::size_t axis = 0; axis < 3; ++axis) {
-    for (data::Column& column : table.columns)
-      if (column.name == names[axis]) out[axis] = std::get_if<std::vector<Number>>(&column.values);
-    if (out[axis] == nullptr) return {};
-  }
-  return out;
-}
-
-/// Moves columns into an array of points, piece by piece.
-template <class To, class From>
-scene::PointArray moved(const std::array<std::vector<From>*, 3>& columns) {
-  /// Rows after which memory is returned.
-  constexpr std::size_t kBlock = std::size_t{1} << 20;
-  const std::size_t count = columns[0]->size();
-  base::HugeVector<To> out(3 * count);
-  const base::StopPoint stop;
-  for (std::size_t begin = 0; begin < count; begin += kBlock) {
-    stop.check();
-    const std::size_t end = std::min(count, begin + kBlock);
-    tbb::parallel_for(tbb::blocked_range<std::size_t>(begin, end, 4096), [&](const auto& range) {
-      for (std::size_t i = range.begin(); i < range.end(); ++i)
-        for (std::size_t axis = 0; axis < 3; ++axis) out[3 * i + axis] = static_cast<To>((*columns[axis])[i]);
-    });
-    for (std::vector<From>* const column : columns) base::release_memory(std::span(&(*column)[begin], end - begin));
-  }
-  return scene::PointArray(scene::NumberArray(std::move(out)));
-}
-
-bool fit_single(const std::array<std::vector<double>*, 3>& columns) {
-  return base::are_all(columns[0]->size(), [&](std::size_t i) {
-    return std::all_of(columns.begin(), columns.end(),
-                       [i](const auto* column) { return scene::NumberArray::is_single((*column)[i]); });
-  });
-}
-
-}  // namespace
-
 scene::PointArray take_points(data::Table& table, const Rows& rows, const std::array<std::string, 3>& columns) {
   const auto singles = columns_of<float>(table, columns);
   const auto doubles = columns_of<double>(table, columns);
@@ -265,6 +274,24 @@ Rows rows_by_id(const data::Column& ids, std::vector<std::uint32_t> selected, st
       },
       ids.values);
   return selected.empty() ? Rows(count) : Rows(std::move(selected));
+}
+
+void add_derived_columns(data::FrameInfo& info) {
+  if (data::find_named(info.columns, kSpeed) == nullptr && !velocity_of(info).empty())
+    info.columns.push_back({kSpeed, data::ColumnType::kFloat64, true});
+}
+
+std::vector<std::string> sources_of(const data::FrameInfo& info, const std::string& column) {
+  const data::ColumnInfo* const known = data::find_named(info.columns, column);
+  return known != nullptr && known->is_derived ? velocity_of(info) : std::vector<std::string>();
+}
+
+void compute_speed(const std::vector<std::string>& sources, data::Table& table) {
+  std::vector<double> speed(table.rows);
+  for (const std::string& name : sources)
+    for_each_number(*table.find(name), Rows(table.rows), [&](std::size_t i, double v) { speed[i] += v * v; });
+  for (double& s : speed) s = std::sqrt(s);
+  table.columns.push_back({kSpeed, std::move(speed)});
 }
 
 }  // namespace orrery::points

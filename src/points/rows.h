@@ -116,4 +116,16 @@ std::string require_role(const data::FrameInfo& info, const std::string& role, c
 /// Cost        one pass if the ids ascend, or are 1 to N in any order; else a sort
 Rows rows_by_id(const data::Column& ids, std::vector<std::uint32_t> selected, std::size_t& repeated);
 
+/// Adds the column `speed` to the columns of a frame, if the file lacks it and it can be computed: from vx, vy and vz,
+/// or from the components of velocity, velocities, vel or velo.
+void add_derived_columns(data::FrameInfo& info);
+
+/// Returns the columns of the file that a column is computed from; empty if the file contains it.
+std::vector<std::string> sources_of(const data::FrameInfo& info, const std::string& column);
+
+/// Adds `speed` to a table, the length of the vector of the source columns.
+///
+/// Domain     a table with the columns of sources_of(), all numeric
+void compute_speed(const std::vector<std::string>& sources, data::Table& table);
+
 }  // namespace orrery::points

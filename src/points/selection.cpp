@@ -22,6 +22,14 @@ std::vector<std::uint32_t> places_in(const std::vector<std::string>& from, const
   return out;
 }
 
+/// Evaluates all rows, block by block.
+template <class Value>
+void evaluate_rows(const Selection& selection, const data::Table& table, std::vector<Value>& out) {
+  SelectionRun run(selection, table);
+  for (std::size_t begin = 0; begin < table.rows; begin += SelectionRun::kRows)
+    run.run(begin, std::min(SelectionRun::kRows, table.rows - begin), out.data() + begin);
+}
+
 }  // namespace
 
 SelectionRun::SelectionRun(const Selection& selection, const data::Table& table) : selection_(selection) {
@@ -92,18 +100,6 @@ void SelectionRun::negate() {
   const std::size_t count = count_;
   for (std::size_t row = 0; row < count; ++row) a[row] ^= 1;
 }
-
-namespace {
-
-/// Evaluates all rows, block by block.
-template <class Value>
-void evaluate_rows(const Selection& selection, const data::Table& table, std::vector<Value>& out) {
-  SelectionRun run(selection, table);
-  for (std::size_t begin = 0; begin < table.rows; begin += SelectionRun::kRows)
-    run.run(begin, std::min(SelectionRun::kRows, table.rows - begin), out.data() + begin);
-}
-
-}  // namespace
 
 std::vector<std::uint8_t> Selection::evaluate(const data::Table& table) const {
   std::vector<std::uint8_t> out(table.rows, 1);

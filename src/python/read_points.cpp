@@ -17,7 +17,7 @@
 #include "base/error.h"
 #include "base/text.h"
 #include "data/data_file.h"
-#include "points/derived.h"
+#include "points/rows.h"
 
 namespace py = pybind11;
 

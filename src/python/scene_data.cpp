@@ -16,7 +16,6 @@
 #include "base/text.h"
 #include "data/write_table.h"
 #include "load/read_scene.h"
-#include "load/scene_files.h"
 #include "load/write_scene.h"
 #include "scene/schema.h"
 

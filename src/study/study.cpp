@@ -30,7 +30,6 @@
 #include "job/scene_hash.h"
 #include "job/version.h"
 #include "load/read_scene.h"
-#include "load/scene_files.h"
 #include "render/render.h"
 #include "render/result.h"
 #include "render/settings.h"

@@ -10,7 +10,6 @@
 #include "base/text.h"
 #include "load/load_scene.h"
 #include "load/read_scene.h"
-#include "load/scene_files.h"
 
 namespace orrery::submit {
 namespace {
