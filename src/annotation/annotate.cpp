@@ -11,6 +11,7 @@
 
 #include "base/error.h"
 #include "display/develop.h"
+#include "display/settings.h"
 #include "points/selection.h"
 #include "scene/value_text.h"
 

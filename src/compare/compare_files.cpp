@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "compare/compare_files.h"
 
+#include <algorithm>
 #include <cmath>
 #include <functional>
 
@@ -13,6 +14,7 @@
 #include "base/error.h"
 #include "base/file_set.h"
 #include "base/text.h"
+#include "compare/color_view.h"
 #include "compare/perceptual.h"
 #include "image/format.h"
 #include "image/header.h"

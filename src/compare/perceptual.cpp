@@ -8,6 +8,7 @@
 #include <mutex>
 #include <numbers>
 
+#include "compare/color_view.h"
 #include "render/tiles.h"
 
 namespace orrery::compare {

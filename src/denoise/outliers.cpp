@@ -3,7 +3,10 @@
 
 #include <tbb/parallel_for.h>
 
+#include <algorithm>
+#include <array>
 #include <cmath>
+#include <vector>
 
 namespace orrery::denoise {
 namespace {

@@ -2,6 +2,8 @@
 // Compiled once per instruction set.
 #include "denoise/tile_filter.h"
 
+#include <cstddef>
+
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "denoise/tile_filter.cpp"
 #include <hwy/foreach_target.h>  // IWYU pragma: keep

@@ -7,6 +7,7 @@
 #include <fmt/core.h>
 
 #include "base/error.h"
+#include "image/header.h"
 #include "image/whole_file.h"
 
 namespace orrery::image {

@@ -23,6 +23,7 @@
 #include "base/error.h"
 #include "base/image_limits.h"
 #include "base/input_file.h"
+#include "image/format.h"
 #include "image/library.h"
 
 namespace orrery::image {

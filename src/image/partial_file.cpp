@@ -14,7 +14,9 @@
 #include <fmt/core.h>
 
 #include "base/error.h"
+#include "film/partial.h"
 #include "image/exr_spec.h"
+#include "image/header.h"
 #include "image/library.h"
 #include "image/whole_file.h"
 

@@ -8,6 +8,8 @@
 
 namespace orrery::image {
 
+struct Header;
+
 /// Prefix of the attributes that distinguish shards and checkpoints from images.
 inline constexpr const char* kPartialPrefix = "orrery/partial/";
 

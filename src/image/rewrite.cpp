@@ -9,6 +9,7 @@
 #include <new>
 #include <set>
 #include <stdexcept>
+#include <string>
 #include <utility>
 
 #include <fmt/core.h>
@@ -17,6 +18,7 @@
 #include "base/text.h"
 #include "image/exr_spec.h"
 #include "image/format.h"
+#include "image/header.h"
 #include "image/input.h"
 #include "image/partial_file.h"
 #include "image/whole_file.h"

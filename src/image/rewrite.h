@@ -9,6 +9,7 @@
 
 #include "film/picture.h"
 #include "image/header.h"
+#include "image/write.h"
 
 namespace orrery::image {
 

@@ -2,9 +2,12 @@
 #include "image/whole_file.h"
 
 #include <cerrno>
+#include <cstdint>
 #include <cstdio>
 #include <cstring>
 #include <memory>
+#include <string>
+#include <vector>
 
 #include <OpenImageIO/deepdata.h>
 #include <OpenImageIO/hash.h>

@@ -15,6 +15,7 @@
 #include "base/error.h"
 #include "base/file_name.h"
 #include "base/text.h"
+#include "data/data_file.h"
 #include "job/report_text.h"
 #include "points/rows.h"
 

@@ -2,7 +2,9 @@
 #include "info/info.h"
 
 #include <algorithm>
+#include <array>
 #include <limits>
+#include <utility>
 
 #include <nlohmann/json.hpp>
 
@@ -18,6 +20,9 @@
 #include "job/report_text.h"
 #include "kernel/isa.h"
 #include "kernel/lights.h"
+#include "load/load_images.h"
+#include "load/load_scene.h"
+#include "load/read_scene.h"
 #include "math/vec3.h"
 #include "scene/layers.h"
 #include "scene/schema.h"

@@ -2,6 +2,7 @@
 #include "job/check_job.h"
 
 #include <filesystem>
+#include <string>
 #include <vector>
 
 #include <fmt/core.h>

@@ -25,6 +25,7 @@
 #include "job/picture_header.h"
 #include "job/scene_hash.h"
 #include "job/version.h"
+#include "load/read_scene.h"
 #include "render/settings.h"
 
 namespace orrery::job {

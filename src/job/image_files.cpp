@@ -11,6 +11,7 @@
 #include "base/file_name.h"
 #include "base/file_set.h"
 #include "display/bake.h"
+#include "display/settings.h"
 #include "image/format.h"
 #include "image/header.h"
 #include "image/library.h"

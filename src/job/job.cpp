@@ -3,6 +3,7 @@
 
 #include <new>
 #include <optional>
+#include <utility>
 
 #include <fmt/core.h>
 
@@ -13,6 +14,7 @@
 #include "base/text.h"
 #include "compile/compiled_scene.h"
 #include "denoise/denoise.h"
+#include "display/settings.h"
 #include "film/layer_film.h"
 #include "film/partial.h"
 #include "image/format.h"
@@ -24,11 +26,15 @@
 #include "job/picture_header.h"
 #include "job/prepared_scene.h"
 #include "job/rendering.h"
+#include "job/shards.h"
 #include "job/statistics.h"
 #include "job/version.h"
+#include "load/load_scene.h"
 #include "load/read_scene.h"
 #include "render/outlines.h"
 #include "render/render.h"
+#include "render/result.h"
+#include "render/settings.h"
 #include "scene/layers.h"
 #include "scene/scene.h"
 

@@ -12,6 +12,7 @@
 
 #include "base/error.h"
 #include "base/file_set.h"
+#include "display/forward.h"
 #include "display/settings.h"
 #include "film/picture.h"
 #include "image/header.h"

@@ -2,12 +2,16 @@
 #include "job/outputs.h"
 
 #include <algorithm>
+#include <utility>
 
 #include <fmt/core.h>
 
 #include "annotation/annotate.h"
 #include "base/atomic_file.h"
 #include "base/error.h"
+#include "display/develop.h"
+#include "display/settings.h"
+#include "image/format.h"
 #include "image/header.h"
 
 namespace orrery::job {

@@ -9,7 +9,9 @@
 
 #include "annotation/drawing.h"
 #include "display/develop.h"
+#include "display/forward.h"
 #include "display/settings.h"
+#include "film/forward.h"
 #include "film/picture.h"
 #include "image/format.h"
 #include "image/write.h"

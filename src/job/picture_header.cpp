@@ -13,6 +13,7 @@
 #include "display/color_space.h"
 #include "job/job.h"
 #include "job/version.h"
+#include "load/read_scene.h"
 #include "scene/scene.h"
 #include "scene/value_text.h"
 

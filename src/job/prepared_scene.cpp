@@ -6,7 +6,9 @@
 #include "base/available_memory.h"
 #include "compile/compile.h"
 #include "job/resources.h"
+#include "job/scene_hash.h"
 #include "kernel/isa.h"
+#include "load/load_scene.h"
 #include "render/render.h"
 
 namespace orrery::job {

@@ -9,6 +9,7 @@
 #include "image/format.h"
 #include "job/check_job.h"
 #include "job/checkpoint.h"
+#include "job/layers.h"
 #include "job/outputs.h"
 #include "load/read_scene.h"
 

@@ -2,10 +2,13 @@
 #include "job/resources.h"
 
 #include <algorithm>
+#include <cstdint>
 #include <cstdlib>
+#include <string>
 
 #include <fmt/core.h>
 
+#include "accel/accel.h"
 #include "accel/sphere_bvh.h"
 #include "base/available_memory.h"
 #include "base/error.h"

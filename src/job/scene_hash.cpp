@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cstring>
 
+#include "base/hash.h"
 #include "base/stop_point.h"
 #include "compile/compiled_scene.h"
 #include "compile/environment.h"

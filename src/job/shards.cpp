@@ -3,14 +3,18 @@
 
 #include <algorithm>
 #include <cstdint>
+#include <filesystem>
+#include <functional>
 #include <map>
 #include <set>
 #include <sstream>
 #include <string>
 #include <utility>
+#include <vector>
 
 #include <fmt/core.h>
 
+#include "base/error.h"
 #include "base/file_set.h"
 #include "base/frames.h"
 #include "base/stop_point.h"

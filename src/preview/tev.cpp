@@ -16,6 +16,7 @@
 
 #include "base/error.h"
 #include "display/settings.h"
+#include "preview/sink.h"
 
 namespace orrery::preview {
 

@@ -4,17 +4,23 @@
 #include <algorithm>
 #include <cerrno>
 #include <cmath>
+#include <cstdint>
+#include <memory>
+#include <string>
 #include <type_traits>
 #include <variant>
 
 #include <fmt/core.h>
 
 #include "base/atomic_file.h"
+#include "base/error.h"
 #include "base/file_set.h"
 #include "base/hash.h"
 #include "base/input_file.h"
 #include "base/text.h"
+#include "data/data_file.h"
 #include "data/write_table.h"
+#include "load/load_scene.h"
 #include "load/read_scene.h"
 #include "load/write_scene.h"
 #include "scene/schema.h"

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "math/scalar.h"
+#include "scene/scene.h"
 #include "sky/atmosphere.h"
 #include "sky/scattering.h"
 

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <bit>
 #include <cmath>
+#include <filesystem>
 #include <limits>
 #include <map>
 #include <optional>
@@ -29,11 +30,13 @@
 #include "job/resources.h"
 #include "job/scene_hash.h"
 #include "job/version.h"
+#include "load/load_scene.h"
 #include "load/read_scene.h"
 #include "render/render.h"
 #include "render/result.h"
 #include "render/settings.h"
 #include "study/axes.h"
+#include "study/bench.h"
 #include "study/biases.h"
 #include "study/recommendation.h"
 #include "study/study_renderer.h"

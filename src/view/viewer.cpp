@@ -6,6 +6,7 @@
 #include <exception>
 #include <new>
 #include <numeric>
+#include <optional>
 #include <span>
 #include <utility>
 
@@ -20,6 +21,7 @@
 #include "display/settings.h"
 #include "film/picture.h"
 #include "image/write.h"
+#include "job/job.h"
 #include "job/outputs.h"
 #include "preview/file_sink.h"
 
