@@ -36,8 +36,8 @@ std::string counted(std::uint64_t number, std::string_view noun);
 /// Formats a size in bytes: "49.4 MiB".
 std::string bytes_text(std::uint64_t bytes);
 
-/// Replaces control characters, which could control the terminal, and bytes that are not UTF-8 by their values, e.g. \x1b;
-/// keeps tabs.
+/// Replaces control characters, which could control the terminal, and bytes that are not UTF-8 by their values, e.g.
+/// \x1b; keeps tabs.
 std::string printable(std::string_view text);
 /// The same for a text of several lines: also keeps newlines.
 std::string printable_lines(std::string_view text);

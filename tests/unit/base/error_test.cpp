@@ -76,8 +76,7 @@ TEST(BaseError, PrintsValuesOfControlCharactersAndInvalidBytes) {
                                          "name \"\x1b[2J\" \xC2\x9B"
                                          "31m",
                                          "\x1b[31mred\x7f"));
-  EXPECT_EQ(shown,
-            "scene.toml:1:1: error: name \"\\x1b[2J\" \\xc2\\x9b31m\n    \\x1b[31mred\\x7f\n    ^~~~\n");
+  EXPECT_EQ(shown, "scene.toml:1:1: error: name \"\\x1b[2J\" \\xc2\\x9b31m\n    \\x1b[31mred\\x7f\n    ^~~~\n");
   EXPECT_EQ(formatted(at(1, 3, 2, "no \xff", "\x7f\xff=1\t")),
             "scene.toml:1:3: error: no \\xff\n    \\x7f\\xff=1\t\n            ^~\n")
       << "the caret is under its column of the line as printed";
