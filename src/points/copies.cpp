@@ -244,15 +244,15 @@ std::uint64_t copied_count(const std::vector<Copy>& copies, const Labels& chains
 }
 
 void clip(scene::Points& points, std::vector<std::uint32_t>* rows) {
-  const auto& [x, y, z] = points.clip;
-  if (!x && !y && !z) return;
+  const auto& planes = points.clip;
+  if (!planes[0] && !planes[1] && !planes[2]) return;
   const auto holds = [](const std::optional<scene::Interval>& interval, double at) {
     return !interval || (at >= interval->low && at <= interval->high);
   };
   const std::size_t count = points.centers.size();
   const auto is_inside = [&](std::uint32_t i) {
     const Vec3d c = points.centers[i];
-    return holds(x, c.x) && holds(y, c.y) && holds(z, c.z);
+    return holds(planes[0], c.x) && holds(planes[1], c.y) && holds(planes[2], c.z);
   };
   std::size_t inside = 0;
   for (std::uint32_t i = 0; i < count; ++i) inside += is_inside(i);
