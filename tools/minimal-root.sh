@@ -8,9 +8,9 @@
 #
 # With `run` only ./run.sh is run, for a Debian release on which ./test.sh runs anyway; `packages` leaves out ./test.sh.
 #
-# KEEP=1          keep the root and print its path
-# ORRERY_UNITY=OFF  compile each file by itself, which must include what it uses (twice the time)
-# ORRERY_DEBS=DIR package cache, kept between runs
+# KEEP=1             keep the root and print its path
+# ORRERY_UNITY=OFF   compile each file by itself, which must include what it uses
+# ORRERY_DEBS=DIR    package cache, kept between runs
 # ORRERY_CCACHE=DIR  compiler cache to fill, for a later build with the same compiler outside the root
 #
 # Exit status: 0 success; 77 this machine cannot create the root (the reason is printed); otherwise a command failed.
@@ -33,7 +33,7 @@ fi
 
 debs=${ORRERY_DEBS:-${TMPDIR:-/var/tmp}/orrery-debs}/$suite
 mkdir -p "$debs/partial"
-# In memory, packages are unpacked several times faster. Two roots with what they build take 6 GB.
+# In memory, if two roots and what they build fit: packages are unpacked without waiting for a disk.
 if [ -z "${TMPDIR:-}" ] && [ "$(stat -f -c %T /dev/shm 2>/dev/null)" = tmpfs ] &&
   [ "$(df --output=avail -B 1M /dev/shm | tail -n 1)" -ge 8192 ] &&
   [ "$(awk '/^MemAvailable:/ { print int($2 / 1024) }' /proc/meminfo)" -ge 16384 ]; then

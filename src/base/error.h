@@ -31,7 +31,7 @@ Diagnostic file_diagnostic(Severity severity, std::string file, std::string text
 /// Formats a diagnostic for the user: `file:line:column: error: text; remedy`, the source line, a caret. Without a
 /// line, the column is omitted as well: `--samples: error: text`.
 ///
-/// Result     one or more lines, each ended by a newline; control characters are printed as their values
+/// Result     one or more lines, each ended by a newline; see printable() for control characters
 std::string formatted(const Diagnostic& diagnostic);
 
 /// Formats a warning that has no location: "warning: TEXT", ended by a newline.
