@@ -18,8 +18,8 @@ bool is_json = false;
 }  // namespace
 
 void print_result(const std::string& unchecked) {
-  const std::string text = base::printable_lines(unchecked);
-  // Names in files may contain control characters. Buffered output fails only when it is flushed.
+  const std::string text = base::printable_lines(unchecked);  // names in files may contain control characters
+  // Buffered output fails only when it is flushed.
   if (std::fwrite(text.data(), 1, text.size(), stdout) == text.size() && std::fflush(stdout) == 0) return;
   if (errno == EPIPE) return;
   throw base::Error(base::ErrorKind::kIo, std::string("writing to standard output failed: ") + std::strerror(errno));

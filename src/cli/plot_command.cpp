@@ -141,8 +141,10 @@ plot::PlotScene prepare(PlotCommand& arguments) {
   job::Job& job = arguments.render.batch.job;
   const base::StopScope scope(job.hooks.cancel);
   try {
-    plot::PlotScene made = plot::make_plot(arguments.shown.options,
-                                           [&](const std::vector<int>& frames) { check_request(arguments, frames); });
+    plot::PlotScene made = plot::make_plot(arguments.shown.options, [&](const std::vector<int>& frames) {
+      check_request(arguments, frames);
+      image::start_loading();  // not earlier: opening the file would wait, since it also loads libraries
+    });
     job.prepare_s = watch.seconds();
     made.choices.push_back(
         fmt::format("prepared in {:.1f} s: read {} to fit the view and the colours", job.prepare_s,
@@ -172,7 +174,6 @@ int run_plot(PlotCommand& arguments) {
   plot.scene_file = saves ? arguments.save_scene : plot.file;
   plot.develops = job.outputs.has_display_format();
   check_outputs(arguments);
-  image::start_loading();
   const plot::PlotScene made = prepare(arguments);
   print_choices(made, arguments);
   const auto text =

@@ -3,9 +3,11 @@
 #include <fcntl.h>
 #include <signal.h>
 #include <sys/ptrace.h>
+#include <sys/stat.h>
 #include <unistd.h>
 
 #include <functional>
+#include <utility>
 #include <vector>
 
 #include "cli/program.h"
@@ -120,20 +122,41 @@ TEST_F(CliStartup, OnlyCommandsWithImagesLoadOpenImageIO) {
   EXPECT_TRUE(loads_it("render good.toml -o a.exr -q"));
 }
 
-/// A copy of the program beside which the image module is damaged.
+/// Copies the program to a new folder, without the image module.
+///
+/// Result     its command
+std::string copied_program(const std::filesystem::path& folder) {
+  const std::filesystem::path libexec = std::filesystem::path(ORRERY_MODULES);
+  std::filesystem::create_directory(folder);
+  for (const char* file : {"orrery-program", "orrery-data.so"})
+    std::filesystem::copy_file(libexec / file, folder / file);
+  return "'" + (folder / "orrery-program").string() + "' ";
+}
+
 TEST_F(CliStartup, AnImageLibraryThatCannotBeLoadedIsReportedBeforeRendering) {
-  const std::filesystem::path copy = folder_ / "program", libexec = std::filesystem::path(ORRERY_MODULES);
-  std::filesystem::create_directory(copy);
-  for (const char* file : {"orrery-program", "orrery-data.so"}) std::filesystem::copy_file(libexec / file, copy / file);
+  const std::string program = copied_program(folder_ / "program");
   write("program/orrery-image.so", "no library");
   write("a.csv", "x,y,z\n0,0,0\n3,0,0\n");
-  const std::string program = "'" + (copy / "orrery-program").string() + "' ";
   for (const std::string words : {"render good.toml -o a.png", "plot a.csv -o a.png --samples 1"}) {
     const std::string command = "cd '" + folder_.string() + "' && " + program + words + " --progress arnold 2> .err";
     EXPECT_EQ(WEXITSTATUS(std::system(command.c_str())), 70);
     const std::string err = text_of(folder_ / ".err");
     EXPECT_NE(err.find("cannot load "), std::string::npos) << err;
     EXPECT_EQ(err.find("% done"), std::string::npos) << "it rendered: " << err;
+  }
+}
+
+TEST_F(CliStartup, AnErrorDoesNotWaitForTheImageLibrary) {
+  const std::string program = copied_program(folder_ / "program");
+  // Opening a pipe that nobody writes to takes forever.
+  ASSERT_EQ(mkfifo((folder_ / "program/orrery-image.so").c_str(), 0600), 0);
+  write("bad.toml", "[image]\nwidth = 0\n");
+  // The second error is found after the spheres were checked in parallel.
+  for (const auto& [words, status] : {std::pair{"render bad.toml -o a.png", 65},
+                                      {"render good.toml -o a.png --samples x", 65},
+                                      {"plot missing.csv -o a.png", 66}}) {
+    const std::string command = "cd '" + folder_.string() + "' && timeout 60 " + program + words + " 2> .err";
+    EXPECT_EQ(WEXITSTATUS(std::system(command.c_str())), status) << text_of(folder_ / ".err");
   }
 }
 

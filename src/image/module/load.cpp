@@ -5,6 +5,7 @@
 #include <future>
 
 #include "base/module.h"
+#include "base/parallel.h"
 #include "image/format.h"
 #include "image/header.h"
 #include "image/module/functions.h"
@@ -19,7 +20,10 @@ const Functions& module() {
 
 }  // namespace
 
-void start_loading() { static const std::future<void> loading = std::async(std::launch::async, load); }
+void start_loading() {
+  base::start_parallel();
+  static const std::future<void> loading = std::async(std::launch::async, load);
+}
 
 void load() { module(); }
 
