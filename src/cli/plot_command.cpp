@@ -71,8 +71,8 @@ void write_films(const PlotCommand& arguments) {
 }
 
 /// The files that plot writes in addition to those of a render.
-std::vector<job::OutputFile> own_outputs(const PlotCommand& arguments) {
-  std::vector<job::OutputFile> out;
+std::vector<job::NamedOutput> own_outputs(const PlotCommand& arguments) {
+  std::vector<job::NamedOutput> out;
   if (!arguments.save_scene.empty()) out.push_back({arguments.save_scene, "--save-scene"});
   if (!arguments.legend.empty()) out.push_back({arguments.legend, "--legend"});
   return out;
@@ -122,7 +122,7 @@ void check_outputs(const PlotCommand& arguments) {
     files.add_input(base::input_at_frame({}, plot.file.string(), frame), "data file");
   if (plot.points.color.has_map_file()) files.add_input(plot.points.color.map, "colour map");
   load::add_ocio_configs(plot::display_of(plot).config, files);
-  for (const job::OutputFile& output : own_outputs(arguments)) {
+  for (const job::NamedOutput& output : own_outputs(arguments)) {
     files.add_output(output.path, output.role);
     base::check_creatable(output.path);
   }

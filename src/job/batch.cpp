@@ -57,7 +57,7 @@ std::vector<Job> jobs_of(const Batch& batch) {
   common.files = std::make_shared<base::FileSet>();
   if (frames.size() > 1) common.prepared = std::make_shared<PreparedScene>(true);
   base::FileSet& files = *common.files;
-  for (const OutputFile& other : batch.others) files.add_output(other.path, other.role);
+  for (const NamedOutput& other : batch.others) files.add_output(other.path, other.role);
   for (const fs::path& scene : batch.scenes)
     if (common.scene.has_file && !files.add_input(scene, "scene")) base::refuse(scene.string() + " is given twice");
   for (const fs::path& scene : batch.scenes) {

@@ -20,8 +20,8 @@ namespace orrery::job {
 namespace {
 
 /// All files that a job writes, except Cryptomatte manifests, which only some scenes have.
-std::vector<OutputFile> outputs_of(const Job& job) {
-  std::vector<OutputFile> out;
+std::vector<NamedOutput> outputs_of(const Job& job) {
+  std::vector<NamedOutput> out;
   for (const ImageFile& output : job.outputs.images) out.push_back({output.path, "-o"});
   if (!job.outputs.deep.empty()) out.push_back({job.outputs.deep, "--deep"});
   if (!job.outputs.statistics.empty()) out.push_back({job.outputs.statistics, "--stats"});
@@ -45,7 +45,7 @@ void add_job_files(const Job& job, base::FileSet& files, const std::string& owne
   if (job.scene.has_file) files.add_input(job.scene.file, "scene");
   for (const ShardFile& shard : job.merge.shards) files.add_input(shard.file, "shard");
   load::add_ocio_configs(job.outputs.display.config, files);
-  for (const OutputFile& output : outputs_of(job)) files.add_output(output.path, output.role + owner);
+  for (const NamedOutput& output : outputs_of(job)) files.add_output(output.path, output.role + owner);
   if (is_shard(job)) return;
   for (const std::filesystem::path& manifest : possible_manifest_files(job.outputs))
     files.add_output(manifest, "Cryptomatte manifest" + owner);
@@ -58,7 +58,7 @@ void check_request(const Job& job) {
     base::refuse(job.outputs.deep.string() + " cannot hold deep samples; use EXR");
   if (!job.outputs.deep.empty() && job.denoise)
     base::refuse("--denoise does not filter deep samples; render --deep without --denoise, in a separate run");
-  for (const OutputFile& output : outputs_of(job)) base::check_creatable(output.path);
+  for (const NamedOutput& output : outputs_of(job)) base::check_creatable(output.path);
   image::check_compression(job.outputs.exr.compression);
   choose_isa();
 }

@@ -143,8 +143,8 @@ JobReport run_job(const Job& job);
 struct Batch {
   Job job;  ///< the settings that all jobs share; its file names have patterns for the frame and the scene
   std::vector<std::filesystem::path> scenes;
-  std::vector<int> frames;         ///< empty: one still image per scene
-  std::vector<OutputFile> others;  ///< files that the caller writes
+  std::vector<int> frames;          ///< empty: one still image per scene
+  std::vector<NamedOutput> others;  ///< files that the caller writes
 };
 
 /// Creates one job per frame and scene. In file names, replaces `####` and `%04d` by the frame, and `{scene}` by the

@@ -32,7 +32,7 @@ struct ImageFile {
 };
 
 /// A file that a job writes, and its role.
-struct OutputFile {
+struct NamedOutput {
   std::filesystem::path path;
   std::string role;  ///< "-o", "--stats", "checkpoint"
 };

@@ -213,10 +213,50 @@ class Loader {
     points::require_memory(request_.file, info_.rows, spheres, bytes, request_.memory_limit);
   }
 
+  /// What a frame says of the chosen rows.
+  struct Particles {
+    data::Table table;
+    Rows rows;
+    scene::PointArray centers;
+    scene::NumberArray radii;
+    bool are_all_rows;  ///< also before those without a valid sphere were removed
+  };
+
   void load(int frame) {
     // Not known yet: the number of selected rows, that of spheres in the chains of an assembly, and how far out they
     // are.
     require_memory(points_.select.empty() ? copied_count(copies_, {}, info_.rows) : 0, !points_.assembly.empty());
+    std::optional<Particles> read = read_particles(frame);
+    if (!read) return;
+    const Rows& rows = read->rows;
+    Labels chains;
+    if (const data::Column* column = read->table.find(info_.roles.chain); column != nullptr)
+      chains = labels_of(*column, rows, read->table.rows);
+    const Lattice lattice(points_.assembly.empty() ? info_.box : std::nullopt);
+    const BondSet bonds =
+        points_.bonds.are_drawn ? bonds_of(read->table, rows, read->centers, lattice, frame) : BondSet();
+    if (faults_.has_errors()) return;
+    const std::vector<Copy> ends = is_replicated() ? outermost(copies_, *info_.box, points_.replicate) : copies_;
+    require_memory(copied_count(copies_, chains, rows.size()), are_rounded(ends, points_, read->centers, read->radii),
+                   bonds);
+    set_attributes(read->table, rows, read->centers);
+    points_.step = info_.step;
+    points_.centers = std::move(read->centers);
+    points_.radii = std::move(read->radii);
+    if (request_.source != nullptr) request_.source->rows = rows.list();
+    make_images(chains, bonds, lattice);
+    points_.spheres_are_rows = read->are_all_rows && copies_.size() == 1 && points_.centers.size() == read->table.rows;
+    if (request_.source == nullptr) return;
+    request_.source->bond_pairs = points_.bond_pairs;
+    request_.source->bond_stubs = points_.bond_stubs;
+    request_.source->info = std::move(info_);
+    request_.source->table = std::move(read->table);
+  }
+
+  bool is_replicated() const { return !(points_.replicate == Vec3d{1, 1, 1}); }
+
+  /// Reads the columns, and determines the spheres of the selected rows. Nothing if there are errors.
+  std::optional<Particles> read_particles(int frame) {
     data::Table table = file_->read(frame, columns_);
     if (!speed_sources_.empty()) compute_speed(speed_sources_, table);
     add_expression(color_, points_.color, table, faults_);
@@ -225,7 +265,7 @@ class Loader {
       faults_.warning(
           table.rows == 0 ? ".file" : ".select",
           table.rows == 0 ? "the frame has no particles" : fmt::format("selects none of the {} particles", table.rows));
-    const bool is_all = rows.is_all();
+    const bool are_all_rows = rows.is_all();
     scene::NumberArray radii = radii_of(table, rows, radius_, points_.radius, faults_);
     if (are_needed_once(std::array{radius_.column}))
       std::erase_if(table.columns, [&](const data::Column& column) { return column.name == radius_.column; });
@@ -233,58 +273,48 @@ class Loader {
     scene::PointArray centers =
         are_needed_once(position) ? take_points(table, rows, position) : points_of(table, rows, position);
     if (points_.unwrap) unwrap(table, rows, info_, centers);
-    if (faults_.has_errors()) return;
+    if (faults_.has_errors()) return {};
     // A radius below 0 makes hollow glass, in a scene or in a PLY file that was made for one. In other data it is an
     // error that the image would not show.
     const bool may_be_hollow = radius_.kind == RadiusSource::Kind::kValue || info_.may_be_of_scene;
     keep_valid(points_, may_be_hollow, rows, centers, radii, faults_);
-    if (faults_.has_errors()) return;
-    Labels chains;
-    if (const data::Column* column = table.find(info_.roles.chain); column != nullptr)
-      chains = labels_of(*column, rows, table.rows);
-    const bool is_replicated = !(points_.replicate == Vec3d{1, 1, 1});
-    const std::vector<Copy> ends = is_replicated ? outermost(copies_, *info_.box, points_.replicate) : copies_;
-    const Lattice lattice(points_.assembly.empty() ? info_.box : std::nullopt);
-    const BondSet bonds = points_.bonds.are_drawn ? bonds_of(table, rows, centers, lattice, frame) : BondSet();
-    if (faults_.has_errors()) return;
-    require_memory(copied_count(copies_, chains, rows.size()), are_rounded(ends, points_, centers, radii), bonds);
+    if (faults_.has_errors()) return {};
+    return Particles{std::move(table), std::move(rows), std::move(centers), std::move(radii), are_all_rows};
+  }
+
+  /// Sets what the spheres have besides centre and radius: colour, opacity, object, label, material, vector.
+  void set_attributes(const data::Table& table, const Rows& rows, const scene::PointArray& centers) {
     PointColors colors = colors_of(table, rows, color_, points_.color, faults_);
     if (request_.on_value && colors.range)
       for_each_shown(*table.find(points_.color.column), rows, points_.color.log, request_.on_value);
-    if (opacity_.is_set()) points_.opacities = opacities_of(table, rows, opacity_, points_, faults_);
-    if (!points_.cryptomatte.empty()) divide_into_objects(table, rows);
-    points_.step = info_.step;
-    points_.placed_labels = placed_labels(table, rows, centers, labels_, copies_.front(), points_, faults_);
-    points_.centers = std::move(centers);
-    points_.radii = std::move(radii);
     points_.colors = std::move(colors.indices);
     points_.palette = std::move(colors.palette);
     points_.palette_rec709 = colors.rec709;
     points_.color_range = colors.range;
     points_.has_nan_color = colors.has_nan;
     points_.color_names = std::move(colors.names);
+    if (opacity_.is_set()) points_.opacities = opacities_of(table, rows, opacity_, points_, faults_);
+    if (!points_.cryptomatte.empty()) divide_into_objects(table, rows);
+    points_.placed_labels = placed_labels(table, rows, centers, labels_, copies_.front(), points_, faults_);
     if (!material_.empty()) set_materials(table, rows);
     if (const std::vector<std::string>& columns = points_.vectors.columns; !columns.empty())
       points_.sphere_vectors = points_of(table, rows, {columns[0], columns[1], columns[2]}, points_.vectors.scale);
-    if (is_replicated) copies_ = replicated(copies_, *info_.box, points_.replicate);
-    std::vector<std::uint32_t>* const row_of_sphere = request_.source == nullptr ? nullptr : &request_.source->rows;
-    if (row_of_sphere != nullptr) *row_of_sphere = rows.list();
+  }
+
+  /// Makes the images of all spheres in periodic boxes and assemblies, with their bonds and arrows, and clips them.
+  void make_images(const Labels& chains, const BondSet& bonds, const Lattice& lattice) {
+    if (is_replicated()) copies_ = replicated(copies_, *info_.box, points_.replicate);
     if (points_.bonds.are_drawn || !points_.vectors.columns.empty()) {
       points_.bond_radius =
           points_.vectors.radius.value_or(bond_radius(info_, points_.bonds, points_.radii)) * points_.transform.scale;
       copy_bonds(bonds, copies_, chains, lattice, points_);
     }
+    std::vector<std::uint32_t>* const row_of_sphere = request_.source == nullptr ? nullptr : &request_.source->rows;
     make_copies(copies_, chains, points_, row_of_sphere);
     clip(points_, row_of_sphere);
     add_arrows(points_, row_of_sphere, faults_);
     if (!points_.objects.empty())
       for (const scene::BondStub& stub : points_.bond_stubs) points_.objects.push_back(points_.objects[stub.sphere]);
-    points_.spheres_are_rows = is_all && copies_.size() == 1 && points_.centers.size() == table.rows;
-    if (request_.source == nullptr) return;
-    request_.source->bond_pairs = points_.bond_pairs;
-    request_.source->bond_stubs = points_.bond_stubs;
-    request_.source->info = std::move(info_);
-    request_.source->table = std::move(table);
   }
 
   /// Returns the bonds between the spheres of the rows.
