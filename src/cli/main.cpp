@@ -9,8 +9,8 @@
 int main(int argc, char** argv) {
   prctl(PR_SET_NAME, "orrery");  // so that ps and killall show the launcher's name, not the program file's
   const int status = orrery::cli::run(argc, argv);
-  // Without destructors of static objects: none has anything to do, and those of OpenImageIO's 260 libraries take long,
-  // and would wait until a thread has loaded them, although the program has found an error.
+  // Static objects are not destroyed. None of ours does anything then; those of OpenImageIO's 260 libraries take time,
+  // and would wait for the thread that loads them even if the program has already found an error.
   std::fflush(nullptr);
   _exit(status);
 }

@@ -219,7 +219,7 @@ class Loader {
     Rows rows;
     scene::PointArray centers;
     scene::NumberArray radii;
-    bool are_all_rows;  ///< also before those without a valid sphere were removed
+    bool are_all_rows;  ///< no selection left one out, and ids did not reorder them
   };
 
   void load(int frame) {

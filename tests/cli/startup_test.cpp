@@ -155,7 +155,7 @@ TEST_F(CliStartup, AnErrorDoesNotWaitForTheImageLibrary) {
   for (const auto& [words, status] : {std::pair{"render bad.toml -o a.png", 65},
                                       {"render good.toml -o a.png --samples x", 65},
                                       {"plot missing.csv -o a.png", 66}}) {
-    const std::string command = "cd '" + folder_.string() + "' && timeout 60 " + program + words + " 2> .err";
+    const std::string command = "cd '" + folder_.string() + "' && timeout -s KILL 60 " + program + words + " 2> .err";
     EXPECT_EQ(WEXITSTATUS(std::system(command.c_str())), status) << text_of(folder_ / ".err");
   }
 }
