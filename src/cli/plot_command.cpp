@@ -141,10 +141,8 @@ plot::PlotScene prepare(PlotCommand& arguments) {
   job::Job& job = arguments.render.batch.job;
   const base::StopScope scope(job.hooks.cancel);
   try {
-    plot::PlotScene made = plot::make_plot(arguments.shown.options, [&](const std::vector<int>& frames) {
-      check_request(arguments, frames);
-      image::start_loading();  // not earlier: opening the file would wait, since it also loads libraries
-    });
+    plot::PlotScene made = plot::make_plot(arguments.shown.options,
+                                           [&](const std::vector<int>& frames) { check_request(arguments, frames); });
     job.prepare_s = watch.seconds();
     made.choices.push_back(
         fmt::format("prepared in {:.1f} s: read {} to fit the view and the colours", job.prepare_s,

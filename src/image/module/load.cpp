@@ -21,8 +21,10 @@ const Functions& module() {
 }  // namespace
 
 void start_loading() {
-  base::start_parallel();
-  static const std::future<void> loading = std::async(std::launch::async, load);
+  static const std::future<void> loading = [] {
+    base::start_parallel();
+    return std::async(std::launch::async, load);
+  }();
 }
 
 void load() { module(); }

@@ -15,7 +15,7 @@ namespace {
 constexpr const char* kDump =
     "ITEM: TIMESTEP\n0\nITEM: NUMBER OF ATOMS\n1\nITEM: BOX BOUNDS pp pp pp\n0 1\n0 1\n0 1\n"
     "ITEM: ATOMS id type x y z\n1 1 1 2 3\n";
-constexpr const char* kXyz = "1\nwater\nO 1 2 3\n";
+constexpr const char* kWater = "1\nwater\nO 1 2 3\n";
 constexpr const char* kPdb = "ATOM      1  CA  ALA A   1       1.000   2.000   3.000  1.00  0.00           C\n";
 constexpr const char* kCif = "data_a\nloop_\n_atom_site.cartn_x\n_atom_site.cartn_y\n_atom_site.cartn_z\n1 2 3\n";
 
@@ -61,7 +61,7 @@ TEST_F(DataOpen, AnAmbiguousFirstWordIsReadAsTheExtensionSays) {
 TEST_F(DataOpen, AByteOrderMarkIsSkippedInAllFormats) {
   const std::string mark = "\xEF\xBB\xBF";
   EXPECT_EQ(format_of("a.dump", mark + kDump), "LAMMPS dump");
-  EXPECT_EQ(format_of("a.xyz", mark + kXyz), "XYZ");
+  EXPECT_EQ(format_of("a.xyz", mark + kWater), "XYZ");
   EXPECT_EQ(format_of("a.pdb", mark + kPdb), "PDB");
   EXPECT_EQ(format_of("a.cif", mark + kCif), "mmCIF");
   EXPECT_EQ(support::numbers(support::read_table(folder_ / "a.dump"), "y"), std::vector<double>{2});
@@ -70,7 +70,7 @@ TEST_F(DataOpen, AByteOrderMarkIsSkippedInAllFormats) {
 TEST_F(DataOpen, OtherEncodingsAreNamedWithARemedy) {
   for (const bool is_big_endian : {false, true})
     for (const auto& [name, text] :
-         {std::pair("a.dump", std::string(kDump)), {"a.xyz", kXyz}, {"a.pdb", kPdb}, {"a.csv", "x,y,z\n"}}) {
+         {std::pair("a.dump", std::string(kDump)), {"a.xyz", kWater}, {"a.pdb", kPdb}, {"a.csv", "x,y,z\n"}}) {
       const std::string mark = is_big_endian ? "\xFE\xFF" : "\xFF\xFE";
       for (const std::string& begin : {std::string(), mark})
         EXPECT_NE(errors_of(name, begin + utf16(text, is_big_endian)).find("iconv -f UTF-16 -t UTF-8"),
@@ -78,7 +78,7 @@ TEST_F(DataOpen, OtherEncodingsAreNamedWithARemedy) {
             << name;
     }
   for (const auto& [name, text] : {std::pair("a.dump", std::string(kDump)),
-                                   {"a.xyz", kXyz},
+                                   {"a.xyz", kWater},
                                    {"a.pdb", std::string(kPdb) + "END\n"},
                                    {"a.csv", "x,y,z\n1,2,3"}})
     EXPECT_NE(errors_of(name, replaced(text, "\n", "\r")).find("tr '\\r' '\\n'"), std::string::npos) << name;

@@ -20,7 +20,7 @@ namespace {
 using support::number_bytes;
 using support::numbers;
 
-constexpr const char* kPlace = "property float x\nproperty float y\nproperty float z\n";
+constexpr const char* kXyz = "property float x\nproperty float y\nproperty float z\n";
 constexpr const char* kXyzr = "property float x\nproperty float y\nproperty float z\nproperty float radius\n";
 
 std::string header(const std::string& encoding, const std::string& elements) {
@@ -68,7 +68,7 @@ TEST_F(DataPly, TypesHaveTheirSizes) {
                                                        {"float", 4}, {"float32", 4}, {"double", 8}, {"float64", 8}};
   for (const auto& [name, size] : types) {
     const std::string begin =
-        header("binary_little_endian", std::string("element vertex 1\n") + kPlace + "property " + name + " p\n");
+        header("binary_little_endian", std::string("element vertex 1\n") + kXyz + "property " + name + " p\n");
     EXPECT_EQ(faults(begin + std::string(12 + size, '\0')), "") << name;
     EXPECT_NE(faults(begin + std::string(11 + size, '\0')), "") << name;
     EXPECT_NE(faults(begin + std::string(13 + size, '\0')), "") << name;
@@ -151,26 +151,24 @@ TEST_F(DataPly, ListsAndOtherElementsAreSkipped) {
 }
 
 TEST_F(DataPly, CustomaryNames) {
-  EXPECT_EQ(roles(kPlace).radius, "");
-  EXPECT_EQ(roles(std::string(kPlace) + "property float r\n").radius, "r");
-  EXPECT_EQ(roles(std::string(kPlace) + "property float scalar_radius\n").radius, "scalar_radius");
-  EXPECT_EQ(roles(std::string(kPlace) + "property float r\nproperty float radius\n").radius, "radius");
-  const Roles color = roles(std::string(kPlace) + "property uchar r\nproperty uchar g\nproperty uchar b\n");
+  EXPECT_EQ(roles(kXyz).radius, "");
+  EXPECT_EQ(roles(std::string(kXyz) + "property float r\n").radius, "r");
+  EXPECT_EQ(roles(std::string(kXyz) + "property float scalar_radius\n").radius, "scalar_radius");
+  EXPECT_EQ(roles(std::string(kXyz) + "property float r\nproperty float radius\n").radius, "radius");
+  const Roles color = roles(std::string(kXyz) + "property uchar r\nproperty uchar g\nproperty uchar b\n");
   EXPECT_EQ(color.radius, "");
   EXPECT_EQ(color.rgb[1], "g");
   EXPECT_EQ(color.rgb_maximum, 255);
-  const Roles diameter =
-      roles(std::string(kPlace) + "property float diameter\nproperty int id\nproperty uchar class\n");
+  const Roles diameter = roles(std::string(kXyz) + "property float diameter\nproperty int id\nproperty uchar class\n");
   EXPECT_EQ(diameter.radius, "diameter");
   EXPECT_EQ(diameter.radius_scale, 0.5);
   EXPECT_EQ(diameter.id, "id");
   EXPECT_EQ(diameter.type, "class");
-  EXPECT_EQ(roles(std::string(kPlace) + "property float red\nproperty float green\nproperty float blue\n").rgb_maximum,
+  EXPECT_EQ(roles(std::string(kXyz) + "property float red\nproperty float green\nproperty float blue\n").rgb_maximum,
             1);
-  EXPECT_EQ(
-      roles(std::string(kPlace) + "property ushort red\nproperty ushort green\nproperty ushort blue\n").rgb_maximum,
-      65535);
-  EXPECT_EQ(roles(std::string(kPlace) +
+  EXPECT_EQ(roles(std::string(kXyz) + "property ushort red\nproperty ushort green\nproperty ushort blue\n").rgb_maximum,
+            65535);
+  EXPECT_EQ(roles(std::string(kXyz) +
                   "property uchar diffuse_red\nproperty uchar diffuse_green\nproperty uchar diffuse_blue\n")
                 .rgb[0],
             "diffuse_red");
@@ -234,7 +232,7 @@ TEST_F(DataPly, RowsThatDifferFromTheHeaderAreRefused) {
             "3: 3 bytes follow the last row that the header declares; the counts are wrong, or the file is damaged\n");
   for (const char* wrong : {"1 2 3 4\n1 2 3\n4\n", "1 2 3 4 1\n2 3 4\n", "1 2 3 4\n1 2 three 4\n"})
     EXPECT_NE(faults(header("ascii", kTwo) + wrong), "") << wrong;
-  const std::string colors = "element vertex 1\n" + std::string(kPlace) + "property uchar red\n";
+  const std::string colors = "element vertex 1\n" + std::string(kXyz) + "property uchar red\n";
   EXPECT_NE(faults(header("ascii", colors) + "1 2 3 0.5\n"), "");
   EXPECT_EQ(faults(header("ascii", colors + "element e 1\nproperty int e\n") + "1 2 3 0.5\n7\n"),
             "11: vertex 1 of 1, `red`: not a 64-bit integer\n");
@@ -261,7 +259,7 @@ TEST_F(DataPly, ElementsAfterTheVerticesMustBeComplete) {
 TEST_F(DataPly, FacesTakeNoMemory) {
   if (!support::kMeasuresMemory) GTEST_SKIP() << "sanitizers take memory of their own";
   constexpr std::size_t kFaces = 2'000'000;
-  const std::string begin = "element vertex 1\n" + std::string(kPlace) + "element face ";
+  const std::string begin = "element vertex 1\n" + std::string(kXyz) + "element face ";
   const std::string end = "\nproperty list uchar int v\n", vertex = std::string(12, '\0');
   std::string binary = header("binary_little_endian", begin + std::to_string(kFaces) + end) + vertex;
   std::string ascii = header("ascii", begin + std::to_string(kFaces) + end) + "1 2 3\n";
