@@ -8,7 +8,6 @@
 
 #include "base/error.h"
 #include "image/header.h"
-#include "image/whole_file.h"
 
 namespace orrery::image {
 
@@ -53,9 +52,7 @@ void add_header(ImageSpec& spec, const Header& header) {
   const TypeDesc matrix(TypeDesc::FLOAT, TypeDesc::MATRIX44);
   const TypeDesc rational(TypeDesc::INT, TypeDesc::VEC2, TypeDesc::RATIONAL);
   if (!header.software.empty()) spec.attribute("software", header.software);
-  if (header.capture_date.empty()) {
-    leave_out_date(spec);
-  } else {
+  if (!header.capture_date.empty()) {
     spec.attribute("DateTime", header.capture_date);  // written as capDate
     spec.attribute("utcOffset", header.utc_offset_s);
   }

@@ -167,7 +167,6 @@ RewriteReport rewrite_exr(const std::filesystem::path& input, const std::filesys
   std::vector<WholePart> whole;
   for (NativePart& part : parts) {
     part.spec.erase_attribute(kStampName);
-    if (part.spec.get_string_attribute("DateTime").empty()) leave_out_date(part.spec);
     for (const Attribute& attribute : attributes)
       report.had_attributes = report.had_attributes || part.spec.find_attribute(attribute.name) != nullptr;
     add_attributes(part.spec, attributes);

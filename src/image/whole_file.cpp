@@ -27,6 +27,14 @@ namespace {
   throw base::Error(base::ErrorKind::kIo, fmt::format("writing {} failed: {}", file.string(), reason));
 }
 
+/// Keeps OpenImageIO from writing the current date and time into a part that has no date.
+void keep_without_date(OIIO::ImageSpec& spec) {
+  if (!spec.get_string_attribute("DateTime").empty()) return;
+  // OpenImageIO adds the date if there is no such attribute, and drops an attribute that is not a string.
+  const std::uint8_t no_text = 0;
+  spec.attribute("DateTime", OIIO::TypeDesc::UINT8, &no_text);
+}
+
 /// Encodes all parts with OpenImageIO.
 ///
 /// Result     OpenImageIO's error message, or empty. Errors are always fetched, since OpenImageIO prints pending ones.
@@ -37,7 +45,7 @@ std::string encode(OIIO::ImageOutput& out, const std::string& name, OIIO::TypeDe
     return text.empty() ? std::string(step) + " failed" : text;
   };
   std::vector<OIIO::ImageSpec> specs;
-  for (const WholePart& part : parts) specs.push_back(part.spec);
+  for (const WholePart& part : parts) keep_without_date(specs.emplace_back(part.spec));
   if (!out.open(name, static_cast<int>(specs.size()), specs.data())) return error_message("opening");
   std::string first_error;
   for (std::size_t i = 0; i < parts.size() && first_error.empty(); ++i) {
@@ -162,12 +170,6 @@ void write_whole(const std::filesystem::path& file, const std::string& format, O
   if (const std::string wrong = read_back(name, format, parts); !wrong.empty()) io_failed(file, wrong);
   if (with_digest) append_digest(target.temporary(), file);
   target.commit();
-}
-
-void leave_out_date(OIIO::ImageSpec& spec) {
-  // OpenImageIO adds the date if there is no such attribute, and drops an attribute that is not a string.
-  const std::uint8_t no_text = 0;
-  spec.attribute("DateTime", OIIO::TypeDesc::UINT8, &no_text);
 }
 
 void require_digest(const std::filesystem::path& file) {

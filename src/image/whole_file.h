@@ -22,15 +22,13 @@ struct WholePart {
 };
 
 /// Writes an image file with OpenImageIO: to a temporary file with every write checked, read back, synced and renamed.
+/// A part without the attribute DateTime gets none: the same parts give the same bytes at any time.
 ///
 /// Domain     `format` is OpenImageIO's format name; `type` is the type of the pixels; more than one part only if the
 ///            format supports it; `with_digest` appends a digest
 /// Errors     base::Error: kCannotCreate, kIo; an existing file is then unchanged
 void write_whole(const std::filesystem::path& file, const std::string& format, OIIO::TypeDesc type,
                  const std::vector<WholePart>& parts, bool with_digest = false);
-
-/// Keeps OpenImageIO from writing the current date and time into the file.
-void leave_out_date(OIIO::ImageSpec& spec);
 
 /// Checks the digest of a file.
 ///

@@ -150,7 +150,6 @@ void write_encoded(const std::filesystem::path& file, const film::EncodedPicture
     spec.attribute("compression", "zip");
     // To write EXIF data OpenImageIO reads back the unfinished file. That fails and loses the image's own directory.
     spec.attribute("tiff:write_exif", 0);
-    leave_out_date(spec);
   }
   const char* const name = info_of(format).library_name;
   if (picture.bits == 8) {
