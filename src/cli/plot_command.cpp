@@ -97,7 +97,6 @@ void check_request(const PlotCommand& arguments, const std::vector<int>& frames)
   for (const job::Job& one : job::jobs_of(batch)) job::check_request(one);
   job.scene.overrides = arguments.shown.options.overrides;
   job::check_layers(job, plot::settings_of(arguments.shown.options, job.outputs.has_display_format()).read.scene);
-  image::load();
 }
 
 void print_choices(const plot::PlotScene& made, const PlotCommand& arguments) {
@@ -141,8 +140,10 @@ plot::PlotScene prepare(PlotCommand& arguments) {
   job::Job& job = arguments.render.batch.job;
   const base::StopScope scope(job.hooks.cancel);
   try {
-    plot::PlotScene made = plot::make_plot(arguments.shown.options,
-                                           [&](const std::vector<int>& frames) { check_request(arguments, frames); });
+    plot::PlotScene made = plot::make_plot(arguments.shown.options, [&](const std::vector<int>& frames) {
+      check_request(arguments, frames);
+      image::start_loading();  // after the module of data files, which would wait for it
+    });
     job.prepare_s = watch.seconds();
     made.choices.push_back(
         fmt::format("prepared in {:.1f} s: read {} to fit the view and the colours", job.prepare_s,

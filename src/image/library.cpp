@@ -25,9 +25,7 @@ void prepare_library() {
   });
 }
 
-// OpenImageIO is linked to this library, so it is loaded already.
-void start_loading() {}
-void load() {}
+void start_loading() {}  // OpenImageIO is linked to this library, so it is loaded already.
 
 void set_threads(int count) {
   prepare_library();

@@ -8,13 +8,9 @@ namespace orrery::image {
 /// Cost       runs once per process
 void prepare_library();
 
-/// Starts loading OpenImageIO on another thread, in a program that loads it on demand. Failure is reported by load().
+/// Starts loading OpenImageIO on another thread, in a program that loads it on demand. The next function of this room
+/// that needs it waits until it is loaded, and reports a failure as base::Error(kInternal).
 void start_loading();
-
-/// Loads OpenImageIO, or waits until it is loaded.
-///
-/// Errors     base::Error(kInternal)
-void load();
 
 /// Sets the number of threads that OpenImageIO encodes and decodes with; the default is 1.
 ///

@@ -151,10 +151,12 @@ TEST_F(CliStartup, AnErrorDoesNotWaitForTheImageLibrary) {
   // Opening a pipe that nobody writes to takes forever.
   ASSERT_EQ(mkfifo((folder_ / "program/orrery-image.so").c_str(), 0600), 0);
   write("bad.toml", "[image]\nwidth = 0\n");
+  write("a.csv", "x,y,z\n0,0,0\n");
   // The second error is found after the spheres were checked in parallel.
   for (const auto& [words, status] : {std::pair{"render bad.toml -o a.png", 65},
                                       {"render good.toml -o a.png --samples x", 65},
-                                      {"plot missing.csv -o a.png", 66}}) {
+                                      {"plot missing.csv -o a.png", 66},
+                                      {"plot a.csv -o a.png --select 'w>0'", 65}}) {
     const std::string command = "cd '" + folder_.string() + "' && timeout -s KILL 60 " + program + words + " 2> .err";
     EXPECT_EQ(WEXITSTATUS(std::system(command.c_str())), status) << text_of(folder_ / ".err");
   }

@@ -23,11 +23,9 @@ const Functions& module() {
 void start_loading() {
   static const std::future<void> loading = [] {
     base::start_parallel();
-    return std::async(std::launch::async, load);
+    return std::async(std::launch::async, [] { module(); });
   }();
 }
-
-void load() { module(); }
 
 std::string jpeg_bytes(int width_px, int height_px, const std::uint8_t* codes, int quality) {
   return module().jpeg_bytes(width_px, height_px, codes, quality);
