@@ -40,8 +40,7 @@ ProgressReporter::ProgressReporter(const Settings& settings, std::uint64_t total
     : settings_(settings), seconds_before_(before.seconds), done_(before.paths), total_(total) {}
 
 double ProgressReporter::seconds() const {
-  if (settings_.clock) return seconds_before_ + settings_.clock(done());
-  return seconds_before_ + std::chrono::duration<double>(Clock::now() - start_).count();
+  return seconds_before_ + (settings_.clock ? settings_.clock(done()) : since_start_.seconds());
 }
 
 void ProgressReporter::expect(std::uint64_t total, std::string goal) {

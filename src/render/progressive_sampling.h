@@ -2,13 +2,13 @@
 #pragma once
 
 #include <atomic>
-#include <chrono>
 #include <cstdint>
 #include <functional>
 #include <mutex>
 #include <string>
 #include <vector>
 
+#include "base/stopwatch.h"
 #include "compile/forward.h"
 #include "film/forward.h"
 #include "kernel/forward.h"
@@ -44,7 +44,6 @@ class ProgressReporter {
   std::uint64_t done() const { return done_.load(std::memory_order_relaxed); }
 
  private:
-  using Clock = std::chrono::steady_clock;
   static constexpr double kInterval = 0.1;  // seconds
   const Settings& settings_;
   double seconds_before_;
@@ -55,7 +54,7 @@ class ProgressReporter {
   double max_reported_ = 0;  ///< 0..1
   double last_ = 0;          ///< time of the last report, seconds
   int last_percent_ = -1;    ///< last reported
-  Clock::time_point start_ = Clock::now();
+  base::Stopwatch since_start_;
 };
 
 /// Renders pixels up to their target sample counts, on all threads. Can be stopped at any time without losing samples.

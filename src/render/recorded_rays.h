@@ -2,12 +2,12 @@
 #pragma once
 
 #include <algorithm>
-#include <chrono>
 #include <cstddef>
 #include <cstdint>
 #include <vector>
 
 #include "accel/accel.h"
+#include "base/stopwatch.h"
 #include "kernel/forward.h"
 #include "kernel/precision.h"
 #include "kernel/ray_packet.h"
@@ -37,14 +37,14 @@ RecordedRays<T> record_rays(const kernel::SceneView& view, const accel::Accel& a
 /// Result     seconds
 template <class T>
 double trace_again(const kernel::Tracer& tracer, std::vector<kernel::RayPacket<T>>& packets) {
-  const auto begin = std::chrono::steady_clock::now();
+  const base::Stopwatch watch;
   constexpr std::size_t kMost = kernel::kPacketsInFlight;
   for (std::size_t i = 0; i < packets.size(); i += kMost) {
     const std::size_t count = std::min(kMost, packets.size() - i);
     for (std::size_t k = i; k < i + count; ++k) kernel::reset_hits(packets[k]);
     kernel::trace(tracer, &packets[i], static_cast<int>(count));
   }
-  return std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
+  return watch.seconds();
 }
 
 }  // namespace orrery::render

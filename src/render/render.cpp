@@ -7,7 +7,6 @@
 #include <tbb/version.h>
 
 #include <algorithm>
-#include <chrono>
 #include <limits>
 #include <memory>
 #include <optional>
@@ -15,6 +14,7 @@
 #include <vector>
 
 #include "base/error.h"
+#include "base/stopwatch.h"
 #include "compile/compiled_scene.h"
 #include "film/film.h"
 #include "film/layer_film.h"
@@ -27,10 +27,6 @@
 
 namespace orrery::render {
 namespace {
-
-using Clock = std::chrono::steady_clock;
-
-double seconds_since(Clock::time_point start) { return std::chrono::duration<double>(Clock::now() - start).count(); }
 
 int threads_of(const Settings& settings) { return settings.threads > 0 ? settings.threads : available_threads(); }
 
@@ -138,17 +134,17 @@ Result render(const compile::CompiledScene& compiled, const accel::Accel& accel,
   statistics.bad_samples = state.work.bad_samples;
   count_samples(compiled, settings, state, statistics);
 
-  const auto rendered = Clock::now();
+  const base::Stopwatch since_rendered;
   Result result;
   if (completed) result = finished(compiled, settings.layers, state, statistics.threads);
   result.partial = std::move(state);
-  statistics.finish_s = seconds_since(rendered);
+  statistics.finish_s = since_rendered.seconds();
   result.statistics = std::move(statistics);
   return result;
 }
 
 Result render(const compile::CompiledScene& compiled, const Settings& settings, std::optional<film::Partial> from) {
-  const auto start = Clock::now();
+  const base::Stopwatch watch;
   const accel::BuildMonitor monitor = [&settings](double) {
     return settings.cancel == nullptr || !settings.cancel->load(std::memory_order_relaxed);
   };
@@ -159,7 +155,7 @@ Result render(const compile::CompiledScene& compiled, const Settings& settings, 
     if (error.kind() != base::ErrorKind::kStopped) throw;
     return {};
   }
-  const double build_s = seconds_since(start);
+  const double build_s = watch.seconds();
   Settings after_build = settings;
   after_build.sampling.spend(build_s);
   Result result = render(compiled, *accel, after_build, std::move(from));
