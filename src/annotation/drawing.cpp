@@ -13,6 +13,7 @@
 
 #include "base/hash.h"
 #include "base/text.h"
+#include "math/pixels.h"
 
 namespace orrery::annotation {
 namespace {
@@ -25,9 +26,7 @@ class Canvas {
  public:
   Canvas(int width, int height) : overlay_{width, height, {}} { overlay_.rgba.resize(4 * pixels()); }
 
-  std::size_t pixels() const {
-    return static_cast<std::size_t>(overlay_.width) * static_cast<std::size_t>(overlay_.height);
-  }
+  std::size_t pixels() const { return math::pixel_count(overlay_.width, overlay_.height); }
 
   /// Puts a colour over a pixel.
   void paint(std::size_t pixel, const Vec3d& color, double coverage) {
@@ -68,8 +67,7 @@ class Canvas {
     const auto first = [](double at) { return std::max(0, static_cast<int>(std::floor(at))); };
     for (int y = first(top); y < std::min<double>(overlay_.height, bottom); ++y)
       for (int x = first(left); x < std::min<double>(overlay_.width, right); ++x)
-        paint(static_cast<std::size_t>(y) * static_cast<std::size_t>(overlay_.width) + static_cast<std::size_t>(x),
-              color_of(y), covered(left, right, x) * covered(top, bottom, y));
+        paint(math::pixel_index(x, y, overlay_.width), color_of(y), covered(left, right, x) * covered(top, bottom, y));
   }
 
   Overlay overlay_;
@@ -81,9 +79,9 @@ std::vector<float> dilated(const std::vector<float>& coverage, int width, int he
   const auto pass = [reach](const std::vector<float>& from, int length, int rows) {
     std::vector<float> to(from.size());
     for (int y = 0; y < rows; ++y) {
-      const float* const row = &from[static_cast<std::size_t>(y) * static_cast<std::size_t>(length)];
+      const float* const row = &from[math::pixel_index(0, y, length)];
       for (int x = 0; x < length; ++x)
-        to[static_cast<std::size_t>(x) * static_cast<std::size_t>(rows) + static_cast<std::size_t>(y)] =
+        to[math::pixel_index(y, x, rows)] =
             *std::max_element(row + std::max(0, x - reach), row + std::min(length, x + reach + 1));
     }
     return to;
@@ -224,8 +222,7 @@ void blend(const Overlay& overlay, film::EncodedPicture& picture) {
 }
 
 void blend(const Overlay& overlay, int x, int y, std::span<std::uint8_t> rgb) {
-  const auto first =
-      static_cast<std::size_t>(y) * static_cast<std::size_t>(overlay.width) + static_cast<std::size_t>(x);
+  const std::size_t first = math::pixel_index(x, y, overlay.width);
   for (std::size_t i = 0; i < rgb.size() / 3; ++i) blend_pixel(&overlay.rgba[4 * (first + i)], 255, false, &rgb[3 * i]);
 }
 

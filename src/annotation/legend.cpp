@@ -17,6 +17,7 @@
 #include "film/picture.h"
 #include "image/format.h"
 #include "image/write.h"
+#include "math/pixels.h"
 
 namespace orrery::annotation {
 namespace {
@@ -183,7 +184,7 @@ void write_legend(const std::filesystem::path& file, const LegendColors& colors,
   film::EncodedPicture picture;
   picture.width = drawing.width;
   picture.height = drawing.height;
-  picture.values.resize(3 * static_cast<std::size_t>(drawing.width) * static_cast<std::size_t>(drawing.height));
+  picture.values.resize(3 * math::pixel_count(drawing.width, drawing.height));
   blend(draw(drawing, std::identity()), picture);
   image::write_encoded(file, picture, "orrery");
 }

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "film/picture.h"
+#include "math/pixels.h"
 
 namespace orrery::compare {
 
@@ -14,7 +15,7 @@ struct ColorView {
   int width = 0, height = 0;  ///< px
   const float* channel[3] = {nullptr, nullptr, nullptr};
 
-  std::size_t pixels() const { return static_cast<std::size_t>(width) * static_cast<std::size_t>(height); }
+  std::size_t pixels() const { return math::pixel_count(width, height); }
 };
 
 /// One value per pixel, row by row from the top.

@@ -7,6 +7,7 @@
 #include <numbers>
 
 #include "film/display_error.h"
+#include "math/pixels.h"
 
 namespace orrery::compare {
 namespace {
@@ -98,8 +99,7 @@ std::optional<ZTest> z_test(const ColorView& picture, const ColorView& variance,
         bool is_above = true, is_below = true;  // in every pixel
         for (int y = y0; y < std::min(y0 + kTestedSide, picture.height); ++y) {
           for (int x = x0; x < std::min(x0 + kTestedSide, picture.width); ++x) {
-            const auto i =
-                static_cast<std::size_t>(y) * static_cast<std::size_t>(picture.width) + static_cast<std::size_t>(x);
+            const std::size_t i = math::pixel_index(x, y, picture.width);
             const double b = static_cast<double>(reference.channel[c][i]);
             const double d = static_cast<double>(picture.channel[c][i]) - b;
             double v = static_cast<double>(variance.channel[c][i]);

@@ -9,6 +9,8 @@
 
 #include <tbb/parallel_for.h>
 
+#include "math/pixels.h"
+
 namespace orrery::denoise {
 
 /// Maximum distance of a pixel's neighbours in x and in y, px.
@@ -64,7 +66,7 @@ inline float usable(float v) { return is_usable(v) ? v : 0; }
 struct Frame {
   int width, height;
 
-  std::size_t pixels() const { return static_cast<std::size_t>(width) * static_cast<std::size_t>(height); }
+  std::size_t pixels() const { return math::pixel_count(width, height); }
   /// Index of the pixel nearest to (x, y), which may be outside the image.
   std::size_t at(int x, int y) const {
     return static_cast<std::size_t>(std::clamp(y, 0, height - 1)) * static_cast<std::size_t>(width) +

@@ -11,6 +11,7 @@
 #include "display/settings.h"
 #include "display/view.h"
 #include "film/picture.h"
+#include "math/pixels.h"
 
 namespace orrery::display {
 namespace {
@@ -25,7 +26,7 @@ constexpr double kMaxGainStops = 120;
 
 const std::vector<float>& plane(const film::Picture& picture, const char* name) {
   const std::vector<float>& values = picture.at(name).values;
-  if (values.size() != static_cast<std::size_t>(picture.width) * static_cast<std::size_t>(picture.height))
+  if (values.size() != math::pixel_count(picture.width, picture.height))
     throw base::Error(base::ErrorKind::kInternal, fmt::format("plane {} does not have the image's size", name));
   return values;
 }

@@ -3,13 +3,12 @@
 
 #include "film/layer_pixel.h"
 #include "film/picture.h"
+#include "math/pixels.h"
 
 namespace orrery::film {
 
 Film::Film(int width_px, int height_px)
-    : width_(width_px),
-      height_(height_px),
-      sums_(static_cast<std::size_t>(width_px) * static_cast<std::size_t>(height_px)) {}
+    : width_(width_px), height_(height_px), sums_(math::pixel_count(width_px, height_px)) {}
 
 kernel::PixelSum* Film::at(int x, int y) noexcept { return sums_.data() + static_cast<std::ptrdiff_t>(y) * width_ + x; }
 

@@ -9,6 +9,7 @@
 #include "film/layers.h"
 #include "film/light_cells.h"
 #include "kernel/scene_view.h"
+#include "math/pixels.h"
 
 namespace orrery::film {
 namespace {
@@ -227,7 +228,7 @@ std::vector<Plane> planes_of(const LayerRequest& request) {
 
 LayerFilm::LayerFilm(const LayerRequest& request, const kernel::SceneView& view, int width_px, int height_px)
     : request_(request), view_(view), planes_(planes_of(request)) {
-  const std::size_t pixels = static_cast<std::size_t>(width_px) * static_cast<std::size_t>(height_px);
+  const std::size_t pixels = math::pixel_count(width_px, height_px);
   for (Plane& plane : planes_) plane.values.resize(pixels);
   if (request_.coverage) coverage_.resize(pixels);
   if (!request_.deep) return;

@@ -4,6 +4,7 @@
 #include <algorithm>
 
 #include "film/layers.h"
+#include "math/pixels.h"
 
 namespace orrery::film {
 
@@ -42,8 +43,7 @@ bool Partial::has_known_spheres(std::size_t count) const {
 }
 
 void Partial::mean(int x, int y, float* rgb) const {
-  const std::size_t i =
-      static_cast<std::size_t>(y) * static_cast<std::size_t>(film.width()) + static_cast<std::size_t>(x);
+  const std::size_t i = math::pixel_index(x, y, film.width());
   const kernel::PixelSum total = sum(i);
   for (int c = 0; c < 3; ++c) rgb[c] = static_cast<float>(film::mean(total.rgb[c], total.weight));
 }

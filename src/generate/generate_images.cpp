@@ -10,6 +10,7 @@
 #include "film/picture.h"
 #include "generate/generate.h"
 #include "generate/generate_random.h"
+#include "math/pixels.h"
 #include "math/scalar.h"
 #include "scene/limits.h"
 #include "scene/value_text.h"
@@ -39,7 +40,7 @@ film::Picture picture_of(int width) {
   out.width = width;
   out.height = width / 2;
   out.color_interop_id = "lin_rec709_scene";
-  const std::size_t texels = static_cast<std::size_t>(out.width) * static_cast<std::size_t>(out.height);
+  const std::size_t texels = math::pixel_count(out.width, out.height);
   for (const char* name : {"R", "G", "B"}) out.planes.push_back({name, std::vector<float>(texels)});
   return out;
 }
@@ -185,8 +186,7 @@ void add_sun(const scene::Sun& sun, film::Picture& picture) {
       }
       if (inside == 0) continue;
       const double covered = static_cast<double>(inside) / (positions * positions);
-      const std::size_t at = static_cast<std::size_t>(y) * static_cast<std::size_t>(picture.width);
-      parts.push_back({at + static_cast<std::size_t>(x), covered});
+      parts.push_back({math::pixel_index(x, y, picture.width), covered});
       solid_angle += covered * row;
     }
   }
@@ -283,7 +283,7 @@ film::Picture make_sky(const scene::Background& sky, int width) {
   const scene::EnvironmentImage image = sky::bake_sky(sky, {width});
   for (int y = 0; y < picture.height; ++y) {
     const float* from = image.row(y);
-    const std::size_t at = static_cast<std::size_t>(y) * static_cast<std::size_t>(width);
+    const std::size_t at = math::pixel_index(0, y, width);
     for (std::size_t x = 0; x < static_cast<std::size_t>(width); ++x)
       for (film::Plane& plane : picture.planes) plane.values[at + x] = *from++;
   }
@@ -304,7 +304,7 @@ film::Picture make_planet(std::uint64_t seed, int width) {
     for (int x = 0; x < out.width; ++x) {
       const long double longitude = turn * ((x + 0.5L) / out.width - 0.25L);
       const Vec3d color = planet.color({aside * sine(longitude), up, aside * cosine(longitude)});
-      const auto at = static_cast<std::size_t>(y) * static_cast<std::size_t>(width) + static_cast<std::size_t>(x);
+      const std::size_t at = math::pixel_index(x, y, width);
       out.planes[0].values[at] = static_cast<float>(color.x);
       out.planes[1].values[at] = static_cast<float>(color.y);
       out.planes[2].values[at] = static_cast<float>(color.z);

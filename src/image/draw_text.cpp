@@ -19,6 +19,7 @@
 
 #include "base/error.h"
 #include "base/text.h"
+#include "math/pixels.h"
 
 namespace orrery::image {
 namespace {
@@ -127,8 +128,7 @@ void draw_text(const TextLine& line, const fs::path& font, int width, int height
     for (int row = std::max(0, -y); row < std::min(rows, height - y); ++row)
       for (int column = std::max(0, -x); column < std::min(columns, width - x); ++column) {
         const float ink = static_cast<float>(glyph.bitmap.buffer[row * glyph.bitmap.pitch + column]) / 255.0f;
-        float& to = coverage[static_cast<std::size_t>(y + row) * static_cast<std::size_t>(width) +
-                             static_cast<std::size_t>(x + column)];
+        float& to = coverage[math::pixel_index(x + column, y + row, width)];
         to = std::max(to, ink);
       }
   });

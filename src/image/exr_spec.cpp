@@ -8,6 +8,7 @@
 
 #include "base/error.h"
 #include "image/header.h"
+#include "math/pixels.h"
 
 namespace orrery::image {
 
@@ -16,7 +17,7 @@ using OIIO::TypeDesc;
 
 std::vector<float> interleaved(const film::Picture& picture, const std::vector<const film::Plane*>& planes,
                                const std::vector<Range>& ranges, WriteReport& report) {
-  const std::size_t pixels = static_cast<std::size_t>(picture.width) * static_cast<std::size_t>(picture.height);
+  const std::size_t pixels = math::pixel_count(picture.width, picture.height);
   std::vector<float> out(pixels * planes.size());
   for (std::size_t c = 0; c < planes.size(); ++c) {
     if (planes[c]->values.size() != pixels)

@@ -19,6 +19,7 @@
 #include "image/header.h"
 #include "image/library.h"
 #include "image/whole_file.h"
+#include "math/pixels.h"
 
 namespace orrery::image {
 namespace {
@@ -104,7 +105,7 @@ PartialFile read_partial(const std::filesystem::path& file, int width_px, int he
       spec.width > kMaxWordsInRow)
     damaged(file, "its sums have an unexpected type or size");
   try {
-    std::vector<std::uint32_t> words(static_cast<std::size_t>(spec.width) * static_cast<std::size_t>(spec.height));
+    std::vector<std::uint32_t> words(math::pixel_count(spec.width, spec.height));
     if (!in->read_scanlines(1, 0, spec.y, spec.y + spec.height, 0, 0, 1, TypeDesc::UINT32, words.data()))
       damaged(file, in->geterror());
     return {std::move(provenance), film::from_words(words, width_px, height_px)};

@@ -20,6 +20,7 @@
 #include "image/header.h"
 #include "image/input.h"
 #include "image/library.h"
+#include "math/pixels.h"
 
 namespace orrery::image {
 namespace {
@@ -36,7 +37,7 @@ constexpr const char* kTransparent = "background.alpha = 0\n";
 std::string decode_rows(const Input& input, int begin, int end, std::vector<float>& out) {
   const ImageSpec& spec = input.spec;
   const auto channels = static_cast<std::size_t>(spec.nchannels);
-  const std::size_t pixels = static_cast<std::size_t>(end - begin) * static_cast<std::size_t>(spec.width);
+  const std::size_t pixels = math::pixel_count(spec.width, end - begin);
   out.resize(pixels * channels);
   if (!input.decode(begin, end, 0, spec.nchannels, TypeDesc::FLOAT, out.data())) return input.error_message();
   // Conversion to float would scale the maximum integer to 1, which is wrong for counts and ids.
@@ -191,8 +192,7 @@ bool decodes(const Input& input) {
       if (!input.in->read_native_deep_scanlines(input.part, 0, y, end, 0, 0, spec.nchannels, deep)) return false;
       continue;
     }
-    rows.resize(static_cast<std::size_t>(end - y) * static_cast<std::size_t>(spec.width) *
-                static_cast<std::size_t>(spec.nchannels));
+    rows.resize(math::pixel_count(spec.width, end - y) * static_cast<std::size_t>(spec.nchannels));
     if (!input.decode(y, end, 0, spec.nchannels, TypeDesc::FLOAT, rows.data())) return false;
   }
   return true;

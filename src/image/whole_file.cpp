@@ -19,6 +19,7 @@
 #include "base/text.h"
 #include "image/checked_file.h"
 #include "image/library.h"
+#include "math/pixels.h"
 
 namespace orrery::image {
 namespace {
@@ -67,8 +68,7 @@ bool read_end(OIIO::ImageInput& in, int part, const OIIO::ImageSpec& spec) {
     return in.read_native_deep_scanlines(part, 0, end - 1, end, 0, 0, spec.nchannels, row);
   }
   const int begin = spec.tile_width == 0 ? end - 1 : end - 1 - (spec.height - 1) % spec.tile_height;
-  std::vector<float> row(static_cast<std::size_t>(spec.width) * static_cast<std::size_t>(spec.nchannels) *
-                         static_cast<std::size_t>(end - begin));
+  std::vector<float> row(math::pixel_count(spec.width, end - begin) * static_cast<std::size_t>(spec.nchannels));
   if (spec.tile_width != 0)
     return in.read_tiles(part, 0, spec.x, spec.x + spec.width, begin, end, 0, 1, 0, spec.nchannels,
                          OIIO::TypeDesc::FLOAT, row.data());

@@ -5,6 +5,7 @@
 
 #include "film/partial.h"
 #include "film/picture.h"
+#include "math/pixels.h"
 
 namespace orrery::preview {
 
@@ -18,12 +19,10 @@ Canvas::Canvas(int width_px, int height_px)
     : width_(width_px),
       height_(height_px),
       cells_per_row_(cells_of(width_px)),
-      values_(3 * static_cast<std::size_t>(width_px) * static_cast<std::size_t>(height_px)),
+      values_(3 * math::pixel_count(width_px, height_px)),
       changed_(cells_per_row_ * cells_of(height_px)) {}
 
-std::size_t Canvas::at(int x, int y) const noexcept {
-  return 3 * (static_cast<std::size_t>(y) * static_cast<std::size_t>(width_) + static_cast<std::size_t>(x));
-}
+std::size_t Canvas::at(int x, int y) const noexcept { return 3 * math::pixel_index(x, y, width_); }
 
 void Canvas::write(const film::Partial& state, const film::RenderedPixels& rendered) noexcept {
   for (const kernel::PixelPlace p : rendered.pixels) {

@@ -16,6 +16,7 @@
 
 #include "base/error.h"
 #include "display/settings.h"
+#include "math/pixels.h"
 #include "preview/sink.h"
 
 namespace orrery::preview {
@@ -279,9 +280,9 @@ bool TevSink::next_packet() {
   while (next_cell_ < std::min(row_end, first + kCellsPerPacket) && pending_.erase(next_cell_) > 0) ++next_cell_;
   const Cell left = canvas_->cell(first), right = canvas_->cell(next_cell_ - 1);
   const int width = right.x + right.width - left.x;
-  std::vector<float> rgb(3 * static_cast<std::size_t>(width) * static_cast<std::size_t>(left.height));
+  std::vector<float> rgb(3 * math::pixel_count(width, left.height));
   for (int y = 0; y < left.height; ++y)
-    canvas_->read(left.x, left.y + y, width, &rgb[3 * static_cast<std::size_t>(y) * static_cast<std::size_t>(width)]);
+    canvas_->read(left.x, left.y + y, width, &rgb[3 * math::pixel_index(0, y, width)]);
   packet_ = tev_update(name_, left.x, left.y, width, left.height, rgb);
   sent_ = 0;
   return true;

@@ -14,6 +14,7 @@
 #include "compile/compiled_scene.h"
 #include "kernel/ray_packet.h"
 #include "kernel/scene_view.h"
+#include "math/pixels.h"
 #include "render/film_ray.h"
 
 namespace orrery::render {
@@ -41,9 +42,7 @@ struct Grid {
   int x, y, width, height;  ///< rays; the first is at the upper left
   std::vector<Seen> seen;
 
-  const Seen& at(int column, int row) const {
-    return seen[static_cast<std::size_t>(row) * static_cast<std::size_t>(width) + static_cast<std::size_t>(column)];
-  }
+  const Seen& at(int column, int row) const { return seen[math::pixel_index(column, row, width)]; }
 };
 
 double radius_of(const kernel::SceneView& scene, std::uint64_t id) {
@@ -112,16 +111,12 @@ class TileOutlines {
       }
     for (int y = top; y < bottom; ++y)
       for (int x = left; x < right; ++x) {
-        float& pixel = coverage[index(x, y, scene_.width)];
+        float& pixel = coverage[math::pixel_index(x, y, scene_.width)];
         pixel = std::max(pixel, share(grid, x, y, inked));
       }
   }
 
  private:
-  static std::size_t index(int x, int y, int width) {
-    return static_cast<std::size_t>(y) * static_cast<std::size_t>(width) + static_cast<std::size_t>(x);
-  }
-
   /// The strength of the edge between neighbouring rays; 0: there is none.
   std::uint8_t edge(const Seen& a, const Seen& b) const {
     if (a.id == b.id) return 0;
@@ -140,7 +135,7 @@ class TileOutlines {
       const double half = std::sqrt(reach_ * reach_ - (y - row) * (y - row));
       for (int x = std::max(0, static_cast<int>(std::ceil(column - half)));
            x <= std::min(grid.width - 1, static_cast<int>(std::floor(column + half))); ++x) {
-        std::uint8_t& mark = inked[index(x, y, grid.width)];
+        std::uint8_t& mark = inked[math::pixel_index(x, y, grid.width)];
         mark = std::max(mark, strength);
       }
     }
@@ -151,7 +146,7 @@ class TileOutlines {
     int count = 0;
     for (int row = 0; row < kRays; ++row)
       for (int column = 0; column < kRays; ++column)
-        count += inked[index(x * kRays - grid.x + column, y * kRays - grid.y + row, grid.width)];
+        count += inked[math::pixel_index(x * kRays - grid.x + column, y * kRays - grid.y + row, grid.width)];
     return static_cast<float>(count) / (kFullInk * kRays * kRays);
   }
 
@@ -181,7 +176,7 @@ void draw_outlines(const TileOutlines& tile_outlines, const compile::CompiledSce
 }  // namespace
 
 std::vector<float> outlines(const compile::CompiledScene& scene, accel::Accel& accel, double width_px, int threads) {
-  std::vector<float> coverage(static_cast<std::size_t>(scene.width) * static_cast<std::size_t>(scene.height));
+  std::vector<float> coverage(math::pixel_count(scene.width, scene.height));
   const float* const opacity = scene.view().opacity;
   if (opacity != nullptr) {
     // Rays decide at random what is visible. For outlines, first all objects are, then the solid ones. An image after

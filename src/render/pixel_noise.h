@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "kernel/pixel_sum.h"
+#include "math/pixels.h"
 
 namespace orrery::render {
 
@@ -22,7 +23,7 @@ struct PixelStatistics {
   PixelStatistics(int width_px, int height_px)
       : width(width_px),
         height(height_px),
-        samples(static_cast<std::size_t>(width_px) * static_cast<std::size_t>(height_px)),
+        samples(math::pixel_count(width_px, height_px)),
         light(samples.size()),
         variance(samples.size()),
         outlier(samples.size()) {}
@@ -32,9 +33,7 @@ struct PixelStatistics {
   /// `largest`  sum of the channels of its largest sample
   void set(std::size_t i, std::uint32_t half, const kernel::PixelSum& a, const kernel::PixelSum& b, float largest);
 
-  std::size_t at(int x, int y) const {
-    return static_cast<std::size_t>(y) * static_cast<std::size_t>(width) + static_cast<std::size_t>(x);
-  }
+  std::size_t at(int x, int y) const { return math::pixel_index(x, y, width); }
 
   int width, height;                   ///< px
   std::vector<std::uint32_t> samples;  ///< samples in each half, above 0

@@ -10,6 +10,7 @@
 #include "film/film.h"
 #include "film/partial.h"
 #include "kernel/render_tile.h"
+#include "math/pixels.h"
 #include "render/render.h"
 #include "render/settings.h"
 #include "render/tiles.h"
@@ -90,7 +91,7 @@ bool ProgressiveSampling::run(int side, const OnPixel& on_pixel) {
 std::vector<kernel::PixelPlace> ProgressiveSampling::unfinished_squares(int side) const {
   const int width = state_.film.width(), height = state_.film.height();
   const auto lacks_samples = [&](int x, int y) {
-    const std::size_t i = static_cast<std::size_t>(y) * static_cast<std::size_t>(width) + static_cast<std::size_t>(x);
+    const std::size_t i = math::pixel_index(x, y, width);
     return state_.counts[i] < state_.goals[i];
   };
   const auto is_unfinished = [&](int x0, int y0) {
@@ -119,9 +120,7 @@ void ProgressiveSampling::render_square(int x0, int y0, int side, const OnPixel&
   tile.width = std::min(side, width - x0);
   tile.height = std::min(side, state_.film.height() - y0);
   tile.row_stride = width;
-  const auto at = [&](kernel::PixelPlace p) {
-    return static_cast<std::size_t>(y0 + p.y) * static_cast<std::size_t>(width) + static_cast<std::size_t>(x0 + p.x);
-  };
+  const auto at = [&](kernel::PixelPlace p) { return math::pixel_index(x0 + p.x, y0 + p.y, width); };
   std::vector<Group> groups;
   for (int y = 0; y < tile.height; ++y) {
     for (int x = 0; x < tile.width; ++x) {

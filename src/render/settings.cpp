@@ -3,10 +3,12 @@
 
 #include <cstddef>
 
+#include "math/pixels.h"
+
 namespace orrery::render {
 
 std::vector<bool> pixels_of(const PixelShard& shard, int width_px, int height_px) {
-  std::vector<bool> out(static_cast<std::size_t>(width_px) * static_cast<std::size_t>(height_px), true);
+  std::vector<bool> out(math::pixel_count(width_px, height_px), true);
   if (shard.count == 1) return out;
   const int across = (width_px + kShardSide - 1) / kShardSide;
   std::size_t at = 0;

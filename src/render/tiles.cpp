@@ -16,6 +16,7 @@
 #include "film/layer_pixel.h"
 #include "film/layers.h"
 #include "film/partial.h"
+#include "math/pixels.h"
 #include "render/settings.h"
 
 namespace orrery::render {
@@ -42,8 +43,7 @@ class DefaultRounding {
 
 /// Index of a tile's pixel within the image.
 std::size_t index_of(const film::Partial& image, const kernel::Tile& tile, kernel::PixelPlace at) {
-  return static_cast<std::size_t>(tile.y + at.y) * static_cast<std::size_t>(image.film.width()) +
-         static_cast<std::size_t>(tile.x + at.x);
+  return math::pixel_index(tile.x + at.x, tile.y + at.y, image.film.width());
 }
 
 }  // namespace
@@ -161,7 +161,7 @@ void TileRenderer::operator()(const kernel::Tile& tile, TileWorker& worker, film
 }
 
 void TileRenderer::attach_buffers(kernel::Tile& tile, TileWorker& worker) const {
-  const auto pixels = static_cast<std::size_t>(tile.width) * static_cast<std::size_t>(tile.height);
+  const std::size_t pixels = math::pixel_count(tile.width, tile.height);
   if (request_.guides()) {
     worker.light.assign(pixels, {});
     worker.guides.assign(pixels, {});

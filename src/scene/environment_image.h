@@ -5,6 +5,7 @@
 #include <memory>
 #include <vector>
 
+#include "math/pixels.h"
 #include "math/vec3.h"
 
 namespace orrery::scene {
@@ -43,7 +44,7 @@ class EnvironmentImage {
  private:
   static constexpr std::size_t kPadding = 1;  ///< the kernel loads texels as four floats
 
-  std::size_t begin_of(int y) const { return 3 * static_cast<std::size_t>(y) * static_cast<std::size_t>(width_); }
+  std::size_t begin_of(int y) const { return 3 * math::pixel_index(0, y, width_); }
 
   int width_, height_;
   std::unique_ptr<float[]> values_;
