@@ -385,10 +385,8 @@ Bounds bounds_of(const CompiledScene& scene) {
   bool is_empty = scene.spheres.empty();
   const auto add = [&](const double(&p)[3], double radius) {
     const Vec3d at = math::vector_of(p), reach{radius, radius, radius}, low = at - reach, high = at + reach;
-    b.lower =
-        is_empty ? low : Vec3d{std::min(b.lower.x, low.x), std::min(b.lower.y, low.y), std::min(b.lower.z, low.z)};
-    b.upper =
-        is_empty ? high : Vec3d{std::max(b.upper.x, high.x), std::max(b.upper.y, high.y), std::max(b.upper.z, high.z)};
+    b.lower = is_empty ? low : math::least(b.lower, low);
+    b.upper = is_empty ? high : math::greatest(b.upper, high);
     is_empty = false;
   };
   const kernel::RodArray rods = scene.view().rods;

@@ -176,10 +176,9 @@ Bounds bounds_of(const SphereStore& spheres) {
   for (std::size_t i = 0; i < spheres.size(); ++i) {
     stop.check(i);
     const kernel::Sphere s = spheres[i];
-    b.lower = {std::min(b.lower.x, s.x - s.radius), std::min(b.lower.y, s.y - s.radius),
-               std::min(b.lower.z, s.z - s.radius)};
-    b.upper = {std::max(b.upper.x, s.x + s.radius), std::max(b.upper.y, s.y + s.radius),
-               std::max(b.upper.z, s.z + s.radius)};
+    const math::Vec3d center{s.x, s.y, s.z}, reach{s.radius, s.radius, s.radius};
+    b.lower = math::least(b.lower, center - reach);
+    b.upper = math::greatest(b.upper, center + reach);
   }
   return b;
 }

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <algorithm>
 #include <cmath>
 
 namespace orrery::math {
@@ -33,6 +34,10 @@ constexpr double dot(Vec3d a, Vec3d b) { return a.x * b.x + a.y * b.y + a.z * b.
 constexpr Vec3d cross(Vec3d a, Vec3d b) {
   return {a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x};
 }
+/// The smaller of each pair of components, as std::min returns it: a's, if they are equal or one is not a number.
+constexpr Vec3d least(Vec3d a, Vec3d b) { return {std::min(a.x, b.x), std::min(a.y, b.y), std::min(a.z, b.z)}; }
+/// The larger of each pair of components, as std::max returns it: a's, if they are equal or one is not a number.
+constexpr Vec3d greatest(Vec3d a, Vec3d b) { return {std::max(a.x, b.x), std::max(a.y, b.y), std::max(a.z, b.z)}; }
 inline double length(Vec3d a) { return std::sqrt(dot(a, a)); }
 inline Vec3d normalized(Vec3d a) { return a / length(a); }
 inline bool is_finite(Vec3d a) { return std::isfinite(a.x) && std::isfinite(a.y) && std::isfinite(a.z); }

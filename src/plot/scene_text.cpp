@@ -13,6 +13,7 @@
 
 #include "base/error.h"
 #include "load/write_scene.h"
+#include "math/vec3.h"
 #include "plot/plot.h"
 #include "plot/range.h"
 #include "points/color_map.h"
@@ -198,8 +199,7 @@ std::string scene_text(const PlotOptions& options, const Stage& stage, scene::Sc
 }
 
 void Guides::surround(const Vec3d& center, double radius) {
-  corner_ = {std::min(corner_.x, center.x - radius), std::min(corner_.y, center.y - radius),
-             std::min(corner_.z, center.z - radius)};
+  corner_ = math::least(corner_, center - Vec3d{radius, radius, radius});
   for (const double x : {center.x, center.y, center.z}) reach_ = std::max(reach_, std::abs(x) + radius);
 }
 

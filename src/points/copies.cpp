@@ -11,6 +11,7 @@
 
 #include "base/text.h"
 #include "math/scalar.h"
+#include "math/vec3.h"
 
 namespace orrery::points {
 namespace {
@@ -49,8 +50,8 @@ double largest_coordinate(const std::vector<Copy>& copies, const Transform& plac
                           const scene::PointArray& centers) {
   Vec3d lower = centers[0], upper = lower;
   for (const Vec3d c : centers) {
-    lower = {std::min(lower.x, c.x), std::min(lower.y, c.y), std::min(lower.z, c.z)};
-    upper = {std::max(upper.x, c.x), std::max(upper.y, c.y), std::max(upper.z, c.z)};
+    lower = math::least(lower, c);
+    upper = math::greatest(upper, c);
   }
   double largest = 0;
   for (const Copy& copy : copies)

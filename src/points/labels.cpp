@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
-#include <algorithm>
 #include <limits>
 
 #include <fmt/core.h>
 
 #include "base/error.h"
+#include "math/vec3.h"
 #include "points/copies.h"
 #include "points/sources.h"
 
@@ -48,8 +48,8 @@ std::vector<scene::Label> placed_labels(const data::Table& table, const Rows& ro
     for (std::size_t i = 0; i < rows.size(); ++i) {
       if (mask[rows[i]] == 0) continue;
       const data::Vec3d c = centers[i];
-      low = {std::min(low.x, c.x), std::min(low.y, c.y), std::min(low.z, c.z)};
-      high = {std::max(high.x, c.x), std::max(high.y, c.y), std::max(high.z, c.z)};
+      low = math::least(low, c);
+      high = math::greatest(high, c);
     }
     if (low.x <= high.x)
       out.push_back({applied(placement, applied(first.transform, (low + high) * 0.5)), rules[r].text});

@@ -10,6 +10,8 @@
 #include <utility>
 #include <vector>
 
+#include "math/vec3.h"
+
 namespace orrery::points {
 namespace {
 
@@ -86,8 +88,8 @@ void bound(Sample* begin, Sample* end) {
   }
   Vec3d low = begin->place, high = low;
   for (const Sample* s = begin; s < end; ++s) {
-    low = {std::min(low.x, s->place.x), std::min(low.y, s->place.y), std::min(low.z, s->place.z)};
-    high = {std::max(high.x, s->place.x), std::max(high.y, s->place.y), std::max(high.z, s->place.z)};
+    low = math::least(low, s->place);
+    high = math::greatest(high, s->place);
   }
   const Vec3d extent = high - low;
   const double Vec3d::*axis = extent.x >= extent.y && extent.x >= extent.z ? &Vec3d::x
