@@ -3,7 +3,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 
 #include "base/parallel.h"
 #include "math/scalar.h"
@@ -53,7 +52,7 @@ BoxFrame::BoxFrame(const BoundedSpheres& spheres, const std::vector<std::uint32_
     return out;
   };
   const bool moves = moving_count > 0 || rods.rods.moving_count > 0;
-  constexpr double kInfinity = std::numeric_limits<double>::infinity();
+  using math::kInfinity;
   struct Corners {
     double lower[3], upper[3];
   };

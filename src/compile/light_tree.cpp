@@ -4,13 +4,13 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
-#include <limits>
 #include <numeric>
 #include <utility>
 
 #include "base/duplicates.h"
 #include "kernel/coincidence.h"
 #include "kernel/scene_view.h"
+#include "math/scalar.h"
 
 namespace orrery::compile {
 namespace {
@@ -56,12 +56,11 @@ class Builder {
     if (range.end - range.begin == 1) return leaves_[range.begin].node.power;
     const std::uint32_t middle = Lights::middle(range);
     const auto begin = leaves_.begin() + range.begin, end = leaves_.begin() + range.end;
-    constexpr double kInfinity = std::numeric_limits<double>::infinity();
     LightNode& node = tree_.nodes[middle];
     int longest = 0;
     double extent = -1;
     for (int k = 0; k < 3; ++k) {
-      double lower = kInfinity, upper = -kInfinity;
+      double lower = math::kInfinity, upper = -math::kInfinity;
       for (auto leaf = begin; leaf != end; ++leaf) {
         lower = std::min(lower, leaf->node.center[k] - leaf->node.radius);
         upper = std::max(upper, leaf->node.center[k] + leaf->node.radius);

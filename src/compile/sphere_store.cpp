@@ -5,10 +5,10 @@
 #include <bit>
 #include <cmath>
 #include <cstring>
-#include <limits>
 #include <utility>
 
 #include "base/stop_point.h"
+#include "math/scalar.h"
 #include "scene/number_array.h"
 #include "scene/scene.h"
 
@@ -170,7 +170,7 @@ void SphereStore::append(std::span<const scene::Points> sets, const OnCopied& on
 
 Bounds bounds_of(const SphereStore& spheres) {
   if (spheres.empty()) return {};
-  constexpr double kInfinity = std::numeric_limits<double>::infinity();
+  using math::kInfinity;
   Bounds b{{kInfinity, kInfinity, kInfinity}, {-kInfinity, -kInfinity, -kInfinity}};
   const base::StopPoint stop;
   for (std::size_t i = 0; i < spheres.size(); ++i) {

@@ -8,6 +8,8 @@
 
 namespace orrery::math {
 
+inline constexpr double kInfinity = std::numeric_limits<double>::infinity();
+
 /// Rounds to single precision.
 ///
 /// GCC 12 removes the conversions to float and back where it vectorizes them in pairs, as in `for (Vec3d& p : points) p

@@ -2,12 +2,12 @@
 #pragma once
 
 #include <cstdint>
-#include <limits>
 #include <optional>
 #include <string>
 #include <vector>
 
 #include "data/table.h"
+#include "math/scalar.h"
 #include "plot/view.h"
 #include "scene/scene.h"
 
@@ -59,10 +59,9 @@ class Guides {
   void surround(const Vec3d& center, double radius);
   void add(const Vec3d& from, const Vec3d& to, double radius, std::uint32_t material);
 
-  static constexpr double kInfinity = std::numeric_limits<double>::infinity();
   Vec3d up_;
-  Vec3d corner_{kInfinity, kInfinity, kInfinity};  ///< lower corner of all that is shown along x, y and z
-  double lowest_ = kInfinity, reach_ = 0;
+  Vec3d corner_{math::kInfinity, math::kInfinity, math::kInfinity};  ///< lower corner of what is shown along x, y and z
+  double lowest_ = math::kInfinity, reach_ = 0;
   std::vector<scene::Rod> rods_;
   scene::Points ends_;
 };

@@ -3,7 +3,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <numbers>
 #include <optional>
 
@@ -11,6 +10,7 @@
 
 #include "base/error.h"
 #include "base/text.h"
+#include "math/scalar.h"
 #include "scene/limits.h"
 #include "scene/scene.h"
 
@@ -19,8 +19,6 @@ namespace {
 
 /// Part of the image's width and height that stays free on each side.
 constexpr double kMargin = 0.05;
-
-constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
 std::optional<std::pair<double, double>> parse_angles(const std::string& text) {
   const std::string_view view = text;
@@ -190,10 +188,10 @@ double ViewExtent::image_width(double aspect, const std::vector<Reserved>& reser
   if (is_empty_ || !(fitted > 0)) return 2;  // a single point has no extent
   double out = fitted / (1 - 2 * kMargin);
   for (const Reserved& rectangle : reserved) {
-    const double by_width = rectangle.beside < kSmallest ? kInfinity : wide / (2 * rectangle.beside),
-                 by_height = rectangle.above < kSmallest ? kInfinity : high / (2 * rectangle.above);
+    const double by_width = rectangle.beside < kSmallest ? math::kInfinity : wide / (2 * rectangle.beside),
+                 by_height = rectangle.above < kSmallest ? math::kInfinity : high / (2 * rectangle.above);
     const double needed = std::min(by_width, by_height);
-    if (needed < kInfinity) out = std::max(out, needed);
+    if (needed < math::kInfinity) out = std::max(out, needed);
   }
   return out;
 }

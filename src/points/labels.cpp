@@ -1,9 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
-#include <limits>
-
 #include <fmt/core.h>
 
 #include "base/error.h"
+#include "math/scalar.h"
 #include "math/vec3.h"
 #include "points/copies.h"
 #include "points/sources.h"
@@ -43,8 +42,7 @@ std::vector<scene::Label> placed_labels(const data::Table& table, const Rows& ro
   const data::Transform placement = transform_of(points.transform);
   for (std::size_t r = 0; r < rules.size(); ++r) {
     const std::vector<std::uint8_t> mask = rules[r].condition.evaluate(table);
-    constexpr double kInfinity = std::numeric_limits<double>::infinity();
-    data::Vec3d low{kInfinity, kInfinity, kInfinity}, high = low * -1.0;
+    data::Vec3d low{math::kInfinity, math::kInfinity, math::kInfinity}, high = low * -1.0;
     for (std::size_t i = 0; i < rows.size(); ++i) {
       if (mask[rows[i]] == 0) continue;
       const data::Vec3d c = centers[i];

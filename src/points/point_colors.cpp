@@ -11,6 +11,7 @@
 #include "base/error.h"
 #include "base/text.h"
 #include "data/elements.h"
+#include "math/scalar.h"
 #include "points/sources.h"
 #include "scene/value_text.h"
 
@@ -84,8 +85,7 @@ PointColors colors_by_label(const Labels& labels, const data::Column& column, co
 
 /// The range of the values of a column that a map shows, if there are any.
 std::optional<scene::Interval> range_of(const data::Column& column, const Rows& rows, bool is_log) {
-  constexpr double kInfinity = std::numeric_limits<double>::infinity();
-  scene::Interval range{kInfinity, -kInfinity};
+  scene::Interval range{math::kInfinity, -math::kInfinity};
   for_each_shown(column, rows, is_log, [&](double v) {
     range.low = std::min(range.low, v);
     range.high = std::max(range.high, v);

@@ -18,6 +18,7 @@
 #include <fmt/core.h>
 
 #include "base/text.h"
+#include "math/scalar.h"
 #include "points/selection_run.h"
 
 namespace orrery::points {
@@ -530,9 +531,8 @@ class Parser {
 
   /// Parses `5`, `5:8`, `5:`, `:8` or `:`.
   NumberRange parse_range() {
-    constexpr double kInfinity = std::numeric_limits<double>::infinity();
     const Span first = token_.span;
-    NumberRange out{-kInfinity, kInfinity};
+    NumberRange out{-math::kInfinity, math::kInfinity};
     if (!is_symbol(":")) out.low = parse_number();
     if (!take(":")) return {out.low, out.low};
     if (is_symbol(",") || is_symbol("]") || is_symbol("}")) return out;

@@ -5,11 +5,11 @@
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
-#include <limits>
 #include <tuple>
 #include <utility>
 #include <vector>
 
+#include "math/scalar.h"
 #include "math/vec3.h"
 
 namespace orrery::points {
@@ -28,8 +28,6 @@ constexpr double kTiny = 1e-130;
 /// Cell indices beyond this do not occur at a sample: its nearest neighbour is at least one ulp away.
 constexpr double kMaxCell = 0x1p53;
 
-constexpr double kInfinity = std::numeric_limits<double>::infinity();
-
 std::uint64_t mixed(std::uint64_t x) {
   x = (x ^ (x >> 30)) * 0xBF58476D1CE4E5B9u;
   x = (x ^ (x >> 27)) * 0x94D049BB133111EBu;
@@ -47,8 +45,8 @@ struct Scale {
 /// A position in the sample, and the best known distance to its nearest neighbour.
 struct Sample {
   Vec3d place;
-  std::size_t count = 1;        ///< number of points of the sample at this position
-  double nearest2 = kInfinity;  ///< squared distance
+  std::size_t count = 1;              ///< number of points of the sample at this position
+  double nearest2 = math::kInfinity;  ///< squared distance
 
   void update(const Vec3d& p) {
     const Vec3d d = place - p;
@@ -207,7 +205,7 @@ double median_neighbor_distance(const scene::PointArray& centers) {
   std::vector<Sample> samples = sample_of(centers, scale);
   if (samples.size() == 1) {
     for (const Vec3d p : centers) samples[0].update(scale(p));
-    return samples[0].nearest2 < kInfinity ? std::sqrt(samples[0].nearest2) / scale.factor : 0;
+    return samples[0].nearest2 < math::kInfinity ? std::sqrt(samples[0].nearest2) / scale.factor : 0;
   }
   bound(samples.data(), samples.data() + samples.size());
   // The sample is a small fraction of the positions, so that a large cell contains few of its points.
