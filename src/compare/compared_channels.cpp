@@ -23,7 +23,7 @@ std::string layer_name(const std::string& channel) {
   std::string name = film::Plane{channel, {}}.layer();
   if (name.empty()) return channel;
   const std::size_t n = name.size();
-  if (n > 2 && name.rfind("Crypto", 0) == 0 && std::isdigit(static_cast<unsigned char>(name[n - 1])) != 0 &&
+  if (n > 2 && name.starts_with("Crypto") && std::isdigit(static_cast<unsigned char>(name[n - 1])) != 0 &&
       std::isdigit(static_cast<unsigned char>(name[n - 2])) != 0)
     name.resize(n - 2);
   return name;

@@ -46,7 +46,7 @@ class LogCapture {
 };
 
 /// Returns whether a name denotes a config built into newer versions of OCIO, which is not a file.
-bool is_library_config(const std::string& name) { return name.rfind("ocio://", 0) == 0; }
+bool is_library_config(const std::string& name) { return name.starts_with("ocio://"); }
 
 /// OCIO reads this variable when it creates a processor, and throws an exception that does not name it.
 void check_optimization_flags() {

@@ -62,7 +62,7 @@ void check_size(const std::filesystem::path& file, int width_px, int height_px) 
       file.string(), width_px, height_px, largest));
 }
 
-bool is_lossy(const std::string& compression) { return compression.rfind("dwa", 0) == 0; }
+bool is_lossy(const std::string& compression) { return compression.starts_with("dwa"); }
 
 void check_compression(const std::string& name) {
   static const std::vector<std::string> plain = {"none", "rle", "zip", "zips", "piz", "dwaa", "dwab"};

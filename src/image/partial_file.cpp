@@ -53,7 +53,7 @@ Provenance provenance_of(const ImageInput& in) {
   const std::string prefix = kPartialPrefix;
   for (const OIIO::ParamValue& value : in.spec().extra_attribs) {
     const std::string name = value.name().string();
-    if (name.rfind(prefix, 0) == 0) out[name.substr(prefix.size())] = value.get_string();
+    if (name.starts_with(prefix)) out[name.substr(prefix.size())] = value.get_string();
   }
   return out;
 }

@@ -203,7 +203,7 @@ std::string stamp_in(const ImageSpec& spec) {
   const std::string own = spec.get_string_attribute(kStampName);
   if (!own.empty()) return own;
   const std::string text = spec.get_string_attribute("ImageDescription"), begin = std::string(kStampName) + " ";
-  return text.rfind(begin, 0) == 0 ? text.substr(begin.size()) : "";
+  return text.starts_with(begin) ? text.substr(begin.size()) : "";
 }
 
 }  // namespace

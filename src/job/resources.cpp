@@ -85,7 +85,7 @@ void require(std::uint64_t needed, const std::string& text, std::uint64_t limit,
 double compressed_fraction(const std::string& compression, bool is_float) {
   if (compression == "none") return 1;
   if (compression == "rle") return is_float ? 0.9 : 0.65;
-  if (compression.rfind("dwa", 0) == 0) return 0.3;
+  if (compression.starts_with("dwa")) return 0.3;
   return is_float ? 0.7 : 0.5;
 }
 

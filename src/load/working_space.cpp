@@ -60,7 +60,7 @@ int convert(const std::string& ocio, const std::string& from, const std::string&
 
 std::string config_of(const std::filesystem::path& scene_file, const scene::Color& color) {
   // OpenColorIO's built-in configs, "ocio://...", are not files.
-  const bool is_file = !color.config.empty() && color.config.string().rfind("ocio://", 0) != 0;
+  const bool is_file = !color.config.empty() && !color.config.string().starts_with("ocio://");
   return is_file ? (scene_file.parent_path() / color.config).string() : color.config.string();
 }
 
