@@ -170,7 +170,7 @@ std::vector<TextureInfo> texture_infos(const scene::Scene& scene, const std::vec
   for (const scene::NamedTexture& named : scene::textures(scene)) {
     TextureInfo info;
     info.key = named.key;
-    info.type = scene::texture_types(named.use)[static_cast<std::size_t>(named.texture->type)].name;
+    info.type = scene::type_of(*named.texture, named.use).name;
     if (named.texture->type == scene::TextureType::kImage) {
       const load::LoadedMap& map = loaded.at(next++).map;
       info.file = named.texture->file.string();
@@ -214,12 +214,12 @@ std::string text_of(const Feature& f) {
 }
 
 std::vector<std::pair<std::string, std::uint64_t>> count_materials(const compile::CompiledScene& compiled) {
-  static constexpr std::array kNames = {"lambertian", "hemisphere", "metal", "dielectric", "emitter", "plastic"};
-  std::array<std::uint64_t, kNames.size()> counts{};
+  const std::vector<scene::MaterialType>& types = scene::material_types();  // in the order of MaterialKind
+  std::vector<std::uint64_t> counts(types.size());
   for (const kernel::Material& m : compiled.materials) ++counts[static_cast<std::size_t>(m.kind)];
   std::vector<std::pair<std::string, std::uint64_t>> out;
   for (std::size_t i = 0; i < counts.size(); ++i)
-    if (counts[i] > 0) out.emplace_back(kNames[i], counts[i]);
+    if (counts[i] > 0) out.emplace_back(types[i].name, counts[i]);
   return out;
 }
 

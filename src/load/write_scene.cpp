@@ -85,14 +85,14 @@ void add_table(std::string& out, const std::string& header, const KeyTexts& keys
 
 /// Returns a texture as an inline table.
 std::string texture_text(const scene::Texture& texture, scene::TextureUse use) {
-  const scene::TextureTypeKeys& type = scene::texture_types(use)[static_cast<std::size_t>(texture.type)];
+  const scene::TextureTypeKeys& type = scene::type_of(texture, use);
   KeyTexts keys = texts_of(type.keys, texture, {});
   keys.emplace(keys.begin(), "texture", string_text(type.name));
   return inline_table(keys);
 }
 
 std::string material_text(const scene::MaterialModel& model) {
-  const scene::MaterialType& type = scene::material_types()[model.index()];
+  const scene::MaterialType& type = scene::type_of(model);
   KeyTexts keys = texts_of(type.keys, model, type.model);
   for (const scene::TexturedKey& textured : type.textured)
     if (const scene::TextureSlot texture = textured.get(model)) {

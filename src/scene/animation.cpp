@@ -25,8 +25,6 @@ const Key<Target>* find_key(const std::vector<Key<Target>>& keys, const std::str
   return nullptr;
 }
 
-const MaterialType& type_of(const Material& material) { return material_types()[material.model.index()]; }
-
 /// Returns the index of the sphere or rod with this index ("3") or name.
 template <class Object>
 std::optional<std::size_t> find_object(const std::vector<Object>& objects, const std::string& name, bool is_index) {
@@ -52,9 +50,9 @@ std::optional<Animated> animated_object(const Scene& scene, std::vector<Object> 
 std::optional<Animated> animated_material(const Scene& scene, const std::string& name, const std::string& key_name) {
   for (std::size_t i = 0; i < scene.materials.size(); ++i) {
     if (scene.materials[i].name != name) continue;
-    const auto* key = find_key(type_of(scene.materials[i]).keys, key_name);
+    const auto* key = find_key(type_of(scene.materials[i].model).keys, key_name);
     if (key == nullptr) return {};
-    for (const TexturedKey& textured : type_of(scene.materials[i]).textured)
+    for (const TexturedKey& textured : type_of(scene.materials[i].model).textured)
       if (textured.name == key_name && textured.get(scene.materials[i].model)) return {};
     return Animated{key->type, key->range, [key, i](Scene& s, const Value& v) { key->set(s.materials[i].model, v); }};
   }
@@ -143,7 +141,7 @@ std::vector<std::string> animated_names(const Scene& scene) {
     if (!sphere.name.empty()) add("sphere." + sphere.name, sphere_keys());
   for (const Rod& rod : scene.rods)
     if (!rod.name.empty()) add("rod." + rod.name, rod_keys());
-  for (const Material& material : scene.materials) add("material." + material.name, type_of(material).keys);
+  for (const Material& material : scene.materials) add("material." + material.name, type_of(material.model).keys);
   return names;
 }
 

@@ -22,11 +22,9 @@ void compare(const std::vector<Key<Target>>& keys, Part otherwise, const Target&
 bool is_same(TextureUse use, const TextureSlot& before, const TextureSlot& after) {
   if (!before || !after || before == after) return before == after;
   if (before->type != after->type) return false;
-  for (const TextureTypeKeys& type : texture_types(use))
-    if (type.type == before->type)
-      return std::all_of(type.keys.begin(), type.keys.end(),
-                         [&](const Key<Texture>& key) { return key.text(*before) == key.text(*after); });
-  return false;
+  const std::vector<Key<Texture>>& keys = type_of(*before, use).keys;
+  return std::all_of(keys.begin(), keys.end(),
+                     [&](const Key<Texture>& key) { return key.text(*before) == key.text(*after); });
 }
 
 /// Materials are numbered in the order of the file, and only dielectrics have two sides and no colour: which ones
@@ -45,7 +43,7 @@ void compare_materials(const std::vector<Material>& before, const std::vector<Ma
       if (opacity_of(a) != opacity_of(b)) parts.add(Part::kAssignment);
       continue;
     }
-    const MaterialType& type = material_types()[a.index()];
+    const MaterialType& type = type_of(a);
     compare(type.keys, Part::kLook, a, b, parts);
     for (const TexturedKey& key : type.textured)
       if (!is_same(key.use, key.get(a), key.get(b))) parts.add(Part::kLook);

@@ -107,4 +107,6 @@ const std::vector<MaterialType>& material_types() {
   return all;
 }
 
+const MaterialType& type_of(const MaterialModel& model) { return material_types()[model.index()]; }
+
 }  // namespace orrery::scene

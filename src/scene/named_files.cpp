@@ -17,17 +17,13 @@ void visit_files(const std::vector<Key<Target>>& keys, const Target& target, Vis
   }
 }
 
-const std::vector<Key<Texture>>& keys_of(const Texture& texture, TextureUse use) {
-  return texture_types(use)[static_cast<std::size_t>(texture.type)].keys;
-}
-
 }  // namespace
 
 std::vector<NamedFile> named_files(const Scene& scene) {
   std::vector<NamedFile> out;
   const auto add = [&](const auto&, const NamedFile& file) { out.push_back(file); };
   for (const Table& table : tables()) visit_files(table.keys, scene, add);
-  for (const NamedTexture& t : textures(scene)) visit_files(keys_of(*t.texture, t.use), *t.texture, add);
+  for (const NamedTexture& t : textures(scene)) visit_files(type_of(*t.texture, t.use).keys, *t.texture, add);
   for (const PointsKeys& points : scene.points) visit_files(points_keys(), points, add);
   for (const RodFile& rods : scene.rod_files) visit_files(rod_file_keys(), rods, add);
   return out;
@@ -38,7 +34,7 @@ void rename_files(Scene& scene, const std::function<std::string(const NamedFile&
     visit_files(keys, target, [&](const auto& key, const NamedFile& file) { key.set(target, renamed(file)); });
   };
   for (const Table& table : tables()) rename_in(table.keys, scene);
-  modify_textures(scene, [&](Texture& texture, TextureUse use) { rename_in(keys_of(texture, use), texture); });
+  modify_textures(scene, [&](Texture& texture, TextureUse use) { rename_in(type_of(texture, use).keys, texture); });
   for (PointsKeys& points : scene.points) rename_in(points_keys(), points);
   for (RodFile& rods : scene.rod_files) rename_in(rod_file_keys(), rods);
 }

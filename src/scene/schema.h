@@ -68,7 +68,10 @@ struct TextureTypeKeys {
   TextureType type;
   std::vector<Key<Texture>> keys;
 };
+/// In the order of TextureType.
 const std::vector<TextureTypeKeys>& texture_types(TextureUse use);
+/// The type of a texture.
+const TextureTypeKeys& type_of(const Texture& texture, TextureUse use);
 
 /// A key of a material whose value may be a texture.
 struct TexturedKey {
@@ -88,7 +91,10 @@ struct MaterialType {
   std::vector<Key<MaterialModel>> keys;
   std::vector<TexturedKey> textured = {};  ///< the keys whose values may be textures
 };
+/// In the order of the alternatives of MaterialModel.
 const std::vector<MaterialType>& material_types();
+/// The type of a material.
+const MaterialType& type_of(const MaterialModel& model);
 
 /// Keys of [[sphere]] and [[points]], except `material`. They change the geometry, unless they say otherwise.
 const std::vector<Key<Sphere>>& sphere_keys();

@@ -82,10 +82,14 @@ const std::vector<TextureTypeKeys>& texture_types(TextureUse use) {
   return all[static_cast<std::size_t>(use)];
 }
 
+const TextureTypeKeys& type_of(const Texture& texture, TextureUse use) {
+  return texture_types(use)[static_cast<std::size_t>(texture.type)];
+}
+
 std::vector<NamedTexture> textures(const Scene& scene) {
   std::vector<NamedTexture> out;
   for (const Material& material : scene.materials)
-    for (const TexturedKey& key : material_types()[material.model.index()].textured)
+    for (const TexturedKey& key : type_of(material.model).textured)
       if (const TextureSlot texture = key.get(material.model))
         out.push_back({fmt::format("material.{}.{}", material.name, key.name), key.use, texture.get()});
   return out;
@@ -99,7 +103,7 @@ std::vector<NamedTexture> image_textures(const Scene& scene) {
 
 void modify_textures(Scene& scene, const std::function<void(Texture& texture, TextureUse use)>& modify) {
   for (Material& material : scene.materials) {
-    for (const TexturedKey& key : material_types()[material.model.index()].textured) {
+    for (const TexturedKey& key : type_of(material.model).textured) {
       TextureSlot& slot = key.at(material.model);
       if (!slot) continue;
       const auto copy = std::make_shared<Texture>(*slot);
