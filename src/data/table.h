@@ -9,6 +9,7 @@
 #include <optional>
 #include <string>
 #include <string_view>
+#include <utility>
 #include <variant>
 #include <vector>
 
@@ -204,6 +205,7 @@ struct Table {
 
   /// Returns a column; null if there is none.
   const Column* find(std::string_view name) const { return find_named(columns, name); }
+  Column* find(std::string_view name) { return const_cast<Column*>(std::as_const(*this).find(name)); }
 };
 
 }  // namespace orrery::data

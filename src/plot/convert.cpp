@@ -77,7 +77,7 @@ class OutputTable {
  public:
   OutputTable(scene::Points& points, points::SourceRows& source, bool has_radius) : source_(source) {
     const data::Roles& roles = source.info.roles;
-    for (const std::string& axis : roles.position) find(axis)->values = {};
+    for (const std::string& axis : roles.position) source.table.find(axis)->values = {};
     table_.rows = points.centers.size();
     takes_all_ = table_.rows == source.table.rows;
     for (std::size_t i = 0; takes_all_ && i < source.rows.size(); ++i) takes_all_ = source.rows[i] == i;
@@ -108,13 +108,6 @@ class OutputTable {
     return out;
   }
 
-  /// A column of the source.
-  data::Column* find(const std::string& name) {
-    for (data::Column& column : source_.table.columns)
-      if (column.name == name) return &column;
-    return nullptr;
-  }
-
   void add(const std::string& name, data::Values values) { table_.columns.push_back({name, std::move(values)}); }
 
   void add_colors(const scene::Points& points) {
@@ -135,7 +128,7 @@ class OutputTable {
       left_out_.push_back(name);
       return;
     }
-    data::Values values = std::exchange(find(name)->values, {});
+    data::Values values = std::exchange(source_.table.find(name)->values, {});
     if (!takes_all_)
       values = std::visit([&](const auto& all) -> data::Values { return gathered(all, source_.rows); }, values);
     add(name, std::move(values));

@@ -125,8 +125,8 @@ template <class Number>
 std::array<std::vector<Number>*, 3> columns_of(data::Table& table, const std::array<std::string, 3>& names) {
   std::array<std::vector<Number>*, 3> out{};
   for (std::size_t axis = 0; axis < 3; ++axis) {
-    for (data::Column& column : table.columns)
-      if (column.name == names[axis]) out[axis] = std::get_if<std::vector<Number>>(&column.values);
+    if (data::Column* const column = table.find(names[axis]))
+      out[axis] = std::get_if<std::vector<Number>>(&column->values);
     if (out[axis] == nullptr) return {};
   }
   return out;
