@@ -7,6 +7,7 @@
 #include <string>
 
 #include "compare/color_view.h"
+#include "compare/errors.h"
 #include "film/display_error.h"
 #include "study/study.h"
 
@@ -79,16 +80,16 @@ void test_bias(std::vector<Point>& points) {
   std::vector<Point*> by_chance;
   for (Point& p : points) {
     p.bias = 0;
-    p.error = p.noise;
+    p.error = p.measured.noise;
     by_chance.push_back(&p);
   }
   std::stable_sort(by_chance.begin(), by_chance.end(),
-                   [](const Point* a, const Point* b) { return a->bias_chance < b->bias_chance; });
+                   [](const Point* a, const Point* b) { return a->measured.bias_chance < b->measured.bias_chance; });
   auto untested = static_cast<double>(points.size());
   for (Point* p : by_chance) {
-    if (p->bias_chance * untested-- > kFamilyWiseError) break;
-    const double common = std::sqrt(p->bias_squared);
-    p->error = std::hypot(p->noise, common);
+    if (p->measured.bias_chance * untested-- > compare::kFamilyWiseError) break;
+    const double common = std::sqrt(p->measured.bias_squared);
+    p->error = std::hypot(p->measured.noise, common);
     if (p->is_shortcut) p->bias = common;
   }
   for (Point& p : points) p.efficiency = 1 / (p.error * p.error * p.seconds);

@@ -7,6 +7,10 @@
 
 namespace orrery::study {
 
+struct Errors;
+struct Point;
+struct Slope;
+
 /// Two renders of the same image with independent random numbers.
 struct Pair {
   film::Picture first, second;
@@ -20,14 +24,6 @@ double noise_of_mean(const Pair& pair);
 
 /// Effective number of pixels that must show a bias.
 inline constexpr double kMinEffectiveCount = 20;
-
-/// Error estimates of a pair; the members are those of Point.
-struct Errors {
-  double noise = 0;
-  double bias_squared = 0;
-  double bias_chance = 1;
-  double energy = 0;
-};
 
 /// Estimates noise and bias of a choice against the reference.
 ///
@@ -44,13 +40,8 @@ struct Errors {
 /// Reference  efron1969
 Errors errors_of(const Pair& choice, const Pair& reference);
 
-struct Point;
-struct Slope;
-
-/// Family-wise error rate: the probability that a study of unbiased choices reports a bias in any of them.
-inline constexpr double kFamilyWiseError = 0.01;
-
-/// Tests all points for an error common to both renders, and sets bias, error and efficiency of every point.
+/// Tests all points for an error common to both renders, and sets bias, error and efficiency of every point. The
+/// probability that a study of unbiased choices reports a bias in any of them is at most compare::kFamilyWiseError.
 ///
 /// Only shortcuts have a bias. Other choices converge to the same image as the reference: light that both of their
 /// renders lack has not been found yet, and counts as error only.

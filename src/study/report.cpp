@@ -27,11 +27,12 @@ using nlohmann::json;
 // Called by the JSON library.
 
 static void to_json(json& out, const Point& p) {
+  const Errors& e = p.measured;
   out = {{"axis", p.axis},           {"name", p.name},
          {"flags", p.flags},         {"samples", p.samples},
          {"seconds", p.seconds},     {"error", p.error},
-         {"bias", p.bias},           {"noise", p.noise},
-         {"energy", p.energy},       {"efficiency", p.efficiency},
+         {"bias", p.bias},           {"noise", e.noise},
+         {"energy", e.energy},       {"efficiency", p.efficiency},
          {"memory_bytes", p.memory}, {"is_shortcut", p.is_shortcut},
          {"on_front", p.on_front}};
 }
@@ -139,8 +140,8 @@ std::string study_text(const Study& s) {
                      "error %", "bias %", "noise %", "energy %", "efficiency");
   for (const Point& p : s.points)
     out += fmt::format("{:12} {:22} {:9.1f} {:9.3f} {:9.3f} {:9.3f} {:9.3f} {:+9.3f} {:10.4g}{}\n", p.axis, p.name,
-                       p.samples, p.seconds, p.error * 100, p.bias * 100, p.noise * 100, p.energy * 100, p.efficiency,
-                       p.on_front ? " *" : "");
+                       p.samples, p.seconds, p.error * 100, p.bias * 100, p.measured.noise * 100,
+                       p.measured.energy * 100, p.efficiency, p.on_front ? " *" : "");
   out += "* Pareto front: no other choice is both faster and more accurate\n\n";
   for (const Slope& l : s.slopes)
     out += fmt::format("error of {} is proportional to samples^{:.2f}\n", l.name, l.slope);

@@ -288,11 +288,8 @@ class Runner {
     needs.lights = compiled.light_tree.bytes_of_build();
     if (compiled.environment) needs.background = compiled.environment->bytes();
     point.memory = job::estimate_memory(needs).total();
-    const Errors e = errors_of(pair, reference_);
-    point.noise = point.error = e.noise;
-    point.bias_squared = e.bias_squared;
-    point.bias_chance = e.bias_chance;
-    point.energy = e.energy;
+    point.measured = errors_of(pair, reference_);
+    point.error = point.measured.noise;
     point.picture = std::move(pair.first);
     out_.points.push_back(std::move(point));
   }

@@ -28,19 +28,24 @@ struct Request {
   std::function<void(const std::string& what, double fraction)> on_progress;
 };
 
+/// Error estimates of a choice, from its two renders and those of the reference.
+struct Errors {
+  double noise = 0;         ///< error that more samples reduce
+  double bias_squared = 0;  ///< unbiased estimate of the squared bias; can be negative
+  double bias_chance = 1;   ///< upper bound of the p-value: probability of such an estimate without bias
+  double energy = 0;        ///< mean radiance error, relative to the mean radiance
+};
+
 /// Result of one choice. Errors are root mean film::display_error_squared over the pixels.
 struct Point {
-  std::string axis;          ///< "samples", "sampler", "precision" ...
-  std::string name;          ///< "64 independent"
-  std::string flags;         ///< command-line options that select it
-  double samples = 0;        ///< mean samples per pixel
-  double seconds = 0;        ///< time to render one image of the study's size
-  double error = 0;          ///< total error: noise, plus the error common to both renders if that is significant
-  double bias = 0;           ///< error of a shortcut that more samples do not reduce; 0 if not significant
-  double noise = 0;          ///< error that more samples reduce
-  double bias_squared = 0;   ///< unbiased estimate of the squared bias; can be negative
-  double bias_chance = 1;    ///< upper bound of the p-value: probability of such an estimate without bias
-  double energy = 0;         ///< mean radiance error, relative to the mean radiance
+  std::string axis;    ///< "samples", "sampler", "precision" ...
+  std::string name;    ///< "64 independent"
+  std::string flags;   ///< command-line options that select it
+  double samples = 0;  ///< mean samples per pixel
+  double seconds = 0;  ///< time to render one image of the study's size
+  double error = 0;    ///< total error: noise, plus the error common to both renders if that is significant
+  double bias = 0;     ///< error of a shortcut that more samples do not reduce; 0 if not significant
+  Errors measured;
   double efficiency = 0;     ///< 1 / (error^2 seconds)
   std::uint64_t memory = 0;  ///< estimated bytes
   bool is_shortcut = false;  ///< converges to a different image than the scene's settings

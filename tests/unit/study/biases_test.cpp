@@ -6,6 +6,7 @@
 #include <cstdlib>
 #include <random>
 
+#include "compare/errors.h"
 #include "compile/compile.h"
 #include "compile/compiled_scene.h"
 #include "render/render.h"
@@ -49,11 +50,8 @@ class Noise {
 };
 
 Point point_of(const Pair& choice, const Pair& reference) {
-  const Errors e = errors_of(choice, reference);
   Point p;
-  p.noise = e.noise;
-  p.bias_squared = e.bias_squared;
-  p.bias_chance = e.bias_chance;
+  p.measured = errors_of(choice, reference);
   p.is_shortcut = true;
   return p;
 }
@@ -87,9 +85,9 @@ TEST(StudyBias, ABiasIsDetectedAndMeasured) {
   test_bias(points);
   EXPECT_NEAR(points[0].bias, 0.05, 0.005);
   EXPECT_EQ(points[1].bias, 0);
-  EXPECT_EQ(points[1].error, points[1].noise);
+  EXPECT_EQ(points[1].error, points[1].measured.noise);
   EXPECT_NEAR(points[2].bias, 0.25 * std::sqrt(40.0 / (kWidth * kHeight)), 0.005) << "bias in a part of the image";
-  EXPECT_NEAR(points[2].error, std::hypot(points[2].noise, points[2].bias), 1e-12);
+  EXPECT_NEAR(points[2].error, std::hypot(points[2].measured.noise, points[2].bias), 1e-12);
 }
 
 /// The light of a sun that bounced paths rarely hit: `hits` of all paths carry a fifth of the image's light.
@@ -114,7 +112,7 @@ TEST(StudyBias, LightThatFewPathsHaveFoundIsNotBias) {
   constexpr int kStudies = 3000;
   for (int i = 0; i < kStudies; ++i)
     alarms += biased_points({point_of({sun_found_by_chance(engine, 4), sun_found_by_chance(engine, 4)}, reference)});
-  EXPECT_LE(alarms, kStudies * kFamilyWiseError);
+  EXPECT_LE(alarms, kStudies * compare::kFamilyWiseError);
 }
 
 /// Where no path has found it, it cannot be distinguished from a bias; but only shortcuts can have one.
@@ -202,7 +200,7 @@ TEST(StudyBias, AnUnbiasedSceneGivesNoFalsePositives) {
   }
   std::printf("%d of %d studies of %zu unbiased choices reported a bias, in %d choices\n", alarms, studies,
               choices.size(), biased);
-  EXPECT_LE(alarms, studies * kFamilyWiseError + 3 * std::sqrt(studies * kFamilyWiseError));
+  EXPECT_LE(alarms, studies * compare::kFamilyWiseError + 3 * std::sqrt(studies * compare::kFamilyWiseError));
 }
 
 }  // namespace

@@ -18,7 +18,7 @@ Point point(const std::string& axis, const std::string& name, double samples, do
   p.name = name;
   p.samples = samples;
   p.seconds = seconds;
-  p.error = p.noise = error;
+  p.error = p.measured.noise = error;
   return p;
 }
 
@@ -58,7 +58,7 @@ TEST_F(StudyRecommendation, ShowsTheTimeOfTheBaselineAndASignificantBias) {
 }
 
 TEST_F(StudyRecommendation, ShowsNoBiasThatIsNotSignificant) {
-  fast().energy = 0.01;
+  fast().measured.energy = 0.01;
   const Recommendation& r = recommendation();
   EXPECT_EQ(r.words, "for 1 % noise: --noise 0.01 --precision fast, 2 s instead of 8 s");
   EXPECT_EQ(r.bias, 0);

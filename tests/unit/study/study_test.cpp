@@ -151,15 +151,16 @@ TEST_F(StudyRun, EstimatesMemoryAsInfoDoes) {
 TEST_F(StudyRun, SeparatesBiasFromNoise) {
   // One bounce is not enough for glass. Sixteen times the samples give a quarter of the noise.
   EXPECT_GT(point("depth", "at most 2").bias, 0.02);
-  EXPECT_LT(point("depth", "at most 2").energy, -0.005);
+  EXPECT_LT(point("depth", "at most 2").measured.energy, -0.005);
   EXPECT_LT(point("precision", "fast").bias, 0.005);
-  EXPECT_NEAR(point("sampler", "16 independent").noise / point("sampler", "256 independent").noise, 4, 0.8);
+  EXPECT_NEAR(point("sampler", "16 independent").measured.noise / point("sampler", "256 independent").measured.noise, 4,
+              0.8);
   EXPECT_LT(point("samples", "64 sobol").error, point("sampler", "64 independent").error);
 }
 
 TEST_F(StudyRun, DenoisingTakesNoiseAndMemory) {
   const Point noisy = point("samples", "16 sobol"), denoised = point("denoise", "16 sobol");
-  EXPECT_LT(denoised.noise, 0.7 * noisy.noise);
+  EXPECT_LT(denoised.measured.noise, 0.7 * noisy.measured.noise);
   EXPECT_LT(denoised.error, noisy.error);
   EXPECT_GT(denoised.memory, noisy.memory) << "for the halves of the samples";
 }
