@@ -2,7 +2,6 @@
 #include "info/info.h"
 
 #include <algorithm>
-#include <array>
 #include <limits>
 #include <utility>
 
@@ -266,9 +265,7 @@ SceneInfo scene_info(const load::SceneRequest& request, job::PreparedScene& prep
   info.max_depth = static_cast<int>(compiled.max_depth);
   info.spheres = compiled.spheres.size();
   info.rods = compiled.rod_count();
-  const auto [low, high] = compile::bounds_of(compiled);
-  info.lower = {low.x, low.y, low.z};
-  info.upper = {high.x, high.y, high.z};
+  info.bounds = compile::bounds_of(compiled);
   if (info.spheres + info.rods > 0) {
     info.smallest_radius = std::numeric_limits<double>::infinity();
     const auto add_radius = [&](double radius) {
@@ -337,11 +334,10 @@ std::string info_text(const SceneInfo& info) {
   add_row(out, "frame", "{}", info.frame);
   add_row(out, "image", "{} x {}, {} samples per pixel, max depth {}", info.width, info.height, info.samples,
           info.max_depth);
-  const auto& [low_x, low_y, low_z] = info.lower;
-  const auto& [high_x, high_y, high_z] = info.upper;
+  const auto& [low, high] = info.bounds;
   const std::string extent =
       fmt::format(", radius {:g} .. {:g}, from ({:g}, {:g}, {:g}) to ({:g}, {:g}, {:g})", info.smallest_radius,
-                  info.largest_radius, low_x, low_y, low_z, high_x, high_y, high_z);
+                  info.largest_radius, low.x, low.y, low.z, high.x, high.y, high.z);
   add_row(out, "spheres", "{}{}", info.spheres, info.spheres > 0 && info.rods == 0 ? extent : "");
   if (info.rods > 0) add_row(out, "rods", "{}{}", info.rods, extent);
   std::vector<std::string> materials;
@@ -385,7 +381,8 @@ std::string info_json(const SceneInfo& info) {
                   {"height", info.background->height},
                   {"color_space", info.background->color_space}};
   if (info.spheres + info.rods > 0) {
-    bounds = {{"lower", info.lower}, {"upper", info.upper}};
+    const auto& [low, high] = info.bounds;
+    bounds = {{"lower", {low.x, low.y, low.z}}, {"upper", {high.x, high.y, high.z}}};
     radius = {{"smallest", info.smallest_radius}, {"largest", info.largest_radius}};
   }
   return job::json_text({{"schema", "orrery.info/1"},

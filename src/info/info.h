@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include <array>
 #include <cstdint>
 #include <optional>
 #include <string>
@@ -10,6 +9,7 @@
 
 #include "base/error.h"
 #include "compile/forward.h"
+#include "compile/sphere_store.h"
 #include "job/forward.h"
 #include "job/resources.h"
 #include "load/load_images.h"
@@ -50,7 +50,7 @@ struct SceneInfo {
   int width = 0, height = 0, samples = 0, max_depth = 0;
   std::uint64_t spheres = 0;
   std::uint64_t rods = 0;
-  std::array<double, 3> lower{}, upper{};  ///< bounds, scene units; valid if there are spheres or rods
+  compile::Bounds bounds;  ///< scene units; valid if there are spheres or rods
   double smallest_radius = 0, largest_radius = 0;
   std::vector<std::pair<std::string, std::uint64_t>> materials;  ///< number of compiled materials by type
   std::uint64_t emitters = 0;                                    ///< spheres and rods that emit; black ones do not

@@ -66,8 +66,8 @@ TEST_F(Info, ReportsTheScenesProperties) {
   const SceneInfo found = info(kScene);
   EXPECT_EQ(found.width, 24);
   EXPECT_EQ(found.spheres, 3u);
-  EXPECT_EQ(found.lower[0], -0.5);
-  EXPECT_EQ(found.upper[0], 4.5);
+  EXPECT_EQ(found.bounds.lower.x, -0.5);
+  EXPECT_EQ(found.bounds.upper.x, 4.5);
   EXPECT_EQ(found.smallest_radius, 0.25);
   EXPECT_EQ(found.largest_radius, 0.5);
   EXPECT_EQ(found.precision, "exact");
