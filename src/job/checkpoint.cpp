@@ -48,15 +48,10 @@ std::string layers_text(const Layers& layers) {
   return out;
 }
 
-std::string value(const image::Provenance& provenance, const std::string& key) {
-  const auto found = provenance.find(key);
-  return found == provenance.end() ? std::string() : found->second;
-}
-
 /// Settings that are lines "key = value", by key.
 std::map<std::string, std::string> settings_of(const image::Provenance& provenance) {
   std::map<std::string, std::string> out;
-  std::istringstream lines(value(provenance, "settings"));
+  std::istringstream lines(value_of(provenance, "settings"));
   constexpr std::string_view kEquals = " = ";
   for (std::string line; std::getline(lines, line);)
     if (const std::size_t equals = line.find(kEquals); equals != std::string::npos)
@@ -106,6 +101,11 @@ std::string difference_of_checkpoint(const image::Provenance& checkpoint, const 
 }
 
 }  // namespace
+
+std::string value_of(const image::Provenance& provenance, const std::string& key) {
+  const auto found = provenance.find(key);
+  return found == provenance.end() ? std::string() : found->second;
+}
 
 image::Provenance provenance_of(const Job& job, const load::ReadResult& read, const compile::CompiledScene& compiled,
                                 const SceneHashes& hashes, const Layers& layers) {
@@ -159,10 +159,10 @@ std::string difference(const image::Provenance& a, const image::Provenance& b, c
       {"time", "time budget: "},       {"limit", "sample limit: "}, {"layers", "layers "},
       {"total", "samples per pixel: "}};
   for (const auto& [key, name] : names) {
-    if (!base::contains(keys, key) || value(a, key) == value(b, key)) continue;
+    if (!base::contains(keys, key) || value_of(a, key) == value_of(b, key)) continue;
     if (name.empty()) return scene_difference(a, b, key == "sceneHash");
-    return fmt::format("{}{}, not {}", name, value(a, key).empty() ? "none" : value(a, key),
-                       value(b, key).empty() ? "none" : value(b, key));
+    return fmt::format("{}{}, not {}", name, value_of(a, key).empty() ? "none" : value_of(a, key),
+                       value_of(b, key).empty() ? "none" : value_of(b, key));
   }
   return {};
 }
@@ -178,13 +178,13 @@ bool is_finished(const image::PartialFile& shard) {
 
 SampleRange sample_range(const image::Provenance& provenance) {
   SampleRange out;
-  std::sscanf(value(provenance, "samples").c_str(), "%u:%u", &out.begin, &out.end);
+  std::sscanf(value_of(provenance, "samples").c_str(), "%u:%u", &out.begin, &out.end);
   return out;
 }
 
 render::PixelShard pixel_shard(const image::Provenance& provenance) {
   render::PixelShard out;
-  if (std::sscanf(value(provenance, "shard").c_str(), "%d/%d", &out.index, &out.count) == 2) --out.index;
+  if (std::sscanf(value_of(provenance, "shard").c_str(), "%d/%d", &out.index, &out.count) == 2) --out.index;
   if (out.count > kMaxShards) out.count = 0;  // not written by orrery
   return out;
 }

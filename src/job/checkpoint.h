@@ -36,6 +36,9 @@ image::Provenance provenance_of(const Job& job, const load::ReadResult& read, co
 std::string stamp_of(const Job& job, const image::Provenance& provenance, const display::Settings& display,
                      const display::Choice& choice);
 
+/// A value of a provenance; empty if there is none.
+std::string value_of(const image::Provenance& provenance, const std::string& key);
+
 /// Describes the first difference between two provenances: "camera.vfov = 20, not 30"; empty: none.
 ///
 /// `keys`     the keys to compare

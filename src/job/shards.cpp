@@ -154,7 +154,7 @@ film::Partial sum_of_shards(const Job& job, const compile::CompiledScene& compil
       wrong(overlap, "remove one of them");
     } else {
       sum.add(shard);
-      hosts.insert(shards[i].provenance.count("host") > 0 ? shards[i].provenance.at("host") : "");
+      hosts.insert(value_of(shards[i].provenance, "host"));
     }
   }
   if (left_out.size() == shards.size()) diagnostics = left_out;
@@ -243,14 +243,10 @@ std::vector<ShardFile> read_shards(const std::vector<std::filesystem::path>& fil
 }
 
 void take_scene(const ShardFile& shard, Job& job) {
-  const auto value = [&](const char* key) {
-    const auto found = shard.provenance.find(key);
-    return found == shard.provenance.end() ? std::string() : found->second;
-  };
-  if (job.scene.file.empty()) job.scene.file = value("scene");
-  std::istringstream lines(value("overrides"));
+  if (job.scene.file.empty()) job.scene.file = value_of(shard.provenance, "scene");
+  std::istringstream lines(value_of(shard.provenance, "overrides"));
   for (std::string line; std::getline(lines, line);) job.scene.overrides.add(line);
-  job.scene.frame = base::number_of<int>(value("frame")).value_or(job.scene.frame);
+  job.scene.frame = base::number_of<int>(value_of(shard.provenance, "frame")).value_or(job.scene.frame);
   for (ImageFile& output : job.outputs.images) output.path = base::with_frame(output.path.string(), job.scene.frame);
   if (!job.outputs.statistics.empty())
     job.outputs.statistics = base::with_frame(job.outputs.statistics.string(), job.scene.frame);
