@@ -262,10 +262,7 @@ render::Result merge_shards(const Job& job, const compile::CompiledScene& compil
   result.statistics = {};
   result.statistics.min_samples = *fewest;
   result.statistics.max_samples = *most;
-  result.statistics.paths = sum.work.paths;
-  result.statistics.rays = sum.work.rays;
-  result.statistics.bad_samples = sum.work.bad_samples;
-  result.statistics.render_s = sum.work.seconds;
+  result.statistics.set(sum.work);
   result.statistics.ended_by = "samples";
   return result;
 }

@@ -128,10 +128,7 @@ Result render(const compile::CompiledScene& compiled, const accel::Accel& accel,
   statistics.traversal = compiled.accelerator == compile::Accelerator::kList ? "list" : pool.traversals();
   const std::int64_t target = pool.counts().target;
   statistics.isa = target != 0 ? kernel::isa_name(target) : kernel::isa_name();  // 0: there was nothing left to do
-  statistics.render_s = state.work.seconds;
-  statistics.paths = state.work.paths;
-  statistics.rays = state.work.rays;
-  statistics.bad_samples = state.work.bad_samples;
+  statistics.set(state.work);
   count_samples(compiled, settings, state, statistics);
 
   const base::Stopwatch since_rendered;

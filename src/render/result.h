@@ -28,6 +28,14 @@ struct Statistics {
   std::optional<double> expected_noise, noise;
   std::uint64_t unreliable_pixels = 0;  ///< pixels around which too few paths found light for these estimates
   std::string ended_by;                 ///< "samples", "noise" or "time"
+
+  /// Sets paths, rays, bad_samples and render_s.
+  void set(const film::RenderWork& work) {
+    paths = work.paths;
+    rays = work.rays;
+    bad_samples = work.bad_samples;
+    render_s = work.seconds;
+  }
 };
 
 /// Result of a render.
