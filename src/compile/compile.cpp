@@ -333,6 +333,35 @@ void set_view(const scene::Scene& scene, const scene::Scene* closing, CompiledSc
   set_camera(scene, closing, compiled);
 }
 
+void update_parts(const scene::Scene& scene, const scene::Scene* closing, scene::Parts changed,
+                  const SphereStore::OnCopied& on_copied, CompiledScene& compiled) {
+  if (changed.geometry) {
+    compiled.precision = precision_of(scene.render.precision);
+    // The book's own method. It has no BVH, and the kernel has no vector loop for its precision.
+    compiled.accelerator = compiled.precision == Precision::kBook ? Accelerator::kList : scene.render.accelerator;
+    set_rods(scene, compiled);
+    set_spheres(scene, on_copied, compiled);
+    set_sphere_motion(scene, closing, compiled);
+    set_rod_motion(scene, closing, compiled);
+    compiled.features.rods = compiled.rod_count() > 0;
+  }
+  if (changed.geometry || changed.assignment) {
+    set_sphere_materials(scene, compiled);
+    set_opacity(scene, compiled);
+  }
+  if (changed.geometry || changed.assignment || changed.look) {
+    compiled.direct_lighting = direct_lighting_of(scene.render.direct_lighting);
+    compiled.samples_caustics = scene.render.caustics;
+    compile_materials(scene, compiled);
+    set_background(scene, compiled);
+    light_group(compiled, scene::background_light_group(scene.background));
+    compiled.features.lit = !compiled.emission.empty() || compiled.environment != nullptr;
+    compiled.light_tree = {};
+    update_lights(compiled);
+  }
+  if (changed.geometry || changed.view) set_view(scene, closing, compiled);
+}
+
 }  // namespace
 
 kernel::SceneView CompiledScene::view() const noexcept {
@@ -421,39 +450,6 @@ CompiledScene compile(const scene::Scene& scene, const scene::Scene* closing) {
   update(scene, closing, scene::Parts::all(), compiled);
   return compiled;
 }
-
-namespace {
-
-void update_parts(const scene::Scene& scene, const scene::Scene* closing, scene::Parts changed,
-                  const SphereStore::OnCopied& on_copied, CompiledScene& compiled) {
-  if (changed.geometry) {
-    compiled.precision = precision_of(scene.render.precision);
-    // The book's own method. It has no BVH, and the kernel has no vector loop for its precision.
-    compiled.accelerator = compiled.precision == Precision::kBook ? Accelerator::kList : scene.render.accelerator;
-    set_rods(scene, compiled);
-    set_spheres(scene, on_copied, compiled);
-    set_sphere_motion(scene, closing, compiled);
-    set_rod_motion(scene, closing, compiled);
-    compiled.features.rods = compiled.rod_count() > 0;
-  }
-  if (changed.geometry || changed.assignment) {
-    set_sphere_materials(scene, compiled);
-    set_opacity(scene, compiled);
-  }
-  if (changed.geometry || changed.assignment || changed.look) {
-    compiled.direct_lighting = direct_lighting_of(scene.render.direct_lighting);
-    compiled.samples_caustics = scene.render.caustics;
-    compile_materials(scene, compiled);
-    set_background(scene, compiled);
-    light_group(compiled, scene::background_light_group(scene.background));
-    compiled.features.lit = !compiled.emission.empty() || compiled.environment != nullptr;
-    compiled.light_tree = {};
-    update_lights(compiled);
-  }
-  if (changed.geometry || changed.view) set_view(scene, closing, compiled);
-}
-
-}  // namespace
 
 void update(const scene::Scene& scene, const scene::Scene* closing, scene::Parts changed, CompiledScene& compiled) {
   update_parts(scene, closing, changed, {}, compiled);

@@ -27,6 +27,12 @@ using nlohmann::json;
 /// Fallback if the available memory is unknown: that of a small machine.
 constexpr std::uint64_t kUnknownMemory = std::uint64_t{4} << 30;
 
+/// Maximum lengths of strings from a file, bytes; longer ones are shortened.
+constexpr std::size_t kLongestText = 32;
+constexpr std::size_t kLongestTitle = 200;
+/// Number of assemblies that are printed as text.
+constexpr std::size_t kMaxAssemblies = 8;
+
 void summarize(const data::Words& words, ColumnSummary& out) {
   std::vector<std::uint8_t> occurs(words.words.size());
   for (const std::uint32_t index : words.index) {
@@ -68,52 +74,6 @@ void add_summaries(data::DataFile& file, int frame, const std::vector<std::strin
       if (const data::Column* const column = table.find(summary.column.name); column != nullptr)
         std::visit([&](const auto& values) { summarize(values, summary); }, column->values);
 }
-
-}  // namespace
-
-DataInfo data_info(const DataInfoRequest& request) {
-  data::OpenOptions options;
-  options.component = request.component;
-  options.limit_memory(base::available_memory().value_or(0));
-  const std::unique_ptr<data::DataFile> file = data::open(request.file, options);
-  DataInfo info;
-  info.file = request.file;
-  info.format = file->format;
-  info.frames = file->frame_count();
-  info.frame = request.frame;
-  if (request.frame < 1 || request.frame > info.frames)
-    base::refuse(fmt::format("--frame {}: {} has {}", request.frame, request.file.string(),
-                             base::counted(static_cast<std::uint64_t>(info.frames), "frame")));
-  info.described = file->describe(request.frame - 1);
-  for (const data::ColumnInfo& column : info.described.columns) info.columns.push_back({column});
-  points::add_derived_columns(info.described);
-  const std::uint64_t limit =
-      request.table_bytes > 0 ? request.table_bytes : base::available_memory().value_or(kUnknownMemory) / 4;
-  std::vector<std::string> names;
-  std::uint64_t bytes = 0;
-  const auto read = [&] {
-    if (!names.empty()) add_summaries(*file, request.frame - 1, names, info.columns);
-    names.clear();
-    bytes = 0;
-  };
-  for (std::size_t i = 0; i < info.columns.size(); ++i) {
-    const data::ColumnInfo& column = info.columns[i].column;
-    const std::uint64_t more = info.described.rows * bytes_per_value(column.type);
-    if (bytes + more > limit) read();
-    names.push_back(column.name);
-    bytes += more;
-  }
-  read();
-  return info;
-}
-
-namespace {
-
-/// Maximum lengths of strings from a file, bytes; longer ones are shortened.
-constexpr std::size_t kLongestText = 32;
-constexpr std::size_t kLongestTitle = 200;
-/// Number of assemblies that are printed as text.
-constexpr std::size_t kMaxAssemblies = 8;
 
 std::string shortened(const std::string& text, std::size_t bytes) {
   if (text.size() <= bytes) return base::printable(text);
@@ -252,6 +212,42 @@ json json_of(const ColumnSummary& summary) {
 }
 
 }  // namespace
+
+DataInfo data_info(const DataInfoRequest& request) {
+  data::OpenOptions options;
+  options.component = request.component;
+  options.limit_memory(base::available_memory().value_or(0));
+  const std::unique_ptr<data::DataFile> file = data::open(request.file, options);
+  DataInfo info;
+  info.file = request.file;
+  info.format = file->format;
+  info.frames = file->frame_count();
+  info.frame = request.frame;
+  if (request.frame < 1 || request.frame > info.frames)
+    base::refuse(fmt::format("--frame {}: {} has {}", request.frame, request.file.string(),
+                             base::counted(static_cast<std::uint64_t>(info.frames), "frame")));
+  info.described = file->describe(request.frame - 1);
+  for (const data::ColumnInfo& column : info.described.columns) info.columns.push_back({column});
+  points::add_derived_columns(info.described);
+  const std::uint64_t limit =
+      request.table_bytes > 0 ? request.table_bytes : base::available_memory().value_or(kUnknownMemory) / 4;
+  std::vector<std::string> names;
+  std::uint64_t bytes = 0;
+  const auto read = [&] {
+    if (!names.empty()) add_summaries(*file, request.frame - 1, names, info.columns);
+    names.clear();
+    bytes = 0;
+  };
+  for (std::size_t i = 0; i < info.columns.size(); ++i) {
+    const data::ColumnInfo& column = info.columns[i].column;
+    const std::uint64_t more = info.described.rows * bytes_per_value(column.type);
+    if (bytes + more > limit) read();
+    names.push_back(column.name);
+    bytes += more;
+  }
+  read();
+  return info;
+}
 
 std::string data_info_text(const DataInfo& info) {
   using base::printable;
