@@ -7,6 +7,7 @@
 #include <numbers>
 #include <utility>
 
+#include "math/pixels.h"
 #include "math/vec3.h"
 #include "scene/environment_image.h"
 
@@ -176,7 +177,7 @@ void set_sun(const scene::Sun& sun, const EnvironmentSettings& settings, kernel:
 }  // namespace
 
 std::uint64_t environment_bytes(int width, int height, EnvironmentSampling sampling) {
-  const std::uint64_t texels = static_cast<std::uint64_t>(width) * static_cast<std::uint64_t>(height);
+  const std::uint64_t texels = math::pixel_count(width, height);
   // A quarter of a float per texel for the finest sums, a sixteenth for the next, and so on.
   return texels * 3 * sizeof(float) + (sampling == EnvironmentSampling::kNone ? 0 : texels * sizeof(float) / 3);
 }

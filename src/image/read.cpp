@@ -94,7 +94,7 @@ bool has_holes(const film::Picture& picture) {
 }
 
 std::uint64_t plane_bytes(const ImageSpec& spec) {
-  return sizeof(float) * static_cast<std::uint64_t>(spec.full_width) * static_cast<std::uint64_t>(spec.full_height) *
+  return sizeof(float) * math::pixel_count(spec.full_width, spec.full_height) *
          static_cast<std::uint64_t>(spec.nchannels);
 }
 

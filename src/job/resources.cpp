@@ -23,6 +23,7 @@
 #include "job/job.h"
 #include "kernel/isa.h"
 #include "kernel/pixel_sum.h"
+#include "math/pixels.h"
 #include "render/render.h"
 #include "scene/scene.h"
 
@@ -134,7 +135,7 @@ MemoryEstimate estimate_memory(const MemoryNeeds& needs) {
                                         2 * sizeof(std::uint32_t) + bytes_of_sums(needs) +
                                         (needs.is_adaptive ? sizeof(kernel::PixelSum) + 9 * sizeof(float) : 0);
   MemoryEstimate m;
-  m.film = static_cast<std::uint64_t>(needs.width) * static_cast<std::uint64_t>(needs.height) * bytes_per_pixel;
+  m.film = math::pixel_count(needs.width, needs.height) * bytes_per_pixel;
   m.spheres = needs.sphere_bytes;
   m.background = needs.background;
   m.textures = needs.textures;

@@ -9,6 +9,7 @@
 #include "kernel/pixel_sum.h"
 #include "kernel/render_tile.h"
 #include "kernel/scene_view.h"
+#include "math/pixels.h"
 
 namespace orrery::render {
 namespace {
@@ -45,7 +46,7 @@ RecordedRays<T> record_rays(const kernel::SceneView& view, const accel::Accel& a
   const auto stream = std::make_unique<kernel::PathStream>();
   std::vector<kernel::PixelSum> sums;
   for (kernel::Tile tile : tiles) {
-    const std::uint64_t pixels = static_cast<std::uint64_t>(tile.width) * static_cast<std::uint64_t>(tile.height);
+    const std::size_t pixels = math::pixel_count(tile.width, tile.height);
     sums.assign(pixels, {});
     tile.sums = sums.data();
     tile.row_stride = tile.width;

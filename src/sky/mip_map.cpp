@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "base/stop_point.h"
+#include "math/pixels.h"
 
 namespace orrery::sky {
 namespace {
@@ -80,7 +81,7 @@ void add_mip_map(scene::EnvironmentImage& image) {
 std::uint64_t mip_map_bytes(int width, int height) {
   std::uint64_t texels = 0;
   while (true) {
-    texels += static_cast<std::uint64_t>(width) * static_cast<std::uint64_t>(height);
+    texels += math::pixel_count(width, height);
     if (!has_next(width, height)) return texels * 3 * sizeof(float);
     width /= 2;
     height /= 2;
