@@ -38,8 +38,8 @@ bool has_light_groups(const Scene& scene) {
 
 bool has_groups(const Scene& scene) {
   const auto has_group = [](const auto& thing) { return !thing.group.empty(); };
-  return std::any_of(scene.spheres.begin(), scene.spheres.end(), has_group) ||
-         std::any_of(scene.points.begin(), scene.points.end(), has_group);
+  const auto any_has = [&](const auto& things) { return std::any_of(things.begin(), things.end(), has_group); };
+  return any_has(scene.spheres) || any_has(scene.points) || any_has(scene.rods) || any_has(scene.rod_files);
 }
 
 /// A layer, and which scenes can have it.
@@ -119,9 +119,9 @@ std::string layer_fault(const Scene& scene, const std::string& layer) {
   const LayerRule* const rule = rule_of(layer);
   if (rule != nullptr && rule->is_light && scene.render.shading != Shading::kPath)
     return layer + " requires render.shading = \"path\"";
-  if (layer == "object_id" && scene.sphere_count() >= kMaxFloatId)
-    return fmt::format("a float cannot represent the ids of {} spheres exactly; use CryptoObject",
-                       scene.sphere_count());
+  const std::size_t objects = scene.sphere_count() + scene.rod_count();
+  if (layer == "object_id" && objects >= kMaxFloatId)
+    return fmt::format("a float cannot represent the ids of {} spheres and rods exactly; use CryptoObject", objects);
   return {};
 }
 

@@ -38,9 +38,9 @@ TEST(SceneLayers, ObjectIdsMustBeExactInAFloat) {
   s.points.resize(1);
   s.points[0].centers.resize((std::size_t{1} << 24) - 1);
   EXPECT_EQ(layer_fault(s, "object_id"), "");
-  s.points[0].centers.push_back({});
+  s.rods.resize(1);
   EXPECT_EQ(layer_fault(s, "object_id"),
-            "a float cannot represent the ids of 16777216 spheres exactly; use CryptoObject");
+            "a float cannot represent the ids of 16777216 spheres and rods exactly; use CryptoObject");
   EXPECT_FALSE(contains(available_layers(s), "object_id"));
 }
 
@@ -55,8 +55,17 @@ TEST(SceneLayers, AllSelectsEveryAvailableLayer) {
   s.output.layers = {"all", "halves"};
   EXPECT_TRUE(contains(requested_layers(s), "halves")) << "a layer for denoising, which must be named";
   s.spheres.resize(1);
-  s.spheres[0].group = "a";
-  EXPECT_TRUE(contains(available_layers(s), "CryptoGroup"));
+  EXPECT_FALSE(contains(available_layers(s), "CryptoGroup"));
+  const auto expect_group = [](auto member) {
+    Scene grouped;
+    (grouped.*member).resize(1);
+    (grouped.*member)[0].group = "a";
+    EXPECT_TRUE(contains(available_layers(grouped), "CryptoGroup"));
+  };
+  expect_group(&Scene::spheres);
+  expect_group(&Scene::points);
+  expect_group(&Scene::rods);
+  expect_group(&Scene::rod_files);
   s.render.shading = Shading::kFlat;
   EXPECT_FALSE(contains(requested_layers(s), "diffuse"));
   EXPECT_EQ(problem_of(s), "") << "layers that the scene cannot have are left out";
