@@ -3,6 +3,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstddef>
+#include <type_traits>
 #include <utility>
 #include <variant>
 
@@ -22,54 +24,32 @@ double normal_reflectance(double eta) {
   return r * r;
 }
 
-kernel::Material compile_model(const scene::Lambertian& m) {
+/// Compiles a material's constants. The kinds of the kernel have the order of the scene's models.
+kernel::Material compile_model(const scene::MaterialModel& model) {
+  static_assert(std::is_same_v<std::variant_alternative_t<static_cast<std::size_t>(kernel::MaterialKind::kPlastic),
+                                                          scene::MaterialModel>,
+                               scene::Plastic>);
   kernel::Material out;
-  out.kind = kernel::MaterialKind::kLambertian;
-  set(out.albedo, m.albedo);
-  return out;
-}
-kernel::Material compile_model(const scene::Hemisphere& m) {
-  kernel::Material out;
-  out.kind = kernel::MaterialKind::kHemisphere;
-  set(out.albedo, m.albedo);
-  return out;
-}
-kernel::Material compile_model(const scene::Metal& m) {
-  kernel::Material out;
-  out.kind = kernel::MaterialKind::kMetal;
-  set(out.albedo, m.albedo);
-  out.fuzz = m.fuzz;
-  return out;
-}
-kernel::Material compile_model(const scene::Dielectric& m) {
-  kernel::Material out;
-  out.kind = kernel::MaterialKind::kDielectric;
-  out.eta[0] = 1 / m.ior;
-  out.eta[1] = m.ior;
-  out.r0[0] = normal_reflectance(out.eta[0]);
-  out.r0[1] = normal_reflectance(out.eta[1]);
-  out.fuzz = m.fuzz;
-  switch (m.fresnel) {
-    case scene::Fresnel::kSchlick: out.fresnel = kernel::FresnelKind::kSchlick; break;
-    case scene::Fresnel::kExact: out.fresnel = kernel::FresnelKind::kExact; break;
-    case scene::Fresnel::kNone: out.fresnel = kernel::FresnelKind::kNone; break;
+  out.kind = static_cast<kernel::MaterialKind>(model.index());
+  std::visit(
+      [&](const auto& m) {
+        if constexpr (requires { m.albedo; }) set(out.albedo, m.albedo);
+        if constexpr (requires { m.fuzz; }) out.fuzz = m.fuzz;
+      },
+      model);
+  if (const auto* glass = std::get_if<scene::Dielectric>(&model)) {
+    out.eta[0] = 1 / glass->ior;
+    out.eta[1] = glass->ior;
+    for (int side = 0; side < 2; ++side) out.r0[side] = normal_reflectance(out.eta[side]);
+    switch (glass->fresnel) {
+      case scene::Fresnel::kSchlick: out.fresnel = kernel::FresnelKind::kSchlick; break;
+      case scene::Fresnel::kExact: out.fresnel = kernel::FresnelKind::kExact; break;
+      case scene::Fresnel::kNone: out.fresnel = kernel::FresnelKind::kNone; break;
+    }
   }
-  return out;
-}
-
-kernel::Material compile_model(const scene::Emitter&) {
-  kernel::Material out;
-  out.kind = kernel::MaterialKind::kEmitter;
-  set(out.albedo, {0, 0, 0});
-  return out;
-}
-
-kernel::Material compile_model(const scene::Plastic& m) {
-  kernel::Material out;
-  out.kind = kernel::MaterialKind::kPlastic;
-  set(out.albedo, m.albedo);
-  out.r0[0] = out.r0[1] = normal_reflectance(m.ior);
-  out.fuzz = m.fuzz;
+  if (const auto* plastic = std::get_if<scene::Plastic>(&model))
+    out.r0[0] = out.r0[1] = normal_reflectance(plastic->ior);
+  if (std::holds_alternative<scene::Emitter>(model)) set(out.albedo, {0, 0, 0});
   return out;
 }
 
@@ -173,7 +153,7 @@ void compile_materials(const scene::Scene& scene, CompiledScene& compiled) {
   for (const MaterialSource& source : compiled.material_sources) {
     if (source.color == MaterialSource::kNoColor) {
       const scene::MaterialModel& model = scene.materials[source.material].model;
-      kernel::Material m = std::visit([](const auto& typed) { return compile_model(typed); }, model);
+      kernel::Material m = compile_model(model);
       if (source.inside_out) m = turned_inside_out(m);
       kernel::Emission e = emission_of(model, compiled);
       set_textures(model, compiled, m, e);

@@ -160,9 +160,10 @@ void write_encoded(const std::filesystem::path& file, const film::EncodedPicture
   }
 }
 
-std::string png_bytes(const film::EncodedPicture& picture) {
+std::string png_bytes(const film::EncodedPicture& picture, int compression) {
   prepare_library();
-  const ImageSpec spec = encoded_spec(picture, "", "");
+  ImageSpec spec = encoded_spec(picture, "", "");
+  spec.attribute("png:compressionLevel", compression);
   const std::vector<std::uint8_t> codes(picture.values.begin(), picture.values.end());
   OIIO::Filesystem::IOVecOutput out;
   const auto encoder = OIIO::ImageOutput::create("png");

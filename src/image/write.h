@@ -48,10 +48,13 @@ WriteReport write_hdr(const std::filesystem::path& file, const film::Picture& pi
 void write_encoded(const std::filesystem::path& file, const film::EncodedPicture& picture, const std::string& software,
                    const std::string& stamp = {});
 
-/// Encodes a display-encoded image of 8 bits per channel as PNG in memory.
+/// Compression levels of png_bytes(), those of zlib.
+inline constexpr int kCompressed = 6, kUncompressed = 0;
+
+/// Encodes a display-encoded image of 8 bits per channel as PNG in memory. Compression takes most of the time.
 ///
 /// Errors     base::Error(kInternal): the encoder's
-std::string png_bytes(const film::EncodedPicture& picture);
+std::string png_bytes(const film::EncodedPicture& picture, int compression);
 
 /// Encodes an image as JPEG in memory, with chroma subsampling and without metadata.
 ///

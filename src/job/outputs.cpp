@@ -59,7 +59,8 @@ void DisplayWriter::write_svg(const std::filesystem::path& file, display::Alpha 
   outlines.ink = drawing.ink;
   outlines.outline_px = drawing.outline_px;
   outlines.lines = std::move(drawing.lines);
-  const std::string png = image::png_bytes(develop_annotated(picture_, &outlines, settings_, 8, alpha));
+  const std::string png =
+      image::png_bytes(develop_annotated(picture_, &outlines, settings_, 8, alpha), image::kCompressed);
   base::write_text_file(file, annotation::svg(drawing, annotation::shown_by(settings_), png));
 }
 

@@ -1,31 +1,17 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include <cstdint>
+#include <cstddef>
 #include <filesystem>
 #include <optional>
-#include <string>
 #include <utility>
 #include <vector>
 
 #include "display/develop.h"
+#include "film/picture.h"
 #include "preview/sink.h"
 
 namespace orrery::preview {
-
-/// An image of 8-bit display values.
-struct Bitmap {
-  int width = 0, height = 0;        ///< px
-  std::vector<std::uint8_t> codes;  ///< R, G, B of all pixels, row by row from the top
-
-  std::size_t row_bytes() const { return 3 * static_cast<std::size_t>(width); }
-  const std::uint8_t* row(int y) const { return codes.data() + static_cast<std::size_t>(y) * row_bytes(); }
-};
-
-/// Encodes a PNG without compression, which would take most of the time.
-///
-/// Reference  PNG
-std::string encode_png(const Bitmap& bitmap);
 
 /// Rewrites a PNG, uncompressed and through the display transform. Its readers never see an incomplete file.
 class FileSink : public Sink {
@@ -41,10 +27,13 @@ class FileSink : public Sink {
   void update(const std::vector<std::size_t>& cells) override;
 
  private:
+  /// Number of values in a row of the picture.
+  std::size_t row_size() const { return 3 * static_cast<std::size_t>(picture_.width); }
+
   std::filesystem::path file_;
   const Canvas* canvas_ = nullptr;
   std::optional<display::PixelDeveloper> develop_;
-  Bitmap bitmap_;
+  film::EncodedPicture picture_;
 };
 
 }  // namespace orrery::preview

@@ -23,7 +23,6 @@
 #include "image/write.h"
 #include "job/job.h"
 #include "job/outputs.h"
-#include "preview/file_sink.h"
 
 namespace orrery::view {
 namespace {
@@ -337,7 +336,6 @@ void Viewer::finish(Image& image) {
   const job::Rendering& rendering = *image.rendering;
   const film::EncodedPicture picture =
       job::develop_annotated(rendering.picture, &rendering.drawing, rendering.display, 8, display::Alpha::kOverBlack);
-  const std::vector<std::uint8_t> codes(picture.values.begin(), picture.values.end());
   const render::Statistics& statistics = rendering.report.render;
   Frame frame;
   frame.width = picture.width;
@@ -347,9 +345,13 @@ void Viewer::finish(Image& image) {
   frame.is_finished = !image.moves;
   frame.noise = statistics.noise;
   frame.type = image.moves ? "image/jpeg" : "image/png";
-  frame.bytes = std::make_shared<const std::string>(
-      image.moves ? image::jpeg_bytes(picture.width, picture.height, codes.data(), kMovingQuality)
-                  : preview::encode_png({picture.width, picture.height, codes}));
+  if (image.moves) {
+    const std::vector<std::uint8_t> codes(picture.values.begin(), picture.values.end());
+    frame.bytes = std::make_shared<const std::string>(
+        image::jpeg_bytes(picture.width, picture.height, codes.data(), kMovingQuality));
+  } else {
+    frame.bytes = std::make_shared<const std::string>(image::png_bytes(picture, image::kUncompressed));
+  }
   const std::lock_guard lock(mutex_);
   live_ = nullptr;
   if (!image.moves) finished_ = image.rendering;

@@ -70,7 +70,9 @@ void write_encoded(const std::filesystem::path& file, const film::EncodedPicture
   module().write_encoded(file, picture, software, stamp);
 }
 
-std::string png_bytes(const film::EncodedPicture& picture) { return module().png_bytes(picture); }
+std::string png_bytes(const film::EncodedPicture& picture, int compression) {
+  return module().png_bytes(picture, compression);
+}
 
 void write_partial(const std::filesystem::path& file, const film::Picture& preview, const Header& header,
                    const Provenance& provenance, const film::Partial& partial) {

@@ -2,12 +2,10 @@
 #pragma once
 
 #include <cstddef>
-#include <cstdint>
 #include <vector>
 
 #include "film/partial.h"
 #include "kernel/pixel_sum.h"
-#include "preview/file_sink.h"
 #include "preview/sink.h"
 
 namespace orrery::preview {
@@ -47,16 +45,6 @@ inline std::vector<float> means(const film::Partial& state) {
       out.insert(out.end(), rgb, rgb + 3);
     }
   return out;
-}
-
-/// A bitmap whose channels have different gradients.
-inline Bitmap gradient(int width, int height) {
-  Bitmap bitmap{width, height, {}};
-  for (int y = 0; y < height; ++y)
-    for (int x = 0; x < width; ++x)
-      for (const int code : {x * 255 / width, y * 255 / height, (x + 2 * y) % 256})
-        bitmap.codes.push_back(static_cast<std::uint8_t>(code));
-  return bitmap;
 }
 
 }  // namespace orrery::preview
