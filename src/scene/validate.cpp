@@ -324,11 +324,13 @@ void check_opacity(std::size_t number, const Scene& scene, KeyFaults& diagnostic
 void check_points(std::size_t number, const Scene& scene, KeyFaults& diagnostics) {
   const Points& points = scene.points[number];
   const std::string key = fmt::format("points[{}]", number);
+  const bool is_released = points.centers.empty();  // Points::objects are kept
   if (points.radii.size() != points.centers.size() ||
       (!points.materials.empty() && points.materials.size() != points.centers.size()) ||
       (!points.colors.empty() && points.colors.size() != points.centers.size()) ||
       (!points.opacities.empty() && points.opacities.size() != points.centers.size()) ||
-      (!points.objects.empty() && points.objects.size() != points.centers.size() + points.bond_stubs.size())) {
+      (!points.objects.empty() && !is_released &&
+       points.objects.size() != points.centers.size() + points.bond_stubs.size())) {
     diagnostics.error(key, fmt::format("has {} centres, {} radii and {} materials", points.centers.size(),
                                        points.radii.size(), points.materials.size()));
     return;

@@ -128,7 +128,9 @@ const std::vector<const char*> kSettings = {
     "points[1].color={element=\"jmol\"}",
     "color.working=\"acescg\"",
     "color.exposure=1",
-    "output.layers=[\"Z\", \"CryptoObject\", \"CryptoMaterial\", \"MaterialId\"]"};
+    "points[0].cryptomatte=[\"v\"]",
+    "points[1].cryptomatte=[\"element\"]",
+    "output.layers=[\"Z\", \"CryptoObject\", \"CryptoMaterial\", \"material_id\"]"};
 
 class JobPreparedScene : public testing::Test {
  protected:
