@@ -41,6 +41,9 @@ constexpr const char* kVideo =
     "-pix_fmt yuv420p -colorspace bt709 -color_primaries bt709 -color_trc iec61966-2-1 -color_range tv "
     "-movflags +faststart -f mp4";
 
+/// A GIF counts in hundredths of a second, and players show one of them as ten.
+constexpr int kMostGifRate = 50;
+
 /// Sends a file. False if the reader of the pipe has ended: the program ignores SIGPIPE.
 bool send_file(const fs::path& file, std::FILE* pipe) {
   std::ifstream in(file, std::ios::binary);
@@ -74,10 +77,11 @@ std::string encoded(const std::vector<fs::path>& images, const fs::path& film, c
   for (const fs::path& image : images)
     if (!send_file(image, pipe.get())) break;
   const int status = pclose(pipe.release());
-  if (status == 0) return {};
+  const std::string said = last_line(messages);
+  // If it cannot write the end of a film, some versions print an error, but succeed.
+  if (status == 0) return said.empty() ? "" : "reported an error: " + said;
   const std::string how = WIFSIGNALED(status) ? fmt::format("was ended by signal {}", WTERMSIG(status))
                                               : fmt::format("failed with status {}", WEXITSTATUS(status));
-  const std::string said = last_line(messages);
   return said.empty() ? how : how + ": " + said;
 }
 
@@ -100,6 +104,8 @@ void FilmSettings::apply(SceneOptions& scene, plot::PlotOptions& plot) const {
 
 Film::Film(fs::path file, double fps, bool keeps_frames)
     : file_(std::move(file)), folder_(file_.string() + ".frames"), fps_(fps), keeps_frames_(keeps_frames) {
+  if (fps > kMostGifRate && base::extension(file_) == ".gif")
+    base::refuse(fmt::format("{}: a GIF has at most {} frames per second; write an MP4", file_.string(), kMostGifRate));
   if (std::system("command -v ffmpeg > /dev/null 2>&1") != 0)
     throw base::Error(base::ErrorKind::kCannotCreate,
                       fmt::format("{} cannot be created: the program ffmpeg was not found; install the package ffmpeg, "
@@ -124,6 +130,11 @@ bool Film::is_film(const fs::path& file) {
 }
 
 fs::path Film::frame_pattern() const { return folder_ / "frame.######.png"; }
+
+void Film::check_size(int width, int height) const {
+  if (base::extension(file_) != ".gif" && std::min(width, height) < 2)
+    base::refuse(fmt::format("{}: a video is at least 2 pixels wide and high", file_.string()));
+}
 
 void Film::encode(const std::vector<int>& frames) const {
   std::vector<fs::path> images;

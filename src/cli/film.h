@@ -25,8 +25,8 @@ class Film {
  public:
   /// Creates the folder of the frames.
   ///
-  /// Errors     base::Error(kCannotCreate) if the program ffmpeg is not installed, or a file or folder cannot be
-  ///            created
+  /// Errors     base::Error: kUsage if the format cannot have this rate; kCannotCreate if the program ffmpeg is not
+  ///            installed, or a file or folder cannot be created
   Film(std::filesystem::path file, double fps, bool keeps_frames);
   ~Film();
   Film(const Film&) = delete;
@@ -38,6 +38,9 @@ class Film {
   const std::filesystem::path& file() const { return file_; }
   /// The name of the frames, with a frame pattern.
   std::filesystem::path frame_pattern() const;
+
+  /// Refuses a size, px, that the format cannot have.
+  void check_size(int width, int height) const;
 
   /// Encodes the film, and then removes its frames, unless they are to be kept.
   ///

@@ -20,9 +20,11 @@ class CliFilm : public ProgramTest {
           "1 1 " +
           std::to_string(step) + " 0 0 1\n";
     write("a.dump", dump);
-    // Programs in place of ffmpeg: one that copies its input, and one that fails.
+    // Programs in place of ffmpeg: one that copies its input, one that fails, and one that hides a failure.
     write_program("copies/ffmpeg", "for last; do :; done; exec cat > \"${last#file:}\"");
     write_program("fails/ffmpeg", "head -c 100 > /dev/null; echo first >&2; echo out of luck >&2; exit 3");
+    write_program("hides/ffmpeg",
+                  "for last; do :; done; head -c 100 > \"${last#file:}\"; cat > /dev/null; echo disk full >&2");
   }
   void write_program(const std::string& name, const std::string& script) {
     std::filesystem::create_directories((folder_ / name).parent_path());
@@ -63,6 +65,18 @@ TEST_F(CliFilm, AFailureKeepsTheFramesForTheNextCommand) {
   EXPECT_FALSE(exists("a.gif.frames"));
 }
 
+TEST_F(CliFilm, AnErrorWithStatusZeroKeepsTheOldFilmAndTheFrames) {
+  ASSERT_EQ(film("-o a.gif --frames 1").status, 0);
+  const std::string old = text_of(folder_ / "a.gif");
+  const Outcome failed = film("-o a.gif --frames all", "hides");
+  EXPECT_EQ(failed.status, 74);
+  EXPECT_TRUE(contains(failed.err, "a.gif: ffmpeg reported an error: disk full; the frames are in a.gif.frames"))
+      << failed.err;
+  EXPECT_EQ(text_of(folder_ / "a.gif"), old);
+  EXPECT_FALSE(exists("a.gif.part"));
+  EXPECT_TRUE(exists("a.gif.frames/frame.000003.png"));
+}
+
 TEST_F(CliFilm, TurntablesHaveTheFramesOfTheirTime) {
   const Outcome r = film("-o a.mp4 --turntable 0.5s --fps 10 --keep-frames");
   ASSERT_EQ(r.status, 0) << r.err;
@@ -74,6 +88,9 @@ TEST_F(CliFilm, TurntablesHaveTheFramesOfTheirTime) {
 TEST_F(CliFilm, RequestsThatCannotBeMetAreRefused) {
   EXPECT_TRUE(contains(film("-o a.mp4").err, "a.mp4 is a film; select its frames with --frames"));
   EXPECT_TRUE(contains(film("-o a.mp4 --frames all --transparent").err, "a.mp4 is a film, which is opaque"));
+  EXPECT_TRUE(contains(film("-o a.mp4 -o b.gif --frames all --fps 60").err, "b.gif: a GIF has at most 50 frames"));
+  EXPECT_EQ(film("-o b.gif --frames all --fps 50").status, 0);
+  EXPECT_TRUE(contains(film("-o a.mp4 --frames all --set image.height=1").err, "a video is at least 2 pixels"));
   EXPECT_EQ(film("-o no/a.mp4 --frames all").status, 73);
   const Outcome none = run("plot a.dump -o a.mp4 --frames all", "PATH=/nowhere");
   EXPECT_EQ(none.status, 73);
