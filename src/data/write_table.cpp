@@ -47,7 +47,7 @@ void visit_value(const Column& column, std::size_t row, OnNumber on_number, OnTe
 /// PLY types; there are no 64-bit integers.
 enum class PlyOutput { kSame, kInt32, kUint32, kFloat64, kNone };
 
-PlyOutput ply_output(const base::OutputFile& out, const Column& column) {
+PlyOutput ply_output(const Column& column) {
   if (words_in(column) != nullptr) return PlyOutput::kNone;
   const auto* const integers = std::get_if<std::vector<std::int64_t>>(&column.values);
   if (integers == nullptr) return PlyOutput::kSame;
@@ -57,11 +57,7 @@ PlyOutput ply_output(const base::OutputFile& out, const Column& column) {
   using Int = std::numeric_limits<std::int32_t>;
   if (*least >= Int::min() && *most <= Int::max()) return PlyOutput::kInt32;
   if (*least >= 0 && *most <= std::numeric_limits<std::uint32_t>::max()) return PlyOutput::kUint32;
-  if (*least >= -kExact && *most <= kExact) return PlyOutput::kFloat64;
-  refuse_to_write(
-      out.path(),
-      fmt::format("PLY has no integer type that is large enough for column {}; write .npy, or leave the column out",
-                  quoted_word(column.name)));
+  return *least >= -kExact && *most <= kExact ? PlyOutput::kFloat64 : PlyOutput::kNone;
 }
 
 const char* ply_type(PlyOutput output, ColumnType type) {
@@ -273,7 +269,7 @@ std::vector<std::string> write_ply_table(base::OutputFile& out, const Table& tab
       "element vertex {}\n",
       writer, table.rows);
   for (const Column& column : table.columns) {
-    outputs.push_back(ply_output(out, column));
+    outputs.push_back(ply_output(column));
     if (outputs.back() == PlyOutput::kNone) {
       left_out.push_back(column.name);
     } else {

@@ -19,7 +19,7 @@ TableFormat table_format(const std::filesystem::path& file);
 
 /// Writes a table. Reading the file with open() gives the same values.
 ///
-/// - .ply: binary, little-endian. It cannot store strings.
+/// - .ply: binary, little-endian. It cannot store strings, nor integers beyond 2^53.
 /// - .xyz: extended XYZ. Columns x, y, z are `pos`; name[1], name[2] .. are one property `name`. It cannot store empty
 ///   strings, spaces or quotes.
 /// - .npy: a structured array.
@@ -30,7 +30,7 @@ TableFormat table_format(const std::filesystem::path& file);
 ///
 /// `writer`   program name for the header comment of .ply
 /// Domain     columns x, y, z of numbers; all columns have table.rows rows and distinct names
-/// Result     names of the columns that were omitted because the format cannot store their strings
+/// Result     names of the columns that were omitted because the format cannot store their values
 /// Errors     base::Error: kUsage for another extension, and for values that the format cannot store, with a remedy;
 ///            kCannotCreate; kIo
 [[nodiscard]] std::vector<std::string> write_table(const std::filesystem::path& file, const Table& table,

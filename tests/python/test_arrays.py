@@ -165,6 +165,10 @@ class Strings(FolderTest):
         for _ in range(2):  # the second time, it replaces its own files
             scene.save("saved.toml")
             self.assertEqual(beauty(orrery.load("saved.toml")), beauty(scene))
+        large = small_scene(positions(), columns={"id": 1024 * np.arange(60) + 2**60},
+                            select=f"id > {2**60 + 29 * 1024}")
+        large.save("large.toml")
+        self.assertEqual(beauty(orrery.load("large.toml")), beauty(large))
         with self.assertRaisesRegex(OSError, r"was not written by save\(\)"):
             np.save("other.positions-1.npy", np.zeros(3))
             scene.save("other.toml")
