@@ -74,7 +74,7 @@ struct LegendStyle {
 /// Lays out a legend: a title, then a bar with ticks, or patches with labels. Long texts are truncated.
 ///
 /// Domain     colours that are not empty
-/// Errors     those of image::text_width()
+/// Errors     those of image::text_widths()
 Drawing legend_drawing(const LegendColors& colors, const LegendStyle& style, const std::filesystem::path& font);
 
 /// The legend of a plot's colours as SVG, see write_legend(); empty if there are none.

@@ -267,10 +267,10 @@ Option* Command::add_flag(const std::string& names, bool& variable, const std::s
   return &options_.emplace_back(*app_->add_flag(names, variable, description));
 }
 
-std::vector<std::string> Command::arguments(const std::string& heading) const {
+std::vector<std::string> Command::arguments(const std::function<bool(const Option&)>& is_wanted) const {
   std::vector<std::string> out;
   for (const Option& option : options_) {
-    if (option.heading() != heading) continue;
+    if (!is_wanted(option)) continue;
     const std::vector<std::string> words = option.arguments();
     out.insert(out.end(), words.begin(), words.end());
   }

@@ -135,8 +135,8 @@ class Command {
                      const std::string& description);
   Option* add_flag(const std::string& names, bool& variable, const std::string& description);
 
-  /// The arguments, as typed, of the options listed under a heading of the help.
-  std::vector<std::string> arguments(const std::string& heading) const;
+  /// The arguments, as typed, of some options.
+  std::vector<std::string> arguments(const std::function<bool(const Option&)>& is_wanted) const;
 
   /// Sets the heading, in the program's help, of commands that are added from now on.
   void heading(const std::string& text);

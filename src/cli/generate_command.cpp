@@ -135,7 +135,8 @@ void add_env(Command& generate, const std::shared_ptr<GenerateOptions>& options)
       "  orrery generate env studio -o studio.exr\n"
       "  orrery generate env sky -o evening.exr --sun-elevation 4 --sun-azimuth -60");
   command.act([options, &command] {
-    const std::vector<std::string> of_sky = command.arguments(kSkyHeading);
+    const std::vector<std::string> of_sky =
+        command.arguments([](const Option& option) { return option.heading() == kSkyHeading; });
     if (options->environment != "sky" && !of_sky.empty()) base::refuse(of_sky.front() + " is an option of `sky`");
     if (options->environment == "studio") return generate::generate_studio(options->width, options->output);
     options->sky.sun = !options->no_sun;

@@ -83,8 +83,8 @@ std::filesystem::path preview_file(const PlotCommand& arguments) {
   return preview::parse_target(arguments.render.preview).file;
 }
 
-/// Checks early what would otherwise fail after all frames have been read: names and formats of outputs, layers, colour
-/// names.
+/// Checks early what would otherwise fail after all frames have been read: names, formats and sizes of outputs, layers,
+/// colour names.
 void check_request(const PlotCommand& arguments, const std::vector<int>& frames) {
   job::Batch batch = arguments.render.batch;
   batch.scenes = {arguments.shown.options.file};
@@ -96,7 +96,11 @@ void check_request(const PlotCommand& arguments, const std::vector<int>& frames)
   job.scene.has_file = false;
   for (const job::Job& one : job::jobs_of(batch)) job::check_request(one);
   job.scene.overrides = arguments.shown.options.overrides;
-  job::check_layers(job, plot::settings_of(arguments.shown.options, job.outputs.has_display_format()).read.scene);
+  const scene::Scene settings =
+      plot::settings_scene(arguments.shown.options, job.outputs.has_display_format()).read.scene;
+  job::check_layers(job, settings);
+  const scene::Window window = settings.image.data_window();
+  for (const auto& film : arguments.films) film->check_size(window.width, window.height);
 }
 
 void print_choices(const plot::PlotScene& made, const PlotCommand& arguments) {
@@ -179,17 +183,13 @@ int run_plot(PlotCommand& arguments) {
       std::make_shared<const std::string>(saves ? load::marked_text(plot::saved_text(plot, made)) : made.text);
   show(made, text, job);
   job.scene.open_data = made.open_data;
-  job.scene.loaded = made.loaded;
   if (!saves) job.scene.typed_lines = 0;
   render.batch.frames = made.frames;
   render.batch.scenes = {plot.scene_file};
   render.batch.others = own_outputs(arguments);
   render.before_files = [&] {
-    if (!arguments.legend.empty()) {
-      display::Settings display = plot::settings_of(plot, true).display;
-      display.view = made.view;
-      annotation::write_legend(arguments.legend, made.legend, display);
-    }
+    if (!arguments.legend.empty())
+      annotation::write_legend(arguments.legend, made.legend, plot::legend_display(plot, made));
     if (saves) base::write_text_file(arguments.save_scene, *text);
   };
   const int status = run_render(render);

@@ -311,6 +311,7 @@ void PlotArguments::read(const SceneOptions& scene, const job::Job& job) {
 void show(const plot::PlotScene& made, std::shared_ptr<const std::string> text, job::Job& job) {
   job.scene.text = std::move(text);
   job.scene.has_file = false;
+  job.scene.loaded = made.loaded;
   if (made.noise) job.sampling.noise = *made.noise;
   job.denoise = job.denoise || (made.denoise && job.outputs.deep.empty());
 }

@@ -106,7 +106,7 @@ void configure(CLI::App& program) {
   program.set_help_flag("-h,--help", "Print this help message and exit");
   program.require_subcommand(1);
   program.get_formatter()->column_width(34);
-  // Command::callback() refuses options that are given twice, with a better message. Flags may be repeated.
+  // Command::run() refuses options that are given twice, with a better message. Flags may be repeated.
   program.option_defaults()->multi_option_policy(CLI::MultiOptionPolicy::TakeLast);
   program.footer("orrery COMMAND --help lists the options of a command, with examples.");
 }

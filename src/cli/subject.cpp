@@ -45,7 +45,6 @@ view::Subject data_subject(ShownOptions& shown, const FilmSettings* film) {
   show(made, std::make_shared<const std::string>(made.text), out.job);
   out.job.scene.typed_lines = 0;
   out.job.scene.overrides = plot.overrides;
-  out.job.scene.loaded = made.loaded;
   out.notes = made.choices;
   for (const std::string& warning : made.warnings) out.notes.push_back("warning: " + warning);
   out.columns = made.columns;
@@ -62,9 +61,7 @@ view::Subject data_subject(ShownOptions& shown, const FilmSettings* film) {
   if (plot.quality || made.noise)
     out.chosen["--quality"] =
         plot::quality_names()[static_cast<std::size_t>(plot.quality.value_or(plot::Quality::kGood))];
-  display::Settings display = plot::settings_of(plot, true).display;
-  display.view = made.view;
-  out.legend = annotation::legend_svg(made.legend, display);
+  out.legend = annotation::legend_svg(made.legend, plot::legend_display(plot, made));
   return out;
 }
 

@@ -32,18 +32,16 @@ bool has_option(const Command& command, const std::string& name) {
 /// Passes the arguments of `render` on as typed. With shards, the merge gets those that it has, and the renders get all
 /// but those that describe the images.
 void pass_arguments_on(const SubmitOptions& options, submit::Submission& submission) {
-  const auto append = [](std::vector<std::string>& out, const std::vector<std::string>& words) {
-    out.insert(out.end(), words.begin(), words.end());
-  };
-  for (const Option& option : options.command->options()) {
-    if (option.heading() == kJobOptions) continue;
-    const std::vector<std::string> words = option.arguments();
-    const bool is_split = submission.shards > 1;
+  const bool is_split = submission.shards > 1;
+  const auto is_passed_on = [](const Option& option) { return option.heading() != kJobOptions; };
+  submission.render_arguments = options.command->arguments([&](const Option& option) {
     const bool is_of_images =
         (option.heading() == kImageOptions && option.name() != "--denoise") || option.name() == "--stats";
-    if (is_split && has_option(*options.merge, option.name())) append(submission.merge_arguments, words);
-    if (!is_split || !is_of_images) append(submission.render_arguments, words);
-  }
+    return is_passed_on(option) && !(is_split && is_of_images);
+  });
+  if (is_split)
+    submission.merge_arguments = options.command->arguments(
+        [&](const Option& option) { return is_passed_on(option) && has_option(*options.merge, option.name()); });
 }
 
 int submit(SubmitOptions& options) {

@@ -41,17 +41,6 @@ struct ViewArguments {
 /// With --once, a page that is reloaded within this time has not been closed.
 constexpr std::chrono::seconds kGrace{30};
 
-/// The options as typed, without FILE.
-std::vector<std::string> words_of(const Command& command, const std::vector<const Option*>& without) {
-  std::vector<std::string> out;
-  for (const Option& option : command.options()) {
-    if (option.name().empty() || std::find(without.begin(), without.end(), &option) != without.end()) continue;
-    const std::vector<std::string> words = option.arguments();
-    out.insert(out.end(), words.begin(), words.end());
-  }
-  return out;
-}
-
 /// What the page may set, for a kind of file.
 view::Controls controls_of(const std::filesystem::path& file) {
   view::Controls out;
@@ -129,7 +118,10 @@ int run_view(ViewArguments& arguments, const Command& command) {
   if (!is_scene(file)) plot::require_utf8(file.string());
   const std::set<std::string> allowed = files_of(arguments.shown);
   const view::Controls controls = controls_of(file);
-  std::vector<std::string> fixed = words_of(command, arguments.own);
+  const std::vector<const Option*>& own = arguments.own;
+  std::vector<std::string> fixed = command.arguments([&](const Option& option) {
+    return !option.name().empty() && std::find(own.begin(), own.end(), &option) == own.end();  // FILE has no name
+  });
   const view::Wish first = first_wish(fixed, controls);
   const std::atomic<bool>& stops = stop_on_signals();
   image::start_loading();

@@ -166,10 +166,10 @@ Comparison compare(const film::Picture& picture, const film::Picture& reference,
   };
   const ChangedImage code_a(c.picture, code), code_b(c.reference, code);
   out.ssim = ssim(code_a.view, code_b.view);
-  out.flip_map = encoding == Encoding::kDisplay ? flip(code_a.view, code_b.view)
-                                                : hdr_flip(ChangedImage(c.picture, std::identity()).view,
-                                                           ChangedImage(c.reference, std::identity()).view,
-                                                           threads > 0 ? threads : job::default_threads());
+  out.flip_map = encoding == Encoding::kDisplay
+                     ? flip(code_a.view, code_b.view)
+                     : hdr_flip(ChangedImage(c.picture, std::identity()).view,
+                                ChangedImage(c.reference, std::identity()).view, job::thread_count(threads));
   out.flip = out.flip_map.mean();
   out.z_test = z_test(c.picture, color_of(picture, "variance"), c.reference, color_of(reference, "variance"));
   return out;

@@ -54,7 +54,7 @@ class ByteSource {
 
   const std::filesystem::path& file() const { return file_; }
   std::uint64_t size() const { return size_; }
-  bool is_compressed() const { return is_in_memory_; }
+  bool is_in_memory() const { return is_in_memory_; }
   /// Memory that the bytes take until this is destroyed.
   std::uint64_t memory() const { return is_in_memory_ ? size_ : 0; }
 

@@ -460,7 +460,7 @@ bool is_hdf5(const Signature& signature) {
 }
 
 std::unique_ptr<DataFile> open_hdf5(const Bytes& bytes, const OpenOptions& options) {
-  if (bytes->is_compressed())
+  if (bytes->is_in_memory())
     fail(bytes->file(), "a compressed HDF5 file cannot be read", "decompress it first, e.g. with `gunzip`");
   return std::make_unique<SnapshotReader>(bytes->file(), options);
 }

@@ -62,7 +62,7 @@ struct SceneInfo {
   std::string precision, accelerator, isa;
   std::string traversal;  ///< BVH traversal, if known before rendering
   job::MemoryEstimate memory;
-  std::optional<load::LoadedBackground> background;  ///< set for an image background
+  std::optional<load::LoadedMap> background;  ///< set for an image background
   std::string background_file;
   std::vector<TextureInfo> textures;
   std::vector<load::Setting> settings;

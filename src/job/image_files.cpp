@@ -69,7 +69,7 @@ DenoisedFile denoise_file(const Denoising& denoising) {
   files.add_input(denoising.input, "image");
   files.add_output(denoising.output, "-o");
   base::check_creatable(denoising.output);
-  const int threads = denoising.threads > 0 ? denoising.threads : default_threads();
+  const int threads = thread_count(denoising.threads);
   image::set_threads(threads);
   DenoisedFile out;
   const auto edit = [&](film::Picture& picture) {

@@ -188,7 +188,7 @@ class Run {
 
   /// Opens what rendering needs.
   void begin() {
-    settings_.threads = job_.resources.threads > 0 ? job_.resources.threads : default_threads();
+    settings_.threads = thread_count(job_.resources.threads);
     if (scene().render.traversal == scene::Traversal::kPacket) settings_.traversal = accel::Traversal::kPacket;
     if (scene().render.traversal == scene::Traversal::kSingle) settings_.traversal = accel::Traversal::kSingle;
     settings_.layers = layers_.request;
@@ -420,16 +420,18 @@ JobReport run_job(const Job& job) {
   check_request(job);
   JobReport report;
   const base::StopScope scope(job.hooks.cancel);
+  const auto run = [&] {
+    try {
+      Run(job, files, report).run();
+    } catch (const std::bad_alloc&) {
+      throw base::Error(base::ErrorKind::kNoMemory, "out of memory; orrery info SCENE prints how much a scene needs");
+    }
+  };
   try {
-    Run(job, files, report).run();
+    run();
   } catch (const base::Error& error) {
     if (may_report(job, report, error, files)) write_failure(job.outputs.statistics, report, error);
     throw;
-  } catch (const std::bad_alloc&) {
-    const base::Error error(base::ErrorKind::kNoMemory,
-                            "out of memory; orrery info SCENE prints how much a scene needs");
-    if (may_report(job, report, error, files)) write_failure(job.outputs.statistics, report, error);
-    throw error;
   }
   if (!job.outputs.statistics.empty() && !report.was_skipped) write_statistics(job.outputs.statistics, report);
   return report;

@@ -121,6 +121,8 @@ int default_threads(const std::filesystem::path& root) {
   return threads;
 }
 
+int thread_count(int requested) { return requested > 0 ? requested : default_threads(); }
+
 void choose_isa() {
   const char* const isa = std::getenv("ORRERY_ISA");
   if (!kernel::limit_isa(isa != nullptr ? isa : ""))

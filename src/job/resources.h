@@ -25,8 +25,11 @@ struct Resources {
 /// Default thread count: the minimum of the affinity mask's CPUs, the CPU quotas of the process's control groups,
 /// SLURM_CPUS_PER_TASK and CUE_THREADS. A variable that is not a positive integer is ignored.
 ///
-/// Domain     see base::control_groups
+/// Domain     see base::available_memory
 int default_threads(const std::filesystem::path& root = "/");
+
+/// The requested number of threads; default_threads() if it is 0.
+int thread_count(int requested);
 
 /// Limits kernel and accelerators to the instruction set of the environment variable ORRERY_ISA, which is for tests and
 /// comparisons; unset: the best available.

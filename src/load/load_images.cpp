@@ -239,7 +239,11 @@ const LoadedTexture* find(const std::vector<LoadedTexture>& textures, const std:
 
 }  // namespace
 
-LoadedBackground load_background(const ImageRequest& request, const scene::Scene& scene) {
+std::uint64_t rest_of(std::uint64_t limit, std::uint64_t used) {
+  return limit == 0 ? 0 : std::max<std::uint64_t>(limit - std::min(used, limit), 1);
+}
+
+LoadedMap load_background(const ImageRequest& request, const scene::Scene& scene) {
   return load_map(background_request(request, scene));
 }
 
@@ -247,8 +251,8 @@ std::string background_version(const ImageRequest& request, const scene::Scene& 
   return background_request(request, scene).version();
 }
 
-LoadedBackground load_sky(const std::string& ocio_config, const scene::Scene& scene) {
-  LoadedBackground out;
+LoadedMap load_sky(const std::string& ocio_config, const scene::Scene& scene) {
+  LoadedMap out;
   out.color_space = "lin_rec709";
   display::PixelConversion to_sky, to_working;
   try {
@@ -305,8 +309,7 @@ std::vector<LoadedTexture> load_textures(const ImageRequest& request, const std:
     if (const LoadedTexture* same = find(known, version)) {
       out.push_back({named.key, same->map, false});
     } else {
-      if (const std::uint64_t limit = request.memory_limit; limit > 0)
-        wanted.options.memory_limit = std::max<std::uint64_t>(limit - std::min(bytes, limit), 1);
+      wanted.options.memory_limit = rest_of(request.memory_limit, bytes);
       out.push_back({named.key, load_map(wanted), false});
     }
     if (out.back().map.image) bytes += out.back().map.bytes;

@@ -27,6 +27,9 @@ struct ImageRequest {
   bool skips_large = false;        ///< an image that does not fit into memory is a warning and is not read
 };
 
+/// The rest of a memory limit, at least one byte; 0 if there is no limit.
+std::uint64_t rest_of(std::uint64_t limit, std::uint64_t used);
+
 /// A map that was read, and the properties of its file.
 struct LoadedMap {
   std::string version;        ///< identifies the contents of the file and the conversion; empty: unknown
@@ -38,15 +41,12 @@ struct LoadedMap {
   std::vector<scene::SceneDiagnostic> diagnostics;       ///< errors and warnings, by key of the scene
 };
 
-/// An image background that was read, or a sky.
-using LoadedBackground = LoadedMap;
-
 /// Reads the image of scene.background.
 ///
 /// Domain     the background is an image
 /// Errors     those of the file and of colour spaces become diagnostics; base::Error(kNoMemory) if the image does not
 ///            fit into memory, before its pixels are read
-LoadedBackground load_background(const ImageRequest& request, const scene::Scene& scene);
+LoadedMap load_background(const ImageRequest& request, const scene::Scene& scene);
 
 /// Identifies the file and the conversion: equal texts, equal results of load_background().
 std::string background_version(const ImageRequest& request, const scene::Scene& scene);
@@ -57,7 +57,7 @@ std::string background_version(const ImageRequest& request, const scene::Scene& 
 /// Domain         the background is a sky
 /// Errors         an OCIO config without linear Rec.709, in which the sky is computed, becomes a diagnostic;
 ///                base::Error as for display::pixel_conversion
-LoadedBackground load_sky(const std::string& ocio_config, const scene::Scene& scene);
+LoadedMap load_sky(const std::string& ocio_config, const scene::Scene& scene);
 
 /// An image texture that was read.
 struct LoadedTexture {

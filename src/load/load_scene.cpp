@@ -127,11 +127,6 @@ std::vector<scene::SceneDiagnostic> check_exposures(const scene::Scene& scene, c
 /// A pointer to the scene at shutter close; null without motion blur.
 const scene::Scene* pointer_to(const std::optional<scene::Scene>& closing) { return closing ? &*closing : nullptr; }
 
-/// The rest of a memory limit, at least one byte; 0 if there is no limit.
-std::uint64_t rest_of(std::uint64_t limit, std::uint64_t used) {
-  return limit == 0 ? 0 : std::max<std::uint64_t>(limit - std::min(used, limit), 1);
-}
-
 /// One load of a scene.
 class SceneLoader {
  public:
@@ -288,7 +283,7 @@ class SceneLoader {
     const scene::Background& background = scene_.background;
     const bool is_sky = background.type == scene::BackgroundType::kSky;
     if (!is_sky && (background.type != scene::BackgroundType::kImage || background.file.empty())) return;
-    std::optional<LoadedBackground> known;
+    std::optional<LoadedMap> known;
     if (previous_) known = std::move(previous_->background);
     const bool is_known = known && known->image &&
                           (is_sky ? !out_.changed.look && !out_.changed.assignment && !out_.changed.geometry

@@ -31,11 +31,11 @@ struct SceneRequest {
 
 /// A scene that is ready to be compiled, and what was determined while loading it.
 struct LoadedScene {
-  ReadResult read;                             ///< colours are in the working space
-  display::Settings display;                   ///< from the command line and the scene
-  std::optional<display::Choice> choice;       ///< if `develops`, or if a colour name is set
-  std::optional<LoadedBackground> background;  ///< image background or sky; the scene refers to its image
-  std::vector<LoadedTexture> textures;         ///< image textures; the scene refers to their images
+  ReadResult read;                        ///< colours are in the working space
+  display::Settings display;              ///< from the command line and the scene
+  std::optional<display::Choice> choice;  ///< if `develops`, or if a colour name is set
+  std::optional<LoadedMap> background;    ///< image background or sky; the scene refers to its image
+  std::vector<LoadedTexture> textures;    ///< image textures; the scene refers to their images
   std::vector<base::Diagnostic> warnings;
 
   scene::Parts changed = scene::Parts::all();  ///< what differs from the previous load

@@ -455,7 +455,7 @@ display::Settings display_of(const PlotOptions& options) {
   return out;
 }
 
-load::LoadedScene settings_of(const PlotOptions& options, bool develops) {
+load::LoadedScene settings_scene(const PlotOptions& options, bool develops) {
   load::SceneRequest request;
   request.develops = develops;
   request.source.file = options.scene_file;
@@ -469,6 +469,12 @@ load::LoadedScene settings_of(const PlotOptions& options, bool develops) {
       request.source.overrides.add(override);
   }
   return load::load_scene(request);
+}
+
+display::Settings legend_display(const PlotOptions& options, const PlotScene& made) {
+  display::Settings out = settings_scene(options, true).display;
+  out.view = made.view;
+  return out;
 }
 
 std::string saved_text(const PlotOptions& options, const PlotScene& made) {

@@ -111,7 +111,12 @@ display::Settings display_of(const PlotOptions& options);
 /// A provisional scene with only the overrides of tables that every scene has, validated.
 ///
 /// `develops` see load::SceneRequest
-load::LoadedScene settings_of(const PlotOptions& options, bool develops);
+load::LoadedScene settings_scene(const PlotOptions& options, bool develops);
+
+/// The display transform of a plot's legend.
+///
+/// Errors     those of settings_scene()
+display::Settings legend_display(const PlotOptions& options, const PlotScene& made);
 
 /// The scene with the overrides applied, so that rendering it does not need them again.
 std::string saved_text(const PlotOptions& options, const PlotScene& made);

@@ -33,12 +33,12 @@ struct SceneData {
 
 /// Reads the text of a scene file and checks that it is TOML.
 ///
-/// Errors     base::Error: those of load::read_scene, except those for keys and data files
+/// Errors     base::Error: those of load::load_scene, except those for keys and data files
 std::string read_scene_text(const std::filesystem::path& file);
 
 /// Checks the keys of [[sphere]] and [[points]], and the names of columns and colour maps.
 ///
-/// Errors     those of load::read_scene
+/// Errors     those of load::load_scene
 void check_keys(const SceneData& scene);
 
 /// Returns the width of the image divided by its height, as displayed. Keys that cannot be read have their defaults.

@@ -55,7 +55,7 @@ struct Benchmark {
 
 /// Measures the render speed of a scene at a reduced size, in every precision, with Embree and with the list.
 ///
-/// Errors     those of load::read_scene; base::Error(kStopped) after `cancel`, kUsage for an unknown $ORRERY_ISA
+/// Errors     those of load::load_scene; base::Error(kStopped) after `cancel`, kUsage for an unknown $ORRERY_ISA
 Benchmark bench_scene(const BenchRequest& request);
 
 /// A benchmark as a text table.

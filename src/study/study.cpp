@@ -91,10 +91,9 @@ std::vector<FilePoint> measure_file_axis(const film::Picture& picture) {
 
 class Runner {
  public:
-  explicit Runner(const Request& request)
-      : request_(request), renderer_(request, request.threads > 0 ? request.threads : job::default_threads()) {
+  explicit Runner(const Request& request) : request_(request), renderer_(request, job::thread_count(request.threads)) {
     job::choose_isa();
-    out_.threads = request.threads > 0 ? request.threads : job::default_threads();
+    out_.threads = job::thread_count(request.threads);
     out_.budget_s = request.budget_s;
     out_.scene = request.scene.file.string();
     out_.version = job::program_version();

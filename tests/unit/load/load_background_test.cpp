@@ -27,12 +27,12 @@ class LoadBackground : public testing::Test {
     scene_.background.file = "a.exr";
     request_.folder = (folder_ / "a.exr").parent_path();
   }
-  LoadedBackground load(const ExrFile& exr) {
+  LoadedMap load(const ExrFile& exr) {
     support::write_bytes(folder_ / "a.exr", exr.bytes());
     return load_background(request_, scene_);
   }
   /// "key: text" of each diagnostic.
-  static std::vector<std::string> texts(const LoadedBackground& loaded) {
+  static std::vector<std::string> texts(const LoadedMap& loaded) {
     std::vector<std::string> out;
     for (const scene::SceneDiagnostic& d : loaded.diagnostics) out.push_back(d.key + ": " + d.text);
     return out;
@@ -45,7 +45,7 @@ class LoadBackground : public testing::Test {
 };
 
 TEST_F(LoadBackground, TexelsAreThoseOfTheFile) {
-  const LoadedBackground loaded = load({2, 1, {1, 2, 3, 4, 5, 6}});
+  const LoadedMap loaded = load({2, 1, {1, 2, 3, 4, 5, 6}});
   EXPECT_EQ(texts(loaded), Texts{});
   ASSERT_NE(loaded.image, nullptr);
   EXPECT_EQ(std::vector<float>(loaded.image->row(0), loaded.image->row(0) + 6), (std::vector<float>{1, 2, 3, 4, 5, 6}));
@@ -56,7 +56,7 @@ TEST_F(LoadBackground, TexelsAreThoseOfTheFile) {
 /// Red in ACEScg is (1.7051, -0.1302, -0.0240) in Rec.709.
 TEST_F(LoadBackground, TheDeclaredColourSpaceComesBeforeTheScenes) {
   ExrFile exr = ExrFile::constant(2, 1, {1, 0.5F, 0.5F});
-  const auto red = [](const LoadedBackground& loaded) { return loaded.image->row(0)[0]; };
+  const auto red = [](const LoadedMap& loaded) { return loaded.image->row(0)[0]; };
   EXPECT_EQ(red(load(exr)), 1);
   scene_.color.space = "ACEScg";
   scene_.color.working = "lin_rec709";
@@ -78,7 +78,7 @@ TEST_F(LoadBackground, TheDeclaredColourSpaceComesBeforeTheScenes) {
 TEST_F(LoadBackground, AnUnknownDeclaredSpaceIsAWarningAndAnUnknownKeyAnError) {
   ExrFile exr = ExrFile::constant(2, 1, {1, 1, 1});
   exr.color_interop_id = "foo_scene";
-  LoadedBackground loaded = load(exr);
+  LoadedMap loaded = load(exr);
   ASSERT_EQ(loaded.diagnostics.size(), 1u);
   EXPECT_EQ(loaded.diagnostics[0].severity, base::Severity::kWarning);
   EXPECT_NE(loaded.image, nullptr);
@@ -97,7 +97,7 @@ TEST_F(LoadBackground, AnUnknownDeclaredSpaceIsAWarningAndAnUnknownKeyAnError) {
 
 TEST_F(LoadBackground, DisplaySpacesAreLinearized) {
   scene_.background.color_space = "srgb_texture";
-  const LoadedBackground loaded = load(ExrFile::constant(2, 1, {0.5F, 0.5F, 0.5F}));
+  const LoadedMap loaded = load(ExrFile::constant(2, 1, {0.5F, 0.5F, 0.5F}));
   EXPECT_EQ(texts(loaded), Texts{});
   EXPECT_NEAR(loaded.image->row(0)[1], 0.21404, 1e-4);
 }
@@ -108,7 +108,7 @@ TEST_F(LoadBackground, InvalidRadianceCountsAsZero) {
   exr.rgb[5] = -std::numeric_limits<float>::infinity();
   exr.rgb[8] = -1e-6F;
   exr.rgb[9] = -0.0F;
-  const LoadedBackground loaded = load(exr);
+  const LoadedMap loaded = load(exr);
   EXPECT_EQ(texts(loaded), Texts{"background.file: 1 values are NaN and 2 negative; they are replaced by 0"});
   for (int i = 0; i < 24; ++i) EXPECT_EQ(loaded.image->row(0)[i], i == 0 || i == 5 || i == 8 || i == 9 ? 0 : 1) << i;
 }
@@ -119,7 +119,7 @@ TEST_F(LoadBackground, InfiniteRadianceIsTheLargestThatTheFileCanHold) {
     ExrFile exr = ExrFile::constant(4, 2, {1, 1, 1});
     exr.rgb[4] = std::numeric_limits<float>::infinity();
     exr.is_half = is_half;
-    const LoadedBackground loaded = load(exr);
+    const LoadedMap loaded = load(exr);
     const std::string value = is_half ? "65504; write brighter values in single precision" : "17179869184";
     EXPECT_EQ(texts(loaded), Texts{"background.file: 1 values are infinite; they are replaced by " + value});
     for (int i = 0; i < 24; ++i) EXPECT_EQ(loaded.image->row(0)[i], i != 4 ? 1 : is_half ? 65504 : 0x1p34F) << i;
@@ -129,7 +129,7 @@ TEST_F(LoadBackground, InfiniteRadianceIsTheLargestThatTheFileCanHold) {
 TEST_F(LoadBackground, ValuesBeyondTheFilmAreClamped) {
   ExrFile exr = ExrFile::constant(4, 2, {1, 1, 1});
   exr.rgb[4] = 1e30F;
-  const LoadedBackground loaded = load(exr);
+  const LoadedMap loaded = load(exr);
   EXPECT_EQ(texts(loaded), Texts{"background.file: 1 values are out of range in lin_rec709 and were clamped"});
   EXPECT_EQ(loaded.image->row(0)[4], 0x1p34F);
   EXPECT_EQ(loaded.brightest, 0x1p34F);
@@ -138,7 +138,7 @@ TEST_F(LoadBackground, ValuesBeyondTheFilmAreClamped) {
 TEST_F(LoadBackground, ColoursOutsideTheWorkingSpaceAreClamped) {
   ExrFile exr = ExrFile::constant(2, 1, {0, 1, 0});
   exr.color_interop_id = "lin_ap1_scene";
-  const LoadedBackground loaded = load(exr);
+  const LoadedMap loaded = load(exr);
   EXPECT_EQ(texts(loaded), Texts{"background.file: 4 values are out of range in lin_rec709 and were clamped"});
   EXPECT_EQ(loaded.image->row(0)[0], 0);
 }
@@ -151,7 +151,7 @@ TEST_F(LoadBackground, OtherProportionsAreAWarning) {
 TEST_F(LoadBackground, TexelsOutsideTheDataWindowAreAWarning) {
   ExrFile exr = ExrFile::constant(2, 2, {1, 1, 1});
   exr.display_width = 4;
-  const LoadedBackground loaded = load(exr);
+  const LoadedMap loaded = load(exr);
   EXPECT_EQ(texts(loaded), Texts{"background.file: its data window does not cover its display window; the rest is "
                                  "black"});
   EXPECT_EQ(std::vector<float>(loaded.image->row(1), loaded.image->row(1) + 12),
@@ -173,7 +173,7 @@ TEST_F(LoadBackground, MemoryIsCheckedBeforePixelsAreRead) {
   }
   scene_.render.direct_lighting = scene::DirectLighting::kBsdf;
   request_.skips_large = true;
-  const LoadedBackground loaded = load_background(request_, scene_);
+  const LoadedMap loaded = load_background(request_, scene_);
   EXPECT_EQ(loaded.bytes, std::uint64_t{12} << 31) << "without tables";
   EXPECT_EQ(loaded.image, nullptr);
   ASSERT_EQ(loaded.diagnostics.size(), 1u);
@@ -181,7 +181,7 @@ TEST_F(LoadBackground, MemoryIsCheckedBeforePixelsAreRead) {
 }
 
 TEST_F(LoadBackground, TheVersionIdentifiesFileAndConversion) {
-  const LoadedBackground first = load(ExrFile::constant(3, 2, {1, 1, 1}));
+  const LoadedMap first = load(ExrFile::constant(3, 2, {1, 1, 1}));
   EXPECT_EQ(first.version, background_version(request_, scene_));
   scene_.background.color_space = "acescg";
   EXPECT_NE(first.version, background_version(request_, scene_)) << "another conversion";
@@ -198,7 +198,7 @@ scene::Scene evening() {
 }
 
 TEST(LoadSky, InRec709ItIsTheModel) {
-  const LoadedBackground loaded = load_sky("", evening());
+  const LoadedMap loaded = load_sky("", evening());
   ASSERT_NE(loaded.image, nullptr);
   EXPECT_TRUE(loaded.diagnostics.empty());
   EXPECT_EQ(loaded.width, 512);
@@ -215,9 +215,9 @@ TEST(LoadSky, InRec709ItIsTheModel) {
 TEST(LoadSky, IsConvertedToTheWorkingSpace) {
   ::unsetenv("OCIO");
   scene::Scene scene = evening();
-  const LoadedBackground rec709 = load_sky("", scene);
+  const LoadedMap rec709 = load_sky("", scene);
   scene.color.working = "acescg";
-  const LoadedBackground acescg = load_sky("", scene);
+  const LoadedMap acescg = load_sky("", scene);
   ASSERT_NE(acescg.image, nullptr);
   const auto luminance = [](const double r, const double g, const double b) {
     return std::pair{0.2126 * r + 0.7152 * g + 0.0722 * b, 0.2722 * r + 0.6741 * g + 0.0537 * b};
@@ -235,10 +235,10 @@ TEST(LoadSky, TheAlbedoIsInTheSpaceOfTheScene) {
   ::unsetenv("OCIO");
   scene::Scene scene = evening();
   scene.background.ground_albedo = {0.1, 0.4, 0.1};
-  const LoadedBackground rec709 = load_sky("", scene);
+  const LoadedMap rec709 = load_sky("", scene);
   scene.color.space = scene.color.working = "acescg";
   scene.background.ground_albedo = {0.1, 0.4, 0.1};
-  const LoadedBackground acescg = load_sky("", scene);
+  const LoadedMap acescg = load_sky("", scene);
   const float *const a = rec709.image->row(200), *const b = acescg.image->row(200);
   EXPECT_NEAR(b[1] / b[0] / (a[1] / a[0]), 1, 0.3) << "green ground is about as green";
   EXPECT_NE(a[0], b[0]);
