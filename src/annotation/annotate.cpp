@@ -46,6 +46,27 @@ std::string font_of(const scene::Scene& scene, const View& view) {
   return font.empty() ? kDefaultFont : is_file ? (view.folder / font).string() : font;
 }
 
+/// A title that fits into a width: if necessary in a smaller font, and if that is not enough, without its end.
+/// Unchanged if there is not even space for a few letters.
+///
+/// `size`     font size, px
+image::TextLine fitted(const std::string& title, double room, double size, const std::filesystem::path& font) {
+  const auto width = [&](const std::string& text, double font_px) {
+    return image::text_widths({text}, font_px, font).front();
+  };
+  image::TextLine out{title, kMargin * size, (kMargin + 0.8) * size, size, 0};
+  const double full = width(title, size);
+  if (full <= room || room < kFewestLetters * kLetterWidth * kSmallestFont) return out;
+  out.size_px = std::max(kSmallestFont, std::floor(size * room / full));
+  const double share = room / width(title, out.size_px);
+  if (share >= 1) return out;
+  constexpr std::size_t kNarrow = 8;  // more of these may fit than letters of mean width
+  std::size_t bytes =
+      std::min(title.size(), static_cast<std::size_t>(share * static_cast<double>(title.size())) + kNarrow);
+  while (bytes > 0 && width(out.text = shortened(title, bytes), out.size_px) > room) --bytes;
+  return out;
+}
+
 /// The number of decimals in ".2f"; none for other text.
 std::optional<int> decimals_of(const std::string& format) {
   if (format.size() != 3 || format[0] != '.' || format[2] != 'f' || format[1] < '0' || format[1] > '9') return {};
@@ -82,13 +103,18 @@ std::string field_text(const std::string& field, int frame, std::optional<double
 std::string title_of(const std::string& title, int frame, std::optional<double> step) {
   std::string out;
   for (std::size_t at = 0; at < title.size();) {
-    const std::size_t open = std::min(title.find('{', at), title.size()), close = title.find('}', open);
-    out += title.substr(at, open - at);
-    if (open == title.size()) break;
+    const std::string_view rest = std::string_view(title).substr(at);
+    if (rest.front() != '{' || rest.starts_with("{{")) {
+      out += rest.front();
+      at += rest.starts_with("{{") || rest.starts_with("}}") ? 2 : 1;
+      continue;
+    }
+    const std::size_t close = rest.find('}');
     if (close == std::string::npos)
-      throw base::Error(base::ErrorKind::kBadData, "annotation.title: `{` is not closed; add `}`");
-    out += field_text(title.substr(open + 1, close - open - 1), frame, step);
-    at = close + 1;
+      throw base::Error(base::ErrorKind::kBadData,
+                        "annotation.title: `{` is not closed; add `}`, or write `{{` for a brace");
+    out += field_text(std::string(rest.substr(1, close - 1)), frame, step);
+    at += close + 1;
   }
   return out;
 }
@@ -115,11 +141,18 @@ Drawing drawing_of(const scene::Scene& scene, const LegendColors& legend, const 
   out.outline_px = annotation.outline;
   if (!annotation.title.empty() || annotation.scale_bar || annotation.color_bar || has_labels)
     out.font = image::font_file(font_of(scene, view));
+  Drawing bar;
+  if (annotation.color_bar && !legend.is_empty()) {
+    const auto most_bytes =
+        static_cast<std::size_t>(std::max(kLegendWidth * view.width / (kLetterWidth * size), kFewestLetters));
+    bar = legend_drawing(legend, {size, view.height - 2 * margin, kMaxLabels, most_bytes, out.ink}, out.font);
+  }
   if (!annotation.title.empty()) {
     const scene::Points* const points = scene.points.empty() ? nullptr : &scene.points[0];
     const int frame = points != nullptr ? points->frame.value_or(view.frame) : view.frame;
     const std::string title = title_of(annotation.title, frame, points != nullptr ? points->step : std::nullopt);
-    out.texts.push_back({title, margin, (kMargin + 0.8) * size, size, 0});
+    const double beside = bar.is_empty() ? 0 : bar.width + margin;
+    out.texts.push_back(fitted(title, view.width - 2 * margin - beside, size, out.font));
   }
   if (annotation.scale_bar && scene.camera.width) {
     const double width = *annotation.scale_bar / *scene.camera.width * view.width, bottom = view.height - margin,
@@ -128,13 +161,7 @@ Drawing drawing_of(const scene::Scene& scene, const LegendColors& legend, const 
     out.boxes.push_back({margin, top, margin + width, bottom, out.ink});
     out.texts.push_back({scene::number_text(*annotation.scale_bar) + unit, margin, top - kTextGap * size, size, 0});
   }
-  if (annotation.color_bar && !legend.is_empty()) {
-    const auto most_bytes =
-        static_cast<std::size_t>(std::max(kLegendWidth * view.width / (kLetterWidth * size), kFewestLetters));
-    const Drawing drawn =
-        legend_drawing(legend, {size, view.height - 2 * margin, kMaxLabels, most_bytes, out.ink}, out.font);
-    place(drawn, view.width - margin - drawn.width, margin, out);
-  }
+  if (!bar.is_empty()) place(bar, view.width - margin - bar.width, margin, out);
   for (const scene::Points& points : scene.points)
     for (const scene::Label& label : points.placed_labels)
       if (const auto at = view.project(label.at))
@@ -146,9 +173,8 @@ std::string missing_glyphs(const Drawing& drawing) {
   std::string all;
   for (const std::vector<image::TextLine>* lines : {&drawing.texts, &drawing.labels})
     for (const image::TextLine& line : *lines) all += line.text;
-  const bool is_ascii =
-      std::all_of(all.begin(), all.end(), [](char c) { return static_cast<unsigned char>(c) < 0x80; });
-  return is_ascii ? "" : image::missing_glyphs(all, drawing.font);
+  const bool is_plain = std::all_of(all.begin(), all.end(), [](char c) { return c >= ' ' && c <= '~'; });
+  return is_plain ? "" : image::missing_glyphs(all, drawing.font);
 }
 
 std::function<Vec3d(const Vec3d&)> shown_by(display::Settings display) {

@@ -32,11 +32,6 @@ constexpr std::size_t kMaxTextBytes = 60;
 /// Few programs could open a larger image.
 constexpr std::size_t kMaxImageLabels = 500;
 
-std::string shortened(const std::string& text, std::size_t most_bytes) {
-  const std::string_view prefix = base::utf8_prefix(text, most_bytes);
-  return std::string(prefix) + (prefix.size() < text.size() ? "…" : "");
-}
-
 /// Adds the parts of a legend from the top.
 class LegendLayout {
  public:
@@ -131,6 +126,11 @@ std::optional<double> number_of(std::string_view label) {
 }
 
 }  // namespace
+
+std::string shortened(const std::string& text, std::size_t most_bytes) {
+  const std::string_view prefix = base::utf8_prefix(text, most_bytes);
+  return std::string(prefix) + (prefix.size() < text.size() ? "…" : "");
+}
 
 bool LabelOrder::operator()(std::string_view a, std::string_view b) const {
   const std::optional<double> x = number_of(a), y = number_of(b);

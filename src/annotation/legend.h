@@ -62,6 +62,9 @@ struct LegendColors {
   void add(const scene::Points& frame, const std::vector<Vec3d>& palette);
 };
 
+/// The first bytes of a text, at most so many, and an ellipsis if there are more.
+std::string shortened(const std::string& text, std::size_t most_bytes);
+
 /// How a legend is drawn.
 struct LegendStyle {
   double font_px = 0;

@@ -68,14 +68,34 @@ const char* ply_type(PlyOutput output, ColumnType type) {
   return kNames[static_cast<std::size_t>(type)];
 }
 
-/// Returns a name with underscores for some characters, and different from the previous ones.
-std::string distinct_name(std::string name, std::string_view replaced, std::set<std::string>& used) {
-  if (name.empty()) name = "_";
-  std::replace_if(
-      name.begin(), name.end(), [&](char c) { return replaced.find(c) != std::string_view::npos; }, '_');
-  while (!used.insert(name).second) name += '_';
-  return name;
-}
+/// Names for the columns of a file in which some characters cannot be in names. Other names stay.
+class DistinctNames {
+ public:
+  /// `replaced`  these characters become underscores
+  /// `used`      names that columns cannot have
+  DistinctNames(const Table& table, std::string_view replaced, std::set<std::string> used = {})
+      : replaced_(replaced), used_(std::move(used)) {
+    for (const Column& column : table.columns)
+      if (is_possible(column.name) && used_.insert(column.name).second) kept_.insert(column.name);
+  }
+
+  std::string of(std::string name) {
+    if (kept_.erase(name) > 0) return name;
+    if (name.empty()) name = "_";
+    std::replace_if(
+        name.begin(), name.end(), [&](char c) { return replaced_.find(c) != std::string_view::npos; }, '_');
+    while (!used_.insert(name).second) name += '_';
+    return name;
+  }
+
+ private:
+  bool is_possible(const std::string& name) const {
+    return !name.empty() && name.find_first_of(replaced_) == std::string::npos;
+  }
+
+  std::string_view replaced_;
+  std::set<std::string> used_, kept_;
+};
 
 /// The type of a text column in NumPy: Unicode, or bytes if a string is not ASCII.
 struct NpyText {
@@ -235,7 +255,7 @@ std::vector<XyzOutput> xyz_outputs(const Table& table, std::vector<std::string>&
   const Column* const element = element_of(table);
   if (element != nullptr) out.push_back({"species", {element}, 'S'});
   out.push_back({"pos", {table.find("x"), table.find("y"), table.find("z")}, 'R'});
-  std::set<std::string> used = {"species", "pos"};
+  DistinctNames names(table, kXyzSeparators, {"species", "pos"});
   for (std::size_t i = 0; i < table.columns.size();) {
     const std::string& name = table.columns[i].name;
     if (name == "x" || name == "y" || name == "z" || &table.columns[i] == element) {
@@ -250,7 +270,7 @@ std::vector<XyzOutput> xyz_outputs(const Table& table, std::vector<std::string>&
     const std::optional<XyzOutput> color = color_at(table, i);
     XyzOutput property = color ? *color : property_at(table, i);
     i += property.columns.size();
-    property.name = distinct_name(property.name, kXyzSeparators, used);
+    property.name = names.of(property.name);
     out.push_back(std::move(property));
   }
   return out;
@@ -260,7 +280,7 @@ std::vector<XyzOutput> xyz_outputs(const Table& table, std::vector<std::string>&
 std::vector<std::string> write_ply_table(base::OutputFile& out, const Table& table, const std::string& writer) {
   std::vector<std::string> left_out;
   std::vector<PlyOutput> outputs;
-  std::set<std::string> used;
+  DistinctNames names(table, " \t\n\v\f\r");
   std::string& bytes = out.buffer();
   bytes = fmt::format(
       "ply\n"
@@ -273,8 +293,7 @@ std::vector<std::string> write_ply_table(base::OutputFile& out, const Table& tab
     if (outputs.back() == PlyOutput::kNone) {
       left_out.push_back(column.name);
     } else {
-      bytes += fmt::format("property {} {}\n", ply_type(outputs.back(), column.type()),
-                           distinct_name(column.name, " \t\n\v\f\r", used));
+      bytes += fmt::format("property {} {}\n", ply_type(outputs.back(), column.type()), names.of(column.name));
     }
   }
   bytes += "end_header\n";

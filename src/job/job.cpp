@@ -136,9 +136,10 @@ class Run {
     if (scene().annotation.color_bar) legend = annotation::legend_of(scene(), loaded().palettes);
     drawing_ = annotation::drawing_of(scene(), legend, annotated_view());
     if (const std::string missing = annotation::missing_glyphs(drawing_); !missing.empty())
-      warn(base::file_diagnostic(base::Severity::kWarning, job_.scene.file.string(),
-                                 fmt::format("the font {} has no glyphs for `{}`", drawing_.font.string(), missing),
-                                 "set annotation.font to another font"));
+      warn(base::file_diagnostic(
+          base::Severity::kWarning, job_.scene.file.string(),
+          fmt::format("the font {} has no glyphs for `{}`", drawing_.font.string(), base::printable(missing)),
+          "set annotation.font to another font"));
     stamp_ = annotation::stamped(stamp_of(job_, provenance_, loaded().display, report_.display), drawing_);
     report_.scene_hash = provenance_.at("sceneHash");
     report_.was_skipped = job_.skip_existing && is_up_to_date(job_, compiled(), provenance_, stamp_);

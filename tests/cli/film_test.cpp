@@ -90,7 +90,7 @@ TEST_F(CliFilm, RequestsThatCannotBeMetAreRefused) {
   EXPECT_TRUE(contains(film("-o a.mp4 --frames all --transparent").err, "a.mp4 is a film, which is opaque"));
   EXPECT_TRUE(contains(film("-o a.mp4 -o b.gif --frames all --fps 60").err, "b.gif: a GIF has at most 50 frames"));
   EXPECT_EQ(film("-o b.gif --frames all --fps 50").status, 0);
-  EXPECT_TRUE(contains(film("-o a.mp4 --frames all --set image.height=1").err, "a video is at least 2 pixels"));
+  EXPECT_TRUE(contains(run("plot a.dump -o a.mp4 --frames all --height 1").err, "a video is at least 2 pixels"));
   EXPECT_EQ(film("-o no/a.mp4 --frames all").status, 73);
   const Outcome none = run("plot a.dump -o a.mp4 --frames all", "PATH=/nowhere");
   EXPECT_EQ(none.status, 73);

@@ -55,6 +55,7 @@ TEST(AnnotationTitle, ExpressionsAreReplaced) {
   EXPECT_EQ(title_of("plain", 7, {}), "plain");
   EXPECT_EQ(title_of("frame {frame} of 9", 7, {}), "frame 7 of 9");
   EXPECT_EQ(title_of("t = {step * 0.005:.2f} ps, {frame:.0f}", 7, 300), "t = 1.50 ps, 7");
+  EXPECT_EQ(title_of("Au {{111}}, }{frame}{{", 7, {}), "Au {111}, }7{");
   EXPECT_EQ(error_of("{step}"), "annotation.title: {step}: unknown column step; columns are frame")
       << "the data have no time steps";
   EXPECT_NE(error_of("{frame").find("`{` is not closed"), std::string::npos);
@@ -64,6 +65,37 @@ TEST(AnnotationTitle, ExpressionsAreReplaced) {
 }
 
 TEST_F(AnnotationAnnotate, NothingByDefault) { EXPECT_TRUE(drawing().is_empty()); }
+
+/// At 200 x 120 px the font has its smallest size.
+TEST_F(AnnotationAnnotate, LongTitlesEndBesideTheColorBar) {
+  scene.points.resize(1);
+  scene.points[0].color.column = "speed";
+  scene.points[0].color_range = scene::Interval{0, 12};
+  palettes = {{{0, 0, 0}, {1, 1, 1}}};
+  for (const auto& [width, height] : {std::pair{1920, 1080}, {200, 120}}) {
+    view.width = width;
+    view.height = height;
+    scene.annotation.color_bar = false;
+    scene.annotation.title = "short";
+    const double size = drawing().texts[0].size_px;
+    scene.annotation.color_bar = true;
+    for (const std::size_t length : {20u, 100u, 1000u}) {
+      scene.annotation.title = std::string(length, 'm');
+      const image::TextLine title = drawing().texts[0];
+      const double end = title.x + image::text_widths({title.text}, title.size_px, drawing().font)[0];
+      double bar = width;
+      for (const Box& box : drawing().boxes) bar = std::min(bar, box.left);
+      EXPECT_LT(bar, width);
+      EXPECT_LE(end, bar) << length;
+      EXPECT_GE(title.size_px, 9);
+      EXPECT_LE(title.size_px, size);
+      EXPECT_TRUE(title.text == scene.annotation.title || title.text.ends_with("…")) << title.text;
+      if (length == 1000) {
+        EXPECT_GT(end, 0.6 * bar) << "most of the space is used";
+      }
+    }
+  }
+}
 
 TEST_F(AnnotationAnnotate, ScaleBarsAreExact) {
   scene.annotation.scale_bar = 7.3;

@@ -159,6 +159,18 @@ TEST_F(DataWriteTable, XyzKeepsValues) {
   }
 }
 
+TEST_F(DataWriteTable, ANameThatIsPossibleStaysThoughAnotherBecomesLikeIt) {
+  Table table{1, {}};
+  for (const char* name : {"x", "y", "z"}) table.columns.push_back({name, std::vector<double>{0}});
+  table.columns.push_back({"q q", std::vector<double>{1}});
+  table.columns.push_back({"q_q", std::vector<double>{2}});
+  for (const char* file : {"a.xyz", "a.ply"}) {
+    const Table read = round_trip(table, file);
+    EXPECT_EQ(read.find("q_q")->number(0), 2) << file;
+    EXPECT_EQ(read.find("q_q_")->number(0), 1) << file;
+  }
+}
+
 /// As other programs write them.
 TEST_F(DataWriteTable, XyzHasColorsOfOneProperty) {
   Table table{2, {}};
