@@ -26,9 +26,10 @@ double normal_reflectance(double eta) {
 
 /// Compiles a material's constants. The kinds of the kernel have the order of the scene's models.
 kernel::Material compile_model(const scene::MaterialModel& model) {
-  static_assert(std::is_same_v<std::variant_alternative_t<static_cast<std::size_t>(kernel::MaterialKind::kPlastic),
-                                                          scene::MaterialModel>,
-                               scene::Plastic>);
+  static_assert(
+      std::is_same_v<
+          std::variant_alternative_t<static_cast<std::size_t>(kernel::MaterialKind::kPlastic), scene::MaterialModel>,
+          scene::Plastic>);
   kernel::Material out;
   out.kind = static_cast<kernel::MaterialKind>(model.index());
   std::visit(
@@ -40,7 +41,8 @@ kernel::Material compile_model(const scene::MaterialModel& model) {
   if (const auto* glass = std::get_if<scene::Dielectric>(&model)) {
     out.eta[0] = 1 / glass->ior;
     out.eta[1] = glass->ior;
-    for (int side = 0; side < 2; ++side) out.r0[side] = normal_reflectance(out.eta[side]);
+    out.r0[0] = normal_reflectance(out.eta[0]);
+    out.r0[1] = normal_reflectance(out.eta[1]);
     switch (glass->fresnel) {
       case scene::Fresnel::kSchlick: out.fresnel = kernel::FresnelKind::kSchlick; break;
       case scene::Fresnel::kExact: out.fresnel = kernel::FresnelKind::kExact; break;

@@ -28,9 +28,9 @@ void FileSink::update(const std::vector<std::size_t>& cells) {
       canvas_->read(cell.x, cell.y + y, cell.width, &rgb[static_cast<std::size_t>(y) * row]);
     (*develop_)(rgb.data(), static_cast<std::size_t>(cell.width) * static_cast<std::size_t>(cell.height), codes.data());
     for (int y = 0; y < cell.height; ++y)
-      std::copy_n(&codes[static_cast<std::size_t>(y) * row], row,
-                  &picture_.values[static_cast<std::size_t>(cell.y + y) * row_size() +
-                                   3 * static_cast<std::size_t>(cell.x)]);
+      std::copy_n(
+          &codes[static_cast<std::size_t>(y) * row], row,
+          &picture_.values[static_cast<std::size_t>(cell.y + y) * row_size() + 3 * static_cast<std::size_t>(cell.x)]);
   }
   base::write_text_file(file_, image::png_bytes(picture_, image::kUncompressed), false);
 }

@@ -64,6 +64,7 @@ file = "cloud.csv"
 material = "ball"
 radius = 0.3
 color = { column = "v" }
+cryptomatte = ["v"]
 
 [[points]]
 file = "molecule.xyz"
@@ -128,7 +129,7 @@ const std::vector<const char*> kSettings = {
     "points[1].color={element=\"jmol\"}",
     "color.working=\"acescg\"",
     "color.exposure=1",
-    "points[0].cryptomatte=[\"v\"]",
+    "points[0].cryptomatte=[]",
     "points[1].cryptomatte=[\"element\"]",
     "output.layers=[\"Z\", \"CryptoObject\", \"CryptoMaterial\", \"material_id\"]"};
 
