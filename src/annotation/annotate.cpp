@@ -58,12 +58,12 @@ image::TextLine fitted(const std::string& title, double room, double size, const
   const double full = width(title, size);
   if (full <= room || room < kFewestLetters * kLetterWidth * kSmallestFont) return out;
   out.size_px = std::max(kSmallestFont, std::floor(size * room / full));
-  const double share = room / width(title, out.size_px);
-  if (share >= 1) return out;
-  constexpr std::size_t kNarrow = 8;  // more of these may fit than letters of mean width
-  std::size_t bytes =
-      std::min(title.size(), static_cast<std::size_t>(share * static_cast<double>(title.size())) + kNarrow);
-  while (bytes > 0 && width(out.text = shortened(title, bytes), out.size_px) > room) --bytes;
+  for (std::size_t bytes = title.size(); bytes > 0;) {
+    const double share = room / width(out.text, out.size_px);
+    if (share >= 1) break;
+    bytes = std::min(bytes - 1, static_cast<std::size_t>(share * static_cast<double>(bytes)));
+    out.text = shortened(title, bytes);
+  }
   return out;
 }
 

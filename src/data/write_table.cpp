@@ -403,6 +403,8 @@ std::vector<std::string> write_xyz_table(base::OutputFile& out, const Table& tab
 
 }  // namespace
 
+bool is_storable_in_ply(const Column& column) { return ply_output(column) != PlyOutput::kNone; }
+
 TableFormat table_format(const std::filesystem::path& file) {
   const std::string extension = base::extension(file);
   if (extension == ".ply") return TableFormat::kPly;

@@ -17,6 +17,9 @@ enum class TableFormat { kPly, kXyz, kNpy, kCsv };
 /// Errors     base::Error(kUsage) for another extension
 TableFormat table_format(const std::filesystem::path& file);
 
+/// Whether PLY can store the values of a column: numbers, but not integers beyond 2^53.
+bool is_storable_in_ply(const Column& column);
+
 /// Writes a table. Reading the file with open() gives the same values.
 ///
 /// - .ply: binary, little-endian. It cannot store strings, nor integers beyond 2^53.

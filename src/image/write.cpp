@@ -13,6 +13,7 @@
 #include "image/header.h"
 #include "image/library.h"
 #include "image/whole_file.h"
+#include "math/pixels.h"
 
 namespace orrery::image {
 namespace {
@@ -20,7 +21,7 @@ namespace {
 using OIIO::ImageSpec;
 using OIIO::TypeDesc;
 
-bool is_matte(const std::string& layer) { return layer.rfind("Crypto", 0) == 0; }
+bool is_matte(const std::string& layer) { return layer.starts_with("Crypto"); }
 
 /// Name and channels of one part.
 struct Part {
@@ -141,8 +142,8 @@ void write_encoded(const std::filesystem::path& file, const film::EncodedPicture
   check_size(file, picture.width, picture.height);
   if (picture.channels > 3 && !holds_alpha(format))
     throw base::Error(base::ErrorKind::kInternal, file.string() + " cannot hold alpha");
-  if (picture.values.size() != static_cast<std::size_t>(picture.width) * static_cast<std::size_t>(picture.height) *
-                                   static_cast<std::size_t>(picture.channels))
+  if (picture.values.size() !=
+      math::pixel_count(picture.width, picture.height) * static_cast<std::size_t>(picture.channels))
     throw base::Error(base::ErrorKind::kInternal,
                       fmt::format("the values of {} do not have the image's size", file.string()));
   ImageSpec spec = encoded_spec(picture, software, stamp);

@@ -27,9 +27,6 @@ class FileSink : public Sink {
   void update(const std::vector<std::size_t>& cells) override;
 
  private:
-  /// Number of values in a row of the picture.
-  std::size_t row_size() const { return 3 * static_cast<std::size_t>(picture_.width); }
-
   std::filesystem::path file_;
   const Canvas* canvas_ = nullptr;
   std::optional<display::PixelDeveloper> develop_;

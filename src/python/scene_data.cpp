@@ -41,18 +41,10 @@ std::string moved(const std::string& name, const fs::path& from, const fs::path&
 /// Named in the data files of saved scenes, which save() may replace.
 constexpr const char* kWriter = "orrery Scene.save";
 
-/// True if a PLY file would not keep the values.
-bool needs_npy(const data::Column& column) {
-  const auto* const integers = std::get_if<std::vector<std::int64_t>>(&column.values);
-  const auto is_large = [](std::int64_t n) { return n < -(std::int64_t{1} << 53) || n > std::int64_t{1} << 53; };
-  return column.type() == data::ColumnType::kText ||
-         (integers != nullptr && std::any_of(integers->begin(), integers->end(), is_large));
-}
-
 /// The data file of a table next to the scene file.
 std::string table_file_name(const fs::path& scene_file, const std::string& name, const data::Table& table) {
-  const bool is_npy = std::any_of(table.columns.begin(), table.columns.end(), needs_npy);
-  return scene_file.stem().string() + "." + name + (is_npy ? ".npy" : ".ply");
+  const bool is_ply = std::all_of(table.columns.begin(), table.columns.end(), data::is_storable_in_ply);
+  return scene_file.stem().string() + "." + name + (is_ply ? ".ply" : ".npy");
 }
 
 /// Returns whether save() wrote an existing data file. NPY cannot store the writer's name; such a file belongs to the

@@ -209,13 +209,12 @@ Table render_table() {
 Table annotation_table() {
   return table(
       "annotation", Part::kOutput, &Scene::annotation,
-      {text(
-           "title",
-           {"Text at the top left. `{EXPRESSION}` is replaced by the value of an [expression](data.md#expressions) of "
-            "`frame`, that of the first points table if it is set there, else the rendered one, and `step`, the time "
-            "step in the data file: `t = {step * 0.005:.1f} ps`. `{{` is a brace. A title that is too long is set in a "
-            "smaller font, or cut"},
-           &Annotation::title),
+      {text("title",
+            {"Text at the top left. `{EXPRESSION}` is replaced by the value of an [expression](data.md#expressions) of "
+             "`frame`, that of the first points table if it is set there, else the rendered one, and `step`, the time "
+             "step in the data file: `t = {step * 0.005:.1f} ps`. `{{` and `}}` are braces. A title that is too long "
+             "is set in a smaller font, or cut"},
+            &Annotation::title),
        otherwise("none", number("scale_bar", kLength,
                                 {"Length of a bar at the bottom left. Requires an orthographic camera", "scene units"},
                                 &Annotation::scale_bar)),

@@ -25,6 +25,8 @@ bool is_data_file(const std::filesystem::path& file, std::string_view head) {
 
 TableFormat table_format(const std::filesystem::path& file) { return module().table_format(file); }
 
+bool is_storable_in_ply(const Column& column) { return module().is_storable_in_ply(column); }
+
 std::vector<std::string> write_table(const std::filesystem::path& file, const Table& table, const std::string& writer) {
   return module().write_table(file, table, writer);
 }

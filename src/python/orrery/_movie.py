@@ -66,7 +66,7 @@ def movie(
     file           the film: .mp4 or .gif. The program ffmpeg must be installed
     frames         numbers of frames, from 1, or a text: "1-48", "10-94x6", "all"; default: all
     turntable      seconds of an orbit of the camera; without `frames`, the film shows one frame of the data
-    fps            frames per second
+    fps            frames per second; a GIF has at most 50
     keep_frames    keep the images in the folder FILE.frames. Otherwise they stay only if the film is not finished, and
                    the next call continues from them
     columns, cell, threads, memory_limit, on_progress, options   as for plot(); columns apply to every frame
