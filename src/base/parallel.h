@@ -3,17 +3,12 @@
 
 #include <tbb/blocked_range.h>
 #include <tbb/parallel_reduce.h>
-#include <tbb/task_arena.h>
 
 #include <cstddef>
 
 #include "base/stop_point.h"
 
 namespace orrery::base {
-
-/// Starts oneTBB. It opens libraries of its own, otherwise in the first parallel loop, which would wait there for
-/// libraries that another thread is loading.
-inline void start_parallel() { tbb::task_arena().initialize(); }
 
 /// Accumulates the items 0 .. count - 1 on all threads. The result does not depend on their number, even for sums of
 /// floating-point numbers.

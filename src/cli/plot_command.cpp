@@ -19,7 +19,6 @@
 #include "cli/plot_options.h"
 #include "cli/render_options.h"
 #include "cli/signals.h"
-#include "image/library.h"
 #include "job/check_job.h"
 #include "job/job.h"
 #include "job/statistics.h"
@@ -144,10 +143,8 @@ plot::PlotScene prepare(PlotCommand& arguments) {
   job::Job& job = arguments.render.batch.job;
   const base::StopScope scope(job.hooks.cancel);
   try {
-    plot::PlotScene made = plot::make_plot(arguments.shown.options, [&](const std::vector<int>& frames) {
-      check_request(arguments, frames);
-      image::start_loading();  // after the module of data files, which would wait for it
-    });
+    plot::PlotScene made = plot::make_plot(arguments.shown.options,
+                                           [&](const std::vector<int>& frames) { check_request(arguments, frames); });
     job.prepare_s = watch.seconds();
     made.choices.push_back(
         fmt::format("prepared in {:.1f} s: read {} to fit the view and the colours", job.prepare_s,

@@ -21,7 +21,6 @@
 #include "cli/signals.h"
 #include "cli/subject.h"
 #include "http/server.h"
-#include "image/library.h"
 #include "plot/plot.h"
 #include "points/color_map.h"
 #include "view/site.h"
@@ -124,7 +123,6 @@ int run_view(ViewArguments& arguments, const Command& command) {
   });
   const view::Wish first = first_wish(fixed, controls);
   const std::atomic<bool>& stops = stop_on_signals();
-  image::start_loading();
   const auto make = [&](const std::vector<std::string>& words) { return subject_of(file, words, allowed); };
   view::Viewer viewer(make, fixed, first);
   const std::string secret = view::random_secret();

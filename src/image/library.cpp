@@ -25,8 +25,6 @@ void prepare_library() {
   });
 }
 
-void start_loading() {}  // OpenImageIO is linked to this library, so it is loaded already.
-
 void set_threads(int count) {
   prepare_library();
   use_threads(count);

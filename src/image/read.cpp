@@ -275,10 +275,14 @@ std::string verified_stamp(const std::filesystem::path& file) {
   prepare_library();
   std::error_code ignored;
   if (!std::filesystem::is_regular_file(file, ignored)) return {};
-  if (!damage_of(file, format_of(file)).empty()) return {};
-  Input input{OIIO::ImageInput::open(file.string()), {}, 0};
-  if (!input.in) {
-    OIIO::geterror();  // OpenImageIO prints messages that are not fetched
+  const Format format = format_of(file);
+  if (!damage_of(file, format).empty()) return {};
+  if (format == Format::kSvg) return {};  // is only written
+  // Not ImageInput::open(), which also tries the formats of libraries that the program replaces by stubs.
+  Input input{OIIO::ImageInput::create(info_of(format).library_name), {}, 0};
+  if (!input.in) return {};
+  if (!input.in->open(file.string(), input.spec)) {
+    input.in->geterror();  // OpenImageIO prints messages that are not fetched
     return {};
   }
   std::string stamp = stamp_in(input.in->spec());

@@ -112,7 +112,6 @@ class Run {
   /// Reads the scene, and checks it against the output formats.
   void load() {
     report_.phases.prepare_s = job_.prepare_s;
-    if (!is_kept()) image::start_loading();
     const bool writes_display_format = job_.outputs.has_display_format();
     load::SceneRequest request{job_.scene, job_.outputs.display, writes_display_format || job_.hooks.develops_pixels};
     request.memory_limit = job_.resources.memory_limit;

@@ -7,6 +7,7 @@
 #include <unistd.h>
 
 #include <functional>
+#include <regex>
 #include <utility>
 #include <vector>
 
@@ -14,6 +15,8 @@
 
 namespace orrery::test {
 namespace {
+
+constexpr char kStubs[] = "orrery-image-stubs";  // a folder beside the modules
 
 class CliStartup : public ProgramTest {
  protected:
@@ -37,6 +40,25 @@ class CliStartup : public ProgramTest {
     int status = 0;
     waitpid(child, &status, 0);
     return WIFEXITED(status) ? WEXITSTATUS(status) : 128 + WTERMSIG(status);
+  }
+
+  /// What the dynamic loader says about the libraries that `orrery WORDS` loads.
+  std::string libraries_of(const std::string& words) {
+    const Outcome r = run(words, "LD_DEBUG=files LD_DEBUG_OUTPUT=loader");
+    EXPECT_EQ(r.status, 0) << words << r.err;
+    return loader_text();
+  }
+
+  /// What the dynamic loader wrote to files named `loader`, which are removed.
+  std::string loader_text() {
+    std::string text;
+    for (const auto& entry : std::filesystem::directory_iterator(folder_)) {
+      if (entry.path().stem() != "loader") continue;
+      text += text_of(entry.path());
+      std::filesystem::remove(entry.path());
+    }
+    EXPECT_TRUE(contains(text, "libOpenColorIO")) << "LD_DEBUG has no effect";
+    return text;
   }
 
   /// Leaves USR1 blocked and pending across exec; unblocking delivers it.
@@ -105,16 +127,9 @@ TEST_F(CliStartup, Usr1DoesNotEndOtherCommands) {
 
 TEST_F(CliStartup, OnlyCommandsWithImagesLoadOpenImageIO) {
   const auto loads_it = [this](const std::string& words) {
-    EXPECT_EQ(run(words, "LD_DEBUG=files LD_DEBUG_OUTPUT=loader").status, 0) << words;
-    std::string loaded;
-    for (const auto& entry : std::filesystem::directory_iterator(folder_)) {
-      if (entry.path().stem() != "loader") continue;
-      loaded += text_of(entry.path());
-      std::filesystem::remove(entry.path());
-    }
-    EXPECT_NE(loaded.find("libOpenColorIO"), std::string::npos) << "LD_DEBUG has no effect";
-    for (const char* unused : {"orrery-data", "libarchive"}) EXPECT_EQ(loaded.find(unused), std::string::npos) << words;
-    return loaded.find("libOpenImageIO") != std::string::npos;
+    const std::string loaded = libraries_of(words);
+    for (const char* unused : {"orrery-data", "libarchive"}) EXPECT_FALSE(contains(loaded, unused)) << words;
+    return contains(loaded, "libOpenImageIO");
   };
   for (const char* words : {"--help", "--version", "info good.toml", "check good.toml", "generate final -o final.toml",
                             "submit good.toml -o a.####.exr --frames 1-2 --slurm"})
@@ -144,6 +159,50 @@ TEST_F(CliStartup, AnImageLibraryThatCannotBeLoadedIsReportedBeforeRendering) {
     EXPECT_NE(err.find("cannot load "), std::string::npos) << err;
     EXPECT_EQ(err.find("% done"), std::string::npos) << "it rendered: " << err;
   }
+}
+
+/// Sonames of the stub libraries. None where OpenImageIO needs no library that could have one.
+std::vector<std::string> stubs() {
+  std::vector<std::string> names;
+  for (const auto& entry : std::filesystem::directory_iterator(std::filesystem::path(ORRERY_MODULES) / kStubs))
+    names.push_back(entry.path().filename());
+  return names;
+}
+
+/// Folders of the libraries with a soname that the dynamic loader has initialised.
+std::vector<std::string> folders_of(const std::string& soname, const std::string& loader_text) {
+  std::vector<std::string> folders;
+  const std::regex line("calling init: (.*)/" + std::regex_replace(soname, std::regex(R"(\.)"), R"(\.)") + "\n");
+  for (std::sregex_iterator i(loader_text.begin(), loader_text.end(), line), end; i != end; ++i)
+    folders.push_back((*i)[1]);
+  return folders;
+}
+
+TEST_F(CliStartup, StubsStandInForLibrariesThatNoFormatUses) {
+  const std::string loaded = libraries_of("render good.toml -o a.exr -o a.png -q");
+  const std::string folder = std::filesystem::path(ORRERY_MODULES) / kStubs;
+  for (const std::string& soname : stubs()) EXPECT_EQ(folders_of(soname, loaded), std::vector{folder}) << soname;
+}
+
+TEST_F(CliStartup, AStubThatLacksASymbolIsNotUsed) {
+  const std::vector<std::string> sonames = stubs();
+  if (sonames.empty()) GTEST_SKIP() << "OpenImageIO needs no library that could have a stub";
+  const std::string program = copied_program(folder_ / "program");
+  std::filesystem::copy_file(std::filesystem::path(ORRERY_MODULES) / "orrery-image.so",
+                             folder_ / "program/orrery-image.so");
+  const std::filesystem::path stub = folder_ / "program" / kStubs / sonames.front();
+  std::filesystem::create_directory(stub.parent_path());
+  ASSERT_EQ(std::system(("'" ORRERY_COMPILER "' -shared -Wl,-soname," + sonames.front() + " -x c++ /dev/null -o '" +
+                         stub.string() + "'")
+                            .c_str()),
+            0);
+  const std::string command = "cd '" + folder_.string() + "' && LD_DEBUG=files LD_DEBUG_OUTPUT=loader " + program +
+                              "render good.toml -o a.exr -q";
+  EXPECT_EQ(std::system(command.c_str()), 0);
+  const std::string loaded = loader_text();
+  EXPECT_TRUE(contains(loaded, stub.string())) << "the stub was not tried";
+  const std::vector<std::string> folders = folders_of(sonames.front(), loaded);
+  EXPECT_NE(folders.at(folders.size() - 1), stub.parent_path()) << "the library is not loaded";
 }
 
 TEST_F(CliStartup, AnErrorDoesNotWaitForTheImageLibrary) {

@@ -51,7 +51,7 @@ def check_form() -> None:
 def loaded_files() -> set[str]:
     """The shared libraries that the installed binaries name."""
     found = set()
-    for binary in [prefix / "bin/orrery", *prefix.glob("libexec/orrery/*"), *prefix.glob("lib/python3*/dist-packages/orrery/*.so")]:
+    for binary in [prefix / "bin/orrery", prefix / "libexec/orrery/orrery-program", *prefix.glob("libexec/orrery/*.so"), *prefix.glob("lib/python3*/dist-packages/orrery/*.so")]:
         names = set(re.findall(r"NEEDED +(\S+)", output("objdump", "-p", str(binary))))
         for line in output("ldd", str(binary)).splitlines():
             match = re.match(r"\s*(\S+) => (/\S+)", line)

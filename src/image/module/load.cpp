@@ -1,11 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
-// The program's side of the module: forwards the room's functions to the module and loads it on the first call. Loading
-// OpenImageIO's 260 libraries takes longer than most commands, so commands without image I/O do not load them.
+// The program's side of the module: forwards the room's functions to the module and loads it on the first call.
+// Commands without image I/O do not load OpenImageIO and its libraries.
 #include <cstdint>
-#include <future>
 
 #include "base/module.h"
-#include "base/parallel.h"
 #include "image/format.h"
 #include "image/header.h"
 #include "image/module/functions.h"
@@ -19,13 +17,6 @@ const Functions& module() {
 }
 
 }  // namespace
-
-void start_loading() {
-  static const std::future<void> loading = [] {
-    base::start_parallel();
-    return std::async(std::launch::async, [] { module(); });
-  }();
-}
 
 std::string jpeg_bytes(int width_px, int height_px, const std::uint8_t* codes, int quality) {
   return module().jpeg_bytes(width_px, height_px, codes, quality);

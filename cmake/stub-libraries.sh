@@ -1,0 +1,44 @@
+#!/bin/sh
+# SPDX-License-Identifier: Apache-2.0
+# Makes stub libraries: files that stand in for the libraries behind OpenImageIO that none of our formats uses. Loading
+# these libraries and what they load takes ten times as long as everything else behind OpenImageIO (docs/decisions/0021).
+#
+#   cmake/stub-libraries.sh OPENIMAGEIO FOLDER COMPILER
+#
+# A stub has the soname of the library and defines the symbols that OpenImageIO needs from it. None is used; OpenImageIO
+# asks some for their version when it lists its formats, so functions return a pointer to zeros. A library that is not
+# found has no stub.
+set -eu
+[ $# -eq 3 ] || { sed -n '3,11s/^# \{0,1\}//p' "$0"; exit 2; }
+library=$1 folder=$2 compiler=$3
+unused='opencv_[a-z]+|avcodec|avformat|avutil|swscale|dcm[a-z]+|oflog|ofstd|openvdb|heif|raw_r'
+export LC_ALL=C
+
+rm -rf "$folder"
+mkdir -p "$folder"
+nm --dynamic --undefined-only "$library" | sed 's/.* //; s/@.*//' > "$folder/needed"
+for soname in $(objdump -p "$library" | sed -n 's/^ *NEEDED *//p' | grep -E "^lib($unused)\.so(\.|\$)"); do
+  path=$("$compiler" -print-file-name="$soname")
+  [ -f "$path" ] || continue
+  # Lines of nm: address, size (not of all symbols), type, and name@@version.
+  nm --dynamic --defined-only --print-size "$path" | awk -v needed="$folder/needed" -v versions="$folder/versions" '
+    BEGIN {
+      while ((getline name < needed) > 0) is_needed[name] = 1
+      print "static char zeros[4096];"
+    }
+    {
+      split($NF, symbol, "@@")
+      if (!(symbol[1] in is_needed)) next
+      if ($(NF - 1) ~ /[TWi]/) print "void* " symbol[1] "(void) { return zeros; }"
+      else print "char " symbol[1] "[0x" $2 "];"
+      if (symbol[2] != "") names[symbol[2]] = names[symbol[2]] symbol[1] "; "
+    }
+    END {
+      for (version in names) print version " { global: " names[version] "};" > versions
+      if (version == "") print "{ global: *; };" > versions
+    }' > "$folder/stub.c"
+  # From standard input, so that the file does not name a folder.
+  "$compiler" -x c -w -fno-builtin -O1 -fPIC -shared -s -Wl,-soname,"$soname" -Wl,--version-script="$folder/versions" \
+    -o "$folder/$soname" - < "$folder/stub.c"
+done
+rm -f "$folder/needed" "$folder/versions" "$folder/stub.c"
