@@ -67,16 +67,17 @@ def check_libraries() -> None:
         query = subprocess.run(["dpkg-query", "-W", "-f", "${source:Package}\n", *names], capture_output=True, text=True)
         return set(query.stdout.split())
 
-    owners = set()
+    # dpkg knows the files of /lib below /usr/lib or the other way round.
+    file_of = {}
     for file in loaded_files():
-        # dpkg knows the files of /lib below /usr/lib or the other way round.
         for name in (file, str(pathlib.Path(file).resolve()), file.replace("/lib/", "/usr/lib/", 1)):
-            search = subprocess.run(["dpkg-query", "-S", name], capture_output=True, text=True)
-            if search.returncode == 0:
-                owners.add(search.stdout.split(": ")[0])
-                break
-        else:
-            raise AssertionError(f"no package owns {file}")
+            file_of[name] = file
+    search = subprocess.run(["dpkg-query", "-S", *file_of], capture_output=True, text=True)
+    owner_of = {file_of[name]: owner for owner, name in (line.split(": ", 1) for line in search.stdout.splitlines())
+                if name in file_of}  # not diversions
+    ownerless = set(file_of.values()) - set(owner_of)
+    assert not ownerless, f"no package owns {ownerless}"
+    owners = set(owner_of.values())
     listed: dict[str, set[str]] = {"DYNAMIC_LINK": set(), "STATIC_LINK": set()}
     for relationship in sbom["relationships"][1:]:
         for reference in packages[relationship["relatedSpdxElement"]]["externalRefs"]:

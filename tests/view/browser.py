@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: Apache-2.0
-"""Uses `orrery view` in a browser as a user would: tests/view/browser.py ORRERY WORK_FOLDER
+"""Uses `orrery view` in a browser as a user would: tests/view/browser.py ORRERY WORK_FOLDER controls|tabs|scene
 
 Exit status 77 if Chromium or its driver is not installed. Screenshots stay in WORK_FOLDER.
 """
@@ -142,48 +142,63 @@ def play(browser):
     expect(f"--frame {frame()} " in command_of(browser) or frame() == 1, command_of(browser))
 
 
-def main():
-    scene = pathlib.Path(__file__).resolve().parents[2] / "scenes/book/final.toml"
+def view_data(walk):
+    """Walks through the page of a data file."""
     program = Program("melt.dump", "--width", "320", "--height", "240", "--noise", "0.2")
     browser = Browser()
     try:
-        look(browser, program, "melt", [("color-by", "speed"), ("map", "magma"), ("range", "0:100"), ("style", "night"),
-                                        ("material", "plastic"), ("select", "type == 1"), ("radius-scale", "1.3"),
-                                        ("opacity", "0.5\ntype == 1: 0.3"), ("frame", "3")])
-        choose(browser, "select", "nothing ==")
-        settle(browser, problem="nothing")
-        choose(browser, "select", "")
-        choose(browser, "opacity", "")
-        settle(browser)
-        pick(browser)
-        play(browser)
-        choose(browser, "size", "640 360")
-        settle(browser)
-        check_command(browser, "melt-larger")
-        first = browser.tabs()[0]
-        browser.new_tab()
         browser.open(program.url)
         settle(browser)
-        sizes = browser.run("return [...document.getElementById('size').options].map(option => option.value)")
-        expect(sizes[0] == "320 240" and sizes.count("640 360") == 1, f"the size of the start is not offered: {sizes}")
-        command = command_of(browser)
-        browser.switch(first)
-        browser.wait("return document.getElementById('command').value === arguments[0]", command)
-        # In the frame of a notebook, without cookies.
-        frame = work / "frame.html"
-        frame.write_text(f'<iframe src="{html.escape(program.url)}" width="900" height="700"></iframe>')
-        browser.open(frame.resolve().as_uri())
-        browser.enter_frame(0)
-        settle(browser)
-        expect(command_of(browser) == command, "a frame shows the same")
-        png = browser.run("return fetch(document.getElementById('png').href).then(a => a.status)")
-        expect(png == 200, f"the download in a frame has the status {png}")
+        walk(browser, program)
         errors = browser.errors()
         expect(not errors, errors)
     finally:
         browser.close()
     expect(program.end(signal.SIGINT) == 0, "INT ends the program with status 0")
 
+
+def use_controls(browser, program):
+    look(browser, program, "melt", [("color-by", "speed"), ("map", "magma"), ("range", "0:100"), ("style", "night"),
+                                    ("material", "plastic"), ("select", "type == 1"), ("radius-scale", "1.3"),
+                                    ("opacity", "0.5\ntype == 1: 0.3"), ("frame", "3")])
+    choose(browser, "select", "nothing ==")
+    settle(browser, problem="nothing")
+    choose(browser, "select", "")
+    choose(browser, "opacity", "")
+    settle(browser)
+
+
+def use_tabs(browser, program):
+    for option, value in [("color-by", "speed"), ("frame", "3")]:
+        choose(browser, option, value)
+        settle(browser)
+    pick(browser)
+    play(browser)
+    choose(browser, "size", "640 360")
+    settle(browser)
+    check_command(browser, "melt-larger")
+    first = browser.tabs()[0]
+    browser.new_tab()
+    browser.open(program.url)
+    settle(browser)
+    sizes = browser.run("return [...document.getElementById('size').options].map(option => option.value)")
+    expect(sizes[0] == "320 240" and sizes.count("640 360") == 1, f"the size of the start is not offered: {sizes}")
+    command = command_of(browser)
+    browser.switch(first)
+    browser.wait("return document.getElementById('command').value === arguments[0]", command)
+    # In the frame of a notebook, without cookies.
+    frame = work / "frame.html"
+    frame.write_text(f'<iframe src="{html.escape(program.url)}" width="900" height="700"></iframe>')
+    browser.open(frame.resolve().as_uri())
+    browser.enter_frame(0)
+    settle(browser)
+    expect(command_of(browser) == command, "a frame shows the same")
+    png = browser.run("return fetch(document.getElementById('png').href).then(a => a.status)")
+    expect(png == 200, f"the download in a frame has the status {png}")
+
+
+def view_scene():
+    scene = pathlib.Path(__file__).resolve().parents[2] / "scenes/book/final.toml"
     program = Program(str(scene), "--width", "192", "--height", "108", "--samples", "4")
     for width, dark in ((1600, False), (400, True)):
         browser = Browser(width=width, dark=dark)
@@ -199,4 +214,4 @@ def main():
     expect(program.end() == 0, "TERM ends the program with status 0")
 
 
-main()
+{"controls": lambda: view_data(use_controls), "tabs": lambda: view_data(use_tabs), "scene": view_scene}[sys.argv[3]]()
