@@ -28,6 +28,10 @@ for file in "${sources[@]}" "${scripts[@]}" $(git ls-files '*.py' '*.pl' '*.cmak
     status=1
   fi
 done
+if grep -rnE 'ImageInput::open|ImageBuf|ImageCache' src; then
+  echo "lint.sh: stub libraries stand for some formats of OpenImageIO; name one of ours in ImageInput::create" >&2
+  status=1
+fi
 # With pipefail, a command that stops reading early makes the one before it fail (SIGPIPE) if that still writes.
 if grep -nE '[|] *(head|grep -[a-zA-Z]*q)\b' "${scripts[@]}"; then
   echo "lint.sh: a pipe into head or grep -q fails at random with pipefail; use awk, or read the output into a variable" >&2

@@ -278,7 +278,7 @@ std::string verified_stamp(const std::filesystem::path& file) {
   const Format format = format_of(file);
   if (!damage_of(file, format).empty()) return {};
   if (format == Format::kSvg) return {};  // is only written
-  // Not ImageInput::open(), which also tries the formats of libraries that the program replaces by stubs.
+  // OpenImageIO must not try all formats: stubs replace the libraries of some (docs/decisions/0021).
   Input input{OIIO::ImageInput::create(info_of(format).library_name), {}, 0};
   if (!input.in) return {};
   if (!input.in->open(file.string(), input.spec)) {
