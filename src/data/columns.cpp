@@ -116,6 +116,18 @@ std::string UniqueNames::add(const std::string& name) {
   return out;
 }
 
+std::vector<std::string> with_sources(const std::vector<std::string>& names, const std::array<std::string, 3>& computed,
+                                      const std::array<std::string, 3>& sources) {
+  std::vector<std::string> out = names;
+  const auto is_computed = [&](const std::string& name) {
+    return std::count(computed.begin(), computed.end(), name) > 0;
+  };
+  if (std::erase_if(out, is_computed) == 0) return out;
+  for (const std::string& source : sources)
+    if (!base::contains(out, source)) out.push_back(source);
+  return out;
+}
+
 std::string listed(const std::vector<ColumnInfo>& columns) {
   constexpr std::size_t kMaxListed = 30;
   std::string out;

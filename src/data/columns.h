@@ -66,6 +66,11 @@ class UniqueNames {
   std::unordered_map<std::string, int> numbers_;  ///< the last number that was tried, by name
 };
 
+/// Returns the columns to read in order to have columns of which three are computed from others: `names` without the
+/// computed ones and with their sources, or `names` if none is computed.
+std::vector<std::string> with_sources(const std::vector<std::string>& names, const std::array<std::string, 3>& computed,
+                                      const std::array<std::string, 3>& sources);
+
 /// Returns whether a column exists.
 inline bool has_column(const std::vector<ColumnInfo>& columns, std::string_view name) {
   return find_named(columns, name) != nullptr;

@@ -186,23 +186,18 @@ CsvShape csv_shape(const ByteSource& bytes) {
 
 /// Positions given by equatorial coordinates.
 struct Equatorial {
-  std::string ra, dec, distance;  ///< names of columns; degrees
-  bool is_parallax = false;       ///< `distance` is a parallax in milliarcseconds; the distance is in parsecs
-  std::array<std::string, 3> xyz;
+  std::array<std::string, 3> sources;  ///< columns: right ascension and declination in degrees, distance
+  bool is_parallax = false;            ///< parallaxes in milliarcseconds instead of distances, which are in parsecs
+  std::array<std::string, 3> xyz;      ///< computed columns
 };
 
 std::optional<Equatorial> equatorial(const std::vector<ColumnInfo>& columns) {
   const auto find = [&](std::initializer_list<const char*> names) { return number_column(columns, names); };
   Equatorial out;
-  out.ra = find({"ra"});
-  out.dec = find({"dec"});
-  out.distance = find({"distance", "dist", "sy_dist"});
-  if (out.distance.empty()) {
-    out.distance = find({"parallax"});
-    out.is_parallax = true;
-  }
-  if (out.ra.empty() || out.dec.empty() || out.distance.empty()) return std::nullopt;
-  return out;
+  out.sources = {find({"ra"}), find({"dec"}), find({"distance", "dist", "sy_dist"})};
+  out.is_parallax = out.sources[2].empty();
+  if (out.is_parallax) out.sources[2] = find({"parallax"});
+  return base::contains({out.sources.begin(), out.sources.end()}, "") ? std::nullopt : std::optional(out);
 }
 
 /// The position of a star; the z axis points to the celestial north pole, the x axis to the vernal equinox.
@@ -243,7 +238,7 @@ class CsvFile final : public SingleFrame {
     TextLayout all = layout({});
     all.surveys = true;
     const TextTable survey = read_text_rows(*bytes, all, faults);
-    info_.rows = survey.rows;
+    info_.rows = survey.table.rows;
     set_types(shape_.columns, survey.surveys);
     require_numbers(survey.surveys, faults);
     info_.columns = shape_.columns;
@@ -255,19 +250,14 @@ class CsvFile final : public SingleFrame {
   }
 
   Table read(int, const std::vector<std::string>& names) override {
-    std::vector<std::string> wanted = names;
-    if (equatorial_)
-      for (const std::string& axis : equatorial_->xyz)
-        if (base::contains(names, axis))
-          wanted.insert(wanted.end(), {equatorial_->ra, equatorial_->dec, equatorial_->distance});
     Faults faults(bytes_->file());
-    TextTable text = read_text_rows(*bytes_, layout(wanted), faults);
-    Table table;
-    table.rows = static_cast<std::size_t>(text.rows);
-    for (std::size_t i = 0; i < shape_.columns.size(); ++i)
-      table.columns.push_back({shape_.columns[i].name, std::move(text.values[i])});
-    if (wanted.size() > names.size()) add_positions(table);
-    return in_order(std::move(table), names);
+    const std::vector<std::string> wanted =
+        equatorial_ ? with_sources(names, equatorial_->xyz, equatorial_->sources) : names;
+    Table table = read_text_rows(*bytes_, layout(wanted), faults).table;
+    if (wanted == names) return table;
+    add_positions(table);
+    std::erase_if(table.columns, [&](const Column& column) { return !base::contains(names, column.name); });
+    return table;
   }
 
  private:
@@ -279,7 +269,7 @@ class CsvFile final : public SingleFrame {
     const Roles roles = customary_roles(as_numbers);
     std::vector<std::string> coordinates(roles.position.begin(), roles.position.end());
     if (const auto stars = equatorial(as_numbers); stars && roles.position[0].empty())
-      coordinates = {stars->ra, stars->dec, stars->distance};
+      coordinates = {stars->sources.begin(), stars->sources.end()};
     for (std::size_t i = 0; i < surveys.size(); ++i) {
       const ColumnSurvey& survey = surveys[i];
       const std::string& name = shape_.columns[i].name;
@@ -330,16 +320,16 @@ class CsvFile final : public SingleFrame {
     layout.separator = shape_.separator;
     layout.allows_missing = true;
     layout.allows_comments = true;
-    for (const ColumnInfo& column : shape_.columns)
-      layout.columns.push_back({column.type, base::contains(names, column.name)});
+    layout.columns = shape_.columns;
+    layout.wanted = names;
     return layout;
   }
 
   void add_positions(Table& table) const {
     std::array<std::vector<double>, 3> xyz;
     for (auto& axis : xyz) axis.resize(table.rows);
-    const Column &ra = *table.find(equatorial_->ra), &dec = *table.find(equatorial_->dec),
-                 &distance = *table.find(equatorial_->distance);
+    const auto& [ra_name, dec_name, distance_name] = equatorial_->sources;
+    const Column &ra = *table.find(ra_name), &dec = *table.find(dec_name), &distance = *table.find(distance_name);
     for (std::size_t row = 0; row < table.rows; ++row) {
       double d = distance.number(row);
       if (equatorial_->is_parallax) d = d > 0 ? 1000 / d : std::numeric_limits<double>::quiet_NaN();
@@ -347,15 +337,6 @@ class CsvFile final : public SingleFrame {
       for (std::size_t i = 0; i < 3; ++i) xyz[i][row] = p[i];
     }
     for (std::size_t i = 0; i < 3; ++i) table.columns.push_back({equatorial_->xyz[i], std::move(xyz[i])});
-  }
-
-  static Table in_order(Table table, const std::vector<std::string>& names) {
-    Table out;
-    out.rows = table.rows;
-    for (const std::string& name : names)
-      out.columns.push_back(std::move(*std::find_if(table.columns.begin(), table.columns.end(),
-                                                    [&](const Column& column) { return column.name == name; })));
-    return out;
   }
 
   CsvShape shape_;

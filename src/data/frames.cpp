@@ -21,46 +21,56 @@ bool TextFrames::has_frame(int number) {
   return true;
 }
 
-TextCursor TextFrames::frame(int number) {
+TextFrame TextFrames::unsettled_frame(int number) {
   has_frame(number);
-  return TextCursor(*bytes_, frames_.at(static_cast<std::size_t>(number)));
+  return header(TextCursor(*bytes_, frames_.at(static_cast<std::size_t>(number))));
 }
 
+TextFrame TextFrames::frame(int number) {
+  TextFrame out = unsettled_frame(number);
+  if (!out.info.roles.element.empty()) settle_element(names(), out.info.roles);
+  return out;
+}
+
+/// The distinct elements in the first frame that has rows: what they mean must not change from frame to frame. Empty if
+/// it has none, and if they cannot be read, which is reported when their frame is read.
 const std::vector<std::string>& TextFrames::names() {
   if (names_) return *names_;
   names_.emplace();
-  std::optional<Names> found;
-  for (int i = 0; has_frame(i) && (found = names_of(i)) && found->count == 0;) ++i;
-  if (!found || found->count == 0) return *names_;
-  TextLayout layout;
-  layout.begin = found->rows.offset;
-  layout.first_line = found->rows.line;
-  layout.rows = found->count;
-  layout.columns.assign(found->column + 1, {ColumnType::kText, false});
-  layout.columns.back().is_wanted = true;
+  TextFrame found;
+  for (int i = 0; found.info.rows == 0 && has_frame(i); ++i) {
+    found = unsettled_frame(i);
+    if (found.info.roles.element.empty()) return *names_;
+  }
+  if (found.info.rows == 0) return *names_;
+  TextLayout& layout = found.layout;
+  const ColumnInfo* const element = find_named(layout.columns, found.info.roles.element);
+  layout.columns.resize(static_cast<std::size_t>(element - layout.columns.data()) + 1);
+  layout.wanted = {element->name};
   layout.allows_more = true;
   try {
     Faults faults(bytes_->file());
-    *names_ = std::get<Words>(read_text_rows(*bytes_, layout, faults).values.back()).words;
+    *names_ = std::get<Words>(read_text_rows(*bytes_, layout, faults).table.columns[0].values).words;
   } catch (const base::Error& error) {
     if (error.kind() != base::ErrorKind::kBadData) throw;
   }
   return *names_;
 }
 
-TextTable TextFrames::read_rows(const TextLayout& layout, std::uint64_t count_line) {
+Table TextFrames::read_rows(const TextFrame& frame) {
   Faults faults(bytes_->file());
+  const TextLayout& layout = frame.layout;
   TextTable out = read_text_rows(*bytes_, layout, faults);
-  TextCursor cursor(*bytes_, {out.end, layout.first_line + out.rows});
+  TextCursor cursor(*bytes_, {out.end, layout.first_line + out.table.rows});
   if (left_ > 0 && layout.begin == end_.offset()) {  // saves the search for the next frame from reading the rows again
     end_ = cursor;
     left_ = 0;
   }
   std::string line;
   if (cursor.next_filled(line) && !begins_frame(line))
-    faults.fail(cursor.line() - 1, fmt::format("more rows than line {} declares", count_line),
+    faults.fail(cursor.line() - 1, fmt::format("more rows than line {} declares", frame.count_line),
                 "correct the number of atoms, or remove the rows");
-  return out;
+  return std::move(out.table);
 }
 
 /// Result     false if there are no more frames

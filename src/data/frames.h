@@ -38,10 +38,18 @@ class SingleFrame : public DataFile {
   FrameInfo info_;
 };
 
+/// What the header of a frame in a text file says.
+struct TextFrame {
+  FrameInfo info;
+  TextLayout layout;             ///< of the rows
+  std::uint64_t count_line = 0;  ///< the line that declares their number
+};
+
 /// A text file of frames, each a header and a number of rows. Frames are located on demand.
 class TextFrames : public DataFile {
  public:
   int frame_count() override;
+  FrameInfo describe(int number) override { return frame(number).info; }
   std::uint64_t memory() const override { return bytes_->memory(); }
 
  protected:
@@ -49,33 +57,24 @@ class TextFrames : public DataFile {
 
   const ByteSource& bytes() const { return *bytes_; }
 
-  /// The cursor at the first line of a frame.
+  /// Reads the header of a frame, and settles the role of its elements, see settle_element().
   ///
   /// Errors     base::Error(kBadData) for a malformed header up to that frame
-  TextCursor frame(int number);
+  virtual TextFrame frame(int number);
 
-  /// The column of names of a frame's particles.
-  struct Names {
-    TextCursor::Place rows;
-    std::uint64_t count = 0;  ///< of the rows
-    std::size_t column = 0;
-  };
-
-  /// The distinct names in the first frame that has rows: what they mean must not change from frame to frame. Empty if
-  /// names_of() returns none, and if they cannot be read, which is reported when their frame is read.
-  const std::vector<std::string>& names();
-
-  /// Reads the rows of a frame, and checks that they are followed by another frame or by the end of the file.
-  ///
-  /// `count_line`   the line that declares their number
-  TextTable read_rows(const TextLayout& layout, std::uint64_t count_line);
+  /// Reads the columns `frame.layout.wanted`, and checks that the rows are followed by another frame or by the end of
+  /// the file.
+  Table read_rows(const TextFrame& frame);
 
  private:
-  /// Reads a header, and returns the number of rows.
+  /// Reads a header. Roles are those of the columns' names alone.
+  virtual TextFrame header(TextCursor cursor) const = 0;
+  /// Skips a header, and returns the number of rows.
   virtual std::uint64_t skip_header(TextCursor& cursor) const = 0;
   virtual bool begins_frame(std::string_view line) const = 0;
-  virtual std::optional<Names> names_of(int frame) = 0;
 
+  TextFrame unsettled_frame(int number);
+  const std::vector<std::string>& names();
   bool has_frame(int number);
   bool add_frame();
 

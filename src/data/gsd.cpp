@@ -104,9 +104,9 @@ class GsdFile {
   Values component(const GsdChunk& chunk, std::uint32_t component) const {
     Faults faults(path());
     const RecordField field{{}, chunk.type, component * size_of(chunk.type)};
-    std::vector<Values> values = read_records(*bytes_, {chunk.offset, chunk.row_bytes(), chunk.rows}, {field}, faults);
+    std::vector<Column> read = read_records(*bytes_, {chunk.offset, chunk.row_bytes(), chunk.rows}, {field}, faults);
     faults.raise_if_any();
-    return std::move(values.front());
+    return std::move(read.front().values);
   }
 
   /// Reads all bytes of a chunk.

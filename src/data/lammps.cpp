@@ -30,17 +30,6 @@ const Axes kUnwrapped = {"xu", "yu", "zu"};
 const Axes kScaled = {"xs", "ys", "zs"};
 const Axes kScaledUnwrapped = {"xsu", "ysu", "zsu"};
 
-/// Header of a frame in a LAMMPS dump: everything before its rows.
-struct LammpsFrame {
-  double step = 0;
-  std::uint64_t rows = 0;
-  std::uint64_t rows_line = 0;  ///< number of the line that declares `rows`
-  std::optional<Box> box;
-  std::vector<std::string> columns;
-  bool has_labels = false;       ///< the column `type` contains labels instead of numbers
-  const Axes* scaled = nullptr;  ///< columns from which positions are computed; null: the file has positions
-};
-
 /// Converts a LAMMPS box, given by low and high coordinates and tilt factors.
 Box lammps_box(const Vec3d& low, const Vec3d& high, double xy, double xz, double yz) {
   return {low, {Vec3d{high.x - low.x, 0, 0}, Vec3d{xy, high.y - low.y, 0}, Vec3d{xz, yz, high.z - low.z}}};
@@ -53,12 +42,19 @@ std::optional<std::uint64_t> count_of(std::string_view word) {
   return static_cast<std::uint64_t>(count);
 }
 
-/// Reads the items of a frame up to and including `ITEM: ATOMS`.
+ColumnType type_of_column(std::string_view column) {
+  if (column == "element" || column == "typelabel") return ColumnType::kText;
+  const bool is_integer = base::contains({"id", "type", "mol", "ix", "iy", "iz", "proc", "procp1"}, column);
+  return is_integer ? ColumnType::kInt64 : ColumnType::kFloat64;
+}
+
+/// Reads the items of a frame in a LAMMPS dump up to and including `ITEM: ATOMS`.
 class FrameReader {
  public:
   FrameReader(TextCursor& cursor, Faults& faults) : cursor_(cursor), faults_(faults) {}
 
-  LammpsFrame read() {
+  /// Result     without the columns and roles of FrameInfo
+  TextFrame read() {
     for (;;) {
       const std::string item = next_line();
       if (item.find_first_not_of(" \t") == std::string::npos) continue;
@@ -71,7 +67,7 @@ class FrameReader {
         return finished();
       }
       if (name.starts_with("TIMESTEP"))
-        step_ = read_number("a time step");
+        frame_.info.step = read_numbers(1, "a time step")[0];
       else if (name.starts_with("NUMBER OF ATOMS"))
         read_count();
       else if (name.starts_with("BOX BOUNDS"))
@@ -110,15 +106,13 @@ class FrameReader {
     return numbers;
   }
 
-  double read_number(const std::string& what) { return read_numbers(1, what)[0]; }
-
   void read_count() {
     const std::string line = next_line();
     const auto words = words_of(line);
     if (words.size() == 1) rows_ = count_of(words[0]);
     if (words.size() != 1 || !rows_)
       faults_.fail(item_line(), fmt::format("expected a number of atoms, found '{}'", line.substr(0, kMaxShown)));
-    frame_.rows_line = item_line();
+    frame_.count_line = item_line();
   }
 
   void read_box(const std::string& name) {
@@ -127,9 +121,10 @@ class FrameReader {
     const std::size_t count = is_general ? 4 : is_tilted ? 3 : 2;
     std::array<std::vector<double>, 3> v;
     for (auto& row : v) row = read_numbers(count, std::to_string(count) + " numbers of the box");
+    Box& box = frame_.info.box.emplace();
     if (is_general) {
-      frame_.box = Box{{v[0][3], v[1][3], v[2][3]}, {}};
-      for (std::size_t i = 0; i < 3; ++i) frame_.box->edges[i] = {v[i][0], v[i][1], v[i][2]};
+      box.origin = {v[0][3], v[1][3], v[2][3]};
+      for (std::size_t i = 0; i < 3; ++i) box.edges[i] = {v[i][0], v[i][1], v[i][2]};
     } else {
       const double xy = is_tilted ? v[0][2] : 0;
       const double xz = is_tilted ? v[1][2] : 0;
@@ -139,14 +134,14 @@ class FrameReader {
       const Vec3d high{v[0][1] - std::max({0.0, xy, xz, xy + xz}), v[1][1] - std::max(0.0, yz), v[2][1]};
       if (!(low.x <= high.x && low.y <= high.y && low.z <= high.z))
         faults_.fail(item_line(), "a lower bound of the box exceeds the upper bound");
-      frame_.box = lammps_box(low, high, xy, xz, yz);
+      box = lammps_box(low, high, xy, xz, yz);
     }
     // Old files have no boundary flags.
     std::vector<std::string_view> flags;
     for (const std::string_view word : words_of(name))
       if (word.size() == 2 && word.find_first_not_of("pfsm") == std::string_view::npos) flags.push_back(word);
     if (flags.size() == 3)
-      for (std::size_t i = 0; i < 3; ++i) frame_.box->periodic[i] = flags[i][0] == 'p';
+      for (std::size_t i = 0; i < 3; ++i) box.periodic[i] = flags[i][0] == 'p';
   }
 
   void read_columns(const std::string& name) {
@@ -154,175 +149,133 @@ class FrameReader {
     if (words.size() > kMaxColumns)
       faults_.fail(item_line(), fmt::format("there are more than {} columns", kMaxColumns));
     UniqueNames names;
-    for (std::size_t i = 1; i < words.size(); ++i) frame_.columns.push_back(names.add(std::string(words[i])));
+    for (std::size_t i = 1; i < words.size(); ++i) {
+      const std::string column = names.add(std::string(words[i]));
+      frame_.layout.columns.push_back({column, type_of_column(column)});
+    }
   }
 
-  LammpsFrame finished() {
-    const char* const missing = !step_ ? "TIMESTEP" : !rows_ ? "NUMBER OF ATOMS" : nullptr;
+  TextFrame finished() {
+    const char* const missing = !frame_.info.step ? "TIMESTEP" : !rows_ ? "NUMBER OF ATOMS" : nullptr;
     if (missing != nullptr)
       faults_.fail(item_line(), fmt::format("the frame has no item \"{}\" before its atoms", missing));
-    frame_.step = *step_;
-    frame_.rows = *rows_;
+    frame_.info.rows = frame_.layout.rows = *rows_;
+    frame_.layout.begin = cursor_.offset();
+    frame_.layout.first_line = cursor_.line();
     return frame_;
   }
 
   TextCursor& cursor_;
   Faults& faults_;
-  LammpsFrame frame_;
-  std::optional<double> step_;
+  TextFrame frame_;
   std::optional<std::uint64_t> rows_;
 };
 
-bool contain(const std::vector<std::string>& names, const Axes& axes) {
-  return std::all_of(axes.begin(), axes.end(), [&](const std::string& axis) { return base::contains(names, axis); });
+bool contain(const std::vector<ColumnInfo>& columns, const Axes& axes) {
+  return std::all_of(axes.begin(), axes.end(), [&](const std::string& axis) { return has_column(columns, axis); });
 }
 
-/// `has_labels`  the types of atoms are labels instead of numbers
-ColumnType type_of_column(std::string_view column, bool has_labels) {
-  if (column == "element" || column == "typelabel" || (has_labels && column == "type")) return ColumnType::kText;
-  const bool is_integer = base::contains({"id", "type", "mol", "ix", "iy", "iz", "proc", "procp1"}, column);
-  return is_integer ? ColumnType::kInt64 : ColumnType::kFloat64;
+/// The columns from which positions are computed; null if the file has positions, or nothing to compute them from.
+const Axes* scaled_axes(const std::vector<ColumnInfo>& columns) {
+  if (contain(columns, kAxes) || contain(columns, kUnwrapped)) return nullptr;
+  return contain(columns, kScaled) ? &kScaled : contain(columns, kScaledUnwrapped) ? &kScaledUnwrapped : nullptr;
 }
 
-FrameInfo described(const LammpsFrame& frame) {
-  FrameInfo info;
-  info.rows = frame.rows;
-  info.box = frame.box;
-  info.step = frame.step;
-  for (const std::string& column : frame.columns)
-    info.columns.push_back({column, type_of_column(column, frame.has_labels)});
-  if (frame.scaled != nullptr)
+/// Completes the description of a frame by the columns of its rows.
+void describe_columns(const std::vector<ColumnInfo>& columns, FrameInfo& info) {
+  const Axes* const scaled = scaled_axes(columns);
+  info.columns = columns;
+  if (scaled != nullptr)
     for (const std::string& axis : kAxes)
-      if (!base::contains(frame.columns, axis)) info.columns.push_back({axis, ColumnType::kFloat64});
-  const auto if_there = [&](const char* name) { return base::contains(frame.columns, name) ? name : std::string(); };
+      if (!has_column(columns, axis)) info.columns.push_back({axis, ColumnType::kFloat64});
+  const auto if_there = [&](const char* name) { return has_column(columns, name) ? name : std::string(); };
   Roles& roles = info.roles;
-  roles.position = frame.scaled != nullptr || contain(frame.columns, kAxes) ? kAxes : kUnwrapped;
+  roles.position = scaled != nullptr || contain(columns, kAxes) ? kAxes : kUnwrapped;
   roles.radius = if_there("radius");
-  if (roles.radius.empty() && base::contains(frame.columns, "diameter")) {
+  if (roles.radius.empty() && has_column(columns, "diameter")) {
     roles.radius = "diameter";
     roles.radius_scale = 0.5;
   }
   roles.element = if_there("element");
-  roles.type = base::contains(frame.columns, "type") ? "type" : if_there("typelabel");
+  roles.type = has_column(columns, "type") ? "type" : if_there("typelabel");
   roles.id = if_there("id");
   // Periodic image flags apply to wrapped coordinates only.
-  const bool is_wrapped = contain(frame.columns, kAxes) || frame.scaled == &kScaled;
-  if (is_wrapped && contain(frame.columns, Axes{"ix", "iy", "iz"})) roles.image = {"ix", "iy", "iz"};
-  return info;
+  const bool is_wrapped = contain(columns, kAxes) || scaled == &kScaled;
+  if (is_wrapped && contain(columns, Axes{"ix", "iy", "iz"})) roles.image = {"ix", "iy", "iz"};
 }
 
-/// One coordinate of positions that the file stores in units of the box.
-std::vector<double> unscaled(const Box& box, std::size_t axis, const std::array<const double*, 3>& scaled,
-                             std::size_t rows) {
+/// One coordinate of positions that columns of a table give in units of the box.
+std::vector<double> unscaled(const Table& table, const Axes& columns, const Box& box, std::size_t axis) {
+  std::array<const double*, 3> scaled{};
+  for (std::size_t i = 0; i < 3; ++i) scaled[i] = std::get<std::vector<double>>(table.find(columns[i])->values).data();
   const auto part = [axis](const Vec3d& v) { return axis == 0 ? v.x : axis == 1 ? v.y : v.z; };
   const double origin = part(box.origin);
   const double a = part(box.edges[0]);
   const double b = part(box.edges[1]);
   const double c = part(box.edges[2]);
-  std::vector<double> out(rows);
+  std::vector<double> out(table.rows);
   constexpr std::size_t kGrain = std::size_t{1} << 16;
-  tbb::parallel_for(tbb::blocked_range<std::size_t>(0, rows, kGrain), [&](const auto& range) {
+  tbb::parallel_for(tbb::blocked_range<std::size_t>(0, table.rows, kGrain), [&](const auto& range) {
     for (std::size_t i = range.begin(); i < range.end(); ++i)
       out[i] = origin + scaled[0][i] * a + scaled[1][i] * b + scaled[2][i] * c;
   });
   return out;
 }
 
-/// The requested columns, out of those that were read.
-Table taken(const std::vector<std::string>& columns, const LammpsFrame& frame, TextTable text) {
-  Table table;
-  table.rows = text.rows;
-  const auto values = [&](const std::string& name) -> Values& {
-    const auto at = std::find(frame.columns.begin(), frame.columns.end(), name);
-    return text.values[static_cast<std::size_t>(at - frame.columns.begin())];
-  };
-  // Computed columns first: the others are moved.
-  if (frame.scaled != nullptr)
-    for (std::size_t axis = 0; axis < kAxes.size(); ++axis) {
-      if (!base::contains(columns, kAxes[axis])) continue;
-      std::array<const double*, 3> scaled{};
-      for (std::size_t i = 0; i < scaled.size(); ++i)
-        scaled[i] = std::get<std::vector<double>>(values((*frame.scaled)[i])).data();
-      table.columns.push_back({kAxes[axis], unscaled(*frame.box, axis, scaled, table.rows)});
-    }
-  for (const std::string& name : columns)
-    if (table.find(name) == nullptr) table.columns.push_back({name, std::move(values(name))});
-  return table;
+/// Whether the types of atoms are labels, as with `dump_modify types labels`: the first one is not a number.
+///
+/// `rows`     at the first row
+bool has_labels(const TextFrame& frame, TextCursor rows) {
+  const ColumnInfo* const type = find_named(frame.layout.columns, "type");
+  std::string row;
+  if (type == nullptr || frame.info.rows == 0 || !rows.next(row)) return false;
+  const auto words = words_of(row);
+  const auto column = static_cast<std::size_t>(type - frame.layout.columns.data());
+  std::int64_t ignored = 0;
+  return column < words.size() && !parse_integer(words[column], ignored);
 }
 
 class LammpsDump final : public TextFrames {
  public:
   explicit LammpsDump(const Bytes& bytes) : TextFrames(bytes) {}
 
-  FrameInfo describe(int frame) override {
-    FrameInfo info = described(header(frame).first);
-    if (!info.roles.element.empty()) settle_element(names(), info.roles);
-    return info;
-  }
-
   Table read(int number, const std::vector<std::string>& columns) override {
-    const auto [frame, cursor] = header(number);
-    const Axes* const scaled = frame.scaled;
-    const auto is_computed = [&](const std::string& name) {
-      return scaled != nullptr && std::count(kAxes.begin(), kAxes.end(), name) > 0;
-    };
-    const bool needs_scaled = std::any_of(columns.begin(), columns.end(), is_computed);
-    TextLayout layout;
-    layout.begin = cursor.offset();
-    layout.rows = frame.rows;
-    layout.first_line = cursor.line();
-    for (const std::string& name : frame.columns) {
-      const bool is_scaled = needs_scaled && std::count(scaled->begin(), scaled->end(), name) > 0;
-      const bool is_wanted = !is_computed(name) && base::contains(columns, name);
-      layout.columns.push_back({type_of_column(name, frame.has_labels), is_wanted || is_scaled});
-    }
-    return taken(columns, frame, read_rows(layout, frame.rows_line));
+    TextFrame frame = this->frame(number);
+    const Axes* const scaled = scaled_axes(frame.layout.columns);
+    frame.layout.wanted = scaled != nullptr ? with_sources(columns, kAxes, *scaled) : columns;
+    Table table = read_rows(frame);
+    if (frame.layout.wanted == columns) return table;
+    for (std::size_t axis = 0; axis < 3; ++axis)
+      if (base::contains(columns, kAxes[axis]))
+        table.columns.push_back({kAxes[axis], unscaled(table, *scaled, *frame.info.box, axis)});
+    std::erase_if(table.columns, [&](const Column& column) { return !base::contains(columns, column.name); });
+    return table;
   }
 
  private:
+  TextFrame header(TextCursor cursor) const override {
+    Faults faults(bytes().file());
+    TextFrame frame = FrameReader(cursor, faults).read();
+    std::vector<ColumnInfo>& columns = frame.layout.columns;
+    if (has_labels(frame, cursor))
+      for (ColumnInfo& column : columns)
+        if (column.name == "type") column.type = ColumnType::kText;
+    const std::uint64_t line = cursor.line() - 1;
+    const bool is_scaled = scaled_axes(columns) != nullptr;
+    if (!is_scaled && !contain(columns, kAxes) && !contain(columns, kUnwrapped))
+      faults.fail(line, "no columns with positions", "write x y z, xu yu zu, xs ys zs or xsu ysu zsu");
+    if (is_scaled && !frame.info.box)
+      faults.fail(line, "positions are scaled, but the frame has no item \"BOX BOUNDS\"");
+    describe_columns(columns, frame.info);
+    return frame;
+  }
+
   std::uint64_t skip_header(TextCursor& cursor) const override {
     Faults faults(bytes().file());
-    return FrameReader(cursor, faults).read().rows;
+    return FrameReader(cursor, faults).read().info.rows;
   }
 
   bool begins_frame(std::string_view line) const override { return line.starts_with("ITEM:"); }
-
-  std::optional<Names> names_of(int number) override {
-    const auto [frame, cursor] = header(number);
-    const auto element = std::find(frame.columns.begin(), frame.columns.end(), "element");
-    if (element == frame.columns.end()) return std::nullopt;
-    return Names{cursor.place(), frame.rows, static_cast<std::size_t>(element - frame.columns.begin())};
-  }
-
-  /// Whether the types of atoms are labels, as with `dump_modify types labels`: the first one is not a number.
-  ///
-  /// `rows`     at the first row
-  static bool has_labels(const LammpsFrame& frame, TextCursor rows) {
-    const auto type = std::find(frame.columns.begin(), frame.columns.end(), "type");
-    std::string row;
-    if (type == frame.columns.end() || frame.rows == 0 || !rows.next(row)) return false;
-    const auto words = words_of(row);
-    const auto column = static_cast<std::size_t>(type - frame.columns.begin());
-    std::int64_t ignored = 0;
-    return column < words.size() && !parse_integer(words[column], ignored);
-  }
-
-  /// The header of a frame, and the cursor at its rows.
-  std::pair<LammpsFrame, TextCursor> header(int number) {
-    TextCursor cursor = frame(number);
-    Faults faults(bytes().file());
-    LammpsFrame header = FrameReader(cursor, faults).read();
-    header.has_labels = has_labels(header, cursor);
-    const std::uint64_t line = cursor.line() - 1;
-    const bool has_positions = contain(header.columns, kAxes) || contain(header.columns, kUnwrapped);
-    if (!has_positions && contain(header.columns, kScaledUnwrapped)) header.scaled = &kScaledUnwrapped;
-    if (!has_positions && contain(header.columns, kScaled)) header.scaled = &kScaled;
-    if (!has_positions && header.scaled == nullptr)
-      faults.fail(line, "no columns with positions", "write x y z, xu yu zu, xs ys zs or xsu ysu zsu");
-    if (header.scaled != nullptr && !header.box)
-      faults.fail(line, "positions are scaled, but the frame has no item \"BOX BOUNDS\"");
-    return {std::move(header), cursor};
-  }
 };
 
 /// Binary dumps since 2020 begin with a negative length and the style; older ones have no signature.
@@ -454,7 +407,7 @@ class DataHeader {
     for (const Style& s : kStyles)
       if (s.name == style)
         for (const std::string_view name : words_of(s.columns))
-          info_.columns.push_back({std::string(name), type_of_column(name, false)});
+          info_.columns.push_back({std::string(name), type_of_column(name)});
     return !info_.columns.empty();
   }
 
@@ -494,45 +447,42 @@ class LammpsData final : public SingleFrame {
   explicit LammpsData(const Bytes& bytes) : SingleFrame(bytes) { info_ = DataHeader(*bytes_, layout_).read(); }
 
   Table read(int, const std::vector<std::string>& columns) override {
-    TextTable text = read_atoms(columns);
-    require_end(atoms_end(text), info_.rows, "atoms");
-    Table table;
-    table.rows = text.rows;
-    for (std::size_t c = 0; c < info_.columns.size(); ++c)
-      if (base::contains(columns, info_.columns[c].name))
-        table.columns.push_back({info_.columns[c].name, std::move(text.values[c])});
-    return table;
+    TextTable atoms = read_atoms(columns);
+    require_end(end_of(atoms, layout_), info_.rows, "atoms");
+    return std::move(atoms.table);
   }
 
   std::vector<Bond> bonds(int) override {
     if (info_.bonds == 0) return {};
     const TextTable atoms = read_atoms({"id"});
-    const TextTable text = read_bonds(atoms_end(atoms));
+    const Table ends = read_bonds(end_of(atoms, layout_));
     Faults faults(bytes_->file());
-    BondsById out(std::get<std::vector<std::int64_t>>(atoms.values[0]), faults);  // the first column of all styles
-    const auto& first = std::get<std::vector<std::int64_t>>(text.values[2]);
-    const auto& second = std::get<std::vector<std::int64_t>>(text.values[3]);
-    for (std::size_t i = 0; i < text.rows; ++i) out.add(first[i], second[i], bonds_line_ + i);
+    BondsById out(integers(atoms.table, 0), faults);
+    for (std::size_t i = 0; i < ends.rows; ++i) out.add(integers(ends, 0)[i], integers(ends, 1)[i], bonds_line_ + i);
     return out.take();
   }
 
  private:
   TextTable read_atoms(const std::vector<std::string>& columns) const {
     TextLayout layout = layout_;
-    for (const ColumnInfo& column : info_.columns)
-      layout.columns.push_back({column.type, base::contains(columns, column.name)});
+    layout.columns = info_.columns;
+    layout.wanted = columns;
     Faults faults(bytes_->file());
     return read_text_rows(*bytes_, layout, faults);
   }
 
-  TextCursor atoms_end(const TextTable& atoms) const {
-    return TextCursor(*bytes_, {atoms.end, layout_.first_line + atoms.rows});
+  static const std::vector<std::int64_t>& integers(const Table& table, std::size_t column) {
+    return std::get<std::vector<std::int64_t>>(table.columns[column].values);
+  }
+
+  TextCursor end_of(const TextTable& rows, const TextLayout& layout) const {
+    return TextCursor(*bytes_, {rows.end, layout.first_line + rows.table.rows});
   }
 
   /// Reads the rows of the section "Bonds": a number, a type, and two ids of atoms.
   ///
   /// `cursor`   after the atoms, which LAMMPS requires to come first
-  TextTable read_bonds(TextCursor cursor) {
+  Table read_bonds(TextCursor cursor) {
     Faults faults(bytes_->file());
     std::string line;
     do {
@@ -547,11 +497,11 @@ class LammpsData final : public SingleFrame {
     layout.first_line = place.line;
     layout.rows = info_.bonds;
     layout.comment = '#';
-    layout.columns.assign(4, {ColumnType::kInt64, true});
-    layout.columns[0].is_wanted = layout.columns[1].is_wanted = false;
+    for (const char* const name : {"number", "type", "a", "b"}) layout.columns.push_back({name, ColumnType::kInt64});
+    layout.wanted = {"a", "b"};
     TextTable out = read_text_rows(*bytes_, layout, faults);
-    require_end(TextCursor(*bytes_, {out.end, layout.first_line + out.rows}), info_.bonds, "bonds");
-    return out;
+    require_end(end_of(out, layout), info_.bonds, "bonds");
+    return std::move(out.table);
   }
 
   /// Checks that the rows of a section are followed by another section or by the end of the file.

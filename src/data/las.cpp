@@ -161,17 +161,8 @@ class LasFile final : public SingleFrame {
   }
 
   Table read(int, const std::vector<std::string>& names) override {
-    std::vector<const LasColumn*> columns;
-    std::vector<RecordField> fields;
-    for (const std::string& name : names) {
-      columns.push_back(find(name));
-      fields.push_back(columns.back()->field);
-    }
-    std::vector<Values> values = read(header_.points, fields);
-    Table table;
-    table.rows = static_cast<std::size_t>(header_.points.rows);
-    for (std::size_t i = 0; i < columns.size(); ++i)
-      table.columns.push_back({fields[i].name, finished(*columns[i], std::move(values[i]))});
+    Table table{static_cast<std::size_t>(header_.points.rows), read(header_.points, names)};
+    for (Column& column : table.columns) column.values = finished(*find(column.name), std::move(column.values));
     return table;
   }
 
@@ -182,7 +173,10 @@ class LasFile final : public SingleFrame {
     return found != columns_.end() ? &*found : nullptr;
   }
 
-  std::vector<Values> read(const RecordLayout& layout, const std::vector<RecordField>& fields) const {
+  /// Reads the numbers in the records.
+  std::vector<Column> read(const RecordLayout& layout, const std::vector<std::string>& names) const {
+    std::vector<RecordField> fields;
+    for (const std::string& name : names) fields.push_back(find(name)->field);
     Faults none(bytes_->file());  // no field of LAS can have a wrong value
     return read_records(*bytes_, layout, fields, none);
   }
@@ -204,14 +198,13 @@ class LasFile final : public SingleFrame {
   /// Reads colours until one needs more than 8 bits.
   bool has_16_bit_colors() const {
     constexpr std::uint64_t kRowsAtATime = 1 << 18;
-    const std::vector<RecordField> fields = {find("red")->field, find("green")->field, find("blue")->field};
     for (std::uint64_t first = 0; first < header_.points.rows; first += kRowsAtATime) {
       RecordLayout some = header_.points;
       some.begin += first * some.stride;
       some.rows = std::min(kRowsAtATime, header_.points.rows - first);
-      for (const Values& values : read(some, fields)) {
-        const auto& column = std::get<std::vector<std::uint16_t>>(values);
-        if (std::any_of(column.begin(), column.end(), [](std::uint16_t v) { return v > 255; })) return true;
+      for (const Column& column : read(some, {"red", "green", "blue"})) {
+        const auto& values = std::get<std::vector<std::uint16_t>>(column.values);
+        if (std::any_of(values.begin(), values.end(), [](std::uint16_t v) { return v > 255; })) return true;
       }
     }
     return false;

@@ -386,9 +386,8 @@ std::vector<Column> read_npy_columns(const ByteSource& bytes, std::uint64_t rows
   std::vector<bool> is_read(columns.size());
   for (std::size_t c = 0; c < columns.size(); ++c) {
     if (is_read[c]) continue;
-    out[c].name = columns[c].name;
     if (columns[c].type() == ColumnType::kText) {
-      out[c].values = read_texts(bytes, rows, columns[c], faults);
+      out[c] = {columns[c].name, read_texts(bytes, rows, columns[c], faults)};
       continue;
     }
     // All columns of the same records are read in one pass.
@@ -400,8 +399,8 @@ std::vector<Column> read_npy_columns(const ByteSource& bytes, std::uint64_t rows
       targets.push_back(k);
       is_read[k] = true;
     }
-    std::vector<Values> values = read_records(bytes, {columns[c].begin, columns[c].stride, rows}, fields, faults);
-    for (std::size_t k = 0; k < targets.size(); ++k) out[targets[k]] = {fields[k].name, std::move(values[k])};
+    std::vector<Column> read = read_records(bytes, {columns[c].begin, columns[c].stride, rows}, fields, faults);
+    for (std::size_t k = 0; k < targets.size(); ++k) out[targets[k]] = std::move(read[k]);
   }
   return out;
 }

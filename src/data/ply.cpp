@@ -372,18 +372,10 @@ class PlyFile final : public SingleFrame {
 
   Table read(int, const std::vector<std::string>& names) override {
     Faults faults(bytes_->file());
-    std::vector<std::size_t> wanted;  // indices of properties
-    for (const std::string& name : names) {
-      const auto& all = vertex().properties;
-      wanted.push_back(static_cast<std::size_t>(find_named(all, name) - all.data()));
-    }
-    std::vector<Values> values = !has_plain_rows() ? read_rows(wanted, faults)
-                                 : is_ascii()      ? read_lines(wanted, faults)
-                                                   : read_binary(wanted, faults);
+    Table table{static_cast<std::size_t>(info_.rows), !has_plain_rows() ? read_rows(names, faults)
+                                                      : is_ascii()      ? read_lines(names, faults)
+                                                                        : read_binary(names, faults)};
     faults.raise_if_any();
-    Table table;
-    table.rows = static_cast<std::size_t>(info_.rows);
-    for (std::size_t i = 0; i < names.size(); ++i) table.columns.push_back({names[i], std::move(values[i])});
     return table;
   }
 
@@ -418,7 +410,7 @@ class PlyFile final : public SingleFrame {
     return true;
   }
 
-  std::vector<Values> read_binary(const std::vector<std::size_t>& wanted, Faults& faults) const {
+  std::vector<Column> read_binary(const std::vector<std::string>& names, Faults& faults) const {
     RecordLayout layout;
     layout.begin = header_.bytes;
     for (std::size_t e = 0; e < vertex_; ++e)
@@ -426,16 +418,16 @@ class PlyFile final : public SingleFrame {
     layout.stride = min_bytes(vertex(), header_.encoding);
     layout.rows = vertex().count;
     check_rest(layout.begin + layout.rows * layout.stride, faults);
-    std::vector<std::uint64_t> offsets;
-    std::uint64_t offset = 0;
-    for (const PlyProperty& property : vertex().properties) {
-      offsets.push_back(offset);
-      offset += size_of(property.type);
-    }
     std::vector<RecordField> fields;
-    for (const std::size_t p : wanted)
-      fields.push_back({vertex().properties[p].name, vertex().properties[p].type, offsets[p],
-                        header_.encoding == PlyEncoding::kBigEndian});
+    for (const std::string& name : names) {
+      RecordField& field = fields.emplace_back();
+      field = {name, {}, 0, header_.encoding == PlyEncoding::kBigEndian};
+      for (const PlyProperty& property : vertex().properties) {
+        field.type = property.type;
+        if (property.name == name) break;
+        field.offset += size_of(property.type);
+      }
+    }
     return read_records(*bytes_, layout, fields, faults);
   }
 
@@ -453,55 +445,56 @@ class PlyFile final : public SingleFrame {
   }
 
   /// Reads an ASCII file that contains only vertices.
-  std::vector<Values> read_lines(const std::vector<std::size_t>& wanted, Faults& faults) const {
+  std::vector<Column> read_lines(const std::vector<std::string>& names, Faults& faults) const {
     TextLayout layout;
     layout.begin = header_.bytes;
     layout.first_line = header_.lines + 1;
-    for (const PlyProperty& property : vertex().properties) layout.columns.push_back({type_of(property), false});
-    for (const std::size_t p : wanted) layout.columns[p].is_wanted = true;
-    TextTable text = read_text_rows(*bytes_, layout, faults);
-    if (text.rows != vertex().count)
+    layout.columns = info_.columns;
+    layout.wanted = names;
+    Table table = read_text_rows(*bytes_, layout, faults).table;
+    if (table.rows != vertex().count)
       faults.fail(
           vertex().line,
           fmt::format(
               "the header declares {} rows of `vertex`, but there are {}; the file is truncated, or the count is wrong",
-              vertex().count, text.rows));
-    std::vector<Values> out;
-    for (const std::size_t p : wanted) out.push_back(std::move(text.values[p]));
-    return out;
+              vertex().count, table.rows));
+    return std::move(table.columns);
   }
 
   /// Reads all rows one by one, with lists and with other elements between them.
-  std::vector<Values> read_rows(const std::vector<std::size_t>& wanted, Faults& faults) const {
+  std::vector<Column> read_rows(const std::vector<std::string>& names, Faults& faults) const {
     PlyCursor cursor(*bytes_, header_.bytes, header_.encoding, header_.lines + 1);
-    std::vector<Values> out;
-    for (const std::size_t p : wanted) out.push_back(empty_values(type_of(vertex().properties[p])));
+    Table table;
+    for (const std::string& name : names)
+      table.columns.push_back({name, empty_values(find_named(info_.columns, name)->type)});
+    std::vector<Column*> targets;  // of the properties; null unless they are wanted
+    for (const PlyProperty& property : vertex().properties) targets.push_back(table.find(property.name));
     for (const PlyElement& element : header_.elements) {
       check_count(faults, element, header_, cursor.bytes_left());
       if (&element != &vertex()) {
         skip_element(faults, element, header_, cursor);
         continue;
       }
-      std::vector<double> row(element.properties.size());
-      for (Values& values : out)
+      for (Column& column : table.columns)
         std::visit(
-            [&](auto& column) {
-              if constexpr (requires { column.reserve(0); }) column.reserve(static_cast<std::size_t>(element.count));
+            [&](auto& values) {
+              if constexpr (requires { values.reserve(0); }) values.reserve(static_cast<std::size_t>(element.count));
             },
-            values);
+            column.values);
       for (std::uint64_t i = 0; i < element.count; ++i) {
         const auto name = [&] { return fmt::format("vertex {} of {}", i + 1, element.count); };
         read_row(faults, element, cursor, name, [&](const PlyProperty& property, std::size_t k) {
-          return property.is_list ? cursor.skip(property) : cursor.take(property.type, row[k]);
+          double value = 0;
+          if (property.is_list) return cursor.skip(property);
+          if (!cursor.take(property.type, value)) return false;
+          if (targets[k] != nullptr && !append(targets[k]->values, value))
+            faults.fail(cursor.line(), fmt::format("{}, `{}`: not a 64-bit integer", name(), property.name));
+          return true;
         });
-        for (std::size_t w = 0; w < wanted.size(); ++w)
-          if (!append(out[w], row[wanted[w]]))
-            faults.fail(cursor.line(),
-                        fmt::format("{}, `{}`: not a 64-bit integer", name(), element.properties[wanted[w]].name));
       }
     }
     check_end(faults, header_, cursor);
-    return out;
+    return std::move(table.columns);
   }
 
   /// Appends a number to a column; false if the column has integers and the number is not one.

@@ -55,13 +55,15 @@ bool contains(std::uint64_t size, const RecordLayout& layout) {
   return layout.begin <= size && (layout.stride == 0 || layout.rows <= (size - layout.begin) / layout.stride);
 }
 
-std::vector<Values> read_records(const ByteSource& bytes, const RecordLayout& layout,
+std::vector<Column> read_records(const ByteSource& bytes, const RecordLayout& layout,
                                  const std::vector<RecordField>& fields, Faults& faults) {
   const auto rows = static_cast<std::size_t>(layout.rows);
   const auto stride = static_cast<std::size_t>(layout.stride);
-  std::vector<Values> out;
+  std::vector<Column> out;
   for (const RecordField& field : fields)
-    with_type(field.type, [&](auto number) { out.emplace_back(std::vector<Stored<decltype(number)>>(rows)); });
+    with_type(field.type, [&](auto number) {
+      out.push_back({field.name, std::vector<Stored<decltype(number)>>(rows)});
+    });
   if (rows == 0 || fields.empty()) return out;
   const std::size_t block_rows = std::max<std::size_t>(1, kRecordBlockBytes / stride);
   const base::StopPoint stop;
@@ -74,12 +76,12 @@ std::vector<Values> read_records(const ByteSource& bytes, const RecordLayout& la
                         block.resize(count * stride);
                         bytes.read(layout.begin + first * layout.stride, block.size(), block.data());
                         for (std::size_t f = 0; f < fields.size(); ++f)
-                          decode_field(fields[f], block.data(), stride, count, out[f], first);
+                          decode_field(fields[f], block.data(), stride, count, out[f].values, first);
                       }
                     });
   for (std::size_t f = 0; f < fields.size(); ++f)
     if (fields[f].type == NumberType::kUint64)
-      check_unsigned(fields[f].name, std::get<std::vector<std::int64_t>>(out[f]), faults);
+      check_unsigned(fields[f].name, std::get<std::vector<std::int64_t>>(out[f].values), faults);
   return out;
 }
 

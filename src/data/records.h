@@ -122,10 +122,10 @@ bool contains(std::uint64_t size, const RecordLayout& layout);
 /// Reads fields of all records, in parallel.
 ///
 /// Domain     contains(bytes.size(), layout); each field is inside the record
-/// Result     one column per field, of type column_type(field.type)
+/// Result     one column per field, with its name and of type column_type(field.type)
 /// Errors     unsigned integers that an int64 cannot represent are added to `faults`
 /// Cost       one pass over the records; 1 MiB per thread in addition to the columns
-std::vector<Values> read_records(const ByteSource& bytes, const RecordLayout& layout,
+std::vector<Column> read_records(const ByteSource& bytes, const RecordLayout& layout,
                                  const std::vector<RecordField>& fields, Faults& faults);
 
 }  // namespace orrery::data

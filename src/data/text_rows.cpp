@@ -263,13 +263,13 @@ void prefer_huge_pages(std::vector<T>& values) {
 #endif
 }
 
-Values reserved_column(const TextColumn& column, std::uint64_t rows) {
+Values reserved_values(ColumnType type, std::uint64_t rows) {
   const auto reserved = [&](auto values) {
-    if (column.is_wanted) values.reserve(rows);
+    values.reserve(rows);
     prefer_huge_pages(values);
     return values;
   };
-  switch (column.type) {
+  switch (type) {
     case ColumnType::kInt64: return reserved(std::vector<std::int64_t>());
     case ColumnType::kText: return Words{{}, reserved(std::vector<std::uint32_t>())};
     default: return reserved(std::vector<double>());
@@ -307,9 +307,11 @@ class TableReader {
         next_line_(layout.first_line),
         is_complete_(max_rows_ == 0),
         words_(layout.columns.size()) {
-    table_.end = begin_;
-    for (const TextColumn& column : layout.columns) table_.values.push_back(reserved_column(column, max_rows_));
-    if (layout.surveys) table_.surveys.resize(layout.columns.size());
+    out_.end = begin_;
+    for (const std::string& name : layout.wanted)
+      out_.table.columns.push_back({name, reserved_values(find_named(layout.columns, name)->type, max_rows_)});
+    for (const ColumnInfo& column : layout.columns) targets_.push_back(out_.table.find(column.name));
+    if (layout.surveys) out_.surveys.resize(layout.columns.size());
   }
 
   TextTable run() {
@@ -326,13 +328,13 @@ class TableReader {
               tbb::make_filter<Chunk*, Chunk*>(filter_mode::serial_in_order, [&](Chunk* c) { return place(c); }) &
               tbb::make_filter<Chunk*, Chunk*>(filter_mode::parallel, [&](Chunk* c) { return parse(c); }) &
               tbb::make_filter<Chunk*, void>(filter_mode::serial_in_order, [&](Chunk* c) { finish(*c); }));
-    if (layout_.rows != kRowsToEnd && table_.rows < layout_.rows)
-      faults_.add(next_line_, fmt::format("the file ends after {} of {} rows", table_.rows, layout_.rows),
+    if (layout_.rows != kRowsToEnd && out_.table.rows < layout_.rows)
+      faults_.add(next_line_, fmt::format("the file ends after {} of {} rows", out_.table.rows, layout_.rows),
                   "the file is truncated, or its header declares too many");
     faults_.raise_if_any();
-    for (std::size_t c = 0; c < words_.size(); ++c)
-      if (auto* const column = std::get_if<Words>(&table_.values[c])) column->words = words_[c].take();
-    return std::move(table_);
+    for (std::size_t c = 0; c < targets_.size(); ++c)
+      if (is_wanted_text(c)) std::get<Words>(targets_[c]->values).words = words_[c].take();
+    return std::move(out_);
   }
 
  private:
@@ -385,14 +387,15 @@ class TableReader {
 
   Chunk* place(Chunk* chunk) {
     chunk->first_line = next_line_;
-    chunk->first_row = table_.rows;
-    chunk->parsed_rows = std::min(chunk->row_count, max_rows_ - table_.rows);
+    Table& table = out_.table;
+    chunk->first_row = table.rows;
+    chunk->parsed_rows = std::min(chunk->row_count, max_rows_ - table.rows);
     next_line_ += chunk->line_count;
-    table_.rows += chunk->parsed_rows;
+    table.rows += chunk->parsed_rows;
     chunk->addresses.clear();
-    for (std::size_t c = 0; c < table_.values.size(); ++c)
-      chunk->addresses.push_back(layout_.columns[c].is_wanted ? resized(table_.values[c], table_.rows) : nullptr);
-    if (table_.rows == max_rows_) is_complete_ = true;
+    for (Column* const target : targets_)
+      chunk->addresses.push_back(target != nullptr ? resized(target->values, table.rows) : nullptr);
+    if (table.rows == max_rows_) is_complete_ = true;
     return chunk;
   }
 
@@ -404,14 +407,18 @@ class TableReader {
   }
 
   void finish(const Chunk& chunk) {
-    if (chunk.parsed_rows > 0) table_.end = chunk.end;
+    if (chunk.parsed_rows > 0) out_.end = chunk.end;
     const auto& faults = chunk.parser.faults();
     for (const RowParser::Fault& fault : faults) faults_.add_of_many(fault.line, fault.text);
     // Those that the parser did not keep follow ten others, and are only counted.
     for (std::uint64_t i = faults.size(); i < chunk.parser.fault_count(); ++i) faults_.add_of_many(0, {});
-    for (std::size_t c = 0; c < table_.values.size(); ++c)
-      if (layout_.columns[c].type == ColumnType::kText && layout_.columns[c].is_wanted) merge_words(chunk, c);
-    for (std::size_t c = 0; c < table_.surveys.size(); ++c) table_.surveys[c].add(chunk.parser.surveys()[c]);
+    for (std::size_t c = 0; c < targets_.size(); ++c)
+      if (is_wanted_text(c)) merge_words(chunk, c);
+    for (std::size_t c = 0; c < out_.surveys.size(); ++c) out_.surveys[c].add(chunk.parser.surveys()[c]);
+  }
+
+  bool is_wanted_text(std::size_t column) const {
+    return targets_[column] != nullptr && layout_.columns[column].type == ColumnType::kText;
   }
 
   /// Replaces indices into the chunk's words by indices into the table's.
@@ -437,7 +444,8 @@ class TableReader {
   std::atomic<bool> is_complete_;
   std::vector<Chunk> chunks_;
   std::vector<Dictionary<>> words_;  ///< of the text columns
-  TextTable table_;
+  TextTable out_;
+  std::vector<Column*> targets_;  ///< of the columns, in `out_`; null unless they are wanted
 };
 
 }  // namespace

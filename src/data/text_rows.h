@@ -41,12 +41,6 @@ class Faults;
 
 inline constexpr std::uint64_t kRowsToEnd = std::numeric_limits<std::uint64_t>::max();
 
-/// A column of a text table: kFloat64, kInt64 or kText.
-struct TextColumn {
-  ColumnType type = ColumnType::kFloat64;
-  bool is_wanted = true;  ///< false: skipped without being checked
-};
-
 /// Rows of a text table: one line each.
 struct TextLayout {
   std::uint64_t begin = 0;          ///< offset of the first row
@@ -60,12 +54,12 @@ struct TextLayout {
   bool surveys = false;          ///< all columns are surveyed, even those that are not wanted
   /// Number of bytes that a thread parses at a time; does not affect the result.
   std::uint64_t chunk_bytes = std::uint64_t{1} << 18;
-  std::vector<TextColumn> columns;
+  std::vector<ColumnInfo> columns;  ///< kFloat64, kInt64 or kText, with distinct names
+  std::vector<std::string> wanted;  ///< distinct names of columns; the others are skipped without being checked
 };
 
 struct TextTable {
-  std::uint64_t rows = 0;
-  std::vector<Values> values;         ///< one per column; empty if it is not wanted
+  Table table;                        ///< the wanted columns, in their order
   std::vector<ColumnSurvey> surveys;  ///< one per column, if requested
   std::uint64_t end = 0;              ///< offset after the last row
 };

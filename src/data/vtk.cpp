@@ -426,15 +426,12 @@ class VtkFile final : public SingleFrame {
     Faults faults(bytes_->file());
     for (const VtkArray& array : arrays_) {
       std::vector<RecordField> fields;
-      std::vector<Values*> targets;
       for (std::size_t i = 0; i < array.columns.size(); ++i)
-        for (Column& column : table.columns)
-          if (column.name == array.columns[i]) {
-            fields.push_back({column.name, array.type, i * size_of(array.type)});
-            targets.push_back(&column.values);
-          }
+        if (base::contains(names, array.columns[i]))
+          fields.push_back({array.columns[i], array.type, i * size_of(array.type)});
       for (std::size_t piece = 0; piece < pieces_.size() && !fields.empty(); ++piece)
-        append(array, piece, fields, targets, faults);
+        for (Column& part : read_piece(array, piece, fields, faults))
+          append(std::move(part.values), table.find(part.name)->values);
     }
     faults.raise_if_any();
     return table;
@@ -492,28 +489,30 @@ class VtkFile final : public SingleFrame {
     }
   }
 
-  /// Appends a piece of an array to columns of a table.
-  void append(const VtkArray& array, std::size_t piece, std::vector<RecordField> fields,
-              const std::vector<Values*>& targets, Faults& faults) const {
+  std::vector<Column> read_piece(const VtkArray& array, std::size_t piece, std::vector<RecordField> fields,
+                                 Faults& faults) const {
     const VtkBytes found = document_.array(array.pieces[piece], array.name, array.type);
     RecordLayout layout{found.begin, array.components * size_of(array.type), pieces_[piece]};
     if (found.size % layout.stride != 0 || found.size / layout.stride != layout.rows)
       faults.fail(0, fmt::format("array {} has {} bytes; {} points need {} each", quoted_word(array.name), found.size,
                                  layout.rows, layout.stride));
     for (RecordField& field : fields) field.is_big_endian = found.is_big_endian;
-    std::vector<Values> values = read_records(*found.source, layout, fields, faults);
-    for (std::size_t i = 0; i < targets.size(); ++i)
-      std::visit(
-          [&](auto& column) {
-            if constexpr (requires { column.resize(1); }) {
-              auto& read = std::get<std::decay_t<decltype(column)>>(values[i]);
-              if (column.empty())
-                column = std::move(read);
-              else
-                column.insert(column.end(), read.begin(), read.end());
-            }
-          },
-          *targets[i]);
+    return read_records(*found.source, layout, fields, faults);
+  }
+
+  /// Appends numbers to a column of the same type.
+  static void append(Values piece, Values& to) {
+    std::visit(
+        [&](auto& column) {
+          if constexpr (requires { column.resize(1); }) {
+            auto& more = std::get<std::decay_t<decltype(column)>>(piece);
+            if (column.empty())
+              column = std::move(more);
+            else
+              column.insert(column.end(), more.begin(), more.end());
+          }
+        },
+        to);
   }
 
   VtkDocument document_;

@@ -182,28 +182,21 @@ bool parse_count(std::string_view line, std::int64_t& count) {
   return words.size() == 1 && parse_integer(words[0], count) && count >= 0;
 }
 
-struct XyzHeader {
-  FrameInfo info;
-  bool is_extended = false;
-  std::size_t names = 0;         ///< index of the column with the role `element`
-  std::uint64_t count_line = 0;  ///< the line with the number of atoms
-  TextCursor::Place rows;
-};
-
 class XyzHeaderReader {
  public:
   XyzHeaderReader(const ByteSource& bytes, TextCursor cursor) : cursor_(cursor), faults_(bytes.file()) {}
 
-  XyzHeader read() {
+  TextFrame read() {
     std::string line;
     cursor_.next_filled(line);
     out_.count_line = cursor_.line() - 1;
     std::int64_t rows = 0;
     parse_count(line, rows);
-    out_.info.rows = static_cast<std::uint64_t>(rows);
+    out_.info.rows = out_.layout.rows = static_cast<std::uint64_t>(rows);
     cursor_.next(line);
     comment_line_ = cursor_.line() - 1;
-    out_.rows = cursor_.place();
+    out_.layout.begin = cursor_.offset();
+    out_.layout.first_line = cursor_.line();
     std::string first;
     if (rows > 0) cursor_.next(first);
     const XyzValues values = xyz_values(line);
@@ -212,13 +205,13 @@ class XyzHeaderReader {
       if (double step = 0; values.count(key) > 0 && parse_number(values.at(key), step) && std::isfinite(step))
         out_.info.step = step;
     const auto properties = values.find("Properties");
-    out_.is_extended = properties != values.end();
-    if (out_.is_extended) {
+    if (properties != values.end()) {
       add_properties(xyz_properties(properties->second, comment_line_, faults_), words_of(first));
     } else {
       out_.info.title = line;
       add_plain(words_of(first));
     }
+    out_.layout.columns = out_.info.columns;
     return std::move(out_);
   }
 
@@ -240,7 +233,6 @@ class XyzHeaderReader {
     std::int64_t ignored = 0;
     const bool is_number = column < first.size() && parse_integer(first[column], ignored);
     (is_number ? out_.info.roles.type : out_.info.roles.element) = name;
-    out_.names = column;
   }
 
   void add_properties(const std::vector<XyzProperty>& properties, const Parts& first) {
@@ -285,6 +277,7 @@ class XyzHeaderReader {
   }
 
   void add_plain(const Parts& first) {
+    out_.layout.allows_more = true;  // rows may have anything after the position
     set_species("element", first, 0);
     if (out_.info.roles.element.empty()) {
       out_.info.roles.type = "type";
@@ -302,7 +295,7 @@ class XyzHeaderReader {
   TextCursor cursor_;
   Faults faults_;
   UniqueNames names_;
-  XyzHeader out_;
+  TextFrame out_;
   std::uint64_t comment_line_ = 0;
 };
 
@@ -310,47 +303,28 @@ class Xyz final : public TextFrames {
  public:
   explicit Xyz(const Bytes& bytes) : TextFrames(bytes) {}
 
-  FrameInfo describe(int number) override { return header(number).info; }
-
   Table read(int number, const std::vector<std::string>& columns) override {
-    const XyzHeader header = this->header(number);
-    TextLayout layout;
-    layout.begin = header.rows.offset;
-    layout.first_line = header.rows.line;
-    layout.rows = header.info.rows;
-    std::vector<std::string> names;
-    for (const ColumnInfo& column : header.info.columns) {
-      layout.columns.push_back({column.type, base::contains(columns, column.name)});
-      names.push_back(column.name);
-    }
-    // Rows of plain XYZ may have anything after the position.
+    TextFrame frame = this->frame(number);
+    TextLayout& layout = frame.layout;
+    layout.wanted = columns;
     constexpr std::size_t kPlainColumns = 4;
-    layout.allows_more = !header.is_extended;
-    while (!header.is_extended && layout.columns.size() > kPlainColumns && !layout.columns.back().is_wanted)
+    while (layout.allows_more && layout.columns.size() > kPlainColumns &&
+           !base::contains(columns, layout.columns.back().name))
       layout.columns.pop_back();
-    TextTable text = read_rows(layout, header.count_line);
-    Table table;
-    table.rows = text.rows;
-    for (std::size_t c = 0; c < layout.columns.size(); ++c)
-      if (layout.columns[c].is_wanted) table.columns.push_back({names[c], std::move(text.values[c])});
-    return table;
+    return read_rows(frame);
   }
 
  private:
-  XyzHeader header(int number) {
-    XyzHeader header = XyzHeaderReader(bytes(), frame(number)).read();
-    Roles& roles = header.info.roles;
-    if (roles.element.empty()) return header;
-    settle_element(names(), roles);
-    if (!header.is_extended && roles.element.empty()) header.info.columns[header.names].name = roles.type = "type";
-    return header;
+  TextFrame frame(int number) override {
+    TextFrame out = TextFrames::frame(number);
+    const bool is_plain = out.layout.allows_more;
+    // Its first column has no name in the file.
+    if (is_plain && out.info.roles.element.empty())
+      out.info.columns[0].name = out.layout.columns[0].name = out.info.roles.type = "type";
+    return out;
   }
 
-  std::optional<Names> names_of(int number) override {
-    const XyzHeader header = XyzHeaderReader(bytes(), frame(number)).read();
-    if (header.info.roles.element.empty()) return std::nullopt;
-    return Names{header.rows, header.info.rows, header.names};
-  }
+  TextFrame header(TextCursor cursor) const override { return XyzHeaderReader(bytes(), std::move(cursor)).read(); }
 
   std::uint64_t skip_header(TextCursor& cursor) const override {
     std::string line;

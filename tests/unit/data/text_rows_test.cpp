@@ -22,9 +22,7 @@
 namespace orrery::data {
 namespace {
 
-constexpr TextColumn kNumber{ColumnType::kFloat64, true};
-constexpr TextColumn kInteger{ColumnType::kInt64, true};
-constexpr TextColumn kText{ColumnType::kText, true};
+constexpr ColumnType kNumber = ColumnType::kFloat64, kInteger = ColumnType::kInt64, kText = ColumnType::kText;
 
 /// A text file, and the table in it.
 class DataTextRows : public testing::Test {
@@ -49,9 +47,13 @@ class DataTextRows : public testing::Test {
     return {};
   }
 
-  static TextLayout layout(std::vector<TextColumn> columns, std::uint64_t rows = kRowsToEnd) {
+  /// All columns are wanted.
+  static TextLayout layout(const std::vector<ColumnType>& types, std::uint64_t rows = kRowsToEnd) {
     TextLayout out;
-    out.columns = std::move(columns);
+    for (const ColumnType type : types) {
+      out.wanted.push_back(std::to_string(out.columns.size()));
+      out.columns.push_back({out.wanted.back(), type});
+    }
     out.rows = rows;
     return out;
   }
@@ -60,28 +62,30 @@ class DataTextRows : public testing::Test {
 };
 
 const std::vector<double>& numbers(const TextTable& table, std::size_t column) {
-  return std::get<std::vector<double>>(table.values[column]);
+  return std::get<std::vector<double>>(table.table.columns[column].values);
 }
 const std::vector<std::int64_t>& integers(const TextTable& table, std::size_t column) {
-  return std::get<std::vector<std::int64_t>>(table.values[column]);
+  return std::get<std::vector<std::int64_t>>(table.table.columns[column].values);
 }
 
 /// The strings of a column.
 std::vector<std::string> words(const TextTable& table, std::size_t column) {
-  const Words& all = std::get<Words>(table.values[column]);
+  const Words& all = std::get<Words>(table.table.columns[column].values);
   std::vector<std::string> out;
   for (const std::uint32_t index : all.index) out.push_back(all.words[index]);
   return out;
 }
 
 TEST_F(DataTextRows, ReadsTheColumnsThatAreWanted) {
-  const TextTable table =
-      read("1 Na 2.5 x\n-7\tCl  1e3 y\r\n", layout({kInteger, kText, kNumber, {ColumnType::kFloat64, false}}));
-  EXPECT_EQ(table.rows, 2u);
-  EXPECT_EQ(integers(table, 0), (std::vector<std::int64_t>{1, -7}));
-  EXPECT_EQ(words(table, 1), (std::vector<std::string>{"Na", "Cl"}));
-  EXPECT_EQ(numbers(table, 2), (std::vector<double>{2.5, 1000}));
-  EXPECT_TRUE(numbers(table, 3).empty());
+  TextLayout rows = layout({kInteger, kText, kNumber, kNumber});
+  rows.wanted = {"1", "2", "0"};
+  const TextTable table = read("1 Na 2.5 x\n-7\tCl  1e3 y\r\n", rows);
+  EXPECT_EQ(table.table.rows, 2u);
+  EXPECT_EQ(words(table, 0), (std::vector<std::string>{"Na", "Cl"}));
+  EXPECT_EQ(numbers(table, 1), (std::vector<double>{2.5, 1000}));
+  EXPECT_EQ(integers(table, 2), (std::vector<std::int64_t>{1, -7}));
+  EXPECT_EQ(table.table.columns.size(), 3u);
+  EXPECT_EQ(table.table.columns[2].name, "0");
 }
 
 TEST_F(DataTextRows, StopsAfterTheLastRow) {
@@ -192,17 +196,18 @@ TEST_F(DataTextRows, ResultDoesNotDependOnChunksAndThreads) {
   const std::string text = mixed_table(random, 100);
   TextLayout rows = layout({kInteger, kText, kNumber});
   const TextTable expected = read(text, rows);
-  ASSERT_EQ(expected.rows, 100u);
+  ASSERT_EQ(expected.table.rows, 100u);
   for (const int threads : {1, 2}) {
     tbb::task_arena arena(threads);
     for (std::uint64_t chunk = 1; chunk < 100; ++chunk) {
       rows.chunk_bytes = chunk;
       const TextTable table = arena.execute([&] { return read(text, rows); });
-      ASSERT_EQ(table.rows, expected.rows);
+      ASSERT_EQ(table.table.rows, expected.table.rows);
       ASSERT_EQ(table.end, expected.end);
       ASSERT_EQ(integers(table, 0), integers(expected, 0));
       ASSERT_EQ(words(table, 1), words(expected, 1));
-      ASSERT_EQ(std::get<Words>(table.values[1]).words, std::get<Words>(expected.values[1]).words);
+      ASSERT_EQ(std::get<Words>(table.table.columns[1].values).words,
+                std::get<Words>(expected.table.columns[1].values).words);
       ASSERT_EQ(numbers(table, 2), numbers(expected, 2));
     }
   }
