@@ -14,7 +14,7 @@
 
 #include "base/stop_point.h"
 #include "base/text.h"
-#include "data/columns.h"
+#include "data/frames.h"
 #include "data/readers.h"
 #include "data/records.h"
 
@@ -281,10 +281,13 @@ std::optional<Box> box_of(const Handle& header) {
   return box;
 }
 
-class SnapshotReader final : public DataFile {
+class SnapshotReader final : public SingleFrame {
  public:
-  SnapshotReader(const std::filesystem::path& file, const OpenOptions& options)
-      : file_(file), decompressed_limit_(options.decompressed_limit) {
+  SnapshotReader(const Bytes& bytes, const OpenOptions& options)
+      : SingleFrame(bytes), decompressed_limit_(options.decompressed_limit) {
+    const std::filesystem::path& file = bytes->file();
+    if (bytes->is_in_memory())
+      fail(file, "a compressed HDF5 file cannot be read", "decompress it first, e.g. with `gunzip`");
     const Handle root = open_file(file);
     const Handle header = open_group(root, "Header");
     const std::vector<double> count = attribute(header, "NumFilesPerSnapshot");
@@ -299,9 +302,6 @@ class SnapshotReader final : public DataFile {
     info_.box = box_of(header);
     list_columns();
   }
-
-  int frame_count() override { return 1; }
-  FrameInfo describe(int) override { return info_; }
 
   Table read(int, const std::vector<std::string>& columns) override {
     Table table;
@@ -390,13 +390,13 @@ class SnapshotReader final : public DataFile {
       list += fmt::format("{}{} ({} particles)", list.empty() ? "" : ", ", type, rows_of(type));
     }
     if (present.empty())
-      fail(file_, "no group /PartTypeN with a dataset `Coordinates`",
+      fail(bytes_->file(), "no group /PartTypeN with a dataset `Coordinates`",
            "of HDF5, only snapshots in the layout of Gadget, SWIFT and AREPO are supported; write other data as NPY or "
            "CSV, e.g. with h5py and numpy.save");
     if (wanted && std::find(present.begin(), present.end(), static_cast<std::size_t>(*wanted)) == present.end())
-      fail(file_, fmt::format("there is no component {}", *wanted), "the file has " + list);
+      fail(bytes_->file(), fmt::format("there is no component {}", *wanted), "the file has " + list);
     if (!wanted && filled.size() > 1)
-      fail(file_, "the snapshot has several components", "select one with --component: " + list);
+      fail(bytes_->file(), "the snapshot has several components", "select one with --component: " + list);
     type_ = wanted ? static_cast<std::size_t>(*wanted) : filled.empty() ? present.front() : filled.front();
 
     // What the header declares, over all files. In older files, counts have 32 bits and an additional high word.
@@ -407,8 +407,8 @@ class SnapshotReader final : public DataFile {
     const double declared = low[type_] + (type_ < high.size() ? high[type_] * 4294967296.0 : 0);
     if (declared != static_cast<double>(info_.rows)) {
       std::string text = std::to_string(declared);
-      fail(file_, fmt::format("the header declares {} particles of {}, but there are {}",
-                              text.substr(0, text.find('.')), group_name(type_), info_.rows));
+      fail(bytes_->file(), fmt::format("the header declares {} particles of {}, but there are {}",
+                                       text.substr(0, text.find('.')), group_name(type_), info_.rows));
     }
   }
 
@@ -443,12 +443,10 @@ class SnapshotReader final : public DataFile {
     return rows;
   }
 
-  std::filesystem::path file_;
   std::uint64_t decompressed_limit_;
   std::vector<Part> parts_;
   std::size_t type_ = 0;
   std::vector<SourceColumn> sources_;
-  FrameInfo info_;
 };
 
 bool is_hdf5(const Signature& signature) {
@@ -459,14 +457,8 @@ bool is_hdf5(const Signature& signature) {
   return false;
 }
 
-std::unique_ptr<DataFile> open_hdf5(const Bytes& bytes, const OpenOptions& options) {
-  if (bytes->is_in_memory())
-    fail(bytes->file(), "a compressed HDF5 file cannot be read", "decompress it first, e.g. with `gunzip`");
-  return std::make_unique<SnapshotReader>(bytes->file(), options);
-}
-
 }  // namespace
 
-const FormatReader kHdf5 = {"HDF5", is_hdf5, open_hdf5};
+const FormatReader kHdf5 = {"HDF5", is_hdf5, open_as<SnapshotReader>};
 
 }  // namespace orrery::data
