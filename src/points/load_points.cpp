@@ -55,6 +55,7 @@ class Loader {
       : request_(request), points_(points), faults_(request.key) {}
 
   std::vector<scene::SceneDiagnostic> run() {
+    points_.release_data();
     file_ = open(request_, points_);
     if (const std::optional<int> frame = choose_frame()) {
       info_ = file_->describe(*frame);
@@ -284,15 +285,9 @@ class Loader {
 
   /// Sets what the spheres have besides centre and radius: colour, opacity, object, label, material, vector.
   void set_attributes(const data::Table& table, const Rows& rows, const scene::PointArray& centers) {
-    PointColors colors = colors_of(table, rows, color_, points_.color, faults_);
-    if (request_.on_value && colors.range)
+    set_colors(table, rows, color_, points_, faults_);
+    if (request_.on_value && points_.color_range)
       for_each_shown(*table.find(points_.color.column), rows, points_.color.log, request_.on_value);
-    points_.colors = std::move(colors.indices);
-    points_.palette = std::move(colors.palette);
-    points_.palette_rec709 = colors.rec709;
-    points_.color_range = colors.range;
-    points_.has_nan_color = colors.has_nan;
-    points_.color_names = std::move(colors.names);
     if (opacity_.is_set()) points_.opacities = opacities_of(table, rows, opacity_, points_, faults_);
     if (!points_.cryptomatte.empty()) divide_into_objects(table, rows);
     points_.placed_labels = placed_labels(table, rows, centers, labels_, copies_.front(), points_, faults_);

@@ -35,11 +35,9 @@ std::optional<Labels> labels_or_fault(const data::Table& table, const Rows& rows
 }
 
 /// Gives each label the colour with its index, of a palette that is still empty.
-PointColors colors_of_labels(const Labels& labels) {
-  PointColors out;
-  out.indices = {labels.of_rows.begin(), labels.of_rows.end()};
-  out.names = labels.names;
-  return out;
+void set_labels(const Labels& labels, scene::Points& points) {
+  points.colors = {labels.of_rows.begin(), labels.of_rows.end()};
+  points.color_names = labels.names;
 }
 
 /// Returns the index of each label's colour in a categorical map, before it is reduced modulo the number of colours. If
@@ -67,20 +65,19 @@ std::vector<std::size_t> categories_of(const Labels& labels, const data::Column&
 }
 
 /// Distributes distinct strings evenly over a continuous map, or assigns the colours of a categorical one.
-PointColors colors_by_label(const Labels& labels, const data::Column& column, const ColorMap& map, Vec3d nan_color) {
-  PointColors out = colors_of_labels(labels);
+void color_by_label(const Labels& labels, const data::Column& column, const ColorMap& map, scene::Points& points) {
+  set_labels(labels, points);
   if (map.is_categorical) {
     for (const std::size_t category : categories_of(labels, column, map.knots.size()))
-      out.palette.push_back(linear_from_srgb(map.knots[category % map.knots.size()].srgb));
+      points.palette.push_back(linear_from_srgb(map.knots[category % map.knots.size()].srgb));
   } else {
-    out.palette = palette(map, std::max<std::size_t>(labels.names.size(), 1));
+    points.palette = palette(map, std::max<std::size_t>(labels.names.size(), 1));
   }
-  out.rec709 = out.palette.size();
+  points.palette_rec709 = points.palette.size();
   if (!labels.values.empty() && std::isnan(labels.values.back())) {
-    out.palette.back() = nan_color;
-    --out.rec709;
+    points.palette.back() = points.color.nan_color;
+    --points.palette_rec709;
   }
-  return out;
 }
 
 /// The range of the values of a column that a map shows, if there are any.
@@ -94,80 +91,78 @@ std::optional<scene::Interval> range_of(const data::Column& column, const Rows& 
   return range;
 }
 
-PointColors colors_by_number(const data::Column& column, const Rows& rows, const ColorMap& map,
-                             const scene::PointsColor& color, KeyFaults& faults) {
-  PointColors out;
-  out.palette = palette(map, kMapColors);
-  out.rec709 = kMapColors;
-  out.palette.push_back(color.nan_color);
-  out.range = color.range ? color.range : range_of(column, rows, color.log);
-  if (color.log && out.range && !(out.range->low > 0)) {
-    faults.error(".color.range", "must be above 0 with color.log");
-    return out;
-  }
+void color_by_number(const data::Column& column, const Rows& rows, const ColorMap& map, scene::Points& points,
+                     KeyFaults& faults) {
+  const scene::PointsColor& color = points.color;
+  points.palette = palette(map, kMapColors);
+  points.palette_rec709 = kMapColors;
+  points.palette.push_back(color.nan_color);
+  points.color_range = color.range ? color.range : range_of(column, rows, color.log);
+  if (color.log && points.color_range && !(points.color_range->low > 0))
+    return faults.error(".color.range", "must be above 0 with color.log");
   const auto scaled = [&](double v) { return color.log ? std::log10(v) : v; };
-  const scene::Interval range = out.range.value_or(scene::Interval{1, 1});
+  const scene::Interval range = points.color_range.value_or(scene::Interval{1, 1});
   const double low = scaled(range.low), high = scaled(range.high);
   const double unit = std::isfinite(high - low) ? 1 : 0.5;  // halving prevents overflow for the largest range
   const double span = high * unit - low * unit;
-  out.indices.resize(rows.size());
+  points.colors.resize(rows.size());
   std::size_t without_log = 0;
+  bool has_nan = false;
   for_each_number(column, rows, [&](std::size_t i, double v) {
     if (color.log && v <= 0) ++without_log;
     const bool has_color = color.log ? v > 0 : !std::isnan(v);
     // A constant column has the colour in the middle.
     const double t = has_color && span > 0 ? (std::clamp(scaled(v), low, high) * unit - low * unit) / span : 0.5;
-    out.indices[i] = has_color ? static_cast<std::uint16_t>(t * (kMapColors - 1) + 0.5) : kMapColors;
-    out.has_nan = out.has_nan || !has_color;
+    points.colors[i] = has_color ? static_cast<std::uint16_t>(t * (kMapColors - 1) + 0.5) : kMapColors;
+    has_nan = has_nan || !has_color;
   });
+  points.has_nan_color = has_nan;
   if (without_log > 0)
     faults.warning(".color.log", fmt::format("{} of {} values are not above 0, and have the colour of NaN", without_log,
                                              rows.size()));
-  return out;
 }
 
-PointColors colors_by_map(const data::Table& table, const Rows& rows, const ColorSource& source,
-                          const scene::PointsColor& color, KeyFaults& faults) {
-  const data::Column& column = *table.find(color.column);
+void color_by_map(const data::Table& table, const Rows& rows, const ColorSource& source, scene::Points& points,
+                  KeyFaults& faults) {
+  const std::string& name = points.color.column;
+  const data::Column& column = *table.find(name);
   if (!source.map->is_categorical && column.type() != data::ColumnType::kText)
-    return colors_by_number(column, rows, *source.map, color, faults);
-  const auto labels = labels_or_fault(table, rows, color.column, ".color.column", faults);
-  return labels ? colors_by_label(*labels, column, *source.map, color.nan_color) : PointColors();
+    return color_by_number(column, rows, *source.map, points, faults);
+  if (const auto labels = labels_or_fault(table, rows, name, ".color.column", faults))
+    color_by_label(*labels, column, *source.map, points);
 }
 
-PointColors colors_by_element(const data::Table& table, const Rows& rows, const ColorSource& source,
-                              KeyFaults& faults) {
+void color_by_element(const data::Table& table, const Rows& rows, const ColorSource& source, scene::Points& points,
+                      KeyFaults& faults) {
   const auto labels = labels_or_fault(table, rows, source.columns[0], ".color.element", faults);
-  if (!labels) return {};
-  PointColors out = colors_of_labels(*labels);
+  if (!labels) return;
+  set_labels(*labels, points);
   // Unknown elements have Jmol's colour of unknown elements.
   constexpr std::uint32_t kUnknown = 0xFF1493;
   for (const std::string& name : labels->names) {
     const data::Element* const element = data::find_element(name);
-    out.palette.push_back(linear_from_code(element != nullptr ? element->color : kUnknown));
+    points.palette.push_back(linear_from_code(element != nullptr ? element->color : kUnknown));
   }
-  out.rec709 = out.palette.size();
-  return out;
+  points.palette_rec709 = points.palette.size();
 }
 
-PointColors colors_by_type(const data::Table& table, const Rows& rows, const ColorSource& source,
-                           const scene::PointsColor& color, KeyFaults& faults) {
+void color_by_type(const data::Table& table, const Rows& rows, const ColorSource& source, scene::Points& points,
+                   KeyFaults& faults) {
   const auto labels = labels_or_fault(table, rows, source.columns[0], ".color.type", faults);
-  if (!labels) return {};
-  PointColors out = colors_of_labels(*labels);
+  if (!labels) return;
+  set_labels(*labels, points);
+  const scene::ColorsByType& types = points.color.types;
   std::vector<std::string> missing;
   for (const std::string& name : labels->names) {
-    const auto found =
-        std::find_if(color.types.begin(), color.types.end(), [&](const auto& t) { return t.first == name; });
-    if (found == color.types.end()) missing.push_back(fmt::format("`{}`", name));
-    out.palette.push_back(found == color.types.end() ? Vec3d{} : found->second);
+    const auto found = std::find_if(types.begin(), types.end(), [&](const auto& type) { return type.first == name; });
+    if (found == types.end()) missing.push_back(fmt::format("`{}`", name));
+    points.palette.push_back(found == types.end() ? Vec3d{} : found->second);
   }
   constexpr std::size_t kMaxNamed = 10;
   if (!missing.empty()) {
     missing.resize(std::min(missing.size(), kMaxNamed));
     faults.error(".color.type", fmt::format("type {} has no colour; add it", base::joined(missing)));
   }
-  return out;
 }
 
 /// The value of full intensity. Floating-point colours are from 0 to 1, but some programs write 0 to 255, in which case
@@ -210,7 +205,8 @@ std::vector<std::uint32_t> bytes_of(const data::Table& table, const Rows& rows, 
   return out;
 }
 
-PointColors colors_by_rgb(const data::Table& table, const Rows& rows, const ColorSource& source, KeyFaults& faults) {
+void color_by_rgb(const data::Table& table, const Rows& rows, const ColorSource& source, scene::Points& points,
+                  KeyFaults& faults) {
   std::vector<std::uint32_t> bytes = bytes_of(table, rows, source, faults);
   constexpr std::uint32_t kColors = std::uint32_t{1} << 24;
   std::vector<std::uint32_t> index(kColors);
@@ -232,12 +228,10 @@ PointColors colors_by_rgb(const data::Table& table, const Rows& rows, const Colo
     }
     if (distinct.size() <= kMaxPalette) break;
   }
-  PointColors out;
-  for (const std::uint32_t code : distinct) out.palette.push_back(linear_from_code(code));
-  out.rec709 = out.palette.size();
-  out.indices.resize(bytes.size());
-  for (std::size_t i = 0; i < bytes.size(); ++i) out.indices[i] = static_cast<std::uint16_t>(index[bytes[i]]);
-  return out;
+  for (const std::uint32_t code : distinct) points.palette.push_back(linear_from_code(code));
+  points.palette_rec709 = points.palette.size();
+  points.colors.resize(bytes.size());
+  for (std::size_t i = 0; i < bytes.size(); ++i) points.colors[i] = static_cast<std::uint16_t>(index[bytes[i]]);
 }
 
 void set_map(const scene::PointsColor& color, const std::filesystem::path& folder, ColorSource& out,
@@ -316,16 +310,15 @@ ColorSource color_source(const data::FrameInfo& info, const scene::PointsColor& 
   return out;
 }
 
-PointColors colors_of(const data::Table& table, const Rows& rows, const ColorSource& source,
-                      const scene::PointsColor& color, KeyFaults& faults) {
+void set_colors(const data::Table& table, const Rows& rows, const ColorSource& source, scene::Points& points,
+                KeyFaults& faults) {
   switch (source.kind) {
-    case ColorSource::Kind::kNone: return {};
-    case ColorSource::Kind::kMap: return colors_by_map(table, rows, source, color, faults);
-    case ColorSource::Kind::kElement: return colors_by_element(table, rows, source, faults);
-    case ColorSource::Kind::kType: return colors_by_type(table, rows, source, color, faults);
-    case ColorSource::Kind::kRgb: return colors_by_rgb(table, rows, source, faults);
+    case ColorSource::Kind::kNone: break;
+    case ColorSource::Kind::kMap: color_by_map(table, rows, source, points, faults); break;
+    case ColorSource::Kind::kElement: color_by_element(table, rows, source, points, faults); break;
+    case ColorSource::Kind::kType: color_by_type(table, rows, source, points, faults); break;
+    case ColorSource::Kind::kRgb: color_by_rgb(table, rows, source, points, faults); break;
   }
-  return {};
 }
 
 }  // namespace orrery::points

@@ -52,16 +52,6 @@ struct ColorSource {
   std::optional<ColorMap> map;
 };
 
-/// Colours of spheres: a palette and one index per sphere.
-struct PointColors {
-  std::vector<math::Vec3d> palette;
-  std::size_t rec709 = 0;  ///< leading colours that are linear Rec.709; the others are in the scene's colour space
-  std::vector<std::uint16_t> indices;
-  std::vector<std::string> names;        ///< names of the colours, if they represent types, elements or strings
-  std::optional<scene::Interval> range;  ///< range of a continuous colour map; empty if all values are NaN
-  bool has_nan = false;                  ///< values have the colour of NaN, the last of the palette
-};
-
 /// Determines the source of the colours. Reports unknown columns and maps, and mutually exclusive keys.
 ///
 /// `folder`   folder of the scene file, for a map in a file
@@ -81,12 +71,12 @@ void for_each_shown(const data::Column& column, const Rows& rows, bool is_log, F
   });
 }
 
-/// Returns the colours of the rows. A map becomes 256 colours. More than 65,536 distinct RGB colours are reduced to 7,
-/// 6 or 5 bits per channel, whichever fits.
+/// Sets the colours of the rows: `points.colors`, the palette and what is known of it. A map becomes 256 colours. More
+/// than 65,536 distinct RGB colours are reduced to 7, 6 or 5 bits per channel, whichever fits.
 ///
-/// Domain     a table with the source's columns, after add_expression()
-PointColors colors_of(const data::Table& table, const Rows& rows, const ColorSource& source,
-                      const scene::PointsColor& color, KeyFaults& faults);
+/// Domain     a table with the source's columns, after add_expression(); points without data
+void set_colors(const data::Table& table, const Rows& rows, const ColorSource& source, scene::Points& points,
+                KeyFaults& faults);
 
 /// An opacity, and the condition under which a sphere has it; empty: always.
 struct OpacityRule {

@@ -32,25 +32,26 @@ class PointsPointColors : public testing::Test {
  protected:
   PointsPointColors() { keys.column = "c"; }
 
-  PointColors colors(const data::Table& table) { return colors(table, Rows(table.rows)); }
-  PointColors colors(const data::Table& table, const Rows& rows) {
+  scene::Points colors(const data::Table& table) { return colors(table, Rows(table.rows)); }
+  scene::Points colors(const data::Table& table, const Rows& rows) {
     data::FrameInfo info;
     for (const data::Column& column : table.columns) info.columns.push_back({column.name, column.type()});
     info.roles = roles;
     KeyFaults faults("points[0]");
     const ColorSource source = color_source(info, keys, folder_.path(), faults);
-    PointColors out;
+    scene::Points out;
+    out.color = keys;
     data::Table all = table;
     add_expression(source, keys, all, faults);
-    if (!faults.has_errors()) out = colors_of(all, rows, source, keys, faults);
+    if (!faults.has_errors()) set_colors(all, rows, source, out, faults);
     diagnostics = text_of(faults);
-    EXPECT_LE(out.rec709, out.palette.size());
-    for (const std::uint16_t i : out.indices) EXPECT_LT(i, out.palette.size());
+    EXPECT_LE(out.palette_rec709, out.palette.size());
+    for (const std::uint16_t i : out.colors) EXPECT_LT(i, out.palette.size());
     return out;
   }
   Vec3d color_of(const data::Table& table, std::size_t row) {
-    const PointColors all = colors(table);
-    return all.palette.at(all.indices.at(row));
+    const scene::Points all = colors(table);
+    return all.palette.at(all.colors.at(row));
   }
 
   scene::PointsColor keys;
@@ -72,21 +73,21 @@ Vec3d light(int r, int g, int b) {
 
 TEST_F(PointsPointColors, NoneUnlessAKeyIsSet) {
   keys.column.clear();
-  const PointColors none = colors(table_of(std::vector<double>{1, 2}));
-  EXPECT_TRUE(none.palette.empty() && none.indices.empty() && !none.range && none.names.empty());
+  const scene::Points none = colors(table_of(std::vector<double>{1, 2}));
+  EXPECT_TRUE(none.palette.empty() && none.colors.empty() && !none.color_range && none.color_names.empty());
 }
 
 TEST_F(PointsPointColors, ExpressionsAreColumns) {
   keys.column = "c * c - 1";
-  const PointColors of_squares = colors(table_of(std::vector<double>{1, 2, 3, kNan}));
-  EXPECT_EQ(of_squares.range->low, 0);
-  EXPECT_EQ(of_squares.range->high, 8);
-  EXPECT_EQ(of_squares.indices, (Indices{0, 96, 255, 256}));
+  const scene::Points of_squares = colors(table_of(std::vector<double>{1, 2, 3, kNan}));
+  EXPECT_EQ(of_squares.color_range->low, 0);
+  EXPECT_EQ(of_squares.color_range->high, 8);
+  EXPECT_EQ(of_squares.colors, (Indices{0, 96, 255, 256}));
   EXPECT_EQ(
       diagnostics,
       "warning points[0].color.column: 1 of 4 values of `c * c - 1` are not finite, and have the colour of NaN\n");
   keys.column = "1 / c";
-  EXPECT_EQ(colors(table_of(std::vector<double>{0, 2, 4})).indices, (Indices{256, 255, 0})) << "division by zero";
+  EXPECT_EQ(colors(table_of(std::vector<double>{0, 2, 4})).colors, (Indices{256, 255, 0})) << "division by zero";
   keys.column = "1 / d";
   colors(table_of(std::vector<double>{0}));
   EXPECT_EQ(diagnostics.substr(0, 90),
@@ -95,10 +96,10 @@ TEST_F(PointsPointColors, ExpressionsAreColumns) {
 
 TEST_F(PointsPointColors, LogarithmsShowDecades) {
   keys.log = true;
-  const PointColors decades = colors(table_of(std::vector<double>{1e-3, 1, 1e3, 0, -5, kNan, kInfinity}));
-  EXPECT_EQ(decades.range->low, 1e-3);
-  EXPECT_EQ(decades.range->high, 1e3);
-  EXPECT_EQ(decades.indices, (Indices{0, 128, 255, 256, 256, 256, 255}));
+  const scene::Points decades = colors(table_of(std::vector<double>{1e-3, 1, 1e3, 0, -5, kNan, kInfinity}));
+  EXPECT_EQ(decades.color_range->low, 1e-3);
+  EXPECT_EQ(decades.color_range->high, 1e3);
+  EXPECT_EQ(decades.colors, (Indices{0, 128, 255, 256, 256, 256, 255}));
   EXPECT_EQ(diagnostics, "warning points[0].color.log: 2 of 7 values are not above 0, and have the colour of NaN\n");
   keys.range = scene::Interval{0, 1};
   colors(table_of(std::vector<double>{1}));
@@ -108,9 +109,9 @@ TEST_F(PointsPointColors, LogarithmsShowDecades) {
 /// Tables of colour maps are display values. A renderer that takes them for light shows pastel colours.
 TEST_F(PointsPointColors, PaletteIsDecodedToLight) {
   keys.map = "viridis";
-  const PointColors out = colors(table_of(std::vector<double>{0, 1}));
+  const scene::Points out = colors(table_of(std::vector<double>{0, 1}));
   ASSERT_EQ(out.palette.size(), 257u);
-  EXPECT_EQ(out.rec709, 256u) << "the colour of NaN is in the scene's space";
+  EXPECT_EQ(out.palette_rec709, 256u) << "the colour of NaN is in the scene's space";
   // The published ends of viridis: #440154 and #fde725.
   EXPECT_LT(math::length(out.palette[0] - light(0x44, 0x01, 0x54)), 0.005);
   EXPECT_LT(math::length(out.palette[255] - light(0xfd, 0xe7, 0x25)), 0.02);
@@ -119,45 +120,45 @@ TEST_F(PointsPointColors, PaletteIsDecodedToLight) {
 
 TEST_F(PointsPointColors, ADerivedRangeIsThatOfTheRows) {
   const data::Table table = table_of(std::vector<double>{-100, 2, 4, 6, kInfinity, kNan});
-  const PointColors out = colors(table, Rows(std::vector<std::uint32_t>{1, 2, 3, 4, 5}));
-  ASSERT_TRUE(out.range);
-  EXPECT_EQ(out.range->low, 2);
-  EXPECT_EQ(out.range->high, 6);
-  EXPECT_EQ(out.indices, (Indices{0, 128, 255, 255, 256}));
+  const scene::Points out = colors(table, Rows(std::vector<std::uint32_t>{1, 2, 3, 4, 5}));
+  ASSERT_TRUE(out.color_range);
+  EXPECT_EQ(out.color_range->low, 2);
+  EXPECT_EQ(out.color_range->high, 6);
+  EXPECT_EQ(out.colors, (Indices{0, 128, 255, 255, 256}));
 }
 
 TEST_F(PointsPointColors, AGivenRangeClampsValues) {
   keys.range = scene::Interval{0, 255};
-  const PointColors out = colors(table_of(std::vector<double>{-3, 0, 0.4, 0.6, 100, 254.6, 1e9, -kInfinity}));
-  EXPECT_EQ(out.range->high, 255);
-  EXPECT_EQ(out.indices, (Indices{0, 0, 0, 1, 100, 255, 255, 0}));
+  const scene::Points out = colors(table_of(std::vector<double>{-3, 0, 0.4, 0.6, 100, 254.6, 1e9, -kInfinity}));
+  EXPECT_EQ(out.color_range->high, 255);
+  EXPECT_EQ(out.colors, (Indices{0, 0, 0, 1, 100, 255, 255, 0}));
 }
 
 TEST_F(PointsPointColors, NanHasItsOwnColor) {
   keys.nan_color = {0.1, 0.2, 0.3};
   expect_color(color_of(table_of(std::vector<float>{1, NAN, 2}), 1), {0.1, 0.2, 0.3});
-  const PointColors all = colors(table_of(std::vector<double>{kNan, kNan}));
-  EXPECT_FALSE(all.range) << "there is no range of no numbers";
-  expect_color(all.palette[all.indices[0]], {0.1, 0.2, 0.3});
+  const scene::Points all = colors(table_of(std::vector<double>{kNan, kNan}));
+  EXPECT_FALSE(all.color_range) << "there is no range of no numbers";
+  expect_color(all.palette[all.colors[0]], {0.1, 0.2, 0.3});
 }
 
 TEST_F(PointsPointColors, AConstantColumnHasTheMiddleColor) {
-  EXPECT_EQ(colors(table_of(std::vector<std::int32_t>{7, 7, 7})).indices, (Indices{128, 128, 128}));
+  EXPECT_EQ(colors(table_of(std::vector<std::int32_t>{7, 7, 7})).colors, (Indices{128, 128, 128}));
 }
 
 TEST_F(PointsPointColors, RangesOfAnyMagnitude) {
   const double huge = std::numeric_limits<double>::max(), tiny = std::numeric_limits<double>::denorm_min();
-  EXPECT_EQ(colors(table_of(std::vector<double>{-huge, 0, huge})).indices, (Indices{0, 128, 255}));
-  EXPECT_EQ(colors(table_of(std::vector<double>{0, tiny, 2 * tiny})).indices, (Indices{0, 128, 255}));
-  EXPECT_EQ(colors(table_of(std::vector<double>{1e15, 1e15 + 1})).indices, (Indices{0, 255}));
+  EXPECT_EQ(colors(table_of(std::vector<double>{-huge, 0, huge})).colors, (Indices{0, 128, 255}));
+  EXPECT_EQ(colors(table_of(std::vector<double>{0, tiny, 2 * tiny})).colors, (Indices{0, 128, 255}));
+  EXPECT_EQ(colors(table_of(std::vector<double>{1e15, 1e15 + 1})).colors, (Indices{0, 255}));
 }
 
 TEST_F(PointsPointColors, NoRows) {
-  EXPECT_TRUE(colors(table_of(std::vector<double>{})).indices.empty());
+  EXPECT_TRUE(colors(table_of(std::vector<double>{})).colors.empty());
   keys.map = "tab10";
-  EXPECT_TRUE(colors(table_of(std::vector<double>{})).indices.empty());
+  EXPECT_TRUE(colors(table_of(std::vector<double>{})).colors.empty());
   keys.map = "viridis";
-  EXPECT_TRUE(colors(table_of(data::Words{})).indices.empty());
+  EXPECT_TRUE(colors(table_of(data::Words{})).colors.empty());
   EXPECT_EQ(diagnostics, "");
 }
 
@@ -165,22 +166,22 @@ TEST_F(PointsPointColors, NoRows) {
 TEST_F(PointsPointColors, CategoriesOfIntegersHaveFixedColors) {
   keys.map = "tab10";
   const std::vector<ColorMap::Knot>& knots = find_color_map("tab10")->knots;
-  const PointColors out = colors(table_of(std::vector<std::int64_t>{3, 1, 11, 0, -9}));
-  EXPECT_EQ(out.names, (std::vector<std::string>{"-9", "0", "1", "3", "11"}));
-  EXPECT_EQ(out.rec709, 5u);
-  EXPECT_FALSE(out.range);
+  const scene::Points out = colors(table_of(std::vector<std::int64_t>{3, 1, 11, 0, -9}));
+  EXPECT_EQ(out.color_names, (std::vector<std::string>{"-9", "0", "1", "3", "11"}));
+  EXPECT_EQ(out.palette_rec709, 5u);
+  EXPECT_FALSE(out.color_range);
   const std::size_t expected[] = {2, 0, 0, 9, 0};
   for (std::size_t i = 0; i < 5; ++i)
-    EXPECT_EQ(out.palette[out.indices[i]], linear_from_srgb(knots[expected[i]].srgb)) << i;
+    EXPECT_EQ(out.palette[out.colors[i]], linear_from_srgb(knots[expected[i]].srgb)) << i;
   EXPECT_EQ(color_of(table_of(std::vector<std::uint8_t>{3}), 0), linear_from_srgb(knots[2].srgb));
 }
 
 TEST_F(PointsPointColors, CategoriesOfFractionsAreNumbered) {
   keys.map = "tab10";
   const std::vector<ColorMap::Knot>& knots = find_color_map("tab10")->knots;
-  const PointColors out = colors(table_of(std::vector<double>{0.7, 0.5, kInfinity}));
-  EXPECT_EQ(out.palette[out.indices[0]], linear_from_srgb(knots[1].srgb));
-  EXPECT_EQ(out.palette[out.indices[1]], linear_from_srgb(knots[0].srgb));
+  const scene::Points out = colors(table_of(std::vector<double>{0.7, 0.5, kInfinity}));
+  EXPECT_EQ(out.palette[out.colors[0]], linear_from_srgb(knots[1].srgb));
+  EXPECT_EQ(out.palette[out.colors[1]], linear_from_srgb(knots[0].srgb));
   colors(table_of(std::vector<double>{1, kInfinity, -kInfinity, 1e300}));
   EXPECT_EQ(diagnostics, "");
 }
@@ -189,26 +190,26 @@ TEST_F(PointsPointColors, CategoriesOfStringsDoNotDependOnTheSelection) {
   keys.map = "tab10";
   const std::vector<ColorMap::Knot>& knots = find_color_map("tab10")->knots;
   const data::Table table = table_of(data::Words{{"S", "C", "N"}, {0, 1, 2}});
-  const PointColors out = colors(table, Rows(std::vector<std::uint32_t>{0}));
+  const scene::Points out = colors(table, Rows(std::vector<std::uint32_t>{0}));
   EXPECT_EQ(out.palette, std::vector<Vec3d>{linear_from_srgb(knots[2].srgb)});
-  EXPECT_EQ(out.names, std::vector<std::string>{"S"});
+  EXPECT_EQ(out.color_names, std::vector<std::string>{"S"});
 }
 
 TEST_F(PointsPointColors, NanIsASeparateCategory) {
   keys.map = "tab10";
   keys.nan_color = {0.1, 0.2, 0.3};
-  const PointColors out = colors(table_of(std::vector<double>{1, kNan, 2}));
-  EXPECT_EQ(out.palette.at(out.indices[1]), keys.nan_color);
-  EXPECT_EQ(out.rec709, 2u);
-  EXPECT_EQ(out.names, (std::vector<std::string>{"1", "2", "nan"}));
+  const scene::Points out = colors(table_of(std::vector<double>{1, kNan, 2}));
+  EXPECT_EQ(out.palette.at(out.colors[1]), keys.nan_color);
+  EXPECT_EQ(out.palette_rec709, 2u);
+  EXPECT_EQ(out.color_names, (std::vector<std::string>{"1", "2", "nan"}));
 }
 
 TEST_F(PointsPointColors, StringsSpreadOverAContinuousMap) {
   const ColorMap& map = *find_color_map("viridis");
-  const PointColors out = colors(table_of(data::Words{{"b", "c", "a"}, {0, 1, 2}}));
+  const scene::Points out = colors(table_of(data::Words{{"b", "c", "a"}, {0, 1, 2}}));
   EXPECT_EQ(out.palette, palette(map, 3));
-  EXPECT_EQ(out.indices, (Indices{1, 2, 0}));
-  EXPECT_FALSE(out.range);
+  EXPECT_EQ(out.colors, (Indices{1, 2, 0}));
+  EXPECT_FALSE(out.color_range);
 }
 
 TEST_F(PointsPointColors, TooManyCategories) {
@@ -229,22 +230,22 @@ TEST_F(PointsPointColors, ElementsOfJmol) {
   keys.column.clear();
   keys.element = "jmol";
   roles.element = "c";
-  const PointColors out = colors(table_of(data::Words{{"Qq", "O", "fe"}, {2, 1, 0, 1}}));
-  expect_color(out.palette.at(out.indices[0]), light(0xE0, 0x66, 0x33));
-  expect_color(out.palette.at(out.indices[1]), light(0xFF, 0x0D, 0x0D));
-  expect_color(out.palette.at(out.indices[2]), light(255, 20, 147));
-  EXPECT_EQ(out.rec709, out.palette.size());
-  EXPECT_EQ(out.names, (std::vector<std::string>{"O", "Qq", "fe"}));
+  const scene::Points out = colors(table_of(data::Words{{"Qq", "O", "fe"}, {2, 1, 0, 1}}));
+  expect_color(out.palette.at(out.colors[0]), light(0xE0, 0x66, 0x33));
+  expect_color(out.palette.at(out.colors[1]), light(0xFF, 0x0D, 0x0D));
+  expect_color(out.palette.at(out.colors[2]), light(255, 20, 147));
+  EXPECT_EQ(out.palette_rec709, out.palette.size());
+  EXPECT_EQ(out.color_names, (std::vector<std::string>{"O", "Qq", "fe"}));
 }
 
 TEST_F(PointsPointColors, TypesHaveTheScenesColors) {
   keys.column.clear();
   roles.type = "c";
   keys.types = {{"2", {0.25, 0.5, 1}}, {"1", {0, 0, 1}}, {"7", {}}};
-  const PointColors out = colors(table_of(std::vector<std::int32_t>{2, 1, 2}));
-  EXPECT_EQ(out.palette.at(out.indices[0]), (Vec3d{0.25, 0.5, 1}));
-  EXPECT_EQ(out.palette.at(out.indices[1]), (Vec3d{0, 0, 1}));
-  EXPECT_EQ(out.rec709, 0u) << "authored colours are in the scene's space";
+  const scene::Points out = colors(table_of(std::vector<std::int32_t>{2, 1, 2}));
+  EXPECT_EQ(out.palette.at(out.colors[0]), (Vec3d{0.25, 0.5, 1}));
+  EXPECT_EQ(out.palette.at(out.colors[1]), (Vec3d{0, 0, 1}));
+  EXPECT_EQ(out.palette_rec709, 0u) << "authored colours are in the scene's space";
   colors(table_of(std::vector<std::int32_t>{3, 1, 4}));
   EXPECT_EQ(diagnostics, "error points[0].color.type: type `3`, `4` has no colour; add it\n");
 }
@@ -262,12 +263,12 @@ TEST_F(PointsPointColors, RgbIsDecoded) {
   keys.column.clear();
   keys.rgb = true;
   roles.rgb = {"r", "g", "b"};
-  const PointColors out = colors(rgb_table<std::uint8_t>({255, 0, 128}, {0, 0, 64}, {10, 0, 32}));
-  expect_color(out.palette.at(out.indices[0]), light(255, 0, 10));
-  expect_color(out.palette.at(out.indices[1]), {0, 0, 0});
-  expect_color(out.palette.at(out.indices[2]), light(128, 64, 32));
-  EXPECT_EQ(out.rec709, 3u);
-  EXPECT_TRUE(out.names.empty());
+  const scene::Points out = colors(rgb_table<std::uint8_t>({255, 0, 128}, {0, 0, 64}, {10, 0, 32}));
+  expect_color(out.palette.at(out.colors[0]), light(255, 0, 10));
+  expect_color(out.palette.at(out.colors[1]), {0, 0, 0});
+  expect_color(out.palette.at(out.colors[2]), light(128, 64, 32));
+  EXPECT_EQ(out.palette_rec709, 3u);
+  EXPECT_TRUE(out.color_names.empty());
 
   roles.rgb_maximum = 65535;
   expect_color(color_of(rgb_table<std::uint16_t>({65535}, {257 * 100}, {0}), 0), light(255, 100, 0));
@@ -305,17 +306,17 @@ TEST_F(PointsPointColors, ManyRgbColorsAreReduced) {
   r.push_back(200);
   g.push_back(100);
   b.push_back(50);
-  const PointColors out = colors(rgb_table(r, g, b));
+  const scene::Points out = colors(rgb_table(r, g, b));
   EXPECT_EQ(out.palette.size(), 128u * 128 + 1);
-  expect_color(out.palette.at(out.indices.back()), light(201, 101, 51));
-  for (const Vec3d& c : {out.palette[out.indices[0]], out.palette[out.indices[256 * 255 + 255]]})
+  expect_color(out.palette.at(out.colors.back()), light(201, 101, 51));
+  for (const Vec3d& c : {out.palette[out.colors[0]], out.palette[out.colors[256 * 255 + 255]]})
     EXPECT_LE(std::min(math::length(c - light(0, 0, 0)), math::length(c - light(255, 255, 0))), 0.01);
 }
 
 TEST_F(PointsPointColors, MapFromAFile) {
   support::write_bytes(folder_ / "two.txt", "0 0 0\n1 0 0\n");
   keys.map = "two.txt";
-  const PointColors out = colors(table_of(std::vector<double>{0, 1}));
+  const scene::Points out = colors(table_of(std::vector<double>{0, 1}));
   expect_color(out.palette[255], {1, 0, 0});
   expect_color(out.palette[51], light(51, 0, 0));
   keys.map = "missing.txt";
