@@ -9,6 +9,21 @@
 
 namespace orrery::data {
 
+Table SingleFrame::empty_table(const std::vector<std::string>& names) const {
+  static const Values kEmpty[] = {std::vector<double>(),
+                                  std::vector<float>(),
+                                  std::vector<std::int64_t>(),
+                                  std::vector<std::int32_t>(),
+                                  std::vector<std::uint16_t>(),
+                                  std::vector<std::uint8_t>(),
+                                  Words()};
+  Table out;
+  out.rows = static_cast<std::size_t>(info_.rows);
+  for (const std::string& name : names)
+    out.columns.push_back({name, kEmpty[static_cast<std::size_t>(find_named(info_.columns, name)->type)]});
+  return out;
+}
+
 int TextFrames::frame_count() {
   while (add_frame()) {
   }

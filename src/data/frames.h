@@ -34,6 +34,9 @@ class SingleFrame : public DataFile {
     settle_element(std::get<Words>(table.columns.at(0).values).words, info_.roles);
   }
 
+  /// Returns a table of these columns without values, which the caller appends.
+  Table empty_table(const std::vector<std::string>& names) const;
+
   Bytes bytes_;
   FrameInfo info_;
 };

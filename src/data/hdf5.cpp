@@ -61,7 +61,7 @@ std::string last_error() {
 /// Column type and in-memory type of stored numbers; the latter is negative for unsupported types.
 struct Types {
   ColumnType column = ColumnType::kFloat64;
-  hid_t memory = -1;
+  hid_t memory = -1;  ///< predefined, not owned
 };
 
 Types types_of(const Handle& stored) {
@@ -142,8 +142,7 @@ class Dataset {
     rows_ = extent[0];
     components_ = extent[1];
     value_bytes_ = H5Tget_size(stored.id());
-    type_ = types.column;
-    memory_type_ = types.memory;
+    types_ = types;
     handle_ = std::move(handle);
   }
 
@@ -151,7 +150,7 @@ class Dataset {
   std::uint64_t rows() const { return rows_; }
   std::uint64_t components() const { return components_; }
   /// The column type that stores the values without loss. For uint64 it is int64, with the same bits.
-  ColumnType type() const { return type_; }
+  ColumnType type() const { return types_.column; }
 
   /// Checks that the rows are backed by data before memory is allocated for them.
   ///
@@ -186,7 +185,7 @@ class Dataset {
           if constexpr (requires { first.data(); }) append_as<typename Array::value_type>(columns, faults);
         },
         *columns.front().second);
-    if (H5Tequal(memory_type_, H5T_NATIVE_UINT64) > 0)
+    if (H5Tequal(types_.memory, H5T_NATIVE_UINT64) > 0)
       for (const auto& [component, values] : columns)
         check_unsigned(name_, std::get<std::vector<std::int64_t>>(*values), faults);
     faults.raise_if_any();
@@ -204,7 +203,7 @@ class Dataset {
     if (components_ == 1) {
       for (const auto& [component, values] : columns) {
         T* const out = std::get<std::vector<T>>(*values).data() + begin;
-        check(H5Dread(handle_.id(), memory_type_, H5S_ALL, H5S_ALL, H5P_DEFAULT, out));
+        check(H5Dread(handle_.id(), types_.memory, H5S_ALL, H5S_ALL, H5P_DEFAULT, out));
       }
       return;
     }
@@ -217,7 +216,7 @@ class Dataset {
       const hsize_t offset[2] = {row, 0}, count[2] = {std::min(block, rows_ - row), components_};
       const Handle memory(H5Screate_simple(2, count, nullptr), H5Sclose);
       check(H5Sselect_hyperslab(space.id(), H5S_SELECT_SET, offset, nullptr, count, nullptr));
-      check(H5Dread(handle_.id(), memory_type_, memory.id(), space.id(), H5P_DEFAULT, buffer.data()));
+      check(H5Dread(handle_.id(), types_.memory, memory.id(), space.id(), H5P_DEFAULT, buffer.data()));
       for (const auto& [component, values] : columns) {
         T* const out = std::get<std::vector<T>>(*values).data() + begin + row;
         for (std::size_t i = 0; i < count[0]; ++i) out[i] = buffer[i * components_ + component];
@@ -240,8 +239,7 @@ class Dataset {
   Handle handle_;
   std::uint64_t rows_ = 0, components_ = 1;
   std::size_t value_bytes_ = 0;
-  ColumnType type_ = ColumnType::kFloat64;
-  hid_t memory_type_ = -1;  ///< predefined, not owned
+  Types types_;
 };
 
 constexpr const char* kPositions = "Coordinates";
@@ -260,11 +258,11 @@ struct Part {
   std::array<bool, kMaxTypes> has_type{};
 };
 
-/// One column.
-struct SourceColumn {
-  ColumnInfo info;
+/// A dataset of the chosen type.
+struct Source {
   std::string dataset;
-  std::uint64_t component = 0, components = 1;
+  ColumnType type = ColumnType::kFloat64;
+  std::vector<std::string> columns;  ///< of its components
 };
 
 [[noreturn]] void fail(const std::filesystem::path& file, const std::string& text, const std::string& remedy = {}) {
@@ -304,38 +302,24 @@ class SnapshotReader final : public SingleFrame {
   }
 
   Table read(int, const std::vector<std::string>& columns) override {
-    Table table;
-    table.rows = static_cast<std::size_t>(info_.rows);
-    std::vector<const SourceColumn*> wanted;
-    for (const std::string& name : columns)
-      for (const SourceColumn& source : sources_)
-        if (source.info.name == name) {
-          wanted.push_back(&source);
-          table.columns.push_back({name, empty_values(source.info.type)});
-        }
+    Table table = empty_table(columns);
     for (const Part& part : parts_) {
       const std::uint64_t rows = part.rows[type_];
       if (rows == 0) continue;
       Faults faults(part.file);
       const std::uint64_t file_size = std::filesystem::file_size(part.file);
       const Handle root = open_file(part.file), group = open_group(root, group_name(type_));
-      std::vector<bool> is_done(wanted.size());
-      for (std::size_t i = 0; i < wanted.size(); ++i) {
-        if (is_done[i]) continue;
-        const SourceColumn& source = *wanted[i];
+      for (const Source& source : sources_) {
+        std::vector<std::pair<std::uint64_t, Values*>> out;
+        for (std::size_t i = 0; i < source.columns.size(); ++i)
+          if (Column* const column = table.find(source.columns[i])) out.emplace_back(i, &column->values);
+        if (out.empty()) continue;
         const Dataset dataset(group, source.dataset);
-        if (!dataset || dataset.rows() != rows || dataset.components() != source.components ||
-            dataset.type() != source.info.type)
+        if (!dataset || dataset.rows() != rows || dataset.components() != source.columns.size() ||
+            dataset.type() != source.type)
           faults.fail(0, fmt::format("{}/{} is missing or differs from that of the other files", group_name(type_),
                                      source.dataset));
         dataset.require_data(file_size, decompressed_limit_, faults);
-        // All components of the dataset at once.
-        std::vector<std::pair<std::uint64_t, Values*>> out;
-        for (std::size_t j = i; j < wanted.size(); ++j) {
-          if (wanted[j]->dataset != source.dataset) continue;
-          out.emplace_back(wanted[j]->component, &table.columns[j].values);
-          is_done[j] = true;
-        }
         dataset.append(out, faults);
       }
     }
@@ -421,19 +405,19 @@ class SnapshotReader final : public SingleFrame {
     const Handle root = open_file(part->file), group = open_group(root, group_name(type_));
     std::vector<std::string> names = link_names(group);
     std::stable_partition(names.begin(), names.end(), [](const std::string& name) { return name == kPositions; });
+    UniqueNames unique_names;
     for (const std::string& name : names) {
       const Dataset dataset(group, name);
       if (!dataset || dataset.rows() != part->rows[type_]) continue;
       const std::uint64_t components = dataset.components();
       if (components == 0 || components > kMaxComponents) continue;
-      const std::vector<std::string> columns =
-          component_names(name, static_cast<std::size_t>(components), info_.columns);
-      for (std::uint64_t i = 0; i < components; ++i) {
-        info_.columns.push_back({columns[i], dataset.type()});
-        sources_.push_back({info_.columns.back(), name, i, components});
+      Source& source = sources_.emplace_back(Source{name, dataset.type(), {}});
+      for (const std::string& column : component_names(name, static_cast<std::size_t>(components), info_.columns)) {
+        source.columns.push_back(unique_names.add(column));
+        info_.columns.push_back({source.columns.back(), source.type});
       }
-      if (name == kPositions) std::copy(columns.begin(), columns.end(), info_.roles.position.begin());
-      if (name == kIds && components == 1) info_.roles.id = columns[0];
+      if (name == kPositions) std::copy(source.columns.begin(), source.columns.end(), info_.roles.position.begin());
+      if (name == kIds && components == 1) info_.roles.id = source.columns[0];
     }
   }
 
@@ -446,7 +430,7 @@ class SnapshotReader final : public SingleFrame {
   std::uint64_t decompressed_limit_;
   std::vector<Part> parts_;
   std::size_t type_ = 0;
-  std::vector<SourceColumn> sources_;
+  std::vector<Source> sources_;
 };
 
 bool is_hdf5(const Signature& signature) {

@@ -464,9 +464,7 @@ class PlyFile final : public SingleFrame {
   /// Reads all rows one by one, with lists and with other elements between them.
   std::vector<Column> read_rows(const std::vector<std::string>& names, Faults& faults) const {
     PlyCursor cursor(*bytes_, header_.bytes, header_.encoding, header_.lines + 1);
-    Table table;
-    for (const std::string& name : names)
-      table.columns.push_back({name, empty_values(find_named(info_.columns, name)->type)});
+    Table table = empty_table(names);
     std::vector<Column*> targets;  // of the properties; null unless they are wanted
     for (const PlyProperty& property : vertex().properties) targets.push_back(table.find(property.name));
     for (const PlyElement& element : header_.elements) {

@@ -66,18 +66,6 @@ constexpr std::optional<NumberType> number_type(const NumberTypeName (&names)[co
   return {};
 }
 
-/// Returns an empty column of a type.
-inline Values empty_values(ColumnType type) {
-  static const Values kEmpty[] = {std::vector<double>(),
-                                  std::vector<float>(),
-                                  std::vector<std::int64_t>(),
-                                  std::vector<std::int32_t>(),
-                                  std::vector<std::uint16_t>(),
-                                  std::vector<std::uint8_t>(),
-                                  Words()};
-  return kEmpty[static_cast<std::size_t>(type)];
-}
-
 /// Loads a number of either byte order.
 template <class T>
 T load(const char* from, bool is_big_endian) {

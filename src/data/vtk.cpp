@@ -419,10 +419,7 @@ class VtkFile final : public SingleFrame {
   }
 
   Table read(int, const std::vector<std::string>& names) override {
-    Table table;
-    table.rows = static_cast<std::size_t>(info_.rows);
-    for (const std::string& name : names)
-      table.columns.push_back({name, empty_values(find_named(info_.columns, name)->type)});
+    Table table = empty_table(names);
     Faults faults(bytes_->file());
     for (const VtkArray& array : arrays_) {
       std::vector<RecordField> fields;
