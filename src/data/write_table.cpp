@@ -276,7 +276,8 @@ std::vector<XyzOutput> xyz_outputs(const Table& table, std::vector<std::string>&
   return out;
 }
 
-/// Result     the names of the columns that it omits
+// Functions that write a format, and return the names of the columns that they omit.
+
 std::vector<std::string> write_ply_table(base::OutputFile& out, const Table& table, const std::string& writer) {
   std::vector<std::string> left_out;
   std::vector<PlyOutput> outputs;
@@ -314,7 +315,7 @@ std::vector<std::string> write_ply_table(base::OutputFile& out, const Table& tab
   return left_out;
 }
 
-void write_npy_table(base::OutputFile& out, const Table& table) {
+std::vector<std::string> write_npy_table(base::OutputFile& out, const Table& table, const std::string&) {
   std::string& bytes = out.buffer();
   bytes = npy_header(out, table);
   std::vector<NpyText> texts;
@@ -337,9 +338,10 @@ void write_npy_table(base::OutputFile& out, const Table& table) {
     }
     out.flush();
   }
+  return {};
 }
 
-void write_csv_table(base::OutputFile& out, const Table& table) {
+std::vector<std::string> write_csv_table(base::OutputFile& out, const Table& table, const std::string&) {
   std::string& text = out.buffer();
   for (const Column& column : table.columns) {
     if (const Words* const words = words_in(column))
@@ -369,10 +371,10 @@ void write_csv_table(base::OutputFile& out, const Table& table) {
     text += '\n';
     out.flush();
   }
+  return {};
 }
 
-/// Result     the names of the columns that it omits
-std::vector<std::string> write_xyz_table(base::OutputFile& out, const Table& table) {
+std::vector<std::string> write_xyz_table(base::OutputFile& out, const Table& table, const std::string&) {
   std::string& text = out.buffer();
   std::vector<std::string> left_out;
   const std::vector<XyzOutput> properties = xyz_outputs(table, left_out);
@@ -401,29 +403,26 @@ std::vector<std::string> write_xyz_table(base::OutputFile& out, const Table& tab
   return left_out;
 }
 
+/// Returns the function that writes the format of a file.
+auto writer_of(const std::filesystem::path& file) {
+  const std::string extension = base::extension(file);
+  if (extension == ".ply") return write_ply_table;
+  if (extension == ".xyz") return write_xyz_table;
+  if (extension == ".npy") return write_npy_table;
+  if (extension == ".csv") return write_csv_table;
+  refuse_to_write(file, fmt::format("unknown extension `{}`; use .ply, .xyz, .npy or .csv", extension));
+}
+
 }  // namespace
 
 bool is_storable_in_ply(const Column& column) { return ply_output(column) != PlyOutput::kNone; }
 
-TableFormat table_format(const std::filesystem::path& file) {
-  const std::string extension = base::extension(file);
-  if (extension == ".ply") return TableFormat::kPly;
-  if (extension == ".xyz") return TableFormat::kXyz;
-  if (extension == ".npy") return TableFormat::kNpy;
-  if (extension == ".csv") return TableFormat::kCsv;
-  refuse_to_write(file, fmt::format("unknown extension `{}`; use .ply, .xyz, .npy or .csv", extension));
-}
+void require_table_format(const std::filesystem::path& file) { writer_of(file); }
 
 std::vector<std::string> write_table(const std::filesystem::path& file, const Table& table, const std::string& writer) {
-  const TableFormat format = table_format(file);
+  const auto write = writer_of(file);
   base::OutputFile out(file);
-  std::vector<std::string> left_out;
-  switch (format) {
-    case TableFormat::kPly: left_out = write_ply_table(out, table, writer); break;
-    case TableFormat::kNpy: write_npy_table(out, table); break;
-    case TableFormat::kCsv: write_csv_table(out, table); break;
-    case TableFormat::kXyz: left_out = write_xyz_table(out, table); break;
-  }
+  std::vector<std::string> left_out = write(out, table, writer);
   out.finish();
   return left_out;
 }

@@ -9,13 +9,10 @@
 
 namespace orrery::data {
 
-/// Output formats.
-enum class TableFormat { kPly, kXyz, kNpy, kCsv };
-
-/// Returns the format that the extension of a file selects: .ply, .xyz, .npy, .csv.
+/// Checks that the extension of a file selects a format of write_table(): .ply, .xyz, .npy, .csv.
 ///
 /// Errors     base::Error(kUsage) for another extension
-TableFormat table_format(const std::filesystem::path& file);
+void require_table_format(const std::filesystem::path& file);
 
 /// Whether PLY can store the values of a column: numbers, but not integers beyond 2^53.
 bool is_storable_in_ply(const Column& column);

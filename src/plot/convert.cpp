@@ -217,7 +217,7 @@ class Converter {
 }  // namespace
 
 void convert(const ConvertOptions& options, const std::function<void(const ConvertedFile&)>& written) {
-  data::table_format(options.output);
+  data::require_table_format(options.output);
   Converter(options).run(written);
 }
 

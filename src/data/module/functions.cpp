@@ -5,7 +5,7 @@
 namespace orrery::data {
 
 extern "C" const void* orrery_data_functions() {
-  static constexpr Functions functions{open, is_data_file, table_format, is_storable_in_ply, write_table};
+  static constexpr Functions functions{open, is_data_file, require_table_format, is_storable_in_ply, write_table};
   return &functions;
 }
 

@@ -11,7 +11,7 @@ namespace orrery::data {
 struct Functions {
   decltype(&data::open) open;
   decltype(&data::is_data_file) is_data_file;
-  decltype(&data::table_format) table_format;
+  decltype(&data::require_table_format) require_table_format;
   decltype(&data::is_storable_in_ply) is_storable_in_ply;
   decltype(&data::write_table) write_table;
 };

@@ -23,7 +23,7 @@ bool is_data_file(const std::filesystem::path& file, std::string_view head) {
   return module().is_data_file(file, head);
 }
 
-TableFormat table_format(const std::filesystem::path& file) { return module().table_format(file); }
+void require_table_format(const std::filesystem::path& file) { module().require_table_format(file); }
 
 bool is_storable_in_ply(const Column& column) { return module().is_storable_in_ply(column); }
 
