@@ -117,11 +117,6 @@ std::string columns(std::string_view line, std::size_t first, std::size_t last) 
   return std::string(trimmed(line.substr(std::min(first - 1, line.size()), last - first + 1)));
 }
 
-std::optional<double> number(const std::string& text) {
-  int value = 0;
-  return base::from_text(text, value) ? std::optional<double>(value) : std::nullopt;
-}
-
 class Indexer {
  public:
   explicit Indexer(Faults& faults) : faults_(faults) {}
@@ -139,14 +134,14 @@ class Indexer {
     } else if (line.starts_with("MODEL ")) {
       finish(offset, line_);
       is_declared_ = true;
-      model_.number = number(columns(line, 7, 14));
+      model_.number = base::number_of<int>(columns(line, 7, 14));
     } else if (line.starts_with("END") && (line.starts_with("ENDMDL") || columns(line, 4, 6).empty())) {
       finish(offset, line_);
       has_end_ = !line.starts_with("ENDMDL");
     } else if (line.starts_with("HEADER")) {
       has_header_ = true;
     } else if (line.starts_with("MASTER")) {
-      declared_atoms_ = number(columns(line, 51, 55));
+      declared_atoms_ = base::number_of<std::uint64_t>(columns(line, 51, 55));
     } else if (line.starts_with("CRYST1")) {
       model_.cell = line;
     } else if (line.starts_with("TITLE ") && index_.title.size() < kMaxTitle) {
@@ -160,7 +155,7 @@ class Indexer {
 
   PdbIndex finish_file(std::uint64_t size) {
     faults_.raise_if_any();
-    const bool has_all_atoms = declared_atoms_ && *declared_atoms_ == static_cast<double>(atoms_);
+    const bool has_all_atoms = declared_atoms_ && *declared_atoms_ == atoms_;
     if (has_header_ && !has_end_ && !has_all_atoms)
       faults_.fail(line_, "truncated: the file has HEADER, but not the record END",
                    "download the file again; if it is complete, add a line END");
@@ -190,9 +185,9 @@ class Indexer {
   bool has_atoms_ = false;
   bool is_declared_ = false;  ///< by a MODEL record
   bool has_header_ = false;
-  bool has_end_ = false;                  ///< after the last atom
-  std::uint64_t atoms_ = 0;               ///< records
-  std::optional<double> declared_atoms_;  ///< by the MASTER record
+  bool has_end_ = false;                         ///< after the last atom
+  std::uint64_t atoms_ = 0;                      ///< records
+  std::optional<std::uint64_t> declared_atoms_;  ///< by the MASTER record
   std::uint64_t line_ = 0;
 };
 
