@@ -136,6 +136,18 @@ TEST_F(DataHdf5, ColumnsKeepTheirStoredTypes) {
   EXPECT_EQ(values<float>(table, "Single"), (std::vector<float>{8, 9}));
 }
 
+TEST_F(DataHdf5, ColumnsHaveDistinctNames) {
+  {
+    Snapshot s(folder_ / "a.hdf5");
+    s.group("PartType0");
+    s.dataset<float>("PartType0/Coordinates", H5T_IEEE_F32LE, H5T_NATIVE_FLOAT, {2, 3}, {1, 2, 3, 4, 5, 6});
+    s.dataset<float>("PartType0/x", H5T_IEEE_F32LE, H5T_NATIVE_FLOAT, {2}, {8, 9});
+  }
+  const Table table = opened()->read(0, {"x_2", "x"});
+  EXPECT_EQ(values<float>(table, "x"), (std::vector<float>{1, 4})) << "the position";
+  EXPECT_EQ(values<float>(table, "x_2"), (std::vector<float>{8, 9}));
+}
+
 TEST_F(DataHdf5, UnsignedIntegersBeyondInt64AreErrors) {
   {
     Snapshot s(folder_ / "a.hdf5");
