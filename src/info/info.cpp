@@ -297,21 +297,20 @@ SceneInfo scene_info(const load::SceneRequest& request, job::PreparedScene& prep
   info.traversal = compiled.accelerator == compile::Accelerator::kList || info.spheres + info.rods == 0
                        ? "list"
                        : "packet or single, the faster in the first rays";
-  job::MemoryNeeds needs = job::memory_needs(compiled, layers);
+  info.memory = job::estimate_memory(compiled, layers);
   if (loaded.background) {
-    needs.background = loaded.background->bytes;
+    info.memory.background = loaded.background->bytes;
     if (!loaded.background->image) info.scene_hash.clear();  // it depends on the pixels, which were not read
     const bool is_sky = read.scene.background.type == scene::BackgroundType::kSky;
     info.background_file = is_sky ? "sky" : read.scene.background.file.string();
     info.background = loaded.background;
   }
-  needs.textures = 0;
+  info.memory.textures = 0;
   for (const load::LoadedTexture& texture : loaded.textures) {
-    if (!texture.is_shared) needs.textures += texture.map.bytes;
+    if (!texture.is_shared) info.memory.textures += texture.map.bytes;
     if (!texture.map.image) info.scene_hash.clear();
   }
   info.textures = texture_infos(read.scene, loaded.textures);
-  info.memory = job::estimate_memory(needs);
   info.warnings = loaded.warnings;
   for (const std::string& advice : precision_advice(compiled)) {
     info.warnings.push_back(base::file_diagnostic(base::Severity::kWarning, request.source.file.string(), advice));

@@ -144,9 +144,9 @@ class Run {
     report_.was_skipped = job_.skip_existing && is_up_to_date(job_, compiled(), provenance_, stamp_);
     if (report_.was_skipped) return;
     require_disk_space(job_, compiled().width, compiled().height, layers_.request);
-    const MemoryNeeds needs =
-        memory_needs(compiled(), layers_.request, job_.sampling.is_adaptive(), prepared_->has_accelerator());
-    require_memory(estimate_memory(needs), job_.resources.memory_limit, held_memory(needs));
+    const MemoryEstimate memory =
+        estimate_memory(compiled(), layers_.request, job_.sampling.is_adaptive(), prepared_->has_accelerator());
+    require_memory(memory, job_.resources.memory_limit, memory.held());
     report_.hosts = {provenance_.at("host")};
     report_.width = compiled().width;
     report_.height = compiled().height;

@@ -51,14 +51,6 @@ constexpr std::uint64_t kBytesPerLayerPlane = 2 * sizeof(float);
 /// A pixel's coverage by a sphere; its vector has half as much capacity in reserve on average.
 constexpr double kBytesPerShare = 1.5 * sizeof(film::SphereCoverage);
 
-/// A pixel's layer sums, and those of its light, including heap overhead.
-std::uint64_t bytes_of_sums(const MemoryNeeds& needs) {
-  constexpr std::uint64_t kHeapBytes = 16, kBytesPerCell = sizeof(film::LayerPixel::light[0]);
-  return (needs.records ? sizeof(film::LayerPixel) : 0) + (needs.guides ? sizeof(film::Halves) : 0) +
-         (needs.light_cells > 0 ? needs.light_cells * kBytesPerCell + kHeapBytes : 0) +
-         (needs.shares > 0 ? static_cast<std::uint64_t>(needs.shares * kBytesPerShare) + kHeapBytes : 0);
-}
-
 /// The expected number of spheres, or classes of spheres, that the paths of a pixel hit first: those on both sides of
 /// an edge, and the share of a pixel in things smaller than itself. The only bound is the number of paths. Measured for
 /// deep images of a cloud of a million spheres, by peak_memory_bytes: 0.3 to 0.95 of this.
@@ -69,6 +61,16 @@ double expected_shares(const compile::CompiledScene& compiled, const film::Layer
   const double pixels = static_cast<double>(compiled.width) * compiled.height;
   const double seen = 2 + things / pixels;
   return std::min({things + (layers.deep ? 1 : 0), static_cast<double>(compiled.samples), seen});
+}
+
+/// A pixel's layer sums, and those of its light, including heap overhead.
+std::uint64_t bytes_of_sums(const compile::CompiledScene& compiled, const film::LayerRequest& layers) {
+  constexpr std::uint64_t kHeapBytes = 16, kBytesPerCell = sizeof(film::LayerPixel::light[0]);
+  const std::uint64_t light_cells = layers.light_cells();
+  const double shares = expected_shares(compiled, layers);
+  return (layers.records() ? sizeof(film::LayerPixel) : 0) + (layers.guides() ? sizeof(film::Halves) : 0) +
+         (light_cells > 0 ? light_cells * kBytesPerCell + kHeapBytes : 0) +
+         (shares > 0 ? static_cast<std::uint64_t>(shares * kBytesPerShare) + kHeapBytes : 0);
 }
 
 /// Throws an error that begins with `text` if there is not enough memory.
@@ -130,51 +132,30 @@ void choose_isa() {
                              isa, base::joined(kernel::available_isas())));
 }
 
-MemoryEstimate estimate_memory(const MemoryNeeds& needs) {
+MemoryEstimate estimate_memory(const compile::CompiledScene& compiled, const film::LayerRequest& layers,
+                               bool is_adaptive, bool has_accelerator) {
   // Image; sample count and target count; with layers, the sums of their pixel; with adaptive sampling, a second sum
   // and nine numbers for the noise estimate.
-  const std::uint64_t bytes_per_pixel = kFilmBytesPerPixel + needs.layer_planes * kBytesPerLayerPlane +
-                                        2 * sizeof(std::uint32_t) + bytes_of_sums(needs) +
-                                        (needs.is_adaptive ? sizeof(kernel::PixelSum) + 9 * sizeof(float) : 0);
+  const std::uint64_t bytes_per_pixel = kFilmBytesPerPixel + film::planes_of(layers).size() * kBytesPerLayerPlane +
+                                        2 * sizeof(std::uint32_t) + bytes_of_sums(compiled, layers) +
+                                        (is_adaptive ? sizeof(kernel::PixelSum) + 9 * sizeof(float) : 0);
   MemoryEstimate m;
-  m.film = math::pixel_count(needs.width, needs.height) * bytes_per_pixel;
-  m.spheres = needs.sphere_bytes;
-  m.background = needs.background;
-  m.textures = needs.textures;
-  m.lights = needs.lights;
-  const std::uint64_t outside = needs.spheres + needs.rods - needs.in_bvh.all();
-  if (needs.embree)
-    m.accelerator = (needs.in_bvh.all() > 0 ? accel::SphereBvh::bytes_of_build(needs.in_bvh) : 0) +
-                    outside * kAcceleratorBytesPerSphere;
+  m.film = math::pixel_count(compiled.width, compiled.height) * bytes_per_pixel;
+  m.spheres = compiled.spheres.bytes() + compiled.rods.size() * sizeof(kernel::Rod) +
+              compiled.bonds.size() * sizeof(kernel::Bond) + compiled.sphere_materials.bytes() +
+              compiled.opacity.size() * sizeof(compiled.opacity[0]) +
+              (layers.matte_classes ? layers.matte_classes->of_sphere.bytes() : 0);
+  if (compiled.environment) m.background = compiled.environment->bytes();
+  m.textures = compiled.textures.bytes();
+  m.lights = compiled.light_tree.bytes_of_build();
+  if (compiled.accelerator == compile::Accelerator::kEmbree && !has_accelerator) {
+    const accel::ObjectCounts in_bvh = accel::objects_in_bvh(compiled.view());
+    const std::uint64_t outside = compiled.spheres.size() + compiled.rod_count() - in_bvh.all();
+    m.accelerator =
+        (in_bvh.all() > 0 ? accel::SphereBvh::bytes_of_build(in_bvh) : 0) + outside * kAcceleratorBytesPerSphere;
+  }
   return m;
 }
-
-MemoryNeeds memory_needs(const compile::CompiledScene& compiled, const film::LayerRequest& layers, bool is_adaptive,
-                         bool has_accelerator) {
-  MemoryNeeds needs;
-  needs.width = compiled.width;
-  needs.height = compiled.height;
-  needs.spheres = compiled.spheres.size();
-  needs.rods = compiled.rod_count();
-  needs.embree = compiled.accelerator == compile::Accelerator::kEmbree && !has_accelerator;
-  if (needs.embree) needs.in_bvh = accel::objects_in_bvh(compiled.view());
-  needs.sphere_bytes = compiled.spheres.bytes() + compiled.rods.size() * sizeof(kernel::Rod) +
-                       compiled.bonds.size() * sizeof(kernel::Bond) + compiled.sphere_materials.bytes() +
-                       compiled.opacity.size() * sizeof(compiled.opacity[0]) +
-                       (layers.matte_classes ? layers.matte_classes->of_sphere.bytes() : 0);
-  if (compiled.environment) needs.background = compiled.environment->bytes();
-  needs.textures = compiled.textures.bytes();
-  needs.lights = compiled.light_tree.bytes_of_build();
-  needs.layer_planes = film::planes_of(layers).size();
-  needs.records = layers.records();
-  needs.guides = layers.guides();
-  needs.light_cells = layers.light_cells();
-  needs.shares = expected_shares(compiled, layers);
-  needs.is_adaptive = is_adaptive;
-  return needs;
-}
-
-std::uint64_t held_memory(const MemoryNeeds& needs) { return needs.sphere_bytes + needs.background + needs.textures; }
 
 std::string text_of(const MemoryEstimate& m) {
   std::string out = fmt::format("film {}, spheres {}, accelerator {}", bytes_text(m.film), bytes_text(m.spheres),

@@ -6,7 +6,6 @@
 #include <map>
 #include <string>
 
-#include "accel/accel.h"
 #include "compile/forward.h"
 #include "film/forward.h"
 #include "scene/forward.h"
@@ -42,38 +41,16 @@ struct MemoryEstimate {
   std::uint64_t film = 0, spheres = 0, accelerator = 0, background = 0, textures = 0, lights = 0;
 
   std::uint64_t total() const { return film + spheres + accelerator + background + textures + lights; }
+  /// The part that a compiled scene has already allocated.
+  std::uint64_t held() const { return spheres + background + textures; }
 };
 
-/// Properties of a render that determine its memory use.
-struct MemoryNeeds {
-  int width = 0, height = 0;  ///< px
-  std::uint64_t spheres = 0;  ///< from tables and points files
-  std::uint64_t rods = 0;
-  accel::ObjectCounts in_bvh;      ///< see accel::objects_in_bvh()
-  std::uint64_t sphere_bytes = 0;  ///< bytes of the compiled spheres and rods, and their material indices
-  std::uint64_t background = 0;    ///< bytes of an image background
-  std::uint64_t textures = 0;      ///< bytes of image textures
-  std::uint64_t lights = 0;        ///< compile::LightTree::bytes_of_build()
-  std::uint64_t layer_planes = 0;  ///< besides R, G, B, A
-  bool records = false;            ///< LayerRequest::records()
-  bool guides = false;             ///< LayerRequest::guides()
-  std::uint64_t light_cells = 0;   ///< LayerRequest::light_cells()
-  double shares = 0;               ///< expected entries of film::LayerPixel::shares, mean over the pixels
-  bool embree = true;              ///< false: the list
-  bool is_adaptive = false;        ///< --noise or --time: a second sum and an error estimate per pixel
-};
-
-/// Estimates memory for `info`, `study` and the check before a render.
-MemoryEstimate estimate_memory(const MemoryNeeds& needs);
-
-/// Determines these properties for a render of this scene.
+/// Estimates the memory of a render for `info`, `study` and the check before a render.
 ///
+/// `is_adaptive`      with --noise or --time
 /// `has_accelerator`  there is one already, so that none is built
-MemoryNeeds memory_needs(const compile::CompiledScene& compiled, const film::LayerRequest& layers,
-                         bool is_adaptive = false, bool has_accelerator = false);
-
-/// Bytes of these that a compiled scene has already allocated.
-std::uint64_t held_memory(const MemoryNeeds& needs);
+MemoryEstimate estimate_memory(const compile::CompiledScene& compiled, const film::LayerRequest& layers,
+                               bool is_adaptive = false, bool has_accelerator = false);
 
 /// Formats the parts of an estimate: "film 1 MiB, spheres 2 MiB, accelerator 3 MiB".
 std::string text_of(const MemoryEstimate& estimate);

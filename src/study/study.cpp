@@ -143,9 +143,10 @@ class Runner {
       base::refuse("a study needs render.shading = \"path\"; the other modes trace no light paths");
     full_ = compile::compile(scene, read_.closing ? &*read_.closing : nullptr);
     film::LayerRequest layers = job::choose_layers(scene, full_).request;
-    memory_needs_ = job::memory_needs(full_, layers);
+    memory_ = job::estimate_memory(full_, layers);
+    adaptive_memory_ = job::estimate_memory(full_, layers, true);
     layers.halves = true;
-    denoise_needs_ = job::memory_needs(full_, layers);
+    denoised_memory_ = job::estimate_memory(full_, layers);
     scene.spheres = {};
     scene.points = {};
     scene.rods = {};
@@ -281,12 +282,11 @@ class Runner {
       point.seconds = std::min(point.seconds, renderer_.seconds_of(result.statistics));
       point.samples = static_cast<double>(result.statistics.paths) / pixels();
     }
-    job::MemoryNeeds needs = choice.is_denoised ? denoise_needs_ : memory_needs_;
-    needs.embree = compiled.accelerator == compile::Accelerator::kEmbree;
-    needs.is_adaptive = choice.noise > 0;
-    needs.lights = compiled.light_tree.bytes_of_build();
-    if (compiled.environment) needs.background = compiled.environment->bytes();
-    point.memory = job::estimate_memory(needs).total();
+    job::MemoryEstimate memory = choice.is_denoised ? denoised_memory_ : choice.noise > 0 ? adaptive_memory_ : memory_;
+    if (compiled.accelerator == compile::Accelerator::kList) memory.accelerator = 0;
+    memory.lights = compiled.light_tree.bytes_of_build();
+    if (compiled.environment) memory.background = compiled.environment->bytes();
+    point.memory = memory.total();
     point.measured = errors_of(pair, reference_);
     point.error = point.measured.noise;
     point.picture = std::move(pair.first);
@@ -310,9 +310,9 @@ class Runner {
 
   const Request& request_;
   StudyRenderer renderer_;
-  load::ReadResult read_;                          ///< without spheres
-  CompiledScene reduced_, full_;                   ///< at the study's size and at full resolution, both without spheres
-  job::MemoryNeeds memory_needs_, denoise_needs_;  ///< without and with --denoise
+  load::ReadResult read_;         ///< without spheres
+  CompiledScene reduced_, full_;  ///< at the study's size and at full resolution, both without spheres
+  job::MemoryEstimate memory_, adaptive_memory_, denoised_memory_;  ///< with the scene's settings, --noise, --denoise
   Pair reference_;
   AxisPlan plan_;
   double read_s_ = 0;  ///< time to load the scene

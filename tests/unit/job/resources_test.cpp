@@ -64,28 +64,31 @@ TEST_F(JobMachine, InvalidVariablesAreIgnored) {
 
 constexpr std::uint64_t kMega = 1 << 20;
 
-MemoryEstimate estimate(int width, std::uint64_t spheres, bool embree, std::uint64_t layer_planes = 0,
-                        bool is_adaptive = false) {
-  MemoryNeeds needs;
-  needs.width = width;
-  needs.height = 10;
-  needs.spheres = spheres;
-  needs.sphere_bytes = 16 * spheres;
-  needs.embree = embree;
-  needs.layer_planes = layer_planes;
-  needs.records = layer_planes > 0;
-  needs.is_adaptive = is_adaptive;
-  return estimate_memory(needs);
+compile::CompiledScene spheres_at(int width, int spheres, scene::Accelerator accelerator) {
+  scene::Scene scene;
+  scene.materials = {{"a", scene::Lambertian{}}};
+  for (int i = 0; i < spheres; ++i) scene.spheres.push_back({{1.0 * i, 0, 0}, 0.1, 0, ""});
+  scene.image = {width, 10};
+  scene.render.accelerator = accelerator;
+  return compile::compile(scene);
 }
 
 TEST(JobMemoryEstimate, GrowsWithPixelsAndSpheres) {
-  EXPECT_EQ(estimate(10, 0, true).total(), estimate(10, 0, false).total());
-  EXPECT_EQ(estimate(20, 0, true).film, 2 * estimate(10, 0, true).film);
-  EXPECT_GT(estimate(10, 0, true, 3).film, estimate(10, 0, true).film);
-  EXPECT_GT(estimate(10, 0, true, 0, true).film, estimate(10, 0, true).film);
-  EXPECT_EQ(estimate(1, 100, false).accelerator, 0u);
-  EXPECT_EQ(estimate(1, 100, true).accelerator, 100 * estimate(1, 1, true).accelerator);
-  EXPECT_EQ(estimate(1, 100, true).spheres, 1600u);
+  constexpr auto kEmbree = scene::Accelerator::kEmbree, kList = scene::Accelerator::kList;
+  const auto estimate = [](int width, int spheres, scene::Accelerator accelerator,
+                           const film::LayerRequest& layers = {}, bool is_adaptive = false) {
+    return estimate_memory(spheres_at(width, spheres, accelerator), layers, is_adaptive);
+  };
+  film::LayerRequest normals;
+  normals.normal = true;
+  EXPECT_EQ(estimate(10, 0, kEmbree).total(), estimate(10, 0, kList).total());
+  EXPECT_EQ(estimate(20, 0, kEmbree).film, 2 * estimate(10, 0, kEmbree).film);
+  EXPECT_GT(estimate(10, 0, kEmbree, normals).film, estimate(10, 0, kEmbree).film);
+  EXPECT_GT(estimate(10, 0, kEmbree, {}, true).film, estimate(10, 0, kEmbree).film);
+  EXPECT_EQ(estimate(1, 100, kList).accelerator, 0u);
+  EXPECT_EQ(estimate(1, 100, kEmbree).accelerator, 100 * estimate(1, 1, kEmbree).accelerator);
+  EXPECT_EQ(estimate(1, 101, kEmbree).spheres, estimate(1, 1, kEmbree).spheres + 100 * sizeof(kernel::Sphere));
+  EXPECT_EQ(estimate_memory(spheres_at(1, 100, kEmbree), {}, false, true).accelerator, 0u) << "there is one";
 }
 
 /// Many static spheres of similar size take less each; moving ones and giants do not.
@@ -94,9 +97,10 @@ TEST(JobMemoryEstimate, CountsTheSpheresInTheBvh) {
   scene.materials = {{"a", scene::Lambertian{}}};
   for (int i = 0; i < 30'000; ++i) scene.spheres.push_back({{1.0 * i, 0, 0}, 0.1, 0, ""});
   const auto accelerator_of = [&](const scene::Scene* closing) {
-    return estimate_memory(memory_needs(compile::compile(scene, closing), {})).accelerator;
+    return estimate_memory(compile::compile(scene, closing), {}).accelerator;
   };
-  const std::uint64_t one = estimate(1, 1, true).accelerator, still = accelerator_of(nullptr);
+  const std::uint64_t one = estimate_memory(spheres_at(1, 1, scene::Accelerator::kEmbree), {}).accelerator,
+                      still = accelerator_of(nullptr);
   EXPECT_LT(still, 30'000 * one / 3);
   scene::Scene closing = scene;
   for (scene::Sphere& s : closing.spheres) s.center.y = 1;
@@ -115,7 +119,7 @@ TEST(JobMemoryEstimate, GrowsWithLightGroups) {
     scene.output.layers = std::move(layers);
     const compile::CompiledScene compiled = compile::compile(scene);
     const film::LayerRequest request = choose_layers(scene, compiled).request;
-    return estimate_memory(memory_needs(compiled, request)).film;
+    return estimate_memory(compiled, request).film;
   };
   // The light of a pixel with emitters in two groups and the background in a third.
   const std::uint64_t sum = 8 * 3 * 16, planes = (2 * 8 + 8) * 3 * 8, heap = 16;
@@ -138,7 +142,7 @@ TEST(JobMemoryEstimate, GrowsWithTheCoverageOfMattesAndDeepImages) {
     const compile::CompiledScene compiled = compile::compile(scene);
     film::LayerRequest request = choose_layers(scene, compiled).request;
     request.deep = deep;
-    return estimate_memory(memory_needs(compiled, request)).film;
+    return estimate_memory(compiled, request).film;
   };
   const std::uint64_t planes = (12 - 1) * 8, share = sizeof(film::SphereCoverage) * 3 / 2, heap = 16;
   EXPECT_EQ(film_of({"CryptoObject"}, false) - film_of({"samples"}, false), 1000 * (planes + share + heap))
@@ -154,7 +158,7 @@ TEST(JobMemoryEstimate, CountsTheHalvesOnlyWhereTheyAreNeeded) {
   scene.image = {100, 10};
   const compile::CompiledScene compiled = compile::compile(scene);
   film::LayerRequest request;
-  const auto film = [&] { return estimate_memory(memory_needs(compiled, request)).film; };
+  const auto film = [&] { return estimate_memory(compiled, request).film; };
   const std::uint64_t beauty = film();
   request.halves = true;
   constexpr std::uint64_t kPlanes = 20 * 8;
@@ -165,41 +169,39 @@ TEST(JobMemoryEstimate, CountsTheLightTreeAndItsBuild) {
   scene::Scene scene;
   scene.materials = {{"lamp", scene::Emitter{{1, 1, 1}, 0, ""}}};
   for (int i = 0; i < 1000; ++i) scene.spheres.push_back({{1.0 * i, 0, 0}, 0.1, 0, ""});
-  const MemoryEstimate lit = estimate_memory(memory_needs(compile::compile(scene), {}));
+  const MemoryEstimate lit = estimate_memory(compile::compile(scene), {});
   EXPECT_EQ(lit.lights, 1000u * (48 + 48));
   scene.render.direct_lighting = scene::DirectLighting::kBsdf;
-  const MemoryEstimate without = estimate_memory(memory_needs(compile::compile(scene), {}));
+  const MemoryEstimate without = estimate_memory(compile::compile(scene), {});
   EXPECT_EQ(without.lights, 0u) << "no tree is built";
   EXPECT_EQ(lit.total(), without.total() + lit.lights);
   EXPECT_NE(text_of(lit).find(", lights 93.8 KiB"), std::string::npos) << text_of(lit);
 }
 
 TEST(JobMemoryEstimate, CountsTheBackgroundOnce) {
-  MemoryNeeds needs;
-  needs.background = 1000 * kMega;
-  const MemoryEstimate estimate = estimate_memory(needs);
+  MemoryEstimate estimate;
+  estimate.background = 1000 * kMega;
   EXPECT_EQ(estimate.total(), 1000 * kMega);
   EXPECT_NE(text_of(estimate).find(", background 1000.0 MiB"), std::string::npos) << text_of(estimate);
   // What is held already needs no free memory, but counts against a limit.
   const std::uint64_t free_memory = base::available_memory().value_or(0);
-  needs.background = free_memory + (1 << 30);
-  EXPECT_THROW(require_memory(estimate_memory(needs), 0), base::Error);
-  EXPECT_NO_THROW(require_memory(estimate_memory(needs), 0, needs.background));
-  EXPECT_THROW(require_memory(estimate_memory(needs), kMega, needs.background), base::Error);
+  estimate.background = free_memory + (1 << 30);
+  EXPECT_THROW(require_memory(estimate, 0), base::Error);
+  EXPECT_NO_THROW(require_memory(estimate, 0, estimate.background));
+  EXPECT_THROW(require_memory(estimate, kMega, estimate.background), base::Error);
 }
 
 /// Compiled spheres and textures no longer need free memory.
 TEST(JobMemoryEstimate, WhatTheCompiledSceneHoldsNeedsNoFreeMemory) {
-  MemoryNeeds needs;
-  needs.spheres = 3;
-  needs.sphere_bytes = 1 * kMega;
-  needs.textures = 2 * kMega;
-  needs.background = 4 * kMega;
-  needs.lights = 8 * kMega;  // most of it is temporary
-  EXPECT_EQ(held_memory(needs), 7 * kMega);
-  needs.sphere_bytes = base::available_memory().value_or(0) + (1 << 30);
-  EXPECT_THROW(require_memory(estimate_memory(needs), 0), base::Error);
-  EXPECT_NO_THROW(require_memory(estimate_memory(needs), 0, held_memory(needs)));
+  MemoryEstimate estimate;
+  estimate.spheres = 1 * kMega;
+  estimate.textures = 2 * kMega;
+  estimate.background = 4 * kMega;
+  estimate.lights = 8 * kMega;  // most of it is temporary
+  EXPECT_EQ(estimate.held(), 7 * kMega);
+  estimate.spheres = base::available_memory().value_or(0) + (1 << 30);
+  EXPECT_THROW(require_memory(estimate, 0), base::Error);
+  EXPECT_NO_THROW(require_memory(estimate, 0, estimate.held()));
 }
 
 TEST(JobMemoryEstimate, LoadedSpheresAreNotCompiledWithoutMemoryForBoth) {
@@ -219,7 +221,9 @@ TEST(JobMemoryEstimate, LoadedSpheresAreNotCompiledWithoutMemoryForBoth) {
 }
 
 TEST(JobMemoryEstimate, RejectsWhatDoesNotFitWithTheEstimate) {
-  const MemoryEstimate million = estimate(1, 1'000'000, true);
+  MemoryEstimate million;
+  million.spheres = 16'000'000;
+  million.accelerator = 130'000'000;
   EXPECT_NO_THROW(require_memory(million, million.total()));
   try {
     require_memory(million, million.total() - 1);
