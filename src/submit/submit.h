@@ -25,29 +25,10 @@ struct Submission {
   std::vector<std::string> merge_arguments;  ///< those of `orrery merge`, with shards
 };
 
-/// The commands of a submission, the same for every engine.
-struct Commands {
-  std::string name;              ///< job name: the scene's name in letters, digits, - and _
-  std::filesystem::path folder;  ///< folder of shards and logs
-  std::vector<int> frames;
-  std::vector<std::string> render;  ///< renders a shard
-  std::vector<std::string> merge;   ///< merges the shards of a frame; empty without shards
-
-  // Placeholders in words: control characters, which no other part of a word contains.
-  static constexpr char kFrame = '\1';    ///< number of the frame
-  static constexpr char kShard = '\2';    ///< number of the shard, from 1
-  static constexpr char kThreads = '\3';  ///< threads of a task; kParallel only
-};
-
-/// Reads and checks the scene, and composes the commands.
+/// Reads and checks the scene, and returns the whole job in the engine's format, as readable text.
 ///
 /// Errors     those of jobs_of and load_scene; base::Error(kUsage) for settings that cannot be combined with shards,
 ///            and for words that the engine would not pass on unchanged
-Commands commands_of(const Submission& submission);
-
-/// The whole job in the engine's format, as readable text.
-///
-/// Errors     those of commands_of
 std::string submission_text(const Submission& submission);
 
 }  // namespace orrery::submit
