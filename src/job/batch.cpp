@@ -18,15 +18,6 @@ constexpr const char* kScenePattern = "{scene}";
 
 bool has_scene_pattern(const std::string& name) { return name.find(kScenePattern) != std::string::npos; }
 
-/// All output names that the user chose.
-std::vector<fs::path*> names_of(Job& job) {
-  std::vector<fs::path*> names;
-  for (ImageFile& output : job.outputs.images) names.push_back(&output.path);
-  if (!job.outputs.deep.empty()) names.push_back(&job.outputs.deep);
-  if (!job.outputs.statistics.empty()) names.push_back(&job.outputs.statistics);
-  return names;
-}
-
 void check_name(const Batch& batch, const std::string& name) {
   const bool has_pattern = base::has_frame_pattern(name);
   if (batch.frames.size() > 1 && !has_pattern)
@@ -51,7 +42,7 @@ void add_readable_files(const load::SceneSource& scene, const std::vector<int>& 
 
 std::vector<Job> jobs_of(const Batch& batch) {
   Job common = batch.job;
-  for (const fs::path* name : names_of(common)) check_name(batch, name->string());
+  each_named(common.outputs, [&](const fs::path& name, const char*) { check_name(batch, name.string()); });
   const std::vector<int> frames = batch.frames.empty() ? std::vector<int>{load::kFirstFrame} : batch.frames;
   std::vector<Job> jobs;
   common.files = std::make_shared<base::FileSet>();
@@ -65,10 +56,10 @@ std::vector<Job> jobs_of(const Batch& batch) {
       Job job = common;
       job.scene.file = scene;
       job.scene.frame = frame;
-      for (fs::path* name : names_of(job)) {
-        std::string text = base::replaced(name->string(), kScenePattern, scene.stem().string());
-        *name = batch.frames.empty() ? text : base::with_frame(text, frame);
-      }
+      each_named(job.outputs, [&](fs::path& name, const char*) {
+        const std::string text = base::replaced(name.string(), kScenePattern, scene.stem().string());
+        name = batch.frames.empty() ? text : base::with_frame(text, frame);
+      });
       add_job_files(job, files, batch.scenes.size() > 1 ? " of " + scene.string() : "");
       jobs.push_back(std::move(job));
     }

@@ -22,9 +22,7 @@ namespace {
 /// All files that a job writes, except Cryptomatte manifests, which only some scenes have.
 std::vector<NamedOutput> outputs_of(const Job& job) {
   std::vector<NamedOutput> out;
-  for (const ImageFile& output : job.outputs.images) out.push_back({output.path, "-o"});
-  if (!job.outputs.deep.empty()) out.push_back({job.outputs.deep, "--deep"});
-  if (!job.outputs.statistics.empty()) out.push_back({job.outputs.statistics, "--stats"});
+  each_named(job.outputs, [&](const std::filesystem::path& file, const char* role) { out.push_back({file, role}); });
   if (job.merge.shards.empty() && job.keep == nullptr)
     out.push_back({checkpoint_file(job.outputs.images.front().path), "checkpoint"});
   return out;

@@ -5,6 +5,7 @@
 
 #include <fmt/core.h>
 
+#include "annotation/drawing.h"
 #include "base/atomic_file.h"
 #include "base/available_memory.h"
 #include "base/error.h"
@@ -56,7 +57,9 @@ DevelopReport develop_file(const Development& development) {
   report.display = display::choose(display);
   for (const char* name : {"R", "G", "B"})  // no other plane is developed
     if (const film::Plane* plane = picture.find(name)) report.bad_values += film::count_bad_values(*plane);
-  DisplayWriter developed(picture, display, development.bits != 0 ? development.bits : report.display.default_bits());
+  const annotation::Drawing none;
+  DisplayWriter developed(picture, display, development.bits != 0 ? development.bits : report.display.default_bits(),
+                          none);
   for (const auto& output : development.outputs) developed.write(output, "orrery " + program_version());
   return report;
 }

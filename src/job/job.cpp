@@ -313,10 +313,9 @@ class Run {
     if (is_shard(job_)) return write_sums(job_.outputs.images.front().path, *result.partial);
     image::Header own = header(job_.outputs.reproducible);
     own.stamp = stamp_;
-    const int bits = job_.outputs.bits != 0 ? job_.outputs.bits : report_.display.default_bits();
     try {
-      report_.written =
-          write_outputs(job_.outputs, loaded().display, bits, {result.picture, own, layers_.mattes, drawing_});
+      report_.written = write_outputs(job_.outputs, loaded().display, report_.display,
+                                      {result.picture, own, layers_.mattes, drawing_});
       if (!job_.outputs.deep.empty()) image::write_deep(job_.outputs.deep, result.deep, result.picture, own);
     } catch (const base::Error& error) {
       if (!result.partial) throw;  // of a merge: the shards still exist

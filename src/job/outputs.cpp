@@ -30,11 +30,10 @@ bool Outputs::has_display_format() const {
   return std::any_of(images.begin(), images.end(), [](const ImageFile& i) { return is_display_format(i.format); });
 }
 
-film::EncodedPicture develop_annotated(const film::Picture& picture, const annotation::Drawing* drawing,
+film::EncodedPicture develop_annotated(const film::Picture& picture, const annotation::Drawing& drawing,
                                        const display::Settings& settings, int bits, display::Alpha alpha) {
   film::EncodedPicture out = display::develop(picture, settings, bits, alpha);
-  if (drawing != nullptr && !drawing->is_empty())
-    annotation::blend(annotation::draw(*drawing, annotation::shown_by(settings)), out);
+  if (!drawing.is_empty()) annotation::blend(annotation::draw(drawing, annotation::shown_by(settings)), out);
   return out;
 }
 
@@ -49,8 +48,7 @@ void DisplayWriter::write(const std::filesystem::path& file, const std::string& 
 
 /// Outlines are pixels, like the image; text, bars and boxes are elements that an editor can change.
 void DisplayWriter::write_svg(const std::filesystem::path& file, display::Alpha alpha) const {
-  annotation::Drawing drawing;
-  if (drawing_ != nullptr) drawing = *drawing_;
+  annotation::Drawing drawing = drawing_;
   drawing.width = picture_.width;
   drawing.height = picture_.height;
   annotation::Drawing outlines;
@@ -60,7 +58,7 @@ void DisplayWriter::write_svg(const std::filesystem::path& file, display::Alpha 
   outlines.outline_px = drawing.outline_px;
   outlines.lines = std::move(drawing.lines);
   const std::string png =
-      image::png_bytes(develop_annotated(picture_, &outlines, settings_, 8, alpha), image::kCompressed);
+      image::png_bytes(develop_annotated(picture_, outlines, settings_, 8, alpha), image::kCompressed);
   base::write_text_file(file, annotation::svg(drawing, annotation::shown_by(settings_), png));
 }
 
@@ -72,10 +70,10 @@ void require_bits(const display::Choice& display, const Outputs& outputs) {
   }
 }
 
-image::WriteReport write_outputs(const Outputs& outputs, const display::Settings& display, int bits,
-                                 const FinishedPicture& finished) {
+image::WriteReport write_outputs(const Outputs& outputs, const display::Settings& display,
+                                 const display::Choice& choice, const FinishedPicture& finished) {
   const auto& [picture, header, mattes, drawing] = finished;
-  DisplayWriter developed(picture, display, bits, &drawing);
+  DisplayWriter developed(picture, display, outputs.bits != 0 ? outputs.bits : choice.default_bits(), drawing);
   image::WriteReport report;
   const auto add = [&](const image::WriteReport& one) {
     report.clamped += one.clamped;

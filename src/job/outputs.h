@@ -58,6 +58,14 @@ struct Outputs {
   bool has_display_format() const;
 };
 
+/// Calls `use(path, role)` for each output that the user named.
+template <class AnyOutputs, class Use>
+void each_named(AnyOutputs& outputs, Use use) {
+  for (auto& image : outputs.images) use(image.path, "-o");
+  if (!outputs.deep.empty()) use(outputs.deep, "--deep");
+  if (!outputs.statistics.empty()) use(outputs.statistics, "--stats");
+}
+
 /// Checks that the display formats among the outputs have enough bits per channel for the display.
 ///
 /// Errors     base::Error(kUsage)
@@ -73,16 +81,15 @@ struct FinishedPicture {
 
 /// Writes the files of an image, and the manifests of its mattes.
 ///
-/// `bits`     bits per channel of display formats
+/// `choice`   the resolved `display`; only its bits per channel are used, for display formats
 /// Errors     base::Error: kCannotCreate, kIo; those of display::develop
-image::WriteReport write_outputs(const Outputs& outputs, const display::Settings& display, int bits,
-                                 const FinishedPicture& finished);
+image::WriteReport write_outputs(const Outputs& outputs, const display::Settings& display,
+                                 const display::Choice& choice, const FinishedPicture& finished);
 
 /// Applies the display transform, then draws the annotation.
 ///
-/// `drawing`  over the image; null: none
 /// Errors     those of display::develop and annotation::draw
-film::EncodedPicture develop_annotated(const film::Picture& picture, const annotation::Drawing* drawing,
+film::EncodedPicture develop_annotated(const film::Picture& picture, const annotation::Drawing& drawing,
                                        const display::Settings& settings, int bits, display::Alpha alpha);
 
 /// Writes one image to display formats. The display transform runs once for all files with the same channels. PNG,
@@ -91,10 +98,10 @@ class DisplayWriter {
  public:
   /// Prepares an image for display formats; write() applies the display transform on first use.
   ///
-  /// `drawing`  over the image; null: none
+  /// `drawing`  over the image
   /// Domain     the arguments outlive this; bits 8 or 16
   DisplayWriter(const film::Picture& picture, const display::Settings& settings, int bits,
-                const annotation::Drawing* drawing = nullptr)
+                const annotation::Drawing& drawing)
       : picture_(picture), settings_(settings), bits_(bits), drawing_(drawing) {}
 
   /// Writes a file in the display format of its extension.
@@ -108,7 +115,7 @@ class DisplayWriter {
   const film::Picture& picture_;
   const display::Settings& settings_;
   int bits_;
-  const annotation::Drawing* drawing_;
+  const annotation::Drawing& drawing_;
   std::optional<film::EncodedPicture> over_black_, with_alpha_;
 };
 

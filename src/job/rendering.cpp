@@ -1,13 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "job/rendering.h"
 
-#include <algorithm>
 #include <string>
 
 #include "base/atomic_file.h"
 #include "film/partial.h"
 #include "image/format.h"
-#include "job/check_job.h"
 #include "job/checkpoint.h"
 #include "job/layers.h"
 #include "job/outputs.h"
@@ -35,13 +33,6 @@ void check_outputs(const Rendering& rendering, const Outputs& outputs) {
   if (outputs.has_exr()) image::check_lossless(rendering.picture.planes, outputs.exr);
 }
 
-/// Adds the attribute where picture_header() puts it.
-void add_config_id(const std::string& config_id, image::Header& header) {
-  const auto place = std::find_if(header.attributes.begin(), header.attributes.end(),
-                                  [](const image::Attribute& a) { return a.name == "orrery/settings"; });
-  header.attributes.insert(place, {"orrery/ocioConfigId", config_id});
-}
-
 }  // namespace
 
 display::Settings display_of(const Rendering& rendering, display::Settings display) {
@@ -53,18 +44,16 @@ image::WriteReport write_rendering(const Rendering& rendering, const Outputs& ou
   check_outputs(rendering, outputs);
   const display::Settings display = display_of(rendering, outputs.display);
   image::Header header = outputs.reproducible ? rendering.reproducible_header : rendering.header;
-  int bits = outputs.bits;
   display::Choice choice;
   if (outputs.has_display_format()) {
     choice = display::choose(display);
     require_bits(choice, outputs);
-    if (bits == 0) bits = choice.default_bits();
-    add_config_id(choice.config_id, header);
+    header.attributes.push_back({"orrery/ocioConfigId", choice.config_id});
   }
   Job job = rendering.job;
   job.outputs = outputs;
   header.stamp = annotation::stamped(stamp_of(job, rendering.provenance, display, choice), rendering.drawing);
-  return write_outputs(outputs, display, bits, {rendering.picture, header, rendering.mattes, rendering.drawing});
+  return write_outputs(outputs, display, choice, {rendering.picture, header, rendering.mattes, rendering.drawing});
 }
 
 }  // namespace orrery::job

@@ -247,9 +247,9 @@ void take_scene(const ShardFile& shard, Job& job) {
   std::istringstream lines(value_of(shard.provenance, "overrides"));
   for (std::string line; std::getline(lines, line);) job.scene.overrides.add(line);
   job.scene.frame = base::number_of<int>(value_of(shard.provenance, "frame")).value_or(job.scene.frame);
-  for (ImageFile& output : job.outputs.images) output.path = base::with_frame(output.path.string(), job.scene.frame);
-  if (!job.outputs.statistics.empty())
-    job.outputs.statistics = base::with_frame(job.outputs.statistics.string(), job.scene.frame);
+  each_named(job.outputs, [&](std::filesystem::path& name, const char*) {
+    name = base::with_frame(name.string(), job.scene.frame);
+  });
 }
 
 render::Result merge_shards(const Job& job, const compile::CompiledScene& compiled, const render::Settings& settings,

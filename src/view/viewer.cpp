@@ -335,7 +335,7 @@ void Viewer::begin(Image& image, const display::PictureInfo& info) {
 void Viewer::finish(Image& image) {
   const job::Rendering& rendering = *image.rendering;
   const film::EncodedPicture picture =
-      job::develop_annotated(rendering.picture, &rendering.drawing, rendering.display, 8, display::Alpha::kOverBlack);
+      job::develop_annotated(rendering.picture, rendering.drawing, rendering.display, 8, display::Alpha::kOverBlack);
   const render::Statistics& statistics = rendering.report.render;
   Frame frame;
   frame.width = picture.width;

@@ -46,7 +46,7 @@ TEST(JobOutputs, SvgHasOutlinesInTheImageAndTextBesides) {
   drawing.texts = {{"title", 1, 10, 8, 0}};
   const support::TempDir folder;
   const display::Settings settings;
-  const auto written = [&](const char* name, const annotation::Drawing* over) {
+  const auto written = [&](const char* name, const annotation::Drawing& over) {
     DisplayWriter(picture, settings, 8, over).write(folder / name, "");
     return support::file_bytes(folder / name);
   };
@@ -54,7 +54,7 @@ TEST(JobOutputs, SvgHasOutlinesInTheImageAndTextBesides) {
     const std::size_t begin = svg.find("<image");
     return svg.substr(begin, svg.find("/>", begin) - begin);
   };
-  const std::string plain = written("plain.svg", nullptr), titled = written("titled.svg", &drawing);
+  const std::string plain = written("plain.svg", {}), titled = written("titled.svg", drawing);
   EXPECT_NE(plain.find("base64,iVBORw0KGgo"), std::string::npos) << plain;  // the signature of PNG
   EXPECT_EQ(plain.find("<text"), std::string::npos);
   EXPECT_NE(titled.find(">title</text>"), std::string::npos) << titled;
@@ -62,7 +62,7 @@ TEST(JobOutputs, SvgHasOutlinesInTheImageAndTextBesides) {
 
   drawing.outline_px = 1;
   drawing.lines.assign(40 * 20, 1);
-  EXPECT_NE(image_of(written("outlined.svg", &drawing)), image_of(plain));
+  EXPECT_NE(image_of(written("outlined.svg", drawing)), image_of(plain));
 }
 
 }  // namespace
