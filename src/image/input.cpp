@@ -17,6 +17,7 @@
 #include <string_view>
 #include <vector>
 
+#include <OpenImageIO/deepdata.h>
 #include <fmt/core.h>
 #include <zlib.h>
 
@@ -25,6 +26,7 @@
 #include "base/input_file.h"
 #include "image/format.h"
 #include "image/library.h"
+#include "math/pixels.h"
 
 namespace orrery::image {
 namespace {
@@ -157,6 +159,15 @@ bool Input::decode(int begin, int end, int first_channel, int end_channel, OIIO:
   const QuietPng quiet(*in);
   if (spec.tile_width == 0) return in->read_scanlines(part, 0, begin, end, 0, first_channel, end_channel, type, out);
   return in->read_tiles(part, 0, spec.x, spec.x + spec.width, begin, end, 0, 1, first_channel, end_channel, type, out);
+}
+
+bool Input::can_decode(int begin, int end) const {
+  if (spec.deep) {
+    OIIO::DeepData deep;
+    return in->read_native_deep_scanlines(part, 0, begin, end, 0, 0, spec.nchannels, deep);
+  }
+  std::vector<float> rows(math::pixel_count(spec.width, end - begin) * static_cast<std::size_t>(spec.nchannels));
+  return decode(begin, end, 0, spec.nchannels, OIIO::TypeDesc::FLOAT, rows.data());
 }
 
 std::string Input::error_message() const {

@@ -32,6 +32,8 @@ struct Input {
   int row_step() const;
   /// Decodes rows begin..end of a channel range; false if that fails.
   bool decode(int begin, int end, int first_channel, int end_channel, OIIO::TypeDesc type, void* out) const;
+  /// Decodes rows begin..end of all channels, which may be deep, and drops the values; false if that fails.
+  bool can_decode(int begin, int end) const;
   /// The reason why decoding failed.
   std::string error_message() const;
 };

@@ -9,7 +9,6 @@
 #include <string>
 #include <vector>
 
-#include <OpenImageIO/deepdata.h>
 #include <OpenImageIO/hash.h>
 #include <fmt/core.h>
 
@@ -18,8 +17,8 @@
 #include "base/input_file.h"
 #include "base/text.h"
 #include "image/checked_file.h"
+#include "image/input.h"
 #include "image/library.h"
-#include "math/pixels.h"
 
 namespace orrery::image {
 namespace {
@@ -60,43 +59,29 @@ std::string encode(OIIO::ImageOutput& out, const std::string& name, OIIO::TypeDe
   return first_error;
 }
 
-/// Decodes the last row of a part; false if that fails.
-bool read_end(OIIO::ImageInput& in, int part, const OIIO::ImageSpec& spec) {
-  const int end = spec.y + spec.height;
-  if (spec.deep) {
-    OIIO::DeepData row;
-    return in.read_native_deep_scanlines(part, 0, end - 1, end, 0, 0, spec.nchannels, row);
-  }
-  const int begin = spec.tile_width == 0 ? end - 1 : end - 1 - (spec.height - 1) % spec.tile_height;
-  std::vector<float> row(math::pixel_count(spec.width, end - begin) * static_cast<std::size_t>(spec.nchannels));
-  if (spec.tile_width != 0)
-    return in.read_tiles(part, 0, spec.x, spec.x + spec.width, begin, end, 0, 1, 0, spec.nchannels,
-                         OIIO::TypeDesc::FLOAT, row.data());
-  return in.read_scanlines(part, 0, end - 1, end, 0, 0, spec.nchannels, OIIO::TypeDesc::FLOAT, row.data());
-}
-
 /// Reopens the file and decodes the last row of every part.
 ///
 /// Result     what is wrong, or empty
 std::string read_back(const std::string& name, const std::string& format, const std::vector<WholePart>& parts) {
-  const auto in = OIIO::ImageInput::create(format);
-  if (!in) return OIIO::geterror();
-  OIIO::ImageSpec spec;
-  if (!in->open(name, spec)) return "it cannot be read back: " + in->geterror();
-  for (std::size_t i = 0; i < parts.size(); ++i) {
-    const OIIO::ImageSpec& written = parts[i].spec;
-    const int part = static_cast<int>(i);
+  Input input{OIIO::ImageInput::create(format), {}, 0};
+  if (!input.in) return OIIO::geterror();
+  OIIO::ImageSpec& spec = input.spec;
+  if (!input.in->open(name, spec)) return "it cannot be read back: " + input.in->geterror();
+  for (const WholePart& part : parts) {
+    const OIIO::ImageSpec& written = part.spec;
     std::string wrong;
-    if (!in->seek_subimage(part, 0)) {
+    if (!input.in->seek_subimage(input.part, 0)) {
       wrong = "a part cannot be read back";
-    } else if (spec = in->spec();
+    } else if (spec = input.in->spec();
                spec.width != written.width || spec.height != written.height || spec.nchannels != written.nchannels) {
       wrong = "it reads back as a different image";
-    } else if (!read_end(*in, part, spec)) {
+    } else if (const int last = spec.tile_width == 0 ? 1 : (spec.height - 1) % spec.tile_height + 1;
+               !input.can_decode(spec.y + spec.height - last, spec.y + spec.height)) {
       wrong = "its last row cannot be read back";
     }
-    const std::string reason = in->geterror();
+    const std::string reason = input.in->geterror();
     if (!wrong.empty()) return reason.empty() ? wrong : fmt::format("{}: {}", wrong, reason);
+    ++input.part;
   }
   return {};
 }
