@@ -112,8 +112,7 @@ std::vector<Marker> markers_of(const OIIO::ImageSpec& spec) {
 struct Pixels {
   int width, height;  ///< px
   const std::uint8_t* codes;
-  int quality;
-  bool subsamples;  ///< colour has half the resolution
+  int quality;  ///< 1 to 100; below kJpegQuality, colour has half the resolution
 };
 
 /// Runs libjpeg. Must not have local objects with destructors, since errors longjmp over this frame.
@@ -124,7 +123,7 @@ void compress(jpeg_compress_struct& info, const Pixels& pixels, const std::vecto
   info.in_color_space = JCS_RGB;
   jpeg_set_defaults(&info);
   jpeg_set_quality(&info, pixels.quality, TRUE);
-  if (!pixels.subsamples)
+  if (pixels.quality >= kJpegQuality)
     for (int c = 0; c < 3; ++c) info.comp_info[c].h_samp_factor = info.comp_info[c].v_samp_factor = 1;
   jpeg_start_compress(&info, TRUE);
   for (const Marker& marker : markers)
@@ -164,14 +163,14 @@ std::string encode_jpeg(const OIIO::ImageSpec& spec, const std::uint8_t* pixels,
   OIIO::ImageSpec described = spec;
   if (spec.get_string_attribute("oiio:ColorSpace") == "sRGB") described.attribute("Exif:ColorSpace", 1);
   // CheckedFile also keeps a failure until finish().
-  return encode({spec.width, spec.height, pixels, kJpegQuality, false}, markers_of(described),
+  return encode({spec.width, spec.height, pixels, kJpegQuality}, markers_of(described),
                 [&file](const JOCTET* bytes, std::size_t count) { return file.write(bytes, count) == count; });
 }
 
 std::string jpeg_bytes(int width_px, int height_px, const std::uint8_t* codes, int quality) {
   std::string out;
   const std::string error =
-      encode({width_px, height_px, codes, quality, true}, {}, [&out](const JOCTET* bytes, std::size_t count) {
+      encode({width_px, height_px, codes, quality}, {}, [&out](const JOCTET* bytes, std::size_t count) {
         out.append(reinterpret_cast<const char*>(bytes), count);
         return true;
       });

@@ -35,9 +35,6 @@ void write_whole(const std::filesystem::path& file, const std::string& format, O
 /// Errors     base::Error: kMissingInput if the file cannot be opened, kBadData if it has no digest or a wrong one
 void require_digest(const std::filesystem::path& file);
 
-/// JPEG quality: OpenImageIO's "jpeg:95", without chroma subsampling.
-inline constexpr int kJpegQuality = 95;
-
 /// Encodes an image as JPEG with the same bytes as OpenImageIO, which exits the process on any libjpeg error, such as
 /// lack of memory.
 ///

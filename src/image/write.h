@@ -56,10 +56,13 @@ inline constexpr int kCompressed = 6, kUncompressed = 0;
 /// Errors     base::Error(kInternal): the encoder's
 std::string png_bytes(const film::EncodedPicture& picture, int compression);
 
-/// Encodes an image as JPEG in memory, with chroma subsampling and without metadata.
+/// Quality of JPEG files: OpenImageIO's "jpeg:95", without chroma subsampling.
+inline constexpr int kJpegQuality = 95;
+
+/// Encodes an image as JPEG in memory, without metadata.
 ///
 /// `codes`    R, G, B of all pixels, row by row from the top
-/// `quality`  1 to 100
+/// `quality`  1 to 100; with chroma subsampling below kJpegQuality
 /// Domain     a side of up to 65,500 px
 /// Errors     base::Error(kInternal): libjpeg's
 std::string jpeg_bytes(int width_px, int height_px, const std::uint8_t* codes, int quality);

@@ -1,14 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 // Output of a study: text, JSON and a self-contained HTML page.
 #include <cmath>
-#include <fstream>
-#include <iterator>
+#include <cstdint>
 
 #include <nlohmann/json.hpp>
 
 #include <fmt/core.h>
 
-#include "base/temp_dir.h"
 #include "base/text.h"
 #include "compare/color_view.h"
 #include "compare/errors.h"
@@ -105,7 +103,7 @@ class Encoder {
     return address(display::develop(downsampled(picture), settings, 8));
   }
   /// For images that are already display-encoded, such as false colours.
-  std::string codes(const film::Picture& picture) const { return address(compare::encoded(picture)); }
+  static std::string codes(const film::Picture& picture) { return address(compare::encoded(picture)); }
   /// Sets the exposure for bright images: if the mean of green is above 1, brings it to 0.4.
   void expose(const film::Picture& picture) {
     double sum = 0;
@@ -115,14 +113,12 @@ class Encoder {
   }
 
  private:
-  std::string address(const film::EncodedPicture& picture) const {
-    const std::filesystem::path file = folder_.path() / "picture.jpg";
-    image::write_encoded(file, picture, "");
-    std::ifstream in(file, std::ios::binary);
-    return "data:image/jpeg;base64," + base::base64(std::string(std::istreambuf_iterator<char>(in), {}));
+  static std::string address(const film::EncodedPicture& picture) {
+    const std::vector<std::uint8_t> codes(picture.values.begin(), picture.values.end());
+    return "data:image/jpeg;base64," +
+           base::base64(image::jpeg_bytes(picture.width, picture.height, codes.data(), image::kJpegQuality));
   }
 
-  base::TempDir folder_;
   double exposure_ = 0;
 };
 
