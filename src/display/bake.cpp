@@ -66,24 +66,23 @@ Tables tabulated(const View& view, const Settings& settings, int size) {
   return out;
 }
 
+ocio::MatrixTransformRcPtr scaling(double s) {
+  auto matrix = ocio::MatrixTransform::Create();
+  const double m[16] = {s, 0, 0, 0, 0, s, 0, 0, 0, 0, s, 0, 0, 0, 0, 1};
+  matrix->setMatrix(m);
+  return matrix;
+}
+
 /// The transforms of a view including the exposure.
 ocio::GroupTransformRcPtr steps(const View& view, const Settings& settings) {
   auto group = view.transform->getOptimizedProcessor(ocio::OPTIMIZATION_LOSSLESS)->createGroupTransform();
-  const double gain = std::exp2(settings.stops());
-  auto matrix = ocio::MatrixTransform::Create();
-  const double m[16] = {gain, 0, 0, 0, 0, gain, 0, 0, 0, 0, gain, 0, 0, 0, 0, 1};
-  matrix->setMatrix(m);
-  if (settings.stops() != 0) group->prependTransform(matrix);
+  if (settings.stops() != 0) group->prependTransform(scaling(std::exp2(settings.stops())));
   return group;
 }
 
 ocio::GroupTransformRcPtr tables_as_steps(const Tables& tables) {
   auto group = ocio::GroupTransform::Create();
-  auto matrix = ocio::MatrixTransform::Create();
-  const double s = tables.scale;
-  const double m[16] = {s, 0, 0, 0, 0, s, 0, 0, 0, 0, s, 0, 0, 0, 0, 1};
-  matrix->setMatrix(m);
-  group->appendTransform(matrix);
+  group->appendTransform(scaling(tables.scale));
   auto shaper = ocio::Lut1DTransform::Create(tables.shaper.size(), false);
   for (std::size_t i = 0; i < tables.shaper.size(); ++i) {
     const auto v = static_cast<float>(tables.shaper[i]);

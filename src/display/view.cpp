@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "display/view.h"
 
-#include <algorithm>
 #include <cmath>
 #include <utility>
 
 #include <fmt/core.h>
 
 #include "base/error.h"
+#include "base/text.h"
 #include "display/config.h"
 #include "display/settings.h"
 
@@ -17,7 +17,7 @@ namespace {
 namespace ocio = OCIO_NAMESPACE;
 
 void require(const Config& config, const std::string& what, const std::string& name, const Names& known) {
-  if (std::find(known.begin(), known.end(), name) == known.end()) unknown(config, what, name, known);
+  if (!base::contains(known, name)) unknown(config, what, name, known);
 }
 
 Names views_of(const Config& config, const std::string& display) {
@@ -31,20 +31,22 @@ std::string final_space(const ocio::Config& config, const Choice& choice) {
   return space == "<USE_DISPLAY_NAME>" ? choice.display : space;
 }
 
+/// The encoding of a space according to the config; empty if it does not say.
+std::string encoding_of(const ocio::Config& config, const std::string& space) {
+  const ocio::ConstColorSpaceRcPtr found = config.getColorSpace(space.c_str());
+  return found ? found->getEncoding() : "";
+}
+
 /// Whether a space is for high dynamic range displays, by its encoding in the config, or else by its name.
 bool is_hdr(const ocio::Config& config, const std::string& space) {
-  const ocio::ConstColorSpaceRcPtr found = config.getColorSpace(space.c_str());
-  const std::string encoding = found ? found->getEncoding() : "";
-  if (!encoding.empty()) return encoding == "hdr-video";
+  if (const std::string encoding = encoding_of(config, space); !encoding.empty()) return encoding == "hdr-video";
   return space.find("2100") != std::string::npos || space.find("ST2084") != std::string::npos;
 }
 
 /// Whether images in this space may be tagged as sRGB.
 bool is_srgb(const ocio::Config& config, const std::string& space) {
   if (space.find("sRGB") == std::string::npos) return false;
-  const ocio::ConstColorSpaceRcPtr found = config.getColorSpace(space.c_str());
-  const std::string encoding = found ? found->getEncoding() : "";
-  if (!encoding.empty()) return encoding == "sdr-video";
+  if (const std::string encoding = encoding_of(config, space); !encoding.empty()) return encoding == "sdr-video";
   return space.find("inear") == std::string::npos;  // "Linear Rec.709 (sRGB)"
 }
 
@@ -75,11 +77,6 @@ void choose_view(const Config& config, const Settings& settings, Choice& choice)
   choice.view = settings.view.empty() ? config.config->getDefaultView(choice.display.c_str()) : settings.view;
   require(config, fmt::format("view on display `{}` named", choice.display), choice.view,
           views_of(config, choice.display));
-}
-
-bool has_view(const Config& config, const std::string& display, const std::string& view) {
-  const Names views = views_of(config, display);
-  return std::find(views.begin(), views.end(), view) != views.end();
 }
 
 void check_look(const Config& config, const Settings& settings) {
@@ -161,7 +158,7 @@ std::string view_or_default(const Settings& settings, const std::string& preferr
   try {
     const Config config = load_config(settings.config);
     choose_display(config, settings, choice);
-    if (has_view(config, choice.display, preferred)) return preferred;
+    if (base::contains(views_of(config, choice.display), preferred)) return preferred;
     Settings with_default = settings;
     with_default.view.clear();
     choose_view(config, with_default, choice);
