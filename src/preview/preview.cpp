@@ -31,7 +31,7 @@ constexpr const char* kTevPort = "14158";
 
 /// Parses HOST, HOST:PORT or [IPV6]:PORT.
 Target tev_at(const std::string& address) {
-  Target target{TargetKind::kTev, address, kTevPort, {}};
+  Target target{address, kTevPort, {}};
   std::size_t colon = address.rfind(':');
   if (address.starts_with('[')) {
     const std::size_t end = address.find(']');
@@ -65,21 +65,18 @@ double seconds_of(clockid_t clock) {
 
 Target parse_target(const std::string& text) {
   if (text.empty()) return {};
-  if (text == "tev") return {TargetKind::kTev, kTevHost, kTevPort, {}};
+  if (text == "tev") return {kTevHost, kTevPort, {}};
   if (base::has_frame_pattern(text))
     base::refuse(
         fmt::format("--preview: {} has a frame pattern; all frames share one preview, so write one name", text));
-  if (base::extension(text) == ".png") return {TargetKind::kFile, {}, {}, text};
+  if (base::extension(text) == ".png") return {{}, {}, text};
   if (text.starts_with("tev:")) return tev_at(text.substr(4));
   refuse(fmt::format("`{}` is not a preview", text));
 }
 
 std::unique_ptr<Sink> make_sink(const Target& target, const OnNote& note) {
-  switch (target.kind) {
-    case TargetKind::kNone: break;
-    case TargetKind::kTev: return std::make_unique<TevSink>(target.host, target.port, note);
-    case TargetKind::kFile: return std::make_unique<FileSink>(target.file);
-  }
+  if (!target.host.empty()) return std::make_unique<TevSink>(target.host, target.port, note);
+  if (!target.file.empty()) return std::make_unique<FileSink>(target.file);
   return nullptr;
 }
 

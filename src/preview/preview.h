@@ -49,13 +49,10 @@ class Pacing {
   double last_s_ = 0, last_cost_s_ = 0, spent_s_ = 0;
 };
 
-enum class TargetKind { kNone, kTev, kFile };
-
-/// Where a preview is shown.
+/// Where a preview is shown: in tev, in a PNG, or nowhere.
 struct Target {
-  TargetKind kind = TargetKind::kNone;
-  std::string host, port;      ///< address of tev
-  std::filesystem::path file;  ///< PNG, for which the display transform is applied
+  std::string host, port;      ///< address of tev; empty: none
+  std::filesystem::path file;  ///< PNG, for which the display transform is applied; empty: none
 };
 
 /// Parses the value of --preview: empty, tev, tev:HOST, tev:HOST:PORT, tev:[IPV6]:PORT, or the name of a PNG.

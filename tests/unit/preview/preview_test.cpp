@@ -67,7 +67,7 @@ namespace {
 TEST(PreviewTarget, TevListensOnLoopbackUnlessAHostIsGiven) {
   const auto address = [](const std::string& text) {
     const Target target = parse_target(text);
-    EXPECT_EQ(target.kind, TargetKind::kTev);
+    EXPECT_EQ(target.file, "");
     return target.host + " " + target.port;
   };
   EXPECT_EQ(address("tev"), "127.0.0.1 14158");
@@ -79,9 +79,10 @@ TEST(PreviewTarget, TevListensOnLoopbackUnlessAHostIsGiven) {
 
 TEST(PreviewTarget, KnowsPngFiles) {
   EXPECT_EQ(parse_target("out/p.PNG").file, "out/p.PNG");
-  EXPECT_EQ(parse_target("").kind, TargetKind::kNone);
-  EXPECT_EQ(parse_target("tev.png").kind, TargetKind::kFile);
-  EXPECT_EQ(parse_target("tev:9000.png").kind, TargetKind::kFile);
+  EXPECT_EQ(parse_target("out/p.PNG").host, "");
+  EXPECT_EQ(parse_target("").host + parse_target("").file.string(), "");
+  EXPECT_EQ(parse_target("tev.png").file, "tev.png");
+  EXPECT_EQ(parse_target("tev:9000.png").file, "tev:9000.png");
 }
 
 TEST(PreviewTarget, MakesTheSinkOfItsKind) {
