@@ -12,14 +12,14 @@
 #include "job/version.h"
 
 namespace orrery::job {
+namespace {
 
+/// Peak resident memory of this process, in bytes.
 std::size_t peak_memory() {
   rusage usage{};
   getrusage(RUSAGE_SELF, &usage);
   return static_cast<std::size_t>(usage.ru_maxrss) * 1024;  // Linux reports KiB
 }
-
-namespace {
 
 nlohmann::json bad_values_json(const film::BadValues& bad) {
   return {{"nan", bad.nan}, {"infinite", bad.infinite}, {"negative", bad.negative}, {"above_half", bad.above_half}};

@@ -23,7 +23,4 @@ void write_statistics(const std::filesystem::path& file, const JobReport& report
 /// Writes the statistics of a job that ended with an error, if it has a file for them. Errors of writing are dropped.
 void write_failure(const std::filesystem::path& file, const JobReport& report, const base::Error& error);
 
-/// Peak resident memory of this process, in bytes.
-std::size_t peak_memory();
-
 }  // namespace orrery::job
