@@ -49,21 +49,6 @@ void count_differing(const film::Picture& picture, const film::Picture& referenc
     if (picture.find(plane.name) == nullptr) out.only_in_reference.push_back(plane.name);
 }
 
-/// An image with changed values. Those that are not finite are 0, since filters would spread them.
-struct ChangedImage {
-  std::vector<float> values[3];
-  ColorView view;
-
-  template <class Change>
-  ChangedImage(const ColorView& from, Change change) : view(from) {
-    for (int c = 0; c < 3; ++c) {
-      values[c].assign(from.channel[c], from.channel[c] + from.pixels());
-      for (float& v : values[c]) v = std::isfinite(v) ? change(v) : 0.0f;
-      view.channel[c] = values[c].data();
-    }
-  }
-};
-
 film::Picture difference_picture(const ComparedChannels& c, bool for_display) {
   film::Picture out;
   out.width = c.picture.width;
@@ -164,12 +149,12 @@ Comparison compare(const film::Picture& picture, const film::Picture& reference,
     v = std::clamp(v, 0.0f, 1.0f);
     return encoding == Encoding::kLight ? srgb_encoded(v) : v;
   };
-  const ChangedImage code_a(c.picture, code), code_b(c.reference, code);
-  out.ssim = ssim(code_a.view, code_b.view);
+  const Maps code_a = maps_of(c.picture, code), code_b = maps_of(c.reference, code);
+  out.ssim = ssim(code_a, code_b);
   out.flip_map = encoding == Encoding::kDisplay
-                     ? flip(code_a.view, code_b.view)
-                     : hdr_flip(ChangedImage(c.picture, std::identity()).view,
-                                ChangedImage(c.reference, std::identity()).view, job::thread_count(threads));
+                     ? flip(code_a, code_b)
+                     : hdr_flip(maps_of(c.picture, std::identity()), maps_of(c.reference, std::identity()),
+                                job::thread_count(threads));
   out.flip = out.flip_map.mean();
   out.z_test = z_test(c.picture, color_of(picture, "variance"), c.reference, color_of(reference, "variance"));
   return out;

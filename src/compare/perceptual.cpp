@@ -27,10 +27,10 @@ auto gaussian(double sigma) {
   return [sigma](double x) { return std::exp(-x * x / (2 * sigma * sigma)); };
 }
 
-Map luma(const ColorView& v) {
-  Map out{v.width, v.height, std::vector<float>(v.pixels())};
+Map luma(const Maps& m) {
+  Map out = m[0];
   for (std::size_t i = 0; i < out.values.size(); ++i)
-    out.values[i] = 0.299f * v.channel[0][i] + 0.587f * v.channel[1][i] + 0.114f * v.channel[2][i];
+    out.values[i] = 0.299f * m[0].values[i] + 0.587f * m[1].values[i] + 0.114f * m[2].values[i];
   return out;
 }
 
@@ -67,7 +67,7 @@ Map convolved(const Map& map, const Taps& along_x, const Taps& along_y) {
   return out;
 }
 
-double ssim(const ColorView& picture, const ColorView& reference) {
+double ssim(const Maps& picture, const Maps& reference) {
   constexpr double kC1 = 0.01 * 0.01, kC2 = 0.03 * 0.03;
   const Taps taps = taps_of(5, gaussian(1.5));
   const auto mean = [&](const Map& m) { return convolved(m, taps, taps); };
@@ -87,7 +87,6 @@ double ssim(const ColorView& picture, const ColorView& reference) {
 namespace {
 
 using Color = std::array<float, 3>;
-using Maps = std::array<Map, 3>;
 
 // The symbols used in the papers are given in the comments.
 constexpr float kColorExponent = 0.7f;    // q_c
@@ -272,25 +271,14 @@ double inverse_tone_curve(double t) {
   return -b / 2 + std::sqrt(b * b / 4 - c);
 }
 
-/// The values of a view, changed by `f`.
-template <class F>
-Maps maps_of(const ColorView& v, F f) {
-  Maps out;
-  for (std::size_t c = 0; c < 3; ++c) {
-    out[c] = {v.width, v.height, std::vector<float>(v.pixels())};
-    std::transform(v.channel[c], v.channel[c] + v.pixels(), out[c].values.begin(), f);
-  }
-  return out;
-}
-
 /// The exposures in stops: from the one that maps the maximum luminance to kShown to the one that does so for the
 /// median.
-std::vector<double> exposures_for(const ColorView& reference) {
-  std::vector<double> luminance(reference.pixels());
+std::vector<double> exposures_for(const Maps& reference) {
+  std::vector<double> luminance(reference[0].values.size());
   for (std::size_t i = 0; i < luminance.size(); ++i)
-    luminance[i] = 0.2126 * static_cast<double>(reference.channel[0][i]) +
-                   0.7152 * static_cast<double>(reference.channel[1][i]) +
-                   0.0722 * static_cast<double>(reference.channel[2][i]);
+    luminance[i] = 0.2126 * static_cast<double>(reference[0].values[i]) +
+                   0.7152 * static_cast<double>(reference[1].values[i]) +
+                   0.0722 * static_cast<double>(reference[2].values[i]);
   const double brightest = *std::max_element(luminance.begin(), luminance.end());
   if (!(brightest > 0)) return {0.0};
   // For an even count the median is the mean of the two middle values.
@@ -309,19 +297,21 @@ std::vector<double> exposures_for(const ColorView& reference) {
 
 }  // namespace
 
-Map flip(const ColorView& picture, const ColorView& reference) {
-  return flip(filtered_image(maps_of(picture, std::identity())), filtered_image(maps_of(reference, std::identity())));
+Map flip(const Maps& picture, const Maps& reference) {
+  return flip(filtered_image(picture), filtered_image(reference));
 }
 
-Map hdr_flip(const ColorView& picture, const ColorView& reference, int threads) {
+Map hdr_flip(const Maps& picture, const Maps& reference, int threads) {
   const std::vector<double> exposures = exposures_for(reference);
-  Map out{reference.width, reference.height, std::vector<float>(reference.pixels(), 0.0f)};
+  Map out{reference[0].width, reference[0].height, std::vector<float>(reference[0].values.size())};
   std::mutex merging;
   const auto merge = [&](std::size_t i, render::TileWorker&) {
-    const auto code = [gain = static_cast<float>(std::exp2(exposures[i]))](float light) {
-      return srgb_encoded(tone(std::max(light, 0.0f) * gain));
+    const auto shown = [gain = static_cast<float>(std::exp2(exposures[i]))](Maps image) {
+      for (Map& channel : image)
+        for (float& v : channel.values) v = srgb_encoded(tone(std::max(v, 0.0f) * gain));
+      return image;
     };
-    const Map map = flip(filtered_image(maps_of(picture, code)), filtered_image(maps_of(reference, code)));
+    const Map map = flip(shown(picture), shown(reference));
     const std::lock_guard lock(merging);
     for (std::size_t p = 0; p < out.values.size(); ++p) out.values[p] = std::max(out.values[p], map.values[p]);
   };
