@@ -85,7 +85,6 @@ std::vector<std::filesystem::path> table_files(const std::filesystem::path& conf
 struct PictureInfo {
   std::string name;           ///< name of the scene file
   int width = 0, height = 0;  ///< px
-  double pixel_aspect = 1;    ///< pixel width / height
   Settings display;           ///< from the command line and the scene
 };
 

@@ -197,8 +197,7 @@ class Run {
     settings_.cancel = job_.hooks.cancel;
     if (is_kept()) job_.keep->drawing = drawing_;
     if (job_.hooks.on_start && !is_merge())
-      job_.hooks.on_start({job_.scene.file.filename().string(), compiled().width, compiled().height,
-                           compiled().pixel_aspect, loaded().display});
+      job_.hooks.on_start({job_.scene.file.filename().string(), compiled().width, compiled().height, loaded().display});
     if (!is_kept()) image::set_threads(settings_.threads);  // fails now if the library cannot be loaded
     checkpoint_.emplace(is_kept() ? std::filesystem::path() : checkpoint_file(job_.outputs.images.front().path),
                         job_.checkpoint, job_.hooks, provenance_,
@@ -223,7 +222,6 @@ class Run {
     settings_.sampling.spend(report_.phases.build_s);
     render::Result result;
     if (accel != nullptr) result = render::render(compiled(), *accel, settings_, std::move(from));
-    result.statistics.build_s = report_.phases.build_s;
     report_.render = result.statistics;
     report_.phases.render_s = result.statistics.render_s;
     report_.phases.finish_s = result.statistics.finish_s;

@@ -145,7 +145,7 @@ std::vector<std::uint8_t> codes_of(const std::filesystem::path& file) {
   return out;
 }
 
-display::PictureInfo info(int width, int height) { return {"scene.toml", width, height, 1, settings()}; }
+display::PictureInfo info(int width, int height) { return {"scene.toml", width, height, settings()}; }
 
 OnNote into(std::string& notes) {
   return [&notes](const std::string& text) { notes += text; };

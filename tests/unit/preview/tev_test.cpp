@@ -59,7 +59,7 @@ class PreviewTevSink : public testing::Test {
     return std::make_unique<Preview>(std::make_unique<TevSink>("127.0.0.1", port, note()), note());
   }
   static display::PictureInfo info(int width, int height, const std::string& name = "scene.toml") {
-    return {name, width, height, 1, {}};
+    return {name, width, height, {}};
   }
   std::string notes_;
 };
