@@ -51,11 +51,8 @@ class Packet {
   void add(std::int32_t number) { add_bytes(static_cast<std::uint32_t>(number), 4); }
   void add(std::int64_t number) { add_bytes(static_cast<std::uint64_t>(number), 8); }
   void add(const std::vector<float>& values) {
-    if constexpr (std::endian::native == std::endian::little) {
-      bytes_.append(reinterpret_cast<const char*>(values.data()), values.size() * sizeof(float));
-    } else {
-      for (const float v : values) add_bytes(std::bit_cast<std::uint32_t>(v), 4);
-    }
+    static_assert(std::endian::native == std::endian::little);  // as Embree
+    bytes_.append(reinterpret_cast<const char*>(values.data()), values.size() * sizeof(float));
   }
   void add_channels() {
     add(kChannelCount);
