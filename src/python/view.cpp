@@ -31,30 +31,35 @@ double noise_of(const std::string& text) {
   return out;
 }
 
+/// Calls `use(option, value)` for each option among the page's words; --denoise has no value.
+template <class Use>
+void each_option(const std::vector<std::string>& words, Use use) {
+  for (std::size_t i = 0; i < words.size(); ++i) {
+    const std::string& option = words[i];
+    use(option, option == "--denoise" ? std::string() : words[++i]);
+  }
+}
+
 /// The subject of the page's words.
 view::Subject subject_of(const SceneData& scene, const job::Job& job, const std::vector<std::string>& words) {
   view::Subject out;
   out.job = job;
   out.job.scene = scene.source();
   load::Overrides own;  // of the page
-  for (std::size_t i = 0; i < words.size(); ++i) {
-    const std::string& option = words[i];
+  each_option(words, [&](const std::string& option, const std::string& value) {
     if (option == "--denoise") {
       out.job.denoise = true;
-      continue;
-    }
-    const std::string& value = words[++i];
-    if (option == "--noise") {
+    } else if (option == "--noise") {
       out.job.sampling.noise = noise_of(value);
-      continue;
+    } else {
+      for (load::Overrides* const overrides : {&own, &out.job.scene.overrides}) {
+        if (option == "--set")
+          overrides->add(value);
+        else
+          overrides->add_option(option, (option == "--samples" ? "render." : "image.") + option.substr(2), value);
+      }
     }
-    for (load::Overrides* const overrides : {&own, &out.job.scene.overrides}) {
-      if (option == "--set")
-        overrides->add(value);
-      else
-        overrides->add_option(option, (option == "--samples" ? "render." : "image.") + option.substr(2), value);
-    }
-  }
+  });
   if (!view::named_files(own).empty()) base::refuse("set files in Python: scene.set(...)");
   return out;
 }
@@ -69,22 +74,13 @@ std::string python_value(const std::string& text) {
 
 /// The statements that make the picture of the page's words.
 std::string statements(const std::vector<std::string>& words) {
-  std::string out, size, rest;
-  for (std::size_t i = 0; i < words.size(); ++i) {
-    const std::string& option = words[i];
-    if (option == "--denoise") {
-      rest += ", denoise=True";
-      continue;
-    }
-    const std::string& value = words[++i];
-    if (option == "--set") {
-      const std::size_t equals = value.find('=');
-      if (equals != std::string::npos)
-        out += fmt::format("scene.set(\"{}\", {})\n", value.substr(0, equals), python_value(value.substr(equals + 1)));
-    } else {
-      rest += fmt::format(", {}={}", option.substr(2), value);
-    }
-  }
+  std::string out, rest;
+  each_option(words, [&](const std::string& option, const std::string& value) {
+    if (const std::size_t equals = value.find('='); option == "--set" && equals != std::string::npos)
+      out += fmt::format("scene.set(\"{}\", {})\n", value.substr(0, equals), python_value(value.substr(equals + 1)));
+    else if (option != "--set")
+      rest += fmt::format(", {}={}", option.substr(2), option == "--denoise" ? "True" : value);
+  });
   return out + "scene.render(" + (rest.empty() ? rest : rest.substr(2)) + ")";
 }
 
@@ -118,10 +114,10 @@ class ScenePage {
   /// The settings of the scene that is shown: KEY=VALUE, those of the controls and the camera.
   std::vector<std::string> settings() const {
     std::vector<std::string> out;
-    if (!viewer_) return out;
-    const std::vector<std::string> words = viewer_->state().words;
-    for (std::size_t i = 0; i + 1 < words.size(); ++i)
-      if (words[i] == "--set") out.push_back(words[i + 1]);
+    if (viewer_)
+      each_option(viewer_->state().words, [&](const std::string& option, const std::string& value) {
+        if (option == "--set") out.push_back(value);
+      });
     return out;
   }
 
