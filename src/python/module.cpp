@@ -22,6 +22,7 @@
 
 #include "base/error.h"
 #include "base/module.h"
+#include "base/text.h"
 #include "job/job.h"
 #include "job/prepared_scene.h"
 #include "job/version.h"
@@ -50,11 +51,11 @@ void export_symbols() {
       (std::filesystem::path(own.dli_fname).parent_path() / ORRERY_MODULES_FROM_PYTHON).lexically_normal());
 }
 
-/// The text that the program prints for an error.
+/// The text that the program prints for an error, with the names of arguments for those of options.
 std::string text_of(const base::Error& error) {
   std::string out;
   for (const base::Diagnostic& diagnostic : error.diagnostics()) out += base::formatted(diagnostic);
-  return out + error.what();
+  return base::replaced(out + error.what(), "--memory-limit", "memory_limit");
 }
 
 const char* class_of(base::ErrorKind kind) {

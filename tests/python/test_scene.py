@@ -525,7 +525,7 @@ class Settings(FolderTest):
         for keys in ({"noise": 0}, {"noise": 2}, {"time": -1}, {"threads": 0}, {"memory_limit": "8G"}):
             with self.assertRaisesRegex(ValueError, next(iter(keys))):
                 scene.render(4, 4, **keys)
-        with self.assertRaises(orrery.OutOfMemoryError):
+        with self.assertRaisesRegex(orrery.OutOfMemoryError, "and memory_limit allows 1.0 KiB; raise the limit"):
             scene.render(400, 400, memory_limit=1000)
         with self.assertRaises(MemoryError):
             scene.render(400, 400, memory_limit=1000)
