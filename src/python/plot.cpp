@@ -21,9 +21,11 @@
 #include "cli/subject.h"
 #include "data/data_file.h"
 #include "job/job.h"
+#include "load/read_scene.h"
 #include "python/arrays.h"
 #include "python/picture.h"
 #include "python/render.h"
+#include "scene/scene.h"
 #include "view/viewer.h"
 
 namespace py = pybind11;
@@ -135,6 +137,8 @@ view::Subject make_film(const FilmFile& to, const std::string& data, const std::
                         const job::Resources& resources, const points::OpenData& open, const job::Hooks& hooks) {
   const cli::Film film(to.path, to.settings.fps, to.keeps_frames);
   view::Subject subject = cli::data_subject(data, words, resources, open, &to.settings);
+  const scene::Window window = load::authored_scene(subject.job.scene).image.data_window();
+  film.check_size(window.width, window.height);
   job::Batch batch;
   batch.job = subject.job;
   batch.job.outputs.images = {film.frame_pattern()};

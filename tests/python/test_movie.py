@@ -106,6 +106,13 @@ class Movie(MovieTest):
         self.assertEqual(made.frames, (1, 2, 3, 4))
         self.assertEqual(len(set(frames_of("a.mp4"))), 4)
 
+    def test_a_video_of_one_pixel_is_refused_before_it_is_rendered(self):
+        for size in ({"width": 1}, {"height": 1}):
+            with self.assertRaisesRegex(orrery.UsageError, "a.mp4: a video is at least 2 pixels wide and high"):
+                movie(FRAMES, radius=0.3, **size)
+            self.assertFalse(os.path.exists("a.mp4.frames"))
+        movie(FRAMES, "a.gif", radius=0.3, width=1, height=1)
+
     def test_a_call_that_failed_is_continued(self):
         self.install("exit 3")
         with self.assertRaisesRegex(orrery.OutputError, "ffmpeg failed with status 3.*frames are in a.mp4.frames"):
