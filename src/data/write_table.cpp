@@ -192,7 +192,8 @@ bool is_storable_in_xyz(const Column& column) {
          });
 }
 
-/// Characters that separate names and values in extended XYZ.
+/// Characters that separate names and values in the header of PLY, and in extended XYZ.
+constexpr std::string_view kPlySeparators = " \t\n\v\f\r";
 constexpr std::string_view kXyzSeparators = " \t\r\n:=\"'{}[]\\,";
 
 /// A property of extended XYZ: one or more columns.
@@ -281,7 +282,7 @@ std::vector<XyzOutput> xyz_outputs(const Table& table, std::vector<std::string>&
 std::vector<std::string> write_ply_table(base::OutputFile& out, const Table& table, const std::string& writer) {
   std::vector<std::string> left_out;
   std::vector<PlyOutput> outputs;
-  DistinctNames names(table, " \t\n\v\f\r");
+  DistinctNames names(table, kPlySeparators);
   std::string& bytes = out.buffer();
   bytes = fmt::format(
       "ply\n"
@@ -415,7 +416,9 @@ auto writer_of(const std::filesystem::path& file) {
 
 }  // namespace
 
-bool is_storable_in_ply(const Column& column) { return ply_output(column) != PlyOutput::kNone; }
+bool is_storable_in_ply(const Column& column) {
+  return ply_output(column) != PlyOutput::kNone && column.name.find_first_of(kPlySeparators) == std::string::npos;
+}
 
 void require_table_format(const std::filesystem::path& file) { writer_of(file); }
 

@@ -14,7 +14,7 @@ namespace orrery::data {
 /// Errors     base::Error(kUsage) for another extension
 void require_table_format(const std::filesystem::path& file);
 
-/// Whether PLY can store the values of a column: numbers, but not integers beyond 2^53.
+/// Whether PLY can store a column: numbers, but not integers beyond 2^53, with a name without spaces.
 bool is_storable_in_ply(const Column& column);
 
 /// Writes a table. Reading the file with open() gives the same values.

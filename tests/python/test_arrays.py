@@ -174,6 +174,19 @@ class Strings(FolderTest):
             scene.save("other.toml")
 
 
+    def test_names_may_have_spaces(self):
+        p = positions()
+        with open("a.csv", "w", encoding="ascii") as file:
+            file.write('x,y,z,"v (km/s)"\n')
+            file.writelines(f"{x!r},{y!r},{z!r},{n}\n" for n, (x, y, z) in enumerate(p.tolist()))
+        points = orrery.read_points("a.csv")
+        keys = {"select": "`v (km/s)` > 29", "color": {"column": "v (km/s)"}}
+        scene = small_scene(points.positions, columns={"v (km/s)": points["v (km/s)"]}, **keys)
+        self.assertEqual(beauty(scene), beauty(small_scene(p[30:], color=orrery.colormap(np.arange(30)))))
+        scene.save("saved.toml")
+        self.assertEqual(beauty(orrery.load("saved.toml")), beauty(scene))
+
+
 class BadInput(FolderTest):
     def refused(self, kind, text, array, **keys):
         with self.assertRaisesRegex(kind, text):
@@ -188,7 +201,7 @@ class BadInput(FolderTest):
         self.refused(ValueError, r"color must have the shape \(3,\) or \(60, 3\)", p, color=np.ones((60, 4)))
         self.refused(ValueError, r"colour map must have the shape \(60,\)", p, color=orrery.colormap(np.ones(3)))
         self.refused(ValueError, r"height must have the shape", p, columns={"height": np.ones(3)})
-        self.refused(ValueError, "not a name for a column", p, columns={"a b": np.ones(60)})
+        self.refused(ValueError, "not a name for a column", p, columns={"a\nb": np.ones(60)})
         self.refused(ValueError, "there is a column 'x' already", p, columns={"x": np.ones(60)})
         with self.assertRaisesRegex(ValueError, r"values must have the shape"):
             orrery.colormap(p)

@@ -167,9 +167,9 @@ class Scene:
         rows = len(positions)
         table = dict(zip("xyz", positions.T))
         for name, values in dict(columns or {}).items():
-            if not re.fullmatch(r"[^\s\x00-\x1f\x7f]+", _arguments.text("a name in columns", name)):
-                raise ValueError(f"{name!r} is not a name for a column; names have no spaces")
-            _add_column(table, name, _arrays.column(values, name, rows))
+            if not re.fullmatch(r"[^\x00-\x1f\x7f]+", _arguments.text("a name in columns", name)):
+                raise ValueError(f"{name!r} is not a name for a column; names have no control characters")
+            _arrays.add_column(table, name, _arrays.column(values, name, rows))
         if "file" in keys:
             raise TypeError("add_points() has no key 'file'; set radius, color or columns, or read_points(file)")
         keys["material"] = material
@@ -194,7 +194,8 @@ class Scene:
         return self._data().check()
 
     def save(self, file: Path) -> None:
-        """Writes a scene file, and next to it a PLY file for each add_points(), or an NPY file if that has strings.
+        """Writes a scene file, and next to it a PLY file for each add_points(), or an NPY file if that has strings
+        or names with spaces.
 
         Both read back without loss. Comments of a loaded scene are not kept. No file that the scene reads is replaced.
         """
