@@ -396,7 +396,7 @@ class PlyFile final : public SingleFrame {
         info_.columns.push_back({property.name, type_of(property)});
       }
     info_.rows = vertex().count;
-    info_.may_be_of_scene = true;
+    info_.may_be_of_scene = info_.may_be_hollow = true;
     info_.roles = required_roles(declared, faults);
   }
 

@@ -186,14 +186,13 @@ struct FrameInfo {
   Roles roles;
   std::optional<Box> box;
   std::vector<Assembly> assemblies;
-  std::optional<double> step;   ///< time step, or the frame number in the file
-  std::string title;            ///< comment or title of the file; may be empty
-  bool z_up = true;             ///< convention of the format
-  bool has_components = false;  ///< OpenOptions::component selects one of several sets of particles
-  /// The file may have been made for a scene: a column may number its materials, and a radius below 0 is a hollow
-  /// sphere.
-  bool may_be_of_scene = false;
-  std::uint64_t bonds = 0;  ///< estimated number of bonds in the file; 0: it has none
+  std::optional<double> step;    ///< time step, or the frame number in the file
+  std::string title;             ///< comment or title of the file; may be empty
+  bool z_up = true;              ///< convention of the format
+  bool has_components = false;   ///< OpenOptions::component selects one of several sets of particles
+  bool may_be_of_scene = false;  ///< the file may have been made for a scene: a column may number its materials
+  bool may_be_hollow = false;    ///< the same; a radius below 0 is a hollow sphere
+  std::uint64_t bonds = 0;       ///< estimated number of bonds in the file; 0: it has none
   /// False if the format leaves out bonds that its readers know, such as those within the residues of a protein.
   bool lists_all_bonds = true;
 };

@@ -277,7 +277,7 @@ class Loader {
     if (faults_.has_errors()) return {};
     // A radius below 0 makes hollow glass, in a scene or in a PLY file that was made for one. In other data it is an
     // error that the image would not show.
-    const bool may_be_hollow = radius_.kind == RadiusSource::Kind::kValue || info_.may_be_of_scene;
+    const bool may_be_hollow = radius_.kind == RadiusSource::Kind::kValue || info_.may_be_hollow;
     keep_valid(points_, may_be_hollow, rows, centers, radii, faults_);
     if (faults_.has_errors()) return {};
     return Particles{std::move(table), std::move(rows), std::move(centers), std::move(radii), are_all_rows};

@@ -237,6 +237,13 @@ class BadInput(FolderTest):
         for radii in (np.zeros(60), np.full(60, np.nan)):
             with self.assertRaisesRegex(orrery.SceneError, "row 1 of positions-1"):
                 small_scene(p, radius=radii).check()
+        radii = np.full(60, 0.3)
+        radii[3] = -0.2
+        for columns in ({}, {"name": ["a"] * 60}):
+            for keys in ({"radius": radii}, {"radius": {"column": "size"}, "columns": {"size": radii}}):
+                keys["columns"] = {**keys.get("columns", {}), **columns}
+                with self.assertRaisesRegex(orrery.SceneError, "row 4 of positions-1 has center .* and radius -0.2"):
+                    small_scene(p, **keys).check()
         with self.assertRaisesRegex(orrery.SceneError, "radius"):
             small_scene(p, radius=0).check()
         with self.assertRaisesRegex(orrery.SceneError, "the file has no radius"):
