@@ -71,6 +71,13 @@ def column(values, name, rows):
     return Strings(array, name) if array.dtype.kind in _STRINGS else array
 
 
+def add_column(table, name, values):
+    """Adds a column to a table that has none of this name."""
+    if name in table:
+        raise ValueError(f"there is a column {name!r} already")
+    table[name] = values
+
+
 def native(table, rows=None):
     """Returns the columns of a table, or the first rows of them, for the extension module."""
     parts = [(name, *((c.index, c.words) if isinstance(c, Strings) else (c, None))) for name, c in table.items()]

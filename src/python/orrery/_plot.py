@@ -84,9 +84,7 @@ def _source(data, columns, cell):
         return _arguments.path("data", data)
     rows = len(next(iter(table.values())))
     for name, values in columns.items():
-        if name in table:
-            raise ValueError(f"there is a column {name!r} already")
-        table[_arguments.text("a name in columns", name)] = _arrays.column(values, name, rows)
+        _arrays.add_column(table, _arguments.text("a name in columns", name), _arrays.column(values, name, rows))
     return _arrays.native(table), own_box if cell is None else _cell(cell)
 
 

@@ -360,16 +360,10 @@ def _counts(width, height, samples):
     return [None if value is None else _arguments.whole(name, value) for name, value in values.items()]
 
 
-def _add_column(table, name, values):
-    if name in table:
-        raise ValueError(f"there is a column {name!r} already")
-    table[name] = values
-
-
 def _numbers(key, value, rows, table):
     if isinstance(value, (str, Mapping)) or np.ndim(value) == 0:
         return value if isinstance(value, Mapping) else np.asarray(value).item()
-    _add_column(table, key, _arrays.column(value, key, rows))
+    _arrays.add_column(table, key, _arrays.column(value, key, rows))
     return {"column": key}
 
 
@@ -377,7 +371,7 @@ def _color(color, rows, table):
     if isinstance(color, Mapping):
         return color
     if isinstance(color, ColorMap):
-        _add_column(table, "color", _arrays.column(color.values, "the values of the colour map", rows))
+        _arrays.add_column(table, "color", _arrays.column(color.values, "the values of the colour map", rows))
         return color.keys("color")
     array = _arrays.numbers(color, "color")
     if array.shape == (3,):
@@ -385,5 +379,5 @@ def _color(color, rows, table):
     if array.shape != (rows, 3):
         raise ValueError(f"color must have the shape (3,) or ({rows}, 3), not {array.shape}")
     for name, values in zip(("red", "green", "blue"), array.T):
-        _add_column(table, name, values)
+        _arrays.add_column(table, name, values)
     return {"rgb": True}
