@@ -10,7 +10,6 @@
 namespace orrery::compile {
 namespace {
 
-using math::set;
 using math::Vec3d;
 
 double tangent_of_half(double angle_deg) {
@@ -44,12 +43,12 @@ kernel::Camera compile_camera(const scene::Camera& camera, const scene::Image& i
                                        : 2 * tangent_of_half(camera.vfov) * focus / image.height;
   const double lens_radius = camera.defocus_angle > 0 ? tangent_of_half(camera.defocus_angle) * focus : 0;
   kernel::Camera out;
-  set(out.origin, camera.look_from);
-  set(out.forward, axes.z * -focus * view_scale);
-  set(out.right, axes.x * (pixel * image.pixel_aspect) * view_scale);
-  set(out.down, axes.y * -pixel * view_scale);
-  set(out.lens_u, axes.x * lens_radius);
-  set(out.lens_v, axes.y * lens_radius);
+  out.origin = camera.look_from;
+  out.forward = axes.z * -focus * view_scale;
+  out.right = axes.x * (pixel * image.pixel_aspect) * view_scale;
+  out.down = axes.y * -pixel * view_scale;
+  out.lens_u = axes.x * lens_radius;
+  out.lens_v = axes.y * lens_radius;
   out.is_orthographic = is_orthographic;
   out.half_width = image.width / 2.0 - image.data_window().x;
   out.half_height = image.height / 2.0 - image.data_window().y;

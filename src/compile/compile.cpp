@@ -231,19 +231,11 @@ void set_camera(const scene::Scene& opening, const scene::Scene* closing, Compil
   features.motion = !compiled.motion.empty() || !compiled.rod_motion.empty();
   if (closing == nullptr) return;
   const kernel::Camera last = compile_camera(closing->camera, closing->image, scale);
-  kernel::Camera& change = compiled.camera_motion;
-  const auto subtract = [&](const double(&to)[3], const double(&from)[3], double(&out)[3]) {
-    for (int k = 0; k < 3; ++k) {
-      out[k] = to[k] - from[k];
-      features.motion = features.motion || out[k] != 0;
-    }
-  };
-  subtract(last.origin, compiled.camera.origin, change.origin);
-  subtract(last.forward, compiled.camera.forward, change.forward);
-  subtract(last.right, compiled.camera.right, change.right);
-  subtract(last.down, compiled.camera.down, change.down);
-  subtract(last.lens_u, compiled.camera.lens_u, change.lens_u);
-  subtract(last.lens_v, compiled.camera.lens_v, change.lens_v);
+  for (const auto vector : kernel::kCameraVectors) {
+    const Vec3d change = last.*vector - compiled.camera.*vector;
+    compiled.camera_motion.*vector = change;
+    features.motion = features.motion || change != Vec3d{0, 0, 0};
+  }
 }
 
 /// Compiles an image background or a sky; without one, the gradient or constant colour.

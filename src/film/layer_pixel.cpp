@@ -96,18 +96,15 @@ struct HitRod {
 
 /// Origin and viewing direction of the camera at a shutter time.
 std::pair<Vec3d, Vec3d> camera_at(const kernel::SceneView& scene, double time) {
-  Vec3d origin = vector_of(scene.camera.origin), forward = vector_of(scene.camera.forward);
-  if (scene.features.motion) {
-    origin = fma(vector_of(scene.camera_motion.origin), time, origin);
-    forward = fma(vector_of(scene.camera_motion.forward), time, forward);
-  }
-  return {origin, forward};
+  const kernel::Camera &camera = scene.camera, &change = scene.camera_motion;
+  if (!scene.features.motion) return {camera.origin, camera.forward};
+  return {fma(change.origin, time, camera.origin), fma(change.forward, time, camera.forward)};
 }
 
 /// False if a path's first hit is certainly not closer than this; cheaper than locating the hit.
 bool may_be_nearer(const kernel::SceneView& scene, const PathRecord& path, double than) {
   if (scene.camera.is_orthographic || scene.features.motion) return true;
-  const Vec3d from_camera = base_of(scene, path.sphere, 0) - vector_of(scene.camera.origin) + path.offset;
+  const Vec3d from_camera = base_of(scene, path.sphere, 0) - scene.camera.origin + path.offset;
   constexpr double kRounding = 1 + 0x1p-50;  // of both squares and the root
   return !(dot(from_camera, from_camera) > than * than * kRounding);
 }

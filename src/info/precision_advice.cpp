@@ -11,6 +11,7 @@
 #include "kernel/material.h"
 #include "kernel/precision.h"
 #include "kernel/sphere.h"
+#include "math/vec3.h"
 
 namespace orrery::info {
 namespace {
@@ -27,14 +28,13 @@ struct Proportions {
 Proportions proportions_of(const compile::CompiledScene& compiled) {
   Proportions p;
   double largest = 0;
-  const double* o = compiled.camera.origin;
-  for (const double x : {o[0], o[1], o[2]}) largest = std::max(largest, std::abs(x));
+  const math::Vec3d& o = compiled.camera.origin;
+  for (const double x : {o.x, o.y, o.z}) largest = std::max(largest, std::abs(x));
   for (std::size_t i = 0; i < compiled.spheres.size(); ++i) {
     const kernel::Sphere s = compiled.spheres[i];
     p.smallest = std::min(p.smallest, s.radius);
     for (const double x : {s.x, s.y, s.z}) largest = std::max(largest, std::abs(x));
-    const double dx = s.x - o[0], dy = s.y - o[1], dz = s.z - o[2];
-    p.farthest = std::max(p.farthest, std::sqrt(dx * dx + dy * dy + dz * dz) / s.radius);
+    p.farthest = std::max(p.farthest, length(math::Vec3d{s.x, s.y, s.z} - o) / s.radius);
   }
   p.coordinate = largest / p.smallest;
   return p;

@@ -174,9 +174,8 @@ class Run {
   annotation::View annotated_view() const {
     const kernel::Camera& camera = compiled().camera;
     const auto project = [&camera](const math::Vec3d& at) -> std::optional<std::pair<double, double>> {
-      const auto along = [from = at - math::vector_of(camera.origin)](const auto& axis) {
-        const math::Vec3d v = math::vector_of(axis);
-        return dot(from, v) / dot(v, v);
+      const auto along = [from = at - camera.origin](const math::Vec3d& axis) {
+        return dot(from, axis) / dot(axis, axis);
       };
       const double depth = along(camera.forward), scale = camera.is_orthographic ? 1 : depth;
       if (!(depth > 0)) return {};

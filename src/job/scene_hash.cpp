@@ -111,7 +111,7 @@ SceneHashes scene_hashes(const compile::CompiledScene& compiled, Hash hash) {
   hash.add(c.half_width);
   hash.add(c.half_height);
   if (c.is_orthographic) hash.add_bits(1);  // others keep the hash that they had before there was a choice
-  for (const auto* v : {&c.origin, &c.forward, &c.right, &c.down, &c.lens_u, &c.lens_v}) add_all(hash, *v);
+  for (const auto vector : kernel::kCameraVectors) add_all(hash, c.*vector);
   if (compiled.features.motion) {
     for (const kernel::Sphere& s : compiled.motion)
       for (const double v : {s.x, s.y, s.z, s.radius}) hash.add(v);
@@ -120,8 +120,7 @@ SceneHashes scene_hashes(const compile::CompiledScene& compiled, Hash hash) {
       add_all(hash, r.b);
       hash.add(r.radius);
     }
-    const kernel::Camera& m = compiled.camera_motion;
-    for (const auto* v : {&m.origin, &m.forward, &m.right, &m.down, &m.lens_u, &m.lens_v}) add_all(hash, *v);
+    for (const auto vector : kernel::kCameraVectors) add_all(hash, compiled.camera_motion.*vector);
   }
   add_all(hash, compiled.background.bottom);
   add_all(hash, compiled.background.top);

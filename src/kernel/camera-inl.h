@@ -73,18 +73,17 @@ struct CameraVectors {
   Vec3<V> origin, forward, right, down, lens_u, lens_v;
 };
 
+/// The cameras at times within the shutter.
+///
+/// `times`    one per lane; null: nothing moves
 template <class D, class V = hn::Vec<D>>
-HWY_INLINE CameraVectors<V> camera_vectors(D d, const Camera& c) {
-  return {set3(d, c.origin), set3(d, c.forward), set3(d, c.right),
-          set3(d, c.down),   set3(d, c.lens_u),  set3(d, c.lens_v)};
-}
-
-/// The cameras at times within the shutter, one per lane.
-template <class V>
-HWY_INLINE CameraVectors<V> moved(const CameraVectors<V>& a, const CameraVectors<V>& change, V time) {
-  return {mul_add(change.origin, time, a.origin), mul_add(change.forward, time, a.forward),
-          mul_add(change.right, time, a.right),   mul_add(change.down, time, a.down),
-          mul_add(change.lens_u, time, a.lens_u), mul_add(change.lens_v, time, a.lens_v)};
+HWY_INLINE CameraVectors<V> camera_vectors(D d, const SceneView& scene, const hn::TFromD<D>* times) {
+  const auto at = [&](math::Vec3d Camera::*vector) {
+    const auto at_opening = set3(d, scene.camera.*vector);
+    return times == nullptr ? at_opening : mul_add(set3(d, scene.camera_motion.*vector), hn::Load(d, times), at_opening);
+  };
+  return {at(&Camera::origin), at(&Camera::forward), at(&Camera::right),
+          at(&Camera::down),   at(&Camera::lens_u),  at(&Camera::lens_v)};
 }
 
 /// Camera rays through pixels, one per lane.

@@ -3,6 +3,8 @@
 
 #include <cstdint>
 
+#include "math/vec3.h"
+
 namespace orrery::kernel {
 
 /// A thin-lens camera in the kernel's representation. The ray through the film point p = x right + y down, with (x, y)
@@ -12,16 +14,19 @@ namespace orrery::kernel {
 ///
 /// Space      world; `forward` extends to the focus plane, so all rays of a film point intersect there
 struct Camera {
-  double origin[3] = {0, 0, 0};
-  double forward[3] = {0, 0, -1};  ///< vector to the centre of the focus plane
-  double right[3] = {1, 0, 0};     ///< one pixel to the right on the focus plane
-  double down[3] = {0, -1, 0};     ///< one pixel down on the focus plane
-  double lens_u[3] = {0, 0, 0};    ///< lens radius along right; zero for a pinhole
-  double lens_v[3] = {0, 0, 0};    ///< lens radius along up
-  double half_width = 0;           ///< px, from the left edge of the rendered window to the centre of the frame
-  double half_height = 0;          ///< px, from the upper edge of the rendered window to the centre of the frame
+  math::Vec3d origin;
+  math::Vec3d forward{0, 0, -1};  ///< vector to the centre of the focus plane
+  math::Vec3d right{1, 0, 0};     ///< one pixel to the right on the focus plane
+  math::Vec3d down{0, -1, 0};     ///< one pixel down on the focus plane
+  math::Vec3d lens_u;             ///< lens radius along right; zero for a pinhole
+  math::Vec3d lens_v;             ///< lens radius along up
+  double half_width = 0;          ///< px, from the left edge of the rendered window to the centre of the frame
+  double half_height = 0;         ///< px, from the upper edge of the rendered window to the centre of the frame
   bool is_orthographic = false;
 };
+
+inline constexpr math::Vec3d Camera::*kCameraVectors[] = {&Camera::origin, &Camera::forward, &Camera::right,
+                                                          &Camera::down,   &Camera::lens_u,  &Camera::lens_v};
 
 enum class SamplerKind : std::uint8_t {
   kIndependent,  ///< independent random numbers

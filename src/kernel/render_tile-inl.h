@@ -71,12 +71,9 @@ HWY_INLINE void load_camera_rays(D d, const SceneView& scene, PathCounter& count
     const auto x = place(pixels, scene.window_x);
     const auto y = place(hn::template ShiftRight<16>(pixels), scene.window_y);
     const auto store = [&](const auto& value, auto& to) { store3(d, value, to, v); };
-    auto camera = camera_vectors(d, scene.camera);
-    if (features.motion) {
-      const auto time = time_of_path(d, scene.sampler, pixels, samples);
-      hn::Store(time, d, packet.time + v);
-      camera = moved(camera, camera_vectors(d, scene.camera_motion), time);
-    }
+    T* const times = features.motion ? packet.time + v : nullptr;
+    if (times != nullptr) hn::Store(time_of_path(d, scene.sampler, pixels, samples), d, times);
+    const auto camera = camera_vectors(d, scene, times);
     if (features.opacity)
       store_keys(d, keys_at_vertex(du, scene.sampler.seed, pixels, samples, 0).next, packet.key + v);
     const auto ray = camera_ray(d, scene, camera, x, y, random);

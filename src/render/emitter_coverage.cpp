@@ -17,7 +17,6 @@ namespace orrery::render {
 namespace {
 
 using math::Vec3d;
-using math::vector_of;
 
 /// Emitters that cover more of each pixel are found by the first samples.
 constexpr double kLargestCoverage = 0.5;
@@ -28,19 +27,11 @@ constexpr double kBrightTexel = 8;
 /// The distance of the sky, in distances to the focus plane. The result does not depend on it as long as it is large.
 constexpr double kSkyDistance = 0x1p40;
 
-/// The camera at the time when the shutter opens (0) or closes (1).
-kernel::Camera camera_at(const kernel::SceneView& scene, int time) {
+/// The camera when the shutter closes.
+kernel::Camera closing_camera(const kernel::SceneView& scene) {
   kernel::Camera out = scene.camera;
-  if (time == 0 || !scene.features.motion) return out;
-  const kernel::Camera& change = scene.camera_motion;
-  for (int k = 0; k < 3; ++k) {
-    out.origin[k] += change.origin[k];
-    out.forward[k] += change.forward[k];
-    out.right[k] += change.right[k];
-    out.down[k] += change.down[k];
-    out.lens_u[k] += change.lens_u[k];
-    out.lens_v[k] += change.lens_v[k];
-  }
+  if (!scene.features.motion) return out;
+  for (const auto vector : kernel::kCameraVectors) out.*vector = out.*vector + scene.camera_motion.*vector;
   return out;
 }
 
@@ -52,8 +43,8 @@ struct SphereImage {
 
 /// Projects a sphere. Empty if the sphere is behind the camera or contains it.
 std::optional<SphereImage> image_of(const kernel::Camera& camera, Vec3d center, double radius) {
-  const Vec3d forward = vector_of(camera.forward), right = vector_of(camera.right), down = vector_of(camera.down);
-  const Vec3d to = center - vector_of(camera.origin), across = cross(right, down);
+  const Vec3d &forward = camera.forward, &right = camera.right, &down = camera.down;
+  const Vec3d to = center - camera.origin, across = cross(right, down);
   const double determinant = dot(forward, across);
   const double depth = dot(to, across) / determinant;  // 1 at the focus plane
   if (!(depth * length(forward) > radius)) return std::nullopt;
@@ -61,7 +52,7 @@ std::optional<SphereImage> image_of(const kernel::Camera& camera, Vec3d center, 
   const double x = dot(to, cross(down, forward)) / (determinant * scale) + camera.half_width;
   const double y = dot(to, cross(forward, right)) / (determinant * scale) + camera.half_height;
   const double pixel_width = scale * length(right), pixel_height = scale * length(down);  // at the sphere
-  const double blurred = radius + length(vector_of(camera.lens_u)) * std::abs(1 - depth);
+  const double blurred = radius + length(camera.lens_u) * std::abs(1 - depth);
   return SphereImage{x - blurred / pixel_width, x + blurred / pixel_width, y - blurred / pixel_height,
                      y + blurred / pixel_height, std::numbers::pi * radius * radius / (pixel_width * pixel_height)};
 }
@@ -98,9 +89,9 @@ class Coverage {
   ///
   /// `direction`  unit
   void add_distant(Vec3d direction, double solid_angle, double radiance) {
-    const double distance = kSkyDistance * length(vector_of(cameras_[0].forward));
+    const double distance = kSkyDistance * length(cameras_[0].forward);
     const auto at = [&](const kernel::Camera& camera) {
-      const Vec3d center = vector_of(camera.origin) + direction * distance;
+      const Vec3d center = camera.origin + direction * distance;
       return kernel::Sphere{center.x, center.y, center.z, distance * std::sqrt(solid_angle / std::numbers::pi)};
     };
     add(at(cameras_[0]), at(cameras_[1]), radiance);
@@ -142,7 +133,7 @@ class Coverage {
   const kernel::SceneView& scene_;
   int width_, height_;  ///< px
   double margin_;       ///< px, by which the pixel filter extends beyond a pixel
-  kernel::Camera cameras_[2] = {camera_at(scene_, 0), camera_at(scene_, 1)};
+  kernel::Camera cameras_[2] = {scene_.camera, closing_camera(scene_)};
   std::vector<Corner> corners_;
 };
 
@@ -170,7 +161,7 @@ void add_texels(const kernel::Environment& sky, Coverage& coverage) {
 std::vector<EmitterCoverage> emitter_coverage(const kernel::SceneView& scene, int width_px, int height_px) {
   Coverage coverage(scene, width_px, height_px);
   for (std::size_t id = 0; scene.emission != nullptr && id < scene.sphere_count; ++id) {
-    const double radiance = mean_of(vector_of(scene.emission[scene.sphere_materials[id]].radiance));
+    const double radiance = mean_of(math::vector_of(scene.emission[scene.sphere_materials[id]].radiance));
     if (!(radiance > 0)) continue;
     coverage.add(sphere_at(scene, id, 0), sphere_at(scene, id, 1), radiance,
                  scene.opacity != nullptr ? double{scene.opacity[id]} : 1);

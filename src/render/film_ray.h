@@ -1,10 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include <cmath>
-
 #include "kernel/camera.h"
 #include "kernel/ray_packet.h"
+#include "math/vec3.h"
 
 namespace orrery::render {
 
@@ -14,17 +13,18 @@ namespace orrery::render {
 /// `x`, `y`   px from the upper left corner of the rendered window
 template <class T>
 void set_film_ray(const kernel::Camera& camera, double x, double y, kernel::RayPacket<T>& packet, int lane) {
-  double film[3], direction[3], square = 0;
-  for (int axis = 0; axis < 3; ++axis) {
-    film[axis] = (x - camera.half_width) * camera.right[axis] + (y - camera.half_height) * camera.down[axis];
-    direction[axis] = camera.forward[axis] + (camera.is_orthographic ? 0 : film[axis]);
-    square += direction[axis] * direction[axis];
-  }
-  for (int axis = 0; axis < 3; ++axis) {
-    packet.offset[axis][lane] = static_cast<T>(camera.is_orthographic ? film[axis] : 0);
-    packet.origin[axis][lane] = static_cast<T>(camera.origin[axis]) + packet.offset[axis][lane];
-    packet.direction[axis][lane] = static_cast<T>(direction[axis] / std::sqrt(square));
-  }
+  const math::Vec3d film = (x - camera.half_width) * camera.right + (y - camera.half_height) * camera.down;
+  const math::Vec3d offset = camera.is_orthographic ? film : math::Vec3d{};
+  const math::Vec3d direction = normalized(camera.is_orthographic ? camera.forward : camera.forward + film);
+  const auto set = [lane](T(&to)[3][kernel::kPacketSize], const math::Vec3d& v) {
+    to[0][lane] = static_cast<T>(v.x);
+    to[1][lane] = static_cast<T>(v.y);
+    to[2][lane] = static_cast<T>(v.z);
+  };
+  set(packet.offset, offset);
+  set(packet.origin, camera.origin);
+  set(packet.direction, direction);
+  for (int axis = 0; axis < 3; ++axis) packet.origin[axis][lane] += packet.offset[axis][lane];
   packet.inverse_square[lane] = 1;
   packet.self[lane] = kernel::kNoSphere;
   packet.key[lane] = 0;

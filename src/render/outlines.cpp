@@ -15,6 +15,7 @@
 #include "kernel/ray_packet.h"
 #include "kernel/scene_view.h"
 #include "math/pixels.h"
+#include "math/vec3.h"
 #include "render/film_ray.h"
 
 namespace orrery::render {
@@ -83,10 +84,8 @@ class TileOutlines {
         view_(scene.view()),
         accel_(accel),
         reach_(width_px / 2 * kRays),
-        border_(static_cast<int>(std::ceil(width_px / 2)) + 1) {
-    for (int axis = 0; axis < 3; ++axis) pixel_ += scene.camera.right[axis] * scene.camera.right[axis];
-    pixel_ = std::sqrt(pixel_);
-  }
+        border_(static_cast<int>(std::ceil(width_px / 2)) + 1),
+        pixel_(length(scene.camera.right)) {}
 
   /// Draws the outlines over those that `coverage` has.
   void draw(int left, int top, int right, int bottom, std::vector<float>& coverage) const {
@@ -154,9 +153,9 @@ class TileOutlines {
   const float* strength_;
   kernel::SceneView view_;
   const accel::Accel& accel_;
-  double reach_;      ///< half of the lines' width, rays
-  int border_;        ///< px around a tile
-  double pixel_ = 0;  ///< width of a pixel, scene units; of a perspective image, at distance 1
+  double reach_;  ///< half of the lines' width, rays
+  int border_;    ///< px around a tile
+  double pixel_;  ///< width of a pixel, scene units; of a perspective image, at distance 1
 };
 
 /// Draws the outlines of the objects that the accelerator has over those that `coverage` has.

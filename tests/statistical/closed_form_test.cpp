@@ -9,6 +9,7 @@
 
 #include "compile/compile.h"
 #include "compile/compiled_scene.h"
+#include "math/vec3.h"
 #include "render/render.h"
 #include "render/result.h"
 #include "render/settings.h"
@@ -46,18 +47,10 @@ double expected(const compile::CompiledScene& compiled, int px, int py, int chan
   const kernel::Camera& c = compiled.camera;
   for (int i = 0; i < kGrid * kGrid; ++i) {
     const double x = px + (i % kGrid + 0.5) / kGrid - c.half_width, y = py + (i / kGrid + 0.5) / kGrid - c.half_height;
-    double o[3], d[3], dd = 0, od = 0, oo = 0;
-    for (int k = 0; k < 3; ++k) {
-      o[k] = c.origin[k];
-      d[k] = c.forward[k] + x * c.right[k] + y * c.down[k];
-    }
-    for (int k = 0; k < 3; ++k) {
-      dd += d[k] * d[k];
-      od += o[k] * d[k];
-      oo += o[k] * o[k];
-    }
+    const math::Vec3d o = c.origin, d = c.forward + x * c.right + y * c.down;
+    const double dd = dot(d, d), od = dot(o, d), oo = dot(o, o);
     const double t = (-od - std::sqrt(od * od - dd * (oo - 1))) / dd;
-    const double normal_y = o[1] + t * d[1];
+    const double normal_y = o.y + t * d.y;
     const double a = (2.0 / 3.0 * normal_y + 1) / 2;
     const math::Vec3d sky = compiled.background.bottom * (1 - a) + compiled.background.top * a;
     sum += kAlbedo[channel] * std::array{sky.x, sky.y, sky.z}[static_cast<std::size_t>(channel)];

@@ -24,7 +24,7 @@ scene::Scene one_of_each() {
 }
 
 TEST(CompileCamera, ViewVectorsFitIntoSinglePrecision) {
-  const auto length_of = [](const kernel::Camera& c) { return std::hypot(c.forward[0], c.forward[1], c.forward[2]); };
+  const auto length_of = [](const kernel::Camera& c) { return length(c.forward); };
   for (const double distance : {1e-25, 1e18}) {
     scene::Scene scene;
     scene.camera.look_from = {0, 0, distance};
@@ -149,10 +149,10 @@ TEST(CompileCameraBasis, SpansTheImageOnTheFocusPlane) {
   camera.defocus_angle = 90;
   camera.focus_distance = 2;
   const kernel::Camera c = compile_camera(camera, {200, 100}, 1);
-  EXPECT_DOUBLE_EQ(c.forward[2], -2);
-  EXPECT_DOUBLE_EQ(c.right[0] * 100, 4);  // 2 tan(45 degrees) at distance 2, divided by the height in pixels
-  EXPECT_DOUBLE_EQ(c.down[1] * 100, -4);
-  EXPECT_DOUBLE_EQ(c.lens_u[0], 2);
+  EXPECT_DOUBLE_EQ(c.forward.z, -2);
+  EXPECT_DOUBLE_EQ(c.right.x * 100, 4);  // 2 tan(45 degrees) at distance 2, divided by the height in pixels
+  EXPECT_DOUBLE_EQ(c.down.y * 100, -4);
+  EXPECT_DOUBLE_EQ(c.lens_u.x, 2);
   EXPECT_EQ(c.half_width, 100);
 }
 
@@ -165,8 +165,8 @@ TEST(CompileCameraBasis, AnOrthographicImageHasItsWidthAtAnyDistance) {
     camera.look_at = {0, 0, 0};
     const kernel::Camera c = compile_camera(camera, {200, 100, 2}, 1);
     EXPECT_TRUE(c.is_orthographic);
-    EXPECT_DOUBLE_EQ(c.right[0] * 200, 3);
-    EXPECT_DOUBLE_EQ(c.down[1] * 100, -0.75) << "pixels are twice as wide as high";
+    EXPECT_DOUBLE_EQ(c.right.x * 200, 3);
+    EXPECT_DOUBLE_EQ(c.down.y * 100, -0.75) << "pixels are twice as wide as high";
   }
 }
 

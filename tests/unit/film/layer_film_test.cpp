@@ -91,7 +91,7 @@ TEST_F(FilmLayerFilm, NoRequestGivesNoPlanes) {
 TEST_F(FilmLayerFilm, DistancesAndIdsComeFromTheNearestHit) {
   request_.z = request_.depth = request_.position = request_.object_id = request_.material_id = true;
   request_.material_numbers = {7, 9};
-  view_.camera.origin[0] = 3;  // the axis is still along -z, so z and distance differ
+  view_.camera.origin.x = 3;  // the axis is still along -z, so z and distance differ
   add(path_to(1));
   add(path_to(0));
   add(kernel::PathRecord{});
@@ -126,7 +126,7 @@ TEST_F(FilmLayerFilm, NormalsAndAlbedoAreMeansAndFaceTheCamera) {
   EXPECT_EQ(value(p, "albedo.R"), (1 + 0.25F) / 4);
   EXPECT_EQ(value(p, "albedo.G"), 0.5F);
 
-  view_.camera.origin[2] = -5;  // inside the first sphere
+  view_.camera.origin.z = -5;  // inside the first sphere
   pixel_ = {};
   kernel::PathRecord back = path_to(0);
   back.offset.z = -1;

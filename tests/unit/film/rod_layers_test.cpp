@@ -70,8 +70,8 @@ TEST(FilmRodLayers, PositionNormalAndExit) {
     view.sphere_materials = materials;
     view.rods = {&rod, 1, nullptr, 0, 1};
     view.camera.is_orthographic = true;
-    math::set(view.camera.forward, direction);
-    math::set(view.camera.origin, point - direction * 5);
+    view.camera.forward = direction;
+    view.camera.origin = point - direction * 5;
     kernel::PathRecord path;
     path.sphere = 1 + static_cast<std::uint32_t>(i % 2);
     path.offset = point - a;

@@ -174,10 +174,8 @@ TEST(JobCameraMatrices, PointsProjectToThePixelWhoseRaysHitThem) {
   for (const double px : {0.0, 17.5, 600.0, 1199.0}) {
     for (const double py : {0.0, 337.5, 674.0}) {
       const double x = px - rays.half_width, y = py - rays.half_height;
-      const auto at = [&](int i) {
-        return rays.origin[i] + 1.7 * (rays.forward[i] + x * rays.right[i] + y * rays.down[i]);
-      };
-      const Point4 p = times({at(0), at(1), at(2)}, m.world_to_ndc);
+      const math::Vec3d at = rays.origin + 1.7 * (rays.forward + x * rays.right + y * rays.down);
+      const Point4 p = times(at, m.world_to_ndc);
       EXPECT_NEAR(p.x / p.w * image.width, px, 1e-3);
       EXPECT_NEAR(p.y / p.w * image.height, py, 1e-3);
     }
@@ -194,10 +192,8 @@ TEST(JobCameraMatrices, OrthographicPointsProjectToThePixelWhoseRaysHitThem) {
   for (const double px : {0.0, 17.5, 1199.0}) {
     for (const double py : {0.0, 674.0}) {
       const double x = px - rays.half_width, y = py - rays.half_height;
-      const auto at = [&](int i) {
-        return rays.origin[i] + 0.7 * rays.forward[i] + x * rays.right[i] + y * rays.down[i];
-      };
-      const Point4 p = times({at(0), at(1), at(2)}, m.world_to_ndc);
+      const math::Vec3d at = rays.origin + 0.7 * rays.forward + x * rays.right + y * rays.down;
+      const Point4 p = times(at, m.world_to_ndc);
       EXPECT_EQ(p.w, 1);
       EXPECT_NEAR(p.x * image.width, px, 1e-3);
       EXPECT_NEAR(p.y * image.height, py, 1e-3);

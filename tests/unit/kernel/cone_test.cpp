@@ -80,7 +80,7 @@ void camera_cone_case(CameraConeCase& c) {
   SceneView scene;
   scene.camera = c.camera;
   scene.features.lens = c.has_lens;
-  const auto camera = camera_vectors(d, scene.camera);
+  const auto camera = camera_vectors(d, scene, nullptr);
   const auto ray = camera_ray(d, scene, camera, hn::Set(d, c.pixel[0]), hn::Set(d, c.pixel[1]), random);
   c.cone = moments_of(camera_cone(d, scene, camera, ray.direction, c.width));
   math::set(c.offset, test::HWY_NAMESPACE::first_lane(ray.offset));
@@ -240,12 +240,11 @@ TEST(KernelCone, LobesAddToTheSlopeAndDiffuseSurfacesReplaceIt) {
 /// Looks along -z; the focus plane is at distance 10, with half a unit per pixel.
 CameraConeCase camera_case() {
   CameraConeCase c;
-  const Vector forward{0, 0, -10}, right{0.5L, 0, 0}, down{0, -0.5L, 0}, u{2, 0, 0}, v{0, 2, 0};
-  set(c.camera.forward, forward);
-  set(c.camera.right, right);
-  set(c.camera.down, down);
-  set(c.camera.lens_u, u);
-  set(c.camera.lens_v, v);
+  c.camera.forward = {0, 0, -10};
+  c.camera.right = {0.5, 0, 0};
+  c.camera.down = {0, -0.5, 0};
+  c.camera.lens_u = {2, 0, 0};
+  c.camera.lens_v = {0, 2, 0};
   return c;
 }
 
@@ -279,7 +278,7 @@ TEST(KernelCone, CameraConesAreAsWideAsThePixelAcrossTheRay) {
             << is_orthographic << ' ' << column << ' ' << t;
     }
   CameraConeCase c = camera_case();
-  set(c.camera.right, {2, 0, 0});
+  c.camera.right = {2, 0, 0};
   ORRERY_BEST(camera_cone_case)(c);
   EXPECT_NEAR(c.cone.slope2, 0.05 * 0.05, 1e-4) << "the smaller side of a pixel that is not square";
 }

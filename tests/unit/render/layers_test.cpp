@@ -541,7 +541,6 @@ TEST(RenderWindow, PixelAspectStretchesPixels) {
   s.camera.defocus_angle = 0;
   s.image.pixel_aspect = 2;
   const compile::CompiledScene compiled = compile::compile(s);
-  const auto length = [](const double(&v)[3]) { return std::sqrt(v[0] * v[0] + v[1] * v[1] + v[2] * v[2]); };
   EXPECT_NEAR(length(compiled.camera.right) / length(compiled.camera.down), 2, 1e-12);
 }
 
