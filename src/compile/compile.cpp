@@ -28,6 +28,12 @@ namespace {
 using math::set;
 using math::Vec3d;
 
+// Enumerations of scene and kernel have the same order.
+static_assert(static_cast<int>(scene::Precision::kBook) == static_cast<int>(Precision::kBook));
+static_assert(static_cast<int>(scene::Shading::kFlat) == static_cast<int>(kernel::Shading::kFlat));
+static_assert(static_cast<int>(scene::Sampler::kBlueNoise) == static_cast<int>(kernel::SamplerKind::kBlueNoise));
+static_assert(static_cast<int>(scene::DirectLighting::kLight) == static_cast<int>(kernel::DirectLighting::kLight));
+
 kernel::Sphere sphere_of(Vec3d center, double radius) { return {center.x, center.y, center.z, std::abs(radius)}; }
 
 /// Whether the ends of a rod are exchanged: they are put in order, since the order changes roundings.
@@ -269,40 +275,9 @@ void set_background(const scene::Scene& scene, CompiledScene& compiled) {
 kernel::Sampler compile_sampler(const scene::Render& render) {
   kernel::Sampler out;
   out.seed = render.seed;
-  switch (render.sampler) {
-    case scene::Sampler::kIndependent: out.kind = kernel::SamplerKind::kIndependent; break;
-    case scene::Sampler::kSobol: out.kind = kernel::SamplerKind::kSobol; break;
-    case scene::Sampler::kBlueNoise: out.kind = kernel::SamplerKind::kBlueNoise; break;
-  }
+  out.kind = static_cast<kernel::SamplerKind>(render.sampler);
   out.blue_noise_bits = blue_noise_bits(render.samples);
   return out;
-}
-
-Precision precision_of(scene::Precision precision) {
-  switch (precision) {
-    case scene::Precision::kExact: return Precision::kExact;
-    case scene::Precision::kFast: return Precision::kFast;
-    case scene::Precision::kBook: return Precision::kBook;
-  }
-  return {};
-}
-
-kernel::Shading shading_of(scene::Shading shading) {
-  switch (shading) {
-    case scene::Shading::kPath: return kernel::Shading::kPath;
-    case scene::Shading::kNormal: return kernel::Shading::kNormal;
-    case scene::Shading::kFlat: return kernel::Shading::kFlat;
-  }
-  return {};
-}
-
-kernel::DirectLighting direct_lighting_of(scene::DirectLighting mode) {
-  switch (mode) {
-    case scene::DirectLighting::kMis: return kernel::DirectLighting::kMis;
-    case scene::DirectLighting::kBsdf: return kernel::DirectLighting::kBsdf;
-    case scene::DirectLighting::kLight: return kernel::DirectLighting::kLight;
-  }
-  return {};
 }
 
 /// Sets the camera, the window, and how paths are sampled.
@@ -320,7 +295,7 @@ void set_view(const scene::Scene& scene, const scene::Scene* closing, CompiledSc
   compiled.roulette_depth =
       scene.render.roulette_depth > 0 ? static_cast<std::uint32_t>(scene.render.roulette_depth) : kernel::kNoRoulette;
   compiled.sampler = compile_sampler(scene.render);
-  compiled.shading = shading_of(scene.render.shading);
+  compiled.shading = static_cast<kernel::Shading>(scene.render.shading);
   compiled.filter = compile_filter(scene.render);
   set_camera(scene, closing, compiled);
 }
@@ -328,7 +303,7 @@ void set_view(const scene::Scene& scene, const scene::Scene* closing, CompiledSc
 void update_parts(const scene::Scene& scene, const scene::Scene* closing, scene::Parts changed,
                   const SphereStore::OnCopied& on_copied, CompiledScene& compiled) {
   if (changed.geometry) {
-    compiled.precision = precision_of(scene.render.precision);
+    compiled.precision = static_cast<Precision>(scene.render.precision);
     // The book's own method. It has no BVH, and the kernel has no vector loop for its precision.
     compiled.accelerator = compiled.precision == Precision::kBook ? Accelerator::kList : scene.render.accelerator;
     set_rods(scene, compiled);
@@ -342,7 +317,7 @@ void update_parts(const scene::Scene& scene, const scene::Scene* closing, scene:
     set_opacity(scene, compiled);
   }
   if (changed.geometry || changed.assignment || changed.look) {
-    compiled.direct_lighting = direct_lighting_of(scene.render.direct_lighting);
+    compiled.direct_lighting = static_cast<kernel::DirectLighting>(scene.render.direct_lighting);
     compiled.samples_caustics = scene.render.caustics;
     compile_materials(scene, compiled);
     set_background(scene, compiled);

@@ -24,7 +24,7 @@ double normal_reflectance(double eta) {
   return r * r;
 }
 
-/// Compiles a material's constants. The kinds of the kernel have the order of the scene's models.
+/// Compiles a material's constants. Enumerators of the kernel have the order of the scene's models and enumerators.
 kernel::Material compile_model(const scene::MaterialModel& model) {
   static_assert(
       std::is_same_v<
@@ -43,11 +43,8 @@ kernel::Material compile_model(const scene::MaterialModel& model) {
     out.eta[1] = glass->ior;
     out.r0[0] = normal_reflectance(out.eta[0]);
     out.r0[1] = normal_reflectance(out.eta[1]);
-    switch (glass->fresnel) {
-      case scene::Fresnel::kSchlick: out.fresnel = kernel::FresnelKind::kSchlick; break;
-      case scene::Fresnel::kExact: out.fresnel = kernel::FresnelKind::kExact; break;
-      case scene::Fresnel::kNone: out.fresnel = kernel::FresnelKind::kNone; break;
-    }
+    static_assert(static_cast<int>(scene::Fresnel::kNone) == static_cast<int>(kernel::FresnelKind::kNone));
+    out.fresnel = static_cast<kernel::FresnelKind>(glass->fresnel);
   }
   if (const auto* plastic = std::get_if<scene::Plastic>(&model))
     out.r0[0] = out.r0[1] = normal_reflectance(plastic->ior);

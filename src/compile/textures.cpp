@@ -16,8 +16,7 @@ namespace {
 using math::set;
 using math::Vec3d;
 
-/// Both enumerations have the same order.
-kernel::TextureKind kind_of(scene::TextureType type) { return static_cast<kernel::TextureKind>(type); }
+// Both enumerations have the same order.
 static_assert(static_cast<int>(scene::TextureType::kImage) == static_cast<int>(kernel::TextureKind::kImage));
 
 /// Unit vectors distributed uniformly: points in a ball, normalized. Only the generator and correctly rounded
@@ -65,7 +64,7 @@ Vec3d mean_of(const scene::Texture& texture) {
 
 std::uint32_t TextureStore::add(const scene::Texture& texture, Vec3d factor) {
   kernel::Texture out;
-  out.kind = kind_of(texture.type);
+  out.kind = static_cast<kernel::TextureKind>(texture.type);
   out.scale = texture.scale;
   out.seed = texture.seed;
   out.gradients = gradients();
