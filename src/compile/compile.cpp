@@ -333,6 +333,7 @@ void update_parts(const scene::Scene& scene, const scene::Scene* closing, scene:
 
 kernel::SceneView CompiledScene::view() const noexcept {
   kernel::SceneView v;
+  static_cast<kernel::SceneSettings&>(v) = *this;
   v.spheres = spheres.view();
   v.sphere_materials = sphere_materials.view();
   v.materials = materials.data();
@@ -352,24 +353,15 @@ kernel::SceneView CompiledScene::view() const noexcept {
     if (textures.has_levels()) v.cone_width = kConeWidth;
   }
   v.lights = light_tree.view();
-  v.direct_lighting = direct_lighting;
   v.caustics = caustics.view();
   v.motion = motion.data();
   v.moving_count = motion.size();
   v.distinct = distinct_in.has_value();
   v.distinct_in_single = distinct_in == scene::Precision::kFast;
-  v.camera_motion = camera_motion;
-  v.camera = camera;
-  v.background = background;
   v.environment = environment ? &environment->view() : nullptr;
   v.background_visible = backdrop || !environment || environment->view().visible;
   v.has_backdrop = backdrop.has_value();
   v.backdrop = backdrop.value_or(math::Vec3d());
-  v.features = features;
-  v.shading = shading;
-  v.max_depth = max_depth;
-  v.roulette_depth = roulette_depth;
-  v.sampler = sampler;
   v.filter = filter.view();
   v.window_x = static_cast<std::uint32_t>(window_x) & 0xffff;
   v.window_y = static_cast<std::uint32_t>(window_y) & 0xffff;

@@ -29,7 +29,7 @@ using scene::Accelerator;
 ///
 /// Spheres are in the order of the scene file, first the [[sphere]] tables, then each [[points]] file. The index of a
 /// sphere is its id in hits. The ids of rods follow, see kernel::RodArray.
-struct CompiledScene {
+struct CompiledScene : kernel::SceneSettings {
   SphereStore spheres;
   std::vector<std::size_t> points_sizes;  ///< number of spheres of each points table
   /// With ordered ends: [[rod]] tables, then each [[rods]] file, then the stubs of bonds of each points table.
@@ -46,35 +46,26 @@ struct CompiledScene {
   std::vector<kernel::Emission> emission;  ///< one per material; empty if none emits
   TextureStore textures;
   LightTree light_tree;  ///< light tree of the emitting spheres; empty if lights are not sampled
-  kernel::DirectLighting direct_lighting = kernel::DirectLighting::kMis;
   bool samples_caustics = true;           ///< false: `caustics` stays empty
   CausticList caustics;                   ///< of lights that are sampled
   std::vector<std::string> light_groups;  ///< names, indexed by Emission::group; the first is "", the default group
   std::vector<kernel::Sphere>
       motion;  ///< motion of the first motion.size() spheres, see kernel::SceneView; empty: none moves
   std::vector<kernel::Rod> rod_motion;  ///< the same of the rods
-  kernel::Camera camera;
-  kernel::Camera camera_motion;
-  kernel::Background background;
   std::optional<math::Vec3d> backdrop;                ///< see scene::Background
   std::shared_ptr<const EnvironmentMap> environment;  ///< an image background; null: none
-  kernel::Features features;
-  kernel::Shading shading = kernel::Shading::kPath;
   Precision precision = Precision::kExact;
   Accelerator accelerator = Accelerator::kEmbree;
   std::optional<scene::Precision> distinct_in;  ///< see scene::Scene
   FilterTables filter;
-  int width = 0;                                       ///< px, of the rendered window
-  int height = 0;                                      ///< px
-  int window_x = 0;                                    ///< px, upper left corner of the window in the frame
-  int window_y = 0;                                    ///< px
-  int frame_width = 0;                                 ///< px
-  int frame_height = 0;                                ///< px
-  double pixel_aspect = 1;                             ///< pixel width divided by pixel height
-  int samples = 0;                                     ///< per pixel
-  std::uint32_t max_depth = 0;                         ///< rays per path, including the camera ray
-  std::uint32_t roulette_depth = kernel::kNoRoulette;  ///< scattering events before Russian roulette begins
-  kernel::Sampler sampler;
+  int width = 0;            ///< px, of the rendered window
+  int height = 0;           ///< px
+  int window_x = 0;         ///< px, upper left corner of the window in the frame
+  int window_y = 0;         ///< px
+  int frame_width = 0;      ///< px
+  int frame_height = 0;     ///< px
+  double pixel_aspect = 1;  ///< pixel width divided by pixel height
+  int samples = 0;          ///< per pixel
 
   std::size_t rod_count() const noexcept { return rods.size() + bonds.size(); }
 

@@ -53,8 +53,21 @@ inline constexpr double kRouletteGain = 8;
 /// A roulette depth that no path reaches.
 inline constexpr std::uint32_t kNoRoulette = 0xffffffffu;
 
+/// What is not an array: camera, background, and how paths are sampled.
+struct SceneSettings {
+  DirectLighting direct_lighting = DirectLighting::kMis;
+  Camera camera;
+  Camera camera_motion;  ///< change of the camera's vectors until the shutter closes, if features.motion
+  Background background;
+  Features features;
+  Shading shading = Shading::kPath;
+  std::uint32_t max_depth = 50;                ///< maximum rays per path, including the camera ray
+  std::uint32_t roulette_depth = kNoRoulette;  ///< scattering events after which Russian roulette begins
+  Sampler sampler;
+};
+
 /// Non-owning view of the compiled scene for the kernel.
-struct SceneView {
+struct SceneView : SceneSettings {
   SphereArray spheres;          ///< at least one can be read, even if there are only rods
   IndexArray sphere_materials;  ///< index into `materials` of each sphere, then of each half of each rod
   const Material* materials = nullptr;
@@ -71,23 +84,13 @@ struct SceneView {
   const MaterialTextures* material_textures = nullptr;
   /// Width of ray cones as a fraction of pixel, lens and lobe; 0: no texture has levels, so that paths have no cones.
   double cone_width = 0;
-  Lights lights;  ///< the emitters that light sampling chooses from
-  DirectLighting direct_lighting = DirectLighting::kMis;
+  Lights lights;      ///< the emitters that light sampling chooses from
   Caustics caustics;  ///< empty unless features.caustics
   /// Change in centre and radius of each of the first `moving_count` spheres, from shutter open to shutter close; null:
   /// none.
   const Sphere* motion = nullptr;
   std::size_t moving_count = 0;
-  Camera camera;
-  Camera camera_motion;  ///< change of the camera's vectors until the shutter closes, if features.motion
-  Background background;
   const Environment* environment = nullptr;  ///< an image background, which replaces `background`; null: none
-  Features features;
-  Shading shading = Shading::kPath;
-  std::uint32_t max_depth = 50;  ///< maximum rays per path, including the camera ray
-  /// Scattering events after which Russian roulette begins.
-  std::uint32_t roulette_depth = kNoRoulette;
-  Sampler sampler;
   PixelFilter filter;
   /// Origin of the rendered window within the frame, modulo 65536. A pixel's random numbers depend on its position in
   /// the frame, so a window's pixels equal those of the full frame.
