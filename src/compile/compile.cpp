@@ -128,7 +128,8 @@ void set_spheres(const scene::Scene& scene, const SphereStore::OnCopied& on_copi
   compiled.spheres.append(scene.points, on_copied);
   compiled.points_sizes.clear();
   for (const scene::Points& points : scene.points) compiled.points_sizes.push_back(points.centers.size());
-  compiled.distinct_in = scene.distinct_in;
+  compiled.distinct_in.reset();
+  if (scene.distinct_in) compiled.distinct_in = static_cast<Precision>(*scene.distinct_in);
 }
 
 /// Numbers the materials of the spheres and of the halves of rods.
@@ -356,8 +357,6 @@ kernel::SceneView CompiledScene::view() const noexcept {
   v.caustics = caustics.view();
   v.motion = motion.data();
   v.moving_count = motion.size();
-  v.distinct = distinct_in.has_value();
-  v.distinct_in_single = distinct_in == scene::Precision::kFast;
   v.environment = environment ? &environment->view() : nullptr;
   v.background_visible = backdrop || !environment || environment->view().visible;
   v.has_backdrop = backdrop.has_value();
@@ -391,7 +390,7 @@ void update_lights(CompiledScene& scene) {
   const std::optional<Precision> built = scene.light_tree.precision;
   if (scene.emission.empty() || scene.direct_lighting == kernel::DirectLighting::kBsdf) {
     scene.light_tree = {};
-  } else if (!built || (is_fast(*built) != is_fast(scene.precision) && scene.distinct_in != scene::Precision::kFast)) {
+  } else if (!built || (is_fast(*built) != is_fast(scene.precision) && scene.distinct_in != Precision::kFast)) {
     scene.light_tree = build_light_tree(scene.view(), scene.precision);
   }
   scene.caustics = {};

@@ -56,7 +56,6 @@ struct CompiledScene : kernel::SceneSettings {
   std::shared_ptr<const EnvironmentMap> environment;  ///< an image background; null: none
   Precision precision = Precision::kExact;
   Accelerator accelerator = Accelerator::kEmbree;
-  std::optional<scene::Precision> distinct_in;  ///< see scene::Scene
   FilterTables filter;
   int width = 0;            ///< px, of the rendered window
   int height = 0;           ///< px

@@ -4,12 +4,14 @@
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
+#include <optional>
 
 #include "kernel/camera.h"
 #include "kernel/caustics.h"
 #include "kernel/lights.h"
 #include "kernel/material.h"
 #include "kernel/pixel_sum.h"
+#include "kernel/precision.h"
 #include "kernel/rod.h"
 #include "kernel/sphere.h"
 #include "math/vec3.h"
@@ -64,6 +66,9 @@ struct SceneSettings {
   std::uint32_t max_depth = 50;                ///< maximum rays per path, including the camera ray
   std::uint32_t roulette_depth = kNoRoulette;  ///< scattering events after which Russian roulette begins
   Sampler sampler;
+  /// No two spheres coincide in the number type of this precision; those of `fast` coincide in no other. Empty: not
+  /// known.
+  std::optional<Precision> distinct_in;
 };
 
 /// Non-owning view of the compiled scene for the kernel.
@@ -75,8 +80,6 @@ struct SceneView : SceneSettings {
   RodArray rods;  ///< ids follow those of the spheres
   /// Probability, 0..1, that each sphere, then each half of each rod, is visible to a ray; null: all are 1.
   const float* opacity = nullptr;
-  /// No two spheres coincide in double, or in single precision. False: not known.
-  bool distinct = false, distinct_in_single = false;
   const Emission* emission = nullptr;  ///< one per material; null if nothing emits
   /// Textures, and one entry per material; null if there are none. The constants that they replace are set to the
   /// textures' means.
