@@ -89,22 +89,6 @@ HWY_INLINE void double_frequency(D d, LatticePoint<D>& at) {
   }
 }
 
-/// Scrambles 32-bit numbers: a change of any bit changes about half of the bits of the result.
-///
-/// Result     in 64-bit lanes, the high halves are zero
-template <class DU, class V = hn::Vec<DU>>
-HWY_INLINE V scrambled(DU du, V x) {
-  const auto low = [&](V v) {
-    return sizeof(hn::TFromD<DU>) == 8 ? hn::And(v, hn::Set(du, static_cast<hn::TFromD<DU>>(0xffffffffu))) : v;
-  };
-  // The finalizer of MurmurHash3.
-  x = hn::Xor(x, hn::ShiftRight<16>(x));
-  x = low(multiply_wide(du, x, 0x85EBCA6Bu).low);
-  x = hn::Xor(x, hn::ShiftRight<13>(x));
-  x = low(multiply_wide(du, x, 0xC2B2AE35u).low);
-  return hn::Xor(x, hn::ShiftRight<16>(x));
-}
-
 /// Perlin's gradient noise with the book's cubic interpolation: zero at lattice points, and smooth.
 ///
 /// Result     between -0.87 and 0.87 (sqrt(3)/2)
@@ -123,16 +107,21 @@ HWY_NOINLINE V gradient_noise(D d, const Texture& texture, const LatticePoint<D>
   const auto corner = [&](int axis, unsigned side) {
     return side == 0 ? at.cell[axis] : hn::And(at.cell[axis] + step, mask);
   };
+  // The high halves of 64-bit lanes stay 0.
+  const auto scrambled = [&](auto bits) {
+    const hn::Repartition<std::uint32_t, decltype(du)> d32;
+    return hn::BitCast(du, hashed(d32, hn::BitCast(d32, bits)));
+  };
   const auto from_corner = [&](int axis, unsigned side) { return side == 0 ? at.part[axis] : at.part[axis] - one; };
   V sum = hn::Zero(d);
   HWY_ALIGN Id row[hn::MaxLanes(D())];
   for (unsigned z = 0; z < 2; ++z) {
-    const auto hash_z = scrambled(du, hn::Xor(corner(2, z), set(du, texture.seed)));
+    const auto hash_z = scrambled(hn::Xor(corner(2, z), set(du, texture.seed)));
     for (unsigned y = 0; y < 2; ++y) {
-      const auto hash_yz = scrambled(du, hn::Xor(hash_z, corner(1, y)));
+      const auto hash_yz = scrambled(hn::Xor(hash_z, corner(1, y)));
       const V weight_yz = weight[2][z] * weight[1][y];
       for (unsigned x = 0; x < 2; ++x) {
-        const auto hash = scrambled(du, hn::Xor(hash_yz, corner(0, x)));
+        const auto hash = scrambled(hn::Xor(hash_yz, corner(0, x)));
         hn::Store(hn::And(hash, set(du, kGradients - 1)), du, row);
         V gradient[4];
         gather4(

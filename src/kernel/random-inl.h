@@ -17,6 +17,16 @@ namespace orrery::kernel::HWY_NAMESPACE {
 namespace hn = hwy::HWY_NAMESPACE;
 using namespace math::HWY_NAMESPACE;  // NOLINT(google-build-using-namespace): SIMD vectors of another room
 
+/// Hashes 32 bits.
+///
+/// Reference  appleby2011, the end of MurmurHash3
+template <class D32, class V = hn::Vec<D32>>
+HWY_INLINE V hashed(D32 d32, V v) {
+  v = hn::Xor(v, hn::ShiftRight<16>(v)) * hn::Set(d32, 0x85ebca6bu);
+  v = hn::Xor(v, hn::ShiftRight<13>(v)) * hn::Set(d32, 0xc2b2ae35u);
+  return hn::Xor(v, hn::ShiftRight<16>(v));
+}
+
 /// A 64-bit product. In 64-bit lanes each half is in the low 32 bits.
 template <class V>
 struct WideProduct {

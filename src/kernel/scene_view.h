@@ -66,8 +66,8 @@ struct SceneSettings {
   std::uint32_t max_depth = 50;                ///< maximum rays per path, including the camera ray
   std::uint32_t roulette_depth = kNoRoulette;  ///< scattering events after which Russian roulette begins
   Sampler sampler;
-  /// No two spheres coincide in the number type of this precision; those of `fast` coincide in no other. Empty: not
-  /// known.
+  /// No two spheres coincide in the number type of this precision; distinct floats are distinct doubles, too. Empty:
+  /// not known.
   std::optional<Precision> distinct_in;
 };
 

@@ -9,12 +9,11 @@
 
 #include <hwy/highway.h>
 
+#include "kernel/random-inl.h"
 #include "kernel/sobol_columns.h"
 
 HWY_BEFORE_NAMESPACE();
 namespace orrery::kernel::HWY_NAMESPACE {
-
-namespace hn = hwy::HWY_NAMESPACE;
 
 /// Reverses the bits of each 32-bit lane.
 template <class D32, class V = hn::Vec<D32>>
@@ -53,16 +52,6 @@ HWY_INLINE V laine_karras_permutation(D32 d32, V v, V seed) {
   v = v * hn::Or(hn::ShiftRight<16>(seed), hn::Set(d32, 1u));
   v = hn::Xor(v, v * hn::Set(d32, 0x05526c56u));
   return hn::Xor(v, v * hn::Set(d32, 0x53a22864u));
-}
-
-/// Hashes 32 bits.
-///
-/// Reference  appleby2011, the end of MurmurHash3
-template <class D32, class V = hn::Vec<D32>>
-HWY_INLINE V hashed(D32 d32, V v) {
-  v = hn::Xor(v, hn::ShiftRight<16>(v)) * hn::Set(d32, 0x85ebca6bu);
-  v = hn::Xor(v, hn::ShiftRight<13>(v)) * hn::Set(d32, 0xc2b2ae35u);
-  return hn::Xor(v, hn::ShiftRight<16>(v));
 }
 
 /// The product over GF(2) of a 16 x 16 matrix and the low bits of each lane.
