@@ -179,6 +179,31 @@ struct CausticPiece {
   V low, high;
 };
 
+/// A piece that has grown by rounding errors; empty in other lanes.
+template <class D, class V = hn::Vec<D>>
+HWY_INLINE CausticPiece<V> grown_piece(D d, hn::Mask<D> lanes, V low, V high) {
+  constexpr double kEpsilon = std::numeric_limits<hn::TFromD<D>>::epsilon();
+  return {hn::IfThenElseZero(lanes, low * (1 - 8 * kEpsilon)),
+          hn::IfThenElseZero(lanes, min(mul_add(high, set(d, 1 + 8 * kEpsilon), kEpsilon), 1))};
+}
+
+/// Angles near one at which the light may lie.
+template <class V>
+struct AngleBand {
+  V lowest, highest;
+  V tolerance;  ///< ends of pieces that are less too far out stay
+};
+
+/// `kappa`    half width of the band
+template <class D, class V = hn::Vec<D>>
+HWY_INLINE AngleBand<V> band_around(D d, V theta, V kappa) {
+  constexpr double kEpsilon = std::numeric_limits<hn::TFromD<D>>::epsilon();
+  // A hundredth more than the half width costs a hundredth of the samples, and saves Newton steps.
+  const V tolerance = mul_add(kappa, set(d, 0.02), 32 * kEpsilon);
+  const V width = mul_add(kappa, set(d, 1.001), 32 * kEpsilon);
+  return {theta - width, theta + width, tolerance};
+}
+
 /// The values of b for which Theta is near one of the angles at which the light may lie: theta, 2 pi - theta,
 /// 2 pi + theta, as many as k + 1. A superset: the light's image is in it. The pieces are disjoint.
 template <int k, class V>
@@ -191,16 +216,12 @@ struct CausticBand {
 template <int k, class D, class V = hn::Vec<D>>
 HWY_INLINE CausticBand<k, V> caustic_band(D d, const CausticShells<V>& at, const CausticEnds<V>& ends, V theta, V kappa,
                                           hn::Mask<D> lanes) {
-  constexpr double kEpsilon = std::numeric_limits<hn::TFromD<D>>::epsilon();
-  const V zero = hn::Zero(d);
-  // A hundredth more than the half width costs a hundredth of the samples, and saves Newton steps.
-  const V tolerance = mul_add(kappa, set(d, 0.02), 32 * kEpsilon);
-  const V width = mul_add(kappa, set(d, 1.001), 32 * kEpsilon);
+  const V zero = hn::Zero(d), tolerance = band_around(d, theta, kappa).tolerance;
   V upper[k + 1], lower[k + 1];
   for (int j = 0; j <= k; ++j) {
-    const V center = j == 0 ? theta : j == 1 ? kTurn - theta : kTurn + theta;
-    upper[j] = center + width;
-    lower[j] = center - width - tolerance;
+    const auto near = band_around(d, j == 0 ? theta : j == 1 ? kTurn - theta : kTurn + theta, kappa);
+    upper[j] = near.highest;
+    lower[j] = near.lowest - tolerance;
     if (j > 0) lower[j] = max(lower[j], upper[j - 1]);
   }
   struct LevelSet {
@@ -237,11 +258,9 @@ HWY_INLINE CausticBand<k, V> caustic_band(D d, const CausticShells<V>& at, const
       hole.last = select(both, max(hole.last, inner.last), select(only, inner.last, hole.last));
       hole.exists = hn::Or(hole.exists, inner.exists);
     }
-    const LevelSet& whole = within[j];
-    const V first = hn::IfThenElseZero(whole.exists, whole.first * (1 - 8 * kEpsilon));
-    const V last = hn::IfThenElseZero(whole.exists, min(mul_add(whole.last, set(d, 1 + 8 * kEpsilon), kEpsilon), 1));
-    band.piece[2 * j] = {first, hn::IfThenElseZero(hole.exists, hole.first)};
-    band.piece[2 * j + 1] = {select(hole.exists, hole.last, first), last};
+    const auto whole = grown_piece(d, within[j].exists, within[j].first, within[j].last);
+    band.piece[2 * j] = {whole.low, hn::IfThenElseZero(hole.exists, hole.first)};
+    band.piece[2 * j + 1] = {select(hole.exists, hole.last, whole.low), whole.high};
   }
   return band;
 }

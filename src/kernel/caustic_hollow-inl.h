@@ -27,61 +27,63 @@ namespace orrery::kernel::HWY_NAMESPACE {
 // decreases, so that the derivatives at the ends of an interval bound the slope within: a step of Newton's method with
 // the bound never passes a root, and the two ends close in on the band.
 
-/// The spheres of a hollow ball, the point and the light, in units of the greatest b.
-template <class V>
-struct HollowShells {
-  V greatest;  ///< in units of the ball's radius
-  CausticShell<V> ball, glass, inner_glass, inner, point, light;
+/// Theta as a sum of terms, each `weight` times the arcsine of a shell's reciprocal radius times sin(j). Radii are in
+/// units of the greatest b.
+template <class V, int kTerms>
+struct CausticTurn {
+  struct Term {
+    int weight;
+    CausticShell<V> shell;
+  };
+  V greatest;    ///< in units of the ball's radius
+  double start;  ///< Theta without terms, radians
+  Term terms[kTerms];
 };
+
+/// A shell in units of the greatest b, by its reciprocal radius in those of the ball's radius.
+template <class V>
+HWY_INLINE CausticShell<V> scaled_shell(V inverse, V greatest) {
+  const V g = min(inverse * greatest, 1);
+  return {g, (1 - g) * (1 + g)};
+}
 
 /// `inner`    radius of the void
 template <bool kThrough, class D, class V = hn::Vec<D>>
-HWY_INLINE HollowShells<V> hollow_shells(D d, const CausticShells<V>& at, V inner) {
+HWY_INLINE auto hollow_turn(D d, const CausticShells<V>& at, V inner) {
   const V one = set(d, 1), inverse = 1 / inner;
   const V inner_glass = at.glass.inverse * inverse;
   const V greatest = kThrough ? inner : min(1 / inner_glass, 1);
-  const auto shell = [&](V of_unit) {
-    const V g = min(of_unit * greatest, 1);
-    return CausticShell<V>{g, (1 - g) * (1 + g)};
-  };
-  return {greatest,
-          shell(one),
-          shell(at.glass.inverse),
-          shell(inner_glass),
-          shell(inverse),
-          shell(at.point.inverse),
-          shell(at.light.inverse)};
+  const auto shell = [&](V of_unit) { return scaled_shell(of_unit, greatest); };
+  const auto ball = shell(one), glass = shell(at.glass.inverse), of_inner = shell(inner_glass),
+             point = shell(at.point.inverse), light = shell(at.light.inverse);
+  if constexpr (kThrough)
+    return CausticTurn<V, 6>{
+        greatest, kTurn / 2, {{2, ball}, {-2, glass}, {2, of_inner}, {-2, shell(inverse)}, {-1, point}, {-1, light}}};
+  else
+    return CausticTurn<V, 5>{greatest, 0, {{2, ball}, {-2, glass}, {2, of_inner}, {-1, point}, {-1, light}}};
 }
 
 /// Theta, and the derivatives by j of its increasing and of its decreasing terms.
 template <class V>
 struct TurnedAngle {
   V theta, rising, falling;
+};
 
-  /// Adds a term, `weight` times the arcsine of a shell's reciprocal radius times sin(j).
-  template <class D>
-  HWY_INLINE void add(D d, double weight, const CausticShell<V>& shell, SinCos<V> j) {
+template <int kTerms, class D, class V = hn::Vec<D>>
+HWY_INLINE TurnedAngle<V> turned_angle(D d, const CausticTurn<V, kTerms>& turn, V j_turns) {
+  const auto j = sin_cos_turn(d, j_turns);
+  TurnedAngle<V> out = {set(d, turn.start), hn::Zero(d), hn::Zero(d)};
+  HWY_UNROLL(6)
+  for (const auto& [weight, shell] : turn.terms) {
     const V gc = shell.inverse * j.cos, cos = hn::Sqrt(mul_add(gc, gc, shell.rest));
-    theta = mul_add(angle_of(d, shell.inverse * j.sin, cos), set(d, weight), theta);
+    out.theta = mul_add(angle_of(d, shell.inverse * j.sin, cos), set(d, weight), out.theta);
     // At grazing incidence on the smallest sphere, the derivative is 1.
     const V slope = select(cos > 0, gc / cos, 1);
     if (weight > 0)
-      rising = mul_add(slope, set(d, weight), rising);
+      out.rising = mul_add(slope, set(d, weight), out.rising);
     else
-      falling = neg_mul_add(slope, set(d, weight), falling);
+      out.falling = neg_mul_add(slope, set(d, weight), out.falling);
   }
-};
-
-template <bool kThrough, class D, class V = hn::Vec<D>>
-HWY_INLINE TurnedAngle<V> hollow_angle(D d, const HollowShells<V>& at, V j_turns) {
-  const auto j = sin_cos_turn(d, j_turns);
-  TurnedAngle<V> out = {set(d, kThrough ? kTurn / 2 : 0), hn::Zero(d), hn::Zero(d)};
-  out.add(d, 2, at.ball, j);
-  out.add(d, -2, at.glass, j);
-  out.add(d, 2, at.inner_glass, j);
-  if constexpr (kThrough) out.add(d, -2, at.inner, j);
-  out.add(d, -1, at.point, j);
-  out.add(d, -1, at.light, j);
   return out;
 }
 
@@ -108,38 +110,15 @@ HWY_INLINE SweptAngle<V> hollow_swept(const CausticShells<V>& at, SweptAngle<V> 
 /// Maximum number of steps. Fewer lead to wider pieces, not to errors.
 inline constexpr int kHollowSteps = 12;
 
-/// Angles near one at which the light may lie.
-template <class V>
-struct AngleBand {
-  V lowest, highest;
-  V tolerance;  ///< ends of pieces that are less too far out stay
-};
-
-template <class D, class V = hn::Vec<D>>
-HWY_INLINE AngleBand<V> band_around(D d, V theta, V kappa) {
-  constexpr double kEpsilon = std::numeric_limits<hn::TFromD<D>>::epsilon();
-  const V tolerance = mul_add(kappa, set(d, 0.02), 32 * kEpsilon);
-  const V width = mul_add(kappa, set(d, 1.001), 32 * kEpsilon);
-  return {theta - width, theta + width, tolerance};
-}
-
-/// Places on the graph of Theta, in turns of j, between which it decreases or increases.
-template <class V>
-struct GraphSection {
-  V first, last;
-  V greatest;  ///< b at a quarter turn
-};
-
-/// Finds the values of b in a section for which Theta is in a band, or a few more.
+/// Finds the values of b for which Theta is in a band, or a few more, where it decreases or increases.
 ///
-/// `angle`    TurnedAngle of a place
-template <bool kDecreases, class D, class Angle, class V = hn::Vec<D>>
-HWY_INLINE CausticPiece<V> section_piece(D d, const Angle& angle, const GraphSection<V>& section,
+/// `first`, `last`  turns of j between which it does
+template <bool kDecreases, int kTerms, class D, class V = hn::Vec<D>>
+HWY_INLINE CausticPiece<V> section_piece(D d, const CausticTurn<V, kTerms>& turn, V first, V last,
                                          const AngleBand<V>& band, hn::Mask<D> lanes) {
   constexpr double kEpsilon = std::numeric_limits<hn::TFromD<D>>::epsilon();
-  V first = section.first, last = section.last;
   for (int step = 0; step < kHollowSteps; ++step) {
-    const TurnedAngle<V> from = angle(first), to = angle(last);
+    const TurnedAngle<V> from = turned_angle(d, turn, first), to = turned_angle(d, turn, last);
     const V before = kDecreases ? from.theta - band.highest : band.lowest - from.theta;
     const V after = kDecreases ? band.lowest - to.theta : to.theta - band.highest;
     const V steepest = kDecreases ? from.falling - to.rising : from.rising - to.falling;
@@ -151,16 +130,8 @@ HWY_INLINE CausticPiece<V> section_piece(D d, const Angle& angle, const GraphSec
     last = neg_mul_add(max(after, 0), turns, last);
     lanes = hn::And(lanes, first <= last);
   }
-  const auto b = [&](V turns) { return section.greatest * sin_cos_turn(d, min(max(turns, 0), 0.25)).sin; };
-  return {hn::IfThenElseZero(lanes, b(first) * (1 - 8 * kEpsilon)),
-          hn::IfThenElseZero(lanes, min(mul_add(b(last), set(d, 1 + 8 * kEpsilon), kEpsilon), 1))};
-}
-
-/// Finds the values of b for which Theta is in a band, or a few more.
-template <bool kThrough, class D, class V = hn::Vec<D>>
-HWY_INLINE CausticPiece<V> hollow_piece(D d, const HollowShells<V>& at, const AngleBand<V>& band, hn::Mask<D> lanes) {
-  const auto angle = [&](V j_turns) { return hollow_angle<kThrough>(d, at, j_turns); };
-  return section_piece<kThrough>(d, angle, {hn::Zero(d), set(d, 0.25), at.greatest}, band, lanes);
+  const auto b = [&](V turns) { return turn.greatest * sin_cos_turn(d, min(max(turns, 0), 0.25)).sin; };
+  return grown_piece(d, lanes, b(first), b(last));
 }
 
 }  // namespace orrery::kernel::HWY_NAMESPACE

@@ -149,9 +149,9 @@ class CausticPieces {
   template <int kChain>
   HWY_INLINE void add_hollow(D d, const BallAndLight<D>& from, const CausticView<D>& at, hn::Mask<D> lanes) {
     constexpr bool kThrough = kChain == kThroughVoid;
-    const auto shells = hollow_shells<kThrough>(d, at.shells, from.inner);
+    const auto turn = hollow_turn<kThrough>(d, at.shells, from.inner);
     const auto near = [&](V theta) {
-      return hollow_piece<kThrough>(d, shells, band_around(d, theta, at.kappa), lanes);
+      return section_piece<kThrough>(d, turn, hn::Zero(d), set(d, 0.25), band_around(d, theta, at.kappa), lanes);
     };
     const auto direct = near(at.theta);
     add_piece<kChain>(d, from, at, direct, lanes);

@@ -26,38 +26,17 @@ namespace orrery::kernel::HWY_NAMESPACE {
 // The first increases. The second decreases, and if n p > 1 increases beyond a minimum. The derivatives of the terms
 // decrease as those of a hollow ball do (see caustic_hollow-inl.h).
 
-/// Shells in units of the greatest b.
-template <class V>
-struct InsideShells {
-  V greatest;
-  CausticShell<V> point, glass, ball, light;
-};
-
-template <class D, class V = hn::Vec<D>>
-HWY_INLINE InsideShells<V> inside_shells(D d, const CausticView<D>& at) {
+template <bool kInwards, class D, class V = hn::Vec<D>>
+HWY_INLINE CausticTurn<V, 4> inside_turn(D d, const CausticView<D>& at) {
   const V greatest = min(at.distance, 1);
-  const auto shell = [&](V of_unit) {
-    const V g = min(of_unit * greatest, 1);
-    return CausticShell<V>{g, (1 - g) * (1 + g)};
-  };
   // Exactly 1 where the point limits b: a rounding error would move the band.
   const V point = select(at.distance <= 1, 1, at.shells.point.inverse);
   return {greatest,
-          {point, (1 - point) * (1 + point)},
-          shell(at.shells.glass.inverse),
-          shell(set(d, 1)),
-          shell(at.shells.light.inverse)};
-}
-
-template <bool kInwards, class D, class V = hn::Vec<D>>
-HWY_INLINE TurnedAngle<V> inside_angle(D d, const InsideShells<V>& at, V j_turns) {
-  const auto j = sin_cos_turn(d, j_turns);
-  TurnedAngle<V> out = {set(d, kInwards ? kTurn / 2 : 0), hn::Zero(d), hn::Zero(d)};
-  out.add(d, kInwards ? -1 : 1, at.point, j);
-  out.add(d, -1, at.glass, j);
-  out.add(d, 1, at.ball, j);
-  out.add(d, -1, at.light, j);
-  return out;
+          kInwards ? kTurn / 2 : 0,
+          {{kInwards ? -1 : 1, {point, (1 - point) * (1 + point)}},
+           {-1, scaled_shell(at.shells.glass.inverse, greatest)},
+           {1, scaled_shell(set(d, 1), greatest)},
+           {-1, scaled_shell(at.shells.light.inverse, greatest)}}};
 }
 
 /// The values of b for which Theta is near the angle of the light, or a few more. Those of inward rays are disjoint.
@@ -68,31 +47,27 @@ struct InsideBand {
 
 template <class D, class V = hn::Vec<D>>
 HWY_INLINE InsideBand<V> inside_band(D d, const CausticView<D>& at, hn::Mask<D> lanes) {
-  const auto shells = inside_shells(d, at);
-  const auto outward = [&](V turns) { return inside_angle<false>(d, shells, turns); };
-  const auto inward = [&](V turns) { return inside_angle<true>(d, shells, turns); };
+  const auto outward = inside_turn<false>(d, at), inward = inside_turn<true>(d, at);
   const V zero = hn::Zero(d), quarter = set(d, 0.25);
   // The place of the minimum, by bisection. Where it is wrong, pieces are wider.
   V before = zero, least = quarter;
   for (int step = 0; step < 10; ++step) {
     const V middle = (before + least) * 0.5;
-    const auto there = inward(middle);
+    const auto there = turned_angle(d, inward, middle);
     const auto falls = there.falling > there.rising;
     before = select(falls, middle, before);
     least = select(falls, least, middle);
   }
   const auto direct = band_around(d, at.theta, at.kappa), around = band_around(d, kTurn - at.theta, at.kappa);
-  const GraphSection<V> whole{zero, quarter, shells.greatest}, falling{zero, least, shells.greatest},
-      rising{least, quarter, shells.greatest};
   InsideBand<V> band;
-  band.outward = section_piece<false>(d, outward, whole, direct, lanes);
-  band.inward[0] = section_piece<true>(d, inward, falling, direct, lanes);
+  band.outward = section_piece<false>(d, outward, zero, quarter, direct, lanes);
+  band.inward[0] = section_piece<true>(d, inward, zero, least, direct, lanes);
   band.inward[1] = band.inward[2] = {zero, zero};
   const auto rises = hn::And(lanes, least < 0.25);
   if (hn::AllFalse(d, rises)) return band;
   // Falling angles are at most pi, so that the light at 2 pi - theta is never nearer.
-  band.inward[1] = section_piece<false>(d, inward, rising, direct, rises);
-  band.inward[2] = section_piece<false>(d, inward, rising, around, rises);
+  band.inward[1] = section_piece<false>(d, inward, least, quarter, direct, rises);
+  band.inward[2] = section_piece<false>(d, inward, least, quarter, around, rises);
   for (int i = 1; i < 3; ++i) band.inward[i].low = max(band.inward[i].low, band.inward[i - 1].high);
   return band;
 }
