@@ -38,7 +38,6 @@ class ChainTracer {
   using T = hn::TFromD<D>;
   using V = hn::Vec<D>;
   using Ids = hn::Vec<IdTag<D>>;
-  using Id = hn::TFromD<IdTag<D>>;
 
  public:
   HWY_INLINE ChainTracer(const SceneView& scene, const Tile& tile, PathStreamOf<T>& stream)
@@ -51,7 +50,7 @@ class ChainTracer {
   HWY_INLINE int trace(const Tracer& tracer) {
     const int count = std::min(chains_.count, kPacketSize);
     const int first = chains_.count - count;
-    load(first, count);
+    load_waiting_rays(d, scene_, chains_, first, count, packet_);
     reset_hits(packet_);
     kernel::trace(tracer, packet_);
     // Rays that go on overwrite rays that have been read.
@@ -63,17 +62,6 @@ class ChainTracer {
  private:
   static constexpr D d{};
   static constexpr IdTag<D> du{};
-
-  HWY_INLINE void load(int first, int count) {
-    packet_.count = count;
-    for (int v = 0; v < count; v += static_cast<int>(hn::Lanes(d))) {
-      const int i = first + v;
-      store_rays(d, loadu3(d, chains_.base, i), loadu3(d, chains_.offset, i), loadu3(d, chains_.direction, i),
-                 hn::LoadU(du, chains_.self + i), packet_, v);
-      if (scene_.features.motion) hn::Store(hn::LoadU(d, chains_.time + i), d, packet_.time + v);
-      if (scene_.features.opacity) store_keys(d, hn::LoadU(du, chains_.key + i), packet_.key + v);
-    }
-  }
 
   HWY_INLINE void follow(int first, int v) {
     const int i = first + v;
@@ -99,14 +87,8 @@ class ChainTracer {
     const auto value = loadu3(d, chains_.value, i);
     gain(d, lanes, value, hn::LoadU(du, chains_.path + i), lit_);
     if (!kRecords || !tile_.record_light) return;
-    HWY_ALIGN Id pixel[hn::MaxLanes(D())] = {}, sample[hn::MaxLanes(D())] = {};
-    each_lane(d, lanes, [&](int lane) {
-      pixel[lane] = lit_.pixel[chains_.path[i + lane]];
-      sample[lane] = lit_.sample[chains_.path[i + lane]];
-    });
-    Recorder<D, kRecords> record(scene_, tile_, hn::Load(du, pixel), hn::Load(du, sample));
-    record.event(d, lanes, value, hn::LoadU(du, chains_.history + i), hn::LoadU(du, chains_.group + i),
-                 Lobe::kEmission);
+    recorder_of<D, kRecords>(d, scene_, tile_, lit_, lanes, chains_.path + i)
+        .event(d, lanes, value, hn::LoadU(du, chains_.history + i), hn::LoadU(du, chains_.group + i), Lobe::kEmission);
   }
 
   /// Applies the next event of each chain.

@@ -216,28 +216,43 @@ HWY_NOINLINE LightSample<D> sample_light(D d, const SceneView& scene, const Vert
           select(ids, sky.group, lamp.group)};
 }
 
-/// Fills a packet with `count` waiting shadow rays from `first` on.
-template <class D, class Shadow, class Packet>
-HWY_INLINE void load_shadow_rays(D d, const SceneView& scene, const Shadow& shadow, int first, int count,
-                                 Packet& packet) {
+/// Fills a packet with `count` waiting rays from `first` on.
+template <class D, class Waiting, class Packet>
+HWY_INLINE void load_waiting_rays(D d, const SceneView& scene, const Waiting& rays, int first, int count,
+                                  Packet& packet) {
   const IdTag<D> du;
   packet.count = count;
   for (int v = 0; v < count; v += static_cast<int>(hn::Lanes(d))) {
     const int i = first + v;
-    store_rays(d, loadu3(d, shadow.base, i), loadu3(d, shadow.offset, i), loadu3(d, shadow.direction, i),
-               hn::LoadU(du, shadow.self + i), packet, v);
-    hn::Store(hn::LoadU(d, shadow.distance + i), d, packet.distance + v);
-    hn::Store(hn::LoadU(du, shadow.target + i), du, packet.target + v);
-    if (scene.features.motion) hn::Store(hn::LoadU(d, shadow.time + i), d, packet.time + v);
-    if (scene.features.opacity) store_keys(d, hn::LoadU(du, shadow.key + i), packet.key + v);
+    store_rays(d, loadu3(d, rays.base, i), loadu3(d, rays.offset, i), loadu3(d, rays.direction, i),
+               hn::LoadU(du, rays.self + i), packet, v);
+    if constexpr (Packet::kIsShadow) {
+      hn::Store(hn::LoadU(d, rays.distance + i), d, packet.distance + v);
+      hn::Store(hn::LoadU(du, rays.target + i), du, packet.target + v);
+    }
+    if (scene.features.motion) hn::Store(hn::LoadU(d, rays.time + i), d, packet.time + v);
+    if (scene.features.opacity) store_keys(d, hn::LoadU(du, rays.key + i), packet.key + v);
   }
+}
+
+/// The recorder of paths, by their indices within the batch; undefined in other lanes.
+template <class D, bool kRecords, class Lit>
+HWY_INLINE Recorder<D, kRecords> recorder_of(D d, const SceneView& scene, const Tile& tile, const Lit& lit,
+                                             hn::Mask<D> lanes, const hn::TFromD<IdTag<D>>* path) {
+  using Id = hn::TFromD<IdTag<D>>;
+  const IdTag<D> du;
+  HWY_ALIGN Id pixel[hn::MaxLanes(D())] = {}, sample[hn::MaxLanes(D())] = {};
+  each_lane(d, lanes, [&](int lane) {
+    pixel[lane] = lit.pixel[path[lane]];
+    sample[lane] = lit.sample[path[lane]];
+  });
+  return {scene, tile, hn::Load(du, pixel), hn::Load(du, sample)};
 }
 
 /// Adds the light of the unoccluded rays of a packet, the waiting ones from `first` on, to their paths.
 template <class D, bool kRecords, class Packet, class Lit>
 HWY_INLINE void add_unoccluded(D d, const SceneView& scene, const Tile& tile, const Packet& packet, int first,
                                Lit& lit) {
-  using Id = hn::TFromD<IdTag<D>>;
   const IdTag<D> du;
   const auto& shadow = lit.shadow;
   for (int v = 0; v < packet.count; v += static_cast<int>(hn::Lanes(d))) {
@@ -246,16 +261,11 @@ HWY_INLINE void add_unoccluded(D d, const SceneView& scene, const Tile& tile, co
     const auto is_free = hn::RebindMask(d, hn::Load(du, packet.occluded + v) == 0);
     const auto lanes = hn::And(active, is_free);
     if (hn::AllFalse(d, lanes)) continue;
-    const auto light = loadu3(d, shadow.light, i);
+    const auto light = loadu3(d, shadow.value, i);
     const auto paths = hn::LoadU(du, shadow.path + i);
     gain(d, lanes, light, paths, lit);
     if (!kRecords || !tile.record_light) continue;
-    HWY_ALIGN Id pixel[hn::MaxLanes(D())] = {}, sample[hn::MaxLanes(D())] = {};
-    each_lane(d, lanes, [&](int lane) {
-      pixel[lane] = lit.pixel[shadow.path[i + lane]];
-      sample[lane] = lit.sample[shadow.path[i + lane]];
-    });
-    Recorder<D, kRecords> record(scene, tile, hn::Load(du, pixel), hn::Load(du, sample));
+    auto record = recorder_of<D, kRecords>(d, scene, tile, lit, lanes, shadow.path + i);
     const auto unscattered = Lobe::kEmission;  // never used: a surface has scattered the light
     const auto history = hn::LoadU(du, shadow.history + i), group = hn::LoadU(du, shadow.group + i);
     const auto in_coat = hn::And(lanes, hn::RebindMask(d, hn::And(history, set(du, kCoatBit)) != 0));
@@ -281,7 +291,7 @@ HWY_INLINE void trace_shadow_batch(D d, const SceneView& scene, const Tracer& tr
     for (int i = 0; i * kPacketSize < batch; ++i) what(shadow.packets[i], i * kPacketSize);
   };
   each_packet([&](auto& packet, int begin) {
-    load_shadow_rays(d, scene, shadow, shadow.count + begin, std::min(kPacketSize, batch - begin), packet);
+    load_waiting_rays(d, scene, shadow, shadow.count + begin, std::min(kPacketSize, batch - begin), packet);
   });
   occlude(tracer, shadow.packets, (batch + kPacketSize - 1) / kPacketSize);
   each_packet([&](const auto& packet, int begin) {

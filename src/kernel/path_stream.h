@@ -16,75 +16,67 @@ inline constexpr int kStreamSize = 1024;
 inline constexpr int kPathBits = 16;
 static_assert(kStreamSize < 1 << kPathBits);
 
-/// Shadow rays that wait until they fill packets, and the light that they carry if they are not occluded.
+/// Points at which paths wait for light, until they fill packets or vectors.
 ///
 /// The arrays are padded, because whole vectors are stored at their ends.
-template <class T>
-struct alignas(64) ShadowStreamOf {
+template <class T, int kMost>
+struct alignas(64) WaitingPointsOf {
   using Id = IdOf<T>;
-  /// Rays that wait for a query, and those that a packet of paths adds to them.
-  static constexpr int kBatch = kPacketsInFlight * kPacketSize, kCapacity = kBatch + 2 * kPacketSize;
-  T base[3][kCapacity];        ///< centre of the sphere that the ray leaves
-  T offset[3][kCapacity];      ///< from that centre to the ray's origin
-  T direction[3][kCapacity];   ///< to the light; of any length
-  T distance[kCapacity];       ///< maximum distance of an occluder, as a multiple of the direction's length
-  T time[kCapacity];           ///< 0..1 within the shutter; only if the scene moves
-  Id key[kCapacity];           ///< see PacketRays, in the low 32 bits; only if the scene has opacities
-  T light[3][kCapacity];       ///< radiance times throughput and weight
-  Id self[kCapacity];          ///< sphere that the ray leaves
-  Id target[kCapacity];        ///< the light, or kNoSphere
-  Id path[kCapacity];          ///< index into LitPathsOf
-  Id history[kCapacity];       ///< only in loops that record paths
-  Id group[kCapacity];         ///< light group; only in loops that record paths
-  T coat[3][kCapacity];        ///< part of `light` that a coat scatters; only if the history has kCoatBit
-  Id coat_history[kCapacity];  ///< history of that part
-  int count = 0;
-  ShadowPacket<T> packets[kPacketsInFlight];  ///< the rays being traced
-};
-
-/// Diffuse vertices at which light by way of balls is sampled, until they fill vectors; see caustic_light-inl.h.
-template <class T>
-struct alignas(64) CausticVerticesOf {
-  using Id = IdOf<T>;
-  /// Vertices that wait. Several packets, since shadow rays are traced first, in packets that may not be full.
-  static constexpr int kBatch = 8 * kPacketSize;
-  static constexpr int kCapacity = kBatch + 2 * kPacketSize;
+  static constexpr int kCapacity = kMost + 2 * kPacketSize;
   T base[3][kCapacity];    ///< centre of the sphere that the ray leaves
   T offset[3][kCapacity];  ///< from that centre to the ray's origin
-  T side[kCapacity];       ///< 1 outside of the sphere, -1 inside
-  T uniform[kCapacity];    ///< 1: the lobe is uniform; 0: Lambertian
-  T value[3][kCapacity];   ///< throughput divided by the probability of being sampled
-  T random[4][kCapacity];  ///< two numbers for the direction, for the choices of the light and of a piece
+  T value[3][kCapacity];   ///< throughput and weight; of rays times the radiance of the light
   T time[kCapacity];       ///< 0..1 within the shutter; only if the scene moves
   Id key[kCapacity];       ///< see PacketRays, in the low 32 bits; only if the scene has opacities
   Id self[kCapacity];      ///< sphere that the ray leaves
-  Id ball[kCapacity];      ///< index into Caustics
   Id path[kCapacity];      ///< index into LitPathsOf
   Id history[kCapacity];   ///< only in loops that record paths
   int count = 0;
 };
 
-/// Rays of chains that wait until they fill packets; see caustic_rays-inl.h.
+/// Rays from such points.
+template <class T, int kMost>
+struct WaitingRaysOf : WaitingPointsOf<T, kMost> {
+  using WaitingPointsOf<T, kMost>::kCapacity;
+  alignas(64) T direction[3][kCapacity];
+  IdOf<T> group[kCapacity];  ///< light group; only in loops that record paths
+};
+
+/// Shadow rays: those that wait for a query, and those that a packet of paths adds to them. Directions have any length.
 template <class T>
-struct alignas(64) ChainStreamOf {
-  using Id = IdOf<T>;
-  static constexpr int kCapacity = CausticVerticesOf<T>::kCapacity + 2 * kPacketSize;
-  T base[3][kCapacity];       ///< centre of the sphere that the ray leaves
-  T offset[3][kCapacity];     ///< from that centre to the ray's origin
-  T direction[3][kCapacity];  ///< unit
-  T time[kCapacity];          ///< 0..1 within the shutter; only if the scene moves
-  Id key[kCapacity];          ///< see PacketRays, in the low 32 bits; only if the scene has opacities
-  T value[3][kCapacity];      ///< radiance times throughput and weight
-  Id self[kCapacity];         ///< sphere that the ray leaves
-  Id events[kCapacity];       ///< that are left; see CausticEvent
-  Id ball[kCapacity];         ///< that causes them
-  Id inner[kCapacity];        ///< its inner sphere, if it is hollow
-  Id light[kCapacity];        ///< the emitter, or kNoSphere: the sun
-  Id path[kCapacity];         ///< index into LitPathsOf
-  Id history[kCapacity];      ///< only in loops that record paths
-  Id group[kCapacity];        ///< light group; only in loops that record paths
-  int count = 0;
-  RayPacket<T> packet;  ///< the rays being traced
+struct ShadowStreamOf : WaitingRaysOf<T, kPacketsInFlight * kPacketSize> {
+  static constexpr int kBatch = kPacketsInFlight * kPacketSize;
+  using WaitingRaysOf<T, kBatch>::kCapacity;
+  T distance[kCapacity];             ///< maximum distance of an occluder, as a multiple of the direction's length
+  IdOf<T> target[kCapacity];         ///< the light, or kNoSphere
+  T coat[3][kCapacity];              ///< part of `value` that a coat scatters; only if the history has kCoatBit
+  IdOf<T> coat_history[kCapacity];   ///< history of that part
+  ShadowPacket<T> packets[kPacketsInFlight];  ///< the rays being traced
+};
+
+/// Number of diffuse vertices that wait. Several packets, since shadow rays are traced first, in packets that may not be
+/// full.
+inline constexpr int kCausticBatch = 8 * kPacketSize;
+
+/// Diffuse vertices at which light by way of balls is sampled, until they fill vectors; see caustic_light-inl.h.
+template <class T>
+struct CausticVerticesOf : WaitingPointsOf<T, kCausticBatch> {
+  using WaitingPointsOf<T, kCausticBatch>::kCapacity;
+  alignas(64) T side[kCapacity];  ///< 1 outside of the sphere, -1 inside
+  T uniform[kCapacity];           ///< 1: the lobe is uniform; 0: Lambertian
+  T random[4][kCapacity];         ///< two numbers for the direction, for the choices of the light and of a piece
+  IdOf<T> ball[kCapacity];        ///< index into Caustics
+};
+
+/// Rays of chains that wait until they fill packets; see caustic_rays-inl.h. Directions are unit.
+template <class T>
+struct ChainStreamOf : WaitingRaysOf<T, CausticVerticesOf<T>::kCapacity> {
+  using WaitingRaysOf<T, CausticVerticesOf<T>::kCapacity>::kCapacity;
+  IdOf<T> events[kCapacity];  ///< that are left; see CausticEvent
+  IdOf<T> ball[kCapacity];    ///< that causes them
+  IdOf<T> inner[kCapacity];   ///< its inner sphere, if it is hollow
+  IdOf<T> light[kCapacity];   ///< the emitter, or kNoSphere: the sun
+  RayPacket<T> packet;        ///< the rays being traced
 };
 
 /// State of paths that gain radiance at their vertices.

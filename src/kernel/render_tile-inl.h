@@ -152,7 +152,7 @@ TileCounts render_tile(const SceneView& scene, const Tracer& tracer, const Tile&
     for (int i = 0; i < packets; ++i) {
       alive = Shader<D, kLoop>(scene, tile, depth, stream, counts).shade(stream.packets[i], carried[i], alive);
       trace_shadows(shadow.kBatch);
-      trace_caustics(depth, CausticVerticesOf<T>::kBatch, kPacketSize);
+      trace_caustics(depth, kCausticBatch, kPacketSize);
     }
     return alive;
   };

@@ -307,6 +307,26 @@ class Shader {
             at.times};
   }
 
+  /// Appends chosen hits to those that wait for light.
+  ///
+  /// `key`      of the rays that leave them
+  template <class Waiting>
+  HWY_INLINE void wait(const Compactor<D>& chosen, const Arrivals<D>& at, const Lookup<D>& look, const Vec3<V>& value,
+                       Ids RayKeys<IdTag<D>>::*key, Waiting& waiting) const {
+    const int n = waiting.count;
+    chosen.store3(d, look.sphere.center, waiting.base, n);
+    chosen.store3(d, look.surface.offset, waiting.offset, n);
+    chosen.store3(d, value, waiting.value, n);
+    if (features_.motion) chosen.store(d, hn::Load(d, at.times), waiting.time + n);
+    if (features_.opacity) {
+      const auto keys = keys_at_vertex(du, scene_.sampler.seed, at.pixels, at.samples, depth_ + 1);
+      chosen.store_ids(d, keys.*key, waiting.key + n);
+    }
+    chosen.store_ids(d, at.hits, waiting.self + n);
+    chosen.store_ids(d, index_of(at), waiting.path + n);
+    waiting.count += chosen.count();
+  }
+
   /// Samples a light at each vertex whose material is neither delta nor an emitter and appends shadow rays to the
   /// shadow stream.
   HWY_INLINE void light(const Arrivals<D>& at, const Lookup<D>& look, const Vec3<V>& tinted) {
@@ -315,7 +335,6 @@ class Shader {
     if (hn::AllFalse(d, scatters)) return;
     const auto random =
         second_random_at_vertex(d, scene_.sampler, at.pixels, at.samples, depth_ + 1, chooses_light(scene_));
-    const Vec3<V>& center = look.sphere.center;
     Vertex<D> vertex = vertex_at(at, look);
     if (has_cones()) vertex.cone = {at.cone.width2, hn::Zero(d), lobe_slope2(d, surface, scene_.cone_width)};
     const auto sample = sample_light(d, scene_, vertex, random);
@@ -339,19 +358,10 @@ class Shader {
     auto& shadow = stream_.lit.shadow;
     const int n = shadow.count;
     const Compactor<D> compactor(d, lanes);
-    compactor.store3(d, center, shadow.base, n);
-    compactor.store3(d, surface.offset, shadow.offset, n);
+    wait(compactor, at, look, arriving, &RayKeys<IdTag<D>>::shadow, shadow);
     compactor.store3(d, sample.reach, shadow.direction, n);
     compactor.store(d, sample.distance, shadow.distance + n);
-    if (features_.motion) compactor.store(d, hn::Load(d, at.times), shadow.time + n);
-    if (features_.opacity) {
-      const auto keys = keys_at_vertex(du, scene_.sampler.seed, at.pixels, at.samples, depth_ + 1);
-      compactor.store_ids(d, keys.shadow, shadow.key + n);
-    }
-    compactor.store3(d, arriving, shadow.light, n);
-    compactor.store_ids(d, at.hits, shadow.self + n);
     compactor.store_ids(d, sample.target, shadow.target + n);
-    compactor.store_ids(d, index_of(at), shadow.path + n);
     if (kLoop.records) {
       Ids history = history_after(at, surface, surface.normal);
       if constexpr (kLoop.plastic) {
@@ -364,7 +374,6 @@ class Shader {
       compactor.store_ids(d, history, shadow.history + n);
       compactor.store_ids(d, sample.group, shadow.group + n);
     }
-    shadow.count += compactor.count();
   }
 
   /// Chooses a ball at diffuse vertices and appends those that are sampled to the waiting vertices.
@@ -384,9 +393,7 @@ class Shader {
     const int n = waiting.count;
     const V one = set(d, 1);
     const Compactor<D> compactor(d, lanes);
-    compactor.store3(d, look.sphere.center, waiting.base, n);
-    compactor.store3(d, surface.offset, waiting.offset, n);
-    compactor.store3(d, value * (1 / (chance * chosen.probability)), waiting.value, n);
+    wait(compactor, at, look, value * (1 / (chance * chosen.probability)), &RayKeys<IdTag<D>>::chain, waiting);
     compactor.store(d, random.v[0], waiting.random[0] + n);
     compactor.store(d, random.v[1], waiting.random[1] + n);
     compactor.store(d, chosen.rest, waiting.random[2] + n);
@@ -394,20 +401,12 @@ class Shader {
     compactor.store(d, select(surface.from_outside, one, -one), waiting.side + n);
     compactor.store(d, hn::IfThenElseZero(is_kind(d, surface.kind, MaterialKind::kHemisphere), one),
                     waiting.uniform + n);
-    if (features_.motion) compactor.store(d, hn::Load(d, at.times), waiting.time + n);
-    if (features_.opacity) {
-      const auto keys = keys_at_vertex(du, scene_.sampler.seed, at.pixels, at.samples, depth_ + 1);
-      compactor.store_ids(d, keys.chain, waiting.key + n);
-    }
-    compactor.store_ids(d, at.hits, waiting.self + n);
     compactor.store_ids(d, chosen.index, waiting.ball + n);
-    compactor.store_ids(d, index_of(at), waiting.path + n);
     if (kLoop.records) {
       // The light has the lobe of this vertex and is indirect, like that of a path which finds it.
       const auto history = history_after(at, surface, surface.normal);
       compactor.store_ids(d, hn::Or(history, set(du, kIndirectBit)), waiting.history + n);
     }
-    waiting.count += compactor.count();
   }
 
   /// Samples the BSDF, appends the surviving paths to the stream, and samples caustics: in one function, because
