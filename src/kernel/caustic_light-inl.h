@@ -38,8 +38,6 @@ struct ChosenBalls {
 template <class D, class V = hn::Vec<D>>
 HWY_NOINLINE ChosenBalls<D> choose_ball(D d, const Caustics& caustics, const Vertex<D>& at, V u) {
   using T = hn::TFromD<D>;
-  using Id = hn::TFromD<IdTag<D>>;
-  const IdTag<D> du;
   V of_ball[Caustics::kMaxBalls];
   V whole = hn::Zero(d);
   for (std::uint32_t i = 0; i < caustics.count; ++i) {
@@ -52,18 +50,10 @@ HWY_NOINLINE ChosenBalls<D> choose_ball(D d, const Caustics& caustics, const Ver
     whole = whole + of_ball[i];
   }
   const V target = u * whole;
-  V before = hn::Zero(d), chosen = before, start = before;
-  auto index = hn::Zero(du);
-  for (std::uint32_t i = 0; i < caustics.count; ++i) {
-    const auto reached = hn::And(of_ball[i] > 0, before <= target);
-    chosen = select(reached, of_ball[i], chosen);
-    start = select(reached, before, start);
-    index = select(hn::RebindMask(du, reached), hn::Set(du, static_cast<Id>(i)), index);
-    before = before + of_ball[i];
-  }
-  const auto some = chosen > 0;
-  const V rest = hn::IfThenElseZero(some, (target - start) / chosen);
-  return {index, hn::IfThenElseZero(some, chosen / whole), min(max(rest, 0), 1), whole};
+  const auto chosen = choose_from_list(d, of_ball, caustics.count, target, [](std::uint32_t i) { return i; });
+  const auto some = chosen.importance > 0;
+  const V rest = hn::IfThenElseZero(some, (target - chosen.before) / chosen.importance);
+  return {chosen.id, hn::IfThenElseZero(some, chosen.importance / whole), min(max(rest, 0), 1), whole};
 }
 
 /// Maximum number of events of the chains that are sampled at a depth: a path could follow them to the light before its

@@ -177,28 +177,45 @@ HWY_INLINE void for_each_light(D d, const SceneView& scene, const Vertex<D>& at,
   }
 }
 
+/// Things that were chosen from a list by importance.
+template <class D>
+struct ListChoice {
+  hn::Vec<IdTag<D>> id;
+  hn::Vec<D> importance;  ///< 0: none was chosen
+  hn::Vec<D> before;      ///< sum of the importances before it
+};
+
+/// Chooses the last thing with non-zero importance for which the sum of the preceding ones does not exceed `target`.
+///
+/// `id_of`    id of the i-th
+template <class D, class GetId, class V = hn::Vec<D>>
+HWY_INLINE ListChoice<D> choose_from_list(D d, const V* importance, std::uint32_t count, V target, GetId id_of) {
+  const IdTag<D> du;
+  const V zero = hn::Zero(d);
+  V before = zero;
+  ListChoice<D> chosen{set(du, id_of(0)), zero, zero};
+  for (std::uint32_t i = 0; i < count; ++i) {
+    const auto reached = hn::And(importance[i] > 0, before <= target);
+    chosen.importance = select(reached, importance[i], chosen.importance);
+    chosen.before = select(reached, before, chosen.before);
+    chosen.id = select(hn::RebindMask(du, reached), id_of(i), chosen.id);
+    before = before + importance[i];
+  }
+  return chosen;
+}
+
 /// Chooses from a short list of emitters by importance.
 template <class D, class V = hn::Vec<D>>
 HWY_INLINE ChosenLights<D> choose_from_few(D d, const SceneView& scene, const Vertex<D>& at, V u) {
-  const IdTag<D> du;
-  const V zero = hn::Zero(d);
   V of_light[Lights::kFew];
-  V whole = zero;
+  V whole = hn::Zero(d);
   for_each_light(d, scene, at, [&](std::uint32_t i, V value) {
     of_light[i] = value;
     whole = whole + value;
   });
-  // The last emitter with non-zero importance for which the sum of the preceding ones does not exceed u.
-  const V target = u * whole;
-  V before = zero, chosen = zero;
-  auto spheres = set(du, scene.lights.spheres[0]);
-  for (std::uint32_t i = 0; i < scene.lights.count; ++i) {
-    const auto reached = hn::And(of_light[i] > 0, before <= target);
-    chosen = select(reached, of_light[i], chosen);
-    spheres = select(hn::RebindMask(du, reached), scene.lights.spheres[i], spheres);
-    before = before + of_light[i];
-  }
-  return {spheres, hn::IfThenElseZero(whole > 0, chosen / whole)};
+  const auto chosen = choose_from_list(d, of_light, scene.lights.count, u * whole,
+                                       [&](std::uint32_t i) { return scene.lights.spheres[i]; });
+  return {chosen.id, hn::IfThenElseZero(whole > 0, chosen.importance / whole)};
 }
 
 /// Number of levels of the light tree per random number, since each choice consumes bits.
