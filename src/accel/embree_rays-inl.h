@@ -176,13 +176,11 @@ HWY_INLINE void intersect_rods(D d, const EmbreeScene& scene, const Packet& pack
 }
 
 /// Intersects rays with the same rod.
-///
-/// `id`       of the rod's first half
 template <kernel::Precision kPrecision, class D, class Packet>
 HWY_INLINE void intersect_rod(D d, const EmbreeScene& scene, const Packet& packet, int first, const k::Rays<D>& ray,
-                              const k::Rods<D>& rod, typename Packet::Id id, hn::Mask<D> lanes,
-                              Found<D, Packet>& found) {
-  intersect_rods<kPrecision>(d, scene, packet, first, ray, rod, hn::Set(k::IdTag<D>(), id), lanes, found);
+                              std::size_t rod, hn::Mask<D> lanes, Found<D, Packet>& found) {
+  intersect_rods<kPrecision>(d, scene, packet, first, ray, k::rod_at(d, scene.rods, rod, packet, first),
+                             set(k::IdTag<D>(), scene.rods.id(rod)), lanes, found);
 }
 
 /// Stores lanes as floats.

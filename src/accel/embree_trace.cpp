@@ -101,8 +101,7 @@ void at_rod(const Arguments* arguments) {
   const auto& query = *reinterpret_cast<const EmbreeQuery<Packet>*>(arguments->context);
   const std::size_t rod = query.scene->rod_pieces[arguments->primID].rod;
   const auto test = [rod, &scene = *query.scene](auto d, const Packet& packet, int first, auto lanes, auto& found) {
-    intersect_rod<kPrecision>(d, scene, packet, first, k::load_rays(d, packet, first),
-                              k::rod_at(d, scene.rods, rod, packet, first), scene.rods.id(rod), lanes, found);
+    intersect_rod<kPrecision>(d, scene, packet, first, k::load_rays(d, packet, first), rod, lanes, found);
   };
   test_all(query, *arguments, test);
 }
@@ -156,35 +155,35 @@ HWY_INLINE TraversalChoice& choice_for(const ThreadTraversals& traversals, const
   }
 }
 
-/// Tests the rods that are not in Embree's scene.
-template <class Packet, kernel::Precision kPrecision>
-HWY_NOINLINE void test_listed_rods(const EmbreeScene& scene, Packet& packet) {
+/// Tests the rays of a packet against objects that are not in Embree's scene.
+///
+/// `test`     called as test(d, first, ray, lanes, found) for the rays from `first` on
+template <class Packet, class Test>
+HWY_INLINE void test_outside(Packet& packet, Test test) {
   const hn::ScalableTag<typename Packet::Number> d;
   using D = std::remove_const_t<decltype(d)>;
   for (int v = 0; v < packet.count; v += static_cast<int>(hn::Lanes(d))) {
-    const auto ray = k::load_rays(d, packet, v);
-    const auto lanes = hn::FirstN(d, static_cast<std::size_t>(packet.count - v));
     auto found = Found<D, Packet>::load(d, packet, v);
-    for (std::size_t rod = 0; rod < scene.listed_rods; ++rod)
-      intersect_rod<kPrecision>(d, scene, packet, v, ray, k::rod_at(d, scene.rods, rod, packet, v), scene.rods.id(rod),
-                                lanes, found);
+    test(d, v, k::load_rays(d, packet, v), hn::FirstN(d, static_cast<std::size_t>(packet.count - v)), found);
     found.store(d, packet, v);
   }
 }
 
-/// Tests the spheres that are not in Embree's scene.
+template <class Packet, kernel::Precision kPrecision>
+HWY_NOINLINE void test_listed_rods(const EmbreeScene& scene, Packet& packet) {
+  test_outside(packet, [&](auto d, int first, const auto& ray, auto lanes, auto& found) {
+    for (std::size_t rod = 0; rod < scene.listed_rods; ++rod)
+      intersect_rod<kPrecision>(d, scene, packet, first, ray, rod, lanes, found);
+  });
+}
+
 template <class Packet, kernel::Precision kPrecision, bool kPlain>
 HWY_INLINE void test_outliers(const EmbreeScene& scene, Packet& packet) {
-  const hn::ScalableTag<typename Packet::Number> d;
-  using D = std::remove_const_t<decltype(d)>;
-  for (int v = 0; !scene.outliers.empty() && v < packet.count; v += static_cast<int>(hn::Lanes(d))) {
-    const auto ray = k::load_rays(d, packet, v);
-    const auto lanes = hn::FirstN(d, static_cast<std::size_t>(packet.count - v));
-    auto found = Found<D, Packet>::load(d, packet, v);
+  if (scene.outliers.empty()) return;
+  test_outside(packet, [&](auto d, int first, const auto& ray, auto lanes, auto& found) {
     for (const std::uint32_t id : scene.outliers)
-      intersect_sphere<kPrecision, kPlain>(d, scene, packet, v, ray, id, lanes, found);
-    found.store(d, packet, v);
-  }
+      intersect_sphere<kPrecision, kPlain>(d, scene, packet, first, ray, id, lanes, found);
+  });
 }
 
 /// Traces a packet through Embree's scene.
