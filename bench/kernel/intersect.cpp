@@ -11,8 +11,8 @@
 namespace orrery::bench {
 namespace {
 
-using kernel::Lanes;
 using kernel::Precision;
+using test::Lanes;
 
 /// Spheres that a packet is tested against in one iteration; they and the packet fit into the L1 cache.
 constexpr std::size_t kSpheres = 64;

@@ -120,8 +120,8 @@ HWY_EXPORT(point_book_all);
 HWY_EXPORT(point_fast_one);
 HWY_EXPORT(point_fast_all);
 
-IntersectFunctions<double> intersect_double(kernel::Precision precision, kernel::Lanes lanes) {
-  const bool one = lanes == kernel::Lanes::kOne;
+IntersectFunctions<double> intersect_double(kernel::Precision precision, test::Lanes lanes) {
+  const bool one = lanes == test::Lanes::kOne;
   if (precision == kernel::Precision::kBook) {
     if (one) return {ORRERY_BEST(nearest_book_one), ORRERY_BEST(point_book_one)};
     return {ORRERY_BEST(nearest_book_all), ORRERY_BEST(point_book_all)};
@@ -130,8 +130,8 @@ IntersectFunctions<double> intersect_double(kernel::Precision precision, kernel:
   return {ORRERY_BEST(nearest_exact_all), ORRERY_BEST(point_exact_all)};
 }
 
-IntersectFunctions<float> intersect_float(kernel::Lanes lanes) {
-  if (lanes == kernel::Lanes::kOne) return {ORRERY_BEST(nearest_fast_one), ORRERY_BEST(point_fast_one)};
+IntersectFunctions<float> intersect_float(test::Lanes lanes) {
+  if (lanes == test::Lanes::kOne) return {ORRERY_BEST(nearest_fast_one), ORRERY_BEST(point_fast_one)};
   return {ORRERY_BEST(nearest_fast_all), ORRERY_BEST(point_fast_all)};
 }
 

@@ -5,8 +5,8 @@
 
 #include "kernel/precision.h"
 #include "kernel/ray_packet.h"
-#include "kernel/render_tile.h"
 #include "kernel/sphere.h"
+#include "support/lanes.h"
 
 namespace orrery::bench {
 
@@ -34,9 +34,9 @@ struct IntersectFunctions {
 };
 
 /// Domain     kExact or kBook
-IntersectFunctions<double> intersect_double(kernel::Precision precision, kernel::Lanes lanes);
+IntersectFunctions<double> intersect_double(kernel::Precision precision, test::Lanes lanes);
 
 /// For the precision `fast`.
-IntersectFunctions<float> intersect_float(kernel::Lanes lanes);
+IntersectFunctions<float> intersect_float(test::Lanes lanes);
 
 }  // namespace orrery::bench

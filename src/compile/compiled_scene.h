@@ -45,13 +45,13 @@ struct CompiledScene : kernel::SceneSettings {
   std::vector<kernel::Material> materials;
   std::vector<kernel::Emission> emission;  ///< one per material; empty if none emits
   TextureStore textures;
-  LightTree light_tree;  ///< light tree of the emitting spheres; empty if lights are not sampled
+  LightTree light_tree;                   ///< light tree of the emitting spheres; empty if lights are not sampled
   bool samples_caustics = true;           ///< false: `caustics` stays empty
   CausticList caustics;                   ///< of lights that are sampled
   std::vector<std::string> light_groups;  ///< names, indexed by Emission::group; the first is "", the default group
   std::vector<kernel::Sphere>
       motion;  ///< motion of the first motion.size() spheres, see kernel::SceneView; empty: none moves
-  std::vector<kernel::Rod> rod_motion;  ///< the same of the rods
+  std::vector<kernel::Rod> rod_motion;                ///< the same of the rods
   std::optional<math::Vec3d> backdrop;                ///< see scene::Background
   std::shared_ptr<const EnvironmentMap> environment;  ///< an image background; null: none
   Precision precision = Precision::kExact;

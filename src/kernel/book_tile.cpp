@@ -13,7 +13,7 @@
 HWY_BEFORE_NAMESPACE();
 namespace orrery::kernel::HWY_NAMESPACE {
 
-RenderTile book_instance() { return render_tile<hn::FixedTag<double, 1>, Loop{Precision::kBook, true, true}>; }
+RenderTile book_instance() { return render_tile<hn::FixedTag<double, 1>, Loop{Precision::kBook, true}>; }
 
 }  // namespace orrery::kernel::HWY_NAMESPACE
 HWY_AFTER_NAMESPACE();

@@ -80,7 +80,8 @@ template <class D, class V = hn::Vec<D>>
 HWY_INLINE CameraVectors<V> camera_vectors(D d, const SceneView& scene, const hn::TFromD<D>* times) {
   const auto at = [&](math::Vec3d Camera::*vector) {
     const auto at_opening = set3(d, scene.camera.*vector);
-    return times == nullptr ? at_opening : mul_add(set3(d, scene.camera_motion.*vector), hn::Load(d, times), at_opening);
+    return times == nullptr ? at_opening
+                            : mul_add(set3(d, scene.camera_motion.*vector), hn::Load(d, times), at_opening);
   };
   return {at(&Camera::origin), at(&Camera::forward), at(&Camera::right),
           at(&Camera::down),   at(&Camera::lens_u),  at(&Camera::lens_v)};

@@ -166,9 +166,10 @@ HWY_INLINE Emitted<D> load_lights(D d, const SceneView& scene, hn::Vec<IdTag<D>>
 
 /// Samples directions at the waiting vertices and appends their rays to the stream of chains.
 ///
-/// `events`   maximum number of events of a chain
-template <class D, bool kRecords>
-HWY_NOINLINE void sample_caustics(const SceneView& scene, LitPathsOf<hn::TFromD<D>>& lit, int events) {
+/// `has_events`  the tile records light events
+/// `events`      maximum number of events of a chain
+template <class D>
+HWY_NOINLINE void sample_caustics(const SceneView& scene, bool has_events, LitPathsOf<hn::TFromD<D>>& lit, int events) {
   using T = hn::TFromD<D>;
   using V = hn::Vec<D>;
   const D d;
@@ -212,7 +213,7 @@ HWY_NOINLINE void sample_caustics(const SceneView& scene, LitPathsOf<hn::TFromD<
     compactor.store_ids(d, hn::Load(du, chosen.ball), rays.ball + n);
     compactor.store_ids(d, hn::Load(du, chosen.inner), rays.inner + n);
     compactor.store_ids(d, lights, rays.light + n);
-    if (kRecords) {
+    if (has_events) {
       keep(vertices.history, rays.history);
       compactor.store_ids(d, source.group, rays.group + n);
     }

@@ -33,7 +33,7 @@ HWY_INLINE V next_key(DU du, V key) {
 }
 
 /// The rays of chains.
-template <class D, Precision kPrecision, bool kRecords>
+template <class D, Precision kPrecision>
 class ChainTracer {
   using T = hn::TFromD<D>;
   using V = hn::Vec<D>;
@@ -86,8 +86,8 @@ class ChainTracer {
   HWY_INLINE void arrive(int i, hn::Mask<D> lanes) {
     const auto value = loadu3(d, chains_.value, i);
     gain(d, lanes, value, hn::LoadU(du, chains_.path + i), lit_);
-    if (!kRecords || !tile_.record_light) return;
-    recorder_of<D, kRecords>(d, scene_, tile_, lit_, lanes, chains_.path + i)
+    if (!tile_.has_events()) return;
+    recorder_of(d, scene_, tile_, lit_, lanes, chains_.path + i)
         .event(d, lanes, value, hn::LoadU(du, chains_.history + i), hn::LoadU(du, chains_.group + i), Lobe::kEmission);
   }
 
@@ -124,7 +124,7 @@ class ChainTracer {
     keep(chains_.inner);
     keep(chains_.light);
     keep(chains_.path);
-    if (kRecords) {
+    if (tile_.has_events()) {
       keep(chains_.history);
       keep(chains_.group);
     }
@@ -139,10 +139,10 @@ class ChainTracer {
 };
 
 /// Traces rays of chains until fewer than `waiting` wait. Not inlined, so that the loop costs the same without them.
-template <class D, Precision kPrecision, bool kRecords>
+template <class D, Precision kPrecision>
 HWY_NOINLINE void trace_chains(const SceneView& scene, const Tracer& tracer, const Tile& tile,
                                PathStreamOf<hn::TFromD<D>>& stream, int waiting, TileCounts& counts) {
-  ChainTracer<D, kPrecision, kRecords> chains(scene, tile, stream);
+  ChainTracer<D, kPrecision> chains(scene, tile, stream);
   while (stream.lit.chains.count >= waiting) counts.rays += static_cast<std::uint64_t>(chains.trace(tracer));
 }
 

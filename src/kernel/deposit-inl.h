@@ -139,7 +139,7 @@ HWY_INLINE void gain(D d, hn::Mask<D> lanes, const Vec3<hn::Vec<D>>& light, hn::
 }
 
 /// Deposits the radiance of the batch's paths.
-template <class D, bool kRecords, class Lit>
+template <class D, class Lit>
 HWY_INLINE void deposit_paths(D d, int count, const SceneView& scene, const Tile& tile, const Lit& lit,
                               TileCounts& counts) {
   const IdTag<D> du;
@@ -148,7 +148,7 @@ HWY_INLINE void deposit_paths(D d, int count, const SceneView& scene, const Tile
     const auto light = load3(d, lit.radiance, i);
     const auto pixels = hn::Load(du, lit.pixel + i), samples = hn::Load(du, lit.sample + i);
     deposit(d, active, light, pixels, samples, scene, tile, counts);
-    Recorder<D, kRecords>(scene, tile, pixels, samples).light(d, active, light);
+    Recorder<D>(scene, tile, pixels, samples).light(d, active, light);
   }
 }
 

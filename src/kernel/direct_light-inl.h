@@ -236,9 +236,9 @@ HWY_INLINE void load_waiting_rays(D d, const SceneView& scene, const Waiting& ra
 }
 
 /// The recorder of paths, by their indices within the batch; undefined in other lanes.
-template <class D, bool kRecords, class Lit>
-HWY_INLINE Recorder<D, kRecords> recorder_of(D d, const SceneView& scene, const Tile& tile, const Lit& lit,
-                                             hn::Mask<D> lanes, const hn::TFromD<IdTag<D>>* path) {
+template <class D, class Lit>
+HWY_INLINE Recorder<D> recorder_of(D d, const SceneView& scene, const Tile& tile, const Lit& lit, hn::Mask<D> lanes,
+                                   const hn::TFromD<IdTag<D>>* path) {
   using Id = hn::TFromD<IdTag<D>>;
   const IdTag<D> du;
   HWY_ALIGN Id pixel[hn::MaxLanes(D())] = {}, sample[hn::MaxLanes(D())] = {};
@@ -250,7 +250,7 @@ HWY_INLINE Recorder<D, kRecords> recorder_of(D d, const SceneView& scene, const 
 }
 
 /// Adds the light of the unoccluded rays of a packet, the waiting ones from `first` on, to their paths.
-template <class D, bool kRecords, class Packet, class Lit>
+template <class D, class Packet, class Lit>
 HWY_INLINE void add_unoccluded(D d, const SceneView& scene, const Tile& tile, const Packet& packet, int first,
                                Lit& lit) {
   const IdTag<D> du;
@@ -264,8 +264,8 @@ HWY_INLINE void add_unoccluded(D d, const SceneView& scene, const Tile& tile, co
     const auto light = loadu3(d, shadow.value, i);
     const auto paths = hn::LoadU(du, shadow.path + i);
     gain(d, lanes, light, paths, lit);
-    if (!kRecords || !tile.record_light) continue;
-    auto record = recorder_of<D, kRecords>(d, scene, tile, lit, lanes, shadow.path + i);
+    if (!tile.has_events()) continue;
+    auto record = recorder_of(d, scene, tile, lit, lanes, shadow.path + i);
     const auto unscattered = Lobe::kEmission;  // never used: a surface has scattered the light
     const auto history = hn::LoadU(du, shadow.history + i), group = hn::LoadU(du, shadow.group + i);
     const auto in_coat = hn::And(lanes, hn::RebindMask(d, hn::And(history, set(du, kCoatBit)) != 0));
@@ -280,7 +280,7 @@ HWY_INLINE void add_unoccluded(D d, const SceneView& scene, const Tile& tile, co
 }
 
 /// Traces the last batch of the waiting shadow rays.
-template <class D, bool kRecords, class Lit>
+template <class D, class Lit>
 HWY_INLINE void trace_shadow_batch(D d, const SceneView& scene, const Tracer& tracer, const Tile& tile, Lit& lit,
                                    TileCounts& counts) {
   auto& shadow = lit.shadow;
@@ -294,9 +294,8 @@ HWY_INLINE void trace_shadow_batch(D d, const SceneView& scene, const Tracer& tr
     load_waiting_rays(d, scene, shadow, shadow.count + begin, std::min(kPacketSize, batch - begin), packet);
   });
   occlude(tracer, shadow.packets, (batch + kPacketSize - 1) / kPacketSize);
-  each_packet([&](const auto& packet, int begin) {
-    add_unoccluded<D, kRecords>(d, scene, tile, packet, shadow.count + begin, lit);
-  });
+  each_packet(
+      [&](const auto& packet, int begin) { add_unoccluded(d, scene, tile, packet, shadow.count + begin, lit); });
 }
 
 }  // namespace orrery::kernel::HWY_NAMESPACE

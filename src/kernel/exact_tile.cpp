@@ -13,9 +13,7 @@
 HWY_BEFORE_NAMESPACE();
 namespace orrery::kernel::HWY_NAMESPACE {
 
-RenderTile exact_instance(bool full, bool records) {
-  return instance<hn::ScalableTag<double>, Precision::kExact>(full, records);
-}
+RenderTile exact_instance(bool full) { return instance<hn::ScalableTag<double>, Precision::kExact>(full); }
 
 }  // namespace orrery::kernel::HWY_NAMESPACE
 HWY_AFTER_NAMESPACE();
@@ -25,7 +23,7 @@ namespace orrery::kernel {
 
 HWY_EXPORT(exact_instance);
 
-RenderTile exact_tile_function(bool full, bool records) { return ORRERY_BEST(exact_instance)(full, records); }
+RenderTile exact_tile_function(bool full) { return ORRERY_BEST(exact_instance)(full); }
 
 }  // namespace orrery::kernel
 #endif

@@ -13,9 +13,7 @@
 HWY_BEFORE_NAMESPACE();
 namespace orrery::kernel::HWY_NAMESPACE {
 
-RenderTile fast_instance(bool full, bool records) {
-  return instance<hn::ScalableTag<float>, Precision::kFast>(full, records);
-}
+RenderTile fast_instance(bool full) { return instance<hn::ScalableTag<float>, Precision::kFast>(full); }
 
 }  // namespace orrery::kernel::HWY_NAMESPACE
 HWY_AFTER_NAMESPACE();
@@ -25,7 +23,7 @@ namespace orrery::kernel {
 
 HWY_EXPORT(fast_instance);
 
-RenderTile fast_tile_function(bool full, bool records) { return ORRERY_BEST(fast_instance)(full, records); }
+RenderTile fast_tile_function(bool full) { return ORRERY_BEST(fast_instance)(full); }
 
 }  // namespace orrery::kernel
 #endif

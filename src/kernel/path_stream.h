@@ -30,7 +30,7 @@ struct alignas(64) WaitingPointsOf {
   Id key[kCapacity];       ///< see PacketRays, in the low 32 bits; only if the scene has opacities
   Id self[kCapacity];      ///< sphere that the ray leaves
   Id path[kCapacity];      ///< index into LitPathsOf
-  Id history[kCapacity];   ///< only in loops that record paths
+  Id history[kCapacity];   ///< only if the tile has light events
   int count = 0;
 };
 
@@ -39,7 +39,7 @@ template <class T, int kMost>
 struct WaitingRaysOf : WaitingPointsOf<T, kMost> {
   using WaitingPointsOf<T, kMost>::kCapacity;
   alignas(64) T direction[3][kCapacity];
-  IdOf<T> group[kCapacity];  ///< light group; only in loops that record paths
+  IdOf<T> group[kCapacity];  ///< light group; only if the tile has light events
 };
 
 /// Shadow rays: those that wait for a query, and those that a packet of paths adds to them. Directions have any length.
@@ -47,15 +47,15 @@ template <class T>
 struct ShadowStreamOf : WaitingRaysOf<T, kPacketsInFlight * kPacketSize> {
   static constexpr int kBatch = kPacketsInFlight * kPacketSize;
   using WaitingRaysOf<T, kBatch>::kCapacity;
-  T distance[kCapacity];             ///< maximum distance of an occluder, as a multiple of the direction's length
-  IdOf<T> target[kCapacity];         ///< the light, or kNoSphere
-  T coat[3][kCapacity];              ///< part of `value` that a coat scatters; only if the history has kCoatBit
-  IdOf<T> coat_history[kCapacity];   ///< history of that part
+  T distance[kCapacity];            ///< maximum distance of an occluder, as a multiple of the direction's length
+  IdOf<T> target[kCapacity];        ///< the light, or kNoSphere
+  T coat[3][kCapacity];             ///< part of `value` that a coat scatters; only if the history has kCoatBit
+  IdOf<T> coat_history[kCapacity];  ///< history of that part
   ShadowPacket<T> packets[kPacketsInFlight];  ///< the rays being traced
 };
 
-/// Number of diffuse vertices that wait. Several packets, since shadow rays are traced first, in packets that may not be
-/// full.
+/// Number of diffuse vertices that wait. Several packets, since shadow rays are traced first, in packets that may not
+/// be full.
 inline constexpr int kCausticBatch = 8 * kPacketSize;
 
 /// Diffuse vertices at which light by way of balls is sampled, until they fill vectors; see caustic_light-inl.h.
@@ -111,7 +111,7 @@ struct alignas(64) PathStreamOf {
   Id self[kCapacity];          ///< sphere that the ray leaves
   Id pixel[kCapacity];         ///< y << 16 | x
   Id sample[kCapacity];
-  Id history[kCapacity];                   ///< only in loops that record paths; see record-inl.h
+  Id history[kCapacity];                   ///< only if the tile is recorded; see record-inl.h
   RayPacket<T> packets[kPacketsInFlight];  ///< the rays being traced
   LitPathsOf<T> lit;                       ///< only in full loops
   T cone[3][kCapacity];                    ///< only in full loops, if the scene has ray cones; see cone-inl.h

@@ -28,10 +28,8 @@ inline constexpr unsigned kIndirectBit = 8;   ///< scattered again, not counting
 inline constexpr unsigned kCoatBit = 16;      ///< shadow rays: a part of the light is scattered by a coat
 enum FirstLobe : unsigned { kDiffuse = 1, kSpecular = 2, kTransmission = 3 };
 
-/// Writes the records, events and guides of one vector of paths.
-///
-/// `kRecords`  false: the loop records nothing
-template <class D, bool kRecords>
+/// Writes the records, events and guides of one vector of paths, as far as the tile has them.
+template <class D>
 class Recorder {
  public:
   using V = hn::Vec<D>;
@@ -43,7 +41,7 @@ class Recorder {
 
   /// Initializes the members of new records that are read later but not written for every path.
   HWY_INLINE void begin(D d, hn::Mask<D> active, hn::Mask<D> missed) {
-    if (!kRecords || !tile_.record_hits) return;
+    if (tile_.records == nullptr || !tile_.record_hits) return;
     if (tile_.record_light) each(d, active, [](PathRecord& r, int) { std::fill_n(r.light, 3, 0.0); });
     each(d, missed, [](PathRecord& r, int) { r.sphere = kNoSphere; });
   }
@@ -53,7 +51,7 @@ class Recorder {
   /// `times`    times of the rays; null if nothing moves
   HWY_INLINE void first_hit(D d, hn::Mask<D> hit, Ids spheres, const Vec3<V>& offset, const Vec3<V>& direction,
                             const hn::TFromD<D>* times) {
-    if (!kRecords || !tile_.record_hits) return;
+    if (tile_.records == nullptr || !tile_.record_hits) return;
     const IdTag<D> du;
     HWY_ALIGN Id sphere[kMax];
     Stored at(d, offset), along(d, direction);
@@ -68,7 +66,7 @@ class Recorder {
 
   /// Records the albedo at the first hits.
   HWY_INLINE void albedo(D d, hn::Mask<D> hit, const Vec3<V>& albedo) {
-    if (!kRecords || !tile_.record_hits) return;
+    if (tile_.records == nullptr || !tile_.record_hits) return;
     Stored color(d, albedo);
     each(d, hit, [&](PathRecord& r, int i) {
       for (int k = 0; k < 3; ++k) r.albedo[k] = static_cast<float>(color.v[k][i]);
@@ -80,7 +78,7 @@ class Recorder {
   /// `groups`   light groups of the sources
   /// `unscattered`  lobe of light that no surface has scattered
   HWY_INLINE void event(D d, hn::Mask<D> lanes, const Vec3<V>& light, Ids history, Ids groups, Lobe unscattered) {
-    if (!kRecords || !tile_.record_light || tile_.events == nullptr) return;
+    if (!tile_.has_events()) return;
     const IdTag<D> du;
     HWY_ALIGN Id way[kMax], group[kMax];
     Stored rgb(d, light);
@@ -102,7 +100,7 @@ class Recorder {
 
   /// Records the total radiance of paths that end.
   HWY_INLINE void light(D d, hn::Mask<D> lanes, const Vec3<V>& light) {
-    if (!kRecords || !tile_.record_light) return;
+    if (tile_.records == nullptr || !tile_.record_light) return;
     Stored rgb(d, light);
     each(d, lanes, [&](PathRecord& r, int i) {
       for (int k = 0; k < 3; ++k) r.light[k] = static_cast<double>(rgb.v[k][i]);
@@ -111,7 +109,7 @@ class Recorder {
 
   /// Adds the guides of the first surfaces that are not delta, or of the background, to the tile's sums.
   HWY_INLINE void guide(D d, hn::Mask<D> lanes, const Vec3<V>& albedo, const Vec3<V>& normal) {
-    if (!kRecords || tile_.guides == nullptr || hn::AllFalse(d, lanes)) return;
+    if (tile_.guides == nullptr || hn::AllFalse(d, lanes)) return;
     const Vec3<V> a = in_guide_units(d, albedo), n = in_guide_units(d, normal);
     if (GuideSum* const sum = common_sum(d, lanes)) {
       sum->albedo[0] += total(d, lanes, a.x);
@@ -133,7 +131,7 @@ class Recorder {
 
   /// Adds the reciprocal distances of first hits to the tile's sums.
   HWY_INLINE void inverse_depth(D d, hn::Mask<D> hit, V distance) {
-    if (!kRecords || tile_.guides == nullptr || hn::AllFalse(d, hit)) return;
+    if (tile_.guides == nullptr || hn::AllFalse(d, hit)) return;
     const V inverse = min(1 / distance, kLargestInverseDepth);
     if (GuideSum* const sum = common_sum(d, hit)) {
       // Splits the fixed-point number into two parts, so that sums over the lanes are exact.
@@ -220,7 +218,6 @@ class Recorder {
   }
   template <class Do>
   HWY_INLINE void each(D d, hn::Mask<D> lanes, Do what) {
-    if (tile_.records == nullptr) return;
     const Names names(*this);
     each_lane(d, lanes, [&](int lane) { what(tile_.records[index(names, lane)], lane); });
   }

@@ -46,9 +46,11 @@ class PathCounter {
 };
 
 /// Fills the packet with the camera rays of the next paths.
+///
+/// `records`  records paths
 template <class D, Loop kLoop, class Packet, class Carried>
-HWY_INLINE void load_camera_rays(D d, const SceneView& scene, PathCounter& counter, int count, Packet& packet,
-                                 Carried& carried) {
+HWY_INLINE void load_camera_rays(D d, const SceneView& scene, bool records, PathCounter& counter, int count,
+                                 Packet& packet, Carried& carried) {
   const Features features = features_of<kLoop>(scene);
   using T = hn::TFromD<D>;
   using Id = IdOf<T>;
@@ -79,7 +81,7 @@ HWY_INLINE void load_camera_rays(D d, const SceneView& scene, PathCounter& count
     const auto ray = camera_ray(d, scene, camera, x, y, random);
     store_rays(d, camera.origin, ray.offset, ray.direction, set(du, kNoSphere), packet, v);
     store(Vec3<hn::Vec<D>>{one, one, one}, carried.throughput);
-    if (kLoop.records) hn::Store(set(du, kOnlyDeltaBit), du, carried.history + v);
+    if (records) hn::Store(set(du, kOnlyDeltaBit), du, carried.history + v);
     if (features.extended && scene.cone_width > 0) {
       const auto cone = camera_cone(d, scene, camera, ray.direction, scene.cone_width);
       store(Vec3<hn::Vec<D>>{cone.width2, cone.mixed, cone.slope2}, carried.cone);
@@ -89,8 +91,8 @@ HWY_INLINE void load_camera_rays(D d, const SceneView& scene, PathCounter& count
 
 /// Fills the packet with the next rays of the stream's paths first .. first + count, which are at a vertex.
 template <class D, Loop kLoop, class Stream, class Packet, class Carried>
-HWY_INLINE void load_secondary_rays(D d, const SceneView& scene, const Stream& stream, std::uint32_t vertex, int first,
-                                    int count, Packet& packet, Carried& carried) {
+HWY_INLINE void load_secondary_rays(D d, const SceneView& scene, bool records, const Stream& stream,
+                                    std::uint32_t vertex, int first, int count, Packet& packet, Carried& carried) {
   const Features features = features_of<kLoop>(scene);
   const IdTag<D> du;
   packet.count = count;
@@ -106,7 +108,7 @@ HWY_INLINE void load_secondary_rays(D d, const SceneView& scene, const Stream& s
     if (features.motion) hn::Store(time_of_path(d, scene.sampler, pixels, samples), d, packet.time + v);
     if (features.opacity)
       store_keys(d, keys_at_vertex(du, scene.sampler.seed, pixels, samples, vertex).next, packet.key + v);
-    if (kLoop.records) hn::Store(hn::LoadU(du, stream.history + i), du, carried.history + v);
+    if (records) hn::Store(hn::LoadU(du, stream.history + i), du, carried.history + v);
     if (kLoop.full) hn::Store(hn::LoadU(du, stream.lit.path + i), du, carried.path + v);
     if (features.lit) hn::Store(hn::LoadU(d, stream.lit.pdf + i), d, carried.pdf + v);
     if (features.extended && scene.cone_width > 0) store(at(stream.cone), carried.cone);
@@ -122,26 +124,26 @@ TileCounts render_tile(const SceneView& scene, const Tracer& tracer, const Tile&
   PathPayload<T> carried[kPacketsInFlight];
   TileCounts counts;
   counts.target = HWY_TARGET;
+  const bool records = kLoop.full && tile.is_recorded();
   const std::int64_t weight = scene.filter.weight(tile.sample_begin, tile.sample_end);
   for (int i = 0; i < tile.pixel_count(); ++i) {
     const PixelPlace at = tile.pixel(i);
     tile.sums[at.y * tile.row_stride + at.x].weight += weight;
-    if (kLoop.records && tile.guides != nullptr) tile.guides[at.y * tile.row_stride + at.x].weight += weight;
+    if (kLoop.full && tile.guides != nullptr) tile.guides[at.y * tile.row_stride + at.x].weight += weight;
   }
 
   PathCounter counter(tile, scene);
   std::uint64_t to_start = tile.path_count();
   auto& shadow = stream.lit.shadow;
   const auto trace_shadows = [&](int waiting) {
-    if (kLoop.full && shadow.count >= waiting)
-      trace_shadow_batch<D, kLoop.records>(d, scene, tracer, tile, stream.lit, counts);
+    if (kLoop.full && shadow.count >= waiting) trace_shadow_batch(d, scene, tracer, tile, stream.lit, counts);
   };
   // After the shadow rays of the same vertices, so that a path's light is summed in the same order in every batch.
   const auto trace_caustics = [&](std::uint32_t depth, int waiting, int fewest) {
     if (!kLoop.full || !scene.features.caustics || stream.lit.vertices.count < waiting) return;
     trace_shadows(1);
-    sample_caustics<D, kLoop.records>(scene, stream.lit, sampled_events(scene, depth));
-    trace_chains<D, kLoop.precision, kLoop.records>(scene, tracer, tile, stream, fewest, counts);
+    sample_caustics<D>(scene, tile.has_events(), stream.lit, sampled_events(scene, depth));
+    trace_chains<D, kLoop.precision>(scene, tracer, tile, stream, fewest, counts);
   };
   const auto trace_and_shade = [&](std::uint32_t depth, int packets, int alive) {
     for (int i = 0; i < packets; ++i) {
@@ -175,23 +177,22 @@ TileCounts render_tile(const SceneView& scene, const Tracer& tracer, const Tile&
     const int batch = static_cast<int>(std::min<std::uint64_t>(to_start, kStreamSize));
     to_start -= static_cast<std::uint64_t>(batch);
     int alive = advance(0, batch, [&](int first, int count, auto& packet, auto& payload) {
-      load_camera_rays<D, kLoop>(d, scene, counter, count, packet, payload);
+      load_camera_rays<D, kLoop>(d, scene, records, counter, count, packet, payload);
       if (kLoop.full) begin_paths(d, first, payload, stream.lit);
     });
     for (std::uint32_t depth = 1; alive > 0; ++depth)
       alive = advance(depth, alive, [&](int first, int count, auto& packet, auto& payload) {
-        load_secondary_rays<D, kLoop>(d, scene, stream, depth, first, count, packet, payload);
+        load_secondary_rays<D, kLoop>(d, scene, records, stream, depth, first, count, packet, payload);
       });
-    if (kLoop.full) deposit_paths<D, kLoop.records>(d, batch, scene, tile, stream.lit, counts);
+    if (kLoop.full) deposit_paths(d, batch, scene, tile, stream.lit, counts);
   }
   return counts;
 }
 
 /// The instance for these options.
 template <class D, Precision kPrecision>
-RenderTile instance(bool full, bool records) {
-  if (!full) return render_tile<D, Loop{kPrecision}>;
-  return records ? render_tile<D, Loop{kPrecision, true, true}> : render_tile<D, Loop{kPrecision, true, false}>;
+RenderTile instance(bool full) {
+  return full ? render_tile<D, Loop{kPrecision, true}> : render_tile<D, Loop{kPrecision}>;
 }
 
 }  // namespace orrery::kernel::HWY_NAMESPACE

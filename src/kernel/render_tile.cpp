@@ -9,8 +9,8 @@ RenderTile render_tile_function(const Features& features, Precision precision, b
   const bool full =
       records || features.motion || features.lit || features.extended || features.rods || features.opacity;
   switch (precision) {
-    case Precision::kExact: return exact_tile_function(full, records);
-    case Precision::kFast: return fast_tile_function(full, records);
+    case Precision::kExact: return exact_tile_function(full);
+    case Precision::kFast: return fast_tile_function(full);
     case Precision::kBook: return book_tile_function();
   }
   return nullptr;

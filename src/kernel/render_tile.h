@@ -27,6 +27,10 @@ struct Tile {
   bool record_light = true;       ///< false: the records' light and light events are not needed
   bool record_hits = true;  ///< false: only the records' light is needed, and only that of paths with light events
 
+  /// Whether there is anything besides the sums and the largest samples.
+  bool is_recorded() const noexcept { return records != nullptr || guides != nullptr || events != nullptr; }
+  bool has_events() const noexcept { return events != nullptr && record_light; }
+
   int pixel_count() const noexcept { return chosen != nullptr ? chosen_count : width * height; }
   /// The i-th pixel to render, relative to the upper left one.
   PixelPlace pixel(int i) const noexcept { return chosen != nullptr ? chosen[i] : PixelPlace{i % width, i / width}; }
@@ -46,22 +50,17 @@ struct TileCounts {
 /// Domain     the tracer intersects the view's spheres in the loop's precision; tiles with events have records
 using RenderTile = TileCounts (*)(const SceneView& scene, const Tracer& tracer, const Tile& tile, PathStream& stream);
 
-/// Number of lanes of an instance of the kernel. Except in Precision::kBook, instances with one lane are compiled into
-/// tests and benchmarks only, as the reference for those with all lanes.
-enum class Lanes : std::uint8_t { kOne, kAll };
-
 /// Returns the path loop for the best enabled instruction set: the plain or the full one.
 ///
-/// `records`  fills the tile's records, events and guides, by a full loop; false: ignores them
+/// `records`  tiles may have records, events and guides, which only a full loop fills
 /// Domain     the scene has these features
 /// Result     bit-identical images for any number of lanes, plain or full, with or without records, and on every
 ///            instruction set with fused multiply-add
 RenderTile render_tile_function(const Features& features, Precision precision, bool records);
 
-// The instances; only full ones have records. Each precision is compiled separately, because they take most of the time
-// to compile this room.
-RenderTile exact_tile_function(bool full, bool records);
-RenderTile fast_tile_function(bool full, bool records);
+// The instances. Each precision is compiled separately, because they take most of the time to compile this room.
+RenderTile exact_tile_function(bool full);
+RenderTile fast_tile_function(bool full);
 /// One lane, since Precision::kBook is for comparison with the book.
 RenderTile book_tile_function();
 

@@ -32,9 +32,9 @@ namespace orrery::kernel::HWY_NAMESPACE {
 /// Compile-time options of an instance of the path loop.
 struct Loop {
   Precision precision = Precision::kExact;
-  /// Renders all features; false: neither motion, lights, rods, opacity, textures, rough glass nor plastic.
+  /// Renders all features and fills the tile's records, events and guides; false: neither motion, lights, rods,
+  /// opacity, textures, rough glass nor plastic, and the sums alone.
   bool full = false;
-  bool records = false;  ///< fills the tile's records, events and guides; only in full loops
   bool plastic = false;  ///< scatters vectors in which a lane hit plastic; full loops have such a part
 };
 
@@ -54,7 +54,7 @@ struct alignas(64) PathPayload {
   T throughput[3][kPacketSize];
   Id pixel[kPacketSize];
   Id sample[kPacketSize];
-  Id history[kPacketSize];  ///< in loops that record paths; see record-inl.h
+  Id history[kPacketSize];  ///< if the tile is recorded; see record-inl.h
   Id path[kPacketSize];     ///< in full loops: see LitPathsOf
   T pdf[kPacketSize];       ///< in full loops: see LitPathsOf
   T cone[3][kPacketSize];   ///< in full loops: see PathStreamOf
@@ -96,7 +96,7 @@ struct Arrivals {
   const hn::TFromD<D>* times = nullptr;  ///< null: nothing moves
   Ids pixels, samples;
   Vec3<V> throughput;  ///< before the hit
-  Ids history;         ///< only in loops that record paths
+  Ids history;         ///< only if the tile is recorded
   Ids paths;           ///< only in full loops: see LitPathsOf
   V pdf;               ///< only in full loops: see LitPathsOf
   RayCone<V> cone;     ///< at the hits; only in scenes with ray cones
@@ -106,11 +106,11 @@ struct Arrivals {
 /// without them.
 ///
 /// `center`, `offset`  of the sphere that was hit, or of the one that has the rod's place
-template <class D, bool kRecords, class V = hn::Vec<D>>
+template <class D, class V = hn::Vec<D>>
 HWY_NOINLINE void record_first_hit(D d, const SceneView& scene, const Tile& tile, hn::Vec<IdTag<D>> pixels,
                                    hn::Vec<IdTag<D>> samples, hn::Mask<D> hit, hn::Vec<IdTag<D>> hits, Vec3<V> center,
                                    Vec3<V> offset, Vec3<V> direction, const hn::TFromD<D>* times) {
-  Recorder<D, kRecords>(scene, tile, pixels, samples)
+  Recorder<D>(scene, tile, pixels, samples)
       .first_hit(d, hit, hits, recorded_offset(d, scene, hits, times, center, offset), direction, times);
 }
 
@@ -132,6 +132,7 @@ class Shader {
       : scene_(scene),
         features_(features_of<kLoop>(scene)),
         tile_(tile),
+        records_(kLoop.full && tile.is_recorded()),
         depth_(depth),
         stream_(stream),
         counts_(counts) {}
@@ -147,10 +148,10 @@ class Shader {
       if (!hn::AllFalse(d, at.missed)) leave(at);
       if (hn::AllFalse(d, at.hit)) continue;
       if (features_.lit) emit(at);
-      if (ends && !(kLoop.records && depth_ == 0)) continue;
+      if (ends && !(records_ && depth_ == 0)) continue;
       Lookup<D> look = surface(at);
       const Vec3<V> tinted = at.throughput * look.albedo;
-      if (kLoop.records) record_surface(at, look, tinted);
+      if (records_) record_surface(at, look, tinted);
       if (ends) continue;
       if (scene_.shading != Shading::kPath) {
         show(at, look);
@@ -198,7 +199,7 @@ class Shader {
     at.pixels = hn::Load(du, carried.pixel + v);
     at.samples = hn::Load(du, carried.sample + v);
     at.throughput = load3(d, carried.throughput, v);
-    if (kLoop.records) {
+    if (records_) {
       at.history = hn::Load(du, carried.history + v);
       if (depth_ == 0) recorder(at).begin(d, active, at.missed);
     }
@@ -232,7 +233,7 @@ class Shader {
     }
     const Vec3<V> light = radiance * at.throughput;
     add(at, at.missed, light, groups, Lobe::kBackground);
-    if (kLoop.records) {
+    if (records_) {
       const V zero = hn::Zero(d);
       recorder(at).guide(d, hn::And(at.missed, guided(at)), {min(light.x, 1), min(light.y, 1), min(light.z, 1)},
                          {zero, zero, zero});
@@ -280,8 +281,8 @@ class Shader {
     auto record = recorder(at);
     if (depth_ == 0) {
       if (features_.rods)
-        record_first_hit<D, kLoop.records>(d, scene_, tile_, at.pixels, at.samples, at.hit, at.hits, look.sphere.center,
-                                           look.surface.offset, at.ray.direction, at.times);
+        record_first_hit(d, scene_, tile_, at.pixels, at.samples, at.hit, at.hits, look.sphere.center,
+                         look.surface.offset, at.ray.direction, at.times);
       else
         record.first_hit(d, at.hit, at.hits, look.surface.offset, at.ray.direction, at.times);
       if (features_.extended) record.albedo(d, at.hit, look.albedo);
@@ -362,7 +363,7 @@ class Shader {
     compactor.store3(d, sample.reach, shadow.direction, n);
     compactor.store(d, sample.distance, shadow.distance + n);
     compactor.store_ids(d, sample.target, shadow.target + n);
-    if (kLoop.records) {
+    if (tile_.has_events()) {
       Ids history = history_after(at, surface, surface.normal);
       if constexpr (kLoop.plastic) {
         compactor.store3(d, coat, shadow.coat, n);
@@ -402,7 +403,7 @@ class Shader {
     compactor.store(d, hn::IfThenElseZero(is_kind(d, surface.kind, MaterialKind::kHemisphere), one),
                     waiting.uniform + n);
     compactor.store_ids(d, chosen.index, waiting.ball + n);
-    if (kLoop.records) {
+    if (tile_.has_events()) {
       // The light has the lobe of this vertex and is indirect, like that of a path which finds it.
       const auto history = history_after(at, surface, surface.normal);
       compactor.store_ids(d, hn::Or(history, set(du, kIndirectBit)), waiting.history + n);
@@ -456,7 +457,7 @@ class Shader {
       const auto cone = scattered_cone(d, at.cone, surface, look.sphere.radius, scattered.direction, scene_.cone_width);
       compactor.store3(d, Vec3<V>{cone.width2, cone.mixed, cone.slope2}, stream_.cone, alive);
     }
-    if (kLoop.records) {
+    if (records_) {
       Ids history = history_after(at, surface, scattered.direction);
       // The guide of plastic is its surface, even if the coat is delta.
       if constexpr (kLoop.plastic)
@@ -479,9 +480,7 @@ class Shader {
     }
   }
 
-  HWY_INLINE Recorder<D, kLoop.records> recorder(const Arrivals<D>& at) const {
-    return {scene_, tile_, at.pixels, at.samples};
-  }
+  HWY_INLINE Recorder<D> recorder(const Arrivals<D>& at) const { return {scene_, tile_, at.pixels, at.samples}; }
   /// Paths that only delta materials have scattered: their next surface or background is their guide.
   HWY_INLINE hn::Mask<D> guided(const Arrivals<D>& at) const {
     const auto only_delta = set(du, kOnlyDeltaBit);
@@ -504,6 +503,7 @@ class Shader {
   const SceneView& scene_;
   const Features features_;
   const Tile& tile_;
+  const bool records_;
   const std::uint32_t depth_;
   Stream& stream_;
   TileCounts& counts_;
@@ -519,7 +519,7 @@ HWY_NOINLINE int shade_plastic(const SceneView& scene, const Tile& tile, std::ui
                                PathStreamOf<hn::TFromD<D>>& stream, TileCounts& counts,
                                const RayPacket<hn::TFromD<D>>& packet, const PathPayload<hn::TFromD<D>>& carried, int v,
                                int alive) {
-  constexpr Loop kPlastic{kLoop.precision, kLoop.full, kLoop.records, true};
+  constexpr Loop kPlastic{kLoop.precision, kLoop.full, true};
   return Shader<D, kPlastic>(scene, tile, depth, stream, counts).sample_plastic_hits(packet, carried, v, alive);
 }
 

@@ -227,8 +227,8 @@ Tally run(const Regime& regime, kernel::Precision precision, int rays) {
       spheres[i] = cases[i].sphere;
       set_ray(packet, i, cases[i].base, cases[i].offset, cases[i].direction, cases[i].self);
     }
-    const Intersections found = intersect_batch(precision, kernel::Lanes::kAll, packet, spheres, ids);
-    const Intersections one = intersect_batch(precision, kernel::Lanes::kOne, packet, spheres, ids);
+    const Intersections found = intersect_batch(precision, test::Lanes::kAll, packet, spheres, ids);
+    const Intersections one = intersect_batch(precision, test::Lanes::kOne, packet, spheres, ids);
     for (int i = 0; i < kPacketSize; ++i) {
       ++tally.rays;
       if (precision == kernel::Precision::kExact &&
@@ -336,8 +336,7 @@ TEST(Extremes, RaysAcrossNarrowGapsHit) {
           outside[lane] = BigReal(c.sphere.radius) * c.sphere.radius < dot(f, f);
           set_ray(packet, lane, c.base, c.offset, direction, c.self);
         }
-        const Intersections found =
-            intersect_batch(kernel::Precision::kExact, kernel::Lanes::kAll, packet, spheres, ids);
+        const Intersections found = intersect_batch(kernel::Precision::kExact, test::Lanes::kAll, packet, spheres, ids);
         for (int lane = 0; lane < kPacketSize; ++lane) {
           ASSERT_TRUE(found.hit[lane]) << gap;
           if (gap >= 1e-13 && outside[lane]) {

@@ -448,8 +448,8 @@ RodTally run_regime(const RodRegime& regime, int rays) {
   for (int done = 0; done < rays; done += kPacketSize) {
     RodPackets p;
     for (int i = 0; i < kPacketSize; ++i) p.set(i, regime.make(random));
-    const RodHits found = intersect_rods(kernel::Lanes::kAll, p.packet, p.rods);
-    const RodHits one = intersect_rods(kernel::Lanes::kOne, p.packet, p.rods);
+    const RodHits found = intersect_rods(test::Lanes::kAll, p.packet, p.rods);
+    const RodHits one = intersect_rods(test::Lanes::kOne, p.packet, p.rods);
     for (int i = 0; i < kPacketSize; ++i) {
       ++tally.rays;
       tally.differing += !same_lane(found, one, i);
@@ -514,11 +514,11 @@ TEST(Rods, InstructionSetsGiveTheSameBits) {
     for (int done = 0; done < 1600; done += kPacketSize) {
       RodPackets p;
       for (int i = 0; i < kPacketSize; ++i) p.set(i, regime.make(random));
-      const RodHits best = intersect_rods(kernel::Lanes::kAll, p.packet, p.rods);
+      const RodHits best = intersect_rods(test::Lanes::kAll, p.packet, p.rods);
       for (const std::string& isa : isas) {
         if (isa == isas.front() || isa == "sse4") continue;
         ASSERT_TRUE(kernel::limit_isa(isa));
-        const RodHits other = intersect_rods(kernel::Lanes::kAll, p.packet, p.rods);
+        const RodHits other = intersect_rods(test::Lanes::kAll, p.packet, p.rods);
         for (int i = 0; i < kPacketSize; ++i) ASSERT_TRUE(same_lane(best, other, i)) << regime.name << ", " << isa;
         compared += kPacketSize;
       }
@@ -548,8 +548,8 @@ TEST(Rods, PowersOfTwoScaleExactly) {
         c.rod.radius *= scale;
         scaled.set(i, c);
       }
-      const RodHits a = intersect_rods(kernel::Lanes::kAll, plain.packet, plain.rods);
-      const RodHits b = intersect_rods(kernel::Lanes::kAll, scaled.packet, scaled.rods);
+      const RodHits a = intersect_rods(test::Lanes::kAll, plain.packet, plain.rods);
+      const RodHits b = intersect_rods(test::Lanes::kAll, scaled.packet, scaled.rods);
       for (int i = 0; i < kPacketSize; ++i) {
         ASSERT_EQ(a.hit[i], b.hit[i]) << regime.name;
         if (!a.hit[i]) continue;
@@ -569,15 +569,14 @@ TEST(Rods, EndsAreSpheres) {
     for (int done = 0; done < 1600; done += kPacketSize) {
       RodPackets p;
       for (int i = 0; i < kPacketSize; ++i) p.set(i, regime.make(random));
-      const RodHits rods = intersect_rods(kernel::Lanes::kAll, p.packet, p.rods);
+      const RodHits rods = intersect_rods(test::Lanes::kAll, p.packet, p.rods);
       kernel::Sphere spheres[kPacketSize];
       const std::uint64_t ids[kPacketSize] = {};
       for (int i = 0; i < kPacketSize; ++i) {
         const double* const end = rods.second_half[i] ? p.rods[i].b : p.rods[i].a;
         spheres[i] = {end[0], end[1], end[2], p.rods[i].radius};
       }
-      const Intersections found =
-          intersect_batch(kernel::Precision::kExact, kernel::Lanes::kAll, p.packet, spheres, ids);
+      const Intersections found = intersect_batch(kernel::Precision::kExact, test::Lanes::kAll, p.packet, spheres, ids);
       for (int i = 0; i < kPacketSize; ++i) {
         ASSERT_TRUE(!is_sphere || rods.hit[i] == found.hit[i]) << regime.name;
         if (!rods.hit[i] || !rods.at_end[i]) continue;
@@ -609,7 +608,7 @@ TEST(Rods, ShareOfLinesThatHit) {
       c.origin = plus3(plus3({0, 0, 0}, random.perpendicular(c.direction), off), c.direction, -10);
       p.set(i, c);
     }
-    const RodHits found = intersect_rods(kernel::Lanes::kAll, p.packet, p.rods);
+    const RodHits found = intersect_rods(test::Lanes::kAll, p.packet, p.rods);
     for (const bool hit : found.hit) hits += hit;
   }
   const double share = (2 * kRadius * kLength + 4 * kRadius * kRadius) / (4 * kBall * kBall);
@@ -631,7 +630,7 @@ TEST(Rods, ClosedForms) {
     c.origin = {1 - i / 8.0, off, 8};
     p.set(i, c);
   }
-  const RodHits across = intersect_rods(kernel::Lanes::kAll, p.packet, p.rods);
+  const RodHits across = intersect_rods(test::Lanes::kAll, p.packet, p.rods);
   for (int i = 0; i < kPacketSize; ++i) {
     const double off = i / 16.0;
     ASSERT_TRUE(across.hit[i]);
@@ -645,7 +644,7 @@ TEST(Rods, ClosedForms) {
     c.origin = {-8 * c.direction[0], 0, i / 16.0};
     p.set(i, c);
   }
-  const RodHits parallel = intersect_rods(kernel::Lanes::kAll, p.packet, p.rods);
+  const RodHits parallel = intersect_rods(test::Lanes::kAll, p.packet, p.rods);
   for (int i = 0; i < kPacketSize; ++i) {
     const double off = i / 16.0;
     ASSERT_TRUE(parallel.hit[i]);
@@ -675,8 +674,8 @@ TEST(Rods, FastRodsAreAsAccurateAsSinglePrecision) {
       c.rod.radius = static_cast<float>(c.rod.radius);
       p.set(i, c);
     }
-    const RodHits found = intersect_rods_fast(kernel::Lanes::kAll, p.packet, p.rods);
-    const RodHits one = intersect_rods_fast(kernel::Lanes::kOne, p.packet, p.rods);
+    const RodHits found = intersect_rods_fast(test::Lanes::kAll, p.packet, p.rods);
+    const RodHits one = intersect_rods_fast(test::Lanes::kOne, p.packet, p.rods);
     for (int i = 0; i < kPacketSize; ++i) {
       ASSERT_TRUE(same_lane(found, one, i));
       const RodTruth<QuadReal> truth(p.cases[i]);

@@ -88,12 +88,12 @@ HWY_EXPORT(exact_all);
 HWY_EXPORT(book_all);
 HWY_EXPORT(set_lane);
 
-Intersections intersect_batch(kernel::Precision precision, kernel::Lanes lanes, const kernel::RayPacket<double>& packet,
+Intersections intersect_batch(kernel::Precision precision, test::Lanes lanes, const kernel::RayPacket<double>& packet,
                               const kernel::Sphere* spheres, const std::uint64_t* ids) {
   Intersections out;
   if (precision == kernel::Precision::kBook) {
     ORRERY_BEST(book_all)(packet, spheres, ids, out);
-  } else if (lanes == kernel::Lanes::kOne) {
+  } else if (lanes == test::Lanes::kOne) {
     ORRERY_BEST(exact_one)(packet, spheres, ids, out);
   } else {
     ORRERY_BEST(exact_all)(packet, spheres, ids, out);

@@ -5,8 +5,8 @@
 
 #include "kernel/precision.h"
 #include "kernel/ray_packet.h"
-#include "kernel/render_tile.h"
 #include "kernel/sphere.h"
+#include "support/lanes.h"
 
 namespace orrery::test {
 
@@ -20,7 +20,7 @@ struct Intersections {
 /// Intersects lane i with spheres[i], whose id is ids[i].
 ///
 /// Domain     origin_low, inverse_square and self of the packet are set as by the renderer (see set_ray)
-Intersections intersect_batch(kernel::Precision precision, kernel::Lanes lanes, const kernel::RayPacket<double>& packet,
+Intersections intersect_batch(kernel::Precision precision, test::Lanes lanes, const kernel::RayPacket<double>& packet,
                               const kernel::Sphere* spheres, const std::uint64_t* ids);
 
 /// Sets a lane to a ray with origin base + offset, with the renderer's arithmetic.

@@ -104,9 +104,9 @@ HWY_EXPORT(rods_exact_all);
 HWY_EXPORT(rods_fast_one);
 HWY_EXPORT(rods_fast_all);
 
-RodHits intersect_rods(kernel::Lanes lanes, const kernel::RayPacket<double>& packet, const kernel::Rod* rods) {
+RodHits intersect_rods(test::Lanes lanes, const kernel::RayPacket<double>& packet, const kernel::Rod* rods) {
   RodHits out{};
-  if (lanes == kernel::Lanes::kOne) {
+  if (lanes == test::Lanes::kOne) {
     ORRERY_BEST(rods_exact_one)(packet, rods, out);
   } else {
     ORRERY_BEST(rods_exact_all)(packet, rods, out);
@@ -114,9 +114,9 @@ RodHits intersect_rods(kernel::Lanes lanes, const kernel::RayPacket<double>& pac
   return out;
 }
 
-RodHits intersect_rods_fast(kernel::Lanes lanes, const kernel::RayPacket<double>& packet, const kernel::Rod* rods) {
+RodHits intersect_rods_fast(test::Lanes lanes, const kernel::RayPacket<double>& packet, const kernel::Rod* rods) {
   RodHits out{};
-  if (lanes == kernel::Lanes::kOne) {
+  if (lanes == test::Lanes::kOne) {
     ORRERY_BEST(rods_fast_one)(packet, rods, out);
   } else {
     ORRERY_BEST(rods_fast_all)(packet, rods, out);

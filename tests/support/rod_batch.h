@@ -2,8 +2,8 @@
 #pragma once
 
 #include "kernel/ray_packet.h"
-#include "kernel/render_tile.h"
 #include "kernel/rod.h"
+#include "support/lanes.h"
 
 namespace orrery::test {
 
@@ -24,9 +24,9 @@ struct RodHits {
 /// Intersects lane i with rods[i], in `exact`.
 ///
 /// Domain     origin_low and inverse_square of the packet are set as by the renderer (see set_ray)
-RodHits intersect_rods(kernel::Lanes lanes, const kernel::RayPacket<double>& packet, const kernel::Rod* rods);
+RodHits intersect_rods(test::Lanes lanes, const kernel::RayPacket<double>& packet, const kernel::Rod* rods);
 
 /// The same in `fast`, for rays and rods rounded to single precision.
-RodHits intersect_rods_fast(kernel::Lanes lanes, const kernel::RayPacket<double>& packet, const kernel::Rod* rods);
+RodHits intersect_rods_fast(test::Lanes lanes, const kernel::RayPacket<double>& packet, const kernel::Rod* rods);
 
 }  // namespace orrery::test
