@@ -57,19 +57,8 @@ struct Picker::Source {
 };
 
 std::optional<Picked> Picker::pick(double x, double y) {
-  {
-    const std::lock_guard lock(mutex_);
-    if (!is_open_) return {};
-    ++looks_;
-  }
-  struct End {
-    Picker& picker;
-    ~End() {
-      const std::lock_guard lock(picker.mutex_);
-      --picker.looks_;
-      picker.looked_.notify_all();
-    }
-  } const end{*this};
+  const std::shared_lock lock(looks_);
+  if (!is_open_) return {};
   const compile::CompiledScene& compiled = prepared_.compiled();
   const std::optional<std::uint32_t> id =
       render::sphere_at(compiled, prepared_.built(), x * compiled.width, y * compiled.height);
@@ -79,16 +68,10 @@ std::optional<Picked> Picker::pick(double x, double y) {
 }
 
 void Picker::close(load::SceneSource source, bool is_new) {
-  std::unique_lock lock(mutex_);
-  is_open_ = false;
-  looked_.wait(lock, [this] { return looks_ == 0; });
+  is_open_ = false;  // calls of pick() from now on do not keep this waiting
+  const std::unique_lock lock(looks_);
   source_ = std::move(source);
   if (is_new) read_ = nullptr;
-}
-
-void Picker::open() {
-  const std::lock_guard lock(mutex_);
-  is_open_ = true;
 }
 
 Picked Picker::describe_sphere(std::size_t index) {

@@ -1,11 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include <condition_variable>
+#include <atomic>
 #include <cstddef>
 #include <memory>
 #include <mutex>
 #include <optional>
+#include <shared_mutex>
 #include <string>
 #include <utility>
 #include <vector>
@@ -45,7 +46,7 @@ class Picker {
   /// `is_new`   its data files may be others
   void close(load::SceneSource source, bool is_new);
   /// The scene has its BVH.
-  void open();
+  void open() { is_open_ = true; }
 
  private:
   struct Source;
@@ -58,10 +59,8 @@ class Picker {
   const scene::Scene& scene() const { return prepared_.loaded().read.scene; }
 
   const job::PreparedScene& prepared_;
-  std::mutex mutex_;  // guards what follows
-  std::condition_variable looked_;
-  bool is_open_ = false;
-  int looks_ = 0;  ///< calls of pick() that look at `prepared_`
+  std::shared_mutex looks_;  ///< shared by the calls of pick() that look at `prepared_` and `source_`
+  std::atomic<bool> is_open_{false};
   load::SceneSource source_;
   std::mutex reading_;  ///< guards read_
   std::shared_ptr<const Source> read_;
