@@ -81,8 +81,6 @@ Check whole_number(std::uint64_t from, std::uint64_t to) {
   };
 }
 
-int integer_of(const std::string& text) { return base::number_of<int>(text).value_or(0); }
-
 Check real_number(double from, double to) {
   return [from, to](std::string& text) -> std::string {
     const bool plus = text.size() > 1 && text[0] == '+' && text[1] != '-';
@@ -259,6 +257,7 @@ template Option* Command::add_option(const Text&, std::filesystem::path&, const 
 template Option* Command::add_option(const Text&, int&, const Text&, const Text&);
 template Option* Command::add_option(const Text&, std::uint64_t&, const Text&, const Text&);
 template Option* Command::add_option(const Text&, double&, const Text&, const Text&);
+template Option* Command::add_option(const Text&, std::optional<int>&, const Text&, const Text&);
 template Option* Command::add_option(const Text&, std::optional<double>&, const Text&, const Text&);
 template Option* Command::add_option(const Text&, std::vector<Text>&, const Text&, const Text&);
 template Option* Command::add_option(const Text&, std::vector<std::filesystem::path>&, const Text&, const Text&);

@@ -34,9 +34,6 @@ Check one_of(std::vector<std::string> names);
 /// Accepts an integer in from..to. Removes leading zeros, which CLI11 would interpret as octal.
 Check whole_number(std::uint64_t from, std::uint64_t to);
 
-/// Returns the integer in a string that whole_number() accepts; 0 for other strings.
-int integer_of(const std::string& text);
-
 /// Accepts a finite number in from..to.
 Check real_number(double from, double to);
 

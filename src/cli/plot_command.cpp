@@ -167,7 +167,7 @@ int run_plot(PlotCommand& arguments) {
   job.hooks.cancel = &stop_on_signals();
   if (base::extension(plot.file) == ".toml")
     base::refuse(fmt::format("{0} is a scene; render it: orrery render {0}", plot.file.string()));
-  arguments.shown.read_data();
+  arguments.shown.data.read(plot);
   prepare_films(arguments);
   render.picture.finish(job);
   arguments.shown.read(render.scene, job);
@@ -211,8 +211,8 @@ void add_film_options(Command& command, PlotCommand& arguments) {
 void add_plot(Command& program) {
   const auto arguments = std::make_shared<PlotCommand>();
   Command& command = *program.add_subcommand("plot", "Render a particle data file");
-  arguments->shown.add_data_to(command);
-  arguments->shown.add_frames_to(command);
+  arguments->shown.data.add_to(command, arguments->shown.options);
+  arguments->shown.data.add_frames_to(command);
   command.add_option("--legend", arguments->legend, "FILE", "Write a legend of the colours: .svg or .png")
       ->details("Its colours have the display transform of the image. It has at most 500 names.");
   command.add_option("--save-scene", arguments->save_scene, "FILE", "Also write the scene file")

@@ -138,8 +138,8 @@ void DataArguments::add_to(Command& command, plot::DataOptions& data, const std:
       ->required();
   const OptionGroup group(command, kDataOptions);
   scene::PointsKeys& points = data.points;
-  command.add_option("--frame", frame, "N", "Frame of the file, from 1; default: 1")
-      ->check(whole_number(1, 2'000'000'000));
+  command.add_option("--frame", points.frame, "N", "Frame of the file, from 1; default: 1")
+      ->transform(whole_number(1, 2'000'000'000));
   command
       .add_option("--select", select, "CONDITION",
                   "Use only the rows that match, e.g. 'type == 2 && z > 0'; if repeated, all must match")
@@ -150,9 +150,9 @@ void DataArguments::add_to(Command& command, plot::DataOptions& data, const std:
                   "Slice plane: remove the spheres in front of it, e.g. z=10; can be repeated")
       ->details("With convert, as seen from the default view of plot.")
       ->repeatable();
-  command.add_option("--component", component, "N", "HDF5: particle type, N of PartTypeN")
+  command.add_option("--component", points.component, "N", "HDF5: particle type, N of PartTypeN")
       ->details("Required if the file has particles of several types.")
-      ->check(whole_number(0, 1000));
+      ->transform(whole_number(0, 1000));
   command.add_option("--assembly", points.assembly, "NAME", "PDB, mmCIF: biological assembly, e.g. 1");
   command.add_option("--replicate", replicate, "A,B,C", "Number of periodic boxes along each box edge, e.g. 2,2,1");
   command.add_flag("--unwrap", points.unwrap, "Unwrap coordinates with the file's periodic image flags");
@@ -193,13 +193,11 @@ void DataArguments::add_frames_to(Command& command) {
 }
 
 void DataArguments::read(plot::DataOptions& data) const {
-  if (!frames.empty() && !frame.empty()) base::refuse("--frame and --frames exclude each other");
+  if (!frames.empty() && data.points.frame) base::refuse("--frame and --frames exclude each other");
   data.all_frames = frames == "all";
   if (!frames.empty() && !data.all_frames) data.frames = base::parse_frames(frames);
   data.has_map = map->count() > 0;
   scene::PointsKeys& points = data.points;
-  if (!frame.empty()) points.frame = integer_of(frame);
-  if (!component.empty()) points.component = integer_of(component);
   if (!radius.empty()) read_radius(radius, points.radius);
   for (const std::string& text : opacity) read_opacity(text, points.opacity);
   if (!replicate.empty()) points.replicate = copies_of(replicate);
@@ -232,7 +230,7 @@ void PlotArguments::add_look_to(Command& command) {
   command.add_option("--vectors", look_.vectors, "X,Y,Z", "Draw arrows from three columns, e.g. vx,vy,vz")
       ->details("Their length is chosen from the data; --set 'points[0].vectors.scale=2' sets it.");
   command
-      .add_option("--opacity", data_.opacity, "X|COLUMN|CONDITION:X",
+      .add_option("--opacity", data.opacity, "X|COLUMN|CONDITION:X",
                   "Opacity, 0 to 1: of all, from a column, or of those that match, e.g. 'type == 2: 0.3'; can be "
                   "repeated")
       ->details("The last that matches a particle decides; particles that none matches are opaque.")

@@ -14,7 +14,7 @@ namespace orrery::cli {
 
 /// Arguments of the data options that need further parsing.
 struct DataArguments {
-  std::string frame, frames, radius, range, replicate, component;
+  std::string frames, radius, range, replicate;
   std::vector<std::string> select, slice, opacity;
   const Option* map = nullptr;
 
@@ -35,24 +35,19 @@ struct DataArguments {
 class PlotArguments {
  public:
   plot::PlotOptions options;
+  DataArguments data;  ///< of `options`
 
-  /// Adds the data options; see DataArguments::add_to().
-  void add_data_to(Command& command, const std::string& kind = "Data file") { data_.add_to(command, options, kind); }
-  void add_frames_to(Command& command) { data_.add_frames_to(command); }
   /// Adds the options that select view, style, representation, bonds and opacity.
   void add_look_to(Command& command);
   /// Adds the options of text, scales and lines over the image.
   void add_annotations_to(Command& command);
 
-  /// Sets the members of the options that come from the data options.
-  void read_data() { data_.read(options); }
-  /// Sets the others, except those for outputs. Called after read_data().
+  /// Sets the members of the options that DataArguments::read() leaves, except those for outputs. Called after it.
   ///
   /// Errors     base::Error(kUsage)
   void read(const SceneOptions& scene, const job::Job& job);
 
  private:
-  DataArguments data_;
   /// Arguments that need further parsing; empty: not set.
   struct {
     std::string style, quality, representation, bonds, vectors, background, scale_bar;

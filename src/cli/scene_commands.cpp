@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cstdio>
 #include <memory>
+#include <optional>
 #include <set>
 #include <utility>
 
@@ -26,7 +27,7 @@ namespace {
 struct InfoOptions {
   std::filesystem::path file;
   SceneOptions overrides;
-  std::string component;
+  std::optional<int> component;
   bool json = false, settings = false, measure = false;
 };
 
@@ -57,7 +58,7 @@ int data_info(const InfoOptions& options) {
   info::DataInfoRequest request;
   request.file = options.file;
   request.frame = options.overrides.frame();
-  if (!options.component.empty()) request.component = integer_of(options.component);
+  request.component = options.component;
   const info::DataInfo found = info::data_info(request);
   print_result(options.json ? info::data_info_json(found) : info::data_info_text(found));
   return 0;
@@ -65,7 +66,7 @@ int data_info(const InfoOptions& options) {
 
 int info(const InfoOptions& options) {
   if (base::extension(options.file) != ".toml") return data_info(options);
-  refuse_option(!options.component.empty(), "--component", options, "scene; the option applies to data files");
+  refuse_option(options.component.has_value(), "--component", options, "scene; the option applies to data files");
   load::SceneRequest request;
   request.source.file = options.file;
   request.source.overrides = options.overrides.overrides();
@@ -158,7 +159,7 @@ void add_info(Command& program) {
   options->overrides.add_to(command);
   options->overrides.add_frame_to(command);
   command.add_option("--component", options->component, "N", "HDF5: particle type, N of PartTypeN")
-      ->check(whole_number(0, 1000));
+      ->transform(whole_number(0, 1000));
   command.add_flag("--measure", options->measure,
                    "Measure the time saved by skipping unused features (takes a few seconds)");
   auto* json = command.add_flag("--json", options->json, "Print JSON, with all settings")

@@ -33,7 +33,7 @@ view::Subject scene_subject(const ShownOptions& shown) {
 
 view::Subject data_subject(ShownOptions& shown, const FilmSettings* film) {
   plot::PlotOptions& plot = shown.plot.options;
-  shown.plot.read_data();
+  shown.plot.data.read(plot);
   if (film) film->apply(shown.scene, plot);
   shown.plot.read(shown.scene, shown.job);
   plot.scene_file = plot.file;
@@ -72,7 +72,7 @@ void parse_shown(const std::string& file, std::vector<std::string> words, bool h
   words.insert(words.begin(), file);
   const auto add = [&](Command& parsed) {
     shown.add_to(parsed);
-    if (has_frames) shown.plot.add_frames_to(parsed);
+    if (has_frames) shown.plot.data.add_frames_to(parsed);
   };
   parse_words(words, add, [&] { use(shown); });
 }
@@ -81,7 +81,7 @@ void parse_shown(const std::string& file, std::vector<std::string> words, bool h
 
 void ShownOptions::add_to(Command& parsed) {
   command = &parsed;
-  plot.add_data_to(parsed, "Scene file, or data file");
+  plot.data.add_to(parsed, plot.options, "Scene file, or data file");
   plot.add_look_to(parsed);
   plot.add_annotations_to(parsed);
   scene.add_to(parsed);
