@@ -2,6 +2,8 @@
 // Helpers for the definition of keys; used only by the files that define them.
 #pragma once
 
+#include <algorithm>
+#include <cstddef>
 #include <cstdint>
 #include <filesystem>
 #include <functional>
@@ -25,18 +27,15 @@ inline constexpr Range kLight{0, kBrightestLight, false, false, kBrighterLightRe
 inline constexpr Range kAnyLength{-kLargestLength, kLargestLength};
 inline constexpr Range kLength{kSmallestRadius, kLargestLength};
 
-/// Documentation of a key.
-struct KeyDoc {
-  const char* doc;
-  const char* unit = "";
-  const char* cost = "";
-};
-
 /// The value of a member, and the member set to a value. An optional member may have none.
+///
+/// `choices`  names of the enumerators of an enumeration, in their order
 template <class T>
-std::optional<Value> value_of(const T& member) {
+std::optional<Value> value_of(const T& member, const std::vector<std::string>& choices) {
   if constexpr (std::is_same_v<T, bool>)
     return member;
+  else if constexpr (std::is_enum_v<T>)
+    return choices[static_cast<std::size_t>(member)];
   else if constexpr (std::is_integral_v<T>)
     return std::int64_t{member};
   else if constexpr (std::is_same_v<T, std::filesystem::path>)
@@ -45,13 +44,15 @@ std::optional<Value> value_of(const T& member) {
     return member;
 }
 template <class T>
-std::optional<Value> value_of(const std::optional<T>& member) {
-  return member ? value_of(*member) : std::nullopt;
+std::optional<Value> value_of(const std::optional<T>& member, const std::vector<std::string>& choices) {
+  return member ? value_of(*member, choices) : std::nullopt;
 }
 template <class T>
-void assign(T& member, const Value& value) {
+void assign(T& member, const Value& value, const std::vector<std::string>& choices) {
   if constexpr (std::is_same_v<T, bool>)
     member = std::get<bool>(value);
+  else if constexpr (std::is_enum_v<T>)
+    member = static_cast<T>(std::find(choices.begin(), choices.end(), std::get<std::string>(value)) - choices.begin());
   else if constexpr (std::is_integral_v<T>)
     member = static_cast<T>(std::get<std::int64_t>(value));
   else if constexpr (std::is_same_v<T, std::filesystem::path>)
@@ -60,29 +61,23 @@ void assign(T& member, const Value& value) {
     member = std::get<T>(value);
 }
 template <class T>
-void assign(std::optional<T>& member, const Value& value) {
-  assign(member.emplace(), value);
+void assign(std::optional<T>& member, const Value& value, const std::vector<std::string>& choices) {
+  assign(member.emplace(), value, choices);
 }
 
 /// Builds a key for the member that `at` returns a reference to, a function that does not modify its target.
 template <class Target, class At>
 Key<Target> key_at(const char* name, ValueType type, Range range, const KeyDoc& about, At at,
-                   std::vector<std::string> choices = {}) {
-  return {name,
-          type,
-          range,
-          std::move(choices),
-          about.unit,
-          about.doc,
-          about.cost,
-          [at](Target& t, const Value& v) { assign(std::invoke(at, t), v); },
-          [at](const Target& t) { return value_of(std::invoke(at, const_cast<Target&>(t))); }};
+                   const std::vector<std::string>& choices = {}) {
+  return {{about, name, type, range, choices},
+          [at, choices](Target& t, const Value& v) { assign(std::invoke(at, t), v, choices); },
+          [at, choices](const Target& t) { return value_of(std::invoke(at, const_cast<Target&>(t)), choices); }};
 }
 
 template <class Target, class Member>
 Key<Target> key_of(const char* name, ValueType type, Range range, const KeyDoc& about, Member Target::*at,
-                   std::vector<std::string> choices = {}) {
-  return key_at<Target>(name, type, range, about, at, std::move(choices));
+                   const std::vector<std::string>& choices = {}) {
+  return key_at<Target>(name, type, range, about, at, choices);
 }
 
 template <class Target, class Member>
@@ -117,23 +112,11 @@ Key<Target> file(const char* name, const FileRole& role, const KeyDoc& about, Me
   key.file = &role;
   return key;
 }
-/// Builds a key for an enumeration; `choices` are in enumerator order.
+/// Builds a key for one of several words: an enumeration, with choices in enumerator order, or a string, which is empty
+/// if there is none.
 template <class Target, class Member>
 Key<Target> choice(const char* name, const std::vector<std::string>& choices, const KeyDoc& about, Member Target::*at) {
-  Key<Target> key{name, ValueType::kChoice, {}, choices, about.unit, about.doc, about.cost, {}, {}};
-  key.set = [at, choices](Target& t, const Value& v) {
-    for (std::size_t i = 0; i < choices.size(); ++i)
-      if (choices[i] == std::get<std::string>(v)) t.*at = static_cast<Member>(i);
-  };
-  key.get = [at, choices](const Target& t) -> std::optional<Value> { return choices[static_cast<std::size_t>(t.*at)]; };
-  return key;
-}
-
-/// Builds a key for one of several words, stored as a string; empty: none.
-template <class Target, class Member>
-Key<Target> choice_of_text(const char* name, std::vector<std::string> choices, const KeyDoc& about,
-                           Member Target::*at) {
-  return key_of(name, ValueType::kChoice, {}, about, at, std::move(choices));
+  return key_of(name, ValueType::kChoice, {}, about, at, choices);
 }
 
 /// States the default of a key that may have no value.
@@ -159,11 +142,9 @@ template <class Target, class Inner, class At>
 std::vector<Key<Target>> keys_at(At at, std::vector<Key<Inner>> keys) {
   std::vector<Key<Target>> out;
   for (Key<Inner>& key : keys)
-    out.push_back({std::move(key.name), key.type, key.range, std::move(key.choices), std::move(key.unit),
-                   std::move(key.doc), std::move(key.cost),
+    out.push_back({static_cast<KeyFacts&&>(key),
                    [at, set = key.set](Target& t, const Value& v) { set(std::invoke(at, t), v); },
-                   [at, get = key.get](const Target& t) { return get(std::invoke(at, const_cast<Target&>(t))); },
-                   key.required, std::move(key.otherwise), key.part, key.file});
+                   [at, get = key.get](const Target& t) { return get(std::invoke(at, const_cast<Target&>(t))); }});
   return out;
 }
 

@@ -48,10 +48,10 @@ std::vector<Key<P>> make_keys() {
                           number("", kLength, {"Radius of all spheres. Overrides the radii of the file", "scene units"},
                                  &PointsRadius::value)),
                 text("column", {"Column of the file that holds the radii"}, &PointsRadius::column),
-                choice_of_text("element", {"vdw", "covalent", "ball"},
-                               {"Radii by chemical element, in ångström. `vdw`: van der Waals radii. `covalent`: "
-                                "covalent radii. `ball`: a quarter of the van der Waals radii"},
-                               &PointsRadius::element),
+                choice("element", {"vdw", "covalent", "ball"},
+                       {"Radii by chemical element, in ångström. `vdw`: van der Waals radii. `covalent`: "
+                        "covalent radii. `ball`: a quarter of the van der Waals radii"},
+                       &PointsRadius::element),
                 key_of("type", ValueType::kNumbersByType, kLength,
                        {"Radii by particle type, e.g. `{ 1 = 0.5, 2 = 0.7 }`. Each type that occurs must be listed",
                         "scene units"},
@@ -75,19 +75,18 @@ std::vector<Key<P>> make_keys() {
        boolean("log", {"The map is linear in the logarithms of the values. Those up to 0 have `color.nan_color`"},
                &PointsColor::log),
        vector("nan_color", {0, 1}, {"Colour of NaN values", "scene-linear"}, &PointsColor::nan_color),
-       choice_of_text("element", {"jmol"},
-                      {"Colours by chemical element. `jmol`: those of Jmol, with hydrogen in light grey"},
-                      &PointsColor::element),
+       choice("element", {"jmol"}, {"Colours by chemical element. `jmol`: those of Jmol, with hydrogen in light grey"},
+              &PointsColor::element),
        key_of("type", ValueType::kColorsByType, kUnit,
               {"Colours by particle type. Each type that occurs must be listed", "scene-linear"}, &PointsColor::types),
        boolean("rgb", {"Uses the colours in the file, as sRGB"}, &PointsColor::rgb)}));
   add(subtable(
       "bonds", {}, &P::bonds,
       {otherwise("false", key_of_bonds()),
-       choice_of_text("from", {"file", "distance", "both"},
-                      {"Which pairs are bonded: those of the file, those that are close, or both. The default depends "
-                       "on the file; see [Bonds](data.md#bonds)"},
-                      &PointsBonds::from),
+       choice("from", {"file", "distance", "both"},
+              {"Which pairs are bonded: those of the file, those that are close, or both. The default depends "
+               "on the file; see [Bonds](data.md#bonds)"},
+              &PointsBonds::from),
        otherwise("1.2, unless `length` is set", number("factor", {0, kLargestBondFactor, true, false},
                                                        {"By distance: a pair is bonded if it is closer than the sum of "
                                                         "its covalent radii in ångström, multiplied by this"},

@@ -28,23 +28,31 @@ struct FileRole {
 };
 extern const FileRole kPointsFile, kRodsFile, kColorMapFile, kBackgroundFile, kTextureFile, kFontFile, kOcioConfigFile;
 
-/// One key of a table in a scene file. A dotted name is that of a key in a subtable: "radius.column" is `column` in
-/// `radius = { column = "diameter" }`.
-template <class Target>
-struct Key {
+/// Documentation of a key.
+struct KeyDoc {
+  std::string doc;        ///< description, one line of Markdown
+  std::string unit = {};  ///< may be empty
+  std::string cost = {};  ///< cost in time or memory; may be empty
+};
+
+/// What is known of a key, whatever its table holds. A dotted name is that of a key in a subtable: "radius.column" is
+/// `column` in `radius = { column = "diameter" }`.
+struct KeyFacts : KeyDoc {
   std::string name;
   ValueType type;
   Range range;                       ///< numbers and vectors
   std::vector<std::string> choices;  ///< kChoice, kChoices
-  std::string unit;                  ///< may be empty
-  std::string doc;                   ///< description, one line of Markdown
-  std::string cost;                  ///< cost in time or memory; may be empty
-  std::function<void(Target&, const Value&)> set;
-  std::function<std::optional<Value>(const Target&)> get;  ///< nullopt: no value, as if the key were not in the file
   bool required = false;
   std::string otherwise = {};      ///< default of a key that may have no value, for the documentation
   std::optional<Part> part = {};   ///< what the key changes; empty: as the other keys of its table
   const FileRole* file = nullptr;  ///< the value is the name of a file
+};
+
+/// One key of a table in a scene file.
+template <class Target>
+struct Key : KeyFacts {
+  std::function<void(Target&, const Value&)> set;
+  std::function<std::optional<Value>(const Target&)> get;  ///< nullopt: no value, as if the key were not in the file
 
   /// The value as written in a scene file.
   std::string text(const Target& target) const {
