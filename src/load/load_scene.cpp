@@ -68,44 +68,6 @@ Origin origin_of(display::Name name, const display::Settings& options, const sce
   return {};
 }
 
-/// Looks up the colour names of a scene's [color] and of the command line.
-class ColorCheck {
- public:
-  explicit ColorCheck(const SceneRequest& request) : request_(request) {}
-
-  /// Errors in the scene's names.
-  std::vector<scene::SceneDiagnostic> operator()(const scene::Scene& scene) {
-    const display::Settings settings = settings_of(request_, scene.color);
-    if (!request_.develops && !names_anything(settings, scene.color)) return {};
-    scene::KeyFaults faults;
-    display::LookUp found = display::look_up(settings, scene.color.space);
-    for (const display::NameFault& fault : found.faults) {
-      const Origin origin = origin_of(fault.name, request_.display, scene.color);
-      if (!origin.key.empty()) {
-        faults.error(origin.key, fault.error);
-      } else if (!other_) {
-        const std::string begin = origin.option.empty() ? "" : origin.option + ": ";
-        other_.emplace(fault.error.kind(), begin + fault.error.what());
-      }
-    }
-    choice_ = std::move(found.choice);
-    return faults.take();
-  }
-
-  /// The chosen display transform.
-  ///
-  /// Errors     base::Error for a wrong name that is not the scene's
-  std::optional<display::Choice> take() {
-    if (other_) throw base::Error(*other_);
-    return std::move(choice_);
-  }
-
- private:
-  const SceneRequest& request_;
-  std::optional<base::Error> other_;
-  std::optional<display::Choice> choice_;
-};
-
 /// Errors where a light whose brightness depends on an image or a sky is too bright for its exposure.
 std::vector<scene::SceneDiagnostic> check_exposures(const scene::Scene& scene, const LoadedScene& loaded) {
   scene::KeyFaults faults;
@@ -131,11 +93,7 @@ const scene::Scene* pointer_to(const std::optional<scene::Scene>& closing) { ret
 class SceneLoader {
  public:
   SceneLoader(const SceneRequest& request, std::optional<LoadedScene> previous)
-      : request_(request),
-        previous_(std::move(previous)),
-        check_colors_(request),
-        reader_(request.source),
-        scene_(reader_.scene()) {}
+      : request_(request), previous_(std::move(previous)), reader_(request.source), scene_(reader_.scene()) {}
 
   ReadResult read_with_data() {
     load_data();
@@ -151,7 +109,7 @@ class SceneLoader {
     load_data();
     if (reader_.is_read("color.")) load_images();
     out_.read = reader_.finish();
-    out_.choice = check_colors_.take();
+    if (name_error_) throw base::Error(*name_error_);
     finish(out_.read.scene);
     return std::move(out_);
   }
@@ -252,9 +210,29 @@ class SceneLoader {
     reader_.add(out_.coincident);
   }
 
+  /// Looks up the colour names of the scene and of the command line. Returns errors in those of the scene.
+  std::vector<scene::SceneDiagnostic> look_up_colors() {
+    const scene::Color& color = scene_.color;
+    const display::Settings settings = settings_of(request_, color);
+    if (!request_.develops && !names_anything(settings, color)) return {};
+    scene::KeyFaults faults;
+    display::LookUp found = display::look_up(settings, color.space);
+    for (const display::NameFault& fault : found.faults) {
+      const Origin origin = origin_of(fault.name, request_.display, color);
+      if (!origin.key.empty()) {
+        faults.error(origin.key, fault.error);
+      } else if (!name_error_) {
+        const std::string begin = origin.option.empty() ? "" : origin.option + ": ";
+        name_error_.emplace(fault.error.kind(), begin + fault.error.what());
+      }
+    }
+    out_.choice = std::move(found.choice);
+    return faults.take();
+  }
+
   /// Checks the names in [color], then reads textures and the background.
   void load_images() {
-    std::vector<scene::SceneDiagnostic> diagnostics = check_colors_(scene_);
+    std::vector<scene::SceneDiagnostic> diagnostics = look_up_colors();
     const auto add = [&](const std::vector<scene::SceneDiagnostic>& more) {
       diagnostics.insert(diagnostics.end(), more.begin(), more.end());
     };
@@ -319,9 +297,10 @@ class SceneLoader {
 
   const SceneRequest& request_;
   std::optional<LoadedScene> previous_;
-  ColorCheck check_colors_;
   SceneReader reader_;
   scene::Scene& scene_;
+  std::optional<base::Error>
+      name_error_;  ///< of a wrong name that is not the scene's; thrown if the scene has no errors
   LoadedScene out_;
 };
 
