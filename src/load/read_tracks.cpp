@@ -13,7 +13,6 @@
 namespace orrery::load {
 namespace {
 
-using scene::interpolation_names;
 using scene::Track;
 using scene::ValueType;
 
@@ -95,19 +94,11 @@ std::optional<scene::Animated> read_target(ReadState& state, const toml::table& 
 }  // namespace
 
 void read_tracks(ReadState& state, const toml::array& list, scene::Scene& scene) {
-  static const std::vector<std::string> known = {"target", "frames", "values", "interpolation"};
   for (std::size_t i = 0; i < list.size(); ++i) {
     const toml::table& table = *list.get(i)->as_table();
     const std::string full_name = fmt::format("key[{}]", i);
-    for (const auto& [key, node] : table)
-      if (!base::contains(known, key.str())) report_unknown_key(state, key, full_name, known);
     Track track;
-    if (const toml::node* node = table.get("interpolation"))
-      if (const auto value =
-              read_value(state, *node, full_name + ".interpolation", ValueType::kChoice, {}, interpolation_names()))
-        track.interpolation = static_cast<scene::Interpolation>(
-            std::find(interpolation_names().begin(), interpolation_names().end(), std::get<std::string>(*value)) -
-            interpolation_names().begin());
+    read_keys(state, table, full_name, scene::track_keys(), {"target", "frames", "values"}, track);
     const auto target = read_target(state, table, full_name, scene, track.target);
     const toml::array* const frames = list_at(state, table, full_name, "frames");
     const toml::array* const values = list_at(state, table, full_name, "values");

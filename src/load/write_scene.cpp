@@ -125,8 +125,9 @@ void add_tracks(std::string& out, const scene::Scene& scene) {
   for (const scene::Track& track : scene.tracks) {
     const auto target = scene::find_animated(scene, track.target);
     const bool is_vector = target && target->type == scene::ValueType::kVector;
-    out += fmt::format("[[key]]\ntarget = {}\ninterpolation = {}\n", string_text(track.target),
-                       string_text(scene::interpolation_names()[static_cast<std::size_t>(track.interpolation)]));
+    out += fmt::format("[[key]]\ntarget = {}\n", string_text(track.target));
+    for (const scene::Key<scene::Track>& key : scene::track_keys())
+      out += fmt::format("{} = {}\n", key.name, key.text(track));
     list("frames", track.frames.size(), [&](std::size_t i) { return number_text(track.frames[i]); });
     list("values", track.values.size(),
          [&](std::size_t i) { return is_vector ? vector_text(track.values[i]) : number_text(track.values[i].x); });

@@ -145,11 +145,6 @@ std::vector<std::string> animated_names(const Scene& scene) {
   return names;
 }
 
-const std::vector<std::string>& interpolation_names() {
-  static const std::vector<std::string> names = {"linear", "cubic", "hold"};
-  return names;
-}
-
 Vec3d value_at(const Track& track, double frame) {
   const std::vector<double>& at = track.frames;
   const auto after = static_cast<std::size_t>(std::upper_bound(at.begin(), at.end(), frame) - at.begin());

@@ -30,9 +30,6 @@ std::vector<std::string> indexed_targets(const Scene& scene, const std::string& 
 /// Returns all targets that find_animated accepts in this scene, except those with an index.
 std::vector<std::string> animated_names(const Scene& scene);
 
-/// Returns the names of the interpolations in scene files, in enumerator order.
-const std::vector<std::string>& interpolation_names();
-
 /// Returns the value of a track at a frame, which may be fractional. It is constant before the first key and after the
 /// last one.
 ///

@@ -333,4 +333,12 @@ const std::vector<Key<RodFile>>& rod_file_keys() {
   return keys;
 }
 
+const std::vector<Key<Track>>& track_keys() {
+  static const std::vector<Key<Track>> keys = {choice(
+      "interpolation", {"linear", "cubic", "hold"},
+      {"`cubic`: smooth, through all values; may overshoot between them. `hold`: constant until the next keyframe"},
+      &Track::interpolation)};
+  return keys;
+}
+
 }  // namespace orrery::scene

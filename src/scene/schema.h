@@ -11,8 +11,8 @@
 
 /// The schema of scene files: the description of all keys, used for reading, writing, validation, `--set`, suggestions,
 /// `--settings`, the files that a scene names and the documentation. Defaults are the member initialisers in
-/// scene/scene.h. Five keys are not in it, because they refer to materials by name: `material` of [[sphere]],
-/// [[points]], [[rod]] and [[rods]], and `bonds.material` of [[points]].
+/// scene/scene.h. Not in it are five keys that refer to materials by name, `material` of [[sphere]],
+/// [[points]], [[rod]] and [[rods]], and `bonds.material` of [[points]]; and what a [[key]] animates.
 namespace orrery::scene {
 
 enum class TextureType;
@@ -110,6 +110,8 @@ const std::vector<Key<PointsKeys>>& points_keys();
 /// Keys of [[rod]] and [[rods]], except `material`.
 const std::vector<Key<Rod>>& rod_keys();
 const std::vector<Key<RodFile>>& rod_file_keys();
+/// Keys of [[key]], except `target`, `frames` and `values`.
+const std::vector<Key<Track>>& track_keys();
 
 /// A file that a scene names.
 struct NamedFile {
