@@ -37,28 +37,6 @@ scene::PointsKeys everything(const scene::PointsKeys& keys) {
   return out;
 }
 
-/// set_color() without checks.
-bool choose_color(const DataOptions& options, const std::string& color_by, const data::FrameInfo& info,
-                  scene::PointsColor& color) {
-  const data::Roles& roles = info.roles;
-  if (color_by == "none") return false;
-  if (color_by == "rgb" && data::find_named(info.columns, "rgb") == nullptr) {
-    color.rgb = true;
-    return false;
-  }
-  if (color_by == "element" && !options.has_map) {
-    color.element = "jmol";
-    return false;
-  }
-  const bool is_type = color_by == "type";
-  color.column = is_type && !roles.type.empty()                    ? roles.type
-                 : color_by == "element" && !roles.element.empty() ? roles.element
-                                                                   : color_by;
-  if (options.has_map) return false;
-  color.map = is_type || points::type_of(info, color.column) == data::ColumnType::kText ? kCategoricalMap : kMap;
-  return true;
-}
-
 }  // namespace
 
 DataFrames::DataFrames(const DataOptions& options, const std::filesystem::path& folder)
@@ -204,11 +182,22 @@ std::string all_of(const std::vector<std::string>& conditions) {
 
 bool set_color(const DataOptions& options, const std::string& color_by, const data::FrameInfo& info,
                scene::PointsColor& color) {
-  const bool has_range = options.range.is_set || options.points.color.range;
-  const bool is_chosen = choose_color(options, color_by, info, color);
+  const data::Roles& roles = info.roles;
+  const bool is_type = color_by == "type", has_range = options.range.is_set || options.points.color.range;
+  if (color_by == "rgb" && data::find_named(info.columns, "rgb") == nullptr)
+    color.rgb = true;
+  else if (color_by == "element" && !options.has_map)
+    color.element = "jmol";
+  else if (color_by != "none")
+    color.column = is_type && !roles.type.empty()                    ? roles.type
+                   : color_by == "element" && !roles.element.empty() ? roles.element
+                                                                     : color_by;
   if (color.column.empty() && (options.has_map || has_range))
     base::refuse(std::string(options.has_map ? "--map" : "--range") +
                  " has nothing to map: the colours are not those of a column; add --color-by COLUMN");
+  const bool is_chosen = !color.column.empty() && !options.has_map;
+  if (is_chosen)
+    color.map = is_type || points::type_of(info, color.column) == data::ColumnType::kText ? kCategoricalMap : kMap;
   const auto map = points::find_color_map(color.map);
   if (has_range && map && map->is_categorical)
     base::refuse(fmt::format("--range has no effect: the map {} has a colour for each value", color.map));
