@@ -253,10 +253,7 @@ class PlotMaker {
 
   /// The camera that sees all spheres beside the annotation.
   scene::Camera fitted_to(const ViewExtent& extent) const {
-    const auto camera = [&](const std::vector<Reserved>& reserved) {
-      return vfov_ ? extent.perspective_camera(aspect(), *vfov_, reserved) : extent.camera(aspect(), reserved);
-    };
-    return camera(reserved_by_annotation(camera({})));
+    return extent.camera(aspect(), vfov_, reserved_by_annotation(extent.camera(aspect(), vfov_)));
   }
 
   /// What text and bars take from the image that a camera sees.

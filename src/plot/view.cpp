@@ -196,27 +196,22 @@ double ViewExtent::image_width(double aspect, const std::vector<Reserved>& reser
   return out;
 }
 
-scene::Camera ViewExtent::camera(double aspect, const std::vector<Reserved>& reserved) const {
-  scene::Camera camera;
-  camera.projection = scene::Projection::kOrthographic;
-  camera.up = axes_.up;
-  camera.look_at = center();
-  // Parallel rays may start anywhere in front of all spheres.
-  camera.look_from = camera.look_at + axes_.back * (2 * radius());
-  camera.width = image_width(aspect, reserved);
-  return camera;
-}
-
-scene::Camera ViewExtent::perspective_camera(double aspect, double vfov_deg,
-                                             const std::vector<Reserved>& reserved) const {
+scene::Camera ViewExtent::camera(double aspect, std::optional<double> vfov_deg,
+                                 const std::vector<Reserved>& reserved) const {
   scene::Camera camera;
   camera.up = axes_.up;
   camera.look_at = center();
-  camera.vfov = vfov_deg;
-  // The box that contains the spheres is seen if its face in front is.
-  const double half_height = image_width(aspect, reserved) / aspect / 2;
-  const double from_face = half_height / std::tan(vfov_deg / 360 * std::numbers::pi);
-  camera.look_from = camera.look_at + axes_.back * ((high_[2] - low_[2]) / 2 + from_face);
+  const double width = image_width(aspect, reserved);
+  double distance = 2 * radius();  // parallel rays may start anywhere in front of all spheres
+  if (vfov_deg) {
+    camera.vfov = *vfov_deg;
+    // The box that contains the spheres is seen if its face in front is.
+    distance = (high_[2] - low_[2]) / 2 + width / aspect / 2 / std::tan(*vfov_deg / 360 * std::numbers::pi);
+  } else {
+    camera.projection = scene::Projection::kOrthographic;
+    camera.width = width;
+  }
+  camera.look_from = camera.look_at + axes_.back * distance;
   return camera;
 }
 

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <optional>
 #include <string>
 #include <utility>
 #include <vector>
@@ -50,14 +51,13 @@ class ViewExtent {
   /// Returns the extent if all radii were larger by a length. An empty extent stays empty.
   ViewExtent grown(double length) const;
 
-  /// Returns an orthographic camera that sees all spheres, with a margin of 5 % of the image on each side.
+  /// Returns a camera that sees all spheres, with a margin of 5 % of the image on each side.
   ///
   /// `aspect`   image width divided by its height, as displayed
+  /// `vfov_deg` vertical field of view of a perspective camera; none: orthographic
   /// `reserved` rectangles that the spheres shall not reach; one that would halve the image is ignored
-  scene::Camera camera(double aspect, const std::vector<Reserved>& reserved = {}) const;
-
-  /// Returns a perspective camera in the same direction, far enough away to see all spheres with this margin.
-  scene::Camera perspective_camera(double aspect, double vfov_deg, const std::vector<Reserved>& reserved = {}) const;
+  scene::Camera camera(double aspect, std::optional<double> vfov_deg = {},
+                       const std::vector<Reserved>& reserved = {}) const;
 
   Vec3d center() const;   ///< centre of the box along the axes
   double radius() const;  ///< radius of a sphere around center() that contains all spheres, scene units

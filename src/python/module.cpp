@@ -125,8 +125,7 @@ Picture render_scene(const SceneData& scene, Prepared& prepared, double noise, d
 /// The camera that sees spheres of a larger radius around an extent, as keys of [camera]: a perspective camera if there
 /// is a field of view, else an orthographic one.
 py::dict camera_of(const plot::ViewExtent& extent, double aspect, double radius, std::optional<double> vfov_deg) {
-  const plot::ViewExtent seen = extent.grown(radius);
-  const scene::Camera camera = vfov_deg ? seen.perspective_camera(aspect, *vfov_deg) : seen.camera(aspect);
+  const scene::Camera camera = extent.grown(radius).camera(aspect, vfov_deg);
   py::dict out;
   if (vfov_deg) {
     out["vfov"] = *vfov_deg;

@@ -80,7 +80,7 @@ TEST(PlotView, PerspectiveCamerasSeeTheBoxWithAMargin) {
       const ViewAxes axes = view_axes("30,20", "z");
       ViewExtent extent(axes);
       for (const Vec3d center : {Vec3d{0, 0, 0}, Vec3d{7, 1, -2}, Vec3d{-1, 3, 2}}) extent.add(center, 0.5);
-      const scene::Camera camera = extent.perspective_camera(aspect, vfov);
+      const scene::Camera camera = extent.camera(aspect, vfov);
       EXPECT_EQ(camera.projection, scene::Projection::kPerspective);
       EXPECT_EQ(camera.vfov, vfov);
       EXPECT_LT(difference(math::normalized(camera.look_from - camera.look_at), axes.back), 1e-12);
@@ -97,7 +97,7 @@ TEST(PlotView, PerspectiveCamerasSeeTheBoxWithAMargin) {
         }
       EXPECT_LE(widest, 0.9 + 1e-9) << "5 % on each side";
     }
-  EXPECT_GT(math::length(ViewExtent(view_axes("iso", "z")).perspective_camera(1, 30).look_from), 0);
+  EXPECT_GT(math::length(ViewExtent(view_axes("iso", "z")).camera(1, 30).look_from), 0);
 }
 
 TEST(PlotView, GrownExtentsAreThoseOfLargerSpheres) {
@@ -187,7 +187,7 @@ TEST(PlotView, ReservedRectanglesStayFree) {
     const double fitted = *extent.camera(aspect).width;
     bool is_smaller = false;
     for (const Reserved rectangle : {Reserved{0.3, -0.4}, {-0.4, 0.3}, {0.3, 0.4}, {0.4, 0.3}, {0.44, 0.25}}) {
-      const scene::Camera camera = extent.camera(aspect, {rectangle});
+      const scene::Camera camera = extent.camera(aspect, {}, {rectangle});
       const Reach reach = reach_of(points, camera, aspect);
       const double beside = reach.right / 2 / rectangle.beside, above = reach.top / 2 / rectangle.above;
       const bool is_beside = rectangle.beside > 0 && beside <= 1 + kRounding,
@@ -198,13 +198,13 @@ TEST(PlotView, ReservedRectanglesStayFree) {
         EXPECT_NEAR(std::max(is_beside ? beside : 0, is_above ? above : 0), 1, kRounding) << "as large as possible";
       }
       EXPECT_GE(*camera.width, fitted);
-      const scene::Camera perspective = extent.perspective_camera(aspect, 30, {rectangle});
+      const scene::Camera perspective = extent.camera(aspect, 30, {rectangle});
       EXPECT_EQ(math::length(perspective.look_from - perspective.look_at) >
-                    math::length(extent.perspective_camera(aspect, 30).look_from - perspective.look_at),
+                    math::length(extent.camera(aspect, 30).look_from - perspective.look_at),
                 *camera.width > fitted);
     }
     EXPECT_TRUE(is_smaller);
-    EXPECT_EQ(*extent.camera(aspect, {{0.09, 0.05}, {-0.1, -0.1}}).width, fitted) << "would leave too little";
+    EXPECT_EQ(*extent.camera(aspect, {}, {{0.09, 0.05}, {-0.1, -0.1}}).width, fitted) << "would leave too little";
   }
 }
 
