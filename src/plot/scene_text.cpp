@@ -110,6 +110,12 @@ std::optional<Enum> enumerator_of(const std::string& name, const std::vector<std
   return static_cast<Enum>(std::find(names.begin(), names.end(), name) - names.begin());
 }
 
+/// Materials of the rods of Guides, by their names.
+constexpr std::pair<const char*, Vec3d> kGuideColors[] = {{"box", {0.1, 0.1, 0.1}},
+                                                          {"axis_x", {0.7, 0.03, 0.03}},
+                                                          {"axis_y", {0.03, 0.5, 0.03}},
+                                                          {"axis_z", {0.03, 0.1, 0.8}}};
+
 /// Radius of the edges of the box, and length and radius of the axes, as fractions of the radius of what is shown.
 constexpr double kBoxRadius = 0.004, kAxisLength = 0.15, kAxisRadius = 0.01;
 
@@ -175,19 +181,12 @@ std::string scene_text(const PlotOptions& options, const Stage& stage, scene::Sc
   if (stage.ground)
     scene.spheres.push_back(
         {stage.ground->center, stage.ground->radius, material("ground", scene::Lambertian{light.ground}), "ground"});
-  constexpr std::pair<const char*, Vec3d> kGuides[] = {{"box", {0.1, 0.1, 0.1}},
-                                                       {"axis_x", {0.7, 0.03, 0.03}},
-                                                       {"axis_y", {0.03, 0.5, 0.03}},
-                                                       {"axis_z", {0.03, 0.1, 0.8}}};
-  for (scene::Rod& rod : scene.rods) {
-    const auto& [name, color] = kGuides[rod.materials[0]];
-    const auto known = std::find_if(scene.materials.begin(), scene.materials.end(),
-                                    [&](const scene::Material& m) { return m.name == name; });
-    const std::uint32_t index = known == scene.materials.end()
-                                    ? material(name, scene::Lambertian{color})
-                                    : static_cast<std::uint32_t>(known - scene.materials.begin());
-    rod.materials = {index, index};
-    rod.name = name;
+  for (const auto& [name, color] : kGuideColors) {
+    const auto is_named = [&, &of_color = name](const scene::Rod& rod) { return rod.name == of_color; };
+    if (std::none_of(scene.rods.begin(), scene.rods.end(), is_named)) continue;
+    const std::uint32_t index = material(name, scene::Lambertian{color});
+    for (scene::Rod& rod : scene.rods)
+      if (is_named(rod)) rod.materials = {index, index};
   }
   if (light.has_lamp()) {
     scene.spheres.push_back(lamp_of(stage, light));
@@ -212,8 +211,8 @@ void Guides::surround(const scene::Points& points) {
   }
 }
 
-void Guides::add(const Vec3d& from, const Vec3d& to, double radius, std::uint32_t material) {
-  rods_.push_back({from, to, radius, {material, material}, {}, {}});
+void Guides::add(const Vec3d& from, const Vec3d& to, double radius, const char* name) {
+  rods_.push_back({from, to, radius, {}, name});
   for (const Vec3d& end : {from, to}) {
     ends_.centers.push_back(end);
     ends_.radii.push_back(radius);
@@ -231,15 +230,15 @@ void Guides::add_box(const data::Box& box, const Vec3d& counts, ViewExtent& exte
   const double radius = rounded(kBoxRadius * extent.radius());
   for (int i = 0; i < 8; ++i)
     for (const int edge : {1, 2, 4})
-      if ((i & edge) == 0) add(corner(i), corner(i | edge), radius, kBoxMaterial);
+      if ((i & edge) == 0) add(corner(i), corner(i | edge), radius, "box");
 }
 
 void Guides::add_axes(double size) {
   const double length = rounded(kAxisLength * size), radius = rounded(kAxisRadius * size);
   const Vec3d origin = corner_ - Vec3d{1, 1, 1} * (length + 2 * radius);
-  add(origin, origin + Vec3d{1, 0, 0} * length, radius, kXMaterial);
-  add(origin, origin + Vec3d{0, 1, 0} * length, radius, kYMaterial);
-  add(origin, origin + Vec3d{0, 0, 1} * length, radius, kZMaterial);
+  add(origin, origin + Vec3d{1, 0, 0} * length, radius, "axis_x");
+  add(origin, origin + Vec3d{0, 1, 0} * length, radius, "axis_y");
+  add(origin, origin + Vec3d{0, 0, 1} * length, radius, "axis_z");
 }
 
 }  // namespace orrery::plot

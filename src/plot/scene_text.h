@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include <cstdint>
 #include <optional>
 #include <string>
 #include <vector>
@@ -15,9 +14,6 @@ namespace orrery::plot {
 
 struct PlotOptions;
 
-/// Materials of the rods beside the spheres.
-enum GuideMaterial : std::uint32_t { kBoxMaterial, kXMaterial, kYMaterial, kZMaterial };
-
 /// Where the spheres of a plot are, and how they are seen.
 struct Stage {
   const ViewAxes& axes;          ///< axes of the image
@@ -29,8 +25,7 @@ struct Stage {
 
 /// Returns the text of the scene file of a plot.
 ///
-/// `scene`    camera, points and annotation; its rods are the edges of the simulation box and the axes, with materials
-///            of GuideMaterial
+/// `scene`    camera, points and annotation; its rods are those of Guides, without materials
 /// Errors     base::Error(kBadData) if a scene has no room for the lamp, the ground or the camera around the spheres
 std::string scene_text(const PlotOptions& options, const Stage& stage, scene::Scene scene);
 
@@ -46,7 +41,7 @@ class Guides {
   /// Adds a tripod outside the lower corner of what is shown, whose radius is `size`.
   void add_axes(double size);
 
-  /// The rods. Their materials are GuideMaterial.
+  /// The rods, named after their materials: "box", "axis_x", "axis_y" and "axis_z". They have no materials yet.
   const std::vector<scene::Rod>& rods() const { return rods_; }
   /// The ends of the rods, as spheres.
   const scene::Points& ends() const { return ends_; }
@@ -57,7 +52,7 @@ class Guides {
 
  private:
   void surround(const Vec3d& center, double radius);
-  void add(const Vec3d& from, const Vec3d& to, double radius, std::uint32_t material);
+  void add(const Vec3d& from, const Vec3d& to, double radius, const char* name);
 
   Vec3d up_;
   Vec3d corner_{math::kInfinity, math::kInfinity, math::kInfinity};  ///< lower corner of what is shown along x, y and z
