@@ -42,8 +42,7 @@ Vec3d ink_over(const scene::Background& background) {
 /// The name or the file of a scene's font.
 std::string font_of(const scene::Scene& scene, const View& view) {
   const std::string font = scene.annotation.font.string();
-  const bool is_file = font.find_first_of("./\\") != std::string::npos;
-  return font.empty() ? kDefaultFont : is_file ? (view.folder / font).string() : font;
+  return font.empty() ? kDefaultFont : scene::is_file_name(font) ? (view.folder / font).string() : font;
 }
 
 /// A title that fits into a width: if necessary in a smaller font, and if that is not enough, without its end.

@@ -6,6 +6,7 @@
 
 #include "display/color_space.h"
 #include "load/load_images.h"
+#include "scene/schema.h"
 #include "scene/texture.h"
 
 namespace orrery::load {
@@ -59,9 +60,8 @@ int convert(const std::string& ocio, const std::string& from, const std::string&
 }  // namespace
 
 std::string config_of(const std::filesystem::path& scene_file, const scene::Color& color) {
-  // OpenColorIO's built-in configs, "ocio://...", are not files.
-  const bool is_file = !color.config.empty() && !color.config.string().starts_with("ocio://");
-  return is_file ? (scene_file.parent_path() / color.config).string() : color.config.string();
+  const std::string name = color.config.string();
+  return scene::kOcioConfigFile.names_file(name) ? (scene_file.parent_path() / name).string() : name;
 }
 
 int to_working_space(const std::string& ocio, scene::Scene& scene) {

@@ -49,7 +49,7 @@ std::optional<double> vfov_of(const PlotOptions& options) {
 
 /// A colour map or a font: the name of a file in the user's folder becomes relative to the scene's; other names stay.
 std::string from_scene(const std::string& name, const std::filesystem::path& scene_file) {
-  if (name.find_first_of("./") == std::string::npos) return name;
+  if (!scene::is_file_name(name)) return name;
   const std::filesystem::path folder = scene_file.parent_path();
   return std::filesystem::proximate(name, folder.empty() ? "." : folder).string();
 }

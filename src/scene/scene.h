@@ -220,6 +220,9 @@ struct PointsRadius {
   bool operator==(const PointsRadius&) const = default;
 };
 
+/// True if the name of a colour map or of a font is that of a file: other names contain neither dots nor slashes.
+inline bool is_file_name(const std::string& name) { return name.find_first_of("./\\") != std::string::npos; }
+
 /// Colours of the spheres of a points file, set by one of `column`, `element`, `types` and `rgb`; if none is set, those
 /// of the material.
 struct PointsColor {
@@ -235,8 +238,7 @@ struct PointsColor {
   bool is_set() const { return has_legend() || rgb; }
   /// True if each colour stands for a value, a type or an element.
   bool has_legend() const { return !column.empty() || !element.empty() || !types.empty(); }
-  /// True if `map` is a file: names of colour maps contain neither dots nor slashes.
-  bool has_map_file() const { return map.find_first_of("./\\") != std::string::npos; }
+  bool has_map_file() const { return is_file_name(map); }
   bool operator==(const PointsColor&) const = default;
 };
 

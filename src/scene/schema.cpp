@@ -268,15 +268,10 @@ Table output_table() {
 
 const FileRole kPointsFile{"points file", true};
 const FileRole kRodsFile{"file of rods", true};
-const FileRole kColorMapFile{"colour map", false, [](const std::string& value) {
-                               PointsColor color;
-                               color.map = value;
-                               return color.has_map_file();
-                             }};
+const FileRole kColorMapFile{"colour map", false, is_file_name};
 const FileRole kBackgroundFile{"background image", true};
 const FileRole kTextureFile{"texture", true};
-const FileRole kFontFile{"font", false,
-                         [](const std::string& value) { return value.find_first_of("./\\") != std::string::npos; }};
+const FileRole kFontFile{"font", false, is_file_name};
 const FileRole kOcioConfigFile{
     "OCIO config", false, [](const std::string& value) { return !value.empty() && !value.starts_with("ocio://"); }};
 
