@@ -8,7 +8,6 @@
 #include "annotation/legend.h"
 #include "base/atomic_file.h"
 #include "base/error.h"
-#include "base/file_name.h"
 #include "base/file_set.h"
 #include "base/frames.h"
 #include "base/stop_point.h"
@@ -23,6 +22,7 @@
 #include "job/job.h"
 #include "job/statistics.h"
 #include "load/load_scene.h"
+#include "load/read_scene.h"
 #include "load/write_scene.h"
 #include "plot/plot.h"
 #include "preview/preview.h"
@@ -165,7 +165,7 @@ int run_plot(PlotCommand& arguments) {
   const bool saves = !arguments.save_scene.empty();
   begin_messages(render);
   job.hooks.cancel = &stop_on_signals();
-  if (base::extension(plot.file) == ".toml")
+  if (load::is_scene_file(plot.file))
     base::refuse(fmt::format("{0} is a scene; render it: orrery render {0}", plot.file.string()));
   arguments.shown.data.read(plot);
   prepare_films(arguments);

@@ -9,7 +9,6 @@
 
 #include "base/atomic_file.h"
 #include "base/error.h"
-#include "base/file_name.h"
 #include "base/frames.h"
 #include "base/stopwatch.h"
 #include "base/text.h"
@@ -23,6 +22,7 @@
 #include "film/picture.h"
 #include "job/checkpoint.h"
 #include "job/job.h"
+#include "load/read_scene.h"
 #include "preview/preview.h"
 #include "render/settings.h"
 
@@ -216,7 +216,7 @@ int run_render(RenderOptions& options) {
   job::Batch& batch = options.batch;
   job::Job& job = batch.job;
   for (std::size_t i = 1; i < batch.scenes.size(); ++i)
-    if (base::extension(batch.scenes[i]) != ".toml")
+    if (!load::is_scene_file(batch.scenes[i]))
       base::refuse(fmt::format("unexpected argument `{}`; name output files with -o", batch.scenes[i].string()));
   job.scene.overrides = options.scene.overrides();
   options.picture.finish(job);

@@ -10,7 +10,6 @@
 #include <fmt/core.h>
 
 #include "base/error.h"
-#include "base/file_name.h"
 #include "base/frames.h"
 #include "cli/commands.h"
 #include "cli/messages.h"
@@ -65,7 +64,7 @@ int data_info(const InfoOptions& options) {
 }
 
 int info(const InfoOptions& options) {
-  if (base::extension(options.file) != ".toml") return data_info(options);
+  if (!load::is_scene_file(options.file)) return data_info(options);
   refuse_option(options.component.has_value(), "--component", options, "scene; the option applies to data files");
   load::SceneRequest request;
   request.source.file = options.file;

@@ -8,11 +8,11 @@
 
 #include "annotation/legend.h"
 #include "base/error.h"
-#include "base/file_name.h"
 #include "base/text.h"
 #include "cli/film.h"
 #include "cli/render_options.h"
 #include "cli/run.h"
+#include "load/read_scene.h"
 #include "plot/plot.h"
 #include "view/wish.h"
 
@@ -89,8 +89,6 @@ void ShownOptions::add_to(Command& parsed) {
   add_denoise_option(parsed, job);
 }
 
-bool is_scene(const std::filesystem::path& file) { return base::extension(file) == ".toml"; }
-
 std::set<std::string> files_of(const ShownOptions& shown) {
   std::set<std::string> out = view::named_files(shown.scene.overrides());
   if (shown.plot.options.points.color.has_map_file()) out.insert(shown.plot.options.points.color.map);
@@ -105,7 +103,7 @@ view::Subject subject_of(const std::filesystem::path& file, const std::vector<st
     for (const std::string& name : files_of(shown))
       if (allowed.count(name) == 0)
         base::refuse(fmt::format("`{}` names a file; start orrery view with this option", name));
-    out = is_scene(file) ? scene_subject(shown) : data_subject(shown, nullptr);
+    out = load::is_scene_file(file) ? scene_subject(shown) : data_subject(shown, nullptr);
   });
   return out;
 }

@@ -24,9 +24,6 @@ struct ShownOptions {
   void add_to(Command& parsed);
 };
 
-/// True for a scene, false for a data file.
-bool is_scene(const std::filesystem::path& file);
-
 /// The files that options name besides FILE.
 std::set<std::string> files_of(const ShownOptions& shown);
 

@@ -21,6 +21,7 @@
 #include "cli/signals.h"
 #include "cli/subject.h"
 #include "http/server.h"
+#include "load/read_scene.h"
 #include "plot/plot.h"
 #include "points/color_map.h"
 #include "view/site.h"
@@ -45,7 +46,7 @@ view::Controls controls_of(const std::filesystem::path& file) {
   view::Controls out;
   out.title = file.filename().string();
   const std::string command =
-      fmt::format("orrery {} {}", is_scene(file) ? "render" : "plot", base::shell_quoted(file.string()));
+      fmt::format("orrery {} {}", load::is_scene_file(file) ? "render" : "plot", base::shell_quoted(file.string()));
   const auto line = [command](const std::vector<std::string>& words, const char* rest) {
     std::string text = command;
     for (const std::string& word : words) text += " " + base::shell_quoted(word);
@@ -57,7 +58,7 @@ view::Controls controls_of(const std::filesystem::path& file) {
   };
   for (const char* option : {"--samples", "--noise", "--denoise", "--set", "--width", "--height"})
     out.options[option] = {};
-  if (is_scene(file)) return out;
+  if (load::is_scene_file(file)) return out;
   out.options["--color-by"] = {"none", "element", "type", "rgb"};
   out.options["--map"] = points::color_map_names();
   out.options["--style"] = plot::style_names();
@@ -114,7 +115,7 @@ int run_view(ViewArguments& arguments, const Command& command) {
   const std::filesystem::path& file = arguments.shown.plot.options.file;
   // The page reports all other faults; without a file there is nothing that it could change.
   if (!base::has_frame_pattern(file.filename().string())) base::require_readable(file);
-  if (!is_scene(file)) plot::require_utf8(file.string());
+  if (!load::is_scene_file(file)) plot::require_utf8(file.string());
   const std::set<std::string> allowed = files_of(arguments.shown);
   const view::Controls controls = controls_of(file);
   const std::vector<const Option*>& own = arguments.own;

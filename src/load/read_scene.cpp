@@ -403,8 +403,10 @@ void add_ocio_configs(const std::string& config, base::FileSet& files) {
   }
 }
 
+bool is_scene_file(const std::filesystem::path& file) { return base::extension(file) == ".toml"; }
+
 void refuse_data_file(const std::filesystem::path& file, std::string_view text) {
-  if (base::extension(file) != ".toml" && data::is_data_file(file, text))
+  if (!is_scene_file(file) && data::is_data_file(file, text))
     base::refuse(fmt::format("{0} is a data file, not a scene; render it: orrery plot {0} -o IMAGE", file.string()));
 }
 

@@ -123,6 +123,9 @@ void add_ocio_configs(const std::string& config, base::FileSet& files);
 /// Maximum size of a scene file, bytes: a million [[sphere]] tables. Larger scenes use points files.
 inline constexpr std::uint64_t kLargestSceneFile = 256u << 20;
 
+/// True for the name of a scene file; other files are data.
+bool is_scene_file(const std::filesystem::path& file);
+
 /// Throws base::Error(kUsage), which names the right command, if a text that is not a scene is a data file.
 void refuse_data_file(const std::filesystem::path& file, std::string_view text);
 
