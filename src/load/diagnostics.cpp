@@ -10,9 +10,6 @@
 namespace orrery::load {
 namespace {
 
-/// Lines per stored offset: in a file of empty lines, an offset per line would take eight times the size of the file.
-constexpr std::size_t kStride = 64;
-
 /// Maximum length of a quoted line, bytes: a line that wraps ten times is not helpful.
 constexpr std::size_t kLongestShown = 400;
 
@@ -25,31 +22,24 @@ std::size_t byte_of_character(std::string_view line, std::size_t index) {
   return at + index;
 }
 
-}  // namespace
-
-void SourceText::add(const std::string& name, std::string_view text, std::optional<int> typed_lines) {
-  texts_[name] = {std::string(text), typed_lines, {}};
+/// Returns a line, counted from 1, without its end; empty if there is no such line.
+std::string_view line_of(std::string_view text, int line) {
+  for (int i = 1; i < line; ++i) {
+    const std::size_t end = text.find('\n');
+    if (end == std::string_view::npos) return {};
+    text.remove_prefix(end + 1);
+  }
+  std::string_view out = text.substr(0, text.find('\n'));
+  if (out.ends_with('\r')) out.remove_suffix(1);
+  return out;
 }
 
-std::string_view SourceText::line_of(const Text& text, int line) {
-  const std::string_view bytes = text.bytes;
-  if (text.begins.empty()) {
-    text.begins.push_back(0);
-    std::size_t count = 0;
-    for (std::size_t at = bytes.find('\n'); at != std::string_view::npos; at = bytes.find('\n', at + 1))
-      if (++count % kStride == 0) text.begins.push_back(at + 1);
-  }
-  const auto index = static_cast<std::size_t>(line) - 1;
-  if (line < 1 || index / kStride >= text.begins.size()) return {};
-  std::size_t begin = text.begins[index / kStride];
-  for (std::size_t i = 0; i < index % kStride; ++i) {
-    const std::size_t end = bytes.find('\n', begin);
-    if (end == std::string_view::npos) return {};
-    begin = end + 1;
-  }
-  std::string_view out = bytes.substr(begin, bytes.find('\n', begin) - begin);
-  if (!out.empty() && out.back() == '\r') out.remove_suffix(1);
-  return out;
+}  // namespace
+
+void SourceText::set_file(const std::string& name, std::string_view text, std::optional<int> typed_lines) {
+  name_ = name;
+  text_ = text;
+  typed_lines_ = typed_lines;
 }
 
 /// Points into an override as it was typed, on one line.
@@ -82,13 +72,13 @@ base::Diagnostic SourceText::diagnostic(base::Severity severity, const Place& pl
   out.line = place.line;
   out.column = place.column;
   out.width = place.width;
-  const auto found = texts_.find(place.text_name);
-  if (found != texts_.end() && place.line > found->second.typed_lines.value_or(place.line)) {
+  if (place.text_name != name_) return out;
+  if (place.line > typed_lines_.value_or(place.line)) {
     out.line = out.column = 0;
     return out;
   }
-  if (found == texts_.end() || place.column < 1) return out;
-  const std::string_view line = line_of(found->second, place.line);
+  if (place.line < 1 || place.column < 1) return out;
+  const std::string_view line = line_of(text_, place.line);
   const auto begin = static_cast<std::size_t>(place.column) - 1;
   const std::size_t first = byte_of_character(line, begin);
   out.column = static_cast<int>(first) + 1;

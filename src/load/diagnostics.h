@@ -33,11 +33,11 @@ struct Place {
 /// The sources of a scene, the text of the file and the overrides, for quoting lines in diagnostics.
 class SourceText {
  public:
-  /// Adds a text, or replaces the one of this name.
+  /// Sets the text of the file.
   ///
   /// `typed_lines`   number of lines at the beginning of the text that the user knows, if not all; a program wrote the
   ///                 others, and diagnostics omit their location
-  void add(const std::string& name, std::string_view text, std::optional<int> typed_lines = {});
+  void set_file(const std::string& name, std::string_view text, std::optional<int> typed_lines = {});
 
   /// Makes the overrides the lines of kOverrideName.
   ///
@@ -52,15 +52,10 @@ class SourceText {
                               std::string remedy = {}) const;
 
  private:
-  struct Text {
-    std::string bytes;
-    std::optional<int> typed_lines;
-    mutable std::vector<std::size_t> begins;  ///< offset of every kStride-th line; filled on first use
-  };
-  static std::string_view line_of(const Text& text, int line);
   static void point_into(const Override& override, const Place& place, base::Diagnostic& diagnostic);
 
-  std::map<std::string, Text> texts_;
+  std::string name_, text_;
+  std::optional<int> typed_lines_;
   const Overrides* overrides_ = nullptr;
 };
 

@@ -222,7 +222,7 @@ Place too_deep_key(std::string_view text) {
 
 toml::table parse_tree(const std::string& file_name, const std::string& text, const Overrides& overrides,
                        ReadState& state) {
-  state.source.add(file_name, text);
+  state.source.set_file(file_name, text);
   state.source.set_overrides(overrides);
   if (Place place = too_deep_key(text); place.line > 0) {
     place.text_name = file_name;

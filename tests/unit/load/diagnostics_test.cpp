@@ -21,7 +21,7 @@ TEST(LoadDiagnostics, FindsEveryLine) {
   std::string text;
   for (int i = 1; i <= 500; ++i) text += "line " + std::to_string(i) + (i % 2 == 0 ? "\r\n" : "\n");
   SourceText source;
-  source.add("a", text + "last");
+  source.set_file("a", text + "last");
   for (int i = 1; i <= 500; ++i) EXPECT_EQ(line_of(source, i), "line " + std::to_string(i));
   EXPECT_EQ(line_of(source, 501), "last");
   EXPECT_EQ(line_of(source, 502), "");
@@ -48,7 +48,7 @@ TEST(LoadDiagnostics, OverridesAreQuotedAsTyped) {
 
 TEST(LoadDiagnostics, ConvertsCharactersToBytes) {
   SourceText source;
-  source.add("a", "\xC3\xBC = \xE2\x82\xAC\xE2\x82\xAC\n");
+  source.set_file("a", "\xC3\xBC = \xE2\x82\xAC\xE2\x82\xAC\n");
   const base::Diagnostic f = source.diagnostic(base::Severity::kWarning, {"a", 1, 5, 2}, "text", "remedy");
   EXPECT_EQ(f.column, 6);
   EXPECT_EQ(f.width, 6);
@@ -59,7 +59,7 @@ TEST(LoadDiagnostics, ConvertsCharactersToBytes) {
 
 TEST(LoadDiagnostics, ALocationAfterTheEndOfALine) {
   SourceText source;
-  source.add("a", "ab\n");
+  source.set_file("a", "ab\n");
   const base::Diagnostic f = source.diagnostic(base::Severity::kError, {"a", 1, 3, 1}, "text");
   EXPECT_EQ(f.column, 3);
   EXPECT_EQ(f.source_line, "ab");
@@ -67,14 +67,14 @@ TEST(LoadDiagnostics, ALocationAfterTheEndOfALine) {
 
 TEST(LoadDiagnostics, LocationsWithoutATextHaveNoLine) {
   SourceText source;
-  source.add("a", "one");
+  source.set_file("a", "one");
   EXPECT_EQ(source.diagnostic(base::Severity::kError, {"a", 0, 0, 1}, "x").source_line, "");
   EXPECT_EQ(source.diagnostic(base::Severity::kError, {"none", 1, 1, 1}, "x").source_line, "");
 }
 
 TEST(LoadDiagnostics, VeryLongLinesAreNotQuoted) {
   SourceText source;
-  source.add("a", std::string(401, 'x') + "\n" + std::string(400, 'y'));
+  source.set_file("a", std::string(401, 'x') + "\n" + std::string(400, 'y'));
   EXPECT_EQ(line_of(source, 1), "");
   EXPECT_EQ(line_of(source, 2), std::string(400, 'y'));
 }
