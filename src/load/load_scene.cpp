@@ -299,8 +299,8 @@ class SceneLoader {
   std::optional<LoadedScene> previous_;
   SceneReader reader_;
   scene::Scene& scene_;
-  std::optional<base::Error>
-      name_error_;  ///< of a wrong name that is not the scene's; thrown if the scene has no errors
+  /// Of a wrong name of a colour that is not the scene's; thrown if the scene has no errors.
+  std::optional<base::Error> name_error_;
   LoadedScene out_;
 };
 
