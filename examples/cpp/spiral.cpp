@@ -49,7 +49,7 @@ int main(int argc, char** argv) try {
   scene.points = {sunflower()};
 
   orrery::preview::Preview preview(orrery::preview::make_sink(orrery::preview::parse_target(file), {}), {});
-  preview.begin({"spiral", scene.image.width, scene.image.height, 1, {}});
+  preview.begin({"spiral", scene.image.width, scene.image.height, {}});
   orrery::render::Settings settings;
   settings.on_pixels = [&](const auto& state, const auto& rendered) { preview.write(state, rendered); };
   settings.on_progress = [](const auto& progress) {
