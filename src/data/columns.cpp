@@ -128,6 +128,15 @@ std::vector<std::string> with_sources(const std::vector<std::string>& names, con
   return out;
 }
 
+Table in_order(Table table, const std::vector<std::string>& names) {
+  Table out;
+  out.rows = table.rows;
+  for (const std::string& name : names)
+    out.columns.push_back(std::move(*std::find_if(table.columns.begin(), table.columns.end(),
+                                                  [&](const Column& column) { return column.name == name; })));
+  return out;
+}
+
 std::string listed(const std::vector<ColumnInfo>& columns) {
   constexpr std::size_t kMaxListed = 30;
   std::string out;

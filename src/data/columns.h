@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <array>
 #include <cstddef>
 #include <cstdint>
 #include <initializer_list>
@@ -70,6 +71,9 @@ class UniqueNames {
 /// computed ones and with their sources, or `names` if none is computed.
 std::vector<std::string> with_sources(const std::vector<std::string>& names, const std::array<std::string, 3>& computed,
                                       const std::array<std::string, 3>& sources);
+
+/// Returns columns of a table, in the order of their names.
+Table in_order(Table table, const std::vector<std::string>& names);
 
 /// Returns whether a column exists.
 inline bool has_column(const std::vector<ColumnInfo>& columns, std::string_view name) {

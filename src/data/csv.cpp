@@ -256,8 +256,7 @@ class CsvFile final : public SingleFrame {
     Table table = read_text_rows(*bytes_, layout(wanted), faults).table;
     if (wanted == names) return table;
     add_positions(table);
-    std::erase_if(table.columns, [&](const Column& column) { return !base::contains(names, column.name); });
-    return table;
+    return in_order(std::move(table), names);
   }
 
  private:

@@ -53,7 +53,7 @@ class DataFile {
   /// Errors     base::Error(kBadData) with diagnostics: location and remedy; kIo
   virtual FrameInfo describe(int frame) = 0;
 
-  /// Reads columns of a frame, each listed by describe(). Columns that are not requested cost no memory.
+  /// Reads columns of a frame, each listed by describe(), in this order. Columns that are not requested cost no memory.
   ///
   /// Numbers may be NaN or infinite if the file contains such values.
   ///

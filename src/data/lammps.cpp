@@ -248,8 +248,7 @@ class LammpsDump final : public TextFrames {
     for (std::size_t axis = 0; axis < 3; ++axis)
       if (base::contains(columns, kAxes[axis]))
         table.columns.push_back({kAxes[axis], unscaled(table, *scaled, *frame.info.box, axis)});
-    std::erase_if(table.columns, [&](const Column& column) { return !base::contains(columns, column.name); });
-    return table;
+    return in_order(std::move(table), columns);
   }
 
  private:

@@ -121,9 +121,11 @@ class Loader {
     if (!points_.vectors.columns.empty()) plan_arrows();
     if (info_.may_be_of_scene && data::has_column(info_.columns, points_.material_column))
       need(material_ = points_.material_column);
-    if (request_.source != nullptr)
+    if (request_.source != nullptr) {  // all, in the order of the file
+      columns_.clear();
       for (const data::ColumnInfo& column : info_.columns)
-        if (!column.is_derived) need(column.name);
+        if (!column.is_derived) columns_.push_back(column.name);
+    }
     for (const data::ColumnInfo& column : info_.columns)
       if (!column.is_derived && !base::contains(columns_, column.name)) points_.unused.push_back(column.name);
     if (info_.rows > kMaxRows)

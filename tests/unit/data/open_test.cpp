@@ -3,8 +3,12 @@
 
 #include <gtest/gtest.h>
 
+#include <filesystem>
+#include <set>
 #include <string>
+#include <vector>
 
+#include "base/error.h"
 #include "support/data_tables.h"
 #include "support/temp_dir.h"
 
@@ -44,6 +48,24 @@ std::string utf16(const std::string& text, bool is_big_endian) {
   std::string out;
   for (const char c : text) out += is_big_endian ? std::string{'\0', c} : std::string{c, '\0'};
   return out;
+}
+
+TEST_F(DataOpen, ColumnsAreReadInTheOrderOfTheRequest) {
+  std::set<std::string> formats;
+  for (const auto& entry : std::filesystem::recursive_directory_iterator(ORRERY_ROOT "/tests/fuzz/corpus")) {
+    if (!entry.is_regular_file()) continue;
+    try {
+      const auto file = open(entry.path());
+      std::vector<std::string> names, found;
+      for (const ColumnInfo& column : file->describe(0).columns)
+        if (!column.is_derived) names.insert(names.begin(), column.name);
+      for (const Column& column : file->read(0, names).columns) found.push_back(column.name);
+      EXPECT_EQ(found, names) << entry.path();
+      formats.insert(file->format);
+    } catch (const base::Error&) {  // not a data file, or damaged
+    }
+  }
+  EXPECT_EQ(formats.size(), 13) << testing::PrintToString(formats);
 }
 
 TEST_F(DataOpen, AnAmbiguousFirstWordIsReadAsTheExtensionSays) {
