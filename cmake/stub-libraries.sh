@@ -37,8 +37,8 @@ for soname in $(objdump -p "$library" | sed -n 's/^ *NEEDED *//p' | grep -E "^li
       for (version in names) print version " { global: " names[version] "};" > versions
       if (version == "") print "{ global: *; };" > versions
     }' > "$folder/stub.c"
-  # From standard input, so that the file does not name a folder.
+  # From standard input, so that the file does not name a folder. Debian expects that every library needs libc.
   "$compiler" -x c -w -fno-builtin -O1 -fPIC -shared -s -Wl,-soname,"$soname" -Wl,--version-script="$folder/versions" \
-    -o "$folder/$soname" - < "$folder/stub.c"
+    -nodefaultlibs -Wl,--no-as-needed -lc -o "$folder/$soname" - < "$folder/stub.c"
 done
 rm -f "$folder/needed" "$folder/versions" "$folder/stub.c"
