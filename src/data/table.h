@@ -191,7 +191,7 @@ struct FrameInfo {
   bool z_up = true;              ///< convention of the format
   bool has_components = false;   ///< OpenOptions::component selects one of several sets of particles
   bool may_be_of_scene = false;  ///< the file may have been made for a scene: a column may number its materials
-  bool may_be_hollow = false;    ///< the same; a radius below 0 is a hollow sphere
+  bool may_be_hollow = false;    ///< a radius below 0 is a hollow sphere, as in a scene
   std::uint64_t bonds = 0;       ///< estimated number of bonds in the file; 0: it has none
   /// False if the format leaves out bonds that its readers know, such as those within the residues of a protein.
   bool lists_all_bonds = true;
