@@ -1,15 +1,15 @@
 #!/bin/sh
 # SPDX-License-Identifier: Apache-2.0
-# Makes stub libraries: files that stand in for the libraries behind OpenImageIO that none of our formats uses. Loading
-# these libraries and what they load takes ten times as long as everything else behind OpenImageIO (docs/decisions/0021).
+# Makes stub libraries: files that stand in for the libraries behind OpenImageIO that none of our formats uses. They and
+# what they load take most of the time in which OpenImageIO is loaded (docs/decisions/0021).
 #
 #   cmake/stub-libraries.sh OPENIMAGEIO FOLDER COMPILER
 #
-# A stub has the soname of the library and defines the symbols that OpenImageIO needs from it. None is used; OpenImageIO
-# asks some for their version when it lists its formats, so functions return a pointer to zeros. A library that is not
-# found has no stub.
+# A stub has the soname of the library and defines the symbols that OpenImageIO needs from it. Of its functions, only
+# constructors of static objects are called, and those that return a version, when OpenImageIO lists its formats; so
+# functions return a pointer to zeros. A library that is not found has no stub.
 set -eu
-[ $# -eq 3 ] || { sed -n '3,11s/^# \{0,1\}//p' "$0"; exit 2; }
+[ $# -eq 3 ] || { sed -n '3,10s/^# \{0,1\}//p' "$0"; exit 2; }
 library=$1 folder=$2 compiler=$3
 unused='opencv_[a-z]+|avcodec|avformat|avutil|swscale|dcm[a-z]+|oflog|ofstd|openvdb|heif|raw_r'
 export LC_ALL=C

@@ -10,7 +10,8 @@ namespace orrery::base {
 void set_module_folder(std::filesystem::path folder);
 
 /// Loads the module of a room, `orrery-ROOM.so` in the folder of the modules, and returns the result of its function
-/// `orrery_ROOM_functions`: the table of the room's functions. A module stays loaded until the process ends.
+/// `orrery_ROOM_functions`: the table of the room's functions. A module stays loaded until the process ends. In the
+/// program, the stub libraries in `orrery-ROOM-stubs` replace libraries that the module needs but does not use.
 ///
 /// Errors     base::Error(kInternal): the module is missing or damaged
 const void* load_module(const std::string& room);

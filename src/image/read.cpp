@@ -267,12 +267,10 @@ std::string verified_stamp(const std::filesystem::path& file) {
   if (!std::filesystem::is_regular_file(file, ignored)) return {};
   const Format format = format_of(file);
   if (!damage_of(file, format).empty()) return {};
-  if (format == Format::kSvg) return {};  // is only written
   // OpenImageIO must not try all formats: stubs replace the libraries of some (docs/decisions/0021).
   Input input{OIIO::ImageInput::create(info_of(format).library_name), {}, 0};
-  if (!input.in) return {};
-  if (!input.in->open(file.string(), input.spec)) {
-    input.in->geterror();  // OpenImageIO prints messages that are not fetched
+  if (!input.in || !input.in->open(file.string(), input.spec)) {
+    input.in ? input.in->geterror() : OIIO::geterror();  // OpenImageIO prints messages that are not fetched
     return {};
   }
   std::string stamp = stamp_in(input.in->spec());

@@ -36,10 +36,9 @@ std::string_view line_of(std::string_view text, int line) {
 
 }  // namespace
 
-void SourceText::set_file(const std::string& name, std::string_view text, std::optional<int> typed_lines) {
+void SourceText::set_file(const std::string& name, std::string_view text) {
   name_ = name;
   text_ = text;
-  typed_lines_ = typed_lines;
 }
 
 /// Points into an override as it was typed, on one line.

@@ -33,11 +33,11 @@ struct Place {
 /// The sources of a scene, the text of the file and the overrides, for quoting lines in diagnostics.
 class SourceText {
  public:
-  /// Sets the text of the file.
-  ///
-  /// `typed_lines`   number of lines at the beginning of the text that the user knows, if not all; a program wrote the
-  ///                 others, and diagnostics omit their location
-  void set_file(const std::string& name, std::string_view text, std::optional<int> typed_lines = {});
+  void set_file(const std::string& name, std::string_view text);
+
+  /// Sets the number of lines at the beginning of the file that the user knows, if not all: a program wrote the others,
+  /// and diagnostics omit their location.
+  void set_typed_lines(std::optional<int> count) { typed_lines_ = count; }
 
   /// Makes the overrides the lines of kOverrideName.
   ///

@@ -311,7 +311,7 @@ SceneReader::SceneReader(const SceneSource& source, Pose pose) : state_(std::mak
     refuse_data_file(source.file, text);
     state.diagnostics.raise_errors(state.file);
   }
-  if (source.typed_lines) state.source.set_file(state.file, text, source.typed_lines);
+  state.source.set_typed_lines(source.typed_lines);
   scene::Scene& scene = state.result.scene;
   report_unknown_tables(state, root);
   read_single_tables(state, root, scene);

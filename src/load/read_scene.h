@@ -49,7 +49,7 @@ struct SceneSource {
   std::shared_ptr<points::LoadedPoints> loaded = {};  ///< see points::LoadRequest
   /// Identifies the contents of a data file; empty: base::file_version.
   std::function<std::string(const std::filesystem::path&)> data_version = {};
-  std::optional<int> typed_lines = {};  ///< see SourceText::add
+  std::optional<int> typed_lines = {};  ///< see SourceText::set_typed_lines()
 };
 
 /// Whether a scene is posed at the frame of its source, or left as authored: animated keys then have their own values,

@@ -169,10 +169,12 @@ std::vector<std::string> stubs() {
   return names;
 }
 
-/// Folders of the libraries with a soname that the dynamic loader has initialised.
-std::vector<std::string> folders_of(const std::string& soname, const std::string& loader_text) {
+/// Folders of the libraries that the dynamic loader has initialised.
+///
+/// `name`     regular expression of their names
+std::vector<std::string> folders_of(const std::string& name, const std::string& loader_text) {
   std::vector<std::string> folders;
-  const std::regex line("calling init: (.*)/" + std::regex_replace(soname, std::regex(R"(\.)"), R"(\.)") + "\n");
+  const std::regex line("calling init: (.*)/" + name + "\n");
   for (std::sregex_iterator i(loader_text.begin(), loader_text.end(), line), end; i != end; ++i)
     folders.push_back((*i)[1]);
   return folders;
@@ -180,8 +182,11 @@ std::vector<std::string> folders_of(const std::string& soname, const std::string
 
 TEST_F(CliStartup, StubsStandInForLibrariesThatNoFormatUses) {
   const std::string loaded = libraries_of("render good.toml -o a.exr -o a.png -q");
-  const std::string folder = std::filesystem::path(ORRERY_MODULES) / kStubs;
-  for (const std::string& soname : stubs()) EXPECT_EQ(folders_of(soname, loaded), std::vector{folder}) << soname;
+  const std::string stub_folder = std::filesystem::path(ORRERY_MODULES) / kStubs;
+  // Those that bring most of the others. Not stubs(), which would be empty if none were made.
+  for (const std::string& folder : folders_of(R"(lib(opencv_videoio|avcodec|avformat|openvdb)\.so[.0-9]*)", loaded))
+    EXPECT_EQ(folder, stub_folder);
+  for (const std::string& soname : stubs()) EXPECT_TRUE(contains(loaded, stub_folder + "/" + soname)) << soname;
 }
 
 TEST_F(CliStartup, AStubThatLacksASymbolIsNotUsed) {
@@ -202,7 +207,8 @@ TEST_F(CliStartup, AStubThatLacksASymbolIsNotUsed) {
   const std::string loaded = loader_text();
   EXPECT_TRUE(contains(loaded, stub.string())) << "the stub was not tried";
   const std::vector<std::string> folders = folders_of(sonames.front(), loaded);
-  EXPECT_NE(folders.at(folders.size() - 1), stub.parent_path()) << "the library is not loaded";
+  ASSERT_FALSE(folders.empty());
+  EXPECT_NE(folders.back(), stub.parent_path()) << "the library is not loaded";
 }
 
 TEST_F(CliStartup, AnErrorDoesNotWaitForTheImageLibrary) {
