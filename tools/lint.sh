@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: Apache-2.0
 # Checks the source without building it: C++ formatting (clang-format 14, as in Debian 12), scripts (shellcheck), the
-# licence line of every file, mutants, and words. Exit status: 0 no findings, 1 findings, 77 a tool is missing.
+# licence line of every file, and mutants. Exit status: 0 no findings, 1 findings, 77 a tool is missing.
 #
 #   tools/lint.sh           prints findings
 #   tools/lint.sh --fix     formats the C++ first
@@ -22,7 +22,7 @@ if ! git rev-parse --is-inside-work-tree >/dev/null 2>&1; then echo "lint.sh: sk
 if [ "${1:-}" = --fix ]; then "$format" -i "${sources[@]}"; fi
 "$format" --dry-run -Werror "${sources[@]}" || status=1
 shellcheck -S warning -x -e SC1091 "${scripts[@]}" || status=1
-for file in "${sources[@]}" "${scripts[@]}" $(git ls-files '*.py' '*.pl' '*.cmake' '*CMakeLists.txt'); do
+for file in "${sources[@]}" "${scripts[@]}" $(git ls-files '*.py' '*.cmake' '*CMakeLists.txt'); do
   if [[ $(head -n 3 "$file") != *'SPDX-License-Identifier: Apache-2.0'* ]]; then
     echo "$file: no SPDX-License-Identifier in the first three lines" >&2
     status=1
@@ -47,6 +47,4 @@ if ! awk -F '[ :]' '
     END { check(); exit bad }' docs/gallery.md >&2; then status=1; fi
 # Mutants that no longer match the source would be missed until the next release.
 tools/mutants/stale.py || status=1
-# Words and phrases that the project does not use.
-tools/terms.pl || status=1
 exit "$status"

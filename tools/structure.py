@@ -1,6 +1,7 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: Apache-2.0
-"""Prints figures of the structure of src/: lines, rooms, small headers, and headers that only one file includes.
+"""Prints figures of the structure of src/: lines, rooms, small headers, and headers that only one file includes. Lines of
+code are neither blank, nor comments or docstrings, nor includes, `#pragma once` or imports.
 
     tools/structure.py              the figures of the whole
     tools/structure.py --rooms      a row for each room as well
@@ -31,18 +32,31 @@ for file, lines in files.items():
         if found := re.match(r'\s*#\s*include\s+"([^"]+)"', line):
             includers[found[1]].add(file)
 
+PYTHON_TEXT = re.compile(r'^\s*r?"""(?:.|\n)*?"""\s*$', re.MULTILINE)  # a docstring
+
+
+def code_lines(file, lines):
+    """The number of lines of code of a file."""
+    if file.suffix == ".py":
+        rest = PYTHON_TEXT.sub("", "\n".join(lines)).splitlines()
+        return sum(not re.match(r"\s*(#.*|import .*|from \S+ import .*)?$", line) for line in rest)
+    return sum(not re.match(r"\s*(//.*|#\s*(include\b|pragma once).*)?$", line) for line in lines)
+
+
 small = [name for name, lines in headers.items() if len(lines) < SMALL]
 # A source file and the header of its name are one unit.
 once = [name for name in headers
         if len([file for file in includers[name] if file.relative_to(src).with_suffix("") != pathlib.Path(name).with_suffix("")]) == 1]
-rooms = collections.Counter()
+rooms, code = collections.Counter(), collections.Counter()
 for file, lines in files.items():
     rooms[file.relative_to(src).parts[0]] += len(lines)
+    code[file.relative_to(src).parts[0]] += code_lines(file, lines)
 
 if options.rooms:
     for room, count in rooms.items():
-        print(f"{room:12} {count:6} lines, {sum(file.relative_to(src).parts[0] == room for file in files):3} files")
+        print(f"{room:12} {count:6} lines, {code[room]:6} of code, {sum(file.relative_to(src).parts[0] == room for file in files):3} files")
 print(f"lines of src (.h, .cpp, .py)          {sum(rooms.values())}")
+print(f"lines of code                         {sum(code.values())}")
 print(f"rooms                                 {len(rooms)}")
 print(f"headers                               {len(headers)}")
 print(f"headers under {SMALL} lines              {len(small)}")
