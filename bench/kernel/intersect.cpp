@@ -38,7 +38,7 @@ template <class T>
 SphereLanes<T> spheres_of(const compile::CompiledScene& compiled, const kernel::RayPacket<T>& packet) {
   SphereLanes<T> out;
   for (int i = 0; i < kernel::kPacketSize; ++i) {
-    const bool none = packet.hit[i] == kernel::kNoSphere;
+    const bool none = packet.hit[i] == kernel::kNone;
     const kernel::Sphere s = compiled.spheres[none ? 0 : static_cast<std::size_t>(packet.hit[i])];
     out.center[0][i] = static_cast<T>(s.x);
     out.center[1][i] = static_cast<T>(s.y);

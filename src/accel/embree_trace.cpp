@@ -151,7 +151,7 @@ HWY_INLINE TraversalChoice& choice_for(const ThreadTraversals& traversals, const
   if constexpr (Packet::kIsShadow) {
     return traversals.shadow;
   } else {
-    return packet.self[0] == kernel::kNoSphere ? traversals.camera : traversals.secondary;
+    return packet.self[0] == kernel::kCamera ? traversals.camera : traversals.secondary;
   }
 }
 

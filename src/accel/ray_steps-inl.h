@@ -112,7 +112,7 @@ struct alignas(64) SingleRay {
   float origin[4], direction[4];  ///< the fourth number is 0
   float inverse[3];               ///< 1 / direction
   float limit;                    ///< distance beyond which nothing is searched
-  std::uint32_t left;             ///< the sphere that the ray leaves outwards and so cannot hit; kNoSphere: none
+  std::uint32_t left;             ///< the sphere that the ray leaves outwards and so cannot hit; kNone: none
   std::uint32_t target;           ///< shadow rays: a sphere that is never hit
   std::uint32_t key;              ///< decides which objects are visible; only if the scene has opacities
   std::uint32_t near[3];          ///< per axis: offset in Node::bound of the bounds at which the ray enters boxes

@@ -65,7 +65,7 @@ HWY_INLINE void intersect_candidates(const EmbreeQuery<Packet>& query, unsigned 
     auto found = Found<D, Packet>::load(d, packet, first);
     while (rest != 0) {
       HWY_ALIGN Id ids[kStep];
-      hn::Store(set(du, kernel::kNoSphere), du, ids);
+      hn::Store(set(du, kernel::kNone), du, ids);
       unsigned now = 0;
       for (const int i : SetBits(rest)) {
         SingleRay& one = rays[i];
@@ -78,7 +78,7 @@ HWY_INLINE void intersect_candidates(const EmbreeQuery<Packet>& query, unsigned 
       }
       if (now == 0) break;
       const auto found_ids = hn::Load(du, ids);
-      const auto active = hn::RebindMask(d, found_ids != kernel::kNoSphere);
+      const auto active = hn::RebindMask(d, found_ids != kernel::kNone);
       const Id any = ids[static_cast<int>(hwy::Num0BitsBelowLS1Bit_Nonzero32(now)) - v];
       found.is_new = hn::FirstN(d, 0);
       auto at_spheres = active;
@@ -97,7 +97,7 @@ HWY_INLINE void intersect_candidates(const EmbreeQuery<Packet>& query, unsigned 
         const Id other = rods.contains(any) ? 0 : any;
         k::gather_spheres(
             d, scene.spheres,
-            [&](std::size_t i) { return ids[i] == kernel::kNoSphere || rods.contains(ids[i]) ? other : ids[i]; }, row);
+            [&](std::size_t i) { return ids[i] == kernel::kNone || rods.contains(ids[i]) ? other : ids[i]; }, row);
         const k::Spheres<D> sphere{{row[0], row[1], row[2]}, row[3]};
         intersect<kPrecision>(d, ray, sphere, found_ids, at_spheres, found);
       }
@@ -172,13 +172,13 @@ HWY_INLINE void trace_rays(const SphereBvh& bvh, const EmbreeQuery<Packet>* quer
   intersect_all();
 }
 
-/// The spheres that rays leave outwards, one per lane; kNoSphere for other rays. A ray cannot hit such a sphere, see
+/// The spheres that rays leave outwards, one per lane; kNone for other rays. A ray cannot hit such a sphere, see
 /// kernel::closest_distance().
 template <class Packet>
 HWY_INLINE void set_left_spheres(const EmbreeQuery<Packet>& query, typename Packet::Id* left) {
   const hn::ScalableTag<typename Packet::Number> d;
   const k::IdTag<std::remove_const_t<decltype(d)>> du;
-  const auto none = set(du, kernel::kNoSphere);
+  const auto none = set(du, kernel::kNone);
   const kernel::RodArray& rods = query.scene->rods;
   for (int v = 0; v < kWidth; v += static_cast<int>(hn::Lanes(d))) {
     const auto ray = k::load_rays(d, *query.packet, query.first + v);
@@ -236,7 +236,7 @@ HWY_INLINE unsigned start_rays(const SphereBvh& bvh, EmbreeQuery<Packet>& query,
     ray.enter[1] = 0;
     ray.subtree = bvh.start_node(query.scene->rods.object(static_cast<std::uint32_t>(packet.self[lane])));
     ray.subtree_level = 0;
-    if (ray.subtree == kernel::kNoSphere) ray.subtree = bvh.root();
+    if (ray.subtree == kernel::kNone) ray.subtree = bvh.root();
     ray.what[1] = ray.subtree;
     ray.waiting = 2;
   }

@@ -33,7 +33,7 @@ class SphereBvh {
     std::uint8_t center[3][kArity];
     float origin[3];
     float step;
-    std::uint32_t ids[kArity];  ///< of spheres and of the first halves of rods; kNoSphere beyond the last one
+    std::uint32_t ids[kArity];  ///< of spheres and of the first halves of rods; kNone beyond the last one
   };
 
   /// Radii of a leaf's spheres, if they differ between spheres: at most step * radius, box space.
@@ -102,12 +102,12 @@ class SphereBvh {
   std::uint32_t root() const noexcept { return static_cast<std::uint32_t>(nodes.size() - 1); }
   std::size_t bytes() const noexcept;
 
-  /// The node above the leaf of a sphere or rod; kNoSphere if it is not in the tree, or if there are no start nodes.
+  /// The node above the leaf of a sphere or rod; kNone if it is not in the tree, or if there are no start nodes.
   ///
   /// `object`   kernel::RodArray::object()
   std::uint32_t start_node(std::size_t object) const noexcept {
     const std::uint32_t node = object < start_nodes.size() ? start_nodes[object] : no_start_node;
-    return node == no_start_node ? kernel::kNoSphere : node;
+    return node == no_start_node ? kernel::kNone : node;
   }
 
   /// Spheres in a leaf; all leaves but the last are full.

@@ -64,7 +64,7 @@ SphereBvh::Leaf make_leaf(std::span<const SphereItem> items) {
     leaf.origin[axis] = all.lower[axis];
     leaf.step = std::max(leaf.step, step_between(all.lower[axis], all.upper[axis]));
   }
-  std::fill_n(leaf.ids, kArity, kernel::kNoSphere);
+  std::fill_n(leaf.ids, kArity, kernel::kNone);
   for (std::size_t i = 0; i < items.size(); ++i) {
     leaf.ids[i] = items[i].id;
     for (int axis = 0; axis < 3; ++axis)

@@ -16,6 +16,7 @@ namespace {
 using kernel::CausticBall;
 using kernel::CausticLight;
 using kernel::Caustics;
+using kernel::kNone;
 using kernel::Material;
 using kernel::MaterialKind;
 using kernel::MaterialTextures;
@@ -25,7 +26,6 @@ using math::Vec3d;
 bool is_textured(const SceneView& scene, std::size_t material) {
   if (scene.material_textures == nullptr) return false;
   const MaterialTextures& textures = scene.material_textures[material];
-  constexpr std::uint32_t kNone = MaterialTextures::kNone;
   return textures.albedo != kNone || textures.fuzz != kNone || textures.radiance != kNone;
 }
 
@@ -33,8 +33,7 @@ bool is_textured(const SceneView& scene, std::size_t material) {
 bool is_sharp(const SceneView& scene, std::size_t index) {
   const Material& material = scene.materials[index];
   if (material.kind != MaterialKind::kMetal && material.kind != MaterialKind::kDielectric) return false;
-  return material.fuzz == 0 &&
-         (scene.material_textures == nullptr || scene.material_textures[index].fuzz == MaterialTextures::kNone);
+  return material.fuzz == 0 && (scene.material_textures == nullptr || scene.material_textures[index].fuzz == kNone);
 }
 
 /// Whether the images in balls of a sharp material are sampled.
@@ -67,13 +66,13 @@ SharpBalls sharp_balls(const SceneView& scene) {
   SharpBalls out;
   if (scene.sphere_count == 0) return out;
   std::uint32_t last = 0;
-  for (std::size_t i = 0; i < scene.sphere_count; ++i) last = std::max(last, scene.sphere_materials[i]);
+  for (std::size_t i = 0; i < scene.sphere_count; ++i) last = std::max(last, scene.object_materials[i]);
   std::vector<std::uint8_t> uses;
   for (std::size_t m = 0; m <= last; ++m)
     uses.push_back(!is_sharp(scene, m) ? kOther : is_sampled(scene, m) ? kSampled : is_void(scene, m) ? kVoid : kSharp);
   if (std::all_of(uses.begin(), uses.end(), [](std::uint8_t use) { return use == kOther; })) return out;
   for (std::uint32_t i = 0; i < scene.sphere_count; ++i) {
-    const std::uint8_t use = uses[scene.sphere_materials[i]];
+    const std::uint8_t use = uses[scene.object_materials[i]];
     if (use == kOther || !is_visible(scene, i)) continue;
     ++out.count;
     if (use == kSampled) out.sampled.push_back(i);
@@ -93,7 +92,7 @@ std::vector<Emitter> emitters_of(const SceneView& scene) {
   std::vector<Emitter> out;
   for (std::uint32_t leaf = 0; leaf < scene.lights.count; ++leaf) {
     const std::uint32_t id = scene.lights.spheres[leaf];
-    if (!is_textured(scene, scene.sphere_materials[id])) out.push_back({id, kernel::light_leaf(scene, id).power});
+    if (!is_textured(scene, scene.object_materials[id])) out.push_back({id, kernel::light_leaf(scene, id).power});
   }
   const auto by_id = [](const Emitter& a, const Emitter& b) { return a.sphere < b.sphere; };
   if (out.size() > kMaxCausticLights) {
@@ -139,7 +138,7 @@ double sum_of(const double (&rgb)[3]) { return rgb[0] + rgb[1] + rgb[2]; }
 
 /// The part of light that a ball of this material scatters.
 double scattered_part(const SceneView& scene, std::uint32_t ball) {
-  const Material& material = scene.materials[scene.sphere_materials[ball]];
+  const Material& material = scene.materials[scene.object_materials[ball]];
   return material.kind == MaterialKind::kMetal ? sum_of(material.albedo) / 3 : 1;
 }
 
@@ -177,7 +176,7 @@ double append_lights(const Irradiances& irradiance, const Moving& ball, const st
     lights.push_back({light, sum, value});
   };
   for (const Emitter& emitter : emitters) add(emitter.sphere, irradiance.from_emitter(ball, emitter));
-  if (has_sun) add(kernel::kNoSphere, irradiance.from_sun());
+  if (has_sun) add(kernel::kSun, irradiance.from_sun());
   return sum;
 }
 
@@ -193,13 +192,13 @@ CausticBall ball_of(const SceneView& scene, std::uint32_t id, const Moving& move
 }
 
 /// The largest void that is concentric with a ball of glass and smaller at all times, and whose index is the reciprocal
-/// of the ball's; kNoSphere: there is none.
+/// of the ball's; kNone: there is none.
 std::uint32_t void_of(const SceneView& scene, std::uint32_t ball, const std::vector<std::uint32_t>& voids) {
   constexpr double kSameIndex = 1e-9;  // indices are authored with fewer digits
-  const auto eta = [&](std::uint32_t id) { return scene.materials[scene.sphere_materials[id]].eta[1]; };
-  if (scene.materials[scene.sphere_materials[ball]].kind != MaterialKind::kDielectric) return kernel::kNoSphere;
+  const auto eta = [&](std::uint32_t id) { return scene.materials[scene.object_materials[id]].eta[1]; };
+  if (scene.materials[scene.object_materials[ball]].kind != MaterialKind::kDielectric) return kNone;
   const Moving outer = moving(scene, ball);
-  std::uint32_t found = kernel::kNoSphere;
+  std::uint32_t found = kNone;
   double largest = 0;
   for (const std::uint32_t id : voids) {
     const Moving inner = moving(scene, id);
@@ -241,8 +240,7 @@ kernel::Caustics CausticList::view() const noexcept {
   out.balls = balls.data();
   out.count = static_cast<std::uint32_t>(balls.size());
   out.lights = lights.data();
-  out.has_hollow =
-      std::any_of(balls.begin(), balls.end(), [](const CausticBall& ball) { return ball.inner != kernel::kNoSphere; });
+  out.has_hollow = std::any_of(balls.begin(), balls.end(), [](const CausticBall& ball) { return ball.inner != kNone; });
   out.inverse_reference = kernel::kCausticReach * kernel::kCausticReach / strongest;
   return out;
 }

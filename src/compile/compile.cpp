@@ -133,30 +133,30 @@ void set_spheres(const scene::Scene& scene, const SphereStore::OnCopied& on_copi
 }
 
 /// Numbers the materials of the spheres and of the halves of rods.
-void set_sphere_materials(const scene::Scene& scene, CompiledScene& compiled) {
+void set_object_materials(const scene::Scene& scene, CompiledScene& compiled) {
   const base::StopPoint stop;
-  compiled.sphere_materials = {};
-  compiled.sphere_materials.reserve(scene.sphere_count() + 2 * scene.rod_count());
+  compiled.object_materials = {};
+  compiled.object_materials.reserve(scene.sphere_count() + 2 * scene.rod_count());
   compiled.material_sources.clear();
   MaterialTable table(scene, compiled.material_sources);
   for (const scene::Sphere& s : scene.spheres)
-    compiled.sphere_materials.push_back(table.index(s.material, s.radius < 0));
+    compiled.object_materials.push_back(table.index(s.material, s.radius < 0));
   for (std::size_t p = 0; p < scene.points.size(); ++p) {
     const scene::Points& points = scene.points[p];
     for (std::size_t i = 0; i < points.centers.size(); ++i) {
       stop.check(i);
       const std::uint32_t material = points.materials.empty() ? points.material : points.materials[i];
       const bool inside_out = points.radii[i] < 0;
-      compiled.sphere_materials.push_back(points.colors.empty()
+      compiled.object_materials.push_back(points.colors.empty()
                                               ? table.index(material, inside_out)
                                               : table.colored_index(material, inside_out, p, points.colors[i]));
     }
   }
   each_rod_half(scene,
-                [&](std::uint32_t material) { compiled.sphere_materials.push_back(table.index(material, false)); });
+                [&](std::uint32_t material) { compiled.object_materials.push_back(table.index(material, false)); });
   each_bond_half(scene, compiled, [&](const scene::Points& points, std::size_t sphere) {
     const std::optional<std::uint32_t> material = points.bonds.material;
-    compiled.sphere_materials.push_back(material ? table.index(*material, false) : compiled.sphere_materials[sphere]);
+    compiled.object_materials.push_back(material ? table.index(*material, false) : compiled.object_materials[sphere]);
   });
 }
 
@@ -250,7 +250,7 @@ void set_background(const scene::Scene& scene, CompiledScene& compiled) {
   const scene::Background& from = scene.background;
   compiled.backdrop = from.backdrop;
   compiled.environment = nullptr;
-  compiled.features.sky = false;
+  compiled.features.gradient = false;
   std::shared_ptr<const scene::EnvironmentImage> image = from.image;
   if (!image && from.type == scene::BackgroundType::kSky)
     image = std::make_shared<const scene::EnvironmentImage>(sky::bake_sky(from));
@@ -268,7 +268,7 @@ void set_background(const scene::Scene& scene, CompiledScene& compiled) {
   const bool gradient = from.type == scene::BackgroundType::kGradient;
   compiled.background.bottom = gradient ? from.bottom : from.color;
   compiled.background.top = gradient ? from.top : from.color;
-  compiled.features.sky = gradient && !(from.bottom == from.top);
+  compiled.features.gradient = gradient && !(from.bottom == from.top);
 }
 
 /// With blue noise, a pixel owns a power of two of consecutive points of the sequence, at least as many as its samples;
@@ -314,7 +314,7 @@ void update_parts(const scene::Scene& scene, const scene::Scene* closing, scene:
     compiled.features.rods = compiled.rod_count() > 0;
   }
   if (changed.geometry || changed.assignment) {
-    set_sphere_materials(scene, compiled);
+    set_object_materials(scene, compiled);
     set_opacity(scene, compiled);
   }
   if (changed.geometry || changed.assignment || changed.look) {
@@ -336,7 +336,7 @@ kernel::SceneView CompiledScene::view() const noexcept {
   kernel::SceneView v;
   static_cast<kernel::SceneSettings&>(v) = *this;
   v.spheres = spheres.view();
-  v.sphere_materials = sphere_materials.view();
+  v.object_materials = object_materials.view();
   v.materials = materials.data();
   v.sphere_count = spheres.size();
   static constexpr kernel::Sphere kReadable;  // the kernel reads a sphere in lanes that hit a rod

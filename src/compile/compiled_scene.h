@@ -39,7 +39,7 @@ struct CompiledScene : kernel::SceneSettings {
   std::vector<std::size_t> rod_file_sizes;       ///< number of rods of each file
   std::vector<std::size_t> stub_counts;          ///< number of stubs of bonds of each points table
   std::vector<std::size_t> bond_counts;          ///< number of bonds of each points table, without those in stubs
-  PackedIndices sphere_materials;                ///< one per sphere, then two per rod, index into `materials`
+  PackedIndices object_materials;                ///< one per sphere, then two per rod, index into `materials`
   std::vector<float> opacity;                    ///< as kernel::SceneView has it; empty: all are 1
   std::vector<MaterialSource> material_sources;  ///< one per material
   std::vector<kernel::Material> materials;

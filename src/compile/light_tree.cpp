@@ -153,7 +153,7 @@ LightTree build_light_tree(const kernel::SceneView& scene, kernel::Precision pre
   tree.precision = precision;
   for (std::uint32_t id = 0; id < scene.sphere_count; ++id) {
     if (scene.opacity != nullptr && scene.opacity[id] == 0) continue;
-    const double* const rgb = scene.emission[scene.sphere_materials[id]].radiance;
+    const double* const rgb = scene.emission[scene.object_materials[id]].radiance;
     if (rgb[0] > 0 || rgb[1] > 0 || rgb[2] > 0) tree.spheres.push_back(id);
   }
   tree.spheres = without_coincident(scene, precision, std::move(tree.spheres));

@@ -43,7 +43,7 @@ kernel::Material compile_model(const scene::MaterialModel& model) {
     out.eta[1] = glass->ior;
     out.r0[0] = normal_reflectance(out.eta[0]);
     out.r0[1] = normal_reflectance(out.eta[1]);
-    static_assert(static_cast<int>(scene::Fresnel::kNone) == static_cast<int>(kernel::FresnelKind::kNone));
+    static_assert(static_cast<int>(scene::Fresnel::kNone) == static_cast<int>(kernel::FresnelKind::kZero));
     out.fresnel = static_cast<kernel::FresnelKind>(glass->fresnel);
   }
   if (const auto* plastic = std::get_if<scene::Plastic>(&model))
@@ -89,7 +89,7 @@ void set_textures(const scene::MaterialModel& model, CompiledScene& compiled, ke
   store.add_material(out);
   if (!store.textures().empty() || material.kind == kernel::MaterialKind::kPlastic ||
       (material.kind == kernel::MaterialKind::kDielectric && material.fuzz > 0))
-    compiled.features.extended = true;
+    compiled.features.rich_materials = true;
 }
 
 /// Returns the material for a sphere whose normal points inward: its inside and outside are exchanged.
@@ -148,7 +148,7 @@ void compile_materials(const scene::Scene& scene, CompiledScene& compiled) {
   emission.clear();
   textures = {};
   compiled.light_groups = {""};
-  compiled.features.extended = compiled.features.hemisphere = false;
+  compiled.features.rich_materials = compiled.features.hemisphere = false;
   for (const MaterialSource& source : compiled.material_sources) {
     if (source.color == MaterialSource::kNoColor) {
       const scene::MaterialModel& model = scene.materials[source.material].model;
@@ -167,11 +167,10 @@ void compile_materials(const scene::Scene& scene, CompiledScene& compiled) {
     kernel::MaterialTextures replaced = textures.material(source.material);
     if (m.kind == kernel::MaterialKind::kEmitter) {
       for (int k = 0; k < 3; ++k) e.radiance[k] *= k == 0 ? rgb.x : k == 1 ? rgb.y : rgb.z;
-      if (replaced.radiance != kernel::MaterialTextures::kNone)
-        replaced.radiance = textures.add_scaled(replaced.radiance, rgb);
+      if (replaced.radiance != kernel::kNone) replaced.radiance = textures.add_scaled(replaced.radiance, rgb);
     } else {
       set(m.albedo, rgb);
-      replaced.albedo = kernel::MaterialTextures::kNone;
+      replaced.albedo = kernel::kNone;
     }
     materials.push_back(m);
     emission.push_back(e);

@@ -71,7 +71,7 @@ std::uint32_t TextureStore::add(const scene::Texture& texture, Vec3d factor) {
   set(out.low, texture.low * factor);
   set(out.high, texture.high * factor);
   if (texture.type == scene::TextureType::kImage) {
-    if (!texture.image) return kernel::MaterialTextures::kNone;
+    if (!texture.image) return kernel::kNone;
     const auto image = std::make_shared<Image>();
     image->texels = texture.image;
     const auto add_level = [&](const scene::EnvironmentImage& level) {

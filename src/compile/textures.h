@@ -26,7 +26,7 @@ class TextureStore {
  public:
   /// Adds a texture whose values are multiplied by `factor`.
   ///
-  /// Result     its index; kernel::MaterialTextures::kNone for an image that is not loaded
+  /// Result     its index; kernel::kNone for an image that is not loaded
   std::uint32_t add(const scene::Texture& texture, math::Vec3d factor = {1, 1, 1});
   /// Adds a copy of a texture whose values are multiplied by `factor`.
   std::uint32_t add_scaled(std::uint32_t index, math::Vec3d factor);

@@ -50,7 +50,7 @@ struct RankedCoverage {
 std::vector<RankedCoverage> ranked(const LayerRequest& r, const Matte& matte, const LayerPixel& p) {
   std::vector<RankedCoverage> shares;
   for (const SphereCoverage& s : p.shares) {
-    if (s.sphere == kernel::kNoSphere) continue;
+    if (s.sphere == kernel::kNone) continue;
     const std::uint32_t id = r.matte_id(matte, s.sphere);
     if (id == 0) continue;
     const auto known =
@@ -150,7 +150,7 @@ void each_half_channel(const Halves& halves, F f) {
 template <class F>
 void each_channel(const LayerRequest& r, const LayerPixel& p, const Halves& halves, const kernel::PixelSum& beauty,
                   const kernel::SceneView& view, F f) {
-  const bool hit = p.sphere != kernel::kNoSphere;
+  const bool hit = p.sphere != kernel::kNone;
   using enum PlaneKind;
   const auto vector = [&](const char* layer, const char* letters, PlaneKind kind, auto value) {
     for (int k = 0; k < 3; ++k) f(layer, letters[k], kind, value(k));
@@ -169,7 +169,7 @@ void each_channel(const LayerRequest& r, const LayerPixel& p, const Halves& halv
   // Ids start at 1; 0 means no hit.
   if (r.object_id) f("object_id", 'X', kData, hit ? static_cast<float>(view.rods.object(p.sphere)) + 1 : 0.0F);
   if (r.material_id)
-    f("material_id", 'X', kData, hit ? static_cast<float>(r.material_numbers[view.sphere_materials[p.sphere]]) : 0.0F);
+    f("material_id", 'X', kData, hit ? static_cast<float>(r.material_numbers[view.object_materials[p.sphere]]) : 0.0F);
   if (r.guide_albedo || r.guide_normal) {
     kernel::GuideSum guides = halves[0].guides;
     guides += halves[1].guides;
@@ -203,7 +203,7 @@ std::vector<DeepSample> deep_samples(const LayerPixel& p, bool background_visibl
                    [](const SphereCoverage& a, const SphereCoverage& b) { return a.front < b.front; });
   std::int64_t left = p.weight;  // weight of the paths that no sample so far covers
   for (const SphereCoverage& share : shares) {
-    if (left <= 0 || share.weight <= 0 || (share.sphere == kernel::kNoSphere && !background_visible)) continue;
+    if (left <= 0 || share.weight <= 0 || (share.sphere == kernel::kNone && !background_visible)) continue;
     const auto seen = static_cast<double>(left);
     DeepSample sample{};
     sample.front = static_cast<float>(share.front);

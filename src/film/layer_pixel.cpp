@@ -65,7 +65,7 @@ struct HitRod {
   double length, radius;
 
   HitRod(const kernel::SceneView& scene, const PathRecord& path) {
-    const kernel::Rod rod = scene.rods.at(scene.rods.index(path.sphere), path.time);
+    const kernel::Rod rod = scene.rods.at(scene.rods.index(path.object), path.time);
     axis = vector_of(rod.b) - vector_of(rod.a);
     length = math::length(axis);
     radius = rod.radius;
@@ -104,20 +104,20 @@ std::pair<Vec3d, Vec3d> camera_at(const kernel::SceneView& scene, double time) {
 /// False if a path's first hit is certainly not closer than this; cheaper than locating the hit.
 bool may_be_nearer(const kernel::SceneView& scene, const PathRecord& path, double than) {
   if (scene.camera.is_orthographic || scene.features.motion) return true;
-  const Vec3d from_camera = base_of(scene, path.sphere, 0) - scene.camera.origin + path.offset;
+  const Vec3d from_camera = base_of(scene, path.object, 0) - scene.camera.origin + path.offset;
   constexpr double kRounding = 1 + 0x1p-50;  // of both squares and the root
   return !(dot(from_camera, from_camera) > than * than * kRounding);
 }
 
 Hit locate(const kernel::SceneView& scene, const PathRecord& path) {
   const auto [origin, forward] = camera_at(scene, path.time);
-  const Vec3d from_camera = base_of(scene, path.sphere, path.time) - origin + path.offset;
+  const Vec3d from_camera = base_of(scene, path.object, path.time) - origin + path.offset;
   const double forward_length = length(forward);
   Hit hit{};
   hit.z = dot(from_camera, forward) / forward_length;
   hit.distance = scene.camera.is_orthographic ? hit.z : length(from_camera);
   // The far end of the chord. From inside the sphere the first hit is the exit.
-  const double chord = scene.rods.contains(path.sphere) ? HitRod(scene, path).chord(path.offset, path.direction)
+  const double chord = scene.rods.contains(path.object) ? HitRod(scene, path).chord(path.offset, path.direction)
                                                         : std::max(0.0, -2 * dot(path.direction, path.offset));
   hit.exit_z = hit.z + chord * dot(path.direction, forward) / forward_length;
   return hit;
@@ -125,13 +125,13 @@ Hit locate(const kernel::SceneView& scene, const PathRecord& path) {
 
 /// The normal at a first hit, on the side of the camera.
 Vec3d normal_of(const kernel::SceneView& scene, const PathRecord& path) {
-  if (scene.rods.contains(path.sphere)) {
+  if (scene.rods.contains(path.object)) {
     const HitRod rod(scene, path);
     return rod.from_axis(path.offset) * (1 / rod.radius);
   }
   // Decided per ray, since the lens can straddle the surface.
   const double along = dot(path.direction, path.offset);
-  const double radius = kernel::sphere_at(scene, path.sphere, path.time).radius;
+  const double radius = kernel::sphere_at(scene, path.object, path.time).radius;
   return path.offset * (along > 0 ? -1 / radius : 1 / radius);
 }
 
@@ -152,12 +152,12 @@ void LayerPixel::add(const LayerRequest& request, const kernel::SceneView& scene
       if (path_weight < 0) add3(negative_light, path.light, -path_weight);
     }
   }
-  const bool hits = path.sphere != kernel::kNoSphere;
+  const bool hits = path.object != kernel::kNone;
   Hit hit{};
   const bool is_candidate = hits && request.nearest() && may_be_nearer(scene, path, depth);
   if (is_candidate || (hits && request.deep)) hit = locate(scene, path);
   if (request.deep || (hits && !request.mattes.empty())) {
-    SphereCoverage& share = share_of(shares, request.coverage_key(path.sphere));
+    SphereCoverage& share = share_of(shares, request.coverage_key(path.object));
     share.weight += path_weight;
     if (request.deep && is_valid(path.light)) add3(share.light, path.light, path_weight);
     share.front = std::min(share.front, hits ? hit.z : double{kNothingHit});
@@ -167,8 +167,8 @@ void LayerPixel::add(const LayerRequest& request, const kernel::SceneView& scene
 
   covered += path_weight;
   if (request.albedo) {
-    const double* const constant = scene.materials[scene.sphere_materials[path.sphere]].albedo;
-    if (scene.features.extended) {
+    const double* const constant = scene.materials[scene.object_materials[path.object]].albedo;
+    if (scene.features.rich_materials) {
       add3(albedo, path.albedo, path_weight);
     } else {
       add3(albedo, constant, path_weight);
@@ -181,8 +181,8 @@ void LayerPixel::add(const LayerRequest& request, const kernel::SceneView& scene
   if (!is_candidate || !(hit.distance < depth)) return;
   depth = hit.distance;
   z = hit.z;
-  sphere = path.sphere;
-  const Vec3d at = base_of(scene, path.sphere, path.time) + path.offset;
+  sphere = path.object;
+  const Vec3d at = base_of(scene, path.object, path.time) + path.offset;
   position[0] = at.x;
   position[1] = at.y;
   position[2] = at.z;

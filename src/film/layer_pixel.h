@@ -16,7 +16,7 @@ struct LayerRequest;
 
 /// The paths of a pixel whose first hit is a given sphere, or one that LayerRequest::coverage_key() replaces by it.
 struct SphereCoverage {
-  std::uint32_t sphere = kernel::kNoSphere;
+  std::uint32_t sphere = kernel::kNone;
   std::int64_t weight = 0;
   // Only for deep images:
   kernel::Int128 light[3] = {0, 0, 0};
@@ -55,7 +55,7 @@ struct LayerPixel {
   /// The first hit nearest to the camera: distance, depth along the view axis, position and sphere.
   double depth = std::numeric_limits<double>::infinity(), z = 0;
   double position[3] = {0, 0, 0};
-  std::uint32_t sphere = kernel::kNoSphere;
+  std::uint32_t sphere = kernel::kNone;
   std::vector<SphereCoverage> shares;  ///< ascending by sphere, the background last; only for mattes and deep images
 };
 

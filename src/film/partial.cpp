@@ -35,7 +35,7 @@ void Partial::add(const Partial& other) {
 }
 
 bool Partial::has_known_spheres(std::size_t count) const {
-  const auto is_known = [count](std::uint32_t s) { return s == kernel::kNoSphere || s < count; };
+  const auto is_known = [count](std::uint32_t s) { return s == kernel::kNone || s < count; };
   return std::all_of(layers.begin(), layers.end(), [&](const LayerPixel& p) {
     return is_known(p.sphere) &&
            std::all_of(p.shares.begin(), p.shares.end(), [&](const SphereCoverage& s) { return is_known(s.sphere); });

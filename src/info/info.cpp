@@ -55,10 +55,10 @@ std::uint64_t count_emitters(const compile::CompiledScene& compiled) {
     shines.push_back(e.radiance[0] > 0 || e.radiance[1] > 0 || e.radiance[2] > 0);
   std::vector<std::uint32_t> ids;
   for (std::size_t i = 0; i < compiled.spheres.size(); ++i)
-    if (shines[compiled.sphere_materials[i]]) ids.push_back(static_cast<std::uint32_t>(i));
+    if (shines[compiled.object_materials[i]]) ids.push_back(static_cast<std::uint32_t>(i));
   std::uint64_t rods = 0;
-  for (std::size_t i = compiled.spheres.size(); i < compiled.sphere_materials.size(); i += 2)
-    rods += shines[compiled.sphere_materials[i]] || shines[compiled.sphere_materials[i + 1]] ? 1 : 0;
+  for (std::size_t i = compiled.spheres.size(); i < compiled.object_materials.size(); i += 2)
+    rods += shines[compiled.object_materials[i]] || shines[compiled.object_materials[i + 1]] ? 1 : 0;
   return rods + compile::without_coincident(compiled.view(), compiled.precision, std::move(ids)).size();
 }
 
@@ -103,7 +103,7 @@ bool has_glass_in_glass(const compile::CausticList& list) {
     return length(between) + inner.radius < outer.radius;
   };
   return std::any_of(list.balls.begin(), list.balls.end(), [&](const kernel::CausticBall& ball) {
-    return ball.inner != kernel::kNoSphere ||
+    return ball.inner != kernel::kNone ||
            std::any_of(list.balls.begin(), list.balls.end(),
                        [&](const kernel::CausticBall& other) { return is_within(ball, other); });
   });
@@ -115,7 +115,7 @@ std::string caustics_text(const scene::Scene& scene, const compile::CompiledScen
   const compile::CausticList& list = compiled.caustics;
   if (!compiled.samples_caustics || list.pairs == 0) return {};
   const auto name = [&](std::uint32_t id) {
-    if (id == kernel::kNoSphere) return std::string("the sun");
+    if (id == kernel::kSun) return std::string("the sun");
     if (id < scene.spheres.size()) return fmt::format("sphere[{}]", id);
     std::size_t index = id - scene.spheres.size(), table = 0;
     for (; index >= compiled.points_sizes[table]; ++table) index -= compiled.points_sizes[table];
@@ -151,7 +151,7 @@ std::vector<Feature> features_of(const compile::CompiledScene& compiled, bool ha
       feature("fuzz", some([](const kernel::Material& m) { return m.fuzz > 0; }), "no material has fuzz above 0"),
       feature("dielectric", of(kernel::MaterialKind::kDielectric), "no glass: no Fresnel term, no refraction"),
       feature("plastic", of(kernel::MaterialKind::kPlastic), "not used by any sphere"),
-      feature("gradient sky", compiled.features.sky, "no gradient: independent of direction"),
+      feature("gradient sky", compiled.features.gradient, "no gradient: independent of direction"),
       feature("image background", compiled.environment != nullptr, "no image: no texture lookups"),
       feature("textures", !compiled.textures.textures().empty(), "all materials are constant"),
       feature("motion blur", compiled.features.motion, "nothing moves while the shutter is open",

@@ -45,7 +45,7 @@ Proportions proportions_of(const compile::CompiledScene& compiled) {
 double sunk_lamp_radius(const compile::CompiledScene& compiled, const kernel::Sphere& ground) {
   double smallest = -1;
   for (std::size_t i = 0; i < compiled.spheres.size(); ++i) {
-    if (compiled.materials[compiled.sphere_materials[i]].kind != kernel::MaterialKind::kEmitter) continue;
+    if (compiled.materials[compiled.object_materials[i]].kind != kernel::MaterialKind::kEmitter) continue;
     const kernel::Sphere s = compiled.spheres[i];
     const double dx = s.x - ground.x, dy = s.y - ground.y, dz = s.z - ground.z;
     const double height = std::sqrt(dx * dx + dy * dy + dz * dz) - ground.radius;

@@ -233,7 +233,7 @@ class Run {
   bool is_of_this_render(const film::Partial& from) const {
     return from.is_adaptive() == settings_.sampling.is_adaptive() &&
            from.layers.empty() != settings_.layers.records() && from.halves.empty() != settings_.layers.guides() &&
-           from.has_known_spheres(compiled().sphere_materials.size());
+           from.has_known_spheres(compiled().object_materials.size());
   }
 
   /// Builds the BVH, unless the prepared scene has one.

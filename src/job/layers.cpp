@@ -58,11 +58,11 @@ class SphereClasses {
  public:
   /// `material_ids`   id of each compiled material; empty: spheres are not divided by material
   /// `most`           maximum number of classes
-  SphereClasses(const compile::PackedIndices& sphere_materials, std::vector<std::uint32_t> material_ids,
+  SphereClasses(const compile::PackedIndices& object_materials, std::vector<std::uint32_t> material_ids,
                 std::size_t most)
-      : materials_(sphere_materials),
+      : materials_(object_materials),
         material_ids_(std::move(material_ids)),
-        classes_{{sphere_materials.size(), static_cast<std::uint32_t>(most)}, {}} {}
+        classes_{{object_materials.size(), static_cast<std::uint32_t>(most)}, {}} {}
 
   /// Adds the next spheres, or halves of rods.
   void add(std::size_t count, MatteIds wanted) {
@@ -157,11 +157,11 @@ void add_mattes(const scene::Scene& scene, const compile::CompiledScene& compile
     for (const std::uint32_t material : authored)
       material_ids.push_back(materials.id_of(scene.materials[material].name));
 
-  const std::size_t ids_of_all = compiled.sphere_materials.size();
+  const std::size_t ids_of_all = compiled.object_materials.size();
   std::size_t blocks = scene.spheres.size() + scene.rods.size() + scene.rod_files.size();
   for (const scene::Points& points : scene.points) blocks += std::max<std::size_t>(1, points.object_names.size());
   const std::size_t most = std::min(ids_of_all, by_material ? blocks * material_ids.size() : blocks);
-  SphereClasses classes(compiled.sphere_materials, std::move(material_ids), most);
+  SphereClasses classes(compiled.object_materials, std::move(material_ids), most);
   const auto ids_of = [&](const std::string& object, const std::string& group) {
     return MatteIds{by_object ? objects.id_of(object) : 0, 0, by_group ? groups.id_of(group) : 0};
   };

@@ -57,7 +57,7 @@ constexpr double kBytesPerShare = 1.5 * sizeof(film::SphereCoverage);
 double expected_shares(const compile::CompiledScene& compiled, const film::LayerRequest& layers) {
   if (!layers.deep && layers.mattes.empty()) return 0;
   const double things =
-      static_cast<double>(layers.deep ? compiled.sphere_materials.size() : layers.matte_classes->first_sphere.size());
+      static_cast<double>(layers.deep ? compiled.object_materials.size() : layers.matte_classes->first_sphere.size());
   const double pixels = static_cast<double>(compiled.width) * compiled.height;
   const double seen = 2 + things / pixels;
   return std::min({things + (layers.deep ? 1 : 0), static_cast<double>(compiled.samples), seen});
@@ -142,7 +142,7 @@ MemoryEstimate estimate_memory(const compile::CompiledScene& compiled, const fil
   MemoryEstimate m;
   m.film = math::pixel_count(compiled.width, compiled.height) * bytes_per_pixel;
   m.spheres = compiled.spheres.bytes() + compiled.rods.size() * sizeof(kernel::Rod) +
-              compiled.bonds.size() * sizeof(kernel::Bond) + compiled.sphere_materials.bytes() +
+              compiled.bonds.size() * sizeof(kernel::Bond) + compiled.object_materials.bytes() +
               compiled.opacity.size() * sizeof(compiled.opacity[0]) +
               (layers.matte_classes ? layers.matte_classes->of_sphere.bytes() : 0);
   if (compiled.environment) m.background = compiled.environment->bytes();

@@ -94,7 +94,7 @@ Hash hash_of_spheres(const compile::CompiledScene& compiled) {
     add_all(hash, r.b);
     hash.add(r.radius);
   }
-  for (std::size_t i = 0; i < compiled.sphere_materials.size(); ++i) hash.add_bits(compiled.sphere_materials[i]);
+  for (std::size_t i = 0; i < compiled.object_materials.size(); ++i) hash.add_bits(compiled.object_materials[i]);
   for (const float opacity : compiled.opacity) hash.add(opacity);
   return hash;
 }

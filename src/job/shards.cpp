@@ -144,7 +144,7 @@ film::Partial sum_of_shards(const Job& job, const compile::CompiledScene& compil
     const std::uint32_t most = *std::max_element(shard.counts.begin(), shard.counts.end());
     if (shard.is_adaptive()) {
       wrong("holds the sums of adaptive sampling, contrary to its header");
-    } else if (!shard.has_known_spheres(compiled.sphere_materials.size()) || range.end > samples) {
+    } else if (!shard.has_known_spheres(compiled.object_materials.size()) || range.end > samples) {
       wrong("has spheres or samples that its scene does not have");
     } else if (most > range.end - range.begin) {
       wrong("has more samples than its header declares");

@@ -77,7 +77,7 @@ HWY_INLINE V caustic_chance(const Caustics& caustics, V importance, V throughput
 template <class D>
 struct CausticChoice {
   static constexpr std::size_t kMax = hn::MaxLanes(D());
-  /// Sphere ids. Light kNoSphere: the sun; inner kNoSphere: the ball is not hollow.
+  /// Sphere ids. `inner` is kNone if the ball is not hollow; `light` may be kSun.
   HWY_ALIGN hn::TFromD<IdTag<D>> ball[kMax], inner[kMax], light[kMax];
   HWY_ALIGN hn::TFromD<D> inverse_probability[kMax];  ///< of the choice of the light
 };
@@ -117,14 +117,14 @@ HWY_INLINE BallAndLight<D> load_pairs(D d, const SceneView& scene, const Vertex<
   HWY_ALIGN hn::TFromD<IdTag<D>> emitter[kMax], inner[kMax];
   HWY_ALIGN T eta[kMax], r0[kMax], glass[kMax], hollow[kMax], sun[kMax];
   for (std::size_t i = 0; i < hn::Lanes(d); ++i) {
-    const Material& material = scene.materials[scene.sphere_materials[ball[i]]];
+    const Material& material = scene.materials[scene.object_materials[ball[i]]];
     eta[i] = static_cast<T>(material.eta[1]);
     r0[i] = static_cast<T>(material.r0[0]);
     glass[i] = material.kind == MaterialKind::kDielectric ? T(1) : T(0);
-    sun[i] = light[i] == kNoSphere ? T(1) : T(0);
-    emitter[i] = light[i] == kNoSphere ? ball[i] : light[i];
-    hollow[i] = pairs.inner[i] != kNoSphere ? T(1) : T(0);
-    inner[i] = pairs.inner[i] != kNoSphere ? pairs.inner[i] : ball[i];
+    sun[i] = light[i] == kSun ? T(1) : T(0);
+    emitter[i] = light[i] == kSun ? ball[i] : light[i];
+    hollow[i] = pairs.inner[i] != kNone ? T(1) : T(0);
+    inner[i] = pairs.inner[i] != kNone ? pairs.inner[i] : ball[i];
   }
   const auto sphere = load_spheres(d, scene, ball, at.times), lamp = load_spheres(d, scene, emitter, at.times);
   const V inverse_radius = 1 / sphere.radius;
@@ -155,7 +155,7 @@ HWY_INLINE BallAndLight<D> load_pairs(D d, const SceneView& scene, const Vertex<
 template <class D>
 HWY_INLINE Emitted<D> load_lights(D d, const SceneView& scene, hn::Vec<IdTag<D>> lights) {
   const IdTag<D> du;
-  const auto is_sun = hn::RebindMask(d, lights == kNoSphere);
+  const auto is_sun = hn::RebindMask(d, lights == kSun);
   Emitted<D> out{{hn::Zero(d), hn::Zero(d), hn::Zero(d)}, hn::Zero(du)};
   if (scene.emission != nullptr) out = emitted(d, scene, lights, hn::Not(is_sun));
   if (scene.environment == nullptr) return out;

@@ -103,7 +103,7 @@ HWY_NOINLINE hn::Vec<IdTag<D>> continued_chain(D d, const Caustics& caustics, Ch
 
 /// Lanes in which ball and light are a pair.
 ///
-/// `lights`   ids of emitters; kNoSphere: the sun
+/// `lights`   ids of emitters, or kSun
 template <class D>
 HWY_NOINLINE hn::Mask<D> are_paired(D d, const Caustics& caustics, hn::Mask<D> lanes, hn::Vec<IdTag<D>> balls,
                                     hn::Vec<IdTag<D>> lights) {
@@ -126,7 +126,7 @@ HWY_NOINLINE Vec3<V> without_sampled_sun(D d, const SceneView& scene, Vec3<V> ra
   const Environment& environment = *scene.environment;
   if (!environment.has_sun) return radiance;
   const auto in_sun = hn::And(missed, is_in_sun(d, environment, direction));
-  const auto sampled = is_sampled_caustic(d, scene, in_sun, chain, balls, set(IdTag<D>(), kNoSphere));
+  const auto sampled = is_sampled_caustic(d, scene, in_sun, chain, balls, set(IdTag<D>(), kSun));
   if (hn::AllFalse(d, sampled)) return radiance;
   auto at = environment_footprint(d, environment, direction);
   at.is_in_sun = hn::AndNot(sampled, at.is_in_sun);

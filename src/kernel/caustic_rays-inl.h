@@ -73,7 +73,7 @@ class ChainTracer {
     auto arrived = hn::And(active, hn::And(is_last, hn::RebindMask(d, hits == light)));
     if (scene_.environment != nullptr && scene_.environment->has_sun) {
       const auto sees_sun = is_in_sun(d, *scene_.environment, ray.direction);
-      arrived = hn::And(arrived, hn::Or(sees_sun, hn::RebindMask(d, light != kNoSphere)));
+      arrived = hn::And(arrived, hn::Or(sees_sun, hn::RebindMask(d, light != kSun)));
     }
     if (!hn::AllFalse(d, arrived)) arrive(i, arrived);
     const auto at_void = hn::And(events, set(du, kAtVoid)) != 0;

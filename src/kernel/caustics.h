@@ -16,13 +16,13 @@ struct CausticBall {
   double radius = 1;                 ///< of that sphere
   double power = 0;                  ///< estimate of the light that the ball scatters
   std::uint32_t sphere = 0;          ///< id
-  std::uint32_t inner = kNoSphere;   ///< id of the concentric sphere that makes it hollow
+  std::uint32_t inner = kNone;       ///< id of the concentric sphere that makes it hollow; kNone: it is not
   std::uint32_t begin = 0, end = 0;  ///< range of Caustics::lights
 };
 
 /// A light of a ball.
 struct CausticLight {
-  std::uint32_t id = 0;    ///< sphere id of an emitter; kNoSphere: the sun
+  std::uint32_t id = 0;    ///< sphere id of an emitter, or kSun
   double cumulative = 0;   ///< share of the ball's power that comes from this light and those before it; 1 for the last
   double probability = 0;  ///< share of this light
 };

@@ -66,7 +66,7 @@ HWY_INLINE Emitted<D> emitted(D d, const SceneView& scene, hn::Vec<IdTag<D>> hit
   HWY_ALIGN Id id[hn::MaxLanes(D())], group[hn::MaxLanes(D())];
   hn::Store(hn::IfThenElseZero(hn::RebindMask(du, hit), hits), du, id);
   hn::Vec<D> rgb[4];
-  const auto emission = [&](std::size_t i) -> const Emission& { return scene.emission[scene.sphere_materials[id[i]]]; };
+  const auto emission = [&](std::size_t i) -> const Emission& { return scene.emission[scene.object_materials[id[i]]]; };
   gather4(
       d, [&](std::size_t i) { return emission(i).radiance; }, rgb);
   for (std::size_t i = 0; i < hn::Lanes(d); ++i) group[i] = static_cast<Id>(emission(i).group);
@@ -148,7 +148,7 @@ struct LightSample {
   V inverse_pdf;      ///< steradians, excluding the probability of choosing the light
   V probability;      ///< probability of choosing the light; 0: no light can be sampled
   Vec3<V> radiance;
-  hn::Vec<IdTag<D>> target;  ///< sphere id, or kNoSphere
+  hn::Vec<IdTag<D>> target;  ///< id of the emitter, or kNone
   hn::Vec<IdTag<D>> group;   ///< light group
 };
 
@@ -189,9 +189,8 @@ HWY_NOINLINE LightSample<D> sample_background(D d, const Environment& environmen
   using T = hn::TFromD<D>;
   const IdTag<D> du;
   const auto sample = sample_environment(d, environment, u, v);
-  return {
-      sample.direction, sample.direction,   hn::Set(d, std::numeric_limits<T>::max()), sample.inverse_pdf, set(d, 1),
-      sample.radiance,  set(du, kNoSphere), set(du, environment.light_group)};
+  return {sample.direction, sample.direction, hn::Set(d, std::numeric_limits<T>::max()), sample.inverse_pdf, set(d, 1),
+          sample.radiance,  set(du, kNone),   set(du, environment.light_group)};
 }
 
 /// Samples the environment or an emitter at each vertex.

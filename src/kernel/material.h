@@ -4,10 +4,12 @@
 #include <cstddef>
 #include <cstdint>
 
+#include "kernel/sphere.h"
+
 namespace orrery::kernel {
 
 enum class MaterialKind : std::uint32_t { kLambertian, kHemisphere, kMetal, kDielectric, kEmitter, kPlastic };
-enum class FresnelKind : std::uint32_t { kSchlick, kExact, kNone };
+enum class FresnelKind : std::uint32_t { kSchlick, kExact, kZero };
 
 /// A compiled material: everything that does not depend on the ray. `kind` determines which members are used.
 struct Material {
@@ -69,8 +71,6 @@ struct Texture {
 
 /// The textures that replace constants of a material: indices into SceneView::textures.
 struct MaterialTextures {
-  static constexpr std::uint32_t kNone = 0xffffffffu;
-
   std::uint32_t albedo = kNone;
   std::uint32_t fuzz = kNone;      ///< texture whose red channel is the fuzz
   std::uint32_t radiance = kNone;  ///< texture of an emitter's radiance, including exposure

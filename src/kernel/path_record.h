@@ -24,14 +24,14 @@ enum class Lobe : std::uint8_t {
 inline constexpr int kLobes = 8;
 
 /// Data of one path for all layers except the beauty and the denoiser guides. Computed only for tiles that request
-/// records. For a path without a first hit, only `sphere` and `light` are set.
+/// records. For a path without a first hit, only `object` and `light` are set.
 struct PathRecord {
-  double light[3] = {0, 0, 0};       ///< total radiance of the path, the sum of its light events; indexed by channel
-  math::Vec3d offset;                ///< first hit: from the sphere's centre, or end a of the rod, scene units
-  math::Vec3d direction;             ///< direction of the camera ray that hit it, unit
-  std::uint32_t sphere = kNoSphere;  ///< first hit: id of a sphere or a half of a rod; kNoSphere: the background
-  float albedo[3] = {0, 0, 0};       ///< at the first hit; only in scenes with features.extended
-  double time = 0;                   ///< 0..1 within the shutter
+  double light[3] = {0, 0, 0};   ///< total radiance of the path, the sum of its light events; indexed by channel
+  math::Vec3d offset;            ///< first hit: from the sphere's centre, or end a of the rod, scene units
+  math::Vec3d direction;         ///< direction of the camera ray that hit it, unit
+  std::uint32_t object = kNone;  ///< first hit; kNone: the background
+  float albedo[3] = {0, 0, 0};   ///< at the first hit; only in scenes with features.rich_materials
+  double time = 0;               ///< 0..1 within the shutter
 };
 
 /// One contribution to a path's radiance: emission of the background or a light, times path throughput.

@@ -48,7 +48,7 @@ struct ShadowStreamOf : WaitingRaysOf<T, kPacketsInFlight * kPacketSize> {
   static constexpr int kBatch = kPacketsInFlight * kPacketSize;
   using WaitingRaysOf<T, kBatch>::kCapacity;
   T distance[kCapacity];            ///< maximum distance of an occluder, as a multiple of the direction's length
-  IdOf<T> target[kCapacity];        ///< the light, or kNoSphere
+  IdOf<T> target[kCapacity];        ///< the light, or kNone
   T coat[3][kCapacity];             ///< part of `value` that a coat scatters; only if the history has kCoatBit
   IdOf<T> coat_history[kCapacity];  ///< history of that part
   ShadowPacket<T> packets[kPacketsInFlight];  ///< the rays being traced
@@ -75,7 +75,7 @@ struct ChainStreamOf : WaitingRaysOf<T, CausticVerticesOf<T>::kCapacity> {
   IdOf<T> events[kCapacity];  ///< that are left; see CausticEvent
   IdOf<T> ball[kCapacity];    ///< that causes them
   IdOf<T> inner[kCapacity];   ///< its inner sphere, if it is hollow
-  IdOf<T> light[kCapacity];   ///< the emitter, or kNoSphere: the sun
+  IdOf<T> light[kCapacity];   ///< the emitter, or kSun
   RayPacket<T> packet;        ///< the rays being traced
 };
 

@@ -34,7 +34,7 @@ struct alignas(64) PacketRays {
   T offset[3][kPacketSize];
   T direction[3][kPacketSize];
   T inverse_square[kPacketSize];   ///< 1 / (direction . direction)
-  Id self[kPacketSize];            ///< sphere that the ray leaves, or kNoSphere
+  Id self[kPacketSize];            ///< sphere that the ray leaves, or kNone
   T distance[kPacketSize];         ///< maximum distance of a hit, as a multiple of the direction's length
   T time[kPacketSize];             ///< 0..1 within the shutter; only if the scene moves
   std::uint32_t key[kPacketSize];  ///< decides which objects are visible; only if the scene has opacities
@@ -45,14 +45,14 @@ struct alignas(64) PacketRays {
 template <class T>
 struct RayPacket : PacketRays<T> {
   static constexpr bool kIsShadow = false;
-  alignas(64) IdOf<T> hit[kPacketSize];  ///< in: kNoSphere; out: the sphere of the closest hit, or kNoSphere
+  alignas(64) IdOf<T> hit[kPacketSize];  ///< in: kNone; out: the sphere of the closest hit, or kNone
 };
 
 /// Rays and whether they are occluded. Directions may have any length whose square and its reciprocal are finite.
 template <class T>
 struct ShadowPacket : PacketRays<T> {
   static constexpr bool kIsShadow = true;
-  alignas(64) IdOf<T> target[kPacketSize];  ///< sphere that does not occlude: the ray's light, or kNoSphere
+  alignas(64) IdOf<T> target[kPacketSize];  ///< sphere that does not occlude: the ray's light, or kNone
   IdOf<T> occluded[kPacketSize];            ///< out: all bits set if a sphere is hit in 0 < t < distance, else 0
 };
 
@@ -100,7 +100,7 @@ void query_each(const void* self, void* packets, int count) {
 template <class T>
 inline void reset_hits(RayPacket<T>& packet) {
   std::fill_n(packet.distance, kPacketSize, std::numeric_limits<T>::max());
-  std::fill_n(packet.hit, kPacketSize, IdOf<T>{kNoSphere});
+  std::fill_n(packet.hit, kPacketSize, IdOf<T>{kNone});
 }
 
 }  // namespace orrery::kernel

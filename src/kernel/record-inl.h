@@ -43,21 +43,21 @@ class Recorder {
   HWY_INLINE void begin(D d, hn::Mask<D> active, hn::Mask<D> missed) {
     if (tile_.records == nullptr || !tile_.record_hits) return;
     if (tile_.record_light) each(d, active, [](PathRecord& r, int) { std::fill_n(r.light, 3, 0.0); });
-    each(d, missed, [](PathRecord& r, int) { r.sphere = kNoSphere; });
+    each(d, missed, [](PathRecord& r, int) { r.object = kNone; });
   }
 
   /// Records the first hits.
   ///
   /// `times`    times of the rays; null if nothing moves
-  HWY_INLINE void first_hit(D d, hn::Mask<D> hit, Ids spheres, const Vec3<V>& offset, const Vec3<V>& direction,
+  HWY_INLINE void first_hit(D d, hn::Mask<D> hit, Ids objects, const Vec3<V>& offset, const Vec3<V>& direction,
                             const hn::TFromD<D>* times) {
     if (tile_.records == nullptr || !tile_.record_hits) return;
     const IdTag<D> du;
-    HWY_ALIGN Id sphere[kMax];
+    HWY_ALIGN Id object[kMax];
     Stored at(d, offset), along(d, direction);
-    hn::Store(spheres, du, sphere);
+    hn::Store(objects, du, object);
     each(d, hit, [&](PathRecord& r, int i) {
-      r.sphere = static_cast<std::uint32_t>(sphere[i]);
+      r.object = static_cast<std::uint32_t>(object[i]);
       if (times != nullptr) r.time = static_cast<double>(times[i]);
       r.offset = at.lane(i);
       r.direction = along.lane(i);

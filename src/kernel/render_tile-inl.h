@@ -79,10 +79,10 @@ HWY_INLINE void load_camera_rays(D d, const SceneView& scene, bool records, Path
     if (features.opacity)
       store_keys(d, keys_at_vertex(du, scene.sampler.seed, pixels, samples, 0).next, packet.key + v);
     const auto ray = camera_ray(d, scene, camera, x, y, random);
-    store_rays(d, camera.origin, ray.offset, ray.direction, set(du, kNoSphere), packet, v);
+    store_rays(d, camera.origin, ray.offset, ray.direction, set(du, kCamera), packet, v);
     store(Vec3<hn::Vec<D>>{one, one, one}, carried.throughput);
     if (records) hn::Store(set(du, kOnlyDeltaBit), du, carried.history + v);
-    if (features.extended && scene.cone_width > 0) {
+    if (features.rich_materials && scene.cone_width > 0) {
       const auto cone = camera_cone(d, scene, camera, ray.direction, scene.cone_width);
       store(Vec3<hn::Vec<D>>{cone.width2, cone.mixed, cone.slope2}, carried.cone);
     }
@@ -111,7 +111,7 @@ HWY_INLINE void load_secondary_rays(D d, const SceneView& scene, bool records, c
     if (records) hn::Store(hn::LoadU(du, stream.history + i), du, carried.history + v);
     if (kLoop.full) hn::Store(hn::LoadU(du, stream.lit.path + i), du, carried.path + v);
     if (features.lit) hn::Store(hn::LoadU(d, stream.lit.pdf + i), d, carried.pdf + v);
-    if (features.extended && scene.cone_width > 0) store(at(stream.cone), carried.cone);
+    if (features.rich_materials && scene.cone_width > 0) store(at(stream.cone), carried.cone);
   }
 }
 

@@ -7,7 +7,7 @@ namespace orrery::kernel {
 
 RenderTile render_tile_function(const Features& features, Precision precision, bool records) {
   const bool full =
-      records || features.motion || features.lit || features.extended || features.rods || features.opacity;
+      records || features.motion || features.lit || features.rich_materials || features.rods || features.opacity;
   switch (precision) {
     case Precision::kExact: return exact_tile_function(full);
     case Precision::kFast: return fast_tile_function(full);

@@ -255,7 +255,7 @@ HWY_INLINE BsdfSample<D> sample_bsdf(D d, const Features& features, const Surfac
   }
   const auto glass = among(MaterialKind::kDielectric);
   if (!hn::AllFalse(d, glass)) {
-    if (features.extended) {  // it may be rough
+    if (features.rich_materials) {  // it may be rough
       const auto sampled = sample_rough_dielectric(d, at, random.v[0], random.v[1]);
       out.direction = select(glass, sampled.direction, out.direction);
       out.alive = hn::Or(hn::AndNot(glass, out.alive), hn::And(glass, sampled.alive));

@@ -37,15 +37,15 @@ enum class Shading : std::uint8_t { kPath, kNormal, kFlat };
 /// bit. Materials need none: the kernel skips a material that no lane of a vector has hit
 /// (docs/decisions/0012-two-path-loops-few-feature-bits.md).
 struct Features {
-  bool lens = false;        ///< the camera has an aperture
-  bool hemisphere = false;  ///< some sphere has a hemisphere material
-  bool sky = false;         ///< the background depends on the direction
-  bool motion = false;      ///< camera or spheres move while the shutter is open
-  bool lit = false;         ///< something emits, or is sampled: paths gain radiance at their vertices
-  bool extended = false;    ///< textures, rough glass or plastic
-  bool rods = false;        ///< there are rods
-  bool opacity = false;     ///< some opacity is below 1
-  bool caustics = false;    ///< images of lights in balls are sampled
+  bool lens = false;            ///< the camera has an aperture
+  bool hemisphere = false;      ///< some sphere has a hemisphere material
+  bool gradient = false;        ///< the background depends on the direction
+  bool motion = false;          ///< camera or spheres move while the shutter is open
+  bool lit = false;             ///< something emits, or is sampled: paths gain radiance at their vertices
+  bool rich_materials = false;  ///< textures, rough glass or plastic
+  bool rods = false;            ///< there are rods
+  bool opacity = false;         ///< some opacity is below 1
+  bool caustics = false;        ///< images of lights in balls are sampled
 };
 
 /// Reciprocal of the throughput below which Russian roulette may end a path. Ending paths of higher throughput would
@@ -74,7 +74,7 @@ struct SceneSettings {
 /// Non-owning view of the compiled scene for the kernel.
 struct SceneView : SceneSettings {
   SphereArray spheres;          ///< at least one can be read, even if there are only rods
-  IndexArray sphere_materials;  ///< index into `materials` of each sphere, then of each half of each rod
+  IndexArray object_materials;  ///< index into `materials` of each sphere, then of each half of each rod
   const Material* materials = nullptr;
   std::size_t sphere_count = 0;
   RodArray rods;  ///< ids follow those of the spheres
@@ -125,7 +125,7 @@ inline PixelPlace place_of(std::uint64_t name, const SceneView& scene) noexcept 
 /// The bounding sphere and power of a single emitter. The bounding sphere encloses its whole motion.
 inline LightNode light_leaf(const SceneView& scene, std::uint32_t id) noexcept {
   const Sphere s = scene.spheres[id];
-  const double* const rgb = scene.emission[scene.sphere_materials[id]].radiance;
+  const double* const rgb = scene.emission[scene.object_materials[id]].radiance;
   LightNode leaf{{s.x, s.y, s.z}, s.radius, (rgb[0] + rgb[1] + rgb[2]) * (s.radius * s.radius)};
   if (scene.opacity != nullptr) leaf.power *= static_cast<double>(scene.opacity[id]);
   if (id >= scene.moving_count) return leaf;

@@ -43,7 +43,8 @@ template <Loop kLoop>
 HWY_INLINE Features features_of(const SceneView& scene) {
   Features features = scene.features;
   if (!kLoop.full)
-    features.motion = features.lit = features.extended = features.rods = features.opacity = features.caustics = false;
+    features.motion = features.lit = features.rich_materials = features.rods = features.opacity = features.caustics =
+        false;
   return features;
 }
 
@@ -159,7 +160,7 @@ class Shader {
       }
       if constexpr (kLoop.full) {
         const auto plastic = is_kind(d, look.surface.kind, MaterialKind::kPlastic);
-        if (features_.extended && !hn::AllFalse(d, plastic)) {
+        if (features_.rich_materials && !hn::AllFalse(d, plastic)) {
           alive += shade_plastic<D, kLoop>(scene_, tile_, depth_, stream_, counts_, packet, carried, v, alive);
           continue;
         }
@@ -191,7 +192,7 @@ class Shader {
     Arrivals<D> at;
     const auto active = hn::FirstN(d, static_cast<std::size_t>(packet.count - v));
     at.hits = hn::Load(du, packet.hit + v);
-    at.hit = hn::AndNot(hn::RebindMask(d, at.hits == kNoSphere), active);
+    at.hit = hn::AndNot(hn::RebindMask(d, at.hits == kNone), active);
     at.missed = hn::AndNot(at.hit, active);
     at.ray = load_rays(d, packet, v);
     at.distance = hn::Load(d, packet.distance + v);
@@ -229,7 +230,7 @@ class Shader {
         radiance = without_sampled_sun(d, scene_, radiance, at.ray.direction, at.missed, chain_of(at), at.ray.self);
       groups = set(du, scene_.environment->light_group);
     } else {
-      radiance = background(d, scene_.background, features_.sky, at.ray.direction);
+      radiance = background(d, scene_.background, features_.gradient, at.ray.direction);
     }
     const Vec3<V> light = radiance * at.throughput;
     add(at, at.missed, light, groups, Lobe::kBackground);
@@ -249,7 +250,7 @@ class Shader {
     if (hn::AllFalse(d, shines)) return;
     if (features_.caustics)
       shines = hn::AndNot(is_sampled_caustic(d, scene_, shines, chain_of(at), at.ray.self, at.hits), shines);
-    if (features_.extended && scene_.textures != nullptr)
+    if (features_.rich_materials && scene_.textures != nullptr)
       source.radiance = textured_radiance<D, kLoop.precision>(d, scene_, at.ray, at.hits, shines, at.distance,
                                                               at.cone.width2, at.times, source.radiance);
     if (depth_ > 0) {
@@ -265,7 +266,7 @@ class Shader {
     auto look = features_.rods
                     ? reach_surface_or_rod<D, kLoop.precision>(d, scene_, at.ray, at.hits, at.distance, at.times)
                     : reach_surface<D, kLoop.precision>(d, scene_, at.ray, at.hits, at.distance, at.times);
-    if (features_.extended && scene_.textures != nullptr) {
+    if (features_.rich_materials && scene_.textures != nullptr) {
       const auto textured =
           textured_surface<D, kLoop.precision>(d, scene_, at.ray, at.hits, at.hit, at.distance, at.cone.width2, look);
       look.albedo = textured.albedo;
@@ -285,7 +286,7 @@ class Shader {
                          look.surface.offset, at.ray.direction, at.times);
       else
         record.first_hit(d, at.hit, at.hits, look.surface.offset, at.ray.direction, at.times);
-      if (features_.extended) record.albedo(d, at.hit, look.albedo);
+      if (features_.rich_materials) record.albedo(d, at.hit, look.albedo);
       record.inverse_depth(d, at.hit, at.distance);
     }
     record.guide(d, hn::AndNot(is_delta(d, look.surface), hn::And(at.hit, guided(at))), tinted, look.surface.normal);
@@ -495,7 +496,7 @@ class Shader {
   }
   static HWY_INLINE Ids index_of(const Arrivals<D>& at) { return hn::And(at.paths, set(du, (1U << kPathBits) - 1)); }
   static HWY_INLINE Ids chain_of(const Arrivals<D>& at) { return hn::ShiftRight<kPathBits>(at.paths); }
-  HWY_INLINE bool has_cones() const { return features_.extended && scene_.cone_width > 0; }
+  HWY_INLINE bool has_cones() const { return features_.rich_materials && scene_.cone_width > 0; }
   HWY_INLINE hn::Mask<D> has_pdf(const Arrivals<D>& at, const Lookup<D>& look) const {
     return hn::AndNot(is_delta(d, look.surface), at.hit);
   }

@@ -16,8 +16,10 @@ struct alignas(32) Sphere {
   double radius = 1;           ///< scene units, > 0
 };
 
-/// Id that denotes no sphere, for camera rays and for rays that hit nothing.
-inline constexpr std::uint32_t kNoSphere = 0xffffffffu;
+// Ids of objects: first the spheres, then two for each rod, its halves. What has no id has one of these names:
+inline constexpr std::uint32_t kNone = 0xffffffffu;  ///< no object, no texture: rays that hit nothing
+inline constexpr std::uint32_t kCamera = kNone;      ///< what camera rays leave
+inline constexpr std::uint32_t kSun = kNone;         ///< as a light: rays that hit nothing reach it
 
 /// Non-owning view of unsigned integers of 0, 1, 2 or 4 bytes each.
 ///

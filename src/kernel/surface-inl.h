@@ -58,7 +58,7 @@ HWY_INLINE Spheres<D> load_spheres(D d, const SceneView& scene, const hn::TFromD
 template <class D>
 HWY_INLINE void store_loadable(D, std::size_t count, hn::Vec<IdTag<D>> hits, hn::TFromD<IdTag<D>>* id) {
   const IdTag<D> du;
-  static_assert(kNoSphere == ~std::uint32_t{0});
+  static_assert(kNone == ~std::uint32_t{0});
   hn::Store(min(hits, static_cast<hn::TFromD<IdTag<D>>>(count - 1)), du, id);
 }
 
@@ -76,7 +76,7 @@ HWY_INLINE Spheres<D> load_spheres(D d, const SceneView& scene, hn::Vec<IdTag<D>
 template <class D>
 HWY_INLINE hn::Mask<D> is_rod(D d, const SceneView& scene, hn::Vec<IdTag<D>> hits) {
   const auto is_sphere = hn::RebindMask(d, hits < scene.rods.first_id);
-  return hn::Not(hn::Or(is_sphere, hn::RebindMask(d, hits == kNoSphere)));
+  return hn::Not(hn::Or(is_sphere, hn::RebindMask(d, hits == kNone)));
 }
 
 /// Loads the rods of the hits; lanes that hit no rod get the first one.
@@ -144,7 +144,7 @@ HWY_INLINE Lookup<D> look_up(D d, const SceneView& scene, hn::Vec<IdTag<D>> hits
   const Material* material[kMax];
   store_loadable(d, scene.sphere_count + (kHasRods ? 2 * scene.rods.count : 0), hits, id);
   for (std::size_t i = 0; i < hn::Lanes(d); ++i) {
-    material[i] = &scene.materials[scene.sphere_materials[id[i]]];
+    material[i] = &scene.materials[scene.object_materials[id[i]]];
     kind[i] = static_cast<Id>(material[i]->kind);
     fresnel[i] = static_cast<Id>(material[i]->fresnel);
   }

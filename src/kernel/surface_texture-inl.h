@@ -36,13 +36,13 @@ struct TextureIndices {
     hn::Store(hn::IfThenElseZero(lanes, set(d, 1)), d, is_set);
     for (std::size_t i = 0; i < hn::Lanes(d); ++i) {
       const MaterialTextures of =
-          is_set[i] != T(0) ? scene.material_textures[scene.sphere_materials[id[i]]] : MaterialTextures{};
+          is_set[i] != T(0) ? scene.material_textures[scene.object_materials[id[i]]] : MaterialTextures{};
       albedo[i] = of.albedo;
       fuzz[i] = of.fuzz;
       radiance[i] = of.radiance;
-      has_albedo = has_albedo || of.albedo != MaterialTextures::kNone;
-      has_fuzz = has_fuzz || of.fuzz != MaterialTextures::kNone;
-      has_radiance = has_radiance || of.radiance != MaterialTextures::kNone;
+      has_albedo = has_albedo || of.albedo != kNone;
+      has_fuzz = has_fuzz || of.fuzz != kNone;
+      has_radiance = has_radiance || of.radiance != kNone;
     }
   }
 };

@@ -196,7 +196,7 @@ HWY_NOINLINE Vec3<V> texture_color(D d, const Texture& texture, const TexturePoi
 
 /// Replaces colours with the values of textures.
 ///
-/// `index`    of each lane's texture; MaterialTextures::kNone: the lane keeps its colour
+/// `index`    of each lane's texture; kNone: the lane keeps its colour
 /// Cost       one evaluation for each texture in the vector
 template <class D, class V = hn::Vec<D>>
 HWY_INLINE Vec3<V> replaced_by_textures(D d, const Texture* textures, const std::uint32_t (&index)[hn::MaxLanes(D())],
@@ -205,7 +205,7 @@ HWY_INLINE Vec3<V> replaced_by_textures(D d, const Texture* textures, const std:
   constexpr std::size_t kMax = hn::MaxLanes(D());
   HWY_ALIGN T same[kMax];
   for (std::size_t i = 0; i < hn::Lanes(d); ++i) {
-    if (index[i] == MaterialTextures::kNone) continue;
+    if (index[i] == kNone) continue;
     bool is_first = true;
     for (std::size_t k = 0; k < hn::Lanes(d); ++k) {
       same[k] = index[k] == index[i] ? T(1) : T(0);

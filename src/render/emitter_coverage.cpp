@@ -161,7 +161,7 @@ void add_texels(const kernel::Environment& sky, Coverage& coverage) {
 std::vector<EmitterCoverage> emitter_coverage(const kernel::SceneView& scene, int width_px, int height_px) {
   Coverage coverage(scene, width_px, height_px);
   for (std::size_t id = 0; scene.emission != nullptr && id < scene.sphere_count; ++id) {
-    const double radiance = mean_of(math::vector_of(scene.emission[scene.sphere_materials[id]].radiance));
+    const double radiance = mean_of(math::vector_of(scene.emission[scene.object_materials[id]].radiance));
     if (!(radiance > 0)) continue;
     coverage.add(sphere_at(scene, id, 0), sphere_at(scene, id, 1), radiance,
                  scene.opacity != nullptr ? double{scene.opacity[id]} : 1);

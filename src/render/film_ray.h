@@ -26,7 +26,7 @@ void set_film_ray(const kernel::Camera& camera, double x, double y, kernel::RayP
   set(packet.direction, direction);
   for (int axis = 0; axis < 3; ++axis) packet.origin[axis][lane] += packet.offset[axis][lane];
   packet.inverse_square[lane] = 1;
-  packet.self[lane] = kernel::kNoSphere;
+  packet.self[lane] = kernel::kCamera;
   packet.key[lane] = 0;
 }
 

@@ -34,7 +34,7 @@ constexpr int kFullInk = 255;
 
 /// What a ray sees.
 struct Seen {
-  std::uint64_t id = kernel::kNoSphere;
+  std::uint64_t id = kernel::kNone;
   double depth = std::numeric_limits<double>::infinity();  ///< along the ray, scene units
 };
 
@@ -69,7 +69,7 @@ void trace_grid(const compile::CompiledScene& scene, const accel::Accel& accel, 
     }
     kernel::trace(tracer, packet);
     for (int lane = 0; lane < packet.count; ++lane)
-      if (packet.hit[lane] != kernel::kNoSphere)
+      if (packet.hit[lane] != kernel::kNone)
         grid.seen[static_cast<std::size_t>(begin + lane)] = {packet.hit[lane],
                                                              static_cast<double>(packet.distance[lane])};
   }

@@ -9,7 +9,7 @@
 namespace orrery::render {
 
 /// The coverage of each pixel by outlines, drawn where the depth jumps by more than a quarter of the front object's
-/// radius and by more than three pixels: small objects that touch have none. As sphere_at(), at shutter open, without
+/// radius and by more than three pixels: small objects that touch have none. As object_at(), at shutter open, without
 /// the blur of the lens. Outlines of translucent objects are as weak as their objects, and objects less than half
 /// opaque do not hide the outlines behind them.
 ///

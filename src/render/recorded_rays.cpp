@@ -25,7 +25,7 @@ struct Recorder {
     auto& recorder = *static_cast<Recorder*>(const_cast<void*>(self));
     auto* const packets = static_cast<kernel::RayPacket<T>*>(memory);
     kernel::trace(recorder.tracer, packets, count);
-    const bool from_camera = packets->self[0] == kernel::kNoSphere;
+    const bool from_camera = packets->self[0] == kernel::kCamera;
     auto& traced = from_camera ? recorder.rays.camera : recorder.rays.secondary;
     traced.insert(traced.end(), packets, packets + count);
   }

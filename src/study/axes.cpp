@@ -168,7 +168,7 @@ class Planner {
     };
     add_one("exact", kernel::FresnelKind::kExact);
     add_one("schlick", kernel::FresnelKind::kSchlick);
-    add_one("none", kernel::FresnelKind::kNone);
+    add_one("none", kernel::FresnelKind::kZero);
   }
 
   void direct_lighting() {

@@ -198,11 +198,12 @@ struct Case {
   std::vector<double> paths_per_s = {}, tracing = {};
 };
 
-constexpr std::pair<const char*, bool kernel::Features::*> kFeatures[] = {{"thin lens", &kernel::Features::lens},
-                                                                          {"hemisphere", &kernel::Features::hemisphere},
-                                                                          {"gradient sky", &kernel::Features::sky},
-                                                                          {"lights", &kernel::Features::lit},
-                                                                          {"textures", &kernel::Features::extended}};
+constexpr std::pair<const char*, bool kernel::Features::*> kFeatures[] = {
+    {"thin lens", &kernel::Features::lens},
+    {"hemisphere", &kernel::Features::hemisphere},
+    {"gradient sky", &kernel::Features::gradient},
+    {"lights", &kernel::Features::lit},
+    {"textures", &kernel::Features::rich_materials}};
 
 /// The compiled scene at the reduced image size.
 compile::CompiledScene reduced_scene(const BenchRequest& request) {

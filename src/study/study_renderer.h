@@ -29,7 +29,7 @@ struct Spheres {
   /// Exchanges them with those of a compiled scene.
   void swap(compile::CompiledScene& compiled) {
     std::swap(spheres, compiled.spheres);
-    std::swap(materials, compiled.sphere_materials);
+    std::swap(materials, compiled.object_materials);
     std::swap(rods, compiled.rods);
     std::swap(rod_motion, compiled.rod_motion);
     std::swap(bonds, compiled.bonds);

@@ -9,7 +9,7 @@
 #include "base/error.h"
 #include "compile/compiled_scene.h"
 #include "data/table.h"
-#include "render/sphere_at.h"
+#include "render/object_at.h"
 #include "scene/value_text.h"
 
 namespace orrery::view {
@@ -61,7 +61,7 @@ std::optional<Picked> Picker::pick(double x, double y) {
   if (!is_open_) return {};
   const compile::CompiledScene& compiled = prepared_.compiled();
   const std::optional<std::uint32_t> id =
-      render::sphere_at(compiled, prepared_.built(), x * compiled.width, y * compiled.height);
+      render::object_at(compiled, prepared_.built(), x * compiled.width, y * compiled.height);
   if (!id) return {};
   const kernel::RodArray rods = compiled.view().rods;
   return rods.contains(*id) ? describe_rod(rods.index(*id)) : describe_sphere(*id);

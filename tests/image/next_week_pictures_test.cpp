@@ -158,7 +158,7 @@ film::Picture flattened(bool as_texture, const std::string& precision) {
     }
   }
   const auto compiled = compile::compile(read.scene, &*read.closing);
-  EXPECT_EQ(compiled.features.extended, as_texture);
+  EXPECT_EQ(compiled.features.rich_materials, as_texture);
   return render::render(compiled, {}).picture;
 }
 

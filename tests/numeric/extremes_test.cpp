@@ -19,7 +19,7 @@
 namespace orrery::test {
 namespace {
 
-using kernel::kNoSphere;
+using kernel::kCamera;
 using kernel::kPacketSize;
 
 /// Band in which the rounding of the input doubles alone decides between hit and miss, in radii.
@@ -61,7 +61,7 @@ struct Random {
 struct Case {
   kernel::Sphere sphere;
   double base[3] = {0, 0, 0}, offset[3] = {0, 0, 0}, direction[3] = {0, 0, 1};
-  std::uint64_t self = kNoSphere;
+  std::uint64_t self = kCamera;
 };
 
 struct Regime {

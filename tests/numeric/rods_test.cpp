@@ -26,7 +26,7 @@
 namespace orrery::test {
 namespace {
 
-using kernel::kNoSphere;
+using kernel::kCamera;
 using kernel::kPacketSize;
 using kernel::Rod;
 
@@ -409,7 +409,7 @@ struct RodPackets {
     rods[i] = c.rod;
     const double base[3] = {c.origin[0], c.origin[1], c.origin[2]}, low[3] = {c.low[0], c.low[1], c.low[2]},
                  direction[3] = {c.direction[0], c.direction[1], c.direction[2]};
-    set_ray(packet, i, base, low, direction, kNoSphere);
+    set_ray(packet, i, base, low, direction, kCamera);
   }
 };
 

@@ -69,7 +69,7 @@ k::Surface<D> surface(D d, const Interaction& interaction) {
 /// Fills x, y, z and alive with samples first .. first + as many as there is room for, a multiple of 16.
 void sample_all(const Interaction& interaction, std::uint32_t first, bool is_extended, Directions& out) {
   kernel::Features features = kAllFeatures;
-  features.extended = is_extended;
+  features.rich_materials = is_extended;
   const hn::ScalableTag<double> d;
   using D = std::remove_const_t<decltype(d)>;
   const k::IdTag<D> du;

@@ -17,7 +17,7 @@
 
 namespace orrery::test {
 
-using kernel::kNoSphere;
+using kernel::kCamera;
 using kernel::Sphere;
 
 struct Random {
@@ -128,7 +128,7 @@ inline void graze_pole(Random& random, const Scene& scene, const Sphere& s, kern
   direction[other] = std::sin(turn);
   base[axis] += (random.coin() ? 1 : -1) * s.radius * (1 - std::exp(random.uniform(-30, -10)));
   for (int i = 0; i < 3; ++i) base[i] -= direction[i] * scene.camera_distance;
-  set_ray(packet, lane, base, {0, 0, 0}, direction, kNoSphere);
+  set_ray(packet, lane, base, {0, 0, 0}, direction, kCamera);
 }
 
 /// Half of the rays aim at places where boxes and spheres part: poles, rims, corners of boxes.
@@ -140,7 +140,7 @@ inline void aim(Random& random, const Scene& scene, kernel::RayPacket<double>& p
   if (random.uniform(0, 1) < 0.4) return graze_pole(random, scene, target, packet, lane);
   const double center[3] = {target.x, target.y, target.z};
   double base[3], offset[3] = {0, 0, 0}, direction[3], point[3];
-  std::uint64_t self = kNoSphere;
+  std::uint64_t self = kCamera;
   if (random.coin()) {  // from a sphere
     self = pick();
     const Sphere& s = scene.spheres[self];
@@ -184,7 +184,7 @@ inline void step_back(Random& random, const Scene& scene, kernel::RayPacket<doub
     direction[i] = packet.direction[i][lane];
     base[i] = packet.origin[i][lane] - direction[i] * by;
   }
-  set_ray(packet, lane, base, {0, 0, 0}, direction, kNoSphere);
+  set_ray(packet, lane, base, {0, 0, 0}, direction, kCamera);
 }
 
 }  // namespace orrery::test

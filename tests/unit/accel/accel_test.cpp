@@ -24,7 +24,8 @@
 namespace orrery::accel {
 namespace {
 
-using kernel::kNoSphere;
+using kernel::kCamera;
+using kernel::kNone;
 using kernel::kPacketsInFlight;
 using kernel::kPacketSize;
 using kernel::Sphere;
@@ -52,7 +53,7 @@ Differences differences(const Scene& scene, const Way& way, long ray_count) {
   const std::vector<std::uint32_t> materials(scene.spheres.size(), 0);
   kernel::SceneView view;
   view.spheres = scene.spheres.data();
-  view.sphere_materials = materials.data();
+  view.object_materials = materials.data();
   view.sphere_count = scene.spheres.size();
   const auto list = make_list(view, kernel::Precision::kExact), other = way.make(view, kernel::Precision::kExact);
   Random random;
@@ -74,9 +75,9 @@ Differences differences(const Scene& scene, const Way& way, long ray_count) {
     for (int p = 0; p < count; ++p) {
       found.rays += a[p].count;
       for (int lane = 0; lane < kPacketSize; ++lane) {
-        const bool hit = a[p].hit[lane] != kNoSphere;
+        const bool hit = a[p].hit[lane] != kNone;
         found.hits += hit;
-        found.lost += hit && b[p].hit[lane] == kNoSphere;
+        found.lost += hit && b[p].hit[lane] == kNone;
         found.different += a[p].hit[lane] != b[p].hit[lane] || (hit && a[p].distance[lane] != b[p].distance[lane]);
       }
     }
@@ -172,7 +173,7 @@ TEST(AccelAccel, CompactSpheresAreHitAsPlainOnes) {
         kernel::trace(list->tracer(), a);
         kernel::trace(other->tracer(way.traversal), b);
         for (int lane = 0; lane < kPacketSize; ++lane)
-          different += a.hit[lane] != b.hit[lane] || (a.hit[lane] != kNoSphere && a.distance[lane] != b.distance[lane]);
+          different += a.hit[lane] != b.hit[lane] || (a.hit[lane] != kNone && a.distance[lane] != b.distance[lane]);
       }
       EXPECT_EQ(different, 0) << scene.name << ", " << way.name;
     }
@@ -230,13 +231,13 @@ TEST(AccelAccel, PacketsCanBePartlyFilled) {
       kernel::RayPacket<double> p;
       p.count = count;
       for (int lane = 0; lane < kPacketSize; ++lane) {
-        test::set_ray(p, lane, {0, 0, 0}, {0, 0, 0}, {0, 0, -1}, kNoSphere);
+        test::set_ray(p, lane, {0, 0, 0}, {0, 0, 0}, {0, 0, -1}, kCamera);
         p.distance[lane] = std::numeric_limits<double>::max();
-        p.hit[lane] = kNoSphere;
+        p.hit[lane] = kNone;
       }
       kernel::trace(embree->tracer(way.traversal), p);
       for (int lane = 0; lane < kPacketSize; ++lane) {
-        EXPECT_EQ(p.hit[lane], lane < count ? 0u : std::uint64_t{kNoSphere}) << count;
+        EXPECT_EQ(p.hit[lane], lane < count ? 0u : std::uint64_t{kNone}) << count;
         if (lane < count) {
           EXPECT_EQ(p.distance[lane], 4);
         }
@@ -262,15 +263,15 @@ TEST(AccelAccel, NativePointsFindTheSameSpheres) {
       normalize(direction);
       for (int axis = 0; axis < 3; ++axis) a.direction[axis][lane] = static_cast<float>(direction[axis]);
       a.inverse_square[lane] = 1;
-      a.self[lane] = kNoSphere;
+      a.self[lane] = kCamera;
       a.distance[lane] = std::numeric_limits<float>::max();
-      a.hit[lane] = kNoSphere;
+      a.hit[lane] = kNone;
     }
     kernel::RayPacket<float> b = a;
     kernel::trace(points->tracer(), a);
     kernel::trace(embree->tracer(), b);
     for (int lane = 0; lane < kPacketSize; ++lane) {
-      hits += b.hit[lane] != kNoSphere;
+      hits += b.hit[lane] != kNone;
       different += a.hit[lane] != b.hit[lane];
     }
   }
@@ -286,16 +287,16 @@ TEST(AccelAccel, TangentHitsCountAndTheRayOriginDoesNot) {
   const auto list = make_list(view, kernel::Precision::kExact);
   kernel::RayPacket<double> p;
   p.count = 2;
-  test::set_ray(p, 0, {0, 0, 5}, {0, 0, 0}, {0, 0, -1}, kNoSphere);  // tangent at the world origin
-  test::set_ray(p, 1, {0, 2, 0}, {0, 0, 0}, {0, 1, 0}, kNoSphere);   // starts on the surface, pointing outward
+  test::set_ray(p, 0, {0, 0, 5}, {0, 0, 0}, {0, 0, -1}, kCamera);  // tangent at the world origin
+  test::set_ray(p, 1, {0, 2, 0}, {0, 0, 0}, {0, 1, 0}, kCamera);   // starts on the surface, pointing outward
   for (int lane = 0; lane < 2; ++lane) {
     p.distance[lane] = std::numeric_limits<double>::max();
-    p.hit[lane] = kNoSphere;
+    p.hit[lane] = kNone;
   }
   kernel::trace(list->tracer(), p);
   EXPECT_EQ(p.hit[0], 0u);
   EXPECT_EQ(p.distance[0], 5);
-  EXPECT_EQ(p.hit[1], std::uint64_t{kNoSphere});
+  EXPECT_EQ(p.hit[1], std::uint64_t{kNone});
 }
 
 }  // namespace

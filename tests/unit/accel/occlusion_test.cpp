@@ -19,7 +19,8 @@
 namespace orrery::accel {
 namespace {
 
-using kernel::kNoSphere;
+using kernel::kCamera;
+using kernel::kNone;
 using kernel::kPacketsInFlight;
 using kernel::kPacketSize;
 using kernel::Precision;
@@ -76,7 +77,7 @@ void compare(const test::Scene& scene, const View& view, Precision precision, co
       if (precision == Precision::kExact && random.uniform(0, 1) < 0.05) test::step_back(random, scene, drawn, lane);
       drawn.time[lane] = std::floor(random.uniform(0, 0x1p20)) * 0x1p-20;
       // No ray leaves its light; and those that leave a sphere do so where it is at time 0.
-      if (drawn.self[lane] == target || drawn.self[lane] < view.motion.size()) drawn.self[lane] = kNoSphere;
+      if (drawn.self[lane] == target || drawn.self[lane] < view.motion.size()) drawn.self[lane] = kCamera;
     }
     const bool has_target = random.coin() && !all_coincide;
     kernel::RayPacket<T> hits;
@@ -85,7 +86,7 @@ void compare(const test::Scene& scene, const View& view, Precision precision, co
     kernel::trace(has_target ? list_of_rest->tracer() : list->tracer(), hits);
     test::copy_rays(drawn, shadow);
     for (int lane = 0; lane < kPacketSize; ++lane) {
-      const bool hit = hits.hit[lane] != kNoSphere;
+      const bool hit = hits.hit[lane] != kNone;
       const T at = hits.distance[lane];
       T limit = std::numeric_limits<T>::max();
       const double kind = random.uniform(0, 1);
@@ -96,7 +97,7 @@ void compare(const test::Scene& scene, const View& view, Precision precision, co
       }
       expected[lane] = hit && at < limit;
       shadow.distance[lane] = limit;
-      shadow.target[lane] = has_target ? target : static_cast<Id>(kNoSphere);
+      shadow.target[lane] = has_target ? target : static_cast<Id>(kNone);
       shadow.occluded[lane] = 7;
       if (limit < std::numeric_limits<T>::max()) lengthen(shadow, lane, static_cast<int>(random.uniform(-9, 9)));
     }
@@ -209,7 +210,7 @@ TEST(AccelOcclusion, ASphereOccludesItselfOnlyThroughItself) {
       const View view{{{0, 0, 0, scale}, {0, 5 * scale, 0, scale}}, {}};
       EXPECT_FALSE(is_occluded(view, way, {0, 1, 0}, 1)) << way.name;
       EXPECT_TRUE(is_occluded(view, way, {0, -1, 0}, 1)) << way.name;
-      EXPECT_TRUE(is_occluded(view, way, {0, 1, 0}, kNoSphere)) << "the light's own surface";
+      EXPECT_TRUE(is_occluded(view, way, {0, 1, 0}, kNone)) << "the light's own surface";
     }
   }
 }
@@ -242,7 +243,7 @@ TEST(AccelOcclusion, NativePointsTestTheSameSpheres) {
       test::normalize(direction);
       for (int axis = 0; axis < 3; ++axis) a.direction[axis][lane] = static_cast<float>(direction[axis]);
       a.inverse_square[lane] = 1;
-      a.self[lane] = a.target[lane] = kNoSphere;
+      a.self[lane] = a.target[lane] = kNone;
       a.distance[lane] = static_cast<float>(random.uniform(3, 8));
     }
     kernel::ShadowPacket<float> b = a;

@@ -17,7 +17,8 @@
 namespace orrery::accel {
 namespace {
 
-using kernel::kNoSphere;
+using kernel::kCamera;
+using kernel::kNone;
 using kernel::kPacketSize;
 using kernel::Precision;
 using test::Random;
@@ -44,7 +45,7 @@ kernel::RayPacket<double> random_rays(Random& random, const test::Scene& scene) 
 kernel::ShadowPacket<double> shadows_of(const kernel::RayPacket<double>& rays) {
   kernel::ShadowPacket<double> out;
   static_cast<kernel::PacketRays<double>&>(out) = rays;
-  std::fill_n(out.target, kPacketSize, std::uint64_t{kNoSphere});
+  std::fill_n(out.target, kPacketSize, std::uint64_t{kNone});
   return out;
 }
 
@@ -106,7 +107,7 @@ TEST(AccelOpacity, InvisibleObjectsAreNotThere) {
     kernel::trace(make_list(view_of(scene.spheres, {}), Precision::kExact)->tracer(), opaque);
     for (int lane = 0; lane < kPacketSize; ++lane) {
       EXPECT_EQ(all.hit[lane], nearest.hit[lane]);
-      hits += all.hit[lane] != kNoSphere;
+      hits += all.hit[lane] != kNone;
       changed += all.hit[lane] != opaque.hit[lane];
     }
   }
@@ -172,12 +173,12 @@ TEST(AccelOpacity, TheHalfThatARayEntersDecidesAboutARod) {
         packet.count = kPacketSize;
         kernel::reset_hits(packet);
         for (int lane = 0; lane < kPacketSize; ++lane) {
-          test::set_ray(packet, lane, {half_of_lane(lane) == 0 ? -1.0 : 1.0, 0.1, 5}, {0, 0, 0}, {0, 0, -1}, kNoSphere);
+          test::set_ray(packet, lane, {half_of_lane(lane) == 0 ? -1.0 : 1.0, 0.1, 5}, {0, 0, 0}, {0, 0, -1}, kCamera);
           packet.key[lane] = lane % 2 == 0 ? static_cast<std::uint32_t>(random.engine()) : packet.key[lane - 1];
         }
         kernel::trace(accel->tracer(way.traversal), packet);
         for (int lane = 0; lane < kPacketSize; lane += 2) {
-          const bool first = packet.hit[lane] != kNoSphere, second = packet.hit[lane + 1] != kNoSphere;
+          const bool first = packet.hit[lane] != kNone, second = packet.hit[lane + 1] != kNone;
           hits[0] += first;
           hits[1] += second;
           both += first && second;

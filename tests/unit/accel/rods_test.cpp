@@ -20,7 +20,8 @@
 namespace orrery::accel {
 namespace {
 
-using kernel::kNoSphere;
+using kernel::kCamera;
+using kernel::kNone;
 using kernel::kPacketSize;
 using kernel::Rod;
 using test::Random;
@@ -158,7 +159,7 @@ void aim_at_rod(Random& random, const RodScene& scene, Packet& packet, int lane)
       offset[k] = 0;
     }
   }
-  test::set_ray(packet, lane, base, offset, direction, kNoSphere);
+  test::set_ray(packet, lane, base, offset, direction, kCamera);
 }
 
 template <class T>
@@ -180,7 +181,7 @@ void compare_hits(const RodScene& scene, kernel::Precision precision, const test
     test::copy_rays(drawn, a);
     for (int lane = 0; lane < kPacketSize; ++lane) {
       a.distance[lane] = std::numeric_limits<T>::max();
-      a.hit[lane] = kNoSphere;
+      a.hit[lane] = kNone;
     }
     kernel::RayPacket<T> b = a;
     kernel::trace(list->tracer(), a);
@@ -218,7 +219,7 @@ TEST(AccelRods, EmbreeAndListFindTheSameOcclusion) {
           aim_at_rod(random, scene, aimed, lane);
           aimed.time[lane] = random.uniform(0, 1);
           aimed.key[lane] = static_cast<std::uint32_t>(random.engine());
-          a.target[lane] = kNoSphere;
+          a.target[lane] = kNone;
         }
         static_cast<kernel::PacketRays<double>&>(a) = aimed;
         a.count = kPacketSize;
@@ -263,7 +264,7 @@ TEST(AccelRods, SpheresWinTies) {
         test::normalize(out);
         const double base[3] = {0.3 + 5 * out[0], 0.7 + 5 * out[1], -0.2 + 5 * out[2]};
         const double direction[3] = {-out[0], -out[1], -out[2]};
-        test::set_ray(p, lane, base, {0, 0, 0}, direction, kNoSphere);
+        test::set_ray(p, lane, base, {0, 0, 0}, direction, kCamera);
       }
       kernel::trace(accel->tracer(way.traversal), p);
       for (const auto hit : p.hit) ASSERT_EQ(hit, 0u) << way.name;

@@ -50,8 +50,8 @@ TEST(CompileCausticList, ListsEachBallWithEachLight) {
   EXPECT_TRUE(list.has(2, 3));
   EXPECT_FALSE(list.has(0, 3));
   EXPECT_FALSE(list.has(1, 2));
-  EXPECT_FALSE(list.has(1, kernel::kNoSphere));
-  EXPECT_FALSE(list.has(kernel::kNoSphere, 3));
+  EXPECT_FALSE(list.has(1, kernel::kSun));
+  EXPECT_FALSE(list.has(kernel::kNone, 3));
   EXPECT_GT(list.balls[0].power, 0);
 }
 
@@ -120,7 +120,7 @@ std::uint32_t void_in(const scene::Scene& opening, const scene::Scene* closing =
 
 TEST(CompileCausticList, ConcentricVoidsMakeBallsHollow) {
   scene::Scene s = stage();
-  EXPECT_EQ(void_in(s), kernel::kNoSphere);
+  EXPECT_EQ(void_in(s), kernel::kNone);
   s.spheres.push_back({{2, 1, 0}, -0.5, 2, ""});
   EXPECT_EQ(void_in(s), 4u);
   s.materials.push_back({"air", scene::Dielectric{1 / 1.5}});
@@ -142,9 +142,9 @@ TEST(CompileCausticList, VoidsMoveWithTheirBalls) {
   closing.spheres[2].center = closing.spheres[4].center = {3, 1, 0};
   EXPECT_EQ(void_in(opening, &closing), 4u);
   closing.spheres[4].radius = -1;
-  EXPECT_EQ(void_in(opening, &closing), kernel::kNoSphere);
+  EXPECT_EQ(void_in(opening, &closing), kernel::kNone);
   closing.spheres[4] = {{3, 1, 0.1}, -0.5, 2, ""};
-  EXPECT_EQ(void_in(opening, &closing), kernel::kNoSphere);
+  EXPECT_EQ(void_in(opening, &closing), kernel::kNone);
 }
 
 TEST(CompileCausticList, LightsThatTouchABallDuringTheShutterAreLeftOut) {

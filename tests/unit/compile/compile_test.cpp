@@ -50,8 +50,8 @@ TEST(CompileCompile, LeavesOutUnusedMaterials) {
 TEST(CompileCompile, ANegativeRadiusTurnsGlassInsideOut) {
   const CompiledScene compiled = compile(one_of_each());
   for (std::size_t i = 0; i < compiled.spheres.size(); ++i) EXPECT_GT(compiled.spheres[i].radius, 0);
-  const kernel::Material& outward = compiled.materials[compiled.sphere_materials[1]];
-  const kernel::Material& inward = compiled.materials[compiled.sphere_materials[2]];
+  const kernel::Material& outward = compiled.materials[compiled.object_materials[1]];
+  const kernel::Material& inward = compiled.materials[compiled.object_materials[2]];
   EXPECT_EQ(outward.eta[0], 1 / 1.5);
   EXPECT_EQ(outward.eta[1], 1.5);
   EXPECT_NEAR(outward.r0[0], 0.04, 1e-15);
@@ -59,7 +59,7 @@ TEST(CompileCompile, ANegativeRadiusTurnsGlassInsideOut) {
   EXPECT_EQ(inward.eta[0], outward.eta[1]);
   EXPECT_EQ(inward.eta[1], outward.eta[0]);
   EXPECT_EQ(inward.fresnel, kernel::FresnelKind::kExact);
-  EXPECT_EQ(compiled.sphere_materials[0], compiled.sphere_materials[3]) << "a diffuse sphere has no inside";
+  EXPECT_EQ(compiled.object_materials[0], compiled.object_materials[3]) << "a diffuse sphere has no inside";
 }
 
 TEST(CompileCompile, PointsFollowSpheresInTheOrderOfTheirIds) {
@@ -73,8 +73,8 @@ TEST(CompileCompile, PointsFollowSpheresInTheOrderOfTheirIds) {
   const CompiledScene compiled = compile(s);
   ASSERT_EQ(compiled.spheres.size(), 6u);
   EXPECT_EQ(compiled.spheres[4].x, 9);
-  EXPECT_EQ(compiled.sphere_materials[4], compiled.sphere_materials[0]);
-  EXPECT_EQ(compiled.materials[compiled.sphere_materials[5]].kind, kernel::MaterialKind::kMetal);
+  EXPECT_EQ(compiled.object_materials[4], compiled.object_materials[0]);
+  EXPECT_EQ(compiled.materials[compiled.object_materials[5]].kind, kernel::MaterialKind::kMetal);
 }
 
 /// Three points of each material: two of the first colour of a palette, one of the second.
@@ -101,15 +101,15 @@ TEST(CompileCompile, APaletteReplacesTheColorOfTheMaterial) {
   s.points = {colored_points(0), colored_points(1)};
   s.points[1].palette[0] = {0, 1, 0};
   const CompiledScene compiled = compile(s);
-  const auto material = [&](std::size_t sphere) { return compiled.materials.at(compiled.sphere_materials[sphere]); };
+  const auto material = [&](std::size_t sphere) { return compiled.materials.at(compiled.object_materials[sphere]); };
   expect_color(material(0).albedo, {0.1, 0.2, 0.3});
   expect_color(material(1).albedo, {0.25, 0.5, 1});
   expect_color(material(2).albedo, {1, 0, 0});
-  EXPECT_EQ(compiled.sphere_materials[3], compiled.sphere_materials[1]) << "a colour is one material";
+  EXPECT_EQ(compiled.object_materials[3], compiled.object_materials[1]) << "a colour is one material";
   expect_color(material(4).albedo, {0, 1, 0});
   EXPECT_EQ(material(4).kind, kernel::MaterialKind::kMetal);
   EXPECT_EQ(material(4).fuzz, 0.25) << "what is not colour is the material's";
-  EXPECT_NE(compiled.sphere_materials[5], compiled.sphere_materials[2]) << "another material with the same colour";
+  EXPECT_NE(compiled.object_materials[5], compiled.object_materials[2]) << "another material with the same colour";
 }
 
 TEST(CompileCompile, APaletteTintsEmitters) {
@@ -117,8 +117,8 @@ TEST(CompileCompile, APaletteTintsEmitters) {
   s.materials = {{"lamp", scene::Emitter{{10, 20, 30}}}};
   s.points = {colored_points(0)};
   const CompiledScene compiled = compile(s);
-  expect_color(compiled.emission.at(compiled.sphere_materials[0]).radiance, {2.5, 10, 30});
-  expect_color(compiled.emission.at(compiled.sphere_materials[1]).radiance, {10, 0, 0});
+  expect_color(compiled.emission.at(compiled.object_materials[0]).radiance, {2.5, 10, 30});
+  expect_color(compiled.emission.at(compiled.object_materials[1]).radiance, {10, 0, 0});
 }
 
 TEST(CompileCompile, GlassHasNoColor) {
@@ -128,8 +128,8 @@ TEST(CompileCompile, GlassHasNoColor) {
   s.points[0].radii.set(1, -1);
   const CompiledScene compiled = compile(s);
   EXPECT_EQ(compiled.materials.size(), 2u) << "outward and inward";
-  EXPECT_EQ(compiled.sphere_materials[0], compiled.sphere_materials[2]);
-  EXPECT_EQ(compiled.materials.at(compiled.sphere_materials[1]).eta[0], 1.5);
+  EXPECT_EQ(compiled.object_materials[0], compiled.object_materials[2]);
+  EXPECT_EQ(compiled.materials.at(compiled.object_materials[1]).eta[0], 1.5);
 }
 
 TEST(CompileCompile, AConstantBackgroundIgnoresTheDirection) {
@@ -137,7 +137,7 @@ TEST(CompileCompile, AConstantBackgroundIgnoresTheDirection) {
   s.background.type = scene::BackgroundType::kConstant;
   s.background.color = {0.25, 0.5, 0.75};
   const CompiledScene compiled = compile(s);
-  EXPECT_FALSE(compiled.features.sky);
+  EXPECT_FALSE(compiled.features.gradient);
   EXPECT_EQ(compiled.background.bottom.z, 0.75);
 }
 
@@ -180,17 +180,17 @@ TEST(CompileCompile, HemisphereFeatureIsSetOnlyIfUsed) {
 
 TEST(CompileCompile, PlasticReflectsTheSameOnBothSides) {
   scene::Scene s = one_of_each();
-  EXPECT_FALSE(compile(s).features.extended);
+  EXPECT_FALSE(compile(s).features.rich_materials);
   s.materials[1].model = scene::Plastic{{0.1, 0.2, 0.3}, 1.5, 0.4};
   const CompiledScene out = compile(s);
-  EXPECT_TRUE(out.features.extended);
+  EXPECT_TRUE(out.features.rich_materials);
   const kernel::Material& m = out.materials[0];
   EXPECT_EQ(m.kind, kernel::MaterialKind::kPlastic);
   EXPECT_EQ(m.albedo[2], 0.3);
   EXPECT_EQ(m.fuzz, 0.4);
   EXPECT_NEAR(m.r0[0], 0.04, 1e-15);
   EXPECT_EQ(m.r0[1], m.r0[0]);
-  EXPECT_EQ(out.sphere_materials[3], out.sphere_materials[0]) << "a negative radius";
+  EXPECT_EQ(out.object_materials[3], out.object_materials[0]) << "a negative radius";
 }
 
 TEST(CompileCameraBasis, FocusesOnLookAtByDefault) {

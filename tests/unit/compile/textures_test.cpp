@@ -36,18 +36,18 @@ scene::Scene scene_with(const scene::MaterialModel& model) {
 
 TEST(CompileTextures, ScenesWithoutTexturesHaveNone) {
   const CompiledScene plain = compile(scene_with(scene::Metal{{1, 1, 1}, 0.5}));
-  EXPECT_FALSE(plain.features.extended);
+  EXPECT_FALSE(plain.features.rich_materials);
   EXPECT_EQ(plain.view().textures, nullptr);
 }
 
 TEST(CompileTextures, ReplaceAConstantWhoseValueIsTheirMean) {
   const CompiledScene out = compile(scene_with(scene::Lambertian{{0.5, 0.5, 0.5}, slot(checker())}));
-  EXPECT_TRUE(out.features.extended);
+  EXPECT_TRUE(out.features.rich_materials);
   ASSERT_EQ(out.textures.textures().size(), 1u);
   const kernel::SceneView view = out.view();
-  EXPECT_EQ(view.material_textures[view.sphere_materials[0]].albedo, MaterialTextures::kNone);
-  EXPECT_EQ(view.material_textures[view.sphere_materials[1]].albedo, 0u);
-  const kernel::Material& m = view.materials[view.sphere_materials[1]];
+  EXPECT_EQ(view.material_textures[view.object_materials[0]].albedo, kernel::kNone);
+  EXPECT_EQ(view.material_textures[view.object_materials[1]].albedo, 0u);
+  const kernel::Material& m = view.materials[view.object_materials[1]];
   EXPECT_DOUBLE_EQ(m.albedo[0], 0.5);
   EXPECT_DOUBLE_EQ(m.albedo[2], 0.25);
 }
@@ -55,7 +55,7 @@ TEST(CompileTextures, ReplaceAConstantWhoseValueIsTheirMean) {
 TEST(CompileTextures, TexturesOfUnusedMaterialsAreOmitted) {
   scene::Scene s = scene_with(scene::Lambertian{{0.5, 0.5, 0.5}, slot(checker())});
   s.spheres.pop_back();
-  EXPECT_FALSE(compile(s).features.extended);
+  EXPECT_FALSE(compile(s).features.rich_materials);
 }
 
 TEST(CompileTextures, AnEmittersExposureMultipliesItsTexture) {
@@ -65,7 +65,7 @@ TEST(CompileTextures, AnEmittersExposureMultipliesItsTexture) {
   const CompiledScene out = compile(scene_with(lamp));
   EXPECT_EQ(out.textures.textures()[0].low[0], 0.8);
   EXPECT_EQ(out.textures.textures()[0].high[2], 2);
-  EXPECT_EQ(out.emission[out.sphere_materials[1]].radiance[0], 2) << "the mean, by which lights are chosen";
+  EXPECT_EQ(out.emission[out.object_materials[1]].radiance[0], 2) << "the mean, by which lights are chosen";
   EXPECT_EQ(out.light_tree.spheres.size(), 1u);
 }
 
@@ -83,13 +83,13 @@ TEST(CompileTextures, ColoursOfPointsReplaceAlbedoAndTintEmission) {
     points.palette = {{0.5, 1, 0}};
     s.points.push_back(points);
     const CompiledScene out = compile(s);
-    const MaterialTextures& of = out.textures.material(out.sphere_materials[2]);
-    EXPECT_EQ(of.albedo, MaterialTextures::kNone);
+    const MaterialTextures& of = out.textures.material(out.object_materials[2]);
+    EXPECT_EQ(of.albedo, kernel::kNone);
     if (!emits) {
-      EXPECT_EQ(out.materials[out.sphere_materials[2]].albedo[1], 1);
+      EXPECT_EQ(out.materials[out.object_materials[2]].albedo[1], 1);
       continue;
     }
-    ASSERT_NE(of.radiance, MaterialTextures::kNone);
+    ASSERT_NE(of.radiance, kernel::kNone);
     EXPECT_EQ(out.textures.textures()[of.radiance].high[0], 0.4);
     EXPECT_EQ(out.textures.textures()[of.radiance].high[2], 0);
   }
@@ -120,8 +120,8 @@ TEST(CompileTextures, GradientsAreUnitVectorsWithoutAPreferredDirection) {
 }
 
 TEST(CompileTextures, RoughGlassNeedsTheExtendedLoopAndClearGlassDoesNot) {
-  EXPECT_FALSE(compile(scene_with(scene::Dielectric{1.5, scene::Fresnel::kSchlick})).features.extended);
-  EXPECT_TRUE(compile(scene_with(scene::Dielectric{1.5, scene::Fresnel::kSchlick, 0.1})).features.extended);
+  EXPECT_FALSE(compile(scene_with(scene::Dielectric{1.5, scene::Fresnel::kSchlick})).features.rich_materials);
+  EXPECT_TRUE(compile(scene_with(scene::Dielectric{1.5, scene::Fresnel::kSchlick, 0.1})).features.rich_materials);
 }
 
 }  // namespace

@@ -24,7 +24,7 @@ class FilmLayerFilm : public testing::Test {
  protected:
   FilmLayerFilm() {
     view_.spheres = spheres_;
-    view_.sphere_materials = sphere_materials_;
+    view_.object_materials = object_materials_;
     view_.materials = materials_;
     view_.sphere_count = 2;
     materials_[1].albedo[0] = 0.25;
@@ -33,7 +33,7 @@ class FilmLayerFilm : public testing::Test {
   /// A path along the view axis that hits the front of a sphere.
   static kernel::PathRecord path_to(std::uint32_t sphere, double light = 0) {
     kernel::PathRecord path;
-    path.sphere = sphere;
+    path.object = sphere;
     path.offset.z = 1;
     path.direction.z = -1;
     std::fill_n(path.light, 3, light);
@@ -73,7 +73,7 @@ class FilmLayerFilm : public testing::Test {
   }
 
   kernel::Sphere spheres_[2] = {{0, 0, -5, 1}, {0, 0, -9, 1}};
-  std::uint32_t sphere_materials_[2] = {0, 1};
+  std::uint32_t object_materials_[2] = {0, 1};
   kernel::Material materials_[2];
   kernel::SceneView view_;
   LayerRequest request_;

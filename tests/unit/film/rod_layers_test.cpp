@@ -67,13 +67,13 @@ TEST(FilmRodLayers, PositionNormalAndExit) {
     view.spheres = &sphere;
     view.sphere_count = 1;
     view.materials = &material;
-    view.sphere_materials = materials;
+    view.object_materials = materials;
     view.rods = {&rod, 1, nullptr, 0, 1};
     view.camera.is_orthographic = true;
     view.camera.forward = direction;
     view.camera.origin = point - direction * 5;
     kernel::PathRecord path;
-    path.sphere = 1 + static_cast<std::uint32_t>(i % 2);
+    path.object = 1 + static_cast<std::uint32_t>(i % 2);
     path.offset = point - a;
     path.direction = direction;
     LayerPixel pixel;
@@ -86,7 +86,7 @@ TEST(FilmRodLayers, PositionNormalAndExit) {
       EXPECT_NEAR(kernel::from_fixed_point(pixel.normal[k]), k == 0 ? out.x : k == 1 ? out.y : out.z, 1e-12);
     }
     ASSERT_EQ(pixel.shares.size(), 1u);
-    EXPECT_EQ(pixel.shares[0].sphere, path.sphere);
+    EXPECT_EQ(pixel.shares[0].sphere, path.object);
     const double chord = pixel.shares[0].back - pixel.shares[0].front;
     const Vec3d exit = point + direction * chord;
     ASSERT_GT(chord, 0);

@@ -232,7 +232,7 @@ TEST(JobLayers, MaterialMattesUseAuthoredMaterials) {
         << i;
   const compile::CompiledScene compiled = compile::compile(s);
   for (std::size_t i = 0; i < s.spheres.size(); ++i)
-    EXPECT_EQ(layers.request.material_numbers[compiled.sphere_materials[i]], s.spheres[i].material + 1) << i;
+    EXPECT_EQ(layers.request.material_numbers[compiled.object_materials[i]], s.spheres[i].material + 1) << i;
 }
 
 TEST(JobMatteManifest, NamesTheHashAndTheConversion) {

@@ -23,7 +23,7 @@ namespace orrery::kernel {
 /// A ray incident on the top of a unit sphere, and its scattered directions.
 struct ScatterCase {
   double cos_arriving = 1, eta = 1, r0 = 0, fuzz = 0, u = 0.5;
-  FresnelKind fresnel = FresnelKind::kNone;
+  FresnelKind fresnel = FresnelKind::kZero;
   double on_sphere[3] = {0, 1, 0};
   double glass[3] = {}, metal[3] = {}, reflectance = 0;
   bool metal_alive = false;

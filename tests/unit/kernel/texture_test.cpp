@@ -59,7 +59,7 @@ void look_all(D d, const Texture& texture, std::vector<TextureLook>& looks) {
     ray.origin_low = ray.offset = {zero, zero, zero};
     ray.direction = set_all(d, look.direction);
     ray.inverse_square = hn::Set(d, T(1)) / dot(ray.direction, ray.direction);
-    ray.self = hn::Set(IdTag<D>(), hn::TFromD<IdTag<D>>{kNoSphere});
+    ray.self = hn::Set(IdTag<D>(), hn::TFromD<IdTag<D>>{kNone});
     const auto sphere = broadcast(d, look.sphere);
     const auto no = hn::FirstN(d, 0);
     const auto hit = closest_distance<D, kPrecision>(d, ray, sphere, no);

@@ -67,7 +67,7 @@ material = ["b", "a"]
   const compile::CompiledScene a = compile::compile(from_file), b = compile::compile(from_tables);
   ASSERT_EQ(a.rods.size(), 2u);
   EXPECT_EQ(std::memcmp(a.rods.data(), b.rods.data(), 2 * sizeof(kernel::Rod)), 0);
-  for (std::size_t i = 0; i < 4; ++i) EXPECT_EQ(a.sphere_materials[i], b.sphere_materials[i]) << i;
+  for (std::size_t i = 0; i < 4; ++i) EXPECT_EQ(a.object_materials[i], b.object_materials[i]) << i;
   EXPECT_EQ(a.rod_file_sizes, std::vector<std::size_t>{2});
   const auto one_radius =
       files.read(materials + "[[rods]]\nfile = \"bonds.csv\"\nradius = 2\nmaterial = \"a\"\n").scene;

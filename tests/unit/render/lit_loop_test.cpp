@@ -78,7 +78,7 @@ void expect_same(const Rendered& a, const Rendered& b) {
   for (std::size_t i = 0; i < a.records.size(); ++i) {
     const kernel::PathRecord &x = a.records[i], &y = b.records[i];
     different += !equal(x.light, y.light) || !(x.offset == y.offset) || !(x.direction == y.direction);
-    different += x.sphere != y.sphere;
+    different += x.object != y.object;
   }
   for (std::size_t i = 0; i < a.guides.size(); ++i) {
     const kernel::GuideSum &x = a.guides[i], &y = b.guides[i];

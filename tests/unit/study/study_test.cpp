@@ -57,7 +57,7 @@ TEST(StudyAxes, DirectLightingIsThatOfAScenesOwnMode) {
     compile::CompiledScene compiled = whole;
     const AxisPlan plan = plan_axes(s, compiled, 0.01);
     compiled.spheres = {};
-    compiled.sphere_materials = {};
+    compiled.object_materials = {};
     for (const auto& [name, mode] :
          {std::pair{"mis", DirectLighting::kMis}, std::pair{"bsdf", DirectLighting::kBsdf}}) {
       const auto choice = std::find_if(plan.choices.begin(), plan.choices.end(),
@@ -66,7 +66,7 @@ TEST(StudyAxes, DirectLightingIsThatOfAScenesOwnMode) {
       compile::CompiledScene changed = compiled;
       choice->apply(changed);
       changed.spheres = whole.spheres;
-      changed.sphere_materials = whole.sphere_materials;
+      changed.object_materials = whole.object_materials;
       compile::update_lights(changed);
       s.render.direct_lighting = mode;
       const compile::CompiledScene expected = compile::compile(s);

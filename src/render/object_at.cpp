@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "render/sphere_at.h"
+#include "render/object_at.h"
 
 #include <map>
 
@@ -27,7 +27,7 @@ std::optional<std::uint32_t> seen_along_ray(const compile::CompiledScene& scene,
       packet.key[lane] = static_cast<std::uint32_t>(i * kernel::kPacketSize + lane) * 0x9e3779b1u;
     kernel::trace(accel.tracer(), packet);
     for (int lane = 0; lane < packet.count; ++lane) {
-      if (packet.hit[lane] == kernel::kNoSphere) continue;
+      if (packet.hit[lane] == kernel::kNone) continue;
       const auto id = static_cast<std::uint32_t>(packet.hit[lane]);
       ++seen[id];
       if (!most || seen[id] > seen[*most]) most = id;
@@ -38,7 +38,7 @@ std::optional<std::uint32_t> seen_along_ray(const compile::CompiledScene& scene,
 
 }  // namespace
 
-std::optional<std::uint32_t> sphere_at(const compile::CompiledScene& scene, const accel::Accel& accel, double x,
+std::optional<std::uint32_t> object_at(const compile::CompiledScene& scene, const accel::Accel& accel, double x,
                                        double y) {
   return scene.precision == kernel::Precision::kFast ? seen_along_ray<float>(scene, accel, x, y)
                                                      : seen_along_ray<double>(scene, accel, x, y);

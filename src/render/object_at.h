@@ -16,7 +16,7 @@ namespace orrery::render {
 /// `x`, `y`   px from the upper left corner of the rendered window
 /// Result     the id of a hit; with opacities, of the object that contributes most to the point; empty if only the
 ///            background is visible
-std::optional<std::uint32_t> sphere_at(const compile::CompiledScene& scene, const accel::Accel& accel, double x,
+std::optional<std::uint32_t> object_at(const compile::CompiledScene& scene, const accel::Accel& accel, double x,
                                        double y);
 
 }  // namespace orrery::render

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "render/sphere_at.h"
+#include "render/object_at.h"
 
 #include <gtest/gtest.h>
 
@@ -30,7 +30,7 @@ std::optional<std::uint32_t> picked(const std::vector<double>& opacities, scene:
     s.spheres.push_back({{0, 0, -3.0 * static_cast<double>(i)}, 1, static_cast<std::uint32_t>(i), ""});
   }
   const compile::CompiledScene compiled = compile::compile(s);
-  return sphere_at(compiled, *build(compiled, 1), 4.5, 4.5);
+  return object_at(compiled, *build(compiled, 1), 4.5, 4.5);
 }
 
 TEST(RenderSphereAt, PicksTheObjectThatIsMostVisible) {
