@@ -11,7 +11,7 @@
 #include <stdexcept>
 
 #include "load/load_scene.h"
-#include "scene/environment_image.h"
+#include "scene/lat_long_map.h"
 #include "scene/texture.h"
 #include "support/lit_scenes.h"
 #include "support/room.h"
@@ -110,7 +110,7 @@ NoiseScene equal_fireflies() {
 NoiseScene bright_texels(int width, float light) {
   scene::Scene s = stage();
   s.background.type = scene::BackgroundType::kImage;
-  const auto map = std::make_shared<scene::EnvironmentImage>(width, width / 2);
+  const auto map = std::make_shared<scene::LatLongMap>(width, width / 2);
   Numbers number(11);
   for (int y = 0; y < map->height(); ++y)
     std::fill_n(map->row(y), 3 * map->width(), y < map->height() / 2 ? 0.3f : 0.1f);
@@ -185,7 +185,7 @@ NoiseScene lamp_behind_a_gap() {
 NoiseScene sun_of_two_texels() {
   scene::Scene s = stage();
   s.background.type = scene::BackgroundType::kImage;
-  const auto map = std::make_shared<scene::EnvironmentImage>(2048, 1024);
+  const auto map = std::make_shared<scene::LatLongMap>(2048, 1024);
   for (int y = 0; y < map->height(); ++y) std::fill_n(map->row(y), 3 * map->width(), 0.2f);
   for (int c = 0; c < 3; ++c) map->row(480)[3 * 40 + c] = map->row(480)[3 * 41 + c] = 40000;
   s.background.image = map;

@@ -251,9 +251,9 @@ void set_background(const scene::Scene& scene, CompiledScene& compiled) {
   compiled.backdrop = from.backdrop;
   compiled.environment = nullptr;
   compiled.features.gradient = false;
-  std::shared_ptr<const scene::EnvironmentImage> image = from.image;
+  std::shared_ptr<const scene::LatLongMap> image = from.image;
   if (!image && from.type == scene::BackgroundType::kSky)
-    image = std::make_shared<const scene::EnvironmentImage>(sky::bake_sky(from));
+    image = std::make_shared<const scene::LatLongMap>(sky::bake_sky(from));
   if (image) {
     EnvironmentSettings settings;
     settings.rotation = from.rotation;

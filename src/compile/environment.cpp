@@ -9,14 +9,14 @@
 
 #include "math/pixels.h"
 #include "math/vec3.h"
-#include "scene/environment_image.h"
+#include "scene/lat_long_map.h"
 
 namespace orrery::compile {
 namespace {
 
 using math::set;
 
-using scene::EnvironmentImage;
+using scene::LatLongMap;
 
 /// Below this fraction of the map's power, sampling radiance above the mean does not help: the excess is mostly
 /// rounding of texels to float.
@@ -62,7 +62,7 @@ double sum_of(const float* rgb) {
   return static_cast<double>(rgb[0]) + static_cast<double>(rgb[1]) + static_cast<double>(rgb[2]);
 }
 
-Totals totals_of(const EnvironmentImage& image, const std::vector<kernel::EnvironmentRow>& rows) {
+Totals totals_of(const LatLongMap& image, const std::vector<kernel::EnvironmentRow>& rows) {
   Totals out;
   const double cell_width = 2 * std::numbers::pi / image.width();
   for (int y = 0; y < image.height(); ++y) {
@@ -85,7 +85,7 @@ Totals totals_of(const EnvironmentImage& image, const std::vector<kernel::Enviro
 /// Builds the sums over two by two cells, four by four cells, and so on.
 class SumPyramid {
  public:
-  SumPyramid(const EnvironmentImage& image, kernel::Environment& view) : image_(image), view_(view) {}
+  SumPyramid(const LatLongMap& image, kernel::Environment& view) : image_(image), view_(view) {}
 
   /// Result     the integral of the interpolated weight over all directions
   double build(std::vector<float>& sums) {
@@ -157,7 +157,7 @@ class SumPyramid {
     }
   }
 
-  const EnvironmentImage& image_;
+  const LatLongMap& image_;
   kernel::Environment& view_;
 };
 
@@ -202,7 +202,7 @@ std::shared_ptr<const EnvironmentMap> EnvironmentMap::with_sampling(EnvironmentS
   return std::make_shared<const EnvironmentMap>(image_, settings);
 }
 
-EnvironmentMap::EnvironmentMap(std::shared_ptr<const EnvironmentImage> image, const EnvironmentSettings& settings)
+EnvironmentMap::EnvironmentMap(std::shared_ptr<const LatLongMap> image, const EnvironmentSettings& settings)
     : image_(std::move(image)), settings_(settings) {
   view_.texels = image_->row(0);
   view_.width = static_cast<std::uint32_t>(image_->width());

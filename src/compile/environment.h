@@ -39,7 +39,7 @@ class EnvironmentMap {
   /// Builds the tables of the distribution.
   ///
   /// Domain     texels are finite and not negative
-  EnvironmentMap(std::shared_ptr<const scene::EnvironmentImage> image, const EnvironmentSettings& settings);
+  EnvironmentMap(std::shared_ptr<const scene::LatLongMap> image, const EnvironmentSettings& settings);
   EnvironmentMap(const EnvironmentMap&) = delete;
   EnvironmentMap& operator=(const EnvironmentMap&) = delete;
 
@@ -53,7 +53,7 @@ class EnvironmentMap {
   std::uint64_t bytes() const noexcept;
 
  private:
-  std::shared_ptr<const scene::EnvironmentImage> image_;
+  std::shared_ptr<const scene::LatLongMap> image_;
   EnvironmentSettings settings_;
   std::vector<float> sums_;  ///< sums of all levels
   std::vector<kernel::EnvironmentRow> rows_;

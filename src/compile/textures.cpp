@@ -7,7 +7,7 @@
 #include <random>
 #include <set>
 
-#include "scene/environment_image.h"
+#include "scene/lat_long_map.h"
 #include "scene/texture.h"
 
 namespace orrery::compile {
@@ -39,7 +39,7 @@ const double* gradients() {
 }
 
 /// The mean of a map over the sphere.
-Vec3d mean_of(const scene::EnvironmentImage& image) {
+Vec3d mean_of(const scene::LatLongMap& image) {
   const auto cosine_at = [&](int edge) {
     return static_cast<double>(std::cos(std::numbers::pi_v<long double> * edge / image.height()));
   };
@@ -74,12 +74,12 @@ std::uint32_t TextureStore::add(const scene::Texture& texture, Vec3d factor) {
     if (!texture.image) return kernel::kNone;
     const auto image = std::make_shared<Image>();
     image->texels = texture.image;
-    const auto add_level = [&](const scene::EnvironmentImage& level) {
+    const auto add_level = [&](const scene::LatLongMap& level) {
       image->view.levels[image->view.level_count++] = {level.row(0), static_cast<std::uint32_t>(level.width()),
                                                        static_cast<std::uint32_t>(level.height())};
     };
     add_level(*texture.image);
-    for (const scene::EnvironmentImage& level : texture.image->reduced) add_level(level);
+    for (const scene::LatLongMap& level : texture.image->reduced) add_level(level);
     // An environment's left edge is at -z; seen from outside, that of a texture is at -x.
     const double turn = -0.25 - texture.rotation / 360;
     image->view.turn = turn - std::floor(turn);
@@ -109,7 +109,7 @@ bool TextureStore::has_levels() const noexcept {
 
 std::uint64_t TextureStore::bytes() const noexcept {
   std::uint64_t bytes = 0;
-  std::set<const scene::EnvironmentImage*> counted;
+  std::set<const scene::LatLongMap*> counted;
   for (const auto& image : images_)
     if (counted.insert(image->texels.get()).second)
       for (std::uint32_t k = 0; k < image->view.level_count; ++k)

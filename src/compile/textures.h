@@ -48,7 +48,7 @@ class TextureStore {
  private:
   /// A loaded image and its view for the kernel, including the rotation.
   struct Image {
-    std::shared_ptr<const scene::EnvironmentImage> texels;
+    std::shared_ptr<const scene::LatLongMap> texels;
     kernel::TextureImage view;
   };
 

@@ -67,7 +67,7 @@ inline constexpr int kEnvironmentWidth = 1024;
 /// Returns a latitude-longitude image of a photo studio, for tests of materials: a dark room with a grey floor and four
 /// soft boxes, with the light that they cast on it. The camera is expected at +z.
 ///
-/// Space      metres: the ball is at the origin, the floor at y = -1.2; orientation as for scene::EnvironmentImage
+/// Space      metres: the ball is at the origin, the floor at y = -1.2; orientation as for scene::LatLongMap
 /// Units      lin_rec709. The key light's irradiance at the ball is about pi: there, a white diffuse surface that faces
 ///            it has radiance 1
 /// Result     planes R, G, B; the same bits on every machine

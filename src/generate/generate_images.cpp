@@ -280,7 +280,7 @@ film::Picture make_sky(const scene::Background& sky, int width) {
   check_range("sun azimuth", sky.sun_azimuth, -scene::kLargestRotation, scene::kLargestRotation);
   check_range("turbidity", sky.turbidity, scene::kLowestTurbidity, scene::kHighestTurbidity);
   check_range("ground albedo", sky.ground_albedo.x, 0, 1);
-  const scene::EnvironmentImage image = sky::bake_sky(sky, {width});
+  const scene::LatLongMap image = sky::bake_sky(sky, {width});
   for (int y = 0; y < picture.height; ++y) {
     const float* from = image.row(y);
     const std::size_t at = math::pixel_index(0, y, width);

@@ -14,12 +14,12 @@
 #include "base/input_file.h"
 #include "base/text.h"
 #include "compile/environment.h"
+#include "compile/mip_map.h"
 #include "display/color_space.h"
 #include "image/read.h"
 #include "scene/limits.h"
 #include "scene/texture.h"
 #include "sky/daylight.h"
-#include "sky/mip_map.h"
 
 namespace orrery::load {
 namespace {
@@ -63,7 +63,7 @@ class MapLoader {
       const image::MapHeader header = image::read_map_header(request_.file, request_.formats);
       out_.width = header.width;
       out_.height = header.height;
-      out_.bytes = request_.has_mip_map ? sky::mip_map_bytes(header.width, header.height)
+      out_.bytes = request_.has_mip_map ? compile::mip_map_bytes(header.width, header.height)
                                         : compile::environment_bytes(header.width, header.height, request_.sampling);
       if (header.width != 2 * header.height)
         faults_.warning(request_.file_key,
@@ -138,7 +138,7 @@ class MapLoader {
   }
 
   void read(const image::MapHeader& header, const display::PixelConversion& convert) {
-    const auto image = std::make_shared<scene::EnvironmentImage>(header.width, header.height);
+    const auto image = std::make_shared<scene::LatLongMap>(header.width, header.height);
     const std::size_t values = 3 * static_cast<std::size_t>(header.width);
     // An infinite sun is one that did not fit into the file.
     const float largest = header.is_half ? std::min(kLargestHalf, request_.largest) : request_.largest;
@@ -160,7 +160,7 @@ class MapLoader {
       }
     };
     image::read_map(request_.file, take, request_.formats);
-    if (request_.has_mip_map) sky::add_mip_map(*image);
+    if (request_.has_mip_map) compile::add_mip_map(*image);
     out_.image = image;
     if (nan + negative > 0)
       faults_.warning(request_.file_key,
@@ -267,7 +267,7 @@ LoadedMap load_sky(const std::string& ocio_config, const scene::Scene& scene) {
   scene::Background background = scene.background;
   const math::Vec3d albedo = converted(to_sky, background.ground_albedo);
   background.ground_albedo = {std::min(albedo.x, 1.0), std::min(albedo.y, 1.0), std::min(albedo.z, 1.0)};
-  const auto image = std::make_shared<scene::EnvironmentImage>(sky::bake_sky(background));
+  const auto image = std::make_shared<scene::LatLongMap>(sky::bake_sky(background));
   if (to_working) {
     const auto width = static_cast<std::size_t>(image->width());
     for (int y = 0; y < image->height(); ++y) {

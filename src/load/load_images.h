@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "scene/diagnostic.h"
-#include "scene/environment_image.h"
+#include "scene/lat_long_map.h"
 #include "scene/scene.h"
 
 /// Reads the images that a scene names, those of its background and of its textures: latitude-longitude maps, which are
@@ -36,9 +36,9 @@ struct LoadedMap {
   int width = 0, height = 0;  ///< texels
   std::string color_space;    ///< colour space of the file; empty for data
   std::uint64_t bytes = 0;    ///< estimated memory of the texels, and of their mip map or sampling tables
-  std::shared_ptr<const scene::EnvironmentImage> image;  ///< in the working space; null if it was not read
-  float brightest = 0;                                   ///< largest value of `image`, including the sun
-  std::vector<scene::SceneDiagnostic> diagnostics;       ///< errors and warnings, by key of the scene
+  std::shared_ptr<const scene::LatLongMap> image;   ///< in the working space; null if it was not read
+  float brightest = 0;                              ///< largest value of `image`, including the sun
+  std::vector<scene::SceneDiagnostic> diagnostics;  ///< errors and warnings, by key of the scene
 };
 
 /// Reads the image of scene.background.

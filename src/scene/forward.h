@@ -6,7 +6,7 @@ namespace orrery::scene {
 
 enum class Precision;
 
-class EnvironmentImage;
+class LatLongMap;
 class NumberArray;
 class PointArray;
 

@@ -19,7 +19,7 @@
 /// The member initialisers are the defaults documented in docs/scene-format.md, and their only definition.
 namespace orrery::scene {
 
-class EnvironmentImage;
+class LatLongMap;
 struct Texture;
 
 /// A texture that replaces a constant of a material; null: the constant. Shared by copies of the scene, and never
@@ -70,16 +70,16 @@ struct Background {
   int alpha = 1;                       ///< 0: the background is transparent
   std::optional<Vec3d> backdrop = {};  ///< radiance that camera rays see in its place; default: they see it
   // Image and sky.
-  std::shared_ptr<const EnvironmentImage> image = {};  ///< the texels of `file`, or the baked sky; null until loaded
-  std::filesystem::path file = {};                     ///< image: latitude-longitude map, relative to the scene file
-  std::string color_space = {};                        ///< image; empty: from the file's metadata, else the scene's
-  double rotation = 0;                                 ///< degrees about +y
-  double exposure = 0;                                 ///< stops
-  std::string light_group = {};                        ///< empty: the default group
-  bool visible = true;        ///< visible to the camera; scattered rays always see the background
-  double sun_elevation = 45;  ///< sky: degrees above the horizon
-  double sun_azimuth = 0;     ///< sky: degrees from +z towards +x
-  double turbidity = 2;       ///< sky: amount of haze; 1 is pure air
+  std::shared_ptr<const LatLongMap> image = {};  ///< the texels of `file`, or the baked sky; null until loaded
+  std::filesystem::path file = {};               ///< image: latitude-longitude map, relative to the scene file
+  std::string color_space = {};                  ///< image; empty: from the file's metadata, else the scene's
+  double rotation = 0;                           ///< degrees about +y
+  double exposure = 0;                           ///< stops
+  std::string light_group = {};                  ///< empty: the default group
+  bool visible = true;                           ///< visible to the camera; scattered rays always see the background
+  double sun_elevation = 45;                     ///< sky: degrees above the horizon
+  double sun_azimuth = 0;                        ///< sky: degrees from +z towards +x
+  double turbidity = 2;                          ///< sky: amount of haze; 1 is pure air
   Vec3d ground_albedo{0.2, 0.2, 0.2};
   bool sun = true;  ///< sky: includes the sun's disc
 };

@@ -12,7 +12,7 @@
 
 namespace orrery::scene {
 
-class EnvironmentImage;
+class LatLongMap;
 struct Scene;
 
 enum class TextureType { kChecker, kNoise, kTurbulence, kMarble, kImage };
@@ -32,7 +32,7 @@ struct Texture {
   std::string color_space = {};     ///< empty: determined from the file's metadata or format
   double rotation = 0;              ///< degrees about +y
   TextureFilter filter = TextureFilter::kMip;
-  std::shared_ptr<const EnvironmentImage> image = {};  ///< the texels of `file`; null until loaded
+  std::shared_ptr<const LatLongMap> image = {};  ///< the texels of `file`; null until loaded
 };
 
 /// Use of a texture; determines the type and range of its values.

@@ -120,14 +120,14 @@ void put(float* texel, Vec3d color) {
 
 }  // namespace
 
-scene::EnvironmentImage bake_sky(const scene::Background& background, const SkyQuality& quality) {
+scene::LatLongMap bake_sky(const scene::Background& background, const SkyQuality& quality) {
   const double elevation = background.sun_elevation * kPi / 180, azimuth = background.sun_azimuth * kPi / 180;
   const Atmosphere air(background.turbidity, quality.density);
   const ColumnTable columns(quality.refinement);
   const Scattering scattering(air, columns, elevation, reflectance_of(background.ground_albedo), quality.refinement);
 
   const int width = quality.width, height = width / 2;
-  scene::EnvironmentImage sky(width, height);
+  scene::LatLongMap sky(width, height);
   const std::vector<ColumnAngle> angles = column_angles(width, azimuth);
   const double texel = kPi / height;
   Vec3d irradiance;  // irradiance of the ground from the sky

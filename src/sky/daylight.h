@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include "scene/environment_image.h"
+#include "scene/lat_long_map.h"
 #include "scene/scene.h"
 
 namespace orrery::sky {
@@ -29,6 +29,6 @@ struct SkyQuality {
 /// Precision     docs/decisions/0024-daylight-model.md
 /// Cost          0.15 s
 /// Reference     hillaire2020, bruneton2017
-scene::EnvironmentImage bake_sky(const scene::Background& background, const SkyQuality& quality = {});
+scene::LatLongMap bake_sky(const scene::Background& background, const SkyQuality& quality = {});
 
 }  // namespace orrery::sky

@@ -20,7 +20,7 @@
 #include "render/render.h"
 #include "render/result.h"
 #include "render/settings.h"
-#include "scene/environment_image.h"
+#include "scene/lat_long_map.h"
 #include "scene/scene.h"
 #include "scene/schema.h"
 #include "scene/texture.h"
@@ -34,7 +34,7 @@ constexpr int kSceneWidth = 96, kSceneHeight = 54;
 /// Gives the scene's image texture a map that is generated here, so that the test needs no file.
 void set_planet(scene::Scene& scene) {
   const film::Picture map = generate::make_planet(1, 256);
-  const auto image = std::make_shared<scene::EnvironmentImage>(map.width, map.height);
+  const auto image = std::make_shared<scene::LatLongMap>(map.width, map.height);
   for (int y = 0; y < map.height; ++y)
     for (int x = 0; x < map.width; ++x)
       for (std::size_t c = 0; c < 3; ++c)

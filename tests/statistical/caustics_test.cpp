@@ -13,7 +13,7 @@
 #include "compile/compile.h"
 #include "compile/compiled_scene.h"
 #include "math/vec3.h"
-#include "scene/environment_image.h"
+#include "scene/lat_long_map.h"
 #include "scene/texture.h"
 #include "support/block_means.h"
 #include "support/lit_scenes.h"
@@ -24,7 +24,7 @@ namespace {
 constexpr int kWidthPx = 32, kHeightPx = 24;
 
 void add_sun(scene::Scene& s, double half_angle) {
-  auto map = std::make_shared<scene::EnvironmentImage>(4, 2);
+  auto map = std::make_shared<scene::LatLongMap>(4, 2);
   for (int y = 0; y < 2; ++y) std::fill_n(map->row(y), 12, y == 0 ? 0.3F : 0.1F);
   map->sun.direction = math::normalized(math::Vec3d{-1, 2, 1});
   map->sun.one_minus_cos = 1 - std::cos(half_angle);

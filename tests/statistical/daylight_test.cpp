@@ -185,7 +185,7 @@ TEST(StatisticalDaylight, MultipleScatteringMatchesRandomPaths) {
       background.sun_elevation = sun;
       background.turbidity = c.turbidity;
       background.ground_albedo = {c.albedo, c.albedo, c.albedo};
-      const scene::EnvironmentImage sky = sky::bake_sky(background, {256});
+      const scene::LatLongMap sky = sky::bake_sky(background, {256});
       std::printf("%4.0f %5.1f %5.0f   ", c.turbidity, c.albedo, sun);
       double relative_squares = 0;  // errors, as parts of what model and reference are expected to have
       for (const auto& at : kDirections) {

@@ -113,7 +113,7 @@ TEST(StatisticalDirectLight, ASunOfOneTexelIsAsGoodAsASphere) {
   texel.render.samples = 64;
   texel.background.type = scene::BackgroundType::kImage;
   const auto map = [&](float brightest) {
-    auto image = std::make_shared<scene::EnvironmentImage>(kTexels, kTexels / 2);
+    auto image = std::make_shared<scene::LatLongMap>(kTexels, kTexels / 2);
     for (int y = 0; y < kTexels / 2; ++y) std::fill_n(image->row(y), 3 * kTexels, 1e-3F);
     std::fill_n(image->row(kTexels / 8) + 3 * (kTexels / 4 + 5), 3, brightest);
     return image;

@@ -25,7 +25,7 @@
 #include "kernel/isa.h"
 #include "kernel/sampler-inl.h"
 #include "math/dispatch.h"
-#include "scene/environment_image.h"
+#include "scene/lat_long_map.h"
 #include "support/chi_square.h"
 
 namespace orrery::test {
@@ -120,13 +120,13 @@ HWY_EXPORT(draw_numbers);
 using compile::EnvironmentMap;
 using compile::EnvironmentSampling;
 using compile::EnvironmentSettings;
-using scene::EnvironmentImage;
+using scene::LatLongMap;
 
 constexpr double kPi = std::numbers::pi;
 
 /// Texels of very different brightness, a quarter of them black.
-std::shared_ptr<EnvironmentImage> wild_image(int width, int height) {
-  auto image = std::make_shared<EnvironmentImage>(width, height);
+std::shared_ptr<LatLongMap> wild_image(int width, int height) {
+  auto image = std::make_shared<LatLongMap>(width, height);
   std::mt19937_64 random{3};
   std::uniform_real_distribution<double> uniform(0, 1);
   for (int y = 0; y < height; ++y)
@@ -136,8 +136,8 @@ std::shared_ptr<EnvironmentImage> wild_image(int width, int height) {
 }
 
 /// A grey map with one texel as much brighter as given.
-std::shared_ptr<EnvironmentImage> hot_image(int width, int height, float ratio) {
-  auto image = std::make_shared<EnvironmentImage>(width, height);
+std::shared_ptr<LatLongMap> hot_image(int width, int height, float ratio) {
+  auto image = std::make_shared<LatLongMap>(width, height);
   for (int y = 0; y < height; ++y) std::fill_n(image->row(y), 3 * width, 1.0F);
   std::fill_n(image->row(height / 3) + 3 * (width / 5), 3, ratio);
   return image;
@@ -145,7 +145,7 @@ std::shared_ptr<EnvironmentImage> hot_image(int width, int height, float ratio) 
 
 scene::Sun low_sun() { return {{0.6, 0.48, 0.64}, 1.081e-5, {4e5, 3e5, 2e5}}; }
 
-EnvironmentMap map_of(const std::shared_ptr<EnvironmentImage>& image, EnvironmentSampling sampling) {
+EnvironmentMap map_of(const std::shared_ptr<LatLongMap>& image, EnvironmentSampling sampling) {
   EnvironmentSettings settings;
   settings.rotation = 40;
   settings.scale = 2;
@@ -204,15 +204,15 @@ class Rectangles {
   std::vector<double> cosines_;
 };
 
-std::vector<std::shared_ptr<EnvironmentImage>> images() {
-  std::vector<std::shared_ptr<EnvironmentImage>> out;
+std::vector<std::shared_ptr<LatLongMap>> images() {
+  std::vector<std::shared_ptr<LatLongMap>> out;
   for (const auto& [width, height] : {std::pair{1, 1}, {2, 1}, {1, 6}, {5, 3}, {16, 8}, {37, 18}, {20, 41}})
     out.push_back(wild_image(width, height));
   out.push_back(hot_image(64, 32, 1e6F));
   return out;
 }
 
-std::string name_of(const EnvironmentImage& image, EnvironmentSampling sampling) {
+std::string name_of(const LatLongMap& image, EnvironmentSampling sampling) {
   return std::to_string(image.width()) + " x " + std::to_string(image.height()) +
          (sampling == EnvironmentSampling::kCompensated ? ", compensated" : ", complete");
 }

@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-#include "scene/environment_image.h"
+#include "scene/lat_long_map.h"
 #include "scene/scene.h"
 
 namespace orrery::test {
@@ -58,8 +58,8 @@ inline scene::Scene with_lamps(scene::Scene s) {
 }
 
 /// A latitude-longitude map: dim sky above, dark ground below, and a bright texel.
-inline std::shared_ptr<scene::EnvironmentImage> bright_texel_map(float radiance) {
-  auto map = std::make_shared<scene::EnvironmentImage>(32, 16);
+inline std::shared_ptr<scene::LatLongMap> bright_texel_map(float radiance) {
+  auto map = std::make_shared<scene::LatLongMap>(32, 16);
   for (int y = 0; y < 16; ++y)
     for (int x = 0; x < 32; ++x)
       for (int c = 0; c < 3; ++c) map->row(y)[3 * x + c] = (y < 8 ? 0.2F : 0.05F) + 0.05F * static_cast<float>(c);

@@ -10,18 +10,18 @@
 
 #include "compile/compile.h"
 #include "compile/compiled_scene.h"
-#include "scene/environment_image.h"
+#include "scene/lat_long_map.h"
 #include "scene/scene.h"
 
 namespace orrery::compile {
 namespace {
 
-using scene::EnvironmentImage;
+using scene::LatLongMap;
 
 using std::numbers::pi;
 
-std::shared_ptr<EnvironmentImage> uniform_image(int width, int height, float radiance) {
-  auto image = std::make_shared<EnvironmentImage>(width, height);
+std::shared_ptr<LatLongMap> uniform_image(int width, int height, float radiance) {
+  auto image = std::make_shared<LatLongMap>(width, height);
   for (int y = 0; y < height; ++y) std::fill_n(image->row(y), 3 * width, radiance);
   return image;
 }

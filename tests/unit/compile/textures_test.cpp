@@ -9,7 +9,7 @@
 #include "compile/compile.h"
 #include "compile/compiled_scene.h"
 #include "compile/environment.h"
-#include "scene/environment_image.h"
+#include "scene/lat_long_map.h"
 #include "scene/scene.h"
 #include "scene/texture.h"
 
@@ -96,7 +96,7 @@ TEST(CompileTextures, ColoursOfPointsReplaceAlbedoAndTintEmission) {
 }
 
 TEST(CompileTextures, TheMeanOfAnImageIsOverTheSphere) {
-  const auto image = std::make_shared<scene::EnvironmentImage>(1, 3);
+  const auto image = std::make_shared<scene::LatLongMap>(1, 3);
   const float rows[3] = {0, 1, 0.5F};
   for (int y = 0; y < 3; ++y)
     for (int c = 0; c < 3; ++c) image->row(y)[c] = rows[y];

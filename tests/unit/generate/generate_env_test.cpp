@@ -91,7 +91,7 @@ TEST(GenerateEnv, StudioIsGrey) {
 
 // Irradiance of a surface that faces the sun, on which texels of the sun act as the disc does.
 TEST(GenerateEnv, SkyHasTheIrradianceOfSunAndSkyAtEveryWidth) {
-  const auto toward_sun = [](const scene::EnvironmentImage& image) {
+  const auto toward_sun = [](const scene::LatLongMap& image) {
     return sky::luminance(image.sun.radiance) * 2 * kPi * image.sun.one_minus_cos;
   };
   for (const double elevation : {89.9, 0.1}) {
@@ -99,7 +99,7 @@ TEST(GenerateEnv, SkyHasTheIrradianceOfSunAndSkyAtEveryWidth) {
       const scene::Background with = sky_at(elevation);
       scene::Background without = with;
       without.sun = false;
-      const scene::EnvironmentImage image = sky::bake_sky(with, {width});
+      const scene::LatLongMap image = sky::bake_sky(with, {width});
       const Vec3d normal = image.sun.direction;
       const Vec3d difference = irradiance(make_sky(with, width), normal) - irradiance(make_sky(without, width), normal);
       // At 16 px, the sun is up to 16 degrees from the centre of its texel.
@@ -111,7 +111,7 @@ TEST(GenerateEnv, SkyHasTheIrradianceOfSunAndSkyAtEveryWidth) {
 
 TEST(GenerateEnv, SkyIsTheModelAwayFromTheSun) {
   const film::Picture picture = make_sky(sky_at(30), 64);
-  const scene::EnvironmentImage image = sky::bake_sky(sky_at(30), {64});
+  const scene::LatLongMap image = sky::bake_sky(sky_at(30), {64});
   int different = 0;
   for (int y = 0; y < 32; ++y)
     for (int x = 0; x < 64; ++x)

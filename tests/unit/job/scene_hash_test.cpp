@@ -11,7 +11,7 @@
 #include "compile/compile.h"
 #include "compile/compiled_scene.h"
 #include "generate/generate.h"
-#include "scene/environment_image.h"
+#include "scene/lat_long_map.h"
 #include "scene/scene.h"
 
 namespace orrery::job {
@@ -107,7 +107,7 @@ TEST(JobSceneHash, ChangesWithRods) {
 scene::Scene lit_scene(float texel = 1) {
   scene::Scene s = small_scene();
   s.materials[s.spheres[1].material].model = scene::Emitter{};
-  auto image = std::make_shared<scene::EnvironmentImage>(3, 1);
+  auto image = std::make_shared<scene::LatLongMap>(3, 1);
   std::fill_n(image->row(0), 9, 1.0F);
   image->row(0)[8] = texel;
   s.background.type = scene::BackgroundType::kImage;

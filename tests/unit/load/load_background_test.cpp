@@ -204,7 +204,7 @@ TEST(LoadSky, InRec709ItIsTheModel) {
   EXPECT_EQ(loaded.width, 512);
   EXPECT_EQ(loaded.height, 256);
   EXPECT_EQ(loaded.color_space, "lin_rec709");
-  const scene::EnvironmentImage model = sky::bake_sky(evening().background);
+  const scene::LatLongMap model = sky::bake_sky(evening().background);
   for (const int y : {0, 100, 255})
     EXPECT_TRUE(std::equal(model.row(y), model.row(y) + 3 * 512, loaded.image->row(y))) << y;
   EXPECT_EQ(loaded.image->sun.radiance, model.sun.radiance);

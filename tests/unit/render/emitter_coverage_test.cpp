@@ -122,7 +122,7 @@ TEST(RenderEmitterCoverage, BrightTexelsAreEmitters) {
   s.render.samples = 1 << 14;
   s.background.type = scene::BackgroundType::kImage;
   s.background.rotation = 7;
-  const auto map = std::make_shared<scene::EnvironmentImage>(1024, 512);
+  const auto map = std::make_shared<scene::LatLongMap>(1024, 512);
   for (int y = 0; y < map->height(); ++y) std::fill_n(map->row(y), 3 * map->width(), 0.0f);
   std::fill_n(map->row(250) + 3 * 32, 3, static_cast<float>(kLampRadiance));
   s.background.image = map;
@@ -135,7 +135,7 @@ TEST(RenderEmitterCoverage, TheSunOfASkyIsASmallEmitter) {
   scene::Scene s = distant_lamp();
   s.spheres.clear();
   s.background.type = scene::BackgroundType::kImage;
-  const auto map = std::make_shared<scene::EnvironmentImage>(32, 16);
+  const auto map = std::make_shared<scene::LatLongMap>(32, 16);
   for (int y = 0; y < map->height(); ++y) std::fill_n(map->row(y), 3 * map->width(), 0.0f);
   map->sun.direction = math::normalized(math::Vec3d{0.13, 0.11, -1});
   map->sun.one_minus_cos = 1.08e-5;

@@ -33,7 +33,7 @@ std::optional<std::uint32_t> picked(const std::vector<double>& opacities, scene:
   return object_at(compiled, *build(compiled, 1), 4.5, 4.5);
 }
 
-TEST(RenderSphereAt, PicksTheObjectThatIsMostVisible) {
+TEST(RenderObjectAt, PicksTheObjectThatIsMostVisible) {
   for (const auto precision : {scene::Precision::kExact, scene::Precision::kFast}) {
     EXPECT_EQ(picked({1, 1}, precision), 0u);
     EXPECT_EQ(picked({0.7, 1}, precision), 0u);

@@ -13,27 +13,27 @@
 
 #include "compile/compile.h"
 #include "compile/compiled_scene.h"
+#include "compile/mip_map.h"
 #include "render/render.h"
-#include "scene/environment_image.h"
+#include "scene/lat_long_map.h"
 #include "scene/texture.h"
-#include "sky/mip_map.h"
 #include "support/plane_values.h"
 
 namespace orrery::render {
 namespace {
 
-using Image = std::shared_ptr<const scene::EnvironmentImage>;
+using Image = std::shared_ptr<const scene::LatLongMap>;
 
 /// A map of 1024 x 512 texels, each 0 or 1, alternating or at random.
 Image map(bool has_levels, bool is_random = false) {
-  const auto out = std::make_shared<scene::EnvironmentImage>(1024, 512);
+  const auto out = std::make_shared<scene::LatLongMap>(1024, 512);
   std::mt19937 random{9};
   for (int y = 0; y < out->height(); ++y)
     for (int x = 0; x < out->width(); ++x) {
       const float value = is_random ? static_cast<float>(random() % 2) : static_cast<float>((x + y) % 2);
       for (int c = 0; c < 3; ++c) out->row(y)[3 * x + c] = value;
     }
-  if (has_levels) sky::add_mip_map(*out);
+  if (has_levels) compile::add_mip_map(*out);
   return out;
 }
 

@@ -29,7 +29,7 @@ scene::Background at(double elevation, double turbidity = 3, double azimuth = 0,
   return b;
 }
 
-using Sky = scene::EnvironmentImage;
+using Sky = scene::LatLongMap;
 
 /// A small image, for speed.
 Sky small_sky(const scene::Background& background) { return bake_sky(background, {64}); }

@@ -3,9 +3,9 @@
 
 #include <cstdint>
 
-#include "scene/environment_image.h"
+#include "scene/lat_long_map.h"
 
-namespace orrery::sky {
+namespace orrery::compile {
 
 /// Adds the levels of a mip map to an image texture: each has half the width and height of the one before, rounded
 /// down. A texel is the mean of those that it covers, by solid angle, so that all levels have the same mean over the
@@ -15,9 +15,9 @@ namespace orrery::sky {
 /// side.
 ///
 /// Precision  sums in double, rounded to float
-void add_mip_map(scene::EnvironmentImage& image);
+void add_mip_map(scene::LatLongMap& image);
 
 /// Returns the memory of an image of this size and its mip map, in bytes.
 std::uint64_t mip_map_bytes(int width, int height);
 
-}  // namespace orrery::sky
+}  // namespace orrery::compile

@@ -21,10 +21,10 @@ struct Sun {
 /// a quarter of the width.
 ///
 /// Cost       12 bytes per texel. Rows take no memory until they are written.
-class EnvironmentImage {
+class LatLongMap {
  public:
   /// Creates a map whose texels are uninitialized.
-  EnvironmentImage(int width, int height)
+  LatLongMap(int width, int height)
       : width_(width), height_(height), values_(std::make_unique_for_overwrite<float[]>(begin_of(height) + kPadding)) {
     values_[begin_of(height)] = 0;
   }
@@ -39,7 +39,7 @@ class EnvironmentImage {
 
   Sun sun;
   /// The lower levels of a mip map, without sun; empty for backgrounds.
-  std::vector<EnvironmentImage> reduced;
+  std::vector<LatLongMap> reduced;
 
  private:
   static constexpr std::size_t kPadding = 1;  ///< the kernel loads texels as four floats

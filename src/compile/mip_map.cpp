@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "sky/mip_map.h"
+#include "compile/mip_map.h"
 
 #include <algorithm>
 #include <cmath>
@@ -10,7 +10,7 @@
 #include "base/stop_point.h"
 #include "math/pixels.h"
 
-namespace orrery::sky {
+namespace orrery::compile {
 namespace {
 
 constexpr int kMinHeight = 16, kMinWidth = 2 * kMinHeight;
@@ -37,8 +37,8 @@ std::vector<std::vector<Tap>> taps(int from, int to, Measure measure) {
   return out;
 }
 
-scene::EnvironmentImage reduced(const scene::EnvironmentImage& from) {
-  scene::EnvironmentImage out(from.width() / 2, from.height() / 2);
+scene::LatLongMap reduced(const scene::LatLongMap& from) {
+  scene::LatLongMap out(from.width() / 2, from.height() / 2);
   const auto columns = taps(from.width(), out.width(), [](double a, double b) { return b - a; });
   // The solid angle between two latitudes.
   const auto rows = taps(from.height(), out.height(), [&](double a, double b) {
@@ -69,10 +69,10 @@ scene::EnvironmentImage reduced(const scene::EnvironmentImage& from) {
 
 }  // namespace
 
-void add_mip_map(scene::EnvironmentImage& image) {
+void add_mip_map(scene::LatLongMap& image) {
   image.reduced.clear();
   while (true) {
-    const scene::EnvironmentImage& last = image.reduced.empty() ? image : image.reduced.back();
+    const scene::LatLongMap& last = image.reduced.empty() ? image : image.reduced.back();
     if (!has_next(last.width(), last.height())) return;
     image.reduced.push_back(reduced(last));
   }
@@ -88,4 +88,4 @@ std::uint64_t mip_map_bytes(int width, int height) {
   }
 }
 
-}  // namespace orrery::sky
+}  // namespace orrery::compile

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "sky/mip_map.h"
+#include "compile/mip_map.h"
 
 #include <gtest/gtest.h>
 
@@ -11,14 +11,14 @@
 #include <random>
 #include <vector>
 
-namespace orrery::sky {
+namespace orrery::compile {
 namespace {
 
-using scene::EnvironmentImage;
+using scene::LatLongMap;
 
 template <class Value>
-EnvironmentImage image_of(int width, int height, Value value) {
-  EnvironmentImage out(width, height);
+LatLongMap image_of(int width, int height, Value value) {
+  LatLongMap out(width, height);
   for (int y = 0; y < height; ++y)
     for (int x = 0; x < width; ++x)
       for (int c = 0; c < 3; ++c) out.row(y)[3 * x + c] = value(x, y, c);
@@ -30,7 +30,7 @@ double latitude_share(double a, double b, int height) {
 }
 
 /// The mean of a channel over the sphere.
-double channel_mean(const EnvironmentImage& image, int channel) {
+double channel_mean(const LatLongMap& image, int channel) {
   double sum = 0;
   for (int y = 0; y < image.height(); ++y)
     for (int x = 0; x < image.width(); ++x)
@@ -38,13 +38,13 @@ double channel_mean(const EnvironmentImage& image, int channel) {
   return sum / image.width();
 }
 
-TEST(SkyMipMap, LevelsAreHalvedDownToSixteenRows) {
+TEST(CompileMipMap, LevelsAreHalvedDownToSixteenRows) {
   const auto sizes = [](int width, int height) {
-    EnvironmentImage image = image_of(width, height, [](int, int, int) { return 0.5F; });
+    LatLongMap image = image_of(width, height, [](int, int, int) { return 0.5F; });
     add_mip_map(image);
     std::vector<int> out;
     std::uint64_t texels = static_cast<std::uint64_t>(width) * static_cast<std::uint64_t>(height);
-    for (const EnvironmentImage& level : image.reduced) {
+    for (const LatLongMap& level : image.reduced) {
       out.insert(out.end(), {level.width(), level.height()});
       texels += static_cast<std::uint64_t>(level.width()) * static_cast<std::uint64_t>(level.height());
     }
@@ -58,39 +58,39 @@ TEST(SkyMipMap, LevelsAreHalvedDownToSixteenRows) {
   EXPECT_EQ(sizes(1, 3), (std::vector<int>{}));
 }
 
-TEST(SkyMipMap, ConstantImagesKeepTheirBits) {
+TEST(CompileMipMap, ConstantImagesKeepTheirBits) {
   for (const float value : {0.1F, 1.0F / 3, 1e-42F, 3e34F}) {
-    EnvironmentImage image = image_of(331, 173, [&](int, int, int) { return value; });
+    LatLongMap image = image_of(331, 173, [&](int, int, int) { return value; });
     add_mip_map(image);
     ASSERT_EQ(image.reduced.size(), 3u);
-    for (const EnvironmentImage& level : image.reduced)
+    for (const LatLongMap& level : image.reduced)
       for (int y = 0; y < level.height(); ++y)
         for (int i = 0; i < 3 * level.width(); ++i) ASSERT_EQ(level.row(y)[i], value) << level.width() << ' ' << y;
   }
 }
 
-TEST(SkyMipMap, LevelsKeepTheMeanOverTheSphere) {
+TEST(CompileMipMap, LevelsKeepTheMeanOverTheSphere) {
   std::mt19937 random{7};
   for (const int width : {512, 331}) {
     // Bright at the poles, so that weights by area of the map would be seen.
-    EnvironmentImage image = image_of(width, 173, [&](int, int y, int c) {
+    LatLongMap image = image_of(width, 173, [&](int, int y, int c) {
       return static_cast<float>(random() % 1000) * (y < 20 || y > 160 ? 1.0F : 0.1F) * static_cast<float>(c + 1);
     });
     add_mip_map(image);
-    for (const EnvironmentImage& level : image.reduced)
+    for (const LatLongMap& level : image.reduced)
       for (int c = 0; c < 3; ++c)
         EXPECT_NEAR(channel_mean(level, c) / channel_mean(image, c), 1, 1e-6) << level.width();
   }
 }
 
-TEST(SkyMipMap, TexelsAreMeansOfThoseThatTheyCover) {
+TEST(CompileMipMap, TexelsAreMeansOfThoseThatTheyCover) {
   // 65 columns become 32, each of 2 1/32; 34 rows become 17 pairs.
-  EnvironmentImage image = image_of(65, 34, [](int x, int y, int c) {
+  LatLongMap image = image_of(65, 34, [](int x, int y, int c) {
     return c == 0 ? static_cast<float>(x) : c == 1 ? static_cast<float>(y % 2) : x == 64 ? 1.0F : 0.0F;
   });
   add_mip_map(image);
   ASSERT_EQ(image.reduced.size(), 1u);
-  const EnvironmentImage& level = image.reduced[0];
+  const LatLongMap& level = image.reduced[0];
   ASSERT_EQ(level.width(), 32);
   const double extent = 65.0 / 32;
   for (const int y : {0, 8, 16}) {
@@ -104,4 +104,4 @@ TEST(SkyMipMap, TexelsAreMeansOfThoseThatTheyCover) {
 }
 
 }  // namespace
-}  // namespace orrery::sky
+}  // namespace orrery::compile
