@@ -4,12 +4,12 @@
 # the copies that the rendering threads make. It compares samples of perf, which do not depend on other load. The image
 # must be the same as without a preview.
 #
-#   tools/preview-cost.sh WHERE [SCENE [OPTION ...]]
+#   tools/preview-cost.sh FILE.png [SCENE [OPTION ...]]
 #
-# WHERE is the value of --preview. The default scene is the cover of the book at 600 x 338.
+# The default scene is the cover of the book at 600 x 338.
 set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")/.."
-where=${1:?usage: tools/preview-cost.sh WHERE [SCENE [OPTION ...]]}
+file=${1:?usage: tools/preview-cost.sh FILE.png [SCENE [OPTION ...]]}
 scene=${2:-scenes/book/final.toml}
 if [ $# -gt 2 ]; then options=("${@:3}"); else options=(--width 600 --height 338 --samples 100); fi
 orrery=${ORRERY:-build/src/orrery}
@@ -19,7 +19,7 @@ trap 'rm -rf "$work"' EXIT
 render() { "${@:2}" "$orrery" render "$scene" -q --reproducible "${options[@]}" -o "$work/$1.exr" "${preview[@]}"; }
 preview=()
 render without env
-preview=(--preview "$where")
+preview=(--preview "$file")
 render with perf record -q -F 2000 -o "$work/samples" --
 cmp "$work/without.exr" "$work/with.exr"
 perf report -i "$work/samples" --no-children -g none -s comm,symbol --stdio 2> /dev/null | awk '

@@ -77,11 +77,6 @@ std::vector<job::NamedOutput> own_outputs(const PlotCommand& arguments) {
   return out;
 }
 
-/// The PNG of --preview; empty: none.
-std::filesystem::path preview_file(const PlotCommand& arguments) {
-  return preview::parse_target(arguments.render.preview).file;
-}
-
 /// Checks early what would otherwise fail after all frames have been read: names, formats and sizes of outputs, layers,
 /// colour names.
 void check_request(const PlotCommand& arguments, const std::vector<int>& frames) {
@@ -89,7 +84,8 @@ void check_request(const PlotCommand& arguments, const std::vector<int>& frames)
   batch.scenes = {arguments.shown.options.file};
   batch.frames = frames;
   batch.others = own_outputs(arguments);
-  if (const auto file = preview_file(arguments); !file.empty()) batch.others.push_back({file, "--preview"});
+  if (const auto file = preview::preview_file(arguments.render.preview); !file.empty())
+    batch.others.push_back({file, "--preview"});
   job::Job& job = batch.job;
   job.scene.text = std::make_shared<const std::string>();
   job.scene.has_file = false;
@@ -133,7 +129,8 @@ void check_outputs(const PlotCommand& arguments) {
     files.add_output(stats, "--stats");
     base::check_creatable(stats);
   }
-  if (const auto file = preview_file(arguments); !file.empty()) files.add_output(file, "--preview");
+  if (const auto file = preview::preview_file(arguments.render.preview); !file.empty())
+    files.add_output(file, "--preview");
   for (const job::ImageFile& image : arguments.render.batch.job.outputs.images) files.add_output(image.path, "-o");
 }
 

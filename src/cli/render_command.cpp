@@ -93,18 +93,17 @@ class BatchProgress {
 ///
 /// `note`     prints whole lines from any thread
 /// Domain     the result outlives the jobs; what `note` refers to outlives the result
-std::unique_ptr<preview::Preview> start_preview(const preview::Target& target, preview::OnNote note,
+std::unique_ptr<preview::Preview> start_preview(const std::filesystem::path& file, preview::OnNote note,
                                                 job::Hooks& hooks) {
-  std::unique_ptr<preview::Sink> sink = preview::make_sink(target, note);
-  if (!sink) return nullptr;
-  auto out = std::make_unique<preview::Preview>(std::move(sink), std::move(note));
+  if (file.empty()) return nullptr;
+  auto out = std::make_unique<preview::Preview>(file, std::move(note));
   preview::Preview* const started = out.get();
   hooks.on_start = [started](const display::PictureInfo& picture) { started->begin(picture); };
   hooks.on_pixels = [started](const film::Partial& state, const film::RenderedPixels& rendered) {
     started->write(state, rendered);
   };
   hooks.on_denoised = [started](const film::Picture& picture) { started->write(picture); };
-  hooks.develops_pixels = !target.file.empty();
+  hooks.develops_pixels = true;
   return out;
 }
 
@@ -224,10 +223,10 @@ int run_render(RenderOptions& options) {
   if (!options.frames.empty()) batch.frames = base::parse_frames(options.frames);
   job.hooks.cancel = &stop_on_signals();
   job.hooks.snapshot = &snapshot_request();
-  const preview::Target target = preview::parse_target(options.preview);
-  if (!target.file.empty()) {
-    batch.others.push_back({target.file, "--preview"});
-    base::check_creatable(target.file);
+  const std::filesystem::path shown = preview::preview_file(options.preview);
+  if (!shown.empty()) {
+    batch.others.push_back({shown, "--preview"});
+    base::check_creatable(shown);
   }
   ProgressPrinter printer(style_of(options), stderr);
   BatchProgress progress(printer);
@@ -239,7 +238,7 @@ int run_render(RenderOptions& options) {
   job.hooks.on_warning = [&](const base::Diagnostic& warning) { note(base::formatted(warning)); };
   if (const std::string unused = options.picture.unused_options(job); !unused.empty()) note(unused);
   job.hooks.on_note = [&](const std::string& text) { note(text + "\n"); };
-  const auto preview = start_preview(target, note, job.hooks);
+  const auto preview = start_preview(shown, note, job.hooks);
   const std::vector<job::Job> jobs = job::jobs_of(batch);
   // Only now is it known that no output is an input.
   if (options.before_files) options.before_files();
@@ -300,14 +299,11 @@ void add_render_options(Command& command, RenderOptions& options) {
           "minute.")
       ->choices(progress_style_names());
   command
-      .add_option("--preview", options.preview, "WHERE",
-                  "Show the image while it is rendered: tev, tev:HOST:PORT, or a .png file to rewrite")
+      .add_option("--preview", options.preview, "FILE",
+                  "Show the image while it is rendered, in a .png file that is rewritten every second")
       ->details(
-          "tev gets scene-linear pixels, by default at 127.0.0.1, port 14158; the PNG is rewritten every second, "
-          "through the display transform. Updates take at most 0.3 % of the processor time of a render that is not "
-          "very "
-          "short, and the image has the same bits. A viewer that cannot be reached, hangs or disconnects is no error. "
-          "docs/output.md describes what is shown.");
+          "The PNG has the display transform of the image. Updates take at most 0.3 % of the processor time of a "
+          "render that is not very short, and the image has the same bits. docs/output.md describes what is shown.");
   command.add_option("--stats", options.batch.job.outputs.statistics, "FILE", "Write statistics of the render as JSON")
       ->details("docs/statistics.md lists the keys.");
   command.add_flag("-q,--quiet", options.quiet, "Print only errors");

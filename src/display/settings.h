@@ -83,7 +83,6 @@ std::vector<std::filesystem::path> table_files(const std::filesystem::path& conf
 
 /// Properties of an image that is about to be rendered.
 struct PictureInfo {
-  std::string name;           ///< name of the scene file
   int width = 0, height = 0;  ///< px
   Settings display;           ///< from the command line and the scene
 };

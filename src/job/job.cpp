@@ -196,7 +196,7 @@ class Run {
     settings_.cancel = job_.hooks.cancel;
     if (is_kept()) job_.keep->drawing = drawing_;
     if (job_.hooks.on_start && !is_merge())
-      job_.hooks.on_start({job_.scene.file.filename().string(), compiled().width, compiled().height, loaded().display});
+      job_.hooks.on_start({compiled().width, compiled().height, loaded().display});
     if (!is_kept()) image::set_threads(settings_.threads);  // fails now if the library cannot be loaded
     checkpoint_.emplace(is_kept() ? std::filesystem::path() : checkpoint_file(job_.outputs.images.front().path),
                         job_.checkpoint, job_.hooks, provenance_,

@@ -1,57 +1,32 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "preview/preview.h"
 
+#include <algorithm>
 #include <chrono>
+#include <cstddef>
 #include <exception>
-#include <string>
 #include <utility>
+#include <vector>
 
 #include <fmt/core.h>
 #include <pthread.h>
 #include <time.h>
 
+#include "base/atomic_file.h"
 #include "base/error.h"
 #include "base/file_name.h"
 #include "base/frames.h"
-#include "base/text.h"
-#include "preview/file_sink.h"
-#include "preview/tev.h"
+#include "image/write.h"
+#include "math/pixels.h"
 
 namespace orrery::preview {
 
 namespace {
 
-/// Address on which tev listens unless it is started with --hostname.
-constexpr const char* kTevHost = "127.0.0.1";
-constexpr const char* kTevPort = "14158";
+/// Minimum time between updates.
+constexpr double kInterval = 1;  // s
 
-[[noreturn]] void refuse(const std::string& text) {
-  base::refuse(fmt::format("--preview: {}; write tev, tev:HOST:PORT, or the name of a .png file", text));
-}
-
-/// Parses HOST, HOST:PORT or [IPV6]:PORT.
-Target tev_at(const std::string& address) {
-  Target target{address, kTevPort, {}};
-  std::size_t colon = address.rfind(':');
-  if (address.starts_with('[')) {
-    const std::size_t end = address.find(']');
-    if (end == std::string::npos) refuse(fmt::format("`{}` lacks a closing bracket", address));
-    if (end + 1 < address.size() && address[end + 1] != ':') refuse(fmt::format("`{}` is not an address", address));
-    target.host = address.substr(1, end - 1);
-    colon = end + 1 < address.size() ? end + 1 : std::string::npos;
-  } else if (std::count(address.begin(), address.end(), ':') > 1) {
-    refuse(fmt::format("`{}` is not an address; put an IPv6 address into brackets", address));
-  } else {
-    target.host = address.substr(0, colon);
-  }
-  if (colon != std::string::npos) target.port = address.substr(colon + 1);
-  if (target.host.empty()) refuse(fmt::format("`{}` has no host", address));
-  const int port = base::number_of<int>(target.port).value_or(0);
-  if (port < 1 || port > 65535) refuse(fmt::format("`{}` is not a port from 1 to 65535", target.port));
-  return target;
-}
-
-/// Time between two calls of Sink::poll.
+/// Time between two checks whether an update is due.
 constexpr std::chrono::milliseconds kTick{50};
 
 /// Time of a processor clock: of this thread, or of the whole process.
@@ -63,25 +38,19 @@ double seconds_of(clockid_t clock) {
 
 }  // namespace
 
-Target parse_target(const std::string& text) {
-  if (text.empty()) return {};
-  if (text == "tev") return {kTevHost, kTevPort, {}};
+std::filesystem::path preview_file(const std::string& text) {
+  if (text == "tev" || text.starts_with("tev:"))
+    base::refuse("--preview: tev was removed; name a .png file, which tev and other viewers read, or use orrery view");
   if (base::has_frame_pattern(text))
     base::refuse(
         fmt::format("--preview: {} has a frame pattern; all frames share one preview, so write one name", text));
-  if (base::extension(text) == ".png") return {{}, {}, text};
-  if (text.starts_with("tev:")) return tev_at(text.substr(4));
-  refuse(fmt::format("`{}` is not a preview", text));
+  if (!text.empty() && base::extension(text) != ".png")
+    base::refuse(fmt::format("--preview: `{}` is not a .png file", text));
+  return text;
 }
 
-std::unique_ptr<Sink> make_sink(const Target& target, const OnNote& note) {
-  if (!target.host.empty()) return std::make_unique<TevSink>(target.host, target.port, note);
-  if (!target.file.empty()) return std::make_unique<FileSink>(target.file);
-  return nullptr;
-}
-
-Preview::Preview(std::unique_ptr<Sink> sink, OnNote on_note)
-    : sink_(std::move(sink)), on_note_(std::move(on_note)), thread_([this] { run(); }) {}
+Preview::Preview(std::filesystem::path file, OnNote on_note)
+    : file_(std::move(file)), on_note_(std::move(on_note)), thread_([this] { run(); }) {}
 
 Preview::~Preview() {
   end();
@@ -119,27 +88,24 @@ void Preview::run() {
   std::unique_lock lock(mutex_);
   for (;;) {
     const Request request = request_;
-    if (request == Request::kBegin) answer();  // the render does not wait for the sink
+    if (request == Request::kBegin) answer();  // the render does not wait for set_up()
     lock.unlock();
     const double before = seconds_of(CLOCK_THREAD_CPUTIME_ID);
     const auto cost = [before] { return seconds_of(CLOCK_THREAD_CPUTIME_ID) - before; };
     if (request != Request::kNone) {
       start = Clock::now();
       processor_start = seconds_of(CLOCK_PROCESS_CPUTIME_ID);
-      if (request == Request::kBegin) attempt([this] { sink_->begin(picture_, *canvas_); });
-      if (request == Request::kEnd) {
-        refresh();
-        attempt([this] { sink_->finish(); });
-      }
+      if (request == Request::kBegin) attempt([this] { set_up(); });
+      if (request == Request::kEnd) attempt([this] { refresh(); });
       pacing.reset();
-      if (request == Request::kBegin) pacing.emplace(sink_->interval_s());
+      if (request == Request::kBegin) pacing.emplace(kInterval);
       if (pacing) pacing->spend(cost());
     } else if (!failed_) {
       const double now = std::chrono::duration<double>(Clock::now() - start).count();
-      const bool is_due = pacing && pacing->is_due(now, seconds_of(CLOCK_PROCESS_CPUTIME_ID) - processor_start);
-      if (is_due) refresh();
-      sink_->poll();
-      if (pacing) is_due ? pacing->updated(now, cost()) : pacing->spend(cost());
+      if (pacing && pacing->is_due(now, seconds_of(CLOCK_PROCESS_CPUTIME_ID) - processor_start)) {
+        attempt([this] { refresh(); });
+        pacing->updated(now, cost());
+      }
     }
     lock.lock();
     if (request == Request::kEnd || request == Request::kQuit) answer();
@@ -154,14 +120,33 @@ void Preview::answer() {
   served_.notify_one();
 }
 
-void Preview::refresh() {
-  attempt([this] {
-    const std::vector<std::size_t> cells = canvas_->take_changed();
-    if (!cells.empty()) sink_->update(cells);
-  });
+void Preview::set_up() {
+  develop_.emplace(picture_.display);
+  codes_.width = canvas_->width();
+  codes_.height = canvas_->height();
+  codes_.values.assign(3 * math::pixel_count(codes_.width, codes_.height), 0);
 }
 
-/// Does something with the sink, whose failure ends the preview.
+/// Develops the cells that have changed and rewrites the file.
+///
+/// Errors     base::Error: kCannotCreate, kIo
+void Preview::refresh() {
+  const std::vector<std::size_t> cells = canvas_->take_changed();
+  if (cells.empty()) return;
+  std::vector<float> rgb(3 * math::pixel_count(Canvas::kSide, Canvas::kSide));
+  std::vector<std::uint8_t> codes(rgb.size());
+  for (const std::size_t index : cells) {
+    const Cell cell = canvas_->cell(index);
+    const auto row = [&](int y) { return 3 * math::pixel_index(0, y, cell.width); };
+    for (int y = 0; y < cell.height; ++y) canvas_->read(cell.x, cell.y + y, cell.width, &rgb[row(y)]);
+    (*develop_)(rgb.data(), math::pixel_count(cell.width, cell.height), codes.data());
+    for (int y = 0; y < cell.height; ++y)
+      std::copy_n(&codes[row(y)], row(1), &codes_.values[3 * math::pixel_index(cell.x, cell.y + y, codes_.width)]);
+  }
+  base::write_text_file(file_, image::png_bytes(codes_, image::kUncompressed), false);
+}
+
+/// Does something whose failure ends the preview.
 void Preview::attempt(const std::function<void()>& what) {
   if (failed_) return;
   try {

@@ -6,11 +6,14 @@
 #include <functional>
 #include <memory>
 #include <mutex>
+#include <optional>
 #include <string>
 #include <thread>
 
+#include "display/develop.h"
 #include "display/settings.h"
-#include "preview/sink.h"
+#include "film/picture.h"
+#include "preview/canvas.h"
 
 namespace orrery::preview {
 
@@ -49,23 +52,16 @@ class Pacing {
   double last_s_ = 0, last_cost_s_ = 0, spent_s_ = 0;
 };
 
-/// Where a preview is shown: in tev, in a PNG, or nowhere.
-struct Target {
-  std::string host, port;      ///< address of tev; empty: none
-  std::filesystem::path file;  ///< PNG, for which the display transform is applied; empty: none
-};
-
-/// Parses the value of --preview: empty, tev, tev:HOST, tev:HOST:PORT, tev:[IPV6]:PORT, or the name of a PNG.
+/// The file that the value of --preview names: a PNG. Empty if the value is.
 ///
 /// Errors     base::Error(kUsage)
-Target parse_target(const std::string& text);
+std::filesystem::path preview_file(const std::string& text);
 
-/// Makes the sink of a target; null without a preview.
-///
-/// Errors     those of the sinks
-std::unique_ptr<Sink> make_sink(const Target& target, const OnNote& note);
+/// Receives whole lines for the user. Called on the preview's thread.
+using OnNote = std::function<void(const std::string& text)>;
 
-/// Shows the images of consecutive renders while they are rendered, on a separate thread.
+/// Shows the images of consecutive renders while they are rendered: on a separate thread, rewrites a PNG, uncompressed
+/// and through the display transform. Its readers never see an incomplete file.
 ///
 /// The rendering threads only copy their pixels into a Canvas. Everything else happens on the preview's thread, which
 /// uses at most kShareOfTime of the render's processor time.
@@ -74,7 +70,7 @@ class Preview {
   /// Starts the preview's thread.
   ///
   /// `on_note`  may be called until the destructor returns
-  Preview(std::unique_ptr<Sink> sink, OnNote on_note);
+  Preview(std::filesystem::path file, OnNote on_note);
   /// Ends the last image.
   ~Preview();
   Preview(const Preview&) = delete;
@@ -100,15 +96,18 @@ class Preview {
   void ask(Request request);
   void run();
   void answer();
+  void set_up();
   void refresh();
   void attempt(const std::function<void()>& what);
 
-  std::unique_ptr<Sink> sink_;
+  std::filesystem::path file_;
   OnNote on_note_;
   display::PictureInfo picture_;
   std::unique_ptr<Canvas> canvas_;
-  bool failed_ = false;  ///< the sink threw an exception
-  std::mutex mutex_;     // guards request_
+  std::optional<display::PixelDeveloper> develop_;
+  film::EncodedPicture codes_;  ///< the content of the file
+  bool failed_ = false;         ///< the file could not be written
+  std::mutex mutex_;            // guards request_
   std::condition_variable wake_, served_;
   Request request_ = Request::kNone;
   std::thread thread_;

@@ -18,7 +18,7 @@
 #include "job/job.h"
 #include "job/prepared_scene.h"
 #include "job/rendering.h"
-#include "preview/sink.h"
+#include "preview/canvas.h"
 #include "scene/scene.h"
 #include "view/picker.h"
 #include "view/wish.h"

@@ -6,7 +6,7 @@
 
 #include "film/partial.h"
 #include "kernel/pixel_sum.h"
-#include "preview/sink.h"
+#include "preview/canvas.h"
 
 namespace orrery::preview {
 

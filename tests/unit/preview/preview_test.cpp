@@ -17,8 +17,6 @@
 #include "film/partial.h"
 #include "film/picture.h"
 #include "image/read.h"
-#include "preview/file_sink.h"
-#include "preview/tev.h"
 #include "support/temp_dir.h"
 #include "unit/preview/pictures.h"
 
@@ -64,55 +62,25 @@ TEST(PreviewPacing, TimeBetweenUpdatesCounts) {
 
 namespace {
 
-TEST(PreviewTarget, TevListensOnLoopbackUnlessAHostIsGiven) {
-  const auto address = [](const std::string& text) {
-    const Target target = parse_target(text);
-    EXPECT_EQ(target.file, "");
-    return target.host + " " + target.port;
-  };
-  EXPECT_EQ(address("tev"), "127.0.0.1 14158");
-  EXPECT_EQ(address("tev:desk"), "desk 14158");
-  EXPECT_EQ(address("tev:desk:9000"), "desk 9000");
-  EXPECT_EQ(address("tev:[::1]:9000"), "::1 9000");
-  EXPECT_EQ(address("tev:[::1]"), "::1 14158");
+TEST(PreviewFile, IsAPng) {
+  EXPECT_EQ(preview_file("out/p.PNG"), "out/p.PNG");
+  EXPECT_EQ(preview_file("tev.png"), "tev.png");
+  EXPECT_EQ(preview_file(""), "");
 }
 
-TEST(PreviewTarget, KnowsPngFiles) {
-  EXPECT_EQ(parse_target("out/p.PNG").file, "out/p.PNG");
-  EXPECT_EQ(parse_target("out/p.PNG").host, "");
-  EXPECT_EQ(parse_target("").host + parse_target("").file.string(), "");
-  EXPECT_EQ(parse_target("tev.png").file, "tev.png");
-  EXPECT_EQ(parse_target("tev:9000.png").file, "tev:9000.png");
-}
-
-TEST(PreviewTarget, MakesTheSinkOfItsKind) {
-  const auto sink_of = [](const Target& target) { return make_sink(target, {}); };
-  EXPECT_EQ(sink_of({}), nullptr);
-  const std::unique_ptr<Sink> file = sink_of(parse_target("p.png"));
-  EXPECT_NE(dynamic_cast<const FileSink*>(file.get()), nullptr);
-  const std::unique_ptr<Sink> tev = sink_of(parse_target("tev"));
-  EXPECT_NE(dynamic_cast<const TevSink*>(tev.get()), nullptr);
-}
-
-TEST(PreviewTarget, AFramePatternIsNotAPreview) {
-  try {
-    parse_target("p.##.png");
-    ADD_FAILURE();
-  } catch (const base::Error& error) {
-    EXPECT_EQ(error.kind(), base::ErrorKind::kUsage);
-    EXPECT_NE(std::string(error.what()).find("frame pattern"), std::string::npos);
-  }
-}
-
-TEST(PreviewTarget, RejectsEverythingElse) {
-  for (const char* text : {"terminal", "p.exr", "tev:", "tev::9000", "tev:desk:", "tev:desk:0", "tev:desk:65536",
-                           "tev:desk:9x", "tev:::1", "tev:[::1", "tev:[::1]9", "tev2"}) {
+TEST(PreviewFile, RejectsEverythingElse) {
+  for (const auto& [text, part] :
+       std::vector<std::pair<std::string, std::string>>{{"terminal", "not a .png file"},
+                                                        {"p.exr", "not a .png file"},
+                                                        {"p.##.png", "frame pattern"},
+                                                        {"tev", "use orrery view"},
+                                                        {"tev:desk:9000", "use orrery view"}}) {
     try {
-      parse_target(text);
+      preview_file(text);
       ADD_FAILURE() << text;
     } catch (const base::Error& error) {
       EXPECT_EQ(error.kind(), base::ErrorKind::kUsage) << text;
-      EXPECT_NE(std::string(error.what()).find("write tev, tev:HOST:PORT, or the name"), std::string::npos) << text;
+      EXPECT_NE(std::string(error.what()).find(part), std::string::npos) << error.what();
     }
   }
 }
@@ -145,7 +113,7 @@ std::vector<std::uint8_t> codes_of(const std::filesystem::path& file) {
   return out;
 }
 
-display::PictureInfo info(int width, int height) { return {"scene.toml", width, height, settings()}; }
+display::PictureInfo info(int width, int height) { return {width, height, settings()}; }
 
 OnNote into(std::string& notes) {
   return [&notes](const std::string& text) { notes += text; };
@@ -154,7 +122,7 @@ OnNote into(std::string& notes) {
 TEST(PreviewPreview, TheFileHoldsTheDevelopedImageInTheEnd) {
   const support::TempDir folder;
   std::string notes;
-  Preview preview(std::make_unique<FileSink>(folder / "p.png"), into(notes));
+  Preview preview(folder / "p.png", into(notes));
   for (const double offset : {0.0, 1.5}) {
     const film::Partial state = partial(70, 40, offset);
     preview.begin(info(70, 40));
@@ -170,7 +138,7 @@ TEST(PreviewPreview, AFileThatCannotBeWrittenIsOneWarning) {
   const support::TempDir folder;
   std::string notes;
   {
-    Preview preview(std::make_unique<FileSink>(folder / "gone/p.png"), into(notes));
+    Preview preview(folder / "gone/p.png", into(notes));
     for (int i = 0; i < 3; ++i) {
       preview.begin(info(10, 10));
       write_all(partial(10, 10), preview);
@@ -184,7 +152,7 @@ TEST(PreviewPreview, EndsWithoutAnImage) {
   const support::TempDir folder;
   std::string notes;
   {
-    Preview preview(std::make_unique<FileSink>(folder / "p.png"), into(notes));
+    Preview preview(folder / "p.png", into(notes));
     preview.end();
     preview.begin(info(10, 10));  // nothing is rendered
   }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "preview/sink.h"
+#include "preview/canvas.h"
 
 #include <gtest/gtest.h>
 
