@@ -30,6 +30,7 @@ foreach(folder IN ITEMS site-functions vendor-completions)
 endforeach()
 # scenes/ contains examples to copy.
 install(DIRECTORY scenes/ DESTINATION ${CMAKE_INSTALL_DOCDIR}/scenes COMPONENT runtime FILES_MATCHING PATTERN "*.toml")
+install(DIRECTORY src/display/config/ DESTINATION ${CMAKE_INSTALL_DATADIR}/orrery COMPONENT runtime FILES_MATCHING PATTERN "*.ocio")
 install(FILES LICENSE DESTINATION ${CMAKE_INSTALL_DOCDIR} COMPONENT runtime)
 
 # Debian's Python searches /usr/local/lib/python3.11/dist-packages, where `cmake --install` puts the package, and

@@ -22,7 +22,6 @@ void add_generate(Command& program);
 void add_convert(Command& program);
 void add_develop(Command& program);
 void add_denoise(Command& program);
-void add_bake(Command& program);
 /// The hidden command that prints the manual page and shell completions, for the build. Added last.
 void add_documents(Command& program);
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The commands that work on image files and display transforms: develop, denoise and bake.
+// The commands that work on image files: develop and denoise.
 #include <memory>
 #include <string>
 
@@ -10,7 +10,6 @@
 #include "cli/commands.h"
 #include "cli/messages.h"
 #include "cli/options.h"
-#include "display/bake.h"
 #include "display/settings.h"
 #include "job/image_files.h"
 
@@ -61,15 +60,6 @@ std::string text_of(const job::Denoising& denoising, const job::DenoisedFile& do
   return out;
 }
 
-/// Smaller cubes are too coarse for a view; other programs do not read larger ones.
-constexpr std::uint64_t kSmallestCube = 2, kLargestCube = 129;
-
-struct BakeOptions {
-  display::Settings display;
-  std::filesystem::path output;
-  int size = display::kDefaultCubeSize;
-};
-
 }  // namespace
 
 void add_develop(Command& program) {
@@ -115,24 +105,6 @@ void add_denoise(Command& program) {
     const job::DenoisedFile done = job::denoise_file(options->denoising);
     if (!options->quiet) print_message(text_of(options->denoising, done));
   });
-}
-
-void add_bake(Command& program) {
-  const auto options = std::make_shared<BakeOptions>();
-  Command& command = *program.add_subcommand("bake", "Write a display transform as a look-up table for other programs");
-  command
-      .add_option("-o,--output", options->output, "FILE",
-                  "File to write: .cube (sampled 3D LUT) or .clf (exact if CLF supports every op of the transform)")
-      ->required();
-  add_display_options(command, options->display, false);
-  command.add_option("--space", options->display.working_space, "NAME", "Input colour space; default: lin_rec709");
-  command.add_option("--size", options->size, "N", "3D LUT grid points per axis; default: 65")
-      ->transform(whole_number(kSmallestCube, kLargestCube));
-  command.footer(
-      "Examples:\n"
-      "  orrery bake -o film.cube --view \"ACES 1.0 SDR Video\"\n"
-      "  orrery bake -o book.clf --display \"Gamma 2.0 Rec.709\"");
-  command.act([options] { job::bake_file(options->display, options->size, options->output); });
 }
 
 }  // namespace orrery::cli

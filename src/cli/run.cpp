@@ -38,8 +38,13 @@ std::vector<std::string> command_names(const CLI::App& command) {
   return names;
 }
 
-/// Options that commands with --set had, and what to write instead.
+/// Commands and options that were removed, and what to write instead.
 constexpr std::pair<const char*, const char*> kRemoved[] = {
+    {"orrery bake", "ociobakelut, as docs/output.md shows"},
+};
+
+/// Options that commands with --set had, and what to write instead.
+constexpr std::pair<const char*, const char*> kRemovedSettings[] = {
     {"--ocio", "--set color.config=FILE, relative to the scene file"},
     {"--display", "--set color.display=NAME"},
     {"--view", "--set color.view=NAME"},
@@ -52,8 +57,23 @@ constexpr std::pair<const char*, const char*> kRemoved[] = {
     {"--log", "2>> FILE, after the command"},
     {"--fail-fast", "one command for each frame or scene"}};
 
-std::string unknown_flag(const std::string& flag, const CLI::App& command) {
+/// The name of a command as it is typed: "orrery generate final".
+std::string full_name(const CLI::App& command) {
+  const CLI::App* const outer = command.get_parent();
+  return (outer != nullptr ? full_name(*outer) + " " : "") + command.get_name();
+}
+
+/// The message for a word that the command had; empty if it never had it.
+std::string removed_message(const std::string& word, const CLI::App& command) {
+  const std::string name = full_name(command) + " " + word;
   for (const auto& [removed, instead] : kRemoved)
+    if (name == removed) return fmt::format("{} was removed; use {}", word, instead);
+  return {};
+}
+
+std::string unknown_flag(const std::string& flag, const CLI::App& command) {
+  if (std::string message = removed_message(flag, command); !message.empty()) return message;
+  for (const auto& [removed, instead] : kRemovedSettings)
     if (flag == removed && base::contains(flag_names(command), "--set"))
       return fmt::format("{} was removed; use {}", flag, instead);
   const std::string remedy = base::did_you_mean(flag, flag_names(command));
@@ -62,6 +82,7 @@ std::string unknown_flag(const std::string& flag, const CLI::App& command) {
 
 /// The message for a word in place of a command.
 std::string unknown_command(const std::string& word, const CLI::App& command) {
+  if (std::string message = removed_message(word, command); !message.empty()) return message;
   const std::vector<std::string> commands = command_names(command);
   const std::string remedy = base::did_you_mean(word, commands);
   if (!remedy.empty()) return fmt::format("unknown command {}; {}", word, remedy);
@@ -131,7 +152,6 @@ void add_commands(Command& program) {
   program.heading("Images");
   add_develop(program);
   add_denoise(program);
-  add_bake(program);
   add_documents(program);
 }
 
@@ -144,10 +164,8 @@ int print_success(const CLI::App& program, const CLI::Success& success) {
 }
 
 int print_usage_error(const CLI::App& program, const CLI::ParseError& error, const std::vector<std::string>& words) {
-  std::string name = innermost(program).get_name();
-  for (const CLI::App* outer = innermost(program).get_parent(); outer != nullptr; outer = outer->get_parent())
-    name = outer->get_name() + " " + name;
-  std::fprintf(stderr, "orrery: %s\nTry %s --help.\n", usage_message(program, error, words).c_str(), name.c_str());
+  std::fprintf(stderr, "orrery: %s\nTry %s --help.\n", usage_message(program, error, words).c_str(),
+               full_name(innermost(program)).c_str());
   return base::exit_status(base::ErrorKind::kUsage);
 }
 

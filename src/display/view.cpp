@@ -112,9 +112,9 @@ View find_view(const Config& source, const Settings& settings) {
     choose_view(source, settings, out.choice);
     check_look(source, settings);
     out.choice.working_space = find_color_space(source, settings.working_space);
-    out.transform = transform(*source.config, settings, out.choice);
     // Lossless, since the default optimization replaces curves by LUTs.
-    out.processor = out.transform->getOptimizedCPUProcessor(ocio::OPTIMIZATION_LOSSLESS);
+    out.processor =
+        transform(*source.config, settings, out.choice)->getOptimizedCPUProcessor(ocio::OPTIMIZATION_LOSSLESS);
     out.choice.transform_id = out.processor->getCacheID();
     const std::string space = final_space(*source.config, out.choice);
     out.is_srgb = is_srgb(*source.config, space);

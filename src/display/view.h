@@ -13,7 +13,6 @@ namespace orrery::display {
 struct View {
   Choice choice;
   OCIO_NAMESPACE::ConstCPUProcessorRcPtr processor;  ///< look and view, without exposure
-  OCIO_NAMESPACE::ConstProcessorRcPtr transform;     ///< the same as OCIO transforms
   bool is_srgb = false;                              ///< the output is encoded for an sRGB display
 };
 

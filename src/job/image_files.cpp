@@ -11,7 +11,6 @@
 #include "base/error.h"
 #include "base/file_name.h"
 #include "base/file_set.h"
-#include "display/bake.h"
 #include "display/settings.h"
 #include "image/format.h"
 #include "image/header.h"
@@ -85,18 +84,6 @@ DenoisedFile denoise_file(const Denoising& denoising) {
   };
   out.written = image::rewrite_exr(denoising.input, denoising.output, edit);
   return out;
-}
-
-void bake_file(const display::Settings& display, int cube_size, const std::filesystem::path& file) {
-  const std::string extension = base::extension(file);
-  if (extension != ".cube" && extension != ".clf")
-    base::refuse(file.string() + " is not a display transform file; use the extension .cube or .clf");
-  base::FileSet files;
-  load::add_ocio_configs(display.config, files);
-  files.add_output(file, "-o");
-  base::check_creatable(file);
-  base::write_text_file(
-      file, extension == ".cube" ? display::bake_cube(display, cube_size) : display::bake_clf(display, cube_size));
 }
 
 }  // namespace orrery::job

@@ -50,9 +50,4 @@ struct DenoisedFile {
 ///            image has no R, G and B
 DenoisedFile denoise_file(const Denoising& denoising);
 
-/// Writes a display transform as a .cube or .clf file for other programs.
-///
-/// Errors     those of display::choose; base::Error: kUsage for another extension, kCannotCreate, kIo
-void bake_file(const display::Settings& display, int cube_size, const std::filesystem::path& file);
-
 }  // namespace orrery::job

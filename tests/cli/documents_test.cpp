@@ -42,7 +42,7 @@ TEST_F(CliDocuments, HaveTheOptionsOfEveryCommand) {
   const std::string manual = document("orrery.1"), zsh = document("_orrery"), fish = document("orrery.fish");
   for (const std::string command :
        {"render", "plot", "merge", "submit", "check", "info", "compare", "bench", "study", "generate final",
-        "generate cloud", "generate env", "generate planet", "convert", "develop", "denoise", "bake"}) {
+        "generate cloud", "generate env", "generate planet", "convert", "develop", "denoise"}) {
     EXPECT_TRUE(contains(manual, ".Nm orrery Cm " + command + "\n")) << command;
     const std::size_t begin = manual.find(".Ss orrery " + command + "\n");
     ASSERT_NE(begin, std::string::npos) << command;

@@ -15,7 +15,7 @@ const MessageCase kCases[] = {
     {"", 2,
      "orrery: no command given; use one of render, plot, view, merge, submit, check, info, compare, bench, study, "
      "generate, "
-     "convert, develop, denoise, bake\n"
+     "convert, develop, denoise\n"
      "Try orrery --help.\n"},
     {"rendr good.toml", 2,
      "orrery: unknown command rendr; did you mean `render`?\n"

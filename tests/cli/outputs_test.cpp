@@ -70,7 +70,7 @@ TEST_F(CliOutputs, RenderDoesNotOverwriteItsInputs) {
 TEST_F(CliOutputs, OcioConfigIsAnInput) {
   write("my.ocio", "a file that is not a config");
   expect_refused("render good.toml -o a.png --stats my.ocio", "my.ocio (OCIO config)", "OCIO=my.ocio");
-  expect_refused("bake --ocio my.cube -o my.cube", "my.cube (OCIO config)");
+  expect_refused("develop a.exr --ocio my.png -o my.png", "my.png (OCIO config)");
   // A scene's config is read before its outputs are checked; the statistics of that failure must not overwrite it.
   write("config.toml", std::string("[color]\nconfig = \"my.ocio\"\n") + kGoodScene);
   EXPECT_EQ(run("render config.toml -o a.exr --stats my.ocio").status, 65);
@@ -113,7 +113,6 @@ TEST_F(CliOutputs, LutOfAnOcioConfigIsAnInput) {
   write("config.toml", std::string("[color]\nconfig = \"my.ocio\"\n") + kGoodScene);
   ASSERT_EQ(run("render good.toml -o a.png -q --set color.config=my.ocio").status, 0) << text_of(folder_ / ".err");
   const char* const refusal = "film.cube (table of the OCIO config)";
-  expect_refused("bake --ocio my.ocio -o film.cube", refusal);
   for (const char* image : {"a.png", "a.exr"})
     expect_refused(std::string("render good.toml --stats film.cube -o ") + image, refusal, "OCIO=my.ocio");
   expect_refused("render config.toml -o a.png --stats film.cube", refusal);

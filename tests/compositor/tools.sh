@@ -4,7 +4,7 @@
 set -eu
 orrery=$1 work=$2
 here=$(cd "$(dirname "$0")" && pwd)
-for tool in oiiotool idiff exrheader exrstdattr ociocheck; do
+for tool in oiiotool idiff exrheader exrstdattr ociocheck ociobakelut; do
   if ! command -v "$tool" >/dev/null; then
     echo "$tool is not installed; apt-get install openimageio-tools openexr opencolorio-tools"
     exit 77
@@ -57,4 +57,15 @@ idiff -q -fail 0.000001 -warn 0.000001 flat.exr beauty.exr || fail "the flattene
 
 # The built-in OCIO config is valid.
 ociocheck --iconfig "$here/../../src/display/config/orrery.ocio" >ociocheck.log || fail "ociocheck rejects the built-in config"
-echo "exrheader, exrstdattr, oiiotool, idiff and ociocheck accept our files"
+
+# The LUTs of docs/output.md, applied by oiiotool, give the images of `orrery develop`.
+for view in Un-tone-mapped "ACES 1.0 SDR Video"; do
+  look=
+  if [ "$view" != Un-tone-mapped ]; then look=$view; fi
+  ociobakelut --iconfig "$here/../../src/display/config/luts.ocio" --inputspace lin_rec709 --shaperspace shaper \
+    --outputspace sRGB --looks "$look" --format resolve_cube --shapersize 65536 --cubesize 65 view.cube
+  OCIO=$here/../../src/display/config/orrery.ocio oiiotool beauty.exr --ociofiletransform "$PWD/view.cube" -d uint8 -o lut.png
+  "$orrery" develop beauty.exr -q -o view.png --view "$view"
+  idiff -q -fail 0.012 -warn 0.012 lut.png view.png || fail "the LUT of $view differs from orrery develop"
+done
+echo "exrheader, exrstdattr, oiiotool, idiff, ociocheck and ociobakelut accept our files"

@@ -24,5 +24,8 @@ s/^ssh .*/not run: another machine/
 s/^(apt|apt-get) .*/not run: changes the system/
 s/.*[ .\/](NAME|FILE|DATA|OLD\.json|RESULT\.json|N)( .*|$)/not run: has a name to be filled in/
 
+# The files of an installation.
+s/\/usr\/share\/orrery\//src\/display\/config\//
+
 # An example whose program takes the width of the image.
 s/^\.\/attractor\.py$/.\/attractor.py 240/
