@@ -82,9 +82,30 @@ std::string replaced(std::string text, std::string_view what, std::string_view b
 
 std::string quoted(const std::string& word) { return "'" + replaced(word, "'", "'\\''") + "'"; }
 
+namespace {
+
+/// The word as $'...', with octal escapes of all but printable characters: a terminal acts on control characters that
+/// are pasted, even within quotes. Quotes, backslashes and `!`, the history of interactive shells, are escaped as well.
+std::string escaped(const std::string& word) {
+  std::string out = "$'";
+  for (std::size_t at = 0; at < word.size();) {
+    const std::size_t length =
+        std::string_view("'\\!").find(word[at]) != std::string_view::npos ? 0 : printable_length(word, at);
+    if (length > 0)
+      out += word.substr(at, length);
+    else
+      out += fmt::format("\\{:03o}", static_cast<unsigned char>(word[at]));
+    at += std::max<std::size_t>(length, 1);
+  }
+  return out + "'";
+}
+
+}  // namespace
+
 std::string shell_quoted(const std::string& word) {
   static const std::string plain = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789_-./:=,+@%^";
-  return !word.empty() && word.find_first_not_of(plain) == std::string::npos ? word : quoted(word);
+  if (!word.empty() && word.find_first_not_of(plain) == std::string::npos) return word;
+  return is_printable(word) ? quoted(word) : escaped(word);
 }
 
 namespace {

@@ -58,7 +58,7 @@ std::string replaced(std::string text, std::string_view what, std::string_view b
 
 /// Quotes a word for a shell.
 std::string quoted(const std::string& word);
-/// The same, but a word without special characters is returned unchanged.
+/// The same for a terminal, where necessary: what is not printable becomes $'\033', which dash does not read.
 std::string shell_quoted(const std::string& word);
 
 /// True for the second and later bytes of a UTF-8 character.

@@ -70,8 +70,8 @@ std::string encoded(const std::vector<fs::path>& images, const fs::path& film, c
   const fs::path messages = folder.path() / "messages";
   const std::string command = fmt::format(
       "exec ffmpeg -nostdin -y -loglevel error -f image2pipe -framerate {} -c:v png -i pipe:0 {} {} > /dev/null 2> {}",
-      fps, base::extension(film) == ".gif" ? kGif : kVideo, base::shell_quoted("file:" + output.string()),
-      base::shell_quoted(messages.string()));
+      fps, base::extension(film) == ".gif" ? kGif : kVideo, base::quoted("file:" + output.string()),
+      base::quoted(messages.string()));
   std::unique_ptr<std::FILE, int (*)(std::FILE*)> pipe(popen(command.c_str(), "we"), pclose);
   if (!pipe) return fmt::format("cannot be started: {}", std::strerror(errno));
   for (const fs::path& image : images)

@@ -12,6 +12,7 @@
 #include "base/frames.h"
 #include "base/stop_point.h"
 #include "base/stopwatch.h"
+#include "base/text.h"
 #include "cli/commands.h"
 #include "cli/film.h"
 #include "cli/messages.h"
@@ -163,7 +164,7 @@ int run_plot(PlotCommand& arguments) {
   begin_messages(render);
   job.hooks.cancel = &stop_on_signals();
   if (load::is_scene_file(plot.file))
-    base::refuse(fmt::format("{0} is a scene; render it: orrery render {0}", plot.file.string()));
+    base::refuse(fmt::format("{0} is a scene; render it: orrery render {0}", base::shell_quoted(plot.file.string())));
   arguments.shown.data.read(plot);
   prepare_films(arguments);
   render.picture.finish(job);

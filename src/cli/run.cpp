@@ -87,7 +87,7 @@ std::string unknown_command(const std::string& word, const CLI::App& command) {
   const std::string remedy = base::did_you_mean(word, commands);
   if (!remedy.empty()) return fmt::format("unknown command {}; {}", word, remedy);
   if (command.get_parent() == nullptr && word.ends_with(".toml"))
-    return fmt::format("unknown command {}; to render it: orrery render {} -o image.png", word, word);
+    return fmt::format("unknown command {0}; to render it: orrery render {0} -o image.png", base::shell_quoted(word));
   return fmt::format("unknown command {}; use one of {}", word, base::joined(commands));
 }
 

@@ -103,7 +103,7 @@ view::Wish first_wish(std::vector<std::string>& words, const view::Controls& con
 /// Opens an address in the user's browser, without waiting for it.
 void open_in_browser(const std::string& address) {
   // Results are printed to stdout, and a browser is talkative.
-  const std::string command = fmt::format("exec xdg-open {} > /dev/null 2>&1", base::shell_quoted(address));
+  const std::string command = fmt::format("exec xdg-open {} > /dev/null 2>&1", base::quoted(address));
   std::FILE* const browser = popen(command.c_str(), "re");
   std::thread([browser] {
     if (browser == nullptr || pclose(browser) != 0)

@@ -168,7 +168,7 @@ Comparison compare_files(const std::filesystem::path& picture, const std::filesy
     base::refuse(
         fmt::format("{0} is scene-linear, but the other image is display-encoded; develop it first: orrery develop {0} "
                     "-o developed.png",
-                    linear.string()));
+                    base::shell_quoted(linear.string())));
   }
   check_files(picture, reference, pictures);
   if (!layer.empty() && !pictures.flip.empty()) base::refuse("--flip covers colours only; remove --layer");

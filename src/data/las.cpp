@@ -7,6 +7,7 @@
 
 #include <fmt/core.h>
 
+#include "base/text.h"
 #include "data/frames.h"
 #include "data/readers.h"
 #include "data/records.h"
@@ -46,7 +47,8 @@ std::uint64_t defined_bytes(int point_format) {
 }
 
 [[noreturn]] void refuse_laz(Faults& faults, const std::filesystem::path& file) {
-  const std::string name = file.filename().string(), las = file.stem().string() + ".las";
+  const std::string name = base::shell_quoted(file.filename().string()),
+                    las = base::shell_quoted(file.stem().string() + ".las");
   faults.fail(0, "the points are compressed (LAZ), which is not supported",
               fmt::format("decompress it: `laszip -i {} -o {}`, or `pdal translate {} {}`", name, las, name, las));
 }

@@ -55,7 +55,7 @@ bool is_adios(const std::string& extension) { return extension == ".bp" || exten
     remedy = fmt::format(
         "convert it to a table: (echo x y z radius; awk '/^(ATOM|HETATM)/ {{print $(NF-4), $(NF-3), $(NF-2), $NF}}' "
         "{}) > atoms.txt",
-        bytes.file().filename().string());
+        base::shell_quoted(bytes.file().filename().string()));
   } else if (is_adios(signature.extension)) {
     refuse_adios(bytes.file());
   }

@@ -18,6 +18,7 @@
 #include "base/file_name.h"
 #include "base/frames.h"
 #include "base/input_file.h"
+#include "base/text.h"
 #include "data/data_file.h"
 #include "display/settings.h"
 #include "load/load_images.h"
@@ -407,7 +408,8 @@ bool is_scene_file(const std::filesystem::path& file) { return base::extension(f
 
 void refuse_data_file(const std::filesystem::path& file, std::string_view text) {
   if (!is_scene_file(file) && data::is_data_file(file, text))
-    base::refuse(fmt::format("{0} is a data file, not a scene; render it: orrery plot {0} -o IMAGE", file.string()));
+    base::refuse(fmt::format("{0} is a data file, not a scene; render it: orrery plot {0} -o IMAGE",
+                             base::shell_quoted(file.string())));
 }
 
 std::string read_file(const std::filesystem::path& file, std::uint64_t largest_bytes) {

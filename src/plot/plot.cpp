@@ -210,7 +210,7 @@ class PlotMaker {
         throw base::Error(base::ErrorKind::kBadData,
                           fmt::format("nothing to render: {}; `orrery info {}` lists the columns and their values, "
                                       "--allow-empty renders the background alone",
-                                      left, options_.file.string()));
+                                      left, base::shell_quoted(options_.file.string())));
       return out_.warnings.push_back("nothing to render: " + left);
     }
     const std::optional<int> count = data_.frame_count();

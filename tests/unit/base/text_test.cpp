@@ -3,7 +3,14 @@
 
 #include <gtest/gtest.h>
 
+#include <cstdio>
+#include <fstream>
+#include <memory>
+#include <random>
 #include <string>
+#include <vector>
+
+#include "base/temp_dir.h"
 
 namespace orrery::base {
 namespace {
@@ -81,6 +88,49 @@ TEST(BaseText, PrintableTextIsUtf8WithoutControlCharacters) {
   for (const char* text : {"\n", "a\tb", "\x1B[2J", "\x7F", "\xC2\x85", "\xFF", "\xC3", "\xC0\x80", "\xED\xA0\x80",
                            "\xEF\xBF\xBF", "\xF4\x90\x80\x80"})
     EXPECT_FALSE(is_printable(text)) << text;
+}
+
+TEST(BaseText, OnlyWordsWithSpecialCharactersAreQuoted) {
+  EXPECT_EQ(shell_quoted("a/b.png"), "a/b.png");
+  EXPECT_EQ(shell_quoted(""), "''");
+  EXPECT_EQ(shell_quoted("it's"), "'it'\\''s'");
+  EXPECT_EQ(shell_quoted("5 \u00C5"), "'5 \u00C5'");
+  EXPECT_EQ(shell_quoted("a\x15!'\\"), "$'a\\025\\041\\047\\134'");
+}
+
+/// What bash makes of words that it reads from a script.
+std::string words_in_bash(const std::vector<std::string>& words) {
+  const TempDir folder;
+  const std::string script = (folder.path() / "script").string();
+  std::ofstream out(script, std::ios::binary);
+  out << "printf '%s\\n\\0'";
+  for (const std::string& word : words) out << ' ' << word;
+  out << '\n';
+  out.close();
+  const std::unique_ptr<std::FILE, int (*)(std::FILE*)> bash(popen(("LC_ALL=C bash " + script).c_str(), "r"), pclose);
+  std::string text;
+  for (int c = std::fgetc(bash.get()); c != EOF; c = std::fgetc(bash.get())) text += static_cast<char>(c);
+  return text;
+}
+
+TEST(BaseText, BashReadsQuotedWordsAsTheyWereAndTheyArePrintable) {
+  std::mt19937 random(1);
+  std::vector<std::string> quoted_words;
+  std::string expected;
+  const auto add = [&](const std::string& word) {
+    EXPECT_TRUE(is_printable(shell_quoted(word))) << printable(word);
+    quoted_words.push_back(shell_quoted(word));
+    expected += word + std::string("\n\0", 2);
+  };
+  for (int byte = 1; byte < 256; ++byte) add({static_cast<char>(byte)});
+  for (int i = 0; i < 5000; ++i) {
+    // Half of the words are made of few characters, among which those that matter to a shell are frequent.
+    const std::string few = "a7 '\"\\$`!\n\x15\x0f\x1b\x85\xc2\xc3\xa9";
+    std::string word(random() % 12, '\0');
+    for (char& c : word) c = i % 2 == 0 ? few[random() % few.size()] : static_cast<char>(1 + random() % 255);
+    add(word);
+  }
+  EXPECT_EQ(words_in_bash(quoted_words), expected);
 }
 
 TEST(BaseText, EncodesTheTestVectorsOfRfc4648) {
