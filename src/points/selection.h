@@ -30,11 +30,12 @@ struct TextTest {
 
 /// A condition on the rows of a table: `type == 2 && z > 0`, `element == "C" || !(chain in {A, B})`.
 ///
-/// Operators by precedence, weakest first: `||`, `&&`, one of `== != < <= > >= in`, `+ -`, `* /`, the prefixes `!` and
-/// `-`, and `^`; parentheses; functions abs(x), sqrt(x), exp(x), log(x), log10(x), floor(x), min(x, y, ...),
-/// max(x, y, ...). `x in [1, 5:8, 20:]` tests for numbers and closed ranges, `chain in {A, B}` for strings. Strings are
-/// quoted, except in braces, and can be compared with ==, != and `in`. Columns are written by name, or `in backquotes`
-/// if the name contains characters other than letters, digits, `_`, `.` and indices as in `c_stress[1]`.
+/// Operators by precedence, weakest first: `||` or `or`, `&&` or `and`, the prefix `!` or `not`, one of
+/// `== != < <= > >= in`, `+ -`, `* /`, the prefix `-`, and `^`; parentheses; functions abs(x), sqrt(x), exp(x), log(x),
+/// log10(x), floor(x), min(x, y, ...), max(x, y, ...). `x in [1, 5:8, 20:]` tests for numbers and closed ranges,
+/// `chain in {A, B}` for strings; `id 1 5:8 20:` and `chain A B` are the same. Strings are quoted, except in these two,
+/// and can be compared with ==, != and `in`. Columns are written by name, or `in backquotes` if the name contains
+/// characters other than letters, digits, `_`, `.` and indices as in `c_stress[1]`.
 ///
 /// Any comparison with NaN is false, even `!=`. Numbers are double: integers beyond 2^53 are rounded.
 struct Selection {

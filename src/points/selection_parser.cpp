@@ -2,7 +2,6 @@
 #include <system_error>
 
 #include <algorithm>
-#include <array>
 #include <charconv>
 #include <cmath>
 #include <cstddef>
@@ -137,7 +136,7 @@ class SelectionLexer {
     static constexpr std::string_view kSymbols[] = {"==", "!=", "<=", ">=", "&&", "||", "<", ">", "+", "-", "*",
                                                     "/",  "^",  "!",  "(",  ")",  "[",  "]", "{", "}", ":", ","};
     static constexpr std::pair<std::string_view, std::string_view> kForeign[] = {
-        {"=", "equality is =="}, {"&", "write &&"}, {"|", "write ||"}, {"~", "write !"}};
+        {"=", "equality is =="}, {"&", "write &&"}, {"|", "write ||"}, {"~", "write !"}, {"@", "e.g. name CA"}};
     const std::string_view rest = std::string_view(text_).substr(token.span.begin);
     token.kind = TokenKind::kSymbol;
     for (const std::string_view symbol : kSymbols)
@@ -173,9 +172,34 @@ constexpr int kMaxDepth = 100;
 /// Column names listed in a message.
 constexpr std::size_t kMaxListed = 40;
 
-/// Words of other languages and their replacements.
-constexpr std::array<std::pair<std::string_view, std::string_view>, 3> kForeignWords = {
-    {{"and", "&&"}, {"or", "||"}, {"not", "!"}}};
+using Replacement = std::pair<std::string_view, std::string_view>;
+
+/// Operators that are words.
+constexpr Replacement kOperatorWords[] = {{"and", "&&"}, {"or", "||"}, {"not", "!"}};
+
+/// Names in the selections of PyMOL, VMD and MDAnalysis, and the columns of PDB and mmCIF files.
+constexpr Replacement kAliases[] = {{"resid", "residue_number"},
+                                    {"resi", "residue_number"},
+                                    {"resnum", "residue_number"},
+                                    {"resname", "residue"},
+                                    {"resn", "residue"}};
+
+/// Groups of atoms that those programs know, and what selects them here.
+constexpr Replacement kGroups[] = {{"protein", "record == \"ATOM\""},
+                                   {"nucleic", "record == \"ATOM\""},
+                                   {"polymer", "record == \"ATOM\""},
+                                   {"hetatm", "record == \"HETATM\""},
+                                   {"water", "residue in {HOH, WAT}"},
+                                   {"solvent", "residue in {HOH, WAT}"},
+                                   {"backbone", "name N CA C O"},
+                                   {"hydrogen", "element H"},
+                                   {"within", "sqrt((x - 1)^2 + (y - 2)^2 + (z - 3)^2) < 5"}};
+
+/// Returns the replacement of a word; empty if there is none.
+std::string_view replacement(std::span<const Replacement> all, std::string_view word) {
+  const auto found = std::find_if(all.begin(), all.end(), [&](const Replacement& r) { return r.first == word; });
+  return found == all.end() ? std::string_view() : found->second;
+}
 
 constexpr const char* kLists = "e.g. type in [1, 2], z in [20:60], chain in {A, B}";
 
@@ -273,6 +297,13 @@ class Parser {
   void read(bool takes_word = false) {
     follows_equality_ = is_symbol("==") || is_symbol("!=");
     token_ = lexer_.next(takes_word);
+    if (!takes_word) accept_operator_word();
+  }
+
+  void accept_operator_word() {
+    if (token_.kind != TokenKind::kName) return;
+    const std::string_view symbol = replacement(kOperatorWords, token_.text);
+    if (!symbol.empty()) token_ = {TokenKind::kSymbol, token_.span, symbol};
   }
 
   bool is_symbol(std::string_view symbol) const { return token_.kind == TokenKind::kSymbol && token_.text == symbol; }
@@ -299,8 +330,6 @@ class Parser {
 
   /// The remedy for a token where an operator is expected.
   std::string remedy_for_operator() const {
-    for (const auto& [word, symbol] : kForeignWords)
-      if (is_word(word)) return "write " + std::string(symbol);
     if (is_symbol(")")) return "no parenthesis is open";
     return "e.g. ==, &&, || or +";
   }
@@ -309,7 +338,8 @@ class Parser {
     const std::string name(token.text);
     std::vector<std::string> names;
     for (const data::ColumnInfo& column : columns_) names.push_back(column.name);
-    std::string remedy = base::did_you_mean(name, names);
+    std::string remedy(replacement(kGroups, name));
+    remedy = remedy.empty() ? base::did_you_mean(name, names) : "e.g. " + remedy;
     if (remedy.empty()) {
       const std::size_t more = names.size() > kMaxListed ? names.size() - kMaxListed : 0;
       names.resize(names.size() - more);
@@ -361,7 +391,7 @@ class Parser {
   // Grammar, one function per precedence.
 
   Operand parse_or() { return parse_chain(kOr, Type::kTruth, &Parser::parse_and); }
-  Operand parse_and() { return parse_chain(kAnd, Type::kTruth, &Parser::parse_comparison); }
+  Operand parse_and() { return parse_chain(kAnd, Type::kTruth, &Parser::parse_negation); }
   Operand parse_sum() { return parse_chain(kSums, Type::kNumber, &Parser::parse_product); }
   Operand parse_product() { return parse_chain(kProducts, Type::kNumber, &Parser::parse_operand); }
 
@@ -377,6 +407,20 @@ class Parser {
       left = emit(op->step, type, span);
     }
     return left;
+  }
+
+  /// `!a == b` is `!(a == b)`, as `not a == b` is in other programs.
+  Operand parse_negation() {
+    const Span span = token_.span;
+    bool is_negated = false, has_prefix = false;
+    for (; take("!"); is_negated = !is_negated) has_prefix = true;
+    const Operand out = parse_comparison();
+    if (has_prefix) require(out, Type::kTruth, span);
+    return is_negated ? negation(span) : out;
+  }
+
+  Operand negation(Span span) {
+    return emit([](Run& run) { run.negate(); }, Type::kTruth, span);
   }
 
   Operand parse_comparison() {
@@ -408,7 +452,7 @@ class Parser {
     TextTest test{left.column, right.column, right.type == Type::kTextColumn, {}};
     if (!test.is_same) test.words.emplace_back(right.text);
     const Operand out = emit_text_test(std::move(test), span);
-    return op.name == "==" ? out : emit([](Run& run) { run.negate(); }, Type::kTruth, span);
+    return op.name == "==" ? out : negation(span);
   }
 
   Operand parse_operand() {
@@ -419,9 +463,6 @@ class Parser {
     if (take("(")) {
       out = parse_or();
       close("(", token.span);
-    } else if (take("!")) {
-      require(parse_operand(), Type::kTruth, token.span);
-      out = emit([](Run& run) { run.negate(); }, Type::kTruth, token.span);
     } else if (take("-")) {
       require(parse_operand(), Type::kNumber, token.span);
       emit([](Run& run) { run.change(std::negate<>()); }, Type::kNumber, token.span);
@@ -436,7 +477,9 @@ class Parser {
     } else {
       fail_at_token(
           token.kind == TokenKind::kEnd ? "the condition ends too early" : "expected a column, number or text",
-          "e.g. type == 2 && z > 0");
+          is_symbol("/")   ? "e.g. chain A"
+          : is_symbol(":") ? "e.g. resid 20:30"
+                           : "e.g. type == 2 && z > 0");
     }
     const Span power = token_.span;
     if (take("^")) {  // -x^2 is -(x^2), and x^y^z is x^(y^z)
@@ -451,23 +494,48 @@ class Parser {
 
   Operand parse_name() {
     const Token token = token_;
-    if (token.kind == TokenKind::kName) {
-      for (const auto& [word, symbol] : kForeignWords)
-        if (is_word(word)) fail_at_token("unknown word " + std::string(word), "write " + std::string(symbol));
-      if (is_word("in")) fail_at_token("expected a column before `in`", "e.g. chain in {A, B}");
-    }
+    if (is_word("in")) fail_at_token("expected a column before `in`", "e.g. chain in {A, B}");
     const bool is_compared = follows_equality_;
-    read();
+    auto found = known_.find(token.text);
+    if (found == known_.end()) found = known_.find(replacement(kAliases, token.text));
+    const bool is_text = found != known_.end() && found->second.is_text;
+    read(is_text);
     if (token.kind == TokenKind::kName && is_symbol("(")) return parse_call(token);
-    const auto found = known_.find(token.text);
     if (found == known_.end()) fail_unknown_column(token, is_compared);
-    auto& [is_text, index] = found->second;
+    std::size_t& index = found->second.index;
     if (index == kUnused) {
       index = selection_.columns.size();
-      selection_.columns.emplace_back(token.text);
+      selection_.columns.emplace_back(found->first);
     }
-    if (is_text) return {Type::kTextColumn, token.span, index};
-    return emit([column = index](Run& run) { run.load(column); }, Type::kNumber, token.span);
+    return is_text ? parse_words(token, index) : parse_numbers(token, index);
+  }
+
+  /// Parses what follows a column of strings: `chain A B`, and `chain A+B` as in PyMOL, are `chain in {A, B}`.
+  Operand parse_words(const Token& name, std::size_t column) {
+    const auto is_word_or_text = [&] {
+      accept_operator_word();
+      return token_.kind == TokenKind::kText || (token_.kind == TokenKind::kName && !is_word("in"));
+    };
+    std::vector<std::string> words;
+    for (bool is_needed = false; is_word_or_text() || is_needed;) {
+      if (!is_word_or_text()) fail_at_token("expected a string", kLists);
+      words.emplace_back(token_.text);
+      read(true);
+      is_needed = is_symbol("+");
+      if (is_needed) read(true);
+    }
+    if (words.empty()) return {Type::kTextColumn, name.span, column};
+    return emit_text_test({column, 0, false, std::move(words)}, name.span);
+  }
+
+  /// The same for numbers: `resid 5 8:12` is `resid in [5, 8:12]`.
+  Operand parse_numbers(const Token& name, std::size_t column) {
+    emit([column](Run& run) { run.load(column); }, Type::kNumber, name.span);
+    if (token_.kind != TokenKind::kNumber) return {Type::kNumber, name.span};
+    std::vector<NumberRange> ranges;
+    do ranges.push_back(parse_range());
+    while (take("+") || token_.kind == TokenKind::kNumber);
+    return emit_ranges(std::move(ranges), name.span);
   }
 
   Operand parse_call(const Token& name) {
@@ -526,16 +594,24 @@ class Parser {
       return emit_text_test({left.column, 0, false, std::move(words)}, in);
     }
     require(left, Type::kNumber, in, "the list has numbers");
-    return emit([disjoint = disjoint(std::move(ranges))](Run& run) { run.find(disjoint); }, Type::kTruth, in);
+    return emit_ranges(std::move(ranges), in);
   }
 
-  /// Parses `5`, `5:8`, `5:`, `:8` or `:`.
+  Operand emit_ranges(std::vector<NumberRange> ranges, Span span) {
+    return emit([disjoint = disjoint(std::move(ranges))](Run& run) { run.find(disjoint); }, Type::kTruth, span);
+  }
+
+  /// Parses `5`, `5:8`, `5:`, `:8` or `:`; `5-8` and `5 to 8` as in other programs.
   NumberRange parse_range() {
     const Span first = token_.span;
     NumberRange out{-math::kInfinity, math::kInfinity};
     if (!is_symbol(":")) out.low = parse_number();
-    if (!take(":")) return {out.low, out.low};
-    if (is_symbol(",") || is_symbol("]") || is_symbol("}")) return out;
+    if (is_word("to") || is_symbol("-"))
+      read();
+    else if (!take(":"))
+      return {out.low, out.low};
+    else if (token_.kind != TokenKind::kNumber && !is_symbol("-"))
+      return out;
     const Span last = token_.span;
     out.high = parse_number();
     if (out.low > out.high)

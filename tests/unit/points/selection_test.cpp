@@ -239,7 +239,7 @@ TEST(PointsSelection, TypesAreChecked) {
   EXPECT_EQ(message("type in ['1']"), "1+4 in expects a string, not a number; the list has strings");
   EXPECT_EQ(message("type && z > 0").substr(0, 43), "1+4 && expects a condition, not a number; c");
   EXPECT_EQ(message("(z > 0) == (x > 0)").substr(0, 37), "9+2 a condition cannot be compared; c");
-  EXPECT_EQ(message("!type == 1").substr(0, 41), "2+4 ! expects a condition, not a number; ");
+  EXPECT_EQ(message("!type").substr(0, 41), "2+4 ! expects a condition, not a number; ");
   EXPECT_EQ(message("z"), "1+1 expected a condition, not a number; compare it, as in: x != 0");
   EXPECT_EQ(message("element"), "1+7 expected a condition, not a string; compare it, as in: x != 0");
   EXPECT_EQ(message("'C' == 'C'").substr(0, 23), "5+2 two strings are com");
@@ -248,8 +248,6 @@ TEST(PointsSelection, TypesAreChecked) {
 
 TEST(PointsSelection, SyntaxErrorsHavePositionAndRemedy) {
   EXPECT_EQ(message("type = 2"), "6+1 unknown operator =; equality is ==");
-  EXPECT_EQ(message("type == 2 and z > 0"), "11+3 expected an operator; write &&");
-  EXPECT_EQ(message("not (z > 0)"), "1+3 unknown word not; write !");
   EXPECT_EQ(message("type == 2 & z > 0"), "11+1 unknown operator &; write &&");
   EXPECT_EQ(message("(z > 0"), "1+1 parenthesis is not closed; add )");
   EXPECT_EQ(message("z > 0)"), "6+1 expected an operator; no parenthesis is open");
@@ -260,7 +258,7 @@ TEST(PointsSelection, SyntaxErrorsHavePositionAndRemedy) {
   EXPECT_EQ(message("type in 1").substr(0, 29), "9+1 expected a list after `in");
   EXPECT_EQ(message("type in [1, 'a']").substr(0, 29), "13+3 list of both numbers and");
   EXPECT_EQ(message("id in [60:20]"), "8+5 the range is empty; write the smaller number first, as in: z in [20:60]");
-  EXPECT_EQ(message("id in [1:'a']").substr(0, 22), "10+3 expected a number");
+  EXPECT_EQ(message("id in [1:'a']").substr(0, 22), "10+3 expected , or ]; ");
   EXPECT_EQ(message("type in {C}").substr(0, 34), "10+1 expected a number or a string");
   EXPECT_EQ(message("element in [C]").substr(0, 34), "13+1 expected a number or a string");
   EXPECT_EQ(message("element in {C]").substr(0, 20), "14+1 expected , or }");
@@ -277,10 +275,70 @@ TEST(PointsSelection, SyntaxErrorsHavePositionAndRemedy) {
   EXPECT_EQ(fault("z >").source_line, "z >");
 }
 
+TEST(PointsSelection, OperatorsMayBeWords) {
+  for (const auto& [words, symbols] :
+       {std::pair("type == 2 and z > 0 or id == 60", "type == 2 && z > 0 || id == 60"),
+        std::pair("not z > 2 and not type==1", "!(z > 2) && !(type == 1)"), std::pair("!z > 2", "!(z > 2)"),
+        std::pair("!!(z > 2)", "z > 2"), std::pair("element == 'C'or z<0", "element == 'C' || z < 0")}) {
+    EXPECT_EQ(rows(words), rows(symbols)) << words;
+    EXPECT_NE(rows(words), "") << words;
+  }
+  EXPECT_EQ(message("type == 2 and"), "14+1 the condition ends too early; e.g. type == 2 && z > 0");
+  EXPECT_EQ(message("z && not type").substr(0, 42), "10+4 not expects a condition, not a number");
+}
+
+TEST(PointsSelection, ValuesMayFollowAColumn) {
+  for (const auto& [values, list] :
+       {std::pair("element C", "element == 'C'"), std::pair("element C \"N\"", "element in {C, N}"),
+        std::pair("element C+N and type 2", "element in {C, N} && type == 2"), std::pair("type 2", "type == 2"),
+        std::pair("id 10 30:40", "id in [10, 30:40]"), std::pair("id 10-20+50 to 60", "id in [10:20, 50:60]"),
+        std::pair("not (element C)", "element != 'C'"), std::pair("id 50:", "id >= 50")}) {
+    EXPECT_EQ(rows(values), rows(list)) << values;
+    EXPECT_NE(rows(values), "") << values;
+  }
+  EXPECT_EQ(message("element C+"), "11+1 expected a string; e.g. type in [1, 2], z in [20:60], chain in {A, B}");
+  EXPECT_EQ(message("id 3+"), "6+1 expected a number; e.g. type in [1, 2], z in [20:60], chain in {A, B}");
+  EXPECT_EQ(message("id 60-20").substr(0, 20), "4+5 the range is emp");
+  EXPECT_EQ(message("2 * id 3").substr(0, 21), "5+2 * expects a numbe");
+  EXPECT_EQ(message("type C").substr(0, 24), "6+1 expected an operator");
+}
+
+TEST(PointsSelection, ResiduesAndAtomsAreNamedAsInOtherPrograms) {
+  Table table;
+  table.rows = 4;
+  table.columns = {Column{"chain", Words{{"A", "B", "2"}, {0, 0, 1, 2}}},
+                   Column{"name", Words{{"CA", "CB"}, {0, 1, 0, 0}}},
+                   Column{"residue", Words{{"ALA", "1PE"}, {0, 0, 1, 1}}},
+                   Column{"residue_number", std::vector<std::int32_t>{7, 7, 8, 9}}};
+  const auto mask = [&](const char* text) { return mask_of(text, table); };
+  using Mask = std::vector<std::uint8_t>;
+  EXPECT_EQ(mask("chain A and name CA"), (Mask{1, 0, 0, 0}));
+  EXPECT_EQ(mask("chain 2"), (Mask{0, 0, 0, 1})) << "a name of digits";
+  EXPECT_EQ(mask("resname 1PE"), (Mask{0, 0, 1, 1}));
+  EXPECT_EQ(mask("resn ALA+1PE and not resi 8-9"), (Mask{1, 1, 0, 0}));
+  EXPECT_EQ(mask("resid == 8"), (Mask{0, 0, 1, 0}));
+  EXPECT_EQ(mask("resnum in [9]"), (Mask{0, 0, 0, 1}));
+  EXPECT_EQ(parse_selection("resid 8", columns_of(table)).columns, std::vector<std::string>{"residue_number"});
+  const auto remedy = [&](const char* text) {
+    try {
+      mask(text);
+    } catch (const base::Error& error) {
+      return error.diagnostics().at(0).remedy;
+    }
+    return std::string("none");
+  };
+  EXPECT_EQ(remedy("water"), "e.g. residue in {HOH, WAT}");
+  EXPECT_EQ(remedy("not protein and chain A"), "e.g. record == \"ATOM\"");
+  EXPECT_EQ(remedy("/A"), "e.g. chain A");
+  EXPECT_EQ(remedy("@CA"), "e.g. name CA");
+  table.columns.push_back({"resid", std::vector<std::int32_t>{1, 2, 3, 4}});
+  EXPECT_EQ(mask("resid 1"), (Mask{1, 0, 0, 0})) << "a column of the file precedes another program's name";
+}
+
 TEST(PointsSelection, HostileSelectionsAreRefusedOrEvaluated) {
   const std::size_t many = 100'000;
   EXPECT_NE(message(std::string(many, '(')).find("more than 100 nested"), std::string::npos);
-  EXPECT_NE(message(std::string(many, '!')).find("more than 100 nested"), std::string::npos);
+  EXPECT_NE(message(std::string(many, '!')).find("the condition ends too early"), std::string::npos);
   EXPECT_NE(message(std::string(many, '-')).find("more than 100 nested"), std::string::npos);
   EXPECT_NE(message(std::string(2'000'000, ' ')).find("longer than"), std::string::npos);
   // Chains are as long as the text: no recursion.
