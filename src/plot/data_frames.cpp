@@ -9,6 +9,7 @@
 
 #include "base/error.h"
 #include "base/frames.h"
+#include "base/text.h"
 #include "points/color_map.h"
 #include "points/rows.h"
 #include "points/sources.h"
@@ -25,6 +26,14 @@ constexpr const char* kCategoricalMap = "tab10";
 
 /// Frames of larger files are not counted for a message: that would read the whole file.
 constexpr std::uintmax_t kMaxCountedBytes = std::uintmax_t{2} << 30;
+
+/// Whether a column numbers groups of particles, so that close numbers mean nothing, by its name.
+bool is_group(const std::string& column, const data::Roles& roles) {
+  const std::string name = base::lower(column);
+  return name != base::lower(roles.id) &&
+         (name.ends_with("_id") ||
+          base::contains({"mol", "molecule", "molid", "cluster", "grain", "body", "group"}, name));
+}
 
 /// Keys that read all particles, whatever is selected.
 scene::PointsKeys everything(const scene::PointsKeys& keys) {
@@ -197,7 +206,10 @@ bool set_color(const DataOptions& options, const std::string& color_by, const da
                  " has nothing to map: the colours are not those of a column; add --color-by COLUMN");
   const bool is_chosen = !color.column.empty() && !options.has_map;
   if (is_chosen)
-    color.map = is_type || points::type_of(info, color.column) == data::ColumnType::kText ? kCategoricalMap : kMap;
+    color.map =
+        is_type || is_group(color.column, info.roles) || points::type_of(info, color.column) == data::ColumnType::kText
+            ? kCategoricalMap
+            : kMap;
   const auto map = points::find_color_map(color.map);
   if (has_range && map && map->is_categorical)
     base::refuse(fmt::format("--range has no effect: the map {} has a colour for each value", color.map));

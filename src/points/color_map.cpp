@@ -38,6 +38,20 @@ const std::vector<ColorMap>& maps() {
   return all;
 }
 
+/// The maps from their last colour to the first: `viridis_r`.
+const std::vector<ColorMap>& reversed_maps() {
+  static const std::vector<ColorMap> all = [] {
+    std::vector<ColorMap> out = maps();
+    for (ColorMap& map : out) {
+      map.name += "_r";
+      std::reverse(map.knots.begin(), map.knots.end());
+      for (ColorMap::Knot& knot : map.knots) knot.t = 1 - knot.t;
+    }
+    return out;
+  }();
+  return all;
+}
+
 double srgb_from_linear(double light) {
   return light <= 0.0031308 ? light * 12.92 : 1.055 * std::pow(light, 1 / 2.4) - 0.055;
 }
@@ -130,7 +144,9 @@ class Reader {
 
 }  // namespace
 
-const ColorMap* find_color_map(std::string_view name) { return data::find_named(maps(), name); }
+const ColorMap* find_color_map(std::string_view name) {
+  return data::find_named(name.ends_with("_r") ? reversed_maps() : maps(), name);
+}
 
 Vec3d bytes_of(std::uint32_t code) {
   return {static_cast<double>(code >> 16 & 255u), static_cast<double>(code >> 8 & 255u),

@@ -40,6 +40,13 @@ void set_labels(const Labels& labels, scene::Points& points) {
   points.color_names = labels.names;
 }
 
+/// The index of the colour of an integer among those of a categorical map, whose first is that of 1.
+std::size_t category_of(double value, std::size_t count) {
+  const auto n = static_cast<double>(count);
+  const double place = std::fmod(value - 1, n);
+  return std::isfinite(place) ? static_cast<std::size_t>(place < 0 ? place + n : place) : 0;
+}
+
 /// Returns the index of each label's colour in a categorical map, before it is reduced modulo the number of colours. If
 /// possible, the index does not depend on which labels occur, so that colours do not change between frames and
 /// selections: an integer selects the colour with its number, from 1; a string the one with its position among all
@@ -56,11 +63,7 @@ std::vector<std::size_t> categories_of(const Labels& labels, const data::Column&
   }
   const auto is_integer = [](double v) { return v == std::floor(v) || std::isnan(v); };
   if (!std::all_of(labels.values.begin(), labels.values.end(), is_integer)) return out;
-  const auto n = static_cast<double>(count);
-  for (std::size_t i = 0; i < out.size(); ++i) {
-    const double place = std::fmod(labels.values[i] - 1, n);
-    out[i] = std::isfinite(place) ? static_cast<std::size_t>(place < 0 ? place + n : place) : 0;
-  }
+  for (std::size_t i = 0; i < out.size(); ++i) out[i] = category_of(labels.values[i], count);
   return out;
 }
 
@@ -78,6 +81,29 @@ void color_by_label(const Labels& labels, const data::Column& column, const Colo
     points.palette.back() = points.color.nan_color;
     --points.palette_rec709;
   }
+}
+
+/// Gives integers the colours that categories_of() gives them, named "1, 11, ...", if there are too many for a name
+/// each.
+///
+/// Result     false for columns of other values, and of fewer ones
+bool color_by_remainder(const data::Column& column, const Rows& rows, const ColorMap& map, scene::Points& points) {
+  const std::size_t count = map.knots.size();
+  if (rows.size() <= kMaxLabels || column.type() == data::ColumnType::kText ||
+      !labels_of(column, rows, kMaxLabels).of_rows.empty())
+    return false;
+  bool are_integers = true;
+  std::vector<std::uint16_t> colors(rows.size());
+  for_each_number(column, rows, [&](std::size_t i, double v) {
+    are_integers = are_integers && v == std::floor(v);
+    colors[i] = static_cast<std::uint16_t>(category_of(v, count));
+  });
+  if (!are_integers) return false;
+  points.colors = std::move(colors);
+  points.palette = palette(map, count);
+  points.palette_rec709 = count;
+  for (std::size_t i = 1; i <= count; ++i) points.color_names.push_back(fmt::format("{}, {}, ...", i, i + count));
+  return true;
 }
 
 /// The range of the values of a column that a map shows, if there are any.
@@ -128,6 +154,7 @@ void color_by_map(const data::Table& table, const Rows& rows, const ColorSource&
   const data::Column& column = *table.find(name);
   if (!source.map->is_categorical && column.type() != data::ColumnType::kText)
     return color_by_number(column, rows, *source.map, points, faults);
+  if (source.map->is_categorical && color_by_remainder(column, rows, *source.map, points)) return;
   if (const auto labels = labels_or_fault(table, rows, name, ".color.column", faults))
     color_by_label(*labels, column, *source.map, points);
 }

@@ -430,6 +430,24 @@ TEST_F(PlotPlot, ColorByAColumn) {
   EXPECT_EQ(points.color.range->high, 9);
   EXPECT_NE(choices().find("map " + points.color.map + ": "), std::string::npos) << "a chosen map is printed";
   options.points.color.range = scene::Interval{0, 100};
+TEST_F(PlotPlot, NumbersOfGroupsAreCategories) {
+  for (const auto& [column, map] :
+       {std::pair("mol", "tab10"), std::pair("cluster_ID", "tab10"), std::pair("n", "fast")}) {
+    options.color_by = column;
+    make("a.dump", frame("x y z radius " + std::string(column), {"1 0 0 1 2", "2 0 0 1 1"}));
+    EXPECT_EQ(read().points[0].color.map, map) << column;
+  }
+}
+
+TEST_F(PlotPlot, FewValuesThatUseUpTheMapAreReported) {
+  std::vector<std::string> rows;
+  for (int i = 0; i < 200; ++i) rows.push_back(fmt::format("{} 0 0 1 {}", 3 * i, i == 0 ? 1000 : i % 10));
+  options.color_by = "q";
+  make("a.dump", frame("x y z radius q", rows));
+  EXPECT_TRUE(chose("range 0:1000: minimum and maximum; 99 % of the values are within 0:9, which --range 1%:99% shows"))
+      << choices();
+}
+
   options.points.color.map = "magma";
   options.has_map = true;
   make();

@@ -34,6 +34,27 @@ TEST(PointsColorMap, NamesAreFound) {
   EXPECT_EQ(find_color_map("Viridis"), nullptr);
 }
 
+TEST(PointsColorMap, SharesOfAScale) {
+  EXPECT_EQ(ValueScale(2, 6).share_of(3), 0.25);
+  EXPECT_EQ(ValueScale(6, 2).share_of(3), 0.75);
+  EXPECT_EQ(ValueScale(2, 6).share_of(7), 1);
+  EXPECT_EQ(ValueScale(2, 2).share_of(2), 0.5);
+  EXPECT_EQ(ValueScale(-1e308, 1e308).share_of(0), 0.5) << "the difference of the ends is not finite";
+  EXPECT_NEAR(ValueScale(1e-3, 1e3, true).share_of(1), 0.5, 1e-12);
+}
+
+TEST(PointsColorMap, MapsAreFoundInReverse) {
+  for (const std::string& name : color_map_names()) {
+    const ColorMap &map = *find_color_map(name), *reversed = find_color_map(name + "_r");
+    ASSERT_NE(reversed, nullptr) << name;
+    EXPECT_EQ(reversed->name, name + "_r");
+    EXPECT_EQ(srgb_at(*reversed, 0), srgb_at(map, 1)) << name;
+    EXPECT_EQ(srgb_at(*reversed, 1), srgb_at(map, 0)) << name;
+    if (!map.is_categorical) EXPECT_LT(difference(srgb_at(*reversed, 0.3), srgb_at(map, 0.7)), 1e-9) << name;
+  }
+  EXPECT_EQ(find_color_map("jet_r"), nullptr);
+}
+
 TEST(PointsColorMap, TheDocumentsListAllMaps) {
   const std::filesystem::path docs = std::filesystem::path(ORRERY_ROOT) / "docs";
   const std::string data = support::file_bytes(docs / "data.md");

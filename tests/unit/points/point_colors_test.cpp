@@ -212,9 +212,23 @@ TEST_F(PointsPointColors, StringsSpreadOverAContinuousMap) {
   EXPECT_FALSE(out.color_range);
 }
 
+TEST_F(PointsPointColors, ManyIntegersHaveTheColorsOfTheirRemainders) {
+  keys.map = "tab10";
+  std::vector<std::int64_t> many(5000);
+  for (std::size_t i = 0; i < many.size(); ++i) many[i] = static_cast<std::int64_t>(i) - 7;
+  const scene::Points out = colors(table_of(many));
+  EXPECT_EQ(diagnostics, "");
+  ASSERT_EQ(out.palette.size(), 10u);
+  EXPECT_EQ(out.color_names.at(2), "3, 13, ...");
+  many.resize(100);
+  const scene::Points few = colors(table_of(many));
+  for (std::size_t i = 0; i < many.size(); ++i)
+    EXPECT_EQ(out.palette.at(out.colors[i]), few.palette.at(few.colors[i])) << "as if they were few: " << many[i];
+}
+
 TEST_F(PointsPointColors, TooManyCategories) {
   std::vector<double> many(4097);
-  for (std::size_t i = 0; i < many.size(); ++i) many[i] = static_cast<double>(i);
+  for (std::size_t i = 0; i < many.size(); ++i) many[i] = static_cast<double>(i) + 0.5;
   keys.map = "tab10";
   colors(table_of(many));
   EXPECT_EQ(diagnostics,
