@@ -40,7 +40,7 @@ kernel::Sphere sphere_of(Vec3d center, double radius) { return {center.x, center
 bool is_reversed(Vec3d from, Vec3d to) { return std::tie(to.x, to.y, to.z) < std::tie(from.x, from.y, from.z); }
 
 /// Calls f(points, sphere) for each half of the rods of bonds, in the order of their ids, with the sphere of the scene
-/// that it belongs to. The rods are compiled.
+/// that it belongs to: for both halves of the shaft of an arrow, one of its head. The rods are compiled.
 template <class F>
 void each_bond_half(const scene::Scene& scene, const CompiledScene& compiled, F f) {
   std::size_t first = scene.spheres.size();
@@ -51,12 +51,14 @@ void each_bond_half(const scene::Scene& scene, const CompiledScene& compiled, F 
   }
   const base::StopPoint stop;
   std::size_t bond = 0;
-  for (const scene::Points& points : scene.points)
-    for (const std::size_t end = bond + points.bond_pairs.size(); bond < end; ++bond) {
+  for (const scene::Points& points : scene.points) {
+    const std::size_t end = bond + points.bond_pairs.size(), first_shaft = end - points.arrow_count;
+    for (; bond < end; ++bond) {
       stop.check(bond);
-      f(points, compiled.bonds[bond].a);
+      f(points, bond < first_shaft ? compiled.bonds[bond].a : compiled.bonds[bond].b);
       f(points, compiled.bonds[bond].b);
     }
+  }
 }
 
 /// Calls f(from, to, radius, materials) for each rod of a table, then for those of files.
@@ -183,7 +185,10 @@ void set_opacity(const scene::Scene& scene, CompiledScene& compiled) {
   for (const scene::Sphere& s : scene.spheres) add(of_materials[s.material]);
   for (const scene::Points& points : scene.points)
     for (std::size_t i = 0; i < points.centers.size(); ++i) {
-      const double own = points.opacities.empty() ? points.opacity.value.value_or(-1) : double{points.opacities[i]};
+      const bool is_head = i >= points.particle_count();  // of an arrow
+      const double own = !points.opacities.empty() ? double{points.opacities[i]}
+                         : is_head                 ? -1
+                                                   : points.opacity.value.value_or(-1);
       add(own >= 0 ? own : of_materials[points.materials.empty() ? points.material : points.materials[i]]);
     }
   each_rod_half(scene, [&](std::uint32_t material) { add(of_materials[material]); });

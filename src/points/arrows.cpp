@@ -69,6 +69,8 @@ void add_arrows(scene::Points& points, std::vector<std::uint32_t>* rows, KeyFaul
       values.insert(values.end(), kHeadSpheres, value);
     };
     points.each_sphere_value(repeat);
+    // Arrows of faint particles are not faint: they have the opacity of the material.
+    if (!points.opacities.empty()) std::fill_n(points.opacities.rbegin(), kHeadSpheres, -1.0F);
     if (rows != nullptr) repeat(*rows);
     ++points.arrow_count;
     points.arrow_spheres += kHeadSpheres;

@@ -47,6 +47,23 @@ TEST(CompileCompile, LeavesOutUnusedMaterials) {
   EXPECT_EQ(compiled.materials.size(), 3u);  // grey, glass, glass turned inside out
 }
 
+TEST(CompileCompile, ArrowsHaveTheOpacityOfTheMaterial) {
+  scene::Scene s;
+  s.materials = {{"grey", scene::Lambertian{}}};
+  scene::Points& points = s.points.emplace_back();
+  for (const double x : {0.0, 10.0, 2.0}) points.centers.push_back({x, 0, 0});  // a bond, and an arrow from the first
+  points.radii.assign(3, 1);
+  points.bond_pairs = {{0, 1}, {0, 2}};
+  points.bond_radius = 0.1;
+  points.arrow_count = points.arrow_spheres = 1;
+  points.opacity.value = 0.25;
+  EXPECT_EQ(compile(s).opacity, (std::vector<float>{0.25F, 0.25F, 1, 0.25F, 0.25F, 1, 1}));
+  points.opacity.value.reset();
+  points.opacity.where = {"x == 0: 0.5"};
+  points.opacities = {0.5F, -1, -1};
+  EXPECT_EQ(compile(s).opacity, (std::vector<float>{0.5F, 1, 1, 0.5F, 1, 1, 1}));
+}
+
 TEST(CompileCompile, ANegativeRadiusTurnsGlassInsideOut) {
   const CompiledScene compiled = compile(one_of_each());
   for (std::size_t i = 0; i < compiled.spheres.size(); ++i) EXPECT_GT(compiled.spheres[i].radius, 0);

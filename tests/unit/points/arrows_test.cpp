@@ -81,15 +81,16 @@ TEST_F(PointsArrows, NonFiniteVectorsAreReported) {
   EXPECT_EQ(points.bond_pairs.at(0).a, 1u);
 }
 
-TEST_F(PointsArrows, HaveColorAndOpacityOfTheirSphere) {
+TEST_F(PointsArrows, HaveTheColorOfTheirSphereButNotItsOpacity) {
   points.color.types = {{"1", {1, 0, 0}}, {"2", {0, 1, 0}}};
   points.opacity.types = {{"2", 0.25}};
   EXPECT_EQ(load_rows("0,0,0,2,0,0,1\n1,0,0,2,0,0,2\n"), "");
   for (std::size_t i = 0; i < kHeadSpheres; ++i) {
     EXPECT_EQ(color(2 + i), color(0));
     EXPECT_EQ(color(2 + kHeadSpheres + i), color(1));
-    EXPECT_EQ(points.opacities.at(2 + kHeadSpheres + i), 0.25F);
+    EXPECT_EQ(points.opacities.at(2 + kHeadSpheres + i), -1) << "that of the material";
   }
+  EXPECT_EQ(points.opacities.at(1), 0.25F);
 }
 
 TEST_F(PointsArrows, FollowScaleAndTransform) {
