@@ -59,6 +59,15 @@ void read_radius(const std::string& text, scene::PointsRadius& radius) {
 
 math::Vec3d copies_of(const std::string& text) {
   std::vector<double> counts;
+/// The number of a frame, from 1; below 0 it is counted from the end.
+int frame_of(const std::string& text) {
+  constexpr int kMost = 2'000'000'000;
+  const int frame = text == "last" ? -1 : base::number_of<int>(text).value_or(0);
+  if (frame == 0 || std::abs(frame) > kMost)
+    base::refuse(fmt::format("--frame: `{}` is not a frame; write a number from 1 to {}, or last", text, kMost));
+  return frame;
+}
+
   std::istringstream words(text + ',');
   for (std::string word; std::getline(words, word, ',');)
     counts.push_back(base::number_of<double>(word).value_or(std::nan("")));
@@ -138,8 +147,8 @@ void DataArguments::add_to(Command& command, plot::DataOptions& data, const std:
       ->required();
   const OptionGroup group(command, kDataOptions);
   scene::PointsKeys& points = data.points;
-  command.add_option("--frame", points.frame, "N", "Frame of the file, from 1; default: 1")
-      ->transform(whole_number(1, 2'000'000'000));
+  command.add_option("--frame", frame, "N",
+                     "Frame of the file, from 1; last or -1: the last, -2: the one before; default: 1");
   command
       .add_option("--select", select, "CONDITION",
                   "Use only the rows that match, e.g. 'type == 2 && z > 0'; if repeated, all must match")
@@ -193,7 +202,8 @@ void DataArguments::add_frames_to(Command& command) {
 }
 
 void DataArguments::read(plot::DataOptions& data) const {
-  if (!frames.empty() && data.points.frame) base::refuse("--frame and --frames exclude each other");
+  if (!frames.empty() && !frame.empty()) base::refuse("--frame and --frames exclude each other");
+  if (!frame.empty()) data.points.frame = frame_of(frame);
   data.all_frames = frames == "all";
   if (!frames.empty() && !data.all_frames) data.frames = base::parse_frames(frames);
   data.has_map = map->count() > 0;

@@ -14,7 +14,7 @@ namespace orrery::cli {
 
 /// Arguments of the data options that need further parsing.
 struct DataArguments {
-  std::string frames, radius, range, replicate;
+  std::string frame, frames, radius, range, replicate;
   std::vector<std::string> select, slice, opacity;
   const Option* map = nullptr;
 

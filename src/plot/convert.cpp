@@ -146,6 +146,7 @@ class Converter {
   explicit Converter(const ConvertOptions& options)
       : options_(options), data_(options, std::filesystem::path()), keys_(options.points) {
     keys_.material_column = "";  // not treated specially
+    keys_.frame = data_.fixed_frame();
     const data::Roles& roles = data_.info().roles;
     scene::PointsRadius& radius = keys_.radius;
     has_radius_ = radius.value || !radius.column.empty() || !radius.element.empty() || !roles.radius.empty();

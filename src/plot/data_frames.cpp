@@ -62,7 +62,13 @@ DataFrames::DataFrames(const DataOptions& options, const std::filesystem::path& 
   open_options.kept_limit = options.memory_limit / kMaxShare;
   const int first = all().front();
   file_ = open_(file_of(first), open_options);
-  const int frame = options.points.frame ? *options.points.frame : is_sequence_ ? 1 : first;
+  fixed_frame_ = options.points.frame;
+  if (fixed_frame_.value_or(1) < 0) *fixed_frame_ += file_->frame_count() + 1;
+  if (fixed_frame_.value_or(1) < 1)
+    throw base::Error(base::ErrorKind::kBadData,
+                      fmt::format("--frame: there is no frame {}; {} has {} frames", *options.points.frame,
+                                  file_of(first).string(), file_->frame_count()));
+  const int frame = fixed_frame_ ? *fixed_frame_ : is_sequence_ ? 1 : first;
   if (frame > 1 && frame <= file_->frame_count()) described_ = frame;  // load() reports frames that do not exist
   info_ = file_->describe(described_ - 1);
   if (options.points.component && !info_.has_components)
@@ -93,7 +99,7 @@ std::optional<int> DataFrames::frame_count() const {
 
 /// Before anything is written, so that no animation ends at the last frame of its file.
 void DataFrames::require_frames() const {
-  if (is_sequence_ || options_.points.frame || numbers_.size() < 2) return;
+  if (is_sequence_ || fixed_frame_ || numbers_.size() < 2) return;
   const int count = file_->frame_count(), last = *std::max_element(numbers_.begin(), numbers_.end());
   if (count > 1 && last > count)  // a single frame is the same in all frames
     throw base::Error(base::ErrorKind::kBadData, fmt::format("--frames: there is no frame {}; {} has {} frames", last,

@@ -65,6 +65,8 @@ class DataFrames {
   /// Number of that frame in the file, from 1.
   int described_frame() const { return described_; }
   bool is_sequence() const { return is_sequence_; }
+  /// DataOptions::points.frame, counted from the first.
+  const std::optional<int>& fixed_frame() const { return fixed_frame_; }
   /// The number of frames of the file; 1 for a sequence of files. Empty if unknown: the file is large and would have to
   /// be read, or ends within a frame.
   std::optional<int> frame_count() const;
@@ -106,6 +108,7 @@ class DataFrames {
   points::OpenData open_;
   std::shared_ptr<data::DataFile> file_;
   data::FrameInfo info_;
+  std::optional<int> fixed_frame_;
   int described_ = 1;
   std::vector<int> numbers_;
 };

@@ -78,6 +78,7 @@ class PlotMaker {
     out_.points.material_column = "";  // the scene of a plot has one material
     out_.points.file = folder.empty() ? options.file : std::filesystem::proximate(options.file, folder);
     if (std::string& map = out_.points.color.map; options_.has_map) map = from_scene(map, options.scene_file);
+    out_.points.frame = data_.fixed_frame();
     out_.frames = data_.numbers();
     const scene::PointsKeys& points = out_.points;
     for (const std::string& text :
@@ -183,7 +184,10 @@ class PlotMaker {
   /// A still image of a file with several frames: which one it shows.
   void choose_frame() {
     if (options_.all_frames) chose(fmt::format("frames 1-{}", out_.frames.size()), "all of the file");
-    if (!out_.frames.empty() || options_.points.frame) return;
+    if (!out_.frames.empty()) return;
+    if (options_.points.frame.value_or(1) < 0)
+      chose(fmt::format("frame {}", data_.described_frame()), fmt::format("--frame {}", *options_.points.frame));
+    if (options_.points.frame) return;
     const std::optional<int> count = data_.frame_count();
     if (count && *count > 1)
       chose(fmt::format("frame 1 of {}", *count), "the first; --frames all renders all of them");

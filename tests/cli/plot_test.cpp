@@ -60,6 +60,19 @@ TEST_F(CliPlot, LegendsAsImagesHaveText) {
   EXPECT_TRUE(contains(r.err, "up to 500 values; name an .svg file")) << r.err;
 }
 
+TEST_F(CliPlot, FramesMayBeCountedFromTheEnd) {
+  ASSERT_EQ(plot("a.dump -o a.ppm -q --color-by vx --range 0:3 --frame 2").status, 0);
+  for (const char* frame : {"last", "-1"}) {
+    ASSERT_EQ(plot("a.dump -o b.ppm -q --color-by vx --range 0:3 --frame " + std::string(frame)).status, 0);
+    EXPECT_EQ(text_of(folder_ / "b.ppm"), text_of(folder_ / "a.ppm")) << frame;
+  }
+  expect_error("plot a.dump -o a.ppm --frame -3", 65, "there is no frame -3; a.dump has 2 frames");
+  for (const std::string frame : {"0", "first", "1.5"})
+    expect_error("plot a.dump -o a.ppm --frame " + frame, 2, "--frame: `" + frame + "` is not a frame");
+  ASSERT_EQ(run("convert a.dump -o b.csv --frame last").status, 0);
+  EXPECT_TRUE(contains(text_of(folder_ / "b.csv"), ",3\n")) << "vx of the last frame";
+}
+
 TEST_F(CliPlot, ChoicesOfTheRenderArePrinted) {
   Outcome r = run("plot a.dump -o a.ppm --width 16 --height 9");
   EXPECT_TRUE(contains(r.err, "\nplot: frame 1 of 2: the first; --frames all renders all of them\n")) << r.err;

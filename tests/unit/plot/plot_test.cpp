@@ -635,6 +635,12 @@ TEST_F(PlotPlot, NothingToRenderIsAWarning) {
   const std::string none = frame("x y z radius", {}), one = frame("x y z radius", {"0 0 0 1"});
   const auto warning = [&](const std::string& text) {
     make("a.dump", text);
+  options.points.frame = -1;
+  make();
+  EXPECT_TRUE(chose("frame 3: --frame -1")) << choices();
+  EXPECT_EQ(read().points[0].frame, 3);
+  options.points.frame = -4;
+  EXPECT_NE(error().find("there is no frame -4; "), std::string::npos) << error();
     return made.warnings.size() == 1 ? made.warnings[0] : std::to_string(made.warnings.size()) + " warnings";
   };
   EXPECT_EQ(warning(none), "nothing to render: the file has no spheres");
