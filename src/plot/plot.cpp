@@ -356,12 +356,13 @@ class PlotMaker {
                       "different frames; colour by a column of integers",
                       out_.legend.title));
     if (needs_range && !finder.is_empty()) {
-      choose_range(*out_.legend.range);
+      choose_range(*out_.legend.range, finder.crowded());
       out_.loaded.reset();  // read without the range, so in other colours
     }
   }
 
-  void choose_range(const scene::Interval& range) {
+  /// `crowded`  see RangeFinder
+  void choose_range(const scene::Interval& range, const std::optional<scene::Interval>& crowded) {
     if (range.low < range.high) out_.points.color.range = range;
     const RangeChoice& choice = options_.range;
     const auto end_text = [](const RangeChoice::End& end) {
@@ -371,10 +372,13 @@ class PlotMaker {
         choice.low.is_percentile && choice.low.value == 0 && choice.high.is_percentile && choice.high.value == 100;
     chose("range " + range_text(range),
           fmt::format(
-              "{}{}{}{}",
+              "{}{}{}{}{}",
               is_default ? "minimum and maximum" : fmt::format("{} to {}", end_text(choice.low), end_text(choice.high)),
               out_.frames.size() > 1 ? " over all frames" : "", choice.is_symmetric ? ", symmetric" : "",
-              choice.is_log ? ", logarithmic" : ""));
+              choice.is_log ? ", logarithmic" : "",
+              crowded
+                  ? fmt::format("; 99 % of the values are within {}, which --range 1%:99% shows", range_text(*crowded))
+                  : ""));
   }
 
   /// Prints how many spheres are drawn, next to the number of particles, where they differ.

@@ -17,8 +17,8 @@
 namespace orrery::plot {
 namespace {
 
-/// Values that are kept for percentiles: 128 MiB.
-constexpr std::size_t kMaxKept = std::size_t{1} << 24;
+/// Values that are kept for percentiles, 128 MiB, and for crowded().
+constexpr std::size_t kMaxKept = std::size_t{1} << 24, kMaxSample = std::size_t{1} << 16;
 
 /// Parses "0.5" or "99%". None if it is neither.
 std::optional<RangeChoice::End> parse_end(std::string_view text) {
@@ -82,15 +82,15 @@ RangeFinder::RangeFinder(const RangeChoice& choice) : choice_(choice) {
   const auto needs_values = [](const RangeChoice::End& end) {
     return end.is_percentile && end.value != 0 && end.value != 100;
   };
-  keeps_values_ = needs_values(choice.low) || needs_values(choice.high);
+  needs_values_ = needs_values(choice.low) || needs_values(choice.high);
 }
 
 void RangeFinder::add(double value) {
   extremes_.low = count_ == 0 ? value : std::min(extremes_.low, value);
   extremes_.high = count_ == 0 ? value : std::max(extremes_.high, value);
-  if (keeps_values_ && count_ % stride_ == 0) values_.push_back(value);
+  if (count_ % stride_ == 0) values_.push_back(value);
   ++count_;
-  if (values_.size() < kMaxKept) return;
+  if (values_.size() < (needs_values_ ? kMaxKept : kMaxSample)) return;
   for (std::size_t i = 0; i < values_.size() / 2; ++i) values_[i] = values_[2 * i];
   values_.resize(values_.size() / 2);
   stride_ *= 2;
@@ -132,6 +132,17 @@ scene::Interval RangeFinder::range() {
   if (!choice_.is_symmetric) return out;
   const double reach = std::max(std::abs(out.low), std::abs(out.high));
   return {-reach, reach};
+}
+
+std::optional<scene::Interval> RangeFinder::crowded() {
+  if (needs_values_ || !choice_.low.is_percentile || !choice_.high.is_percentile || choice_.is_log) return {};
+  std::sort(values_.begin(), values_.end());
+  const std::size_t most = (99 * values_.size() + 99) / 100;
+  const double tenth = extremes_.high / 10 - extremes_.low / 10;
+  for (std::size_t i = 0; i + most <= values_.size(); ++i)
+    if (values_[i + most - 1] - values_[i] <= tenth && tenth > 0)
+      return scene::Interval{values_[i], values_[i + most - 1]};
+  return {};
 }
 
 }  // namespace orrery::plot

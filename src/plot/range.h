@@ -50,15 +50,18 @@ class RangeFinder {
   /// Domain     not empty
   /// Errors     base::Error(kBadData) if the lower end is above the upper one
   scene::Interval range();
+  /// An interval of at most a tenth of the minimum to the maximum that has 99 % of the values: a few others would use
+  /// up the colour map. None unless the range is that of all values.
+  std::optional<scene::Interval> crowded();
 
  private:
   double end(const RangeChoice::End& end);
 
   RangeChoice choice_;
-  bool keeps_values_;
+  bool needs_values_;
   std::size_t count_ = 0;
-  std::size_t stride_ = 1;  ///< every `stride_`-th value is kept
-  std::vector<double> values_;
+  std::size_t stride_ = 1;      ///< every `stride_`-th value is kept
+  std::vector<double> values_;  ///< a regular sample
   scene::Interval extremes_;
 };
 

@@ -56,6 +56,25 @@ TEST(PlotRange, ManyValuesAreSampled) {
   EXPECT_NEAR(finder.range().high, 0.75 * kCount, 8);
 }
 
+TEST(PlotRange, FewValuesThatUseUpTheMapAreFound) {
+  const auto crowded = [](const std::string& range, int outliers, double at) {
+    RangeFinder finder(range.empty() ? RangeChoice() : parse_range(range));
+    for (int i = 0; i < 1000; ++i) finder.add(i < outliers ? at + i : i % 10);
+    return finder.crowded();
+  };
+  ASSERT_TRUE(crowded("", 5, 200));
+  EXPECT_EQ(crowded("", 5, 200)->low, 0);
+  EXPECT_EQ(crowded("", 5, 200)->high, 9);
+  EXPECT_TRUE(crowded("", 5, -200)) << "at the lower end";
+  EXPECT_FALSE(crowded("", 15, 200)) << "not so few";
+  EXPECT_FALSE(crowded("", 5, 20)) << "not so far";
+  EXPECT_FALSE(crowded("", 0, 0));
+  for (const char* range : {"1%:99%", "0:9", "log"}) EXPECT_FALSE(crowded(range, 5, 200)) << range;
+  RangeFinder constant{RangeChoice()};
+  for (int i = 0; i < 1000; ++i) constant.add(3);
+  EXPECT_FALSE(constant.crowded());
+}
+
 TEST(PlotRange, InvalidRangesAreRefused) {
   for (const char* text : {"", "5", "1:", ":1", "1:x", "1:2:3", "lin", "log,", "nan:1", "1%:inf"})
     EXPECT_NE(error_of(text).find("is not a range; write LOW:HIGH"), std::string::npos) << text;
