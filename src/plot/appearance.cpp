@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
+#include <array>
 #include <cstddef>
 #include <cstdint>
 #include <optional>
@@ -39,6 +40,7 @@ class Appearance {
   std::vector<std::string> run() {
     // Determining the radius from the spacing requires reading the file, so the colour options are checked first.
     const std::vector<std::string> color_choices = choose_color();
+    name_components();
     if (!points_.vectors.columns.empty() && options_.material == "glass")
       base::refuse("--vectors: arrows of glass are not supported; use another --material");
     choose_radius();
@@ -54,6 +56,21 @@ class Appearance {
   const Measures& measured(bool by_radii) {
     if (!measures_) measures_ = data_.measures(points_, !by_radii || !points_.vectors.columns.empty(), by_radii);
     return *measures_;
+  }
+
+  /// Replaces the one name of a vector by its components: `forces` by forces[1] to forces[3], `v` by vx, vy and vz.
+  void name_components() {
+    std::vector<std::string>& columns = points_.vectors.columns;
+    if (columns.size() != 1) return;
+    const std::string name = columns.front();
+    using Three = std::array<std::string, 3>;
+    for (const Three& ends : {Three{"[1]", "[2]", "[3]"}, Three{"_x", "_y", "_z"}, Three{"x", "y", "z"}}) {
+      columns.clear();
+      for (const std::string& end : ends)
+        if (data::find_named(info_.columns, name + end) != nullptr) columns.push_back(name + end);
+      if (columns.size() == 3) return;
+    }
+    base::refuse(fmt::format("--vectors {0}: there are no columns {0}[1] to {0}[3]; name three, e.g. vx,vy,vz", name));
   }
 
   void chose(const std::string& what, const std::string& why) { choices_.push_back(fmt::format("{}: {}", what, why)); }

@@ -13,6 +13,7 @@
 
 #include "annotation/annotate.h"
 #include "base/error.h"
+#include "base/text.h"
 #include "data/data_file.h"
 #include "data/elements.h"
 #include "display/develop.h"
@@ -288,6 +289,16 @@ TEST_F(PlotPlot, ArrowsAreAsLongAsTheirNeighborsAreFarInAllFrames) {
   EXPECT_EQ(second.points[0].particle_count(), 2u);
   EXPECT_GT(*first.camera.width, 15) << "the long arrow is in the view";
   EXPECT_EQ(choices().find("spheres:"), std::string::npos) << "those of heads are not counted: " << choices();
+}
+
+TEST_F(PlotPlot, AVectorMayHaveOneName) {
+  for (const char* columns : {"f[1] f[2] f[3]", "f_x f_y f_z", "fx fy fz"}) {
+    options.points.vectors.columns = {"f"};
+    make("a.dump", frame("x y z radius " + std::string(columns), {"1 0 0 1 1 2 3", "3 0 0 1 1 0 0"}));
+    EXPECT_EQ(base::joined(read().points[0].vectors.columns, " "), columns);
+  }
+  options.points.vectors.columns = {"g"};
+  EXPECT_NE(error().find("--vectors g: there are no columns g[1] to g[3]"), std::string::npos) << error();
 }
 
 TEST_F(PlotPlot, ArrowsHaveOneScaleWhateverIsSelected) {
