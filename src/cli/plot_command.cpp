@@ -161,7 +161,6 @@ int run_plot(PlotCommand& arguments) {
   plot::PlotOptions& plot = arguments.shown.options;
   job::Job& job = render.batch.job;
   const bool saves = !arguments.save_scene.empty();
-  begin_messages(render);
   job.hooks.cancel = &stop_on_signals();
   if (load::is_scene_file(plot.file))
     base::refuse(fmt::format("{0} is a scene; render it: orrery render {0}", base::shell_quoted(plot.file.string())));

@@ -2,6 +2,8 @@
 #include "cli/plot_options.h"
 
 #include <algorithm>
+#include <cctype>
+#include <charconv>
 #include <cmath>
 #include <initializer_list>
 #include <memory>
@@ -57,8 +59,6 @@ void read_radius(const std::string& text, scene::PointsRadius& radius) {
     base::refuse("--radius-scale applies to radii of the data; scale the number in --radius instead");
 }
 
-math::Vec3d copies_of(const std::string& text) {
-  std::vector<double> counts;
 /// The number of a frame, from 1; below 0 it is counted from the end.
 int frame_of(const std::string& text) {
   constexpr int kMost = 2'000'000'000;
@@ -68,6 +68,8 @@ int frame_of(const std::string& text) {
   return frame;
 }
 
+math::Vec3d copies_of(const std::string& text) {
+  std::vector<double> counts;
   std::istringstream words(text + ',');
   for (std::string word; std::getline(words, word, ',');)
     counts.push_back(base::number_of<double>(word).value_or(std::nan("")));
@@ -106,18 +108,21 @@ void add_view_options(Command& command, plot::PlotOptions& plot) {
       ->choices({"x", "y", "z"});
 }
 
-/// Parses "auto", "20" or "20 nm".
+/// Parses "auto", "20", "20 nm" or "20nm".
 void read_scale_bar(const std::string& text, scene::Annotation& annotation) {
   if (text.empty()) return;
-  const std::size_t space = text.find(' ');
-  const auto length = text == "auto" ? 0 : base::number_of<double>(text.substr(0, space));
-  if (text != "auto" && !(length >= scene::kSmallestRadius && length <= scene::kLargestLength))
+  double length = 0;
+  const char* const end = text.data() + text.size();
+  const char* unit = text == "auto" ? end : std::from_chars(text.data(), end, length).ptr;
+  const bool has_unit = unit == end || *unit == ' ' || std::isalpha(static_cast<unsigned char>(*unit)) || *unit < 0;
+  if (text != "auto" && !(length >= scene::kSmallestRadius && length <= scene::kLargestLength && has_unit))
     base::refuse(
-        fmt::format("--scale-bar: `{}` is not a length; write auto, or a length above 0, with a space before "
-                    "the unit, e.g. 20 or '20 nm'",
+        fmt::format("--scale-bar: `{}` is not a length; write auto, or a length above 0, with or without a unit, e.g. "
+                    "20 or '20 nm'",
                     text));
   annotation.scale_bar = length;
-  if (space != std::string::npos) annotation.unit = text.substr(space + 1);
+  if (unit != end && *unit == ' ') ++unit;
+  annotation.unit.assign(unit, end);
 }
 
 /// Parses --bonds, except none and auto.
@@ -127,10 +132,15 @@ void read_bonds(const std::string& text, scene::PointsBonds& bonds) {
     return;
   }
   constexpr std::string_view kLength = "length=";
+  constexpr double kLargestFactor = 2;  // second neighbours are closer
   const bool is_length = text.starts_with(kLength);
   const auto number = base::number_of<double>(std::string_view(text).substr(is_length ? kLength.size() : 0));
-  const double largest = is_length ? scene::kLargestLength : scene::kLargestBondFactor;
-  if (!number || !(*number >= scene::kSmallestRadius && *number <= largest))
+  if (number > kLargestFactor && !is_length)
+    base::refuse(
+        fmt::format("--bonds {0} would join atoms closer than {0} times the sum of their covalent radii; for "
+                    "those closer than {0}, write --bonds length={0}",
+                    text));
+  if (!number || !(*number >= scene::kSmallestRadius && *number <= scene::kLargestLength))
     base::refuse(
         fmt::format("--bonds: `{}` is not a source of bonds; write auto, file, distance, both, none, a factor "
                     "such as 1.2, or length=1.6",
@@ -155,7 +165,7 @@ void DataArguments::add_to(Command& command, plot::DataOptions& data, const std:
       ->details("For example 'id in [20:60] && chain in {A, B}'; docs/data.md describes conditions.")
       ->repeatable();
   command
-      .add_option("--slice", slice, "AXIS=POSITION",
+      .add_option("--slice,--clip", slice, "AXIS=POSITION",
                   "Slice plane: remove the spheres in front of it, e.g. z=10; can be repeated")
       ->details("With convert, as seen from the default view of plot.")
       ->repeatable();
@@ -184,7 +194,9 @@ void DataArguments::add_to(Command& command, plot::DataOptions& data, const std:
       ->details(
           "rgb: the file's own colours. none: one colour. The default depends on the file. Expressions have the "
           "operators and functions of conditions.");
-  map = command.add_option("--map", points.color.map, "MAP", "Colour map, e.g. viridis, fast, coolwarm, or a file")
+  map = command
+            .add_option("--map,--colormap", points.color.map, "MAP",
+                        "Colour map, e.g. viridis, fast, coolwarm, viridis_r for the reverse, or a file")
             ->details("docs/data.md lists the maps. The default is fast, for types and strings tab10.");
   command
       .add_option("--range", range, "RANGE",
@@ -237,7 +249,9 @@ void PlotArguments::add_look_to(Command& command) {
       ->details(
           "auto: those of the file; by distance if it has none; both for PDB and mmCIF, which leave out common bonds. "
           "A factor or a length: by distance. docs/data.md describes bonds.");
-  command.add_option("--vectors", look_.vectors, "X,Y,Z", "Draw arrows from three columns, e.g. vx,vy,vz")
+  command
+      .add_option("--vectors", look_.vectors, "X,Y,Z",
+                  "Draw arrows from three columns, e.g. vx,vy,vz, or from a vector, e.g. forces")
       ->details("Their length is chosen from the data; --set 'points[0].vectors.scale=2' sets it.");
   command
       .add_option("--opacity", data.opacity, "X|COLUMN|CONDITION:X",
@@ -245,13 +259,16 @@ void PlotArguments::add_look_to(Command& command) {
                   "repeated")
       ->details("The last that matches a particle decides; particles that none matches are opaque.")
       ->repeatable();
-  command.add_option("--style", look_.style, "STYLE", "Light: studio, soft, flat, night or ambient; default: studio")
+  command
+      .add_option("--style,--lighting", look_.style, "STYLE",
+                  "Light: studio, soft, flat, night or ambient; default: studio")
       ->details(
           "studio: a key light from the upper left of the camera, and white light from all directions. soft: more of "
           "the latter. flat: no shading. night: a lamp and a dark sky. ambient: white light from all directions alone.")
       ->choices(plot::style_names());
-  command.add_option("--background", look_.background, "COLOR",
-                     "Colour behind the spheres: white, black, grey or #rrggbb; default: that of the style");
+  command.add_option(
+      "--background", look_.background, "COLOR",
+      "Colour behind the spheres: white, grey, navy or the like, or #rrggbb; default: that of the style");
   command.add_flag("--transparent", options.transparent, "Transparent background, in EXR, PNG, TIFF and SVG");
   command
       .add_option("--quality", look_.quality, "NAME",

@@ -114,7 +114,11 @@ std::string progress_bar(const ProgressState& state, int columns) {
 }
 
 ProgressPrinter::ProgressPrinter(ProgressStyle style, std::FILE* to, std::chrono::milliseconds heartbeat)
-    : style_(resolved(style, to)), to_(to), heartbeat_(heartbeat), state_{0, 1, 0} {
+    : percents_(style == ProgressStyle::kAuto ? 10 : 1),
+      style_(resolved(style, to)),
+      to_(to),
+      heartbeat_(heartbeat),
+      state_{0, 1, 0} {
   if (style_ != ProgressStyle::kBar && style_ != ProgressStyle::kNone)
     printing_thread_ = std::thread([this] { print_periodically(); });
 }
@@ -128,7 +132,7 @@ void ProgressPrinter::update(const ProgressState& state) {
   state_ = state;
   if (style_ == ProgressStyle::kBar) {
     print_bar(progress_bar(state_, columns_of(to_)));
-  } else if (state_.percent() != last_percent_) {
+  } else if (state_.percent() / percents_ != last_percent_ / percents_) {
     print_line();
   }
 }

@@ -57,8 +57,8 @@ std::string progress_bar(const ProgressState& state, int columns);
 /// Maximum time between two lines of progress, so that a supervisor does not consider a render hung.
 inline constexpr std::chrono::milliseconds kHeartbeat{60'000};
 
-/// Prints the progress of a render: a bar, or a line whenever the whole percent changes and at least once per
-/// heartbeat, including while the scene is read and during a long tile.
+/// Prints the progress of a render: a bar, or a line whenever the whole percent changes, with kAuto every tenth, and at
+/// least once per heartbeat, including while the scene is read and during a long tile.
 class ProgressPrinter {
  public:
   /// Starts the heartbeat.
@@ -90,6 +90,7 @@ class ProgressPrinter {
   void print(const std::string& lines);
   void print_periodically();
 
+  int percents_;  ///< between two lines
   ProgressStyle style_;
   std::FILE* to_;
   std::chrono::milliseconds heartbeat_;

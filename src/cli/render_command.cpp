@@ -129,10 +129,10 @@ void add_bad_values(std::string& out, const job::JobReport& report) {
 void add_summary(std::string& out, const job::Job& job, const job::JobReport& report, ReportDetail detail) {
   std::string files;
   for (const job::ImageFile& output : job.outputs.images) files += (files.empty() ? "" : ", ") + output.path.string();
-  const double pixels = static_cast<double>(report.width) * report.height;
   const render::Statistics& r = report.render;
-  out += fmt::format("wrote {}: {} x {}, {:.5g} samples per pixel in {:.1f} s, {:.2f} M samples/s", files, report.width,
-                     report.height, static_cast<double>(r.paths) / pixels, r.render_s,
+  const double per_pixel = static_cast<double>(r.paths) / (static_cast<double>(report.width) * report.height);
+  out += fmt::format("wrote {}: {} x {}, {:.5g} {} per pixel in {:.1f} s, {:.2f} M samples/s", files, report.width,
+                     report.height, per_pixel, per_pixel == 1 ? "sample" : "samples", r.render_s,
                      r.render_s > 0 ? static_cast<double>(r.paths) / r.render_s / 1e6 : 0.0);
   if (r.noise) out += fmt::format("; noise {:.3g}, {} to {} samples", *r.noise, r.min_samples, r.max_samples);
   if (detail.has_total) out += fmt::format("; {:.1f} s in all", report.phases.total_s());
@@ -206,12 +206,7 @@ std::string report_text(const job::Job& job, const job::JobReport& report, Repor
   return out;
 }
 
-void begin_messages(const RenderOptions& options) {
-  if (progress_style(options.progress) == ProgressStyle::kJson) use_json_messages();
-}
-
 int run_render(RenderOptions& options) {
-  begin_messages(options);
   job::Batch& batch = options.batch;
   job::Job& job = batch.job;
   for (std::size_t i = 1; i < batch.scenes.size(); ++i)
@@ -293,7 +288,8 @@ void add_render_options(Command& command, RenderOptions& options) {
       .add_option("--progress", options.progress, "STYLE",
                   "Progress format: auto, bar, alf, openjd, arnold, json or none; default: auto")
       ->details(
-          "auto: bar on a terminal, otherwise arnold. bar: one line with a bar, samples per second and time left. alf: "
+          "auto: bar on a terminal, otherwise arnold with a line for every tenth. bar: one line with a bar, samples "
+          "per second and time left. alf: "
           "ALF_PROGRESS 42%. openjd: openjd_progress: 42. arnold: 42% done. json: one object per line; messages are "
           "objects with the key message. A line is printed whenever the whole percent changes, and at least once a "
           "minute.")

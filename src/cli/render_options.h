@@ -27,9 +27,6 @@ void add_sampling_options(Command& command, job::Job& job);
 /// Domain     called once; `options` does not move until the command line is parsed
 void add_render_options(Command& command, RenderOptions& options);
 
-/// Sets the format of messages to that of --progress. Called first, so that it applies to all messages.
-void begin_messages(const RenderOptions& options);
-
 /// Renders the scenes and frames of a batch.
 ///
 /// Result     the exit status

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cstdio>
 #include <exception>
+#include <memory>
 #include <new>
 #include <sstream>
 #include <string>
@@ -43,19 +44,45 @@ constexpr std::pair<const char*, const char*> kRemoved[] = {
     {"orrery bake", "ociobakelut, as docs/output.md shows"},
 };
 
-/// Options that commands with --set had, and what to write instead.
-constexpr std::pair<const char*, const char*> kRemovedSettings[] = {
-    {"--ocio", "--set color.config=FILE, relative to the scene file"},
-    {"--display", "--set color.display=NAME"},
-    {"--view", "--set color.view=NAME"},
-    {"--look", "--set color.look=NAME"},
-    {"--exposure", "--set color.exposure=STOPS"},
-    {"--seed", "--set render.seed=N"},
-    {"--max-depth", "--set render.max_depth=N"},
-    {"--accelerator", "--set render.accelerator=NAME"},
-    {"--isa", "the environment variable ORRERY_ISA=NAME"},
-    {"--log", "2>> FILE, after the command"},
-    {"--fail-fast", "one command for each frame or scene"}};
+/// Options that users guess, for commands with a certain option, and what to write instead. The first row that fits
+/// counts.
+struct Guess {
+  const char *flag, *of_commands_with, *instead;
+};
+constexpr Guess kGuesses[] = {
+    {"--view", "--look-from", "--look-from VIEW for the direction, --set color.view=NAME for the display transform"},
+    {"--view", "--set", "--set color.view=NAME"},
+    {"--camera", "--look-from", "--look-from VIEW"},
+    {"--rotate", "--look-from", "--look-from AZIMUTH,ELEVATION"},
+    {"--azimuth", "--look-from", "--look-from AZIMUTH,ELEVATION"},
+    {"--elevation", "--look-from", "--look-from AZIMUTH,ELEVATION"},
+    {"--fov", "--perspective", "--perspective VFOV"},
+    {"--fov", "--set", "--set camera.vfov=DEGREES"},
+    {"--size", "--width", "--width and --height, in pixels"},
+    {"--res", "--width", "--width and --height, in pixels"},
+    {"--resolution", "--width", "--width and --height, in pixels"},
+    {"--dpi", "--width", "--width and --height, in pixels: 3.5 inches at 300 dpi are 1050"},
+    {"--spp", "--samples", "--samples N"},
+    {"--bg", "--background", "--background COLOR"},
+    {"--bg", "--set", "--set background.color=[R,G,B]"},
+    {"--background", "--set", "--set background.color=[R,G,B]"},
+    {"--chain", "--select", "--select 'chain A'"},
+    {"--resid", "--select", "--select 'resid 20:30'"},
+    {"--color", "--color-by", "--color-by COLUMN"},
+    {"--cmap", "--map", "--map MAP"},
+    {"--alpha", "--opacity", "--opacity X"},
+    {"--movie", "--turntable", "-o FILE.mp4 with --frames or --turntable"},
+    {"--diff", "--difference", "--difference FILE, or --heat FILE for the error of each pixel"},
+    {"--ocio", "--set", "--set color.config=FILE, relative to the scene file"},
+    {"--display", "--set", "--set color.display=NAME"},
+    {"--look", "--set", "--set color.look=NAME"},
+    {"--exposure", "--set", "--set color.exposure=STOPS"},
+    {"--seed", "--set", "--set render.seed=N"},
+    {"--max-depth", "--set", "--set render.max_depth=N"},
+    {"--accelerator", "--set", "--set render.accelerator=NAME"},
+    {"--isa", "--set", "the environment variable ORRERY_ISA=NAME"},
+    {"--log", "--set", "2>> FILE, after the command"},
+    {"--fail-fast", "--set", "one command for each frame or scene"}};
 
 /// The name of a command as it is typed: "orrery generate final".
 std::string full_name(const CLI::App& command) {
@@ -73,10 +100,11 @@ std::string removed_message(const std::string& word, const CLI::App& command) {
 
 std::string unknown_flag(const std::string& flag, const CLI::App& command) {
   if (std::string message = removed_message(flag, command); !message.empty()) return message;
-  for (const auto& [removed, instead] : kRemovedSettings)
-    if (flag == removed && base::contains(flag_names(command), "--set"))
-      return fmt::format("{} was removed; use {}", flag, instead);
-  const std::string remedy = base::did_you_mean(flag, flag_names(command));
+  const std::vector<std::string> names = flag_names(command);
+  for (const Guess& guess : kGuesses)
+    if (flag == guess.flag && base::contains(names, guess.of_commands_with))
+      return fmt::format("unknown option {}; use {}", flag, guess.instead);
+  const std::string remedy = base::did_you_mean(flag, names);
   return fmt::format("unknown option {}{}", flag, remedy.empty() ? "" : "; " + remedy);
 }
 
@@ -110,6 +138,19 @@ std::string first_unknown_flag(const CLI::App& command, const std::vector<std::s
   return {};
 }
 
+/// The message for an option whose value was left out, so that the next option would become the value; empty if there
+/// is none. With `=` a value can begin with two dashes.
+std::string option_before_option(const CLI::App& command, const std::vector<std::string>& words) {
+  for (std::size_t i = 0; i + 1 < words.size() && words[i] != "--"; ++i) {
+    const CLI::Option* const option = words[i].starts_with('-') ? command.get_option_no_throw(words[i]) : nullptr;
+    if (option == nullptr || option->get_items_expected_max() == 0 || words[i + 1].size() < 3 ||
+        !words[i + 1].starts_with("--"))
+      continue;
+    return fmt::format("{} needs a value, {}; {} follows", words[i], option->get_type_name(), words[i + 1]);
+  }
+  return {};
+}
+
 /// The innermost command that argv names; the program itself if it names none.
 const CLI::App& innermost(const CLI::App& program) {
   const auto chosen = program.get_subcommands();
@@ -122,7 +163,17 @@ std::string versions_text() {
   return out + "  CLI11 " CLI11_VERSION;
 }
 
+/// Help without the type of positional arguments, which is their name.
+class HelpFormatter : public CLI::Formatter {
+ public:
+  std::string make_option_opts(const CLI::Option* option) const override {
+    if (!option->get_positional()) return Formatter::make_option_opts(option);
+    return option->get_items_expected_max() > 1 ? " ..." : "";
+  }
+};
+
 void configure(CLI::App& program) {
+  program.formatter(std::make_shared<HelpFormatter>());
   program.set_version_flag("--version", versions_text, "Print the versions of the program and its libraries and exit");
   program.set_help_flag("-h,--help", "Print this help message and exit");
   program.require_subcommand(1);
@@ -164,13 +215,22 @@ int print_success(const CLI::App& program, const CLI::Success& success) {
 }
 
 int print_usage_error(const CLI::App& program, const CLI::ParseError& error, const std::vector<std::string>& words) {
-  std::fprintf(stderr, "orrery: %s\nTry %s --help.\n", usage_message(program, error, words).c_str(),
-               full_name(innermost(program)).c_str());
+  print_message(base::printable_lines(fmt::format("orrery: {}\nTry {} --help.\n", usage_message(program, error, words),
+                                                  full_name(innermost(program)))));
   return base::exit_status(base::ErrorKind::kUsage);
+}
+
+/// Whether the words have --progress json. Looked for before they are parsed: errors in them are messages, too.
+bool asks_for_json(const std::vector<std::string>& words) {
+  for (std::size_t i = 0; i < words.size() && words[i] != "--"; ++i)
+    if (words[i] == "--progress=json" || (words[i] == "--progress" && i + 1 < words.size() && words[i + 1] == "json"))
+      return true;
+  return false;
 }
 
 int parse_and_act(int argc, const char* const* argv) {
   const std::vector<std::string> words(argv + (argc > 0 ? 1 : 0), argv + argc);
+  if (asks_for_json(words)) use_json_messages();
   if (const std::string option = option_without_value(words); !option.empty())
     base::refuse(fmt::format("{} needs a value; none follows `{}=`", option, option));
   CLI::App program("orrery is a path tracer for scenes made of spheres and rods.", "orrery");
@@ -184,6 +244,8 @@ int parse_and_act(int argc, const char* const* argv) {
   } catch (const CLI::ParseError& error) {
     return print_usage_error(program, error, words);
   }
+  if (const std::string left_out = option_before_option(innermost(program), words); !left_out.empty())
+    base::refuse(left_out);
   return commands.run();
 }
 
@@ -200,6 +262,7 @@ std::string option_without_value(const std::vector<std::string>& words) {
 std::string usage_message(const CLI::App& program, const CLI::ParseError& error,
                           const std::vector<std::string>& words) {
   const CLI::App& command = innermost(program);
+  if (std::string left_out = option_before_option(command, words); !left_out.empty()) return left_out;
   if (const std::string flag = first_unknown_flag(command, words); !flag.empty()) return unknown_flag(flag, command);
   const std::vector<std::string> left = command.remaining();
   if (!left.empty()) return unexpected(left.front(), command);

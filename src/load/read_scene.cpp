@@ -77,6 +77,12 @@ class MaterialNames {
 
   /// The material that a node names.
   std::uint32_t at(const toml::node& node, const std::string& full_name) {
+    if (node.is_table()) {
+      state_.error(place_of(node), full_name + " must be the name of a material, not a table",
+                   "write the table as [material.NAME], and here material = \"NAME\"");
+      state_.unread.insert(full_name);
+      return 0;
+    }
     const auto value = read_value(state_, node, full_name, scene::ValueType::kText, {}, {});
     if (value) {
       const auto& name = std::get<std::string>(*value);

@@ -22,7 +22,7 @@ struct DataOptions {
   std::filesystem::path file;  ///< data file, may contain a frame pattern
   std::vector<int> frames;     ///< empty: one frame
   bool all_frames = false;     ///< all frames of the file
-  scene::PointsKeys points;    ///< that the user has set; `file` is not used
+  scene::PointsKeys points;    ///< that the user has set; `file` is not used, `frame` may be counted from the end, -1
   std::string color_by;        ///< "element", "type", "rgb", "none" or a column; empty: not set
   bool has_map = false;        ///< the user set `points.color.map`
   RangeChoice range;           ///< of the colour map, where `points.color.range` is not set

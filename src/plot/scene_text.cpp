@@ -12,6 +12,7 @@
 #include <fmt/core.h>
 
 #include "base/error.h"
+#include "base/text.h"
 #include "load/write_scene.h"
 #include "math/vec3.h"
 #include "plot/plot.h"
@@ -145,13 +146,24 @@ std::optional<Style> style_of(const std::string& name) { return enumerator_of<St
 std::optional<Quality> quality_of(const std::string& name) { return enumerator_of<Quality>(name, quality_names()); }
 
 math::Vec3d color_of(const std::string& text) {
-  constexpr std::pair<const char*, const char*> kNames[] = {
-      {"white", "#ffffff"}, {"black", "#000000"}, {"grey", "#808080"}, {"gray", "#808080"}};
+  // Those of CSS that are used as backgrounds.
+  constexpr std::pair<std::string_view, std::string_view> kNames[] = {
+      {"white", "#fff"},        {"black", "#000"},           {"grey", "#808080"},
+      {"gray", "#808080"},      {"silver", "#c0c0c0"},       {"lightgrey", "#d3d3d3"},
+      {"lightgray", "#d3d3d3"}, {"darkgrey", "#a9a9a9"},     {"darkgray", "#a9a9a9"},
+      {"red", "#f00"},          {"green", "#008000"},        {"blue", "#00f"},
+      {"navy", "#000080"},      {"midnightblue", "#191970"}, {"teal", "#008080"},
+      {"cyan", "#0ff"},         {"magenta", "#f0f"},         {"yellow", "#ff0"},
+      {"orange", "#ffa500"},    {"brown", "#a52a2a"},        {"maroon", "#800000"},
+      {"purple", "#800080"},    {"ivory", "#fffff0"},        {"beige", "#f5f5dc"}};
   const auto* const known =
-      std::find_if(std::begin(kNames), std::end(kNames), [&](const auto& n) { return n.first == text; });
-  const std::optional<math::Vec3d> srgb = points::parse_hex(known == std::end(kNames) ? text : known->second);
+      std::find_if(std::begin(kNames), std::end(kNames), [&](const auto& n) { return n.first == base::lower(text); });
+  std::string code(known == std::end(kNames) ? text : known->second);
+  if (code.size() == 4) code = {code[0], code[1], code[1], code[2], code[2], code[3], code[3]};  // #rgb
+  const std::optional<math::Vec3d> srgb = points::parse_hex(code);
   if (!srgb)
-    base::refuse(fmt::format("`{}` is not a colour; write white, black, grey or #rrggbb, e.g. '#202030'", text));
+    base::refuse(
+        fmt::format("`{}` is not a colour; write white, grey, navy or the like, or #rrggbb, e.g. '#202030'", text));
   return points::linear_from_srgb(*srgb / 255);
 }
 

@@ -67,7 +67,13 @@ RadiusSource radius_source(const data::FrameInfo& info, const scene::PointsRadiu
   } else if (!radius.column.empty()) {
     out.kind = RadiusSource::Kind::kColumn;
     out.column = radius.column;
-    require_column(info, radius.column, true, ".radius.column", faults);
+    const bool is_table = base::contains({"vdw", "covalent", "ball"}, radius.column);
+    if (is_table && data::find_named(info.columns, radius.column) == nullptr)
+      faults.error(".radius.column", fmt::format("the file has no column `{0}`; radii by chemical element are "
+                                                 "`radius.element = \"{0}\"`, or --element-radii {0}",
+                                                 radius.column));
+    else
+      require_column(info, radius.column, true, ".radius.column", faults);
     if (radius.column == info.roles.radius && info.roles.radius_scale != 1 && radius.scale == 1)
       faults.warning(".radius.column", fmt::format("column `{}` holds diameters; set the scale to {}", radius.column,
                                                    scene::number_text(info.roles.radius_scale)));

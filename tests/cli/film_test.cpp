@@ -139,7 +139,7 @@ TEST_F(CliFilm, SkippedImagesHaveTheSameAnnotation) {
 
 TEST_F(CliFilm, InvalidAnnotationsAreRefused) {
   EXPECT_TRUE(contains(film("-o a.png --scale-bar auto --perspective 30").err, "depends on its distance"));
-  EXPECT_TRUE(contains(film("-o a.png --scale-bar 2nm").err, "`2nm` is not a length"));
+  EXPECT_TRUE(contains(film("-o a.png --scale-bar nm").err, "`nm` is not a length"));
   EXPECT_EQ(film("-o a.png --scale-bar 0").status, 2);
   EXPECT_EQ(film("-o a.png --label x").status, 65);
   EXPECT_EQ(film("-o a.png --title '{foo}'").status, 65);

@@ -184,9 +184,11 @@ TEST_F(CliPlot, BondsAreDrawnAndSaved) {
 }
 
 TEST_F(CliPlot, BondsThatCannotBeDrawnAreErrors) {
-  for (const std::string bonds : {"no", "length=", "length=0", "-1", "1e3", "length=1e30", "nan"})
+  for (const std::string bonds : {"no", "length=", "length=0", "-1", "length=1e30", "nan"})
     expect_error("plot a.dump -o a.ppm --bonds=" + bonds, 2,
                  "--bonds: `" + bonds + "` is not a source of bonds; write auto, file");
+  expect_error("plot a.dump -o a.ppm --bonds 3", 2, "write --bonds length=3");
+  expect_error("plot a.dump -o a.ppm --radius vdw", 65, "--element-radii vdw");
   expect_error("plot a.dump -o a.ppm --bonds file", 65, "the file has no bonds; set `from = \"distance\"`");
   expect_error("plot a.dump -o a.ppm --representation sticks", 65, "or --bonds length=X, to the largest length");
   expect_error("plot a.dump -o a.ppm --vectors x,y", 65, "has 2 columns; a vector has three");

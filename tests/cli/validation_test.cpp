@@ -7,6 +7,7 @@
 #include <utility>
 #include <vector>
 
+#include <nlohmann/json.hpp>
 #include "cli/program.h"
 #include "support/exr_file.h"
 
@@ -250,15 +251,37 @@ TEST_F(CliValidation, InvalidDisplayOptionsAreNamedUsageErrors) {
   EXPECT_EQ(missing.err, "orrery: cannot open none.ocio: No such file or directory\n");
 }
 
-TEST_F(CliValidation, RemovedOptionsNameWhatReplacesThem) {
+TEST_F(CliValidation, OptionsThatAreGuessedNameTheRightOnes) {
   const Outcome view = run("render good.toml -o a.png --view Raw");
   EXPECT_EQ(view.status, 2);
-  EXPECT_EQ(view.err, "orrery: --view was removed; use --set color.view=NAME\nTry orrery render --help.\n");
-  for (const char* option : {"--ocio=a", "--display=a", "--look=a", "--exposure=1", "--seed=1", "--max-depth=1",
-                             "--accelerator=list", "--isa=avx2", "--log=a", "--fail-fast"}) {
+  EXPECT_EQ(view.err, "orrery: unknown option --view; use --set color.view=NAME\nTry orrery render --help.\n");
+  for (const char* option :
+       {"--ocio=a", "--display=a", "--look=a", "--exposure=1", "--seed=1", "--max-depth=1", "--accelerator=list",
+        "--isa=avx2", "--log=a", "--fail-fast", "--size=9", "--res=9", "--dpi=300", "--spp=4", "--bg=white"}) {
     const Outcome r = run(std::string("render good.toml -o a.png ") + option);
     EXPECT_EQ(r.status, 2) << option;
-    EXPECT_TRUE(contains(r.err, " was removed; use ")) << r.err;
+    EXPECT_TRUE(contains(r.err, "; use ")) << r.err;
+  }
+}
+
+TEST_F(CliValidation, AnOptionIsNoValueOfAnother) {
+  Outcome r = run("plot none.csv -o a.png --scale-bar --progress none");
+  EXPECT_EQ(r.status, 2);
+  EXPECT_EQ(r.err, "orrery: --scale-bar needs a value, LENGTH; --progress follows\nTry orrery plot --help.\n");
+  r = run("plot none.csv -o a.png --title --color-bar");
+  EXPECT_EQ(r.status, 2) << "without another error";
+  EXPECT_EQ(r.err, "orrery: --title needs a value, TEXT; --color-bar follows\n");
+  EXPECT_EQ(run("plot none.csv -o a.png --title=--color-bar").status, 66) << "with =, a value may begin with dashes";
+  EXPECT_TRUE(contains(run("develop a.exr -o --bits 8").err, "-o needs a value, FILE; --bits follows"));
+}
+
+TEST_F(CliValidation, JsonMessagesIncludeErrorsOfTheCommandLine) {
+  for (const char* words :
+       {"plot a.csv --progress json --size 3", "plot --progress=json", "render --progress json --time= a",
+        "render good.toml -o a.png --progress json --samples 1 --samples 2"}) {
+    const Outcome r = run(words);
+    EXPECT_EQ(r.status, 2) << words;
+    EXPECT_FALSE(nlohmann::json::parse(r.err)["message"].empty()) << r.err;
   }
 }
 

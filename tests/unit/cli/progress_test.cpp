@@ -39,9 +39,14 @@ TEST_F(CliProgress, PrintsALineAtEachWholePercent) {
   EXPECT_EQ(printed(), "0% done\n1% done\n50% done\n99% done\n100% done\n");
 }
 
-TEST_F(CliProgress, AutoPrintsLinesWithoutATerminal) {
-  { ProgressPrinter(ProgressStyle::kAuto, file_, kNever).update({42, 100, 1}); }
-  EXPECT_EQ(printed(), "42% done\n");
+TEST_F(CliProgress, AutoPrintsALineAtEachTenthWithoutATerminal) {
+  {
+    ProgressPrinter printer(ProgressStyle::kAuto, file_, kNever);
+    for (std::uint64_t done = 0; done <= 1000; ++done) printer.update({done, 1000, 1});
+  }
+  std::string lines;
+  for (int percent = 10; percent <= 100; percent += 10) lines += std::to_string(percent) + "% done\n";
+  EXPECT_EQ(printed(), lines);
 }
 
 TEST_F(CliProgress, PreparationIsShownInPlaceOfTheBar) {

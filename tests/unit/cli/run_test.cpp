@@ -109,12 +109,13 @@ TEST_F(CliRun, FullNamesOfCommandsAreAsTyped) {
   EXPECT_EQ(commands_.subcommands()[1].subcommands()[0].full_name(), "orrery generate final");
 }
 
-TEST_F(CliRun, RemovedOptionsNameWhatReplacesThem) {
+TEST_F(CliRun, OptionsThatAreGuessedNameTheRightOnes) {
   std::vector<std::string> settings;
   Command& check = *commands_.add_subcommand("check", "");
   check.add_option("--set", settings, "KEY=VALUE", "");
-  EXPECT_EQ(message({"check", "--seed", "3"}), "--seed was removed; use --set render.seed=N");
-  EXPECT_EQ(message({"generate", "cloud", "--log"}), "unknown option --log") << "it never had it";
+  EXPECT_EQ(message({"check", "--seed", "3"}), "unknown option --seed; use --set render.seed=N");
+  EXPECT_EQ(message({"generate", "cloud", "--log"}), "unknown option --log") << "it has no --set";
+  EXPECT_EQ(message({"render", "--spp", "3"}), "unknown option --spp; use --samples N");
 }
 
 }  // namespace

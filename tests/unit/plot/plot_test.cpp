@@ -866,7 +866,10 @@ TEST_F(PlotPlot, TheBackgroundIsAColorOrTransparent) {
   make();
   EXPECT_EQ(read().background.alpha, 0);
   EXPECT_EQ(color_of("black"), (Vec3d{0, 0, 0}));
-  for (const char* text : {"", "puce", "#ff800", "#ff80000", "#gg0000", "ff8000"})
+  EXPECT_EQ(color_of("#f80"), color_of("#ff8800"));
+  EXPECT_EQ(color_of("Navy"), color_of("#000080"));
+  EXPECT_EQ(color_of("grey"), color_of("gray"));
+  for (const char* text : {"", "puce", "#ff800", "#ff", "#ff80000", "#gg0000", "ff8000"})
     EXPECT_THROW(color_of(text), base::Error) << text;
 }
 
