@@ -47,7 +47,7 @@ class LegendLayout {
   }
 
   void add_bar(const LegendColors& colors) {
-    const ValueScale scale{colors.range->low, colors.range->high, colors.is_log};
+    const points::ValueScale scale(colors.range->low, colors.range->high, colors.is_log);
     const double right = kColorWidth * em_;
     const double height = std::max(1.0, std::min(kBarHeight * em_, style_.height_px - y_ - em_));
     add_frame(right, height);

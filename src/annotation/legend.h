@@ -11,18 +11,10 @@
 
 #include "annotation/drawing.h"
 #include "display/forward.h"
+#include "points/color_map.h"
 #include "scene/scene.h"
 
 namespace orrery::annotation {
-
-/// The values along a colour bar.
-struct ValueScale {
-  double first = 0, last = 1;  ///< finite, in any order
-  bool is_log = false;         ///< equal steps are those of logarithms; both ends are above 0
-
-  /// The position of a value: 0 at `first` to 1 at `last`; 0.5 if both are equal.
-  double share_of(double value) const;
-};
 
 struct Tick {
   double value = 0;
@@ -40,7 +32,7 @@ std::vector<Tick> nice_ticks(double first, double last);
 
 /// Returns the ticks of a scale: nice_ticks(), or on a logarithmic one of at least a decade powers of ten, with their
 /// double and fivefold on less than three decades.
-std::vector<Tick> ticks_of(const ValueScale& scale);
+std::vector<Tick> ticks_of(const points::ValueScale& scale);
 
 /// Orders numbers by value, before other strings.
 struct LabelOrder {

@@ -68,11 +68,11 @@ std::vector<Tick> nice_ticks(double first, double last) {
   return out;
 }
 
-std::vector<Tick> ticks_of(const ValueScale& scale) {
-  const double low = std::min(scale.first, scale.last), high = std::max(scale.first, scale.last);
+std::vector<Tick> ticks_of(const points::ValueScale& scale) {
+  const double low = std::min(scale.first(), scale.last()), high = std::max(scale.first(), scale.last());
   constexpr double kTiny = 1e-9;  // relative; ends may be rounded
-  const double decades = scale.is_log ? std::log10(high / low) : 0;
-  if (!(decades >= 1 - kTiny) || !std::isfinite(decades)) return nice_ticks(scale.first, scale.last);
+  const double decades = scale.is_log() ? std::log10(high / low) : 0;
+  if (!(decades >= 1 - kTiny) || !std::isfinite(decades)) return nice_ticks(scale.first(), scale.last());
   constexpr double kMaxTicks = 8;
   const int step = static_cast<int>(std::ceil(decades / kMaxTicks));
   std::vector<Tick> out;
@@ -86,13 +86,6 @@ std::vector<Tick> ticks_of(const ValueScale& scale) {
     }
   }
   return out;
-}
-
-double ValueScale::share_of(double value) const {
-  if (is_log && first != last) return std::clamp(std::log(value / first) / std::log(last / first), 0.0, 1.0);
-  // Halves: the difference of the ends may not be finite.
-  const double range = last / 2 - first / 2;
-  return range != 0 ? std::clamp((value / 2 - first / 2) / range, 0.0, 1.0) : 0.5;
 }
 
 }  // namespace orrery::annotation

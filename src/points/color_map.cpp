@@ -200,6 +200,20 @@ Vec3d srgb_from_linear(Vec3d linear) {
   return {srgb_from_linear(linear.x), srgb_from_linear(linear.y), srgb_from_linear(linear.z)};
 }
 
+ValueScale::ValueScale(double first, double last, bool is_log)
+    : first_(first),
+      last_(last),
+      is_log_(is_log),
+      from_(is_log ? std::log10(first) : first),
+      to_(is_log ? std::log10(last) : last),
+      unit_(std::isfinite(to_ - from_) ? 1 : 0.5) {}
+
+double ValueScale::share_of(double value) const {
+  if (from_ == to_) return 0.5;
+  const double inside = std::clamp(is_log_ ? std::log10(value) : value, std::min(from_, to_), std::max(from_, to_));
+  return (inside * unit_ - from_ * unit_) / (to_ * unit_ - from_ * unit_);
+}
+
 ColorMap read_color_map(const std::filesystem::path& file) {
   base::require_readable(file);
   data::Faults faults(file);

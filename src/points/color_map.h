@@ -66,6 +66,29 @@ Vec3d srgb_from_linear(Vec3d linear);
 /// Errors     base::Error: kMissingInput, kIo; kBadData with the lines
 ColorMap read_color_map(const std::filesystem::path& file);
 
+/// The values along a colour map.
+class ValueScale {
+ public:
+  /// `is_log`   equal steps are those of logarithms; both ends are above 0
+  /// Domain     finite ends in any order
+  ValueScale(double first, double last, bool is_log = false);
+
+  /// The position of a value: 0 at the first to 1 at the last; 0.5 if both are equal.
+  ///
+  /// Domain     above 0 if the scale is logarithmic; not NaN
+  double share_of(double value) const;
+
+  double first() const { return first_; }
+  double last() const { return last_; }
+  bool is_log() const { return is_log_; }
+
+ private:
+  double first_, last_;
+  bool is_log_;
+  double from_, to_;  ///< the ends, or their logarithms
+  double unit_;       ///< by which these are multiplied, so that their difference is finite
+};
+
 /// A knot of a colour map: index in its published table of 256 entries, and display-referred sRGB.
 struct ColorMapRow {
   std::uint8_t index;

@@ -126,20 +126,16 @@ void color_by_number(const data::Column& column, const Rows& rows, const ColorMa
   points.color_range = color.range ? color.range : range_of(column, rows, color.log);
   if (color.log && points.color_range && !(points.color_range->low > 0))
     return faults.error(".color.range", "must be above 0 with color.log");
-  const auto scaled = [&](double v) { return color.log ? std::log10(v) : v; };
   const scene::Interval range = points.color_range.value_or(scene::Interval{1, 1});
-  const double low = scaled(range.low), high = scaled(range.high);
-  const double unit = std::isfinite(high - low) ? 1 : 0.5;  // halving prevents overflow for the largest range
-  const double span = high * unit - low * unit;
+  const ValueScale scale(range.low, range.high, color.log);
   points.colors.resize(rows.size());
   std::size_t without_log = 0;
   bool has_nan = false;
   for_each_number(column, rows, [&](std::size_t i, double v) {
     if (color.log && v <= 0) ++without_log;
     const bool has_color = color.log ? v > 0 : !std::isnan(v);
-    // A constant column has the colour in the middle.
-    const double t = has_color && span > 0 ? (std::clamp(scaled(v), low, high) * unit - low * unit) / span : 0.5;
-    points.colors[i] = has_color ? static_cast<std::uint16_t>(t * (kMapColors - 1) + 0.5) : kMapColors;
+    points.colors[i] =
+        has_color ? static_cast<std::uint16_t>(scale.share_of(v) * (kMapColors - 1) + 0.5) : std::uint16_t{kMapColors};
     has_nan = has_nan || !has_color;
   });
   points.has_nan_color = has_nan;
