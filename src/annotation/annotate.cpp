@@ -2,6 +2,7 @@
 #include "annotation/annotate.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
@@ -10,6 +11,7 @@
 #include <fmt/core.h>
 
 #include "base/error.h"
+#include "display/color_space.h"
 #include "display/develop.h"
 #include "display/settings.h"
 #include "points/selection.h"
@@ -28,6 +30,9 @@ constexpr std::size_t kMaxLabels = 20;
 /// Width of the texts of a legend, in widths of the image; of a letter, in font sizes; and fewest letters that are
 /// shown.
 constexpr double kLegendWidth = 0.25, kLetterWidth = 0.6, kFewestLetters = 8;
+
+/// Linear Rec.709, of legends and ink.
+constexpr const char* kLegendSpace = "lin_rec709";
 
 /// Luminance below which text is white.
 constexpr double kDark = 0.18;
@@ -118,11 +123,17 @@ std::string title_of(const std::string& title, int frame, std::optional<double> 
   return out;
 }
 
-LegendColors legend_of(const scene::Scene& scene, const std::vector<std::vector<Vec3d>>& palettes) {
-  for (std::size_t i = 0; i < scene.points.size(); ++i) {
+LegendColors legend_of(const scene::Scene& scene, const std::string& ocio) {
+  for (const scene::Points& points : scene.points) {
+    std::vector<std::array<double, 3>> values;
+    for (const Vec3d& color : points.palette) values.push_back({color.x, color.y, color.z});
+    if (scene.color.working_space() != kLegendSpace)
+      display::convert_colors(ocio, scene.color.working_space(), kLegendSpace, values);
+    std::vector<Vec3d> palette;
+    for (const auto& [r, g, b] : values) palette.push_back({r, g, b});
     LegendColors out;
-    out.add(scene.points[i], palettes[i]);
-    out.range = scene.points[i].color_range;
+    out.add(points, palette);
+    out.range = points.color_range;
     if (!out.is_empty()) return out;
   }
   return {};
@@ -177,7 +188,7 @@ std::string missing_glyphs(const Drawing& drawing) {
 }
 
 std::function<Vec3d(const Vec3d&)> shown_by(display::Settings display) {
-  display.working_space = "lin_rec709";
+  display.working_space = kLegendSpace;
   return [developer = std::make_shared<display::PixelDeveloper>(display)](const Vec3d& color) {
     float rgb[] = {static_cast<float>(color.x), static_cast<float>(color.y), static_cast<float>(color.z)};
     std::uint8_t codes[3];

@@ -35,8 +35,8 @@ std::string title_of(const std::string& title, int frame, std::optional<double> 
 
 /// The colours of a scene's first coloured points table; empty if there is no such table.
 ///
-/// `palettes` those of the points tables, one for each, linear Rec.709
-LegendColors legend_of(const scene::Scene& scene, const std::vector<std::vector<Vec3d>>& palettes);
+/// `ocio`     OCIO config, which defines the working space of the palettes
+LegendColors legend_of(const scene::Scene& scene, const std::string& ocio);
 
 /// Lays out the annotation of a scene at a frame.
 ///

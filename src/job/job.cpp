@@ -132,7 +132,7 @@ class Run {
     for (const auto& manifest : manifest_files(layers_.mattes, job_.outputs)) base::check_creatable(manifest);
     provenance_ = provenance_of(job_, loaded().read, compiled(), prepared_->hashes(), layers_);
     annotation::LegendColors legend;
-    if (scene().annotation.color_bar) legend = annotation::legend_of(scene(), loaded().palettes);
+    if (scene().annotation.color_bar) legend = annotation::legend_of(scene(), loaded().display.config);
     drawing_ = annotation::drawing_of(scene(), legend, annotated_view());
     if (const std::string missing = annotation::missing_glyphs(drawing_); !missing.empty())
       warn(base::file_diagnostic(

@@ -32,10 +32,7 @@ class AnnotationAnnotate : public testing::Test {
     view.height = 320;
     view.project = [](const Vec3d& at) { return std::pair{at.x, at.y}; };
   }
-  Drawing drawing() {
-    palettes.resize(scene.points.size());
-    return drawing_of(scene, legend_of(scene, palettes), view);
-  }
+  Drawing drawing() { return drawing_of(scene, legend_of(scene, ""), view); }
   /// The line with a text.
   image::TextLine line(const std::string& text) {
     const Drawing all = drawing();
@@ -47,7 +44,6 @@ class AnnotationAnnotate : public testing::Test {
   }
 
   scene::Scene scene;
-  std::vector<std::vector<Vec3d>> palettes;
   View view;
 };
 
@@ -71,7 +67,7 @@ TEST_F(AnnotationAnnotate, LongTitlesEndBesideTheColorBar) {
   scene.points.resize(1);
   scene.points[0].color.column = "speed";
   scene.points[0].color_range = scene::Interval{0, 12};
-  palettes = {{{0, 0, 0}, {1, 1, 1}}};
+  scene.points[0].palette = {{0, 0, 0}, {1, 1, 1}};
   for (const auto& [width, height] : {std::pair{1920, 1080}, {200, 120}}) {
     view.width = width;
     view.height = height;
@@ -116,7 +112,7 @@ TEST_F(AnnotationAnnotate, ColorBarsHaveTicks) {
   scene.points.resize(2);
   scene.points[1].color.column = "speed";
   scene.points[1].color_range = scene::Interval{0, 12};
-  palettes = {{}, {{0, 0, 0}, {1, 1, 1}, {0.5, 0.5, 0.5}}};
+  scene.points[1].palette = {{0, 0, 0}, {1, 1, 1}, {0.5, 0.5, 0.5}};
   EXPECT_LT(line("12").y, line("6").y) << "the largest at the top";
   EXPECT_NEAR(line("12").y - line("6").y, line("6").y - line("0").y, 1e-9);
   EXPECT_LT(line("speed").y, line("12").y);
@@ -129,10 +125,9 @@ TEST_F(AnnotationAnnotate, CategoriesHavePatches) {
   scene.annotation.color_bar = true;
   scene.points.resize(1);
   scene.points[0].color.column = "type";
-  palettes.resize(1);
   for (int i = 1; i <= 30; ++i) {
     scene.points[0].color_names.push_back(std::to_string(i));
-    palettes[0].push_back({i / 30.0, 0, 0});
+    scene.points[0].palette.push_back({i / 30.0, 0, 0});
   }
   EXPECT_EQ(drawing().boxes.size(), 2 * 18u) << "patches and their frames";
   EXPECT_LT(line("1").y, line("18").y);
@@ -143,12 +138,27 @@ TEST_F(AnnotationAnnotate, CategoriesHavePatches) {
   line("a name l…");
 }
 
+/// Palettes are in the working space: whatever it is, a legend has the colours of the spheres.
+TEST_F(AnnotationAnnotate, LegendsHaveTheColorsOfTheSpheresInAnyWorkingSpace) {
+  scene.points.resize(1);
+  scene.points[0].color.column = "type";
+  scene.points[0].color_names = {"1"};
+  scene.color.space = "acescg";
+  scene.points[0].palette = {{0.61309741, 0.07019372, 0.02061559}};  // red of Rec.709
+  const Vec3d red = legend_of(scene, "").labels.at("1");
+  EXPECT_NEAR(red.x, 1, 1e-4);
+  EXPECT_NEAR(red.y, 0, 1e-4);
+  EXPECT_NEAR(red.z, 0, 1e-4);
+  scene.color.working = "lin_rec709";
+  EXPECT_EQ(legend_of(scene, "").labels.at("1"), scene.points[0].palette[0]);
+}
+
 TEST_F(AnnotationAnnotate, ValuesWithoutAColorAreInTheLegend) {
   scene.annotation.color_bar = true;
   scene.points.resize(1);
   scene.points[0].color.column = "v";
   scene.points[0].color_range = {1, 2};
-  palettes = {{{0, 0, 0}, {1, 1, 1}, {0.5, 0.5, 0.5}}};
+  scene.points[0].palette = {{0, 0, 0}, {1, 1, 1}, {0.5, 0.5, 0.5}};
   const std::size_t texts = drawing().texts.size();
   scene.points[0].has_nan_color = true;  // the spheres are released by now
   EXPECT_EQ(drawing().texts.size(), texts + 1);
