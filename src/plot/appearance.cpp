@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
+#include "plot/appearance.h"
+
 #include <array>
 #include <cstddef>
 #include <cstdint>
@@ -13,12 +15,17 @@
 #include "plot/range.h"
 #include "points/bonds.h"
 #include "points/color_map.h"
+#include "points/sources.h"
 #include "scene/value_text.h"
 
 namespace orrery::plot {
 namespace {
 
 using scene::number_text;
+
+/// Colour map of numbers, and of categories.
+constexpr const char* kMap = "fast";
+constexpr const char* kCategoricalMap = "tab10";
 
 /// Atoms from which colours by element are noise, and chains are shown instead.
 constexpr std::uint64_t kManyAtoms = 5000;
@@ -30,6 +37,14 @@ constexpr double kBallFraction = 0.5, kStickFraction = 0.3, kStickRadius = 0.2;
 /// Length of arrows and radius of their shafts, in distances to the nearest neighbour; radius of spheres with arrows,
 /// as a fraction of that without.
 constexpr double kArrowLength = 1.2, kShaftRadius = 0.07, kArrowSphereFraction = 0.25;
+
+/// Whether a column numbers groups of particles, so that close numbers mean nothing, by its name.
+bool is_group(const std::string& column, const data::Roles& roles) {
+  const std::string name = base::lower(column);
+  return name != base::lower(roles.id) &&
+         (name.ends_with("_id") ||
+          base::contains({"mol", "molecule", "molid", "cluster", "grain", "body", "group"}, name));
+}
 
 /// Makes the choices, one after another.
 class Appearance {
@@ -206,6 +221,33 @@ class Appearance {
 };
 
 }  // namespace
+
+bool set_color(const DataOptions& options, const std::string& color_by, const data::FrameInfo& info,
+               scene::PointsColor& color) {
+  const data::Roles& roles = info.roles;
+  const bool is_type = color_by == "type", has_range = options.range.is_set || options.points.color.range;
+  if (color_by == "rgb" && data::find_named(info.columns, "rgb") == nullptr)
+    color.rgb = true;
+  else if (color_by == "element" && !options.has_map)
+    color.element = "jmol";
+  else if (color_by != "none")
+    color.column = is_type && !roles.type.empty()                    ? roles.type
+                   : color_by == "element" && !roles.element.empty() ? roles.element
+                                                                     : color_by;
+  if (color.column.empty() && (options.has_map || has_range))
+    base::refuse(std::string(options.has_map ? "--map" : "--range") +
+                 " has nothing to map: the colours are not those of a column; add --color-by COLUMN");
+  const bool is_chosen = !color.column.empty() && !options.has_map;
+  if (is_chosen)
+    color.map = is_type || (is_group(color.column, info.roles) && !has_range) ||
+                        points::type_of(info, color.column) == data::ColumnType::kText
+                    ? kCategoricalMap
+                    : kMap;
+  const auto map = points::find_color_map(color.map);
+  if (has_range && map && map->is_categorical)
+    base::refuse(fmt::format("--range has no effect: the map {} has a colour for each value", color.map));
+  return is_chosen;
+}
 
 std::vector<std::string> choose_appearance(const PlotOptions& options, const DataFrames& data,
                                            scene::PointsKeys& points) {

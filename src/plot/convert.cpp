@@ -16,6 +16,7 @@
 #include "base/frames.h"
 #include "base/text.h"
 #include "data/write_table.h"
+#include "plot/appearance.h"
 #include "plot/data_frames.h"
 #include "plot/view.h"
 #include "points/color_map.h"

@@ -9,8 +9,6 @@
 
 #include "base/error.h"
 #include "base/frames.h"
-#include "base/text.h"
-#include "points/color_map.h"
 #include "points/rows.h"
 #include "points/sources.h"
 #include "points/spacing.h"
@@ -20,20 +18,8 @@ namespace orrery::plot {
 
 namespace {
 
-/// Colour map of numbers, and of categories.
-constexpr const char* kMap = "fast";
-constexpr const char* kCategoricalMap = "tab10";
-
 /// Frames of larger files are not counted for a message: that would read the whole file.
 constexpr std::uintmax_t kMaxCountedBytes = std::uintmax_t{2} << 30;
-
-/// Whether a column numbers groups of particles, so that close numbers mean nothing, by its name.
-bool is_group(const std::string& column, const data::Roles& roles) {
-  const std::string name = base::lower(column);
-  return name != base::lower(roles.id) &&
-         (name.ends_with("_id") ||
-          base::contains({"mol", "molecule", "molid", "cluster", "grain", "body", "group"}, name));
-}
 
 /// Keys that read all particles, whatever is selected.
 scene::PointsKeys everything(const scene::PointsKeys& keys) {
@@ -193,33 +179,6 @@ std::string all_of(const std::vector<std::string>& conditions) {
     out += fmt::format("{}({})", out.empty() ? "" : " && ", condition);
   }
   return out;
-}
-
-bool set_color(const DataOptions& options, const std::string& color_by, const data::FrameInfo& info,
-               scene::PointsColor& color) {
-  const data::Roles& roles = info.roles;
-  const bool is_type = color_by == "type", has_range = options.range.is_set || options.points.color.range;
-  if (color_by == "rgb" && data::find_named(info.columns, "rgb") == nullptr)
-    color.rgb = true;
-  else if (color_by == "element" && !options.has_map)
-    color.element = "jmol";
-  else if (color_by != "none")
-    color.column = is_type && !roles.type.empty()                    ? roles.type
-                   : color_by == "element" && !roles.element.empty() ? roles.element
-                                                                     : color_by;
-  if (color.column.empty() && (options.has_map || has_range))
-    base::refuse(std::string(options.has_map ? "--map" : "--range") +
-                 " has nothing to map: the colours are not those of a column; add --color-by COLUMN");
-  const bool is_chosen = !color.column.empty() && !options.has_map;
-  if (is_chosen)
-    color.map =
-        is_type || is_group(color.column, info.roles) || points::type_of(info, color.column) == data::ColumnType::kText
-            ? kCategoricalMap
-            : kMap;
-  const auto map = points::find_color_map(color.map);
-  if (has_range && map && map->is_categorical)
-    base::refuse(fmt::format("--range has no effect: the map {} has a colour for each value", color.map));
-  return is_chosen;
 }
 
 }  // namespace orrery::plot

@@ -113,27 +113,9 @@ class DataFrames {
   std::vector<int> numbers_;
 };
 
-struct PlotOptions;
-
-/// Chooses radius, bonds, arrows and colours of a plot where the user has not.
-///
-/// `data`     that the plot shows
-/// `points`   in: the keys that the user has set; out: all of them
-/// Result     the choices and their reasons, as they are printed
-/// Errors     base::Error(kUsage) for options that exclude each other; those of DataFrames::load()
-std::vector<std::string> choose_appearance(const PlotOptions& options, const DataFrames& data,
-                                           scene::PointsKeys& points);
-
 /// Returns the condition that all conditions are met; empty if there are none.
 ///
 /// Errors     base::Error(kBadData) if one of several is not closed
 std::string all_of(const std::vector<std::string>& conditions);
-
-/// Sets the colour keys that `color_by` selects, with the names of DataOptions::color_by.
-///
-/// Result     true if the user chose no colour map, so that this function chose one
-/// Errors     base::Error(kUsage) if the user set a map or a range that would have no effect
-bool set_color(const DataOptions& options, const std::string& color_by, const data::FrameInfo& info,
-               scene::PointsColor& color);
 
 }  // namespace orrery::plot

@@ -15,6 +15,7 @@
 #include "display/settings.h"
 #include "load/load_images.h"
 #include "load/write_scene.h"
+#include "plot/appearance.h"
 #include "plot/data_frames.h"
 #include "plot/range.h"
 #include "plot/scene_text.h"

@@ -87,8 +87,8 @@ class PlotPlot : public testing::Test {
   void expect_spheres_beside_annotation() {
     const scene::Scene scene = read();
     const annotation::View view{640, 360, 1, folder_.path(), {}};
-    const std::vector<annotation::Box> boxes = annotation::covered_by(
-        annotation::drawing_of(scene, annotation::legend_of(scene, ""), view));
+    const std::vector<annotation::Box> boxes =
+        annotation::covered_by(annotation::drawing_of(scene, annotation::legend_of(scene, ""), view));
     ASSERT_GT(boxes.size(), 10u);
     const double scale = 640 / *scene.camera.width;
     for (const Vec3d& center : scene.points[0].centers) {

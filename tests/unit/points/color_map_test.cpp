@@ -50,7 +50,9 @@ TEST(PointsColorMap, MapsAreFoundInReverse) {
     EXPECT_EQ(reversed->name, name + "_r");
     EXPECT_EQ(srgb_at(*reversed, 0), srgb_at(map, 1)) << name;
     EXPECT_EQ(srgb_at(*reversed, 1), srgb_at(map, 0)) << name;
-    if (!map.is_categorical) EXPECT_LT(difference(srgb_at(*reversed, 0.3), srgb_at(map, 0.7)), 1e-9) << name;
+    if (!map.is_categorical) {
+      EXPECT_LT(difference(srgb_at(*reversed, 0.3), srgb_at(map, 0.7)), 1e-9) << name;
+    }
   }
   EXPECT_EQ(find_color_map("jet_r"), nullptr);
 }
