@@ -66,8 +66,15 @@ case "${1:-}" in
 esac
 
 install_missing "$root/tools/packages-build.txt"
-# An existing configuration, for example that of test.sh, is kept.
-if [ ! -f "$root/build/.configured-with" ]; then configure -DBUILD_TESTING=OFF; fi
+# An existing configuration, for example that of test.sh, is kept. For this machine alone, one instruction set is compiled
+# instead of three; what is installed may be copied to others.
+if [ -n "$prefix" ]; then
+  if ! grep -qs -- -DORRERY_ISAS=all "$root/build/.configured-with"; then
+    configure -DBUILD_TESTING=OFF -DORRERY_ISAS=all
+  fi
+elif [ ! -f "$root/build/.configured-with" ]; then
+  configure -DBUILD_TESTING=OFF -DORRERY_ISAS=native
+fi
 build 9 orrery
 
 if [ -n "$prefix" ]; then

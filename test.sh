@@ -20,7 +20,7 @@ install_missing "$root/tools/packages-build.txt" "$root/tools/packages-debian.tx
 # Other systems may lack what the Python package needs.
 python=ON
 command -v dpkg-query >/dev/null || python=OFF
-configure -DBUILD_TESTING=ON "-DORRERY_BENCH=${ORRERY_BENCH:-ON}" "-DORRERY_PYTHON=$python"
+configure -DBUILD_TESTING=ON -DORRERY_ISAS=all "-DORRERY_BENCH=${ORRERY_BENCH:-ON}" "-DORRERY_PYTHON=$python"
 build 20 all
 
 if [ $# -eq 0 ]; then set -- -LE slow; fi

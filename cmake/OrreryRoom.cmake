@@ -55,11 +55,53 @@ function(orrery_room name)
   set_target_properties(${target} PROPERTIES EXPORT_NAME ${name} ORRERY_DEPENDS "${ROOM_DEPENDS}")
 endfunction()
 
+# orrery_instances(<room> <source> [<definition>...])
+#
+# Compiles a source of a room once for each of ORRERY_TARGETS, and for each definition if there are any. Its functions are
+# in the namespaces of Highway's targets; ORRERY_DECLARE_INSTANCES (src/math/dispatch.h) declares them for the sources of
+# the room that choose among them. More instruction sets do not recompile what is there. Function clones for constant
+# arguments gain nothing here and take time to compile.
+function(orrery_instances room source)
+  set(target orrery_${room})
+  get_target_property(sources ${target} SOURCES)
+  list(REMOVE_ITEM sources ${CMAKE_CURRENT_SOURCE_DIR}/${room}/${source})
+  set_property(TARGET ${target} PROPERTY SOURCES ${sources})
+  set(definitions ${ARGN})
+  if(NOT definitions)
+    set(definitions none)
+  endif()
+  cmake_path(GET source STEM name)
+  foreach(isa IN LISTS ORRERY_TARGETS)
+    foreach(definition IN LISTS definitions)
+      string(TOLOWER ${target}_${name}_${isa}_${definition} objects)
+      string(REPLACE "_none" "" objects ${objects})
+      add_library(${objects} OBJECT ${room}/${source})
+      set_target_properties(${objects} PROPERTIES UNITY_BUILD OFF)
+      target_link_libraries(${objects} PRIVATE $<TARGET_PROPERTY:${target},LINK_LIBRARIES>)
+      target_include_directories(${objects} PRIVATE ${CMAKE_CURRENT_SOURCE_DIR})
+      target_compile_features(${objects} PRIVATE cxx_std_20)
+      target_compile_options(${objects} PRIVATE ${ORRERY_WARNINGS} ${ORRERY_ARITHMETIC} ${ORRERY_SIMD}
+                             $<$<CXX_COMPILER_ID:GNU>:-fno-ipa-cp-clone>)
+      target_compile_definitions(${objects} PRIVATE HWY_COMPILE_ONLY_STATIC $<$<NOT:$<STREQUAL:${definition},none>>:ORRERY_${definition}>)
+      if(NOT isa STREQUAL "STATIC")
+        target_compile_definitions(${objects} PRIVATE HWY_BASELINE_TARGETS=HWY_${isa})
+      endif()
+      target_sources(${target} PRIVATE $<TARGET_OBJECTS:${objects}>)
+    endforeach()
+  endforeach()
+endfunction()
+
+# orrery_choose_instances(<room> <source>): the source of a room that chooses among the instances.
+function(orrery_choose_instances room source)
+  list(TRANSFORM ORRERY_TARGETS PREPEND ORRERY_ OUTPUT_VARIABLE definitions)
+  set_source_files_properties(${room}/${source} PROPERTIES COMPILE_DEFINITIONS "${definitions}")
+endfunction()
+
 # The compiler must not fuse operations: the source has explicit fused operations where they are wanted.
 set(ORRERY_ARITHMETIC -ffp-contract=off)
 
-# Minimum CPU requirements: rooms with Highway code start from this instruction set and dispatch to better ones at run
-# time. Later AVX-512 targets are disabled: they do not speed up this code, and each would cost one more compilation.
+# Minimum CPU requirements: rooms with Highway code start from this instruction set. Later AVX-512 targets are disabled: they
+# do not speed up this code.
 set(ORRERY_SIMD "")
 if(CMAKE_SYSTEM_PROCESSOR MATCHES "x86_64|AMD64")
   set(ORRERY_SIMD -march=x86-64-v2 -maes -mpclmul)
@@ -68,6 +110,35 @@ if(CMAKE_SYSTEM_PROCESSOR MATCHES "x86_64|AMD64")
   else()
     list(APPEND ORRERY_SIMD "-DHWY_DISABLED_TARGETS=(HWY_AVX3_DL|HWY_AVX3_ZEN4|HWY_AVX3_SPR)")
   endif()
+endif()
+
+# ORRERY_ISAS: the instruction sets of the path loop and of traversal, of which the program uses the best that the processor
+# has: `all`, `native` (the best of this machine, a third of the compilation), or some of avx512, avx2 and sse4.
+# ORRERY_TARGETS: their names in Highway, best first; STATIC on other processors than x86-64.
+set(ORRERY_ISAS all CACHE STRING "Instruction sets to compile for: all, native, or a list of avx512, avx2, sse4")
+set(isa_names avx512 avx2 sse4)
+set(all_targets AVX3 AVX2 SSE4)
+set(ORRERY_TARGETS ${all_targets})
+set(isas "${ORRERY_ISAS}")
+if(NOT ORRERY_SIMD)
+  set(ORRERY_TARGETS STATIC)
+elseif(NOT isas STREQUAL "all")
+  if(isas STREQUAL "native")
+    file(STRINGS /proc/cpuinfo flags REGEX "^flags" LIMIT_COUNT 1)
+    set(isas sse4)
+    if(flags MATCHES " avx2 " AND flags MATCHES " fma " AND flags MATCHES " bmi2 " AND flags MATCHES " f16c ")
+      set(isas avx2)
+      if(flags MATCHES " avx512bw " AND flags MATCHES " avx512dq " AND flags MATCHES " avx512vl ")
+        set(isas avx512)
+      endif()
+    endif()
+  endif()
+  set(ORRERY_TARGETS)
+  foreach(name target IN ZIP_LISTS isa_names all_targets)
+    if(name IN_LIST isas)
+      list(APPEND ORRERY_TARGETS ${target})
+    endif()
+  endforeach()
 endif()
 
 set(ORRERY_WARNINGS -Wall -Wextra -Wpedantic -Wshadow -Wconversion)

@@ -57,6 +57,7 @@ Install them as root (apt-get install --no-install-recommends $missing) or insta
 }
 
 # configure OPTION...: configures build/ with these CMake options, unless it is already configured with the same ones.
+# Another set of instruction sets (ORRERY_ISAS) keeps the objects that are there.
 # Unity builds halve the time to compile everything. ORRERY_UNITY=OFF builds as developers and distributions do.
 configure() {
   local stamp="$root/build/.configured-with"

@@ -1,22 +1,16 @@
 // SPDX-License-Identifier: Apache-2.0
-// Queries of packets by Embree, and its callbacks. Compiled once per instruction set.
+// Queries of packets by Embree, and its callbacks.
 //
 // Closest hits and occlusion are the same functions: a packet's type says which of the two it is traced for.
+#include <hwy/highway.h>
+
 #include <algorithm>
 #include <ctime>
 #include <type_traits>
 
 #include "accel/embree_scene.h"
-
-#undef HWY_TARGET_INCLUDE
-#define HWY_TARGET_INCLUDE "accel/embree_trace.cpp"
-#include <hwy/foreach_target.h>  // IWYU pragma: keep
-// After foreach_target:
-#include <hwy/highway.h>
-
 #include "accel/packet_traversal-inl.h"
 #include "accel/ray_traversal-inl.h"
-#include "math/dispatch.h"
 
 HWY_BEFORE_NAMESPACE();
 namespace orrery::accel::HWY_NAMESPACE {
@@ -256,20 +250,10 @@ EmbreeFunctions instance() {
   return f;
 }
 
-EmbreeFunctions functions(kernel::Precision precision) {
+EmbreeFunctions embree_functions(kernel::Precision precision) {
   using enum kernel::Precision;
   return precision == kFast ? instance<kFast>() : instance<kExact>();
 }
 
 }  // namespace orrery::accel::HWY_NAMESPACE
 HWY_AFTER_NAMESPACE();
-
-#if HWY_ONCE
-namespace orrery::accel {
-
-HWY_EXPORT(functions);
-
-EmbreeFunctions embree_functions(kernel::Precision precision) { return ORRERY_BEST(functions)(precision); }
-
-}  // namespace orrery::accel
-#endif

@@ -29,6 +29,24 @@ void block_snapshots() {
 /// strings. Without effect before glibc 2.35 and where the system denies them.
 void use_huge_pages() { setenv("GLIBC_TUNABLES", "glibc.malloc.hugetlb=1", 0); }
 
+/// Returns what this processor lacks of the least instruction set that the program is compiled for, or null.
+const char* missing_instruction_set() {
+#ifdef __x86_64__
+  __builtin_cpu_init();
+#ifdef ORRERY_SSE4
+  if (!__builtin_cpu_supports("sse4.2") || !__builtin_cpu_supports("aes") || !__builtin_cpu_supports("pclmul"))
+    return "SSE4.2, AES and PCLMUL";
+#elif defined(ORRERY_AVX2)
+  if (!__builtin_cpu_supports("avx2") || !__builtin_cpu_supports("fma") || !__builtin_cpu_supports("bmi2"))
+    return "AVX2";
+#else
+  if (!__builtin_cpu_supports("avx512bw") || !__builtin_cpu_supports("avx512dq") || !__builtin_cpu_supports("avx512vl"))
+    return "AVX-512";
+#endif
+#endif
+  return nullptr;
+}
+
 /// Result     false if the launcher's own path is unknown or too long
 bool find_program(char (&path)[PATH_MAX]) {
   const ssize_t size = readlink("/proc/self/exe", path, sizeof(path) - 1);
@@ -47,6 +65,13 @@ bool find_program(char (&path)[PATH_MAX]) {
 int main(int, char** argv) {
   orrery::cli::block_snapshots();
   orrery::cli::use_huge_pages();
+  if (const char* const missing = orrery::cli::missing_instruction_set()) {
+    std::fprintf(stderr, "orrery: error: this processor lacks %s, for which this program was compiled\n", missing);
+#ifndef ORRERY_SSE4
+    std::fputs("Build it on this machine, or for all processors: cmake -DORRERY_ISAS=all\n", stderr);
+#endif
+    return 70;
+  }
   char path[PATH_MAX];
   if (orrery::cli::find_program(path)) execv(path, argv);
   std::perror("orrery: cannot start the program, which is installed as " ORRERY_PROGRAM_FROM_LAUNCHER);

@@ -1,16 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
-// Compiled once per instruction set.
 #include "denoise/tile_filter.h"
+
+#include <hwy/highway.h>
 
 #include <cstddef>
 
-#undef HWY_TARGET_INCLUDE
-#define HWY_TARGET_INCLUDE "denoise/tile_filter.cpp"
-#include <hwy/foreach_target.h>  // IWYU pragma: keep
-// After foreach_target:
-#include <hwy/highway.h>
-
-#include "math/dispatch.h"
 #include "math/lanes-inl.h"
 
 HWY_BEFORE_NAMESPACE();
@@ -230,7 +224,7 @@ HWY_INLINE void regress(const WeightSource& source, int x, int y, std::size_t at
 
 }  // namespace
 
-void compute_tile_weights(const WeightSource& source, int x, int y, TileScratch& scratch, TileWeights& out) {
+void compute_weights(const WeightSource& source, int x, int y, TileScratch& scratch, TileWeights& out) {
   out.resize(static_cast<std::size_t>((2 * source.radius + 1) * (2 * source.radius + 1)));
   scratch.distances.resize(kDistanceStride * kHaloHeight);
   scratch.columns.resize(kDistanceStride);
@@ -252,8 +246,7 @@ void compute_tile_weights(const WeightSource& source, int x, int y, TileScratch&
   }
 }
 
-void apply_tile_weights(const TileWeights& weights, int radius, const PaddedPlane& plane, int x, int y,
-                        TilePixels& out) {
+void apply_weights(const TileWeights& weights, int radius, const PaddedPlane& plane, int x, int y, TilePixels& out) {
   const D d;
   for (int row = 0; row < kTileHeight; ++row) {
     for (int column = 0; column < kTileWidth; column += static_cast<int>(hn::Lanes(d))) {
@@ -270,20 +263,3 @@ void apply_tile_weights(const TileWeights& weights, int radius, const PaddedPlan
 
 }  // namespace orrery::denoise::HWY_NAMESPACE
 HWY_AFTER_NAMESPACE();
-
-#if HWY_ONCE
-namespace orrery::denoise {
-
-HWY_EXPORT(compute_tile_weights);
-HWY_EXPORT(apply_tile_weights);
-
-void compute_weights(const WeightSource& source, int x, int y, TileScratch& scratch, TileWeights& out) {
-  ORRERY_BEST(compute_tile_weights)(source, x, y, scratch, out);
-}
-
-void apply_weights(const TileWeights& weights, int radius, const PaddedPlane& plane, int x, int y, TilePixels& out) {
-  ORRERY_BEST(apply_tile_weights)(weights, radius, plane, x, y, out);
-}
-
-}  // namespace orrery::denoise
-#endif

@@ -128,8 +128,10 @@ int thread_count(int requested) { return requested > 0 ? requested : default_thr
 void choose_isa() {
   const char* const isa = std::getenv("ORRERY_ISA");
   if (!kernel::limit_isa(isa != nullptr ? isa : ""))
-    base::refuse(fmt::format("$ORRERY_ISA: instruction set {} is not available; this processor and program have {}",
-                             isa, base::joined(kernel::available_isas())));
+    base::refuse(
+        fmt::format("$ORRERY_ISA: instruction set {} is not available; this processor and program have {} (a "
+                    "build with -DORRERY_ISAS=all has all)",
+                    isa, base::joined(kernel::available_isas())));
 }
 
 MemoryEstimate estimate_memory(const compile::CompiledScene& compiled, const film::LayerRequest& layers,

@@ -1,27 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "kernel/isa.h"
 
-#undef HWY_TARGET_INCLUDE
-#define HWY_TARGET_INCLUDE "kernel/isa.cpp"
-#include <hwy/foreach_target.h>  // IWYU pragma: keep
-// After foreach_target:
 #include <hwy/highway.h>
 
 #include "math/dispatch.h"
 
-HWY_BEFORE_NAMESPACE();
-namespace orrery::kernel::HWY_NAMESPACE {
-
-std::int64_t compiled_target() { return HWY_TARGET; }
-
-}  // namespace orrery::kernel::HWY_NAMESPACE
-HWY_AFTER_NAMESPACE();
-
-#if HWY_ONCE
 namespace orrery::kernel {
 namespace {
-
-HWY_EXPORT(compiled_target);
 
 struct Isa {
   const char* name;
@@ -38,7 +23,10 @@ std::string isa_name(std::int64_t target) {
   return hwy::TargetName(target);
 }
 
-std::string isa_name() { return isa_name(ORRERY_BEST(compiled_target)()); }
+std::string isa_name() {
+  const std::int64_t enabled = math::target_choice().enabled();
+  return isa_name(enabled & -enabled);  // Highway gives better targets lower bits
+}
 
 std::vector<std::string> available_isas() {
   std::vector<std::string> names;
@@ -56,7 +44,7 @@ bool limit_isa(std::string_view name) {
   for (const Isa& isa : kIsas) {
     if (isa.name != name) continue;
     if ((choice.available() & isa.target) == 0) return false;
-    choice.limit(~(isa.target - 1));  // Highway gives better targets lower bits
+    choice.limit(~(isa.target - 1));
     return true;
   }
   return false;
@@ -67,4 +55,3 @@ std::string highway_version() {
 }
 
 }  // namespace orrery::kernel
-#endif

@@ -58,10 +58,4 @@ using RenderTile = TileCounts (*)(const SceneView& scene, const Tracer& tracer, 
 ///            instruction set with fused multiply-add
 RenderTile render_tile_function(const Features& features, Precision precision, bool records);
 
-// The instances. Each precision is compiled separately, because they take most of the time to compile this room.
-RenderTile exact_tile_function(bool full);
-RenderTile fast_tile_function(bool full);
-/// One lane, since Precision::kBook is for comparison with the book.
-RenderTile book_tile_function();
-
 }  // namespace orrery::kernel

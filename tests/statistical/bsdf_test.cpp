@@ -16,7 +16,7 @@
 #include <hwy/highway.h>
 
 #include "kernel/scatter-inl.h"
-#include "math/dispatch.h"
+#include "support/best.h"
 #include "support/chi_square.h"
 
 namespace orrery::test {

@@ -24,8 +24,8 @@
 #include "kernel/environment-inl.h"
 #include "kernel/isa.h"
 #include "kernel/sampler-inl.h"
-#include "math/dispatch.h"
 #include "scene/lat_long_map.h"
+#include "support/best.h"
 #include "support/chi_square.h"
 
 namespace orrery::test {

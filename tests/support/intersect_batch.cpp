@@ -8,7 +8,7 @@
 #include <hwy/highway.h>
 
 #include "kernel/intersect-inl.h"
-#include "math/dispatch.h"
+#include "support/best.h"
 
 HWY_BEFORE_NAMESPACE();
 namespace orrery::test::HWY_NAMESPACE {

@@ -8,7 +8,7 @@
 #include <hwy/highway.h>
 
 #include "kernel/light-inl.h"
-#include "math/dispatch.h"
+#include "support/best.h"
 #include "support/first_lane-inl.h"
 
 HWY_BEFORE_NAMESPACE();

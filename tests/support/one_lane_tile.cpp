@@ -6,7 +6,7 @@
 #include <hwy/highway.h>
 
 #include "kernel/render_tile-inl.h"
-#include "math/dispatch.h"
+#include "support/best.h"
 #include "support/tile_functions.h"
 
 HWY_BEFORE_NAMESPACE();

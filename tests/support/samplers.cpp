@@ -9,7 +9,7 @@
 
 #include "kernel/intersect-inl.h"
 #include "kernel/scatter-inl.h"
-#include "math/dispatch.h"
+#include "support/best.h"
 
 HWY_BEFORE_NAMESPACE();
 namespace orrery::test::HWY_NAMESPACE {

@@ -12,7 +12,7 @@
 #include <hwy/highway.h>
 
 #include "kernel/camera-inl.h"
-#include "math/dispatch.h"
+#include "support/best.h"
 #include "support/first_lane-inl.h"
 
 namespace orrery::kernel {

@@ -13,7 +13,7 @@
 #include <hwy/highway.h>
 
 #include "kernel/cone-inl.h"
-#include "math/dispatch.h"
+#include "support/best.h"
 #include "support/first_lane-inl.h"
 
 namespace orrery::kernel {

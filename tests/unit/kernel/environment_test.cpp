@@ -18,7 +18,7 @@
 #include <hwy/highway.h>
 
 #include "kernel/environment-inl.h"
-#include "math/dispatch.h"
+#include "support/best.h"
 
 namespace orrery::kernel {
 #ifndef ORRERY_UNIT_KERNEL_ENVIRONMENT_TEST_CASE_

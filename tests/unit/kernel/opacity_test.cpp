@@ -17,7 +17,7 @@
 #include <hwy/highway.h>
 
 #include "kernel/opacity-inl.h"
-#include "math/dispatch.h"
+#include "support/best.h"
 
 HWY_BEFORE_NAMESPACE();
 namespace orrery::kernel::HWY_NAMESPACE {

@@ -16,7 +16,7 @@
 #include <hwy/highway.h>
 
 #include "kernel/sampler-inl.h"
-#include "math/dispatch.h"
+#include "support/best.h"
 
 HWY_BEFORE_NAMESPACE();
 namespace orrery::kernel::HWY_NAMESPACE {

@@ -18,7 +18,7 @@
 #include <hwy/highway.h>
 
 #include "kernel/texture-inl.h"
-#include "math/dispatch.h"
+#include "support/best.h"
 
 namespace orrery::kernel {
 #ifndef ORRERY_UNIT_KERNEL_TEXTURE_LEVELS_TEST_CASE_

@@ -19,7 +19,7 @@
 
 #include "kernel/isa.h"
 #include "kernel/texture-inl.h"
-#include "math/dispatch.h"
+#include "support/best.h"
 #include "support/quad_real.h"
 
 namespace orrery::kernel {

@@ -14,8 +14,8 @@
 // After foreach_target:
 #include <hwy/highway.h>
 
-#include "math/dispatch.h"
 #include "math/functions-inl.h"
+#include "support/best.h"
 
 HWY_BEFORE_NAMESPACE();
 namespace orrery::math::HWY_NAMESPACE {
