@@ -71,6 +71,24 @@ configure() {
   printf '%s' "$*" >"$stamp"
 }
 
+# show_progress LOG: writes Ninja's lines to LOG, and shows the percentage and the elapsed time: on a terminal in one line,
+# elsewhere each quarter. A build that takes less than three seconds shows nothing.
+show_progress() {
+  local line shown=0 begin=$SECONDS
+  while IFS= read -r line; do
+    printf '%s\n' "$line" >&4
+    if ! [[ "$line" =~ ^\[([0-9]+)/([0-9]+)\] ]] || [ $((SECONDS - begin)) -lt 3 ]; then continue; fi
+    local percent=$((100 * BASH_REMATCH[1] / BASH_REMATCH[2]))
+    if [ -t 2 ]; then
+      printf '\r%3d %% %d:%02d' "$percent" $(((SECONDS - begin) / 60)) $(((SECONDS - begin) % 60)) >&2
+    elif [ $((percent / 25)) -gt "$shown" ]; then
+      shown=$((percent / 25))
+      say "  $percent % after $((SECONDS - begin)) s"
+    fi
+  done 4>"$1"
+  if [ -t 2 ] && [ $((SECONDS - begin)) -ge 3 ]; then printf '\r\033[K' >&2; fi
+}
+
 # build MINUTES TARGET: builds a target in build/. MINUTES is the time of the first build on one core, for the message.
 # Sets build_seconds.
 build() {
@@ -87,7 +105,8 @@ build() {
   # Concurrent calls in one checkout take turns.
   exec 9>"$root/build/.lock"
   flock 9
-  if ! cmake --build "$root/build" --target "$target" >"$root/build/build.log" 2>&1 9>&-; then
+  if ! NINJA_STATUS='[%f/%t] ' cmake --build "$root/build" --target "$target" 2>&1 9>&- |
+    show_progress "$root/build/build.log"; then
     show_log "$root/build/build.log"
     die "the build failed; if memory ran out, try again with CMAKE_BUILD_PARALLEL_LEVEL=1 in the environment"
   fi
