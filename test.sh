@@ -6,7 +6,6 @@
 #   ./test.sh
 #   ./test.sh -L unit
 #   ./test.sh -R Camera
-#   GTEST_FILTER='Info.*' ./test.sh -R unit_info
 #
 # ORRERY_BENCH=OFF   without the benchmarks
 #
