@@ -9,7 +9,8 @@
     bench/many_spheres.py build/src/orrery --capsids 1M4X.pdb    the same for six copies of a PDB file's assembly 1
     bench/many_spheres.py build/src/orrery --against OTHER       times of a render relative to another build's
 
-For each scene the first form prints closest hits per second of `orrery bench` (the BVH for many spheres with single rays
+For each scene the first form prints closest hits per second of `bench_tracing`, which is taken from the folder `bench` of
+the build (the BVH for many spheres with single rays
 and with packets, one Embree primitive per sphere, Embree's sphere points), the ratio of the scene's accelerator to sphere
 points, seconds of the build, the ratio of the build's time to that of sphere points, and peak bytes per sphere of a small
 render. The base, which is what the program takes without spheres, is
@@ -161,8 +162,13 @@ class Program:
         self.path, self.environment = path, {**os.environ, **({"ORRERY_ISA": isa} if isa else {})}
 
     def run(self, *words):
-        return subprocess.run([self.path, *words], check=True, capture_output=True, text=True,
-                              env=self.environment).stdout
+        return self.output_of(self.path, *words)
+
+    def trace(self, *words):
+        return self.output_of(pathlib.Path(self.path).resolve().parent.parent / "bench" / "bench_tracing", *words)
+
+    def output_of(self, *words):
+        return subprocess.run(words, check=True, capture_output=True, text=True, env=self.environment).stdout
 
 
 def statistics(program, scene, folder, *options):
@@ -179,12 +185,13 @@ def base_bytes(program, folder):
 
 def measure(program, scene, folder, rounds, base):
     bench = json.loads(program.run("bench", scene, "-q", "--json", "--rounds", str(rounds)))
+    tracing = json.loads(program.trace(scene, str(rounds)))
     stats = statistics(program, scene, folder, "--width", "64", "--height", "36", "--samples", "1")
-    hits = {t["name"]: t["rays_per_s"]["median"] for t in bench["tracing"]}
+    hits = {t["name"]: t["rays_per_s"] for t in tracing["tracing"]}
     return {"scene": scene.stem, "spheres": stats["spheres"], "isa": bench["isa"],
             "paths_per_second": {c["name"]: c["paths_per_s"]["median"] for c in bench["cases"]},
             "hits_per_second": hits, "build_seconds": stats["seconds"]["build"],
-            "build_ratio": bench["builds"][0]["ratio"]["median"],
+            "build_ratio": next(b["relative_time"] for b in tracing["builds"] if b["name"] == "accelerator"),
             "bytes_per_sphere": (stats["peak_memory_bytes"] - base) / stats["spheres"]}
 
 

@@ -22,7 +22,7 @@ enum class Rays { kCamera, kBounced };
 enum class Method { kEmbree, kList };
 
 template <class T>
-std::vector<kernel::RayPacket<T>>& choose(render::RecordedRays<T>& rays, Rays which) {
+std::vector<kernel::RayPacket<T>>& choose(RecordedRays<T>& rays, Rays which) {
   return which == Rays::kCamera ? rays.camera : rays.secondary;
 }
 

@@ -9,7 +9,7 @@
 #include "accel/accel.h"
 #include "kernel/ray_packet.h"
 #include "kernel/render_tile.h"
-#include "render/recorded_rays.h"
+#include "support/recorded_rays.h"
 #include "support/scenes.h"
 
 namespace orrery::bench {
@@ -24,7 +24,7 @@ struct Workload {
   scene::Scene scene;
   compile::CompiledScene compiled;
   std::unique_ptr<accel::Accel> embree, list;  ///< Precision::kBook: both are lists
-  render::RecordedRays<T> rays;
+  RecordedRays<T> rays;
 
   Workload(scene::Scene authored, kernel::Precision precision)
       : scene(std::move(authored)),
@@ -36,7 +36,7 @@ struct Workload {
     whole.width = kRecordedWidth;
     whole.height = kRecordedHeight;
     whole.sample_end = kRecordedSamples;
-    rays = render::record_rays<T>(compiled.view(), *embree, precision, {whole});
+    rays = record_rays<T>(compiled.view(), *embree, precision, {whole});
   }
 };
 

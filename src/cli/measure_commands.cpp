@@ -93,8 +93,7 @@ void add_bench(Command& program) {
   options->add_output_to(command, "Schema orrery.bench/1.");
   command.details(
       "Lists of spheres are skipped if they would take too long. Each round measures all cases; results are the ratios "
-      "to \"embree exact\" of the same round. With one thread, it also prints the fraction of time spent on ray "
-      "tracing alone, and the cost of each feature that the scene lacks.");
+      "to \"embree exact\" of the same round.");
   command.footer(
       "Samples, precision, accelerator and layers of the scene have no effect. Larger images are reduced to about "
       "5,184 pixels.\n"

@@ -27,7 +27,7 @@ struct InfoOptions {
   std::filesystem::path file;
   SceneOptions overrides;
   std::optional<int> component;
-  bool json = false, settings = false, measure = false;
+  bool json = false, settings = false;
 };
 
 struct CheckOptions {
@@ -51,7 +51,6 @@ void refuse_option(bool is_given, const std::string& option, const InfoOptions& 
 int data_info(const InfoOptions& options) {
   constexpr const char* kKind = "data file; the option applies to scenes, which are *.toml";
   refuse_option(options.settings, "--settings", options, kKind);
-  refuse_option(options.measure, "--measure", options, kKind);
   for (const load::Override& override : options.overrides.overrides())
     refuse_option(true, override.option, options, kKind);
   info::DataInfoRequest request;
@@ -70,8 +69,7 @@ int info(const InfoOptions& options) {
   request.source.file = options.file;
   request.source.overrides = options.overrides.overrides();
   request.source.frame = options.overrides.frame();
-  info::SceneInfo found = info::scene_info(request);
-  if (options.measure) info::measure_savings(request, found);
+  const info::SceneInfo found = info::scene_info(request);
   std::fputs(warnings_text(found).c_str(), stderr);
   print_result(options.json       ? info::info_json(found)
                : options.settings ? info::settings_text(found)
@@ -159,8 +157,6 @@ void add_info(Command& program) {
   options->overrides.add_frame_to(command);
   command.add_option("--component", options->component, "N", "HDF5: particle type, N of PartTypeN")
       ->transform(whole_number(0, 1000));
-  command.add_flag("--measure", options->measure,
-                   "Measure the time saved by skipping unused features (takes a few seconds)");
   auto* json = command.add_flag("--json", options->json, "Print JSON, with all settings")
                    ->details("Schema orrery.info/1, for data files orrery.data/1.");
   command.add_flag("--settings", options->settings, "Print every setting, its value and its origin")->excludes(json);

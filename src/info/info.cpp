@@ -28,7 +28,6 @@
 #include "scene/texture.h"
 #include "scene/validate.h"
 #include "scene/value_text.h"
-#include "study/bench.h"
 
 namespace orrery::info {
 
@@ -208,8 +207,7 @@ std::string text_of(const TextureInfo& t) {
 
 std::string text_of(const Feature& f) {
   if (f.required) return f.name;
-  const std::string saves = f.saves ? fmt::format("; saves {:.1f} % of the time", *f.saves * 100) : "";
-  return fmt::format("{} ({}{})", f.name, f.note, saves);
+  return fmt::format("{} ({})", f.name, f.note);
 }
 
 std::vector<std::pair<std::string, std::uint64_t>> count_materials(const compile::CompiledScene& compiled) {
@@ -241,7 +239,7 @@ static void to_json(json& out, const TextureInfo& t) {
 }
 
 static void to_json(json& out, const Feature& f) {
-  out = {{"name", f.name}, {"required", f.required}, {"note", f.note}, {"saves", job::json_or_null(f.saves)}};
+  out = {{"name", f.name}, {"required", f.required}, {"note", f.note}};
 }
 
 SceneInfo scene_info(const load::SceneRequest& request) {
@@ -316,14 +314,6 @@ SceneInfo scene_info(const load::SceneRequest& request, job::PreparedScene& prep
     info.warnings.push_back(base::file_diagnostic(base::Severity::kWarning, request.source.file.string(), advice));
   }
   return info;
-}
-
-void measure_savings(const load::SceneRequest& request, SceneInfo& info) {
-  study::BenchRequest bench;
-  bench.scene = request.source;
-  for (const study::FeatureCost& cost : study::bench_features(bench))
-    for (Feature& feature : info.features)
-      if (feature.name == cost.name && !cost.required) feature.saves = cost.saves;
 }
 
 std::string info_text(const SceneInfo& info) {

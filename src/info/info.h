@@ -22,8 +22,7 @@ namespace orrery::info {
 struct Feature {
   std::string name;  ///< "thin lens"
   bool required;
-  std::string note;                  ///< what requires it, or what is skipped without it
-  std::optional<double> saves = {};  ///< fraction of the time that omitting it saves, if measured
+  std::string note;  ///< what requires it, or what is skipped without it
 };
 
 /// A points file of a scene.
@@ -76,11 +75,6 @@ SceneInfo scene_info(const load::SceneRequest& request);
 
 /// The same; takes what has not changed from `prepared`, which then holds this scene.
 SceneInfo scene_info(const load::SceneRequest& request, job::PreparedScene& prepared);
-
-/// Measures the time saved by omitting the kernel features that the scene does not require, and sets Feature::saves.
-///
-/// Errors     those of bench_features
-void measure_savings(const load::SceneRequest& request, SceneInfo& info);
 
 /// Returns warnings about visible errors of the chosen precision, estimated from the scene's ratios of distance to
 /// radius.

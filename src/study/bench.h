@@ -4,7 +4,6 @@
 #include <atomic>
 #include <cstdint>
 #include <functional>
-#include <optional>
 #include <string>
 #include <vector>
 
@@ -29,12 +28,9 @@ struct BenchRequest {
 
 /// The speed of one configuration.
 struct BenchResult {
-  std::string name;  ///< "embree fast", "sphere points"
-  Quartiles speed;   ///< paths, rays or spheres per second
-  Quartiles ratio;   ///< to a reference in the same round
-  /// Of renders with one thread and a BVH: fraction of the time that tracing the same rays takes on its own.
-  std::optional<Quartiles> tracing = {};
-  double bytes_per_sphere = 0;  ///< of builds: memory of the accelerator, excluding the spheres
+  std::string name;  ///< "embree fast"
+  Quartiles speed;   ///< paths per second
+  Quartiles ratio;   ///< to "embree exact" in the same round
 };
 
 /// Results of a benchmark whose rounds alternate between all cases.
@@ -44,12 +40,7 @@ struct Benchmark {
   double rays_per_path = 0;
   int width = 0, height = 0;  ///< reduced image size, px
   int threads = 0, rounds = 0;
-  std::vector<BenchResult> cases;  ///< renders; the ratio is that of speeds to "embree exact", which is the first
-  /// Closest-hit queries on the recorded rays of a render in `fast`, with one thread only; ratio of speeds to the
-  /// first.
-  std::vector<BenchResult> tracing;
-  std::vector<BenchResult> builds;    ///< on all threads; ratio of times to Embree's sphere points
-  std::vector<BenchResult> features;  ///< embree exact with one feature added that the scene lacks; named after it
+  std::vector<BenchResult> cases;     ///< the first is "embree exact"
   std::vector<std::string> left_out;  ///< what was not measured, and why
 };
 
@@ -67,7 +58,12 @@ std::string benchmark_json(const Benchmark& benchmark);
 struct FeatureCost {
   std::string name;       ///< "thin lens"
   bool required = false;  ///< the scene needs it
-  double saves = 0;       ///< if not required: fraction of the time with the feature that omitting it saves, median
+  /// If not required: fraction of the time with the feature that omitting it saves, median of the rounds, and the least
+  /// and greatest. Of five rounds, they include the true median with a probability of 94 %.
+  double saves = 0, least = 0, greatest = 0;
+
+  /// Whether the rounds agree that omitting it saves time.
+  bool is_measurable() const { return least > 0; }
 };
 
 /// Measures the cost of each kernel feature that the scene lacks, in embree exact at a reduced size.

@@ -6,6 +6,8 @@
 #include <map>
 #include <string>
 
+#include <fmt/core.h>
+
 #include "compare/color_view.h"
 #include "compare/errors.h"
 #include "film/display_error.h"
@@ -27,6 +29,14 @@ film::Picture mean_of(const Pair& pair) {
     for (std::size_t i = 0; i < mean.planes[p].values.size(); ++i)
       mean.planes[p].values[i] = mean.planes[p].values[i] / 2 + pair.second.planes[p].values[i] / 2;
   return mean;
+}
+
+std::string spread_warning(double first_s, double second_s) {
+  constexpr double kLargestSpread = 1.3;
+  const auto [least, greatest] = std::minmax(first_s, second_s);
+  if (greatest <= kLargestSpread * least) return {};
+  return fmt::format("the times of its two renders differ by a factor of {:.1f}; repeat the study on an idle machine",
+                     greatest / least);
 }
 
 double noise_of_mean(const Pair& pair) {

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <string>
 #include <vector>
 
 #include "film/picture.h"
@@ -18,6 +19,11 @@ struct Pair {
 
 /// The mean of both images.
 film::Picture mean_of(const Pair& pair);
+
+/// Warns if the times of two renders of one setting differ so much that neither can be trusted.
+///
+/// Result     empty up to a ratio of 1.3
+std::string spread_warning(double first_s, double second_s);
 
 /// The display error of that mean, estimated from the difference of the two images.
 double noise_of_mean(const Pair& pair);

@@ -274,14 +274,20 @@ class Runner {
     point.is_shortcut = choice.is_shortcut;
     CompiledScene compiled = scene_for(choice);
     Pair pair;
+    double seconds_per_path[2] = {};
     point.seconds = std::numeric_limits<double>::infinity();
     for (std::uint32_t i = 0; i < 2; ++i) {
       compiled.sampler.seed = seed(i);
       render::Result result = renderer_.render(compiled, choice.noise, choice.traversal, choice.is_denoised);
       (i == 0 ? pair.first : pair.second) = std::move(result.picture);
-      point.seconds = std::min(point.seconds, renderer_.seconds_of(result.statistics));
+      const double seconds = renderer_.seconds_of(result.statistics);
+      point.seconds = std::min(point.seconds, seconds);
       point.samples = static_cast<double>(result.statistics.paths) / pixels();
+      // With a target noise, the samples depend on the seed.
+      seconds_per_path[i] = seconds / static_cast<double>(result.statistics.paths);
     }
+    if (std::string warning = spread_warning(seconds_per_path[0], seconds_per_path[1]); !warning.empty())
+      out_.warnings.push_back(fmt::format("{}: {}", choice.name, warning));
     job::MemoryEstimate memory = choice.is_denoised ? denoised_memory_ : choice.noise > 0 ? adaptive_memory_ : memory_;
     if (compiled.accelerator == compile::Accelerator::kList) memory.accelerator = 0;
     memory.lights = compiled.light_tree.bytes_of_build();

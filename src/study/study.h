@@ -93,6 +93,7 @@ struct Study {
   std::vector<FilePoint> files;
   std::vector<Slope> slopes;
   std::vector<std::string> left_out;  ///< axes without effect on this scene, and choices that exceed the budget
+  std::vector<std::string> warnings;  ///< why times may be wrong
   std::vector<FeatureCost> features;
   Recommendation recommendation;
 };

@@ -375,7 +375,7 @@ TEST_F(CliDataInfo, DescribesDataFilesByTheirContent) {
 }
 
 TEST_F(CliDataInfo, OptionsOfTheOtherKindOfFileAreRefused) {
-  for (const std::string option : {"--settings", "--measure", "--set camera.vfov=30", "--samples 3"})
+  for (const std::string option : {"--settings", "--set camera.vfov=30", "--samples 3"})
     expect_error("info a.dump " + option, 2, option.substr(0, option.find(' ')) + ": a.dump is a data file");
   expect_error("info good.toml --component 1", 2, "--component: good.toml is a scene");
 }

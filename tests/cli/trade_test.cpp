@@ -98,11 +98,5 @@ TEST_F(CliTrade, StudyWritesAReport) {
   EXPECT_EQ(run("study good.toml --budget 5s -q -o no/such/place.html").status, 73);
 }
 
-TEST_F(CliTrade, InfoMeasuresFeatureCosts) {
-  const Outcome r = run("info good.toml --measure");
-  EXPECT_EQ(r.status, 0);
-  EXPECT_NE(r.out.find("; saves "), std::string::npos) << r.out;
-}
-
 }  // namespace
 }  // namespace orrery::test

@@ -203,5 +203,12 @@ TEST(StudyBias, AnUnbiasedSceneGivesNoFalsePositives) {
   EXPECT_LE(alarms, studies * compare::kFamilyWiseError + 3 * std::sqrt(studies * compare::kFamilyWiseError));
 }
 
+TEST(StudyBiases, TimesThatDifferByMoreThanAThirdAreAWarning) {
+  EXPECT_EQ(spread_warning(1, 1.29), "");
+  EXPECT_EQ(spread_warning(1.29, 1), "");
+  EXPECT_NE(spread_warning(1, 1.31).find("factor of 1.3"), std::string::npos);
+  EXPECT_NE(spread_warning(2, 1).find("factor of 2.0"), std::string::npos);
+}
+
 }  // namespace
 }  // namespace orrery::study

@@ -5,6 +5,7 @@
 
 #include "compile/compile.h"
 #include "compile/compiled_scene.h"
+#include "render/result.h"
 #include "study/study.h"
 #include "support/lit_scenes.h"
 

@@ -12,7 +12,7 @@
 #include "kernel/precision.h"
 #include "kernel/ray_packet.h"
 
-namespace orrery::render {
+namespace orrery::bench {
 
 /// The packets of a render in tracing order: representative rays for measuring traversal. `hit` and `distance` are the
 /// results.
@@ -47,4 +47,4 @@ double trace_again(const kernel::Tracer& tracer, std::vector<kernel::RayPacket<T
   return watch.seconds();
 }
 
-}  // namespace orrery::render
+}  // namespace orrery::bench

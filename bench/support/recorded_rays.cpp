@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "render/recorded_rays.h"
+#include "support/recorded_rays.h"
 
 #include <memory>
 #include <utility>
@@ -11,7 +11,7 @@
 #include "kernel/scene_view.h"
 #include "math/pixels.h"
 
-namespace orrery::render {
+namespace orrery::bench {
 namespace {
 
 /// Forwards queries to the tracer and keeps the traced packets.
@@ -61,4 +61,4 @@ template RecordedRays<double> record_rays(const kernel::SceneView&, const accel:
 template RecordedRays<float> record_rays(const kernel::SceneView&, const accel::Accel&, kernel::Precision,
                                          const std::vector<kernel::Tile>&);
 
-}  // namespace orrery::render
+}  // namespace orrery::bench
