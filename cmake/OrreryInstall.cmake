@@ -29,7 +29,7 @@ foreach(folder IN ITEMS site-functions vendor-completions)
   install(FILES ${documents}/_orrery COMPONENT runtime DESTINATION ${CMAKE_INSTALL_DATADIR}/zsh/${folder})
 endforeach()
 # scenes/ contains examples to copy.
-install(DIRECTORY scenes/ DESTINATION ${CMAKE_INSTALL_DOCDIR}/scenes COMPONENT runtime FILES_MATCHING PATTERN "*.toml")
+install(DIRECTORY scenes/ DESTINATION ${CMAKE_INSTALL_DOCDIR}/scenes COMPONENT runtime FILES_MATCHING PATTERN "*.toml" PATTERN "*.jpg" PATTERN "studio.exr")
 install(DIRECTORY src/display/config/ DESTINATION ${CMAKE_INSTALL_DATADIR}/orrery COMPONENT runtime FILES_MATCHING PATTERN "*.ocio")
 install(FILES LICENSE DESTINATION ${CMAKE_INSTALL_DOCDIR} COMPONENT runtime)
 

@@ -64,10 +64,8 @@ for elevation in 60 12; do
 done
 picture $balls light-grey-and-chrome-3 --samples 400 --set background.sun_elevation=3 --set background.exposure=3
 picture $balls light-grey-and-chrome-m4 --samples 1000 --set background.sun_elevation=-4 --set background.exposure=7
-"$program" generate env studio -o "$work/studio.exr"
-picture $balls light-studio --samples 400 --set "background={ type = \"image\", file = \"$work/studio.exr\" }"
-"$program" generate planet -o "$work/planet.exr" --width 2048
-cp scenes/next-week/*.toml "$work"
+picture $balls light-studio --samples 400 --set "background={ type = \"image\", file = \"studio.exr\" }"
+cp scenes/next-week/* "$work"
 for name in 01-bouncing-spheres 02-checkered-spheres 03-planet 04-perlin-noise 05-turbulence 06-marble 07-lamp; do
   picture "$work/$name.toml" "next-week-$name" --set color.display="Gamma 2.0 Rec.709" --samples 1000
 done

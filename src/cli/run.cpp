@@ -42,6 +42,9 @@ std::vector<std::string> command_names(const CLI::App& command) {
 /// Commands and options that were removed, and what to write instead.
 constexpr std::pair<const char*, const char*> kRemoved[] = {
     {"orrery bake", "ociobakelut, as docs/output.md shows"},
+    {"orrery info --measure", "orrery study, which measures the cost of unused features"},
+    {"orrery generate env", "scenes/light/studio.exr, or background.type = \"sky\" in the scene"},
+    {"orrery generate planet", "scenes/next-week/planet.jpg"},
 };
 
 /// Options that users guess, for commands with a certain option, and what to write instead. The first row that fits

@@ -5,7 +5,6 @@
 #include <filesystem>
 #include <optional>
 
-#include "film/forward.h"
 #include "scene/scene.h"
 
 namespace orrery::generate {
@@ -58,37 +57,6 @@ struct Cloud {
 /// Cost       36 bytes per sphere
 scene::Scene make_cloud(const Cloud& options, const std::filesystem::path& points_file = "cloud.ply");
 
-/// Limits of the width of a generated environment, px.
-inline constexpr int kSmallestEnvironment = 16, kLargestEnvironment = 8192;
-
-/// Default width of a generated environment, px: a texel is about two thirds of the sun's disc wide.
-inline constexpr int kEnvironmentWidth = 1024;
-
-/// Returns a latitude-longitude image of a photo studio, for tests of materials: a dark room with a grey floor and four
-/// soft boxes, with the light that they cast on it. The camera is expected at +z.
-///
-/// Space      metres: the ball is at the origin, the floor at y = -1.2; orientation as for scene::LatLongMap
-/// Units      lin_rec709. The key light's irradiance at the ball is about pi: there, a white diffuse surface that faces
-///            it has radiance 1
-/// Result     planes R, G, B; the same bits on every machine
-/// Errors     base::Error(kUsage) for a width that is not a multiple of 4 in kSmallestEnvironment..kLargestEnvironment
-film::Picture make_studio(int width = kEnvironmentWidth);
-
-/// Returns a latitude-longitude image of the daylight sky of sky::bake_sky, including the sun's disc: texels hold
-/// the mean over their area, so that the irradiance does not depend on the width.
-///
-/// `sky`      the members that type = "sky" uses
-/// Errors     base::Error(kUsage) for widths that make_studio rejects, and for members out of range
-film::Picture make_sky(const scene::Background& sky, int width = kEnvironmentWidth);
-
-/// Returns a latitude-longitude map of a planet's reflectance, with continents, ice and clouds, for use as a texture:
-/// +x at the centre, +z halfway to the left edge.
-///
-/// Units      lin_rec709, 0..1
-/// Result     planes R, G, B; the same seed gives the same bits on every machine
-/// Errors     base::Error(kUsage) for widths that make_studio rejects
-film::Picture make_planet(std::uint64_t seed = 1, int width = kEnvironmentWidth);
-
 /// Writes a generated scene: TOML to `file`, points to a file of the same name with the extension .ply.
 ///
 /// A comment at the top describes the scene and gives the command that reproduces it, byte for byte. An existing points
@@ -99,14 +67,5 @@ film::Picture make_planet(std::uint64_t seed = 1, int width = kEnvironmentWidth)
 ///            anything is generated, including for files that must not be replaced; kIo
 void generate_final(const FinalScene& options, const std::filesystem::path& file, bool force = false);
 void generate_cloud(const Cloud& options, const std::filesystem::path& file, bool force = false);
-
-/// Writes a generated environment to an EXR file with float channels, or a planet with half channels. Its attribute
-/// `orrery/command` is the command that reproduces the file.
-///
-/// Errors     base::Error: kUsage for options out of range and for a `file` that is not an EXR; kCannotCreate, before
-///            anything is generated; kIo
-void generate_studio(int width, const std::filesystem::path& file);
-void generate_planet(std::uint64_t seed, int width, const std::filesystem::path& file);
-void generate_sky(const scene::Background& sky, int width, const std::filesystem::path& file);
 
 }  // namespace orrery::generate

@@ -8,11 +8,7 @@
 #include "base/error.h"
 #include "base/file_name.h"
 #include "base/file_set.h"
-#include "film/picture.h"
 #include "generate/generate.h"
-#include "image/format.h"
-#include "image/header.h"
-#include "image/write.h"
 #include "load/write_scene.h"
 #include "scene/schema.h"
 
@@ -85,26 +81,6 @@ void check(const std::filesystem::path& file, bool has_points, bool force) {
             points.string()));
 }
 
-void check_environment(const std::filesystem::path& file) {
-  if (image::format_of(file) != image::Format::kExr)
-    base::refuse(fmt::format("{}: the image is written as EXR; name it, e.g. {}", file.string(),
-                             std::filesystem::path(file).replace_extension(".exr").string()));
-  base::check_creatable(file);
-}
-
-/// `as_float`  for environments: the sun is brighter than the largest half
-void write_environment(const film::Picture& picture, const std::string& command, const std::filesystem::path& file,
-                       bool as_float = true) {
-  image::Header header;
-  header.software = "orrery";
-  header.color_interop_id = picture.color_interop_id;
-  header.attributes = {{"orrery/command", fmt::format("orrery generate {} --width {}", command, picture.width)}};
-  image::ExrOptions options;
-  options.as_float = as_float;
-  options.compression = "zip";
-  image::write_exr(file, picture, header, options);
-}
-
 }  // namespace
 
 void generate_final(const FinalScene& options, const std::filesystem::path& file, bool force) {
@@ -115,25 +91,6 @@ void generate_final(const FinalScene& options, const std::filesystem::path& file
 void generate_cloud(const Cloud& options, const std::filesystem::path& file, bool force) {
   check(file, true, force);
   load::write_scene(make_cloud(options, points_file_of(file)), comment(options, file.filename().string()), file);
-}
-
-void generate_studio(int width, const std::filesystem::path& file) {
-  check_environment(file);
-  write_environment(make_studio(width), "env studio", file);
-}
-
-void generate_sky(const scene::Background& sky, int width, const std::filesystem::path& file) {
-  check_environment(file);
-  std::string command = fmt::format("env sky --sun-elevation {} --sun-azimuth {} --turbidity {} --ground-albedo {}",
-                                    scene::number_text(sky.sun_elevation), scene::number_text(sky.sun_azimuth),
-                                    scene::number_text(sky.turbidity), scene::number_text(sky.ground_albedo.x));
-  if (!sky.sun) command += " --no-sun";
-  write_environment(make_sky(sky, width), command, file);
-}
-
-void generate_planet(std::uint64_t seed, int width, const std::filesystem::path& file) {
-  check_environment(file);
-  write_environment(make_planet(seed, width), fmt::format("planet --seed {}", seed), file, false);
 }
 
 }  // namespace orrery::generate

@@ -40,9 +40,8 @@ class CliDocuments : public ProgramTest {
 
 TEST_F(CliDocuments, HaveTheOptionsOfEveryCommand) {
   const std::string manual = document("orrery.1"), zsh = document("_orrery"), fish = document("orrery.fish");
-  for (const std::string command :
-       {"render", "plot", "merge", "submit", "check", "info", "compare", "bench", "study", "generate final",
-        "generate cloud", "generate env", "generate planet", "convert", "develop", "denoise"}) {
+  for (const std::string command : {"render", "plot", "merge", "submit", "check", "info", "compare", "bench", "study",
+                                    "generate final", "generate cloud", "convert", "develop", "denoise"}) {
     EXPECT_TRUE(contains(manual, ".Nm orrery Cm " + command + "\n")) << command;
     const std::size_t begin = manual.find(".Ss orrery " + command + "\n");
     ASSERT_NE(begin, std::string::npos) << command;
@@ -67,7 +66,7 @@ TEST_F(CliDocuments, ManualHasTheCheckedPartsOfItsTemplate) {
 
 TEST_F(CliDocuments, BashCompletesCommandsOptionsAndValues) {
   EXPECT_EQ(completed("gen"), "generate\n");
-  EXPECT_EQ(completed("generate ''"), "final cloud env planet\n");
+  EXPECT_EQ(completed("generate ''"), "final cloud\n");
   EXPECT_EQ(completed("render a.toml --sampl"), "--samples --sample-range\n");
   EXPECT_EQ(completed("plot a.xyz --progress ''"), "auto bar alf openjd arnold json none\n");
   EXPECT_EQ(completed("generate final --mo"), "--moving\n");

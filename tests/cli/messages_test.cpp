@@ -72,7 +72,7 @@ const MessageCase kCases[] = {
     {"--version > /dev/full", 74, "orrery: writing to standard output failed: No space left on device\n"},
     {"check good.toml > /dev/full", 74, "orrery: writing to standard output failed: No space left on device\n"},
     {"generate", 2,
-     "orrery: no command given; use one of final, cloud, env, planet\n"
+     "orrery: no command given; use one of final, cloud\n"
      "Try orrery generate --help.\n"},
     {"generate fianl -o a.toml", 2,
      "orrery: unknown command fianl; did you mean `final`?\n"
@@ -80,14 +80,6 @@ const MessageCase kCases[] = {
     {"generate final -o a.toml --grid -3", 2,
      "orrery: --grid: must be an integer from 0 to 1000, not `-3`\n"
      "Try orrery generate final --help.\n"},
-    {"generate env skie -o a.exr", 2,
-     "orrery: KIND: unknown value `skie`; use one of studio, sky\n"
-     "Try orrery generate env --help.\n"},
-    {"generate env studio -o a.exr --no-sun", 2, "orrery: --no-sun is an option of `sky`\n"},
-    {"generate env sky -o a.exr --turbidity 0.5", 2,
-     "orrery: --turbidity: must be a number from 1 to 10, not `0.5`\n"
-     "Try orrery generate env --help.\n"},
-    {"generate env sky -o a.hdr", 2, "orrery: a.hdr: the image is written as EXR; name it, e.g. a.exr\n"},
     {"develop a.png -o b.png", 2, "orrery: a.png is already display-encoded; the input must be exr or hdr\n"},
     {"develop none.exr -o b.png", 66, "orrery: cannot open none.exr: No such file or directory\n"},
     {"compare none.exr none.exr", 66, "orrery: cannot open none.exr: No such file or directory\n"},

@@ -238,15 +238,6 @@ TEST_F(CliProgram, SkiesRenderAndFollowKeyframes) {
   EXPECT_TRUE(contains(run("check good.toml --set background.turbidity=4").err, "set background.type to \"sky\""));
 }
 
-TEST_F(CliProgram, GeneratedEnvironmentsAreTheSameEveryTime) {
-  for (const char* kind : {"studio", "sky --sun-elevation 5 --ground-albedo 0.1"}) {
-    ASSERT_EQ(run("generate env -o a.exr --width 64 " + std::string(kind)).status, 0);
-    ASSERT_EQ(run("generate env -o b.exr --width 64 " + std::string(kind)).status, 0);
-    EXPECT_EQ(text_of(folder_ / "a.exr"), text_of(folder_ / "b.exr"));
-    EXPECT_EQ(run("develop a.exr -o a.png").status, 0);
-  }
-}
-
 TEST_F(CliProgram, InvalidOcioConfigExits65AndAMissingOne66) {
   write("broken.ocio", "not a config");
   EXPECT_EQ(run("render good.toml -o a.png --set color.config=broken.ocio").status, 65);
@@ -255,8 +246,8 @@ TEST_F(CliProgram, InvalidOcioConfigExits65AndAMissingOne66) {
 }
 
 TEST_F(CliProgram, HelpAndVersionSucceed) {
-  for (const char* command : {"", "render", "info", "check", "generate", "generate final", "generate cloud",
-                              "generate env", "develop", "compare"}) {
+  for (const char* command :
+       {"", "render", "info", "check", "generate", "generate final", "generate cloud", "develop", "compare"}) {
     const Outcome r = run(std::string(command) + " --help");
     EXPECT_EQ(r.status, 0);
     EXPECT_TRUE(contains(r.out, "Usage: orrery") && r.err.empty()) << command;

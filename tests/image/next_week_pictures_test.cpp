@@ -14,8 +14,8 @@
 #include "compile/compile.h"
 #include "compile/compiled_scene.h"
 #include "film/picture.h"
-#include "generate/generate.h"
 #include "image/render_scene.h"
+#include "load/load_scene.h"
 #include "load/read_scene.h"
 #include "render/render.h"
 #include "render/result.h"
@@ -31,26 +31,13 @@ namespace {
 
 constexpr int kSceneWidth = 96, kSceneHeight = 54;
 
-/// Gives the scene's image texture a map that is generated here, so that the test needs no file.
-void set_planet(scene::Scene& scene) {
-  const film::Picture map = generate::make_planet(1, 256);
-  const auto image = std::make_shared<scene::LatLongMap>(map.width, map.height);
-  for (int y = 0; y < map.height; ++y)
-    for (int x = 0; x < map.width; ++x)
-      for (std::size_t c = 0; c < 3; ++c)
-        image->row(y)[3 * static_cast<std::size_t>(x) + c] =
-            map.planes[c].values[static_cast<std::size_t>(y) * static_cast<std::size_t>(map.width) +
-                                 static_cast<std::size_t>(x)];
-  scene::modify_textures(scene, [&](scene::Texture& texture, scene::TextureUse) { texture.image = image; });
-}
-
 film::Picture picture_of_scene(const std::string& name, load::Overrides overrides = {}) {
   overrides.add("image.width=" + std::to_string(kSceneWidth));
   overrides.add("image.height=" + std::to_string(kSceneHeight));
-  auto read =
-      support::read_scene_file(std::filesystem::path(ORRERY_SCENES) / "next-week" / (name + ".toml"), overrides);
-  if (name == "03-planet") set_planet(read.scene);
-  return test::render_scene(read);
+  load::SceneRequest request;
+  request.source.file = std::filesystem::path(ORRERY_SCENES) / "next-week" / (name + ".toml");
+  request.source.overrides = overrides;
+  return test::render_scene(load::load_scene(request).read);
 }
 
 using Rgb = std::tuple<float, float, float>;

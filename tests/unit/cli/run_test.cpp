@@ -109,6 +109,15 @@ TEST_F(CliRun, FullNamesOfCommandsAreAsTyped) {
   EXPECT_EQ(commands_.subcommands()[1].subcommands()[0].full_name(), "orrery generate final");
 }
 
+TEST_F(CliRun, RemovedCommandsNameWhatReplacesThem) {
+  commands_.add_subcommand("info", "");
+  EXPECT_EQ(message({"bake", "-o", "a.cube"}), "bake was removed; use ociobakelut, as docs/output.md shows");
+  EXPECT_EQ(message({"info", "--measure"}),
+            "--measure was removed; use orrery study, which measures the cost of unused features");
+  EXPECT_EQ(message({"generate", "planet"}), "planet was removed; use scenes/next-week/planet.jpg");
+  EXPECT_NE(message({"planet"}).find("unknown command planet"), std::string::npos) << "it never had it";
+}
+
 TEST_F(CliRun, OptionsThatAreGuessedNameTheRightOnes) {
   std::vector<std::string> settings;
   Command& check = *commands_.add_subcommand("check", "");

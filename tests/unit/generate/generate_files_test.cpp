@@ -9,7 +9,6 @@
 
 #include "base/error.h"
 #include "generate/generate.h"
-#include "image/read.h"
 #include "load/read_scene.h"
 #include "load/write_scene.h"
 #include "support/read_scene_file.h"
@@ -146,36 +145,6 @@ TEST_F(GenerateFiles, SceneAndPointsMustBeDifferentFiles) {
   std::filesystem::remove(folder_ / "c.toml");
   std::filesystem::create_symlink("c.ply", folder_ / "c.toml");
   EXPECT_THROW(generate_cloud({1, 50}, folder_ / "c.toml"), base::Error);
-}
-
-TEST_F(GenerateFiles, EnvironmentsNameTheCommandThatReproducesThem) {
-  generate_studio(64, folder_ / "studio.exr");
-  scene::Background sky;
-  sky.sun_elevation = -2.5;
-  sky.sun = false;
-  generate_sky(sky, 64, folder_ / "sky.exr");
-  EXPECT_NE(bytes_of(folder_ / "studio.exr").find("orrery generate env studio --width 64"), std::string::npos);
-  EXPECT_NE(bytes_of(folder_ / "sky.exr").find("orrery generate env sky --sun-elevation -2.5 --sun-azimuth 0 "),
-            std::string::npos);
-  EXPECT_NE(bytes_of(folder_ / "sky.exr").find(" --no-sun --width 64"), std::string::npos);
-  EXPECT_EQ(files(), 2u);
-}
-
-TEST_F(GenerateFiles, EnvironmentsReadBackExactly) {
-  generate_sky({}, 64, folder_ / "sky.exr");
-  const film::Picture read = image::read(folder_ / "sky.exr"), made = make_sky({}, 64);
-  for (const film::Plane& plane : made.planes) {
-    ASSERT_NE(read.find(plane.name), nullptr);
-    EXPECT_EQ(read.find(plane.name)->values, plane.values);
-  }
-  EXPECT_EQ(read.color_interop_id, "lin_rec709_scene");
-}
-
-TEST_F(GenerateFiles, EnvironmentsAreExrFilesOnly) {
-  EXPECT_THROW(generate_studio(64, folder_ / "a.png"), base::Error);
-  EXPECT_THROW(generate_sky({}, 64, folder_ / "a.hdr"), base::Error);
-  EXPECT_THROW(generate_sky({}, 64, folder_ / "missing" / "a.exr"), base::Error);
-  EXPECT_EQ(files(), 0u);
 }
 
 }  // namespace
