@@ -65,12 +65,17 @@ bool FileSet::add_input(const fs::path& file, const std::string& role) {
   return known == nullptr;
 }
 
-void FileSet::add_output(const fs::path& file, const std::string& role) {
+void FileSet::reserve(const fs::path& file, const std::string& role) {
   const Entry* const known = insert({file, role, true});
   if (known == nullptr) return;
   const std::string own = described(file, role), other = described(known->path, known->role);
   refuse(known->is_output ? fmt::format("{} and {} are the same file; choose another name", own, other)
                           : fmt::format("{} would overwrite {}; choose another name", own, other));
+}
+
+void FileSet::add_output(const fs::path& file, const std::string& role) {
+  reserve(file, role);
+  check_creatable(file);
 }
 
 }  // namespace orrery::base

@@ -11,7 +11,7 @@
 namespace orrery::base {
 
 /// The files that a run reads and writes. Every command adds all of its files here before it writes any, so that no
-/// input is overwritten and no two outputs are the same file.
+/// input is overwritten, no two outputs are the same file, and each output can be created.
 ///
 /// Files are compared by identity, not by path: by device and inode if they exist, else by folder and name. Symbolic
 /// links, hard links and different spellings of a path count as the same file.
@@ -24,10 +24,15 @@ class FileSet {
   /// Errors     base::Error(kUsage) if it is also an output
   bool add_input(const std::filesystem::path& file, const std::string& role);
 
-  /// Adds an output file.
+  /// Adds an output file of a later step, which checks whether it can be created.
   ///
   /// `role`     for messages: "-o", "--stats"
   /// Errors     base::Error(kUsage) if it is also an input or another output
+  void reserve(const std::filesystem::path& file, const std::string& role);
+
+  /// Adds an output file.
+  ///
+  /// Errors     those of reserve() and check_creatable()
   void add_output(const std::filesystem::path& file, const std::string& role);
 
  private:

@@ -23,7 +23,6 @@
 #include "base/error.h"
 #include "base/file_name.h"
 #include "base/frames.h"
-#include "base/temp_dir.h"
 #include "base/text.h"
 #include "cli/options.h"
 

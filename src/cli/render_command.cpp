@@ -7,7 +7,6 @@
 
 #include <fmt/core.h>
 
-#include "base/atomic_file.h"
 #include "base/error.h"
 #include "base/frames.h"
 #include "base/stopwatch.h"
@@ -219,10 +218,7 @@ int run_render(RenderOptions& options) {
   job.hooks.cancel = &stop_on_signals();
   job.hooks.snapshot = &snapshot_request();
   const std::filesystem::path shown = preview::preview_file(options.preview);
-  if (!shown.empty()) {
-    batch.others.push_back({shown, "--preview"});
-    base::check_creatable(shown);
-  }
+  if (!shown.empty()) batch.others.push_back({shown, "--preview"});
   ProgressPrinter printer(style_of(options), stderr);
   BatchProgress progress(printer);
   job.hooks.on_progress = [&](const render::Progress& p) { progress.update(p); };

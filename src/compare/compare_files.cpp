@@ -9,7 +9,6 @@
 
 #include <fmt/core.h>
 
-#include "base/atomic_file.h"
 #include "base/available_memory.h"
 #include "base/error.h"
 #include "base/file_set.h"
@@ -100,7 +99,6 @@ void check_files(const std::filesystem::path& picture, const std::filesystem::pa
     if (file.empty()) continue;
     image::format_of(file);
     files.add_output(file, role);
-    base::check_creatable(file);
   }
 }
 

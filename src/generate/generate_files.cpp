@@ -4,7 +4,6 @@
 
 #include <fmt/core.h>
 
-#include "base/atomic_file.h"
 #include "base/error.h"
 #include "base/file_name.h"
 #include "base/file_set.h"
@@ -64,14 +63,12 @@ void check(const std::filesystem::path& file, bool has_points, bool force) {
   if (base::extension(file) == ".ply")
     base::refuse(fmt::format("{}: .ply is the extension of the points file; name the scene, e.g. {}", file.string(),
                              std::filesystem::path(file).replace_extension(".toml").string()));
-  base::check_creatable(file);
+  base::FileSet files;
+  files.add_output(file, "-o");
   if (!force) load::check_unedited(file);
   if (!has_points) return;
   const std::filesystem::path points = file.parent_path() / points_file_of(file);
-  base::FileSet files;
-  files.add_output(file, "-o");
   files.add_output(points, "points file");
-  base::check_creatable(points);
   std::error_code ignored;
   if (std::filesystem::exists(points, ignored) && !load::is_ply_of(load::kPlyWriter, points))
     throw base::Error(

@@ -43,10 +43,10 @@ void add_job_files(const Job& job, base::FileSet& files, const std::string& owne
   if (job.scene.has_file) files.add_input(job.scene.file, "scene");
   for (const ShardFile& shard : job.merge.shards) files.add_input(shard.file, "shard");
   load::add_ocio_configs(job.outputs.display.config, files);
-  for (const NamedOutput& output : outputs_of(job)) files.add_output(output.path, output.role + owner);
+  for (const NamedOutput& output : outputs_of(job)) files.reserve(output.path, output.role + owner);
   if (is_shard(job)) return;
   for (const std::filesystem::path& manifest : possible_manifest_files(job.outputs))
-    files.add_output(manifest, "Cryptomatte manifest" + owner);
+    files.reserve(manifest, "Cryptomatte manifest" + owner);
 }
 
 void check_request(const Job& job) {

@@ -42,10 +42,7 @@ DevelopReport develop_file(const Development& development) {
   base::FileSet files;
   files.add_input(development.input, "image");
   load::add_ocio_configs(development.display.config, files);
-  for (const auto& output : development.outputs) {
-    files.add_output(output, "-o");
-    base::check_creatable(output);
-  }
+  for (const auto& output : development.outputs) files.add_output(output, "-o");
   DevelopReport report;
   const film::Picture picture =
       image::read(development.input, image::Parts::kFirst, base::available_memory().value_or(0));
@@ -70,7 +67,6 @@ DenoisedFile denoise_file(const Denoising& denoising) {
   base::FileSet files;
   files.add_input(denoising.input, "image");
   files.add_output(denoising.output, "-o");
-  base::check_creatable(denoising.output);
   const int threads = thread_count(denoising.threads);
   image::set_threads(threads);
   DenoisedFile out;

@@ -150,8 +150,8 @@ struct Batch {
 /// Creates one job per frame and scene. In file names, replaces `####` and `%04d` by the frame, and `{scene}` by the
 /// scene's file name without its extension. The jobs share one set of files, which detects conflicts between them.
 ///
-/// Errors     base::Error(kUsage) if a file would be written twice, if an output is an input, or if a name lacks a
-///            needed pattern or has a frame pattern without frames
+/// Errors     base::Error: kUsage if a file would be written twice, if an output is an input, or if a name lacks a
+///            needed pattern or has a frame pattern without frames; kCannotCreate for one of the `others`
 std::vector<Job> jobs_of(const Batch& batch);
 
 }  // namespace orrery::job

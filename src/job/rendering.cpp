@@ -3,7 +3,6 @@
 
 #include <string>
 
-#include "base/atomic_file.h"
 #include "film/partial.h"
 #include "image/format.h"
 #include "job/checkpoint.h"
@@ -17,19 +16,15 @@ namespace {
 /// Checks the names and the formats of the files, as a job does before it renders.
 void check_outputs(const Rendering& rendering, const Outputs& outputs) {
   base::FileSet files = rendering.files;
-  const auto add = [&](const std::filesystem::path& file, const char* role) {
-    files.add_output(file, role);
-    base::check_creatable(file);
-  };
   load::add_ocio_configs(display_of(rendering, outputs.display).config, files);
   check_bits(outputs.images, outputs.bits);
   image::check_compression(outputs.exr.compression);
   for (const ImageFile& output : outputs.images) {
-    add(output.path, "-o");
+    files.add_output(output.path, "-o");
     image::check_size(output.path, rendering.picture.width, rendering.picture.height);
   }
   for (const std::filesystem::path& manifest : manifest_files(rendering.mattes, outputs))
-    add(manifest, "Cryptomatte manifest");
+    files.add_output(manifest, "Cryptomatte manifest");
   if (outputs.has_exr()) image::check_lossless(rendering.picture.planes, outputs.exr);
 }
 

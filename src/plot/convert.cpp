@@ -10,7 +10,6 @@
 
 #include <fmt/core.h>
 
-#include "base/atomic_file.h"
 #include "base/error.h"
 #include "base/file_set.h"
 #include "base/frames.h"
@@ -178,7 +177,6 @@ class Converter {
     for (const int frame : data_.all()) files.add_input(data_.file_of(frame), "data file");
     if (keys_.color.has_map_file()) files.add_input(keys_.color.map, "colour map");
     for (const int frame : data_.all()) files.add_output(output_of(frame), "-o");
-    for (const int frame : data_.all()) base::check_creatable(output_of(frame));
   }
 
   /// One range of the colour map for all frames, as in a plot.

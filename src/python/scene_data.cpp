@@ -60,7 +60,6 @@ bool is_saved_data(const fs::path& file, const fs::path& scene_file) {
 }
 
 void check_data_file(const fs::path& file, const fs::path& scene_file) {
-  base::check_creatable(file);
   std::error_code ignored;
   if (fs::exists(file, ignored) && !is_saved_data(file, scene_file))
     throw base::FileError(base::ErrorKind::kCannotCreate,
@@ -162,7 +161,6 @@ void save(const SceneData& scene, const fs::path& file) {
   if (scene.is_file) files.add_input(scene.file, "scene");
   load::add_named_files(source, {scene.frame}, files);
   files.add_output(file, "save()");
-  base::check_creatable(file);
   for (const auto& [name, table] : scene.tables) {
     const fs::path data = folder / table_file_name(file, name, *table);
     files.add_output(data, "points file");

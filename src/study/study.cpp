@@ -17,7 +17,6 @@
 #include "base/file_set.h"
 #include "base/stop_point.h"
 #include "base/stopwatch.h"
-#include "base/temp_dir.h"
 #include "compare/errors.h"
 #include "compile/compile.h"
 #include "compile/compiled_scene.h"
@@ -130,10 +129,7 @@ class Runner {
     report_progress("reading", 0);
     base::FileSet files;
     files.add_input(request_.scene.file, "scene");
-    if (!request_.report.empty()) {
-      files.add_output(request_.report, "-o");
-      base::check_creatable(request_.report);
-    }
+    if (!request_.report.empty()) files.add_output(request_.report, "-o");
     load::SceneRequest load;
     load.source = request_.scene;
     read_ = std::move(load::load_scene(load).read);

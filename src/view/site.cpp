@@ -14,8 +14,8 @@
 #include <fmt/core.h>
 #include <nlohmann/json.hpp>
 
+#include "base/atomic_file.h"
 #include "base/error.h"
-#include "base/temp_dir.h"
 #include "base/text.h"
 #include "job/rendering.h"
 #include "load/read_scene.h"

@@ -9,6 +9,8 @@
 #include <unistd.h>
 
 #include <csignal>
+#include <cstdlib>
+#include <set>
 #include <stdexcept>
 
 #include "base/error.h"
@@ -281,6 +283,119 @@ TEST(BaseAtomicFile, ASignalHandlerCanRemoveUnfinishedFiles) {
   ASSERT_TRUE(WIFEXITED(status) && WEXITSTATUS(status) == 0);
   EXPECT_EQ(folder.count(), 1u);
   EXPECT_TRUE(std::filesystem::exists(folder / "done.txt"));
+}
+
+/// Runs `act` in a child process, which then ends like one that was killed: without destructors and handlers.
+template <class Act>
+void in_killed_process(Act act) {
+  const pid_t child = ::fork();
+  ASSERT_GE(child, 0);
+  if (child == 0) {
+    act();
+    ::_exit(0);
+  }
+  int status = 0;
+  ASSERT_EQ(::waitpid(child, &status, 0), child);
+  ASSERT_EQ(status, 0);
+}
+
+std::set<std::string> names_in(const TempDir& folder) {
+  std::set<std::string> names;
+  for (const auto& entry : std::filesystem::directory_iterator(folder.path()))
+    names.insert(entry.path().filename().string());
+  return names;
+}
+
+TEST(BaseAtomicFile, TheFilesOfAKilledProcessAreRemovedByTheNext) {
+  const TempDir folder;
+  in_killed_process([&] {
+    const AtomicFile a(folder / "a.txt"), b(folder / "b.txt");
+    write_bytes(a.temporary(), "half");
+    ::_exit(0);
+  });
+  ASSERT_EQ(folder.count(), 2u) << "the child leaves its files";
+  check_creatable(folder / "c.txt");
+  EXPECT_EQ(folder.count(), 0u);
+}
+
+TEST(BaseAtomicFile, TheFilesOfARunningProcessStay) {
+  const TempDir folder;
+  AtomicFile running(folder / "a.txt");
+  write_bytes(running.temporary(), "new");
+  in_killed_process([&] {
+    const AtomicFile b(folder / "b.txt");
+    ::_exit(0);
+  });
+  ASSERT_EQ(folder.count(), 2u);
+  check_creatable(folder.path() / "." / "c.txt");  // this process has not looked into a folder of this name
+  EXPECT_EQ(folder.count(), 1u) << "of two files, one is left over";
+  running.commit();
+  EXPECT_EQ(file_bytes(folder / "a.txt"), "new");
+}
+
+TEST(BaseAtomicFile, FilesOfUsersStay) {
+  const TempDir folder;
+  in_killed_process([&] {
+    const AtomicFile a(folder / "a.txt");
+    ::_exit(0);
+  });
+  ASSERT_EQ(folder.count(), 1u);
+  std::string other = *names_in(folder).begin();
+  std::filesystem::remove(folder / other);
+  other.back() = other.back() == '0' ? '1' : '0';
+  const std::set<std::string> names = {".a.txt.original", ".a.txt.abcdefgh", ".a.txt.abcdefgh012345", "a.txt", other};
+  for (const std::string& name : names) write_bytes(folder / name, "theirs");
+  check_creatable(folder / "a.txt");
+  EXPECT_EQ(names_in(folder), names);
+}
+
+/// Sets $TMPDIR for a scope.
+class TemporaryFolder {
+ public:
+  explicit TemporaryFolder(const std::filesystem::path& folder) {
+    if (const char* const before = std::getenv("TMPDIR")) before_ = before;
+    ::setenv("TMPDIR", folder.c_str(), 1);
+  }
+  ~TemporaryFolder() { before_.empty() ? ::unsetenv("TMPDIR") : ::setenv("TMPDIR", before_.c_str(), 1); }
+  TemporaryFolder(const TemporaryFolder&) = delete;
+  TemporaryFolder& operator=(const TemporaryFolder&) = delete;
+
+ private:
+  std::string before_;
+};
+
+TEST(BaseTempDir, IsRemovedWithItsContent) {
+  const TempDir folder;
+  const TemporaryFolder scope(folder.path());
+  {
+    const base::TempDir own;
+    write_bytes(own.path() / "a", "x");
+    EXPECT_EQ(folder.count(), 1u);
+  }
+  EXPECT_EQ(folder.count(), 0u);
+}
+
+TEST(BaseTempDir, IsRemovedAfterASignalAndByTheNextProcess) {
+  const TempDir folder;
+  const TemporaryFolder scope(folder.path());
+  for (const bool has_signal : {true, false}) {
+    in_killed_process([&] {
+      const base::TempDir own;
+      write_bytes(own.path() / "a", "x");
+      if (has_signal) remove_unfinished_files();
+      ::_exit(0);
+    });
+    EXPECT_EQ(folder.count(), has_signal ? 0u : 1u);
+  }
+  { const base::TempDir next; }
+  EXPECT_EQ(folder.count(), 0u);
+}
+
+TEST(BaseTempDir, AFolderThatCannotHoldFilesIsReported) {
+  const TemporaryFolder scope("/proc");
+  const Error error = error_of([] { base::TempDir(); });
+  EXPECT_EQ(error.kind(), ErrorKind::kCannotCreate);
+  EXPECT_NE(std::string(error.what()).find("$TMPDIR"), std::string::npos) << error.what();
 }
 
 TEST(BaseAtomicFile, TextIsWrittenByteForByte) {

@@ -25,9 +25,9 @@ class BaseFileSet : public testing::Test {
     std::string found[2];
     const auto add = [&](FileSet& set, bool output_first, std::string& text) {
       try {
-        if (output_first) set.add_output(output, "-o");
-        is_input ? static_cast<void>(set.add_input(other, "scene")) : set.add_output(other, "--stats");
-        if (!output_first) set.add_output(output, "-o");
+        if (output_first) set.reserve(output, "-o");
+        is_input ? static_cast<void>(set.add_input(other, "scene")) : set.reserve(other, "--stats");
+        if (!output_first) set.reserve(output, "-o");
       } catch (const Error& error) {
         EXPECT_EQ(error.kind(), ErrorKind::kUsage);
         text = error.what();
@@ -74,6 +74,19 @@ TEST_F(BaseFileSet, ANameStaysTakenWhenItsFileAppearsOrDisappears) {
   fs::remove(folder_ / "in");
   EXPECT_THROW(files.add_input(folder_ / "later", "points file"), Error);
   EXPECT_THROW(files.add_input(folder_ / "in", "points file"), Error);
+}
+
+TEST_F(BaseFileSet, AnOutputCanBeCreatedUnlessALaterStepChecksIt) {
+  FileSet files;
+  try {
+    files.add_output(folder_ / "none/out", "-o");
+    ADD_FAILURE() << "its folder does not exist";
+  } catch (const Error& error) {
+    EXPECT_EQ(error.kind(), ErrorKind::kCannotCreate);
+  }
+  EXPECT_NO_THROW(files.reserve(folder_ / "none/other", "--stats"));
+  EXPECT_NO_THROW(files.add_output(folder_ / "sub/out", "--deep"));
+  EXPECT_FALSE(fs::exists(folder_ / "sub/out"));
 }
 
 TEST_F(BaseFileSet, AnInputMayBeReadTwice) {

@@ -10,7 +10,7 @@
 #include <string>
 #include <vector>
 
-#include "base/temp_dir.h"
+#include "base/atomic_file.h"
 
 namespace orrery::base {
 namespace {
