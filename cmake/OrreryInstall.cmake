@@ -16,8 +16,10 @@ if(TARGET orrery)
   install(TARGETS orrery_program orrery_http_module orrery_image_module orrery_data_module
           RUNTIME DESTINATION ${CMAKE_INSTALL_LIBEXECDIR}/orrery COMPONENT runtime
           LIBRARY DESTINATION ${CMAKE_INSTALL_LIBEXECDIR}/orrery COMPONENT runtime)
-  install(DIRECTORY $<TARGET_FILE_DIR:orrery_program>/orrery-image-stubs
-          DESTINATION ${CMAKE_INSTALL_LIBEXECDIR}/orrery COMPONENT runtime)
+  if(ORRERY_STUBS)
+    install(DIRECTORY $<TARGET_FILE_DIR:orrery_program>/orrery-image-stubs
+            DESTINATION ${CMAKE_INSTALL_LIBEXECDIR}/orrery COMPONENT runtime)
+  endif()
 endif()
 set(documents ${PROJECT_BINARY_DIR}/docs)
 install(FILES ${documents}/orrery.1 DESTINATION ${CMAKE_INSTALL_MANDIR}/man1 COMPONENT runtime)

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
 # The Debian packages of `cpack -G DEB` (tools/packages.sh): orrery, liborrery-dev and, with ORRERY_PYTHON,
-# python3-orrery. cmake/debian/stage.cmake adds the files that Debian's policy requires.
+# python3-orrery, for builds with ORRERY_STUBS=OFF. cmake/debian/stage.cmake adds the files that Debian's policy requires.
 set(CPACK_COMPONENTS_ALL runtime development)
 set(CPACK_DEB_COMPONENT_INSTALL ON)
 set(CPACK_PACKAGING_INSTALL_PREFIX /usr)

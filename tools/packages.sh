@@ -6,7 +6,7 @@
 #
 # Packages of a commit that is not tagged with its version (v1.2.3) have a version that precedes the release
 # (1.2.3~git...). Dates are those of the commit: the packages of a commit are the same in every build on the same system
-# (tools/reproducible.sh).
+# (tools/reproducible.sh). They have no stub libraries (docs/decisions/0021).
 set -euo pipefail
 root=$(cd "$(dirname "${BASH_SOURCE[0]}")/.." && pwd)
 . "$root/tools/setup.sh"
@@ -27,7 +27,12 @@ install_missing "$root/tools/packages-build.txt" "$root/tools/packages-debian.tx
 if ! grep -qs '^ORRERY_PYTHON:BOOL=ON' "$root/build/CMakeCache.txt"; then
   configure -DBUILD_TESTING=OFF -DORRERY_PYTHON=ON
 fi
-cmake "$root/build" >"$root/build/configure.log" 2>&1 || die "CMake configuration failed, see build/configure.log"
+set_stubs() {
+  cmake "-DORRERY_STUBS=$1" "$root/build" >"$root/build/configure.log" 2>&1 ||
+    die "CMake configuration failed, see build/configure.log"
+}
+trap 'set_stubs ON' EXIT # for the next user of the build
+set_stubs OFF
 build 10 all
 rm -rf "$folder"
 if ! cpack -G DEB --config "$root/build/CPackConfig.cmake" -D "CPACK_PACKAGE_VERSION=$version" -B "$folder" \

@@ -7,14 +7,14 @@
 #include <cstdio>
 #include <cstdlib>
 #include <cstring>
+#include <initializer_list>
 
 #include <unistd.h>
 
+#include "cli/launcher.h"
+
 namespace orrery::cli {
 namespace {
-
-/// Path of the program, relative to the launcher's folder.
-constexpr char kProgram[] = ORRERY_PROGRAM_FROM_LAUNCHER;
 
 /// Blocks USR1. While the program's libraries are being loaded, no handler is installed, and a supervisor's USR1 would
 /// end the process. The blocked signal stays pending until prepare_signals unblocks it.
@@ -26,8 +26,8 @@ void block_snapshots() {
 }
 
 /// glibc requests huge pages for its heap. A start without them is half page faults, most in OpenImageIO's table of
-/// strings. Without effect before glibc 2.35 and where the system denies them.
-void use_huge_pages() { setenv("GLIBC_TUNABLES", "glibc.malloc.hugetlb=1", 0); }
+/// strings. Without effect before glibc 2.35 and where the system denies them. The program removes the variable.
+void use_huge_pages() { setenv(kTunablesName, kTunables, 0); }
 
 /// Returns what this processor lacks of the least instruction set that the program is compiled for, or null.
 const char* missing_instruction_set() {
@@ -47,16 +47,19 @@ const char* missing_instruction_set() {
   return nullptr;
 }
 
-/// Result     false if the launcher's own path is unknown or too long
-bool find_program(char (&path)[PATH_MAX]) {
+/// Replaces this process by a program.
+///
+/// `program`  its path, relative to the launcher's folder
+/// Result     errno is set, if it cannot be executed
+void execute(const char* program, char** argv) {
+  char path[PATH_MAX];
   const ssize_t size = readlink("/proc/self/exe", path, sizeof(path) - 1);
-  if (size < 0) return false;
+  if (size < 0) return;
   path[size] = '\0';
-  char* const folder_end = std::strrchr(path, '/');
-  if (folder_end == nullptr || static_cast<std::size_t>(folder_end + 1 - path) + sizeof(kProgram) > sizeof(path))
-    return false;
-  std::memcpy(folder_end + 1, kProgram, sizeof(kProgram));
-  return true;
+  char* const name = std::strrchr(path, '/') + 1;  // a path from the kernel is absolute
+  if (std::strlen(program) >= sizeof(path) - static_cast<std::size_t>(name - path)) return;
+  std::strcpy(name, program);
+  execv(path, argv);
 }
 
 }  // namespace
@@ -72,8 +75,7 @@ int main(int, char** argv) {
 #endif
     return 70;
   }
-  char path[PATH_MAX];
-  if (orrery::cli::find_program(path)) execv(path, argv);
-  std::perror("orrery: cannot start the program, which is installed as " ORRERY_PROGRAM_FROM_LAUNCHER);
+  for (const char* program : {ORRERY_INSTALLED_PROGRAM, ORRERY_BUILT_PROGRAM}) orrery::cli::execute(program, argv);
+  std::perror("orrery: cannot start the program, which is installed as " ORRERY_INSTALLED_PROGRAM);
   return 70;  // base::ErrorKind::kInternal; the launcher links no library of the project
 }

@@ -18,6 +18,8 @@ void on_signal(int signal) {
   _exit(128 + signal);  // as a shell reports a process ended by a signal
 }
 
+void on_failed_write(int) {}
+
 void on_snapshot(int) { snapshot.store(true, std::memory_order_relaxed); }
 
 /// Installs a handler, unless the signal was ignored at the start of the process.
@@ -38,10 +40,8 @@ void handle_signals() {
 }  // namespace
 
 void prepare_signals() {
-  struct sigaction ignore {};
-  ignore.sa_handler = SIG_IGN;
-  sigaction(SIGPIPE, &ignore, nullptr);
-  sigaction(SIGXFSZ, &ignore, nullptr);
+  // A handler rather than SIG_IGN, which child processes would inherit.
+  for (const int signal : {SIGPIPE, SIGXFSZ}) handle(signal, on_failed_write);
   handle(SIGUSR1, on_snapshot);
   sigset_t ours;
   sigemptyset(&ours);

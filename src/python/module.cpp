@@ -47,8 +47,10 @@ void export_symbols() {
   if (dladdr(reinterpret_cast<const void*>(&export_symbols), &own) == 0 || own.dli_fname == nullptr ||
       dlopen(own.dli_fname, RTLD_NOW | RTLD_NOLOAD | RTLD_GLOBAL) == nullptr)
     throw base::Error(base::ErrorKind::kInternal, "cannot export the symbols of orrery's Python module");
-  base::set_module_folder(
-      (std::filesystem::path(own.dli_fname).parent_path() / ORRERY_MODULES_FROM_PYTHON).lexically_normal());
+  const std::filesystem::path package = std::filesystem::path(own.dli_fname).parent_path();
+  const std::filesystem::path installed = (package / ORRERY_INSTALLED_MODULES).lexically_normal();
+  const bool is_installed = std::filesystem::exists(installed);
+  base::set_module_folder(is_installed ? installed : (package / ORRERY_BUILT_MODULES).lexically_normal());
 }
 
 /// The text that the program prints for an error, with the names of arguments for those of options.

@@ -17,6 +17,7 @@ orrery render "$here/../scenes/book/final.toml" -q -o first.exr -o first.png \
   --set image.width=160 --set image.height=90 --set render.samples=16
 test -s first.exr && test -s first.png
 test -s /usr/share/man/man1/orrery.1.gz
+if dpkg -L orrery | grep stubs; then fail "the package orrery has stub libraries"; fi
 
 install "$packages"/python3-orrery_*.deb
 printed=$(python3 "$here/check_python.py" /tmp)
