@@ -1,17 +1,25 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "cli/film.h"
 
+#include <fcntl.h>
+#include <poll.h>
+#include <sys/file.h>
+#include <sys/mman.h>
+#include <sys/prctl.h>
+#include <sys/socket.h>
+#include <sys/stat.h>
 #include <sys/wait.h>
+#include <unistd.h>
 
 #include <algorithm>
 #include <array>
 #include <cerrno>
 #include <cmath>
-#include <cstdio>
+#include <csignal>
 #include <cstdlib>
 #include <cstring>
 #include <fstream>
-#include <memory>
+#include <initializer_list>
 #include <string>
 #include <system_error>
 #include <utility>
@@ -23,7 +31,7 @@
 #include "base/error.h"
 #include "base/file_name.h"
 #include "base/frames.h"
-#include "base/text.h"
+#include "base/stop_point.h"
 #include "cli/options.h"
 
 namespace orrery::cli {
@@ -33,55 +41,167 @@ namespace fs = std::filesystem;
 
 /// Options of ffmpeg between input and output. Videos have sizes of even numbers: the last column or row is left out.
 /// Colours are those of sRGB images, which display programs show as such.
-constexpr const char* kGif =
-    "-filter_complex '[0:v]split[a][b];[a]palettegen=stats_mode=diff[p];[b][p]paletteuse' -loop 0 -f gif";
-constexpr const char* kVideo =
-    "-vf 'crop=trunc(iw/2)*2:trunc(ih/2)*2,scale=out_color_matrix=bt709:out_range=tv' -c:v libx264 -crf 18 "
-    "-pix_fmt yuv420p -colorspace bt709 -color_primaries bt709 -color_trc iec61966-2-1 -color_range tv "
-    "-movflags +faststart -f mp4";
+constexpr std::initializer_list<const char*> kGif = {
+    "-filter_complex", "[0:v]split[a][b];[a]palettegen=stats_mode=diff[p];[b][p]paletteuse", "-loop", "0", "-f", "gif"};
+constexpr std::initializer_list<const char*> kVideo = {
+    "-vf",
+    "crop=trunc(iw/2)*2:trunc(ih/2)*2,scale=out_color_matrix=bt709:out_range=tv",
+    "-c:v",
+    "libx264",
+    "-crf",
+    "18",
+    "-pix_fmt",
+    "yuv420p",
+    "-colorspace",
+    "bt709",
+    "-color_primaries",
+    "bt709",
+    "-color_trc",
+    "iec61966-2-1",
+    "-color_range",
+    "tv",
+    "-movflags",
+    "+faststart",
+    "-f",
+    "mp4"};
 
 /// A GIF counts in hundredths of a second, and players show one of them as ten.
 constexpr int kMostGifRate = 50;
 
-/// Sends a file. False if the reader of the pipe has ended: the program ignores SIGPIPE.
-bool send_file(const fs::path& file, std::FILE* pipe) {
-  std::ifstream in(file, std::ios::binary);
-  if (!in) throw base::Error(base::ErrorKind::kIo, fmt::format("cannot read {}", file.string()));
-  std::array<char, 1 << 16> block{};
-  while (in.read(block.data(), block.size()) || in.gcount() > 0)
-    if (const auto size = static_cast<std::size_t>(in.gcount()); std::fwrite(block.data(), 1, size, pipe) != size)
-      return false;
-  return true;
-}
+/// The program ffmpeg, which encodes the images that it is sent. It ends with this object, or if this process is
+/// killed.
+class Encoder {
+ public:
+  /// Errors     base::Error(kIo) if no process can be started
+  explicit Encoder(std::vector<std::string> words) : messages_(::memfd_create("ffmpeg", MFD_CLOEXEC)) {
+    std::vector<char*> arguments;
+    for (std::string& word : words) arguments.push_back(word.data());
+    arguments.push_back(nullptr);
+    // A socket rather than a pipe: its other end can tell whether everything was read.
+    std::array<int, 2> ends{-1, -1};
+    const pid_t self = ::getpid();
+    if (messages_ >= 0 && ::socketpair(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC, 0, ends.data()) == 0) child_ = ::fork();
+    if (child_ == 0) {
+      ::prctl(PR_SET_PDEATHSIG, SIGKILL);
+      ::dup2(ends[1], STDIN_FILENO);
+      ::dup2(::open("/dev/null", O_WRONLY | O_CLOEXEC), STDOUT_FILENO);
+      ::dup2(messages_, STDERR_FILENO);
+      if (::getppid() == self) ::execvp(arguments.front(), arguments.data());
+      ::_exit(127);
+    }
+    const int error = errno;
+    input_ = ends[0];
+    if (ends[1] >= 0) ::close(ends[1]);
+    if (child_ > 0) return;
+    close();
+    throw base::Error(base::ErrorKind::kIo, fmt::format("cannot start ffmpeg: {}", std::strerror(error)));
+  }
+  ~Encoder() {
+    if (child_ > 0) {
+      ::kill(child_, SIGKILL);
+      ::waitpid(child_, nullptr, 0);
+    }
+    close();
+  }
+  Encoder(const Encoder&) = delete;
+  Encoder& operator=(const Encoder&) = delete;
 
-std::string last_line(const fs::path& file) {
-  std::ifstream in(file);
-  std::string last;
-  for (std::string line; std::getline(in, line);) last = line;
-  return last;
-}
+  /// Sends a file.
+  ///
+  /// Result     false if ffmpeg reads no more
+  /// Errors     base::Error: kIo if the file cannot be read, kStopped
+  bool send(const fs::path& file) const {
+    std::ifstream in(file, std::ios::binary);
+    if (!in) throw base::Error(base::ErrorKind::kIo, fmt::format("cannot read {}", file.string()));
+    std::array<char, 1 << 16> block{};
+    while (in.read(block.data(), block.size()) || in.gcount() > 0)
+      for (const char *at = block.data(), *const end = at + in.gcount(); at != end;) {
+        wait_for(POLLOUT);
+        const ssize_t sent = ::send(input_, at, static_cast<std::size_t>(end - at), MSG_DONTWAIT | MSG_NOSIGNAL);
+        if (sent >= 0) {
+          at += sent;
+        } else if (!is_to_repeat()) {
+          return false;
+        }
+      }
+    return true;
+  }
+
+  /// Waits until ffmpeg has ended.
+  ///
+  /// Result     how it failed, or an empty string
+  /// Errors     base::Error(kStopped)
+  std::string finish() {
+    ::shutdown(input_, SHUT_WR);
+    ssize_t received = 0;
+    char ignored = 0;
+    do {
+      wait_for(POLLIN);
+      received = ::recv(input_, &ignored, 1, MSG_DONTWAIT);
+    } while (received > 0 || (received < 0 && is_to_repeat()));
+    const bool has_read_all = received == 0;  // else ECONNRESET
+    int status = 0;
+    while (::waitpid(child_, &status, WNOHANG) == 0) {
+      stop_.check();
+      ::poll(nullptr, 0, kWait_ms);
+    }
+    child_ = -1;
+    stop_.check();  // a signal from a terminal ends ffmpeg, too
+    const std::string said = last_message();
+    const std::string how = WIFSIGNALED(status) ? fmt::format("was ended by signal {}", WTERMSIG(status))
+                            : status != 0       ? fmt::format("failed with status {}", WEXITSTATUS(status))
+                            // If it cannot write the end of a film, some versions print an error, but succeed.
+                            : !said.empty() ? "reported an error"
+                            : !has_read_all ? "ended before it had read all frames"
+                                            : "";
+    return said.empty() ? how : how + ": " + said;
+  }
+
+ private:
+  static constexpr int kWait_ms = 20;
+
+  static bool is_to_repeat() { return errno == EAGAIN || errno == EINTR; }
+
+  /// Waits for a moment, or until the socket is ready.
+  void wait_for(short events) const {
+    stop_.check();
+    pollfd socket{input_, events, 0};
+    ::poll(&socket, 1, kWait_ms);
+  }
+
+  std::string last_message() const {
+    std::ifstream in(fmt::format("/proc/self/fd/{}", messages_));
+    std::string last;
+    for (std::string line; std::getline(in, line);) last = line;
+    return last;
+  }
+
+  void close() const {
+    for (const int descriptor : {input_, messages_})
+      if (descriptor >= 0) ::close(descriptor);
+  }
+
+  int messages_, input_ = -1;  ///< its standard error and standard input
+  pid_t child_ = -1;
+  base::StopPoint stop_;
+};
 
 /// Encodes images to `output`, with the options for the name of `film`.
 ///
 /// Result     how ffmpeg failed, or an empty string
 std::string encoded(const std::vector<fs::path>& images, const fs::path& film, const fs::path& output, double fps) {
-  const base::TempDir folder;
-  const fs::path messages = folder.path() / "messages";
-  const std::string command = fmt::format(
-      "exec ffmpeg -nostdin -y -loglevel error -f image2pipe -framerate {} -c:v png -i pipe:0 {} {} > /dev/null 2> {}",
-      fps, base::extension(film) == ".gif" ? kGif : kVideo, base::quoted("file:" + output.string()),
-      base::quoted(messages.string()));
-  std::unique_ptr<std::FILE, int (*)(std::FILE*)> pipe(popen(command.c_str(), "we"), pclose);
-  if (!pipe) return fmt::format("cannot be started: {}", std::strerror(errno));
+  std::vector<std::string> words = {
+      "ffmpeg", "-nostdin", "-y", "-loglevel", "error", "-f", "image2pipe", "-framerate", fmt::format("{}", fps),
+      "-c:v",   "png",      "-i", "pipe:0"};
+  const auto& options = base::extension(film) == ".gif" ? kGif : kVideo;
+  words.insert(words.end(), options.begin(), options.end());
+  words.push_back("file:" + output.string());
+  Encoder encoder(std::move(words));
   for (const fs::path& image : images)
-    if (!send_file(image, pipe.get())) break;
-  const int status = pclose(pipe.release());
-  const std::string said = last_line(messages);
-  // If it cannot write the end of a film, some versions print an error, but succeed.
-  if (status == 0) return said.empty() ? "" : "reported an error: " + said;
-  const std::string how = WIFSIGNALED(status) ? fmt::format("was ended by signal {}", WTERMSIG(status))
-                                              : fmt::format("failed with status {}", WEXITSTATUS(status));
-  return said.empty() ? how : how + ": " + said;
+    if (!encoder.send(image)) break;
+  const std::string error = encoder.finish();
+  std::error_code ignored;
+  return error.empty() && fs::file_size(output, ignored) == 0 ? "wrote an empty file" : error;
 }
 
 }  // namespace
@@ -110,17 +230,30 @@ Film::Film(fs::path file, double fps, bool keeps_frames)
                       fmt::format("{} cannot be created: the program ffmpeg was not found; install the package ffmpeg, "
                                   "or write an image for each frame, e.g. -o out.####.png",
                                   file_.string()));
-  base::check_creatable(file_);
-  std::error_code error;
-  fs::create_directory(folder_, error);
-  if (error)
-    throw base::Error(base::ErrorKind::kCannotCreate,
-                      fmt::format("cannot create the folder {}: {}", folder_.string(), error.message()));
 }
 
 Film::~Film() {
   std::error_code not_empty;
+  if (lock_ < 0) return;
   fs::remove(folder_, not_empty);
+  ::close(lock_);
+}
+
+void Film::open_folder() {
+  const auto fail = [&](const std::string& reason) {
+    throw base::Error(base::ErrorKind::kCannotCreate,
+                      fmt::format("cannot create the folder {}: {}", folder_.string(), reason));
+  };
+  std::error_code error;
+  fs::create_directory(folder_, error);
+  if (error) fail(error.message());
+  lock_ = ::open(folder_.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
+  if (lock_ < 0) fail(std::strerror(errno));
+  // A file system without locks is no obstacle.
+  if (::flock(lock_, LOCK_EX | LOCK_NB) == 0 || errno != EWOULDBLOCK) return;
+  ::close(std::exchange(lock_, -1));
+  throw base::Error(base::ErrorKind::kCannotCreate,
+                    fmt::format("another command is writing {}; wait until it has ended", file_.string()));
 }
 
 bool Film::is_film(const fs::path& file) {
@@ -138,19 +271,22 @@ void Film::check_size(int width, int height) const {
 void Film::encode(const std::vector<int>& frames) const {
   std::vector<fs::path> images;
   for (const int frame : frames) images.emplace_back(base::with_frame(frame_pattern().string(), frame));
-  const fs::path unfinished = file_.string() + ".part";
-  std::string error = encoded(images, file_, unfinished, fps_);
-  std::error_code failed;
-  if (error.empty()) fs::rename(unfinished, file_, failed);
-  if (failed) error = failed.message();
-  if (!error.empty()) {
-    fs::remove(unfinished, failed);
-    throw base::Error(base::ErrorKind::kIo,
-                      fmt::format("{}: ffmpeg {}; the frames are in {}, and the same command continues from them",
-                                  file_.string(), error, folder_.string()));
+  const auto fail = [&](base::ErrorKind kind, const std::string& what) {
+    throw base::Error(kind, fmt::format("{}: {}; the frames are in {}, and the same command continues from them",
+                                        file_.string(), what, folder_.string()));
+  };
+  base::AtomicFile film(file_);
+  try {
+    if (const std::string error = encoded(images, file_, film.temporary(), fps_); !error.empty())
+      fail(base::ErrorKind::kIo, "ffmpeg " + error);
+  } catch (const base::Error& error) {
+    if (error.kind() != base::ErrorKind::kStopped) throw;
+    fail(base::ErrorKind::kStopped, "stopped");
   }
+  film.commit();
   if (keeps_frames_) return;
-  for (const fs::path& image : images) fs::remove(image, failed);
+  std::error_code ignored;
+  for (const fs::path& image : images) fs::remove(image, ignored);
 }
 
 }  // namespace orrery::cli

@@ -23,10 +23,10 @@ struct FilmSettings {
 /// a stopped command continues from them.
 class Film {
  public:
-  /// Creates the folder of the frames.
+  /// Checks the request; no file is touched.
   ///
   /// Errors     base::Error: kUsage if the format cannot have this rate; kCannotCreate if the program ffmpeg is not
-  ///            installed, or a file or folder cannot be created
+  ///            installed
   Film(std::filesystem::path file, double fps, bool keeps_frames);
   ~Film();
   Film(const Film&) = delete;
@@ -39,18 +39,24 @@ class Film {
   /// The name of the frames, with a frame pattern.
   std::filesystem::path frame_pattern() const;
 
+  /// Creates the folder of the frames, and locks it against other commands.
+  ///
+  /// Errors     base::Error(kCannotCreate)
+  void open_folder();
+
   /// Refuses a size, px, that the format cannot have.
   void check_size(int width, int height) const;
 
-  /// Encodes the film, and then removes its frames, unless they are to be kept.
+  /// Encodes the film, and then removes its frames, unless they are to be kept. A base::StopScope can stop it.
   ///
-  /// Errors     base::Error(kIo) if ffmpeg fails; the frames stay
+  /// Errors     base::Error: kIo if ffmpeg fails, kCannotCreate, kStopped; the frames stay
   void encode(const std::vector<int>& frames) const;
 
  private:
   std::filesystem::path file_, folder_;
   double fps_;
   bool keeps_frames_;
+  int lock_ = -1;  ///< descriptor of the locked folder
 };
 
 }  // namespace orrery::cli

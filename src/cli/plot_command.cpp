@@ -73,16 +73,17 @@ void write_films(const PlotCommand& arguments) {
 /// The files that plot writes in addition to those of a render.
 std::vector<job::NamedOutput> own_outputs(const PlotCommand& arguments) {
   std::vector<job::NamedOutput> out;
+  for (const auto& film : arguments.films) out.push_back({film->file(), "-o"});
   if (!arguments.save_scene.empty()) out.push_back({arguments.save_scene, "--save-scene"});
   if (!arguments.legend.empty()) out.push_back({arguments.legend, "--legend"});
   return out;
 }
 
-/// Checks early what would otherwise fail after all frames have been read: names, formats and sizes of outputs, layers,
-/// colour names.
-void check_request(const PlotCommand& arguments, const std::vector<int>& frames) {
+/// The jobs of these frames, before the data have been read. Checks the names of all files.
+std::vector<job::Job> expected_jobs(const PlotCommand& arguments, const std::vector<int>& frames) {
+  const plot::PlotOptions& plot = arguments.shown.options;
   job::Batch batch = arguments.render.batch;
-  batch.scenes = {arguments.shown.options.file};
+  batch.scenes = {plot.file};
   batch.frames = frames;
   batch.others = own_outputs(arguments);
   if (const auto file = preview::preview_file(arguments.render.preview); !file.empty())
@@ -90,7 +91,19 @@ void check_request(const PlotCommand& arguments, const std::vector<int>& frames)
   job::Job& job = batch.job;
   job.scene.text = std::make_shared<const std::string>();
   job.scene.has_file = false;
-  for (const job::Job& one : job::jobs_of(batch)) job::check_request(one);
+  job.outputs.display.config = plot::display_of(plot).config;
+  job.files = std::make_shared<base::FileSet>();
+  for (const int frame : frames.empty() ? std::vector<int>{1} : frames)
+    job.files->add_input(base::input_at_frame({}, plot.file.string(), frame), "data file");
+  if (plot.points.color.has_map_file()) job.files->add_input(plot.points.color.map, "colour map");
+  return job::jobs_of(batch);
+}
+
+/// Checks early what would otherwise fail after all frames have been read: names, formats and sizes of outputs, layers,
+/// colour names.
+void check_request(const PlotCommand& arguments, const std::vector<int>& frames) {
+  for (const job::Job& one : expected_jobs(arguments, frames)) job::check_request(one);
+  job::Job job = arguments.render.batch.job;
   job.scene.overrides = arguments.shown.options.overrides;
   const scene::Scene settings =
       plot::settings_scene(arguments.shown.options, job.outputs.has_display_format()).read.scene;
@@ -113,26 +126,15 @@ std::filesystem::path statistics_of(const PlotCommand& arguments) {
   return base::with_frame(arguments.render.batch.job.outputs.statistics.string(), frames.empty() ? 1 : frames.front());
 }
 
-/// Checks the names that are known before the data are read, which may take long. run_render() checks all names.
+/// Checks what is known before the data are read, which may take long: the files of the first frame.
 void check_outputs(const PlotCommand& arguments) {
   const plot::PlotOptions& plot = arguments.shown.options;
-  base::FileSet files;
-  for (const int frame : plot.frames.empty() ? std::vector<int>{1} : plot.frames)
-    files.add_input(base::input_at_frame({}, plot.file.string(), frame), "data file");
-  if (plot.points.color.has_map_file()) files.add_input(plot.points.color.map, "colour map");
-  load::add_ocio_configs(plot::display_of(plot).config, files);
-  for (const job::NamedOutput& output : own_outputs(arguments)) {
-    files.add_output(output.path, output.role);
-    base::check_creatable(output.path);
-  }
+  const bool needs_numbers = plot.all_frames && plot.frames.empty();
+  const std::vector<job::Job> jobs =
+      expected_jobs(arguments, needs_numbers ? std::vector<int>{load::kFirstFrame} : plot.frames);
+  for (const auto& film : arguments.films) film->open_folder();
+  job::check_request(jobs.front());
   if (!arguments.save_scene.empty() && !arguments.force) load::check_unedited(arguments.save_scene);
-  if (const std::filesystem::path stats = statistics_of(arguments); !stats.empty()) {
-    files.add_output(stats, "--stats");
-    base::check_creatable(stats);
-  }
-  if (const auto file = preview::preview_file(arguments.render.preview); !file.empty())
-    files.add_output(file, "--preview");
-  for (const job::ImageFile& image : arguments.render.batch.job.outputs.images) files.add_output(image.path, "-o");
 }
 
 /// Reads the data and makes a scene. If that fails or is stopped, writes the statistics.
@@ -187,6 +189,7 @@ int run_plot(PlotCommand& arguments) {
     if (saves) base::write_text_file(arguments.save_scene, *text);
   };
   const int status = run_render(render);
+  const base::StopScope scope(job.hooks.cancel);
   if (status == 0) write_films(arguments);
   return status;
 }

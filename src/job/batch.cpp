@@ -45,7 +45,7 @@ std::vector<Job> jobs_of(const Batch& batch) {
   each_named(common.outputs, [&](const fs::path& name, const char*) { check_name(batch, name.string()); });
   const std::vector<int> frames = batch.frames.empty() ? std::vector<int>{load::kFirstFrame} : batch.frames;
   std::vector<Job> jobs;
-  common.files = std::make_shared<base::FileSet>();
+  if (!common.files) common.files = std::make_shared<base::FileSet>();
   if (frames.size() > 1) common.prepared = std::make_shared<PreparedScene>(true);
   base::FileSet& files = *common.files;
   for (const NamedOutput& other : batch.others) files.add_output(other.path, other.role);

@@ -6,7 +6,6 @@
 #include <fmt/core.h>
 
 #include "annotation/drawing.h"
-#include "base/atomic_file.h"
 #include "base/available_memory.h"
 #include "base/error.h"
 #include "base/file_name.h"

@@ -78,7 +78,8 @@ struct Job {
   bool denoise = false;        ///< denoise the images; a shard instead keeps the halves of its samples for denoising
   bool is_strict = false;      ///< a missed target is a failure, see JobReport::exit_status
   bool skip_existing = false;  ///< do nothing if all files exist, are intact, and come from this job
-  /// Files of the batch that this job belongs to; null: the job is not part of a batch.
+  /// Files of the batch that this job belongs to; null: the job is not part of a batch. In Batch::job: files of the
+  /// caller; null: none.
   std::shared_ptr<base::FileSet> files = nullptr;
   /// The scene of an earlier job, of which this job prepares only what has changed; null: nothing is kept.
   std::shared_ptr<PreparedScene> prepared = nullptr;

@@ -1,7 +1,16 @@
 // SPDX-License-Identifier: Apache-2.0
 // Films and annotated images of the command plot.
+#include <fcntl.h>
+#include <sys/file.h>
+#include <sys/prctl.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
 #include <algorithm>
+#include <csignal>
+#include <cstdlib>
 #include <filesystem>
+#include <utility>
 
 #include "cli/program.h"
 
@@ -25,6 +34,11 @@ class CliFilm : public ProgramTest {
     write_program("fails/ffmpeg", "head -c 100 > /dev/null; echo first >&2; echo out of luck >&2; exit 3");
     write_program("hides/ffmpeg",
                   "for last; do :; done; head -c 100 > \"${last#file:}\"; cat > /dev/null; echo disk full >&2");
+    // Programs that end with status 0 without a film: before they have read everything, and without output.
+    write_program("stops/ffmpeg", "for last; do :; done; head -c 100 > \"${last#file:}\"");
+    write_program("forgets/ffmpeg", "cat > /dev/null");
+    // One that never ends.
+    write_program("hangs/ffmpeg", "cat > /dev/null; echo $$ > ffmpeg.pid; exec sleep 1000000");
   }
   void write_program(const std::string& name, const std::string& script) {
     std::filesystem::create_directories((folder_ / name).parent_path());
@@ -33,6 +47,43 @@ class CliFilm : public ProgramTest {
   }
   Outcome film(const std::string& arguments, const std::string& ffmpeg = "copies") {
     return run("plot a.dump --width 17 --height 9 --samples 1 " + arguments, "PATH=\"$PWD/" + ffmpeg + ":$PATH\"");
+  }
+  struct Encoding {
+    pid_t program = 0, encoder = 0;
+  };
+  /// Starts a command, and waits until its encoder has all frames. The encoder is 0 if the command has ended before.
+  Encoding start_encoding() const {
+    std::filesystem::remove(folder_ / "ffmpeg.pid");
+    const std::string path = (folder_ / "hangs").string() + ":" + std::getenv("PATH");
+    Encoding out;
+    out.program = fork();
+    if (out.program == 0) {
+      if (chdir(folder_.c_str()) != 0) _exit(126);
+      setenv("PATH", path.c_str(), 1);
+      setenv("TMPDIR", ".", 1);
+      dup2(open(".err", O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0600), STDERR_FILENO);
+      execl(ORRERY_PROGRAM, "orrery", "plot", "a.dump", "-o", "a.mp4", "--frames", "all", "--width", "17", "--height",
+            "9", "--samples", "1", nullptr);
+      _exit(127);
+    }
+    std::string pid;
+    while (!pid.ends_with('\n') && waitpid(out.program, nullptr, WNOHANG) == 0) pid = text_of(folder_ / "ffmpeg.pid");
+    if (pid.ends_with('\n')) out.encoder = std::stoi(pid);
+    return out;
+  }
+  static int status_of(pid_t process) {
+    int status = 0;
+    waitpid(process, &status, 0);
+    return WIFEXITED(status) ? WEXITSTATUS(status) : 128 + WTERMSIG(status);
+  }
+  /// Number of temporary files and folders, in the folder of the film, which is also that of temporary files.
+  int unfinished_files() const {
+    int count = 0;
+    for (const auto& entry : std::filesystem::directory_iterator(folder_)) {
+      const std::string name = entry.path().filename().string();
+      count += name.starts_with(".a.mp4.") || contains(name, "orrery");
+    }
+    return count;
   }
   bool exists(const std::string& name) const { return std::filesystem::exists(folder_ / name); }
 };
@@ -75,6 +126,96 @@ TEST_F(CliFilm, AnErrorWithStatusZeroKeepsTheOldFilmAndTheFrames) {
   EXPECT_EQ(text_of(folder_ / "a.gif"), old);
   EXPECT_FALSE(exists("a.gif.part"));
   EXPECT_TRUE(exists("a.gif.frames/frame.000003.png"));
+}
+
+TEST_F(CliFilm, AnEncoderThatEndsEarlyHasFailed) {
+  for (const auto& [ffmpeg, reason] :
+       {std::pair{"stops", "ended before it had read all frames"}, std::pair{"forgets", "wrote an empty file"}}) {
+    const Outcome failed = film("-o a.mp4 --frames all", ffmpeg);
+    EXPECT_EQ(failed.status, 74);
+    EXPECT_TRUE(contains(failed.err, reason)) << failed.err;
+    EXPECT_FALSE(exists("a.mp4"));
+    EXPECT_TRUE(exists("a.mp4.frames/frame.000003.png"));
+  }
+}
+
+TEST_F(CliFilm, IsWrittenLikeAnImage) {
+  write("victim", "theirs");
+  std::filesystem::create_symlink("victim", folder_ / "link.mp4.part");
+  std::filesystem::create_symlink("target.mp4", folder_ / "link.mp4");
+  ASSERT_EQ(film("-o link.mp4 --frames 1").status, 0);
+  EXPECT_EQ(text_of(folder_ / "victim"), "theirs");
+  EXPECT_TRUE(std::filesystem::is_symlink(folder_ / "link.mp4"));
+  EXPECT_TRUE(std::filesystem::is_regular_file(folder_ / "target.mp4"));
+}
+
+TEST_F(CliFilm, IsAnOutputOfItsCommand) {
+  for (const char* files : {"--stats z.mp4 -o z.mp4", "-o z.mp4 -o ./z.mp4", "-o z.mp4 --legend z.mp4",
+                            "-o z.mp4 --save-scene z.mp4", "-o z.mp4 --preview z.mp4"}) {
+    EXPECT_EQ(film(std::string(files) + " --frames all").status, 2) << files;
+    EXPECT_FALSE(exists("z.mp4.frames")) << files;
+  }
+  std::filesystem::copy_file(folder_ / "a.dump", folder_ / "a.mp4");
+  EXPECT_EQ(run("plot a.mp4 --format lammps -o a.mp4 --frames all", "PATH=\"$PWD/copies:$PATH\"").status, 2);
+}
+
+TEST_F(CliFilm, TwoCommandsDoNotWriteOneFilm) {
+  std::filesystem::create_directory(folder_ / "a.mp4.frames");
+  const int other = open((folder_ / "a.mp4.frames").c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
+  ASSERT_EQ(flock(other, LOCK_EX), 0);
+  const Outcome second = film("-o a.mp4 --frames all");
+  EXPECT_EQ(second.status, 73);
+  EXPECT_TRUE(contains(second.err, "another command is writing a.mp4")) << second.err;
+  close(other);
+  EXPECT_EQ(film("-o a.mp4 --frames all").status, 0);
+}
+
+TEST_F(CliFilm, ASignalStopsTheEncoder) {
+  for (const int number : {SIGINT, SIGTERM}) {
+    const Encoding encoding = start_encoding();
+    ASSERT_GT(encoding.encoder, 0) << text_of(folder_ / ".err");
+    kill(encoding.program, number);
+    EXPECT_EQ(status_of(encoding.program), 75);
+    EXPECT_NE(kill(encoding.encoder, 0), 0) << "it is still running";
+    EXPECT_TRUE(contains(text_of(folder_ / ".err"), "the frames are in a.mp4.frames")) << text_of(folder_ / ".err");
+    EXPECT_TRUE(exists("a.mp4.frames/frame.000003.png"));
+    EXPECT_EQ(unfinished_files(), 0);
+  }
+  EXPECT_EQ(film("-o a.mp4 --frames all").status, 0);
+}
+
+TEST_F(CliFilm, TheEncoderOfAKilledCommandEndsAndTheNextCommandCleansUp) {
+  ASSERT_EQ(prctl(PR_SET_CHILD_SUBREAPER, 1), 0);
+  const Encoding encoding = start_encoding();
+  ASSERT_GT(encoding.encoder, 0) << text_of(folder_ / ".err");
+  kill(encoding.program, SIGKILL);
+  EXPECT_EQ(status_of(encoding.program), 128 + SIGKILL);
+  EXPECT_EQ(status_of(encoding.encoder), 128 + SIGKILL);
+  prctl(PR_SET_CHILD_SUBREAPER, 0);
+  EXPECT_EQ(unfinished_files(), 1);
+  const Outcome next = film("-o a.mp4 --frames all");
+  EXPECT_EQ(next.status, 0) << next.err;
+  EXPECT_TRUE(contains(next.err, "3 skipped")) << next.err;
+  EXPECT_EQ(unfinished_files(), 0);
+}
+
+TEST_F(CliFilm, TheEncoderInheritsNeitherSignalsNorVariables) {
+  // The last digits of the mask of ignored signals, without those of the C library.
+  const std::string ignored = "sed -n 's/^SigIgn:.*\\(.......\\)$/\\1/p' /proc/self/status > ";
+  write_program("looks/ffmpeg", ignored +
+                                    "signals; env > variables; cat > /dev/null; for last; do :; done; "
+                                    "echo film > \"${last#file:}\"");
+  ASSERT_EQ(run("plot a.dump -o a.mp4 --frames 1 --width 17 --height 9 --samples 1",
+                ignored + "expected; unset GLIBC_TUNABLES && PATH=\"$PWD/looks:$PATH\"")
+                .status,
+            0);
+  EXPECT_EQ(text_of(folder_ / "signals"), text_of(folder_ / "expected"));
+  EXPECT_FALSE(contains(text_of(folder_ / "variables"), "GLIBC_TUNABLES"));
+  ASSERT_EQ(run("plot a.dump -o a.mp4 --frames 1 --width 17 --height 9 --samples 1",
+                "GLIBC_TUNABLES=glibc.malloc.hugetlb=0 PATH=\"$PWD/looks:$PATH\"")
+                .status,
+            0);
+  EXPECT_TRUE(contains(text_of(folder_ / "variables"), "GLIBC_TUNABLES=glibc.malloc.hugetlb=0")) << "of the user";
 }
 
 TEST_F(CliFilm, TurntablesHaveTheFramesOfTheirTime) {
