@@ -14,6 +14,7 @@
 #include <fmt/core.h>
 
 #include "base/error.h"
+#include "base/input_file.h"
 #include "film/partial.h"
 #include "image/exr_spec.h"
 #include "image/header.h"
@@ -40,7 +41,6 @@ constexpr int kMaxWordsInRow = 4096;
 
 std::unique_ptr<ImageInput> open(const std::filesystem::path& file) {
   prepare_library();
-  require_digest(file);
   auto in = ImageInput::create("openexr");
   if (!in) throw base::Error(base::ErrorKind::kInternal, "this OpenImageIO cannot read EXR" + OIIO::geterror());
   ImageSpec spec;
@@ -94,11 +94,22 @@ void write_partial(const std::filesystem::path& file, const film::Picture& previ
   write_whole(file, "openexr", TypeDesc::FLOAT, {shown_part, sums_part}, true);
 }
 
-Provenance read_provenance(const std::filesystem::path& file) { return provenance_of(*open(file)); }
+Provenance read_provenance(const std::filesystem::path& file) {
+  base::require_readable(file);
+  Provenance out = provenance_of(*open(file));
+  if (out.empty())
+    throw base::Error(
+        base::ErrorKind::kBadData,
+        file.string() + " is not a checkpoint or shard; --resume, --sample-range A:B and --shard write them");
+  return out;
+}
 
-PartialFile read_partial(const std::filesystem::path& file, int width_px, int height_px) {
+PartialFile read_partial(const std::filesystem::path& file, int width_px, int height_px,
+                         const std::function<void(const Provenance&)>& check) {
+  require_digest(file);
   const auto in = open(file);
   Provenance provenance = provenance_of(*in);
+  if (check) check(provenance);
   if (!in->seek_subimage(1, 0)) damaged(file, "it has no sums");
   const ImageSpec spec = in->spec();
   if (spec.nchannels != 1 || spec.format != TypeDesc::UINT32 || spec.width < 1 || spec.height < 1 ||

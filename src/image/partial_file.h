@@ -2,6 +2,7 @@
 #pragma once
 
 #include <filesystem>
+#include <functional>
 
 #include "film/partial.h"
 #include "image/header.h"
@@ -21,9 +22,9 @@ inline constexpr const char* kPartialPrefix = "orrery/partial/";
 void write_partial(const std::filesystem::path& file, const film::Picture& preview, const Header& header,
                    const Provenance& provenance, const film::Partial& partial);
 
-/// Reads the provenance of a checkpoint or shard. Checks the digest, but does not read the sums.
+/// Reads the provenance of a checkpoint or shard, but neither its digest nor its sums, which may be damaged.
 ///
-/// Errors     those of read_partial
+/// Errors     base::Error: kMissingInput if it cannot be opened, kBadData if it is no checkpoint or shard
 Provenance read_provenance(const std::filesystem::path& file);
 
 /// Content of a checkpoint or shard.
@@ -34,8 +35,10 @@ struct PartialFile {
 
 /// Reads a checkpoint or shard.
 ///
+/// `check`    called before the sums are read; throws if they are not wanted
 /// Errors     base::Error: kMissingInput if it cannot be opened, kBadData if it is not a complete, undamaged checkpoint
-///            or shard of this size
-PartialFile read_partial(const std::filesystem::path& file, int width_px, int height_px);
+///            or shard of this size; those of `check`
+PartialFile read_partial(const std::filesystem::path& file, int width_px, int height_px,
+                         const std::function<void(const Provenance&)>& check = nullptr);
 
 }  // namespace orrery::image

@@ -228,12 +228,13 @@ std::optional<film::Partial> Checkpoint::load(int width_px, int height_px) {
     return {};
   }
   try {
-    const image::Provenance found = image::read_provenance(file_);
-    if (const std::string wrong = difference_of_checkpoint(found, provenance_); !wrong.empty())
-      throw base::Error(
-          base::ErrorKind::kBadData,
-          fmt::format("{} has {}; delete it, or render without --resume to start again", file_.string(), wrong));
-    image::PartialFile file = image::read_partial(file_, width_px, height_px);
+    const auto check = [&](const image::Provenance& found) {
+      if (const std::string wrong = difference_of_checkpoint(found, provenance_); !wrong.empty())
+        throw base::Error(
+            base::ErrorKind::kBadData,
+            fmt::format("{} has {}; delete it, or render without --resume to start again", file_.string(), wrong));
+    };
+    image::PartialFile file = image::read_partial(file_, width_px, height_px, check);
     is_ours_ = true;
     return std::move(file.partial);
   } catch (const base::Error&) {

@@ -132,8 +132,8 @@ film::Partial sum_of_shards(const Job& job, const compile::CompiledScene& compil
     try {
       file = image::read_partial(shards[i].file, compiled.width, compiled.height);
     } catch (const base::Error& error) {
-      if (!allow_missing || error.kind() != ErrorKind::kBadData) throw;
-      left_out.push_back(as_left_out(error_in(shards[i].file, error.what())));
+      if (error.kind() != ErrorKind::kBadData) throw;
+      (allow_missing ? left_out : diagnostics).push_back(error_in(shards[i].file, error.what()));
       continue;
     }
     const film::Partial& shard = file.partial;
@@ -167,7 +167,7 @@ film::Partial sum_of_shards(const Job& job, const compile::CompiledScene& compil
                                           absent.empty() ? "render them, or add --allow-missing" : absent)});
   }
   if (job.hooks.on_warning)
-    for (const base::Diagnostic& diagnostic : left_out) job.hooks.on_warning(diagnostic);
+    for (const base::Diagnostic& diagnostic : left_out) job.hooks.on_warning(as_left_out(diagnostic));
   return sum;
 }
 

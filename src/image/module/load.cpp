@@ -72,8 +72,9 @@ void write_partial(const std::filesystem::path& file, const film::Picture& previ
 
 Provenance read_provenance(const std::filesystem::path& file) { return module().read_provenance(file); }
 
-PartialFile read_partial(const std::filesystem::path& file, int width_px, int height_px) {
-  return module().read_partial(file, width_px, height_px);
+PartialFile read_partial(const std::filesystem::path& file, int width_px, int height_px,
+                         const std::function<void(const Provenance&)>& check) {
+  return module().read_partial(file, width_px, height_px, check);
 }
 
 std::string verified_stamp(const std::filesystem::path& file) { return module().verified_stamp(file); }
