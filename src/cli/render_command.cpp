@@ -279,7 +279,7 @@ void add_render_options(Command& command, RenderOptions& options) {
                    "Keep a checkpoint of the finished render; with --resume, one with more samples continues from it");
   add_sampling_options(command, options.batch.job);
   command.add_flag("--strict", options.batch.job.is_strict,
-                   "Exit with status 75 if the target noise was not reached or could not be estimated");
+                   "Exit with status 76 if the target noise was not reached or could not be estimated");
   command
       .add_option("--progress", options.progress, "STYLE",
                   "Progress format: auto, bar, alf, openjd, arnold, json or none; default: auto")

@@ -152,6 +152,8 @@ std::string stamp_of(const Job& job, const image::Provenance& provenance, const 
   return base::text_hash(all);
 }
 
+std::string stamp_of_missed(const std::string& stamp) { return stamp + "-missed"; }
+
 std::string difference(const image::Provenance& a, const image::Provenance& b, const std::vector<std::string>& keys) {
   static const std::vector<std::pair<std::string, std::string>> names = {
       {"version", "orrery version "},  {"sceneHash", ""},           {"sampleHash", ""},
@@ -200,7 +202,10 @@ bool is_up_to_date(const Job& job, const compile::CompiledScene& compiled, const
       return false;
     }
   }
-  const auto is_same = [&](const std::filesystem::path& file) { return image::verified_stamp(file) == stamp; };
+  const auto is_same = [&](const std::filesystem::path& file) {
+    const std::string found = image::verified_stamp(file);
+    return found == stamp || (!job.is_strict && found == stamp_of_missed(stamp));
+  };
   return std::all_of(job.outputs.images.begin(), job.outputs.images.end(),
                      [&](const ImageFile& image) { return is_same(image.path); }) &&
          (job.outputs.deep.empty() || is_same(job.outputs.deep));

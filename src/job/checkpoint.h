@@ -36,6 +36,9 @@ image::Provenance provenance_of(const Job& job, const load::ReadResult& read, co
 std::string stamp_of(const Job& job, const image::Provenance& provenance, const display::Settings& display,
                      const display::Choice& choice);
 
+/// The stamp of an image whose target was missed. With Job::is_strict, such an image is not up to date.
+std::string stamp_of_missed(const std::string& stamp);
+
 /// A value of a provenance; empty if there is none.
 std::string value_of(const image::Provenance& provenance, const std::string& key);
 

@@ -275,8 +275,7 @@ class Run {
   void finish(render::Result& result) {
     report_.render = result.statistics;
     report_.target_missed = missed_target(job_, result.statistics);
-    if (job_.is_strict && !report_.target_missed.empty())
-      report_.exit_status = base::exit_status(base::ErrorKind::kStopped);
+    if (job_.is_strict && !report_.target_missed.empty()) report_.exit_status = kTargetMissed;
     if (job_.denoise && !is_shard(job_)) {
       denoise_picture(result.picture);
       report_.phases.denoise_s = watch_.lap();
@@ -309,7 +308,7 @@ class Run {
     if (is_kept()) return keep(std::move(result.picture));
     if (is_shard(job_)) return write_sums(job_.outputs.images.front().path, *result.partial);
     image::Header own = header(job_.outputs.reproducible);
-    own.stamp = stamp_;
+    own.stamp = report_.target_missed.empty() ? stamp_ : stamp_of_missed(stamp_);
     try {
       report_.written = write_outputs(job_.outputs, loaded().display, report_.display,
                                       {result.picture, own, layers_.mattes, drawing_});

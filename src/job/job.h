@@ -108,6 +108,9 @@ struct Phases {
 };
 
 /// Result of a job.
+/// Exit status of the program if a target was missed with Job::is_strict: running it again would miss it again.
+inline constexpr int kTargetMissed = 76;
+
 struct JobReport {
   render::Statistics render;
   Phases phases;
@@ -125,7 +128,7 @@ struct JobReport {
   std::string missing;               ///< samples that no merged shard has, as text; empty: none
   std::vector<std::string> hosts;    ///< machines that rendered the image
   bool was_skipped = false;          ///< its files existed and were up to date
-  int exit_status = 0;               ///< of the program: not 0 if a target was missed with Job::is_strict
+  int exit_status = 0;               ///< of the program: 0 or kTargetMissed
 };
 
 /// Renders a scene to files, or merges shards: load, prepare, render or merge, finish, write.

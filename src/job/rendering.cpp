@@ -48,6 +48,7 @@ image::WriteReport write_rendering(const Rendering& rendering, const Outputs& ou
   Job job = rendering.job;
   job.outputs = outputs;
   header.stamp = annotation::stamped(stamp_of(job, rendering.provenance, display, choice), rendering.drawing);
+  if (!rendering.report.target_missed.empty()) header.stamp = stamp_of_missed(header.stamp);
   return write_outputs(outputs, display, choice, {rendering.picture, header, rendering.mattes, rendering.drawing});
 }
 

@@ -203,7 +203,7 @@ std::string slurm_text(const Submission& s, const Commands& c) {
       "if kill -0 $child 2>/dev/null; then status=0; wait $child || status=$?; fi  # a signal interrupts the first "
       "wait\n"
       "case $status in\n"
-      "  0 | 2 | 65 | 66) exit $status ;;  # success, or an error that a retry cannot fix\n"
+      "  0 | 2 | 65 | 66 | 76) exit $status ;;  # success, or what a retry cannot fix\n"
       "esac\n"
       "if [ \"${SLURM_RESTART_COUNT:-0}\" -lt 3 ]; then scontrol requeue \"$SLURM_JOB_ID\"; fi\nexit $status\nEND\n)\n";
   if (!c.merge.empty()) {
@@ -225,16 +225,21 @@ std::string parallel_text(const Submission& s, const Commands& c) {
   std::string out = "#!/bin/sh\n" + heading(s, c, "GNU parallel on this machine");
   out += fmt::format(
       "# Run it with sh. After a failure, run it again: finished images are skipped, merges are repeated.\n"
+/// Repeats a command that fails, but not where that would not help, nor after a signal. `parallel --retries` repeats
+/// all.
+constexpr const char* kThreeTries =
+    "for try in 1 2 3; do {}; status=$?; case $status in 0 | 2 | 65 | 66 | 75 | 76) break ;; esac; done; exit $status";
+
       "set -eu\nmkdir -p {}\nthreads=$((($(nproc) + {}) / {}))\nexport threads\n",
       folder, s.jobs_at_a_time - 1, s.jobs_at_a_time);
   // parallel would replace {1} in the names of files, so that it does not get to see the command.
   const auto run = [&](const std::string& command, const char* kind, const std::string& shards) {
     out += fmt::format(
         "\nORRERY_{0}={1}\nexport ORRERY_{0}\n"
-        "parallel --jobs {2} --joblog {3}/{0}.log --retries 3 \\\n"
+        "parallel --jobs {2} --joblog {3}/{0}.log \\\n"
         "  'sh -c \"$ORRERY_{0}\" sh {{1}}{4}' \\\n  ::: {5}{6}\n",
-        kind, base::shell_quoted(command), s.jobs_at_a_time, folder, shards.empty() ? "" : " {2}", frame_list(c, " "),
-        shards);
+        kind, base::shell_quoted(fmt::format(kThreeTries, command)), s.jobs_at_a_time, folder,
+        shards.empty() ? "" : " {2}", frame_list(c, " "), shards);
   };
   std::string shards;
   for (int i = 1; s.shards > 1 && i <= s.shards; ++i) shards += (i == 1 ? " ::: " : " ") + std::to_string(i);
@@ -294,8 +299,10 @@ std::string opencue_text(const Submission& s, const Commands& c) {
       "<!DOCTYPE spec PUBLIC \"SPI Cue Specification Language\" \"http://localhost:8080/spcue/dtd/cjsl-1.12.dtd\">\n"
       "<!-- Set show, shot and user as needed. -->\n<spec>\n  <facility>local</facility>\n  <show>testing</show>\n"
       "  <shot>{0}</shot>\n  <user>render</user>\n  <job name=\"{0}\">\n    <paused>False</paused>\n"
-      "    <maxretries>3</maxretries>\n    <autoeat>False</autoeat>\n    <layers>\n",
-      c.name);
+      "    <maxretries>{1}</maxretries>\n    <autoeat>False</autoeat>\n    <layers>\n",
+      c.name,
+      // OpenCue repeats a frame whatever its exit status is.
+      s.batch.job.is_strict ? 0 : 3);
   const auto layer = [&](const std::string& name, const char* type, const std::string& command) {
     out += fmt::format(
         "      <layer name=\"{}\" type=\"{}\">\n        <cmd>{}</cmd>\n        <range>{}</range>\n"

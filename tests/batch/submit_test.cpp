@@ -211,12 +211,12 @@ for task in $(seq 0 "$last"); do SLURM_ARRAY_TASK_ID=$task sh "$script" > /dev/n
 rm "$script"
 echo 1
 )sh");
-    // --jobs N --joblog FILE --retries N COMMAND ::: FRAMES [::: SHARDS]
+    // --jobs N --joblog FILE COMMAND ::: FRAMES [::: SHARDS]
     write_script("parallel", R"sh(
-[ "$1 $3 $5" = "--jobs --joblog --retries" ] || exit 1
+[ "$1 $3" = "--jobs --joblog" ] || exit 1
 : > "$4" || exit 1
-command=$7
-shift 8
+command=$5
+shift 6
 frames= shards=none
 while [ $# -gt 0 ] && [ "$1" != ::: ]; do frames="$frames $1"; shift; done
 [ $# -eq 0 ] || { shift; shards=$*; }
@@ -277,6 +277,22 @@ done; done
     }
   }
 };
+
+/// A finished render that missed its target, or was stopped, is not repeated; other failures are, three times in all.
+TEST_F(BatchHostileNames, OnlyWhatMayHelpIsRepeated) {
+  for (const auto& [status, tries] : {std::pair{0, 1}, {2, 1}, {65, 1}, {66, 1}, {71, 3}, {74, 3}, {75, 1}, {76, 1}}) {
+    std::filesystem::remove(folder_ / "calls");
+    write_script("orrery", "echo call >> \"$CALLS\"; exit " + std::to_string(status));
+    EXPECT_EQ(run_shell(submit("-o a.exr --noise 0.1 --strict --parallel 1")) != 0, status != 0);
+    std::string calls;
+    for (int i = 0; i < tries; ++i) calls += "call\n";
+    EXPECT_EQ(text_of(folder_ / "calls"), calls) << status;
+  }
+  const std::string slurm = submit("-o a.exr --noise 0.1 --strict --slurm");
+  EXPECT_NE(slurm.find("  0 | 2 | 65 | 66 | 76) exit $status ;;"), std::string::npos) << slurm;
+  EXPECT_NE(submit("-o a.exr --noise 0.1 --strict --opencue").find("<maxretries>0<"), std::string::npos);
+  EXPECT_NE(submit("-o a.exr --noise 0.1 --opencue").find("<maxretries>3<"), std::string::npos);
+}
 
 TEST_F(BatchHostileNames, ArriveUnchangedOrAreRefused) {
   struct Name {

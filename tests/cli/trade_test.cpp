@@ -30,11 +30,23 @@ TEST_F(CliTrade, MissedTargetNoiseIsReported) {
   EXPECT_NE(r.err.find(" instead of 0.0001: the pixels that need more samples reached the limit\n"), std::string::npos);
   EXPECT_NE(stats()["target_missed"], "");
   const Outcome strict = run("render good.toml -o b.exr --noise 0.0001 --samples 32 --strict --stats s.json -q");
-  EXPECT_EQ(strict.status, 75);
-  EXPECT_EQ(stats()["exit_status"], 75);
+  EXPECT_EQ(strict.status, 76);
+  EXPECT_EQ(stats()["exit_status"], 76);
   EXPECT_EQ(strict.err.rfind("orrery: noise 0.00", 0), 0u) << strict.err;
   // The image is written nevertheless, with the same pixels.
   EXPECT_EQ(run("compare a.exr b.exr --fail-above max=0 -q").status, 0);
+}
+
+TEST_F(CliTrade, AnImageThatMissesItsTargetIsUpToDateUnlessStrict) {
+  const std::string command = "render good.toml -o a.exr -o a.png --noise 0.0001 --samples 32 --skip-existing ";
+  EXPECT_EQ(run(command + "--strict -q").status, 76);
+  EXPECT_EQ(run(command + "--strict -q").status, 76);
+  const Outcome lenient = run(command);
+  EXPECT_EQ(lenient.status, 0);
+  EXPECT_TRUE(contains(lenient.err, "skipped")) << lenient.err;
+  const std::string met = "render good.toml -o b.exr --noise 0.5 --skip-existing --strict";
+  EXPECT_EQ(run(met).status, 0);
+  EXPECT_TRUE(contains(run(met).err, "skipped"));
 }
 
 TEST_F(CliTrade, PixelsWithoutNoiseEstimateAreReported) {
@@ -61,7 +73,7 @@ TEST_F(CliTrade, PixelsWithoutNoiseEstimateAreReported) {
   EXPECT_GT(s["unreliable_pixels"], 200);
   EXPECT_EQ(s["ended_by"], "samples");
   EXPECT_LE(s["noise_expected"], s["noise"]);
-  EXPECT_EQ(run("render dark.toml -o b.exr --noise 0.3 --samples 64 --strict -q").status, 75);
+  EXPECT_EQ(run("render dark.toml -o b.exr --noise 0.3 --samples 64 --strict -q").status, 76);
   EXPECT_NE(s["target_missed"], "");
 }
 
