@@ -306,7 +306,10 @@ class Run {
   void write(render::Result& result) {
     if (!is_shard(job_)) annotate(result.picture);
     if (is_kept()) return keep(std::move(result.picture));
-    if (is_shard(job_)) return write_sums(job_.outputs.images.front().path, *result.partial);
+    if (is_shard(job_)) {
+      if (job_.outputs.reproducible) result.partial->work.seconds = 0;
+      return write_sums(job_.outputs.images.front().path, *result.partial);
+    }
     image::Header own = header(job_.outputs.reproducible);
     own.stamp = report_.target_missed.empty() ? stamp_ : stamp_of_missed(stamp_);
     try {

@@ -70,6 +70,12 @@ TEST_F(BatchShards, AnySplitMergesToTheSameBytes) {
   }
 }
 
+TEST_F(BatchShards, AReproducibleShardHasTheSameBytesInEachRun) {
+  render("a.exr", "--shard 1/3");
+  render("b.exr", "--shard 1/3");
+  EXPECT_EQ(text_of(folder_ / "a.exr"), text_of(folder_ / "b.exr"));
+}
+
 TEST_F(BatchShards, ShardsWithLayersMergeToAnImageWithoutLayers) {
   ASSERT_EQ(run("develop whole.exr -o whole.png -q").status, 0);
   render("a.exr", "--shard 1/2");
