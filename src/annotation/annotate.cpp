@@ -123,6 +123,12 @@ std::string title_of(const std::string& title, int frame, std::optional<double> 
   return out;
 }
 
+std::string title_of(const scene::Scene& scene, int frame) {
+  const scene::Points* const points = scene.points.empty() ? nullptr : &scene.points[0];
+  return points == nullptr ? title_of(scene.annotation.title, frame, {})
+                           : title_of(scene.annotation.title, points->frame.value_or(frame), points->step);
+}
+
 LegendColors legend_of(const scene::Scene& scene, const std::string& ocio) {
   for (const scene::Points& points : scene.points) {
     std::vector<std::array<double, 3>> values;
@@ -158,11 +164,8 @@ Drawing drawing_of(const scene::Scene& scene, const LegendColors& legend, const 
     bar = legend_drawing(legend, {size, view.height - 2 * margin, kMaxLabels, most_bytes, out.ink}, out.font);
   }
   if (!annotation.title.empty()) {
-    const scene::Points* const points = scene.points.empty() ? nullptr : &scene.points[0];
-    const int frame = points != nullptr ? points->frame.value_or(view.frame) : view.frame;
-    const std::string title = title_of(annotation.title, frame, points != nullptr ? points->step : std::nullopt);
     const double beside = bar.is_empty() ? 0 : bar.width + margin;
-    out.texts.push_back(fitted(title, view.width - 2 * margin - beside, size, out.font));
+    out.texts.push_back(fitted(title_of(scene, view.frame), view.width - 2 * margin - beside, size, out.font));
   }
   if (annotation.scale_bar && scene.camera.width) {
     const double width = *annotation.scale_bar / *scene.camera.width * view.width, bottom = view.height - margin,

@@ -33,6 +33,11 @@ struct View {
 /// Errors     base::Error(kBadData)
 std::string title_of(const std::string& title, int frame, std::optional<double> step);
 
+/// The title of a scene at a frame; empty: it has none.
+///
+/// Errors     base::Error(kBadData)
+std::string title_of(const scene::Scene& scene, int frame);
+
 /// The colours of a scene's first coloured points table; empty if there is no such table.
 ///
 /// `ocio`     OCIO config, which defines the working space of the palettes

@@ -40,6 +40,11 @@ void add_readable_files(const load::SceneSource& scene, const std::vector<int>& 
 
 }  // namespace
 
+fs::path output_name(const fs::path& name, const fs::path& scene, std::optional<int> frame) {
+  const std::string text = base::replaced(name.string(), kScenePattern, scene.stem().string());
+  return frame ? base::with_frame(text, *frame) : text;
+}
+
 std::vector<Job> jobs_of(const Batch& batch) {
   Job common = batch.job;
   each_named(common.outputs, [&](const fs::path& name, const char*) { check_name(batch, name.string()); });
@@ -57,8 +62,7 @@ std::vector<Job> jobs_of(const Batch& batch) {
       job.scene.file = scene;
       job.scene.frame = frame;
       each_named(job.outputs, [&](fs::path& name, const char*) {
-        const std::string text = base::replaced(name.string(), kScenePattern, scene.stem().string());
-        name = batch.frames.empty() ? text : base::with_frame(text, frame);
+        name = output_name(name, scene, batch.frames.empty() ? std::nullopt : std::optional(frame));
       });
       add_job_files(job, files, batch.scenes.size() > 1 ? " of " + scene.string() : "");
       jobs.push_back(std::move(job));

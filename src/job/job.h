@@ -6,6 +6,7 @@
 #include <filesystem>
 #include <functional>
 #include <memory>
+#include <optional>
 #include <string>
 #include <utility>
 #include <vector>
@@ -107,10 +108,10 @@ struct Phases {
   double total_s() const { return read_s + compile_s + build_s + render_s + denoise_s + finish_s + write_s; }
 };
 
-/// Result of a job.
 /// Exit status of the program if a target was missed with Job::is_strict: running it again would miss it again.
 inline constexpr int kTargetMissed = 76;
 
+/// Result of a job.
 struct JobReport {
   render::Statistics render;
   Phases phases;
@@ -151,8 +152,13 @@ struct Batch {
   std::vector<NamedOutput> others;  ///< files that the caller writes
 };
 
-/// Creates one job per frame and scene. In file names, replaces `####` and `%04d` by the frame, and `{scene}` by the
-/// scene's file name without its extension. The jobs share one set of files, which detects conflicts between them.
+/// Replaces the patterns in the name of an output: `{scene}` by the scene's file name without its extension; `####` and
+/// `%04d` by the frame, if there is one.
+std::filesystem::path output_name(const std::filesystem::path& name, const std::filesystem::path& scene,
+                                  std::optional<int> frame);
+
+/// Creates one job per frame and scene, with output_name() for its files. The jobs share one set of files, which
+/// detects conflicts between them.
 ///
 /// Errors     base::Error: kUsage if a file would be written twice, if an output is an input, or if a name lacks a
 ///            needed pattern or has a frame pattern without frames; kCannotCreate for one of the `others`

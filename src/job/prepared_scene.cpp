@@ -3,6 +3,7 @@
 
 #include <utility>
 
+#include "annotation/annotate.h"
 #include "base/available_memory.h"
 #include "compile/compile.h"
 #include "job/resources.h"
@@ -36,6 +37,7 @@ const load::LoadedScene& PreparedScene::load(load::SceneRequest request) {
     if (changed.look) compiled_.environment = nullptr;
   };
   loaded_ = load::load_scene(request, std::exchange(loaded_, {}));
+  static_cast<void>(annotation::title_of(loaded_->read.scene, request.source.frame));  // errors are found early
   return *loaded_;
 }
 

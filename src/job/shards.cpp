@@ -16,7 +16,6 @@
 
 #include "base/error.h"
 #include "base/file_set.h"
-#include "base/frames.h"
 #include "base/stop_point.h"
 #include "base/text.h"
 #include "compile/compiled_scene.h"
@@ -248,7 +247,7 @@ void take_scene(const ShardFile& shard, Job& job) {
   for (std::string line; std::getline(lines, line);) job.scene.overrides.add(line);
   job.scene.frame = base::number_of<int>(value_of(shard.provenance, "frame")).value_or(job.scene.frame);
   each_named(job.outputs, [&](std::filesystem::path& name, const char*) {
-    name = base::with_frame(name.string(), job.scene.frame);
+    name = output_name(name, job.scene.file, job.scene.frame);
   });
 }
 

@@ -25,8 +25,8 @@ struct ShardFile;
 std::vector<ShardFile> read_shards(const std::vector<std::filesystem::path>& files,
                                    const std::function<void(const base::Diagnostic&)>& on_left_out = nullptr);
 
-/// Sets the job's scene file, unless it is set, its overrides and its frame from a shard, and replaces frame patterns
-/// in the names of its outputs.
+/// Sets the job's scene file, unless it is set, its overrides and its frame from a shard, and replaces the patterns in
+/// the names of its outputs.
 void take_scene(const ShardFile& shard, Job& job);
 
 /// Merges the shards of a job instead of rendering: adds their sums, one shard at a time in memory. The sums equal

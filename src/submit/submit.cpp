@@ -10,6 +10,7 @@
 
 #include "base/error.h"
 #include "base/text.h"
+#include "job/prepared_scene.h"
 #include "load/load_scene.h"
 #include "load/read_scene.h"
 
@@ -47,6 +48,15 @@ std::string job_name_of(const std::filesystem::path& scene) {
 std::string path_word(const std::filesystem::path& path) {
   const std::string word = path.string();
   return word.starts_with('-') || word.starts_with('+') ? "./" + word : word;
+}
+
+/// The folder of an image's shards. Named after the image: jobs that render one scene with different settings must not
+/// share shards.
+std::filesystem::path shard_folder(const std::filesystem::path& image) {
+  std::string name = image.filename().string() + ".shards";
+  for (char& c : name)
+    if (std::string_view("#%{}").find(c) != std::string_view::npos) c = '_';  // patterns of Slurm, parallel and orrery
+  return image.parent_path() / name;
 }
 
 /// True if OpenCue would replace a part of the word, such as #IFRAME#.
@@ -90,12 +100,7 @@ Commands commands_of(const Submission& submission) {
   Commands out;
   out.frames = batch.frames.empty() ? std::vector<int>{load::kFirstFrame} : batch.frames;
   out.name = job_name_of(scene_file);
-  // Named after the image: jobs that render one scene with different settings must not share shards.
-  const std::filesystem::path& image = job.outputs.images.front().path;
-  std::string folder = image.filename().string() + ".shards";
-  for (char& c : folder)
-    if (std::string_view("#%{}").find(c) != std::string_view::npos) c = '_';  // patterns of Slurm, parallel and orrery
-  out.folder = path_word(image.parent_path() / folder);
+  out.folder = path_word(shard_folder(job::output_name(job.outputs.images.front().path, scene_file, {})));
   for (const std::string& word : {submission.program, scene_file.string(), out.folder})
     check_word(word, submission.engine);
   for (const Words* words : {&submission.render_arguments, &submission.merge_arguments})
@@ -104,7 +109,7 @@ Commands commands_of(const Submission& submission) {
   if (is_split && (job.sampling.is_adaptive() || !job.outputs.deep.empty()))
     base::refuse("--noise, --time and --deep need whole frames; omit --shards to make each frame one task");
   const load::SceneRequest scene{{scene_file, job.scene.overrides, out.frames.front()}, job.outputs.display};
-  load::add_scene_files(scene.source.file, load::load_scene(scene).read.scene, *jobs.front().files);
+  load::add_scene_files(scene.source.file, job::PreparedScene().load(scene).read.scene, *jobs.front().files);
 
   const auto append = [](Words& words, const Words& more) { words.insert(words.end(), more.begin(), more.end()); };
   // Scripts create a folder for the shards. The other engines cannot, so shards are files next to the images.
@@ -220,16 +225,16 @@ std::string slurm_text(const Submission& s, const Commands& c) {
 
 // --------------------------------------------------------------------------------------------- GNU parallel
 
-std::string parallel_text(const Submission& s, const Commands& c) {
-  const std::string folder = base::shell_quoted(c.folder);
-  std::string out = "#!/bin/sh\n" + heading(s, c, "GNU parallel on this machine");
-  out += fmt::format(
-      "# Run it with sh. After a failure, run it again: finished images are skipped, merges are repeated.\n"
 /// Repeats a command that fails, but not where that would not help, nor after a signal. `parallel --retries` repeats
 /// all.
 constexpr const char* kThreeTries =
     "for try in 1 2 3; do {}; status=$?; case $status in 0 | 2 | 65 | 66 | 75 | 76) break ;; esac; done; exit $status";
 
+std::string parallel_text(const Submission& s, const Commands& c) {
+  const std::string folder = base::shell_quoted(c.folder);
+  std::string out = "#!/bin/sh\n" + heading(s, c, "GNU parallel on this machine");
+  out += fmt::format(
+      "# Run it with sh. After a failure, run it again: finished images are skipped, merges are repeated.\n"
       "set -eu\nmkdir -p {}\nthreads=$((($(nproc) + {}) / {}))\nexport threads\n",
       folder, s.jobs_at_a_time - 1, s.jobs_at_a_time);
   // parallel would replace {1} in the names of files, so that it does not get to see the command.

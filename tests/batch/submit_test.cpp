@@ -294,6 +294,30 @@ TEST_F(BatchHostileNames, OnlyWhatMayHelpIsRepeated) {
   EXPECT_NE(submit("-o a.exr --noise 0.1 --opencue").find("<maxretries>3<"), std::string::npos);
 }
 
+/// The program itself renders and merges: its outputs are in a folder of the scene's name.
+TEST_F(BatchHostileNames, OutputsMayHaveThePatternOfTheScene) {
+  write_script("orrery", "exec \"" ORRERY_PROGRAM "\" \"$@\"\n");
+  for (const char* engine : {"--parallel 1", "--slurm"}) {
+    const std::string job =
+        submit("-o 'out/{scene}/x.####.png' -o '{scene}.##.exr' --frames 1-2 --shards 2 " + std::string(engine));
+    std::filesystem::create_directories(folder_ / "out/good");
+    EXPECT_EQ(run_shell(job), 0) << job;
+    for (const char* file : {"out/good/x.0001.png", "out/good/x.0002.png", "good.01.exr", "good.02.exr"})
+      EXPECT_TRUE(std::filesystem::remove(folder_ / file)) << file;
+    EXPECT_FALSE(std::filesystem::exists(folder_ / "out/{scene}"));
+    std::filesystem::remove_all(folder_ / "out");
+  }
+}
+
+TEST_F(BatchSubmit, ATitleThatNoFrameCanHaveIsFoundByAllCommands) {
+  for (const char* command :
+       {"check good.toml", "info good.toml", "submit good.toml -o a.png --slurm", "render good.toml -o a.png"}) {
+    const Outcome r = run(command + std::string(" --set 'annotation.title=\"{scene}\"'"));
+    EXPECT_EQ(r.status, 65) << command;
+    EXPECT_TRUE(contains(r.err, "annotation.title: {scene}")) << r.err;
+  }
+}
+
 TEST_F(BatchHostileNames, ArriveUnchangedOrAreRefused) {
   struct Name {
     std::string text;
