@@ -164,18 +164,18 @@ HWY_INLINE Emitted<D> load_lights(D d, const SceneView& scene, hn::Vec<IdTag<D>>
   return out;
 }
 
-/// Samples directions at the waiting vertices and appends their rays to the stream of chains.
+/// Samples directions at the waiting vertices and appends their rays to the caustic rays.
 ///
 /// `has_events`  the tile records light events
 /// `events`      maximum number of events of a chain
 template <class D>
-HWY_NOINLINE void sample_caustics(const SceneView& scene, bool has_events, LitPathsOf<hn::TFromD<D>>& lit, int events) {
+HWY_NOINLINE void sample_caustics(const SceneView& scene, bool has_events, PathsOf<hn::TFromD<D>>& paths, int events) {
   using T = hn::TFromD<D>;
   using V = hn::Vec<D>;
   const D d;
   const IdTag<D> du;
-  const auto& vertices = lit.vertices;
-  auto& rays = lit.chains;
+  const auto& vertices = paths.vertices;
+  auto& rays = paths.caustic_rays;
   for (int v = 0; v < vertices.count; v += static_cast<int>(hn::Lanes(d))) {
     const auto active = hn::FirstN(d, static_cast<std::size_t>(vertices.count - v));
     const auto chosen = choose_lights(d, scene.caustics, vertices.ball + v, vertices.random[2] + v, vertices.count - v);
@@ -219,7 +219,7 @@ HWY_NOINLINE void sample_caustics(const SceneView& scene, bool has_events, LitPa
     }
     rays.count += compactor.count();
   }
-  lit.vertices.count = 0;
+  paths.vertices.count = 0;
 }
 
 }  // namespace orrery::kernel::HWY_NAMESPACE

@@ -20,9 +20,10 @@
 HWY_BEFORE_NAMESPACE();
 namespace orrery::kernel::HWY_NAMESPACE {
 
-// What a path has passed since its last diffuse vertex. Light that it finds at the end of a sampled chain was sampled
-// at that vertex and counts zero. The ball is the sphere that the ray leaves, so that the path need not store it.
-inline constexpr unsigned kNoChain = 0;      ///< the camera, another lobe, or another sequence of events
+// CausticState: what a path has passed since its last diffuse vertex. Light that it finds at the end of a sampled chain
+// was sampled at that vertex and counts zero. The ball is the sphere that the ray leaves, so that the path need not
+// store it.
+inline constexpr unsigned kOther = 0;        ///< the camera, another lobe, or another sequence of events
 inline constexpr unsigned kFromDiffuse = 1;  ///< nothing
 inline constexpr unsigned kInside = 2;       ///< inside a ball, since it was refracted into it
 inline constexpr unsigned kInsideTwice = 3;  ///< inside a ball, reflected once
@@ -58,24 +59,24 @@ HWY_NOINLINE hn::Mask<D> are_hollow(D d, const Caustics& caustics, hn::Mask<D> l
   return related(d, lanes, balls, inner, [&](std::uint32_t a, std::uint32_t b) { return caustics.is_hollow(a, b); });
 }
 
-/// What paths have passed before a hit, and the spheres of the hit.
+/// The states of paths before a hit, and the objects of the hit.
 template <class D>
-struct ChainAtHit {
-  hn::Vec<IdTag<D>> chain;
-  hn::Vec<IdTag<D>> self;  ///< sphere that the ray has left
+struct CausticHit {
+  hn::Vec<IdTag<D>> state;
+  hn::Vec<IdTag<D>> self;  ///< object that the ray has left
   hn::Vec<IdTag<D>> hit;
 };
 
-/// The chain of paths after a surface has scattered them. The surface is passed by value: a reference to it would keep
+/// The states of paths after a surface has scattered them. The surface is passed by value: a reference to it would keep
 /// it in memory in scenes without caustics too.
 ///
 /// `diffuse`  lanes in which a diffuse lobe has scattered
 template <class D>
-HWY_NOINLINE hn::Vec<IdTag<D>> continued_chain(D d, const Caustics& caustics, ChainAtHit<D> before, Surface<D> at,
+HWY_NOINLINE hn::Vec<IdTag<D>> continued_state(D d, const Caustics& caustics, CausticHit<D> before, Surface<D> at,
                                                Vec3<hn::Vec<D>> direction, hn::Mask<D> diffuse) {
   const IdTag<D> du;
   const auto sharp = hn::And(is_delta(d, at), at.fuzz == 0), is_self = hn::RebindMask(d, before.self == before.hit);
-  const auto was = [&](unsigned state) { return hn::And(sharp, hn::RebindMask(d, before.chain == state)); };
+  const auto was = [&](unsigned state) { return hn::And(sharp, hn::RebindMask(d, before.state == state)); };
   const auto transmits = is_transmitted(d, at, direction), reflects = hn::Not(transmits);
   const auto enters = hn::And(was(kFromDiffuse), at.from_outside);
   const auto within = hn::And(is_self, hn::Or(was(kInside), was(kInsideTwice)));
@@ -112,9 +113,9 @@ HWY_NOINLINE hn::Mask<D> are_paired(D d, const Caustics& caustics, hn::Mask<D> l
 
 /// Lanes whose paths have completed a sampled chain to these lights.
 template <class D>
-HWY_INLINE hn::Mask<D> is_sampled_caustic(D d, const SceneView& scene, hn::Mask<D> lanes, hn::Vec<IdTag<D>> chain,
+HWY_INLINE hn::Mask<D> is_sampled_caustic(D d, const SceneView& scene, hn::Mask<D> lanes, hn::Vec<IdTag<D>> state,
                                           hn::Vec<IdTag<D>> balls, hn::Vec<IdTag<D>> lights) {
-  const auto completed = hn::And(lanes, hn::RebindMask(d, chain == kCompleted));
+  const auto completed = hn::And(lanes, hn::RebindMask(d, state == kCompleted));
   if (hn::AllFalse(d, completed)) return completed;
   return are_paired(d, scene.caustics, completed, balls, lights);
 }
@@ -122,11 +123,11 @@ HWY_INLINE hn::Mask<D> is_sampled_caustic(D d, const SceneView& scene, hn::Mask<
 /// Removes the sun from the environment's radiance in lanes whose paths have completed a sampled chain to it.
 template <class D, class V = hn::Vec<D>>
 HWY_NOINLINE Vec3<V> without_sampled_sun(D d, const SceneView& scene, Vec3<V> radiance, Vec3<V> direction,
-                                         hn::Mask<D> missed, hn::Vec<IdTag<D>> chain, hn::Vec<IdTag<D>> balls) {
+                                         hn::Mask<D> missed, hn::Vec<IdTag<D>> state, hn::Vec<IdTag<D>> balls) {
   const Environment& environment = *scene.environment;
   if (!environment.has_sun) return radiance;
   const auto in_sun = hn::And(missed, is_in_sun(d, environment, direction));
-  const auto sampled = is_sampled_caustic(d, scene, in_sun, chain, balls, set(IdTag<D>(), kSun));
+  const auto sampled = is_sampled_caustic(d, scene, in_sun, state, balls, set(IdTag<D>(), kSun));
   if (hn::AllFalse(d, sampled)) return radiance;
   auto at = environment_footprint(d, environment, direction);
   at.is_in_sun = hn::AndNot(sampled, at.is_in_sun);

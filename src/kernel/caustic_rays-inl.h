@@ -25,36 +25,40 @@
 HWY_BEFORE_NAMESPACE();
 namespace orrery::kernel::HWY_NAMESPACE {
 
-/// The key of the next ray of a chain.
+/// The key of the next ray of a path to a light.
 template <class DU, class V = hn::Vec<DU>>
 HWY_INLINE V next_key(DU du, V key) {
   const hn::Repartition<std::uint32_t, DU> d32;
   return hn::BitCast(du, hashed(d32, hn::BitCast(d32, key) + hn::Set(d32, 0x9e3779b9u)));
 }
 
-/// The rays of chains.
+/// Follows caustic rays.
 template <class D, Precision kPrecision>
-class ChainTracer {
+class CausticRayTracer {
   using T = hn::TFromD<D>;
   using V = hn::Vec<D>;
   using Ids = hn::Vec<IdTag<D>>;
 
  public:
-  HWY_INLINE ChainTracer(const SceneView& scene, const Tile& tile, PathStreamOf<T>& stream)
-      : scene_(scene), tile_(tile), packet_(stream.lit.chains.packet), lit_(stream.lit), chains_(stream.lit.chains) {}
+  HWY_INLINE CausticRayTracer(const SceneView& scene, const Tile& tile, PathsOf<T>& paths)
+      : scene_(scene),
+        tile_(tile),
+        packet_(paths.caustic_rays.packet),
+        batch_(paths.batch),
+        rays_(paths.caustic_rays) {}
 
   /// Traces the last packet of the waiting rays. Those that have reached their light add it to their paths, and those
   /// that the ball reflects or transmits wait again.
   ///
   /// Result     number of rays traced
   HWY_INLINE int trace(const Tracer& tracer) {
-    const int count = std::min(chains_.count, kPacketSize);
-    const int first = chains_.count - count;
-    load_waiting_rays(d, scene_, chains_, first, count, packet_);
+    const int count = std::min(rays_.count, kPacketSize);
+    const int first = rays_.count - count;
+    load_waiting_rays(d, scene_, rays_, first, count, packet_);
     reset_hits(packet_);
     kernel::trace(tracer, packet_);
     // Rays that go on overwrite rays that have been read.
-    chains_.count = first;
+    rays_.count = first;
     for (int v = 0; v < count; v += static_cast<int>(hn::Lanes(d))) follow(first, v);
     return count;
   }
@@ -67,7 +71,7 @@ class ChainTracer {
     const int i = first + v;
     const auto active = hn::FirstN(d, static_cast<std::size_t>(packet_.count - v));
     const auto hits = hn::Load(du, packet_.hit + v);
-    const auto events = hn::LoadU(du, chains_.events + i), light = hn::LoadU(du, chains_.light + i);
+    const auto events = hn::LoadU(du, rays_.events + i), light = hn::LoadU(du, rays_.light + i);
     const auto is_last = hn::RebindMask(d, events == 0);
     const auto ray = load_rays(d, packet_, v);
     auto arrived = hn::And(active, hn::And(is_last, hn::RebindMask(d, hits == light)));
@@ -77,18 +81,18 @@ class ChainTracer {
     }
     if (!hn::AllFalse(d, arrived)) arrive(i, arrived);
     const auto at_void = hn::And(events, set(du, kAtVoid)) != 0;
-    const auto expected = select(at_void, hn::LoadU(du, chains_.inner + i), hn::LoadU(du, chains_.ball + i));
+    const auto expected = select(at_void, hn::LoadU(du, rays_.inner + i), hn::LoadU(du, rays_.ball + i));
     const auto scattered = hn::And(hn::AndNot(is_last, active), hn::RebindMask(d, hits == expected));
     if (!hn::AllFalse(d, scattered)) scatter(i, v, ray, hits, events, scattered);
   }
 
   /// Adds light to paths.
   HWY_INLINE void arrive(int i, hn::Mask<D> lanes) {
-    const auto value = loadu3(d, chains_.value, i);
-    gain(d, lanes, value, hn::LoadU(du, chains_.path + i), lit_);
+    const auto value = loadu3(d, rays_.value, i);
+    gain(d, lanes, value, hn::LoadU(du, rays_.path + i), batch_);
     if (!tile_.has_events()) return;
-    recorder_of(d, scene_, tile_, lit_, lanes, chains_.path + i)
-        .event(d, lanes, value, hn::LoadU(du, chains_.history + i), hn::LoadU(du, chains_.group + i), Lobe::kEmission);
+    recorder_of(d, scene_, tile_, batch_, lanes, rays_.path + i)
+        .event(d, lanes, value, hn::LoadU(du, rays_.history + i), hn::LoadU(du, rays_.group + i), Lobe::kEmission);
   }
 
   /// Applies the next event of each chain.
@@ -105,45 +109,45 @@ class ChainTracer {
     const V reflected_part = select(glass.is_total, 1, glass.reflectance);
     const V part = select(reflects, reflected_part, 1 - reflected_part);
     const auto is_glass = is_kind(d, surface.kind, MaterialKind::kDielectric);
-    auto value = loadu3(d, chains_.value, i);
+    auto value = loadu3(d, rays_.value, i);
     value = select(is_glass, value * part, value * look.albedo);
     const auto direction = select(reflects, reflected(surface), glass.direction);
     const auto goes_on = hn::And(hn::And(lanes, is_on_side), hn::Or(hn::Not(is_glass), part > 0));
-    const int to = chains_.count;
+    const int to = rays_.count;
     const Compactor<D> compactor(d, goes_on);
     const auto keep = [&](auto& array) { compactor.store_ids(d, hn::LoadU(du, array + i), array + to); };
-    compactor.store3(d, look.sphere.center, chains_.base, to);
-    compactor.store3(d, surface.offset, chains_.offset, to);
-    compactor.store3(d, direction, chains_.direction, to);
-    compactor.store3(d, value, chains_.value, to);
-    compactor.store_ids(d, hits, chains_.self + to);
-    compactor.store_ids(d, hn::ShiftRight<kCausticEventBits>(events), chains_.events + to);
-    if (scene_.features.motion) compactor.store(d, hn::LoadU(d, chains_.time + i), chains_.time + to);
-    if (scene_.features.opacity) compactor.store_ids(d, next_key(du, hn::LoadU(du, chains_.key + i)), chains_.key + to);
-    keep(chains_.ball);
-    keep(chains_.inner);
-    keep(chains_.light);
-    keep(chains_.path);
+    compactor.store3(d, look.sphere.center, rays_.base, to);
+    compactor.store3(d, surface.offset, rays_.offset, to);
+    compactor.store3(d, direction, rays_.direction, to);
+    compactor.store3(d, value, rays_.value, to);
+    compactor.store_ids(d, hits, rays_.self + to);
+    compactor.store_ids(d, hn::ShiftRight<kCausticEventBits>(events), rays_.events + to);
+    if (scene_.features.motion) compactor.store(d, hn::LoadU(d, rays_.time + i), rays_.time + to);
+    if (scene_.features.opacity) compactor.store_ids(d, next_key(du, hn::LoadU(du, rays_.key + i)), rays_.key + to);
+    keep(rays_.ball);
+    keep(rays_.inner);
+    keep(rays_.light);
+    keep(rays_.path);
     if (tile_.has_events()) {
-      keep(chains_.history);
-      keep(chains_.group);
+      keep(rays_.history);
+      keep(rays_.group);
     }
-    chains_.count += compactor.count();
+    rays_.count += compactor.count();
   }
 
   const SceneView& scene_;
   const Tile& tile_;
   RayPacket<T>& packet_;
-  LitPathsOf<T>& lit_;
-  ChainStreamOf<T>& chains_;
+  BatchOf<T>& batch_;
+  CausticRaysOf<T>& rays_;
 };
 
-/// Traces rays of chains until fewer than `waiting` wait. Not inlined, so that the loop costs the same without them.
+/// Traces caustic rays until fewer than `waiting` wait. Not inlined.
 template <class D, Precision kPrecision>
-HWY_NOINLINE void trace_chains(const SceneView& scene, const Tracer& tracer, const Tile& tile,
-                               PathStreamOf<hn::TFromD<D>>& stream, int waiting, TileCounts& counts) {
-  ChainTracer<D, kPrecision> chains(scene, tile, stream);
-  while (stream.lit.chains.count >= waiting) counts.rays += static_cast<std::uint64_t>(chains.trace(tracer));
+HWY_NOINLINE void trace_caustic_rays(const SceneView& scene, const Tracer& tracer, const Tile& tile,
+                                     PathsOf<hn::TFromD<D>>& paths, int waiting, TileCounts& counts) {
+  CausticRayTracer<D, kPrecision> rays(scene, tile, paths);
+  while (paths.caustic_rays.count >= waiting) counts.rays += static_cast<std::uint64_t>(rays.trace(tracer));
 }
 
 }  // namespace orrery::kernel::HWY_NAMESPACE

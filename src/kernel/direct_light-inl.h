@@ -235,25 +235,25 @@ HWY_INLINE void load_waiting_rays(D d, const SceneView& scene, const Waiting& ra
 }
 
 /// The recorder of paths, by their indices within the batch; undefined in other lanes.
-template <class D, class Lit>
-HWY_INLINE Recorder<D> recorder_of(D d, const SceneView& scene, const Tile& tile, const Lit& lit, hn::Mask<D> lanes,
-                                   const hn::TFromD<IdTag<D>>* path) {
+template <class D>
+HWY_INLINE Recorder<D> recorder_of(D d, const SceneView& scene, const Tile& tile, const BatchOf<hn::TFromD<D>>& batch,
+                                   hn::Mask<D> lanes, const hn::TFromD<IdTag<D>>* path) {
   using Id = hn::TFromD<IdTag<D>>;
   const IdTag<D> du;
   HWY_ALIGN Id pixel[hn::MaxLanes(D())] = {}, sample[hn::MaxLanes(D())] = {};
   each_lane(d, lanes, [&](int lane) {
-    pixel[lane] = lit.pixel[path[lane]];
-    sample[lane] = lit.sample[path[lane]];
+    pixel[lane] = batch.pixel[path[lane]];
+    sample[lane] = batch.sample[path[lane]];
   });
   return {scene, tile, hn::Load(du, pixel), hn::Load(du, sample)};
 }
 
 /// Adds the light of the unoccluded rays of a packet, the waiting ones from `first` on, to their paths.
-template <class D, class Packet, class Lit>
+template <class D, class Packet>
 HWY_INLINE void add_unoccluded(D d, const SceneView& scene, const Tile& tile, const Packet& packet, int first,
-                               Lit& lit) {
+                               PathsOf<hn::TFromD<D>>& to) {
   const IdTag<D> du;
-  const auto& shadow = lit.shadow;
+  const auto& shadow = to.shadow;
   for (int v = 0; v < packet.count; v += static_cast<int>(hn::Lanes(d))) {
     const int i = first + v;
     const auto active = hn::FirstN(d, static_cast<std::size_t>(packet.count - v));
@@ -262,9 +262,9 @@ HWY_INLINE void add_unoccluded(D d, const SceneView& scene, const Tile& tile, co
     if (hn::AllFalse(d, lanes)) continue;
     const auto light = loadu3(d, shadow.value, i);
     const auto paths = hn::LoadU(du, shadow.path + i);
-    gain(d, lanes, light, paths, lit);
+    gain(d, lanes, light, paths, to.batch);
     if (!tile.has_events()) continue;
-    auto record = recorder_of(d, scene, tile, lit, lanes, shadow.path + i);
+    auto record = recorder_of(d, scene, tile, to.batch, lanes, shadow.path + i);
     const auto unscattered = Lobe::kEmission;  // never used: a surface has scattered the light
     const auto history = hn::LoadU(du, shadow.history + i), group = hn::LoadU(du, shadow.group + i);
     const auto in_coat = hn::And(lanes, hn::RebindMask(d, hn::And(history, set(du, kCoatBit)) != 0));
@@ -279,10 +279,10 @@ HWY_INLINE void add_unoccluded(D d, const SceneView& scene, const Tile& tile, co
 }
 
 /// Traces the last batch of the waiting shadow rays.
-template <class D, class Lit>
-HWY_INLINE void trace_shadow_batch(D d, const SceneView& scene, const Tracer& tracer, const Tile& tile, Lit& lit,
-                                   TileCounts& counts) {
-  auto& shadow = lit.shadow;
+template <class D>
+HWY_INLINE void trace_shadow_batch(D d, const SceneView& scene, const Tracer& tracer, const Tile& tile,
+                                   PathsOf<hn::TFromD<D>>& paths, TileCounts& counts) {
+  auto& shadow = paths.shadow;
   const int batch = std::min(shadow.count, shadow.kBatch);
   shadow.count -= batch;
   counts.rays += static_cast<std::uint64_t>(batch);
@@ -294,7 +294,7 @@ HWY_INLINE void trace_shadow_batch(D d, const SceneView& scene, const Tracer& tr
   });
   occlude(tracer, shadow.packets, (batch + kPacketSize - 1) / kPacketSize);
   each_packet(
-      [&](const auto& packet, int begin) { add_unoccluded(d, scene, tile, packet, shadow.count + begin, lit); });
+      [&](const auto& packet, int begin) { add_unoccluded(d, scene, tile, packet, shadow.count + begin, paths); });
 }
 
 }  // namespace orrery::kernel::HWY_NAMESPACE

@@ -25,9 +25,9 @@ using KeyTag = hn::Rebind<std::uint32_t, D>;
 /// The random keys of the rays that start at a path's vertex.
 template <class DU>
 struct RayKeys {
-  hn::Vec<DU> next;    ///< of the ray that continues the path
-  hn::Vec<DU> shadow;  ///< of the shadow ray
-  hn::Vec<DU> chain;   ///< of the first ray of a chain; see caustic_light-inl.h
+  hn::Vec<DU> next;     ///< of the ray that continues the path
+  hn::Vec<DU> shadow;   ///< of the shadow ray
+  hn::Vec<DU> caustic;  ///< of the first ray to a ball; see caustic_light-inl.h
 };
 
 /// Returns the keys of the rays from a vertex, independent of those from any other. Not inlined, so that the loop costs

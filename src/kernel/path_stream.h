@@ -11,14 +11,45 @@ namespace orrery::kernel {
 /// Number of paths in a stream: enough to fill packets at deep bounces, few enough to stay in the cache.
 inline constexpr int kStreamSize = 1024;
 
-/// Number of bits of a path's index within the batch. Its chain, see caustic_partition-inl.h, is in the bits above, so
-/// that paths cost nothing more in scenes without caustics.
+/// Number of bits of a path's index within the batch. Its CausticState is in the bits above, so that it costs nothing
+/// in scenes without caustics.
 inline constexpr int kPathBits = 16;
 static_assert(kStreamSize < 1 << kPathBits);
 
-/// Points at which paths wait for light, until they fill packets or vectors.
+/// Capacity of arrays with an element for each path of a batch. Whole vectors and packets are stored at their ends.
+inline constexpr int kPathCapacity = kStreamSize + kPacketSize;
+
+/// What a batch's paths keep from start to end, by index within the batch: all samples of a pixel, then those of the
+/// next pixel.
 ///
-/// The arrays are padded, because whole vectors are stored at their ends.
+/// Radiance is deposited when all paths of the batch have ended, so that a bad value removes the path's weight only
+/// once.
+template <class T>
+struct alignas(64) BatchOf {
+  T radiance[3][kPathCapacity];  ///< that the camera has received so far
+  IdOf<T> pixel[kPathCapacity];  ///< y << 16 | x
+  IdOf<T> sample[kPathCapacity];
+};
+
+/// The paths of a batch that are alive, between two vertices. By position in the stream, in the order of their indices:
+/// at each vertex the survivors move to the front.
+template <class T>
+struct alignas(64) PathStreamOf {
+  using Id = IdOf<T>;
+  T base[3][kPathCapacity];        ///< centre of the sphere that the ray leaves
+  T offset[3][kPathCapacity];      ///< from that centre to the ray's origin
+  T direction[3][kPathCapacity];   ///< unit
+  T throughput[3][kPathCapacity];  ///< product of reflectances so far
+  Id self[kPathCapacity];          ///< object that the ray leaves
+  Id path[kPathCapacity];          ///< index within the batch and CausticState, see kPathBits
+  Id pixel[kPathCapacity];         ///< as in BatchOf, since each vertex needs them for its random numbers
+  Id sample[kPathCapacity];
+  Id history[kPathCapacity];  ///< only if the tile is recorded; see record-inl.h
+  T pdf[kPathCapacity];       ///< only if features.lit: density of the direction, per steradian; infinite: delta
+  T cone[3][kPathCapacity];   ///< only if the scene has ray cones: see cone-inl.h
+};
+
+/// Points at which paths wait for light, until they fill packets or vectors. Padded like arrays of paths.
 template <class T, int kMost>
 struct alignas(64) WaitingPointsOf {
   using Id = IdOf<T>;
@@ -28,8 +59,8 @@ struct alignas(64) WaitingPointsOf {
   T value[3][kCapacity];   ///< throughput and weight; of rays times the radiance of the light
   T time[kCapacity];       ///< 0..1 within the shutter; only if the scene moves
   Id key[kCapacity];       ///< see PacketRays, in the low 32 bits; only if the scene has opacities
-  Id self[kCapacity];      ///< sphere that the ray leaves
-  Id path[kCapacity];      ///< index into LitPathsOf
+  Id self[kCapacity];      ///< object that the ray leaves
+  Id path[kCapacity];      ///< index within the batch
   Id history[kCapacity];   ///< only if the tile has light events
   int count = 0;
 };
@@ -68,9 +99,10 @@ struct CausticVerticesOf : WaitingPointsOf<T, kCausticBatch> {
   IdOf<T> ball[kCapacity];        ///< index into Caustics
 };
 
-/// Rays of chains that wait until they fill packets; see caustic_rays-inl.h. Directions are unit.
+/// Rays that follow chains of events through balls and wait until they fill packets; see caustic_rays-inl.h. Directions
+/// are unit.
 template <class T>
-struct ChainStreamOf : WaitingRaysOf<T, CausticVerticesOf<T>::kCapacity> {
+struct CausticRaysOf : WaitingRaysOf<T, CausticVerticesOf<T>::kCapacity> {
   using WaitingRaysOf<T, CausticVerticesOf<T>::kCapacity>::kCapacity;
   IdOf<T> events[kCapacity];  ///< that are left; see CausticEvent
   IdOf<T> ball[kCapacity];    ///< that causes them
@@ -79,52 +111,26 @@ struct ChainStreamOf : WaitingRaysOf<T, CausticVerticesOf<T>::kCapacity> {
   RayPacket<T> packet;        ///< the rays being traced
 };
 
-/// State of paths that gain radiance at their vertices.
-///
-/// A path's radiance is stored at its index within the batch and deposited when all paths of the batch have ended, so
-/// that a bad value removes the path's weight only once.
+/// All that the path loop keeps in memory, as structures of arrays.
 template <class T>
-struct alignas(64) LitPathsOf {
-  using Id = IdOf<T>;
-  static constexpr int kCapacity = kStreamSize + kPacketSize;
-  Id path[kCapacity];        ///< of each path of the stream: its index within the batch and its chain, see kPathBits
-  T pdf[kCapacity];          ///< density of the direction of each path of the stream, per steradian; infinite: delta
-  T radiance[3][kCapacity];  ///< by index within the batch
-  Id pixel[kCapacity];       ///< by index within the batch
-  Id sample[kCapacity];      ///< by index within the batch
+struct alignas(64) PathsOf {
+  PathStreamOf<T> stream;
+  BatchOf<T> batch;
+  RayPacket<T> packets[kPacketsInFlight];  ///< the stream's rays being traced
+  // Only in full loops:
   ShadowStreamOf<T> shadow;
   CausticVerticesOf<T> vertices;
-  ChainStreamOf<T> chains;
-};
-
-/// The state of a tile's paths between two vertices, as a structure of arrays.
-///
-/// Whole vectors are read and written at the ends of the arrays, hence the capacity for one more packet.
-template <class T>
-struct alignas(64) PathStreamOf {
-  using Id = IdOf<T>;
-  static constexpr int kCapacity = kStreamSize + kPacketSize;
-  T base[3][kCapacity];        ///< centre of the sphere that the ray leaves
-  T offset[3][kCapacity];      ///< from that centre to the ray's origin
-  T direction[3][kCapacity];   ///< unit
-  T throughput[3][kCapacity];  ///< product of reflectances so far
-  Id self[kCapacity];          ///< sphere that the ray leaves
-  Id pixel[kCapacity];         ///< y << 16 | x
-  Id sample[kCapacity];
-  Id history[kCapacity];                   ///< only if the tile is recorded; see record-inl.h
-  RayPacket<T> packets[kPacketsInFlight];  ///< the rays being traced
-  LitPathsOf<T> lit;                       ///< only in full loops
-  T cone[3][kCapacity];                    ///< only in full loops, if the scene has ray cones; see cone-inl.h
+  CausticRaysOf<T> caustic_rays;
 };
 
 /// Memory for the paths of a tile, in any precision.
 struct alignas(64) PathStream {
-  std::byte bytes[sizeof(PathStreamOf<double>)];
+  std::byte bytes[sizeof(PathsOf<double>)];
 
-  /// The stream of a loop, uninitialized.
+  /// The paths of a loop, uninitialized.
   template <class T>
-  PathStreamOf<T>& as() noexcept {
-    return *new (bytes) PathStreamOf<T>;
+  PathsOf<T>& as() noexcept {
+    return *new (bytes) PathsOf<T>;
   }
 };
 

@@ -98,15 +98,6 @@ class Recorder {
     });
   }
 
-  /// Records the total radiance of paths that end.
-  HWY_INLINE void light(D d, hn::Mask<D> lanes, const Vec3<V>& light) {
-    if (tile_.records == nullptr || !tile_.record_light) return;
-    Stored rgb(d, light);
-    each(d, lanes, [&](PathRecord& r, int i) {
-      for (int k = 0; k < 3; ++k) r.light[k] = static_cast<double>(rgb.v[k][i]);
-    });
-  }
-
   /// Adds the guides of the first surfaces that are not delta, or of the background, to the tile's sums.
   HWY_INLINE void guide(D d, hn::Mask<D> lanes, const Vec3<V>& albedo, const Vec3<V>& normal) {
     if (tile_.guides == nullptr || hn::AllFalse(d, lanes)) return;
@@ -196,10 +187,7 @@ class Recorder {
     const auto same = hn::RebindMask(d, pixels_ == hn::Set(IdTag<D>(), first));
     return hn::AllTrue(d, hn::Or(hn::Not(lanes), same)) ? &sum_of(first) : nullptr;
   }
-  HWY_INLINE GuideSum& sum_of(Id pixel) const {
-    const PixelPlace at = place_of(pixel, scene_);
-    return tile_.guides[(at.y - tile_.y) * tile_.row_stride + (at.x - tile_.x)];
-  }
+  HWY_INLINE GuideSum& sum_of(Id pixel) const { return tile_.guides[tile_.index(place_of(pixel, scene_))]; }
   /// Calls `add(sum, weight, lane)` for each lane.
   template <class Add>
   HWY_INLINE void each_sum(D d, hn::Mask<D> lanes, Add add) const {
@@ -211,10 +199,7 @@ class Recorder {
   }
   /// The index of a lane's record within the tile.
   HWY_INLINE std::int64_t index(const Names& names, int lane) const {
-    const PixelPlace at = place_of(names.pixel[lane], scene_);
-    const auto count = static_cast<std::int64_t>(tile_.sample_end - tile_.sample_begin);
-    const auto sample = static_cast<std::int64_t>(names.sample[lane]) - tile_.sample_begin;
-    return (std::int64_t{at.y - tile_.y} * tile_.width + (at.x - tile_.x)) * count + sample;
+    return tile_.record_index(place_of(names.pixel[lane], scene_), names.sample[lane]);
   }
   template <class Do>
   HWY_INLINE void each(D d, hn::Mask<D> lanes, Do what) {

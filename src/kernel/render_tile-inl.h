@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The path loop. Compiled once per instruction set.
+// The path loop.
 #if defined(ORRERY_KERNEL_RENDER_TILE_INL_H_) == defined(HWY_TARGET_TOGGLE)
 #ifdef ORRERY_KERNEL_RENDER_TILE_INL_H_
 #undef ORRERY_KERNEL_RENDER_TILE_INL_H_
@@ -14,8 +14,40 @@
 
 #include "kernel/camera-inl.h"
 #include "kernel/caustic_rays-inl.h"
+#include "kernel/cone-inl.h"
+#include "kernel/deposit-inl.h"
+#include "kernel/direct_light-inl.h"
 #include "kernel/render_tile.h"
 #include "kernel/shade-inl.h"
+
+// For a path at a time, the loop is
+//
+//     for each pixel and sample of the tile
+//       ray = camera ray, throughput = 1, radiance = 0
+//       for depth = 0, 1 .. max_depth - 1
+//         hit = closest hit of the ray
+//         if there is none: radiance += throughput background, end
+//         radiance += throughput emission(hit)
+//         surface = point, normal and material of the hit
+//         radiance += throughput albedo light(sampled point of a light), unless a shadow ray is occluded
+//         radiance += throughput albedo light(sampled direction to a light by way of a ball)
+//         direction, albedo = sample of the BSDF; if it is absorbed: end
+//         throughput *= albedo; if Russian roulette ends the path: end
+//         ray = from the surface along the direction
+//       sum of the pixel += radiance
+//
+// It runs a batch of up to kStreamSize paths in lock-step: each step of the inner loop handles the rays of all paths
+// that are alive, 16 in a packet, a vector at a time. Invariants:
+//
+// * A path's index within the batch never changes; its position in the stream falls as paths before it end. The stream
+//   stays in the order of the indices.
+// * Survivors never overtake: those of a vector are stored at or before its position, when all of it has been read.
+//   Hence the stream needs no second copy. A compacted store overwrites a whole vector's length from its destination,
+//   which ends before the next vector that is read.
+// * A path's radiance is summed in the order of its vertices: found light, then light samples, then those by way of
+//   balls. Neither of them waits for the next depth. The order does not depend on what else is in the batch, so that a
+//   pixel's bits depend neither on the tile nor on the number of lanes.
+// * The radiance of a path is added to its pixel as integers, once, when the batch has ended.
 
 HWY_BEFORE_NAMESPACE();
 namespace orrery::kernel::HWY_NAMESPACE {
@@ -24,169 +56,182 @@ namespace orrery::kernel::HWY_NAMESPACE {
 class PathCounter {
  public:
   PathCounter(const Tile& tile, const SceneView& scene)
-      : tile_(tile), scene_(scene), sample_(tile.sample_begin), place_(tile.pixel(0)) {}
+      : tile_(tile), scene_(scene), sample_(tile.sample_begin), id_(id_of(tile.pixel(0))) {}
 
   template <class Id>
   void take(Id& pixel, Id& sample) {
-    const std::uint32_t x = static_cast<std::uint32_t>(tile_.x + place_.x) + scene_.window_x;
-    const std::uint32_t y = static_cast<std::uint32_t>(tile_.y + place_.y) + scene_.window_y;
-    pixel = static_cast<Id>(y << 16 | (x & 0xffff));
-    sample = static_cast<Id>(sample_);
+    pixel = Id{id_};
+    sample = Id{sample_};
     if (++sample_ < tile_.sample_end) return;
     sample_ = tile_.sample_begin;
-    if (++pixel_ < tile_.pixel_count()) place_ = tile_.pixel(pixel_);
+    if (++pixel_ < tile_.pixel_count()) id_ = id_of(tile_.pixel(pixel_));
   }
 
  private:
+  std::uint32_t id_of(PixelPlace place) const {
+    const std::uint32_t x = static_cast<std::uint32_t>(tile_.x + place.x) + scene_.window_x;
+    const std::uint32_t y = static_cast<std::uint32_t>(tile_.y + place.y) + scene_.window_y;
+    return y << 16 | (x & 0xffff);
+  }
+
   const Tile& tile_;
   const SceneView& scene_;
   std::uint32_t sample_;
   int pixel_ = 0;
-  PixelPlace place_;
+  std::uint32_t id_;  ///< of the pixel
 };
 
-/// Fills the packet with the camera rays of the next paths.
-///
-/// `records`  records paths
-template <class D, Loop kLoop, class Packet, class Carried>
-HWY_INLINE void load_camera_rays(D d, const SceneView& scene, bool records, PathCounter& counter, int count,
-                                 Packet& packet, Carried& carried) {
-  const Features features = features_of<kLoop>(scene);
+/// The path loop over a tile, in the order in which its steps run.
+template <class D, Loop kLoop>
+class TileLoop {
   using T = hn::TFromD<D>;
+  using V = hn::Vec<D>;
   using Id = IdOf<T>;
-  const IdTag<D> du;
-  for (int i = 0; i < count; ++i) counter.take(carried.pixel[i], carried.sample[i]);
-  for (int i = count; i < kPacketSize; ++i) {  // pads the packet, since whole vectors are computed
-    carried.pixel[i] = carried.pixel[0];
-    carried.sample[i] = carried.sample[0];
+
+ public:
+  TileLoop(const SceneView& scene, const Tracer& tracer, const Tile& tile, PathsOf<T>& paths)
+      : scene_(scene), tracer_(tracer), tile_(tile), paths_(paths), stream_(paths.stream) {}
+
+  TileCounts run() {
+    counts_.target = HWY_TARGET;
+    count_paths();
+    PathCounter counter(tile_, scene_);
+    paths_.shadow.count = paths_.vertices.count = paths_.caustic_rays.count = 0;
+    for (std::uint64_t left = tile_.path_count(); left > 0;) {
+      const int batch = static_cast<int>(std::min<std::uint64_t>(left, kStreamSize));
+      left -= static_cast<std::uint64_t>(batch);
+      begin(batch, counter);
+      int alive = batch;
+      for (depth_ = 0; alive > 0; ++depth_) alive = advance(alive);
+      deposit(d, paths_.batch, batch, scene_, tile_, counts_);
+      raise_largest(paths_.batch, batch, scene_, tile_);
+      if (kLoop.full) record_light(paths_.batch, batch, scene_, tile_);
+    }
+    return counts_;
   }
-  packet.count = count;
-  const auto one = set(d, 1);
-  for (int v = 0; v < kPacketSize; v += static_cast<int>(hn::Lanes(d))) {
-    const auto pixels = hn::Load(du, carried.pixel + v);
-    const auto samples = hn::Load(du, carried.sample + v);
-    auto random = random_at_vertex(d, scene.sampler, pixels, samples, 0, features.lens);
-    if (scene.filter.above != nullptr) filter_place(d, scene.filter, samples, random);
+
+ private:
+  static constexpr D d{};
+  static constexpr IdTag<D> du{};
+  static constexpr int kLanes = static_cast<int>(hn::MaxLanes(D()));
+
+  HWY_INLINE Features features() const { return features_of<kLoop>(scene_); }
+
+  /// Adds the tile's paths to the weights of their pixels.
+  HWY_INLINE void count_paths() {
+    const std::int64_t weight = scene_.filter.weight(tile_.sample_begin, tile_.sample_end);
+    for (int i = 0; i < tile_.pixel_count(); ++i) {
+      const PixelPlace at = tile_.pixel(i);
+      tile_.sums[at.y * tile_.row_stride + at.x].weight += weight;
+      if (kLoop.full && tile_.guides != nullptr) tile_.guides[at.y * tile_.row_stride + at.x].weight += weight;
+    }
+  }
+
+  /// Starts the next paths of the tile. The last vector is padded with the first path.
+  HWY_INLINE void begin(int count, PathCounter& counter) {
+    auto& batch = paths_.batch;
+    for (int i = 0; i < count; ++i) counter.take(batch.pixel[i], batch.sample[i]);
+    std::fill_n(batch.pixel + count, kPacketSize, batch.pixel[0]);
+    std::fill_n(batch.sample + count, kPacketSize, batch.sample[0]);
+    const Vec3<V> black = {hn::Zero(d), hn::Zero(d), hn::Zero(d)}, one = {set(d, 1), set(d, 1), set(d, 1)};
+    for (int i = 0; i < count; i += kLanes) {
+      store3(d, black, batch.radiance, i);
+      store3(d, one, stream_.throughput, i);
+      hn::Store(hn::Load(du, batch.pixel + i), du, stream_.pixel + i);
+      hn::Store(hn::Load(du, batch.sample + i), du, stream_.sample + i);
+      hn::Store(hn::Iota(du, static_cast<Id>(i)), du, stream_.path + i);
+      if (kLoop.full && tile_.is_recorded()) hn::Store(set(du, kOnlyDeltaBit), du, stream_.history + i);
+    }
+  }
+
+  /// Takes the stream's paths to their next vertices.
+  ///
+  /// Result     number of survivors
+  HWY_INLINE int advance(int count) {
+    Shader<D, kLoop> shader(scene_, tile_, depth_, paths_);
+    int alive = 0;
+    for (int first = 0; first < count; first += kPacketsInFlight * kPacketSize) {
+      const int packets = load(first, std::min(count - first, kPacketsInFlight * kPacketSize));
+      kernel::trace(tracer_, paths_.packets, packets);
+      for (int i = 0; i < packets; ++i) {
+        alive = shader.shade(paths_.packets[i], first + i * kPacketSize, alive);
+        connect(false);
+      }
+    }
+    connect(true);
+    return alive;
+  }
+
+  /// Fills packets with rays of the stream from `first` on.
+  ///
+  /// Result     number of packets
+  HWY_INLINE int load(int first, int count) {
+    int packets = 0;
+    for (int begin = 0; begin < count; begin += kPacketSize) {
+      RayPacket<T>& packet = paths_.packets[packets++];
+      packet.count = std::min(kPacketSize, count - begin);
+      for (int v = 0; v < packet.count; v += kLanes) {
+        const int i = first + begin + v;
+        const auto pixels = hn::Load(du, stream_.pixel + i), samples = hn::Load(du, stream_.sample + i);
+        if (features().motion) hn::Store(time_of_path(d, scene_.sampler, pixels, samples), d, packet.time + v);
+        if (features().opacity)
+          store_keys(d, keys_at_vertex(du, scene_.sampler.seed, pixels, samples, depth_).next, packet.key + v);
+        if (depth_ == 0)
+          load_camera_rays(pixels, samples, i, v, packet);
+        else
+          store_rays(d, load3(d, stream_.base, i), load3(d, stream_.offset, i), load3(d, stream_.direction, i),
+                     hn::Load(du, stream_.self + i), packet, v);
+      }
+      reset_hits(packet);
+    }
+    counts_.rays += static_cast<std::uint64_t>(count);
+    return packets;
+  }
+
+  /// Samples camera rays.
+  HWY_INLINE void load_camera_rays(hn::Vec<IdTag<D>> pixels, hn::Vec<IdTag<D>> samples, int i, int v,
+                                   RayPacket<T>& packet) {
+    auto random = random_at_vertex(d, scene_.sampler, pixels, samples, 0, features().lens);
+    if (scene_.filter.above != nullptr) filter_place(d, scene_.filter, samples, random);
     const auto place = [&](hn::Vec<IdTag<D>> at, std::uint32_t begin) {
       return to_real(d, hn::And(at - begin, hn::Set(du, Id{0xffff})));
     };
-    const auto x = place(pixels, scene.window_x);
-    const auto y = place(hn::template ShiftRight<16>(pixels), scene.window_y);
-    const auto store = [&](const auto& value, auto& to) { store3(d, value, to, v); };
-    T* const times = features.motion ? packet.time + v : nullptr;
-    if (times != nullptr) hn::Store(time_of_path(d, scene.sampler, pixels, samples), d, times);
-    const auto camera = camera_vectors(d, scene, times);
-    if (features.opacity)
-      store_keys(d, keys_at_vertex(du, scene.sampler.seed, pixels, samples, 0).next, packet.key + v);
-    const auto ray = camera_ray(d, scene, camera, x, y, random);
+    const auto x = place(pixels, scene_.window_x);
+    const auto y = place(hn::template ShiftRight<16>(pixels), scene_.window_y);
+    const auto camera = camera_vectors(d, scene_, features().motion ? packet.time + v : nullptr);
+    const auto ray = camera_ray(d, scene_, camera, x, y, random);
     store_rays(d, camera.origin, ray.offset, ray.direction, set(du, kCamera), packet, v);
-    store(Vec3<hn::Vec<D>>{one, one, one}, carried.throughput);
-    if (records) hn::Store(set(du, kOnlyDeltaBit), du, carried.history + v);
-    if (features.rich_materials && scene.cone_width > 0) {
-      const auto cone = camera_cone(d, scene, camera, ray.direction, scene.cone_width);
-      store(Vec3<hn::Vec<D>>{cone.width2, cone.mixed, cone.slope2}, carried.cone);
+    if (features().rich_materials && scene_.cone_width > 0) {
+      const auto cone = camera_cone(d, scene_, camera, ray.direction, scene_.cone_width);
+      store3(d, Vec3<V>{cone.width2, cone.mixed, cone.slope2}, stream_.cone, i);
     }
   }
-}
 
-/// Fills the packet with the next rays of the stream's paths first .. first + count, which are at a vertex.
-template <class D, Loop kLoop, class Stream, class Packet, class Carried>
-HWY_INLINE void load_secondary_rays(D d, const SceneView& scene, bool records, const Stream& stream,
-                                    std::uint32_t vertex, int first, int count, Packet& packet, Carried& carried) {
-  const Features features = features_of<kLoop>(scene);
-  const IdTag<D> du;
-  packet.count = count;
-  for (int v = 0; v < count; v += static_cast<int>(hn::Lanes(d))) {
-    const int i = first + v;
-    const auto at = [&](const auto& component) { return loadu3(d, component, i); };
-    const auto store = [&](const auto& value, auto& to) { store3(d, value, to, v); };
-    store_rays(d, at(stream.base), at(stream.offset), at(stream.direction), hn::LoadU(du, stream.self + i), packet, v);
-    store(at(stream.throughput), carried.throughput);
-    const auto pixels = hn::LoadU(du, stream.pixel + i), samples = hn::LoadU(du, stream.sample + i);
-    hn::Store(pixels, du, carried.pixel + v);
-    hn::Store(samples, du, carried.sample + v);
-    if (features.motion) hn::Store(time_of_path(d, scene.sampler, pixels, samples), d, packet.time + v);
-    if (features.opacity)
-      store_keys(d, keys_at_vertex(du, scene.sampler.seed, pixels, samples, vertex).next, packet.key + v);
-    if (records) hn::Store(hn::LoadU(du, stream.history + i), du, carried.history + v);
-    if (kLoop.full) hn::Store(hn::LoadU(du, stream.lit.path + i), du, carried.path + v);
-    if (features.lit) hn::Store(hn::LoadU(d, stream.lit.pdf + i), d, carried.pdf + v);
-    if (features.rich_materials && scene.cone_width > 0) store(at(stream.cone), carried.cone);
+  /// Traces shadow rays and samples light by way of balls.
+  ///
+  /// `all`      false: only as many as fill packets
+  HWY_INLINE void connect(bool all) {
+    if (!kLoop.full) return;
+    const bool has_vertices = features().caustics && (all || paths_.vertices.count >= kCausticBatch);
+    const int fewest = all || has_vertices ? 1 : ShadowStreamOf<T>::kBatch;
+    while (paths_.shadow.count >= fewest) trace_shadow_batch(d, scene_, tracer_, tile_, paths_, counts_);
+    if (!has_vertices) return;
+    sample_caustics<D>(scene_, tile_.has_events(), paths_, sampled_events(scene_, depth_));
+    trace_caustic_rays<D, kLoop.precision>(scene_, tracer_, tile_, paths_, all ? 1 : kPacketSize, counts_);
   }
-}
 
-/// The path loop, instantiated for each lane type and each Loop in use.
+  const SceneView& scene_;
+  const Tracer& tracer_;
+  const Tile& tile_;
+  PathsOf<T>& paths_;
+  PathStreamOf<T>& stream_;
+  std::uint32_t depth_ = 0;
+  TileCounts counts_;
+};
+
 template <class D, Loop kLoop>
 TileCounts render_tile(const SceneView& scene, const Tracer& tracer, const Tile& tile, PathStream& memory) {
-  const D d;
-  using T = hn::TFromD<D>;
-  auto& stream = memory.as<T>();
-  PathPayload<T> carried[kPacketsInFlight];
-  TileCounts counts;
-  counts.target = HWY_TARGET;
-  const bool records = kLoop.full && tile.is_recorded();
-  const std::int64_t weight = scene.filter.weight(tile.sample_begin, tile.sample_end);
-  for (int i = 0; i < tile.pixel_count(); ++i) {
-    const PixelPlace at = tile.pixel(i);
-    tile.sums[at.y * tile.row_stride + at.x].weight += weight;
-    if (kLoop.full && tile.guides != nullptr) tile.guides[at.y * tile.row_stride + at.x].weight += weight;
-  }
-
-  PathCounter counter(tile, scene);
-  std::uint64_t to_start = tile.path_count();
-  auto& shadow = stream.lit.shadow;
-  const auto trace_shadows = [&](int waiting) {
-    if (kLoop.full && shadow.count >= waiting) trace_shadow_batch(d, scene, tracer, tile, stream.lit, counts);
-  };
-  // After the shadow rays of the same vertices, so that a path's light is summed in the same order in every batch.
-  const auto trace_caustics = [&](std::uint32_t depth, int waiting, int fewest) {
-    if (!kLoop.full || !scene.features.caustics || stream.lit.vertices.count < waiting) return;
-    trace_shadows(1);
-    sample_caustics<D>(scene, tile.has_events(), stream.lit, sampled_events(scene, depth));
-    trace_chains<D, kLoop.precision>(scene, tracer, tile, stream, fewest, counts);
-  };
-  const auto trace_and_shade = [&](std::uint32_t depth, int packets, int alive) {
-    for (int i = 0; i < packets; ++i) {
-      reset_hits(stream.packets[i]);
-      counts.rays += static_cast<std::uint64_t>(stream.packets[i].count);
-    }
-    kernel::trace(tracer, stream.packets, packets);
-    for (int i = 0; i < packets; ++i) {
-      alive = Shader<D, kLoop>(scene, tile, depth, stream, counts).shade(stream.packets[i], carried[i], alive);
-      trace_shadows(shadow.kBatch);
-      trace_caustics(depth, kCausticBatch, kPacketSize);
-    }
-    return alive;
-  };
-  // Survivors overwrite paths that have already been read, because a packet never grows.
-  const auto advance = [&](std::uint32_t depth, int count, auto load) {
-    int alive = 0, loaded = 0;
-    for (int i = 0; i < count; i += kPacketSize) {
-      load(i, std::min(kPacketSize, count - i), stream.packets[loaded], carried[loaded]);
-      if (++loaded < kPacketsInFlight && i + kPacketSize < count) continue;
-      alive = trace_and_shade(depth, loaded, alive);
-      loaded = 0;
-    }
-    // Shadow rays do not wait for the next depth, so that a path's light is summed in the same order in every batch.
-    trace_shadows(1);
-    trace_caustics(depth, 0, 1);
-    return alive;
-  };
-  shadow.count = stream.lit.vertices.count = stream.lit.chains.count = 0;
-  while (to_start > 0) {
-    const int batch = static_cast<int>(std::min<std::uint64_t>(to_start, kStreamSize));
-    to_start -= static_cast<std::uint64_t>(batch);
-    int alive = advance(0, batch, [&](int first, int count, auto& packet, auto& payload) {
-      load_camera_rays<D, kLoop>(d, scene, records, counter, count, packet, payload);
-      if (kLoop.full) begin_paths(d, first, payload, stream.lit);
-    });
-    for (std::uint32_t depth = 1; alive > 0; ++depth)
-      alive = advance(depth, alive, [&](int first, int count, auto& packet, auto& payload) {
-        load_secondary_rays<D, kLoop>(d, scene, records, stream, depth, first, count, packet, payload);
-      });
-    if (kLoop.full) deposit_paths(d, batch, scene, tile, stream.lit, counts);
-  }
-  return counts;
+  return TileLoop<D, kLoop>(scene, tracer, tile, memory.as<hn::TFromD<D>>()).run();
 }
 
 /// The instance for these options.

@@ -34,6 +34,13 @@ struct Tile {
   int pixel_count() const noexcept { return chosen != nullptr ? chosen_count : width * height; }
   /// The i-th pixel to render, relative to the upper left one.
   PixelPlace pixel(int i) const noexcept { return chosen != nullptr ? chosen[i] : PixelPlace{i % width, i / width}; }
+  /// The index of a pixel of the window among the sums.
+  std::int64_t index(PixelPlace at) const noexcept { return (at.y - y) * row_stride + (at.x - x); }
+  /// The index of the record of a path.
+  std::int64_t record_index(PixelPlace at, std::uint64_t sample) const noexcept {
+    const auto count = static_cast<std::int64_t>(sample_end - sample_begin);
+    return (std::int64_t{at.y - y} * width + (at.x - x)) * count + static_cast<std::int64_t>(sample - sample_begin);
+  }
   std::uint64_t path_count() const noexcept {
     return static_cast<std::uint64_t>(pixel_count()) * (sample_end - sample_begin);
   }

@@ -237,9 +237,7 @@ HWY_NOINLINE BsdfSample<D> sample_plastic(D d, Surface<D> at, V u, V v) {
 }
 
 /// Samples every lane's BSDF with the first two random numbers of its vertex.
-///
-/// `kPlastic` false: no lane hit plastic
-template <bool kPlastic, class D, class V = hn::Vec<D>>
+template <class D, class V = hn::Vec<D>>
 HWY_INLINE BsdfSample<D> sample_bsdf(D d, const Features& features, const Surface<D>& at, const Four<V>& random) {
   BsdfSample<D> out{at.normal, hn::FirstN(d, hn::Lanes(d))};
   const Vec3<V> on_sphere = sample_unit_sphere(d, random.v[0], random.v[1]);
@@ -263,8 +261,8 @@ HWY_INLINE BsdfSample<D> sample_bsdf(D d, const Features& features, const Surfac
       out.direction = select(glass, sample_dielectric(d, at, random.v[0]), out.direction);
     }
   }
-  if constexpr (kPlastic) {
-    const auto plastic = among(MaterialKind::kPlastic);
+  const auto plastic = among(MaterialKind::kPlastic);
+  if (features.rich_materials && !hn::AllFalse(d, plastic)) {
     const auto sampled = sample_plastic(d, at, random.v[0], random.v[1]);
     out.direction = select(plastic, sampled.direction, out.direction);
     out.in_coat = hn::And(plastic, sampled.in_coat);
@@ -298,9 +296,8 @@ HWY_INLINE V pdf_metal(D d, const Surface<D>& at, const Vec3<V>& w) {
 /// The BSDF times the cosine to the normal is albedo times this density, for every material that is not delta. Plastic
 /// adds the density of its coat.
 ///
-/// `kPlastic` false: no lane hit plastic
 /// Space      w unit
-template <bool kPlastic, class D, class V = hn::Vec<D>>
+template <class D, class V = hn::Vec<D>>
 HWY_INLINE V pdf_bsdf(D d, const Features& features, const Surface<D>& at, const Vec3<V>& w) {
   const auto among = [&](MaterialKind kind) { return is_kind(d, at.kind, kind); };
   const V cosine = max(dot(w, at.normal), 0);
@@ -308,9 +305,10 @@ HWY_INLINE V pdf_bsdf(D d, const Features& features, const Surface<D>& at, const
   if (features.hemisphere) pdf = select(among(MaterialKind::kHemisphere), 1 / kTwoPi, pdf);
   const auto metal = among(MaterialKind::kMetal);
   if (!hn::AllFalse(d, metal)) pdf = select(metal, pdf_metal(d, at, w), pdf);
-  if constexpr (kPlastic) {
+  const auto plastic = among(MaterialKind::kPlastic);
+  if (features.rich_materials && !hn::AllFalse(d, plastic)) {
     const V base = (1 - coat_share(at)) * (cosine * (2 / kTwoPi));
-    pdf = select(is_kind(d, at.kind, MaterialKind::kPlastic), base, pdf);
+    pdf = select(plastic, base, pdf);
   }
   return hn::IfThenElseZero(at.same_side(w), pdf);
 }

@@ -69,7 +69,7 @@ k::Surface<D> surface(D d, const Interaction& interaction) {
 /// Fills x, y, z and alive with samples first .. first + as many as there is room for, a multiple of 16.
 void sample_all(const Interaction& interaction, std::uint32_t first, bool is_extended, Directions& out) {
   kernel::Features features = kAllFeatures;
-  features.rich_materials = is_extended;
+  features.rich_materials = is_extended || interaction.kind == kernel::MaterialKind::kPlastic;
   const hn::ScalableTag<double> d;
   using D = std::remove_const_t<decltype(d)>;
   const k::IdTag<D> du;
@@ -79,7 +79,7 @@ void sample_all(const Interaction& interaction, std::uint32_t first, bool is_ext
     const auto name = hn::Iota(du, first + i);
     const auto u = k::random_at_vertex(d, {kernel::SamplerKind::kIndependent, 3}, hn::ShiftRight<8>(name),
                                        hn::And(name, hn::Set(du, 255)), 1, false);
-    const auto sampled = k::sample_bsdf<true>(d, features, at, u);
+    const auto sampled = k::sample_bsdf(d, features, at, u);
     hn::StoreU(sampled.direction.x, d, &out.x[i]);
     hn::StoreU(sampled.direction.y, d, &out.y[i]);
     hn::StoreU(sampled.direction.z, d, &out.z[i]);
@@ -112,7 +112,7 @@ void judge(const Interaction& interaction, Directions& out) {
       lanes[2][l] = static_cast<T>(out.z[i + l]);
     }
     const auto w = k::load3(d, lanes[0], lanes[1], lanes[2]);
-    hn::Store(interaction.coat ? k::pdf_coat(at, w) : k::pdf_bsdf<true>(d, kAllFeatures, at, w), d, lanes[0]);
+    hn::Store(interaction.coat ? k::pdf_coat(at, w) : k::pdf_bsdf(d, kAllFeatures, at, w), d, lanes[0]);
     for (std::size_t l = 0; l < hn::Lanes(d); ++l) out.pdf[i + l] = static_cast<double>(lanes[0][l]);
   }
 }
