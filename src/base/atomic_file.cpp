@@ -239,30 +239,18 @@ AtomicFile::AtomicFile(std::filesystem::path path)
       temporary_(Temporary::Kind::kFile, directory_for(path_, target_), target_.filename().string(), path_) {
   struct stat replaced {};
   // Keeps the permissions, but no setuid, setgid or sticky bit. The owner must write the new file and read it back.
-  if (::stat(target_.c_str(), &replaced) == 0)
-    ::fchmod(temporary_.descriptor(), (replaced.st_mode & 0777) | S_IRUSR | S_IWUSR);
+  if (::stat(target_.c_str(), &replaced) == 0) ::fchmod(descriptor(), (replaced.st_mode & 0777) | S_IRUSR | S_IWUSR);
 }
 
-void AtomicFile::commit() {
+void AtomicFile::commit(bool synced) {
   // EINVAL: the file system does not support fsync.
-  if (::fsync(temporary_.descriptor()) != 0 && errno != EINVAL) fail_to_write(path_, errno);
-  commit_unsynced();
-  const int directory = ::open(folder_of(target_).c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
+  if (synced && ::fsync(descriptor()) != 0 && errno != EINVAL) fail_to_write(path_, errno);
+  if (!temporary_.rename(target_)) fail_to_write(path_, errno);
+  const int directory = synced ? ::open(folder_of(target_).c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC) : -1;
   if (directory >= 0) {
     ::fsync(directory);  // the name itself; if that fails, the file is still complete
     ::close(directory);
   }
-}
-
-void AtomicFile::commit_unsynced() {
-  if (!temporary_.rename(target_)) fail_to_write(path_, errno);
-}
-
-OutputFile::OutputFile(const std::filesystem::path& path)
-    : path_(path), file_(path), descriptor_(::open(file_.temporary().c_str(), O_WRONLY | O_TRUNC | O_CLOEXEC)) {}
-
-OutputFile::~OutputFile() {
-  if (descriptor_ >= 0) ::close(descriptor_);
 }
 
 void OutputFile::flush() {
@@ -272,9 +260,9 @@ void OutputFile::flush() {
 void OutputFile::write() {
   std::string_view left = buffer_;
   while (!left.empty()) {
-    const ssize_t written = ::write(descriptor_, left.data(), left.size());
+    const ssize_t written = ::write(file_.descriptor(), left.data(), left.size());
     if (written < 0 && errno == EINTR) continue;
-    if (written < 0) fail_to_write(path_, errno);
+    if (written < 0) fail_to_write(path(), errno);
     left.remove_prefix(static_cast<std::size_t>(written));
   }
   buffer_.clear();
@@ -282,10 +270,7 @@ void OutputFile::write() {
 
 void OutputFile::finish(bool synced) {
   write();
-  const int status = ::close(descriptor_);
-  descriptor_ = -1;
-  if (status != 0) fail_to_write(path_, errno);
-  synced ? file_.commit() : file_.commit_unsynced();
+  file_.commit(synced);
 }
 
 void write_text_file(const std::filesystem::path& path, std::string_view text, bool synced) {

@@ -4,6 +4,7 @@
 #include <filesystem>
 #include <string>
 #include <string_view>
+#include <utility>
 
 namespace orrery::base {
 
@@ -55,19 +56,19 @@ class AtomicFile {
   ///            belongs to a directory, a device or a pipe
   explicit AtomicFile(std::filesystem::path path);
 
+  /// The final path.
+  const std::filesystem::path& path() const noexcept { return path_; }
   /// Returns the path to write to; the file exists and is empty.
   const std::filesystem::path& temporary() const noexcept { return temporary_.path(); }
+  /// The temporary file, open for reading and writing.
+  int descriptor() const noexcept { return temporary_.descriptor(); }
 
   /// Syncs the temporary file and renames it.
   ///
+  /// `synced`   false: for a file that is rewritten every second. Its readers never see an incomplete file; after a
+  ///            crash of the machine it may be empty
   /// Errors     base::Error(kIo)
-  void commit();
-
-  /// Renames the temporary file without syncing it, for a file that is rewritten every second. Its readers never see an
-  /// incomplete file; after a crash of the machine it may be empty.
-  ///
-  /// Errors     base::Error(kIo)
-  void commit_unsynced();
+  void commit(bool synced = true);
 
  private:
   std::filesystem::path path_, target_;
@@ -80,12 +81,9 @@ class OutputFile {
   /// Creates the temporary file.
   ///
   /// Errors     those of AtomicFile
-  explicit OutputFile(const std::filesystem::path& path);
-  ~OutputFile();
-  OutputFile(const OutputFile&) = delete;
-  OutputFile& operator=(const OutputFile&) = delete;
+  explicit OutputFile(std::filesystem::path path) : file_(std::move(path)) {}
 
-  const std::filesystem::path& path() const { return path_; }
+  const std::filesystem::path& path() const { return file_.path(); }
   /// The buffer to append to; flush() writes it once it is large enough.
   std::string& buffer() { return buffer_; }
   /// Writes the buffer if it is large enough.
@@ -94,22 +92,20 @@ class OutputFile {
   void flush();
   /// Writes the rest and commits the file.
   ///
-  /// `synced`   false: commit with AtomicFile::commit_unsynced
+  /// `synced`   see AtomicFile::commit
   /// Errors     base::Error(kIo)
   void finish(bool synced = true);
 
  private:
   void write();
 
-  std::filesystem::path path_;
   AtomicFile file_;
-  int descriptor_;
   std::string buffer_;
 };
 
 /// Writes a text file, which appears under its final name only when it is complete.
 ///
-/// `synced`   see OutputFile::finish
+/// `synced`   see AtomicFile::commit
 /// Errors     those of OutputFile
 void write_text_file(const std::filesystem::path& path, std::string_view text, bool synced = true);
 
