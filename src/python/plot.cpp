@@ -135,7 +135,7 @@ struct FilmFile {
 /// Result     what it shows
 view::Subject make_film(const FilmFile& to, const std::string& data, const std::vector<std::string>& words,
                         const job::Resources& resources, const points::OpenData& open, const job::Hooks& hooks) {
-  const cli::Film film(to.path, to.settings.fps, to.keeps_frames);
+  cli::Film film(to.path, to.settings.fps, to.keeps_frames);
   view::Subject subject = cli::data_subject(data, words, resources, open, &to.settings);
   const scene::Window window = load::authored_scene(subject.job.scene).image.data_window();
   film.check_size(window.width, window.height);
@@ -146,7 +146,9 @@ view::Subject make_film(const FilmFile& to, const std::string& data, const std::
   batch.job.hooks = hooks;
   batch.scenes = {subject.job.scene.file};
   batch.frames = subject.frames;
+  batch.others = {{film.file(), "path"}};
   const std::vector<job::Job> jobs = job::jobs_of(batch);
+  film.open_folder();
   for (std::size_t done = 0; done < jobs.size(); ++done) {
     job::Job job = jobs[done];
     job.hooks.on_progress = [&, done](render::Progress p) {
