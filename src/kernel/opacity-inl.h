@@ -27,7 +27,7 @@ template <class DU>
 struct RayKeys {
   hn::Vec<DU> next;     ///< of the ray that continues the path
   hn::Vec<DU> shadow;   ///< of the shadow ray
-  hn::Vec<DU> caustic;  ///< of the first ray to a ball; see caustic_light-inl.h
+  hn::Vec<DU> caustic;  ///< of the first ray to a ball; see caustic_sampling-inl.h
 };
 
 /// Returns the keys of the rays from a vertex, independent of those from any other. Not inlined, so that the loop costs

@@ -89,7 +89,7 @@ struct ShadowStreamOf : WaitingRaysOf<T, kPacketsInFlight * kPacketSize> {
 /// be full.
 inline constexpr int kCausticBatch = 8 * kPacketSize;
 
-/// Diffuse vertices at which light by way of balls is sampled, until they fill vectors; see caustic_light-inl.h.
+/// Diffuse vertices at which light by way of balls is sampled, until they fill vectors; see caustic_sampling-inl.h.
 template <class T>
 struct CausticVerticesOf : WaitingPointsOf<T, kCausticBatch> {
   using WaitingPointsOf<T, kCausticBatch>::kCapacity;
@@ -99,8 +99,8 @@ struct CausticVerticesOf : WaitingPointsOf<T, kCausticBatch> {
   IdOf<T> ball[kCapacity];        ///< index into Caustics
 };
 
-/// Rays that follow chains of events through balls and wait until they fill packets; see caustic_rays-inl.h. Directions
-/// are unit.
+/// Rays that follow chains of events through balls and wait until they fill packets; see caustic_transport-inl.h.
+/// Directions are unit.
 template <class T>
 struct CausticRaysOf : WaitingRaysOf<T, CausticVerticesOf<T>::kCapacity> {
   using WaitingRaysOf<T, CausticVerticesOf<T>::kCapacity>::kCapacity;

@@ -13,7 +13,7 @@
 #include <cstdint>
 
 #include "kernel/camera-inl.h"
-#include "kernel/caustic_rays-inl.h"
+#include "kernel/caustic_transport-inl.h"
 #include "kernel/cone-inl.h"
 #include "kernel/deposit-inl.h"
 #include "kernel/direct_light-inl.h"

@@ -12,8 +12,8 @@
 #include <cstdint>
 #include <limits>
 
-#include "kernel/caustic_light-inl.h"
-#include "kernel/caustic_partition-inl.h"
+#include "kernel/caustic_sampling-inl.h"
+#include "kernel/caustic_transport-inl.h"
 #include "kernel/compaction-inl.h"
 #include "kernel/cone-inl.h"
 #include "kernel/deposit-inl.h"

@@ -7,7 +7,7 @@
 // After foreach_target:
 #include <hwy/highway.h>
 
-#include "kernel/caustic_image-inl.h"
+#include "kernel/caustic_sampling-inl.h"
 #include "support/best.h"
 
 HWY_BEFORE_NAMESPACE();

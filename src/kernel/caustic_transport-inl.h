@@ -1,21 +1,27 @@
 // SPDX-License-Identifier: Apache-2.0
-// Which paths find light that was sampled at their last diffuse vertex. Compiled once per instruction set.
-#if defined(ORRERY_KERNEL_CAUSTIC_PARTITION_INL_H_) == defined(HWY_TARGET_TOGGLE)
-#ifdef ORRERY_KERNEL_CAUSTIC_PARTITION_INL_H_
-#undef ORRERY_KERNEL_CAUSTIC_PARTITION_INL_H_
+// Transport of caustics: rays by way of balls to a light, and paths that find such light themselves.
+#if defined(ORRERY_KERNEL_CAUSTIC_TRANSPORT_INL_H_) == defined(HWY_TARGET_TOGGLE)
+#ifdef ORRERY_KERNEL_CAUSTIC_TRANSPORT_INL_H_
+#undef ORRERY_KERNEL_CAUSTIC_TRANSPORT_INL_H_
 #else
-#define ORRERY_KERNEL_CAUSTIC_PARTITION_INL_H_
+#define ORRERY_KERNEL_CAUSTIC_TRANSPORT_INL_H_
 #endif
 
 #include <hwy/highway.h>
 
+#include <algorithm>
 #include <cstdint>
 
+#include "kernel/caustic_sampling-inl.h"
 #include "kernel/caustics.h"
 #include "kernel/compaction-inl.h"
+#include "kernel/deposit-inl.h"
 #include "kernel/environment-inl.h"
+#include "kernel/path_stream.h"
+#include "kernel/record-inl.h"
 #include "kernel/scatter-inl.h"
 #include "kernel/scene_view.h"
+#include "kernel/surface-inl.h"
 
 HWY_BEFORE_NAMESPACE();
 namespace orrery::kernel::HWY_NAMESPACE {
@@ -132,6 +138,131 @@ HWY_NOINLINE Vec3<V> without_sampled_sun(D d, const SceneView& scene, Vec3<V> ra
   auto at = environment_footprint(d, environment, direction);
   at.is_in_sun = hn::AndNot(sampled, at.is_in_sun);
   return select(sampled, radiance_of(d, environment, at), radiance);
+}
+
+/// The key of the next ray of a path to a light.
+template <class DU, class V = hn::Vec<DU>>
+HWY_INLINE V next_key(DU du, V key) {
+  const hn::Repartition<std::uint32_t, DU> d32;
+  return hn::BitCast(du, hashed(d32, hn::BitCast(d32, key) + hn::Set(d32, 0x9e3779b9u)));
+}
+
+/// Follows caustic rays.
+template <class D, Precision kPrecision>
+class CausticRayTracer {
+  using T = hn::TFromD<D>;
+  using V = hn::Vec<D>;
+  using Ids = hn::Vec<IdTag<D>>;
+
+ public:
+  HWY_INLINE CausticRayTracer(const SceneView& scene, const Tile& tile, PathsOf<T>& paths)
+      : scene_(scene),
+        tile_(tile),
+        packet_(paths.caustic_rays.packet),
+        batch_(paths.batch),
+        rays_(paths.caustic_rays) {}
+
+  /// Traces the last packet of the waiting rays. Those that have reached their light add it to their paths, and those
+  /// that the ball reflects or transmits wait again.
+  ///
+  /// Result     number of rays traced
+  HWY_INLINE int trace(const Tracer& tracer) {
+    const int count = std::min(rays_.count, kPacketSize);
+    const int first = rays_.count - count;
+    load_waiting_rays(d, scene_, rays_, first, count, packet_);
+    reset_hits(packet_);
+    kernel::trace(tracer, packet_);
+    // Rays that go on overwrite rays that have been read.
+    rays_.count = first;
+    for (int v = 0; v < count; v += static_cast<int>(hn::Lanes(d))) follow(first, v);
+    return count;
+  }
+
+ private:
+  static constexpr D d{};
+  static constexpr IdTag<D> du{};
+
+  HWY_INLINE void follow(int first, int v) {
+    const int i = first + v;
+    const auto active = hn::FirstN(d, static_cast<std::size_t>(packet_.count - v));
+    const auto hits = hn::Load(du, packet_.hit + v);
+    const auto events = hn::LoadU(du, rays_.events + i), light = hn::LoadU(du, rays_.light + i);
+    const auto is_last = hn::RebindMask(d, events == 0);
+    const auto ray = load_rays(d, packet_, v);
+    auto arrived = hn::And(active, hn::And(is_last, hn::RebindMask(d, hits == light)));
+    if (scene_.environment != nullptr && scene_.environment->has_sun) {
+      const auto sees_sun = is_in_sun(d, *scene_.environment, ray.direction);
+      arrived = hn::And(arrived, hn::Or(sees_sun, hn::RebindMask(d, light != kSun)));
+    }
+    if (!hn::AllFalse(d, arrived)) arrive(i, arrived);
+    const auto at_void = hn::And(events, set(du, kAtVoid)) != 0;
+    const auto expected = select(at_void, hn::LoadU(du, rays_.inner + i), hn::LoadU(du, rays_.ball + i));
+    const auto scattered = hn::And(hn::AndNot(is_last, active), hn::RebindMask(d, hits == expected));
+    if (!hn::AllFalse(d, scattered)) scatter(i, v, ray, hits, events, scattered);
+  }
+
+  /// Adds light to paths.
+  HWY_INLINE void arrive(int i, hn::Mask<D> lanes) {
+    const auto value = loadu3(d, rays_.value, i);
+    gain(d, lanes, value, hn::LoadU(du, rays_.path + i), batch_);
+    if (!tile_.has_events()) return;
+    recorder_of(d, scene_, tile_, batch_, lanes, rays_.path + i)
+        .event(d, lanes, value, hn::LoadU(du, rays_.history + i), hn::LoadU(du, rays_.group + i), Lobe::kEmission);
+  }
+
+  /// Applies the next event of each chain.
+  HWY_INLINE void scatter(int i, int v, const Rays<D>& ray, Ids hits, Ids events, hn::Mask<D> lanes) {
+    const T* const times = scene_.features.motion ? packet_.time + v : nullptr;
+    const auto look = reach_surface<D, kPrecision>(d, scene_, ray, hits, hn::Load(d, packet_.distance + v), times);
+    const Surface<D>& surface = look.surface;
+    // Rays reach a sphere from inside if they have left it, or if its refraction is the last event.
+    const auto leaves = hn::RebindMask(d, events == hn::Set(du, kTransmit));
+    const auto is_within = hn::Or(hn::RebindMask(d, hits == ray.self), leaves);
+    const auto is_on_side = hn::Xor(surface.from_outside, is_within);
+    const auto reflects = hn::RebindMask(d, hn::And(events, set(du, kReflect)) != 0);
+    const auto glass = refraction(d, surface);
+    const V reflected_part = select(glass.is_total, 1, glass.reflectance);
+    const V part = select(reflects, reflected_part, 1 - reflected_part);
+    const auto is_glass = is_kind(d, surface.kind, MaterialKind::kDielectric);
+    auto value = loadu3(d, rays_.value, i);
+    value = select(is_glass, value * part, value * look.albedo);
+    const auto direction = select(reflects, reflected(surface), glass.direction);
+    const auto goes_on = hn::And(hn::And(lanes, is_on_side), hn::Or(hn::Not(is_glass), part > 0));
+    const int to = rays_.count;
+    const Compactor<D> compactor(d, goes_on);
+    const auto keep = [&](auto& array) { compactor.store_ids(d, hn::LoadU(du, array + i), array + to); };
+    compactor.store3(d, look.sphere.center, rays_.base, to);
+    compactor.store3(d, surface.offset, rays_.offset, to);
+    compactor.store3(d, direction, rays_.direction, to);
+    compactor.store3(d, value, rays_.value, to);
+    compactor.store_ids(d, hits, rays_.self + to);
+    compactor.store_ids(d, hn::ShiftRight<kCausticEventBits>(events), rays_.events + to);
+    if (scene_.features.motion) compactor.store(d, hn::LoadU(d, rays_.time + i), rays_.time + to);
+    if (scene_.features.opacity) compactor.store_ids(d, next_key(du, hn::LoadU(du, rays_.key + i)), rays_.key + to);
+    keep(rays_.ball);
+    keep(rays_.inner);
+    keep(rays_.light);
+    keep(rays_.path);
+    if (tile_.has_events()) {
+      keep(rays_.history);
+      keep(rays_.group);
+    }
+    rays_.count += compactor.count();
+  }
+
+  const SceneView& scene_;
+  const Tile& tile_;
+  RayPacket<T>& packet_;
+  BatchOf<T>& batch_;
+  CausticRaysOf<T>& rays_;
+};
+
+/// Traces caustic rays until fewer than `waiting` wait. Not inlined.
+template <class D, Precision kPrecision>
+HWY_NOINLINE void trace_caustic_rays(const SceneView& scene, const Tracer& tracer, const Tile& tile,
+                                     PathsOf<hn::TFromD<D>>& paths, int waiting, TileCounts& counts) {
+  CausticRayTracer<D, kPrecision> rays(scene, tile, paths);
+  while (paths.caustic_rays.count >= waiting) counts.rays += static_cast<std::uint64_t>(rays.trace(tracer));
 }
 
 }  // namespace orrery::kernel::HWY_NAMESPACE

@@ -146,7 +146,7 @@ Sum irradiance(const CausticPlace& place, Vec3d normal, int chain, int samples, 
 /// Of a sun with an irradiance of 1 on a surface that faces it.
 double sun_radiance(double sine) { return 1 / (kPi * sine * sine); }
 
-TEST(KernelCausticImage, AMirrorFacingTheSunReflectsTheClosedForm) {
+TEST(KernelCausticSampling, AMirrorFacingTheSunReflectsTheClosedForm) {
   for (const double p : {1.2, 2.0, 5.0}) {
     for (const double sine : {1e-4, 1e-5}) {
       const CausticPlace place{{0, p, 0}, {0, 1, 0}, 0, sine, false};
@@ -157,7 +157,7 @@ TEST(KernelCausticImage, AMirrorFacingTheSunReflectsTheClosedForm) {
 }
 
 /// Beyond the focus, an image on the axis; before it, also a ring.
-TEST(KernelCausticImage, GlassBeforeTheSunTransmitsTheClosedForm) {
+TEST(KernelCausticSampling, GlassBeforeTheSunTransmitsTheClosedForm) {
   constexpr double kEta = 1.5;
   for (const double beta : {1e-3, 1e-4, 1e-5})
     for (const double p : {1.2, 1.4, 1.6, 2.0, 5.0}) {
@@ -209,7 +209,7 @@ double part_of(const CausticPlace& place, int chain, double b) {
 }
 
 /// All light that a ball scatters passes through a sphere around it.
-TEST(KernelCausticImage, TheFluxThroughASphereIsThatOfTheBall) {
+TEST(KernelCausticSampling, TheFluxThroughASphereIsThatOfTheBall) {
   const CausticPlace balls[] = {{{0, 3, 0}, {0, 1, 0}, 0, 0.00465, false},
                                 {{0, 3, 0}, {0, 1, 0}, 0, 0.00465, true},
                                 {{0, 3, 0}, {0, 1, 0}, 0, 0.00465, true, 1.5, 0.5},
@@ -245,7 +245,7 @@ TEST(KernelCausticImage, TheFluxThroughASphereIsThatOfTheBall) {
 
 /// All light that a ball refracts towards a sphere in it passes through this sphere: first inwards, then outwards.
 /// Radiance in glass is not multiplied by the square of the index.
-TEST(KernelCausticImage, TheFluxThroughASphereInsideIsThatOfTheBall) {
+TEST(KernelCausticSampling, TheFluxThroughASphereInsideIsThatOfTheBall) {
   constexpr struct { double eta, distance; } kCases[] = {{1.1, 0.95}, {1.5, 0.4}, {1.5, 0.8}, {2.4, 0.3}};
   for (const auto [eta, distance] : kCases) {
     CausticPlace place{{0, distance, 0}, {0, 1, 0}, 0, 0.00465, true, eta};
@@ -276,7 +276,7 @@ TEST(KernelCausticImage, TheFluxThroughASphereInsideIsThatOfTheBall) {
 }
 
 /// The rainbow of water: the angle of the caustic is known in closed form, and beyond it there is no light.
-TEST(KernelCausticImage, TheRainbowIsWhereDescartesFoundIt) {
+TEST(KernelCausticSampling, TheRainbowIsWhereDescartesFoundIt) {
   const double eta = 1.333, cos2 = (eta * eta - 1) / 3, i = std::acos(std::sqrt(cos2));
   const double fold = (4 * std::asin(std::sin(i) / eta) - 2 * i) * 180 / kPi;
   EXPECT_NEAR(fold, 42.078, 1e-3);
@@ -386,11 +386,11 @@ void expect_unbiased(Sampler sample, Places places, const char* name) {
               largest_z, std::sqrt(squares / compared), largest);
 }
 
-TEST(KernelCausticImage, FindsAllLightInDouble) {
+TEST(KernelCausticSampling, FindsAllLightInDouble) {
   expect_unbiased(caustic_direction, random_place, "double");
   expect_unbiased(caustic_direction, random_place_in_glass, "double, in glass");
 }
-TEST(KernelCausticImage, FindsAllLightInFloat) {
+TEST(KernelCausticSampling, FindsAllLightInFloat) {
   expect_unbiased(caustic_direction_in_float, random_place, "float");
   expect_unbiased(caustic_direction_in_float, random_place_in_glass, "float, in glass");
 }
