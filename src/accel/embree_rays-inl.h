@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Rays in Embree's layout, and their hits. Compiled once per instruction set.
+// Rays in Embree's layout, and their hits.
 #if defined(ORRERY_ACCEL_EMBREE_RAYS_INL_H_) == defined(HWY_TARGET_TOGGLE)
 #ifdef ORRERY_ACCEL_EMBREE_RAYS_INL_H_
 #undef ORRERY_ACCEL_EMBREE_RAYS_INL_H_

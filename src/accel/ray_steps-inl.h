@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The steps of one ray through a SphereBvh. Compiled once per instruction set.
+// The steps of one ray through a SphereBvh.
 #if defined(ORRERY_ACCEL_RAY_STEPS_INL_H_) == defined(HWY_TARGET_TOGGLE)
 #ifdef ORRERY_ACCEL_RAY_STEPS_INL_H_
 #undef ORRERY_ACCEL_RAY_STEPS_INL_H_

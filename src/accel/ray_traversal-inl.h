@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Traversal of a SphereBvh by single rays, those of up to four packets interleaved. Compiled once per instruction set.
+// Traversal of a SphereBvh by single rays, those of up to four packets interleaved.
 #if defined(ORRERY_ACCEL_RAY_TRAVERSAL_INL_H_) == defined(HWY_TARGET_TOGGLE)
 #ifdef ORRERY_ACCEL_RAY_TRAVERSAL_INL_H_
 #undef ORRERY_ACCEL_RAY_TRAVERSAL_INL_H_

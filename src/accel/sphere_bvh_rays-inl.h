@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What the traversals of a SphereBvh share: references, prefetching, and the tests of leaves. Compiled once per
-// instruction set.
+// What the traversals of a SphereBvh share: references, prefetching, and the tests of leaves.
 #if defined(ORRERY_ACCEL_SPHERE_BVH_RAYS_INL_H_) == defined(HWY_TARGET_TOGGLE)
 #ifdef ORRERY_ACCEL_SPHERE_BVH_RAYS_INL_H_
 #undef ORRERY_ACCEL_SPHERE_BVH_RAYS_INL_H_

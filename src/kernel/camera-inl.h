@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Camera rays. Compiled once per instruction set.
+// Camera rays.
 #if defined(ORRERY_KERNEL_CAMERA_INL_H_) == defined(HWY_TARGET_TOGGLE)
 #ifdef ORRERY_KERNEL_CAMERA_INL_H_
 #undef ORRERY_KERNEL_CAMERA_INL_H_

@@ -73,8 +73,7 @@ struct CausticHit {
   hn::Vec<IdTag<D>> hit;
 };
 
-/// The states of paths after a surface has scattered them. The surface is passed by value: a reference to it would keep
-/// it in memory in scenes without caustics too.
+/// The states of paths after a surface has scattered them. Not inlined.
 ///
 /// `diffuse`  lanes in which a diffuse lobe has scattered
 template <class D>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Compaction of lanes. Compiled once per instruction set.
+// Compaction of lanes.
 #if defined(ORRERY_KERNEL_COMPACTION_INL_H_) == defined(HWY_TARGET_TOGGLE)
 #ifdef ORRERY_KERNEL_COMPACTION_INL_H_
 #undef ORRERY_KERNEL_COMPACTION_INL_H_

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Ray cones for texture filtering. Compiled once per instruction set.
+// Ray cones for texture filtering.
 #if defined(ORRERY_KERNEL_CONE_INL_H_) == defined(HWY_TARGET_TOGGLE)
 #ifdef ORRERY_KERNEL_CONE_INL_H_
 #undef ORRERY_KERNEL_CONE_INL_H_

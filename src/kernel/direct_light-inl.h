@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Direct light: next-event estimation with shadow rays, and its weights. Compiled once per instruction set.
+// Direct light: next-event estimation with shadow rays, and its weights.
 #if defined(ORRERY_KERNEL_DIRECT_LIGHT_INL_H_) == defined(HWY_TARGET_TOGGLE)
 #ifdef ORRERY_KERNEL_DIRECT_LIGHT_INL_H_
 #undef ORRERY_KERNEL_DIRECT_LIGHT_INL_H_

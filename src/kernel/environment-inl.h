@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Image backgrounds: radiance, sampling and density. Compiled once per instruction set.
+// Image backgrounds: radiance, sampling and density.
 #if defined(ORRERY_KERNEL_ENVIRONMENT_INL_H_) == defined(HWY_TARGET_TOGGLE)
 #ifdef ORRERY_KERNEL_ENVIRONMENT_INL_H_
 #undef ORRERY_KERNEL_ENVIRONMENT_INL_H_

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Gathers of rows of memory. Compiled once per instruction set.
+// Gathers of rows of memory.
 #if defined(ORRERY_KERNEL_GATHER_INL_H_) == defined(HWY_TARGET_TOGGLE)
 #ifdef ORRERY_KERNEL_GATHER_INL_H_
 #undef ORRERY_KERNEL_GATHER_INL_H_

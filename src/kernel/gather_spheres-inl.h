@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Gathers of spheres. Compiled once per instruction set.
+// Gathers of spheres.
 #if defined(ORRERY_KERNEL_GATHER_SPHERES_INL_H_) == defined(HWY_TARGET_TOGGLE)
 #ifdef ORRERY_KERNEL_GATHER_SPHERES_INL_H_
 #undef ORRERY_KERNEL_GATHER_SPHERES_INL_H_

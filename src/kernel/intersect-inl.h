@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Ray-sphere intersection. Compiled once per instruction set, for any number of lanes, in double or float.
+// Ray-sphere intersection.
 #if defined(ORRERY_KERNEL_INTERSECT_INL_H_) == defined(HWY_TARGET_TOGGLE)
 #ifdef ORRERY_KERNEL_INTERSECT_INL_H_
 #undef ORRERY_KERNEL_INTERSECT_INL_H_

@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Latitude-longitude maps of backgrounds and textures: positions, and interpolation between texels. Compiled once per
-// instruction set.
+// Latitude-longitude maps of backgrounds and textures: positions, and interpolation between texels.
 #if defined(ORRERY_KERNEL_LAT_LONG_INL_H_) == defined(HWY_TARGET_TOGGLE)
 #ifdef ORRERY_KERNEL_LAT_LONG_INL_H_
 #undef ORRERY_KERNEL_LAT_LONG_INL_H_

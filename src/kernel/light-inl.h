@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Choice and sampling of emitters. Compiled once per instruction set.
+// Choice and sampling of emitters.
 #if defined(ORRERY_KERNEL_LIGHT_INL_H_) == defined(HWY_TARGET_TOGGLE)
 #ifdef ORRERY_KERNEL_LIGHT_INL_H_
 #undef ORRERY_KERNEL_LIGHT_INL_H_

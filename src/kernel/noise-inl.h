@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Gradient noise. Compiled once per instruction set.
+// Gradient noise.
 #if defined(ORRERY_KERNEL_NOISE_INL_H_) == defined(HWY_TARGET_TOGGLE)
 #ifdef ORRERY_KERNEL_NOISE_INL_H_
 #undef ORRERY_KERNEL_NOISE_INL_H_

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Opacity: which objects are visible to a ray. Compiled once per instruction set.
+// Opacity: which objects are visible to a ray.
 #if defined(ORRERY_KERNEL_OPACITY_INL_H_) == defined(HWY_TARGET_TOGGLE)
 #ifdef ORRERY_KERNEL_OPACITY_INL_H_
 #undef ORRERY_KERNEL_OPACITY_INL_H_
@@ -30,8 +30,7 @@ struct RayKeys {
   hn::Vec<DU> caustic;  ///< of the first ray to a ball; see caustic_sampling-inl.h
 };
 
-/// Returns the keys of the rays from a vertex, independent of those from any other. Not inlined, so that the loop costs
-/// the same without them.
+/// Returns the keys of the rays from a vertex, independent of those from any other. Not inlined.
 ///
 /// `vertex`   0: the camera
 /// Domain     vertex < 2^30

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Counter-based random numbers. Compiled once per instruction set.
+// Counter-based random numbers.
 #if defined(ORRERY_KERNEL_RANDOM_INL_H_) == defined(HWY_TARGET_TOGGLE)
 #ifdef ORRERY_KERNEL_RANDOM_INL_H_
 #undef ORRERY_KERNEL_RANDOM_INL_H_

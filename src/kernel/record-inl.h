@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Recording of paths, for layers other than the beauty. Compiled once per instruction set.
+// Recording of paths, for layers other than the beauty.
 #if defined(ORRERY_KERNEL_RECORD_INL_H_) == defined(HWY_TARGET_TOGGLE)
 #ifdef ORRERY_KERNEL_RECORD_INL_H_
 #undef ORRERY_KERNEL_RECORD_INL_H_

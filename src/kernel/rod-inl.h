@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Ray-rod intersection. Compiled once per instruction set, for any number of lanes, in double or float.
+// Ray-rod intersection.
 //
 // The distance at which a ray enters the sphere around a point of the axis is a convex function of that point. So the
 // rod's entry is that of the infinite cylinder, if that lies between the ends, or else that of the sphere at the end

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Sampling of shapes from uniform numbers. Compiled once per instruction set.
+// Sampling of shapes from uniform numbers.
 #if defined(ORRERY_KERNEL_SAMPLE_INL_H_) == defined(HWY_TARGET_TOGGLE)
 #ifdef ORRERY_KERNEL_SAMPLE_INL_H_
 #undef ORRERY_KERNEL_SAMPLE_INL_H_

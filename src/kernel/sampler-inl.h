@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// A path's random numbers. Compiled once per instruction set.
+// A path's random numbers.
 #if defined(ORRERY_KERNEL_SAMPLER_INL_H_) == defined(HWY_TARGET_TOGGLE)
 #ifdef ORRERY_KERNEL_SAMPLER_INL_H_
 #undef ORRERY_KERNEL_SAMPLER_INL_H_

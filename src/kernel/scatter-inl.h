@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// BSDFs: sampling, density and value. Compiled once per instruction set.
+// BSDFs: sampling, density and value.
 #if defined(ORRERY_KERNEL_SCATTER_INL_H_) == defined(HWY_TARGET_TOGGLE)
 #ifdef ORRERY_KERNEL_SCATTER_INL_H_
 #undef ORRERY_KERNEL_SCATTER_INL_H_

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The Sobol sequence with hash-based Owen scrambling, four dimensions per vertex. Compiled once per instruction set.
+// The Sobol sequence with hash-based Owen scrambling, four dimensions per vertex.
 #if defined(ORRERY_KERNEL_SOBOL_INL_H_) == defined(HWY_TARGET_TOGGLE)
 #ifdef ORRERY_KERNEL_SOBOL_INL_H_
 #undef ORRERY_KERNEL_SOBOL_INL_H_

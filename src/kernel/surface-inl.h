@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Spheres, rods and materials of hits. Compiled once per instruction set.
+// Spheres, rods and materials of hits.
 #if defined(ORRERY_KERNEL_SURFACE_INL_H_) == defined(HWY_TARGET_TOGGLE)
 #ifdef ORRERY_KERNEL_SURFACE_INL_H_
 #undef ORRERY_KERNEL_SURFACE_INL_H_
@@ -191,7 +191,7 @@ HWY_INLINE Lookup<D> reach_surface(D d, const SceneView& scene, const Rays<D>& r
   return at;
 }
 
-/// The same in scenes with rods. Not inlined, so that the loop costs the same without them.
+/// The same in scenes with rods. Not inlined.
 template <class D, Precision kPrecision>
 HWY_NOINLINE Lookup<D> reach_surface_or_rod(D d, const SceneView& scene, Rays<D> ray, hn::Vec<IdTag<D>> hits,
                                             hn::Vec<D> distance, const hn::TFromD<D>* times) {

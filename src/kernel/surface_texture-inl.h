@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Textures of materials at hits and at light samples. Compiled once per instruction set.
+// Textures of materials at hits and at light samples.
 #if defined(ORRERY_KERNEL_SURFACE_TEXTURE_INL_H_) == defined(HWY_TARGET_TOGGLE)
 #ifdef ORRERY_KERNEL_SURFACE_TEXTURE_INL_H_
 #undef ORRERY_KERNEL_SURFACE_TEXTURE_INL_H_

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Textures at points of spheres. Compiled once per instruction set.
+// Textures at points of spheres.
 #if defined(ORRERY_KERNEL_TEXTURE_INL_H_) == defined(HWY_TARGET_TOGGLE)
 #ifdef ORRERY_KERNEL_TEXTURE_INL_H_
 #undef ORRERY_KERNEL_TEXTURE_INL_H_

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Elementary functions that do not use libm, whose results depend on the processor. Compiled once per instruction set.
+// Elementary functions that do not use libm, whose results depend on the processor.
 #if defined(ORRERY_MATH_FUNCTIONS_INL_H_) == defined(HWY_TARGET_TOGGLE)
 #ifdef ORRERY_MATH_FUNCTIONS_INL_H_
 #undef ORRERY_MATH_FUNCTIONS_INL_H_

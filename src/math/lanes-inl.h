@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Arithmetic of vectors with numbers, which stand for vectors of equal lanes. Compiled once per instruction set.
+// Arithmetic of vectors with numbers, which stand for vectors of equal lanes.
 #if defined(ORRERY_MATH_LANES_INL_H_) == defined(HWY_TARGET_TOGGLE)
 #ifdef ORRERY_MATH_LANES_INL_H_
 #undef ORRERY_MATH_LANES_INL_H_

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Vectors of SIMD lanes. Compiled once per instruction set: include this file inside a foreach_target unit.
+// Vectors of SIMD lanes.
 #if defined(ORRERY_MATH_VEC3_INL_H_) == defined(HWY_TARGET_TOGGLE)
 #ifdef ORRERY_MATH_VEC3_INL_H_
 #undef ORRERY_MATH_VEC3_INL_H_
