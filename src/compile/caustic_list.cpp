@@ -18,7 +18,6 @@ using kernel::CausticLight;
 using kernel::Caustics;
 using kernel::kNone;
 using kernel::Material;
-using kernel::MaterialKind;
 using kernel::MaterialTextures;
 using kernel::SceneView;
 using math::Vec3d;
@@ -29,10 +28,12 @@ bool is_textured(const SceneView& scene, std::size_t material) {
   return textures.albedo != kNone || textures.fuzz != kNone || textures.radiance != kNone;
 }
 
+bool is_clear(const Material& material) { return kernel::traits_of(material.kind).transmits; }
+
 /// Whether balls of a material are perfect mirrors or clear glass.
 bool is_sharp(const SceneView& scene, std::size_t index) {
   const Material& material = scene.materials[index];
-  if (material.kind != MaterialKind::kMetal && material.kind != MaterialKind::kDielectric) return false;
+  if (!kernel::traits_of(material.kind).is_specular) return false;
   return material.fuzz == 0 && (scene.material_textures == nullptr || scene.material_textures[index].fuzz == kNone);
 }
 
@@ -40,14 +41,14 @@ bool is_sharp(const SceneView& scene, std::size_t index) {
 bool is_sampled(const SceneView& scene, std::size_t index) {
   const Material& material = scene.materials[index];
   if (is_textured(scene, index)) return false;
-  if (material.kind == MaterialKind::kDielectric) return material.eta[1] > 1;
+  if (is_clear(material)) return material.eta[1] > 1;
   return material.albedo[0] + material.albedo[1] + material.albedo[2] > 0;
 }
 
 /// Whether spheres of a sharp material may be the void of a hollow ball.
 bool is_void(const SceneView& scene, std::size_t index) {
   const Material& material = scene.materials[index];
-  return material.kind == MaterialKind::kDielectric && material.eta[1] < 1 && !is_textured(scene, index);
+  return is_clear(material) && material.eta[1] < 1 && !is_textured(scene, index);
 }
 
 bool is_visible(const SceneView& scene, std::size_t sphere) {
@@ -139,7 +140,7 @@ double sum_of(const double (&rgb)[3]) { return rgb[0] + rgb[1] + rgb[2]; }
 /// The part of light that a ball of this material scatters.
 double scattered_part(const SceneView& scene, std::uint32_t ball) {
   const Material& material = scene.materials[scene.object_materials[ball]];
-  return material.kind == MaterialKind::kMetal ? sum_of(material.albedo) / 3 : 1;
+  return is_clear(material) ? 1 : sum_of(material.albedo) / 3;
 }
 
 /// The irradiance at a ball's centre from each of its lights, times a constant; 0: the pair is not listed.
@@ -196,7 +197,7 @@ CausticBall ball_of(const SceneView& scene, std::uint32_t id, const Moving& move
 std::uint32_t void_of(const SceneView& scene, std::uint32_t ball, const std::vector<std::uint32_t>& voids) {
   constexpr double kSameIndex = 1e-9;  // indices are authored with fewer digits
   const auto eta = [&](std::uint32_t id) { return scene.materials[scene.object_materials[id]].eta[1]; };
-  if (scene.materials[scene.object_materials[ball]].kind != MaterialKind::kDielectric) return kNone;
+  if (!is_clear(scene.materials[scene.object_materials[ball]])) return kNone;
   const Moving outer = moving(scene, ball);
   std::uint32_t found = kNone;
   double largest = 0;

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
+#include <iterator>
 #include <type_traits>
 #include <utility>
 #include <variant>
@@ -24,12 +25,9 @@ double normal_reflectance(double eta) {
   return r * r;
 }
 
-/// Compiles a material's constants. Enumerators of the kernel have the order of the scene's models and enumerators.
+/// Compiles a material's constants. The kernel's kinds and enumerators have the order of the scene's.
 kernel::Material compile_model(const scene::MaterialModel& model) {
-  static_assert(
-      std::is_same_v<
-          std::variant_alternative_t<static_cast<std::size_t>(kernel::MaterialKind::kPlastic), scene::MaterialModel>,
-          scene::Plastic>);
+  static_assert(std::size(kernel::kMaterialTraits) == std::variant_size_v<scene::MaterialModel>);
   kernel::Material out;
   out.kind = static_cast<kernel::MaterialKind>(model.index());
   std::visit(
@@ -87,8 +85,8 @@ void set_textures(const scene::MaterialModel& model, CompiledScene& compiled, ke
       },
       model);
   store.add_material(out);
-  if (!store.textures().empty() || material.kind == kernel::MaterialKind::kPlastic ||
-      (material.kind == kernel::MaterialKind::kDielectric && material.fuzz > 0))
+  const kernel::MaterialTraits& traits = kernel::traits_of(material.kind);
+  if (!store.textures().empty() || traits.is_rich || (traits.transmits && material.fuzz > 0))
     compiled.features.rich_materials = true;
 }
 

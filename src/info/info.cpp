@@ -2,6 +2,7 @@
 #include "info/info.h"
 
 #include <algorithm>
+#include <initializer_list>
 #include <limits>
 #include <utility>
 
@@ -135,21 +136,18 @@ std::vector<Feature> features_of(const compile::CompiledScene& compiled, bool ha
   const auto some = [&](auto holds) {
     return std::any_of(compiled.materials.begin(), compiled.materials.end(), holds);
   };
-  const auto of = [&](kernel::MaterialKind kind) {
-    return some([kind](const kernel::Material& m) { return m.kind == kind; });
-  };
   const auto feature = [](const char* name, bool required, const char* why_not, const char* why = "") {
     return Feature{name, required, required ? why : why_not};
   };
-  return {
-      feature("thin lens", compiled.features.lens, "pinhole camera: no lens sampling",
-              "camera.defocus_angle is above 0"),
-      feature("lambertian", of(kernel::MaterialKind::kLambertian), "not used by any sphere"),
-      feature("hemisphere", of(kernel::MaterialKind::kHemisphere), "not used by any sphere"),
-      feature("metal", of(kernel::MaterialKind::kMetal), "not used by any sphere"),
+  std::vector<Feature> out = {feature("thin lens", compiled.features.lens, "pinhole camera: no lens sampling",
+                                      "camera.defocus_angle is above 0")};
+  for (const kernel::MaterialTraits& traits : kernel::kMaterialTraits)
+    if (!traits.absorbs)  // those are lights
+      out.push_back(feature(traits.name,
+                            some([&](const kernel::Material& m) { return &kernel::traits_of(m.kind) == &traits; }),
+                            "not used by any sphere"));
+  const std::initializer_list<Feature> others = {
       feature("fuzz", some([](const kernel::Material& m) { return m.fuzz > 0; }), "no material has fuzz above 0"),
-      feature("dielectric", of(kernel::MaterialKind::kDielectric), "no glass: no Fresnel term, no refraction"),
-      feature("plastic", of(kernel::MaterialKind::kPlastic), "not used by any sphere"),
       feature("gradient sky", compiled.features.gradient, "no gradient: independent of direction"),
       feature("image background", compiled.environment != nullptr, "no image: no texture lookups"),
       feature("textures", !compiled.textures.textures().empty(), "all materials are constant"),
@@ -159,6 +157,8 @@ std::vector<Feature> features_of(const compile::CompiledScene& compiled, bool ha
       feature("lights", compiled.features.lit, "no emitters: no shadow rays"),
       feature("layers", has_layers, "none requested: paths are not recorded"),
       feature("light paths", compiled.shading == kernel::Shading::kPath, "render.shading uses the first hit only")};
+  out.insert(out.end(), others);
+  return out;
 }
 
 /// Describes the textures of a scene.

@@ -306,7 +306,7 @@ HWY_INLINE BallAndLight<D> load_pairs(D d, const SceneView& scene, const Vertex<
     const Material& material = scene.materials[scene.object_materials[ball[i]]];
     eta[i] = static_cast<T>(material.eta[1]);
     r0[i] = static_cast<T>(material.r0[0]);
-    glass[i] = material.kind == MaterialKind::kDielectric ? T(1) : T(0);
+    glass[i] = traits_of(material.kind).transmits ? T(1) : T(0);
     sun[i] = light[i] == kSun ? T(1) : T(0);
     emitter[i] = light[i] == kSun ? ball[i] : light[i];
     hollow[i] = pairs.inner[i] != kNone ? T(1) : T(0);

@@ -37,13 +37,6 @@ inline constexpr unsigned kCompleted = 4;    ///< a chain that is sampled, if th
 inline constexpr unsigned kInVoid = 5;       ///< inside the void of a hollow ball
 inline constexpr unsigned kFromVoid = 6;     ///< in the glass of a hollow ball, after the void
 
-/// Lanes whose lobe is diffuse; their light by way of balls is sampled.
-template <class D>
-HWY_INLINE hn::Mask<D> is_diffuse(D d, const Surface<D>& at) {
-  return hn::Or(is_kind(d, at.kind, MaterialKind::kLambertian),
-                hn::Or(is_kind(d, at.kind, MaterialKind::kHemisphere), is_kind(d, at.kind, MaterialKind::kPlastic)));
-}
-
 /// Lanes in which a relation holds between two ids.
 template <class D, class Holds>
 HWY_INLINE hn::Mask<D> related(D d, hn::Mask<D> lanes, hn::Vec<IdTag<D>> first, hn::Vec<IdTag<D>> second, Holds holds) {
@@ -222,7 +215,7 @@ class CausticRayTracer {
     const auto glass = refraction(d, surface);
     const V reflected_part = select(glass.is_total, 1, glass.reflectance);
     const V part = select(reflects, reflected_part, 1 - reflected_part);
-    const auto is_glass = is_kind(d, surface.kind, MaterialKind::kDielectric);
+    const auto is_glass = has_trait<&MaterialTraits::transmits>(d, surface);
     auto value = loadu3(d, rays_.value, i);
     value = select(is_glass, value * part, value * look.albedo);
     const auto direction = select(reflects, reflected(surface), glass.direction);

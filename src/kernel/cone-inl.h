@@ -70,7 +70,7 @@ HWY_INLINE RayCone<V> camera_cone(D d, const SceneView& scene, const CameraVecto
 /// `width`      as a fraction of the lobe, whose angle is twice the fuzz
 template <class D, class V = hn::Vec<D>>
 HWY_INLINE V lobe_slope2(D d, const Surface<D>& at, double width) {
-  const V slope = select(is_specular(d, at), at.fuzz, 1) * (2 * width);
+  const V slope = select(has_trait<&MaterialTraits::is_specular>(d, at), at.fuzz, 1) * (2 * width);
   return slope * slope;
 }
 
@@ -87,7 +87,7 @@ HWY_INLINE V lobe_slope2(D d, const Surface<D>& at, double width) {
 template <class D, class V = hn::Vec<D>>
 HWY_INLINE RayCone<V> scattered_cone(D d, const RayCone<V>& cone, const Surface<D>& at, V radius,
                                      const Vec3<V>& direction, double width) {
-  const auto specular = is_specular(d, at);
+  const auto specular = has_trait<&MaterialTraits::is_specular>(d, at);
   const V cos_leaving = dot(direction, at.normal), cos_arriving = -dot(at.direction, at.normal);
   const V a = hn::IfThenElseZero(specular, select(cos_leaving < 0, at.eta, 1));
   const V b = hn::IfThenElseZero(specular, mul_add(a, cos_arriving, cos_leaving));

@@ -8,7 +8,33 @@
 
 namespace orrery::kernel {
 
+/// Kinds of materials, in the order of the alternatives of scene::MaterialModel.
 enum class MaterialKind : std::uint32_t { kLambertian, kHemisphere, kMetal, kDielectric, kEmitter, kPlastic };
+
+/// What a kind of material does to light, besides the directions and densities in scatter-inl.h.
+struct MaterialTraits {
+  const char* name;
+  bool absorbs = false;     ///< ends paths
+  bool is_diffuse = false;  ///< has a diffuse lobe, at which light by way of balls is sampled
+  bool is_specular =
+      false;               ///< scatters around the mirror or the refracted direction, up to an angle of twice the fuzz
+  bool transmits = false;  ///< some directions pass through the surface
+  bool is_delta = false;   ///< only BSDF sampling finds its light
+  bool is_sharp_delta = false;  ///< the same if fuzz is 0
+  bool is_rich = false;         ///< needs Features::rich_materials
+};
+
+/// The table of all materials: a row for each MaterialKind.
+inline constexpr MaterialTraits kMaterialTraits[] = {
+    {.name = "lambertian", .is_diffuse = true},
+    {.name = "hemisphere", .is_diffuse = true},
+    {.name = "metal", .is_specular = true, .is_sharp_delta = true},
+    {.name = "dielectric", .is_specular = true, .transmits = true, .is_delta = true},
+    {.name = "emitter", .absorbs = true},
+    {.name = "plastic", .is_diffuse = true, .is_rich = true}};
+
+constexpr const MaterialTraits& traits_of(MaterialKind kind) { return kMaterialTraits[static_cast<std::size_t>(kind)]; }
+
 enum class FresnelKind : std::uint32_t { kSchlick, kExact, kZero };
 
 /// A compiled material: everything that does not depend on the ray. `kind` determines which members are used.

@@ -232,8 +232,9 @@ HWY_INLINE hn::Vec<IdTag<D>> continued(D d, hn::Vec<IdTag<D>> history, const Sur
     const auto indirect = hn::Or(hn::And(history, ids(kIndirectBit)), where(hn::Not(through), ids(kIndirectBit)));
     return hn::Or(hn::Or(lobe, indirect), delta);
   }
-  const auto lobe = select(hn::RebindMask(du, passes), ids(kTransmission),
-                           select(hn::RebindMask(du, is_specular(d, at)), ids(kSpecular), ids(kDiffuse)));
+  const auto lobe =
+      select(hn::RebindMask(du, passes), ids(kTransmission),
+             select(hn::RebindMask(du, has_trait<&MaterialTraits::is_specular>(d, at)), ids(kSpecular), ids(kDiffuse)));
   return hn::Or(lobe, delta);
 }
 

@@ -9,6 +9,11 @@
 
 #include <hwy/highway.h>
 
+#include <cstddef>
+#include <iterator>
+#include <type_traits>
+#include <utility>
+
 #include "kernel/intersect-inl.h"
 #include "kernel/material.h"
 #include "kernel/sample-inl.h"
@@ -59,19 +64,26 @@ HWY_INLINE hn::Mask<D> is_kind(D d, hn::Vec<IdTag<D>> kinds, E kind) {
   return hn::RebindMask(d, kinds == kind);
 }
 
-/// Lanes whose material scatters around the mirror direction or the refracted one, with an angle of twice the fuzz.
-/// Light from other materials is diffuse, and so is that from the base of plastic.
-template <class D>
-HWY_INLINE hn::Mask<D> is_specular(D d, const Surface<D>& at) {
-  return hn::Or(is_kind(d, at.kind, MaterialKind::kMetal), is_kind(d, at.kind, MaterialKind::kDielectric));
+/// Lanes whose material has a trait.
+template <bool MaterialTraits::*kTrait, class D>
+HWY_INLINE hn::Mask<D> has_trait(D d, const Surface<D>& at) {
+  const auto any_of = [&]<std::size_t... kKinds>(std::index_sequence<kKinds...>) {
+    hn::Mask<D> out = hn::FirstN(d, 0);
+    const auto add = [&]<std::size_t kKind>(std::integral_constant<std::size_t, kKind>) {
+      if constexpr (kMaterialTraits[kKind].*kTrait)
+        out = hn::Or(out, is_kind(d, at.kind, static_cast<MaterialKind>(kKind)));
+    };
+    (add(std::integral_constant<std::size_t, kKinds>()), ...);
+    return out;
+  };
+  return any_of(std::make_index_sequence<std::size(kMaterialTraits)>());
 }
 
-/// Lanes whose material is delta: a perfect mirror or a dielectric. See pdf_bsdf. Plastic is not, since its base is
-/// not.
+/// Lanes whose material is delta; see pdf_bsdf.
 template <class D>
 HWY_INLINE hn::Mask<D> is_delta(D d, const Surface<D>& at) {
-  const auto mirror = hn::And(is_kind(d, at.kind, MaterialKind::kMetal), at.fuzz == 0);
-  return hn::Or(mirror, is_kind(d, at.kind, MaterialKind::kDielectric));
+  const auto sharp = hn::And(has_trait<&MaterialTraits::is_sharp_delta>(d, at), at.fuzz == 0);
+  return hn::Or(sharp, has_trait<&MaterialTraits::is_delta>(d, at));
 }
 
 /// Lanes whose scattered direction passes through the surface.
@@ -79,7 +91,7 @@ HWY_INLINE hn::Mask<D> is_delta(D d, const Surface<D>& at) {
 /// Space      w unit
 template <class D, class V = hn::Vec<D>>
 HWY_INLINE hn::Mask<D> is_transmitted(D d, const Surface<D>& at, const Vec3<V>& w) {
-  return hn::AndNot(at.same_side(w), is_kind(d, at.kind, MaterialKind::kDielectric));
+  return hn::AndNot(at.same_side(w), has_trait<&MaterialTraits::transmits>(d, at));
 }
 
 /// Samples the cosine-weighted hemisphere: the normal plus a point of the unit sphere, normalized.

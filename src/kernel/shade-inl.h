@@ -294,7 +294,7 @@ class Shader {
   HWY_INLINE void light(const Arrivals<D>& at, const Lookup<D>& look, const Vec3<V>& tinted) {
     const Surface<D>& surface = look.surface;
     const auto scatters =
-        hn::AndNot(hn::Or(is_kind(d, surface.kind, MaterialKind::kEmitter), is_delta(d, surface)), at.hit);
+        hn::AndNot(hn::Or(has_trait<&MaterialTraits::absorbs>(d, surface), is_delta(d, surface)), at.hit);
     if (hn::AllFalse(d, scatters)) return;
 
     // Sample a light.
@@ -344,7 +344,7 @@ class Shader {
   /// Chooses a ball at diffuse vertices and appends those that are sampled to the waiting vertices.
   HWY_INLINE void caustics(const Arrivals<D>& at, const Lookup<D>& look, const Vec3<V>& tinted) {
     const Surface<D>& surface = look.surface;
-    const auto diffuse = hn::And(at.hit, is_diffuse(d, surface));
+    const auto diffuse = hn::And(at.hit, has_trait<&MaterialTraits::is_diffuse>(d, surface));
     if (sampled_events(scene_, depth_) < 1 || hn::AllFalse(d, diffuse)) return;
 
     // Choose a ball, and whether to sample it.
@@ -391,7 +391,7 @@ class Shader {
 
     // End paths.
     auto survives = hn::And(at.hit, scattered.alive);
-    if (features().lit) survives = hn::AndNot(is_kind(d, surface.kind, MaterialKind::kEmitter), survives);
+    if (features().lit) survives = hn::AndNot(has_trait<&MaterialTraits::absorbs>(d, surface), survives);
     if (plays_roulette) survives = hn::And(survives, survives_roulette(random.v[2], throughput));
 
     // Move the others.
@@ -405,7 +405,7 @@ class Shader {
     compactor.store_ids(d, at.samples, stream_.sample + alive);
     Ids paths = at.paths;
     if (features().caustics) {
-      const auto diffuse = hn::AndNot(scattered.in_coat, is_diffuse(d, surface));
+      const auto diffuse = hn::AndNot(scattered.in_coat, has_trait<&MaterialTraits::is_diffuse>(d, surface));
       const Ids state = continued_state(d, scene_.caustics, {caustic_state_of(at), at.ray.self, at.hits}, surface,
                                         scattered.direction, diffuse);
       paths = hn::Or(index_of(at), hn::ShiftLeft<kPathBits>(state));

@@ -82,17 +82,19 @@ def _is_documented(node):
 
 
 def page(package):
-    """Returns the Markdown of the names in __all__ of the package in this folder.
+    """Returns the Markdown of the names in __all__ of the files of the package in this folder.
 
     Errors     SystemExit if one of them has no docstring
     """
-    nodes = {}
+    nodes, names = {}, []
     for file in sorted(package.glob("*.py")):
         for node in ast.parse(file.read_text()).body:
             if isinstance(node, (ast.FunctionDef, ast.ClassDef)):
                 nodes[node.name] = node
+            if isinstance(node, ast.Assign) and node.targets[0].id == "__all__":
+                names += ast.literal_eval(node.value)
+    names.sort()
     module = ast.parse((package / "__init__.py").read_text())
-    names = next(ast.literal_eval(item.value) for item in module.body if isinstance(item, ast.Assign) and item.targets[0].id == "__all__")
     constants = [item for item in module.body if isinstance(item, ast.AnnAssign) and item.target.id in names]
     bare = [name for name in names if name not in {item.target.id for item in constants} and not _is_documented(nodes.get(name))]
     if bare:

@@ -14,7 +14,8 @@ The keys of scenes, their units and their defaults are those of scene files (doc
 """
 
 from orrery._errors import Error, MissingInputError, OutOfMemoryError, OutputError, SceneError, SceneWarning, UsageError
-from orrery._keys import Camera, Constant, Dielectric, Emitter, Gradient, Hemisphere, Image, Lambertian, Metal, Plastic, Sky
+from orrery import _keys
+from orrery._keys import *  # noqa: F403
 from orrery._orrery import color_map_names as _color_map_names
 from orrery._orrery import version as _version
 from orrery._movie import Movie, movie
@@ -25,11 +26,11 @@ from orrery._scene import Progress, Scene, load
 from orrery._view import View
 
 __all__ = [
-    "Camera", "ColorMap", "Constant", "Dielectric", "Emitter", "Error", "Gradient", "Hemisphere", "Image", "Lambertian",
-    "Metal", "MissingInputError", "Movie", "OutOfMemoryError", "OutputError", "Picture", "Plastic", "Points", "Progress",
-    "Scene", "SceneError", "SceneWarning", "Sky", "UsageError", "View", "color_maps", "colormap", "load", "movie", "plot",
+    "ColorMap", "Error", "MissingInputError", "Movie", "OutOfMemoryError", "OutputError", "Picture", "Points", "Progress",
+    "Scene", "SceneError", "SceneWarning", "UsageError", "View", "color_maps", "colormap", "load", "movie", "plot",
     "read_points",
 ]  # fmt: skip
+__all__ += _keys.__all__
 
 __version__: str = _version()
 

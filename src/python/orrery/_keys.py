@@ -17,6 +17,10 @@ from orrery._arguments import Color, Path, Texture, Vector, is_number
 from orrery._errors import Error
 from orrery._orrery import Extent, SceneData
 
+__all__ = [
+    "Camera", "Constant", "Dielectric", "Emitter", "Gradient", "Hemisphere", "Image", "Lambertian", "Metal", "Plastic", "Sky",
+]  # fmt: skip
+
 
 def toml_text(value):
     """Returns a value as in a scene file, on one line."""
