@@ -45,7 +45,7 @@ namespace orrery::test::HWY_NAMESPACE {
 namespace hn = hwy::HWY_NAMESPACE;
 namespace k = kernel::HWY_NAMESPACE;
 
-constexpr kernel::Features kAllFeatures{true, true, true, true};
+constexpr kernel::Features kAllFeatures{.hemisphere = true, .rich_materials = true};
 
 template <class D>
 k::Surface<D> surface(D d, const Interaction& interaction) {
