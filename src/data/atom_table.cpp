@@ -16,11 +16,12 @@ constexpr const char* kPositionNames[] = {"x", "y", "z"};
 
 struct TextMember {
   const char* name;
-  std::string Atom::*member;
+  std::string_view Atom::*member;
 };
-constexpr std::array<TextMember, 7> kTexts = {{{"element", &Atom::element},
+constexpr std::array<TextMember, 8> kTexts = {{{"element", &Atom::element},
                                                {"chain", &Atom::chain},
                                                {"subchain", &Atom::subchain},
+                                               {"segment", &Atom::segment},
                                                {"name", &Atom::name},
                                                {"residue", &Atom::residue},
                                                {"altloc", &Atom::altloc},
@@ -28,19 +29,25 @@ constexpr std::array<TextMember, 7> kTexts = {{{"element", &Atom::element},
 
 /// Identifies an atom among its alternate locations, which may belong to different residues of one number.
 std::string identity(const Atom& atom) {
-  return atom.chain + '\n' + atom.subchain + '\n' + std::to_string(atom.residue_number) + atom.insertion + '\n' +
-         atom.name;
+  return fmt::format("{}\n{}\n{}\n{}{}\n{}", atom.chain, atom.subchain, atom.segment, atom.residue_number,
+                     atom.insertion, atom.name);
+}
+
+bool has_any(const std::vector<std::string>& words) {
+  return words.size() > 1 || (words.size() == 1 && !words[0].empty());
 }
 
 }  // namespace
 
 std::size_t AtomTable::add(const Atom& atom) {
   if (!atom.altloc.empty()) {
-    const auto [it, is_new] = alternates_.try_emplace(identity(atom), numbers_.size());
-    if (!is_new) {
-      if (static_cast<float>(atom.occupancy) > occupancies_[it->second]) set(it->second, atom);
-      return it->second;
+    Alternates& known = alternates_[identity(atom)];
+    if (!known.locations.empty() && is_alternate(known, atom)) {
+      known.locations.append(atom.altloc) += '\n';
+      if (static_cast<float>(atom.occupancy) > occupancies_[known.row]) set(known.row, atom);
+      return known.row;
     }
+    known = {numbers_.size(), std::string(atom.altloc) + '\n'};
   }
   const std::size_t row = numbers_.size();
   for (auto& values : position_) values.emplace_back();
@@ -50,6 +57,15 @@ std::size_t AtomTable::add(const Atom& atom) {
   for (Texts& texts : texts_) texts.index.emplace_back();
   set(row, atom);
   return row;
+}
+
+/// Residues of a large simulation may share their number, and water may have none: an atom whose location is known
+/// already is another one, as is one without a number that is farther away than water molecules are from each other.
+bool AtomTable::is_alternate(const Alternates& known, const Atom& atom) const {
+  constexpr double kClosestWater = 2.4;  // ångström
+  if (('\n' + known.locations).find(fmt::format("\n{}\n", atom.altloc)) != std::string::npos) return false;
+  const Vec3d other{position_[0][known.row], position_[1][known.row], position_[2][known.row]};
+  return atom.has_residue_number || math::length(atom.position - other) < kClosestWater;
 }
 
 void AtomTable::set(std::size_t row, const Atom& atom) {
@@ -63,12 +79,25 @@ void AtomTable::set(std::size_t row, const Atom& atom) {
     texts_[i].index[row] = texts_[i].words.index_of(atom.*kTexts[i].member);
 }
 
-FrameInfo AtomTable::info(bool has_subchains) const {
+void AtomTable::reserve(std::size_t rows) {
+  for (auto& values : position_) values.reserve(rows);
+  b_factors_.reserve(rows);
+  occupancies_.reserve(rows);
+  numbers_.reserve(rows);
+  for (Texts& texts : texts_) texts.index.reserve(rows);
+}
+
+FrameInfo AtomTable::info() const {
   FrameInfo info;
   info.rows = rows();
   for (const char* name : kPositionNames) info.columns.push_back({name, ColumnType::kFloat64});
-  for (const TextMember& text : kTexts)
-    if (has_subchains || text.member != &Atom::subchain) info.columns.push_back({text.name, ColumnType::kText});
+  bool has_subchains = false;
+  for (std::size_t i = 0; i < kTexts.size(); ++i) {
+    const auto& [name, member] = kTexts[i];
+    const bool is_listed = (member != &Atom::subchain && member != &Atom::segment) || has_any(texts_[i].words.words());
+    if (is_listed) info.columns.push_back({name, ColumnType::kText});
+    has_subchains = has_subchains || (is_listed && member == &Atom::subchain);
+  }
   info.columns.push_back({"residue_number", ColumnType::kInt32});
   info.columns.push_back({"b_factor", ColumnType::kFloat32});
   info.columns.push_back({"occupancy", ColumnType::kFloat32});
@@ -95,30 +124,25 @@ Table AtomTable::table(const std::vector<std::string>& columns) const {
   return table;
 }
 
-void require_parse_memory(const std::filesystem::path& file, std::uint64_t bytes, double factor, std::uint64_t held,
+void require_parse_memory(const std::filesystem::path& file, std::uint64_t count, double factor, std::uint64_t held,
                           std::uint64_t limit) {
-  const double need = static_cast<double>(bytes) * factor + static_cast<double>(held);
+  const double need = static_cast<double>(count) * factor + static_cast<double>(held);
   if (limit == 0 || need <= static_cast<double>(limit)) return;
-  throw base::Error(base::ErrorKind::kNoMemory,
-                    file.string() + ": " + base::bytes_text(bytes) + " of atoms need about " +
-                        base::bytes_text(static_cast<std::uint64_t>(need)) + " while they are read; " +
-                        base::bytes_text(limit) + " are available; read the file on a machine with more memory");
+  throw base::Error(base::ErrorKind::kNoMemory, file.string() + ": the atoms need about " +
+                                                    base::bytes_text(static_cast<std::uint64_t>(need)) +
+                                                    " while they are read; " + base::bytes_text(limit) +
+                                                    " are available; read the file on a machine with more memory");
 }
 
-void require_text(const ByteSource& bytes, Faults& faults) {
-  constexpr std::size_t kBlock = std::size_t{1} << 20;
+void require_text(std::string_view block, std::uint64_t& line, Faults& faults) {
   const auto is_control = [](char c) {
     return (static_cast<unsigned char>(c) < 0x20 && (c < '\t' || c > '\r')) || c == 0x7f;
   };
-  std::uint64_t line = 1;
-  for (std::uint64_t at = 0; at < bytes.size(); at += kBlock) {
-    const std::string block = bytes.text(at, kBlock);
-    const auto bad = std::find_if(block.begin(), block.end(), is_control);
-    line += static_cast<std::uint64_t>(std::count(block.begin(), bad, '\n'));
-    if (bad != block.end())
-      faults.fail(line, fmt::format("binary data: a byte of value {}", static_cast<unsigned char>(*bad)),
-                  "the file is damaged; download or write it again");
-  }
+  const auto bad = std::find_if(block.begin(), block.end(), is_control);
+  line += static_cast<std::uint64_t>(std::count(block.begin(), bad, '\n'));
+  if (bad != block.end())
+    faults.fail(line, fmt::format("binary data: a byte of value {}", static_cast<unsigned char>(*bad)),
+                "the file is damaged; download or write it again");
 }
 
 }  // namespace orrery::data

@@ -41,6 +41,10 @@ void finish_bonds(std::vector<Bond>& bonds, Faults& faults) {
         faults.fail(0, fmt::format("row {} has more than {} bonds", std::size_t{row} + 1, kMaxBondsInFile), kRemedy);
 }
 
+void warn_of_missing(Faults& faults, std::vector<std::string>& warnings) {
+  if (faults.has_any()) warnings.push_back("bonds of the file were left out: " + faults.take_text());
+}
+
 BondsById::BondsById(const std::vector<std::int64_t>& ids, Faults& faults) : BondsById(numbered(ids), faults) {}
 
 BondsById::BondsById(std::vector<IdOfRow> ids, Faults& faults) : faults_(faults), ids_(std::move(ids)) {

@@ -3,6 +3,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <string>
 #include <utility>
 #include <vector>
 
@@ -24,6 +25,10 @@ Bond ordered_bond(std::uint64_t a, std::uint64_t b);
 /// Errors     base::Error(kBadData), thrown through `faults`: those that it has; more than kMaxBondsInFile bonds of one
 ///            row
 void finish_bonds(std::vector<Bond>& bonds, Faults& faults);
+
+/// Turns errors about bonds of atoms that do not exist, or whose name several atoms have, into a warning: programs that
+/// remove atoms or renumber them often leave the list of bonds as it was.
+void warn_of_missing(Faults& faults, std::vector<std::string>& warnings);
 
 /// Bonds between particles that a file names by id.
 class BondsById {

@@ -13,7 +13,6 @@
 #include <cstdio>
 #include <cstring>
 #include <exception>
-#include <mutex>
 #include <new>
 
 #include <fmt/core.h>
@@ -57,47 +56,6 @@ class PlainFile final : public ByteSource {
 
  private:
   int descriptor_;
-};
-
-/// A plain file that is read once: keeps a copy of the blocks that have been read.
-class KeptFile final : public ByteSource {
- public:
-  explicit KeptFile(std::shared_ptr<const ByteSource> file)
-      : ByteSource(file->file(), file->size(), false),
-        file_(std::move(file)),
-        blocks_(static_cast<std::size_t>((file_->size() + kBlock - 1) / kBlock)) {}
-
-  void read(std::uint64_t offset, std::size_t count, char* out) const override {
-    for (std::uint64_t at = begin() + offset; count > 0;) {
-      const auto in_block = static_cast<std::size_t>(at % kBlock);
-      const std::size_t some = std::min(count, kBlock - in_block);
-      std::memcpy(out, block(at / kBlock) + in_block, some);
-      at += some;
-      out += some;
-      count -= some;
-    }
-  }
-
- private:
-  struct Block {
-    std::once_flag is_read;
-    std::unique_ptr<char[]> bytes;
-  };
-
-  const char* block(std::uint64_t index) const {
-    Block& block = blocks_[static_cast<std::size_t>(index)];
-    std::call_once(block.is_read, [&] {
-      const std::uint64_t first = index * kBlock;
-      const auto size = static_cast<std::size_t>(std::min<std::uint64_t>(kBlock, file_->size() - first));
-      auto bytes = std::make_unique_for_overwrite<char[]>(size);
-      file_->read(first, size, bytes.get());
-      block.bytes = std::move(bytes);
-    });
-    return block.bytes.get();
-  }
-
-  std::shared_ptr<const ByteSource> file_;
-  mutable std::vector<Block> blocks_;
 };
 
 class BytesInMemory final : public ByteSource {
@@ -152,7 +110,8 @@ std::span<char> room_below(ByteBlocks& out, std::uint64_t limit) {
   return out.room(std::min<std::uint64_t>(limit - out.size(), kBlock) + 1);
 }
 
-/// Decompresses the members of a gzip file. By zlib, since libarchive does not verify their checksums.
+/// Decompresses the members of a gzip file. By zlib's inflate(), since libarchive does not verify their checksums, and
+/// gzread() ignores what follows a member, so that a damaged member would be lost.
 class GzipFile {
  public:
   explicit GzipFile(const ByteSource& bytes) : bytes_(bytes) {
@@ -265,8 +224,7 @@ void ByteBlocks::read(std::uint64_t offset, std::size_t count, char* out) const 
   }
 }
 
-std::shared_ptr<const ByteSource> ByteSource::open(const std::filesystem::path& file, std::uint64_t limit,
-                                                   std::uint64_t kept) {
+std::shared_ptr<const ByteSource> ByteSource::open(const std::filesystem::path& file, std::uint64_t limit) {
   base::require_readable(file);
   const int descriptor = ::open(file.c_str(), O_RDONLY | O_CLOEXEC);
   struct stat status {};
@@ -282,8 +240,6 @@ std::shared_ptr<const ByteSource> ByteSource::open(const std::filesystem::path& 
     out = std::make_shared<BytesInMemory>(file, GzipFile(*out).read(limit));
   else if (is_of_archive_library(head))
     out = std::make_shared<BytesInMemory>(file, decompressed(file, limit));
-  else if (out->size() <= kept)
-    out = std::make_shared<KeptFile>(out);
   if (out->text(0, kByteOrderMark.size()) == kByteOrderMark) {
     out->begin_ += kByteOrderMark.size();
     out->size_ -= kByteOrderMark.size();

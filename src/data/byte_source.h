@@ -41,10 +41,8 @@ class ByteSource {
   /// Opens a file.
   ///
   /// `limit`    maximum size after decompression, bytes: a small file may decompress to terabytes
-  /// `kept`     see OpenOptions::kept_limit
   /// Errors     base::Error: kMissingInput, kIo; kBadData for damaged compressed data, and beyond the limit
-  static std::shared_ptr<const ByteSource> open(const std::filesystem::path& file, std::uint64_t limit,
-                                                std::uint64_t kept = 0);
+  static std::shared_ptr<const ByteSource> open(const std::filesystem::path& file, std::uint64_t limit);
 
   /// Returns bytes in memory as a source. `file` is for messages.
   static std::shared_ptr<const ByteSource> of_memory(const std::filesystem::path& file, ByteBlocks bytes);

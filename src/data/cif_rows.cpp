@@ -25,12 +25,16 @@ struct Slot {
 
 class RowReader {
  public:
-  RowReader(std::vector<CifTable> tables, Faults& faults) : tables_(std::move(tables)), faults_(faults) {
+  RowReader(std::vector<CifTable> tables, Faults& faults, const std::function<void()>& begin_block)
+      : tables_(std::move(tables)), faults_(faults), begin_block_(begin_block) {
     for (const CifTable& table : tables_) rows_.emplace_back(table.items.size());
     has_items_.resize(tables_.size());
   }
 
-  void begin_block(std::string_view, std::uint64_t) { end_block(); }
+  void begin_block(std::string_view, std::uint64_t) {
+    end_block();
+    begin_block_();
+  }
 
   void begin_loop(std::string_view, std::uint64_t) {
     loop_.clear();
@@ -81,6 +85,7 @@ class RowReader {
 
   std::vector<CifTable> tables_;
   Faults& faults_;
+  const std::function<void()>& begin_block_;
   std::vector<std::vector<std::string>> rows_;  ///< the current row of each table
   std::vector<bool> has_items_;                 ///< the row was given as single items
   std::vector<Slot> loop_;                      ///< one per column of the current loop
@@ -117,8 +122,9 @@ struct Action<rules::item_value> : Calls<&RowReader::set_value> {};
 
 }  // namespace
 
-void read_cif(const std::string& text, std::vector<CifTable> tables, Faults& faults) {
-  RowReader reader(std::move(tables), faults);
+void read_cif(const std::string& text, std::vector<CifTable> tables, Faults& faults,
+              const std::function<void()>& begin_block) {
+  RowReader reader(std::move(tables), faults, begin_block);
   pegtl::memory_input<> in(text.data(), text.size(), "");
   try {
     pegtl::parse<rules::file, Action, gemmi::cif::Errors>(in, reader);

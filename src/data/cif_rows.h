@@ -22,7 +22,9 @@ struct CifTable {
 
 /// Reads tables of a CIF file row by row. Other tables are skipped without being stored.
 ///
+/// `begin_block`  called at the beginning of each data block
 /// Errors     base::Error(kBadData): syntax errors, incomplete rows; those of `take`
-void read_cif(const std::string& text, std::vector<CifTable> tables, Faults& faults);
+void read_cif(const std::string& text, std::vector<CifTable> tables, Faults& faults,
+              const std::function<void()>& begin_block);
 
 }  // namespace orrery::data

@@ -7,7 +7,6 @@
 #include <fmt/core.h>
 
 #include "base/text.h"
-#include "data/elements.h"
 #include "data/text_lines.h"
 
 namespace orrery::data {
@@ -15,8 +14,8 @@ namespace orrery::data {
 namespace {
 
 /// Returns the column with one of the names, of which earlier ones have priority; null if there is none.
-const ColumnInfo* find(const std::vector<ColumnInfo>& columns, std::initializer_list<const char*> names,
-                       bool (*is_suitable)(const ColumnInfo&)) {
+const ColumnInfo* find_suitable(const std::vector<ColumnInfo>& columns, std::initializer_list<const char*> names,
+                                bool (*is_suitable)(const ColumnInfo&)) {
   for (const char* name : names)
     for (const ColumnInfo& column : columns)
       if (base::lower(column.name) == name && is_suitable(column)) return &column;
@@ -44,18 +43,21 @@ Roles customary_roles(const std::vector<ColumnInfo>& columns) {
                                             {"position_x", "position_y", "position_z"},
                                             {"points:0", "points:1", "points:2"},
                                             {"points_0", "points_1", "points_2"},
+                                            {"xu", "yu", "zu"},    // unwrapped ones of LAMMPS
                                             {"x0", "y0", "z0"}});  // the first ends of segments
   roles.radius = number_column(columns, {"radius", "scalar_radius"});
-  const bool r_is_color = find(columns, {"g"}, is_any) != nullptr && find(columns, {"b"}, is_any) != nullptr;
+  const bool r_is_color =
+      find_suitable(columns, {"g"}, is_any) != nullptr && find_suitable(columns, {"b"}, is_any) != nullptr;
   if (roles.radius.empty() && !r_is_color) roles.radius = number_column(columns, {"r"});
   if (roles.radius.empty()) {
     roles.radius = number_column(columns, {"diameter"});
     if (!roles.radius.empty()) roles.radius_scale = 0.5;
   }
-  if (const ColumnInfo* const element = find(columns, {"element", "species", "symbol"}, is_text))
+  if (const ColumnInfo* const element = find_suitable(columns, {"element", "species", "symbol"}, is_text))
     roles.element = element->name;
-  if (const ColumnInfo* const type = find(columns, {"type", "class", "classification"}, is_any))
+  if (const ColumnInfo* const type = find_suitable(columns, {"type", "class", "classification"}, is_any))
     roles.type = type->name;
+  if (const ColumnInfo* const chain = find_suitable(columns, {"subchain", "chain"}, is_text)) roles.chain = chain->name;
   roles.id = number_column(columns, {"id"});
   roles.rgb = number_columns(columns, {{"red", "green", "blue"},
                                        {"r", "g", "b"},
@@ -81,7 +83,7 @@ Roles required_roles(const std::vector<ColumnInfo>& columns, Faults& faults) {
 
 std::string number_column(const std::vector<ColumnInfo>& columns, std::initializer_list<const char*> names) {
   const ColumnInfo* const found =
-      find(columns, names, [](const ColumnInfo& column) { return column.type != ColumnType::kText; });
+      find_suitable(columns, names, [](const ColumnInfo& column) { return column.type != ColumnType::kText; });
   return found != nullptr ? found->name : "";
 }
 
@@ -143,13 +145,6 @@ std::string listed(const std::vector<ColumnInfo>& columns) {
   for (std::size_t i = 0; i < std::min(columns.size(), kMaxListed); ++i) out += (i > 0 ? ", " : "") + columns[i].name;
   if (columns.size() > kMaxListed) out += fmt::format(", ... ({} in all)", columns.size());
   return out;
-}
-
-void settle_element(const std::vector<std::string>& names, Roles& roles) {
-  if (std::all_of(names.begin(), names.end(), [](const std::string& name) { return find_element(name) != nullptr; }))
-    return;
-  const std::string column = std::exchange(roles.element, {});
-  if (roles.type.empty()) roles.type = column;
 }
 
 }  // namespace orrery::data

@@ -21,10 +21,11 @@ inline constexpr std::uint64_t kMaxColumns = 4096;
 
 /// Assigns roles to columns by their customary names, ignoring case. For formats that define no names.
 ///
-/// - position: x, y, z; also pos_x, position_x, points:0, points_0
+/// - position: x, y, z; also pos_x, position_x, points:0, points_0, xu
 /// - radius: radius, scalar_radius, r unless there are g and b, diameter with scale 0.5
 /// - element: element, species, symbol, if it is text
 /// - type: type, class, classification
+/// - chain: subchain, chain, if it is text
 /// - id: id
 /// - rgb: red green blue, r g b, diffuse_red ..; rgb, rgba, color, colors, colour, colours with three or four
 ///   components. Full intensity is 255 for uint8 and signed integers, 65535 for uint16, 1 for floating point.
@@ -82,9 +83,5 @@ inline bool has_column(const std::vector<ColumnInfo>& columns, std::string_view 
 
 /// Returns the names of columns for messages, shortened if there are many: "a, b, c, ... (200 in all)".
 std::string listed(const std::vector<ColumnInfo>& columns);
-
-/// Assigns the role of the element to a column of names only if all of them are elements; otherwise, they are types:
-/// coarse-grained models and mixtures have particles named A, B or C1.
-void settle_element(const std::vector<std::string>& names, Roles& roles);
 
 }  // namespace orrery::data

@@ -141,13 +141,36 @@ bool is_number(const CsvValue& value) {
   return parse_number(value.text, ignored);
 }
 
+/// Positions given by equatorial coordinates.
+struct Equatorial {
+  std::array<std::string, 3> sources;  ///< columns: right ascension and declination in degrees, distance
+  bool is_parallax = false;            ///< parallaxes in milliarcseconds instead of distances, which are in parsecs
+  std::array<std::string, 3> xyz;      ///< computed columns
+};
+
+std::optional<Equatorial> equatorial(const std::vector<ColumnInfo>& columns) {
+  const auto find = [&](std::initializer_list<const char*> names) { return number_column(columns, names); };
+  Equatorial out;
+  out.sources = {find({"ra"}), find({"dec"}), find({"distance", "dist", "sy_dist"})};
+  out.is_parallax = out.sources[2].empty();
+  if (out.is_parallax) out.sources[2] = find({"parallax"});
+  return base::contains({out.sources.begin(), out.sources.end()}, "") ? std::nullopt : std::optional(out);
+}
+
+/// Whether a row has the names of coordinates. Others of its values may be numbers: "x,y,z,2020".
+bool name_coordinates(const std::vector<CsvValue>& row) {
+  std::vector<ColumnInfo> columns;
+  for (const CsvValue& value : row) columns.push_back({value.text, ColumnType::kFloat64});
+  return !customary_roles(columns).position[0].empty() || equatorial(columns).has_value();
+}
+
 /// Examines up to 1000 rows after the leading comments, which begin with #, % or //; comments between rows are those of
 /// is_comment().
 ///
 /// - The separator is the first of tab, semicolon, comma and space that splits all of these rows into the same number
 ///   of values, at least two.
-/// - The first row is the header if none of its values is a number; otherwise, the last comment is the header if it has
-///   as many words as the rows have values.
+/// - The first row is the header if none of its values is a number, or if it names coordinates; otherwise, the last
+///   comment is the header if it has as many words as the rows have values.
 /// - Column types are determined by set_types() from the examined rows.
 ///
 /// Errors     base::Error: kBadData for a line that is too long; kIo
@@ -159,7 +182,7 @@ CsvShape csv_shape(const ByteSource& bytes) {
   Rows rows;
   for (const Line& line : sample.lines) rows.push_back(split_row(line.text, shape.separator));
   std::vector<CsvValue> names = rows[0];
-  const bool is_first_row = std::none_of(names.begin(), names.end(), is_number);
+  const bool is_first_row = std::none_of(names.begin(), names.end(), is_number) || name_coordinates(names);
   if (is_first_row) {
     rows.erase(rows.begin());
   } else {
@@ -182,22 +205,6 @@ CsvShape csv_shape(const ByteSource& bytes) {
       surveys[i].add(row[i].text, row[i].is_quoted, shape.first_line);
   set_types(shape.columns, surveys);
   return shape;
-}
-
-/// Positions given by equatorial coordinates.
-struct Equatorial {
-  std::array<std::string, 3> sources;  ///< columns: right ascension and declination in degrees, distance
-  bool is_parallax = false;            ///< parallaxes in milliarcseconds instead of distances, which are in parsecs
-  std::array<std::string, 3> xyz;      ///< computed columns
-};
-
-std::optional<Equatorial> equatorial(const std::vector<ColumnInfo>& columns) {
-  const auto find = [&](std::initializer_list<const char*> names) { return number_column(columns, names); };
-  Equatorial out;
-  out.sources = {find({"ra"}), find({"dec"}), find({"distance", "dist", "sy_dist"})};
-  out.is_parallax = out.sources[2].empty();
-  if (out.is_parallax) out.sources[2] = find({"parallax"});
-  return base::contains({out.sources.begin(), out.sources.end()}, "") ? std::nullopt : std::optional(out);
 }
 
 /// The position of a star; the z axis points to the celestial north pole, the x axis to the vernal equinox.
@@ -246,7 +253,7 @@ class CsvFile final : public SingleFrame {
     if (info_.roles.position[0].empty()) find_positions(faults);
     if (!info_.roles.rgb[0].empty())
       info_.roles.rgb_maximum = full_intensity(shape_.columns, survey.surveys, info_.roles.rgb);
-    settle_names();
+    info_.names_as_types = info_.roles.element;
   }
 
   Table read(int, const std::vector<std::string>& names) override {

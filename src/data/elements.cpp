@@ -1,9 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "data/elements.h"
 
+#include <algorithm>
+#include <cctype>
 #include <cstddef>
 #include <iterator>
-#include <string>
 
 #include "base/text.h"
 #include "data/text_lines.h"
@@ -64,10 +65,14 @@ const Element* find_element(int number) {
 }
 
 const Element* find_element(std::string_view word) {
-  const std::string symbol = base::lower(trimmed(word));
-  if (symbol == "d") return find_element(1);
+  const std::string_view symbol = trimmed(word);
+  const auto is = [&](std::string_view other) {  // without case
+    return std::equal(symbol.begin(), symbol.end(), other.begin(), other.end(),
+                      [](char a, char b) { return a == b || ((a ^ b) == 0x20 && std::isalpha(a) != 0); });
+  };
+  if (is("D")) return find_element(1);
   for (const Element& element : kElements)
-    if (symbol == base::lower(element.symbol)) return &element;
+    if (is(element.symbol)) return &element;
   int number = 0;
   return base::from_text(symbol, number) ? find_element(number) : nullptr;
 }

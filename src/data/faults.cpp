@@ -25,6 +25,13 @@ void Faults::fail(std::uint64_t line, const std::string& text, const std::string
   raise();
 }
 
+std::string Faults::take_text() {
+  const std::vector<base::Diagnostic> taken = std::exchange(diagnostics_, {});
+  const std::uint64_t others = std::max<std::uint64_t>(std::exchange(many_, 0), taken.size()) - 1;
+  const std::string line = taken.front().line > 0 ? fmt::format("line {}: ", taken.front().line) : "";
+  return line + taken.front().text + (others > 0 ? fmt::format(", and {} more", others) : "");
+}
+
 void Faults::raise_if_any() {
   if (has_any()) raise();
 }

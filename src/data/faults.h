@@ -26,6 +26,8 @@ class Faults {
   /// Adds an error and throws it together with the earlier ones.
   [[noreturn]] void fail(std::uint64_t line, const std::string& text, const std::string& remedy = {});
   bool has_any() const { return many_ > 0 || !diagnostics_.empty(); }
+  /// Removes the errors. Returns the first one, with its line and the number of the others.
+  std::string take_text();
   /// Throws base::Error(kBadData), "cannot use FILE", if there are errors.
   void raise_if_any();
 

@@ -6,6 +6,8 @@
 #include <fmt/core.h>
 
 #include "base/error.h"
+#include "base/stop_point.h"
+#include "base/text.h"
 
 namespace orrery::data {
 
@@ -36,40 +38,12 @@ bool TextFrames::has_frame(int number) {
   return true;
 }
 
-TextFrame TextFrames::unsettled_frame(int number) {
-  has_frame(number);
-  return header(TextCursor(*bytes_, frames_.at(static_cast<std::size_t>(number))));
-}
-
 TextFrame TextFrames::frame(int number) {
-  TextFrame out = unsettled_frame(number);
-  if (!out.info.roles.element.empty()) settle_element(names(), out.info.roles);
+  has_frame(number);
+  TextFrame out = header(TextCursor(*bytes_, frames_.at(static_cast<std::size_t>(number))));
+  Faults faults(bytes_->file());
+  require_room(*bytes_, out.layout, out.count_line, faults);
   return out;
-}
-
-/// The distinct elements in the first frame that has rows: what they mean must not change from frame to frame. Empty if
-/// it has none, and if they cannot be read, which is reported when their frame is read.
-const std::vector<std::string>& TextFrames::names() {
-  if (names_) return *names_;
-  names_.emplace();
-  TextFrame found;
-  for (int i = 0; found.info.rows == 0 && has_frame(i); ++i) {
-    found = unsettled_frame(i);
-    if (found.info.roles.element.empty()) return *names_;
-  }
-  if (found.info.rows == 0) return *names_;
-  TextLayout& layout = found.layout;
-  const ColumnInfo* const element = find_named(layout.columns, found.info.roles.element);
-  layout.columns.resize(static_cast<std::size_t>(element - layout.columns.data()) + 1);
-  layout.wanted = {element->name};
-  layout.allows_more = true;
-  try {
-    Faults faults(bytes_->file());
-    *names_ = std::get<Words>(read_text_rows(*bytes_, layout, faults).table.columns[0].values).words;
-  } catch (const base::Error& error) {
-    if (error.kind() != base::ErrorKind::kBadData) throw;
-  }
-  return *names_;
 }
 
 Table TextFrames::read_rows(const TextFrame& frame) {
@@ -90,15 +64,23 @@ Table TextFrames::read_rows(const TextFrame& frame) {
 
 /// Result     false if there are no more frames
 bool TextFrames::add_frame() {
+  const base::StopPoint stop;
+  stop.check();
   end_.skip(std::exchange(left_, 0));
-  std::string line;
-  TextCursor ahead(*bytes_, end_.place());
-  if (!ahead.next_filled(line)) {
+  if (!end_.has_filled()) {
     if (frames_.empty()) Faults(bytes_->file()).fail(0, "the file has no frames");
     return false;
   }
   if (frames_.size() == static_cast<std::size_t>(std::numeric_limits<int>::max()))
-    Faults(bytes_->file()).fail(ahead.line(), "too many frames");
+    Faults(bytes_->file()).fail(end_.line(), "too many frames");
+  if (frames_.size() == frames_.capacity()) {  // while the table grows, it exists twice
+    const std::uint64_t bytes = memory() + 2 * frames_.size() * sizeof(frames_[0]);
+    if (memory_limit_ > 0 && bytes > memory_limit_)
+      throw base::Error(
+          base::ErrorKind::kNoMemory,
+          fmt::format("{}: finding more than {} frames needs {}; {} are available", bytes_->file().string(),
+                      frames_.size(), base::bytes_text(bytes), base::bytes_text(memory_limit_)));
+  }
   const TextCursor::Place place = end_.place();
   // A frame with too few rows is reported when it is read: those before it are usable.
   left_ = skip_header(end_);

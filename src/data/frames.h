@@ -27,13 +27,6 @@ class SingleFrame : public DataFile {
   std::uint64_t memory() const override { return bytes_->memory(); }
 
  protected:
-  /// Reads the column of elements, if there is one, and settles its role, see settle_element().
-  void settle_names() {
-    if (info_.roles.element.empty()) return;
-    const Table table = read(0, {info_.roles.element});
-    settle_element(std::get<Words>(table.columns.at(0).values).words, info_.roles);
-  }
-
   /// Returns a table of these columns without values, which the caller appends.
   Table empty_table(const std::vector<std::string>& names) const;
 
@@ -52,40 +45,39 @@ struct TextFrame {
 class TextFrames : public DataFile {
  public:
   int frame_count() override;
+  bool has_frame(int number) override;
   FrameInfo describe(int number) override { return frame(number).info; }
-  std::uint64_t memory() const override { return bytes_->memory(); }
+  std::uint64_t memory() const override { return bytes_->memory() + frames_.capacity() * sizeof(frames_[0]); }
 
  protected:
-  explicit TextFrames(Bytes bytes) : bytes_(std::move(bytes)), end_(*bytes_) {}
+  TextFrames(Bytes bytes, const OpenOptions& options)
+      : bytes_(std::move(bytes)), memory_limit_(options.memory_limit), end_(*bytes_) {}
 
   const ByteSource& bytes() const { return *bytes_; }
 
-  /// Reads the header of a frame, and settles the role of its elements, see settle_element().
+  /// Reads the header of a frame.
   ///
   /// Errors     base::Error(kBadData) for a malformed header up to that frame
-  virtual TextFrame frame(int number);
+  TextFrame frame(int number);
 
   /// Reads the columns `frame.layout.wanted`, and checks that the rows are followed by another frame or by the end of
   /// the file.
   Table read_rows(const TextFrame& frame);
 
  private:
-  /// Reads a header. Roles are those of the columns' names alone.
+  /// Reads a header.
   virtual TextFrame header(TextCursor cursor) const = 0;
   /// Skips a header, and returns the number of rows.
   virtual std::uint64_t skip_header(TextCursor& cursor) const = 0;
   virtual bool begins_frame(std::string_view line) const = 0;
 
-  TextFrame unsettled_frame(int number);
-  const std::vector<std::string>& names();
-  bool has_frame(int number);
   bool add_frame();
 
   Bytes bytes_;
+  std::uint64_t memory_limit_;             ///< see OpenOptions
   std::vector<TextCursor::Place> frames_;  ///< frames found so far
   TextCursor end_;                         ///< position after the last of them, or at its rows
   std::uint64_t left_ = 0;                 ///< number of rows that `end_` has yet to skip
-  std::optional<std::vector<std::string>> names_;
 };
 
 }  // namespace orrery::data

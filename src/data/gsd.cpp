@@ -83,6 +83,14 @@ class GsdFile {
   const std::string& schema() const { return schema_; }
   std::uint64_t frame_count() const { return chunks_.empty() ? 0 : chunks_.back().frame + 1; }
 
+  /// Whether a chunk of this name has rows, in any frame.
+  bool has_rows(const std::string& name) const {
+    const auto id = ids_.find(name);
+    return id != ids_.end() && std::any_of(chunks_.begin(), chunks_.end(), [&](const GsdChunk& chunk) {
+             return chunk.name == id->second && chunk.rows > 0;
+           });
+  }
+
   /// Returns the chunk of this name; null if the frame has none.
   const GsdChunk* find(std::uint64_t frame, const std::string& name) const {
     const auto id = ids_.find(name);
@@ -144,7 +152,7 @@ class GsdFile {
       if (chunk.name >= ids_.size()) faults_.fail(0, entry + "has no name");
       if (!chunks_.empty() && chunk.frame < chunks_.back().frame) faults_.fail(0, entry + "is out of order");
       if (chunk.frame >= static_cast<std::uint64_t>(std::numeric_limits<int>::max()))
-        faults_.fail(0, fmt::format("{}has the frame {}, which is out of range", entry, chunk.frame));
+        faults_.fail(0, fmt::format("{}has the frame {}, which is out of range", entry, chunk.frame + 1));
       if (chunk.offset > bytes_->size() || chunk.rows > (bytes_->size() - chunk.offset) / chunk.row_bytes())
         faults_.fail(0, fmt::format("truncated: {}refers to data beyond the end of the file", entry));
       chunks_.push_back(chunk);
@@ -212,6 +220,7 @@ class GsdReader final : public DataFile {
     const std::vector<double> step = setting(frame, "configuration/step", 1);
     info.step = step.empty() ? 0 : step[0];
     if (const GsdChunk* const bonds = bonds_of(frame)) info.bonds = bonds->rows;
+    info.has_bonds = file_.has_rows("bonds/group");
     return info;
   }
 
@@ -235,7 +244,7 @@ class GsdReader final : public DataFile {
     return table;
   }
 
-  std::vector<Bond> bonds(int index) override {
+  std::vector<Bond> bonds(int index, std::vector<std::string>&) override {
     const auto frame = static_cast<std::uint64_t>(index);
     const GsdChunk* const chunk = bonds_of(frame);
     if (chunk == nullptr) return {};
@@ -250,9 +259,9 @@ class GsdReader final : public DataFile {
       const double* const missing = std::find_if(std::begin(ends), std::end(ends), is_missing);
       if (missing != std::end(ends))
         faults.add_of_many(0, fmt::format("frame {}: bond {} has the particle {:.0f}; there are {}, counted from 0",
-                                          frame, i, *missing, rows));
+                                          frame + 1, i, *missing, rows));
       else if (ends[0] == ends[1])
-        faults.add_of_many(0, fmt::format("frame {}: bond {} joins particle {:.0f} to itself", frame, i, ends[0]));
+        faults.add_of_many(0, fmt::format("frame {}: bond {} joins particle {:.0f} to itself", frame + 1, i, ends[0]));
       else
         out.push_back(ordered_bond(static_cast<std::uint64_t>(ends[0]), static_cast<std::uint64_t>(ends[1])));
     }
@@ -270,7 +279,7 @@ class GsdReader final : public DataFile {
     const std::vector<double> count = setting(frame, name, 1);
     constexpr double kMaxCount = 1e15;
     if (!count.empty() && !(count[0] >= 0 && count[0] < kMaxCount))
-      fail(fmt::format("frame {}: `{}` is out of range", frame, name));
+      fail(fmt::format("frame {}: `{}` is out of range", frame + 1, name));
     return count.empty() ? 0 : static_cast<std::uint64_t>(count[0]);
   }
 
@@ -280,7 +289,7 @@ class GsdReader final : public DataFile {
     if (rows > 0) {
       const GsdChunk* const position = file_.find_or_first(frame, kColumns[0].chunk);
       if (position == nullptr || position->rows != rows)
-        fail(fmt::format("frame {} has {} particles, but {} positions", frame, rows,
+        fail(fmt::format("frame {} has {} particles, but {} positions", frame + 1, rows,
                          position == nullptr ? 0 : position->rows));
     }
     return rows;
@@ -293,7 +302,7 @@ class GsdReader final : public DataFile {
     const char* const name = "bonds/group";
     const GsdChunk* const chunk = file_.find_or_first(frame, name);
     if (chunk == nullptr || chunk->rows != count || chunk->components != 2)
-      fail(fmt::format("frame {}: `bonds/N` is {}, but `{}` has {} rows of {} values", frame, count, name,
+      fail(fmt::format("frame {}: `bonds/N` is {}, but `{}` has {} rows of {} values", frame + 1, count, name,
                        chunk == nullptr ? 0 : chunk->rows, chunk == nullptr ? 0 : chunk->components));
     return chunk;
   }
@@ -303,7 +312,7 @@ class GsdReader final : public DataFile {
     const GsdChunk* const chunk = file_.find_or_first(frame, name);
     if (chunk == nullptr) return {};
     const std::uint64_t values = chunk->rows * chunk->components;
-    if (values != size) fail(fmt::format("frame {}: `{}` has {} values instead of {}", frame, name, values, size));
+    if (values != size) fail(fmt::format("frame {}: `{}` has {} values instead of {}", frame + 1, name, values, size));
     std::vector<double> out;
     for (std::uint32_t i = 0; i < chunk->components; ++i) {
       const Column column{name, file_.component(*chunk, i)};
@@ -318,7 +327,7 @@ class GsdReader final : public DataFile {
     const GsdChunk* chunk = file_.find(frame, name);
     if (chunk == nullptr && rows_of(0) == rows) chunk = file_.find(0, name);
     if (chunk != nullptr && (chunk->rows != rows || chunk->components != components))
-      fail(fmt::format("frame {}: `{}` has {} rows of {} values instead of {} rows of {}", frame, name, chunk->rows,
+      fail(fmt::format("frame {}: `{}` has {} rows of {} values instead of {} rows of {}", frame + 1, name, chunk->rows,
                        chunk->components, rows, components));
     return chunk;
   }
@@ -339,7 +348,7 @@ class GsdReader final : public DataFile {
     const std::vector<double> b = setting(frame, "configuration/box", 6);
     if (b.empty()) return std::nullopt;
     for (const double value : b)
-      if (!std::isfinite(value)) fail(fmt::format("frame {}: the box has values that are not finite", frame));
+      if (!std::isfinite(value)) fail(fmt::format("frame {}: the box has values that are not finite", frame + 1));
     const std::vector<double> dimensions = setting(frame, "configuration/dimensions", 1);
     const bool is_flat = !dimensions.empty() && dimensions[0] == 2;
     // Lengths x, y, z, then tilt factors xy, xz, yz. The box is centred at the origin.
@@ -363,7 +372,7 @@ class GsdReader final : public DataFile {
     for (std::size_t row = 0; row < ids.size(); ++row) {
       const double id = ids.number(row);
       if (!(id >= 0 && id < static_cast<double>(names.size())))
-        fail(fmt::format("frame {}: particle {} has a type without a name; there are {} types", frame, row + 1,
+        fail(fmt::format("frame {}: particle {} has a type without a name; there are {} types", frame + 1, row + 1,
                          names.size()));
       index.push_back(word_of[static_cast<std::size_t>(id)]);
     }

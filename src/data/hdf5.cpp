@@ -175,9 +175,10 @@ class Dataset {
 
   /// Appends some components of all rows to columns of the dataset's type.
   ///
+  /// `may_wrap`  unsigned numbers above the largest int64 become negative; otherwise, they are errors
   /// Errors     base::Error(kBadData), thrown through `faults`: damaged data
   /// Cost       one pass over the dataset, however many components are read
-  void append(const std::vector<std::pair<std::uint64_t, Values*>>& columns, Faults& faults) const {
+  void append(const std::vector<std::pair<std::uint64_t, Values*>>& columns, bool may_wrap, Faults& faults) const {
     if (rows_ == 0 || columns.empty()) return;
     std::visit(
         [&](const auto& first) {
@@ -185,7 +186,7 @@ class Dataset {
           if constexpr (requires { first.data(); }) append_as<typename Array::value_type>(columns, faults);
         },
         *columns.front().second);
-    if (H5Tequal(types_.memory, H5T_NATIVE_UINT64) > 0)
+    if (!may_wrap && H5Tequal(types_.memory, H5T_NATIVE_UINT64) > 0)
       for (const auto& [component, values] : columns)
         check_unsigned(name_, std::get<std::vector<std::int64_t>>(*values), faults);
     faults.raise_if_any();
@@ -320,7 +321,8 @@ class SnapshotReader final : public SingleFrame {
           faults.fail(0, fmt::format("{}/{} is missing or differs from that of the other files", group_name(type_),
                                      source.dataset));
         dataset.require_data(file_size, decompressed_limit_, faults);
-        dataset.append(out, faults);
+        // AREPO and others set the highest bit of ids to mark particles. Ids only identify and order.
+        dataset.append(out, source.dataset == kIds, faults);
       }
     }
     return table;

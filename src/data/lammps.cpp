@@ -196,7 +196,7 @@ void describe_columns(const std::vector<ColumnInfo>& columns, FrameInfo& info) {
     roles.radius = "diameter";
     roles.radius_scale = 0.5;
   }
-  roles.element = if_there("element");
+  info.names_as_types = roles.element = if_there("element");
   roles.type = has_column(columns, "type") ? "type" : if_there("typelabel");
   roles.id = if_there("id");
   // Periodic image flags apply to wrapped coordinates only.
@@ -237,7 +237,7 @@ bool has_labels(const TextFrame& frame, TextCursor rows) {
 
 class LammpsDump final : public TextFrames {
  public:
-  explicit LammpsDump(const Bytes& bytes) : TextFrames(bytes) {}
+  LammpsDump(const Bytes& bytes, const OpenOptions& options) : TextFrames(bytes, options) {}
 
   Table read(int number, const std::vector<std::string>& columns) override {
     TextFrame frame = this->frame(number);
@@ -412,6 +412,7 @@ class DataHeader {
 
   FrameInfo finished() {
     info_.rows = *rows_;
+    info_.has_bonds = info_.bonds > 0;
     const auto [x, y, z] = bounds_;
     if (edges_[0] && edges_[1] && edges_[2])
       info_.box = Box{origin_, {*edges_[0], *edges_[1], *edges_[2]}};
@@ -443,7 +444,12 @@ class DataHeader {
 
 class LammpsData final : public SingleFrame {
  public:
-  explicit LammpsData(const Bytes& bytes) : SingleFrame(bytes) { info_ = DataHeader(*bytes_, layout_).read(); }
+  explicit LammpsData(const Bytes& bytes) : SingleFrame(bytes) {
+    info_ = DataHeader(*bytes_, layout_).read();
+    layout_.columns = info_.columns;
+    Faults faults(bytes_->file());
+    require_room(*bytes_, layout_, 0, faults);
+  }
 
   Table read(int, const std::vector<std::string>& columns) override {
     TextTable atoms = read_atoms(columns);
@@ -451,7 +457,7 @@ class LammpsData final : public SingleFrame {
     return std::move(atoms.table);
   }
 
-  std::vector<Bond> bonds(int) override {
+  std::vector<Bond> bonds(int, std::vector<std::string>&) override {
     if (info_.bonds == 0) return {};
     const TextTable atoms = read_atoms({"id"});
     const Table ends = read_bonds(end_of(atoms, layout_));
@@ -464,7 +470,6 @@ class LammpsData final : public SingleFrame {
  private:
   TextTable read_atoms(const std::vector<std::string>& columns) const {
     TextLayout layout = layout_;
-    layout.columns = info_.columns;
     layout.wanted = columns;
     Faults faults(bytes_->file());
     return read_text_rows(*bytes_, layout, faults);
@@ -526,14 +531,14 @@ bool is_lammps_dump(const Signature& signature) {
   return signature.head.starts_with("ITEM:") || is_binary(signature.head);
 }
 
-std::unique_ptr<DataFile> open_lammps_dump(const Bytes& bytes, const OpenOptions&) {
+std::unique_ptr<DataFile> open_lammps_dump(const Bytes& bytes, const OpenOptions& options) {
   constexpr std::size_t kSignatureBytes = 32;
   if (is_binary(bytes->text(0, kSignatureBytes)))
     Faults(bytes->file())
         .fail(0, "binary LAMMPS dumps are not supported",
               "convert it with the tool binary2txt of LAMMPS, or write a text dump, which may be compressed: *.gz, "
               "*.zst");
-  return std::make_unique<LammpsDump>(bytes);
+  return std::make_unique<LammpsDump>(bytes, options);
 }
 
 bool is_lammps_data(const Signature& signature) {

@@ -36,18 +36,28 @@ std::vector<std::string> split(const std::string& list) {
   return {words.begin(), words.end()};
 }
 
-/// Splits "(1-60)(P)" into "1-60" and "P"; an expression without parentheses is a single group.
-std::vector<std::string> groups_of(const std::string& expression) {
-  std::vector<std::string> groups;
-  std::size_t at = 0;
-  for (std::size_t open; (open = expression.find('(', at)) != std::string::npos;) {
-    const std::size_t close = expression.find(')', open);
-    if (close == std::string::npos) return {};
-    groups.push_back(expression.substr(open + 1, close - open - 1));
-    at = close + 1;
+/// Splits "1,(1-60)(P)" into a term "1" and one of the factors "1-60" and "P". Empty if parentheses are not balanced.
+std::vector<std::vector<std::string>> terms_of(const std::string& expression) {
+  std::vector<std::vector<std::string>> terms(1);
+  bool is_open = false, begins_factor = true;
+  for (const char c : expression) {
+    if (c == '(' || c == ')') {
+      if (is_open == (c == '(')) return {};
+      is_open = c == '(';
+      begins_factor = true;
+    } else if (c == ',' && !is_open) {
+      terms.emplace_back();
+      begins_factor = true;
+    } else {
+      if (std::exchange(begins_factor, false)) terms.back().emplace_back();
+      terms.back().back() += c;
+    }
   }
-  if (groups.empty()) groups.push_back(expression);
-  return groups;
+  if (is_open) return {};
+  for (std::vector<std::string>& factors : terms)
+    std::erase_if(factors, [](const std::string& factor) { return split(factor).empty(); });
+  std::erase_if(terms, [](const auto& factors) { return factors.empty(); });
+  return terms;
 }
 
 Vec3d product(const Transform& t, Vec3d p) { return {dot(t.rows[0], p), dot(t.rows[1], p), dot(t.rows[2], p)}; }
@@ -112,31 +122,36 @@ class CifAssemblies {
         faults.fail(part.line, fmt::format("assembly {}: more than {} operators", part.assembly, kMaxTransforms));
       out.push_back(it->second);
     };
-    const std::vector<std::string> groups = groups_of(part.expression);
-    if (groups.empty()) faults.fail(part.line, fmt::format("assembly {}: unbalanced parentheses", part.assembly));
-    std::vector<Transform> result = {Transform{}};
-    for (const std::string& group : groups) {
-      std::vector<Transform> factors;
-      for (const std::string& word : split(group)) {
-        const std::size_t dash = word.find('-');
-        int first = 0, last = 0;
-        if (dash != std::string::npos && base::from_text(word.substr(0, dash), first) &&
-            base::from_text(word.substr(dash + 1), last)) {
-          // Stops at the first undefined number, however large the range.
-          for (std::int64_t id = first; id <= last; ++id) add(std::to_string(id), factors);
-        } else {
-          add(word, factors);
+    const auto terms = terms_of(part.expression);
+    std::vector<Transform> result;
+    for (const std::vector<std::string>& factors : terms) {
+      std::vector<Transform> products = {Transform{}};
+      for (const std::string& factor : factors) {
+        std::vector<Transform> transforms;
+        for (const std::string& word : split(factor)) {
+          const std::size_t dash = word.find('-');
+          int first = 0, last = 0;
+          if (dash != std::string::npos && base::from_text(word.substr(0, dash), first) &&
+              base::from_text(word.substr(dash + 1), last)) {
+            // Stops at the first undefined number, however large the range.
+            for (std::int64_t id = first; id <= last; ++id) add(std::to_string(id), transforms);
+          } else {
+            add(word, transforms);
+          }
         }
+        if (result.size() + transforms.size() * products.size() > kMaxTransforms)
+          faults.fail(part.line, fmt::format("assembly {}: more than {} transforms", part.assembly, kMaxTransforms));
+        // The rightmost factor is applied first.
+        std::vector<Transform> longer;
+        for (const Transform& second : products)
+          for (const Transform& first : transforms) longer.push_back(composed(second, first));
+        products = std::move(longer);
       }
-      if (factors.size() * result.size() > kMaxTransforms)
-        faults.fail(part.line, fmt::format("assembly {}: more than {} transforms", part.assembly, kMaxTransforms));
-      // The rightmost group is applied first.
-      std::vector<Transform> products;
-      for (const Transform& second : result)
-        for (const Transform& first : factors) products.push_back(composed(second, first));
-      result = std::move(products);
+      result.insert(result.end(), products.begin(), products.end());
     }
-    if (result.empty()) faults.fail(part.line, fmt::format("assembly {} has no operators", part.assembly));
+    if (result.empty())
+      faults.fail(part.line, fmt::format("assembly {}: `{}` has no operators, or unbalanced parentheses", part.assembly,
+                                         part.expression));
     return result;
   }
 
@@ -207,12 +222,14 @@ class CifBonds {
   std::uint64_t estimate(std::uint64_t rows) const { return connections_.size() + (components_.empty() ? 0 : rows); }
 
   /// Returns the bonds of a model, see DataFile::bonds().
-  std::vector<Bond> of_model(const AtomTable& table, const CifResidues& residues, Faults& faults) const {
+  std::vector<Bond> of_model(const AtomTable& table, const CifResidues& residues, Faults& faults,
+                             std::vector<std::string>& warnings) const {
     std::vector<Bond> out;
     if (components_.empty() && connections_.empty()) return out;
     const Atoms atoms(table);
     add_within_residues(atoms, residues, faults, out);
     add_connected(atoms, residues, faults, out);
+    warn_of_missing(faults, warnings);
     finish_bonds(out, faults);
     return out;
   }
@@ -416,9 +433,9 @@ class MmcifReader final : public DataFile {
     // Measured: 2.1 for short rows of atoms; longer rows take less.
     constexpr double kMemoryPerByte = 2.25;
     require_parse_memory(bytes->file(), bytes->size(), kMemoryPerByte, bytes->memory(), options.memory_limit);
-    require_text(*bytes, faults_);
     CifAssemblies assemblies;
     const auto take_operator = [&](const Row& row, std::uint64_t line) {
+      if (is_past_atoms_) return;
       double v[12];
       for (std::size_t i = 0; i < 12; ++i) {
         v[i] = gemmi::cif::as_number(row[i + 1]);
@@ -430,20 +447,30 @@ class MmcifReader final : public DataFile {
     };
     bool is_small_molecule = false;
     const std::string text = bytes->text(0, static_cast<std::size_t>(bytes->size()));
+    std::uint64_t last = 1;
+    require_text(text, last, faults_);
     read_cif(text,
              {{"_atom_site.", kAtomItems, [this](const Row& row, std::uint64_t line) { take_atom(row, line); }},
               {"_pdbx_struct_oper_list.", kOperatorItems, take_operator},
               {"_pdbx_struct_assembly_gen.",
                {"assembly_id", "oper_expression", "asym_id_list"},
-               [&](const Row& row, std::uint64_t line) { assemblies.add_part(row[0], row[1], row[2], line); }},
+               [&](const Row& row, std::uint64_t line) {
+                 if (!is_past_atoms_) assemblies.add_part(row[0], row[1], row[2], line);
+               }},
               {"_struct_conn.", connection_items(),
-               [this](const Row& row, std::uint64_t line) { take_connection(row, line); }},
+               [this](const Row& row, std::uint64_t line) {
+                 if (!is_past_atoms_) take_connection(row, line);
+               }},
               {"_chem_comp_bond.",
                {"comp_id", "atom_id_1", "atom_id_2"},
                [this](const Row& row, std::uint64_t) { bonds_.add_component(row[0], row[1], row[2]); }},
-              {"_struct.", {"title"}, [this](const Row& row, std::uint64_t) { title_ = row[0]; }},
+              {"_struct.",
+               {"title"},
+               [this](const Row& row, std::uint64_t) {
+                 if (!is_past_atoms_) title_ = row[0];
+               }},
               {"_atom_site_", {"fract_x"}, [&](const Row&, std::uint64_t) { is_small_molecule = true; }}},
-             faults_);
+             faults_, [this] { is_past_atoms_ = !models_.empty(); });
     faults_.raise_if_any();
     if (models_.empty())
       faults_.fail(0,
@@ -451,19 +478,24 @@ class MmcifReader final : public DataFile {
                                      : "no atoms: the table _atom_site is missing",
                    is_small_molecule ? "convert it to XYZ, e.g. with `obabel -icif IN -oxyz`" : "");
     assemblies_ = assemblies.finish(faults_);
+    atom_ = {};
   }
 
   int frame_count() override { return static_cast<int>(models_.size()); }
 
   FrameInfo describe(int frame) override {
     const Model& model = models_[static_cast<std::size_t>(frame)];
-    FrameInfo info = model.atoms.info(true);
+    FrameInfo info = model.atoms.info();
     info.assemblies = assemblies_;
     info.title = title_;
     const double step = gemmi::cif::as_number(model.number);
     if (!std::isnan(step)) info.step = step;
     info.bonds = bonds_.estimate(info.rows);
+    info.has_bonds = info.bonds > 0;
     info.lists_all_bonds = false;
+    if (other_atoms_ > 0)
+      info.warnings.push_back(fmt::format("{} of later data blocks were left out; split the file to use them",
+                                          base::counted(other_atoms_, "atom")));
     return info;
   }
 
@@ -475,10 +507,10 @@ class MmcifReader final : public DataFile {
   Table read(int frame, const std::vector<std::string>& columns) override {
     return models_[static_cast<std::size_t>(frame)].atoms.table(columns);
   }
-  std::vector<Bond> bonds(int frame) override {
+  std::vector<Bond> bonds(int frame, std::vector<std::string>& warnings) override {
     const Model& model = models_[static_cast<std::size_t>(frame)];
     Faults faults = faults_;
-    return bonds_.of_model(model.atoms, model.residues, faults);
+    return bonds_.of_model(model.atoms, model.residues, faults, warnings);
   }
 
  private:
@@ -489,9 +521,11 @@ class MmcifReader final : public DataFile {
   };
 
   void take_atom(const Row& row, std::uint64_t line) {
+    if (is_past_atoms_) return void(++other_atoms_);
     atom_.position = {number(row[kX], line), number(row[kY], line), number(row[kZ], line)};
     atom_.occupancy = row[kOccupancy].empty() ? 1 : number(row[kOccupancy], line);
     atom_.b_factor = number(row[kBFactor], line);
+    atom_.has_residue_number = !preferred(row, kAuthSeq, kLabelSeq).empty();
     atom_.residue_number = residue_number(preferred(row, kAuthSeq, kLabelSeq));
     atom_.insertion = row[kInsertion];
     atom_.element = gemmi::Element(row[kSymbol]).name();
@@ -500,7 +534,7 @@ class MmcifReader final : public DataFile {
     atom_.name = preferred(row, kAuthAtom, kLabelAtom);
     atom_.residue = preferred(row, kAuthComp, kLabelComp);
     atom_.altloc = row[kAltloc];
-    atom_.record = row[kGroup].empty() ? "ATOM" : row[kGroup];
+    atom_.record = row[kGroup].empty() ? std::string_view("ATOM") : row[kGroup];
     // Models are contiguous in nearly all files.
     if (models_.empty() || models_[model_].number != row[kModel]) {
       const auto [it, is_new] = model_of_.try_emplace(row[kModel], models_.size());
@@ -544,6 +578,8 @@ class MmcifReader final : public DataFile {
   std::string title_;
   Atom atom_;
   CifBonds bonds_;
+  bool is_past_atoms_ = false;     ///< a data block with atoms has ended
+  std::uint64_t other_atoms_ = 0;  ///< of later blocks
 };
 
 bool is_mmcif(const Signature& signature) {

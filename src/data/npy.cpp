@@ -48,7 +48,7 @@ class NpyFile final : public SingleFrame {
     check_unique(faults);
     info_.rows = header.rows();
     info_.roles = required_roles(info_.columns, faults);
-    settle_names();
+    info_.names_as_types = info_.roles.element;
   }
 
   Table read(int, const std::vector<std::string>& names) override {
@@ -132,7 +132,7 @@ class NpzFile final : public SingleFrame {
     info_.rows = positions->header.rows();
     for (Member& member : members_) add_columns(member);
     info_.roles = required_roles(info_.columns, faults);
-    settle_names();
+    info_.names_as_types = info_.roles.element;
   }
 
   /// One array is decompressed at a time.

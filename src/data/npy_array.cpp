@@ -146,21 +146,25 @@ using namespace std::string_view_literals;
 constexpr std::string_view kNpySignature = "\x93NUMPY"sv;
 /// NumPy's own limit.
 constexpr std::size_t kMaxDimensions = 64;
+/// Bytes of the longest number, complex256.
+constexpr std::uint64_t kLongestNumber = 32;
 
 /// Parses the type of an item, e.g. `<f4`.
 ///
 /// `where`    precedes faults
-/// Result     a field of padding has 0 components
+/// Result     a field has 0 components if it is padding, or of a type of numbers without a column type, such as float16
 NpyField parse_type(const std::string& code, const std::string& where = {}) {
   const auto fail = [&](const std::string& text) { throw NpyFault{where + text}; };
   const std::string type = "the type " + quoted_word(code);
   const std::string unsupported = type + " is not supported; convert the array to numbers, e.g. with `astype('f8')`";
+  constexpr std::string_view kWithoutColumn = "fcmM";  // float, complex, times; `<M8[ns]` has a unit
   const bool has_order = !code.empty() && std::string_view("<>|=").find(code[0]) != std::string_view::npos;
   if (code == "O" || (has_order && code.size() > 1 && code[1] == 'O'))
     fail("it contains Python objects; convert them, e.g. with `astype('f8')`");
   NpyField field;
-  if (!has_order || code.size() < 3 || !base::from_text(std::string_view(code).substr(2), field.size))
-    fail(unsupported);
+  const bool is_time = has_order && code.size() > 1 && (code[1] == 'M' || code[1] == 'm');
+  const std::string_view size = std::string_view(code).substr(std::min<std::size_t>(code.size(), 2));
+  if (!has_order || !base::from_text(is_time ? size.substr(0, size.find('[')) : size, field.size)) fail(unsupported);
   field.is_big_endian = code[0] == '>';
   if (code[1] == 'S' || code[1] == 'a' || code[1] == 'U' || code[1] == 'V') {
     if (field.size > kLongestNpyText) fail(fmt::format("{} is longer than {}", type, kLongestNpyText));
@@ -175,8 +179,12 @@ NpyField parse_type(const std::string& code, const std::string& where = {}) {
       {"u4", NumberType::kUint32},  {"i8", NumberType::kInt64},  {"u8", NumberType::kUint64},
       {"f4", NumberType::kFloat32}, {"f8", NumberType::kFloat64}};
   const std::optional<NumberType> known = number_type(kNames, std::string_view(code).substr(1));
-  if (!known) fail(unsupported);
-  field.type = *known;
+  if (known)
+    field.type = *known;
+  else if (kWithoutColumn.find(code[1]) != std::string_view::npos && field.size <= kLongestNumber)
+    field.components = 0;
+  else
+    fail(unsupported);
   return field;
 }
 
@@ -211,7 +219,12 @@ void parse_field(const PythonLiteral& source, NpyHeader& header) {
 void parse_description(const PythonLiteral& source, NpyHeader& header) {
   if (source.is(Kind::kText)) {
     header.fields.push_back(parse_type(source.text));
-    if (header.fields[0].components == 0) throw NpyFault{"its items are raw bytes (dtype void)"};
+    if (header.fields[0].components == 0)
+      throw NpyFault{header.fields[0].kind == NpyField::Kind::kBytes
+                         ? "its items are raw bytes (dtype void)"
+                         : fmt::format("the type {} is not supported; convert the array to numbers, e.g. with "
+                                       "`astype('f8')`",
+                                       quoted_word(source.text))};
     header.item_size = header.fields[0].size;
     return;
   }

@@ -98,7 +98,7 @@ std::unique_ptr<DataFile> open(const std::filesystem::path& file, const OpenOpti
   std::error_code ignored;
   // These are folders, which cannot be read as files.
   if (is_adios(extension_of(file)) && std::filesystem::is_directory(file, ignored)) refuse_adios(file);
-  const Bytes bytes = ByteSource::open(file, options.decompressed_limit, options.kept_limit);
+  const Bytes bytes = ByteSource::open(file, options.decompressed_limit);
   const Signature signature{bytes->text(0, kHeadBytes), extension_of(file)};
   const FormatReader* reader = find(kBinary, signature);
   if (reader == nullptr) {
@@ -108,7 +108,7 @@ std::unique_ptr<DataFile> open(const std::filesystem::path& file, const OpenOpti
   if (reader == nullptr) refuse(*bytes, signature);
   std::unique_ptr<DataFile> out = reader->open(bytes, options);
   out->format = reader->name;
-  return out;
+  return settled(std::move(out));
 }
 
 bool is_data_file(const std::filesystem::path& file, std::string_view head) {

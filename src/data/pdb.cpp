@@ -4,8 +4,9 @@
 #include <cmath>
 #include <cstdint>
 #include <functional>
-#include <gemmi/pdb.hpp>
+#include <gemmi/unitcell.hpp>
 #include <optional>
+#include <set>
 #include <string>
 #include <string_view>
 #include <utility>
@@ -14,8 +15,10 @@
 #include <fmt/core.h>
 
 #include "base/text.h"
+#include "data/atom_elements.h"
 #include "data/atom_table.h"
 #include "data/bonds.h"
+#include "data/elements.h"
 #include "data/readers.h"
 #include "data/text_lines.h"
 
@@ -92,6 +95,7 @@ struct PdbModel {
   std::uint64_t first_line = 1;
   std::optional<double> number;  ///< from its MODEL record
   std::string cell;              ///< the CRYST1 record that applies to it; may be empty
+  std::uint64_t atoms = 0;       ///< number of their records
 };
 
 /// The models and assemblies of a PDB file.
@@ -101,21 +105,135 @@ struct PdbIndex {
   std::string title;
   PdbModel rest;                  ///< what follows the last model
   std::uint64_t connections = 0;  ///< number of CONECT records
+  bool is_left_aligned = false;   ///< see AtomElements
+  std::set<std::string> two_letter_chains;
 };
 
-inline bool is_pdb_atom(std::string_view line) { return line.starts_with("ATOM  ") || line.starts_with("HETATM"); }
+bool is_digit(char c) { return c >= '0' && c <= '9'; }
+bool is_letter(char c) { return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z'); }
+
+/// AMBER and CHARMM begin serial numbers of six and seven digits in the columns of the record's name: "ATOM 100000".
+bool is_pdb_atom(std::string_view line) {
+  const auto may_follow = [](char c) { return c == ' ' || is_digit(c); };
+  return line.starts_with("HETATM") ||
+         (line.starts_with("ATOM") && line.size() > 5 && may_follow(line[4]) && may_follow(line[5]));
+}
 
 constexpr std::string_view kConnection = "CONECT";
 
 constexpr std::size_t kMaxLine = 120;
 constexpr std::size_t kMaxTitle = 1000;
-/// Columns of a record, and of its name.
-constexpr std::size_t kRecordWidth = 80, kRecordName = 6;
+/// Columns of a record, of its name, and of a residue number.
+constexpr std::size_t kRecordWidth = 80, kRecordName = 6, kResidueWidth = 4;
 
 /// The text in a range of a record's columns, 1-based and inclusive, without surrounding spaces.
-std::string columns(std::string_view line, std::size_t first, std::size_t last) {
-  return std::string(trimmed(line.substr(std::min(first - 1, line.size()), last - first + 1)));
+std::string_view columns(std::string_view line, std::size_t first, std::size_t last) {
+  return trimmed(line.substr(std::min(first - 1, line.size()), last - first + 1));
 }
+
+/// The character in a column, 1-based.
+char column(std::string_view line, std::size_t number) { return number <= line.size() ? line[number - 1] : ' '; }
+
+/// A CONECT record has the serial number of an atom, and of up to four that are bonded to it; each has five columns.
+constexpr std::size_t kMaxBonded = 4, kSerialWidth = 5;
+
+/// Columns 31 to 54 hold the coordinates.
+constexpr std::size_t kCoordinateColumn = 31, kCoordinateWidth = 8, kShortestAtom = 54;
+
+/// The fields of an atom's record. Programs that print numbers with "%5d" and "%4d" shift the rest of the line to the
+/// right where a serial number has six digits, or a residue number five; others write such a number into the column
+/// behind the field, which is blank or holds the insertion code, and shift nothing. The decimal points tell.
+class AtomRecord {
+ public:
+  explicit AtomRecord(std::string_view line) : line_(line) {
+    std::size_t more = 0;  // digits of the serial number that its columns cannot hold
+    while (is_digit(column(line, kSerialEnd)) && is_digit(column(line, kSerialEnd + 1 + more))) ++more;
+    serial_end_ = kSerialEnd + std::min<std::size_t>(more, 1);
+    for (const std::size_t by_serial : {std::size_t{0}, more})
+      for (const std::size_t by_residue : {std::size_t{0}, std::size_t{1}})
+        if (has_points(by_serial + by_residue) && (by_residue == 0 || has_wide_residue_number(by_serial))) {
+          if (by_serial > 0) serial_end_ = kSerialEnd + by_serial;
+          serial_shift_ = by_serial;
+          shift_ = by_serial + by_residue;
+          is_exact_ = true;
+          return;
+        }
+  }
+
+  std::string_view serial() const {
+    return columns(line_, is_digit(column(line_, 5)) ? 5 : is_digit(column(line_, 6)) ? 6 : 7, serial_end_);
+  }
+  /// The four columns of the name, whose alignment matters.
+  std::string_view name() const { return line_.substr(12 + serial_shift_, 4); }
+  char altloc() const { return column(line_, 17 + serial_shift_); }
+  /// Residue name of three letters, and two columns that it shares with the chain.
+  std::string_view short_residue() const { return columns(line_, 18 + serial_shift_, 20 + serial_shift_); }
+  std::string_view long_residue() const { return columns(line_, 18 + serial_shift_, 21 + serial_shift_); }
+  char fourth_letter() const { return column(line_, 21 + serial_shift_); }
+  std::string_view chain() const { return columns(line_, 22 + serial_shift_, 22 + serial_shift_); }
+  std::string_view long_chain() const { return columns(line_, 21 + serial_shift_, 22 + serial_shift_); }
+
+  /// Four columns, or five digits.
+  std::string_view residue_number() const {
+    return columns(line_, 23 + serial_shift_, (has_wide_residue_number(serial_shift_) ? 27 : 26) + serial_shift_);
+  }
+  std::string_view insertion() const {
+    return has_wide_residue_number(serial_shift_) ? "" : columns(line_, 27 + shift_, 27 + shift_);
+  }
+
+  /// Result     false if one of the fields is not a number
+  bool read_position(Vec3d& out) const {
+    // A line that is shifted for another reason may look like numbers of two decimal places.
+    if (!is_exact_ && has_points(1) && is_digit(column(line_, kShortestAtom + 1))) return false;
+    double values[3];
+    for (std::size_t i = 0; i < 3; ++i) {
+      const std::size_t first = kCoordinateColumn + shift_ + i * kCoordinateWidth;
+      if (!base::from_text(columns(line_, first, first + kCoordinateWidth - 1), values[i])) return false;
+    }
+    out = {values[0], values[1], values[2]};
+    return true;
+  }
+
+  /// A number that may be missing or, where it is too large for its columns, asterisks.
+  double occupancy() const { return number(55, 60, 1); }
+  double b_factor() const { return number(61, 66, 0); }
+  /// Of CHARMM, NAMD and X-PLOR.
+  std::string_view segment() const { return columns(line_, 73 + shift_, 76 + shift_); }
+  /// Empty if it is missing: files of before 1996 have a line number there.
+  std::string_view element() const {
+    const std::string_view out = columns(line_, 77 + shift_, 78 + shift_);
+    return std::any_of(out.begin(), out.end(), is_letter) ? out : std::string_view();
+  }
+
+ private:
+  static constexpr std::size_t kSerialEnd = 11;  ///< last column of a serial number
+
+  /// Whether coordinates with three decimal places would be in these columns.
+  bool has_points(std::size_t shift) const {
+    for (const std::size_t at : {35, 43, 51}) {
+      if (column(line_, at + shift) != '.') return false;
+      for (std::size_t digit = 1; digit <= 3; ++digit)
+        if (!is_digit(column(line_, at + shift + digit))) return false;
+    }
+    return true;
+  }
+
+  bool has_wide_residue_number(std::size_t shift) const {
+    const std::string_view number = columns(line_, 23 + shift, 27 + shift);
+    return number.size() == 5 && std::all_of(number.begin(), number.end(), is_digit);
+  }
+
+  double number(std::size_t first, std::size_t last, double otherwise) const {
+    const std::string_view text = columns(line_, first + shift_, last + shift_);
+    return text.empty() ? otherwise : base::number_of<double>(text).value_or(std::nan(""));
+  }
+
+  std::string_view line_;
+  std::size_t serial_end_ = kSerialEnd;
+  std::size_t serial_shift_ = 0;  ///< of what follows the serial number
+  std::size_t shift_ = 0;         ///< of what follows the residue number
+  bool is_exact_ = false;         ///< the coordinates have three decimal places
+};
 
 class Indexer {
  public:
@@ -124,13 +242,15 @@ class Indexer {
   void take(std::string_view line, std::uint64_t offset) {
     ++line_;
     // Other characters are common in the text of remarks and titles.
-    const std::string_view record = line.substr(0, is_pdb_atom(line) ? kRecordWidth : kRecordName);
+    const bool is_atom = is_pdb_atom(line);
+    const std::string_view record = line.substr(0, is_atom ? kRecordWidth : kRecordName);
     if (std::any_of(record.begin(), record.end(), [](char c) { return static_cast<unsigned char>(c) > 0x7e; }))
       faults_.add_of_many(line_, "the record has characters that are not ASCII");
-    if (is_pdb_atom(line)) {
-      has_atoms_ = true;
+    if (is_atom) {
+      ++model_.atoms;
       ++atoms_;
       has_end_ = false;
+      if (line.size() >= kShortestAtom) note_conventions(AtomRecord(line));
     } else if (line.starts_with("MODEL ")) {
       finish(offset, line_);
       is_declared_ = true;
@@ -145,7 +265,7 @@ class Indexer {
     } else if (line.starts_with("CRYST1")) {
       model_.cell = line;
     } else if (line.starts_with("TITLE ") && index_.title.size() < kMaxTitle) {
-      index_.title += (index_.title.empty() ? "" : " ") + columns(line, 11, 80);
+      index_.title.append(index_.title.empty() ? "" : " ").append(columns(line, 11, 80));
     } else if (line.starts_with(kConnection)) {
       ++index_.connections;
     } else if (line.starts_with("REMARK 350")) {
@@ -170,19 +290,31 @@ class Indexer {
  private:
   /// Ends the current model, unless it is only what precedes the first one or follows the last.
   void finish(std::uint64_t end, std::uint64_t line) {
-    if (!has_atoms_ && !is_declared_) return;
+    if (model_.atoms == 0 && !is_declared_) return;
     model_.end = end;
     index_.models.push_back(model_);
     // The next model has the same cell unless it declares its own.
     model_ = {end, end, line, std::nullopt, model_.cell};
-    has_atoms_ = is_declared_ = false;
+    is_declared_ = false;
+  }
+
+  /// What only the atoms of standard residues tell: in others, "CA  " may be calcium, and "POPCA" the residue POPC of
+  /// chain A, or POP of chain CA.
+  void note_conventions(const AtomRecord& atom) {
+    const bool may_have_long_chain = atom.fourth_letter() != ' ';
+    if (!may_have_long_chain && (index_.is_left_aligned || !atom.element().empty())) return;
+    if (!is_standard_residue(atom.short_residue())) return;
+    if (may_have_long_chain && !is_standard_residue(atom.long_residue()) && !atom.chain().empty())
+      index_.two_letter_chains.emplace(atom.long_chain());
+    const std::string_view name = atom.name();
+    if (atom.element().empty() && is_letter(name[0]) && name[3] == ' ' && !name.starts_with("SE"))
+      index_.is_left_aligned = true;
   }
 
   PdbIndex index_;
   Faults& faults_;
   BiomtReader biomt_;
   PdbModel model_;
-  bool has_atoms_ = false;
   bool is_declared_ = false;  ///< by a MODEL record
   bool has_header_ = false;
   bool has_end_ = false;                         ///< after the last atom
@@ -193,8 +325,11 @@ class Indexer {
 
 /// Calls `take` with each line in a range of the file, without line ending, and the line's offset. Lines are truncated
 /// to 120 bytes, more than a PDB record can have.
+///
+/// `check`    called with all bytes, block by block
 void for_each_pdb_line(const ByteSource& bytes, std::uint64_t begin, std::uint64_t end,
-                       const std::function<void(std::string_view line, std::uint64_t offset)>& take) {
+                       const std::function<void(std::string_view line, std::uint64_t offset)>& take,
+                       const std::function<void(std::string_view block)>& check = {}) {
   constexpr std::size_t kBlock = std::size_t{1} << 20;
   const auto cut = [](std::string_view line) {
     line = line.substr(0, kMaxLine);
@@ -204,6 +339,7 @@ void for_each_pdb_line(const ByteSource& bytes, std::uint64_t begin, std::uint64
   std::uint64_t line_begin = begin;
   for (std::uint64_t at = begin; at < end; at += kBlock) {
     const std::string block = bytes.text(at, static_cast<std::size_t>(std::min<std::uint64_t>(kBlock, end - at)));
+    if (check) check(block);
     std::string_view left = block;
     for (std::size_t length; (length = left.find('\n')) != std::string_view::npos; left.remove_prefix(length + 1)) {
       if (rest.empty()) {
@@ -228,40 +364,26 @@ void for_each_pdb_line(const ByteSource& bytes, std::uint64_t begin, std::uint64
 /// Cost       one pass over the file
 PdbIndex index_pdb(const ByteSource& bytes) {
   Faults faults(bytes.file());
-  require_text(bytes, faults);
   Indexer indexer(faults);
-  for_each_pdb_line(bytes, 0, bytes.size(),
-                    [&](std::string_view line, std::uint64_t offset) { indexer.take(line, offset); });
+  std::uint64_t line = 1;
+  for_each_pdb_line(
+      bytes, 0, bytes.size(), [&](std::string_view text, std::uint64_t offset) { indexer.take(text, offset); },
+      [&](std::string_view block) { require_text(block, line, faults); });
   return indexer.finish_file(bytes.size());
 }
 
-/// Columns 31 to 54 hold the coordinates.
-constexpr std::size_t kCoordinateColumn = 30, kCoordinateWidth = 8, kShortestAtom = 54;
-/// The columns after the element are not read: charges are often misplaced.
-constexpr std::size_t kLastColumn = 78;
-
-/// gemmi reads malformed coordinates as 0.
-bool has_coordinates(std::string_view line) {
-  for (std::size_t i = 0; i < 3; ++i) {
-    std::string_view field = line.substr(kCoordinateColumn + i * kCoordinateWidth, kCoordinateWidth);
-    field.remove_prefix(std::min(field.find_first_not_of(' '), field.size()));
-    field = field.substr(0, field.find(' '));
-    double value = 0;
-    if (!base::from_text(field, value)) return false;
-  }
-  return true;
-}
-
-/// A CONECT record has the serial number of an atom, and of up to four that are bonded to it; each has five columns.
-constexpr std::size_t kMaxBonded = 4, kSerialWidth = 5;
-
-/// Reads a serial number. In the hybrid-36 encoding, A0000 follows 99999.
-std::optional<std::int64_t> serial_number(std::string_view word) {
-  constexpr std::int64_t kFirst = 10 * 36 * 36 * 36 * 36, kFirstSerial = 100'000;
-  const bool is_hybrid = word[0] >= 'A' && word.size() == kSerialWidth;
+/// Reads a number of atoms or residues that is wider than its columns: with hybrid-36, A0000 follows 99999; VMD goes on
+/// in hexadecimal, 186a0.
+std::optional<std::int64_t> wide_number(std::string_view word, std::size_t width) {
   std::int64_t value = 0;
-  if (!base::from_text(word, value, is_hybrid ? 36 : 10)) return std::nullopt;
-  return is_hybrid ? value - kFirst + kFirstSerial : value;
+  if (base::from_text(word, value)) return value;
+  const bool is_hybrid = word.size() == width && word[0] >= 'A' && word[0] <= 'Z';
+  if (!base::from_text(word, value, is_hybrid ? 36 : 16)) return std::nullopt;
+  if (!is_hybrid) return value;
+  std::int64_t first = 10, decimal = 1;  // of the numbers that begin with a letter
+  for (std::size_t i = 0; i < width; ++i, decimal *= 10)
+    if (i > 0) first *= 36;
+  return value - first + decimal;
 }
 
 class PdbReader final : public DataFile {
@@ -277,13 +399,15 @@ class PdbReader final : public DataFile {
 
   FrameInfo describe(int frame) override {
     load(frame);
-    FrameInfo info = atoms_.info(false);
+    FrameInfo info = atoms_.info();
     info.box = box_;
     info.assemblies = index_.assemblies;
     info.step = index_.models[static_cast<std::size_t>(frame)].number;
     info.title = index_.title;
     info.bonds = index_.connections * kMaxBonded;
+    info.has_bonds = index_.connections > 0;
     info.lists_all_bonds = false;
+    if (const std::string warning = elements_.warning(); !warning.empty()) info.warnings.push_back(warning);
     return info;
   }
 
@@ -292,11 +416,17 @@ class PdbReader final : public DataFile {
     return atoms_.table(columns);
   }
 
-  std::vector<Bond> bonds(int frame) override {
+  /// Programs that remove or renumber atoms often leave the CONECT records as they were.
+  std::vector<Bond> bonds(int frame, std::vector<std::string>& warnings) override {
     if (index_.connections == 0) return {};
     load(frame);
     Faults faults(bytes_->file());
     BondsById out(serials_, faults);
+    if (has_wide_serials_) {
+      warnings.emplace_back(
+          "the bonds of the file were left out: CONECT has no columns for serial numbers of six digits");
+      return {};
+    }
     // Records within a model belong to it, those after the last model to all.
     for (const PdbModel& part : {index_.models[static_cast<std::size_t>(frame)], index_.rest}) {
       std::uint64_t line_number = part.first_line - 1;
@@ -306,9 +436,9 @@ class PdbReader final : public DataFile {
         std::optional<std::int64_t> from;
         for (std::size_t i = 0; i <= kMaxBonded; ++i) {
           const std::size_t column = kRecordName + 1 + i * kSerialWidth;
-          const std::string word = columns(line, column, column + kSerialWidth - 1);
+          const std::string_view word = columns(line, column, column + kSerialWidth - 1);
           if (word.empty()) continue;
-          const std::optional<std::int64_t> serial = serial_number(word);
+          const std::optional<std::int64_t> serial = wide_number(word, kSerialWidth);
           if (!serial)
             faults.add_of_many(line_number, fmt::format("{} is not the serial number of an atom", quoted_word(word)));
           else if (i == 0)
@@ -318,79 +448,100 @@ class PdbReader final : public DataFile {
         }
       });
     }
+    warn_of_missing(faults, warnings);
     return out.take();
   }
 
  private:
-  /// Returns the cell and the atoms of a model, the records that gemmi has to read, checked.
-  std::string text_of(const PdbModel& model) {
-    std::string text = model.cell.empty() ? "" : model.cell + '\n';
-    std::uint64_t line_number = model.first_line - 1;
-    Faults faults(bytes_->file());
-    for_each_pdb_line(*bytes_, model.begin, model.end, [&](std::string_view line, std::uint64_t) {
-      ++line_number;
-      if (!is_pdb_atom(line)) return;
-      if (line.size() < kShortestAtom)
-        faults.add_of_many(line_number, "truncated atom: the line ends before column 54");
-      else if (!has_coordinates(line))
-        faults.add_of_many(line_number, "malformed coordinates in columns 31 to 54");
-      else
-        text.append(line.substr(0, kLastColumn)) += '\n';
-    });
-    faults.raise_if_any();
-    return text;
-  }
-
   void load(int frame) {
     if (frame == loaded_) return;
     loaded_ = -1;
     atoms_ = {};
     serials_.clear();
+    has_wide_serials_ = false;
+    elements_ = AtomElements(index_.is_left_aligned);
     const PdbModel& model = index_.models[static_cast<std::size_t>(frame)];
-    // Measured: 3.7 with residues of 8 atoms, 5.5 if all are water.
-    constexpr double kMemoryPerByte = 5.5;
-    require_parse_memory(bytes_->file(), model.end - model.begin, kMemoryPerByte, bytes_->memory(), memory_limit_);
-    const std::string text = text_of(model);
-    gemmi::Structure structure;
-    try {
-      structure = gemmi::read_pdb_from_memory(text.data(), text.size(), bytes_->file().string());
-    } catch (const std::exception& error) {
-      Faults(bytes_->file()).fail(model.first_line, error.what());
-    }
-    set_box(structure);
-    Atom atom;
-    for (const gemmi::Chain& chain : structure.models.at(0).chains) {
-      atom.chain = chain.name;
-      for (const gemmi::Residue& residue : chain.residues) {
-        atom.residue = residue.name;
-        atom.residue_number = residue.seqid.num.has_value() ? *residue.seqid.num : 0;
-        atom.insertion = residue.seqid.icode;
-        atom.record = residue.het_flag == 'H' ? "HETATM" : "ATOM";
-        for (const gemmi::Atom& source : residue.atoms) {
-          atom.position = {source.pos.x, source.pos.y, source.pos.z};
-          atom.b_factor = static_cast<double>(source.b_iso);
-          atom.occupancy = static_cast<double>(source.occ);
-          atom.element = source.element.name();
-          atom.name = source.name;
-          atom.altloc = source.altloc == '\0' ? std::string() : std::string(1, source.altloc);
-          const std::size_t row = atoms_.add(atom);
-          if (index_.connections > 0) serials_.emplace_back(source.serial, static_cast<std::uint32_t>(row));
-        }
-      }
-    }
+    const bool has_bonds = index_.connections > 0;
+    require_parse_memory(bytes_->file(), model.atoms, AtomTable::kBytesPerRow + (has_bonds ? sizeof(serials_[0]) : 0),
+                         bytes_->memory(), memory_limit_);
+    atoms_.reserve(static_cast<std::size_t>(model.atoms));
+    if (has_bonds) serials_.reserve(static_cast<std::size_t>(model.atoms));
+    set_box(model.cell, model.first_line);
+    Faults faults(bytes_->file());
+    std::uint64_t line_number = model.first_line - 1;
+    for_each_pdb_line(*bytes_, model.begin, model.end, [&](std::string_view line, std::uint64_t) {
+      ++line_number;
+      if (!is_pdb_atom(line)) return;
+      if (line.size() < kShortestAtom)
+        faults.add_of_many(line_number, "truncated atom: the line ends before column 54");
+      else if (!take_atom(line))
+        faults.add_of_many(line_number, "malformed coordinates in columns 31 to 54");
+    });
+    faults.raise_if_any();
     loaded_ = frame;
+  }
+
+  /// Result     false if the coordinates are malformed
+  bool take_atom(std::string_view line) {
+    const AtomRecord record(line);
+    Atom atom;
+    if (!record.read_position(atom.position)) return false;
+    set_residue(record, atom);
+    atom.record = trimmed(line.substr(0, line[0] == 'A' ? 4 : kRecordName));
+    atom.b_factor = record.b_factor();
+    atom.occupancy = record.occupancy();
+    const std::string_view listed = record.element();
+    const Element* const element = find_element(listed);
+    atom.element = listed == "D" || listed == "X" ? listed  // deuterium, and atoms that are none
+                   : element != nullptr           ? element->symbol
+                                                  : elements_.element_of(record.name(), atom.residue);
+    atom.name = trimmed(record.name());
+    const char altloc = record.altloc();
+    if (altloc != ' ') atom.altloc = {&altloc, 1};
+    atom.segment = record.segment();
+    const std::size_t row = atoms_.add(atom);
+    if (index_.connections == 0) return true;
+    const std::string_view serial = record.serial();
+    has_wide_serials_ = has_wide_serials_ || serial.size() > kSerialWidth;
+    if (const auto number = wide_number(serial, kSerialWidth))
+      serials_.emplace_back(*number, static_cast<std::uint32_t>(row));
+    return true;
+  }
+
+  /// CHARMM, NAMD and VMD write residues of four letters, "POPCA", into a column that others use for chains of two.
+  /// Such a chain has standard residues, too.
+  void set_residue(const AtomRecord& record, Atom& atom) const {
+    const bool is_long = record.fourth_letter() != ' ';
+    const bool has_long_chain =
+        is_long && !record.chain().empty() && index_.two_letter_chains.contains(std::string(record.long_chain()));
+    atom.residue = is_long && !has_long_chain ? record.long_residue() : record.short_residue();
+    atom.chain = has_long_chain ? record.long_chain() : record.chain();
+    atom.residue_number = static_cast<std::int32_t>(wide_number(record.residue_number(), kResidueWidth).value_or(0));
+    atom.has_residue_number = !record.residue_number().empty();
+    atom.insertion = record.insertion();
   }
 
   /// The cell is a simulation box only without crystal symmetry; otherwise, it contains more than the atoms of the
   /// file.
-  void set_box(const gemmi::Structure& structure) {
+  void set_box(std::string_view record, std::uint64_t line) {
     box_.reset();
-    const bool has_symmetry = structure.spacegroup_hm != "P 1" && !structure.spacegroup_hm.empty();
+    const std::string_view group = columns(record, 56, 66);
+    if (record.empty() || (group != "P 1" && !group.empty())) return;
+    double edges[6];
+    constexpr std::size_t kFirst[] = {7, 16, 25, 34, 41, 48, 55};
+    for (std::size_t i = 0; i < 6; ++i)
+      if (!base::from_text(columns(record, kFirst[i], kFirst[i + 1] - 1), edges[i])) return;
+    gemmi::UnitCell cell;
+    try {
+      cell.set(edges[0], edges[1], edges[2], edges[3], edges[4], edges[5]);
+    } catch (const std::exception& error) {
+      Faults(bytes_->file()).fail(line, error.what());
+    }
     // Programs write a cell of zeros for structures without one.
-    if (has_symmetry || !structure.cell.is_crystal() || !(structure.cell.volume > 0)) return;
+    if (!cell.is_crystal() || !(cell.volume > 0)) return;
     Box box;
     for (int i = 0; i < 3; ++i) {
-      const gemmi::Vec3 edge = structure.cell.orth.mat.column_copy(i);
+      const gemmi::Vec3 edge = cell.orth.mat.column_copy(i);
       box.edges[static_cast<std::size_t>(i)] = {edge.x, edge.y, edge.z};
       if (!math::is_finite(box.edges[static_cast<std::size_t>(i)])) return;
     }
@@ -402,18 +553,21 @@ class PdbReader final : public DataFile {
   std::uint64_t memory_limit_;  ///< see OpenOptions
   int loaded_ = -1;             ///< frame in `atoms_`
   AtomTable atoms_;
+  AtomElements elements_;
   std::optional<Box> box_;
   std::vector<std::pair<std::int64_t, std::uint32_t>> serials_;  ///< serial number and row of the atoms, for bonds
+  bool has_wide_serials_ = false;                                ///< of more digits than CONECT has columns
 };
 
 bool is_pdb(const Signature& signature) {
   // Its columns are not those of PDB: a charge and a radius.
   if (signature.head.empty() || signature.extension == ".pqr") return false;
-  constexpr std::array<std::string_view, 20> kRecords = {
-      "HEADER", "OBSLTE", "TITLE ", "SPLIT ", "CAVEAT", "COMPND", "SOURCE", "KEYWDS", "EXPDTA", "NUMMDL",
-      "MDLTYP", "AUTHOR", "REVDAT", "REMARK", "CRYST1", "ORIGX1", "SCALE1", "MODEL ", "ATOM  ", "HETATM"};
+  constexpr std::array<std::string_view, 18> kRecords = {"HEADER", "OBSLTE", "TITLE ", "SPLIT ", "CAVEAT", "COMPND",
+                                                         "SOURCE", "KEYWDS", "EXPDTA", "NUMMDL", "MDLTYP", "AUTHOR",
+                                                         "REVDAT", "REMARK", "CRYST1", "ORIGX1", "SCALE1", "MODEL "};
   const auto is_record = [&](std::string_view text) {
-    return std::any_of(kRecords.begin(), kRecords.end(), [&](std::string_view r) { return text.starts_with(r); });
+    return is_pdb_atom(text) ||
+           std::any_of(kRecords.begin(), kRecords.end(), [&](std::string_view r) { return text.starts_with(r); });
   };
   const std::string_view text = signature.head;
   if (signature.extension == ".pdb" || signature.extension == ".ent")

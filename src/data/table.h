@@ -77,10 +77,10 @@ class ArrayView {
 };
 
 /// The values of a column, one per row, in the type in which the file stores them. Numbers of text files are float64,
-/// or int64 if the format declares the column an integer. Only tables in memory have views.
-using Values =
-    std::variant<std::vector<double>, std::vector<float>, std::vector<std::int64_t>, std::vector<std::int32_t>,
-                 std::vector<std::uint16_t>, std::vector<std::uint8_t>, Words, ArrayView<double>, ArrayView<float>>;
+/// or int64 if the format declares the column an integer. Tables in memory and kept ones have views.
+using Values = std::variant<std::vector<double>, std::vector<float>, std::vector<std::int64_t>,
+                            std::vector<std::int32_t>, std::vector<std::uint16_t>, std::vector<std::uint8_t>, Words,
+                            ArrayView<double>, ArrayView<float>, ArrayView<std::int64_t>>;
 
 /// The alternatives of Values, in order up to Words.
 enum class ColumnType { kFloat64, kFloat32, kInt64, kInt32, kUint16, kUint8, kText };
@@ -110,6 +110,7 @@ struct Column {
   ColumnType type() const {
     if (std::holds_alternative<ArrayView<double>>(values)) return ColumnType::kFloat64;
     if (std::holds_alternative<ArrayView<float>>(values)) return ColumnType::kFloat32;
+    if (std::holds_alternative<ArrayView<std::int64_t>>(values)) return ColumnType::kInt64;
     return static_cast<ColumnType>(values.index());
   }
   std::size_t size() const {
@@ -192,9 +193,14 @@ struct FrameInfo {
   bool has_components = false;   ///< OpenOptions::component selects one of several sets of particles
   bool may_be_of_scene = false;  ///< the file may have been made for a scene: a column may number its materials
   bool may_be_hollow = false;    ///< a radius below 0 is a hollow sphere, as in a scene
-  std::uint64_t bonds = 0;       ///< estimated number of bonds in the file; 0: it has none
+  std::uint64_t bonds = 0;       ///< estimated number of bonds in the frame
+  bool has_bonds = false;        ///< a frame of the file has bonds; those of this one may all have broken
   /// False if the format leaves out bonds that its readers know, such as those within the residues of a protein.
   bool lists_all_bonds = true;
+  std::vector<std::string> warnings;  ///< about what the reader had to assume
+  /// Name that the column `roles.element` has if its words turn out to be types, see settled(); empty: the format says
+  /// that they are elements.
+  std::string names_as_types;
 };
 
 /// Columns of a frame. Rows are in file order.

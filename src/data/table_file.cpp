@@ -17,9 +17,11 @@ class TableFile : public DataFile {
     for (const Column& column : table_->columns) info_.columns.push_back({column.name, column.type()});
     Faults faults(name);
     info_.roles = required_roles(info_.columns, faults);
+    info_.names_as_types = info_.roles.element;
     const bool has_strings = std::any_of(info_.columns.begin(), info_.columns.end(),
                                          [](const ColumnInfo& c) { return c.type == ColumnType::kText; });
     format = "arrays";
+    has_views = true;
     info_.may_be_of_scene = !has_strings;
   }
 

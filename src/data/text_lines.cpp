@@ -15,6 +15,8 @@ const char* find_newline(const char* begin, const char* end) {
 
 constexpr std::size_t kFirstReadBytes = std::size_t{16} << 10;
 constexpr std::size_t kSkipBytes = std::size_t{1} << 20;
+/// Typical length of a line.
+constexpr std::uint64_t kLineBytes = 64;
 
 }  // namespace
 
@@ -122,12 +124,22 @@ bool TextCursor::next_filled(std::string& text) {
   return false;
 }
 
+bool TextCursor::has_filled() const {
+  const auto is_filled = [](char c) { return !is_blank(c) && c != '\n'; };
+  if (std::any_of(buffer_.begin() + static_cast<std::ptrdiff_t>(begin_), buffer_.end(), is_filled)) return true;
+  std::string ignored;
+  const std::size_t left = buffer_.size() - begin_;
+  return TextCursor(*bytes_, {place_.offset + left, place_.line}).next_filled(ignored);
+}
+
 std::uint64_t TextCursor::skip(std::uint64_t count) {
+  // Lines are counted in steps, so that a few of them do not cost a whole buffer.
+  constexpr std::size_t kStep = std::size_t{16} << 10;
   std::uint64_t skipped = 0;
   bool is_inside = false;  // of a line
   while (skipped < count && (begin_ < buffer_.size() || fill(kSkipBytes))) {
     const char* const begin = buffer_.data() + begin_;
-    const char* end = buffer_.data() + buffer_.size();
+    const char* end = begin + std::min<std::uint64_t>({kStep, buffer_.size() - begin_, kLineBytes * (count - skipped)});
     const std::uint64_t here = newline_count(begin, end);
     if (here > count - skipped || (here == count - skipped && end[-1] != '\n')) {
       const char* at = begin;

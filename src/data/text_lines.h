@@ -108,6 +108,8 @@ class TextCursor {
   bool next(std::string& text);
   /// Like next(), but skips blank lines.
   bool next_filled(std::string& text);
+  /// Returns whether next_filled() would find a line.
+  bool has_filled() const;
 
   /// Skips lines.
   ///

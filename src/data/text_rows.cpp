@@ -20,6 +20,7 @@
 
 #include "base/stop_point.h"
 #include "data/dictionary.h"
+#include "data/faults.h"
 #include "data/text_lines.h"
 
 namespace orrery::data {
@@ -494,6 +495,16 @@ void ColumnSurvey::add(const ColumnSurvey& later) {
 bool is_missing_marker(std::string_view word) {
   constexpr std::array<std::string_view, 8> kMarkers = {"NA", "N/A", "n/a", "#N/A", "<NA>", "null", "NULL", "None"};
   return std::find(kMarkers.begin(), kMarkers.end(), word) != kMarkers.end();
+}
+
+void require_room(const ByteSource& bytes, const TextLayout& layout, std::uint64_t count_line, Faults& faults) {
+  constexpr std::uint64_t kSlack = std::uint64_t{1} << 20;
+  // A value has a character, and one follows it.
+  const std::uint64_t row_bytes = 2 * std::max<std::uint64_t>(1, layout.columns.size());
+  const std::uint64_t left = bytes.size() - std::min(bytes.size(), layout.begin);
+  if (layout.rows != kRowsToEnd && layout.rows > (left + kSlack) / row_bytes)
+    faults.fail(count_line, fmt::format("truncated: {} rows are declared, but only {} bytes follow", layout.rows, left),
+                "correct the number of atoms, or write the file again");
 }
 
 TextTable read_text_rows(const ByteSource& bytes, const TextLayout& layout, Faults& faults) {

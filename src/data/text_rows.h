@@ -58,6 +58,12 @@ struct TextLayout {
   std::vector<std::string> wanted;  ///< distinct names of columns; the others are skipped without being checked
 };
 
+/// Throws an error if a file is far too short for the rows that its header declares, so that their memory is not
+/// estimated. A few missing rows are reported by read_text_rows(), with the last line.
+///
+/// `count_line`   line that declares the number
+void require_room(const ByteSource& bytes, const TextLayout& layout, std::uint64_t count_line, Faults& faults);
+
 struct TextTable {
   Table table;                        ///< the wanted columns, in their order
   std::vector<ColumnSurvey> surveys;  ///< one per column, if requested

@@ -463,7 +463,7 @@ class VtkFile final : public SingleFrame {
     const std::optional<NumberType> number = number_type(kVtkTypeNames, type);
     const std::uint64_t components = document_.integer(node, "NumberOfComponents", "1");
     if (!node) document_.fail("a piece has no <Points>");
-    if (type == "String" || components == 0) return;
+    if (type == "String" || type == "Bit" || components == 0) return;
     if (!number) document_.fail(fmt::format("array {} has the unknown type {}", quoted_word(name), quoted_word(type)));
     auto array = std::find_if(arrays_.begin(), arrays_.end(), [&](const VtkArray& a) { return a.name == name; });
     if (array == arrays_.end()) {

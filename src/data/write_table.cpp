@@ -5,6 +5,7 @@
 #include <charconv>
 #include <cmath>
 #include <cstdint>
+#include <initializer_list>
 #include <limits>
 #include <optional>
 #include <set>
@@ -277,9 +278,30 @@ std::vector<XyzOutput> xyz_outputs(const Table& table, std::vector<std::string>&
   return out;
 }
 
+/// Appends a box as the reader of extended XYZ takes it.
+void append_box(std::string& out, const Box& box) {
+  const auto append = [&](std::initializer_list<Vec3d> vectors) {
+    for (const Vec3d v : vectors)
+      for (const double x : {v.x, v.y, v.z}) {
+        append_number(out, x);
+        out += ' ';
+      }
+    out.back() = '"';
+  };
+  out += "Lattice=\"";
+  append({box.edges[0], box.edges[1], box.edges[2]});
+  out += " Origin=\"";
+  append({box.origin});
+  out += " pbc=\"";
+  for (const bool is_periodic : box.periodic) out += is_periodic ? "T " : "F ";
+  out.back() = '"';
+  out += ' ';
+}
+
 // Functions that write a format, and return the names of the columns that they omit.
 
-std::vector<std::string> write_ply_table(base::OutputFile& out, const Table& table, const std::string& writer) {
+std::vector<std::string> write_ply_table(base::OutputFile& out, const Table& table, const FrameHeader&,
+                                         const std::string& writer) {
   std::vector<std::string> left_out;
   std::vector<PlyOutput> outputs;
   DistinctNames names(table, kPlySeparators);
@@ -316,7 +338,8 @@ std::vector<std::string> write_ply_table(base::OutputFile& out, const Table& tab
   return left_out;
 }
 
-std::vector<std::string> write_npy_table(base::OutputFile& out, const Table& table, const std::string&) {
+std::vector<std::string> write_npy_table(base::OutputFile& out, const Table& table, const FrameHeader&,
+                                         const std::string&) {
   std::string& bytes = out.buffer();
   bytes = npy_header(out, table);
   std::vector<NpyText> texts;
@@ -342,7 +365,8 @@ std::vector<std::string> write_npy_table(base::OutputFile& out, const Table& tab
   return {};
 }
 
-std::vector<std::string> write_csv_table(base::OutputFile& out, const Table& table, const std::string&) {
+std::vector<std::string> write_csv_table(base::OutputFile& out, const Table& table, const FrameHeader&,
+                                         const std::string&) {
   std::string& text = out.buffer();
   for (const Column& column : table.columns) {
     if (const Words* const words = words_in(column))
@@ -375,11 +399,19 @@ std::vector<std::string> write_csv_table(base::OutputFile& out, const Table& tab
   return {};
 }
 
-std::vector<std::string> write_xyz_table(base::OutputFile& out, const Table& table, const std::string&) {
+std::vector<std::string> write_xyz_table(base::OutputFile& out, const Table& table, const FrameHeader& header,
+                                         const std::string&) {
   std::string& text = out.buffer();
   std::vector<std::string> left_out;
   const std::vector<XyzOutput> properties = xyz_outputs(table, left_out);
-  text = fmt::format("{}\nProperties=", table.rows);
+  text = fmt::format("{}\n", table.rows);
+  if (header.box) append_box(text, *header.box);
+  if (header.step) {
+    text += "Timestep=";
+    append_number(text, *header.step);
+    text += ' ';
+  }
+  text += "Properties=";
   for (const XyzOutput& property : properties) {
     if (&property != &properties.front()) text += ':';
     text += fmt::format("{}:{}:{}", property.name, property.type, property.columns.size());
@@ -422,10 +454,11 @@ bool is_storable_in_ply(const Column& column) {
 
 void require_table_format(const std::filesystem::path& file) { writer_of(file); }
 
-std::vector<std::string> write_table(const std::filesystem::path& file, const Table& table, const std::string& writer) {
+std::vector<std::string> write_table(const std::filesystem::path& file, const Table& table, const FrameHeader& header,
+                                     const std::string& writer) {
   const auto write = writer_of(file);
   base::OutputFile out(file);
-  std::vector<std::string> left_out = write(out, table, writer);
+  std::vector<std::string> left_out = write(out, table, header, writer);
   out.finish();
   return left_out;
 }

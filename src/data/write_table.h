@@ -2,6 +2,7 @@
 #pragma once
 
 #include <filesystem>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -17,11 +18,18 @@ void require_table_format(const std::filesystem::path& file);
 /// Whether PLY can store a column: numbers, but not integers beyond 2^53, with a name without spaces.
 bool is_storable_in_ply(const Column& column);
 
+/// What a frame has beside its rows. Only .xyz stores it.
+struct FrameHeader {
+  std::optional<Box> box;
+  std::optional<double> step;
+};
+
 /// Writes a table. Reading the file with open() gives the same values.
 ///
 /// - .ply: binary, little-endian. It cannot store strings, nor integers beyond 2^53.
-/// - .xyz: extended XYZ. Columns x, y, z are `pos`; name[1], name[2] .. are one property `name`. It cannot store empty
-///   strings, spaces or quotes.
+/// - .xyz: extended XYZ, with the box and the time step. Columns x, y, z are `pos`; name[1], name[2] .. are one
+/// property
+///   `name`. It cannot store empty strings, spaces or quotes.
 /// - .npy: a structured array.
 /// - .csv: a header row; strings are quoted, and numbers have as many digits as needed.
 ///
@@ -34,6 +42,7 @@ bool is_storable_in_ply(const Column& column);
 /// Errors     base::Error: kUsage for another extension, and for values that the format cannot store, with a remedy;
 ///            kCannotCreate; kIo
 [[nodiscard]] std::vector<std::string> write_table(const std::filesystem::path& file, const Table& table,
+                                                   const FrameHeader& header = {},
                                                    const std::string& writer = "orrery");
 
 }  // namespace orrery::data

@@ -228,11 +228,12 @@ class XyzHeaderReader {
   }
 
   /// Elements or types: some programs interpret numbers in the element column as atomic numbers, others as types. Names
-  /// are elements if all of them are, see settle_element().
+  /// are elements if all of them are, see FrameInfo::names_as_types.
   void set_species(const std::string& name, const Parts& first, std::size_t column) {
     std::int64_t ignored = 0;
     const bool is_number = column < first.size() && parse_integer(first[column], ignored);
     (is_number ? out_.info.roles.type : out_.info.roles.element) = name;
+    if (!is_number) out_.info.names_as_types = name;
   }
 
   void add_properties(const std::vector<XyzProperty>& properties, const Parts& first) {
@@ -284,6 +285,7 @@ class XyzHeaderReader {
       add("type", ColumnType::kInt64);
     } else {
       add("element", ColumnType::kText);
+      out_.info.names_as_types = "type";  // the column has no name in the file
     }
     out_.info.roles.position = add_three(kXyz, ColumnType::kFloat64);
     for (std::size_t i = 4; i < std::min<std::size_t>(first.size(), kMaxColumns); ++i) {
@@ -301,12 +303,14 @@ class XyzHeaderReader {
 
 class Xyz final : public TextFrames {
  public:
-  explicit Xyz(const Bytes& bytes) : TextFrames(bytes) {}
+  Xyz(const Bytes& bytes, const OpenOptions& options) : TextFrames(bytes, options) {}
 
   Table read(int number, const std::vector<std::string>& columns) override {
     TextFrame frame = this->frame(number);
     TextLayout& layout = frame.layout;
     layout.wanted = columns;
+    if (layout.allows_more && base::contains(columns, frame.info.names_as_types))
+      layout.columns[0].name = frame.info.names_as_types;
     constexpr std::size_t kPlainColumns = 4;
     while (layout.allows_more && layout.columns.size() > kPlainColumns &&
            !base::contains(columns, layout.columns.back().name))
@@ -315,15 +319,6 @@ class Xyz final : public TextFrames {
   }
 
  private:
-  TextFrame frame(int number) override {
-    TextFrame out = TextFrames::frame(number);
-    const bool is_plain = out.layout.allows_more;
-    // Its first column has no name in the file.
-    if (is_plain && out.info.roles.element.empty())
-      out.info.columns[0].name = out.layout.columns[0].name = out.info.roles.type = "type";
-    return out;
-  }
-
   TextFrame header(TextCursor cursor) const override { return XyzHeaderReader(bytes(), std::move(cursor)).read(); }
 
   std::uint64_t skip_header(TextCursor& cursor) const override {

@@ -35,6 +35,8 @@ def write_numpy():
     write("npy/rows.npy", npy(positions))
     write("npy/fortran.npy", npy(numpy.asfortranarray(positions.astype(">f8")), (2, 0)))
     write("npy/structured.npy", npy(rows))
+    left_out = numpy.zeros(2, dtype=[("half", "<f2"), ("pos", "<f4", (3,)), ("time", "<M8[ns]"), ("c", "<c16")])
+    write("npy/left-out.npy", npy(left_out))
     out = io.BytesIO()
     numpy.savez_compressed(out, pos=positions, type=numpy.array([1, 2, 2, 1], dtype="u1"), box=numpy.eye(3))
     write("npz/deflated.npz", out.getvalue())
@@ -101,6 +103,8 @@ def write_gsd():
     bonds = [(0, "bonds/N", 3, numpy.array([[2]], dtype="<u4")),
              (0, "bonds/group", 3, numpy.array([[0, 1], [1, 0]], dtype="<u4"))]
     write("gsd/bonds.gsd", gsd(2, chunks[:8] + bonds))
+    broken = [(1, "bonds/N", 3, numpy.array([[0]], dtype="<u4"))]
+    write("gsd/broken-bonds.gsd", gsd(2, chunks[:8] + bonds + chunks[8:9] + broken))
 
 
 def snapshot(name, compression):
@@ -118,7 +122,7 @@ def snapshot(name, compression):
         if compression:
             return  # as small as possible
         particles.create_dataset("Velocities", data=numpy.ones((3, 3), dtype="f4"))
-        particles.create_dataset("ParticleIDs", data=numpy.array([3, 1, 2], dtype="u8"))
+        particles.create_dataset("ParticleIDs", data=numpy.array([3, 1, 2**63 + 2], dtype="u8"))
 
 
 def array(kind, name, components, place):
@@ -152,9 +156,15 @@ def write_compressed():
 def write_ply():
     header = (b"ply\nformat binary_little_endian 1.0\nelement vertex 2\nproperty double x\nproperty double y\n"
               b"property double z\nproperty float radius\nproperty uchar red\nproperty uchar green\n"
-              b"property uchar blue\nproperty list uchar int more\nproperty uchar material\nend_header\n")
-    row = struct.pack("<dddfBBBBiiB", 1, 2, 3, 0.5, 255, 128, 0, 2, 7, 8, 1)
-    write("../ply/binary.ply", header + 2 * row)
+              b"property uchar blue\nproperty uchar material\nelement face 1\nproperty list uchar int v\n"
+              b"end_header\n")
+    row = struct.pack("<dddfBBBB", 1, 2, 3, 0.5, 255, 128, 0, 1)
+    write("../ply/binary.ply", header + 2 * row + b"\0")
+    for name, encoding, order in (("little", "little", "<"), ("big", "big", ">")):
+        header = (f"ply\nformat binary_{encoding}_endian 1.0\nelement edge 1\nproperty short v\nelement vertex 2\n"
+                  "property float x\nproperty double y\nproperty int z\nproperty float r\nproperty uint material\n"
+                  "end_header\n").encode()
+        write(f"../ply/{name}.ply", header + b"ee" + 2 * struct.pack(order + "fdifI", 1, 2, 3, 0.5, 0))
 
 
 if __name__ == "__main__":

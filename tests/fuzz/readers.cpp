@@ -267,7 +267,8 @@ std::string fault_with_data(const std::filesystem::path& folder, const std::stri
       if (std::string fault = fault_with_table(info, file->read(frame, columns)); !fault.empty()) return fault;
       if (std::string fault = fault_with_all_keys(name, info, frame); !fault.empty()) return fault;
       // Last, because damaged bonds are an error even if the rows are not.
-      if (std::string fault = fault_with_bonds(info, file->bonds(frame)); !fault.empty()) return fault;
+      std::vector<std::string> warnings;
+      if (std::string fault = fault_with_bonds(info, file->bonds(frame, warnings)); !fault.empty()) return fault;
     }
     return {};
   });

@@ -71,7 +71,8 @@ inline std::vector<std::string> texts(const data::Table& table, std::string_view
 /// The bonds of a frame: "0-1 1-2".
 inline std::string bonds_text(data::DataFile& file, int frame = 0) {
   std::string out;
-  for (const data::Bond& bond : file.bonds(frame))
+  std::vector<std::string> warnings;
+  for (const data::Bond& bond : file.bonds(frame, warnings))
     out += (out.empty() ? "" : " ") + std::to_string(bond.a) + "-" + std::to_string(bond.b);
   return out;
 }
@@ -80,7 +81,9 @@ inline std::string bonds_text(data::DataFile& file, int frame = 0) {
 inline std::string bond_faults(data::DataFile& file) {
   std::string out;
   try {
-    file.bonds(0);
+    std::vector<std::string> warnings;
+    file.bonds(0, warnings);
+    for (const std::string& warning : warnings) out += "warning: " + warning + "\n";
   } catch (const base::Error& error) {
     EXPECT_EQ(error.kind(), base::ErrorKind::kBadData) << error.what();
     EXPECT_NE(error.diagnostics().back().remedy, "");

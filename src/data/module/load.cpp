@@ -27,8 +27,9 @@ void require_table_format(const std::filesystem::path& file) { module().require_
 
 bool is_storable_in_ply(const Column& column) { return module().is_storable_in_ply(column); }
 
-std::vector<std::string> write_table(const std::filesystem::path& file, const Table& table, const std::string& writer) {
-  return module().write_table(file, table, writer);
+std::vector<std::string> write_table(const std::filesystem::path& file, const Table& table, const FrameHeader& header,
+                                     const std::string& writer) {
+  return module().write_table(file, table, header, writer);
 }
 
 }  // namespace orrery::data

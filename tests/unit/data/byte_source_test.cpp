@@ -57,20 +57,6 @@ class DataByteSource : public testing::Test {
   support::TempDir folder_;
 };
 
-TEST_F(DataByteSource, SmallFilesAreReadOnce) {
-  const std::filesystem::path file = folder_ / "a.txt";
-  const std::string text = "\xEF\xBB\xBF" + std::string(kMiB, 'a') + "bc";
-  support::write_bytes(file, text);
-  const auto kept = ByteSource::open(file, kMiB, 2 * kMiB);
-  const auto plain = ByteSource::open(file, kMiB, kMiB);
-  EXPECT_EQ(kept->size(), kMiB + 2);
-  EXPECT_EQ(kept->memory(), 0u);
-  EXPECT_EQ(kept->text(kMiB - 1, 10), "abc") << "across the end of a block";
-  std::filesystem::resize_file(file, 0);
-  EXPECT_EQ(kept->text(kMiB - 1, 10), "abc");
-  EXPECT_THROW(static_cast<void>(plain->text(kMiB - 1, 10)), base::Error) << "larger than what is kept";
-}
-
 TEST_F(DataByteSource, BlocksHaveTheBytesOfTheirParts) {
   ByteBlocks blocks;
   std::string all;

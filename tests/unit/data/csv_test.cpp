@@ -54,6 +54,12 @@ TEST_F(DataCsv, SeparatorsAreDetected) {
   EXPECT_EQ(columns("x;y;z;a,b\n1;2;3;4,5\n"), "x:float64 y:float64 z:float64 a,b:text");
 }
 
+TEST_F(DataCsv, TheHeaderMayHaveNumbers) {
+  EXPECT_EQ(columns("x,y,z,2020\n1,2,3,4\n"), "x:float64 y:float64 z:float64 2020:float64");
+  EXPECT_EQ(columns("0.5 ra dec dist\n1 2 3 4\n"),
+            "0.5:float64 ra:float64 dec:float64 dist:float64 x:float64 y:float64 z:float64");
+}
+
 TEST_F(DataCsv, TheHeaderMayBeAComment) {
   const std::string comments = "# made by hand\n\n% x y z q\n";
   EXPECT_EQ(columns(comments + "1 2 3 4\n"), "x:float64 y:float64 z:float64 q:float64");

@@ -259,16 +259,17 @@ TEST_F(DataGsd, BondsOfFrameZeroHoldForLaterFrames) {
   EXPECT_EQ(support::bonds_text(*file, 1), "1-2");
   EXPECT_EQ(support::bonds_text(*file, 2), "0-1");
   EXPECT_EQ(file->describe(3).bonds, 0u);
+  EXPECT_TRUE(file->describe(3).has_bonds) << "all have broken";
   EXPECT_EQ(support::bonds_text(*file, 3), "");
 }
 
 TEST_F(DataGsd, BadBondsAreRefusedWithTheirIndex) {
   EXPECT_EQ(
       support::bond_faults(*opened(with_bonds({0, 1, 0, 2, 1, 1}, 3).file(2))),
-      "0: frame 0: bond 1 has the particle 2; there are 2, counted from 0\n0: frame 0: bond 2 joins particle 1 to "
+      "0: frame 1: bond 1 has the particle 2; there are 2, counted from 0\n0: frame 1: bond 2 joins particle 1 to "
       "itself\n0: the bonds of this file are damaged\n");
   EXPECT_EQ(error_of(with_bonds({0, 1}, 2).file(2)),
-            "frame 0: `bonds/N` is 2, but `bonds/group` has 1 rows of 2 values");
+            "frame 1: `bonds/N` is 2, but `bonds/group` has 1 rows of 2 values");
 }
 
 }  // namespace

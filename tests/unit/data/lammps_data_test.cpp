@@ -155,7 +155,8 @@ TEST_F(DataLammpsData, TheBondsOfOneAtomAreLimited) {
     return open("t\n" + count + " atoms\n" + std::to_string(arms) + " bonds\n\nAtoms # atomic\n\n" + atoms +
                 "\nBonds\n\n" + bonds);
   };
-  EXPECT_EQ(star(1000)->bonds(0).size(), 1000u);
+  std::vector<std::string> warnings;
+  EXPECT_EQ(star(1000)->bonds(0, warnings).size(), 1000u);
   EXPECT_EQ(support::bond_faults(*star(1001)), "0: row 1 has more than 1000 bonds\n");
 }
 

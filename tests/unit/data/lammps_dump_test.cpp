@@ -2,10 +2,13 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <atomic>
 #include <cmath>
 #include <string>
 #include <vector>
 
+#include "base/error.h"
+#include "base/stop_point.h"
 #include "data/data_file.h"
 #include "support/data_file_test.h"
 #include "support/data_tables.h"
@@ -217,6 +220,38 @@ TEST_F(DataLammpsDump, FramesBeforeATruncatedOneAreUsable) {
   EXPECT_EQ(errors(whole.substr(0, whole.size() - 8)), "42: the file ends after 2 of 3 rows\n");
 }
 
+TEST_F(DataLammpsDump, ACountFarBeyondTheFileIsATruncation) {
+  std::string text = trajectory(2, "\n");
+  text.replace(text.find("ATOMS\n0") + 6, 1, "4000000000");
+  const auto file = open(text);
+  EXPECT_THROW(file->describe(0), base::Error);
+  EXPECT_NE(errors(text).find("truncated: 4000000000 rows are declared"), std::string::npos) << errors(text);
+}
+
+TEST_F(DataLammpsDump, TheTableOfFramesIsLimited) {
+  const auto path = write(trajectory(200, "\n"));
+  OpenOptions options;
+  options.limit_memory(200 * 16 + 100);
+  try {
+    data::open(path, options)->frame_count();
+    FAIL();
+  } catch (const base::Error& error) {
+    EXPECT_EQ(error.kind(), base::ErrorKind::kNoMemory) << error.what();
+  }
+}
+
+TEST_F(DataLammpsDump, CountingStops) {
+  const auto file = open(trajectory(200, "\n"));
+  const std::atomic<bool> flag = true;
+  const base::StopScope scope(&flag);
+  try {
+    file->frame_count();
+    FAIL();
+  } catch (const base::Error& error) {
+    EXPECT_EQ(error.kind(), base::ErrorKind::kStopped);
+  }
+}
+
 TEST_F(DataLammpsDump, ErrorsHaveLines) {
   const std::string atoms = "ITEM: ATOMS x y z\n";
   EXPECT_EQ(errors(kFrameHead + kBox + atoms + "0 0 0\n0 0 a\n"), "11: column 3: 'a' is not a number\n");
@@ -234,7 +269,7 @@ TEST_F(DataLammpsDump, ErrorsHaveLines) {
   EXPECT_EQ(errors("ITEM: TIMESTEP\n0\n" + kBox + atoms + "0 0 0\n"),
             "7: the frame has no item \"NUMBER OF ATOMS\" before its atoms\n");
   EXPECT_EQ(errors("ITEM: TIMESTEP\n0\nITEM: NUMBER OF ATOMS\n9000000000000000000\n" + atoms + "0 0 0\n"),
-            "7: the file ends after 1 of 9000000000000000000 rows\n");
+            "4: truncated: 9000000000000000000 rows are declared, but only 6 bytes follow\n");
 }
 
 TEST_F(DataLammpsDump, RowsAfterTheFrameAreNotIgnored) {

@@ -130,6 +130,19 @@ TEST_F(DataMmcif, TheRightmostOperatorIsAppliedFirst) {
   EXPECT_EQ(parts.at(0).transforms.at(0).translation, (Vec3d{10 - 2, 20 + 1, 30 + 3}));
 }
 
+TEST_F(DataMmcif, OperatorsBesideParenthesesAreKept) {
+  const auto transforms = [this](const std::string& expression) {
+    std::string out;
+    const auto file = open("data_a\n" + assembly("1 '" + expression + "' A\n") + kOperators + kLoop + kCarbon);
+    for (const Transform& t : file->describe(0).assemblies.at(0).parts.at(0).transforms)
+      out += std::to_string(static_cast<int>(t.translation.z)) + " ";
+    return out;
+  };
+  EXPECT_EQ(transforms("1,(2)"), "0 30 ");
+  EXPECT_EQ(transforms("(2,3),1, (P)(2)"), "30 5 0 33 ");
+  EXPECT_EQ(transforms("P(1-3)"), "3 33 8 ");
+}
+
 TEST_F(DataMmcif, MalformedAssembliesAreRefused) {
   const auto error = [this](const std::string& expression) {
     return error_of("data_a\n" + kOperators + assembly("1 '" + expression + "' A\n") + kLoop + kCarbon);
@@ -138,7 +151,8 @@ TEST_F(DataMmcif, MalformedAssembliesAreRefused) {
   EXPECT_NE(error("9").text.find("`9` is not defined"), std::string::npos);
   EXPECT_EQ(error("9").line, 25);
   EXPECT_NE(error("1-2000000000").text.find("`4` is not defined"), std::string::npos);
-  EXPECT_NE(error("(1-3").text.find("parentheses"), std::string::npos);
+  for (const char* const unbalanced : {"(1-3", "1-3)", "((1))"})
+    EXPECT_NE(error(unbalanced).text.find("parentheses"), std::string::npos) << unbalanced;
   EXPECT_NE(error("()").text.find("no operators"), std::string::npos);
   std::string bomb;
   for (int i = 0; i < 30; ++i) bomb += "(1-3)";
@@ -240,19 +254,43 @@ TEST_F(DataMmcif, ComponentsHaveTheirBondsInEachResidue) {
   EXPECT_EQ(support::bonds_text(*file), "0-1 4-5 4-6 7-8");
 }
 
-TEST_F(DataMmcif, BadConnectionsAreRefusedWithTheirLine) {
+TEST_F(DataMmcif, BadConnectionsAreLeftOutWithAWarning) {
   const auto faults = [&](const std::string& row) {
     return support::bond_faults(
         *open("data_a\n" + connections("covale " + row + "\n") +
               atoms_of({{"SG", "CYS", "1", "."}, {"O", "HOH", "2", "."}, {"O", "HOH", "2", "."}})));
   };
-  const std::string damaged = "0: the bonds of this file are damaged\n";
-  EXPECT_EQ(faults("A 1 . CYS SG . A 7 . CYS SG ."),
-            "16: a bond of atom SG of CYS 7 in chain A, which does not exist\n" + damaged);
-  EXPECT_EQ(faults("A 1 . CYS SG . A 1 . CYS SG ."),
-            "16: a bond of atom SG of CYS 1 in chain A with itself\n" + damaged);
+  const std::string left_out = "warning: bonds of the file were left out: line 16: a bond of atom ";
+  EXPECT_EQ(faults("A 1 . CYS SG . A 7 . CYS SG ."), left_out + "SG of CYS 7 in chain A, which does not exist\n");
+  EXPECT_EQ(faults("A 1 . CYS SG . A 1 . CYS SG ."), left_out + "SG of CYS 1 in chain A with itself\n");
   EXPECT_EQ(faults("A 1 . CYS SG . A 2 . HOH O ."),
-            "16: a bond of atom O of HOH 2 in chain A, but several atoms are named so\n" + damaged);
+            left_out + "O of HOH 2 in chain A, but several atoms are named so\n");
+}
+
+TEST_F(DataMmcif, LaterDataBlocksAreLeftOutWithAWarning) {
+  const std::string atoms = kLoop + kCarbon;
+  const auto file = open("data_comp_list\n_a.b 1\ndata_a\n_struct.title one\n" + atoms + "data_b\n_struct.title two\n" +
+                         atoms + "ATOM 2 N N . ALA A 1 2 3 1.00 20.5 7 X 2\n");
+  EXPECT_EQ(file->frame_count(), 1);
+  const FrameInfo info = file->describe(0);
+  EXPECT_EQ(info.rows, 1u);
+  EXPECT_EQ(info.title, "one");
+  ASSERT_EQ(info.warnings.size(), 1u);
+  EXPECT_NE(info.warnings[0].find("2 atoms of later data blocks"), std::string::npos) << info.warnings[0];
+  EXPECT_TRUE(open("data_a\n" + atoms + "data_b\n_a.b 1\n")->describe(0).warnings.empty());
+}
+
+TEST_F(DataMmcif, WatersWithoutNumbersKeepOneOfTheirAlternateLocations) {
+  const auto water = [](const char* altloc, double x, const char* occupancy) {
+    return "HETATM 1 O O " + std::string(altloc) + " HOH W " + std::to_string(x) + " 0 0 " + occupancy + " 20 . W 1\n";
+  };
+  const auto x_of = [this](const std::string& rows) {
+    return numbers(open("data_a\n" + kLoop + rows)->read(0, {"x"}), "x");
+  };
+  EXPECT_EQ(x_of(water(".", 0, "1") + water("A", 5, "0.4") + water("B", 6, "0.6") + water("A", 20, "0.5")),
+            (std::vector<double>{0, 6, 20}));
+  EXPECT_EQ(x_of(water("A", 5, "0.4") + water("B", 10, "0.6")), (std::vector<double>{5, 10})) << "two molecules";
+  EXPECT_EQ(x_of(water("A", 5, "0.4") + water("A", 5.5, "0.6")), (std::vector<double>{5, 5.5}));
 }
 
 }  // namespace

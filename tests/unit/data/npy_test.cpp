@@ -124,6 +124,18 @@ TEST_F(DataNpy, FieldsHaveCustomaryRoles) {
   EXPECT_EQ(numbers(table, "color[3]"), std::vector<double>{3});
 }
 
+TEST_F(DataNpy, FieldsOfOtherTypesAreLeftOut) {
+  const auto file = open(
+      npy_bytes("[('half', '<f2'), ('pos', '<f4', (3,)), ('time', '<M8[ns]'), ('c', '<c16', (2,)), ('long', '<f16'), "
+                "('radius', '<f4')]",
+                false, "(1,)",
+                "hh" + sequence<float>({1, 2, 3}) + "tttttttt" + std::string(32, 'c') + std::string(16, 'l') +
+                    sequence<float>({0.5})));
+  EXPECT_EQ(support::columns_text(file->describe(0)), "x:float32 y:float32 z:float32 radius:float32");
+  EXPECT_EQ(numbers(support::read_table(*file), "z"), std::vector<double>{3});
+  EXPECT_EQ(numbers(support::read_table(*file), "radius"), std::vector<double>{0.5});
+}
+
 TEST_F(DataNpy, StringsAreUnicodeOfBothByteOrders) {
   const std::u32string words[] = {U"O", U"\u00c5", U"\u4e2d", U"\U0001F600"};
   for (const bool big : {false, true}) {

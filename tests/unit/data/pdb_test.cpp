@@ -67,6 +67,130 @@ TEST_F(DataPdb, ElementsAreDeducedFromAtomNames) {
                          atom("HG21", "VAL", 'A', 3, {}, "") + atom("1HB ", "ALA", 'A', 4, {}, "") +
                          atom("FE", "HEM", 'A', 5, {}, "") + atom(" QQ", "UNK", 'A', 6, {}, ""));
   EXPECT_EQ(texts(file->read(0, {"element"}), "element"), (Strings{"C", "Ca", "H", "H", "Fe", "X"}));
+  const auto warnings = file->describe(0).warnings;
+  ASSERT_EQ(warnings.size(), 1u);
+  EXPECT_NE(warnings[0].find("FE of HEM is Fe"), std::string::npos) << warnings[0];
+  EXPECT_NE(warnings[0].find("QQ of UNK"), std::string::npos) << warnings[0];
+}
+
+TEST_F(DataPdb, LeftAlignedNamesAreNotMetals) {
+  const auto file =
+      open(atom("N", "ALA", 'A', 1, {}, "") + atom("CA", "ALA", 'A', 1, {}, "") + atom("CD", "GLU", 'A', 2, {}, "") +
+           atom("HG", "SER", 'A', 3, {}, "") + atom("CE", "LYS", 'A', 4, {}, "") + atom("CA", "LIG", 'A', 5, {}, "") +
+           atom("CL1", "LIG", 'A', 5, {}, "") + atom("NA", "NA", 'A', 6, {}, ""));
+  EXPECT_EQ(texts(file->read(0, {"element"}), "element"), (Strings{"N", "C", "C", "H", "C", "C", "Cl", "Na"}));
+  ASSERT_EQ(file->describe(0).warnings.size(), 1u);
+  EXPECT_NE(file->describe(0).warnings[0].find("those of 2 atoms were guessed"), std::string::npos);
+  EXPECT_TRUE(open(atom("CA", "ALA", 'A', 1, {}, "") + atom("CA", "GLY", 'A', 2, {}, ""))->describe(0).warnings.empty())
+      << "a trace of C-alpha atoms";
+}
+
+TEST_F(DataPdb, AListedElementIsNotDeduced) {
+  const auto file = open(atom("CA", "LIG", 'A', 1, {}, "CA") + atom("CB", "LIG", 'A', 1, {}, "C") +
+                         atom("H1", "LIG", 'A', 1, {}, "D") + atom("CE", "LIG", 'A', 1, {}, " X") +
+                         atom("CG", "VAL", 'A', 1, {}, "QQ"));
+  EXPECT_EQ(texts(file->read(0, {"element"}), "element"), (Strings{"Ca", "C", "D", "X", "C"}));
+  EXPECT_TRUE(file->describe(0).warnings.empty());
+}
+
+/// An atom at a fixed position, its serial number and what precedes it replaced; the rest moves to the right if that is
+/// longer.
+std::string with_serial(const std::string& record) {
+  return record + atom(" CB", "VAL", 'A', 12, {12.345, 23.456, 34.567}, " C").substr(11);
+}
+
+TEST_F(DataPdb, WideSerialNumbersAreRead) {
+  for (const char* const record :
+       {"ATOM  99999", "ATOM  100000", "ATOM  1000000", "ATOM 100000", "ATOM1000000", "HETATM100000"}) {
+    SCOPED_TRACE(record);
+    const Table table =
+        open(with_serial(record))->read(0, {"x", "y", "z", "name", "residue", "residue_number", "element", "b_factor"});
+    ASSERT_EQ(table.rows, 1u);
+    EXPECT_EQ(numbers(table, "x")[0], 12.345);
+    EXPECT_EQ(numbers(table, "y")[0], 23.456);
+    EXPECT_EQ(numbers(table, "z")[0], 34.567);
+    EXPECT_EQ(texts(table, "name")[0], "CB");
+    EXPECT_EQ(texts(table, "residue")[0], "VAL");
+    EXPECT_EQ(texts(table, "element")[0], "C");
+    EXPECT_EQ(numbers(table, "residue_number")[0], 12);
+    EXPECT_EQ(numbers(table, "b_factor")[0], 20.5F);
+  }
+  // Six digits that end before the name, as in Chimera; the name begins with a digit.
+  std::string line = atom("1HB ", "VAL", 'A', 12, {1112.345, 2223.456, 3334.567}, "");
+  line.replace(6, 6, "100000");
+  const Table table = open(line)->read(0, {"y", "name", "element"});
+  EXPECT_EQ(numbers(table, "y")[0], 2223.456);
+  EXPECT_EQ(texts(table, "name")[0], "1HB");
+}
+
+TEST_F(DataPdb, WideResidueNumbersAreRead) {
+  std::string within = atom(" O", "SOL", 'A', 1234, {1, 2, 3}, " O"), shifted = within, named = within;
+  within[26] = '5';
+  shifted.insert(26, "5");
+  named[26] = 'B';
+  std::string hexadecimal = within, hybrid = within;
+  hexadecimal.replace(22, 5, "270f ");
+  hybrid.replace(22, 5, "A000 ");
+  const Table table =
+      open(within + shifted + named + hexadecimal + hybrid)->read(0, {"x", "z", "residue_number", "element"});
+  EXPECT_EQ(numbers(table, "residue_number"), (std::vector<double>{12345, 12345, 1234, 0x270f, 10000}));
+  EXPECT_EQ(numbers(table, "x"), (std::vector<double>{1, 1, 1, 1, 1}));
+  EXPECT_EQ(numbers(table, "z"), (std::vector<double>{3, 3, 3, 3, 3}));
+}
+
+TEST_F(DataPdb, OtherShiftedColumnsAreRefused) {
+  std::string line = atom(" C", "ALA", 'A', 1, {12.345, 23.456, 34.567}, " C");
+  line.insert(20, " ");
+  EXPECT_NE(error_of(line).text.find("malformed coordinates"), std::string::npos);
+  line = atom(" C", "ALA", 'A', 1, {12.345, 1123.456, 1134.567}, " C");
+  line.insert(20, " ");
+  EXPECT_NE(error_of(line).text.find("malformed coordinates"), std::string::npos) << "12.34, 51123.45, 61134.56";
+  // Two decimal places in their columns.
+  line.replace(20, 1, "");
+  line.replace(30, 24, "  123.45  123.45 1234.56");
+  EXPECT_EQ(error_of(line).text, "");
+}
+
+TEST_F(DataPdb, FourLettersAreAResidueUnlessStandardResiduesHaveSuchChains) {
+  const auto named = [](const std::string& columns) {  // 18 to 22
+    return atom(" C1", "XXX", 'A', 1, {}, " C").replace(17, 5, columns);
+  };
+  const auto texts_of = [&](const std::string& text) {
+    const Table table = open(text)->read(0, {"residue", "chain"});
+    Strings out;
+    for (std::size_t i = 0; i < table.rows; ++i)
+      out.push_back(texts(table, "residue")[i] + "/" + texts(table, "chain")[i]);
+    return out;
+  };
+  EXPECT_EQ(texts_of(named("POPCA") + named("TIP3W") + named("TIP3 ") + named("ASPPB") + named("ALA A")),
+            (Strings{"POPC/A", "TIP3/W", "TIP3/", "ASPP/B", "ALA/A"}));
+  EXPECT_EQ(texts_of(named("ALAAB") + named("LIGAB") + named("LIGCD") + named(" DGAB")),
+            (Strings{"ALA/AB", "LIG/AB", "LIGC/D", "DG/AB"}));
+}
+
+TEST_F(DataPdb, SegmentsAreAColumnIfThereAreAny) {
+  std::string line = atom(" C", "ALA", 'A', 1, {}, " C");
+  EXPECT_FALSE(support::columns_text(open(line)->describe(0)).find("segment") != std::string::npos);
+  line.replace(72, 4, "PROA");
+  EXPECT_EQ(texts(open(line)->read(0, {"segment"}), "segment"), (Strings{"PROA"}));
+}
+
+TEST_F(DataPdb, RowsAreInTheOrderOfTheFile) {
+  // Residue numbers and chains of simulations repeat.
+  std::string text;
+  for (int i = 0; i < 6; ++i) text += atom(" O", "SOL", i % 4 < 2 ? 'A' : 'B', i % 2, {double(i), 0, 0}, " O");
+  EXPECT_EQ(numbers(open(text)->read(0, {"x"}), "x"), (std::vector<double>{0, 1, 2, 3, 4, 5}));
+}
+
+TEST_F(DataPdb, MissingOccupancyIsOne) {
+  const std::string line = atom(" C", "ALA", 'A', 1, {}, " C");
+  std::string blank = line, stars = line;
+  blank.replace(54, 12, 12, ' ');
+  stars.replace(54, 12, "  1.00******");
+  const Table table = open(line.substr(0, 54) + "\n" + blank + stars)->read(0, {"occupancy", "b_factor"});
+  EXPECT_EQ(numbers(table, "occupancy"), (std::vector<double>{1, 1, 1}));
+  EXPECT_EQ(numbers(table, "b_factor")[0], 0);
+  EXPECT_TRUE(std::isnan(numbers(table, "b_factor")[2]));
 }
 
 TEST_F(DataPdb, OnlyTheMostOccupiedAlternateLocationIsKept) {
@@ -285,15 +409,16 @@ TEST_F(DataPdb, MemoryIsCheckedBeforeAtomsAreParsed) {
   for (int i = 0; i < 100; ++i) text += atom(" C", "ALA", 'A', i, {1, 2, 3}, " C");
   open(text);
   OpenOptions options;
-  options.limit_memory(text.size() * 11 / 2 + 1);
+  constexpr std::uint64_t kBytesPerAtom = 68;
+  options.limit_memory(100 * kBytesPerAtom);
   EXPECT_EQ(data::open(folder_ / "a.pdb", options)->describe(0).rows, 100u);
-  options.limit_memory(text.size() * 11 / 2 - 1);
+  options.limit_memory(100 * kBytesPerAtom - 1);
   try {
     data::open(folder_ / "a.pdb", options)->describe(0);
     FAIL() << "no error";
   } catch (const base::Error& error) {
     EXPECT_EQ(error.kind(), base::ErrorKind::kNoMemory);
-    EXPECT_NE(std::string(error.what()).find(" of atoms need about "), std::string::npos) << error.what();
+    EXPECT_NE(std::string(error.what()).find("the atoms need about "), std::string::npos) << error.what();
   }
 }
 
@@ -360,16 +485,32 @@ TEST_F(DataPdb, ConnectionsBelongToTheirModelOrToAll) {
   EXPECT_EQ(support::bonds_text(*file, 0), "0-1 1-2");
 }
 
-TEST_F(DataPdb, BadConnectionsAreRefusedWithTheirLine) {
+TEST_F(DataPdb, BadConnectionsAreLeftOutWithAWarning) {
   const std::string atoms = numbered("    1", "C1") + numbered("    2", "C2") + numbered("    2", "C3");
   const auto faults = [&](const std::string& records) {
     return support::bond_faults(*open(atoms + records + "END\n"));
   };
-  EXPECT_EQ(
-      faults("CONECT    1    7\nCONECT    1    1\nCONECT    1    2\nCONECT    1   x9\n"),
-      "4: a bond of atom 7, which does not exist\n5: a bond of atom 1 with itself\n6: a bond of atom 2, but several "
-      "atoms have this number\n7: `x9` is not the serial number of an atom\n0: the bonds of this file are "
-      "damaged\n");
+  const std::string left_out = "warning: bonds of the file were left out: ";
+  EXPECT_EQ(faults("CONECT    1    7\nCONECT    1    1\nCONECT    1    2\nCONECT    1   x9\n"),
+            left_out + "line 4: a bond of atom 7, which does not exist, and 3 more\n");
+  EXPECT_EQ(faults("CONECT    1    2\n"), left_out + "line 4: a bond of atom 2, but several atoms have this number\n");
+  const auto file = open(atoms + numbered("    4", "C4") + "CONECT    1    7    4\n");
+  EXPECT_EQ(support::bonds_text(*file), "0-3") << "the others are kept";
+}
+
+TEST_F(DataPdb, HexadecimalSerialNumbersHaveBonds) {
+  const auto file = open(numbered("99999", "C1") + numbered("186a0", "C2") + numbered("186a1", "C3") +
+                         "CONECT99999186a0\nCONECT186a0186a1\nEND\n");
+  EXPECT_EQ(support::bonds_text(*file), "0-1 1-2");
+  EXPECT_EQ(support::bond_faults(*file), "");
+}
+
+TEST_F(DataPdb, ConnectionsOfSerialNumbersOfSixDigitsAreLeftOut) {
+  std::string wide = numbered("    1", "C2");
+  wide.replace(6, 6, "100001");
+  const auto file = open(numbered("10000", "C1") + wide + "CONECT10000100001\nEND\n");
+  EXPECT_NE(support::bond_faults(*file).find("warning: the bonds of the file were left out"), std::string::npos);
+  EXPECT_EQ(support::bonds_text(*file), "");
 }
 
 }  // namespace

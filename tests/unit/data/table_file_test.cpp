@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <gtest/gtest.h>
 
+#include <array>
 #include <cstddef>
 #include <cstring>
 #include <vector>
@@ -57,6 +58,30 @@ TEST(DataTableFile, DescribesAndReadsLikeThePlyFileOfTheTable) {
       EXPECT_EQ(from_memory.columns[c].number(row), from_file.columns[c].number(row));
   }
   EXPECT_TRUE(std::holds_alternative<ArrayView<float>>(from_memory.columns[0].values)) << "not copied";
+}
+
+TEST(DataTableFile, NamesAreElementsIfAllAre) {
+  const auto roles = [](const Words& species) {
+    auto table = std::make_shared<Table>();
+    table->rows = species.index.size();
+    for (const char* name : {"x", "y", "z"}) table->columns.push_back({name, std::vector<double>(table->rows)});
+    table->columns.push_back({"species", species});
+    return settled(open_table("a", table))->describe(0).roles;
+  };
+  EXPECT_EQ(roles({{"Fe", "O"}, {0, 1}}).element, "species");
+  EXPECT_EQ(roles({{"Fe", "O"}, {0, 1}}).type, "");
+  EXPECT_EQ(roles({{"A", "B"}, {0, 1}}).element, "") << "as in an NPY file";
+  EXPECT_EQ(roles({{"A", "B"}, {0, 1}}).type, "species");
+  EXPECT_EQ(roles({{"Fe", "X"}, {0, 1}}).type, "species") << "a ghost atom of ASE";
+}
+
+TEST(DataTableFile, HasTheRolesOfTheFilesThatColumnsComeFrom) {
+  auto table = std::make_shared<Table>();
+  for (const char* name : {"xu", "yu", "zu"}) table->columns.push_back({name, std::vector<double>()});
+  for (const char* name : {"chain", "subchain"}) table->columns.push_back({name, Words()});
+  const Roles roles = open_table("a", table)->describe(0).roles;
+  EXPECT_EQ(roles.position, (std::array<std::string, 3>{"xu", "yu", "zu"}));
+  EXPECT_EQ(roles.chain, "subchain");
 }
 
 TEST(DataTableFile, NeedsPositions) {

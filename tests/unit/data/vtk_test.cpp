@@ -167,6 +167,13 @@ TEST_F(DataVtk, PiecesAreConcatenated) {
             "the pieces have arrays `id` of different types or sizes\n");
 }
 
+TEST_F(DataVtk, ArraysOfBitsAreLeftOut) {
+  const std::string bits = ascii("Bit", "flags", 1, "1 0");
+  EXPECT_EQ(support::columns_text(open(root("", poly(piece(2, kPoints, bits))))->describe(0)),
+            "x:float32 y:float32 z:float32");
+  EXPECT_NE(faults(root("", poly(piece(2, ascii("Bit", "Points", 3, "1 0 1 1 0 1"))))), "");
+}
+
 TEST_F(DataVtk, NoPoints) {
   const auto file = open(root("", poly(piece(0, ""))));
   EXPECT_EQ(file->describe(0).rows, 0u);

@@ -159,6 +159,22 @@ TEST_F(DataWriteTable, XyzKeepsValues) {
   }
 }
 
+TEST_F(DataWriteTable, XyzHasBoxAndStep) {
+  Table table;
+  table.rows = 1;
+  for (const char* name : {"x", "y", "z"}) table.columns.push_back({name, std::vector<double>{0.1}});
+  FrameHeader header;
+  header.box = Box{{-1, 0.1, 2}, {Vec3d{4, 0, 0}, Vec3d{1, 5, 0}, Vec3d{0.3, 0, 6}}, {true, false, true}};
+  header.step = 250;
+  (void)write_table(folder_ / "a.xyz", table, header);
+  const FrameInfo info = open(folder_ / "a.xyz")->describe(0);
+  ASSERT_TRUE(info.box);
+  EXPECT_EQ(info.box->origin, header.box->origin);
+  EXPECT_EQ(info.box->edges, header.box->edges);
+  EXPECT_EQ(info.box->periodic, header.box->periodic);
+  EXPECT_EQ(info.step, 250);
+}
+
 TEST_F(DataWriteTable, ANameThatIsPossibleStaysThoughAnotherBecomesLikeIt) {
   Table table{1, {}};
   for (const char* name : {"x", "y", "z"}) table.columns.push_back({name, std::vector<double>{0}});
