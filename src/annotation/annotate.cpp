@@ -15,6 +15,7 @@
 #include "display/develop.h"
 #include "display/settings.h"
 #include "points/selection.h"
+#include "points/sources.h"
 #include "scene/value_text.h"
 
 namespace orrery::annotation {
@@ -79,7 +80,7 @@ std::optional<int> decimals_of(const std::string& format) {
 
 /// The value of "step * 0.005:.2f".
 std::string field_text(const std::string& field, int frame, std::optional<double> step) {
-  const std::size_t colon = field.find(':');
+  const std::size_t colon = points::end_of_expression(field);
   data::Table table;
   table.rows = 1;
   table.columns = {{"frame", std::vector<double>{static_cast<double>(frame)}}};

@@ -280,7 +280,7 @@ void PlotArguments::add_look_to(Command& command) {
       ->details("plastic: matte with a soft highlight. metal: brushed. glass: clear, without colours.")
       ->choices(plot::material_names());
   command.add_flag("--allow-empty", options.allow_empty,
-                   "Render the background alone if --select or --slice leaves nothing; default: an error");
+                   "Render the background alone if no particle is left; default: an error");
   command.add_flag("--ground", options.ground, "Add a ground that receives shadows");
   command.add_flag("--box", options.box, "Draw the edges of the simulation box");
   command.add_flag("--axes", options.axes, "Draw the directions of x (red), y (green) and z (blue)");

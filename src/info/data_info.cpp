@@ -262,6 +262,7 @@ std::string data_info_text(const DataInfo& info) {
   if (frame.box) add_row(out, "box", "{}", box_text(*frame.box));
   if (!frame.assemblies.empty()) add_row(out, "assemblies", "{}", printable(assemblies_text(frame.assemblies)));
   add_row(out, "roles", "{}", printable(roles_text(frame.roles)));
+  for (const std::string& warning : frame.warnings) add_row(out, "warning", "{}", printable(warning));
   for (const data::ColumnInfo& column : frame.columns)
     if (column.is_derived)
       add_row(out, "computed", "{}",
@@ -288,6 +289,7 @@ std::string data_info_json(const DataInfo& info) {
                          {"step", job::json_or_null(frame.step)},
                          {"title", frame.title},
                          {"rows", frame.rows},
+                         {"warnings", frame.warnings},
                          {"box", box},
                          {"assemblies", assemblies},
                          {"roles", json_of(frame.roles)},

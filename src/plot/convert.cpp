@@ -11,6 +11,7 @@
 #include <fmt/core.h>
 
 #include "base/error.h"
+#include "base/file_name.h"
 #include "base/file_set.h"
 #include "base/frames.h"
 #include "base/text.h"
@@ -200,11 +201,24 @@ class Converter {
                                       source.info.roles.element.empty() ? "" : " or --element-radii"));
     if (!output.left_out().empty())
       out.notes.push_back(fmt::format("left out {}: an earlier column has this name", base::joined(output.left_out())));
-    const std::vector<std::string> unwritten = data::write_table(out.file, output.table());
+    const data::FrameHeader header = header_of(source.info);
+    if (source.info.box && (!header.box || base::extension(out.file) != ".xyz"))
+      out.notes.push_back(header.box ? "left out the simulation box: only .xyz has one"
+                                     : "left out the simulation box: it is not that of an assembly");
+    const std::vector<std::string> unwritten = data::write_table(out.file, output.table(), header);
     if (!unwritten.empty())
       out.notes.push_back(fmt::format("left out {}: the format cannot store these strings", base::joined(unwritten)));
     for (const data::Column& column : output.table().columns)
       if (!base::contains(unwritten, column.name)) out.columns.push_back(column.name);
+    return out;
+  }
+
+  /// The box of all periodic images.
+  data::FrameHeader header_of(const data::FrameInfo& info) const {
+    data::FrameHeader out{info.box, info.step};
+    if (!keys_.assembly.empty()) out.box.reset();
+    const double counts[] = {keys_.replicate.x, keys_.replicate.y, keys_.replicate.z};
+    for (std::size_t axis = 0; axis < 3 && out.box; ++axis) out.box->edges[axis] = out.box->edges[axis] * counts[axis];
     return out;
   }
 

@@ -34,7 +34,8 @@ scene::PointsKeys everything(const scene::PointsKeys& keys) {
 
 }  // namespace
 
-DataFrames::DataFrames(const DataOptions& options, const std::filesystem::path& folder)
+DataFrames::DataFrames(const DataOptions& options, const std::filesystem::path& folder,
+                       const data::DataFile::Expected& kept)
     : options_(options),
       folder_(folder),
       is_sequence_(base::is_sequence(options.file)),
@@ -43,9 +44,6 @@ DataFrames::DataFrames(const DataOptions& options, const std::filesystem::path& 
   data::OpenOptions open_options;
   open_options.component = options.points.component;
   open_options.limit_memory(options.memory_limit);
-  // The file is read to measure it, to fit the view, and to render it.
-  constexpr std::uint64_t kMaxShare = 8;
-  open_options.kept_limit = options.memory_limit / kMaxShare;
   const int first = all().front();
   file_ = open_(file_of(first), open_options);
   fixed_frame_ = options.points.frame;
@@ -55,7 +53,8 @@ DataFrames::DataFrames(const DataOptions& options, const std::filesystem::path& 
                       fmt::format("--frame: there is no frame {}; {} has {} frames", *options.points.frame,
                                   file_of(first).string(), file_->frame_count()));
   const int frame = fixed_frame_ ? *fixed_frame_ : is_sequence_ ? 1 : first;
-  if (frame > 1 && frame <= file_->frame_count()) described_ = frame;  // load() reports frames that do not exist
+  if (frame > 1 && file_->has_frame(frame - 1)) described_ = frame;  // load() reports frames that do not exist
+  if (kept) file_->keep(described_ - 1, kept);
   info_ = file_->describe(described_ - 1);
   if (options.points.component && !info_.has_components)
     base::refuse(
@@ -66,8 +65,21 @@ DataFrames::DataFrames(const DataOptions& options, const std::filesystem::path& 
   if (is_sequence_)
     base::refuse(
         "--frames: `all` selects the frames of a single file; for a sequence of files, write a range, e.g. 1-48");
+  are_counted_ = false;
+  if (kept) {
+    file_->read(0, {info_.roles.position[0]});  // the next frame begins where its rows end
+    numbers_ = {1};
+    if (file_->has_frame(1)) numbers_.push_back(2);
+  } else {
+    count();
+  }
+}
+
+void DataFrames::count() {
+  if (are_counted_) return;
   numbers_.resize(static_cast<std::size_t>(file_->frame_count()));
   std::iota(numbers_.begin(), numbers_.end(), 1);
+  are_counted_ = true;
 }
 
 const char* DataFrames::format() const { return file_->format; }
@@ -86,10 +98,10 @@ std::optional<int> DataFrames::frame_count() const {
 /// Before anything is written, so that no animation ends at the last frame of its file.
 void DataFrames::require_frames() const {
   if (is_sequence_ || fixed_frame_ || numbers_.size() < 2) return;
-  const int count = file_->frame_count(), last = *std::max_element(numbers_.begin(), numbers_.end());
-  if (count > 1 && last > count)  // a single frame is the same in all frames
-    throw base::Error(base::ErrorKind::kBadData, fmt::format("--frames: there is no frame {}; {} has {} frames", last,
-                                                             options_.file.string(), count));
+  const int last = *std::max_element(numbers_.begin(), numbers_.end());
+  if (!file_->has_frame(1) || file_->has_frame(last - 1)) return;  // a single frame is the same in all frames
+  throw base::Error(base::ErrorKind::kBadData, fmt::format("--frames: there is no frame {}; {} has {} frames", last,
+                                                           options_.file.string(), file_->frame_count()));
 }
 
 std::filesystem::path DataFrames::file_of(int frame) const {
@@ -124,10 +136,19 @@ LoadedFrame DataFrames::load(int frame, const scene::PointsKeys& keys, points::S
   return out;
 }
 
-std::vector<int> DataFrames::distinct() const {
-  std::vector<int> out = all();
-  if (out.size() > 1 && !is_sequence_ && file_->frame_count() == 1) out.resize(1);
-  return out;
+void DataFrames::visit(const std::function<void(int)>& f) {
+  if (!are_counted_) {
+    numbers_.clear();
+    for (int frame = 1; file_->has_frame(frame - 1); ++frame) {
+      numbers_.push_back(frame);
+      f(frame);
+    }
+    are_counted_ = true;
+    return;
+  }
+  std::vector<int> frames = all();
+  if (frames.size() > 1 && !is_sequence_ && !file_->has_frame(1)) frames.resize(1);
+  for (const int frame : frames) f(frame);
 }
 
 Measures DataFrames::measures(const scene::PointsKeys& keys, bool of_spacing, bool of_radii) const {
@@ -156,8 +177,7 @@ Measures DataFrames::measures(const scene::PointsKeys& keys, bool of_spacing, bo
     for (std::size_t i = 0; i < frames.size() && !is_complete_with(frames[i]);) ++i;
     return out;
   }
-  // Frames are counted only if that is necessary: it may read the whole file.
-  for (int frame = 1; !is_complete_with(frame) && frame < file_->frame_count();) ++frame;
+  for (int frame = 1; !is_complete_with(frame) && file_->has_frame(frame);) ++frame;
   return out;
 }
 

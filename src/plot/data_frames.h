@@ -52,10 +52,12 @@ class DataFrames {
   /// Opens the first frame.
   ///
   /// `folder`   base folder of a colour-map file
+  /// `kept`     columns of that frame to keep, so that several calls of load() read them once; empty: none are kept
   /// Domain     `options` outlive it
   /// Errors     base::Error: those of data::open(); kUsage for all frames of a sequence of files; kBadData for
   ///            frames that the file does not contain
-  DataFrames(const DataOptions& options, const std::filesystem::path& folder);
+  DataFrames(const DataOptions& options, const std::filesystem::path& folder,
+             const data::DataFile::Expected& kept = {});
 
   const char* format() const;
   /// Opens data files: those that are open are not opened again.
@@ -70,12 +72,16 @@ class DataFrames {
   /// The number of frames of the file; 1 for a sequence of files. Empty if unknown: the file is large and would have to
   /// be read, or ends within a frame.
   std::optional<int> frame_count() const;
-  /// The frames to use; empty: a single frame without a number.
+  /// The frames to use; empty: a single frame without a number. All frames of a file of which some are kept are known
+  /// after visit(), and before it at most the first two.
   const std::vector<int>& numbers() const { return numbers_; }
   /// The frames to use; { 1 } for a single frame without a number.
   std::vector<int> all() const { return numbers_.empty() ? std::vector<int>{1} : numbers_; }
-  /// The frames to use that differ: a file with a single frame is the same in all.
-  std::vector<int> distinct() const;
+  /// Calls f(frame) for the frames to use that differ: a file with a single frame is the same in all. All frames of a
+  /// file are found while they are visited, so that their rows are not read to count them.
+  void visit(const std::function<void(int frame)>& f);
+  /// Counts all frames of the file, if they are to be used, without visiting them.
+  void count();
   std::filesystem::path file_of(int frame) const;
 
   /// Reads the spheres of a frame.
@@ -111,6 +117,7 @@ class DataFrames {
   std::optional<int> fixed_frame_;
   int described_ = 1;
   std::vector<int> numbers_;
+  bool are_counted_ = true;  ///< `numbers_` is complete
 };
 
 /// Returns the condition that all conditions are met; empty if there are none.

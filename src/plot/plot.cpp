@@ -2,6 +2,7 @@
 #include "plot/plot.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 #include <utility>
@@ -20,6 +21,7 @@
 #include "plot/range.h"
 #include "plot/scene_text.h"
 #include "plot/view.h"
+#include "points/rows.h"
 #include "scene/limits.h"
 #include "scene/value_text.h"
 
@@ -55,6 +57,33 @@ std::string from_scene(const std::string& name, const std::filesystem::path& sce
   return std::filesystem::proximate(name, folder.empty() ? "." : folder).string();
 }
 
+/// The columns of a frame that a plot may read: those with a role, and those that an option names. One too many costs
+/// memory, one too few another pass over the file.
+std::vector<std::string> expected_columns(const PlotOptions& options, data::FrameInfo info) {
+  points::add_derived_columns(info);
+  const data::Roles& roles = info.roles;
+  const scene::PointsKeys& points = options.points;
+  std::vector<std::string> texts = {options.color_by, options.center, points.select, points.radius.column,
+                                    points.opacity.column};
+  for (const auto& list : {points.labels, points.opacity.where, points.cryptomatte, points.vectors.columns})
+    texts.insert(texts.end(), list.begin(), list.end());
+  const auto is_named = [&](const std::string& column) {
+    return std::any_of(texts.begin(), texts.end(),
+                       [&](const std::string& text) { return text.find(column) != std::string::npos; });
+  };
+  std::vector<std::string> wanted = {roles.id, roles.element, roles.type, roles.radius};
+  for (const auto& triple : {roles.position, roles.rgb, points.unwrap ? roles.image : std::array<std::string, 3>()})
+    wanted.insert(wanted.end(), triple.begin(), triple.end());
+  for (const data::ColumnInfo& column : info.columns)
+    if (column.is_derived && is_named(column.name))
+      for (const std::string& source : points::sources_of(info, column.name)) wanted.push_back(source);
+  std::vector<std::string> out;
+  for (const data::ColumnInfo& column : info.columns)
+    if (!column.is_derived && (base::contains(wanted, column.name) || is_named(column.name)))
+      out.push_back(column.name);
+  return out;
+}
+
 /// "3 to 5 bonds"
 std::string count_text(std::size_t fewest, std::size_t most, const char* noun) {
   return (fewest == most ? "" : fmt::format("{} to ", fewest)) + base::counted(most, noun);
@@ -65,7 +94,8 @@ class PlotMaker {
  public:
   explicit PlotMaker(const PlotOptions& options)
       : options_(options),
-        data_(options, options.scene_file.parent_path()),
+        data_(options, options.scene_file.parent_path(),
+              [&options](const data::FrameInfo& info) { return expected_columns(options, info); }),
         info_(data_.info()),
         width_(side_of(options.overrides, "image.width", 1920)),
         height_(side_of(options.overrides, "image.height", 1080)),
@@ -92,7 +122,16 @@ class PlotMaker {
     require_utf8(options.annotation.unit);
   }
 
-  const std::vector<int>& frames() const { return out_.frames; }
+  /// Checks the request, see make_plot(). An error that the first two frames cause is that of all frames.
+  void check(const std::function<void(const std::vector<int>&)>& f) {
+    try {
+      f(data_.numbers());
+    } catch (const base::Error&) {
+      data_.count();
+      f(data_.numbers());
+      throw;
+    }
+  }
 
   PlotScene run() {
     if (vfov_ && options_.annotation.scale_bar)
@@ -160,9 +199,7 @@ class PlotMaker {
     const int frame = data_.described_frame();
     const std::string which = frame > 1 ? fmt::format(" in frame {}", frame) : "";
     chose(data_.format(), fmt::format("{} particles{}", info_.rows, which));
-    choose_frame();
     for (const data::ColumnInfo& column : info_.columns) out_.columns.push_back(column.name);
-    out_.frame_count = data_.frame_count();
   }
 
   void report_view(const scene::Camera& camera) {
@@ -182,18 +219,22 @@ class PlotMaker {
     return {};
   }
 
-  /// A still image of a file with several frames: which one it shows.
-  void choose_frame() {
-    if (options_.all_frames) chose(fmt::format("frames 1-{}", out_.frames.size()), "all of the file");
-    if (!out_.frames.empty()) return;
-    if (options_.points.frame.value_or(1) < 0)
-      chose(fmt::format("frame {}", data_.described_frame()), fmt::format("--frame {}", *options_.points.frame));
-    if (options_.points.frame) return;
-    const std::optional<int> count = data_.frame_count();
-    if (count && *count > 1)
-      chose(fmt::format("frame 1 of {}", *count), "the first; --frames all renders all of them");
-    else if (!count)
-      chose("frame 1", "the first; --frame N selects another");
+  /// Which frames are shown, printed after the number of particles. Counted after the first one has been read, so that
+  /// its rows are not read twice.
+  void choose_frames() {
+    out_.frame_count = data_.frame_count();
+    const std::optional<int> count = out_.frame_count, frame = options_.points.frame;
+    const bool is_first = out_.frames.empty() && !frame;
+    std::string text;
+    if (options_.all_frames)
+      text = fmt::format("frames 1-{}: all of the file", out_.frames.size());
+    else if (out_.frames.empty() && frame && *frame < 0)
+      text = fmt::format("frame {}: --frame {}", data_.described_frame(), *frame);
+    else if (is_first && !count)
+      text = "frame 1: the first; --frame N selects another";
+    else if (is_first && *count > 1)
+      text = fmt::format("frame 1 of {}: the first; --frames all renders all of them", *count);
+    if (!text.empty()) out_.choices.insert(out_.choices.begin() + 1, text);
   }
 
   /// The options that select spheres; empty: none does.
@@ -204,29 +245,33 @@ class PlotMaker {
     return base::joined(out);
   }
 
-  /// Reports that there are no spheres: an error if the user's selection leaves none, a warning if the file has none.
+  /// Reports that there are no spheres: an error, unless the user allows it.
   void report_empty() {
     const std::size_t frames = out_.frames.size();
-    const std::string which = frames > 1 ? fmt::format("none of the {} frames has spheres", frames) : "";
-    if (const std::string options = selection(); !options.empty() && info_.rows > 0) {
-      const std::string left = frames > 1 ? which + " with " + options
-                                          : fmt::format("{} leaves none of the {} particles", options, info_.rows);
-      if (!options_.allow_empty)
-        throw base::Error(base::ErrorKind::kBadData,
-                          fmt::format("nothing to render: {}; `orrery info {}` lists the columns and their values, "
-                                      "--allow-empty renders the background alone",
-                                      left, base::shell_quoted(options_.file.string())));
-      return out_.warnings.push_back("nothing to render: " + left);
-    }
+    const std::string options = selection();
     const std::optional<int> count = data_.frame_count();
-    if (frames > 1)
-      out_.warnings.push_back("nothing to render: " + which);
-    else if (count == 1 || data_.is_sequence())
-      out_.warnings.emplace_back("nothing to render: the file has no spheres");
-    else
-      out_.warnings.push_back(fmt::format(
-          "nothing to render: frame {}{} has no spheres; --frame N selects another, --frames all renders all",
-          data_.described_frame(), count ? fmt::format(" of {}", *count) : ""));
+    std::string what, remedy;
+    if (frames > 1) {
+      what = fmt::format("none of the {} frames has spheres{}{}", frames, options.empty() ? "" : " with ", options);
+    } else if (info_.rows > 0) {
+      what = fmt::format("{} leaves none of the {} particles",
+                         !options.empty()                   ? options
+                         : options_.points.assembly.empty() ? "--skip-bad"
+                                                            : "--assembly",
+                         info_.rows);
+      remedy = fmt::format("`orrery info {}` lists the columns and their values",
+                           base::shell_quoted(options_.file.string()));
+    } else if (count == 1 || data_.is_sequence()) {
+      what = "the file has no particles";
+    } else {
+      what = fmt::format("frame {}{} has no particles", data_.described_frame(),
+                         count ? fmt::format(" of {}", *count) : "");
+      remedy = "--frame N selects another, --frames all renders all";
+    }
+    what = "nothing to render: " + what;
+    if (options_.allow_empty) return out_.warnings.push_back(what);
+    throw base::Error(base::ErrorKind::kBadData, fmt::format("{}; {}{}--allow-empty renders the background alone", what,
+                                                             remedy, remedy.empty() ? "" : ", "));
   }
 
   /// Prints how many bonds are drawn, and from what.
@@ -310,13 +355,13 @@ class PlotMaker {
   }
 
   /// The middle of the particles that --center selects, in all frames; none without it.
-  std::optional<math::Vec3d> target_of(const ViewAxes& axes) const {
+  std::optional<math::Vec3d> target_of(const ViewAxes& axes) {
     if (options_.center.empty()) return {};
     scene::PointsKeys selected = out_.points;
     selected.select =
         all_of(selected.select.empty() ? std::vector{options_.center} : std::vector{selected.select, options_.center});
     ViewExtent extent(axes);
-    for (const int frame : data_.distinct()) extent.add(data_.load(frame, selected).points);
+    data_.visit([&](int frame) { extent.add(data_.load(frame, selected).points); });
     if (extent.is_empty())
       throw base::Error(base::ErrorKind::kBadData,
                         fmt::format("--center `{}` matches none of the particles that are drawn", options_.center));
@@ -329,7 +374,7 @@ class PlotMaker {
     RangeFinder finder(options_.range);
     const auto on_value = needs_range ? [&](double value) { finder.add(value); } : std::function<void(double)>();
     std::size_t fewest = std::numeric_limits<std::size_t>::max(), most = 0, fewest_bonds = fewest, most_bonds = 0;
-    for (const int frame : data_.distinct()) {
+    data_.visit([&](int frame) {
       LoadedFrame loaded = data_.load(frame, out_.points, nullptr, on_value);
       const scene::Points& points = loaded.points;
       fewest = std::min(fewest, points.particle_count());
@@ -346,7 +391,9 @@ class PlotMaker {
       if (out_.frames.empty())
         out_.loaded = std::make_shared<points::LoadedPoints>(
             points::LoadedPoints{frame, std::move(loaded.points), std::move(loaded.diagnostics)});
-    }
+    });
+    out_.frames = data_.numbers();
+    choose_frames();
     report_count(fewest, most);
     report_bonds(fewest_bonds, most_bonds);
     if (!finder.is_empty()) out_.legend.range = finder.range();
@@ -411,9 +458,9 @@ class PlotMaker {
   }
 
   /// The space that the spheres of all frames pass through on the orbit of the camera.
-  ViewExtent orbit(const ViewAxes& axes, const math::Vec3d& pivot, const math::Vec3d& pole) const {
+  ViewExtent orbit(const ViewAxes& axes, const math::Vec3d& pivot, const math::Vec3d& pole) {
     ViewExtent out(axes);
-    for (const int frame : data_.distinct()) out.add_orbits(data_.load(frame, out_.points).points, pivot, pole);
+    data_.visit([&](int frame) { out.add_orbits(data_.load(frame, out_.points).points, pivot, pole); });
     out.add_orbits(guides_.ends(), pivot, pole);
     return out;
   }
@@ -445,7 +492,7 @@ void require_utf8(const std::string& text) {
 
 PlotScene make_plot(const PlotOptions& options, const std::function<void(const std::vector<int>& frames)>& check) {
   PlotMaker maker(options);
-  if (check) check(maker.frames());
+  if (check) maker.check(check);
   return maker.run();
 }
 

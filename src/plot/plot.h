@@ -95,11 +95,14 @@ struct PlotScene {
 
 /// Reads the data and writes a scene for it.
 ///
-/// `check`    called with PlotScene::frames before any row is read, so that an invalid request fails early
+/// `check`    called with PlotScene::frames before the frames are read, so that an invalid request fails early; of all
+///            frames of a file with the first two, and with all of them if that throws
 /// Errors     base::Error: those of points::load_points() and data::open(); kBadData with its errors, and if a
 ///            selection or a slice leaves nothing; kUsage for an invalid view, and for options without effect; those of
 ///            `check`
-/// Cost       reads every frame once, to fit the camera and the colour map; twice for a turntable
+/// Cost       reads every frame once, to fit the camera and the colour map; several frames again for a turntable and
+/// for
+///            PlotOptions::center
 PlotScene make_plot(const PlotOptions& options, const std::function<void(const std::vector<int>& frames)>& check = {});
 
 /// Refuses the name of a file or a column that is not UTF-8: scenes are TOML, which is.

@@ -34,7 +34,7 @@ void sort_unique(std::vector<T>& values) {
 
 BondSource bond_source(const data::FrameInfo& info, const scene::PointsBonds& bonds, KeyFaults& faults) {
   BondSource out;
-  const bool has_bonds = info.bonds > 0;
+  const bool has_bonds = info.has_bonds;
   const bool has_distance = bonds.factor || bonds.length;
   const bool by_default = bonds.from.empty();
   out.is_file = by_default ? has_bonds && !(has_distance && info.lists_all_bonds) : bonds.from != "distance";
@@ -83,14 +83,14 @@ Reach reach_of(const data::Table& table, const Rows& rows, const BondSource& sou
 
 BondSet bonds_of_rows(const std::vector<data::Bond>& bonds, const Rows& rows, std::size_t row_count,
                       const scene::PointArray& centers, const Lattice& lattice) {
-  std::vector<std::uint32_t> spheres(rows.is_all() ? 0 : row_count, CopyIndex::kNone);
+  std::vector<std::uint32_t> spheres(rows.is_all() ? 0 : row_count, CopiedSpheres::kNone);
   if (!rows.is_all())
     for (std::size_t i = 0; i < rows.size(); ++i) spheres[rows[i]] = static_cast<std::uint32_t>(i);
   BondSet out;
   out.pairs.reserve(bonds.size());
   for (const data::Bond& bond : bonds) {
     auto [a, b] = rows.is_all() ? std::pair{bond.a, bond.b} : std::pair{spheres[bond.a], spheres[bond.b]};
-    if (a == CopyIndex::kNone || b == CopyIndex::kNone) continue;
+    if (a == CopiedSpheres::kNone || b == CopiedSpheres::kNone) continue;
     if (a > b) std::swap(a, b);
     const Shift shift = lattice.shift_to_nearest(centers[a], centers[b]);
     if (shift == Shift{0, 0, 0})
@@ -120,13 +120,13 @@ double bond_radius(const data::FrameInfo& info, const scene::PointsBonds& bonds,
 
 void copy_bonds(const BondSet& bonds, const std::vector<Copy>& copies, const Labels& chains, const Lattice& lattice,
                 scene::Points& points) {
-  const CopyIndex index(copies, chains, points.centers.size());
+  const CopiedSpheres index(copies, chains, points.centers.size());
   points.bond_pairs.clear();
   points.bond_stubs.clear();
   for (std::size_t copy = 0; copy < index.copies(); ++copy)
     for (const scene::SphereBond& bond : bonds.pairs) {
       const std::uint32_t a = index.at(copy, bond.a), b = index.at(copy, bond.b);
-      if (a != CopyIndex::kNone && b != CopyIndex::kNone) points.bond_pairs.push_back({a, b});
+      if (a != CopiedSpheres::kNone && b != CopiedSpheres::kNone) points.bond_pairs.push_back({a, b});
     }
   if (bonds.crossing.empty()) return;
   // There is one copy in each image.

@@ -73,54 +73,6 @@ const data::Assembly* find_assembly(const data::FrameInfo& info, const std::stri
   return nullptr;
 }
 
-/// The spheres of each copy.
-struct CopiedSpheres {
-  std::vector<std::vector<std::uint32_t>> subsets;  ///< spheres of a set of chains
-  std::vector<std::size_t> subset_of_copy;          ///< subsets.size(): all spheres
-  std::size_t total = 0;                            ///< number of spheres in all copies
-
-  /// Replaces values of the spheres with those of the copies, copy by copy: `f(value, copy)`.
-  template <class Array, class F>
-  void repeat(Array& values, F f) const {
-    if (values.empty()) return;
-    Array out;
-    out.reserve(total);
-    for (std::size_t copy = 0; copy < subset_of_copy.size(); ++copy) {
-      if (subset_of_copy[copy] == subsets.size()) {
-        for (std::size_t i = 0; i < values.size(); ++i) out.push_back(f(values[i], copy));
-      } else {
-        for (const std::uint32_t i : subsets[subset_of_copy[copy]]) out.push_back(f(values[i], copy));
-      }
-    }
-    values = std::move(out);
-  }
-  template <class Array>
-  void repeat(Array& values) const {
-    repeat(values, [](auto value, std::size_t) { return value; });
-  }
-};
-
-CopiedSpheres spheres_of(const std::vector<Copy>& copies, const Labels& chains, std::size_t count) {
-  CopiedSpheres out;
-  std::vector<const std::vector<std::string>*> sets;
-  for (const Copy& copy : copies) {
-    if (copy.chains == nullptr || std::find(sets.begin(), sets.end(), copy.chains) != sets.end()) continue;
-    sets.push_back(copy.chains);
-    std::vector<std::uint8_t> is_in(chains.names.size());
-    for (std::size_t l = 0; l < is_in.size(); ++l)
-      is_in[l] = std::find(copy.chains->begin(), copy.chains->end(), chains.names[l]) != copy.chains->end() ? 1 : 0;
-    out.subsets.emplace_back();
-    for (std::uint32_t i = 0; i < chains.of_rows.size(); ++i)
-      if (is_in[chains.of_rows[i]] != 0) out.subsets.back().push_back(i);
-  }
-  for (const Copy& copy : copies) {
-    const auto set = static_cast<std::size_t>(std::find(sets.begin(), sets.end(), copy.chains) - sets.begin());
-    out.subset_of_copy.push_back(copy.chains == nullptr ? out.subsets.size() : set);
-    out.total += copy.chains == nullptr ? count : out.subsets[set].size();
-  }
-  return out;
-}
-
 /// Multiplies radii by a factor. Creates a separate array, since old and new radii together can be too many for a
 /// palette.
 void scale(scene::NumberArray& radii, double factor) {
@@ -213,18 +165,33 @@ bool are_rounded(const std::vector<Copy>& copies, const scene::PointsKeys& point
          smallest * points.transform.scale * kMaxDisplacement;
 }
 
-CopyIndex::CopyIndex(const std::vector<Copy>& copies, const Labels& chains, std::size_t count) {
-  const CopiedSpheres spheres = spheres_of(copies, chains, count);
-  for (const std::vector<std::uint32_t>& subset : spheres.subsets) {
-    subsets_.emplace_back(count, kNone);
-    for (std::uint32_t i = 0; i < subset.size(); ++i) subsets_.back()[subset[i]] = i;
+CopiedSpheres::CopiedSpheres(const std::vector<Copy>& copies, const Labels& chains, std::size_t count) {
+  std::vector<const std::vector<std::string>*> sets;
+  for (const Copy& copy : copies) {
+    Place place{total_, kAll};
+    if (copy.chains != nullptr) {
+      place.subset = static_cast<std::size_t>(std::find(sets.begin(), sets.end(), copy.chains) - sets.begin());
+      if (place.subset == sets.size()) {
+        sets.push_back(copy.chains);
+        std::vector<std::uint8_t> is_in;
+        for (const std::string& name : chains.names) is_in.push_back(base::contains(*copy.chains, name) ? 1 : 0);
+        subsets_.emplace_back();
+        for (std::uint32_t i = 0; i < chains.of_rows.size(); ++i)
+          if (is_in[chains.of_rows[i]] != 0) subsets_.back().push_back(i);
+      }
+    }
+    copies_.push_back(place);
+    total_ += place.subset == kAll ? count : subsets_[place.subset].size();
   }
-  std::size_t first = 0;
-  for (const std::size_t subset : spheres.subset_of_copy) {
-    const bool is_all = subset == spheres.subsets.size();
-    copies_.push_back({first, is_all ? kAll : subset});
-    first += is_all ? count : spheres.subsets[subset].size();
-  }
+}
+
+std::uint32_t CopiedSpheres::at(std::size_t copy, std::uint32_t sphere) const {
+  const Place& place = copies_[copy];
+  if (place.subset == kAll) return static_cast<std::uint32_t>(place.first + sphere);
+  const std::vector<std::uint32_t>& subset = subsets_[place.subset];
+  const auto found = std::lower_bound(subset.begin(), subset.end(), sphere);
+  if (found == subset.end() || *found != sphere) return kNone;
+  return static_cast<std::uint32_t>(place.first) + static_cast<std::uint32_t>(found - subset.begin());
 }
 
 std::uint64_t copied_count(const std::vector<Copy>& copies, const Labels& chains, std::size_t count) {
@@ -267,12 +234,12 @@ void clip(scene::Points& points, std::vector<std::uint32_t>* rows) {
   if (!points.sphere_vectors.empty()) keep(points.sphere_vectors, kept);
   if (rows != nullptr) keep(*rows, kept);
   if (points.bond_count() == 0) return;
-  std::vector<std::uint32_t> new_index(count, CopyIndex::kNone);
+  std::vector<std::uint32_t> new_index(count, CopiedSpheres::kNone);
   for (std::uint32_t i = 0; i < kept.size(); ++i) new_index[kept[i]] = i;
   const auto renumber = [&](std::uint32_t& a, std::uint32_t& b) {
     a = new_index[a];
     b = new_index[b];
-    return a != CopyIndex::kNone && b != CopyIndex::kNone;
+    return a != CopiedSpheres::kNone && b != CopiedSpheres::kNone;
   };
   std::erase_if(points.bond_pairs, [&](scene::SphereBond& bond) { return !renumber(bond.a, bond.b); });
   std::erase_if(points.bond_stubs, [&](scene::BondStub& stub) { return !renumber(stub.sphere, stub.partner); });
@@ -291,7 +258,7 @@ void make_copies(const std::vector<Copy>& copies, const Labels& chains, scene::P
     scale(points.radii, points.transform.scale);
     return;
   }
-  const CopiedSpheres spheres = spheres_of(copies, chains, points.centers.size());
+  const CopiedSpheres spheres(copies, chains, points.centers.size());
   const bool rounds = are_rounded(copies, points, points.centers, points.radii);
   spheres.repeat(points.centers, [&](Vec3d center, std::size_t copy) {
     center = applied(copies[copy].transform, center);

@@ -4,6 +4,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "points/rows.h"
@@ -48,31 +49,47 @@ bool are_rounded(const std::vector<Copy>& copies, const scene::PointsKeys& point
 /// The number of spheres that make_copies() creates from `count` spheres; an upper bound if a copy lists a chain twice.
 std::uint64_t copied_count(const std::vector<Copy>& copies, const Labels& chains, std::size_t count);
 
-/// Where make_copies() puts the spheres.
-class CopyIndex {
+/// The spheres of each copy, in the order in which make_copies() puts them.
+class CopiedSpheres {
  public:
   static constexpr std::uint32_t kNone = static_cast<std::uint32_t>(-1);
 
   /// `count`    number of spheres before they are copied
-  CopyIndex(const std::vector<Copy>& copies, const Labels& chains, std::size_t count);
+  CopiedSpheres(const std::vector<Copy>& copies, const Labels& chains, std::size_t count);
 
   std::size_t copies() const { return copies_.size(); }
   /// Returns the index of the copy of a sphere; kNone if the copy is limited to other chains.
-  std::uint32_t at(std::size_t copy, std::uint32_t sphere) const {
-    const Start& start = copies_[copy];
-    if (start.subset == kAll) return static_cast<std::uint32_t>(start.first + sphere);
-    const std::uint32_t within = subsets_[start.subset][sphere];
-    return within == kNone ? kNone : static_cast<std::uint32_t>(start.first + within);
+  std::uint32_t at(std::size_t copy, std::uint32_t sphere) const;
+
+  /// Replaces values of the spheres with those of the copies, copy by copy: `f(value, copy)`.
+  template <class Array, class F>
+  void repeat(Array& values, F f) const {
+    if (values.empty()) return;
+    Array out;
+    out.reserve(total_);
+    for (std::size_t copy = 0; copy < copies_.size(); ++copy) {
+      if (copies_[copy].subset == kAll) {
+        for (std::size_t i = 0; i < values.size(); ++i) out.push_back(f(values[i], copy));
+      } else {
+        for (const std::uint32_t i : subsets_[copies_[copy].subset]) out.push_back(f(values[i], copy));
+      }
+    }
+    values = std::move(out);
+  }
+  template <class Array>
+  void repeat(Array& values) const {
+    repeat(values, [](auto value, std::size_t) { return value; });
   }
 
  private:
   static constexpr std::size_t kAll = static_cast<std::size_t>(-1);
-  struct Start {
+  struct Place {
     std::size_t first = 0, subset = kAll;
   };
 
-  std::vector<Start> copies_;
-  std::vector<std::vector<std::uint32_t>> subsets_;  ///< of each set of chains: the place of each sphere in it
+  std::vector<Place> copies_;
+  std::vector<std::vector<std::uint32_t>> subsets_;  ///< spheres of a set of chains, ascending
+  std::size_t total_ = 0;                            ///< number of spheres in all copies
 };
 
 /// Replaces the spheres, and the row number of each, with their copies, copy by copy, and applies the transform of the

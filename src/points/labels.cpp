@@ -1,7 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
+#include <algorithm>
+
 #include <fmt/core.h>
 
 #include "base/error.h"
+#include "data/text_lines.h"
 #include "math/scalar.h"
 #include "math/vec3.h"
 #include "points/copies.h"
@@ -11,15 +14,29 @@ namespace orrery::points {
 
 namespace {
 
-/// Splits "CONDITION: TEXT" at the first colon that a space follows: ranges in conditions contain colons, too.
+/// Splits "CONDITION: TEXT".
 std::pair<std::string, std::string> parse_label(const std::string& text) {
-  const std::size_t colon = text.find(": ");
-  if (colon == std::string::npos || colon == 0 || colon + 2 == text.size())
+  const std::size_t colon = end_of_expression(text);
+  const std::string_view label =
+      colon == std::string::npos ? std::string_view() : data::trimmed(std::string_view(text).substr(colon + 1));
+  if (colon == 0 || label.empty())
     base::refuse(fmt::format("`{}` is not a label; write CONDITION: TEXT, e.g. 'id == 5: Fe'", text));
-  return {text.substr(0, colon), text.substr(colon + 2)};
+  return {text.substr(0, colon), std::string(label)};
 }
 
 }  // namespace
+
+std::size_t end_of_expression(std::string_view text) {
+  constexpr std::string_view kQuotes = "\"'`", kOpening = "[{(", kClosing = "]})";
+  int depth = 0;
+  for (std::size_t at = 0; at < text.size(); ++at) {
+    if (text[at] == ':' && depth <= 0) return at;
+    if (kOpening.find(text[at]) != std::string_view::npos) ++depth;
+    if (kClosing.find(text[at]) != std::string_view::npos) --depth;
+    if (kQuotes.find(text[at]) != std::string_view::npos) at = std::min(text.find(text[at], at + 1), text.size());
+  }
+  return std::string_view::npos;
+}
 
 std::vector<LabelRule> label_rules(const data::FrameInfo& info, const scene::PointsKeys& points, KeyFaults& faults) {
   std::vector<LabelRule> out;

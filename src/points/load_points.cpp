@@ -45,7 +45,7 @@ int requested_frame(const LoadRequest& request, const scene::PointsKeys& points)
 int frame_in(data::DataFile& file, const LoadRequest& request, const scene::PointsKeys& points) {
   const int frame = requested_frame(request, points);
   if (frame == 1 || points.frame) return frame;  // without counting: that may read the whole file
-  return file.frame_count() == 1 ? 1 : frame;
+  return file.has_frame(1) ? frame : 1;
 }
 
 /// Loads the spheres of one points table.
@@ -59,6 +59,7 @@ class Loader {
     file_ = open(request_, points_);
     if (const std::optional<int> frame = choose_frame()) {
       info_ = file_->describe(*frame);
+      for (const std::string& warning : info_.warnings) faults_.warning(".file", warning);
       if (points_.component && !info_.has_components)
         faults_.warning(".component", "has no effect: only HDF5 files have components");
       add_derived_columns(info_);
@@ -74,8 +75,8 @@ class Loader {
   std::optional<int> choose_frame() {
     const int frame = frame_in(*file_, request_, points_);
     if (frame == 1) return 0;
+    if (frame >= 1 && file_->has_frame(frame - 1)) return frame - 1;
     const int count = file_->frame_count();
-    if (frame >= 1 && frame <= count) return frame - 1;
     faults_.error(points_.frame ? ".frame" : ".file",
                   fmt::format("there is no frame {}; {} has {}{}", frame, points_.file.string(), count,
                               count == 1 ? " frame" : " frames"));
@@ -318,7 +319,12 @@ class Loader {
   BondSet bonds_of(const data::Table& table, const Rows& rows, const scene::PointArray& centers, const Lattice& lattice,
                    int frame) {
     BondSet out;
-    if (bond_source_.is_file) out = bonds_of_rows(file_->bonds(frame), rows, table.rows, centers, lattice);
+    if (bond_source_.is_file) {
+      std::vector<std::string> warnings;
+      out = bonds_of_rows(file_->bonds(frame, warnings), rows, table.rows, centers, lattice);
+      for (const std::string& warning : warnings)
+        faults_.warning(".bonds", warning + (bond_source_.is_distance ? "; close atoms are bonded" : ""));
+    }
     if (!bond_source_.is_distance) return out;
     const Reach reach = reach_of(table, rows, bond_source_, points_.bonds, faults_);
     if (faults_.has_errors()) return out;

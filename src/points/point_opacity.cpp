@@ -26,14 +26,14 @@ bool is_opacity(double x) { return x >= 0 && x <= 1; }  // false for NaN
 }  // namespace
 
 OpacityRule parse_opacity_rule(const std::string& text) {
-  const std::size_t colon = text.rfind(':');
+  const std::size_t colon = end_of_expression(text);
   const bool has_condition = colon != std::string::npos;
   OpacityRule out;
   if (has_condition) out.condition = data::trimmed(std::string_view(text).substr(0, colon));
   const std::string_view number = std::string_view(text).substr(has_condition ? colon + 1 : 0);
   if (!base::from_text(data::trimmed(number), out.opacity) || !is_opacity(out.opacity))
     refuse_rule(text, has_condition ? "does not end in a number in 0..1" : "has no colon, and is no number in 0..1");
-  if (has_condition && out.condition.empty()) refuse_rule(text, "has no condition before its last colon");
+  if (has_condition && out.condition.empty()) refuse_rule(text, "has no condition before its colon");
   return out;
 }
 

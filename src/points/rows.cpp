@@ -121,20 +121,19 @@ std::vector<std::string> velocity_of(const data::FrameInfo& info) {
 }
 
 /// The numbers of three columns; null unless all have this type.
-template <class Number>
-std::array<std::vector<Number>*, 3> columns_of(data::Table& table, const std::array<std::string, 3>& names) {
-  std::array<std::vector<Number>*, 3> out{};
+template <class Numbers>
+std::array<Numbers*, 3> columns_of(data::Table& table, const std::array<std::string, 3>& names) {
+  std::array<Numbers*, 3> out{};
   for (std::size_t axis = 0; axis < 3; ++axis) {
-    if (data::Column* const column = table.find(names[axis]))
-      out[axis] = std::get_if<std::vector<Number>>(&column->values);
+    if (data::Column* const column = table.find(names[axis])) out[axis] = std::get_if<Numbers>(&column->values);
     if (out[axis] == nullptr) return {};
   }
   return out;
 }
 
-/// Moves columns into an array of points, piece by piece.
-template <class To, class From>
-scene::PointArray moved(const std::array<std::vector<From>*, 3>& columns) {
+/// Moves columns into an array of points, piece by piece. Views are copied.
+template <class To, class Numbers>
+scene::PointArray moved(const std::array<Numbers*, 3>& columns) {
   /// Rows after which memory is returned.
   constexpr std::size_t kBlock = std::size_t{1} << 20;
   const std::size_t count = columns[0]->size();
@@ -147,12 +146,14 @@ scene::PointArray moved(const std::array<std::vector<From>*, 3>& columns) {
       for (std::size_t i = range.begin(); i < range.end(); ++i)
         for (std::size_t axis = 0; axis < 3; ++axis) out[3 * i + axis] = static_cast<To>((*columns[axis])[i]);
     });
-    for (std::vector<From>* const column : columns) base::release_memory(std::span(&(*column)[begin], end - begin));
+    if constexpr (requires(Numbers numbers) { numbers.data(); })
+      for (Numbers* const column : columns) base::release_memory(std::span(&(*column)[begin], end - begin));
   }
   return scene::PointArray(scene::NumberArray(std::move(out)));
 }
 
-bool fit_single(const std::array<std::vector<double>*, 3>& columns) {
+template <class Numbers>
+bool fit_single(const std::array<Numbers*, 3>& columns) {
   return base::are_all(columns[0]->size(), [&](std::size_t i) {
     return std::all_of(columns.begin(), columns.end(),
                        [i](const auto* column) { return scene::NumberArray::is_single((*column)[i]); });
@@ -219,13 +220,20 @@ scene::PointArray points_of(const data::Table& table, const Rows& rows, const st
 }
 
 scene::PointArray take_points(data::Table& table, const Rows& rows, const std::array<std::string, 3>& columns) {
-  const auto singles = columns_of<float>(table, columns);
-  const auto doubles = columns_of<double>(table, columns);
-  scene::PointArray out = !rows.is_all()          ? points_of(table, rows, columns)
-                          : singles[0] != nullptr ? moved<float>(singles)
-                          : doubles[0] == nullptr ? points_of(table, rows, columns)
-                          : fit_single(doubles)   ? moved<float>(doubles)
-                                                  : moved<double>(doubles);
+  std::optional<scene::PointArray> all;
+  const auto move_singles = [&](const auto& numbers) {
+    if (numbers[0] != nullptr) all = moved<float>(numbers);
+  };
+  const auto move_doubles = [&](const auto& numbers) {
+    if (numbers[0] != nullptr) all = fit_single(numbers) ? moved<float>(numbers) : moved<double>(numbers);
+  };
+  if (rows.is_all()) {
+    move_singles(columns_of<std::vector<float>>(table, columns));
+    move_singles(columns_of<data::ArrayView<float>>(table, columns));
+    move_doubles(columns_of<std::vector<double>>(table, columns));
+    move_doubles(columns_of<data::ArrayView<double>>(table, columns));
+  }
+  scene::PointArray out = all ? std::move(*all) : points_of(table, rows, columns);
   std::erase_if(table.columns, [&](const data::Column& column) {
     return std::find(columns.begin(), columns.end(), column.name) != columns.end();
   });

@@ -78,14 +78,17 @@ void for_each_shown(const data::Column& column, const Rows& rows, bool is_log, F
 void set_colors(const data::Table& table, const Rows& rows, const ColorSource& source, scene::Points& points,
                 KeyFaults& faults);
 
+/// Returns the place of the colon that ends an expression: the first one outside quotes, brackets and braces, which
+/// contain ranges and strings; npos if there is none.
+std::size_t end_of_expression(std::string_view text);
+
 /// An opacity, and the condition under which a sphere has it; empty: always.
 struct OpacityRule {
   std::string condition;
   double opacity = 1;
 };
 
-/// Parses an element of scene::PointsOpacity::where: a selection, a colon, a number in 0..1; or the number alone. The
-/// last colon counts, because selections contain colons, too.
+/// Parses an element of scene::PointsOpacity::where: a selection, a colon, a number in 0..1; or the number alone.
 ///
 /// Errors     base::Error(kUsage)
 OpacityRule parse_opacity_rule(const std::string& text);

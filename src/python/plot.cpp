@@ -55,7 +55,10 @@ std::optional<data::Box> box_of(const std::optional<BoxTuple>& from) {
 /// without the GIL.
 class FramesFile : public data::DataFile {
  public:
-  explicit FramesFile(const ArraysOfFrames& frames) : frames_(&frames) { format = "arrays"; }
+  explicit FramesFile(const ArraysOfFrames& frames) : frames_(&frames) {
+    format = "arrays";
+    has_views = true;
+  }
   ~FramesFile() override { release(); }
   FramesFile(const FramesFile&) = delete;
   FramesFile& operator=(const FramesFile&) = delete;
@@ -94,9 +97,11 @@ std::pair<std::string, points::OpenData> opened(const Source& source) {
   std::function<std::unique_ptr<data::DataFile>()> make;
   if (const auto* const arrays = std::get_if<Arrays>(&source)) {
     const auto& [columns, box] = *arrays;
-    make = [table = table_of(columns), box = box_of(box)] { return data::open_table(kArraysName, table, box); };
+    make = [table = table_of(columns), box = box_of(box)] {
+      return data::settled(data::open_table(kArraysName, table, box));
+    };
   } else {
-    make = [&source] { return std::make_unique<FramesFile>(std::get<ArraysOfFrames>(source)); };
+    make = [&source] { return data::settled(std::make_unique<FramesFile>(std::get<ArraysOfFrames>(source))); };
   }
   return {kArraysName, [make](const std::filesystem::path& path, const data::OpenOptions& options) {
             return path == kArraysName ? make() : data::open(path, options);

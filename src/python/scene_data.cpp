@@ -118,7 +118,7 @@ load::SceneSource SceneData::source() const {
   };
   out.open_data = [find](const fs::path& path, const data::OpenOptions& options) {
     const auto* const own = find(path);
-    return own != nullptr ? data::open_table(own->first, own->second) : data::open(path, options);
+    return own != nullptr ? data::settled(data::open_table(own->first, own->second)) : data::open(path, options);
   };
   out.data_version = [find](const fs::path& path) {
     const auto* const own = find(path);
@@ -174,7 +174,7 @@ void save(const SceneData& scene, const fs::path& file) {
   });
   const std::string text = load::scene_text(saved, {});
   for (const auto& [name, table] : scene.tables)
-    static_cast<void>(data::write_table(folder / table_file_name(file, name, *table), *table, kWriter));
+    static_cast<void>(data::write_table(folder / table_file_name(file, name, *table), *table, {}, kWriter));
   base::write_text_file(file, text);
 }
 

@@ -108,7 +108,8 @@ TEST_F(CliPlot, RequestsAreCheckedBeforeFramesAreRead) {
   const std::string plot = "plot bad.dump ";
   expect_error(plot + "-o a.ppm", 65, "'zero' is not a number");
   expect_error(plot + "-o none/a.png", 73, "none");
-  expect_error(plot + "-o a.png --frames all", 2, "a.png is one name for 2 frames");
+  write("worse.dump", frame({"1 1 0 0 0 1 0"}) + frame({"1 1 0 0 zero 1 0"}) + frame({"1 1 0 0 0 1 0"}));
+  expect_error("plot worse.dump -o a.png --frames all", 2, "a.png is one name for 3 frames");
   expect_error(plot + "-o a.##.png", 2, "a.##.png has a frame pattern");
   expect_error(plot + "-o a.png --layers Z", 2, "no output can hold the requested layers");
   expect_error(plot + "-o a.png --bits 32", 2, "bits");
@@ -140,6 +141,9 @@ TEST_F(CliPlot, ASelectionThatMatchesNothingIsAnError) {
   EXPECT_FALSE(std::filesystem::exists(folder_ / "none.ppm"));
   r = plot("c.csv -o none.ppm --select 'q > 5' --allow-empty");
   EXPECT_EQ(r.status, 0) << r.err;
+  write("empty.xyz", "0\n\n");
+  EXPECT_EQ(plot("empty.xyz -o none.ppm").status, 65);
+  EXPECT_EQ(plot("empty.xyz -o none.ppm --allow-empty").status, 0);
 }
 
 /// One setting in three spellings: the projection, the field of view, or both.
@@ -279,9 +283,9 @@ TEST_F(CliPlot, MemoryOfMoleculesIsEstimated) {
   for (int i = 0; i < 20000; ++i)
     pdb += "ATOM      1  CA  ALA A   1       1.000   2.000   3.000  1.00  0.00           C\n";
   write("a.pdb", pdb);
-  const Outcome r = plot("a.pdb -o a.ppm --memory-limit 5M");
+  const Outcome r = plot("a.pdb -o a.ppm --memory-limit 1M");
   EXPECT_EQ(r.status, 71) << r.err;
-  EXPECT_TRUE(contains(r.err, "of atoms need about ")) << r.err;
+  EXPECT_TRUE(contains(r.err, "the atoms need about ")) << r.err;
 }
 
 TEST_F(CliPlot, EditedScenesAreNotReplaced) {

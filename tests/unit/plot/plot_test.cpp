@@ -548,8 +548,10 @@ TEST_F(PlotPlot, RadiusOfTheFirstFrameWithNeighbours) {
                      frame("x y z", {"0 0 0", "0 1 0"}));
   EXPECT_EQ(read(3).points[0].radius.value, 1.5) << choices();
   options.all_frames = false;
+  options.points.frame = 2;
   make();
   EXPECT_EQ(read().points[0].radius.value, 1.5) << "of the file, whatever is shown: " << choices();
+  options.points.frame.reset();
   make("b.dump", frame("x y z", {"0 0 0"}) + frame("x y z", {"1 0 0"}));
   EXPECT_TRUE(chose("radius 1: no particle has a neighbour")) << choices();
 }
@@ -648,23 +650,37 @@ TEST_F(PlotPlot, TheFrameIsPrinted) {
   EXPECT_TRUE(chose("frame 1: the first; --frame N selects another")) << "the file ends in a header: " << choices();
 }
 
-TEST_F(PlotPlot, NothingToRenderIsAWarning) {
+TEST_F(PlotPlot, NothingToRenderIsAnErrorUnlessAllowed) {
   const std::string none = frame("x y z radius", {}), one = frame("x y z radius", {"0 0 0 1"});
+  const auto error = [&](const std::string& text) -> std::string {
+    try {
+      make("a.dump", text);
+    } catch (const base::Error& e) {
+      EXPECT_EQ(e.kind(), base::ErrorKind::kBadData);
+      EXPECT_NE(std::string(e.what()).find("--allow-empty"), std::string::npos) << e.what();
+      return e.what();
+    }
+    return "no error";
+  };
+  EXPECT_NE(error(none).find("the file has no particles"), std::string::npos);
+  EXPECT_NE(error(none + one).find("--frame N selects another"), std::string::npos);
+  options.points.skip_bad = true;
+  EXPECT_NE(error(frame("x y z radius", {"0 0 0 -1", "nan 0 0 1"})).find("--skip-bad leaves none of the 2"),
+            std::string::npos);
+  options.points.skip_bad = false;
+  options.allow_empty = true;
   const auto warning = [&](const std::string& text) {
     make("a.dump", text);
     return made.warnings.size() == 1 ? made.warnings[0] : std::to_string(made.warnings.size()) + " warnings";
   };
-  EXPECT_EQ(warning(none), "nothing to render: the file has no spheres");
-  EXPECT_EQ(warning(none + one + one),
-            "nothing to render: frame 1 of 3 has no spheres; --frame N selects another, --frames all renders all");
+  EXPECT_EQ(warning(none), "nothing to render: the file has no particles");
+  EXPECT_EQ(warning(none + one + one), "nothing to render: frame 1 of 3 has no particles");
   options.points.frame = 2;
-  EXPECT_EQ(warning(one + none),
-            "nothing to render: frame 2 of 2 has no spheres; --frame N selects another, --frames all renders all");
+  EXPECT_EQ(warning(one + none), "nothing to render: frame 2 of 2 has no particles");
   options.points.frame.reset();
   options.frames = {1, 2};
   EXPECT_EQ(warning(none + none + one), "nothing to render: none of the 2 frames has spheres");
   options.frames.clear();
-  options.allow_empty = true;
   options.points.select = "x > 5";
   EXPECT_EQ(warning(one), "nothing to render: --select leaves none of the 1 particles");
   options.points.select.clear();
@@ -1145,12 +1161,12 @@ TEST_F(PlotPlot, ComponentsOfOtherFormatsAreRefused) {
   EXPECT_EQ(error(), "--component: " + options.file.string() + " is CSV; only HDF5 files have components");
 }
 
-TEST_F(PlotPlot, FramesAreKnownBeforeAnyIsRead) {
+TEST_F(PlotPlot, SeveralFramesAreKnownBeforeTheSecondIsRead) {
   options.all_frames = true;
-  write("a.dump", frame("x y z", {"0 0 zero"}) + frame("x y z", {"0 0 0"}));
-  std::vector<int> known;
+  write("a.dump", frame("x y z", {"0 0 0"}) + frame("x y z", {"0 0 zero"}) + frame("x y z", {"0 0 0"}));
+  std::vector<std::vector<int>> known;
   const auto check = [&](const std::vector<int>& frames) {
-    known = frames;
+    known.push_back(frames);
     throw base::Error(base::ErrorKind::kUsage, "checked");
   };
   try {
@@ -1159,7 +1175,7 @@ TEST_F(PlotPlot, FramesAreKnownBeforeAnyIsRead) {
   } catch (const base::Error& e) {
     EXPECT_STREQ(e.what(), "checked");
   }
-  EXPECT_EQ(known, (std::vector<int>{1, 2}));
+  EXPECT_EQ(known, (std::vector<std::vector<int>>{{1, 2}, {1, 2, 3}})) << "the error tells of all";
 }
 
 TEST_F(PlotPlot, FileNamesCannotAddLines) {

@@ -152,7 +152,7 @@ TEST_F(PointsBonds, TheSourceFollowsTheFileAndTheKeys) {
     return std::string(out.is_file ? "file " : "") + (out.is_distance ? "distance " : "") + out.element;
   };
   EXPECT_EQ(source({true, "", {}, {}, {}, {}}), "distance element");
-  info.bonds = 3;
+  info.has_bonds = true;
   EXPECT_EQ(source({true, "", {}, {}, {}, {}}), "file ");
   EXPECT_EQ(source({true, "", 1.1, {}, {}, {}}), "distance element");
   EXPECT_EQ(source({true, "", {}, 1.1, {}, {}}), "distance ");
