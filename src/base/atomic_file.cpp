@@ -69,11 +69,9 @@ std::filesystem::path rename_target(const std::filesystem::path& path) {
   const std::filesystem::file_status status = std::filesystem::status(path, ignored);
   if (path.filename().empty() || std::filesystem::is_directory(status))
     cannot_create(path, "it is a directory", EISDIR);
-  if (!std::filesystem::exists(status)) return link_target(path);
-  if (!std::filesystem::is_regular_file(status)) cannot_create(path, "it is not a regular file", EINVAL);
-  if (!std::filesystem::is_symlink(path, ignored)) return path;
-  std::filesystem::path target = std::filesystem::canonical(path, ignored);
-  return target.empty() ? path : target;
+  if (std::filesystem::exists(status) && !std::filesystem::is_regular_file(status))
+    cannot_create(path, "it is not a regular file", EINVAL);
+  return link_target(path);
 }
 
 /// Refuses a file that a rename must not, or cannot, replace: write-protected or immutable, or of another user in a

@@ -30,15 +30,9 @@ const FileSet::Folder& FileSet::folder_of(const fs::path& file) {
 
 std::vector<FileSet::Key> FileSet::keys_of(const fs::path& file) {
   std::vector<Key> keys;
-  fs::path entry = file;
   struct stat status {};
-  if (::stat(file.c_str(), &status) == 0) {
-    keys.push_back({{status.st_dev, status.st_ino}, ""});
-    std::error_code ignored;
-    if (fs::is_symlink(file, ignored)) entry = fs::canonical(file, ignored);
-  } else {
-    entry = link_target(file);
-  }
+  if (::stat(file.c_str(), &status) == 0) keys.push_back({{status.st_dev, status.st_ino}, ""});
+  const fs::path entry = link_target(file);
   // Existing files are also registered by name: a file may be replaced, and get another inode, before the next lookup.
   const Folder& folder = folder_of(entry);
   std::error_code ignored;

@@ -240,15 +240,12 @@ Film::~Film() {
 }
 
 void Film::open_folder() {
-  const auto fail = [&](const std::string& reason) {
-    throw base::Error(base::ErrorKind::kCannotCreate,
-                      fmt::format("cannot create the folder {}: {}", folder_.string(), reason));
-  };
   std::error_code error;
   fs::create_directory(folder_, error);
-  if (error) fail(error.message());
   lock_ = ::open(folder_.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
-  if (lock_ < 0) fail(std::strerror(errno));
+  if (lock_ < 0)
+    throw base::Error(base::ErrorKind::kCannotCreate, fmt::format("cannot create the folder {}: {}", folder_.string(),
+                                                                  error ? error.message() : std::strerror(errno)));
   // A file system without locks is no obstacle.
   if (::flock(lock_, LOCK_EX | LOCK_NB) == 0 || errno != EWOULDBLOCK) return;
   ::close(std::exchange(lock_, -1));
