@@ -65,11 +65,13 @@ class AdaptiveSampling {
   bool run() {
     if (!state_.goals.empty() && !run_iteration())
       return false;  // the iteration in which an earlier run was interrupted
-    // With a time budget the first iteration is as small as possible: it measures the speed.
+    // With a time budget the first iteration is as small as possible: it measures the speed. So it is if somebody
+    // looks.
+    const bool begins_small = settings_.sampling.seconds > 0 || settings_.on_pixels;
     std::uint32_t n = *std::min_element(state_.counts.begin(), state_.counts.end());
-    for (n = n > 0                            ? next_uniform_count(n)
-             : settings_.sampling.seconds > 0 ? 1
-                                              : std::min(kFirstSamples, max_samples_);
+    for (n = n > 0          ? next_uniform_count(n)
+             : begins_small ? 1
+                            : std::min(kFirstSamples, max_samples_);
          n > 0; n = next_uniform_count(n)) {
       state_.goals.assign(state_.pixel_count(), n);
       if (!run_iteration()) return false;

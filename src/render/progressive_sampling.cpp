@@ -27,9 +27,9 @@ constexpr int kSmallestSquare = 4;
 /// Paths in a square: a few milliseconds of work.
 constexpr double kPathsPerSquare = 65536;
 
-/// Samples per pixel of the first pass, growth from pass to pass, and maximum: a square of the smallest side must
-/// finish soon enough for an interactive stop.
-constexpr std::uint32_t kFirstPass = 16, kGrowth = 4, kLargestPass = 4096;
+/// Samples per pixel of the first pass, without and with somebody who looks; growth of their number from pass to pass;
+/// and maximum of a pass: a square of the smallest side must finish soon enough for an interactive stop.
+constexpr std::uint32_t kFirstPass = 16, kFirstSeenPass = 1, kGrowth = 4, kLargestPass = 4096;
 
 int side_for(std::uint32_t samples) {
   return std::clamp(static_cast<int>(std::sqrt(kPathsPerSquare / samples)), kSmallestSquare, kLargestSquare);
@@ -171,8 +171,9 @@ bool render_progressively(const compile::CompiledScene& compiled, const Settings
   const std::uint32_t samples = samples_of(compiled, settings);
   const std::vector<bool> owned = pixels_of(settings.sampling.shard, compiled.width, compiled.height);
   ProgressiveSampling passes(settings, render_tile, pool, progress, state);
-  std::uint32_t pass = kFirstPass;
   for (std::uint32_t done = 0; done < samples;) {
+    const std::uint32_t first = settings.on_pixels ? kFirstSeenPass : kFirstPass;
+    const std::uint32_t pass = done == 0 ? first : std::min((kGrowth - 1) * done, kLargestPass);
     const std::uint32_t goal = done + std::min(pass, samples - done);
     state.goals.resize(state.pixel_count());
     for (std::size_t i = 0; i < state.goals.size(); ++i) state.goals[i] = owned[i] ? goal : 0;
@@ -180,7 +181,6 @@ bool render_progressively(const compile::CompiledScene& compiled, const Settings
     state.goals.clear();  // not needed to resume
     if (!completed) return false;
     done = goal;
-    pass = std::min(pass * kGrowth, kLargestPass);
   }
   statistics.ended_by = "samples";
   return true;
