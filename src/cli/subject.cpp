@@ -50,6 +50,7 @@ view::Subject data_subject(ShownOptions& shown, const FilmSettings* film) {
   out.columns = made.columns;
   out.frame_count = made.frame_count;
   out.frames = made.frames;
+  out.up = made.up;
   const scene::PointsColor& color = made.points.color;
   out.chosen["--map"] = color.map;
   if (color.range)
@@ -66,13 +67,13 @@ view::Subject data_subject(ShownOptions& shown, const FilmSettings* film) {
 }
 
 /// Parses words, and calls `use` with the options.
-void parse_shown(const std::string& file, std::vector<std::string> words, bool has_frames,
+void parse_shown(const std::string& file, std::vector<std::string> words,
                  const std::function<void(ShownOptions& shown)>& use) {
   ShownOptions shown;
   words.insert(words.begin(), file);
   const auto add = [&](Command& parsed) {
     shown.add_to(parsed);
-    if (has_frames) shown.plot.data.add_frames_to(parsed);
+    shown.plot.data.add_frames_to(parsed);
   };
   parse_words(words, add, [&] { use(shown); });
 }
@@ -98,7 +99,7 @@ std::set<std::string> files_of(const ShownOptions& shown) {
 view::Subject subject_of(const std::filesystem::path& file, const std::vector<std::string>& words,
                          const std::set<std::string>& allowed) {
   view::Subject out;
-  parse_shown(file.string(), words, false, [&](ShownOptions& shown) {
+  parse_shown(file.string(), words, [&](ShownOptions& shown) {
     // The page may name no files but those given on the command line.
     for (const std::string& name : files_of(shown))
       if (allowed.count(name) == 0)
@@ -111,7 +112,7 @@ view::Subject subject_of(const std::filesystem::path& file, const std::vector<st
 view::Subject data_subject(const std::string& file, const std::vector<std::string>& words,
                            const job::Resources& resources, const points::OpenData& open, const FilmSettings* film) {
   view::Subject out;
-  parse_shown(file, words, film != nullptr, [&](ShownOptions& shown) {
+  parse_shown(file, words, [&](ShownOptions& shown) {
     shown.job.resources = resources;
     shown.plot.options.open = open;
     out = data_subject(shown, film);

@@ -1,8 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
+#include <poll.h>
+#include <unistd.h>
+
 #include <algorithm>
 #include <atomic>
 #include <chrono>
 #include <cstdio>
+#include <filesystem>
+#include <fstream>
 #include <memory>
 #include <set>
 #include <string>
@@ -12,6 +17,7 @@
 
 #include <fmt/core.h>
 
+#include "base/atomic_file.h"
 #include "base/error.h"
 #include "base/frames.h"
 #include "base/input_file.h"
@@ -70,7 +76,7 @@ view::Controls controls_of(const std::filesystem::path& file) {
   out.options["--scale-bar"] = {"auto"};
   for (const char* option :
        {"--ground", "--opacity", "--box", "--axes", "--vectors", "--range", "--select", "--slice", "--radius-scale",
-        "--frame", "--perspective", "--center", "--title", "--color-bar", "--label", "--outline"})
+        "--frame", view::kAllFrames, "--perspective", "--center", "--title", "--color-bar", "--label", "--outline"})
     out.options[option] = {};
   return out;
 }
@@ -100,15 +106,25 @@ view::Wish first_wish(std::vector<std::string>& words, const view::Controls& con
   return out;
 }
 
-/// Opens an address in the user's browser, without waiting for it.
-void open_in_browser(const std::string& address) {
+/// Opens an address in the user's browser, without waiting for it. Everybody can see the arguments of a program, so the
+/// browser finds the address, which contains the secret, in a file of `folder`, which others cannot read.
+void open_in_browser(const std::string& address, const std::filesystem::path& folder) {
+  const std::filesystem::path page = folder / "orrery-view.html";
+  std::ofstream(page) << fmt::format("<!doctype html>\n<meta http-equiv=\"refresh\" content=\"0; url={}\">\n", address);
+  std::filesystem::permissions(page, std::filesystem::perms::owner_read | std::filesystem::perms::owner_write);
   // Results are printed to stdout, and a browser is talkative.
-  const std::string command = fmt::format("exec xdg-open {} > /dev/null 2>&1", base::quoted(address));
+  const std::string command = fmt::format("exec xdg-open {} > /dev/null 2>&1", base::quoted(page.string()));
   std::FILE* const browser = popen(command.c_str(), "re");
   std::thread([browser] {
     if (browser == nullptr || pclose(browser) != 0)
       print_message("orrery: --open: no browser was found; open the address in a browser\n");
   }).detach();
+}
+
+/// True if nobody can read stdout any more: the pipe is closed, or the terminal or SSH connection has hung up.
+bool reader_has_left() {
+  pollfd out{STDOUT_FILENO, 0, 0};
+  return poll(&out, 1, 0) > 0 && (out.revents & (POLLERR | POLLHUP)) != 0;
 }
 
 int run_view(ViewArguments& arguments, const Command& command) {
@@ -128,19 +144,21 @@ int run_view(ViewArguments& arguments, const Command& command) {
   view::Viewer viewer(make, fixed, first);
   const std::string secret = view::random_secret();
   view::Site site(viewer, controls, arguments.host, secret);
-  const auto server =
-      http::serve(arguments.host, arguments.port, [&](const http::Request& request) { return site.answer(request); });
-  site.set_port(server->port());
+  const auto server = http::serve(
+      arguments.host, arguments.port, [&](const http::Request& request) { return site.admits(request); },
+      [&](const http::Request& request) { return site.answer(request); });
+  const bool is_everywhere = arguments.host == "0.0.0.0";
   if (!arguments.host.starts_with("127."))
-    print_message(
-        fmt::format("orrery: warning: others can reach {}, and HTTP is not encrypted; SSH and 127.0.0.1 are "
-                    "safer\n",
-                    arguments.host));
-  const std::string address = fmt::format(
-      "http://{}:{}/?token={}", arguments.host == "0.0.0.0" ? "127.0.0.1" : arguments.host, server->port(), secret);
+    print_message(fmt::format(
+        "orrery: warning: the page is served on {}, to whoever has the printed address, and HTTP is not encrypted: "
+        "who reads the network can read the secret; ssh -L and 127.0.0.1 are safer\n",
+        is_everywhere ? "all IPv4 addresses of this machine" : arguments.host));
+  const std::string address =
+      fmt::format("http://{}:{}/?token={}", is_everywhere ? "127.0.0.1" : arguments.host, server->port(), secret);
   print_result(address + "\n");
-  if (arguments.opens) open_in_browser(address);
-  while (!stops && !(arguments.once && site.idle() > kGrace))
+  const base::TempDir folder;
+  if (arguments.opens) open_in_browser(address, folder.path());
+  while (!stops && !reader_has_left() && !(arguments.once && site.idle() > kGrace))
     std::this_thread::sleep_for(std::chrono::milliseconds(50));
   viewer.stop();
   return 0;
@@ -155,15 +173,18 @@ void add_view(Command& program) {
   arguments->own = {
       command.add_option("--port", arguments->port, "N", "Port to listen on; default: a free one")
           ->transform(whole_number(1, 65535)),
-      command.add_option("--host", arguments->host, "ADDRESS",
-                         "IPv4 address to listen on; default: 127.0.0.1, which only this machine reaches"),
+      command.add_option(
+          "--host", arguments->host, "ADDRESS",
+          "IPv4 address to listen on; default: 127.0.0.1, which only this machine reaches; 0.0.0.0: all, "
+          "in a container"),
       command.add_flag("--open", arguments->opens, "Open the page in the browser of this machine"),
       command.add_flag("--once", arguments->once, "End when the page has been closed"),
   };
   command.details(
-      "Prints the address of a page and serves it until INT or TERM. The address contains a secret; without --host, "
-      "only 127.0.0.1 is served. On another machine: ssh -L PORT:127.0.0.1:PORT HOST, with --port PORT here. The page "
-      "shows the command that makes its image. docs/view.md describes the page.");
+      "Prints the address of a page and serves it until INT, TERM, or the end of stdout's reader. The address contains "
+      "a secret; without --host, only 127.0.0.1 is served. On another machine: ssh -t -L PORT:127.0.0.1:PORT HOST, "
+      "with "
+      "--port PORT here. The page shows the command that makes its image. docs/view.md describes the page.");
   command.footer(
       "Examples:\n"
       "  orrery view melt.dump --color-by speed\n"

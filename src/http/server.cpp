@@ -4,10 +4,14 @@
 #include <arpa/inet.h>
 #include <microhttpd.h>
 #include <netinet/in.h>
+#include <sys/socket.h>
 
+#include <algorithm>
 #include <cerrno>
 #include <cstring>
+#include <deque>
 #include <exception>
+#include <mutex>
 
 #include <fmt/core.h>
 
@@ -17,14 +21,15 @@ namespace orrery::http {
 namespace {
 
 constexpr unsigned kMaxConnections = 256;
-constexpr unsigned kSilenceLimit_s = 5;               // before a first request: other clients may be waiting
-constexpr unsigned kIdleLimit_s = 60;                 // from then on; longer than any handler waits
+constexpr std::size_t kMaxStrangers = 128;            // connections that have not been admitted
+constexpr unsigned kSilenceLimit_s = 5;               // of strangers
+constexpr unsigned kIdleLimit_s = 60;                 // of others; longer than any handler waits
 constexpr std::size_t kConnectionMemory = 32 * 1024;  // limits the header of a request
 
 /// A request that is being received.
 struct Exchange {
   Request request;
-  bool is_too_large = false;
+  bool is_admitted = false, is_too_large = false;
 };
 
 std::string field(MHD_Connection* connection, const char* name) {
@@ -48,13 +53,21 @@ ssize_t read_body(void* body, std::uint64_t at, char* buffer, std::size_t size) 
 
 void release_body(void* body) { delete static_cast<Body*>(body); }
 
-MHD_Result send(MHD_Connection* connection, const Response& response) {
+/// Decodes %XX in place. A zero byte would end the text.
+std::size_t unescape(void*, MHD_Connection*, char* text) {
+  const std::size_t size = MHD_http_unescape(text);
+  std::replace(text, text + size, '\0', '\x1a');
+  return size;
+}
+
+MHD_Result send(MHD_Connection* connection, const Response& response, bool is_admitted) {
   constexpr std::size_t kBlock = 64 * 1024;
   MHD_Response* const out = response.body && !response.body->empty()
                                 ? MHD_create_response_from_callback(response.body->size(), kBlock, read_body,
                                                                     new Body(response.body), release_body)
                                 : MHD_create_response_from_buffer(0, nullptr, MHD_RESPMEM_PERSISTENT);
   if (out == nullptr) return MHD_NO;
+  if (!is_admitted) MHD_add_response_header(out, MHD_HTTP_HEADER_CONNECTION, "close");
   if (!response.type.empty()) MHD_add_response_header(out, "Content-Type", response.type.c_str());
   for (const auto& [name, value] : response.fields) MHD_add_response_header(out, name.c_str(), value.c_str());
   const MHD_Result result = MHD_queue_response(connection, static_cast<unsigned>(response.status), out);
@@ -64,12 +77,14 @@ MHD_Result send(MHD_Connection* connection, const Response& response) {
 
 class MicroServer : public Server {
  public:
-  MicroServer(const sockaddr_in& address, Handler handler) : handler_(std::move(handler)) {
-    daemon_ = MHD_start_daemon(MHD_USE_INTERNAL_POLLING_THREAD | MHD_USE_THREAD_PER_CONNECTION, 0, nullptr, nullptr,
-                               &MicroServer::receive, this, MHD_OPTION_SOCK_ADDR, &address, MHD_OPTION_CONNECTION_LIMIT,
-                               kMaxConnections, MHD_OPTION_CONNECTION_TIMEOUT, kSilenceLimit_s,
-                               MHD_OPTION_CONNECTION_MEMORY_LIMIT, kConnectionMemory, MHD_OPTION_NOTIFY_COMPLETED,
-                               &MicroServer::forget, nullptr, MHD_OPTION_STRICT_FOR_CLIENT, 1, MHD_OPTION_END);
+  MicroServer(const sockaddr_in& address, Admission admits, Handler handler)
+      : admits_(std::move(admits)), handler_(std::move(handler)) {
+    daemon_ = MHD_start_daemon(
+        MHD_USE_INTERNAL_POLLING_THREAD | MHD_USE_THREAD_PER_CONNECTION, 0, nullptr, nullptr, &MicroServer::receive,
+        this, MHD_OPTION_SOCK_ADDR, &address, MHD_OPTION_CONNECTION_LIMIT, kMaxConnections,
+        MHD_OPTION_CONNECTION_TIMEOUT, kSilenceLimit_s, MHD_OPTION_CONNECTION_MEMORY_LIMIT, kConnectionMemory,
+        MHD_OPTION_NOTIFY_CONNECTION, &MicroServer::notice, this, MHD_OPTION_NOTIFY_COMPLETED, &MicroServer::forget,
+        nullptr, MHD_OPTION_UNESCAPE_CALLBACK, &unescape, nullptr, MHD_OPTION_STRICT_FOR_CLIENT, 1, MHD_OPTION_END);
     if (daemon_ == nullptr)
       throw base::Error(
           base::ErrorKind::kCannotCreate,
@@ -83,8 +98,31 @@ class MicroServer : public Server {
   int port() const override { return port_; }
 
  private:
+  /// Notes that a connection begins or ends. Too many strangers: the one that has waited longest must go.
+  static void notice(void* self, MHD_Connection* connection, void**, MHD_ConnectionNotificationCode code) {
+    auto& server = *static_cast<MicroServer*>(self);
+    std::deque<MHD_Connection*>& strangers = server.strangers_;
+    const std::lock_guard lock(server.mutex_);
+    if (code == MHD_CONNECTION_NOTIFY_CLOSED) {
+      std::erase(strangers, connection);
+      return;
+    }
+    strangers.push_back(connection);
+    if (strangers.size() <= kMaxStrangers) return;
+    // Its thread then closes it; the descriptor stays valid until that has been noticed here.
+    shutdown(MHD_get_connection_info(strangers.front(), MHD_CONNECTION_INFO_CONNECTION_FD)->connect_fd, SHUT_RDWR);
+    strangers.pop_front();
+  }
+
+  void admit(MHD_Connection* connection) {
+    MHD_set_connection_option(connection, MHD_CONNECTION_OPTION_TIMEOUT, kIdleLimit_s);
+    const std::lock_guard lock(mutex_);
+    std::erase(strangers_, connection);
+  }
+
   static MHD_Result receive(void* self, MHD_Connection* connection, const char* url, const char* method, const char*,
                             const char* data, std::size_t* size, void** state) {
+    auto& server = *static_cast<MicroServer*>(self);
     if (*state == nullptr) {  // the header has been received
       auto exchange = std::make_unique<Exchange>();
       Request& request = exchange->request;
@@ -92,9 +130,10 @@ class MicroServer : public Server {
       request.path = url;
       request.host = field(connection, MHD_HTTP_HEADER_HOST);
       request.origin = field(connection, MHD_HTTP_HEADER_ORIGIN);
-      request.cookie = field(connection, MHD_HTTP_HEADER_COOKIE);
       request.authorization = field(connection, MHD_HTTP_HEADER_AUTHORIZATION);
       MHD_get_connection_values(connection, MHD_GET_ARGUMENT_KIND, add_argument, &request.query);
+      exchange->is_admitted = server.admits_(request);
+      if (exchange->is_admitted) server.admit(connection);
       *state = exchange.release();
       return MHD_YES;
     }
@@ -105,13 +144,13 @@ class MicroServer : public Server {
       *size = 0;
       return MHD_YES;
     }
-    MHD_set_connection_option(connection, MHD_CONNECTION_OPTION_TIMEOUT, kIdleLimit_s);
-    if (exchange.is_too_large) return send(connection, {413});
+    Response response{413};
     try {
-      return send(connection, static_cast<MicroServer*>(self)->handler_(exchange.request));
+      if (!exchange.is_too_large) response = server.handler_(exchange.request);
     } catch (const std::exception&) {
-      return send(connection, {500});
+      response.status = 500;
     }
+    return send(connection, response, exchange.is_admitted);
   }
 
   static void forget(void*, MHD_Connection*, void** state, MHD_RequestTerminationCode) {
@@ -119,20 +158,23 @@ class MicroServer : public Server {
     *state = nullptr;
   }
 
+  Admission admits_;
   Handler handler_;
+  std::mutex mutex_;                       // guards strangers_
+  std::deque<MHD_Connection*> strangers_;  ///< not admitted yet, the oldest first
   MHD_Daemon* daemon_;
   int port_;
 };
 
 }  // namespace
 
-std::unique_ptr<Server> serve(const std::string& address, int port, Handler handler) {
+std::unique_ptr<Server> serve(const std::string& address, int port, Admission admits, Handler handler) {
   sockaddr_in at{};
   at.sin_family = AF_INET;
   at.sin_port = htons(static_cast<std::uint16_t>(port));
   if (inet_pton(AF_INET, address.c_str(), &at.sin_addr) != 1)
     base::refuse(fmt::format("--host: `{}` is not an IPv4 address, e.g. 127.0.0.1", address));
-  return std::make_unique<MicroServer>(at, std::move(handler));
+  return std::make_unique<MicroServer>(at, std::move(admits), std::move(handler));
 }
 
 }  // namespace orrery::http

@@ -15,9 +15,9 @@ namespace orrery::http {
 inline constexpr std::size_t kLargestBody = 64 * 1024;
 
 struct Request {
-  std::string method, path;                         ///< "GET", "/frame"
-  std::map<std::string, std::string> query;         ///< decoded; the last value of a repeated name
-  std::string host, origin, cookie, authorization;  ///< header fields as sent; empty: none
+  std::string method, path;                  ///< "GET", "/frame"
+  std::map<std::string, std::string> query;  ///< decoded; the last value of a repeated name
+  std::string host, origin, authorization;   ///< header fields as sent; empty: none
   std::string body;
 };
 
@@ -28,6 +28,9 @@ struct Response {
   std::shared_ptr<const std::string> body = nullptr;
   std::vector<std::pair<std::string, std::string>> fields = {};  ///< further header fields
 };
+
+/// Whether a request, whose body has not been received yet, is that of a client. Called on the thread of a connection.
+using Admission = std::function<bool(const Request&)>;
 
 /// Answers a request. Called on the thread of a connection; may wait. What it throws is answered with 500.
 using Handler = std::function<Response(const Request&)>;
@@ -44,10 +47,11 @@ class Server {
 };
 
 /// Starts to serve HTTP/1.1 on an IPv4 address. Each connection has a thread. The number and the idle time of
-/// connections are limited; one that sends no request is closed after a few seconds.
+/// connections are limited. Those that are not of clients cannot lock clients out: they are closed after the first
+/// answer, after a few seconds of silence, or when too many others have come.
 ///
 /// `port`     0: a free port
 /// Errors     base::Error: kUsage for an address that is not IPv4; kCannotCreate if the port is in use
-std::unique_ptr<Server> serve(const std::string& address, int port, Handler handler);
+std::unique_ptr<Server> serve(const std::string& address, int port, Admission admits, Handler handler);
 
 }  // namespace orrery::http

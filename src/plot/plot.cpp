@@ -111,6 +111,7 @@ class PlotMaker {
     if (std::string& map = out_.points.color.map; options_.has_map) map = from_scene(map, options.scene_file);
     out_.points.frame = data_.fixed_frame();
     out_.frames = data_.numbers();
+    out_.up = up_;
     const scene::PointsKeys& points = out_.points;
     for (const std::string& text :
          {points.file.string(), options.color_by, points.color.column, points.color.map, points.radius.column,

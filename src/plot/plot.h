@@ -85,6 +85,7 @@ struct PlotScene {
   scene::PointsKeys points;
   annotation::LegendColors legend;
   std::string view;                  ///< view of the display
+  math::Vec3d up;                    ///< the up axis
   std::vector<std::string> columns;  ///< columns of the data that can be colours
   std::optional<int> frame_count;    ///< of the file; empty: unknown, since counting would read it
   std::optional<double> noise = {};  ///< target noise, unless the user limits samples, noise or time

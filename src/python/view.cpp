@@ -103,8 +103,9 @@ class ScenePage {
       controls.options[option] = {};
     const std::string secret = view::random_secret();
     site_ = std::make_unique<view::Site>(*viewer_, std::move(controls), "127.0.0.1", secret);
-    server_ = http::serve("127.0.0.1", port, [this](const http::Request& request) { return site_->answer(request); });
-    site_->set_port(server_->port());
+    server_ = http::serve(
+        "127.0.0.1", port, [this](const http::Request& request) { return site_->admits(request); },
+        [this](const http::Request& request) { return site_->answer(request); });
     address_ = fmt::format("http://127.0.0.1:{}/?token={}", server_->port(), secret);
   }
 

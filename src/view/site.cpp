@@ -61,15 +61,6 @@ Json json_of(const scene::Camera& camera) {
           {"size", is_perspective ? camera.vfov : camera.width.value_or(1)}};
 }
 
-/// The value of a cookie in a header field: "a=1; b=2".
-std::string cookie_of(const std::string& cookies, const std::string& name) {
-  const std::string all = "; " + cookies, before = "; " + name + "=";
-  const std::size_t begin = all.find(before);
-  if (begin == std::string::npos) return {};
-  const std::string value = all.substr(begin + before.size());
-  return value.substr(0, value.find("; "));
-}
-
 /// Compares in a time that does not depend on where the texts differ.
 bool is_equal(std::string_view a, std::string_view b) {
   if (a.size() != b.size()) return false;
@@ -78,8 +69,9 @@ bool is_equal(std::string_view a, std::string_view b) {
   return difference == 0;
 }
 
-/// The types and the texts of the files that the page loads.
+/// The types and the texts of the page and the files that it loads. They are the same for everybody.
 const std::map<std::string, std::pair<const char*, const char*>> kPageFiles = {
+    {"/", {"text/html; charset=utf-8", kPageHtml}},
     {"/view.js", {"text/javascript; charset=utf-8", kPageScript}},
     {"/camera.js", {"text/javascript; charset=utf-8", kCameraScript}},
     {"/view.css", {"text/css; charset=utf-8", kPageStyle}}};
@@ -119,29 +111,25 @@ bool Site::is_for_us(const http::Request& request) const {
       request.host.find_first_not_of("0123456789", colon + 1) != std::string::npos)
     return false;
   const std::string name = request.host.substr(0, colon);
-  if (name != "127.0.0.1" && name != "localhost" && name != "[::1]" && name != host_) return false;
+  // Listening on all addresses, it has names that are not known here. An address is no name of another site.
+  const bool is_address = host_ == "0.0.0.0" && name.find_first_not_of("0123456789.") == std::string::npos;
+  if (name != "127.0.0.1" && name != "localhost" && name != "[::1]" && name != host_ && !is_address) return false;
   return request.origin.empty() || request.origin == "http://" + request.host;
 }
 
-bool Site::has_secret(const http::Request& request) const {
-  const auto token = request.query.find("token");
-  return is_equal(request.authorization, "Bearer " + secret_) ||
-         is_equal(cookie_of(request.cookie, cookie_name()), secret_) ||
-         (token != request.query.end() && is_equal(token->second, secret_));
+bool Site::admits(const http::Request& request) const {
+  return is_for_us(request) && is_equal(request.authorization, "Bearer " + secret_);
 }
-
-/// Cookies are shared by all ports of a host.
-std::string Site::cookie_name() const { return fmt::format("orrery{}", port_.load()); }
 
 http::Response Site::answer(const http::Request& request) {
   http::Response out;
   const bool is_post = request.path == "/wish";
   const auto file = request.method == "GET" ? kPageFiles.find(request.path) : kPageFiles.end();
-  if (is_for_us(request) && file != kPageFiles.end()) {
-    // In a notebook, browsers may keep cookies from the page: it then sends the secret itself. Its files are not
-    // secret.
+  if (!is_for_us(request)) {
+    out = text(403, "orrery view: open the address that the command printed, not another name of this machine");
+  } else if (file != kPageFiles.end()) {
     out = {200, file->second.first, std::make_shared<const std::string>(file->second.second)};
-  } else if (!is_for_us(request) || !has_secret(request)) {
+  } else if (!admits(request)) {
     out = text(403, "orrery view: open the address that the command printed");
   } else if (request.method != (is_post ? "POST" : "GET")) {
     out = text(405, "method not allowed");
@@ -163,7 +151,7 @@ http::Response Site::answer(const http::Request& request) {
     else if (request.path == "/scene.toml")
       out = scene();
     else
-      out = page(request);
+      out = text(404, "not found");
   }
   out.fields.emplace_back("Cache-Control", "no-store");
   out.fields.emplace_back("X-Content-Type-Options", "nosniff");
@@ -172,14 +160,6 @@ http::Response Site::answer(const http::Request& request) {
   out.fields.emplace_back("Content-Security-Policy",
                           "default-src 'none'; script-src 'self'; style-src 'self'; img-src 'self' blob: data:; "
                           "connect-src 'self'; base-uri 'none'; form-action 'none'");
-  return out;
-}
-
-http::Response Site::page(const http::Request& request) const {
-  if (request.path != "/") return text(404, "not found");
-  http::Response out{200, "text/html; charset=utf-8", std::make_shared<const std::string>(kPageHtml)};
-  out.fields.emplace_back("Set-Cookie",
-                          fmt::format("{}={}; HttpOnly; SameSite=Strict; Path=/", cookie_name(), secret_));
   return out;
 }
 
@@ -211,7 +191,7 @@ http::Response Site::pick(const http::Request& request) {
   try {
     picked = viewer_.pick(*x, *y);
   } catch (const base::Error& error) {
-    return text(500, error.what());
+    return text(500, text_of(error));
   }
   if (!picked) return json(nullptr);
   return json({{"title", picked->title},
@@ -248,6 +228,7 @@ http::Response Site::state() const {
               {"problem", state.problem},
               {"served", state.served},
               {"fitted", !state.wish.camera},
+              {"up", vector_of(state.subject.up.value_or(math::Vec3d{0, 1, 0}))},
               {"command", controls_.command(state.words)},
               {"film", controls_.film ? controls_.film(state.words) : ""}};
   out["camera"] = state.camera ? json_of(*state.camera) : Json();

@@ -24,17 +24,18 @@ struct Controls {
 
 /// The page and what it requests, by HTTP.
 ///
-/// A request is answered only if it carries the secret, as a cookie, in a header or in the address, and names this host
-/// by its address or a name of the loopback interface: pages of other sites cannot ask, not even with a DNS name of
-/// their own that they redirect. Nothing that a client sends is a name of a file.
+/// A request is answered only if it carries the secret in a header, and names this host by its address or a name of the
+/// loopback interface: pages of other sites cannot ask, not even with a DNS name of their own that they redirect. The
+/// page itself is the same for everybody; it finds the secret in its address. Nothing that a client sends is a name of
+/// a file.
 class Site {
  public:
-  /// `host`     address that the server listens on
+  /// `host`     address that the server listens on; "0.0.0.0": all addresses
   /// `secret`   at least 128 random bits, as text for an address
   Site(Viewer& viewer, Controls controls, std::string host, std::string secret);
 
-  /// The port is known only when the server runs.
-  void set_port(int port) { port_ = port; }
+  /// Whether a request is for this host, and carries the secret.
+  bool admits(const http::Request& request) const;
 
   http::Response answer(const http::Request& request);
 
@@ -45,9 +46,6 @@ class Site {
   using Clock = std::chrono::steady_clock;
 
   bool is_for_us(const http::Request& request) const;
-  bool has_secret(const http::Request& request) const;
-  std::string cookie_name() const;
-  http::Response page(const http::Request& request) const;
   http::Response frame(const http::Request& request);
   http::Response state() const;
   http::Response pick(const http::Request& request);
@@ -58,7 +56,6 @@ class Site {
   Viewer& viewer_;
   const Controls controls_;
   const std::string host_, secret_;
-  std::atomic<int> port_{0};
   std::atomic<Clock::time_point> last_request_{};  ///< that carried the secret
 };
 

@@ -5,9 +5,9 @@
 #include <cmath>
 #include <exception>
 #include <new>
-#include <numeric>
 #include <optional>
 #include <span>
+#include <string_view>
 #include <utility>
 
 #include <fmt/core.h>
@@ -23,51 +23,95 @@
 #include "image/write.h"
 #include "job/job.h"
 #include "job/outputs.h"
+#include "load/read_scene.h"
+#include "math/pixels.h"
 
 namespace orrery::view {
 namespace {
 
 using Clock = std::chrono::steady_clock;
 
-/// Time for a moving image, of which developing and encoding take a part.
-constexpr double kMovingTime_s = 0.045;
-constexpr int kNarrowestMoving = 160;  // px
-constexpr int kMovingDepth = 4;        // of paths
+/// Time for a sketch, of which developing and encoding take a part.
+constexpr double kSketchTime_s = 0.045;
+constexpr int kNarrowestSketch = 160;  // px
 constexpr std::chrono::milliseconds kRefresh{150};
-/// Time for which an image with parts that are not rendered yet is held back: the one before is shown longer.
-constexpr std::chrono::milliseconds kHoldBack{1000};
-constexpr int kMovingQuality = 60, kQuality = 85;  // of JPEG
-
-/// Text of an error with its diagnostics, a line each.
-std::string text_of(const base::Error& error) {
-  std::string out = error.what();
-  for (const base::Diagnostic& diagnostic : error.diagnostics())
-    out += "\n" + diagnostic.text + (diagnostic.remedy.empty() ? "" : "; " + diagnostic.remedy);
-  return out;
-}
+/// Samples per pixel with which an image has replaced its sketch: single samples may be black.
+constexpr double kFadeSamples = 8;
+constexpr int kSketchQuality = 75, kQuality = 85;  // of JPEG
 
 double pixels_of(int width, int height) { return static_cast<double>(width) * static_cast<double>(height); }
 
+/// Lights an image without shading, which has normals, from the camera. Lamps, which are black in it, become white.
+void light(film::Picture& picture, const scene::Camera& camera) {
+  const math::Vec3d back = math::normalized(camera.look_from - camera.look_at);
+  const auto plane = [&picture](const char* name) {
+    const auto is_it = [name](const film::Plane& p) { return p.name == name; };
+    return std::find_if(picture.planes.begin(), picture.planes.end(), is_it)->values.data();
+  };
+  float* const color[3] = {plane("R"), plane("G"), plane("B")};
+  const float* const normal[3] = {plane("N.X"), plane("N.Y"), plane("N.Z")};
+  for (std::size_t i = 0; i < math::pixel_count(picture.width, picture.height); ++i) {
+    const math::Vec3d n{normal[0][i], normal[1][i], normal[2][i]};
+    if (n == math::Vec3d{}) continue;  // the background
+    const bool is_lamp = color[0][i] + color[1][i] + color[2][i] == 0;
+    const auto factor = static_cast<float>(0.4 + 0.6 * std::abs(math::dot(n, back)));  // edges keep some light
+    for (float* const c : color) c[i] = (is_lamp ? 1 : c[i]) * factor;
+  }
+}
+
+/// Interpolates an image linearly to another size. Result: R, G, B codes
+std::vector<std::uint8_t> resized(const film::EncodedPicture& from, int width, int height) {
+  const auto place = [](int i, int count, int from_count) {
+    return std::clamp(
+        (static_cast<float>(i) + 0.5f) * static_cast<float>(from_count) / static_cast<float>(count) - 0.5f, 0.0f,
+        static_cast<float>(from_count - 1));
+  };
+  std::vector<std::uint8_t> out;
+  out.reserve(3 * math::pixel_count(width, height));
+  for (int y = 0; y < height; ++y) {
+    const float v = place(y, height, from.height);
+    const int top = static_cast<int>(v), bottom = std::min(top + 1, from.height - 1);
+    for (int x = 0; x < width; ++x) {
+      const float u = place(x, width, from.width);
+      const int left = static_cast<int>(u), right = std::min(left + 1, from.width - 1);
+      for (std::size_t c = 0; c < 3; ++c) {
+        const auto code = [&](int column, int row) -> float {
+          return from.values[3 * math::pixel_index(column, row, from.width) + c];
+        };
+        const float above = std::lerp(code(left, top), code(right, top), u - static_cast<float>(left)),
+                    below = std::lerp(code(left, bottom), code(right, bottom), u - static_cast<float>(left));
+        out.push_back(static_cast<std::uint8_t>(std::lerp(above, below, v - static_cast<float>(top)) + 0.5f));
+      }
+    }
+  }
+  return out;
+}
+
 }  // namespace
+
+std::string text_of(const base::Error& error) {
+  std::string out;
+  for (const base::Diagnostic& diagnostic : error.diagnostics()) out += base::formatted(diagnostic);
+  return out + error.what();
+}
 
 /// An image that is being rendered, and its development so far.
 struct Viewer::Live {
-  Live(const display::PictureInfo& info, const annotation::Drawing& drawing)
+  Live(const display::PictureInfo& info, const annotation::Drawing& drawing, const film::EncodedPicture& sketch)
       : canvas(info.width, info.height),
         develop(info.display),
-        codes(3 * static_cast<std::size_t>(info.width) * static_cast<std::size_t>(info.height)) {
+        base(resized(sketch, info.width, info.height)),
+        codes(base) {
     if (!drawing.is_empty()) overlay = annotation::draw(drawing, annotation::shown_by(info.display));
-    empty_cells.resize(canvas.cell_count());
-    std::iota(empty_cells.begin(), empty_cells.end(), std::size_t{0});
   }
 
   preview::Canvas canvas;
   display::PixelDeveloper develop;
   std::optional<annotation::Overlay> overlay;  ///< without outlines, which are found when the image is complete
+  const std::vector<std::uint8_t> base;        ///< codes of the sketch
   std::mutex mutex;                            // guards what follows
   std::vector<std::uint8_t> codes;
-  std::vector<std::size_t> empty_cells = {};  ///< ascending
-  Clock::time_point next = Clock::now(), hold_end = next + kHoldBack;
+  Clock::time_point next = Clock::now();
   std::atomic<double> samples{0};  ///< per pixel
   std::uint64_t wish = 0;
 };
@@ -96,7 +140,7 @@ void Viewer::stop() {
 std::uint64_t Viewer::ask(Wish wish) {
   const std::lock_guard lock(mutex_);
   const bool keeps_moving = moves_ && wish.options == state_.wish.options;
-  if (is_cancellable_ && !keeps_moving) cancel_ = true;  // moving images are completed, or none would be seen
+  if (is_cancellable_ && !keeps_moving) cancel_ = true;  // images of a drag are completed, or none would be seen
   state_.wish = std::move(wish);
   announce();
   return ++asked_;
@@ -154,21 +198,20 @@ void Viewer::refresh(Live& live) {
   if (Clock::now() < live.next) return;
   const std::vector<std::size_t> cells = live.canvas.take_changed();
   if (cells.empty()) return;
-  const auto row_codes = 3 * static_cast<std::size_t>(live.canvas.width());
+  const double fade = std::min(live.samples / kFadeSamples, 1.0);
   std::vector<float> rgb(3 * static_cast<std::size_t>(preview::Canvas::kSide));
   for (const std::size_t index : cells) {
     const preview::Cell cell = live.canvas.cell(index);
     for (int y = cell.y; y < cell.y + cell.height; ++y) {
-      const std::span codes(&live.codes[static_cast<std::size_t>(y) * row_codes + 3 * static_cast<std::size_t>(cell.x)],
-                            3 * static_cast<std::size_t>(cell.width));
+      const std::size_t begin = 3 * math::pixel_index(cell.x, y, live.canvas.width());
+      const std::span codes(&live.codes[begin], 3 * static_cast<std::size_t>(cell.width));
       live.canvas.read(cell.x, y, cell.width, rgb.data());
       live.develop(rgb.data(), static_cast<std::size_t>(cell.width), codes.data());
+      for (std::size_t i = 0; i < codes.size(); ++i)
+        codes[i] = static_cast<std::uint8_t>(std::lerp(live.base[begin + i], codes[i], fade) + 0.5);
       if (live.overlay) annotation::blend(*live.overlay, cell.x, y, codes);
     }
   }
-  std::erase_if(live.empty_cells,
-                [&](std::size_t cell) { return std::binary_search(cells.begin(), cells.end(), cell); });
-  if (!live.empty_cells.empty() && Clock::now() < live.hold_end) return;
   Frame frame;
   frame.width = live.canvas.width();
   frame.height = live.canvas.height();
@@ -190,17 +233,24 @@ void Viewer::run() {
   for (;;) {
     changed_.wait(lock, [this] { return stops_ || asked_ != served_; });
     if (stops_) return;
-    const Wish wish = state_.wish;
+    Wish wish = state_.wish;
     const std::uint64_t number = asked_;
     moves_ = wish.moves;
     cancel_ = false;
-    is_cancellable_ = false;
+    is_cancellable_ = made_options_ != wish.options;  // make_subject() may read for long
     lock.unlock();
     std::string problem;
     bool was_stopped = false;
     try {
-      if (made_options_ != wish.options) make_subject(wish);
-      render(wish, number);
+      if (made_options_ != wish.options) make_subject(wish, number);
+      if (wish.camera && wish.camera->projection != projection_) {  // its settings would fit another camera
+        wish.camera.reset();
+        correct(wish, number);
+      }
+      const std::vector<std::string> words = words_of(fixed_, wish);
+      if (wish.moves || sketched_words_ != words) render(wish, number, true);
+      sketched_words_ = words;
+      if (!wish.moves) render(wish, number, false);
     } catch (const base::Error& error) {
       was_stopped = error.kind() == base::ErrorKind::kStopped;
       if (!was_stopped) problem = text_of(error);
@@ -218,54 +268,73 @@ void Viewer::run() {
   }
 }
 
-void Viewer::make_subject(const Wish& wish) {
-  {
-    const std::lock_guard lock(mutex_);
-    is_cancellable_ = true;
-    state_.activity = "reading";
-    announce();
-  }
+/// Replaces a wish, unless another one has come.
+void Viewer::correct(const Wish& wish, std::uint64_t number) {
+  const std::lock_guard lock(mutex_);
+  if (asked_ == number) state_.wish = wish;
+}
+
+void Viewer::make_subject(Wish& wish, std::uint64_t number) {
+  set_activity("reading");
   const base::StopScope scope(&cancel_);
+  if (wish.options.erase(kAllFrames) > 0) {
+    std::map<std::string, std::string> film = wish.options;
+    film.erase("--frame");
+    film[kAllFrames] = "all";
+    const Subject all = make_(words_of(fixed_, {film}));
+    if (const auto range = all.chosen.find("--range"); range != all.chosen.end())
+      wish.options["--range"] = range->second;
+    correct(wish, number);
+  }
   Subject subject = make_(words_of(fixed_, {wish.options}));  // without the camera
+  const scene::Scene scene = load::authored_scene(subject.job.scene);
+  if (!subject.up) subject.up = scene.camera.up;
+  if (scene.annotation.color_bar) subject.legend.clear();  // it is in the image
   made_options_ = wish.options;
   is_new_subject_ = true;
+  projection_ = scene.camera.projection;
+  shading_ = scene.render.shading;
   const std::lock_guard lock(mutex_);
-  is_cancellable_ = false;
+  if (state_.width == 0) state_.first_size = {scene.image.width, scene.image.height};
+  state_.width = scene.image.width;
+  state_.height = scene.image.height;
   state_.subject = std::move(subject);
 }
 
 /// An image that is made for a wish.
 struct Viewer::Image {
   std::uint64_t wish = 0;  ///< its number
-  bool moves = false;
+  bool is_sketch = false;
+  bool is_last = false;  ///< of the wish
   std::vector<std::string> warnings = {};
   std::shared_ptr<job::Rendering> rendering = std::make_shared<job::Rendering>();
-  std::shared_ptr<Live> live = nullptr;  ///< null for a moving image
+  std::shared_ptr<Live> live = nullptr;  ///< null for a sketch
   double build_reported = -1;            ///< fraction of the BVH build that the state tells; negative: none
 };
 
-void Viewer::render(const Wish& wish, std::uint64_t number) {
-  job::Job job = state_.subject.job;  // written by this thread only
-  int width = 0, height = 0;
+void Viewer::render(const Wish& wish, std::uint64_t number, bool is_sketch) {
   {
     const std::lock_guard lock(mutex_);
-    width = state_.width;
-    height = state_.height;
+    if (cancel_) throw base::Error(base::ErrorKind::kStopped, "another wish has come");
+    is_cancellable_ = false;  // until the scene is prepared
     finished_ = nullptr;
   }
+  job::Job job = state_.subject.job;  // the subject and its size are written by this thread only
   if (wish.camera)
     for (const std::string& setting : camera_settings(*wish.camera)) job.scene.overrides.add(setting);
-  Image image{number, wish.moves && width > 0};
-  if (image.moves) {
-    const double pixels = std::max(pixels_per_second_ * kMovingTime_s, 1.0);
+  Image image{number, is_sketch, is_sketch == wish.moves};
+  if (is_sketch) {
+    const int width = state_.width, height = state_.height;
+    const double pixels = std::max(pixels_per_second_ * kSketchTime_s, 1.0);
     const double scale =
-        std::clamp(std::sqrt(pixels / pixels_of(width, height)), std::min(1.0, double{kNarrowestMoving} / width), 1.0);
+        std::clamp(std::sqrt(pixels / pixels_of(width, height)), std::min(1.0, double{kNarrowestSketch} / width), 1.0);
     const auto side = [scale](int full) { return std::max(1, static_cast<int>(std::lround(full * scale))); };
     job.scene.overrides.add(fmt::format("image.width={}", side(width)));
     job.scene.overrides.add(fmt::format("image.height={}", side(height)));
     job.scene.overrides.add("render.samples=1");
     job.scene.overrides.add("annotation.outline=0");
-    if (prepared_depth_ > kMovingDepth) job.scene.overrides.add(fmt::format("render.max_depth={}", kMovingDepth));
+    job.scene.overrides.add("output.layers=[\"N\"]");
+    if (shading_ == scene::Shading::kPath) job.scene.overrides.add("render.shading=flat");
     job.sampling = {};
     job.denoise = false;
   }
@@ -277,8 +346,9 @@ void Viewer::render(const Wish& wish, std::uint64_t number) {
   job::run_job(job);
   picker_.open();
   finish(image);
-  if (image.moves)
-    pixels_per_second_ = pixels_of(image.rendering->picture.width, image.rendering->picture.height) / watch.seconds();
+  const job::Phases& phases = image.rendering->report.phases;
+  const double seconds = watch.seconds() - phases.read_s - phases.compile_s - phases.build_s;
+  if (is_sketch) pixels_per_second_ = pixels_of(sketch_.width, sketch_.height) / std::max(seconds, 1e-3);
 }
 
 job::Hooks Viewer::hooks_for(Image& image) {
@@ -286,13 +356,13 @@ job::Hooks Viewer::hooks_for(Image& image) {
   hooks.cancel = &cancel_;
   hooks.develops_pixels = true;
   hooks.on_warning = [&image](const base::Diagnostic& warning) { image.warnings.push_back(base::formatted(warning)); };
-  hooks.on_preparation = [this, &image](const char*, double fraction) {
-    if (fraction - image.build_reported < 0.05) return;  // only a build reports more than its start
+  hooks.on_preparation = [this, &image](const char* phase, double fraction) {
+    if (std::string_view(phase) != "building" || fraction - image.build_reported < 0.05) return;
     image.build_reported = fraction;
     set_activity(fmt::format("building the BVH: {:.0f} %", 100 * fraction));
   };
   hooks.on_start = [this, &image](const display::PictureInfo& info) { begin(image, info); };
-  if (image.moves) return hooks;
+  if (image.is_sketch) return hooks;
   hooks.on_pixels = [&image](const film::Partial& state, const film::RenderedPixels& rendered) {
     image.live->canvas.write(state, rendered);
   };
@@ -309,8 +379,8 @@ job::Hooks Viewer::hooks_for(Image& image) {
 
 /// Tells clients about an image whose scene has been read.
 void Viewer::begin(Image& image, const display::PictureInfo& info) {
-  if (!image.moves) {
-    image.live = std::make_shared<Live>(info, image.rendering->drawing);
+  if (!image.is_sketch) {
+    image.live = std::make_shared<Live>(info, image.rendering->drawing, sketch_);
     image.live->wish = image.wish;
   }
   const scene::Scene& scene = prepared_->loaded().read.scene;
@@ -319,13 +389,7 @@ void Viewer::begin(Image& image, const display::PictureInfo& info) {
   is_cancellable_ = true;
   state_.warnings = image.warnings;
   state_.camera = scene.camera;
-  if (!image.moves) {
-    if (asked_ != image.wish) cancel_ = true;
-    prepared_depth_ = scene.render.max_depth;
-    if (state_.width == 0) state_.first_size = {info.width, info.height};
-    state_.width = info.width;
-    state_.height = info.height;
-  }
+  if (!image.is_sketch && asked_ != image.wish) cancel_ = true;
   state_.activity.clear();
   state_.problem.clear();  // that of a wish before
   announce();
@@ -334,7 +398,9 @@ void Viewer::begin(Image& image, const display::PictureInfo& info) {
 /// Publishes a finished image.
 void Viewer::finish(Image& image) {
   const job::Rendering& rendering = *image.rendering;
-  const film::EncodedPicture picture =
+  if (image.is_sketch && shading_ == scene::Shading::kPath)
+    light(image.rendering->picture, prepared_->loaded().read.scene.camera);
+  film::EncodedPicture picture =
       job::develop_annotated(rendering.picture, rendering.drawing, rendering.display, 8, display::Alpha::kOverBlack);
   const render::Statistics& statistics = rendering.report.render;
   Frame frame;
@@ -342,23 +408,25 @@ void Viewer::finish(Image& image) {
   frame.height = picture.height;
   frame.samples = static_cast<double>(statistics.paths) / pixels_of(picture.width, picture.height);
   frame.wish = image.wish;
-  frame.is_finished = !image.moves;
+  frame.is_finished = !image.is_sketch;
   frame.noise = statistics.noise;
-  frame.type = image.moves ? "image/jpeg" : "image/png";
-  if (image.moves) {
+  frame.type = image.is_sketch ? "image/jpeg" : "image/png";
+  if (image.is_sketch) {
     const std::vector<std::uint8_t> codes(picture.values.begin(), picture.values.end());
     frame.bytes = std::make_shared<const std::string>(
-        image::jpeg_bytes(picture.width, picture.height, codes.data(), kMovingQuality));
+        image::jpeg_bytes(picture.width, picture.height, codes.data(), kSketchQuality));
+    sketch_ = std::move(picture);
   } else {
     frame.bytes = std::make_shared<const std::string>(image::png_bytes(picture, image::kUncompressed));
   }
   const std::lock_guard lock(mutex_);
   live_ = nullptr;
-  if (!image.moves) finished_ = image.rendering;
+  if (!image.is_sketch) finished_ = image.rendering;
   frame.number = frame_.number + 1;
   frame_ = std::move(frame);
+  changed_.notify_all();
   state_.warnings = std::move(image.warnings);  // more may have come while it was rendered
-  set_served(image.wish, "");
+  if (image.is_last) set_served(image.wish, "");
 }
 
 }  // namespace orrery::view

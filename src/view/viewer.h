@@ -15,9 +15,12 @@
 #include <thread>
 #include <vector>
 
+#include "base/error.h"
+#include "film/picture.h"
 #include "job/job.h"
 #include "job/prepared_scene.h"
 #include "job/rendering.h"
+#include "math/vec3.h"
 #include "preview/canvas.h"
 #include "scene/scene.h"
 #include "view/picker.h"
@@ -34,7 +37,14 @@ struct Subject {
   std::optional<int> frame_count = 1;              ///< frames of a data file; empty: unknown
   std::vector<int> frames = {};                    ///< to render, of a film
   std::string legend = {};                         ///< SVG; empty: none
+  std::optional<math::Vec3d> up = {};              ///< what drags keep upright; empty: that of the scene's camera
 };
+
+/// A control of the page that stays out of the command: it becomes the --range of all frames.
+inline constexpr const char* kAllFrames = "--frames";
+
+/// An error with its diagnostics, as the command line reports it.
+std::string text_of(const base::Error& error);
 
 /// Makes the subject of a command line.
 ///
@@ -71,8 +81,9 @@ struct State {
 
 /// Renders what clients want to see, on one thread, with one prepared scene.
 ///
-/// While a wish moves, images are as large as can be rendered in 45 ms and have one sample per pixel. The last
-/// wish is rendered completely; meanwhile, frame() returns what is finished so far.
+/// The first image of a wish is a sketch: without lighting, one sample per pixel, as large as can be rendered in 45 ms.
+/// A wish that does not move is then rendered completely; meanwhile, frame() returns the sketch with what is rendered
+/// so far over it.
 class Viewer {
  public:
   /// `fixed`    words of the command line that no control sets
@@ -104,8 +115,9 @@ class Viewer {
   struct Image;
 
   void run();
-  void make_subject(const Wish& wish);
-  void render(const Wish& wish, std::uint64_t number);
+  void make_subject(Wish& wish, std::uint64_t number);
+  void correct(const Wish& wish, std::uint64_t number);
+  void render(const Wish& wish, std::uint64_t number, bool is_sketch);
   job::Hooks hooks_for(Image& image);
   void begin(Image& image, const display::PictureInfo& info);
   void finish(Image& image);
@@ -133,10 +145,13 @@ class Viewer {
   // Of the rendering thread.
   bool is_new_subject_ = false;                                     ///< it has not been rendered yet
   std::optional<std::map<std::string, std::string>> made_options_;  ///< of the subject
+  scene::Projection projection_ = {};                               ///< of the subject's own camera
+  scene::Shading shading_ = {};                                     ///< of the subject
   std::shared_ptr<job::PreparedScene> prepared_;
   Picker picker_;
-  double pixels_per_second_ = 1e6;  ///< of moving images
-  int prepared_depth_ = 0;          ///< render.max_depth of the scene
+  double pixels_per_second_ = 4e6;                          ///< of sketches
+  film::EncodedPicture sketch_;                             ///< the last one
+  std::optional<std::vector<std::string>> sketched_words_;  ///< what it shows
   std::thread thread_;
 };
 

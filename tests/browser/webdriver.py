@@ -139,6 +139,18 @@ class Browser:
         with open(file, "wb") as out:
             out.write(base64.b64decode(self._request("GET", "/screenshot")))
 
+    def download(self, folder, name, button):
+        """Clicks a button that downloads a file of this name, and returns the file."""
+        self._devtools("Browser.setDownloadBehavior", behavior="allow", downloadPath=str(folder))
+        file = folder / name
+        file.unlink(missing_ok=True)
+        self.run("document.querySelector(arguments[0]).click()", button)
+        for _ in range(3000):
+            if file.exists():  # under this name only when it is complete
+                return file
+            time.sleep(0.1)
+        raise AssertionError(f"{name} is not downloaded")
+
     def errors(self):
         """Messages of the browser's console that are errors."""
         return [entry["message"] for entry in self._request("POST", "/se/log", {"type": "browser"})

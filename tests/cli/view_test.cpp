@@ -4,8 +4,10 @@
 #include <unistd.h>
 
 #include <cstdlib>
+#include <filesystem>
 #include <random>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include <nlohmann/json.hpp>
@@ -36,15 +38,15 @@ class Served {
       _exit(127);
     }
     close(ends[1]);
-    for (char c = 0; read(ends[0], &c, 1) == 1 && c != '\n';) address_ += c;
-    close(ends[0]);
+    stdout_ = ends[0];
+    for (char c = 0; read(stdout_, &c, 1) == 1 && c != '\n';) address_ += c;
     const std::size_t port = address_.find(":", 7), token = address_.find("token=");
     if (port != std::string::npos) port_ = std::atoi(address_.c_str() + port + 1);
-    if (token != std::string::npos)
-      cookie_ = "Cookie: orrery" + std::to_string(port_) + "=" + address_.substr(token + 6) + "\r\n";
+    if (token != std::string::npos) secret_ = "Authorization: Bearer " + address_.substr(token + 6) + "\r\n";
   }
   ~Served() {
     if (child_ > 0) end(SIGKILL);
+    stop_reading();
   }
   Served(const Served&) = delete;
   Served& operator=(const Served&) = delete;
@@ -52,13 +54,13 @@ class Served {
   const std::string& address() const { return address_; }
   int port() const { return port_; }
 
-  support::HttpAnswer get(const std::string& path) const { return support::http_request(port_, "GET", path, cookie_); }
+  support::HttpAnswer get(const std::string& path) const { return support::http_request(port_, "GET", path, secret_); }
 
   /// Requests an image and waits until it is complete, or refused.
   ///
   /// Result     the state of the page
   Json wish(const Json& wanted) const {
-    const support::HttpAnswer answer = support::http_request(port_, "POST", "/wish", cookie_, wanted.dump());
+    const support::HttpAnswer answer = support::http_request(port_, "POST", "/wish", secret_, wanted.dump());
     EXPECT_EQ(answer.status, 200) << answer.body;
     const int number = Json::parse(answer.body)["wish"];
     for (;;) {
@@ -66,6 +68,11 @@ class Served {
       if (state["served"] >= number) return state;
       get("/frame?after=1000000000&state=" + state["number"].dump());  // waits for another state
     }
+  }
+
+  /// Closes the pipe from the program.
+  void stop_reading() {
+    if (stdout_ >= 0) close(std::exchange(stdout_, -1));
   }
 
   /// Ends the program. Result: exit status, or 128 + the signal that ended it
@@ -82,8 +89,8 @@ class Served {
 
  private:
   pid_t child_ = 0;
-  std::string address_, cookie_;
-  int port_ = 0;
+  std::string address_, secret_;
+  int port_ = 0, stdout_ = -1;
 };
 
 class CliView : public ProgramTest {
@@ -184,6 +191,35 @@ TEST_F(CliView, RandomWalksThroughTheControlsMakeThePictureOfTheCommand) {
   }
 }
 
+TEST_F(CliView, PlayUsesTheRangeOfAllFrames) {
+  write_melt();
+  const Served view(folder_, {"melt.dump", "--width", "48", "--height", "36", "--samples", "2", "--color-by", "speed"});
+  const Json options = {{"--width", "48"}, {"--height", "36"}, {"--samples", "2"}, {"--color-by", "speed"}};
+  Json wanted = {{"options", options}};
+  wanted["options"]["--frame"] = "2";
+  EXPECT_EQ(view.wish(wanted)["options"]["--range"]["chosen"], "0:26");
+  wanted["options"]["--frames"] = "all";
+  const Json shown = view.wish(wanted);
+  EXPECT_EQ(shown["problem"], "");
+  EXPECT_EQ(shown["options"]["--range"]["value"], "0:52");
+  expect_same_picture(view, shown);
+  EXPECT_NE(shown["legend"], "");
+  wanted["options"]["--color-bar"] = "on";
+  EXPECT_EQ(view.wish(wanted)["legend"], "") << "it is in the image";
+}
+
+TEST_F(CliView, ACameraOfAnotherKindMakesThePictureOfTheCommand) {
+  write_melt();
+  const Served view(folder_, {"melt.dump", "--width", "48", "--height", "36", "--samples", "2"});
+  Json camera = view.wish({{"options", {{"--width", "48"}, {"--height", "36"}, {"--samples", "2"}}}})["camera"];
+  EXPECT_FALSE(camera["perspective"]);
+  camera["perspective"] = true;
+  camera["size"] = 40;
+  camera["look_from"][0] = 7;
+  expect_same_picture(
+      view, view.wish({{"camera", camera}, {"options", {{"--width", "32"}, {"--height", "36"}, {"--samples", "2"}}}}));
+}
+
 TEST_F(CliView, AScenesPictureIsThatOfTheCommand) {
   const Served view(folder_, {"good.toml", "--set", "camera.look_from=[0.5, 0.25, 2]"});
   const Json first = view.wish({{"options", {{"--set", "camera.look_from=[0.5, 0.25, 2]"}}}});
@@ -202,6 +238,28 @@ TEST_F(CliView, IntAndTermEndItWithStatus0) {
     EXPECT_EQ(view.end(number), 0);
     EXPECT_EQ(file_count(), 0);
   }
+}
+
+TEST_F(CliView, ItEndsWithTheReaderOfItsOutput) {
+  Served view(folder_, {"good.toml"});
+  ASSERT_EQ(view.get("/state").status, 200);
+  view.stop_reading();
+  EXPECT_EQ(view.wait(), 0);
+}
+
+TEST_F(CliView, TheBrowserFindsTheSecretInAFileThatOthersCannotRead) {
+  std::filesystem::create_directory(folder_ / "bin");
+  write("bin/xdg-open",
+        "#!/bin/sh\necho \"$@\" > called\nstat -c %a \"$1\" > mode\ncat \"$1\" > page.tmp\nmv page.tmp page\n");
+  std::filesystem::permissions(folder_ / "bin/xdg-open", std::filesystem::perms::owner_all);
+  const std::string path = std::getenv("PATH");
+  setenv("PATH", ((folder_ / "bin").string() + ":" + path).c_str(), 1);
+  const Served view(folder_, {"good.toml", "--open"});
+  setenv("PATH", path.c_str(), 1);
+  while (!std::filesystem::exists(folder_ / "page")) ASSERT_EQ(view.get("/state").status, 200);
+  EXPECT_TRUE(contains(text_of(folder_ / "page"), view.address()));
+  EXPECT_FALSE(contains(text_of(folder_ / "called"), "token")) << "everybody can see the arguments of a program";
+  EXPECT_EQ(text_of(folder_ / "mode"), "600\n");
 }
 
 TEST_F(CliView, APortInUseIsAnError) {
@@ -234,7 +292,9 @@ TEST_F(CliView, FramesAreSelectedInThePage) {
 TEST_F(CliView, OthersAreNotServed) {
   const Served view(folder_, {"good.toml"});
   EXPECT_EQ(support::http_request(view.port(), "GET", "/state").status, 403) << "without the secret";
+  EXPECT_EQ(support::http_request(view.port(), "GET", "/").status, 200) << "the page is no secret";
   EXPECT_EQ(view.get("/../good.toml").status, 404);
+  EXPECT_EQ(view.get("/view.js%00").status, 404);
   EXPECT_TRUE(contains(view.address(), "http://127.0.0.1:")) << view.address();
 }
 
@@ -249,11 +309,20 @@ TEST_F(CliView, APageMayNotNameFiles) {
   }
 }
 
+TEST_F(CliView, ErrorsInThePageHaveThePlaceInTheFile) {
+  write("wrong.toml", "[render]\nsamples = 0\n");
+  const Served view(folder_, {"wrong.toml"});
+  const std::string problem = view.wish(Json::object())["problem"];
+  EXPECT_TRUE(contains(problem, "wrong.toml:2:11: error: ")) << problem;
+  EXPECT_TRUE(contains(problem, "samples = 0\n")) << problem;
+  EXPECT_TRUE(contains(problem, "^")) << problem;
+}
+
 TEST_F(CliView, FaultyOptionsAreErrorsInThePage) {
   write("faulty.dump", "nonsense");
   const Served view(folder_, {"faulty.dump"});
   const Json state = view.wish(Json::object());
-  EXPECT_TRUE(contains(state["problem"], "faulty.dump")) << state["problem"];
+  EXPECT_TRUE(contains(state["problem"], "faulty.dump: error: ")) << state["problem"];
   EXPECT_EQ(run("view good.toml --port 70000").status, 2);
   EXPECT_EQ(run("view good.toml --host nonsense").status, 2);
   EXPECT_EQ(run("view").status, 2);

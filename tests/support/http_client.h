@@ -34,12 +34,13 @@ class HttpConnection {
       at += static_cast<std::size_t>(sent);
     }
   }
+  /// Waits for bytes. Result: their number
+  ssize_t receive(char* buffer, std::size_t size) const { return ::recv(socket_, buffer, size, 0); }
   /// All bytes until the server closes the connection.
   std::string receive() const {
     std::string out;
     char buffer[4096];
-    for (ssize_t n; (n = ::recv(socket_, buffer, sizeof buffer, 0)) > 0;)
-      out.append(buffer, static_cast<std::size_t>(n));
+    for (ssize_t n; (n = receive(buffer, sizeof buffer)) > 0;) out.append(buffer, static_cast<std::size_t>(n));
     return out;
   }
 

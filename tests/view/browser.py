@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: Apache-2.0
-"""Uses `orrery view` in a browser as a user would: tests/view/browser.py ORRERY WORK_FOLDER controls|tabs|scene
+"""Uses `orrery view` in a browser as a user would: tests/view/browser.py ORRERY WORK_FOLDER controls|dark|tabs|scene
 
 Exit status 77 if Chromium or its driver is not installed. Screenshots stay in WORK_FOLDER.
 """
@@ -72,10 +72,28 @@ def check_command(browser, name):
     command = shlex.split(command_of(browser))
     expect(command[0] == "orrery", command)
     subprocess.run([orrery, *command[1:-2], "-q", "-o", f"{name}.png"], cwd=work, check=True)
-    mine = work / f"{name}.page.png"
-    mine.write_bytes(bytes(browser.run("return fetch('picture.png').then(a => a.arrayBuffer()).then(b => Array.from(new Uint8Array(b)))")))
+    mine = download(browser, "picture.png").rename(work / f"{name}.page.png")
     status = subprocess.run([orrery, "compare", mine, f"{name}.png", "--fail-above", "max=0"], cwd=work, capture_output=True, text=True)
     expect(status.returncode == 0, f"{name}: {command_of(browser)}\n{status.stdout}{status.stderr}")
+
+
+def download(browser, name):
+    (work / "downloads").mkdir(exist_ok=True)
+    return browser.download((work / "downloads").resolve(), name, f'[data-file="{name}"]')
+
+
+def watch_for_darkness(browser):
+    """From now on, window.darkest is the smallest brightness that a pixel of the picture has had."""
+    browser.run("""
+        window.darkest = 255;
+        const look = () => {
+          const canvas = document.getElementById('picture');
+          const { data } = canvas.getContext('2d').getImageData(0, 0, canvas.width, canvas.height);
+          for (let i = 0; i < data.length; i += 4)
+            window.darkest = Math.min(window.darkest, Math.max(data[i], data[i + 1], data[i + 2]));
+          requestAnimationFrame(look);
+        };
+        look();""")
 
 
 def look(browser, program, name, options):
@@ -85,9 +103,13 @@ def look(browser, program, name, options):
     check_command(browser, f"{name}-first")
     box = position(browser)
     before = command_of(browser)
+    up = browser.run("return fetch('state', { headers: { Authorization: 'Bearer ' + sessionStorage.getItem('secret') } })"
+                     ".then(a => a.json())")["up"]
     browser.drag(box, (box[0] + 80, box[1] + 30))
     settle(browser)
     expect(command_of(browser) != before, "a drag moves the camera")
+    up = ", ".join(f"{x:g}" for x in up)
+    expect(f"camera.up=[{up}]" in command_of(browser), f"a drag keeps the horizon: {command_of(browser)}")
     browser.drag(box, (box[0] + 40, box[1]), key=SHIFT)
     browser.drag(box, (box[0] - 30, box[1] + 20), button=2)
     browser.wheel(round(box[0]), round(box[1]), -200)
@@ -142,6 +164,21 @@ def play(browser):
     expect(f"--frame {frame()} " in command_of(browser) or frame() == 1, command_of(browser))
 
 
+def never_black(browser, program):
+    """Neither while it is dragged nor while the next image is rendered is a pixel darker than the scene."""
+    browser.open(program.url)
+    for option, value in [("style", "flat"), ("color-by", "none"), ("samples", "300"), ("size", "1280 720")]:
+        choose(browser, option, value)
+        settle(browser)
+    watch_for_darkness(browser)
+    box = position(browser)
+    for dx in (60, -40):
+        browser.drag(box, (box[0] + dx, box[1] + 20))
+        settle(browser)
+    darkest = browser.run("return window.darkest")
+    expect(darkest > 60, f"a pixel had the brightness {darkest}")
+
+
 def view_data(walk):
     """Walks through the page of a data file."""
     program = Program("melt.dump", "--width", "320", "--height", "240", "--noise", "0.2")
@@ -193,8 +230,8 @@ def use_tabs(browser, program):
     browser.enter_frame(0)
     settle(browser)
     expect(command_of(browser) == command, "a frame shows the same")
-    png = browser.run("return fetch(document.getElementById('png').href).then(a => a.status)")
-    expect(png == 200, f"the download in a frame has the status {png}")
+    download(browser, "scene.toml")
+    expect(browser.run("return document.getElementById('problem').hidden"), "a frame downloads as well")
 
 
 def view_scene():
@@ -214,4 +251,5 @@ def view_scene():
     expect(program.end() == 0, "TERM ends the program with status 0")
 
 
-{"controls": lambda: view_data(use_controls), "tabs": lambda: view_data(use_tabs), "scene": view_scene}[sys.argv[3]]()
+{"controls": lambda: view_data(use_controls), "dark": lambda: view_data(never_black),
+ "tabs": lambda: view_data(use_tabs), "scene": view_scene}[sys.argv[3]]()

@@ -6,9 +6,9 @@
 
 namespace orrery::http {
 
-std::unique_ptr<Server> serve(const std::string& address, int port, Handler handler) {
+std::unique_ptr<Server> serve(const std::string& address, int port, Admission admits, Handler handler) {
   static const Functions& functions = *static_cast<const Functions*>(base::load_module("http"));
-  return functions.serve(address, port, std::move(handler));
+  return functions.serve(address, port, std::move(admits), std::move(handler));
 }
 
 }  // namespace orrery::http

@@ -28,14 +28,17 @@ function unitsPerPixel(camera, width, height) {
   return 2 * distance * Math.tan(camera.size * Math.PI / 360) / height;
 }
 
-// Orbits about look_at: about `up` by `turn`, towards `up` by `tilt`, in radians.
-export function orbit(camera, turn, tilt) {
-  const up = normalized(camera.up), { back, right } = axes(camera);
+// Orbits about look_at: about `vertical` by `turn`, towards it by `tilt`, in radians. The horizon stays level; that of a
+// camera that was rolled keeps its angle.
+export function orbit(camera, turn, tilt, vertical) {
+  const { back, right, up: above } = axes(camera), level = normalized(vertical);
+  const isRolled = Math.abs(dot(right, level)) > 1e-6 || dot(above, level) < -1e-6;
+  const up = isRolled ? normalized(camera.up) : level;
   const margin = 0.01;  // the camera never looks along `up`
   const elevation = Math.asin(Math.max(-1, Math.min(1, dot(back, up))));
   const limited = Math.max(-Math.PI / 2 + margin, Math.min(Math.PI / 2 - margin, elevation + tilt)) - elevation;
   const offset = subtract(camera.look_from, camera.look_at);
-  return { ...camera, look_from: add(camera.look_at, rotated(rotated(offset, right, -limited), up, turn)) };
+  return { ...camera, up, look_from: add(camera.look_at, rotated(rotated(offset, right, -limited), up, turn)) };
 }
 
 export function roll(camera, angle) {
@@ -62,12 +65,12 @@ export function zoom(camera, factor) {
   return { ...camera, look_from: add(camera.look_at, scale(offset, factor)) };
 }
 
-// Looks along an axis, 0 to 2, from its positive or its negative side.
-export function alongAxis(camera, axis, side) {
+// Looks along an axis, 0 to 2, from its positive or its negative side; along `vertical`, as `plot --look-from` does.
+export function alongAxis(camera, axis, side, vertical) {
   const distance = Math.hypot(...subtract(camera.look_from, camera.look_at));
   const direction = [0, 0, 0];
   direction[axis] = side;
-  const isAlongUp = Math.abs(dot(normalized(camera.up), direction)) > 0.99;
-  return { ...camera, look_from: add(camera.look_at, scale(direction, distance)),
-           up: isAlongUp ? axis === 2 ? [0, 1, 0] : [0, 0, 1] : camera.up };
+  const isAlongUp = Math.abs(dot(normalized(vertical), direction)) > 0.99;
+  const above = [[0, 0, side], [0, 0, -side], [0, side, 0]][axis];
+  return { ...camera, look_from: add(camera.look_at, scale(direction, distance)), up: isAlongUp ? above : vertical };
 }

@@ -37,15 +37,18 @@ let options = {};       // values that a client has set
 let lastWish = 0, granted = 0, isMoving = false;
 let shownFrame = 0, knownState = 0;
 let isPlaying = false;
+let heldRange = "";  // of one frame, while the slider is dragged
 
-// The address without the secret; a reload sends the cookie. In a frame nobody sees the address, and browsers may not
-// keep the cookie.
-const isFramed = window.top !== window;
-const secret = isFramed ? new URLSearchParams(location.search).get("token") ?? "" : "";
-if (!isFramed) history.replaceState(null, "", location.pathname);
+// The secret moves from the address to the storage of this tab, where a reload finds it. In a frame nobody sees the
+// address, and browsers may refuse the storage.
+let secret = new URLSearchParams(location.search).get("token");
+if (window.top === window) {
+  secret ??= sessionStorage.getItem("secret") ?? "";
+  sessionStorage.setItem("secret", secret);
+  history.replaceState(null, "", location.pathname);
+}
 
-const request = (path, options) => fetch(path, isFramed
-  ? { ...options, headers: { Authorization: `Bearer ${secret}` } } : options);
+const request = (path, options) => fetch(path, { ...options, headers: { Authorization: `Bearer ${secret}` } });
 
 // ---- Wishes -------------------------------------------------------------------------------------------------------
 
@@ -97,7 +100,6 @@ function setOption(name, value) {
   if (FITTED.has(name)) camera = null;
   if (name === "--quality") for (const other of ["--noise", "--samples", "--denoise"]) delete options[other];
   else if ((name === "--noise" || name === "--samples") && value !== "") delete options["--quality"];
-  wish(true);  // a first image soon
   wish(false);
 }
 
@@ -119,7 +121,10 @@ async function showFrames() {
       shownFrame = Number(header("X-Frame"));
       const bitmap = await createImageBitmap(await answer.blob());
       const isFinished = header("X-Finished") === "1";
-      if (isFinished || !state) [canvas.width, canvas.height] = [bitmap.width, bitmap.height];
+      // Sketches are small, and have the shape of the finished image but for rounding.
+      const height = canvas.width * bitmap.height / bitmap.width;
+      if (isFinished) [canvas.width, canvas.height] = [bitmap.width, bitmap.height];
+      else if (Math.abs(height / canvas.height - 1) > 0.03) canvas.height = Math.round(height);
       context.drawImage(bitmap, 0, 0, canvas.width, canvas.height);
       canvas.dataset.frame = shownFrame;
       canvas.dataset.shown = header("X-Wish");
@@ -142,7 +147,7 @@ function showStatus(samples, noise, isFinished) {
   if (noise) words.push(`noise ${noise}`);
   words.push(isFinished ? "finished" : "rendering");
   $("status").textContent = words.join(", ");
-  for (const id of ["png", "exr", "scene"]) $(id).setAttribute("aria-disabled", String(!isFinished));
+  for (const button of document.querySelectorAll("[data-file]")) button.disabled = !isFinished;
 }
 
 // ---- State --------------------------------------------------------------------------------------------------------
@@ -164,6 +169,11 @@ async function showState() {
     options = {};
     for (const [name, option] of Object.entries(state.options)) if (option.value) options[name] = option.value;
     camera = state.fitted ? null : state.camera;
+  }
+  const range = state.options["--range"];
+  if (options["--frames"] && range.value && range.value === range.chosen) {  // it is that of all frames now
+    options = { ...options, "--range": range.value };
+    delete options["--frames"];
   }
   showProblem(state.problem);
   document.title = `${state.title} - orrery view`;
@@ -232,7 +242,9 @@ function makeControls() {
     form.append(place);
     const slider = element("input", { id: "frame", type: "range", min: 1, value: 1 });
     slider.addEventListener("input", () => {
-      hold();
+      holdCamera();
+      const { chosen } = state.options["--range"];
+      if (chosen && !options["--range"]) options = { ...options, "--range": heldRange = chosen };
       options = { ...options, "--frame": slider.value };
       wish(true);
     });
@@ -242,7 +254,11 @@ function makeControls() {
       isPlaying = !isPlaying;
       play.textContent = isPlaying ? "Pause" : "Play";
       play.ariaPressed = String(isPlaying);
-      hold();
+      holdCamera();
+      const range = state.options["--range"];
+      const hasOwn = range.chosen === options["--range"] && range.chosen !== heldRange;
+      if (!isPlaying) delete options["--frames"];
+      else if (range.chosen && !hasOwn) options = { ...options, "--frames": "all" };  // for the range of all frames
       isPlaying ? step() : wish(false);
     });
     row("frame", "Frame", element("div", { className: "frames" }, slider,
@@ -287,11 +303,9 @@ function updateControls() {
   }
 }
 
-// Keeps the camera and the range of colours while frames change: both would follow the frame.
-function hold() {
+// Keeps the camera while frames change: it would follow the frame.
+function holdCamera() {
   camera = current() ?? null;
-  const range = state.options["--range"];
-  if (range?.chosen && !options["--range"]) options = { ...options, "--range": range.chosen };
 }
 
 // Shows the next frame of a trajectory.
@@ -336,7 +350,7 @@ canvas.addEventListener("pointermove", event => {
   if (event.buttons & 6 || event.ctrlKey) return move(pan(from, dx, dy, box.width, box.height), true);
   const perPixel = Math.PI / Math.min(box.width, box.height);
   if (event.shiftKey) return move(roll(from, dx * perPixel), true);
-  move(orbit(from, -dx * perPixel, dy * perPixel), true);
+  move(orbit(from, -dx * perPixel, dy * perPixel, state.up), true);
 });
 
 function release(event) {
@@ -366,7 +380,7 @@ function fit() {
 
 function lookAlong(axis, side) {
   if (!current()) return;
-  camera = alongAxis(current(), "xyz".indexOf(axis), side);
+  camera = alongAxis(current(), "xyz".indexOf(axis), side, state.up);
   wish(false);
 }
 
@@ -374,7 +388,8 @@ canvas.addEventListener("keydown", event => {
   if (event.ctrlKey || event.metaKey || event.altKey || !current()) return;
   const angle = Math.PI / 36, key = event.key;
   const turns = { ArrowLeft: [-angle, 0], ArrowRight: [angle, 0], ArrowUp: [0, angle], ArrowDown: [0, -angle] };
-  if (turns[key]) move(orbit(current(), ...turns[key]), false);
+  if (turns[key]) move(orbit(current(), ...turns[key], state.up), false);
+  else if (key === "r" || key === "R") move(roll(current(), key === "r" ? angle : -angle), false);
   else if (key === "+" || key === "=") move(zoom(current(), 0.9), false);
   else if (key === "-") move(zoom(current(), 1 / 0.9), false);
   else if (key === "f" || key === "F") fit();
@@ -412,7 +427,16 @@ async function showPicked(event) {
     [element("dt", { textContent: name }), element("dd", { textContent: value })]));
 }
 
-// ---- Commands -----------------------------------------------------------------------------------------------------
+// ---- Results ------------------------------------------------------------------------------------------------------
+
+// A link could not send the secret.
+async function download(file) {
+  const answer = await request(file).catch(() => null);
+  if (!answer?.ok) return showProblem(answer ? await answer.text() : UNREACHABLE);
+  const link = element("a", { href: URL.createObjectURL(await answer.blob()), download: file });
+  link.click();
+  setTimeout(() => URL.revokeObjectURL(link.href), 60000);  // when it has been saved
+}
 
 async function copy(text, button) {
   const label = button.textContent;
@@ -429,10 +453,8 @@ async function copy(text, button) {
 
 $("copy").addEventListener("click", () => copy(state.command, $("copy")));
 $("film").addEventListener("click", () => copy(state.film, $("film")));
-for (const id of ["png", "exr", "scene"]) {
-  if (isFramed) $(id).href += `?token=${secret}`;
-  $(id).addEventListener("click", event => { if ($(id).getAttribute("aria-disabled") === "true") event.preventDefault(); });
-}
+for (const button of document.querySelectorAll("[data-file]"))
+  button.addEventListener("click", () => download(button.dataset.file));
 $("controls").addEventListener("submit", event => event.preventDefault());
 
 showState().then(showFrames);

@@ -15,7 +15,6 @@ namespace {
 using Json = nlohmann::json;
 
 constexpr const char* kSecret = "0123456789abcdef0123456789abcdef";
-constexpr int kPort = 4321;
 
 Subject small_subject(const std::vector<std::string>&) {
   Subject out;
@@ -38,16 +37,14 @@ class ViewSite : public testing::Test {
   ViewSite()
       : viewer_(small_subject, {}, {}),
         site_(viewer_, {"a file.dump", command_of, command_of, {{"--color-by", {"none"}}, {"--style", {"studio"}}}},
-              "127.0.0.1", kSecret) {
-    site_.set_port(kPort);
-  }
+              "127.0.0.1", kSecret) {}
 
   static http::Request request(const std::string& method, const std::string& path) {
     http::Request out;
     out.method = method;
     out.path = path;
     out.host = "127.0.0.1:4321";
-    out.cookie = std::string("other=1; orrery4321=") + kSecret;
+    out.authorization = std::string("Bearer ") + kSecret;
     return out;
   }
 
@@ -70,16 +67,16 @@ std::string field(const http::Response& response, const std::string& name) {
 TEST_F(ViewSite, OnlyTheSecretAdmits) {
   http::Request one = request("GET", "/state");
   EXPECT_EQ(site_.answer(one).status, 200);
-  for (const char* cookie :
-       {"", "orrery4321=", "orrery4321=0123456789abcdef0123456789abcdee", "orrery4322=0123456789abcdef0123456789abcdef",
-        "xorrery4321=0123456789abcdef0123456789abcdef", "orrery4321=0123456789abcdef0123456789abcdef0"}) {
-    one.cookie = cookie;
-    EXPECT_EQ(site_.answer(one).status, 403) << cookie;
+  EXPECT_TRUE(site_.admits(one));
+  for (const char* authorization :
+       {"", "Bearer ", "0123456789abcdef0123456789abcdef", "Bearer 0123456789abcdef0123456789abcdee",
+        "Bearer 0123456789abcdef0123456789abcdef0", "bearer 0123456789abcdef0123456789abcdef"}) {
+    one.authorization = authorization;
+    EXPECT_EQ(site_.answer(one).status, 403) << authorization;
+    EXPECT_FALSE(site_.admits(one)) << authorization;
   }
   one.query["token"] = kSecret;
-  EXPECT_EQ(site_.answer(one).status, 200);
-  one.query["token"] = "";
-  EXPECT_EQ(site_.answer(one).status, 403);
+  EXPECT_EQ(site_.answer(one).status, 403) << "addresses are in histories and process lists";
 }
 
 TEST_F(ViewSite, OnlyThisHostAdmits) {
@@ -92,12 +89,30 @@ TEST_F(ViewSite, OnlyThisHostAdmits) {
                            "127.0.0.1:4321.evil.example"}) {
     one.host = host;
     EXPECT_EQ(site_.answer(one).status, 403) << host;
+    EXPECT_FALSE(site_.admits(one)) << host;
+    one.path = "/";
+    EXPECT_EQ(site_.answer(one).status, 403) << "the page of " << host;
+    one.path = "/state";
   }
   one.host = "127.0.0.1:4321";
   one.origin = "http://evil.example";
   EXPECT_EQ(site_.answer(one).status, 403) << "a page of another site cannot ask";
   one.origin = "http://127.0.0.1:4321";
   EXPECT_EQ(site_.answer(one).status, 200);
+}
+
+TEST_F(ViewSite, AllAddressesAreServedOnRequest) {
+  const auto status = [this](const char* listens_on, const char* host) {
+    Site site(viewer_, {"", command_of, command_of, {}}, listens_on, kSecret);
+    http::Request one = request("GET", "/state");
+    one.host = host;
+    return site.answer(one).status;
+  };
+  EXPECT_EQ(status("0.0.0.0", "192.168.1.5:4321"), 200);
+  EXPECT_EQ(status("0.0.0.0", "127.0.0.1:80"), 200);
+  EXPECT_EQ(status("0.0.0.0", "evil.example:4321"), 403);
+  EXPECT_EQ(status("192.168.1.5", "192.168.1.5:4321"), 200);
+  EXPECT_EQ(status("192.168.1.5", "192.168.1.6:4321"), 403);
 }
 
 TEST_F(ViewSite, UnknownPathsAndMethodsAreRefused) {
@@ -110,11 +125,13 @@ TEST_F(ViewSite, UnknownPathsAndMethodsAreRefused) {
   EXPECT_EQ(site_.answer(request("POST", "/")).status, 405);
 }
 
-TEST_F(ViewSite, ThePageComesWithACookieAndAPolicy) {
-  const http::Response page = site_.answer(request("GET", "/"));
+TEST_F(ViewSite, ThePageHasAPolicyAndNoSecret) {
+  http::Request without_secret = request("GET", "/");
+  without_secret.authorization = "";
+  const http::Response page = site_.answer(without_secret);
   EXPECT_EQ(page.status, 200);
-  EXPECT_EQ(field(page, "Set-Cookie"),
-            "orrery4321=0123456789abcdef0123456789abcdef; HttpOnly; SameSite=Strict; Path=/");
+  EXPECT_EQ(field(page, "Set-Cookie"), "") << "cookies are sent to every port of a host";
+  EXPECT_EQ(page.body->find(kSecret), std::string::npos);
   const std::string policy = field(page, "Content-Security-Policy");
   EXPECT_NE(policy.find("default-src 'none'"), std::string::npos);
   EXPECT_EQ(policy.find("unsafe"), std::string::npos) << "no scripts and styles within the page";
