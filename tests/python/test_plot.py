@@ -133,6 +133,15 @@ class Plot(PlotTest):
         self.assert_as_program(render(PLACES, columns=columns, cell=(9, 9, 9), **LOOK), *WORDS)
         self.assert_as_program(render(PLACES, columns=columns, cell=np.eye(3) * 9, **LOOK), *WORDS)
 
+    def test_a_vector_has_one_name(self):
+        words = ("--vectors", "vx,vy,vz")
+        atoms = Atoms()
+        atoms.arrays["forces"] = VELOCITIES
+        self.assert_as_program(render(atoms, vectors="forces"), *words)
+        columns = {"element": SYMBOLS, "f": VELOCITIES}
+        self.assert_as_program(render(PLACES, columns=columns, vectors="f"), *words)
+        self.assert_as_program(render({**dict(zip("xyz", PLACES.T)), **columns}, vectors="f"), *words)
+
     def test_the_arrays_of_atoms_are_columns(self):
         self.assertNotEqual(render(Atoms(), color_by="tag").beauty.tobytes(), render(Atoms()).beauty.tobytes())
         self.assertNotEqual(render(Group(), color_by="residue").beauty.tobytes(), render(Group()).beauty.tobytes())

@@ -84,7 +84,7 @@ def _source(data, columns, cell):
         return _arguments.path("data", data)
     rows = len(next(iter(table.values())))
     for name, values in columns.items():
-        _arrays.add_column(table, _arguments.text("a name in columns", name), _arrays.column(values, name, rows))
+        _add(table, _arguments.text("a name in columns", name), values, rows)
     return _arrays.native(table), own_box if cell is None else _cell(cell)
 
 
@@ -125,26 +125,35 @@ def _table(data):
     if isinstance(data, Mapping):
         lengths = {name: len(values) for name, values in data.items()}
         rows = next(iter(lengths.values()), 0)
-        table = {name: _arrays.column(values, name, rows) for name, values in data.items()}
+        table = {}
+        for name, values in data.items():
+            _add(table, name, values, rows)
         return table, getattr(data, "box", None) and _periodic_box(*data.box)
     if isinstance(data, (np.ndarray, list, tuple)):
         return dict(zip("xyz", _arrays.positions(data).T)), None
     return None, None
 
 
+def _add(table, name, values, rows):
+    """Adds a column, or the components of vectors under the names that they have in files: forces[1] to forces[3]."""
+    if np.ndim(values) == 2 and np.shape(values)[0] == rows:
+        for i, component in enumerate(_arrays.numbers(values, name).T):
+            _arrays.add_column(table, f"{name}[{i + 1}]", component)
+    else:
+        _arrays.add_column(table, name, _arrays.column(values, name, rows))
+
+
 def _ase(atoms):
-    """The columns of an ASE Atoms: element, and its arrays of numbers; vectors as the extended XYZ file has them."""
+    """The columns of an ASE Atoms: element, and its arrays of numbers and vectors, as the extended XYZ file has them."""
     table = dict(zip("xyz", _arrays.positions(atoms.get_positions()).T))
     rows = len(atoms)
     table["element"] = _arrays.column(atoms.get_chemical_symbols(), "element", rows)
     for name, values in atoms.arrays.items():
         if name in ("positions", "numbers"):
             continue
-        if np.ndim(values) == 1:
-            table.setdefault(name, _arrays.column(values, name, rows))
-        elif np.shape(values) == (rows, 3) and np.asarray(values).dtype.kind in "fiu":
-            parts = zip(("_x", "_y", "_z"), _arrays.numbers(values, name).T)
-            table.update({name + axis: part for axis, part in parts})
+        is_vector = np.ndim(values) == 2 and np.asarray(values).dtype.kind in "fiu"
+        if name not in table and (np.ndim(values) == 1 or is_vector):
+            _add(table, name, values, rows)
     if atoms.has("momenta"):
         table.update(zip(("vx", "vy", "vz"), _arrays.positions(atoms.get_velocities()).T))
     cell = np.array(atoms.cell, dtype=float)
