@@ -8,8 +8,6 @@ namespace {
 
 class CliProgram : public ProgramTest {};
 
-bool contains(const std::string& text, const std::string& part) { return text.find(part) != std::string::npos; }
-
 TEST_F(CliProgram, RendersAllFormatsInOneRun) {
   const Outcome r = run("render good.toml -o a.exr -o a.png -o a.jpg -o a.tif -o a.ppm -o a.hdr");
   EXPECT_EQ(r.status, 0) << r.err;
@@ -134,31 +132,6 @@ TEST_F(CliProgram, OverridesAreValidatedLikeTheFile) {
   EXPECT_EQ(run("render good.toml -o a.png -q --set 'sphere[0].radius=0.25' --set render.precision=fast").status, 0);
 }
 
-TEST_F(CliProgram, SettingsShowTheirOrigin) {
-  const Outcome r = run("info good.toml --settings --set camera.vfov=33");
-  EXPECT_EQ(r.status, 0);
-  EXPECT_TRUE(contains(r.out, "good.toml:3")) << r.out;
-  EXPECT_TRUE(contains(r.out, "--set")) << r.out;
-  EXPECT_TRUE(contains(r.out, "default")) << r.out;
-}
-
-/// A track replaces what --set sets; the user must not believe otherwise.
-TEST_F(CliProgram, SettingAnAnimatedKeyIsAWarning) {
-  write("keys.toml", std::string(kGoodScene) +
-                         "\n[[key]]\ntarget = \"camera.vfov\"\nframes = [1, 2]\nvalues = [30, 10]\n"
-                         "[[key]]\ntarget = \"sphere[0].radius\"\nframes = [1, 2]\nvalues = [0.5, 1]\n");
-  const std::string warning = "is animated by key[0], which takes precedence";
-  EXPECT_TRUE(contains(run("render keys.toml -o a.png -q --set camera.vfov=90").err, warning) ||
-              contains(run("render keys.toml -o a.png --set camera.vfov=90").err, warning));
-  EXPECT_TRUE(
-      contains(run("check keys.toml --set 'sphere[0].radius=2'").err, "sphere[0].radius is animated by key[1]"));
-  const Outcome settings = run("info keys.toml --settings --set camera.vfov=90");
-  const std::size_t line = settings.out.find("camera.vfov");
-  ASSERT_NE(line, std::string::npos);
-  EXPECT_TRUE(contains(settings.out.substr(line, settings.out.find('\n', line) - line), "key[0]")) << settings.out;
-  EXPECT_FALSE(contains(run("check keys.toml --set camera.vfov=90 --set 'key=[]'").err, "animated"));
-}
-
 TEST_F(CliProgram, OneKeyIsSetOnce) {
   const Outcome r = run("render good.toml -o a.png --samples 9 --set render.samples=5");
   EXPECT_EQ(r.status, 2);
@@ -171,22 +144,6 @@ TEST_F(CliProgram, OptionsWithoutEffectAreNamed) {
   EXPECT_TRUE(contains(run("render good.toml -o a.png --type float --multipart").err,
                        "warning: --type, --multipart have no effect"));
   EXPECT_FALSE(contains(run("render good.toml -o a.exr -o a.png --bits 16 --type float").err, "no effect"));
-}
-
-TEST_F(CliProgram, InfoPrintsJson) {
-  const Outcome r = run("info good.toml --json");
-  ASSERT_EQ(r.status, 0) << r.err;
-  const auto json = nlohmann::json::parse(r.out);
-  EXPECT_EQ(json["spheres"], 1);
-  EXPECT_EQ(json["schema"], "orrery.info/1");
-}
-
-TEST_F(CliProgram, CheckValidatesAllScenesAndExitsWithAFailure) {
-  write("bad.toml", "nonsense");
-  const Outcome r = run("check bad.toml good.toml");
-  EXPECT_EQ(r.status, 65);
-  EXPECT_EQ(r.out, "good.toml: ok\n");
-  EXPECT_EQ(run("check good.toml missing.toml").status, 66);
 }
 
 TEST_F(CliProgram, StatisticsDescribeTheRender) {
@@ -215,14 +172,6 @@ TEST_F(CliProgram, DevelopMatchesRender) {
   EXPECT_EQ(run("develop missing.exr -o b.png").status, 66);
   write("noise.exr", std::string(5000, 'x'));
   EXPECT_EQ(run("develop noise.exr -o b.png").status, 65);
-}
-
-TEST_F(CliProgram, GeneratedScenesRender) {
-  ASSERT_EQ(run("generate final -o f.toml --grid 2 --seed 5").status, 0);
-  ASSERT_EQ(run("generate cloud -o c.toml --count 500").status, 0);
-  EXPECT_EQ(run("render f.toml -o f.png -q --width 32 --height 18 --samples 2").status, 0);
-  EXPECT_EQ(run("render c.toml -o c.png -q --width 32 --height 18 --samples 2").status, 0);
-  EXPECT_EQ(run("generate final -o g.toml --grid 5000").status, 2);
 }
 
 TEST_F(CliProgram, SkiesRenderAndFollowKeyframes) {
