@@ -8,6 +8,7 @@
 #include <new>
 #include <sstream>
 #include <string>
+#include <string_view>
 #include <utility>
 #include <vector>
 
@@ -47,39 +48,33 @@ constexpr std::pair<const char*, const char*> kRemoved[] = {
     {"orrery generate planet", "scenes/next-week/planet.jpg"},
 };
 
-/// Options that users guess, for commands with a certain option, and what to write instead. The first row that fits
-/// counts.
+/// Options that users guess, separated by spaces, for commands with a certain option, and what to write instead. The
+/// first row that fits counts.
 struct Guess {
-  const char *flag, *of_commands_with, *instead;
+  std::string_view flags;
+  const char *of_commands_with, *instead;
 };
 constexpr Guess kGuesses[] = {
     {"--view", "--look-from", "--look-from VIEW for the direction, --set color.view=NAME for the display transform"},
-    {"--view", "--set", "--set color.view=NAME"},
-    {"--camera", "--look-from", "--look-from VIEW"},
-    {"--rotate", "--look-from", "--look-from AZIMUTH,ELEVATION"},
-    {"--azimuth", "--look-from", "--look-from AZIMUTH,ELEVATION"},
-    {"--elevation", "--look-from", "--look-from AZIMUTH,ELEVATION"},
+    {"--camera --rotate --azimuth --elevation", "--look-from", "--look-from VIEW, or AZIMUTH,ELEVATION"},
     {"--fov", "--perspective", "--perspective VFOV"},
-    {"--fov", "--set", "--set camera.vfov=DEGREES"},
-    {"--size", "--width", "--width and --height, in pixels"},
-    {"--res", "--width", "--width and --height, in pixels"},
-    {"--resolution", "--width", "--width and --height, in pixels"},
+    {"--size --res --resolution", "--width", "--width and --height, in pixels"},
     {"--dpi", "--width", "--width and --height, in pixels: 3.5 inches at 300 dpi are 1050"},
     {"--spp", "--samples", "--samples N"},
     {"--bg", "--background", "--background COLOR"},
-    {"--bg", "--set", "--set background.color=[R,G,B]"},
-    {"--background", "--set", "--set background.color=[R,G,B]"},
-    {"--chain", "--select", "--select 'chain A'"},
-    {"--resid", "--select", "--select 'resid 20:30'"},
+    {"--bg --background", "--set", "--set background.color=[R,G,B]"},
+    {"--chain --resid --resname", "--select", "--select 'chain A and resid 20:30'"},
     {"--color", "--color-by", "--color-by COLUMN"},
     {"--cmap", "--map", "--map MAP"},
     {"--alpha", "--opacity", "--opacity X"},
-    {"--movie", "--turntable", "-o FILE.mp4 with --frames or --turntable"},
+    {"--movie --film", "--turntable", "-o FILE.mp4 with --frames or --turntable"},
     {"--diff", "--difference", "--difference FILE, or --heat FILE for the error of each pixel"},
     {"--ocio", "--set", "--set color.config=FILE, relative to the scene file"},
     {"--display", "--set", "--set color.display=NAME"},
+    {"--view", "--set", "--set color.view=NAME"},
     {"--look", "--set", "--set color.look=NAME"},
     {"--exposure", "--set", "--set color.exposure=STOPS"},
+    {"--fov", "--set", "--set camera.vfov=DEGREES"},
     {"--seed", "--set", "--set render.seed=N"},
     {"--max-depth", "--set", "--set render.max_depth=N"},
     {"--accelerator", "--set", "--set render.accelerator=NAME"},
@@ -104,9 +99,10 @@ std::string removed_message(const std::string& word, const CLI::App& command) {
 std::string unknown_flag(const std::string& flag, const CLI::App& command) {
   if (std::string message = removed_message(flag, command); !message.empty()) return message;
   const std::vector<std::string> names = flag_names(command);
-  for (const Guess& guess : kGuesses)
-    if (flag == guess.flag && base::contains(names, guess.of_commands_with))
-      return fmt::format("unknown option {}; use {}", flag, guess.instead);
+  for (const auto& [flags, of_commands_with, instead] : kGuesses)
+    if (base::contains(names, of_commands_with) &&
+        fmt::format(" {} ", flags).find(" " + flag + " ") != std::string::npos)
+      return fmt::format("unknown option {}; use {}", flag, instead);
   const std::string remedy = base::did_you_mean(flag, names);
   return fmt::format("unknown option {}{}", flag, remedy.empty() ? "" : "; " + remedy);
 }
