@@ -2,18 +2,20 @@
 #include "load/write_scene.h"
 
 #include <algorithm>
+#include <cstdint>
 #include <fstream>
 #include <iterator>
 #include <set>
 #include <sstream>
 #include <utility>
+#include <vector>
 
 #include <fmt/core.h>
 
 #include "base/atomic_file.h"
 #include "base/error.h"
 #include "base/hash.h"
-#include "data/records.h"
+#include "data/write_table.h"
 #include "scene/animation.h"
 #include "scene/schema.h"
 #include "scene/texture.h"
@@ -147,13 +149,6 @@ std::string ply_header_begin(std::string_view writer) {
   return fmt::format("ply\nformat binary_little_endian 1.0\ncomment made by {}\n", writer);
 }
 
-std::string ply_header(const scene::Points& points) {
-  std::string out = fmt::format("{}element vertex {}\n", ply_header_begin(kPlyWriter), points.centers.size());
-  for (const char* name : {"x", "y", "z", "radius"}) out += fmt::format("property double {}\n", name);
-  if (!points.materials.empty()) out += "property uint material\n";
-  return out + "end_header\n";
-}
-
 }  // namespace
 
 std::string scene_text(const scene::Scene& scene, const std::string& comment) {
@@ -203,16 +198,21 @@ void check_unedited(const std::filesystem::path& file) {
 }
 
 void write_ply(const scene::Points& points, const std::filesystem::path& file) {
-  base::OutputFile output(file);
-  std::string& out = output.buffer();
-  out = ply_header(points);
-  for (std::size_t i = 0; i < points.centers.size(); ++i) {
-    const math::Vec3d c = points.centers[i];
-    for (const double x : {c.x, c.y, c.z, points.radii[i]}) data::append_little_endian(out, x);
-    if (!points.materials.empty()) data::append_little_endian(out, points.materials[i]);
-    output.flush();
-  }
-  output.finish();
+  data::Table table;
+  table.rows = points.centers.size();
+  const auto add = [&](const char* name, auto value) {
+    std::vector<decltype(value(std::size_t{0}))> values;
+    values.reserve(table.rows);
+    for (std::size_t i = 0; i < table.rows; ++i) values.push_back(value(i));
+    table.columns.push_back({name, std::move(values)});
+  };
+  add("x", [&](std::size_t i) { return points.centers[i].x; });
+  add("y", [&](std::size_t i) { return points.centers[i].y; });
+  add("z", [&](std::size_t i) { return points.centers[i].z; });
+  add("radius", [&](std::size_t i) { return points.radii[i]; });
+  if (!points.materials.empty())
+    add("material", [&](std::size_t i) { return static_cast<std::int64_t>(points.materials[i]); });
+  static_cast<void>(data::write_table(file, table, {}, kPlyWriter));  // PLY stores all of these columns
 }
 
 bool is_ply_of(std::string_view writer, const std::filesystem::path& file) {

@@ -28,7 +28,7 @@ void check_unedited(const std::filesystem::path& file);
 /// The writer of write_ply()'s files, for is_ply_of().
 inline constexpr const char* kPlyWriter = "orrery generate";
 
-/// Writes spheres as binary little-endian PLY: x, y, z and radius as doubles, and material as uint if `points` has
+/// Writes spheres as binary little-endian PLY: x, y, z and radius as doubles, and material as int if `points` has
 /// materials. A comment in the header names the writer.
 ///
 /// Errors     base::Error: kCannotCreate, kIo
