@@ -5,8 +5,10 @@
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
+#include <utility>
 #include <vector>
 
+#include "base/stop_point.h"
 #include "kernel/scene_view.h"
 #include "math/vec3.h"
 
@@ -55,55 +57,36 @@ bool is_visible(const SceneView& scene, std::size_t sphere) {
   return scene.opacity == nullptr || scene.opacity[sphere] > 0;
 }
 
-/// Balls of sharp materials.
-struct SharpBalls {
-  std::vector<std::uint32_t> sampled;  ///< sphere ids, ascending
-  std::vector<std::uint32_t> voids;    ///< clear glass of an index below 1, which may make others hollow
-  std::uint64_t count = 0;             ///< with those that are not sampled
-};
+/// What spheres of a material are to the list.
+enum class Use : std::uint8_t { kOther, kSharp, kSampled, kVoid };
 
-SharpBalls sharp_balls(const SceneView& scene) {
-  enum : std::uint8_t { kOther, kSharp, kSampled, kVoid };
-  SharpBalls out;
-  if (scene.sphere_count == 0) return out;
+/// The uses of the materials of all spheres; empty: none is sharp.
+std::vector<Use> uses_of(const SceneView& scene) {
   std::uint32_t last = 0;
   for (std::size_t i = 0; i < scene.sphere_count; ++i) last = std::max(last, scene.object_materials[i]);
-  std::vector<std::uint8_t> uses;
-  for (std::size_t m = 0; m <= last; ++m)
-    uses.push_back(!is_sharp(scene, m) ? kOther : is_sampled(scene, m) ? kSampled : is_void(scene, m) ? kVoid : kSharp);
-  if (std::all_of(uses.begin(), uses.end(), [](std::uint8_t use) { return use == kOther; })) return out;
-  for (std::uint32_t i = 0; i < scene.sphere_count; ++i) {
-    const std::uint8_t use = uses[scene.object_materials[i]];
-    if (use == kOther || !is_visible(scene, i)) continue;
-    ++out.count;
-    if (use == kSampled) out.sampled.push_back(i);
-    if (use == kVoid) out.voids.push_back(i);
-  }
-  return out;
+  std::vector<Use> uses;
+  for (std::size_t m = 0; m <= last && scene.sphere_count > 0; ++m)
+    uses.push_back(!is_sharp(scene, m)    ? Use::kOther
+                   : is_sampled(scene, m) ? Use::kSampled
+                   : is_void(scene, m)    ? Use::kVoid
+                                          : Use::kSharp);
+  if (std::all_of(uses.begin(), uses.end(), [](Use use) { return use == Use::kOther; })) uses.clear();
+  return uses;
 }
 
-/// An emitter, with its power as in the light tree.
-struct Emitter {
-  std::uint32_t sphere;
-  double power;
-};
-
-/// The emitters of greatest power, by ascending id.
-std::vector<Emitter> emitters_of(const SceneView& scene) {
-  std::vector<Emitter> out;
-  for (std::uint32_t leaf = 0; leaf < scene.lights.count; ++leaf) {
-    const std::uint32_t id = scene.lights.spheres[leaf];
-    if (!is_textured(scene, scene.object_materials[id])) out.push_back({id, kernel::light_leaf(scene, id).power});
+/// Calls `visit(id, use)` for each visible sphere of a sharp material, by ascending id.
+///
+/// Errors     base::Error(kStopped) in a base::StopScope
+template <class Visit>
+void each_sharp(const SceneView& scene, const std::vector<Use>& uses, Visit visit) {
+  const base::StopPoint stop;
+  for (std::uint32_t id = 0; id < scene.sphere_count; ++id) {
+    stop.check(id);
+    const Use use = uses[scene.object_materials[id]];
+    if (use == Use::kOther || !is_visible(scene, id)) continue;
+    stop.check();  // each may be visited with many lights
+    visit(id, use);
   }
-  const auto by_id = [](const Emitter& a, const Emitter& b) { return a.sphere < b.sphere; };
-  if (out.size() > kMaxCausticLights) {
-    std::nth_element(out.begin(), out.begin() + kMaxCausticLights, out.end(), [&](const Emitter& a, const Emitter& b) {
-      return a.power != b.power ? a.power > b.power : by_id(a, b);
-    });
-    out.resize(kMaxCausticLights);
-  }
-  std::sort(out.begin(), out.end(), by_id);
-  return out;
 }
 
 /// A sphere when the shutter opens, and its change until it closes.
@@ -123,6 +106,32 @@ Moving moving(const SceneView& scene, std::uint32_t id) {
   return out;
 }
 
+/// An emitter, with its power as in the light tree.
+struct Emitter {
+  std::uint32_t sphere;
+  double power;
+  Moving moves;
+};
+
+/// The emitters of greatest power, by ascending id.
+std::vector<Emitter> emitters_of(const SceneView& scene) {
+  std::vector<Emitter> out;
+  for (std::uint32_t leaf = 0; leaf < scene.lights.count; ++leaf) {
+    const std::uint32_t id = scene.lights.spheres[leaf];
+    if (!is_textured(scene, scene.object_materials[id])) out.push_back({id, kernel::light_leaf(scene, id).power, {}});
+  }
+  const auto by_id = [](const Emitter& a, const Emitter& b) { return a.sphere < b.sphere; };
+  if (out.size() > kMaxCausticLights) {
+    std::nth_element(out.begin(), out.begin() + kMaxCausticLights, out.end(), [&](const Emitter& a, const Emitter& b) {
+      return a.power != b.power ? a.power > b.power : by_id(a, b);
+    });
+    out.resize(kMaxCausticLights);
+  }
+  std::sort(out.begin(), out.end(), by_id);
+  for (Emitter& emitter : out) emitter.moves = moving(scene, emitter.sphere);
+  return out;
+}
+
 /// Distances between the centres of a ball and a light.
 struct Separation {
   double least, greatest;
@@ -131,7 +140,8 @@ struct Separation {
 Separation separation(const Moving& ball, const Moving& light) {
   const Vec3d from = light.center - ball.center, change = light.displacement - ball.displacement;
   const double square = dot(change, change);
-  const double nearest = square > 0 ? std::clamp(-dot(from, change) / square, 0.0, 1.0) : 0;
+  if (square == 0) return {length(from), length(from)};
+  const double nearest = std::clamp(-dot(from, change) / square, 0.0, 1.0);
   return {length(from + change * nearest), std::max(length(from), length(from + change))};
 }
 
@@ -149,11 +159,12 @@ struct Irradiances {
   double smallest_light;  ///< sine of its half angle
 
   double from_emitter(const Moving& ball, const Emitter& emitter) const {
-    const Moving light = moving(scene, emitter.sphere);
+    const Moving& light = emitter.moves;
     const Separation distance = separation(ball, light);
     const double reach = ball.radius + std::max(ball.growth, 0.0) + light.radius + std::max(light.growth, 0.0);
     const double smallest = std::min(light.radius, light.radius + light.growth);
-    if (!(distance.least >= reach) || smallest / distance.greatest < smallest_light) return 0;
+    if (!(distance.least >= reach)) return 0;
+    if (smallest_light > 0 && smallest / distance.greatest < smallest_light) return 0;
     return emitter.power / (distance.least * distance.least);
   }
 
@@ -165,20 +176,14 @@ struct Irradiances {
   }
 };
 
-/// Appends the lights of a ball to `lights`, with the sum of their irradiances before each as `cumulative`.
-///
-/// Result     their sum
-double append_lights(const Irradiances& irradiance, const Moving& ball, const std::vector<Emitter>& emitters,
-                     bool has_sun, std::vector<CausticLight>& lights) {
-  double sum = 0;
-  const auto add = [&](std::uint32_t light, double value) {
-    if (!(value > 0)) return;
-    sum += value;
-    lights.push_back({light, sum, value});
-  };
-  for (const Emitter& emitter : emitters) add(emitter.sphere, irradiance.from_emitter(ball, emitter));
-  if (has_sun) add(kernel::kSun, irradiance.from_sun());
-  return sum;
+/// Calls `add(light, irradiance)` for each light of a ball.
+template <class Add>
+void each_light(const Irradiances& irradiance, const Moving& ball, const std::vector<Emitter>& emitters, bool has_sun,
+                Add add) {
+  for (const Emitter& emitter : emitters)
+    if (const double value = irradiance.from_emitter(ball, emitter); value > 0) add(emitter.sphere, value);
+  if (!has_sun) return;
+  if (const double value = irradiance.from_sun(); value > 0) add(kernel::kSun, value);
 }
 
 /// A ball without its lights.
@@ -192,41 +197,65 @@ CausticBall ball_of(const SceneView& scene, std::uint32_t id, const Moving& move
   return ball;
 }
 
-/// The largest void that is concentric with a ball of glass and smaller at all times, and whose index is the reciprocal
-/// of the ball's; kNone: there is none.
-std::uint32_t void_of(const SceneView& scene, std::uint32_t ball, const std::vector<std::uint32_t>& voids) {
+/// Whether a void is within a ball of clear glass at all times, concentric, and of the reciprocal index.
+bool is_void_of(const SceneView& scene, std::uint32_t id, const Moving& inner, std::uint32_t ball,
+                const Moving& outer) {
   constexpr double kSameIndex = 1e-9;  // indices are authored with fewer digits
-  const auto eta = [&](std::uint32_t id) { return scene.materials[scene.object_materials[id]].eta[1]; };
-  if (!is_clear(scene.materials[scene.object_materials[ball]])) return kNone;
-  const Moving outer = moving(scene, ball);
-  std::uint32_t found = kNone;
-  double largest = 0;
-  for (const std::uint32_t id : voids) {
-    const Moving inner = moving(scene, id);
-    if (inner.center != outer.center || inner.displacement != outer.displacement) continue;
-    if (!(inner.radius < outer.radius && inner.radius + inner.growth < outer.radius + outer.growth)) continue;
-    if (std::abs(eta(ball) * eta(id) - 1) > kSameIndex || !(inner.radius > largest)) continue;
-    found = id;
-    largest = inner.radius;
-  }
-  return found;
+  if (inner.center != outer.center || inner.displacement != outer.displacement) return false;
+  if (!(inner.radius < outer.radius && inner.radius + inner.growth < outer.radius + outer.growth)) return false;
+  const Material &around = scene.materials[scene.object_materials[ball]],
+                 &within = scene.materials[scene.object_materials[id]];
+  return is_clear(around) && std::abs(around.eta[1] * within.eta[1] - 1) <= kSameIndex;
 }
 
-/// Keeps the kMaxBalls of greatest power, and none if they have less than half of the power.
-void keep_strongest(CausticList& list) {
-  if (list.balls.size() <= Caustics::kMaxBalls) return;
-  double all = 0, kept = 0;
-  for (const CausticBall& ball : list.balls) all += ball.power;
-  std::nth_element(list.balls.begin(), list.balls.begin() + Caustics::kMaxBalls, list.balls.end(),
-                   [](const CausticBall& a, const CausticBall& b) {
-                     return a.power != b.power ? a.power > b.power : a.sphere < b.sphere;
-                   });
-  list.balls.resize(Caustics::kMaxBalls);
-  std::sort(list.balls.begin(), list.balls.end(),
-            [](const CausticBall& a, const CausticBall& b) { return a.sphere < b.sphere; });
-  for (const CausticBall& ball : list.balls) kept += ball.power;
-  if (kept < all / 2) list.balls.clear();
+/// Sets the largest void of each ball.
+void add_voids(const SceneView& scene, const std::vector<Use>& uses, std::vector<CausticBall>& balls) {
+  std::vector<Moving> outer;
+  for (const CausticBall& ball : balls) outer.push_back(moving(scene, ball.sphere));
+  std::vector<double> largest(balls.size(), 0.0);
+  each_sharp(scene, uses, [&](std::uint32_t id, Use use) {
+    if (use != Use::kVoid) return;
+    const Moving inner = moving(scene, id);
+    for (std::size_t i = 0; i < balls.size(); ++i) {
+      if (!(inner.radius > largest[i]) || !is_void_of(scene, id, inner, balls[i].sphere, outer[i])) continue;
+      balls[i].inner = id;
+      largest[i] = inner.radius;
+    }
+  });
 }
+
+/// The kMaxBalls of greatest power.
+class StrongestBalls {
+ public:
+  void add(const CausticBall& ball) {
+    power_ += ball.power;
+    ++count_;
+    balls_.push_back(ball);
+    std::push_heap(balls_.begin(), balls_.end(), is_stronger);
+    if (balls_.size() <= Caustics::kMaxBalls) return;
+    std::pop_heap(balls_.begin(), balls_.end(), is_stronger);
+    balls_.pop_back();
+  }
+
+  /// Result     by ascending id; empty if there were more, of which these have less than half of the power
+  std::vector<CausticBall> take() {
+    std::sort(balls_.begin(), balls_.end(),
+              [](const CausticBall& a, const CausticBall& b) { return a.sphere < b.sphere; });
+    double kept = 0;
+    for (const CausticBall& ball : balls_) kept += ball.power;
+    if (count_ > balls_.size() && kept < power_ / 2) balls_.clear();
+    return std::move(balls_);
+  }
+
+ private:
+  static bool is_stronger(const CausticBall& a, const CausticBall& b) {
+    return a.power != b.power ? a.power > b.power : a.sphere < b.sphere;
+  }
+
+  std::vector<CausticBall> balls_;  ///< a heap, the weakest first
+  double power_ = 0;                ///< of all
+  std::uint64_t count_ = 0;         ///< of all
+};
 
 bool has_sampled_sun(const SceneView& scene) {
   return scene.environment != nullptr && scene.environment->is_sampled && scene.environment->has_sun &&
@@ -251,29 +280,35 @@ CausticList caustic_list(const SceneView& scene, kernel::Precision precision) {
   const bool has_sun = has_sampled_sun(scene);
   const std::uint64_t lights = std::uint64_t{scene.lights.count} + (has_sun ? 1 : 0);
   if (precision == kernel::Precision::kBook || lights == 0) return out;
-  const SharpBalls balls = sharp_balls(scene);
-  out.pairs = balls.count * lights;
-  if (balls.sampled.empty()) return out;
+  const std::vector<Use> uses = uses_of(scene);
+  if (uses.empty()) return out;
   const std::vector<Emitter> emitters = emitters_of(scene);
   const Irradiances irradiance{scene, precision == kernel::Precision::kFast ? kSmallestLightInFast : 0};
-  for (const std::uint32_t id : balls.sampled) {
+  StrongestBalls strongest;
+  each_sharp(scene, uses, [&](std::uint32_t id, Use use) {
+    out.pairs += lights;
+    if (use != Use::kSampled) return;
     const Moving moves = moving(scene, id);
-    const double sum = append_lights(irradiance, moves, emitters, has_sun, out.lights);
-    out.lights.clear();  // those of the balls that are kept are added later, since all would take too much memory
-    if (sum > 0) out.balls.push_back(ball_of(scene, id, moves, sum));
-  }
-  keep_strongest(out);
+    double sum = 0;
+    each_light(irradiance, moves, emitters, has_sun, [&](std::uint32_t, double value) { sum += value; });
+    if (sum > 0) strongest.add(ball_of(scene, id, moves, sum));
+  });
+  out.balls = strongest.take();
   for (CausticBall& ball : out.balls) {
     ball.begin = static_cast<std::uint32_t>(out.lights.size());
-    const double sum = append_lights(irradiance, moving(scene, ball.sphere), emitters, has_sun, out.lights);
+    double sum = 0;
+    each_light(irradiance, moving(scene, ball.sphere), emitters, has_sun, [&](std::uint32_t light, double value) {
+      sum += value;
+      out.lights.push_back({light, sum, value});
+    });
     ball.end = static_cast<std::uint32_t>(out.lights.size());
     for (std::uint32_t i = ball.begin; i < ball.end; ++i) {
       out.lights[i].cumulative /= sum;
       out.lights[i].probability /= sum;
     }
-    ball.inner = void_of(scene, ball.sphere, balls.voids);
     out.strongest = std::max(out.strongest, ball.power / (ball.radius * ball.radius));
   }
+  if (std::find(uses.begin(), uses.end(), Use::kVoid) != uses.end()) add_voids(scene, uses, out.balls);
   return out;
 }
 

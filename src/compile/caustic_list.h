@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 #include <vector>
 
@@ -23,6 +24,8 @@ struct CausticList {
   std::uint64_t pairs = 0;  ///< number of pairs of a sharp ball and a light in the scene, listed or not
   double strongest = 0;     ///< largest power / radius^2 of a ball
 
+  std::size_t bytes() const noexcept { return balls.size() * sizeof(balls[0]) + lights.size() * sizeof(lights[0]); }
+
   /// Valid until the list is modified or destroyed.
   kernel::Caustics view() const noexcept;
 };
@@ -38,6 +41,7 @@ struct CausticList {
 /// If these have less than half of the power of all, the list is empty, since it would cost more than it gains.
 ///
 /// Domain     the view has its lights and its environment
+/// Errors     base::Error(kStopped) in a base::StopScope
 /// Cost       linear in the number of spheres, and in that of sharp balls times that of lights up to kMaxCausticLights;
 ///            memory for kMaxBalls balls with their lights
 CausticList caustic_list(const kernel::SceneView& scene, kernel::Precision precision);

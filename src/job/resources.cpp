@@ -149,7 +149,7 @@ MemoryEstimate estimate_memory(const compile::CompiledScene& compiled, const fil
               (layers.matte_classes ? layers.matte_classes->of_sphere.bytes() : 0);
   if (compiled.environment) m.background = compiled.environment->bytes();
   m.textures = compiled.textures.bytes();
-  m.lights = compiled.light_tree.bytes_of_build();
+  m.lights = compiled.light_tree.bytes_of_build() + compiled.caustics.bytes();
   if (compiled.accelerator == compile::Accelerator::kEmbree && !has_accelerator) {
     const accel::ObjectCounts in_bvh = accel::objects_in_bvh(compiled.view());
     const std::uint64_t outside = compiled.spheres.size() + compiled.rod_count() - in_bvh.all();

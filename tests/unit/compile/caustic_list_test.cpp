@@ -3,12 +3,15 @@
 
 #include <gtest/gtest.h>
 
+#include <atomic>
 #include <cstddef>
 #include <cstdint>
 #include <functional>
 #include <memory>
 #include <string>
 
+#include "base/error.h"
+#include "base/stop_point.h"
 #include "compile/compile.h"
 #include "compile/compiled_scene.h"
 #include "scene/texture.h"
@@ -191,6 +194,22 @@ TEST(CompileCausticList, AThousandBallsAndAThousandLampsAreBounded) {
   ASSERT_EQ(list.balls.size(), kernel::Caustics::kMaxBalls);
   for (std::size_t i = 1; i < list.balls.size(); ++i) EXPECT_LT(list.balls[i - 1].sphere, list.balls[i].sphere);
   for (const kernel::CausticBall& ball : list.balls) EXPECT_LE(ball.end - ball.begin, kMaxCausticLights);
+}
+
+TEST(CompileCausticList, TheStrongestBallsAreKept) {
+  const CausticList list = list_of_many(1000, 1, 1.006, 1e4);  // they differ in little but their radius
+  ASSERT_EQ(list.balls.size(), 128u);
+  for (std::uint32_t i = 0; i < 128; ++i) EXPECT_EQ(list.balls[i].sphere, 1 + 1000 - 128 + i);
+  EXPECT_EQ(list.bytes(), 128 * (sizeof(kernel::CausticBall) + sizeof(kernel::CausticLight)));
+}
+
+TEST(CompileCausticList, CanBeStopped) {
+  compile::CompiledScene compiled = compile(stage());
+  std::atomic<bool> is_stopped = false;
+  const base::StopScope scope(&is_stopped);
+  EXPECT_GT(caustic_list(compiled.view(), compiled.precision).balls.size(), 0u);
+  is_stopped = true;
+  EXPECT_THROW(caustic_list(compiled.view(), compiled.precision), base::Error);
 }
 
 TEST(CompileCausticList, EqualBallsBeyondTheLimitAreLeftOut) {
