@@ -13,6 +13,10 @@ namespace orrery::accel {
 namespace {
 
 [[noreturn]] void fail(RTCError code, const std::string& what) {
+  if (code == RTC_ERROR_CANCELLED) throw base::Error(base::ErrorKind::kStopped, "stopped while building");
+  if (code == RTC_ERROR_OUT_OF_MEMORY)
+    throw base::Error(base::ErrorKind::kNoMemory,
+                      what + ": out of memory; orrery info SCENE prints how much a scene needs");
   throw base::Error(base::ErrorKind::kInternal,
                     what + " (Embree error " + std::to_string(static_cast<int>(code)) + ")");
 }
@@ -71,7 +75,6 @@ void OwnedScene::attach(RTCGeometry geometry) {
 void OwnedScene::commit() {
   rtcCommitScene(scene_);
   const RTCError error = rtcGetDeviceError(device_);
-  if (error == RTC_ERROR_CANCELLED) throw base::Error(base::ErrorKind::kStopped, "stopped while building");
   if (error != RTC_ERROR_NONE) fail(error, "Embree cannot build the scene");
 }
 

@@ -89,7 +89,7 @@ class OwnedScene {
  public:
   /// `settings` configure Embree's device, e.g. "threads=1". Limits Embree to the instruction set kernel::isa_name().
   ///
-  /// Errors     base::Error(kInternal) if Embree does not start
+  /// Errors     base::Error if Embree does not start: kNoMemory, kInternal with Embree's code
   explicit OwnedScene(std::string settings = {});
   ~OwnedScene();
   OwnedScene(const OwnedScene&) = delete;
@@ -110,7 +110,8 @@ class OwnedScene {
 
   /// Builds the BVH.
   ///
-  /// Errors     base::Error(kInternal) with Embree's code, kStopped if a progress monitor cancelled the build
+  /// Errors     base::Error: kStopped if a progress monitor cancelled the build, kNoMemory, kInternal with Embree's
+  /// code
   void commit();
 
  private:
@@ -121,7 +122,7 @@ class OwnedScene {
 
 /// Builds a scene of Embree's built-in sphere points, rounded to float; radii are not padded.
 ///
-/// Errors     base::Error(kInternal) if Embree fails
+/// Errors     those of OwnedScene::commit()
 void build_sphere_points(OwnedScene& scene, std::size_t count,
                          const std::function<kernel::Sphere(std::size_t i)>& sphere_at);
 
