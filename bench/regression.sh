@@ -5,9 +5,12 @@
 # depends on neither the machine's speed nor its load. A ratio fails only if its whole interval is below the limit in
 # three runs.
 #
-# The limits are 0.6 of the figures for AVX2 in docs/benchmarks.md. They detect unused SIMD lanes, packet traversal
+# The first limits are 0.6 of the figures for AVX2 in docs/benchmarks.md. They detect unused SIMD lanes, packet traversal
 # replaced by single rays where packets pay, or a kernel that is no longer inlined. They do not detect a loss of a tenth;
 # for that, bench/instructions.py counts the instructions of two builds.
+#
+# On the scenes of bench/render/traversal.cpp, with AVX-512 and AVX2, the traversals of the rule must reach 0.9 of the
+# better one of packets and single rays.
 #
 #   bench/regression.sh BUILD       BUILD: a build folder configured with -DORRERY_BENCH=ON
 #
@@ -18,31 +21,58 @@ programs=${1:?usage: bench/regression.sh BUILD}/bench
 result=$(mktemp)
 trap 'rm -f "$result"' EXIT
 
-scene=render/final_scene
+# measure FILTER: measures these cases.
 measure() {
-  "$programs/bench_render" --benchmark_filter="^$scene/(embree/(exact|fast)|baseline|native_points)/one_thread" \
-    --benchmark_repetitions=5 --benchmark_enable_random_interleaving=true --benchmark_min_time=0.05 \
+  "$programs/bench_render" --benchmark_filter="$1" --benchmark_repetitions=5 \
+    --benchmark_enable_random_interleaving=true --benchmark_min_time=0.05 \
     --benchmark_out_format=json --benchmark_out="$result" >/dev/null 2>&1
 }
 
 # hold CASE LIMIT REFERENCE: fails the attempt if CASE is less than LIMIT times as fast as REFERENCE.
 hold() {
   printf '%s: must be at least %s times as fast as %s\n' "$1" "$2" "$3"
-  "$root/bench/compare.py" "$result" --to "$scene/$3" --filter "^$scene/$1\$" --fail-below "$2" || failed=1
+  "$root/bench/compare.py" "$result" --to "$3" --filter "^$1\$" --fail-below "$2" || failed=1
 }
 
-for attempt in 1 2 3; do
-  measure
-  if ! grep -q '"instruction_set": "avx' "$result"; then
-    echo "skipped: the limits are for AVX2 or better"
-    exit 77
-  fi
-  failed=0
-  printf 'attempt %s\n' "$attempt"
-  hold embree/exact/one_thread/small 13.5 baseline/one_thread/small
-  hold embree/fast/one_thread/small 17 baseline/one_thread/small
-  hold embree/exact/one_thread 0.95 native_points/one_thread
-  hold embree/fast/one_thread 1.4 native_points/one_thread
-  if [ "$failed" -eq 0 ]; then exit 0; fi
+final_scene() {
+  local scene=render/final_scene
+  measure "^$scene/(embree/(exact|fast)|baseline|native_points)/one_thread"
+  hold $scene/embree/exact/one_thread/small 13.5 $scene/baseline/one_thread/small
+  hold $scene/embree/fast/one_thread/small 17 $scene/baseline/one_thread/small
+  hold $scene/embree/exact/one_thread 0.95 $scene/native_points/one_thread
+  hold $scene/embree/fast/one_thread 1.4 $scene/native_points/one_thread
+}
+
+# traversals SCENE
+traversals() {
+  measure "^render/traversal/$1/"
+  for case in $(grep -o 'render/traversal/[^"]*/rule' "$result" | sort -u); do
+    hold "$case" 0.9 "${case%/rule}/packets"
+    hold "$case" 0.9 "${case%/rule}/single"
+  done
+}
+
+# The cases of traversals.
+names() {
+  "$programs/bench_render" --benchmark_list_tests --benchmark_filter=render/traversal
+}
+
+# attempt TEST...: ends the script if the test fails three times.
+attempt() {
+  for number in 1 2 3; do
+    printf '%s, attempt %s\n' "$*" "$number"
+    failed=0
+    "$@"
+    if [ "$failed" -eq 0 ]; then return; fi
+  done
+  exit 1
+}
+
+if [ -z "$(names | awk '/avx/')" ]; then
+  echo "skipped: the limits are for AVX2 or better"
+  exit 77
+fi
+attempt final_scene
+for scene in $(names | sed -n 's|^render/traversal/\(.*\)/avx2/fast/rule$|\1|p'); do
+  attempt traversals "$scene"
 done
-exit 1

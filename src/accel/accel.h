@@ -4,6 +4,7 @@
 #include <cstddef>
 #include <functional>
 #include <memory>
+#include <optional>
 #include <string>
 
 #include "accel/traversal.h"
@@ -21,15 +22,11 @@ class Accel {
  public:
   virtual ~Accel() = default;
 
-  /// The queries that the kernel calls, with this traversal; valid during the lifetime of this Accel. Lists have only
-  /// one traversal.
-  virtual kernel::Tracer tracer(Traversal traversal) const noexcept = 0;
-  kernel::Tracer tracer() const noexcept { return tracer(Traversal::kPacket); }
-
-  /// The queries of one thread, which uses the traversals that it has measured to be faster.
+  /// The queries that the kernel calls; valid during the lifetime of this Accel.
   ///
-  /// Domain     the traversals outlive the result
-  virtual kernel::Tracer thread_tracer(ThreadTraversals& traversals) const noexcept;
+  /// `requested`  traversal of all rays; empty: the fastest for each kind of rays. Lists have only one
+  virtual kernel::Tracer tracer(std::optional<Traversal> requested) const noexcept = 0;
+  kernel::Tracer tracer() const noexcept { return tracer(std::nullopt); }
 
   /// Replaces kernel::SceneView::opacity of the scene, without a new build.
   ///
@@ -38,6 +35,9 @@ class Accel {
 
   /// For example "embree 3.13.5" or "list".
   virtual std::string name() const = 0;
+
+  /// The traversals of tracer(), as name_of() formats them, or "list".
+  virtual std::string traversal_name(std::optional<Traversal>) const { return "list"; }
 
   /// Allocated bytes, where known.
   virtual std::size_t bytes() const noexcept = 0;
@@ -57,8 +57,8 @@ inline constexpr std::size_t kNoBvh = ~std::size_t{0};
 /// Spheres as Embree user geometry.
 ///
 /// Domain     the view's spheres outlive the result; precision is exact or fast
-/// Errors     base::Error(kInternal) if Embree fails or would drop a sphere, kStopped if the monitor cancelled
-///            the build
+/// Errors     base::Error: kStopped if the monitor cancelled the build, kNoMemory, kInternal if Embree fails or would
+///            drop a sphere
 std::unique_ptr<Accel> make_embree(const kernel::SceneView& scene, kernel::Precision precision,
                                    const BuildMonitor& monitor = {}, std::size_t threshold = bvh_threshold());
 
@@ -92,7 +92,7 @@ std::unique_ptr<Accel> make_simd_list(const kernel::SceneView& scene, kernel::Pr
 /// Traces float packets only. Hits are Embree's, not the kernel's, so no image is rendered with them.
 ///
 /// Domain     at least one sphere; coordinates representable as float
-/// Errors     base::Error(kInternal) if Embree fails
+/// Errors     base::Error: kNoMemory, kInternal if Embree fails
 std::unique_ptr<Accel> make_native_points(const kernel::SceneView& scene);
 
 }  // namespace orrery::accel

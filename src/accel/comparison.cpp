@@ -22,11 +22,10 @@ class SimdList final : public Accel {
     scene_.rods = view.rods;
     scene_.listed_rods = view.rods.count;
     scene_.outliers = complement_of(duplicates(view, precision), view.sphere_count);
-    traversals_.scene = &scene_;
     scene_.opacity = view.opacity;
   }
 
-  kernel::Tracer tracer(Traversal) const noexcept override { return functions_.tracer_of(traversals_); }
+  kernel::Tracer tracer(std::optional<Traversal>) const noexcept override { return functions_.tracer_of(traced_); }
   void set_opacity(const float* opacity) noexcept override { scene_.opacity = opacity; }
   std::string name() const override { return "SIMD list"; }
   std::size_t bytes() const noexcept override { return scene_.outliers.size() * sizeof(scene_.outliers[0]); }
@@ -34,7 +33,7 @@ class SimdList final : public Accel {
  private:
   EmbreeFunctions functions_;
   EmbreeScene scene_;
-  ThreadTraversals traversals_{Traversal::kPacket};
+  TracedScene traced_{&scene_, {}};
 };
 
 /// Minimum hit distance, as a multiple of the direction's length: without root exclusion a ray would hit the sphere
@@ -90,7 +89,7 @@ class NativePoints final : public Accel {
     build_sphere_points(scene_, view.sphere_count, [&](std::size_t i) { return view.spheres[i]; });
   }
 
-  kernel::Tracer tracer(Traversal) const noexcept override {
+  kernel::Tracer tracer(std::optional<Traversal>) const noexcept override {
     kernel::Tracer t;
     t.trace = kernel::query_each<kernel::RayPacket<float>, trace_points>;
     t.occlude = kernel::query_each<kernel::ShadowPacket<float>, occlude_points>;

@@ -125,15 +125,16 @@ class Embree final : public Accel {
       bvh_ = SphereBvh(scene_.bounded, std::move(ids), scene_.frame, part_of(monitor, 0, end), rods);
     }
     build(primitives, part_of(monitor, share(bvh_.count), 1));
-    packets_.scene = singles_.scene = &scene_;
+    if (!scene_.has_packets) return;
+    packets_.traversals = {Traversal::kPacket, Traversal::kPacket};
+    fastest_.traversals = fastest_traversals(view, !bvh_.empty());
   }
 
-  kernel::Tracer tracer(Traversal traversal) const noexcept override {
-    return functions_.tracer_of(traversal == Traversal::kPacket ? packets_ : singles_);
+  kernel::Tracer tracer(std::optional<Traversal> requested) const noexcept override {
+    return functions_.tracer_of(traced(requested));
   }
-  kernel::Tracer thread_tracer(ThreadTraversals& traversals) const noexcept override {
-    traversals.scene = &scene_;
-    return functions_.tracer_of(traversals);
+  std::string traversal_name(std::optional<Traversal> requested) const override {
+    return name_of(traced(requested).traversals);
   }
   void set_opacity(const float* opacity) noexcept override { scene_.opacity = opacity; }
   std::string name() const override { return "embree " + embree_.version(); }
@@ -142,6 +143,10 @@ class Embree final : public Accel {
   }
 
  private:
+  const TracedScene& traced(std::optional<Traversal> requested) const noexcept {
+    return !requested ? fastest_ : requested == Traversal::kPacket ? packets_ : singles_;
+  }
+
   static EmbreeScene make_scene(const kernel::SceneView& view, kernel::Precision precision) {
     EmbreeScene scene;
     scene.spheres = view.spheres;
@@ -177,7 +182,7 @@ class Embree final : public Accel {
     const std::size_t rods = short_rods(view.rods, limit);
     if (ids.size() - giants.size() + rods < threshold) return {};
     std::erase_if(ids, [&](std::uint32_t id) { return view.spheres[id].radius > limit; });
-    if (threshold > 1 && rods < ids.size() && is_small_layer(view.spheres, ids)) return {};
+    if (threshold > 1 && ids.size() <= kMaxInSmallLayer && is_layer(view)) return {};
     scene_.singles = std::move(giants);
     scene_.bvh = &bvh_;
     largest_in_bvh_ = limit;
@@ -227,15 +232,13 @@ class Embree final : public Accel {
 
   EmbreeFunctions functions_;
   EmbreeScene scene_;
-  ThreadTraversals packets_{Traversal::kPacket}, singles_{Traversal::kSingle};
+  TracedScene singles_{&scene_, {Traversal::kSingle, Traversal::kSingle}}, packets_ = singles_, fastest_ = singles_;
   double largest_in_bvh_ = 0;  ///< radius; 0: there is no BVH
   SphereBvh bvh_;
   OwnedScene embree_;
 };
 
 }  // namespace
-
-kernel::Tracer Accel::thread_tracer(ThreadTraversals&) const noexcept { return tracer(); }
 
 std::unique_ptr<Accel> make_embree(const kernel::SceneView& scene, kernel::Precision precision,
                                    const BuildMonitor& monitor, std::size_t threshold) {

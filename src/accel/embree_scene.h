@@ -80,6 +80,12 @@ struct EmbreeQuery {
   alignas(64) typename Packet::Number start[kernel::kPacketSize];
 };
 
+/// A scene, and how its rays traverse it.
+struct TracedScene {
+  const EmbreeScene* scene;
+  Traversals traversals;
+};
+
 /// Callbacks and tracer, instantiated for the instruction set of this processor and for one precision.
 struct EmbreeFunctions {
   struct Callbacks {
@@ -89,11 +95,11 @@ struct EmbreeFunctions {
   Callbacks spheres, rods;
   Callbacks bvh;          ///< for a geometry whose user data is a SphereBvh
   int width = 0;          ///< rays per packet handed to Embree
-  kernel::Tracer tracer;  ///< `self` is to be set: ThreadTraversals whose `scene` is an EmbreeScene
+  kernel::Tracer tracer;  ///< `self` is to be set: a TracedScene
 
-  kernel::Tracer tracer_of(const ThreadTraversals& traversals) const noexcept {
+  kernel::Tracer tracer_of(const TracedScene& scene) const noexcept {
     kernel::Tracer t = tracer;
-    t.self = &traversals;
+    t.self = &scene;
     return t;
   }
 };

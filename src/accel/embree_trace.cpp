@@ -5,7 +5,6 @@
 #include <hwy/highway.h>
 
 #include <algorithm>
-#include <ctime>
 #include <type_traits>
 
 #include "accel/embree_scene.h"
@@ -133,20 +132,10 @@ HWY_INLINE void trace_one_by_one(const int* valid, const EmbreePacket<Packet>& r
   }
 }
 
-/// CPU time of this thread: not that of others which interrupt it.
-inline double thread_seconds() {
-  timespec now{};
-  clock_gettime(CLOCK_THREAD_CPUTIME_ID, &now);
-  return static_cast<double>(now.tv_sec) + 1e-9 * static_cast<double>(now.tv_nsec);
-}
-
 template <class Packet>
-HWY_INLINE TraversalChoice& choice_for(const ThreadTraversals& traversals, const Packet& packet) {
-  if constexpr (Packet::kIsShadow) {
-    return traversals.shadow;
-  } else {
-    return packet.self[0] == kernel::kCamera ? traversals.camera : traversals.secondary;
-  }
+HWY_INLINE Traversal traversal_of(const Traversals& traversals, const Packet& packet) {
+  const bool from_camera = !Packet::kIsShadow && packet.self[0] == kernel::kCamera;
+  return from_camera ? traversals.camera : traversals.others;
 }
 
 /// Tests the rays of a packet against objects that are not in Embree's scene.
@@ -206,17 +195,15 @@ HWY_INLINE void trace_embree(const EmbreeScene& scene, Traversal traversal, Pack
 /// Traces packets: the outliers, then Embree's scene. Rays that are traced each on their own go through the SphereBvh
 /// before, those of all packets at the same time.
 ///
-/// `self`     ThreadTraversals
+/// `self`     TracedScene
 template <class Packet, kernel::Precision kPrecision>
 void trace(const void* self, void* memory, int count) {
-  const auto& traversals = *static_cast<const ThreadTraversals*>(self);
-  const auto& scene = *static_cast<const EmbreeScene*>(traversals.scene);
+  const auto& traced = *static_cast<const TracedScene*>(self);
+  const EmbreeScene& scene = *traced.scene;
   auto* const packets = static_cast<Packet*>(memory);
   const bool is_plain = scene.is_plain();
-  int rays = 0;
   for (int i = 0; i < count; ++i) {
     Packet& packet = packets[i];
-    rays += packet.count;
     if constexpr (Packet::kIsShadow) std::fill_n(packet.occluded, kernel::kPacketSize, 0);
     is_plain ? test_outliers<Packet, kPrecision, true>(scene, packet)
              : test_outliers<Packet, kPrecision, false>(scene, packet);
@@ -224,14 +211,10 @@ void trace(const void* self, void* memory, int count) {
   }
   if (scene.scene == nullptr) return;
 
-  TraversalChoice& choice = choice_for(traversals, packets[0]);
-  const bool is_timed = !choice.is_made();
-  const double begin = is_timed ? thread_seconds() : 0;
-  const Traversal traversal = scene.has_packets ? choice.next() : Traversal::kSingle;
+  const Traversal traversal = traversal_of(traced.traversals, packets[0]);
   const bool by_rays = scene.bvh != nullptr && traversal == Traversal::kSingle;
   if (by_rays) trace_by_rays<Packet, kPrecision>(scene, packets, count);
   for (int i = 0; i < count && !(by_rays && scene.is_bvh_alone); ++i) trace_embree(scene, traversal, packets[i]);
-  if (is_timed) choice.add(count, rays, thread_seconds() - begin);
 }
 
 template <kernel::Precision kPrecision>

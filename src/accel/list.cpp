@@ -2,6 +2,7 @@
 #include "accel/list.h"
 
 #include <memory>
+#include <optional>
 
 #include "accel/accel.h"
 #include "accel/sphere_classes.h"
@@ -14,7 +15,7 @@ class List final : public Accel {
   List(const kernel::SceneView& view, kernel::Precision precision)
       : scene_{view, duplicates(view, precision)}, precision_(precision) {}
 
-  kernel::Tracer tracer(Traversal) const noexcept override {
+  kernel::Tracer tracer(std::optional<Traversal>) const noexcept override {
     kernel::Tracer t = list_tracer(precision_);
     t.self = &scene_;
     return t;

@@ -34,8 +34,9 @@ constexpr double kLongRatio = 200;
 
 /// A layer is this many times as wide as it is thick, in both directions.
 constexpr double kLayerRatio = 10;
-/// Layers of more spheres are not small.
-constexpr std::size_t kMaxInSmallLayer = 100'000;
+
+/// Most objects in a sample that stands for all.
+constexpr std::size_t kSampleSize = 4096;
 
 }  // namespace
 
@@ -109,7 +110,7 @@ double giant_radius(const kernel::SceneView& scene) {
   const std::size_t spheres = scene.sphere_count - scene.moving_count;
   const std::size_t all = spheres + rods.count - rods.moving_count;
   std::vector<double> radii;
-  for (std::size_t i = 0; i < all; i += all / 4096 + 1)
+  for (std::size_t i = 0; i < all; i += all / kSampleSize + 1)
     radii.push_back(i < spheres ? scene.spheres[scene.moving_count + i].radius
                                 : enclosing_sphere(rods[rods.moving_count + i - spheres]).radius);
   const auto middle = radii.begin() + static_cast<std::ptrdiff_t>(radii.size() / 2);
@@ -128,12 +129,19 @@ std::size_t short_rods(const kernel::RodArray& rods, double largest) {
   return count;
 }
 
-bool is_small_layer(const kernel::SphereArray& spheres, const std::vector<std::uint32_t>& ids) {
-  if (ids.size() > kMaxInSmallLayer) return false;
-  const kernel::Sphere first = spheres[ids[0]];
-  double lower[3] = {first.x, first.y, first.z}, extent[3] = {0, 0, 0};
-  for (const std::uint32_t id : ids) {
-    const kernel::Sphere s = spheres[id];
+bool is_layer(const kernel::SceneView& scene) {
+  if (scene.sphere_count <= scene.rods.count) return false;
+  std::vector<kernel::Sphere> sample;
+  for (std::size_t id = 0; id < scene.sphere_count; id += scene.sphere_count / kSampleSize + 1)
+    sample.push_back(scene.spheres[id]);
+  // Without a ground, whose centre is far from the layer.
+  const auto middle = sample.begin() + static_cast<std::ptrdiff_t>(sample.size() / 2);
+  std::nth_element(sample.begin(), middle, sample.end(),
+                   [](const kernel::Sphere& a, const kernel::Sphere& b) { return a.radius < b.radius; });
+  const kernel::Sphere median = *middle;
+  double lower[3] = {median.x, median.y, median.z}, extent[3] = {0, 0, 0};
+  for (const kernel::Sphere& s : sample) {
+    if (s.radius > kGiantRatio * median.radius) continue;
     const double center[3] = {s.x, s.y, s.z};
     for (int k = 0; k < 3; ++k) {
       const double upper = std::max(lower[k] + extent[k], center[k]);
@@ -158,17 +166,15 @@ ObjectCounts objects_in_bvh(const kernel::SceneView& scene) {
   const std::size_t rods = short_rods(scene.rods, limit);
   std::size_t count = 0;
   double smallest = limit, largest = 0;
-  std::vector<std::uint32_t> ids;  // enough of them to recognise a small layer
   for (std::size_t id = scene.moving_count; id < scene.sphere_count; ++id) {
     const double radius = scene.spheres[id].radius;
     if (radius > limit) continue;
     ++count;
     smallest = std::min(smallest, radius);
     largest = std::max(largest, radius);
-    if (ids.size() <= kMaxInSmallLayer) ids.push_back(static_cast<std::uint32_t>(id));
   }
   const bool fits = count + rods >= least && count + rods <= SphereBvh::kMaxSpheres;
-  if (!fits || (rods < count && is_small_layer(scene.spheres, ids))) return {};
+  if (!fits || (count <= kMaxInSmallLayer && is_layer(scene))) return {};
   return {count, rods, rods == 0 && smallest == largest};
 }
 

@@ -43,10 +43,11 @@ bool is_short(const kernel::RodArray& rods, std::size_t rod, double largest);
 /// The number of rods for which is_short() holds.
 std::size_t short_rods(const kernel::RodArray& rods, double largest);
 
-/// Whether the spheres are so few and lie in so thin a layer that packets of rays are coherent. One primitive per
-/// sphere is then faster than a SphereBvh.
-///
-/// Domain     `ids` is not empty
-bool is_small_layer(const kernel::SphereArray& spheres, const std::vector<std::uint32_t>& ids);
+/// Whether most objects are spheres that lie in a thin layer, judged by a sample of them: packets of rays are coherent
+/// there.
+bool is_layer(const kernel::SceneView& scene);
+
+/// Layers of up to this many spheres are faster with one primitive per sphere than with a SphereBvh.
+inline constexpr std::size_t kMaxInSmallLayer = 100'000;
 
 }  // namespace orrery::accel

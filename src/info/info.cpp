@@ -10,6 +10,8 @@
 
 #include <fmt/core.h>
 
+#include "accel/accel.h"
+#include "accel/traversal.h"
 #include "base/text.h"
 #include "compile/compiled_scene.h"
 #include "compile/environment.h"
@@ -292,9 +294,10 @@ SceneInfo scene_info(const load::SceneRequest& request, job::PreparedScene& prep
     if (s.key == "render.accelerator") info.accelerator = scene::unquoted(s.value);
   }
   info.isa = kernel::isa_name();
+  const bool is_in_bvh = accel::objects_in_bvh(compiled.view()).all() > 0;
   info.traversal = compiled.accelerator == compile::Accelerator::kList || info.spheres + info.rods == 0
                        ? "list"
-                       : "packet or single, the faster in the first rays";
+                       : accel::name_of(accel::fastest_traversals(compiled.view(), is_in_bvh));
   info.memory = job::estimate_memory(compiled, layers);
   if (loaded.background) {
     info.memory.background = loaded.background->bytes;

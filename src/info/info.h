@@ -59,7 +59,7 @@ struct SceneInfo {
   std::vector<std::string> layers, available_layers;  ///< layers requested in [output], and all that the scene supports
   std::vector<Feature> features;
   std::string precision, accelerator, isa;
-  std::string traversal;  ///< BVH traversal, if known before rendering
+  std::string traversal;  ///< see accel::Accel::traversal_name()
   job::MemoryEstimate memory;
   std::optional<load::LoadedMap> background;  ///< set for an image background
   std::string background_file;

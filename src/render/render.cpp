@@ -113,6 +113,7 @@ Result render(const compile::CompiledScene& compiled, const accel::Accel& accel,
   Statistics statistics;
   statistics.threads = threads_of(settings);
   statistics.accelerator = accel.name();
+  statistics.traversal = accel.traversal_name(settings.traversal);
 
   if (from && settings.on_pixels) report_pixels(settings, *from);
   film::Partial state = from ? std::move(*from) : fresh_state(compiled, settings);
@@ -125,7 +126,6 @@ Result render(const compile::CompiledScene& compiled, const accel::Accel& accel,
                              ? render_adaptively(compiled, settings, render_tile, pool, progress, state, statistics)
                              : render_progressively(compiled, settings, render_tile, pool, progress, state, statistics);
   state.work = work_so_far(state.work, pool, progress);
-  statistics.traversal = compiled.accelerator == compile::Accelerator::kList ? "list" : pool.traversals();
   const std::int64_t target = pool.counts().target;
   statistics.isa = target != 0 ? kernel::isa_name(target) : kernel::isa_name();  // 0: there was nothing left to do
   statistics.set(state.work);

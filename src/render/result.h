@@ -20,7 +20,7 @@ struct Statistics {
   double finish_s = 0;      ///< from sums to the finished image and its layers
   std::string isa;          ///< the kernel's instruction set, e.g. "avx2"
   std::string accelerator;  ///< e.g. "embree 3.13.5" or "list"
-  std::string traversal;  ///< traversal of camera rays, and of secondary rays if different: "packet, secondary single"
+  std::string traversal;    ///< see accel::Accel::traversal_name()
   int threads = 0;
   std::uint64_t min_samples = 0, max_samples = 0;  ///< per pixel
   /// Adaptive sampling only: the expected noise of the image, and its upper confidence bound, which is compared with

@@ -61,7 +61,7 @@ struct Progress {
 /// Settings of a render that are not part of the scene.
 struct Settings {
   int threads = 0;  ///< 0: as many as available_threads()
-  /// Traversal of all rays. Empty: the faster one in the first packets of each thread, see accel::ThreadTraversals.
+  /// Traversal of all rays. Empty: accel::fastest_traversals().
   std::optional<accel::Traversal> traversal;
   film::LayerRequest layers;  ///< besides the beauty
   SamplingLimits sampling;

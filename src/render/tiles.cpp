@@ -108,25 +108,9 @@ kernel::TileCounts TilePool::counts() const {
   return sum;
 }
 
-std::string TilePool::traversals() const {
-  using accel::ThreadTraversals, accel::Traversal, accel::TraversalChoice;
-  const auto name_of = [this](TraversalChoice ThreadTraversals::*kind) -> std::string {
-    bool by_packets = false, single = false;
-    for (const TileWorker& worker : impl_->workers) {
-      const TraversalChoice& choice = worker.traversals.*kind;
-      by_packets |= !choice.is_made() || choice.next() == Traversal::kPacket;
-      single |= !choice.is_made() || choice.next() == Traversal::kSingle;
-    }
-    return !single ? "packet" : !by_packets ? "single" : "both";
-  };
-  const std::string camera = name_of(&ThreadTraversals::camera), secondary = name_of(&ThreadTraversals::secondary);
-  return camera == secondary ? camera : camera + ", secondary " + secondary;
-}
-
 TileRenderer::TileRenderer(const compile::CompiledScene& compiled, const accel::Accel& accel, const Settings& settings)
     : view_(compiled.view()),
-      accel_(accel),
-      traversal_(settings.traversal),
+      tracer_(accel.tracer(settings.traversal)),
       request_(settings.layers),
       // Each half of a low-discrepancy sequence is a sequence in its own right.
       second_half_(settings.sampling.is_adaptive() ? kernel::Sampler::kSecondHalf
@@ -137,11 +121,7 @@ TileRenderer::TileRenderer(const compile::CompiledScene& compiled, const accel::
 
 void TileRenderer::operator()(const kernel::Tile& tile, TileWorker& worker, film::Partial& image) const {
   const DefaultRounding rounding;
-  if (!worker.stream) {
-    worker.stream = std::make_unique<kernel::PathStream>();
-    if (traversal_) worker.traversals = accel::ThreadTraversals(*traversal_);
-  }
-  const kernel::Tracer tracer = accel_.thread_tracer(worker.traversals);
+  if (!worker.stream) worker.stream = std::make_unique<kernel::PathStream>();
   const auto pixels = static_cast<std::uint32_t>(tile.width) * static_cast<std::uint32_t>(tile.height);
   const std::uint32_t most = request_.records() ? std::max(1u, kMaxRecords / pixels) : ~0u;
   const std::uint32_t middle =
@@ -151,7 +131,7 @@ void TileRenderer::operator()(const kernel::Tile& tile, TileWorker& worker, film
     part.sample_begin = begin;
     part.sample_end = begin + std::min(most, (begin < middle ? middle : tile.sample_end) - begin);
     attach_buffers(part, worker);
-    const kernel::TileCounts counts = render_(view_, tracer, part, *worker.stream);
+    const kernel::TileCounts counts = render_(view_, tracer_, part, *worker.stream);
     worker.counts.rays += counts.rays;
     worker.counts.bad_samples += counts.bad_samples;
     worker.counts.target = counts.target;

@@ -5,7 +5,6 @@
 #include <cstdint>
 #include <functional>
 #include <memory>
-#include <optional>
 #include <string>
 #include <vector>
 
@@ -15,6 +14,7 @@
 #include "kernel/path_record.h"
 #include "kernel/path_stream.h"
 #include "kernel/pixel_sum.h"
+#include "kernel/ray_packet.h"
 #include "kernel/render_tile.h"
 #include "kernel/scene_view.h"
 
@@ -37,7 +37,6 @@ class LightEventBuffer : public kernel::LightEvents {
 /// Buffers of one thread, so that the kernel's loop does not allocate.
 struct TileWorker {
   std::unique_ptr<kernel::PathStream> stream;
-  accel::ThreadTraversals traversals;
   std::vector<kernel::PathRecord> records;
   std::vector<kernel::PixelSum> light;   ///< sums of a tile's pixels
   std::vector<float> largest;            ///< largest samples of a tile's pixels
@@ -63,10 +62,6 @@ class TilePool {
 
   /// Counts of all tiles so far.
   kernel::TileCounts counts() const;
-
-  /// The traversals of camera rays, and of secondary rays if different: "packet", "single", or "both" if threads differ
-  /// or are still measuring. For example "packet, secondary single".
-  std::string traversals() const;
 
  private:
   struct Impl;
@@ -95,8 +90,7 @@ class TileRenderer {
                 film::Partial& image) const;
 
   kernel::SceneView view_;
-  const accel::Accel& accel_;
-  const std::optional<accel::Traversal> traversal_;
+  kernel::Tracer tracer_;
   const film::LayerRequest& request_;
   std::uint32_t second_half_;  ///< first sample of the second half
   kernel::RenderTile render_ = nullptr;

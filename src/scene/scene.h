@@ -92,7 +92,7 @@ enum class Accelerator {
 
 /// Order in which rays traverse Embree's BVH. The image does not depend on it.
 enum class Traversal {
-  kAuto,    ///< the faster one, in the first packets of each thread
+  kAuto,    ///< the fastest for each kind of rays
   kPacket,  ///< 16 rays together
   kSingle,  ///< one ray after the other
 };

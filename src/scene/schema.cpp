@@ -176,8 +176,8 @@ Table render_table() {
                 "", "`list`: time is proportional to the number of spheres"},
                &Render::accelerator)),
        choice("traversal", {"auto", "packet", "single"},
-              {"Traversal of Embree's BVH, for comparison: by packets of rays, or ray by ray. `auto`: times both with "
-               "rays of the scene and uses the faster. The image is the same, bit for bit",
+              {"Traversal of Embree's BVH, for comparison: by packets of rays, or ray by ray. `auto`: the fastest for "
+               "each kind of rays. The image is the same, bit for bit",
                "", "-"},
               &Render::traversal),
        changes(Part::kLook,

@@ -3,44 +3,72 @@
 
 #include <gtest/gtest.h>
 
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "accel/accel.h"
+#include "kernel/isa.h"
+#include "kernel/scene_view.h"
+#include "support/accel_rays.h"
+
 namespace orrery::accel {
 namespace {
 
-/// Traces packets until the choice is made: a ray takes so many seconds.
-Traversal chosen(double packet_s, double single_s) {
-  TraversalChoice choice(10);
-  for (int i = 0; !choice.is_made(); ++i) {
-    const int rays = 1 + 3 * i % 16;  // packets are not equally full
-    choice.add(1, rays, rays * (choice.next() == Traversal::kPacket ? packet_s : single_s));
-  }
-  return choice.next();
+constexpr Traversals kPackets{Traversal::kPacket, Traversal::kPacket}, kMixed{Traversal::kPacket, Traversal::kSingle};
+
+/// The traversals of a cloud of small spheres; `thickness` of its width along one axis.
+Traversals of_cloud(int count, bool has_bvh, double thickness = 1) {
+  test::Random random;
+  std::vector<kernel::Sphere> spheres = test::scattered(random, count, 100, 0.1, 0);
+  for (kernel::Sphere& s : spheres) s.y *= thickness;
+  spheres.push_back({0, -1e5, 0, 1e5});  // a ground
+  kernel::SceneView view;
+  view.spheres = spheres.data();
+  view.sphere_count = spheres.size();
+  return fastest_traversals(view, has_bvh);
 }
 
-TEST(AccelTraversal, TheFasterOneIsChosen) {
-  EXPECT_EQ(chosen(1e-7, 1.1e-7), Traversal::kPacket);
-  EXPECT_EQ(chosen(1.1e-7, 1e-7), Traversal::kSingle);
+TEST(AccelTraversal, FollowsFromStructureCountAndInstructionSet) {
+  for (const std::string& isa : kernel::available_isas()) {
+    ASSERT_TRUE(kernel::limit_isa(isa));
+    const bool is_wide = isa == "avx512";
+    EXPECT_EQ(of_cloud(600, false), kPackets) << isa;
+    EXPECT_EQ(of_cloud(900, false), is_wide ? kPackets : kMixed) << isa;
+    EXPECT_EQ(of_cloud(1000, false), kMixed) << isa;
+    EXPECT_EQ(of_cloud(600, true), kMixed) << isa;
+    for (const bool has_bvh : {false, true}) EXPECT_EQ(of_cloud(10'000, has_bvh, 0.05), kPackets) << isa;
+  }
+  kernel::limit_isa("");
 }
 
-TEST(AccelTraversal, BothAreMeasuredInTurns) {
-  TraversalChoice choice(11);
-  int by_packets = 0;
-  for (int i = 0; i < 4; ++i) {  // queries of three packets
-    EXPECT_FALSE(choice.is_made());
-    by_packets += choice.next() == Traversal::kPacket;
-    choice.add(3, 48, 1e-6);
-  }
-  EXPECT_TRUE(choice.is_made());
-  EXPECT_EQ(by_packets, 2);
+TEST(AccelTraversal, ALayerWithMoreRodsThanSpheresDoesNotCount) {
+  std::vector<kernel::Sphere> spheres;
+  for (int i = 0; i < 1000; ++i) spheres.push_back({i % 30 * 1.0, 0, i / 30 * 1.0, 0.2});
+  std::vector<kernel::Rod> rods(spheres.size(), kernel::Rod{{0, 0, 0}, 0.1, {0, 90, 0}});
+  kernel::SceneView view;
+  view.spheres = spheres.data();
+  view.sphere_count = spheres.size();
+  EXPECT_EQ(fastest_traversals(view, true), kPackets);
+  view.rods.plain = rods.data();
+  view.rods.count = rods.size();
+  EXPECT_EQ(fastest_traversals(view, true), kMixed);
 }
 
-TEST(AccelTraversal, ARequestedOneIsNotMeasured) {
-  for (const Traversal traversal : {Traversal::kPacket, Traversal::kSingle}) {
-    const ThreadTraversals all(traversal);
-    for (const TraversalChoice* choice : {&all.camera, &all.secondary, &all.shadow}) {
-      EXPECT_TRUE(choice->is_made());
-      EXPECT_EQ(choice->next(), traversal);
-    }
-  }
+TEST(AccelTraversal, IsThatOfTheAccelerator) {
+  test::Random random;
+  const std::vector<kernel::Sphere> spheres = test::scattered(random, 100, 100, 0.1, 0);
+  kernel::SceneView view;
+  view.spheres = spheres.data();
+  view.sphere_count = spheres.size();
+  const auto name = [&](std::size_t threshold, std::optional<Traversal> requested = {}) {
+    return make_embree(view, kernel::Precision::kExact, {}, threshold)->traversal_name(requested);
+  };
+  EXPECT_EQ(name(kNoBvh), "packet");
+  EXPECT_EQ(name(1), "packet, secondary and shadow single");
+  EXPECT_EQ(name(1, Traversal::kPacket), "packet");
+  EXPECT_EQ(name(1, Traversal::kSingle), "single");
+  EXPECT_EQ(make_list(view, kernel::Precision::kExact)->traversal_name({}), "list");
 }
 
 }  // namespace

@@ -188,7 +188,7 @@ TEST_F(Info, TheListNeedsNoMemoryForABvh) {
 }
 
 TEST_F(Info, ReportsTheTraversal) {
-  EXPECT_EQ(info(kScene).traversal, "packet or single, the faster in the first rays");
+  EXPECT_EQ(info(kScene).traversal, "packet");
   EXPECT_EQ(info(kScene, {"render.accelerator=list"}).traversal, "list");
 }
 
