@@ -16,7 +16,7 @@
 #include <type_traits>
 
 #include "accel/ray_steps-inl.h"
-#include "kernel/gather_spheres-inl.h"
+#include "kernel/gather-inl.h"
 
 HWY_BEFORE_NAMESPACE();
 namespace orrery::accel::HWY_NAMESPACE {

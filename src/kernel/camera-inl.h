@@ -12,12 +12,25 @@
 #include <algorithm>
 #include <cmath>
 
-#include "kernel/sample-inl.h"
 #include "kernel/sampler-inl.h"
 #include "kernel/scene_view.h"
+#include "math/functions-inl.h"
+#include "math/vec3-inl.h"
 
 HWY_BEFORE_NAMESPACE();
 namespace orrery::kernel::HWY_NAMESPACE {
+
+/// A point on the unit disc, uniform by area.
+template <class D, class V>
+struct DiscPoint {
+  V x, y;
+};
+template <class D, class V = hn::Vec<D>>
+HWY_INLINE DiscPoint<D, V> sample_unit_disc(D d, V u, V v) {
+  const V radius = hn::Sqrt(u);
+  const auto turn = sin_cos_turn(d, v);
+  return {radius * turn.cos, radius * turn.sin};
+}
 
 /// A ray from the camera's origin plus `offset`.
 template <class V>

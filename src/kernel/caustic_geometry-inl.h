@@ -11,8 +11,8 @@
 
 #include <limits>
 
-#include "kernel/sample-inl.h"
 #include "math/functions-inl.h"
+#include "math/vec3-inl.h"
 
 HWY_BEFORE_NAMESPACE();
 namespace orrery::kernel::HWY_NAMESPACE {

@@ -19,7 +19,6 @@
 #include "kernel/direct_light-inl.h"
 #include "kernel/light-inl.h"
 #include "kernel/path_stream.h"
-#include "kernel/sample-inl.h"
 #include "kernel/scatter-inl.h"
 #include "kernel/surface-inl.h"
 

@@ -146,6 +146,8 @@ HWY_INLINE Vec3<V> sample_map(D d, const Environment& env, V u, V v) {
   const V zero = hn::Zero(d), one = set(d, 1), two = set(d, 2), half = set(d, 0.5);
   V column = zero, row = zero;
   HWY_ALIGN T columns[kMax], rows[kMax];
+
+  // A step from a node to one of its four children: first the row, then the column.
   const auto descend = [&](V upper_left, V upper_right, V lower_left, V lower_right) {
     const auto vertical = split(d, upper_left + upper_right, lower_left + lower_right, v);
     const auto horizontal =
@@ -158,6 +160,8 @@ HWY_INLINE Vec3<V> sample_map(D d, const Environment& env, V u, V v) {
     hn::Store(row, d, rows);
     return std::pair{vertical.second, horizontal.second};
   };
+
+  // From the root to a node of two by two cells.
   hn::Store(zero, d, columns);
   hn::Store(zero, d, rows);
   for (std::uint32_t k = 0; k < env.level_count; ++k) {
@@ -173,7 +177,7 @@ HWY_INLINE Vec3<V> sample_map(D d, const Environment& env, V u, V v) {
     descend(child[0], child[1], child[2], child[3]);
   }
 
-  // The last step: two by two cells between three by three texels.
+  // The weights of its three by three texels, between which the cells are.
   V weight[3][3];
   for (std::size_t y = 0; y < 3; ++y) {
     for (std::size_t x = 0; x < 3; ++x) {
@@ -190,6 +194,8 @@ HWY_INLINE Vec3<V> sample_map(D d, const Environment& env, V u, V v) {
       weight[y][x] = texel_weight(d, env, rgb);
     }
   }
+
+  // The heights of its two rows of cells.
   HWY_ALIGN T versine[2][kMax], extent[2][kMax];
   for (std::size_t i = 0; i < hn::Lanes(d); ++i) {
     for (std::size_t k = 0; k < 2; ++k) {
@@ -199,6 +205,8 @@ HWY_INLINE Vec3<V> sample_map(D d, const Environment& env, V u, V v) {
     }
   }
   const V extents[2] = {hn::Load(d, extent[0]), hn::Load(d, extent[1])};
+
+  // The last step, to a cell, by its sum of weights times height.
   const auto has_right = mul_add(column, two, one) < env.width;
   const auto cell = [&](std::size_t y, std::size_t x) {
     return ((weight[y][x] + weight[y][x + 1]) + (weight[y + 1][x] + weight[y + 1][x + 1])) * hn::Abs(extents[y]);
@@ -206,6 +214,7 @@ HWY_INLINE Vec3<V> sample_map(D d, const Environment& env, V u, V v) {
   const auto [is_lower, is_right] = descend(cell(0, 0), hn::IfThenElseZero(has_right, cell(0, 1)), cell(1, 0),
                                             hn::IfThenElseZero(has_right, cell(1, 1)));
 
+  // A point in the cell, in which the weight is bilinear.
   V corner[2][2];
   for (std::size_t y = 0; y < 2; ++y)
     for (std::size_t x = 0; x < 2; ++x)
@@ -215,6 +224,7 @@ HWY_INLINE Vec3<V> sample_map(D d, const Environment& env, V u, V v) {
   const V right = sample_linear(d, interpolated(d, corner[0][0], corner[1][0], down),
                                 interpolated(d, corner[0][1], corner[1][1], down), u);
 
+  // Its direction.
   const V row_width = select(is_lower, extents[1], extents[0]);
   const V begin = select(is_lower, hn::Load(d, versine[1]), hn::Load(d, versine[0]));
   const V from_pole = max(mul_add(row_width, down, begin), zero);

@@ -73,6 +73,12 @@ HWY_INLINE Spheres<D> broadcast(D d, const Sphere& s) {
   return {{set(d, s.x), set(d, s.y), set(d, s.z)}, set(d, s.radius)};
 }
 
+/// Spheres that have changed by `time` times `change`.
+template <class D>
+HWY_INLINE Spheres<D> moved(const Spheres<D>& at_opening, const Spheres<D>& change, hn::Vec<D> time) {
+  return {mul_add(change.center, time, at_opening.center), mul_add(change.radius, time, at_opening.radius)};
+}
+
 /// A sphere at the times of a packet's rays from `first` on.
 ///
 /// Domain     `scene` has spheres, motion and moving_count as SceneView has them
@@ -80,9 +86,7 @@ template <class D, class Scene, class Packet>
 HWY_INLINE Spheres<D> sphere_at(D d, const Scene& scene, std::uint32_t id, const Packet& packet, int first) {
   const auto at_opening = broadcast(d, scene.spheres[id]);
   if (id >= scene.moving_count) return at_opening;
-  const auto change = broadcast(d, scene.motion[id]);
-  const auto time = hn::Load(d, packet.time + first);
-  return {mul_add(change.center, time, at_opening.center), mul_add(change.radius, time, at_opening.radius)};
+  return moved<D>(at_opening, broadcast(d, scene.motion[id]), hn::Load(d, packet.time + first));
 }
 
 /// The chord along which a ray's line passes through a sphere.

@@ -13,7 +13,6 @@
 #include <cstdint>
 
 #include "kernel/random-inl.h"
-#include "kernel/sobol-inl.h"
 
 HWY_BEFORE_NAMESPACE();
 namespace orrery::kernel::HWY_NAMESPACE {

@@ -20,7 +20,6 @@
 #include <limits>
 
 #include "kernel/gather-inl.h"
-#include "kernel/gather_spheres-inl.h"
 #include "kernel/intersect-inl.h"
 #include "kernel/rod.h"
 
@@ -200,6 +199,7 @@ HWY_INLINE RodEntry<D> rod_entry(D d, const Rays<D>& ray, const Rods<D>& rod) {
     at.distance = mul_add(moved, dot(direction, u) * ray.inverse_square, at.distance);
   }
 
+  // Whether the line is closer to that point than the radius: to the cylinder, or beyond an end to the sphere there.
   const V height = dot(at.to_point, normal), height_by_normal = height * inverse_normal2;
   const V body_discriminant = neg_mul_add(height_by_normal, height, rod.radius * rod.radius);
   const auto is_between = hn::And(closest > low, closest < high);

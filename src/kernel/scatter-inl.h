@@ -16,9 +16,9 @@
 
 #include "kernel/intersect-inl.h"
 #include "kernel/material.h"
-#include "kernel/sample-inl.h"
 #include "kernel/sampler-inl.h"
 #include "kernel/scene_view.h"
+#include "math/functions-inl.h"
 
 HWY_BEFORE_NAMESPACE();
 namespace orrery::kernel::HWY_NAMESPACE {
@@ -92,6 +92,14 @@ HWY_INLINE hn::Mask<D> is_delta(D d, const Surface<D>& at) {
 template <class D, class V = hn::Vec<D>>
 HWY_INLINE hn::Mask<D> is_transmitted(D d, const Surface<D>& at, const Vec3<V>& w) {
   return hn::AndNot(at.same_side(w), has_trait<&MaterialTraits::transmits>(d, at));
+}
+
+/// A point on the unit sphere, uniform by area.
+template <class D, class V = hn::Vec<D>>
+HWY_INLINE Vec3<V> sample_unit_sphere(D d, V u, V v) {
+  const V radius = hn::Sqrt(u * (1 - u)) * 2;  // radius of the circle at height 1 - 2u
+  const auto turn = sin_cos_turn(d, v);
+  return {radius * turn.cos, radius * turn.sin, 1 - (u + u)};
 }
 
 /// Samples the cosine-weighted hemisphere: the normal plus a point of the unit sphere, normalized.

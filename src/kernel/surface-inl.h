@@ -13,7 +13,6 @@
 #include <cstddef>
 
 #include "kernel/gather-inl.h"
-#include "kernel/gather_spheres-inl.h"
 #include "kernel/intersect-inl.h"
 #include "kernel/rod-inl.h"
 #include "kernel/scatter-inl.h"
@@ -46,9 +45,7 @@ HWY_INLINE Spheres<D> load_spheres(D d, const SceneView& scene, const hn::TFromD
   hn::Vec<D> change[4];
   gather4(
       d, [&](std::size_t i) { return &(id[i] < scene.moving_count ? scene.motion[id[i]] : kAtRest).x; }, change);
-  const auto time = hn::Load(d, times);
-  return {mul_add(Vec3<hn::Vec<D>>{change[0], change[1], change[2]}, time, at_opening.center),
-          mul_add(change[3], time, at_opening.radius)};
+  return moved<D>(at_opening, {{change[0], change[1], change[2]}, change[3]}, hn::Load(d, times));
 }
 
 /// Stores ids below `count`: those of the hits, and the last one in lanes without a hit, whose sphere is compact if any

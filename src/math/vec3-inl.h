@@ -124,6 +124,23 @@ HWY_INLINE Vec3<V> sum_error(const Vec3<V>& a, const Vec3<V>& b, const Vec3<V>& 
   return difference_error(a, negated(b), sum);
 }
 
+/// Two unit vectors that form a right-handed orthonormal basis with the unit vector `axis`.
+///
+/// Reference  duff2017
+template <class V>
+struct Frame {
+  Vec3<V> x, y;
+};
+template <class D, class V = hn::Vec<D>>
+HWY_INLINE Frame<V> frame_around(D d, const Vec3<V>& axis) {
+  const V one = set(d, 1);
+  const V sign = hn::CopySign(one, axis.z);
+  const V a = -(1 / (sign + axis.z));
+  const V b = axis.x * axis.y * a;
+  return {{mul_add(sign * axis.x, axis.x * a, 1), sign * b, -(sign * axis.x)},
+          {b, mul_add(axis.y, axis.y * a, sign), -axis.y}};
+}
+
 }  // namespace orrery::math::HWY_NAMESPACE
 HWY_AFTER_NAMESPACE();
 #endif

@@ -7,6 +7,7 @@
 // After foreach_target:
 #include <hwy/highway.h>
 
+#include "kernel/camera-inl.h"
 #include "kernel/intersect-inl.h"
 #include "kernel/scatter-inl.h"
 #include "support/best.h"

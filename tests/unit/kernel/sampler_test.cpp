@@ -10,7 +10,7 @@
 #include <vector>
 
 #undef HWY_TARGET_INCLUDE
-#define HWY_TARGET_INCLUDE "unit/kernel/sobol_test.cpp"
+#define HWY_TARGET_INCLUDE "unit/kernel/sampler_test.cpp"
 #include <hwy/foreach_target.h>  // IWYU pragma: keep
 // After foreach_target:
 #include <hwy/highway.h>
@@ -82,7 +82,7 @@ std::vector<double> numbers_of(const Sampler& sampler, std::uint32_t pixel, std:
   return out;
 }
 
-TEST(KernelSobol, ColumnsMatchThePublishedPoints) {
+TEST(KernelSampler, ColumnsMatchThePublishedPoints) {
   // Without scrambling, point 1 is 1/2, point 2 is 1/4 or 3/4, and point 4 an odd multiple of 1/8: joe2008's table for
   // three dimensions.
   const auto value = [](std::uint32_t reversed) {
@@ -99,7 +99,7 @@ TEST(KernelSobol, ColumnsMatchThePublishedPoints) {
   EXPECT_EQ(value(kSobolColumns.fourth[2]), 0.125);
 }
 
-TEST(KernelSobol, BothLaneWidthsGiveTheSamePoints) {
+TEST(KernelSampler, BothLaneWidthsGiveTheSamePoints) {
   std::vector<std::uint32_t> wide(4 * 1000), narrow(4 * 1000);
   for (const std::uint32_t name : {0u, 1u, 0xdeadbeefu}) {
     for (std::uint32_t order = 0; order < kSobolOrders.size(); ++order) {
@@ -115,7 +115,7 @@ int smallest_block_bits(std::uint32_t order) {
   return order == 0 || order == kSobolTimeOrder ? 0 : static_cast<int>(kSobolFreeBits);
 }
 
-TEST(KernelSobol, EveryBlockIsANetInTheFirstTwoDimensions) {
+TEST(KernelSampler, EveryBlockIsANetInTheFirstTwoDimensions) {
   for (std::uint32_t order = 0; order < kSobolOrders.size(); ++order) {
     for (std::uint32_t name = 1; name < 20; ++name) {
       for (int bits = smallest_block_bits(order); bits <= 8; ++bits) {
@@ -134,7 +134,7 @@ TEST(KernelSobol, EveryBlockIsANetInTheFirstTwoDimensions) {
   }
 }
 
-TEST(KernelSobol, EachDimensionIsStratifiedAtEveryPowerOfTwo) {
+TEST(KernelSampler, EachDimensionIsStratifiedAtEveryPowerOfTwo) {
   for (std::uint32_t order = 0; order < kSobolOrders.size(); ++order)
     for (std::uint32_t name = 1; name < 20; ++name)
       for (const int bits : {smallest_block_bits(order) + 1, 9})
@@ -155,7 +155,7 @@ double z_of(const std::vector<int>& cells) {
   return (chi - freedom) / std::sqrt(2 * freedom);
 }
 
-TEST(KernelSobol, EveryDimensionPairIsUniformOverScrambleSeeds) {
+TEST(KernelSampler, EveryDimensionPairIsUniformOverScrambleSeeds) {
   constexpr int kSide = 32, kNames = 200000;
   for (const std::uint32_t index : {0u, 1u, 2u, 3u, 5u, 16u, 1000u}) {
     for (const auto& [a, b] : {std::pair{0, 1}, {0, 2}, {0, 3}, {1, 2}, {1, 3}, {2, 3}}) {
