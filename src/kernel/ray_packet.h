@@ -24,7 +24,7 @@ using IdOf = std::conditional_t<sizeof(T) == 8, std::uint64_t, std::uint32_t>;
 ///
 /// A ray that leaves a sphere starts at the sphere's centre plus `offset`. `origin` holds the rounded sum and
 /// `origin_low` its rounding error, so a sphere far from the world origin loses no precision. `self` identifies the
-/// sphere that the ray leaves, which makes an epsilon unnecessary.
+/// object that the ray leaves, which makes an epsilon unnecessary.
 template <class T>
 struct alignas(64) PacketRays {
   using Number = T;
@@ -34,7 +34,7 @@ struct alignas(64) PacketRays {
   T offset[3][kPacketSize];
   T direction[3][kPacketSize];
   T inverse_square[kPacketSize];   ///< 1 / (direction . direction)
-  Id self[kPacketSize];            ///< sphere that the ray leaves, or kNone
+  Id self[kPacketSize];            ///< object that the ray leaves, or kCamera
   T distance[kPacketSize];         ///< maximum distance of a hit, as a multiple of the direction's length
   T time[kPacketSize];             ///< 0..1 within the shutter; only if the scene moves
   std::uint32_t key[kPacketSize];  ///< decides which objects are visible; only if the scene has opacities
@@ -45,14 +45,14 @@ struct alignas(64) PacketRays {
 template <class T>
 struct RayPacket : PacketRays<T> {
   static constexpr bool kIsShadow = false;
-  alignas(64) IdOf<T> hit[kPacketSize];  ///< in: kNone; out: the sphere of the closest hit, or kNone
+  alignas(64) IdOf<T> hit[kPacketSize];  ///< in: kNone; out: the object of the closest hit, or kNone
 };
 
 /// Rays and whether they are occluded. Directions may have any length whose square and its reciprocal are finite.
 template <class T>
 struct ShadowPacket : PacketRays<T> {
   static constexpr bool kIsShadow = true;
-  alignas(64) IdOf<T> target[kPacketSize];  ///< sphere that does not occlude: the ray's light, or kNone
+  alignas(64) IdOf<T> target[kPacketSize];  ///< object that does not occlude: the ray's light, or kNone
   IdOf<T> occluded[kPacketSize];            ///< out: all bits set if a sphere is hit in 0 < t < distance, else 0
 };
 
