@@ -69,6 +69,7 @@ class SettledFile final : public DataFile {
 
   void keep(int frame, Expected expected) override {
     if (file_->has_views) return;
+    if (frame != kept_frame_) kept_ = {};
     kept_frame_ = frame;
     expected_ = std::move(expected);
   }

@@ -127,8 +127,6 @@ const Broken kBroken[] = {
      "", 65, "error: points[0].bonds: only one of `factor` and `length` can be set"},
     {"AWordAsBonds", "[[points]]\nfile = \"good.ply\"\nmaterial = \"grey\"\nbonds = \"file\"\n", "", 65,
      ":17:9: error: points[0].bonds must be true or false, not a string"},
-    {"ABondOfAMissingAtom", "[[points]]\nfile = \"bonds.pdb\"\nmaterial = \"grey\"\nradius = 1\nbonds = true\n", "", 65,
-     "bonds.pdb:2: error: a bond of atom 7, which does not exist"},
     {"MissingPointsAndAnUnknownKey", "[image.more]\n[[points]]\nfile = \"none.ply\"\nmaterial = \"grey\"\n", "", 65,
      ": 2 errors"},
     {"AnImageBackgroundWithoutAFile", "[background]\ntype = \"image\"\n", "", 65,
@@ -168,8 +166,6 @@ class CliValidation : public ProgramTest {
     write("atoms.csv", "x,y,z\n0,0,0\n1,0,0\n");
     write("two.ply", "ply\nformat ascii 2.0\n" + rows + "0 0 -3 1\n0 2 -3 1\n");
     write("good.ply", "ply\nformat ascii 1.0\n" + rows + "0 0 -3 1\n0 2 -3 1\n");
-    write("bonds.pdb",
-          "HETATM    1  C1  LIG A   1       0.000   0.000   0.000  1.00  0.00           C\nCONECT    1    7\nEND\n");
     write("lines.ply", "ply\nformat ascii 1.0\n" + rows + "0 0 -3\n1\n0 2 -3 1\n");
     const support::ExrFile sky = support::ExrFile::constant(8, 4, {1, 1, 1});
     write("sky.exr", sky.bytes());

@@ -97,6 +97,18 @@ TEST_F(DataSettledFile, AKeptFrameIsReadOnceWithWhatIsExpected) {
   EXPECT_EQ(before, 2 * (8 + 4));
 }
 
+TEST_F(DataSettledFile, AnotherFrameReplacesTheKeptOne) {
+  const auto file = of({{"Fe", "O"}, {"C", "H"}});
+  const auto keep = [&](int frame) { file->keep(frame, [](const FrameInfo&) { return Strings{"name"}; }); };
+  keep(0);
+  EXPECT_EQ(support::texts(file->read(0, {"name"}), "name"), (Strings{"Fe", "O"}));
+  keep(1);
+  EXPECT_EQ(support::texts(file->read(1, {"name"}), "name"), (Strings{"C", "H"}));
+  keep(1);
+  file->read(1, {"name"});
+  EXPECT_EQ(reads_, (Strings{"0 name", "1 name"})) << "a second plot of a frame reads nothing";
+}
+
 TEST_F(DataSettledFile, AKeptColumnOfNamesMayBecomeOneOfTypes) {
   const auto file = of({{"A", "B"}});
   file->keep(0, [](const FrameInfo&) { return Strings{"x"}; });
