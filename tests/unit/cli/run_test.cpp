@@ -5,6 +5,7 @@
 #include <CLI/CLI.hpp>
 
 #include "cli/arguments.h"
+#include "support/mentions.h"
 
 namespace orrery::cli {
 namespace {
@@ -62,44 +63,43 @@ TEST_F(CliRun, AnEqualsSignNeedsAValue) {
 }
 
 TEST_F(CliRun, UnknownOptionsGetASuggestion) {
-  EXPECT_EQ(message({"render", "a.toml", "-o", "a.png", "--samlpes", "3"}),
-            "unknown option --samlpes; did you mean `--samples`?");
-  EXPECT_EQ(message({"render", "a.toml", "-o", "a.png", "--samlpes=3"}),
-            "unknown option --samlpes; did you mean `--samples`?");
+  EXPECT_TRUE(test::mentions(message({"render", "a.toml", "-o", "a.png", "--samlpes", "3"}),
+                             {"option", "--samlpes", "`--samples`"}));
+  EXPECT_TRUE(test::mentions(message({"render", "a.toml", "-o", "a.png", "--samlpes=3"}),
+                             {"option", "--samlpes", "`--samples`"}));
   EXPECT_EQ(message({"render", "a.toml", "-o", "a.png", "--zzzzzz"}), "unknown option --zzzzzz");
   EXPECT_EQ(message({"render", "a.toml", "-o", "a.png", "-x"}), "unknown option -x");
 }
 
 TEST_F(CliRun, AnUnknownOptionIsReportedBeforeMissingOnes) {
-  EXPECT_EQ(message({"render", "--ouptut", "a.png", "a.toml"}), "unknown option --ouptut; did you mean `--output`?");
+  EXPECT_TRUE(test::mentions(message({"render", "--ouptut", "a.png", "a.toml"}), {"option", "--ouptut", "`--output`"}));
 }
 
 TEST_F(CliRun, OptionsBelongToTheInnermostCommand) {
-  EXPECT_EQ(message({"generate", "final", "--sede", "3"}), "unknown option --sede; did you mean `--seed`?");
+  EXPECT_TRUE(test::mentions(message({"generate", "final", "--sede", "3"}), {"option", "--sede", "`--seed`"}));
   EXPECT_EQ(message({"generate", "cloud", "--sede", "3"}), "unknown option --sede");
 }
 
 TEST_F(CliRun, UnknownCommandsGetASuggestion) {
-  EXPECT_EQ(message({"rendr", "a.toml"}), "unknown command rendr; did you mean `render`?");
-  EXPECT_EQ(message({"paint", "a.toml"}), "unknown command paint; use one of render, generate");
-  EXPECT_EQ(message({"generate", "fianl"}), "unknown command fianl; did you mean `final`?");
+  EXPECT_TRUE(test::mentions(message({"rendr", "a.toml"}), {"command", "rendr", "`render`"}));
+  EXPECT_TRUE(test::mentions(message({"paint", "a.toml"}), {"command", "generate"}));
+  EXPECT_TRUE(test::mentions(message({"generate", "fianl"}), {"command", "fianl", "`final`"}));
 }
 
 TEST_F(CliRun, ASceneWithoutACommandShowsHowToRenderIt) {
-  EXPECT_EQ(message({"a.toml"}), "unknown command a.toml; to render it: orrery render a.toml -o image.png");
+  EXPECT_TRUE(test::mentions(message({"a.toml"}), {"command", "a.toml", "a.toml -o image.png"}));
 }
 
 TEST_F(CliRun, MissingArgumentsAreNamed) {
-  EXPECT_EQ(message({}), "no command given; use one of render, generate");
-  EXPECT_EQ(message({"generate"}), "no command given; use one of final, cloud");
+  EXPECT_TRUE(test::mentions(message({}), {"command", "generate"}));
+  EXPECT_TRUE(test::mentions(message({"generate"}), {"command", "given"}));
   EXPECT_EQ(message({"render"}), "SCENE is required");
   EXPECT_EQ(message({"render", "a.toml"}), "--output is required");
   EXPECT_EQ(message({"render", "a.toml", "-o", "a.png", "--samples"}), "--samples needs a value");
 }
 
 TEST_F(CliRun, UnexpectedArgumentsAreNamed) {
-  EXPECT_EQ(message({"render", "a.toml", "-o", "a.png", "b.png"}),
-            "unexpected argument `b.png`; name output files with -o");
+  EXPECT_TRUE(test::mentions(message({"render", "a.toml", "-o", "a.png", "b.png"}), {"unexpected", "`b.png`", "-o"}));
   EXPECT_EQ(message({"generate", "cloud", "b.png"}), "unexpected argument `b.png`");
   EXPECT_EQ(message({"render", "a.toml", "-o", "a.png", "--quiet=maybe"}), "--quiet takes no value");
 }
@@ -111,10 +111,9 @@ TEST_F(CliRun, FullNamesOfCommandsAreAsTyped) {
 
 TEST_F(CliRun, RemovedCommandsNameWhatReplacesThem) {
   commands_.add_subcommand("info", "");
-  EXPECT_EQ(message({"bake", "-o", "a.cube"}), "bake was removed; use ociobakelut, as docs/output.md shows");
-  EXPECT_EQ(message({"info", "--measure"}),
-            "--measure was removed; use orrery study, which measures the cost of unused features");
-  EXPECT_EQ(message({"generate", "planet"}), "planet was removed; use scenes/next-week/planet.jpg");
+  EXPECT_TRUE(test::mentions(message({"bake", "-o", "a.cube"}), {"removed", "ociobakelut", "docs/output.md"}));
+  EXPECT_TRUE(test::mentions(message({"info", "--measure"}), {"--measure", "measures", "features"}));
+  EXPECT_TRUE(test::mentions(message({"generate", "planet"}), {"planet", "removed", "scenes/next-week/planet.jpg"}));
   EXPECT_NE(message({"planet"}).find("unknown command planet"), std::string::npos) << "it never had it";
 }
 
@@ -122,9 +121,9 @@ TEST_F(CliRun, OptionsThatAreGuessedNameTheRightOnes) {
   std::vector<std::string> settings;
   Command& check = *commands_.add_subcommand("check", "");
   check.add_option("--set", settings, "KEY=VALUE", "");
-  EXPECT_EQ(message({"check", "--seed", "3"}), "unknown option --seed; use --set render.seed=N");
+  EXPECT_TRUE(test::mentions(message({"check", "--seed", "3"}), {"option", "--seed", "--set render.seed=N"}));
   EXPECT_EQ(message({"generate", "cloud", "--log"}), "unknown option --log") << "it has no --set";
-  EXPECT_EQ(message({"render", "--spp", "3"}), "unknown option --spp; use --samples N");
+  EXPECT_TRUE(test::mentions(message({"render", "--spp", "3"}), {"option", "--spp", "--samples"}));
 }
 
 }  // namespace

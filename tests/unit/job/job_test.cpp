@@ -21,64 +21,12 @@
 #include "job/shards.h"
 #include "render/settings.h"
 #include "support/exr_file.h"
-#include "support/temp_dir.h"
+#include "unit/job/job_fixture.h"
 
 namespace orrery::job {
 namespace {
 
-constexpr const char* kScene = R"(
-[image]
-width = 24
-height = 16
-[render]
-samples = 2
-[material.grey]
-type = "lambertian"
-albedo = [0.5, 0.5, 0.5]
-[[sphere]]
-center = [0, 0, -1]
-radius = 0.5
-material = "grey"
-)";
-
-class JobRun : public testing::Test {
- protected:
-  JobRun() {
-    ::unsetenv("OCIO");
-    support::write_bytes(folder_ / "scene.toml", kScene);
-    job_.scene.file = folder_ / "scene.toml";
-    job_.outputs.statistics = folder_ / "stats.json";
-    job_.hooks.on_progress = [this](const render::Progress&) { rendered_ = true; };
-  }
-
-  /// The error of the job.
-  base::Error error() {
-    try {
-      run_job(job_);
-    } catch (const base::Error& error) {
-      return error;
-    }
-    ADD_FAILURE() << "the job succeeded";
-    return {base::ErrorKind::kInternal, ""};
-  }
-
-  /// Stops the job while it renders, and lets it resume from the checkpoint.
-  void stop_while_rendering() {
-    std::atomic<bool> cancel{false};
-    job_.hooks.cancel = &cancel;
-    job_.hooks.on_progress = [&](const render::Progress&) { cancel = true; };
-    EXPECT_EQ(error().kind(), base::ErrorKind::kStopped);
-    job_.hooks.cancel = nullptr;
-    job_.hooks.on_progress = {};
-    job_.checkpoint.resume = true;
-  }
-
-  nlohmann::json statistics() { return nlohmann::json::parse(support::file_bytes(job_.outputs.statistics)); }
-
-  support::TempDir folder_;
-  Job job_;
-  bool rendered_ = false;
-};
+class JobRun : public JobTest {};
 
 TEST_F(JobRun, WritesEveryOutputAndTheStatistics) {
   job_.outputs.images = {folder_ / "a.exr", folder_ / "a.png", folder_ / "a.hdr"};
@@ -104,28 +52,6 @@ TEST_F(JobRun, LooksUpADisplayOnlyForDisplayFormats) {
   EXPECT_EQ(error().kind(), base::ErrorKind::kMissingInput) << "named explicitly";
 }
 
-TEST_F(JobRun, RejectsInvalidRequestsBeforeRendering) {
-  const auto kind_of_error = [&](const char* output) {
-    job_.outputs.images = {folder_ / output};
-    return error().kind();
-  };
-  EXPECT_EQ(kind_of_error("none/a.png"), base::ErrorKind::kCannotCreate);
-  job_.outputs.exr.compression = "zipps";
-  EXPECT_EQ(kind_of_error("a.exr"), base::ErrorKind::kUsage);
-  job_.outputs.exr.compression = "zip";
-  ::setenv("ORRERY_ISA", "mmx", 1);
-  EXPECT_EQ(kind_of_error("a.exr"), base::ErrorKind::kUsage);
-  ::unsetenv("ORRERY_ISA");
-  job_.outputs.display.view = "none such";
-  EXPECT_EQ(kind_of_error("a.png"), base::ErrorKind::kUsage);
-  job_.outputs.display.view.clear();
-  job_.scene.overrides = {"render.samples=0"};
-  EXPECT_EQ(kind_of_error("a.png"), base::ErrorKind::kBadData);
-  job_.scene.file = folder_ / "missing.toml";
-  EXPECT_EQ(kind_of_error("a.png"), base::ErrorKind::kMissingInput);
-  EXPECT_FALSE(rendered_);
-}
-
 TEST_F(JobRun, WritesNoImageIfStoppedBeforeRendering) {
   const std::atomic<bool> cancel{true};
   job_.hooks.cancel = &cancel;
@@ -135,77 +61,6 @@ TEST_F(JobRun, WritesNoImageIfStoppedBeforeRendering) {
   EXPECT_EQ(folder_.count(), 2u) << "the scene and the statistics";
   EXPECT_EQ(statistics()["exit_reason"], "stopped");
   EXPECT_EQ(statistics()["exit_status"], 75);
-}
-
-TEST_F(JobRun, ResumesFromTheCheckpointOfAStoppedRenderToTheSameBytes) {
-  job_.outputs.images = {folder_ / "a.exr"};
-  job_.scene.overrides = {"image.width=200", "image.height=100", "render.samples=300", "output.layers=[\"Z\"]"};
-  job_.outputs.reproducible = true;
-  run_job(job_);
-  const std::string uninterrupted = support::file_bytes(folder_ / "a.exr");
-  std::filesystem::remove(folder_ / "a.exr");
-
-  stop_while_rendering();
-  EXPECT_EQ(folder_.count(), 3u);
-  EXPECT_TRUE(std::filesystem::exists(folder_ / "a.checkpoint.exr"));
-  EXPECT_EQ(statistics()["exit_reason"], "stopped");
-  EXPECT_EQ(statistics()["checkpoint"], (folder_ / "a.checkpoint.exr").string());
-  const auto rays = statistics()["rays"].get<std::uint64_t>();
-  EXPECT_GT(rays, 0u);
-
-  run_job(job_);
-  EXPECT_EQ(support::file_bytes(folder_ / "a.exr"), uninterrupted);
-  EXPECT_EQ(statistics()["resumed"], true);
-  EXPECT_GT(statistics()["rays"], rays);
-  EXPECT_FALSE(std::filesystem::exists(folder_ / "a.checkpoint.exr"));
-}
-
-/// The samples of a pixel do not depend on how many there are, so that a render with fewer samples is a beginning.
-TEST_F(JobRun, MoreSamplesContinueAStoppedOrAFinishedRender) {
-  job_.outputs.images = {folder_ / "a.exr"};
-  const auto set_samples = [&](int samples) {
-    job_.scene.overrides = {"image.width=200", "image.height=100", "output.layers=[\"Z\", \"diffuse\"]",
-                            "render.samples=" + std::to_string(samples)};
-  };
-  job_.outputs.reproducible = true;
-  set_samples(300);
-  run_job(job_);
-  const std::string uninterrupted = support::file_bytes(folder_ / "a.exr");
-
-  set_samples(100);
-  stop_while_rendering();
-  set_samples(300);
-  run_job(job_);
-  EXPECT_EQ(statistics()["resumed"], true);
-  EXPECT_TRUE(support::file_bytes(folder_ / "a.exr") == uninterrupted) << "of a stopped render";
-  EXPECT_FALSE(std::filesystem::exists(folder_ / "a.checkpoint.exr"));
-
-  set_samples(60);
-  job_.checkpoint.keep = true;
-  run_job(job_);
-  EXPECT_EQ(statistics()["resumed"], false);
-  EXPECT_TRUE(std::filesystem::exists(folder_ / "a.checkpoint.exr"));
-  set_samples(300);
-  job_.checkpoint.keep = false;
-  const JobReport report = run_job(job_);
-  EXPECT_EQ(statistics()["resumed"], true);
-  EXPECT_EQ(report.render.paths, 200u * 100 * 300) << "counts the samples of both runs";
-  EXPECT_TRUE(support::file_bytes(folder_ / "a.exr") == uninterrupted) << "of a finished render";
-  EXPECT_FALSE(std::filesystem::exists(folder_ / "a.checkpoint.exr"));
-}
-
-/// With blue noise and with halves for denoising, the samples depend on their number.
-TEST_F(JobRun, MoreSamplesDoNotContinueARenderWhoseSumsDependOnTheirNumber) {
-  job_.outputs.images = {folder_ / "a.exr"};
-  for (const char* setting : {"render.sampler=\"blue-noise\"", "output.layers=[\"halves\"]"}) {
-    job_.checkpoint.keep = true;
-    job_.scene.overrides = {setting, "render.samples=10"};
-    run_job(job_);
-    job_.checkpoint.resume = true;
-    job_.scene.overrides = {setting, "render.samples=30"};
-    EXPECT_NE(std::string(error().what()).find("samples per pixel: 10, not 30"), std::string::npos) << setting;
-    std::filesystem::remove(folder_ / "a.checkpoint.exr");
-  }
 }
 
 /// A sky with the sun and an image background, each with a lamp and light groups: the checkpoint of a stopped render
@@ -262,37 +117,6 @@ TEST_F(JobRun, ResumedRendersAndShardsUnderASkyOrAnImageHaveTheSameBytes) {
   }
 }
 
-TEST_F(JobRun, RejectsACheckpointOfAnotherRender) {
-  job_.outputs.images = {folder_ / "a.exr"};
-  job_.scene.overrides = {"image.width=200", "image.height=100", "render.samples=300"};
-  stop_while_rendering();
-  const std::string checkpoint = support::file_bytes(folder_ / "a.checkpoint.exr");
-  const Job right = job_;
-  const auto expect_refused = [&](const std::string& word) {
-    const base::Error refused = error();
-    EXPECT_EQ(refused.kind(), base::ErrorKind::kBadData) << word;
-    EXPECT_NE(std::string(refused.what()).find(word), std::string::npos) << refused.what();
-    EXPECT_EQ(support::file_bytes(folder_ / "a.checkpoint.exr"), checkpoint);
-    job_ = right;
-  };
-  job_.scene.overrides.add("render.seed=2");
-  expect_refused("render.seed = 1, not 2;");
-  job_.scene.overrides.add("sphere[0].radius=0.4");
-  expect_refused("other spheres, materials, lights or images");
-  job_.scene.overrides.add("render.samples=200");
-  expect_refused("a.checkpoint.exr has samples 0:300, not 0:200");
-  job_.sampling.noise = 0.0008;  // the nearest double is 0.00080000000000000004
-  expect_refused("--noise 0, not 0.0008;");
-  job_.sampling.shard = {0, 2};
-  expect_refused("--shard 1/1, not 1/2");
-  job_.scene.overrides.add("output.layers=[\"N\"]");
-  expect_refused("layers none, not N");
-  job_.denoise = true;
-  expect_refused("layers none, not halves, as for --denoise;");
-  support::write_bytes(folder_ / "a.checkpoint.exr", checkpoint.substr(0, checkpoint.size() / 2));
-  EXPECT_EQ(error().kind(), base::ErrorKind::kBadData);
-}
-
 /// A checkpoint whose header fits the render, but whose sums do not.
 TEST_F(JobRun, RejectsACheckpointWithOtherSumsThanItsHeaderSays) {
   const std::filesystem::path checkpoint = folder_ / "a.checkpoint.exr";
@@ -329,7 +153,7 @@ TEST_F(JobRun, SpheresThatDoNotFitTwiceAreNotCompiled) {
   support::write_bytes(folder_ / "a.csv", rows);
   const std::string points = "[[points]]\nfile = \"a.csv\"\nradius = 0.01\nmaterial = \"grey\"\n";
   support::write_bytes(folder_ / "scene.toml",
-                       std::string(kScene) + points + points + "transform = { translate = [0, 1, 0] }\n");
+                       std::string(kSmallScene) + points + points + "transform = { translate = [0, 1, 0] }\n");
   for (const char* text : {"image.width=1", "image.height=1", "render.accelerator=\"list\""})
     job_.scene.overrides.add(text);
   job_.outputs.images = {folder_ / "a.exr"};
@@ -342,22 +166,6 @@ TEST_F(JobRun, SpheresThatDoNotFitTwiceAreNotCompiled) {
   EXPECT_NE(std::string(refused.what()).find("the spheres need about 46.9 KiB while they are compiled"),
             std::string::npos)
       << refused.what();
-}
-
-TEST_F(JobRun, WritesCheckpointsAtTheInterval) {
-  job_.outputs.images = {folder_ / "a.exr"};
-  job_.scene.overrides = {"image.width=64", "image.height=64", "render.samples=64"};
-  job_.checkpoint.interval_s = 0.01;
-  job_.resources.threads = 1;
-  bool seen = false;
-  job_.hooks.on_progress = [&](const render::Progress&) {
-    seen = seen || std::filesystem::exists(folder_ / "a.checkpoint.exr");
-    // The single render thread waits until a checkpoint is due, at any speed.
-    if (!seen) std::this_thread::sleep_for(std::chrono::milliseconds(11));
-  };
-  run_job(job_);
-  EXPECT_TRUE(seen);
-  EXPECT_FALSE(std::filesystem::exists(folder_ / "a.checkpoint.exr"));
 }
 
 TEST_F(JobRun, ReportsAFailedWriteInTheStatistics) {
@@ -380,7 +188,7 @@ TEST_F(JobRun, ReportsAFailedWriteInTheStatistics) {
 
 TEST_F(JobRun, WarningsReachTheCaller) {
   const std::string twice = "[[sphere]]\ncenter = [0, 0, -1]\nradius = 0.5\nmaterial = \"grey\"\n";
-  support::write_bytes(job_.scene.file, kScene + twice);
+  support::write_bytes(job_.scene.file, kSmallScene + twice);
   std::vector<base::Diagnostic> warnings;
   job_.hooks.on_warning = [&](const base::Diagnostic& warning) { warnings.push_back(warning); };
   job_.outputs.images = {folder_ / "a.exr"};
@@ -391,7 +199,7 @@ TEST_F(JobRun, WarningsReachTheCaller) {
 
 TEST_F(JobRun, OptionsOverrideTheDisplayOfTheScene) {
   support::write_bytes(folder_ / "scene.toml",
-                       std::string(kScene) + "[color]\ndisplay = \"Gamma 2.0 Rec.709\"\nexposure = -2\n");
+                       std::string(kSmallScene) + "[color]\ndisplay = \"Gamma 2.0 Rec.709\"\nexposure = -2\n");
   job_.outputs.images = {folder_ / "a.png"};
   EXPECT_EQ(run_job(job_).display.display, "Gamma 2.0 Rec.709");
   const float dark = image::read(folder_ / "a.png").planes[0].values[0];
@@ -403,36 +211,12 @@ TEST_F(JobRun, OptionsOverrideTheDisplayOfTheScene) {
 }
 
 TEST_F(JobRun, AConfigPathIsRelativeToTheScene) {
-  support::write_bytes(folder_ / "scene.toml", std::string(kScene) + "[color]\nconfig = \"none.ocio\"\n");
+  support::write_bytes(folder_ / "scene.toml", std::string(kSmallScene) + "[color]\nconfig = \"none.ocio\"\n");
   job_.outputs.images = {folder_ / "a.png"};
   const base::Error missing = error();
   EXPECT_EQ(missing.kind(), base::ErrorKind::kMissingInput);
   ASSERT_EQ(missing.diagnostics().size(), 1u);
   EXPECT_NE(missing.diagnostics()[0].text.find((folder_ / "none.ocio").string()), std::string::npos);
-  EXPECT_FALSE(rendered_);
-}
-
-TEST_F(JobRun, LayersNeedAnExrOutput) {
-  job_.scene.overrides = {"output.layers=[\"Z\", \"CryptoObject\"]"};
-  job_.outputs.images = {folder_ / "a.exr", folder_ / "a.png"};
-  job_.outputs.deep = folder_ / "deep.exr";
-  run_job(job_);
-  EXPECT_NE(image::read(folder_ / "a.exr").find("Z"), nullptr);
-  EXPECT_NE(image::read(folder_ / "a.exr").find("CryptoObject02.A"), nullptr);
-  EXPECT_TRUE(std::filesystem::exists(folder_ / "deep.exr"));
-  EXPECT_EQ(image::read(folder_ / "a.png").planes.size(), 3u);
-  job_.outputs.deep = folder_ / "deep.png";
-  EXPECT_EQ(error().kind(), base::ErrorKind::kUsage);
-  job_.outputs.deep.clear();
-  job_.outputs.images = {folder_ / "a.png"};  // explicit layers need an EXR
-  EXPECT_EQ(error().kind(), base::ErrorKind::kUsage);
-}
-
-TEST_F(JobRun, RejectsLossyCompressionOfDataBeforeRendering) {
-  job_.scene.overrides = {"output.layers=[\"CryptoObject\"]"};
-  job_.outputs.images = {folder_ / "a.exr"};
-  job_.outputs.exr.compression = "dwaa";
-  EXPECT_EQ(error().kind(), base::ErrorKind::kUsage);
   EXPECT_FALSE(rendered_);
 }
 

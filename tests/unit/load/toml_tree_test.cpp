@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "load/toml_tree.h"
+#include "support/mentions.h"
 
 #include <gtest/gtest.h>
 
@@ -35,7 +36,7 @@ TEST(LoadTomlTree, InvalidTomlIsOneErrorAtItsLocation) {
 TEST(LoadTomlTree, RejectsInvalidUtf8) {
   SceneFiles files;
   const std::string told = files.diagnostics("[camera]\nvfov = \"\xff\"\n");
-  EXPECT_EQ(told.substr(0, told.find('\n')), "scene.toml:2:8: error: Encountered invalid utf-8 sequence") << told;
+  EXPECT_TRUE(test::mentions(told.substr(0, told.find('\n')), {"scene.toml:2:8", "Encountered", "utf-8"})) << told;
 }
 
 TEST(LoadTomlTree, DeepNestingIsRefused) {

@@ -5,6 +5,7 @@
 #include "points_file.h"
 #include "scene/number_array.h"
 #include "scene/scene.h"
+#include "support/mentions.h"
 
 namespace orrery::points {
 namespace {
@@ -62,7 +63,7 @@ TEST(PointsPointRadii, AColumnIsScaledByTheKeyAlone) {
   keys.column = "diameter";
   std::string warning;
   EXPECT_EQ(radii(keys, {0, 2}, &warning), (Radii{1, 4})) << "a named column contains radii, whatever its name";
-  EXPECT_EQ(warning, "warning points[0].radius.column: column `diameter` holds diameters; set the scale to 0.5\n");
+  EXPECT_TRUE(test::mentions(warning, {"points[0].radius.column", "`diameter`", "0.5"}));
   keys.scale = 0.5;
   EXPECT_EQ(radii(keys, {0, 2}), (Radii{0.5, 2}));
 }
@@ -90,10 +91,7 @@ TEST(PointsPointRadii, UnknownElementsOfTheRowsAreReported) {
   keys.element = "vdw";
   std::string text;
   radii(keys, {0, 2}, &text);
-  EXPECT_EQ(
-      text,
-      "error points[0].radius.element: no radius is known for `Qq` in column `element`; leave these rows out with "
-      "`select`, or set another radius\n");
+  EXPECT_TRUE(test::mentions(text, {"points[0].radius.element", "`Qq`", "`element`", "`select`"}));
 }
 
 TEST(PointsPointRadii, Types) {
@@ -107,7 +105,7 @@ TEST(PointsPointRadii, TypesWithoutARadiusAreReportedTogether) {
   keys.types = {{"1", 0.5}};
   std::string text;
   radii(keys, {0, 1, 2}, &text);
-  EXPECT_EQ(text, "error points[0].radius.type: type `2`, `12` has no radius; add it, e.g. `type = { 12 = 0.5 }`\n");
+  EXPECT_TRUE(test::mentions(text, {"points[0].radius.type", "`2`", "`12`", "`type = { 12 = 0.5 }`"}));
   EXPECT_EQ(radii(keys, {1}), Radii{0.5}) << "types of other rows do not matter";
 }
 
@@ -133,32 +131,25 @@ TEST(PointsPointRadii, AColumnOfManyValuesHasNoTypes) {
   keys.types = {{"0", 1}};
   KeyFaults faults("points[0]");
   radii_of(many, Rows(many.rows), radius_source(atoms(), keys, faults), keys, faults);
-  EXPECT_EQ(text_of(faults), "error points[0].radius: column `type` has more than 65536 distinct values\n");
+  EXPECT_TRUE(test::mentions(text_of(faults), {"points[0].radius", "`type`", "65536"}));
 }
 
 TEST(PointsPointRadii, MissingColumnsAreReportedWithThoseThatExist) {
   data::FrameInfo info;
   info.columns = {{"x"}, {"siz"}, {"name", data::ColumnType::kText}};
-  EXPECT_EQ(
-      fault(info, {}),
-      "error points[0].radius: the file has no radius; set `radius` to a number, or to a column, an element table "
-      "or types, e.g. `radius = { column = \"size\", scale = 0.5 }`; its columns are x, siz, name\n");
+  EXPECT_TRUE(test::mentions(fault(info, {}),
+                             {"points[0].radius", "`radius`", "`radius = { column = \"size\", scale = 0.5 }`"}));
   scene::PointsRadius keys;
   keys.column = "size";
-  EXPECT_EQ(fault(info, keys),
-            "error points[0].radius.column: the file has no column `size`; did you mean `siz`? its columns are x, siz, "
-            "name\n");
+  EXPECT_TRUE(test::mentions(fault(info, keys), {"points[0].radius.column", "`size`", "`siz`"}));
   keys.column = "name";
-  EXPECT_EQ(fault(info, keys), "error points[0].radius.column: column `name` is text; it must be a number\n");
+  EXPECT_TRUE(test::mentions(fault(info, keys), {"points[0].radius.column", "column", "`name`"}));
   keys = {};
   keys.element = "vdw";
-  EXPECT_EQ(
-      fault(info, keys),
-      "error points[0].radius.element: the file has no column of chemical elements; its columns are x, siz, name\n");
+  EXPECT_TRUE(test::mentions(fault(info, keys), {"points[0].radius.element", "chemical", "elements"}));
   keys = {};
   keys.types = {{"1", 1}};
-  EXPECT_EQ(fault(info, keys),
-            "error points[0].radius.type: the file has no column of particle types; its columns are x, siz, name\n");
+  EXPECT_TRUE(test::mentions(fault(info, keys), {"points[0].radius.type", "particle", "columns"}));
 }
 
 TEST(PointsPointRadii, AlternativesExcludeEachOther) {

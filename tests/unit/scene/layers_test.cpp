@@ -7,6 +7,7 @@
 
 #include "scene/diagnostic.h"
 #include "scene/validate.h"
+#include "support/mentions.h"
 
 namespace orrery::scene {
 namespace {
@@ -28,7 +29,7 @@ TEST(SceneLayers, RadianceLayersRequirePathShading) {
   s.output.layers = {"N", "diffuse"};
   EXPECT_EQ(problem_of(s), "");
   s.render.shading = Shading::kNormal;
-  EXPECT_EQ(problem_of(s), "output.layers[1]: diffuse requires render.shading = \"path\"");
+  EXPECT_TRUE(test::mentions(problem_of(s), {"output.layers[1]", "requires", "render.shading = \"path\""}));
   s.output.layers = {"N", "variance"};
   EXPECT_EQ(problem_of(s), "");
 }
@@ -39,8 +40,7 @@ TEST(SceneLayers, ObjectIdsMustBeExactInAFloat) {
   s.points[0].centers.resize((std::size_t{1} << 24) - 1);
   EXPECT_EQ(layer_fault(s, "object_id"), "");
   s.rods.resize(1);
-  EXPECT_EQ(layer_fault(s, "object_id"),
-            "a float cannot represent the ids of 16777216 spheres and rods exactly; use CryptoObject");
+  EXPECT_TRUE(test::mentions(layer_fault(s, "object_id"), {"represent", "16777216", "CryptoObject"}));
   EXPECT_FALSE(contains(available_layers(s), "object_id"));
 }
 
@@ -98,30 +98,27 @@ TEST(SceneLayers, LightGroupsHaveNamesOfLayers) {
     EXPECT_NE(light_group_fault(bad).find("must consist of letters, digits and underscores"), std::string::npos) << bad;
   for (const char* taken : {"Z", "N", "variance", "diffuse", "diffuse_direct", "emission", "denoise", "CryptoObject",
                             "CryptoLight", "rgba", "R", "all", "light_groups"})
-    EXPECT_EQ(light_group_fault(taken), "is the name of another layer; choose a different one") << taken;
-  EXPECT_EQ(light_group_fault("key_emission"),
-            "ends in \"_emission\", like a layer of another group; choose a different one");
+    EXPECT_TRUE(test::mentions(light_group_fault(taken), {"another", "different"})) << taken;
+  EXPECT_TRUE(test::mentions(light_group_fault("key_emission"), {"\"_emission\"", "another", "different"}));
   EXPECT_EQ(light_group_fault(std::string(231, 'a')), "");
-  EXPECT_EQ(light_group_fault(std::string(232, 'a')), "has 232 characters; the maximum is 231");
+  EXPECT_TRUE(test::mentions(light_group_fault(std::string(232, 'a')), {"232", "characters", "231"}));
 }
 
 TEST(SceneLayers, LightGroupsAreValidated) {
   Scene s;
   s.materials = {{"lamp", Emitter{{1, 1, 1}, 0, "a.b"}}};
-  EXPECT_EQ(problem_of(s),
-            "material.lamp.light_group: \"a.b\" must consist of letters, digits and underscores and not begin with a "
-            "digit: it becomes the name of layers");
+  EXPECT_TRUE(test::mentions(problem_of(s), {"material.lamp.light_group", "\"a.b\"", "underscores"}));
   s.materials.clear();
   s.background.light_group = "N";
   EXPECT_NE(problem_of(s).find("has no effect"), std::string::npos) << "a gradient has no light group";
   s.background.type = BackgroundType::kSky;
-  EXPECT_EQ(problem_of(s), "background.light_group: \"N\" is the name of another layer; choose a different one");
+  EXPECT_TRUE(test::mentions(problem_of(s), {"background.light_group", "\"N\"", "different"}));
   s.background = {};
   for (int i = 0; i < 63; ++i) s.materials.push_back({"m", Emitter{{1, 1, 1}, 0, "g" + std::to_string(i)}});
   s.materials.push_back({"m", Emitter{{1, 1, 1}, 0, "default"}});
   EXPECT_EQ(problem_of(s), "");
   s.materials.push_back({"m", Emitter{{1, 1, 1}, 0, "h"}});
-  EXPECT_EQ(problem_of(s), "material.m.light_group: the scene has more than 64 light groups, with the default group");
+  EXPECT_TRUE(test::mentions(problem_of(s), {"material.m.light_group", "64", "default"}));
 }
 
 TEST(SceneLayers, NamesInAdditionToAllAreAdded) {

@@ -10,29 +10,14 @@
 #include <variant>
 
 #include "base/error.h"
-#include "generate/generate_random.h"
 #include "load/write_scene.h"
-#include "scene/diagnostic.h"
 #include "scene/validate.h"
+#include "unit/generate/expectations.h"
 
 namespace orrery::generate {
 namespace {
 
 using math::Vec3d;
-
-/// Tolerance of five standard deviations: with fixed seeds, a failure is not chance.
-void expect_near_mean(double mean, double expected, double variance, double n, const char* what) {
-  EXPECT_NEAR(mean, expected, 5 * std::sqrt(variance / n)) << what << " of " << n;
-}
-
-base::ErrorKind kind_of_error(const auto& action) {
-  try {
-    action();
-  } catch (const base::Error& error) {
-    return error.kind();
-  }
-  return base::ErrorKind::kInternal;
-}
 
 template <class Model>
 std::vector<Model> small_models(const scene::Scene& s) {
@@ -40,30 +25,6 @@ std::vector<Model> small_models(const scene::Scene& s) {
   for (std::size_t i = 1; i + 3 < s.spheres.size(); ++i)
     if (const auto* model = std::get_if<Model>(&s.materials[s.spheres[i].material].model)) out.push_back(*model);
   return out;
-}
-
-TEST(GenerateRandom, TheEngineIsStandard) {
-  // The C++ standard specifies the 10000th number of this engine at its default seed, [rand.predef].
-  GenerateRandom random(5489);
-  for (int i = 0; i < 9999; ++i) random.unit();
-  EXPECT_EQ(random.unit(), static_cast<double>(9981545732273789042u >> 11) * 0x1p-53);
-}
-
-TEST(GenerateRandom, BallIsUniformByVolume) {
-  GenerateRandom random(1);
-  constexpr int kCount = 100'000;
-  double sum_cube = 0;
-  Vec3d sum;
-  for (int i = 0; i < kCount; ++i) {
-    const Vec3d p = random.in_ball();
-    const double r = math::length(p);
-    ASSERT_LE(r, 1.0);
-    sum_cube += r * r * r;  // uniform in 0..1 if points are uniform by volume
-    sum = sum + p;
-  }
-  expect_near_mean(sum_cube / kCount, 0.5, 1.0 / 12, kCount, "cube of the radius");
-  for (const double component : {sum.x, sum.y, sum.z})
-    expect_near_mean(component / kCount, 0, 0.2, kCount, "component");
 }
 
 TEST(GenerateFinal, TheSameSeedGivesTheSameScene) {
@@ -177,53 +138,6 @@ TEST(GenerateFinal, GridZeroHasOnlyTheLargeSpheres) { EXPECT_EQ(make_final_scene
 TEST(GenerateFinal, GridOutOfRangeIsAUsageError) {
   for (const int grid : {-1, kLargestFinalGrid + 1, std::numeric_limits<int>::max()})
     EXPECT_EQ(kind_of_error([&] { make_final_scene({1, grid}); }), base::ErrorKind::kUsage) << grid;
-}
-
-TEST(GenerateCloud, HasExactlyTheRequestedNumberOfSpheres) {
-  for (const std::uint64_t count : {1u, 2u, 10u, 1000u, 12345u}) {
-    const scene::Scene s = make_cloud({1, count});
-    EXPECT_TRUE(s.spheres.empty());
-    ASSERT_EQ(s.points.size(), 1u);
-    EXPECT_EQ(s.points[0].centers.size(), count);
-    EXPECT_EQ(s.points[0].radii.size(), count);
-    EXPECT_EQ(s.points[0].materials.size(), count);
-    EXPECT_TRUE(scene::validate(s).empty()) << count;
-  }
-}
-
-TEST(GenerateCloud, SeedDeterminesTheCloud) {
-  const auto centers = [](std::uint64_t seed) { return make_cloud({seed, 100}).points[0].centers; };
-  EXPECT_EQ(centers(1), centers(1));
-  EXPECT_NE(centers(1), centers(2));
-}
-
-TEST(GenerateCloud, TotalCrossSectionDoesNotDependOnTheCount) {
-  const auto cross_section = [](std::uint64_t count) {
-    const scene::Scene s = make_cloud({1, count});
-    double sum = 0;
-    for (const double r : s.points[0].radii) sum += r * r;
-    return sum;
-  };
-  // The cross-section of a sphere has a relative spread of about one half, so that of 1000 is good to a few percent.
-  EXPECT_NEAR(cross_section(1000) / cross_section(200'000), 1.0, 0.08);
-}
-
-TEST(GenerateCloud, AGivenRadiusAppliesToEverySphere) {
-  const scene::Scene s = make_cloud({1, 100, 0.0625});
-  for (const double r : s.points[0].radii) EXPECT_EQ(r, 0.0625);
-}
-
-TEST(GenerateCloud, UsesAllItsMaterials) {
-  const scene::Scene s = make_cloud({1, 1000});
-  const std::set<std::uint32_t> used(s.points[0].materials.begin(), s.points[0].materials.end());
-  EXPECT_EQ(used.size(), s.materials.size());
-}
-
-TEST(GenerateCloud, OptionsOutOfRangeAreUsageErrors) {
-  constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
-  for (const Cloud& options : {Cloud{1, 0}, Cloud{1, kLargestCloud + 1}, Cloud{1, 10, 0.0}, Cloud{1, 10, -1.0},
-                               Cloud{1, 10, 2 * kLargestCloudRadius}, Cloud{1, 10, kNan}})
-    EXPECT_EQ(kind_of_error([&] { make_cloud(options); }), base::ErrorKind::kUsage) << options.count;
 }
 
 }  // namespace
