@@ -198,7 +198,9 @@ void Viewer::refresh(Live& live) {
   if (Clock::now() < live.next) return;
   const std::vector<std::size_t> cells = live.canvas.take_changed();
   if (cells.empty()) return;
-  const double fade = std::min(live.samples / kFadeSamples, 1.0);
+  // Samples at the end of the pass, so that all parts that it has rendered fade in alike.
+  const double samples = std::exp2(2 * std::ceil(std::log2(std::max(live.samples.load(), 1.0)) / 2));
+  const double fade = std::min(samples / kFadeSamples, 1.0);
   std::vector<float> rgb(3 * static_cast<std::size_t>(preview::Canvas::kSide));
   for (const std::size_t index : cells) {
     const preview::Cell cell = live.canvas.cell(index);
