@@ -19,7 +19,8 @@
 #include <cstdlib>
 #include <cstring>
 #include <fstream>
-#include <initializer_list>
+#include <iterator>
+#include <sstream>
 #include <string>
 #include <system_error>
 #include <utility>
@@ -41,29 +42,12 @@ namespace fs = std::filesystem;
 
 /// Options of ffmpeg between input and output. Videos have sizes of even numbers: the last column or row is left out.
 /// Colours are those of sRGB images, which display programs show as such.
-constexpr std::initializer_list<const char*> kGif = {
-    "-filter_complex", "[0:v]split[a][b];[a]palettegen=stats_mode=diff[p];[b][p]paletteuse", "-loop", "0", "-f", "gif"};
-constexpr std::initializer_list<const char*> kVideo = {
-    "-vf",
-    "crop=trunc(iw/2)*2:trunc(ih/2)*2,scale=out_color_matrix=bt709:out_range=tv",
-    "-c:v",
-    "libx264",
-    "-crf",
-    "18",
-    "-pix_fmt",
-    "yuv420p",
-    "-colorspace",
-    "bt709",
-    "-color_primaries",
-    "bt709",
-    "-color_trc",
-    "iec61966-2-1",
-    "-color_range",
-    "tv",
-    "-movflags",
-    "+faststart",
-    "-f",
-    "mp4"};
+constexpr const char* kGif =
+    "-filter_complex [0:v]split[a][b];[a]palettegen=stats_mode=diff[p];[b][p]paletteuse -loop 0 -f gif";
+constexpr const char* kVideo =
+    "-vf crop=trunc(iw/2)*2:trunc(ih/2)*2,scale=out_color_matrix=bt709:out_range=tv -c:v libx264 -crf 18 "
+    "-pix_fmt yuv420p -colorspace bt709 -color_primaries bt709 -color_trc iec61966-2-1 -color_range tv "
+    "-movflags +faststart -f mp4";
 
 /// A GIF counts in hundredths of a second, and players show one of them as ten.
 constexpr int kMostGifRate = 50;
@@ -190,11 +174,10 @@ class Encoder {
 ///
 /// Result     how ffmpeg failed, or an empty string
 std::string encoded(const std::vector<fs::path>& images, const fs::path& film, const fs::path& output, double fps) {
-  std::vector<std::string> words = {
-      "ffmpeg", "-nostdin", "-y", "-loglevel", "error", "-f", "image2pipe", "-framerate", fmt::format("{}", fps),
-      "-c:v",   "png",      "-i", "pipe:0"};
-  const auto& options = base::extension(film) == ".gif" ? kGif : kVideo;
-  words.insert(words.end(), options.begin(), options.end());
+  std::istringstream command(
+      fmt::format("ffmpeg -nostdin -y -loglevel error -f image2pipe -framerate {} -c:v png -i pipe:0 {}", fps,
+                  base::extension(film) == ".gif" ? kGif : kVideo));
+  std::vector<std::string> words(std::istream_iterator<std::string>(command), {});
   words.push_back("file:" + output.string());
   Encoder encoder(std::move(words));
   for (const fs::path& image : images)

@@ -147,7 +147,8 @@ TEST_F(CliStartup, AnImageLibraryThatCannotBeLoadedIsReportedBeforeRendering) {
 /// Sonames of the stub libraries. None where OpenImageIO needs no library that could have one.
 std::vector<std::string> stubs() {
   std::vector<std::string> names;
-  for (const auto& entry : std::filesystem::directory_iterator(std::filesystem::path(ORRERY_MODULES) / kStubs))
+  std::error_code none;
+  for (const auto& entry : std::filesystem::directory_iterator(std::filesystem::path(ORRERY_MODULES) / kStubs, none))
     names.push_back(entry.path().filename());
   return names;
 }
@@ -164,6 +165,7 @@ std::vector<std::string> folders_of(const std::string& name, const std::string& 
 }
 
 TEST_F(CliStartup, StubsStandInForLibrariesThatNoFormatUses) {
+  if (!std::filesystem::exists(std::filesystem::path(ORRERY_MODULES) / kStubs)) GTEST_SKIP() << "ORRERY_STUBS=OFF";
   const std::string loaded = libraries_of("render good.toml -o a.exr -o a.png -q");
   const std::string stub_folder = std::filesystem::path(ORRERY_MODULES) / kStubs;
   // Those that bring most of the others. Not stubs(), which would be empty if none were made.

@@ -63,6 +63,28 @@ TEST_F(ImagePartialFile, RoundTrips) {
   EXPECT_EQ(read_provenance(file_), read.provenance);
 }
 
+TEST_F(ImagePartialFile, AFileThatIsNotWantedIsRefusedBeforeItsSumsAreRead) {
+  const auto refuse = [](const Provenance& found) {
+    EXPECT_EQ(found.at("samples"), "0:3");
+    base::refuse("another scene");
+  };
+  try {
+    read_partial(file_, kWidth + 1, kHeight, refuse);
+    ADD_FAILURE();
+  } catch (const base::Error& error) {
+    EXPECT_STREQ(error.what(), "another scene");
+  }
+}
+
+/// Whoever reads the sums afterwards checks the digest.
+TEST_F(ImagePartialFile, TheProvenanceIsReadWithoutTheDigest) {
+  std::string bytes = support::file_bytes(file_);
+  bytes.back() = ' ';
+  support::write_bytes(file_, bytes);
+  EXPECT_EQ(read_provenance(file_).at("samples"), "0:3");
+  expect_refused("a wrong digest");
+}
+
 TEST_F(ImagePartialFile, ThePreviewIsAnOrdinaryExr) {
   const film::Picture seen = image::read(file_);
   ASSERT_NE(seen.find("R"), nullptr);
@@ -88,6 +110,11 @@ TEST_F(ImagePartialFile, AFlippedBitIsRefused) {
     damaged[at] = static_cast<char>(damaged[at] ^ (1 << i % 8));
     support::write_bytes(file_, damaged);
     expect_refused("bit " + std::to_string(i % 8) + " of byte " + std::to_string(at));
+    try {
+      read_provenance(file_);
+    } catch (const base::Error& error) {
+      EXPECT_EQ(error.kind(), base::ErrorKind::kBadData);
+    }
   }
 }
 
