@@ -58,8 +58,9 @@ std::vector<Values> filtered(const WeightSource& source, const std::vector<const
 /// Filters the guides with weights from their own similarity. Guides are noisy under defocus and motion blur, and
 /// behind glass.
 ///
+/// `planes`   the noisy guides are removed
 /// Result     kGuides planes
-std::vector<PaddedPlane> filtered_guides(const SourcePlanes& planes, Frame frame, Tiles& tiles) {
+std::vector<PaddedPlane> filtered_guides(SourcePlanes& planes, Frame frame, Tiles& tiles) {
   WeightSource source;
   source.radius = kGuideRadius;
   source.tolerance = kGuideTolerance;
@@ -70,8 +71,13 @@ std::vector<PaddedPlane> filtered_guides(const SourcePlanes& planes, Frame frame
     source.compared.push_back({&guide, &guide});
     noisy.push_back(&guide);
   }
+  std::vector<Values> clean = filtered(source, noisy, frame, tiles);
+  planes.guides.clear();
   std::vector<PaddedPlane> out;
-  for (const Values& values : filtered(source, noisy, frame, tiles)) out.push_back(padded(values, frame));
+  for (Values& values : clean) {
+    out.push_back(padded(values, frame));
+    values = {};
+  }
   return out;
 }
 
@@ -83,9 +89,10 @@ struct FilteredHalves {
 
 /// Filters both halves of the beauty with the same weights, over a small window.
 ///
+/// `planes`   the noisy halves are removed
 /// `guides`   filtered
 /// Reference  rousselle2012
-FilteredHalves filtered_halves(const SourcePlanes& planes, const std::vector<PaddedPlane>& guides, Frame frame,
+FilteredHalves filtered_halves(SourcePlanes& planes, const std::vector<PaddedPlane>& guides, Frame frame,
                                Tiles& tiles) {
   WeightSource source;
   source.radius = kRadius;
@@ -99,20 +106,22 @@ FilteredHalves filtered_halves(const SourcePlanes& planes, const std::vector<Pad
     source.compared.push_back({&planes.a[c], &planes.b[c]});
     noisy.insert(noisy.end(), {&planes.a[c], &planes.b[c]});
   }
-  const std::vector<Values> clean = filtered(source, noisy, frame, tiles);
+  std::vector<Values> clean = filtered(source, noisy, frame, tiles);
+  for (auto* const noisy_half : {&planes.a, &planes.b})
+    for (PaddedPlane& channel : *noisy_half) channel = {};
   FilteredHalves out;
   std::vector<HalfPair> halves;
-  for (std::size_t c = 0; c < 3; ++c) {
-    const Values &a = clean[2 * c], &b = clean[2 * c + 1];
-    out.a[c] = padded(a, frame);
-    out.b[c] = padded(b, frame);
-    halves.push_back({&a, &b});
-  }
+  for (std::size_t c = 0; c < 3; ++c) halves.push_back({&clean[2 * c], &clean[2 * c + 1]});
   const Values variance =
       least_around(variance_of(halves, frame, kNoiseRadius, &planes.outliers.limits), frame, kNoiseStep);
   out.variance = padded(
       frame.each([&](int x, int y) { return variance[frame.at(x, y)] + kMinVariance * *planes.variance.at(x, y); }),
       frame);
+  for (std::size_t c = 0; c < 3; ++c)
+    for (const std::size_t half : {2 * c, 2 * c + 1}) {
+      (half == 2 * c ? out.a : out.b)[c] = padded(clean[half], frame);
+      clean[half] = {};
+    }
   return out;
 }
 
@@ -192,9 +201,9 @@ std::optional<std::size_t> partial_alpha(const film::Picture& picture) {
   return static_cast<std::size_t>(plane - picture.planes.data());
 }
 
-Report filter(film::Picture& picture) {
+Report filter(film::Picture& picture, bool keeps_halves) {
   const int width = picture.width, height = picture.height;
-  const SourcePlanes planes = source_planes(picture);
+  SourcePlanes planes = source_planes(picture, keeps_halves);
   const LightLayers lights = find_light_layers(picture);
   const bool is_complete = are_complete(picture, lights);
   Report report{lights.names, planes.missing, !planes.guides.empty(), 0};
@@ -249,14 +258,10 @@ Report filter(film::Picture& picture) {
 
 }  // namespace
 
-Report denoise(film::Picture& picture, int threads) {
+Report denoise(film::Picture& picture, int threads, bool keeps_halves) {
   for (const char* name : {"R", "G", "B"}) picture.at(name);  // fails without the beauty
   tbb::task_arena arena(threads > 0 ? threads : tbb::task_arena::automatic);
-  return arena.execute([&] { return filter(picture); });
-}
-
-void remove_halves(film::Picture& picture) {
-  std::erase_if(picture.planes, [](const film::Plane& plane) { return film::is_half(plane.name); });
+  return arena.execute([&] { return filter(picture, keeps_halves); });
 }
 
 }  // namespace orrery::denoise

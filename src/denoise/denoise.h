@@ -29,13 +29,11 @@ struct Report {
 /// The weights come from the layer `halves`, or, if the image lacks it, from the guides `denoise.albedo`,
 /// `denoise.normal` and `depth`, from `variance` and from the beauty itself.
 ///
-/// `threads`  number of threads; 0: all that the process may use
+/// `threads`       number of threads; 0: all that the process may use
+/// `keeps_halves`  false: removes the layer `halves` early, which saves memory
 /// Result     the same bits on any number of threads and with any instruction set
 /// Errors     base::Error(kBadData) if the image has no R, G and B
 /// Reference  rousselle2012, bitterli2016
-Report denoise(film::Picture& picture, int threads = 0);
-
-/// Removes the planes of the layer `halves`.
-void remove_halves(film::Picture& picture);
+Report denoise(film::Picture& picture, int threads = 0, bool keeps_halves = true);
 
 }  // namespace orrery::denoise

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "denoise/planes.h"
 
+#include <tbb/blocked_range.h>
+
 namespace orrery::denoise {
 
 Values window_means(const Values& in, Frame frame, int radius_px) {
@@ -30,15 +32,20 @@ Values least_around(const Values& in, Frame frame, int distance_px) {
   });
 }
 
-Values variance_of(const std::vector<HalfPair>& planes, Frame frame, int radius_px, const Values* limits) {
-  const Values squares = frame.each_index([&](std::size_t i) {
-    float sum = 0;
-    for (const HalfPair& plane : planes) {
+void add_squared_errors(const HalfPair& plane, Frame frame, Values& to) {
+  tbb::parallel_for(tbb::blocked_range<std::size_t>(0, frame.pixels()), [&](const auto& range) {
+    for (std::size_t i = range.begin(); i < range.end(); ++i) {
       const float difference = (usable((*plane.a)[i]) - usable((*plane.b)[i])) * plane.scale;
-      sum += difference * difference / 4;
+      to[i] += difference * difference / 4;
     }
-    return limits != nullptr ? std::min(sum, (*limits)[i] * (*limits)[i]) : sum;
   });
+}
+
+Values variance_of(const std::vector<HalfPair>& planes, Frame frame, int radius_px, const Values* limits) {
+  Values squares(frame.pixels());
+  for (const HalfPair& plane : planes) add_squared_errors(plane, frame, squares);
+  if (limits != nullptr)
+    for (std::size_t i = 0; i < squares.size(); ++i) squares[i] = std::min(squares[i], (*limits)[i] * (*limits)[i]);
   return window_means(squares, frame, radius_px);
 }
 

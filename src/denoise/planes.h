@@ -107,6 +107,9 @@ struct HalfPair {
   float scale = 1;  ///< scale of the values
 };
 
+/// Adds the squared errors of the mean of two halves.
+void add_squared_errors(const HalfPair& plane, Frame frame, Values& to);
+
 /// Variance of the mean of two halves, averaged over square windows; sum over the planes.
 ///
 /// `limits`   largest standard deviation of each pixel, if any

@@ -87,14 +87,22 @@ HalfCounts count_halves(const film::Picture& picture, Frame frame) {
 /// The halves of a channel. Where one has no samples, it is replaced by the other.
 class HalfPlanes {
  public:
-  HalfPlanes(const film::Picture& picture, HalfCounts counts, Frame frame)
-      : picture_(picture), counts_(counts), frame_(frame) {}
+  HalfPlanes(film::Picture& picture, HalfCounts counts, bool keeps, Frame frame)
+      : picture_(picture), counts_(counts), keeps_(keeps), frame_(frame) {}
 
   /// `end`      suffix of the names, such as ".albedo.R"
-  /// Result     valid as long as this
+  /// Result     valid until release()
   HalfPair of(const std::string& end, float scale = 1) {
     const Values &a = picture_.at("half_a" + end).values, &b = picture_.at("half_b" + end).values;
     return counts_.with_one == 0 ? HalfPair{&a, &b, scale} : HalfPair{&filled(a, b), &filled(b, a), scale};
+  }
+
+  /// Removes a channel, unless the picture keeps its halves.
+  void release(const std::string& end) {
+    filled_.clear();
+    if (keeps_) return;
+    for (const char* half : {"half_a", "half_b"})
+      std::erase_if(picture_.planes, [&](const film::Plane& plane) { return plane.name == half + end; });
   }
 
  private:
@@ -103,25 +111,26 @@ class HalfPlanes {
         frame_.each_index([&](std::size_t i) { return std::isnan(own[i]) ? other[i] : own[i]; }));
   }
 
-  const film::Picture& picture_;
+  film::Picture& picture_;
   HalfCounts counts_;
+  bool keeps_;
   Frame frame_;
   std::deque<Values> filled_;
 };
 
 void add_guides_of_halves(SourcePlanes& out, HalfPlanes& planes, Frame frame) {
-  std::vector<HalfPair> halves;
+  Values squared_errors(frame.pixels());
   for (const GuideName& name : kGuideNames) {
-    const HalfPair both = planes.of(std::string(".") + name.of_half + "." + name.channel);
+    const std::string end = std::string(".") + name.of_half + "." + name.channel;
+    HalfPair both = planes.of(end, name.scale);
     const Values &a = *both.a, &b = *both.b;
     const Values mean = frame.each_index([&](std::size_t i) { return (usable(a[i]) + usable(b[i])) / 2; });
-    const bool is_depth = name.scale == kDepthScale;
-    const float scale = is_depth ? relative_scale(mean, name.scale) : name.scale;
-    halves.push_back({&a, &b, scale});
-    out.guides.push_back(padded(mean, frame, scale));
+    if (name.scale == kDepthScale) both.scale = relative_scale(mean, name.scale);
+    if (out.has_halves) add_squared_errors(both, frame, squared_errors);
+    planes.release(end);
+    out.guides.push_back(padded(mean, frame, both.scale));
   }
-  out.guide_variance = out.has_halves ? padded(variance_of(halves, frame, kGuideNoiseRadius), frame)
-                                      : PaddedPlane(frame.width, frame.height);
+  out.guide_variance = padded(window_means(squared_errors, frame, kGuideNoiseRadius), frame);
 }
 
 void add_guides_of_layers(SourcePlanes& out, const film::Picture& picture, Frame frame) {
@@ -153,20 +162,39 @@ Values variance_without_halves(const film::Picture& picture, bool has_variance, 
 }
 
 /// Reduces an outlier to the light that both halves contain.
-void reduce(SourcePlanes& planes, const std::vector<HalfPair>& halves, Frame frame, const Outlier& outlier) {
+void reduce(SourcePlanes& planes, Frame frame, const Outlier& outlier) {
+  const int x = frame.x(outlier.pixel), y = frame.y(outlier.pixel);
   for (std::size_t c = 0; c < 3; ++c) {
     scale_pixel(planes.beauty[c], frame, outlier.pixel, outlier.factors[c]);
-    const float a = usable((*halves[c].a)[outlier.pixel]), b = usable((*halves[c].b)[outlier.pixel]);
-    const float bright = outlier.is_in_a ? a : b, dark = outlier.is_in_a ? b : a;
-    if (bright != 0)
-      scale_pixel(outlier.is_in_a ? planes.a[c] : planes.b[c], frame, outlier.pixel,
-                  (dark + outlier.kept * (bright - dark)) / bright);
+    PaddedPlane &of_bright = outlier.is_in_a ? planes.a[c] : planes.b[c],
+                &of_dark = outlier.is_in_a ? planes.b[c] : planes.a[c];
+    const float bright = *of_bright.at(x, y), dark = *of_dark.at(x, y);
+    if (bright != 0) scale_pixel(of_bright, frame, outlier.pixel, (dark + outlier.kept * (bright - dark)) / bright);
   }
+}
+
+/// The pixels to filter: 1, or 0 where the beauty is not finite or no half has samples.
+PaddedPlane valid_pixels(const film::Picture& picture, HalfCounts counts, Frame frame) {
+  PaddedPlane valid(frame.width, frame.height);
+  tbb::parallel_for(0, frame.height, [&](int y) {
+    for (int x = 0; x < frame.width; ++x) *valid.at(x, y) = 1;
+    for (const char* name : {"R", "G", "B"}) {
+      const float* const row = picture.at(name).values.data() + frame.at(0, y);
+      for (int x = 0; x < frame.width; ++x)
+        if (!is_usable(row[x])) *valid.at(x, y) = 0;
+    }
+    if (counts.with_none == 0) return;
+    const float* const a = picture.at("half_a.inverse_depth.X").values.data() + frame.at(0, y);
+    const float* const b = picture.at("half_b.inverse_depth.X").values.data() + frame.at(0, y);
+    for (int x = 0; x < frame.width; ++x)
+      if (std::isnan(a[x]) && std::isnan(b[x])) *valid.at(x, y) = 0;
+  });
+  return valid;
 }
 
 }  // namespace
 
-SourcePlanes source_planes(const film::Picture& picture) {
+SourcePlanes source_planes(film::Picture& picture, bool keeps_halves) {
   SourcePlanes out;
   const Frame frame{picture.width, picture.height};
   const auto has_half = [&](const std::string& half) {
@@ -177,25 +205,24 @@ SourcePlanes source_planes(const film::Picture& picture) {
   const HalfCounts counts = has_planes ? count_halves(picture, frame) : HalfCounts();
   const double lone = static_cast<double>(counts.with_one) / static_cast<double>(frame.pixels());
   out.has_halves = has_planes && lone <= kMaxLonePixels;
-  HalfPlanes half_planes(picture, counts, frame);
+  out.valid = valid_pixels(picture, counts, frame);
+  HalfPlanes half_planes(picture, counts, keeps_halves, frame);
   const bool has_variance = has_channels(picture, "variance", "RGB");
-  std::vector<HalfPair> halves;
-  for (std::size_t c = 0; c < 3; ++c) {
-    const std::string letter(1, "RGB"[c]);
-    out.beauty[c] = padded(picture.at(letter).values, frame);
-    if (!out.has_halves) continue;
-    halves.push_back(half_planes.of("." + letter));
-    out.a[c] = padded(*halves.back().a, frame);
-    out.b[c] = padded(*halves.back().b, frame);
-  }
   if (out.has_halves) {
+    const std::vector<HalfPair> halves = {half_planes.of(".R"), half_planes.of(".G"), half_planes.of(".B")};
     out.outliers = find_outliers(halves, frame);
-    for (const Outlier& outlier : out.outliers.pixels) reduce(out, halves, frame, outlier);
+    out.variance = padded(variance_of(halves, frame, kBeautyNoiseRadius, &out.outliers.limits), frame);
+    for (std::size_t c = 0; c < 3; ++c) {
+      out.a[c] = padded(*halves[c].a, frame);
+      out.b[c] = padded(*halves[c].b, frame);
+    }
+    for (const char* channel : {".R", ".G", ".B"}) half_planes.release(channel);
+  } else {
+    out.variance = padded(variance_without_halves(picture, has_variance, frame), frame);
+    out.missing.push_back(has_planes ? "halves (one half has no samples)" : "halves");
   }
-  out.variance = padded(out.has_halves ? variance_of(halves, frame, kBeautyNoiseRadius, &out.outliers.limits)
-                                       : variance_without_halves(picture, has_variance, frame),
-                        frame);
-  if (!out.has_halves) out.missing.push_back(has_planes ? "halves (one half has no samples)" : "halves");
+  for (std::size_t c = 0; c < 3; ++c) out.beauty[c] = padded(picture.at(std::string(1, "RGB"[c])).values, frame);
+  for (const Outlier& outlier : out.outliers.pixels) reduce(out, frame, outlier);
   if (has_planes) {
     add_guides_of_halves(out, half_planes, frame);
   } else {
@@ -207,20 +234,7 @@ SourcePlanes source_planes(const film::Picture& picture) {
     if (!has_channels(picture, "depth", "X")) out.missing.push_back("depth");
     if (has_albedo && has_normal) add_guides_of_layers(out, picture, frame);
   }
-  out.valid = PaddedPlane(frame.width, frame.height);
-  tbb::parallel_for(0, frame.height, [&](int y) {
-    for (int x = 0; x < frame.width; ++x) *out.valid.at(x, y) = 1;
-    for (const char* name : {"R", "G", "B"}) {
-      const float* const row = picture.at(name).values.data() + frame.at(0, y);
-      for (int x = 0; x < frame.width; ++x)
-        if (!is_usable(row[x])) *out.valid.at(x, y) = 0;
-    }
-    if (counts.with_none == 0) return;
-    const float* const a = picture.at("half_a.inverse_depth.X").values.data() + frame.at(0, y);
-    const float* const b = picture.at("half_b.inverse_depth.X").values.data() + frame.at(0, y);
-    for (int x = 0; x < frame.width; ++x)
-      if (std::isnan(a[x]) && std::isnan(b[x])) *out.valid.at(x, y) = 0;
-  });
+  if (!keeps_halves) std::erase_if(picture.planes, [](const film::Plane& plane) { return film::is_half(plane.name); });
   return out;
 }
 

@@ -26,6 +26,8 @@ struct SourcePlanes {
 
 /// Prepares the planes of an image with a beauty R, G, B: halves, guides and variance, if present. Values that are not
 /// finite are replaced by 0.
-SourcePlanes source_planes(const film::Picture& picture);
+///
+/// `keeps_halves`  false: the layer `halves` is removed, each plane as soon as it is not needed
+SourcePlanes source_planes(film::Picture& picture, bool keeps_halves);
 
 }  // namespace orrery::denoise

@@ -294,13 +294,13 @@ class Run {
 
   /// Denoises the image, and removes the halves unless the scene requests them.
   void denoise_picture(film::Picture& picture) const {
-    if (!denoise::denoise(picture, settings_.threads).missing.empty())
+    const bool keeps_halves = base::contains(scene::requested_layers(scene()), scene::kHalvesLayer);
+    if (!denoise::denoise(picture, settings_.threads, keeps_halves).missing.empty())
       warn(base::file_diagnostic(base::Severity::kWarning, job_.scene.file.string(),
                                  "the noise cannot be measured, because one half of the samples is missing; the image "
                                  "is hardly denoised",
                                  "render at least 2 samples per pixel"));
     if (job_.hooks.on_denoised) job_.hooks.on_denoised(picture);
-    if (!base::contains(scene::requested_layers(scene()), scene::kHalvesLayer)) denoise::remove_halves(picture);
   }
 
   void write(render::Result& result) {

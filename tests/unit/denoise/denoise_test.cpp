@@ -375,6 +375,22 @@ TEST(DenoiseDenoise, BadPixelsStayAloneAndDoNotSpread) {
   EXPECT_TRUE(std::isnan(values(picture, "R")[0]));
 }
 
+void remove_halves(film::Picture& picture) {
+  std::erase_if(picture.planes, [](const film::Plane& plane) { return film::is_half(plane.name); });
+}
+
+TEST(DenoiseDenoise, TheHalvesCanBeRemoved) {
+  film::Picture kept = noisy(0.1F), removed = kept;
+  // Where one half lacks samples, it is replaced by the other.
+  for (film::Picture* const picture : {&kept, &removed})
+    for (film::Plane& plane : picture->planes)
+      if (plane.name.starts_with("half_b.")) plane.values[20 * kWidth + 30] = std::numeric_limits<float>::quiet_NaN();
+  denoise(kept);
+  denoise(removed, 0, false);
+  for (const film::Plane& plane : removed.planes) EXPECT_EQ(plane.values, values(kept, plane.name)) << plane.name;
+  EXPECT_EQ(removed.planes.size() + 20, kept.planes.size());
+}
+
 /// A half without samples is NaN. Taken for 0, it would make all pixels look alike.
 TEST(DenoiseDenoise, AHalfWithoutSamplesIsIgnored) {
   film::Picture picture = noisy(0.1F);
