@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cstddef>
 #include <iterator>
+#include <limits>
 
 #include "accel/accel.h"
 #include "accel/box_frame.h"
@@ -131,24 +132,23 @@ std::size_t short_rods(const kernel::RodArray& rods, double largest) {
 
 bool is_layer(const kernel::SceneView& scene) {
   if (scene.sphere_count <= scene.rods.count) return false;
-  std::vector<kernel::Sphere> sample;
-  for (std::size_t id = 0; id < scene.sphere_count; id += scene.sphere_count / kSampleSize + 1)
-    sample.push_back(scene.spheres[id]);
-  // Without a ground, whose centre is far from the layer.
-  const auto middle = sample.begin() + static_cast<std::ptrdiff_t>(sample.size() / 2);
-  std::nth_element(sample.begin(), middle, sample.end(),
-                   [](const kernel::Sphere& a, const kernel::Sphere& b) { return a.radius < b.radius; });
-  const kernel::Sphere median = *middle;
-  double lower[3] = {median.x, median.y, median.z}, extent[3] = {0, 0, 0};
-  for (const kernel::Sphere& s : sample) {
-    if (s.radius > kGiantRatio * median.radius) continue;
+  const std::size_t stride = scene.sphere_count / kSampleSize + 1;
+  std::vector<double> radii;
+  for (std::size_t id = 0; id < scene.sphere_count; id += stride) radii.push_back(scene.spheres[id].radius);
+  const auto median = radii.begin() + static_cast<std::ptrdiff_t>(radii.size() / 2);
+  std::nth_element(radii.begin(), median, radii.end());
+  constexpr double kInfinite = std::numeric_limits<double>::infinity();
+  double lower[3] = {kInfinite, kInfinite, kInfinite}, upper[3] = {-kInfinite, -kInfinite, -kInfinite}, extent[3];
+  for (std::size_t id = 0; id < scene.sphere_count; id += stride) {
+    const kernel::Sphere s = scene.spheres[id];
+    if (s.radius > kGiantRatio * *median) continue;  // a ground, whose centre is far from the layer
     const double center[3] = {s.x, s.y, s.z};
     for (int k = 0; k < 3; ++k) {
-      const double upper = std::max(lower[k] + extent[k], center[k]);
       lower[k] = std::min(lower[k], center[k]);
-      extent[k] = upper - lower[k];
+      upper[k] = std::max(upper[k], center[k]);
     }
   }
+  for (int k = 0; k < 3; ++k) extent[k] = upper[k] - lower[k];
   std::sort(extent, extent + 3);
   return kLayerRatio * extent[0] < extent[1];
 }
