@@ -15,7 +15,7 @@
 #include <limits>
 #include <type_traits>
 
-#include "accel/sphere_bvh_rays-inl.h"
+#include "accel/sphere_bvh-inl.h"
 
 HWY_BEFORE_NAMESPACE();
 namespace orrery::accel::HWY_NAMESPACE {
@@ -111,12 +111,14 @@ class PacketTraversal {
   HWY_INLINE unsigned within(float distance) const { return bits_of(d_, hn::Load(d_, limit_) >= distance); }
 
   HWY_INLINE void visit_node(const SphereBvh::Node& node, unsigned lanes, PacketVisit* stack, int& waiting) const {
+    // Decode the boxes of the children.
     alignas(64) float bound[2][3][SphereBvh::kArity];
     const ChildTag dc;
     for (int side = 0; side < 2; ++side)
       for (int k = 0; k < 3; ++k)
         for (int v = 0; v < static_cast<int>(SphereBvh::kArity); v += kChildLanes)
           hn::Store(mul_add(from_bytes(node.bound[side][k] + v), node.step[k], node.origin[k]), dc, bound[side][k] + v);
+    // Test each child that some ray may enter with all rays.
     hn::Vec<Wide> inverse[3], shift[3];
     for (int k = 0; k < 3; ++k) {
       inverse[k] = hn::Load(d_, inverse_[k]);
@@ -145,6 +147,7 @@ class PacketTraversal {
 
   HWY_INLINE void visit_leaf(std::uint32_t index, unsigned lanes) {
     const SphereBvh::Leaf& leaf = bvh_.leaves[index];
+    // Decode the spheres and their boxes, then the axes of the rods.
     alignas(64) float center[3][SphereBvh::kArity], outer[SphereBvh::kArity], inner[SphereBvh::kArity];
     alignas(64) float bound[2][3][SphereBvh::kArity];
     const ChildTag dc;
@@ -179,6 +182,7 @@ class PacketTraversal {
         hn::Store(axes.z, dc, half[2] + v);
       }
     }
+    // Test each sphere or rod whose box some ray may enter with all rays.
     const bool has_opacity = query_.scene->opacity != nullptr;
     auto limit = hn::Load(d_, limit_);
     for (const int i : SetBits(entered_by_any(bound, bvh_.count_in(index)))) {
@@ -210,6 +214,7 @@ class PacketTraversal {
         hitting &= bits_of(d_, hit);
         if (hitting == 0) continue;
       }
+      // Shorten the rays that certainly hit it, and keep it as a candidate.
       const auto begin = is_rod ? at_rod().begin(passed.along) : passed.along - radius;
       const auto nearer = is_rod ? has_opacity ? limit : min(limit, at_rod().certain_distance(begin))
                                  : certain_limit(passed, hn::Set(d_, inner[i]), begin, wide_margin, limit);

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 // What the traversals of a SphereBvh share: references, prefetching, and the tests of leaves.
-#if defined(ORRERY_ACCEL_SPHERE_BVH_RAYS_INL_H_) == defined(HWY_TARGET_TOGGLE)
-#ifdef ORRERY_ACCEL_SPHERE_BVH_RAYS_INL_H_
-#undef ORRERY_ACCEL_SPHERE_BVH_RAYS_INL_H_
+#if defined(ORRERY_ACCEL_SPHERE_BVH_INL_H_) == defined(HWY_TARGET_TOGGLE)
+#ifdef ORRERY_ACCEL_SPHERE_BVH_INL_H_
+#undef ORRERY_ACCEL_SPHERE_BVH_INL_H_
 #else
-#define ORRERY_ACCEL_SPHERE_BVH_RAYS_INL_H_
+#define ORRERY_ACCEL_SPHERE_BVH_INL_H_
 #endif
 
 #include <hwy/cache_control.h>
