@@ -54,9 +54,9 @@ class KeyFaults {
 };
 
 /// Maximum number of similar diagnostics of bulk data; only the number of the others is reported.
-inline constexpr std::size_t kMaxReported = 10;
+inline constexpr std::size_t kMaxReported = 3;
 
-/// Returns "and 3 more (13 in all)", if more than kMaxReported were found; otherwise an empty text.
+/// Returns "and 10 more (13 in all)", if more than kMaxReported were found; otherwise an empty text.
 inline std::string rest_text(std::size_t count) {
   if (count <= kMaxReported) return {};
   return "and " + std::to_string(count - kMaxReported) + " more (" + std::to_string(count) + " in all)";

@@ -86,7 +86,7 @@ TEST(SceneCoincident, CountsAllAndListsTheFirst) {
   scene.points[0].radii.assign(200000, 1);
   const auto found = warn_of_coincident(scene, nullptr);
   ASSERT_EQ(found.size(), kMaxReported + 1);
-  EXPECT_EQ(found.back().text, "and 199989 more coincident spheres (199999 in all)");
+  EXPECT_EQ(found.back().text, "and 199996 more coincident spheres (199999 in all)");
 }
 
 TEST(SceneCoincident, ThreeCoincidentSpheresAreTwoReports) {

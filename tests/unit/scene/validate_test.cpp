@@ -309,7 +309,7 @@ TEST(SceneValidate, EveryInvalidSphereTableIsReported) {
   EXPECT_EQ(validate(scene).size(), 25u);
 }
 
-TEST(SceneValidate, OfInvalidPointsTenAreReportedAndAllCounted) {
+TEST(SceneValidate, OfInvalidPointsThreeAreReportedAndAllCounted) {
   Scene scene;
   scene.materials = {{"grey", Lambertian{}}};
   scene.points.resize(2);
@@ -319,9 +319,9 @@ TEST(SceneValidate, OfInvalidPointsTenAreReportedAndAllCounted) {
   }
   for (std::size_t i = 20; i < 50; ++i) scene.points[1].radii.set(i, 0);
   const Told lines = told(scene);
-  ASSERT_EQ(lines.size(), 11u);
+  ASSERT_EQ(lines.size(), 4u);
   EXPECT_EQ(lines[0].rfind("points[1].file: row 21 of points[1]: radius is 0", 0), 0u) << lines[0];
-  EXPECT_EQ(lines[10], "points[1].file: and 20 more (30 in all)");
+  EXPECT_EQ(lines[3], "points[1].file: and 27 more (30 in all)");
 }
 
 TEST(SceneValidate, ArraysOfDifferentLengthsAreNotIndexed) {
@@ -340,12 +340,12 @@ TEST(SceneValidate, CoincidentSpheresAreAWarningThatNamesBoth) {
             Told{"(sphere[1]: has exactly the same centre and radius as sphere[0]; only the first is rendered)"});
 }
 
-TEST(SceneValidate, OfCoincidentSpheresTenAreReported) {
+TEST(SceneValidate, OfCoincidentSpheresThreeAreReported) {
   Scene scene = with_sphere({1, 2, 3}, 2);
   scene.spheres.assign(32, scene.spheres[0]);
   const Told lines = told(scene);
-  ASSERT_EQ(lines.size(), 11u);
-  EXPECT_EQ(lines[10], "(: and 21 more coincident spheres (31 in all))");
+  ASSERT_EQ(lines.size(), 4u);
+  EXPECT_EQ(lines[3], "(: and 28 more coincident spheres (31 in all))");
 }
 
 }  // namespace
