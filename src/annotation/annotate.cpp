@@ -79,12 +79,12 @@ std::optional<int> decimals_of(const std::string& format) {
 }
 
 /// The value of "step * 0.005:.2f".
-std::string field_text(const std::string& field, int frame, std::optional<double> step) {
+std::string field_text(const std::string& field, int frame, const scene::HeaderNumbers& header) {
   const std::size_t colon = points::end_of_expression(field);
   data::Table table;
   table.rows = 1;
   table.columns = {{"frame", std::vector<double>{static_cast<double>(frame)}}};
-  if (step) table.columns.push_back({"step", std::vector<double>{*step}});
+  for (const auto& [name, value] : header) table.columns.push_back({name, std::vector<double>{value}});
   std::vector<data::ColumnInfo> columns;
   for (const data::Column& column : table.columns) columns.push_back({column.name, column.type()});
   const auto refuse = [&](const std::string& text, const std::string& remedy) {
@@ -105,7 +105,7 @@ std::string field_text(const std::string& field, int frame, std::optional<double
 
 }  // namespace
 
-std::string title_of(const std::string& title, int frame, std::optional<double> step) {
+std::string title_of(const std::string& title, int frame, const scene::HeaderNumbers& header) {
   std::string out;
   for (std::size_t at = 0; at < title.size();) {
     const std::string_view rest = std::string_view(title).substr(at);
@@ -118,7 +118,7 @@ std::string title_of(const std::string& title, int frame, std::optional<double> 
     if (close == std::string::npos)
       throw base::Error(base::ErrorKind::kBadData,
                         "annotation.title: `{` is not closed; add `}`, or write `{{` for a brace");
-    out += field_text(std::string(rest.substr(1, close - 1)), frame, step);
+    out += field_text(std::string(rest.substr(1, close - 1)), frame, header);
     at += close + 1;
   }
   return out;
@@ -127,7 +127,7 @@ std::string title_of(const std::string& title, int frame, std::optional<double> 
 std::string title_of(const scene::Scene& scene, int frame) {
   const scene::Points* const points = scene.points.empty() ? nullptr : &scene.points[0];
   return points == nullptr ? title_of(scene.annotation.title, frame, {})
-                           : title_of(scene.annotation.title, points->frame.value_or(frame), points->step);
+                           : title_of(scene.annotation.title, points->frame.value_or(frame), points->header);
 }
 
 LegendColors legend_of(const scene::Scene& scene, const std::string& ocio) {

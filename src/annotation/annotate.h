@@ -27,11 +27,11 @@ struct View {
   std::function<std::optional<std::pair<double, double>>(const Vec3d&)> project;
 };
 
-/// Replaces {EXPRESSION} and {EXPRESSION:.Nf}, with N decimals, in a title. Expressions may use `frame`, and `step`, if
-/// the data have time steps.
+/// Replaces {EXPRESSION} and {EXPRESSION:.Nf}, with N decimals, in a title. Expressions may use `frame` and the
+/// numbers of the frame's header, such as `step`.
 ///
 /// Errors     base::Error(kBadData)
-std::string title_of(const std::string& title, int frame, std::optional<double> step);
+std::string title_of(const std::string& title, int frame, const scene::HeaderNumbers& header);
 
 /// The title of a scene at a frame; empty: it has none.
 ///

@@ -187,9 +187,10 @@ struct FrameInfo {
   Roles roles;
   std::optional<Box> box;
   std::vector<Assembly> assemblies;
-  std::optional<double> step;    ///< time step, or the frame number in the file
-  std::string title;             ///< comment or title of the file; may be empty
-  bool z_up = true;              ///< convention of the format
+  std::optional<double> step;                          ///< time step, or the frame number in the file
+  std::vector<std::pair<std::string, double>> header;  ///< other numbers of the frame, such as `energy`
+  std::string title;                                   ///< comment or title of the file; may be empty
+  bool z_up = true;                                    ///< convention of the format
   bool has_components = false;   ///< OpenOptions::component selects one of several sets of particles
   bool may_be_of_scene = false;  ///< the file may have been made for a scene: a column may number its materials
   bool may_be_hollow = false;    ///< a radius below 0 is a hollow sphere, as in a scene

@@ -204,6 +204,9 @@ class XyzHeaderReader {
     for (const char* const key : {"Timestep", "timestep", "Step", "step"})
       if (double step = 0; values.count(key) > 0 && parse_number(values.at(key), step) && std::isfinite(step))
         out_.info.step = step;
+    for (const auto& [key, value] : values)
+      if (double number = 0; parse_number(value.substr(0, value.find(',')), number) && std::isfinite(number))
+        out_.info.header.emplace_back(key, number);  // CP2K writes `time = 0.5, E = -17.1`
     const auto properties = values.find("Properties");
     if (properties != values.end()) {
       add_properties(xyz_properties(properties->second, comment_line_, faults_), words_of(first));

@@ -313,7 +313,7 @@ class PlotMaker {
     scene::Scene scene;
     scene.camera = camera;
     scene.annotation = annotation_of(camera);
-    scene.points.emplace_back().step = step_;
+    scene.points.emplace_back().header = header_;
     const annotation::View view{width_, height_, data_.described_frame(), options_.scene_file.parent_path(), {}};
     const double gap = kGap * height_, middle_x = width_ / 2.0, middle_y = height_ / 2.0;
     std::vector<Reserved> out;
@@ -385,7 +385,7 @@ class PlotMaker {
       fewest_bonds = std::min(fewest_bonds, bonds);
       most_bonds = std::max(most_bonds, bonds);
       bonds_from_ = points.bonds_from;
-      step_ = points.step;
+      header_ = points.header;
       extent.add(points);
       guides_.surround(points);
       if (!points.centers.empty()) out_.legend.add(points, points.palette);
@@ -475,8 +475,8 @@ class PlotMaker {
   std::string up_name_;         ///< "x", "y" or "z"
   math::Vec3d up_;
   Guides guides_;
-  std::string bonds_from_;      ///< see scene::PointsFindings
-  std::optional<double> step_;  ///< see scene::PointsFindings
+  std::string bonds_from_;       ///< see scene::PointsFindings
+  scene::HeaderNumbers header_;  ///< see scene::PointsFindings
   PlotScene out_;
 };
 

@@ -244,7 +244,8 @@ class Loader {
     require_memory(copied_count(copies_, chains, rows.size()), are_rounded(ends, points_, read->centers, read->radii),
                    bonds);
     set_attributes(read->table, rows, read->centers);
-    points_.step = info_.step;
+    points_.header = info_.header;
+    if (info_.step) points_.header.emplace(points_.header.begin(), "step", *info_.step);
     points_.centers = std::move(read->centers);
     points_.radii = std::move(read->radii);
     if (request_.source != nullptr) request_.source->rows = rows.list();

@@ -350,6 +350,9 @@ struct PointsSpheres {
   }
 };
 
+/// Names and values.
+using HeaderNumbers = std::vector<std::pair<std::string, double>>;
+
 /// What else the data of a points table determine: it is kept when the spheres are released.
 struct PointsFindings {
   std::vector<Vec3d> palette = {};            ///< colours that replace those of the material
@@ -358,7 +361,7 @@ struct PointsFindings {
   std::optional<Interval> color_range = {};   ///< range of the colour map, if there is one
   bool has_nan_color = false;                 ///< values without a colour in the map have the last one of `palette`
   std::vector<std::string> unused = {};       ///< unused columns of the file, such as colours
-  std::optional<double> step = {};            ///< time step of the frame, or its number in the file
+  HeaderNumbers header = {};                  ///< numbers of the frame's header, e.g. its `step`
   std::vector<Label> placed_labels = {};      ///< those of PointsKeys::labels
   std::size_t arrow_count = 0;                ///< number of arrows; their shafts are the last of `bond_pairs`
   std::size_t arrow_spheres = 0;              ///< number of spheres of their heads, after all others
@@ -437,7 +440,7 @@ struct Color {
 
 /// Text, scales and lines over the image: burnt into display formats, and a layer of EXR files.
 struct Annotation {
-  std::string title;                ///< at the top left; {EXPRESSION} of frame and step is replaced by its value
+  std::string title;                ///< at the top left; {EXPRESSION} of frame and header numbers becomes its value
   std::optional<double> scale_bar;  ///< length, scene units
   std::string unit;                 ///< of the scale bar, as text
   bool color_bar = false;           ///< the colours of the first coloured points table

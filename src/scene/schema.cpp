@@ -212,7 +212,9 @@ Table annotation_table() {
       {text("title",
             {"Text at the top left. `{EXPRESSION}` is replaced by the value of an [expression](data.md#expressions) of "
              "`frame`, that of the first points table if it is set there, else the rendered one, and `step`, the time "
-             "step in the data file: `t = {step * 0.005:.1f} ps`. `{{` and `}}` are braces. A title that is too long "
+             "step in the data file: `t = {step * 0.005:.1f} ps`; numbers in the comment line of extended XYZ have "
+             "their "
+             "names there: `{energy:.2f}`. `{{` and `}}` are braces. A title that is too long "
              "is set in a smaller font, or cut"},
             &Annotation::title),
        otherwise("none", number("scale_bar", kLength,

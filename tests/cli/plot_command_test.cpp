@@ -73,6 +73,13 @@ TEST_F(CliPlot, FramesMayBeCountedFromTheEnd) {
   EXPECT_TRUE(contains(text_of(folder_ / "b.csv"), ",3\n")) << "vx of the last frame";
 }
 
+TEST_F(CliPlot, TitlesHaveNumbersOfTheHeader) {
+  write("e.xyz", "1\nProperties=species:S:1:pos:R:3 energy=-3.5 time=2\nC 0 0 0\n");
+  ASSERT_EQ(plot("e.xyz -o a.svg -q --title 'E = {energy / 2:.3f} at {time}'").status, 0);
+  EXPECT_TRUE(contains(text_of(folder_ / "a.svg"), ">E = -1.750 at 2<"));
+  expect_error("plot e.xyz -o a.svg --title '{enthalpy}'", 65, "columns are frame, energy, time");
+}
+
 TEST_F(CliPlot, ChoicesOfTheRenderArePrinted) {
   Outcome r = run("plot a.dump -o a.ppm --width 16 --height 9");
   EXPECT_TRUE(contains(r.err, "\nplot: frame 1 of 2: the first; --frames all renders all of them\n")) << r.err;

@@ -50,7 +50,8 @@ class AnnotationAnnotate : public testing::Test {
 TEST(AnnotationTitle, ExpressionsAreReplaced) {
   EXPECT_EQ(title_of("plain", 7, {}), "plain");
   EXPECT_EQ(title_of("frame {frame} of 9", 7, {}), "frame 7 of 9");
-  EXPECT_EQ(title_of("t = {step * 0.005:.2f} ps, {frame:.0f}", 7, 300), "t = 1.50 ps, 7");
+  EXPECT_EQ(title_of("t = {step * 0.005:.2f} ps, {frame:.0f}", 7, {{"step", 300}}), "t = 1.50 ps, 7");
+  EXPECT_EQ(title_of("E = {energy / 2:.1f}", 7, {{"step", 300}, {"energy", -3}}), "E = -1.5");
   EXPECT_EQ(title_of("Au {{111}}, }{frame}{{", 7, {}), "Au {111}, }7{");
   EXPECT_EQ(error_of("{step}"), "annotation.title: {step}: unknown column step; columns are frame")
       << "the data have no time steps";

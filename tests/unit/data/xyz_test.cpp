@@ -144,6 +144,14 @@ TEST_F(DataXyz, ValuesMayBeQuotedInManyWays) {
     EXPECT_EQ(errors(std::string("1\n") + odd + "\nH 1 2 3\n"), "") << odd;
 }
 
+TEST_F(DataXyz, NumbersOfTheCommentAreInTheHeader) {
+  using Header = std::vector<std::pair<std::string, double>>;
+  const std::string extended = "1\nProperties=pos:R:3 energy=-3.5 name=5x pbc=\"T T T\" cutoff=inf time=2d1\n1 2 3\n";
+  EXPECT_EQ(open(extended)->describe(0).header, (Header{{"energy", -3.5}, {"time", 20}}));
+  const FrameInfo plain = open("1\n i = 5, time = 2.5, E = -17.1\nH 1 2 3\n")->describe(0);
+  EXPECT_EQ(plain.header, (Header{{"E", -17.1}, {"i", 5}, {"time", 2.5}})) << "as CP2K writes it";
+}
+
 TEST_F(DataXyz, LatticeMayBeNested) {
   const Box box =
       open("1\nLattice=[[1,2,3], [4,5,6], [7,8,9]] pbc=[T, F, T] Properties=pos:R:3\n1 2 3\n")->describe(0).box.value();
