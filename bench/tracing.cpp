@@ -24,6 +24,7 @@
 #include "kernel/render_tile.h"
 #include "load/load_scene.h"
 #include "load/read_scene.h"
+#include "support/comparison.h"
 #include "support/recorded_rays.h"
 
 namespace orrery::bench {

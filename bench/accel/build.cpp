@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "accel/accel.h"
+#include "support/comparison.h"
 #include "support/scenes.h"
 
 namespace orrery::bench {

@@ -76,23 +76,9 @@ ObjectCounts objects_in_bvh(const kernel::SceneView& scene);
 /// Embree's version, for example "3.13.5".
 std::string embree_version();
 
-// For comparison:
-
-/// The naive list: intersects each ray with each sphere in turn, with one lane.
+/// The naive list, for comparison: intersects each ray with each sphere in turn, with one lane.
 ///
 /// Domain     the view's spheres outlive the result
 std::unique_ptr<Accel> make_list(const kernel::SceneView& scene, kernel::Precision precision);
-
-/// The naive list with one ray per lane: the baseline that a BVH has to beat.
-///
-/// Domain     the view's spheres outlive the result; precision is exact or fast
-std::unique_ptr<Accel> make_simd_list(const kernel::SceneView& scene, kernel::Precision precision);
-
-/// Embree's built-in sphere points, traced one ray at a time in float, as in a renderer without its own intersection.
-/// Traces float packets only. Hits are Embree's, not the kernel's, so no image is rendered with them.
-///
-/// Domain     at least one sphere; coordinates representable as float
-/// Errors     base::Error: kNoMemory, kInternal if Embree fails
-std::unique_ptr<Accel> make_native_points(const kernel::SceneView& scene);
 
 }  // namespace orrery::accel

@@ -6,6 +6,7 @@
 
 #include "accel/accel.h"
 #include "kernel/scene_view.h"
+#include "support/comparison.h"
 
 namespace orrery::test {
 

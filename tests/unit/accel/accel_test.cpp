@@ -19,6 +19,7 @@
 #include "math/scalar.h"
 #include "support/accel_rays.h"
 #include "support/accelerators.h"
+#include "support/comparison.h"
 #include "support/intersect_batch.h"
 
 namespace orrery::accel {

@@ -14,6 +14,7 @@
 #include "kernel/isa.h"
 #include "support/accel_rays.h"
 #include "support/accelerators.h"
+#include "support/comparison.h"
 #include "support/intersect_batch.h"
 
 namespace orrery::accel {

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Accelerators with which `orrery bench` and tests compare Embree; the list of the book is in list.cpp.
+#include "support/comparison.h"
+
 #include <memory>
 
 #include "accel/accel.h"
