@@ -73,6 +73,6 @@ if [ -z "$(names | awk '/avx/')" ]; then
   exit 77
 fi
 attempt final_scene
-for scene in $(names | sed -n 's|^render/traversal/\(.*\)/avx2/fast/rule$|\1|p'); do
+for scene in $(names | sed -n 's|^render/traversal/\(.*\)/avx[0-9]*/fast/rule$|\1|p' | sort -u); do
   attempt traversals "$scene"
 done
