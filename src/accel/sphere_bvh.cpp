@@ -68,7 +68,7 @@ struct EnclosingSpheres {
 using Cell = SphereBvh::Cell;
 
 /// Ranges larger than this are binned from a sample.
-constexpr std::size_t kSampleSize = 1 << 11;
+constexpr std::size_t kCentroidSamples = 1 << 11;
 
 /// Ranges larger than this are divided between threads.
 constexpr std::size_t kParallelSize = 1 << 14;
@@ -196,7 +196,7 @@ float divide_at(const Items& items, std::span<typename Items::Item> range, const
 /// The split of a range into two parts by the surface area heuristic, with a multiple of `unit` items on the left.
 template <class Items>
 Split best_split(const Items& items, std::span<const typename Items::Item> range, std::size_t unit, float margin) {
-  const std::size_t count = range.size(), stride = std::max<std::size_t>(1, count / kSampleSize);
+  const std::size_t count = range.size(), stride = std::max<std::size_t>(1, count / kCentroidSamples);
   // The extent of the centres.
   auto low = hn::Set(kFour, kInfinity), high = hn::Set(kFour, -kInfinity);
   for (std::size_t i = 0; i < count; i += stride) {
