@@ -298,7 +298,7 @@ function updateControls() {
     const row = $("frame").parentElement;
     row.hidden = row.previousElementSibling.hidden = state.frames < 2;
     $("frame").max = state.frames;
-    $("frame").value = state.options["--frame"].value || 1;
+    $("frame").value = frameNumber(state.options["--frame"].value);
     $("frame-number").value = `${$("frame").value} of ${state.frames}`;
   }
 }
@@ -308,10 +308,15 @@ function holdCamera() {
   camera = current() ?? null;
 }
 
+// The number of a frame, from 1; `last` and negative numbers count from the end.
+function frameNumber(value) {
+  const number = value === "last" ? -1 : Number(value || 1);
+  return number < 0 ? state.frames + 1 + number : number;
+}
+
 // Shows the next frame of a trajectory.
 function step() {
-  const last = state.frames, now = Number(options["--frame"] || 1);
-  options = { ...options, "--frame": String(now % last + 1) };
+  options = { ...options, "--frame": String(frameNumber(options["--frame"]) % state.frames + 1) };
   wish(true);
 }
 
