@@ -48,8 +48,8 @@ int main(int argc, char** argv) try {
   scene.materials = {{"seed", orrery::scene::Plastic{}}};
   scene.points = {sunflower()};
 
-  orrery::preview::Preview preview(orrery::preview::make_sink(orrery::preview::parse_target(file), {}), {});
-  preview.begin({"spiral", scene.image.width, scene.image.height, {}});
+  orrery::preview::Preview preview(file, {});
+  preview.begin({scene.image.width, scene.image.height, {}});
   orrery::render::Settings settings;
   settings.on_pixels = [&](const auto& state, const auto& rendered) { preview.write(state, rendered); };
   settings.on_progress = [](const auto& progress) {

@@ -16,7 +16,7 @@ TEST_F(CliBench, PrintsOnlyATableOrJson) {
   const Outcome json = run("bench good.toml --rounds 1 --seconds 0.001 --json -q");
   EXPECT_EQ(json.status, 0) << json.err;
   EXPECT_EQ(json.err, "");
-  EXPECT_EQ(nlohmann::json::parse(json.out)["cases"].size(), 9u);
+  EXPECT_EQ(nlohmann::json::parse(json.out)["cases"].size(), 7u);
   EXPECT_EQ(file_count(), 0);
 }
 
