@@ -4,16 +4,13 @@
 #include <cstddef>
 
 #include "accel/sphere_classes.h"
-#include "kernel/isa.h"
 #include "kernel/scene_view.h"
 
 namespace orrery::accel {
 
 Traversals fastest_traversals(const kernel::SceneView& scene, bool has_bvh) {
-  // Measured in clouds, crystals and layers (docs/benchmarks.md). Packets of 16 rays pay off for longer than those
-  // of 8.
-  const std::size_t few = kernel::isa_name() == "avx512" ? 1000 : 700;
-  const bool are_few = !has_bvh && scene.sphere_count + scene.rods.count < few;
+  constexpr std::size_t kFew = 1000;  // measured in clouds, crystals and layers: docs/benchmarks.md
+  const bool are_few = !has_bvh && scene.sphere_count + scene.rods.count < kFew;
   return {Traversal::kPacket, are_few || is_layer(scene) ? Traversal::kPacket : Traversal::kSingle};
 }
 

@@ -22,7 +22,7 @@ struct Traversals {
   bool operator==(const Traversals&) const = default;
 };
 
-/// The traversals that are fastest with this instruction set (docs/decisions/0011-packets-where-rays-stay-together.md).
+/// The traversals that are fastest (docs/decisions/0011-packets-where-rays-stay-together.md).
 ///
 /// `has_bvh`  most objects are in a SphereBvh, instead of each being a primitive of Embree
 Traversals fastest_traversals(const kernel::SceneView& scene, bool has_bvh);
