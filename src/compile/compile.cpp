@@ -366,7 +366,7 @@ kernel::SceneView CompiledScene::view() const noexcept {
   v.background_visible = backdrop || !environment || environment->view().visible;
   v.has_backdrop = backdrop.has_value();
   v.backdrop = backdrop.value_or(math::Vec3d());
-  v.filter = filter.view();
+  if (!filter.empty()) v.filter.places = filter.data();
   v.window_x = static_cast<std::uint32_t>(window_x) & 0xffff;
   v.window_y = static_cast<std::uint32_t>(window_y) & 0xffff;
   return v;

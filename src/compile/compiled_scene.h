@@ -56,15 +56,15 @@ struct CompiledScene : kernel::SceneSettings {
   std::shared_ptr<const EnvironmentMap> environment;  ///< an image background; null: none
   Precision precision = Precision::kExact;
   Accelerator accelerator = Accelerator::kEmbree;
-  FilterTables filter;
-  int width = 0;            ///< px, of the rendered window
-  int height = 0;           ///< px
-  int window_x = 0;         ///< px, upper left corner of the window in the frame
-  int window_y = 0;         ///< px
-  int frame_width = 0;      ///< px
-  int frame_height = 0;     ///< px
-  double pixel_aspect = 1;  ///< pixel width divided by pixel height
-  int samples = 0;          ///< per pixel
+  std::vector<double> filter;  ///< kernel::PixelFilter::places; empty: a box of one pixel
+  int width = 0;               ///< px, of the rendered window
+  int height = 0;              ///< px
+  int window_x = 0;            ///< px, upper left corner of the window in the frame
+  int window_y = 0;            ///< px
+  int frame_width = 0;         ///< px
+  int frame_height = 0;        ///< px
+  double pixel_aspect = 1;     ///< pixel width divided by pixel height
+  int samples = 0;             ///< per pixel
 
   std::size_t rod_count() const noexcept { return rods.size() + bonds.size(); }
 

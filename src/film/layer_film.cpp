@@ -19,25 +19,14 @@ using kernel::Int128;
 /// A relative spread below this is rounding error; the beauty's floats cannot represent it either.
 constexpr double kMinSpread = 0x1p-48;
 
-/// The sample variance of the radiance of `n` paths, from the sum and the sum of squares.
-double variance_of_one(Int128 sum, Int128 squares, double n) {
+/// The squared standard error of a pixel's mean radiance, from the sum and the sum of squares of `n` paths.
+float variance(Int128 sum, Int128 squares, std::int64_t n) {
+  if (n < 2) return 0;
+  const auto count = static_cast<double>(n);
   const double light = kernel::from_fixed_point(sum), of_squares = static_cast<double>(squares) * kSquareUnit;
-  const double spread = of_squares - light * light / n;
-  return spread > kMinSpread * of_squares ? spread / (n - 1) : 0;
-}
-
-/// The squared standard error of the pixel's mean radiance.
-///
-/// The number of paths with negative weight is deterministic (kernel::PixelFilter), so the paths of each sign are a
-/// separate stratum with its own variance. A single negative path has no sample variance and uses the positive one.
-float variance(const LayerPixel& p, int c, Int128 sum) {
-  const std::int64_t negative = (p.paths - p.lit) / 2, positive = p.paths - negative;
-  if (positive < 2 || p.lit <= 0) return 0;
-  const auto n = static_cast<double>(positive), m = static_cast<double>(negative), w = static_cast<double>(p.lit);
-  const double of_positive = variance_of_one(sum + p.negative_light[c], p.squares[c] - p.negative_squares[c], n);
-  const double of_negative =
-      negative < 2 ? of_positive : variance_of_one(p.negative_light[c], p.negative_squares[c], m);
-  return static_cast<float>((n * of_positive + m * of_negative) / (w * w));
+  const double spread = of_squares - light * light / count;
+  const double of_one = spread > kMinSpread * of_squares ? spread / (count - 1) : 0;
+  return static_cast<float>(count * of_one / (count * count));
 }
 
 /// A Cryptomatte id and its weight in a pixel.
@@ -64,7 +53,6 @@ std::vector<RankedCoverage> ranked(const LayerRequest& r, const Matte& matte, co
   std::sort(shares.begin(), shares.end(), [](const RankedCoverage& a, const RankedCoverage& b) {
     return a.weight != b.weight ? a.weight > b.weight : a.id < b.id;
   });
-  while (!shares.empty() && shares.back().weight <= 0) shares.pop_back();
   return shares;
 }
 
@@ -164,8 +152,8 @@ void each_channel(const LayerRequest& r, const LayerPixel& p, const Halves& halv
   if (r.position) vector("P", "XYZ", kData, [&](int k) { return static_cast<float>(p.position[k]); });
   if (r.albedo) means("albedo", "RGB", kLight, p.albedo);
   if (r.lights()) each_light_channel(r, p, beauty, f);
-  if (r.variance) vector("variance", "RGB", kData, [&](int c) { return variance(p, c, beauty.rgb[c]); });
-  if (r.samples) f("samples", 'X', kData, static_cast<float>(p.paths));
+  if (r.variance) vector("variance", "RGB", kData, [&](int c) { return variance(beauty.rgb[c], p.squares[c], p.lit); });
+  if (r.samples) f("samples", 'X', kData, static_cast<float>(p.lit));
   // Ids start at 1; 0 means no hit.
   if (r.object_id) f("object_id", 'X', kData, hit ? static_cast<float>(view.rods.object(p.sphere)) + 1 : 0.0F);
   if (r.material_id)
@@ -203,12 +191,12 @@ std::vector<DeepSample> deep_samples(const LayerPixel& p, bool background_visibl
                    [](const SphereCoverage& a, const SphereCoverage& b) { return a.front < b.front; });
   std::int64_t left = p.weight;  // weight of the paths that no sample so far covers
   for (const SphereCoverage& share : shares) {
-    if (left <= 0 || share.weight <= 0 || (share.sphere == kernel::kNone && !background_visible)) continue;
+    if (share.sphere == kernel::kNone && !background_visible) continue;
     const auto seen = static_cast<double>(left);
     DeepSample sample{};
     sample.front = static_cast<float>(share.front);
     sample.back = static_cast<float>(share.back);
-    sample.alpha = static_cast<float>(std::min(1.0, static_cast<double>(share.weight) / seen));
+    sample.alpha = static_cast<float>(static_cast<double>(share.weight) / seen);
     for (int c = 0; c < 3; ++c) sample.rgb[c] = static_cast<float>(kernel::from_fixed_point(share.light[c]) / seen);
     out.push_back(sample);
     left -= share.weight;

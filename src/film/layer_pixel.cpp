@@ -29,8 +29,8 @@ kernel::Int128 square(double v) {
 }
 
 template <class Sum, class T>
-void add3(Sum& sum, const T& value, std::int64_t weight) {
-  for (std::size_t k = 0; k < 3; ++k) sum[k] += kernel::to_fixed_point(static_cast<double>(value[k])) * weight;
+void add3(Sum& sum, const T& value) {
+  for (std::size_t k = 0; k < 3; ++k) sum[k] += kernel::to_fixed_point(static_cast<double>(value[k]));
 }
 
 /// The coverage entry of a sphere, inserted if there is none.
@@ -137,20 +137,11 @@ Vec3d normal_of(const kernel::SceneView& scene, const PathRecord& path) {
 
 }  // namespace
 
-void LayerPixel::add(const LayerRequest& request, const kernel::SceneView& scene, const PathRecord& path,
-                     std::int64_t path_weight) {
-  weight += path_weight;
+void LayerPixel::add(const LayerRequest& request, const kernel::SceneView& scene, const PathRecord& path) {
+  ++weight;
   if (is_valid(path.light)) {
-    lit += path_weight;
-    ++paths;
-    if (request.variance) {
-      for (int k = 0; k < 3; ++k) {
-        const kernel::Int128 squared = square(path.light[k]);
-        squares[k] += squared;
-        if (path_weight < 0) negative_squares[k] += squared;
-      }
-      if (path_weight < 0) add3(negative_light, path.light, -path_weight);
-    }
+    ++lit;
+    for (int k = 0; request.variance && k < 3; ++k) squares[k] += square(path.light[k]);
   }
   const bool hits = path.object != kernel::kNone;
   Hit hit{};
@@ -158,25 +149,25 @@ void LayerPixel::add(const LayerRequest& request, const kernel::SceneView& scene
   if (is_candidate || (hits && request.deep)) hit = locate(scene, path);
   if (request.deep || (hits && !request.mattes.empty())) {
     SphereCoverage& share = share_of(shares, request.coverage_key(path.object));
-    share.weight += path_weight;
-    if (request.deep && is_valid(path.light)) add3(share.light, path.light, path_weight);
+    ++share.weight;
+    if (request.deep && is_valid(path.light)) add3(share.light, path.light);
     share.front = std::min(share.front, hits ? hit.z : double{kNothingHit});
     share.back = std::max(share.back, hits ? hit.exit_z : double{kNothingHit});
   }
   if (!hits) return;
 
-  covered += path_weight;
+  ++covered;
   if (request.albedo) {
     const double* const constant = scene.materials[scene.object_materials[path.object]].albedo;
     if (scene.features.rich_materials) {
-      add3(albedo, path.albedo, path_weight);
+      add3(albedo, path.albedo);
     } else {
-      add3(albedo, constant, path_weight);
+      add3(albedo, constant);
     }
   }
   if (request.normal) {
     const Vec3d n = normal_of(scene, path);
-    add3(normal, std::array{n.x, n.y, n.z}, path_weight);
+    add3(normal, std::array{n.x, n.y, n.z});
   }
   if (!is_candidate || !(hit.distance < depth)) return;
   depth = hit.distance;
@@ -188,12 +179,11 @@ void LayerPixel::add(const LayerRequest& request, const kernel::SceneView& scene
   position[2] = at.z;
 }
 
-void LayerPixel::add(const LayerRequest& request, const PathRecord& path, const kernel::LightEvent& event,
-                     std::int64_t path_weight) {
+void LayerPixel::add(const LayerRequest& request, const PathRecord& path, const kernel::LightEvent& event) {
   if (!is_valid(path.light)) return;
   const std::size_t cell = request.light_cell(event.group, event.lobe);
   if (cell >= light.size()) light.resize(request.light_cells());
-  add3(light[cell], event.value, path_weight);
+  add3(light[cell], event.value);
 }
 
 void LayerPixel::add(const LayerPixel& other) {
@@ -203,13 +193,10 @@ void LayerPixel::add(const LayerPixel& other) {
   light.resize(std::max(light.size(), other.light.size()));
   for (std::size_t i = 0; i < other.light.size(); ++i) add_all(light[i], other.light[i]);
   add_all(squares, other.squares);
-  add_all(negative_light, other.negative_light);
-  add_all(negative_squares, other.negative_squares);
   add_all(normal, other.normal);
   add_all(albedo, other.albedo);
   weight += other.weight;
   lit += other.lit;
-  paths += other.paths;
   covered += other.covered;
   for (const SphereCoverage& from : other.shares) {
     SphereCoverage& to = share_of(shares, from.sphere);

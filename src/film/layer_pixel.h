@@ -17,7 +17,7 @@ struct LayerRequest;
 /// The paths of a pixel whose first hit is a given sphere, or one that LayerRequest::coverage_key() replaces by it.
 struct SphereCoverage {
   std::uint32_t sphere = kernel::kNone;
-  std::int64_t weight = 0;
+  std::int64_t weight = 0;  ///< number of paths
   // Only for deep images:
   kernel::Int128 light[3] = {0, 0, 0};
   double front = std::numeric_limits<double>::infinity();  ///< nearest entry of a path along the view axis
@@ -29,14 +29,12 @@ struct SphereCoverage {
 struct LayerPixel {
   /// Adds a path, except its light events. Radiance that is not finite or exceeds kernel::kLargestSample is invalid and
   /// excluded from all sums.
-  void add(const LayerRequest& request, const kernel::SceneView& scene, const kernel::PathRecord& path,
-           std::int64_t weight);
+  void add(const LayerRequest& request, const kernel::SceneView& scene, const kernel::PathRecord& path);
 
   /// Adds one of a path's light events. Ignored if the radiance of the path is invalid.
   ///
   /// Domain     request.lights()
-  void add(const LayerRequest& request, const kernel::PathRecord& path, const kernel::LightEvent& event,
-           std::int64_t weight);
+  void add(const LayerRequest& request, const kernel::PathRecord& path, const kernel::LightEvent& event);
 
   /// Adds further paths of the same pixel. If the nearest hits are at equal distances, that of this object is kept.
   void add(const LayerPixel& other);
@@ -45,13 +43,10 @@ struct LayerPixel {
   /// Sums of the radiance by LayerRequest::light_cell; empty if no light events were added.
   std::vector<std::array<Int128, 3>> light;
   Int128 squares[3] = {};  ///< sums of squared radiance, in units of kSquareUnit
-  /// Sums of the radiance and of its square over the paths with negative weight; for the variance only.
-  Int128 negative_light[3] = {}, negative_squares[3] = {};
   Int128 normal[3] = {}, albedo[3] = {};
-  std::int64_t weight = 0;   ///< total weight; each path has 1 unless the pixel filter has negative lobes
-  std::int64_t lit = 0;      ///< weight of the paths with valid radiance
-  std::int64_t paths = 0;    ///< number of paths with valid radiance
-  std::int64_t covered = 0;  ///< weight of the paths that hit a sphere
+  std::int64_t weight = 0;   ///< number of paths
+  std::int64_t lit = 0;      ///< number of paths with valid radiance
+  std::int64_t covered = 0;  ///< number of paths that hit a sphere
   /// The first hit nearest to the camera: distance, depth along the view axis, position and sphere.
   double depth = std::numeric_limits<double>::infinity(), z = 0;
   double position[3] = {0, 0, 0};

@@ -46,7 +46,6 @@ class ExactParts {
 /// single precision, in any order.
 ///
 /// Each cell is a multiple of the beauty's last bit, and no partial sum exceeds the beauty, so that all sums are exact.
-/// With a filter that has negative lobes, a partial sum can exceed the beauty.
 ///
 /// Precision  the error of a cell or lobe is less than one ulp of the beauty, that of a group less than kLobes ulps
 class LightCells {

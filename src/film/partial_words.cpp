@@ -17,7 +17,7 @@
 namespace orrery::film {
 namespace {
 
-constexpr std::uint32_t kFormat = 6;
+constexpr std::uint32_t kFormat = 7;
 
 enum Flag : std::uint32_t { kHasSecond = 1, kHasGoals = 2, kHasLayers = 4, kHasHalves = 8, kAllFlags = 15 };
 
@@ -157,9 +157,8 @@ template <class Io, class Layers>
 void each_layer_number(Io& io, Layers& layers) {
   using P = LayerPixel;
   for (int k = 0; k < 3; ++k)
-    each(io, layers, element(&P::squares, k), element(&P::negative_light, k), element(&P::negative_squares, k),
-         element(&P::normal, k), element(&P::albedo, k), element(&P::position, k));
-  each(io, layers, &P::weight, &P::lit, &P::paths, &P::covered, &P::depth, &P::z, &P::sphere);
+    each(io, layers, element(&P::squares, k), element(&P::normal, k), element(&P::albedo, k), element(&P::position, k));
+  each(io, layers, &P::weight, &P::lit, &P::covered, &P::depth, &P::z, &P::sphere);
 }
 
 template <class Io, class BothHalves>

@@ -130,7 +130,7 @@ SceneHashes scene_hashes(const compile::CompiledScene& compiled, Hash hash) {
         std::uint64_t{compiled.roulette_depth}, std::uint64_t{compiled.sampler.seed},
         std::uint64_t(compiled.sampler.kind), std::uint64_t(compiled.shading), std::uint64_t(compiled.precision)})
     hash.add_bits(v);
-  for (const double v : compiled.filter.above) hash.add(v);
+  for (const double v : compiled.filter) hash.add(v);
   add_lights(hash, compiled);
   add_textures(hash, compiled.textures);
   SceneHashes out;

@@ -42,42 +42,19 @@ struct CameraRay {
 /// Importance sampling of the pixel filter: warps the first two random numbers to the path's position in the pixel,
 /// which spans 0..1 on each axis.
 template <class D, class V = hn::Vec<D>>
-HWY_INLINE void filter_place(D d, const PixelFilter& filter, hn::Vec<hn::RebindToUnsigned<D>> samples,
-                             Four<V>& random) {
+HWY_INLINE void filter_place(D d, const PixelFilter& filter, Four<V>& random) {
   using T = hn::TFromD<D>;
-  constexpr std::size_t kMax = hn::MaxLanes(D());
-  HWY_ALIGN hn::TFromD<hn::RebindToUnsigned<D>> sample[kMax];
-  HWY_ALIGN T u[2][kMax];
-  hn::Store(samples, hn::RebindToUnsigned<D>(), sample);
-  hn::Store(random.v[0], d, u[0]);
-  hn::Store(random.v[1], d, u[1]);
-  const auto place = [](const double* table, double x) {
-    const double at = std::abs(2 * x - 1) * PixelFilter::kSteps;
-    const auto step = std::min(static_cast<int>(at), PixelFilter::kSteps - 1);
-    return std::copysign(table[step] + (table[step + 1] - table[step]) * (at - step), x - 0.5);
-  };
-  for (std::size_t i = 0; i < hn::Lanes(d); ++i) {
-    auto x = static_cast<double>(u[0][i]);
-    const auto y = static_cast<double>(u[1][i]);
-    const double *along_x = filter.above, *along_y = filter.above;
-    // The first number selects one of two parts of the filter and, rescaled, the position in it.
-    const auto choose = [&](double share, const double* low_x, const double* low_y, const double* high_x,
-                            const double* high_y) {
-      const bool low = x < share;
-      along_x = low ? low_x : high_x;
-      along_y = low ? low_y : high_y;
-      x = low ? x / share : (x - share) / (1 - share);
-    };
-    if (filter.weight(sample[i], sample[i] + 1) < 0) {
-      choose(0.5, filter.above, filter.below, filter.below, filter.above);
-    } else if (filter.below != nullptr) {
-      choose(filter.below_twice, filter.below, filter.below, filter.above, filter.above);
+  HWY_ALIGN T u[hn::MaxLanes(D())];
+  for (V* const along : {&random.v[0], &random.v[1]}) {
+    hn::Store(*along, d, u);
+    for (std::size_t i = 0; i < hn::Lanes(d); ++i) {
+      const double from_center = static_cast<double>(u[i]) - 0.5, at = std::abs(2 * from_center) * PixelFilter::kSteps;
+      const auto step = std::min(static_cast<int>(at), PixelFilter::kSteps - 1);
+      const double *const low = filter.places + step, place = *low + (low[1] - *low) * (at - step);
+      u[i] = static_cast<T>(0.5 + std::copysign(place, from_center));
     }
-    u[0][i] = static_cast<T>(0.5 + place(along_x, x));
-    u[1][i] = static_cast<T>(0.5 + place(along_y, y));
+    *along = hn::Load(d, u);
   }
-  random.v[0] = hn::Load(d, u[0]);
-  random.v[1] = hn::Load(d, u[1]);
 }
 
 /// The vectors of kernel::Camera, one camera per lane.

@@ -68,8 +68,8 @@ HWY_INLINE void deposit(D d, const BatchOf<T>& batch, int count, const SceneView
     // number.
     const auto light = load3(d, batch.radiance, v);
     const auto is_small = [&](hn::Vec<D> value) { return hn::Abs(value) < 4; };
-    const bool are_small = scene.filter.negative_share == 0 &&
-                           hn::AllTrue(d, hn::And(hn::And(is_small(light.x), is_small(light.y)), is_small(light.z)));
+    const bool are_small =
+        hn::AllTrue(d, hn::And(hn::And(is_small(light.x), is_small(light.y)), is_small(light.z)));
     if (kConvertsVectors && are_small) {
       store_fixed_point(d, light.x, units[0]);
       store_fixed_point(d, light.y, units[1]);
@@ -91,13 +91,12 @@ HWY_INLINE void deposit(D d, const BatchOf<T>& batch, int count, const SceneView
       }
       const auto r = static_cast<double>(batch.radiance[0][i]), g = static_cast<double>(batch.radiance[1][i]),
                  b = static_cast<double>(batch.radiance[2][i]);
-      const std::int64_t weight = scene.filter.weight(batch.sample[i], std::uint64_t{batch.sample[i]} + 1);
       if (is_valid_sample(r, g, b)) {
-        sum.rgb[0] += to_fixed_point(r) * weight;
-        sum.rgb[1] += to_fixed_point(g) * weight;
-        sum.rgb[2] += to_fixed_point(b) * weight;
+        sum.rgb[0] += to_fixed_point(r);
+        sum.rgb[1] += to_fixed_point(g);
+        sum.rgb[2] += to_fixed_point(b);
       } else {
-        sum.weight -= weight;
+        --sum.weight;
         ++counts.bad_samples;
       }
     }

@@ -23,7 +23,7 @@ struct PixelSum {
   typedef Int128 Sum __attribute__((aligned(8)));
 
   Sum rgb[3] = {0, 0, 0};
-  std::int64_t weight = 0;  ///< total weight of the valid samples: 1 each, or -1 in a PixelFilter's negative lobes
+  std::int64_t weight = 0;  ///< number of valid samples
 
   PixelSum& operator+=(const PixelSum& other) noexcept {
     for (int c = 0; c < 3; ++c) rgb[c] += other.rgb[c];
@@ -59,7 +59,7 @@ static_assert(sizeof(PixelSum) == 56);
 struct GuideSum {
   /// Reciprocal distances of the first hits from the ray origins, 1 / scene units, in units of 2^-60; 0 for a miss.
   Int128 inverse_depth = 0;
-  std::int64_t weight = 0;  ///< total weight of the paths, including those with bad samples
+  std::int64_t weight = 0;  ///< number of paths, including those with bad samples
   /// The albedo of the first non-delta surface times the throughput before it, and the surface's unit normal facing the
   /// ray in world space, in units of kGuideUnit. A path that leaves the scene adds the background's radiance, clamped
   /// to 1, and no normal.

@@ -112,10 +112,10 @@ class Recorder {
       return;
     }
     const Stored color(d, a), along(d, n);
-    each_sum(d, lanes, [&](GuideSum& sum, std::int64_t weight, int i) {
+    each_sum(d, lanes, [&](GuideSum& sum, int i) {
       for (int k = 0; k < 3; ++k) {
-        sum.albedo[k] += weight * static_cast<std::int64_t>(color.v[k][i]);
-        sum.normal[k] += weight * static_cast<std::int64_t>(along.v[k][i]);
+        sum.albedo[k] += static_cast<std::int64_t>(color.v[k][i]);
+        sum.normal[k] += static_cast<std::int64_t>(along.v[k][i]);
       }
     });
   }
@@ -132,9 +132,8 @@ class Recorder {
     }
     HWY_ALIGN hn::TFromD<D> stored[kMax];
     hn::Store(inverse, d, stored);
-    each_sum(d, hit, [&](GuideSum& sum, std::int64_t weight, int i) {
-      sum.inverse_depth += to_fixed_point(static_cast<double>(stored[i])) * weight;
-    });
+    each_sum(d, hit,
+             [&](GuideSum& sum, int i) { sum.inverse_depth += to_fixed_point(static_cast<double>(stored[i])); });
   }
 
  private:
@@ -180,22 +179,19 @@ class Recorder {
       return static_cast<std::int64_t>(hn::GetLane(hn::SumOfLanes(dd, sums)));
     }
   }
-  /// The sum that all lanes belong to with weight 1; null if they belong to several.
+  /// The sum that all lanes belong to; null if they belong to several.
   HWY_INLINE GuideSum* common_sum(D d, hn::Mask<D> lanes) const {
-    if (scene_.filter.negative_share != 0) return nullptr;
     const Id first = hn::GetLane(pixels_);
     const auto same = hn::RebindMask(d, pixels_ == hn::Set(IdTag<D>(), first));
     return hn::AllTrue(d, hn::Or(hn::Not(lanes), same)) ? &sum_of(first) : nullptr;
   }
   HWY_INLINE GuideSum& sum_of(Id pixel) const { return tile_.guides[tile_.index(place_of(pixel, scene_))]; }
-  /// Calls `add(sum, weight, lane)` for each lane.
+  /// Calls `add(sum, lane)` for each lane.
   template <class Add>
   HWY_INLINE void each_sum(D d, hn::Mask<D> lanes, Add add) const {
-    const Names names(*this);
-    each_lane(d, lanes, [&](int i) {
-      const std::uint64_t sample = names.sample[i];
-      add(sum_of(names.pixel[i]), scene_.filter.weight(sample, sample + 1), i);
-    });
+    HWY_ALIGN Id pixel[kMax];
+    hn::Store(pixels_, IdTag<D>(), pixel);
+    each_lane(d, lanes, [&](int i) { add(sum_of(pixel[i]), i); });
   }
   /// The index of a lane's record within the tile.
   HWY_INLINE std::int64_t index(const Names& names, int lane) const {

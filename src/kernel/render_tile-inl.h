@@ -119,7 +119,7 @@ class TileLoop {
 
   /// Adds the tile's paths to the weights of their pixels.
   HWY_INLINE void count_paths() {
-    const std::int64_t weight = scene_.filter.weight(tile_.sample_begin, tile_.sample_end);
+    const std::uint32_t weight = tile_.sample_end - tile_.sample_begin;
     for (int i = 0; i < tile_.pixel_count(); ++i) {
       const PixelPlace at = tile_.pixel(i);
       tile_.sums[at.y * tile_.row_stride + at.x].weight += weight;
@@ -192,7 +192,7 @@ class TileLoop {
   HWY_INLINE void load_camera_rays(hn::Vec<IdTag<D>> pixels, hn::Vec<IdTag<D>> samples, int i, int v,
                                    RayPacket<T>& packet) {
     auto random = random_at_vertex(d, scene_.sampler, pixels, samples, 0, features().lens);
-    if (scene_.filter.above != nullptr) filter_place(d, scene_.filter, samples, random);
+    if (scene_.filter.places != nullptr) filter_place(d, scene_.filter, random);
     const auto place = [&](hn::Vec<IdTag<D>> at, std::uint32_t begin) {
       return to_real(d, hn::And(at - begin, hn::Set(du, Id{0xffff})));
     };

@@ -95,6 +95,10 @@ std::optional<Value> read_integer(ReadState& state, const toml::node& node, cons
   return x;
 }
 
+/// Words that earlier versions accepted, and what to write instead.
+constexpr std::pair<const char*, const char*> kRemoved[] = {
+    {"mitchell", "use \"blackman-harris\", or \"gaussian\", with a smaller filter_width for a sharper image"}};
+
 std::optional<Value> read_text(ReadState& state, const toml::node& node, const std::string& name,
                                const std::vector<std::string>& choices) {
   if (!node.is_string()) {
@@ -103,6 +107,11 @@ std::optional<Value> read_text(ReadState& state, const toml::node& node, const s
   }
   const std::string& text = node.as_string()->get();
   if (!choices.empty() && !base::contains(choices, text)) {
+    for (const auto& [removed, instead] : kRemoved)
+      if (text == removed) {
+        state.error(place_of(node), fmt::format("{} is \"{}\", which was removed", name, text), instead);
+        return {};
+      }
     state.error(place_of(node), fmt::format("{} is \"{}\"; must be one of {}", name, text, base::joined(choices)),
                 base::did_you_mean(text, choices));
     return {};

@@ -64,7 +64,7 @@ class Coverage {
       : scene_(scene),
         width_(width_px),
         height_(height_px),
-        margin_(scene.filter.above != nullptr ? scene.filter.above[kernel::PixelFilter::kSteps] - 0.5 : 0) {}
+        margin_(scene.filter.places != nullptr ? scene.filter.places[kernel::PixelFilter::kSteps] - 0.5 : 0) {}
 
   /// `opening`, `closing`  spheres when the shutter opens and closes
   /// `radiance`            mean of the channels

@@ -158,7 +158,6 @@ void PixelStatistics::set(std::size_t i, std::uint32_t half, const kernel::Pixel
   const film::HalvesEstimate halves = film::compare_halves(a, b);
   samples[i] = half;
   light[i] = static_cast<float>(std::max(halves.light, 0.0));
-  // With a filter that has negative lobes, the weight is less than the number of samples.
   const auto weight = static_cast<double>(a.weight + b.weight);
   const double excess = std::max(static_cast<double>(largest) / 3 - halves.light, 0.0);
   const double raised = weight > 1 ? excess / (weight - 1) : 0;

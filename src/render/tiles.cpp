@@ -183,15 +183,13 @@ void TileRenderer::add_records(const kernel::Tile& tile, const TileWorker& worke
     const auto within = static_cast<std::size_t>(at.y * tile.width + at.x);
     film::LayerPixel& pixel = image.layers[index_of(image, tile, at)];
     const kernel::PathRecord* record = tile.records + within * samples;
-    for (std::uint32_t s = tile.sample_begin; s < tile.sample_end; ++s)
-      pixel.add(request_, view_, *record++, view_.filter.weight(s, std::uint64_t{s} + 1));
+    for (std::uint32_t s = tile.sample_begin; s < tile.sample_end; ++s) pixel.add(request_, view_, *record++);
   }
   if (tile.events == nullptr) return;
   for (const kernel::LightEvent* event = worker.events.begin(); event != worker.events.next; ++event) {
     const auto within = static_cast<int>(event->path / samples);
-    const std::uint64_t s = tile.sample_begin + event->path % samples;
     film::LayerPixel& pixel = image.layers[index_of(image, tile, {within % tile.width, within / tile.width})];
-    pixel.add(request_, tile.records[event->path], *event, view_.filter.weight(s, s + 1));
+    pixel.add(request_, tile.records[event->path], *event);
   }
 }
 

@@ -101,7 +101,7 @@ enum class Precision { kExact, kFast, kBook };
 enum class Shading { kPath, kNormal, kFlat };
 enum class Sampler { kIndependent, kSobol, kBlueNoise };
 enum class DirectLighting { kMis, kBsdf, kLight };
-enum class Filter { kBox, kGaussian, kBlackmanHarris, kMitchell };
+enum class Filter { kBox, kGaussian, kBlackmanHarris };
 
 struct Render {
   int samples = 100;   ///< per pixel

@@ -197,11 +197,10 @@ Table render_table() {
                     "`direct_lighting = \"bsdf\"`",
                     "", "2 to 4 rays per vertex on a diffuse material; none in scenes without such a ball or light"},
                    &Render::caustics)),
-       choice("filter", {"box", "gaussian", "blackman-harris", "mitchell"},
-              {"Pixel filter. `box`: the area of the pixel, as in the book. `gaussian`, `blackman-harris`: softer. "
-               "`mitchell`: sharper, with negative lobes"},
+       choice("filter", {"box", "gaussian", "blackman-harris"},
+              {"Pixel filter. `box`: the area of the pixel, as in the book. `gaussian`, `blackman-harris`: softer"},
               &Render::filter),
-       otherwise("1 for box, 3 for gaussian and blackman-harris, 4 for mitchell",
+       otherwise("1 for box, 3 for gaussian and blackman-harris",
                  number("filter_width", {0, kWidestFilter, true, false}, {"Full width of the filter", "px"},
                         &Render::filter_width))});
 }

@@ -41,7 +41,7 @@ class BatchShards : public ProgramTest {
   }
 
   const std::string without_layers_ =
-      " --set render.samples=35 --width 70 --height 45 --set background.alpha=0 --set render.filter=mitchell "
+      " --set render.samples=35 --width 70 --height 45 --set background.alpha=0 --set render.filter=gaussian "
       "--reproducible -q ";
   const std::string settings_ =
       without_layers_ + "--layers Z,N,P,diffuse,emission,light_groups,variance,CryptoObject,denoise.albedo ";

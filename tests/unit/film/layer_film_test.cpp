@@ -40,19 +40,19 @@ class FilmLayerFilm : public testing::Test {
     return path;
   }
 
-  void add(const kernel::PathRecord& path, std::int64_t weight = 1, kernel::Lobe lobe = kernel::Lobe::kDiffuseDirect) {
+  void add(const kernel::PathRecord& path) {
     kernel::LightEvent event{};
     std::copy_n(path.light, 3, event.value);
-    event.lobe = lobe;
-    add(path, {event}, weight);
+    event.lobe = kernel::Lobe::kDiffuseDirect;
+    add(path, {event});
   }
-  void add(const kernel::PathRecord& path, const std::vector<kernel::LightEvent>& events, std::int64_t weight) {
-    pixel_.add(request_, view_, path, weight);
+  void add(const kernel::PathRecord& path, const std::vector<kernel::LightEvent>& events) {
+    pixel_.add(request_, view_, path);
     if (request_.lights())
-      for (const kernel::LightEvent& event : events) pixel_.add(request_, path, event, weight);
+      for (const kernel::LightEvent& event : events) pixel_.add(request_, path, event);
     if (!kernel::is_valid_sample(path.light[0], path.light[1], path.light[2])) return;
-    for (int c = 0; c < 3; ++c) beauty_.rgb[c] += kernel::to_fixed_point(path.light[c]) * weight;
-    beauty_.weight += weight;
+    for (int c = 0; c < 3; ++c) beauty_.rgb[c] += kernel::to_fixed_point(path.light[c]);
+    ++beauty_.weight;
   }
   void clear() { pixel_ = {}, halves_ = {}, beauty_ = {}; }
 
@@ -178,7 +178,7 @@ TEST_F(FilmLayerFilm, LightAddsUpToTheBeautyInAnyOrder) {
           if (is_fast) path.light[c] = static_cast<float>(path.light[c]);
         }
       }
-      add(path, events, 1);
+      add(path, events);
     }
     const Picture p = picture();
     for (int c = 0; c < 3; ++c) {
@@ -229,7 +229,7 @@ TEST_F(FilmLayerFilm, LightIsRoundedToTheLastBitOfTheBeauty) {
         events.push_back({{light, 0, 0}, 0, g, static_cast<kernel::Lobe>(lobe)});
       }
     }
-    add(path, events, 1);
+    add(path, events);
     const Picture p = picture();
     const double unit = std::ldexp(1, std::ilogb(static_cast<float>(path.light[0])) - 23);
     for (std::size_t g = 0; g < 3; ++g) {
@@ -290,7 +290,7 @@ TEST_F(FilmLayerFilm, LightGroupsDoNotChangeTheLobes) {
       clear();
       request_.light_groups = with_groups;
       request_.groups.assign(with_groups ? 3 : 0, {"g", true, true});
-      add(path, events, 1);
+      add(path, events);
       pictures[with_groups] = picture();
     }
     for (const Plane& plane : pictures[0].planes) EXPECT_EQ(plane.values, pictures[1].find(plane.name)->values);
@@ -313,7 +313,7 @@ TEST_F(FilmLayerFilm, LightGroupsHaveTheLayersOfTheirSources) {
             "sky_transmission_direct sky_transmission_indirect ");
   // Light too small for the sums is not lost where there is no first group.
   kernel::PathRecord path = path_to(0, 0x1.8p-60);
-  add(path, std::vector<kernel::LightEvent>(2, {{0x1.8p-61, 0, 0}, 0, 1, kernel::Lobe::kEmission}), 1);
+  add(path, std::vector<kernel::LightEvent>(2, {{0x1.8p-61, 0, 0}, 0, 1, kernel::Lobe::kEmission}));
   EXPECT_EQ(value(picture(), "key.R"), 0x1p-60F);
 }
 
@@ -322,11 +322,11 @@ TEST_F(FilmLayerFilm, MergedPixelsAddTheirLight) {
   request_.light_groups = true;
   request_.groups = {{"a", true, true}, {"b", true, true}};
   const kernel::PathRecord path = path_to(0, 0.5);
-  add(path, {{{0.5, 0.5, 0.5}, 0, 1, kernel::Lobe::kEmission}}, 1);
+  add(path, {{{0.5, 0.5, 0.5}, 0, 1, kernel::Lobe::kEmission}});
   const LayerPixel first = pixel_;
   pixel_ = {};
   pixel_.add(first);  // a pixel that this shard does not own
-  add(path, {{{0.5, 0.5, 0.5}, 0, 0, kernel::Lobe::kDiffuseDirect}}, 1);
+  add(path, {{{0.5, 0.5, 0.5}, 0, 0, kernel::Lobe::kDiffuseDirect}});
   pixel_.add(LayerPixel{});
   EXPECT_EQ(value(picture(), "b_emission.R"), 0.25F);
   EXPECT_EQ(value(picture(), "a.G"), 0.25F);
@@ -353,23 +353,6 @@ TEST_F(FilmLayerFilm, VarianceIsThatOfTheMean) {
   EXPECT_EQ(value(picture(), "variance.R"), 0);  // one path has no sample variance
 }
 
-/// Paths with positive weight have radiance 1, 2, 3, 6 (variance 14/3), those with negative weight 1, 3 (variance 2).
-/// The total weight is 2. The paths are added in two parts, as for shards.
-TEST_F(FilmLayerFilm, VarianceTreatsPositiveAndNegativeWeightsSeparately) {
-  request_.variance = true;
-  for (const double light : {1.0, 2.0, 3.0}) add(path_to(0, light));
-  add(path_to(0, 1), -1);
-  const LayerPixel part = pixel_;
-  const kernel::PixelSum beauty_of_part = beauty_;
-  pixel_ = {};
-  add(path_to(0, 6));
-  add(path_to(0, 3), -1);
-  pixel_.add(part);
-  EXPECT_FLOAT_EQ(value(picture(), "variance.R"), (4 * 14.0F / 3 + 2 * 2) / 4);
-  pixel_ = part, beauty_ = beauty_of_part;  // one negative path: uses the variance of the positive ones, which is 1
-  EXPECT_FLOAT_EQ(value(picture(), "variance.R"), 4.0F / 4);
-}
-
 /// Squares below 2^14 are converted in 64 bits, others in two steps.
 /// Up to kLargestSquare.
 TEST_F(FilmLayerFilm, SquaresAreExact) {
@@ -385,7 +368,7 @@ TEST_F(FilmLayerFilm, ConstantRadianceHasNoVariance) {
   request_.variance = true;
   for (const double light : {0.3, 1.0 / 3, 7.7, 1e-3, 123456.7}) {
     clear();
-    for (int i = 0; i < 100; ++i) add(path_to(0, light), i % 16 == 15 ? -1 : 1);
+    for (int i = 0; i < 100; ++i) add(path_to(0, light));
     EXPECT_EQ(value(picture(), "variance.R"), 0) << light;
   }
 }
@@ -421,7 +404,7 @@ TEST_F(FilmLayerFilm, SumsHoldTheMaximumCountOfTheBrightestPaths) {
     add(path_to(0, kernel::kLargestSample));
   }
   twice();
-  EXPECT_EQ(pixel_.paths, 2 * ((std::int64_t{1} << 31) - 1));
+  EXPECT_EQ(pixel_.weight, 2 * ((std::int64_t{1} << 31) - 1));
   const Picture p = picture();
   EXPECT_EQ(value(p, "diffuse_direct.R"), 0x1p35F);
   EXPECT_EQ(mean(beauty_.rgb[0], beauty_.weight), 0x1p35);
@@ -480,17 +463,6 @@ TEST_F(FilmLayerFilm, CoverageBecomesAlpha) {
   add(path_to(0));
   for (int i = 0; i < 3; ++i) add(kernel::PathRecord{});
   EXPECT_EQ(value(picture(), "A"), 0.25F);
-}
-
-/// Samples of a filter's negative lobes have negative weight.
-TEST_F(FilmLayerFilm, NegativeWeightsAreSubtracted) {
-  request_.diffuse = request_.albedo = request_.coverage = true;
-  for (int i = 0; i < 3; ++i) add(path_to(0, 0.5));
-  add(path_to(0, 0.5), -1);
-  const Picture p = picture();
-  EXPECT_EQ(value(p, "diffuse_direct.R"), 0.5F);
-  EXPECT_EQ(value(p, "albedo.R"), 1);
-  EXPECT_EQ(value(p, "A"), 1);
 }
 
 TEST_F(FilmLayerFilm, DeepSamplesCompositeToTheFlatPixel) {

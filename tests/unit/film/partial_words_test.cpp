@@ -36,9 +36,9 @@ Partial full_partial(bool is_adaptive, bool goals, bool layers, bool halves, std
     l.light.resize(light_groups * kernel::kLobes);
     for (auto& cell : l.light)
       for (auto& v : cell) v = large();
-    for (auto* vector : {&l.squares, &l.negative_light, &l.negative_squares, &l.normal, &l.albedo})
+    for (auto* vector : {&l.squares, &l.normal, &l.albedo})
       for (auto& v : *vector) v = large();
-    for (auto* v : {&l.weight, &l.lit, &l.paths, &l.covered}) *v = number();
+    for (auto* v : {&l.weight, &l.lit, &l.covered}) *v = number();
     l.depth = static_cast<double>(number());
     l.z = 1 / l.depth;
     for (double& v : l.position) v = static_cast<double>(number());
@@ -81,8 +81,7 @@ TEST(FilmPartialWords, RoundTrip) {
     if (p.layers.empty()) continue;
     EXPECT_EQ(q.layers[3].shares.size(), p.layers[3].shares.size());
     EXPECT_TRUE(q.layers[14].normal[2] == p.layers[14].normal[2]);
-    EXPECT_TRUE(q.layers[2].negative_light[1] == p.layers[2].negative_light[1]);
-    EXPECT_TRUE(q.layers[2].negative_squares[1] == p.layers[2].negative_squares[1]);
+    EXPECT_TRUE(q.layers[2].squares[1] == p.layers[2].squares[1]);
     EXPECT_EQ(q.layers[9].position[1], p.layers[9].position[1]);
   }
 }

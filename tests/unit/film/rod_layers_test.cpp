@@ -77,7 +77,7 @@ TEST(FilmRodLayers, PositionNormalAndExit) {
     path.offset = point - a;
     path.direction = direction;
     LayerPixel pixel;
-    pixel.add(request, view, path, 1);
+    pixel.add(request, view, path);
 
     EXPECT_NEAR(pixel.z, 5, 1e-12);
     for (int k = 0; k < 3; ++k) {

@@ -84,6 +84,7 @@ TEST(LoadReadKeys, EachInvalidComponentIsReported) {
 TEST(LoadReadKeys, ReadsListsOfWords) {
   EXPECT_EQ(text_of("output.layers = []"), "");
   EXPECT_EQ(text_of("output.layers = \"Z\""), "output.layers must be a list like [\"Z\"], not a string");
+  EXPECT_NE(text_of("render.filter = 'mitchell'").find("removed; use \"blackman-harris\""), std::string::npos);
   EXPECT_EQ(text_of("output.layers = [1]").substr(0, 31), "output.layers[0] must be one of");
   EXPECT_EQ(text_of("output.layers = [\"Z\", \"Z\"]"), "output.layers[1] is a duplicate; remove it");
   const std::string near = text_of("output.layers = [\"albdo\"]");

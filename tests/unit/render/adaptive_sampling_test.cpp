@@ -92,10 +92,10 @@ TEST(RenderAdaptiveSampling, SampleLayerMatchesThePathCount) {
   for (const char* name : {"R", "G", "B"}) EXPECT_EQ(r.picture.find(name)->values, bare.picture.find(name)->values);
 }
 
-TEST(RenderAdaptiveSampling, NegativeFilterLobesAndBlueNoiseWork) {
+TEST(RenderAdaptiveSampling, FiltersAndBlueNoiseWork) {
   scene::Scene s = test::everything();
   s.image = {40, 24};
-  s.render.filter = scene::Filter::kMitchell;
+  s.render.filter = scene::Filter::kBlackmanHarris;
   s.render.sampler = scene::Sampler::kBlueNoise;
   const Result r = render(compile::compile(s), noise(0.05));
   EXPECT_EQ(r.statistics.ended_by, "noise");

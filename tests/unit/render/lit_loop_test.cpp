@@ -278,8 +278,8 @@ TEST(RenderLitLoop, LobesAddUpToTheBeauty) {
   film::LayerRequest request;
   request.diffuse = request.background = true;
   std::vector<film::LayerPixel> layers(out.sums.size());
-  for (std::size_t i = 0; i < out.records.size(); ++i) layers[i / 16].add(request, furnace.view, out.records[i], 1);
-  for (const kernel::LightEvent& e : out.all_events()) layers[e.path / 16].add(request, out.records[e.path], e, 1);
+  for (std::size_t i = 0; i < out.records.size(); ++i) layers[i / 16].add(request, furnace.view, out.records[i]);
+  for (const kernel::LightEvent& e : out.all_events()) layers[e.path / 16].add(request, out.records[e.path], e);
   for (std::size_t i = 0; i < layers.size(); ++i) {
     kernel::Int128 sum = 0;
     for (const auto& lobe : layers[i].light) sum += lobe[1];
@@ -315,7 +315,7 @@ TEST(RenderLitLoop, ABadValueCostsAPathItsWeightOnce) {
       film::LayerRequest request;
       request.diffuse = true;
       film::LayerPixel layers;
-      for (const kernel::LightEvent& e : out.all_events()) layers.add(request, out.records[e.path], e, 1);
+      for (const kernel::LightEvent& e : out.all_events()) layers.add(request, out.records[e.path], e);
       for (const auto& lobe : layers.light) ASSERT_TRUE(lobe[0] == 0);
     }
   }

@@ -63,16 +63,6 @@ TEST(RenderPixelNoise, DifferentHalvesAreVariance) {
   EXPECT_FLOAT_EQ(s.variance[0], 4);
 }
 
-TEST(RenderPixelNoise, NegativeFilterWeightsCount) {
-  PixelStatistics s(1, 1);
-  kernel::PixelSum half = sum_of({{2, 2, 2}, {2, 2, 2}});
-  half.rgb[0] = half.rgb[1] = half.rgb[2] = kernel::to_fixed_point(2);
-  half.weight = 2;  // three positive samples, and one negative one
-  s.set(0, 4, half, half, 12);
-  EXPECT_FLOAT_EQ(s.light[0], 1);
-  EXPECT_FLOAT_EQ(s.outlier[0], 1);  // (4 - 1) / (4 - 1)
-}
-
 TEST(RenderPixelNoise, UpperEstimateIsRarelyBelowTheTrueNoise) {
   TilePool pool(1);
   const auto even = [](int, int, double u) { return static_cast<float>(1 + 0.1 * u); };

@@ -176,16 +176,6 @@ TEST(RenderProgressiveSampling, ResumedRendersGiveTheSameBits) {
   }
 }
 
-TEST(RenderProgressiveSampling, ResumedRendersKeepNegativeWeights) {
-  scene::Scene scene = test::everything();
-  scene.render.filter = scene::Filter::kMitchell;
-  scene.render.samples = 40;
-  const compile::CompiledScene compiled = compile::compile(scene);
-  int starts = 0;
-  expect_same(interrupted(compiled, with_layers(), &starts), render(compiled, with_layers()));
-  EXPECT_GT(starts, 1);
-}
-
 TEST(RenderProgressiveSampling, SnapshotsAreCompleteAndChangeNoBits) {
   const compile::CompiledScene compiled = world_of_everything();
   for (const Settings& plain : {Settings{}, in_rounds()}) {
