@@ -68,14 +68,16 @@ esac
 install_missing "$root/tools/packages-build.txt"
 # An existing configuration, for example that of test.sh, is kept. For this machine alone, one instruction set is compiled
 # instead of three; what is installed may be copied to others.
+minutes=6
 if [ -n "$prefix" ]; then
+  minutes=9
   if ! grep -qs -- -DORRERY_ISAS=all "$root/build/.configured-with"; then
     configure -DBUILD_TESTING=OFF -DORRERY_ISAS=all
   fi
 elif [ ! -f "$root/build/.configured-with" ]; then
   configure -DBUILD_TESTING=OFF -DORRERY_ISAS=native
 fi
-build 9 orrery
+build "$minutes" orrery
 
 if [ -n "$prefix" ]; then
   install_program "$prefix"
