@@ -68,8 +68,7 @@ HWY_INLINE void deposit(D d, const BatchOf<T>& batch, int count, const SceneView
     // number.
     const auto light = load3(d, batch.radiance, v);
     const auto is_small = [&](hn::Vec<D> value) { return hn::Abs(value) < 4; };
-    const bool are_small =
-        hn::AllTrue(d, hn::And(hn::And(is_small(light.x), is_small(light.y)), is_small(light.z)));
+    const bool are_small = hn::AllTrue(d, hn::And(hn::And(is_small(light.x), is_small(light.y)), is_small(light.z)));
     if (kConvertsVectors && are_small) {
       store_fixed_point(d, light.x, units[0]);
       store_fixed_point(d, light.y, units[1]);
