@@ -63,8 +63,10 @@ class Compactor {
       hn::StoreU(v, d, to);
     } else if constexpr (kUsesTable) {
       hn::StoreU(hn::TableLookupLanes(v, hn::IndicesFromVec(d, order_)), d, to);
-    } else {
+    } else if constexpr (sizeof(hn::TFromD<D>) == 4) {
       hn::StoreU(hn::Compress(v, mask_), d, to);  // some processors take ten times as long to compress into memory
+    } else {
+      hn::CompressStore(v, mask_, d, to);  // Highway 1.0 compresses 64-bit lanes in registers by a table, which is slow
     }
   }
   HWY_INLINE void store_ids(D d, hn::Vec<IdTag<D>> v, hn::TFromD<IdTag<D>>* to) const {
