@@ -398,7 +398,7 @@ TEST(ViewWish, SettingsThatMayNameFilesAreKnown) {
   EXPECT_EQ(named_files(other), std::set<std::string>());
 }
 
-TEST(ViewViewer, MemoryDoesNotGrowWithMoves) {
+TEST(ViewViewerMemory, DoesNotGrowWithMoves) {
   Viewer viewer(subject_of, {}, {});
   Frame frame = finished(viewer);
   const auto move = [&](int count) {
