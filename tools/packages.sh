@@ -28,7 +28,7 @@ if ! grep -qs '^ORRERY_PYTHON:BOOL=ON' "$root/build/CMakeCache.txt"; then
   configure -DBUILD_TESTING=OFF -DORRERY_PYTHON=ON
 fi
 set_stubs() {
-  cmake "-DORRERY_STUBS=$1" "$root/build" >"$root/build/configure.log" 2>&1 ||
+  cmake "-DORRERY_STUBS=$1" -DORRERY_ISAS=all "$root/build" >"$root/build/configure.log" 2>&1 ||
     die "CMake configuration failed, see build/configure.log"
 }
 trap 'set_stubs ON' EXIT # for the next user of the build
