@@ -166,7 +166,6 @@ def play(browser):
 
 def never_black(browser, program):
     """Neither while it is dragged nor while the next image is rendered is a pixel darker than the scene."""
-    browser.open(program.url)
     for option, value in [("style", "flat"), ("color-by", "none"), ("samples", "300"), ("size", "1280 720")]:
         choose(browser, option, value)
         settle(browser)
