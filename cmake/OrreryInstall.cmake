@@ -17,8 +17,10 @@ if(TARGET orrery)
           RUNTIME DESTINATION ${CMAKE_INSTALL_LIBEXECDIR}/orrery COMPONENT runtime
           LIBRARY DESTINATION ${CMAKE_INSTALL_LIBEXECDIR}/orrery COMPONENT runtime)
   if(ORRERY_STUBS)
-    install(DIRECTORY $<TARGET_FILE_DIR:orrery_program>/orrery-image-stubs
-            DESTINATION ${CMAKE_INSTALL_LIBEXECDIR}/orrery COMPONENT runtime)
+    foreach(room IN ITEMS image data http)
+      install(DIRECTORY $<TARGET_FILE_DIR:orrery_program>/orrery-${room}-stubs
+              DESTINATION ${CMAKE_INSTALL_LIBEXECDIR}/orrery COMPONENT runtime)
+    endforeach()
   endif()
 endif()
 set(documents ${PROJECT_BINARY_DIR}/docs)

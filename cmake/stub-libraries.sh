@@ -1,23 +1,25 @@
 #!/bin/sh
 # SPDX-License-Identifier: Apache-2.0
-# Makes stub libraries: files that stand in for the libraries behind OpenImageIO that none of our formats uses. They and
-# what they load take most of the time in which OpenImageIO is loaded (docs/decisions/0021).
+# Makes stub libraries: files that stand in for libraries behind those of a module that none of our formats uses
+# (docs/decisions/0021). They and what they load take most of the time in which OpenImageIO is loaded, and most of its
+# space.
 #
-#   cmake/stub-libraries.sh OPENIMAGEIO FOLDER COMPILER
+#   cmake/stub-libraries.sh FOLDER COMPILER UNUSED LIBRARY...
 #
-# A stub has the soname of the library and defines the symbols that OpenImageIO needs from it. Of its functions, only
-# constructors of static objects are called, and those that return a version, when OpenImageIO lists its formats; so
-# functions return a pointer to zeros. A library that is not found has no stub.
+# UNUSED is an extended regular expression of the names after `lib`, among those that a LIBRARY needs. A stub has the
+# soname of the library and defines the symbols that the libraries need from it. Of its functions, only constructors of
+# static objects are called, and those that return a version, when OpenImageIO lists its formats; so functions return a
+# pointer to zeros. A library that is not found has no stub.
 set -eu
-[ $# -eq 3 ] || { sed -n '3,10s/^# \{0,1\}//p' "$0"; exit 2; }
-library=$1 folder=$2 compiler=$3
-unused='opencv_[a-z]+|avcodec|avformat|avutil|swscale|dcm[a-z]+|oflog|ofstd|openvdb|heif|raw_r'
+[ $# -ge 4 ] || { sed -n '3,13s/^# \{0,1\}//p' "$0"; exit 2; }
+folder=$1 compiler=$2 unused=$3
+shift 3
 export LC_ALL=C
 
 rm -rf "$folder"
 mkdir -p "$folder"
-nm --dynamic --undefined-only "$library" | sed 's/.* //; s/@.*//' > "$folder/needed"
-for soname in $(objdump -p "$library" | sed -n 's/^ *NEEDED *//p' | grep -E "^lib($unused)\.so(\.|\$)"); do
+nm --dynamic --undefined-only "$@" | sed 's/.* //; s/@.*//' > "$folder/needed"
+for soname in $(objdump -p "$@" | sed -n 's/^ *NEEDED *//p' | sort -u | grep -E "^lib($unused)\.so(\.|\$)"); do
   path=$("$compiler" -print-file-name="$soname")
   [ -f "$path" ] || continue
   # Lines of nm: address, size (not of all symbols), type, and name@@version.

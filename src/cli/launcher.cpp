@@ -2,6 +2,8 @@
 // The executable `orrery`: prepares what only exec can change, and executes the program.
 //
 // Links only the C library, so that it runs within a millisecond.
+#include <algorithm>
+#include <cerrno>
 #include <climits>
 #include <csignal>
 #include <cstdio>
@@ -47,25 +49,37 @@ const char* missing_instruction_set() {
   return nullptr;
 }
 
-/// Replaces this process by a program.
+/// Replaces this process by a program. In the archive for all systems, the program is started by the loader beside it,
+/// that of its libraries.
 ///
 /// `program`  its path, relative to the launcher's folder
 /// Result     errno is set, if it cannot be executed
-void execute(const char* program, char** argv) {
-  char path[PATH_MAX];
+void execute(const char* program, int argc, char** argv) {
+  char path[PATH_MAX], loader[PATH_MAX];
   const ssize_t size = readlink("/proc/self/exe", path, sizeof(path) - 1);
   if (size < 0) return;
   path[size] = '\0';
   char* const name = std::strrchr(path, '/') + 1;  // a path from the kernel is absolute
   if (std::strlen(program) >= sizeof(path) - static_cast<std::size_t>(name - path)) return;
   std::strcpy(name, program);
+  const auto folder = static_cast<int>(std::strrchr(path, '/') - path);
+  auto** const words = static_cast<char**>(std::calloc(static_cast<std::size_t>(argc) + 5, sizeof(char*)));
+  if (words != nullptr && std::snprintf(loader, sizeof(loader), "%.*s/orrery-loader", folder, path) < PATH_MAX) {
+    char inhibit_cache[] = "--inhibit-cache", argv0[] = "--argv0";
+    char* const first[] = {loader, inhibit_cache, argv0, argv[0], path};
+    std::copy_n(first, 5, words);
+    std::copy_n(argv + 1, argc, words + 5);  // with the null at the end
+    execv(loader, words);
+    if (errno != ENOENT) return;
+  }
+  std::free(words);
   execv(path, argv);
 }
 
 }  // namespace
 }  // namespace orrery::cli
 
-int main(int, char** argv) {
+int main(int argc, char** argv) {
   orrery::cli::block_snapshots();
   orrery::cli::use_huge_pages();
   if (const char* const missing = orrery::cli::missing_instruction_set()) {
@@ -75,7 +89,8 @@ int main(int, char** argv) {
 #endif
     return 70;
   }
-  for (const char* program : {ORRERY_INSTALLED_PROGRAM, ORRERY_BUILT_PROGRAM}) orrery::cli::execute(program, argv);
+  for (const char* program : {ORRERY_INSTALLED_PROGRAM, ORRERY_BUILT_PROGRAM})
+    orrery::cli::execute(program, argc, argv);
   std::perror("orrery: cannot start the program, which is installed as " ORRERY_INSTALLED_PROGRAM);
   return 70;  // base::ErrorKind::kInternal; the launcher links no library of the project
 }

@@ -95,6 +95,16 @@ TEST_F(CliStartup, TheLauncherBlocksUsr1) {
   EXPECT_EQ(std::stoull(mask, nullptr, 16) >> (SIGUSR1 - 1) & 1, 1u) << mask;
 }
 
+/// The archive for all systems has a loader beside the program. Here it is echo, which prints its arguments.
+TEST_F(CliStartup, TheLauncherStartsTheLoaderBesideTheProgram) {
+  for (const char* folder : {"bin", "libexec/orrery"}) std::filesystem::create_directories(folder_ / folder);
+  std::filesystem::copy_file(ORRERY_PROGRAM, folder_ / "bin/orrery");
+  std::filesystem::create_symlink("/bin/echo", folder_ / "libexec/orrery/orrery-loader");
+  ASSERT_EQ(std::system(("cd '" + folder_.string() + "' && bin/orrery info 'a b' > .out").c_str()), 0);
+  const std::string program = std::filesystem::canonical(folder_).string() + "/bin/../libexec/orrery/orrery-program";
+  EXPECT_EQ(text_of(folder_ / ".out"), "--inhibit-cache --argv0 bin/orrery " + program + " info a b\n");
+}
+
 TEST_F(CliStartup, CheckpointOfTheLongestNameIsWritten) {
   const std::string picture = std::string(251, 'n') + ".exr";
   EXPECT_EQ(run_prepared({"render", "good.toml", "-o", picture.c_str()}, raise_blocked), 0);
@@ -172,6 +182,9 @@ TEST_F(CliStartup, StubsStandInForLibrariesThatNoFormatUses) {
   for (const std::string& folder : folders_of(R"(lib(opencv_videoio|avcodec|avformat|openvdb)\.so[.0-9]*)", loaded))
     EXPECT_EQ(folder, stub_folder);
   for (const std::string& soname : stubs()) EXPECT_TRUE(contains(loaded, stub_folder + "/" + soname)) << soname;
+  write("a.csv", "x,y,z\n0,0,0\n");
+  for (const std::string& folder : folders_of(R"(lib(curl|crypto|xml2)\.so[.0-9]*)", libraries_of("info a.csv")))
+    EXPECT_EQ(folder, std::filesystem::path(ORRERY_MODULES) / "orrery-data-stubs");
 }
 
 TEST_F(CliStartup, AStubThatLacksASymbolIsNotUsed) {
