@@ -15,9 +15,15 @@ namespace {
 
 constexpr int kFlags = RTLD_NOW | RTLD_LOCAL;
 
-std::filesystem::path& module_folder() {
+/// The folder that set_module_folder() has set, or none.
+std::filesystem::path& chosen_folder() {
   static std::filesystem::path folder;
   return folder;
+}
+
+std::filesystem::path module_folder() {
+  if (!chosen_folder().empty()) return chosen_folder();
+  return std::filesystem::read_symlink("/proc/self/exe").parent_path();
 }
 
 /// Opens a module of the program. If `stubs` contains stub libraries, those are loaded first: glibc then takes them for
@@ -34,18 +40,16 @@ void* open_with_stubs(const std::filesystem::path& file, const std::filesystem::
 
 }  // namespace
 
-void set_module_folder(std::filesystem::path folder) { module_folder() = std::move(folder); }
+void set_module_folder(std::filesystem::path folder) { chosen_folder() = std::move(folder); }
+
+std::filesystem::path shared_folder() { return module_folder() / "../../share/orrery"; }
 
 const void* load_module(const std::string& room) {
   const std::string name = "orrery-" + room;
-  void* module = nullptr;
-  if (module_folder().empty()) {
-    const std::filesystem::path folder = std::filesystem::read_symlink("/proc/self/exe").parent_path();
-    module = open_with_stubs(folder / (name + ".so"), folder / (name + "-stubs"));
-  } else {
-    // Another program's process, for example Python's, whose other modules may need the libraries.
-    module = dlopen((module_folder() / (name + ".so")).c_str(), kFlags);
-  }
+  const std::filesystem::path file = module_folder() / (name + ".so");
+  // In another program's process, for example Python's, other modules may need the libraries.
+  void* const module = chosen_folder().empty() ? open_with_stubs(file, module_folder() / (name + "-stubs"))
+                                               : dlopen(file.c_str(), kFlags);
   void* const get = module != nullptr ? dlsym(module, ("orrery_" + room + "_functions").c_str()) : nullptr;
   if (get == nullptr) throw Error(ErrorKind::kInternal, std::string("cannot load ") + dlerror());
   return reinterpret_cast<const void* (*)()>(get)();

@@ -18,6 +18,7 @@
 #include <fmt/core.h>
 
 #include "base/error.h"
+#include "base/module.h"
 #include "base/text.h"
 #include "math/pixels.h"
 
@@ -47,13 +48,13 @@ std::uint32_t code_of(std::string_view character) {
   return code;
 }
 
-constexpr const char* kSystemFonts[] = {"/usr/share/fonts", "/usr/local/share/fonts"};
+constexpr char kSystemFonts[] = "/usr/share/fonts";
 
 /// Reports that a font cannot be used.
 [[noreturn]] void refuse(base::ErrorKind kind, const std::string& what) {
   throw base::Error(kind, fmt::format("{}; set --font (annotation.font) to a .ttf or .otf file, or to the name of a "
                                       "font in {}, e.g. DejaVuSans",
-                                      what, kSystemFonts[0]));
+                                      what, kSystemFonts));
 }
 
 /// A font at a size.
@@ -108,7 +109,9 @@ fs::path font_file(const std::string& font) {
     if (fs::is_regular_file(font, error)) return font;
     refuse(base::ErrorKind::kMissingInput, fmt::format("there is no font file {}", font));
   }
-  for (const char* const folder : kSystemFonts)
+  // Fonts that came with the program are first, so that text has the same pixels on all systems.
+  for (const fs::path& folder :
+       {base::shared_folder() / "fonts", fs::path(kSystemFonts), fs::path("/usr/local/share/fonts")})
     for (fs::recursive_directory_iterator at(folder, fs::directory_options::skip_permission_denied, error), end;
          at != end; at.increment(error))
       if (at->path().stem() == font && base::contains({".ttf", ".otf", ".ttc"}, at->path().extension().string()))

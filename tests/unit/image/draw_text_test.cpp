@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "base/error.h"
+#include "base/module.h"
 
 namespace orrery::image {
 namespace {
@@ -56,6 +57,20 @@ TEST(ImageDrawText, TextBeyondTheImageIsCut) {
   EXPECT_EQ(columns_of({"HHHH", kTextWidth - 10, 30, 20, 0}).second, kTextWidth - 1);
   EXPECT_EQ(columns_of({"HHHH", 0, 500, 20, 0}).second, -1);
   EXPECT_EQ(columns_of({"", 0, 20, 20, 0}).second, -1);
+}
+
+TEST(ImageDrawText, AFontInstalledWithTheProgramPrecedesThoseOfTheSystem) {
+  const std::filesystem::path prefix = std::filesystem::path(::testing::TempDir()) / "orrery-draw-text-test";
+  std::filesystem::create_directories(prefix / "share/orrery/fonts");
+  std::filesystem::copy_file(font_file("DejaVuSans"), prefix / "share/orrery/fonts/DejaVuSans.ttf",
+                             std::filesystem::copy_options::overwrite_existing);
+  base::set_module_folder(prefix / "libexec/orrery");
+  std::filesystem::create_directories(prefix / "libexec/orrery");
+  const std::filesystem::path found = font_file("DejaVuSans");
+  base::set_module_folder({});
+  EXPECT_EQ(std::filesystem::weakly_canonical(found),
+            std::filesystem::weakly_canonical(prefix / "share/orrery/fonts/DejaVuSans.ttf"));
+  std::filesystem::remove_all(prefix);
 }
 
 TEST(ImageDrawText, FilesThatAreNoFontsAreRefused) {
