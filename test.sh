@@ -15,7 +15,8 @@ set -euo pipefail
 root=$(cd "$(dirname "${BASH_SOURCE[0]}")" && pwd)
 . "$root/tools/setup.sh"
 
-install_missing "$root/tools/packages-build.txt" "$root/tools/packages-debian.txt" "$root/tools/packages-test.txt"
+install_missing "$root/tools/packages-build.txt" "$root/tools/packages-debian.txt" "$root/tools/packages-portable.txt" \
+  "$root/tools/packages-test.txt"
 # Other systems may lack what the Python package needs.
 python=ON
 command -v dpkg-query >/dev/null || python=OFF

@@ -5,6 +5,7 @@
 # Debian has scikit-build-core, `pip install .`.
 #
 #   tools/minimal-root.sh bookworm|trixie [run|packages]
+#   tools/minimal-root.sh SUITE archive FILE     the archive of tools/portable.sh in another root, e.g. bullseye
 #
 # With `run` only ./run.sh is run, for a Debian release on which ./test.sh runs anyway; `packages` leaves out ./test.sh.
 #
@@ -61,10 +62,18 @@ trap 'exit 130' INT TERM
 mirror=$(apt-get indextargets --format '$(SITE)' 'Created-By: Packages' 'Component: main' 2>/dev/null | grep -m1 '/debian/*$' || true)
 mirror=${mirror:-http://deb.debian.org/debian}
 say "creating the root from $mirror"
-if ! debootstrap --variant=minbase --include=git,ca-certificates --cache-dir="$debs" "$suite" "$root" "$mirror" \
+include=git,ca-certificates
+if [ "$commands" = archive ]; then include=libc-bin; fi
+if ! debootstrap --variant=minbase "--include=$include" --cache-dir="$debs" "$suite" "$root" "$mirror" \
   >"$work/debootstrap.log" 2>&1 </dev/null; then
   tail -n 3 "$work/debootstrap.log" >&2
   skip "debootstrap failed"
+fi
+if [ "$commands" = archive ]; then
+  say "the archive"
+  "$repository/tests/consumer/portable.sh" root "$3" "${ORRERY:-$repository/build/src/orrery}" "$work/portable" "$root"
+  say "done"
+  exit 0
 fi
 # Proxy and resolver settings of this machine, if it has any.
 for file in /etc/apt/apt.conf.d/*proxy* /etc/resolv.conf; do

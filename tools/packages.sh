@@ -13,29 +13,17 @@ root=$(cd "$(dirname "${BASH_SOURCE[0]}")/.." && pwd)
 umask 022
 folder=$(realpath -m -- "${1:-$root/build/packages}")
 
-if [ -z "${SOURCE_DATE_EPOCH:-}" ]; then
-  SOURCE_DATE_EPOCH=$(git -C "$root" log -1 --format=%ct) || die "not a git checkout: set SOURCE_DATE_EPOCH"
-fi
-export SOURCE_DATE_EPOCH
-version=$(sed -n 's/^project(orrery VERSION \([0-9.]*\).*/\1/p' "$root/CMakeLists.txt")
-if [ "$(git -C "$root" describe --tags --exact-match 2>/dev/null)" != "v$version" ]; then
-  version+="~git$(date -u -d "@$SOURCE_DATE_EPOCH" +%Y%m%d.%H%M%S)"
-fi
-
+use_commit_date
 install_missing "$root/tools/packages-build.txt" "$root/tools/packages-debian.txt"
 # The build of test.sh serves as well.
 if ! grep -qs '^ORRERY_PYTHON:BOOL=ON' "$root/build/CMakeCache.txt"; then
   configure -DBUILD_TESTING=OFF -DORRERY_PYTHON=ON
 fi
-set_stubs() {
-  cmake "-DORRERY_STUBS=$1" -DORRERY_ISAS=all "$root/build" >"$root/build/configure.log" 2>&1 ||
-    die "CMake configuration failed, see build/configure.log"
-}
-trap 'set_stubs ON' EXIT # for the next user of the build
-set_stubs OFF
+trap 'reconfigure -DORRERY_STUBS=ON' EXIT # for the next user of the build
+reconfigure -DORRERY_STUBS=OFF -DORRERY_ISAS=all
 build 10 all
 rm -rf "$folder"
-if ! cpack -G DEB --config "$root/build/CPackConfig.cmake" -D "CPACK_PACKAGE_VERSION=$version" -B "$folder" \
+if ! cpack -G DEB --config "$root/build/CPackConfig.cmake" -D "CPACK_PACKAGE_VERSION=$(release_version)" -B "$folder" \
   >"$root/build/packages.log" 2>&1; then
   show_log "$root/build/packages.log"
   die "cpack failed"

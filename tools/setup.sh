@@ -71,6 +71,32 @@ configure() {
   printf '%s' "$*" >"$stamp"
 }
 
+# reconfigure OPTION...: changes options of build/, which is configured.
+reconfigure() {
+  if ! cmake "$@" "$root/build" >"$root/build/configure.log" 2>&1; then
+    show_log "$root/build/configure.log"
+    die "CMake configuration failed"
+  fi
+}
+
+# use_commit_date: sets SOURCE_DATE_EPOCH, the date of all that is built, to that of the commit.
+use_commit_date() {
+  if [ -z "${SOURCE_DATE_EPOCH:-}" ]; then
+    SOURCE_DATE_EPOCH=$(git -C "$root" log -1 --format=%ct) || die "not a git checkout: set SOURCE_DATE_EPOCH"
+  fi
+  export SOURCE_DATE_EPOCH
+}
+
+# release_version: prints the version; for a commit that is not tagged with it (v1.2.3), one that precedes the release.
+release_version() {
+  local version
+  version=$(sed -n 's/^project(orrery VERSION \([0-9.]*\).*/\1/p' "$root/CMakeLists.txt")
+  if [ "$(git -C "$root" describe --tags --exact-match 2>/dev/null)" != "v$version" ]; then
+    version+="~git$(date -u -d "@$SOURCE_DATE_EPOCH" +%Y%m%d.%H%M%S)"
+  fi
+  printf '%s\n' "$version"
+}
+
 # show_progress LOG: writes Ninja's lines to LOG, and shows the percentage and the elapsed time: on a terminal in one line,
 # elsewhere each quarter. A build that takes less than three seconds shows nothing.
 show_progress() {

@@ -10,7 +10,7 @@ s/^\.\/run\.sh /orrery /
 
 # Builds.
 s/^(time )?(cmake|ctest|ninja) .*/not run: builds/
-s/^tools\/(packages|reproducible|minimal-root|mutants|steady|documents|site)\.sh.*/not run: builds, or another check/
+s/^tools\/(packages|portable|wheel|reproducible|minimal-root|mutants|steady|documents|site)\.sh.*/not run: builds, or another check/
 s/^build\/spiral .*/not run: the test consumer runs it/
 s/^build-ci\/.*/not run: needs a build of benchmarks/
 
