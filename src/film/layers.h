@@ -109,7 +109,7 @@ struct LayerType {
   LayerSource source;
 };
 
-/// All layers. The scene's schema lists the same names; layer_film.cpp computes the values.
+/// All layers. The scene's schema lists the same names; layer_planes.cpp computes the values.
 inline constexpr LayerType kLayerTypes[] = {
     {"Z", &LayerRequest::z, LayerSource::kNearest},
     {"depth", &LayerRequest::depth, LayerSource::kNearest},

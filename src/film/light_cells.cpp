@@ -3,8 +3,8 @@
 
 #include <algorithm>
 
-#include "film/layer_pixel.h"
 #include "film/layers.h"
+#include "film/partial.h"
 #include "math/scalar.h"
 
 namespace orrery::film {
@@ -17,18 +17,19 @@ Int128 magnitude(Int128 v) { return v < 0 ? -v : v; }
 
 }  // namespace
 
-LightCells::LightCells(const LayerRequest& request, const LayerPixel& pixel, const kernel::PixelSum& beauty)
+LightCells::LightCells(const LayerRequest& request, std::span<const LayerSums::Channels> light,
+                       const kernel::PixelSum& beauty)
     : groups_(request.light_cells() / kLobes), values_(request.light_cells() * 3) {
-  for (std::size_t c = 0; c < 3; ++c) divide(request, pixel, beauty, c);
+  for (std::size_t c = 0; c < 3; ++c) divide(request, light, beauty, c);
 }
 
 /// All groups of one lobe precede those of the next: the lobes then have the same bits with and without groups.
-void LightCells::divide(const LayerRequest& request, const LayerPixel& pixel, const kernel::PixelSum& beauty,
-                        std::size_t c) {
+void LightCells::divide(const LayerRequest& request, std::span<const LayerSums::Channels> light,
+                        const kernel::PixelSum& beauty, std::size_t c) {
   const auto whole = math::in_single_precision(mean(beauty.rgb[c], beauty.weight));
   if (whole == 0) return;
   Int128 total = 0, all = 0;
-  for (const auto& sum : pixel.light) {
+  for (const LayerSums::Channels& sum : light) {
     total += sum[c];
     all += magnitude(sum[c]);
   }
@@ -47,9 +48,9 @@ void LightCells::divide(const LayerRequest& request, const LayerPixel& pixel, co
   for (std::size_t lobe = 0; lobe < kLobes; ++lobe) {
     for (std::size_t group = 0; group < groups_; ++group) {
       const std::size_t i = group * kLobes + lobe;
-      if (i >= pixel.light.size() || pixel.light[i][c] == 0) continue;
-      sum += pixel.light[i][c];
-      seen += magnitude(pixel.light[i][c]);
+      if (light[i][c] == 0) continue;
+      sum += light[i][c];
+      seen += magnitude(light[i][c]);
       const double share = static_cast<double>(seen) / static_cast<double>(all);
       // `excess` is rounded; no cell must become negative if no event is.
       cell(group, lobe, c) =

@@ -4,14 +4,14 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
+#include <span>
 #include <vector>
 
-#include "kernel/forward.h"
+#include "film/layer_sums.h"
 #include "kernel/path_record.h"
 
 namespace orrery::film {
 
-struct LayerPixel;
 struct LayerRequest;
 
 /// Divides a number into parts that add up to it bit for bit in single precision, in any order: each is a multiple of
@@ -52,8 +52,9 @@ class LightCells {
  public:
   /// Divides the mean radiance of a pixel.
   ///
+  /// `light`    the sums of the pixel's LayerRequest::light_cells()
   /// Domain     `beauty` is the sum over the same paths; rounding may make it differ from the sum of the light events
-  LightCells(const LayerRequest& request, const LayerPixel& pixel, const kernel::PixelSum& beauty);
+  LightCells(const LayerRequest& request, std::span<const LayerSums::Channels> light, const kernel::PixelSum& beauty);
 
   float of(std::size_t group, kernel::Lobe lobe, std::size_t channel) const;  ///< a lobe of a group
   float of_lobe(kernel::Lobe lobe, std::size_t channel) const;                ///< a lobe, all groups
@@ -63,7 +64,7 @@ class LightCells {
   double& cell(std::size_t group, std::size_t lobe, std::size_t channel) {
     return values_[(group * kernel::kLobes + lobe) * 3 + channel];
   }
-  void divide(const LayerRequest& request, const LayerPixel& pixel, const kernel::PixelSum& beauty,
+  void divide(const LayerRequest& request, std::span<const LayerSums::Channels> light, const kernel::PixelSum& beauty,
               std::size_t channel);
 
   std::size_t groups_;

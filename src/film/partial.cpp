@@ -2,11 +2,24 @@
 #include "film/partial.h"
 
 #include <algorithm>
+#include <numeric>
 
-#include "film/layers.h"
 #include "math/pixels.h"
 
 namespace orrery::film {
+namespace {
+
+/// The size of each array, bytes.
+std::vector<std::size_t> sizes_of(const Partial& p) {
+  std::vector<std::size_t> out;
+  const auto add = [&](const auto&... arrays) { (out.push_back(arrays.size() * sizeof(arrays[0])), ...); };
+  const LayerSums& l = p.layers;
+  add(p.light[0], p.light[1], p.guides[0], p.guides[1], p.largest, p.counts, p.goals);
+  add(l.light, l.squares, l.normal, l.albedo, l.covered, l.hit, l.depth, l.z, l.position, l.shares);
+  return out;
+}
+
+}  // namespace
 
 RenderWork& RenderWork::operator+=(const RenderWork& other) {
   paths += other.paths;
@@ -16,35 +29,49 @@ RenderWork& RenderWork::operator+=(const RenderWork& other) {
   return *this;
 }
 
-void Partial::add_second_half() {
-  second = Film(film.width(), film.height());
-  largest.resize(pixel_count());
+Partial::Partial(int width_px, int height_px, const LayerRequest& request, bool is_adaptive)
+    : width(width_px), height(height_px), counts(math::pixel_count(width_px, height_px)) {
+  light[0].resize(pixel_count());
+  if (is_adaptive || request.guides()) light[1].resize(pixel_count());
+  if (request.guides())
+    for (auto& half : guides) half.resize(pixel_count());
+  if (is_adaptive) largest.resize(pixel_count());
+  layers = LayerSums(request, pixel_count());
+}
+
+bool Partial::has_arrays_of(const Partial& other) const {
+  const std::vector<std::size_t> own = sizes_of(*this), wanted = sizes_of(other);
+  return std::equal(own.begin(), own.end(), wanted.begin(),
+                    [](std::size_t a, std::size_t b) { return b == 0 || a == b; });
+}
+
+std::size_t Partial::bytes() const {
+  const std::vector<std::size_t> sizes = sizes_of(*this);
+  return std::accumulate(sizes.begin(), sizes.end(), std::size_t{0});
 }
 
 void Partial::add(const Partial& other) {
-  film.add(other.film);
-  layers.resize(std::max(layers.size(), other.layers.size()));
-  halves.resize(std::max(halves.size(), other.halves.size()));
-  for (std::size_t i = 0; i < other.pixel_count(); ++i) {
-    counts[i] += other.counts[i];
-    if (!other.layers.empty()) layers[i].add(other.layers[i]);
-    if (!other.halves.empty())
-      for (std::size_t half = 0; half < 2; ++half) halves[i][half] += other.halves[i][half];
+  const auto add_all = [](auto& to, const auto& from) {
+    for (std::size_t i = 0; i < to.size(); ++i) to[i] += from[i];
+  };
+  for (std::size_t half = 0; half < 2; ++half) {
+    add_all(light[half], other.light[half]);
+    add_all(guides[half], other.guides[half]);
   }
+  add_all(counts, other.counts);
+  layers.add(other.layers);
   work += other.work;
 }
 
 bool Partial::has_known_spheres(std::size_t count) const {
-  const auto is_known = [count](std::uint32_t s) { return s == kernel::kNone || s < count; };
-  return std::all_of(layers.begin(), layers.end(), [&](const LayerPixel& p) {
-    return is_known(p.sphere) &&
-           std::all_of(p.shares.begin(), p.shares.end(), [&](const SphereCoverage& s) { return is_known(s.sphere); });
-  });
+  const auto is_known = [count](const SphereCoverage& s) { return s.sphere == kernel::kNone || s.sphere < count; };
+  return std::all_of(layers.hit.begin(), layers.hit.end(), [count](std::uint32_t hit) { return hit <= count; }) &&
+         std::all_of(layers.shares.begin(), layers.shares.end(),
+                     [&](const auto& shares) { return std::all_of(shares.begin(), shares.end(), is_known); });
 }
 
-void Partial::mean(int x, int y, float* rgb) const {
-  const std::size_t i = math::pixel_index(x, y, film.width());
-  const kernel::PixelSum total = sum(i);
+void Partial::mean(std::size_t pixel, float* rgb) const {
+  const kernel::PixelSum total = sum(pixel);
   for (int c = 0; c < 3; ++c) rgb[c] = static_cast<float>(film::mean(total.rgb[c], total.weight));
 }
 

@@ -1,13 +1,15 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <array>
 #include <cstddef>
 #include <cstdint>
 #include <span>
 #include <vector>
 
-#include "film/film.h"
-#include "film/layer_pixel.h"
+#include "base/zero_pages.h"
+#include "film/layer_sums.h"
+#include "film/layers.h"
 #include "kernel/pixel_sum.h"
 
 namespace orrery::film {
@@ -21,22 +23,27 @@ struct RenderWork {
   RenderWork& operator+=(const RenderWork& other);
 };
 
-/// An incomplete render: the content of a checkpoint or shard.
+/// An incomplete render: the content of a checkpoint or shard. It has the arrays that a render needs, of one element
+/// for each pixel, row by row; others are empty.
 ///
 /// All sums are integers, so that the result does not depend on how a render is split or in which order shards are
 /// merged.
 struct Partial {
-  Partial() : Partial(0, 0) {}
-  Partial(int width_px, int height_px) : film(width_px, height_px), counts(film.pixel_count()) {}
+  /// A render without samples.
+  Partial(int width_px, int height_px, const LayerRequest& request = {}, bool is_adaptive = false);
 
-  std::size_t pixel_count() const { return film.pixel_count(); }
+  std::size_t pixel_count() const { return counts.size(); }
   /// The sums are those of adaptive sampling.
-  bool is_adaptive() const { return second.pixel_count() > 0; }
+  bool is_adaptive() const { return !largest.empty(); }
+  /// The samples are divided into two halves: for adaptive sampling, and for the denoiser.
+  bool has_halves() const { return !light[1].empty(); }
 
-  /// Prepares for adaptive sampling.
-  void add_second_half();
+  /// Returns whether this has the arrays of another one.
+  bool has_arrays_of(const Partial& other) const;
+  /// Size of all arrays.
+  std::size_t bytes() const;
 
-  /// Adds the samples of another shard of the same size.
+  /// Adds the samples of another shard with the same arrays.
   ///
   /// Domain     without adaptive sampling
   void add(const Partial& other);
@@ -44,27 +51,34 @@ struct Partial {
   /// Returns whether all sphere ids in the layers are below `count`. A damaged file may contain others.
   bool has_known_spheres(std::size_t count) const;
 
-  /// The sum of a pixel's samples, of both halves if there are two.
+  /// The sum of a pixel's samples.
   kernel::PixelSum sum(std::size_t pixel) const {
-    kernel::PixelSum out = film.sums()[pixel];
-    if (is_adaptive()) out += second.sums()[pixel];
+    kernel::PixelSum out = light[0][pixel];
+    if (has_halves()) out += light[1][pixel];
     return out;
   }
+  /// Number of a pixel's paths, including those with bad samples.
+  std::uint64_t paths(std::size_t pixel) const { return std::uint64_t{counts[pixel]} * (is_adaptive() ? 2 : 1); }
 
   /// Writes the mean of a pixel's samples, R, G and B; 0 without samples. These are the bits of the finished image.
-  void mean(int x, int y, float* rgb) const;
+  void mean(std::size_t pixel, float* rgb) const;
 
-  Film film;          ///< sample sums; those of the first half in adaptive sampling
-  Film second{0, 0};  ///< sample sums of the second half in adaptive sampling; else without pixels
-  /// Largest sample of each pixel in both halves, sum of the channels; else empty.
-  std::vector<float> largest;
-  std::vector<std::uint32_t> counts;  ///< samples per pixel, row by row; with two halves, samples per half
-  /// Target sample count of each pixel in the current pass; empty if it is the same for all.
-  std::vector<std::uint32_t> goals;
-  std::vector<LayerPixel> layers;  ///< empty unless LayerRequest::records()
-  std::vector<Halves> halves;      ///< empty unless LayerRequest::guides()
+  int width, height;  ///< px
+  /// Samples of both halves; without halves, all are in the first.
+  std::array<base::ZeroVector<kernel::PixelSum>, 2> light;
+  std::array<base::ZeroVector<kernel::GuideSum>, 2> guides;  ///< of both halves; only with LayerRequest::guides()
+  base::ZeroVector<float> largest;         ///< largest sample, sum of the channels; only for adaptive sampling
+  base::ZeroVector<std::uint32_t> counts;  ///< samples; in adaptive sampling, samples of each half
+  /// Target sample count in the current pass; empty if it is the same for all.
+  base::ZeroVector<std::uint32_t> goals;
+  LayerSums layers;
   RenderWork work;
 };
+
+/// The mean of fixed-point values from their sum and number; 0 without values.
+inline double mean(kernel::Int128 sum, std::int64_t count) {
+  return count > 0 ? kernel::from_fixed_point(sum) / static_cast<double>(count) : 0.0;
+}
 
 /// Serializes a partial render to 32-bit words: a header, then a plane over all pixels for each word of each per-pixel
 /// number, or a single value if it is the same for all pixels.

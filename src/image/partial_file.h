@@ -4,6 +4,7 @@
 #include <filesystem>
 #include <functional>
 
+#include "film/forward.h"
 #include "film/partial.h"
 #include "image/header.h"
 

@@ -16,7 +16,7 @@
 #include "compile/compiled_scene.h"
 #include "compile/environment.h"
 #include "compile/light_tree.h"
-#include "film/layer_film.h"
+#include "film/layer_planes.h"
 #include "job/layers.h"
 #include "job/prepared_scene.h"
 #include "job/report_text.h"

@@ -17,7 +17,7 @@
 #include "base/text.h"
 #include "compile/compiled_scene.h"
 #include "display/settings.h"
-#include "film/layer_film.h"
+#include "film/layer_planes.h"
 #include "film/partial.h"
 #include "image/read.h"
 #include "job/job.h"
@@ -172,7 +172,7 @@ std::string difference(const image::Provenance& a, const image::Provenance& b, c
 bool is_finished(const image::PartialFile& shard) {
   const SampleRange range = sample_range(shard.provenance);
   const std::vector<bool> owned =
-      render::pixels_of(pixel_shard(shard.provenance), shard.partial.film.width(), shard.partial.film.height());
+      render::pixels_of(pixel_shard(shard.provenance), shard.partial.width, shard.partial.height);
   for (std::size_t i = 0; i < owned.size(); ++i)
     if (owned[i] && shard.partial.counts[i] != range.end - range.begin) return false;
   return true;

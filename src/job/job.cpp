@@ -15,7 +15,7 @@
 #include "compile/compiled_scene.h"
 #include "denoise/denoise.h"
 #include "display/settings.h"
-#include "film/layer_film.h"
+#include "film/layer_planes.h"
 #include "film/partial.h"
 #include "image/format.h"
 #include "image/library.h"
@@ -231,8 +231,8 @@ class Run {
 
   /// True if a render can continue from these sums; they may differ from their header if the file is damaged.
   bool is_of_this_render(const film::Partial& from) const {
-    return from.is_adaptive() == settings_.sampling.is_adaptive() &&
-           from.layers.empty() != settings_.layers.records() && from.halves.empty() != settings_.layers.guides() &&
+    const film::Partial fresh(from.width, from.height, settings_.layers, settings_.sampling.is_adaptive());
+    return from.is_adaptive() == fresh.is_adaptive() && from.has_arrays_of(fresh) &&
            from.has_known_spheres(compiled().object_materials.size());
   }
 

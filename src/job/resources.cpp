@@ -16,13 +16,12 @@
 #include "base/text.h"
 #include "compile/compiled_scene.h"
 #include "compile/environment.h"
-#include "film/layer_film.h"
-#include "film/layer_pixel.h"
+#include "film/layer_planes.h"
 #include "film/layers.h"
+#include "film/partial.h"
 #include "image/format.h"
 #include "job/job.h"
 #include "kernel/isa.h"
-#include "kernel/pixel_sum.h"
 #include "math/pixels.h"
 #include "render/render.h"
 #include "scene/scene.h"
@@ -42,9 +41,6 @@ using base::bytes_text;
 /// clouds of one and three million spheres: peak_memory_bytes of --stats with embree minus that with list.
 constexpr std::uint64_t kAcceleratorBytesPerSphere = 130;
 
-/// A pixel's sum and the four floats of the finished image.
-constexpr std::uint64_t kFilmBytesPerPixel = sizeof(kernel::PixelSum) + 4 * sizeof(float);
-
 /// A layer's value and its copy for the encoder.
 constexpr std::uint64_t kBytesPerLayerPlane = 2 * sizeof(float);
 
@@ -63,14 +59,16 @@ double expected_shares(const compile::CompiledScene& compiled, const film::Layer
   return std::min({things + (layers.deep ? 1 : 0), static_cast<double>(compiled.samples), seen});
 }
 
-/// A pixel's layer sums, and those of its light, including heap overhead.
-std::uint64_t bytes_of_sums(const compile::CompiledScene& compiled, const film::LayerRequest& layers) {
-  constexpr std::uint64_t kHeapBytes = 16, kBytesPerCell = sizeof(film::LayerPixel::light[0]);
-  const std::uint64_t light_cells = layers.light_cells();
+/// Bytes of a pixel's sums while it is rendered, or of its sums and values when the image is finished.
+std::uint64_t film_bytes_per_pixel(const compile::CompiledScene& compiled, const film::LayerRequest& layers,
+                                   bool is_adaptive) {
+  constexpr std::uint64_t kHeapBytes = 16;
   const double shares = expected_shares(compiled, layers);
-  return (layers.records() ? sizeof(film::LayerPixel) : 0) + (layers.guides() ? sizeof(film::Halves) : 0) +
-         (light_cells > 0 ? light_cells * kBytesPerCell + kHeapBytes : 0) +
-         (shares > 0 ? static_cast<std::uint64_t>(shares * kBytesPerShare) + kHeapBytes : 0);
+  const std::uint64_t sums = film::Partial(1, 1, layers, is_adaptive).bytes() +
+                             (shares > 0 ? static_cast<std::uint64_t>(shares * kBytesPerShare) + kHeapBytes : 0);
+  // The target count; with adaptive sampling, eight numbers for the noise estimate.
+  const std::uint64_t rendered = sums + sizeof(std::uint32_t) + (is_adaptive ? 8 * sizeof(float) : 0);
+  return std::max(rendered, sums + 4 * sizeof(float) + film::planes_of(layers).size() * kBytesPerLayerPlane);
 }
 
 /// Throws an error that begins with `text` if there is not enough memory.
@@ -136,13 +134,8 @@ void choose_isa() {
 
 MemoryEstimate estimate_memory(const compile::CompiledScene& compiled, const film::LayerRequest& layers,
                                bool is_adaptive, bool has_accelerator) {
-  // Image; sample count and target count; with layers, the sums of their pixel; with adaptive sampling, a second sum
-  // and nine numbers for the noise estimate.
-  const std::uint64_t bytes_per_pixel = kFilmBytesPerPixel + film::planes_of(layers).size() * kBytesPerLayerPlane +
-                                        2 * sizeof(std::uint32_t) + bytes_of_sums(compiled, layers) +
-                                        (is_adaptive ? sizeof(kernel::PixelSum) + 9 * sizeof(float) : 0);
   MemoryEstimate m;
-  m.film = math::pixel_count(compiled.width, compiled.height) * bytes_per_pixel;
+  m.film = math::pixel_count(compiled.width, compiled.height) * film_bytes_per_pixel(compiled, layers, is_adaptive);
   m.spheres = compiled.spheres.bytes() + compiled.rods.size() * sizeof(kernel::Rod) +
               compiled.bonds.size() * sizeof(kernel::Bond) + compiled.object_materials.bytes() +
               compiled.opacity.size() * sizeof(compiled.opacity[0]) +

@@ -6,7 +6,9 @@
 #include <filesystem>
 #include <functional>
 #include <map>
+#include <optional>
 #include <set>
+#include <span>
 #include <sstream>
 #include <string>
 #include <utility>
@@ -23,6 +25,7 @@
 #include "image/partial_file.h"
 #include "job/checkpoint.h"
 #include "job/job.h"
+#include "math/pixels.h"
 #include "render/render.h"
 #include "render/result.h"
 #include "render/settings.h"
@@ -58,7 +61,7 @@ class Coverage {
   /// Domain     called in ascending order of `begin`
   /// Result     the error; empty: none
   std::string add(const std::vector<ShardFile>& shards, std::size_t shard, std::uint32_t begin,
-                  const std::vector<std::uint32_t>& counts) {
+                  std::span<const std::uint32_t> counts) {
     for (std::size_t i = 0; i < to_.size(); ++i) {
       if (counts[i] == 0) continue;
       if (begin < to_[i])
@@ -120,14 +123,14 @@ film::Partial sum_of_shards(const Job& job, const compile::CompiledScene& compil
   std::stable_sort(shards.begin(), shards.end(), [](const ShardFile& a, const ShardFile& b) {
     return sample_range(a.provenance).begin < sample_range(b.provenance).begin;
   });
-  film::Partial sum(compiled.width, compiled.height);
-  Coverage coverage(sum.pixel_count(), compiled.width);
+  std::optional<film::Partial> sum;
+  Coverage coverage(math::pixel_count(compiled.width, compiled.height), compiled.width);
   std::vector<base::Diagnostic> diagnostics, left_out;
   std::set<std::string> hosts;
   const base::StopPoint stop;
   for (std::size_t i = 0; i < shards.size(); ++i) {
     stop.check();
-    image::PartialFile file;
+    std::optional<image::PartialFile> file;
     try {
       file = image::read_partial(shards[i].file, compiled.width, compiled.height);
     } catch (const base::Error& error) {
@@ -135,7 +138,7 @@ film::Partial sum_of_shards(const Job& job, const compile::CompiledScene& compil
       (allow_missing ? left_out : diagnostics).push_back(error_in(shards[i].file, error.what()));
       continue;
     }
-    const film::Partial& shard = file.partial;
+    film::Partial& shard = file->partial;
     const SampleRange range = sample_range(shards[i].provenance);
     const auto wrong = [&](std::string text, std::string remedy = {}) {
       diagnostics.push_back(error_in(shards[i].file, std::move(text), std::move(remedy)));
@@ -145,14 +148,19 @@ film::Partial sum_of_shards(const Job& job, const compile::CompiledScene& compil
       wrong("holds the sums of adaptive sampling, contrary to its header");
     } else if (!shard.has_known_spheres(compiled.object_materials.size()) || range.end > samples) {
       wrong("has spheres or samples that its scene does not have");
+    } else if (sum && !(shard.has_arrays_of(*sum) && sum->has_arrays_of(shard))) {
+      wrong("holds the sums of other layers than its header declares");
     } else if (most > range.end - range.begin) {
       wrong("has more samples than its header declares");
-    } else if (!allow_missing && !is_finished(file)) {
+    } else if (!allow_missing && !is_finished(*file)) {
       wrong("is unfinished: its render was stopped", "finish it with --resume, or add --allow-missing");
     } else if (const std::string overlap = coverage.add(shards, i, range.begin, shard.counts); !overlap.empty()) {
       wrong(overlap, "remove one of them");
     } else {
-      sum.add(shard);
+      if (sum)
+        sum->add(shard);
+      else
+        sum = std::move(shard);
       hosts.insert(value_of(shards[i].provenance, "host"));
     }
   }
@@ -167,7 +175,7 @@ film::Partial sum_of_shards(const Job& job, const compile::CompiledScene& compil
   }
   if (job.hooks.on_warning)
     for (const base::Diagnostic& diagnostic : left_out) job.hooks.on_warning(as_left_out(diagnostic));
-  return sum;
+  return std::move(*sum);
 }
 
 /// Requires that a shard has these properties of the scene.
@@ -179,20 +187,18 @@ void require_same(const Job& job, const image::Provenance& provenance, const std
                                   first.file.string(), wrong, job.scene.file.string()));
 }
 
-/// Requires that the sums have the layers of the image, and removes others.
-void take_layers(const Job& job, const film::LayerRequest& layers, const image::Provenance& provenance,
-                 film::Partial& sum) {
+/// Requires that the sums have the layers of the image.
+void require_layers(const Job& job, const film::LayerRequest& layers, const image::Provenance& provenance,
+                    const film::Partial& sum) {
   const auto fail = [](const std::string& text) { throw base::Error(ErrorKind::kBadData, text); };
-  if (job.denoise && sum.halves.empty())
+  const bool has_guides = !sum.guides[0].empty();
+  if (job.denoise && !has_guides)
     fail("the shards have no halves to denoise from; render them with --denoise or --layers halves");
   if (job.outputs.has_exr()) {  // other formats do not hold the layers that the shards may have
-    if (!sum.halves.empty() && !layers.guides())
-      fail("the shards were rendered with --denoise; merge them with --denoise");
+    if (has_guides && !layers.guides()) fail("the shards were rendered with --denoise; merge them with --denoise");
     require_same(job, provenance, {"layers"});
   }
-  if (!layers.records()) sum.layers.clear();
-  if (!layers.guides()) sum.halves.clear();
-  if ((layers.records() && sum.layers.empty()) || (layers.guides() && sum.halves.empty()))
+  if (!sum.has_arrays_of(film::Partial(sum.width, sum.height, layers)))
     fail("the shards were rendered without the requested layers");
 }
 
@@ -254,8 +260,8 @@ void take_scene(const ShardFile& shard, Job& job) {
 render::Result merge_shards(const Job& job, const compile::CompiledScene& compiled, const render::Settings& settings,
                             const image::Provenance& provenance, JobReport& report) {
   require_same(job, provenance, {"version", "sceneHash"});
-  film::Partial sum = sum_of_shards(job, compiled, report);
-  take_layers(job, settings.layers, provenance, sum);
+  const film::Partial sum = sum_of_shards(job, compiled, report);
+  require_layers(job, settings.layers, provenance, sum);
   render::Result result = render::finished(compiled, settings.layers, sum, settings.threads);
   const auto [fewest, most] = std::minmax_element(sum.counts.begin(), sum.counts.end());
   result.statistics = {};

@@ -19,11 +19,11 @@ __extension__ using Int128 = __int128;
 /// not. A sum is less than 2^67: each of two halves has up to 2^31 samples of at most kLargestSample, which add up to
 /// 2^66.
 struct PixelSum {
-  /// Aligned to eight bytes, so that no pixel is padded.
-  typedef Int128 Sum __attribute__((aligned(8)));
+  /// Aligned to four bytes, so that no pixel is padded.
+  typedef Int128 Sum __attribute__((aligned(4)));
 
   Sum rgb[3] = {0, 0, 0};
-  std::int64_t weight = 0;  ///< number of valid samples
+  std::uint32_t weight = 0;  ///< number of valid samples
 
   PixelSum& operator+=(const PixelSum& other) noexcept {
     for (int c = 0; c < 3; ++c) rgb[c] += other.rgb[c];
@@ -53,12 +53,12 @@ inline Int128 to_fixed_point(double value) noexcept {
 /// Converts back to the nearest double: one rounding to 53 bits and an exact scaling.
 inline double from_fixed_point(Int128 sum) noexcept { return static_cast<double>(sum) * 0x1p-60; }
 
-static_assert(sizeof(PixelSum) == 56);
+static_assert(sizeof(PixelSum) == 52);
 
 /// Sums of a pixel's denoiser guides over its paths, in fixed point like PixelSum.
 struct GuideSum {
   /// Reciprocal distances of the first hits from the ray origins, 1 / scene units, in units of 2^-60; 0 for a miss.
-  Int128 inverse_depth = 0;
+  PixelSum::Sum inverse_depth = 0;
   std::int64_t weight = 0;  ///< number of paths, including those with bad samples
   /// The albedo of the first non-delta surface times the throughput before it, and the surface's unit normal facing the
   /// ray in world space, in units of kGuideUnit. A path that leaves the scene adds the background's radiance, clamped
@@ -75,6 +75,8 @@ struct GuideSum {
     return *this;
   }
 };
+
+static_assert(sizeof(GuideSum) == 72);
 
 /// Fixed-point unit: 32 bits hold the guides of a path, 64 bits the sums over 2^31 paths.
 inline constexpr double kGuideUnit = 0x1p-30;

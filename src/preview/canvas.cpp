@@ -27,7 +27,7 @@ std::size_t Canvas::at(int x, int y) const noexcept { return 3 * math::pixel_ind
 void Canvas::write(const film::Partial& state, const film::RenderedPixels& rendered) noexcept {
   for (const kernel::PixelPlace p : rendered.pixels) {
     float rgb[3];
-    state.mean(rendered.x + p.x, rendered.y + p.y, rgb);
+    state.mean(math::pixel_index(rendered.x + p.x, rendered.y + p.y, width_), rgb);
     std::atomic<float>* const pixel = &values_[at(rendered.x + p.x, rendered.y + p.y)];
     for (int c = 0; c < 3; ++c) pixel[c].store(rgb[c], std::memory_order_relaxed);
   }

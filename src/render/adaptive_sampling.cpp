@@ -58,8 +58,10 @@ class AdaptiveSampling {
     kernel::SceneView view = compiled.view();
     if (settings.layers.coverage) view.background_visible = false;
     pixels_.emitters = emitter_coverage(view, compiled.width, compiled.height);
-    for (int y = 0; y < compiled.height; ++y)
-      for (int x = 0; x < compiled.width; ++x) update(x, y);
+    const auto update_row = [&](std::size_t y, TileWorker&) {
+      for (int x = 0; x < compiled.width; ++x) update(x, static_cast<int>(y));
+    };
+    pool.run(static_cast<std::size_t>(compiled.height), update_row, [] { return false; });
   }
 
   bool run() {
@@ -145,7 +147,7 @@ class AdaptiveSampling {
   /// Renders all pixels up to their goals.
   bool run_iteration() {
     if (!passes_.run(kSide, [this](int x, int y) { update(x, y); })) return false;
-    state_.goals.clear();
+    state_.goals = {};
     // The last iteration counts most, since the pixels that continue are unlike the others. Its time includes choosing
     // them.
     const double seconds = progress_.seconds() - iteration_begin_;
@@ -160,9 +162,9 @@ class AdaptiveSampling {
 
   void update(int x, int y) {
     const std::size_t i = pixels_.at(x, y);
-    pixels_.set(i, state_.counts[i], *state_.film.at(x, y), *state_.second.at(x, y), state_.largest[i]);
+    pixels_.set(i, state_.counts[i], state_.light[0][i], state_.light[1][i], state_.largest[i]);
     // With a transparent background, pixels in which no path hits a sphere are black.
-    if (settings_.layers.coverage) pixels_.known_black[i] = state_.layers[i].covered == 0 ? 1 : 0;
+    if (settings_.layers.coverage) pixels_.known_black[i] = state_.layers.covered[i] == 0 ? 1 : 0;
   }
 
   const Settings& settings_;

@@ -7,7 +7,6 @@
 #include <vector>
 
 #include "compile/compiled_scene.h"
-#include "film/film.h"
 #include "film/partial.h"
 #include "kernel/render_tile.h"
 #include "math/pixels.h"
@@ -89,7 +88,7 @@ bool ProgressiveSampling::run(int side, const OnPixel& on_pixel) {
 }
 
 std::vector<kernel::PixelPlace> ProgressiveSampling::unfinished_squares(int side) const {
-  const int width = state_.film.width(), height = state_.film.height();
+  const int width = state_.width, height = state_.height;
   const auto lacks_samples = [&](int x, int y) {
     const std::size_t i = math::pixel_index(x, y, width);
     return state_.counts[i] < state_.goals[i];
@@ -113,13 +112,12 @@ void ProgressiveSampling::render_square(int x0, int y0, int side, const OnPixel&
     std::uint32_t have, want;
     std::vector<kernel::PixelPlace> pixels;
   };
-  const int width = state_.film.width();
+  const int width = state_.width;
   kernel::Tile tile;
   tile.x = x0;
   tile.y = y0;
   tile.width = std::min(side, width - x0);
-  tile.height = std::min(side, state_.film.height() - y0);
-  tile.row_stride = width;
+  tile.height = std::min(side, state_.height - y0);
   const auto at = [&](kernel::PixelPlace p) { return math::pixel_index(x0 + p.x, y0 + p.y, width); };
   std::vector<Group> groups;
   for (int y = 0; y < tile.height; ++y) {
@@ -137,16 +135,14 @@ void ProgressiveSampling::render_square(int x0, int y0, int side, const OnPixel&
     const bool are_all = count == tile.width * tile.height;
     tile.chosen = are_all ? nullptr : group.pixels.data();
     tile.chosen_count = count;
-    const auto render = [&](film::Film& film, std::uint32_t first) {
+    const auto render = [&](std::uint32_t first) {
       tile.sample_begin = first + group.have;
       tile.sample_end = first + group.want;
-      tile.sums = film.at(x0, y0);
-      tile.largest = state_.is_adaptive() ? &state_.largest[at({0, 0})] : nullptr;
       render_tile_(tile, worker, state_);
       progress_.add(tile.path_count());
     };
-    render(state_.film, state_.is_adaptive() ? 0 : settings_.sampling.sample_begin);
-    if (state_.is_adaptive()) render(state_.second, Sampler::kSecondHalf);
+    render(state_.is_adaptive() ? 0 : settings_.sampling.sample_begin);
+    if (state_.is_adaptive()) render(Sampler::kSecondHalf);
     for (const kernel::PixelPlace p : group.pixels) {
       state_.counts[at(p)] = group.want;
       if (on_pixel) on_pixel(x0 + p.x, y0 + p.y);
@@ -178,7 +174,7 @@ bool render_progressively(const compile::CompiledScene& compiled, const Settings
     state.goals.resize(state.pixel_count());
     for (std::size_t i = 0; i < state.goals.size(); ++i) state.goals[i] = owned[i] ? goal : 0;
     const bool completed = passes.run(side_for(goal - done));
-    state.goals.clear();  // not needed to resume
+    state.goals = {};  // not needed to resume
     if (!completed) return false;
     done = goal;
   }

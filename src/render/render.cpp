@@ -7,6 +7,7 @@
 #include <tbb/version.h>
 
 #include <algorithm>
+#include <iterator>
 #include <limits>
 #include <memory>
 #include <optional>
@@ -16,8 +17,7 @@
 #include "base/error.h"
 #include "base/stopwatch.h"
 #include "compile/compiled_scene.h"
-#include "film/film.h"
-#include "film/layer_film.h"
+#include "film/layer_planes.h"
 #include "film/layers.h"
 #include "film/partial.h"
 #include "kernel/isa.h"
@@ -45,19 +45,26 @@ void count_samples(const compile::CompiledScene& compiled, const Settings& setti
 
 /// Reports the pixels of an earlier run.
 void report_pixels(const Settings& settings, const film::Partial& state) {
-  const int width = state.film.width(), height = state.film.height();
+  const int width = state.width, height = state.height;
   std::vector<kernel::PixelPlace> row(static_cast<std::size_t>(width));
   for (int x = 0; x < width; ++x) row[static_cast<std::size_t>(x)] = {x, 0};
   for (int y = 0; y < height; ++y) settings.on_pixels(state, {0, y, width, 1, row});
 }
 
-/// The state of a render that has not begun.
-film::Partial fresh_state(const compile::CompiledScene& compiled, const Settings& settings) {
-  film::Partial state(compiled.width, compiled.height);
-  if (settings.sampling.is_adaptive()) state.add_second_half();
-  if (settings.layers.records()) state.layers.resize(state.pixel_count());
-  if (settings.layers.guides()) state.halves.resize(state.pixel_count());
-  return state;
+/// Computes the planes of an image on all threads of the current arena.
+void add_planes(std::vector<film::LayerPlanes> layers, std::size_t pixels, film::Picture& picture) {
+  for (film::LayerPlanes& layer : layers) {
+    const std::size_t count = layer.planes.size();
+    tbb::parallel_for(std::size_t{0}, count, [&](std::size_t k) { layer.planes[k].values.resize(pixels); });
+    tbb::parallel_for(tbb::blocked_range<std::size_t>(0, pixels, 1024), [&](const auto& range) {
+      std::vector<float> values(count);
+      for (std::size_t i = range.begin(); i < range.end(); ++i) {
+        layer.values_of(i, values.data());
+        for (std::size_t k = 0; k < count; ++k) layer.planes[k].values[i] = values[k];
+      }
+    });
+    std::move(layer.planes.begin(), layer.planes.end(), std::back_inserter(picture.planes));
+  }
 }
 
 }  // namespace
@@ -84,27 +91,24 @@ Result finished(const compile::CompiledScene& compiled, const film::LayerRequest
                 int threads) {
   Result result;
   result.completed = true;
-  result.picture = partial.film.picture(partial.is_adaptive() ? &partial.second : nullptr);
+  result.picture.width = partial.width;
+  result.picture.height = partial.height;
   result.picture.x = compiled.window_x;
   result.picture.y = compiled.window_y;
   result.picture.frame_width = compiled.frame_width;
   result.picture.frame_height = compiled.frame_height;
   result.picture.pixel_aspect = compiled.pixel_aspect;
-  if (!request.any()) return result;
+  result.picture.is_transparent = request.coverage;
   const kernel::SceneView view = compiled.view();
-  film::LayerFilm layers(request, view, compiled.width, compiled.height);
-  const film::LayerPixel no_layers;
-  const film::Halves no_halves;
-  const auto set_pixels = [&](const tbb::blocked_range<std::size_t>& range) {
-    for (std::size_t i = range.begin(); i < range.end(); ++i)
-      layers.set(i, partial.layers.empty() ? no_layers : partial.layers[i],
-                 partial.halves.empty() ? no_halves : partial.halves[i], partial.sum(i));
-  };
+  const std::size_t pixels = partial.pixel_count();
   TilePool(threads > 0 ? threads : available_threads()).execute([&] {
-    tbb::parallel_for(tbb::blocked_range<std::size_t>(0, partial.pixel_count(), 1024), set_pixels);
+    add_planes(film::image_planes(request, view, partial), pixels, result.picture);
+    if (!request.deep) return;
+    result.deep = {partial.width, partial.height, std::vector<std::vector<film::DeepSample>>(pixels)};
+    tbb::parallel_for(std::size_t{0}, pixels, [&](std::size_t i) {
+      result.deep.pixels[i] = film::deep_samples(partial, i, !request.coverage);
+    });
   });
-  layers.move_to(result.picture);
-  result.deep = layers.take_deep();
   return result;
 }
 
@@ -116,7 +120,9 @@ Result render(const compile::CompiledScene& compiled, const accel::Accel& accel,
   statistics.traversal = accel.traversal_name(settings.traversal);
 
   if (from && settings.on_pixels) report_pixels(settings, *from);
-  film::Partial state = from ? std::move(*from) : fresh_state(compiled, settings);
+  film::Partial state =
+      from ? std::move(*from)
+           : film::Partial(compiled.width, compiled.height, settings.layers, settings.sampling.is_adaptive());
   const std::vector<bool> owned = pixels_of(settings.sampling.shard, compiled.width, compiled.height);
   const auto pixels = static_cast<std::uint64_t>(std::count(owned.begin(), owned.end(), true));
   ProgressReporter progress(settings, samples_of(compiled, settings) * pixels, state.work);

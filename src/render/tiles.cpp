@@ -13,8 +13,6 @@
 #include <cfenv>
 
 #include "compile/compiled_scene.h"
-#include "film/layer_pixel.h"
-#include "film/layers.h"
 #include "film/partial.h"
 #include "math/pixels.h"
 #include "render/settings.h"
@@ -43,7 +41,7 @@ class DefaultRounding {
 
 /// Index of a tile's pixel within the image.
 std::size_t index_of(const film::Partial& image, const kernel::Tile& tile, kernel::PixelPlace at) {
-  return math::pixel_index(tile.x + at.x, tile.y + at.y, image.film.width());
+  return math::pixel_index(tile.x + at.x, tile.y + at.y, image.width);
 }
 
 }  // namespace
@@ -125,33 +123,33 @@ void TileRenderer::operator()(const kernel::Tile& tile, TileWorker& worker, film
   const auto pixels = static_cast<std::uint32_t>(tile.width) * static_cast<std::uint32_t>(tile.height);
   const std::uint32_t most = request_.records() ? std::max(1u, kMaxRecords / pixels) : ~0u;
   const std::uint32_t middle =
-      request_.guides() ? std::clamp(second_half_, tile.sample_begin, tile.sample_end) : tile.sample_end;
+      image.has_halves() ? std::clamp(second_half_, tile.sample_begin, tile.sample_end) : tile.sample_end;
   kernel::Tile part = tile;
   for (std::uint32_t begin = tile.sample_begin; begin < tile.sample_end; begin = part.sample_end) {
     part.sample_begin = begin;
     part.sample_end = begin + std::min(most, (begin < middle ? middle : tile.sample_end) - begin);
-    attach_buffers(part, worker);
+    attach_buffers(part, worker, image.is_adaptive());
     const kernel::TileCounts counts = render_(view_, tracer_, part, *worker.stream);
     worker.counts.rays += counts.rays;
     worker.counts.bad_samples += counts.bad_samples;
     worker.counts.target = counts.target;
+    add_sums(part, image);
     if (request_.records()) add_records(part, worker, image);
-    if (request_.guides()) add_half(tile, part, worker, image);
   }
 }
 
-void TileRenderer::attach_buffers(kernel::Tile& tile, TileWorker& worker) const {
+void TileRenderer::attach_buffers(kernel::Tile& tile, TileWorker& worker, bool is_adaptive) const {
   const std::size_t pixels = math::pixel_count(tile.width, tile.height);
+  tile.row_stride = tile.width;
+  worker.light.assign(pixels, {});
+  tile.sums = worker.light.data();
+  if (is_adaptive) {
+    worker.largest.assign(pixels, 0);
+    tile.largest = worker.largest.data();
+  }
   if (request_.guides()) {
-    worker.light.assign(pixels, {});
     worker.guides.assign(pixels, {});
-    tile.sums = worker.light.data();
-    if (tile.largest != nullptr) {
-      worker.largest.assign(pixels, 0);
-      tile.largest = worker.largest.data();
-    }
     tile.guides = worker.guides.data();
-    tile.row_stride = tile.width;
   }
   if (!request_.records()) return;
   worker.records.resize(pixels * (tile.sample_end - tile.sample_begin));
@@ -163,16 +161,14 @@ void TileRenderer::attach_buffers(kernel::Tile& tile, TileWorker& worker) const 
   tile.events = &worker.events;
 }
 
-void TileRenderer::add_half(const kernel::Tile& tile, const kernel::Tile& part, const TileWorker& worker,
-                            film::Partial& image) const {
-  const std::size_t half = part.sample_begin < second_half_ ? 0 : 1;
+void TileRenderer::add_sums(const kernel::Tile& tile, film::Partial& image) const {
+  const std::size_t half = image.has_halves() && tile.sample_begin >= second_half_ ? 1 : 0;
   for (int i = 0; i < tile.pixel_count(); ++i) {
     const kernel::PixelPlace at = tile.pixel(i);
-    const auto within = static_cast<std::size_t>(at.y * tile.width + at.x);
-    const auto index = at.y * tile.row_stride + at.x;
-    tile.sums[index] += worker.light[within];
-    if (tile.largest != nullptr) tile.largest[index] = std::max(tile.largest[index], worker.largest[within]);
-    image.halves[index_of(image, tile, at)][half] += {worker.light[within], worker.guides[within]};
+    const std::size_t within = math::pixel_index(at.x, at.y, tile.width), pixel = index_of(image, tile, at);
+    image.light[half][pixel] += tile.sums[within];
+    if (tile.guides != nullptr) image.guides[half][pixel] += tile.guides[within];
+    if (tile.largest != nullptr) image.largest[pixel] = std::max(image.largest[pixel], tile.largest[within]);
   }
 }
 
@@ -180,16 +176,15 @@ void TileRenderer::add_records(const kernel::Tile& tile, const TileWorker& worke
   const std::uint32_t samples = tile.sample_end - tile.sample_begin;
   for (int i = 0; request_.path_records() && i < tile.pixel_count(); ++i) {
     const kernel::PixelPlace at = tile.pixel(i);
-    const auto within = static_cast<std::size_t>(at.y * tile.width + at.x);
-    film::LayerPixel& pixel = image.layers[index_of(image, tile, at)];
-    const kernel::PathRecord* record = tile.records + within * samples;
-    for (std::uint32_t s = tile.sample_begin; s < tile.sample_end; ++s) pixel.add(request_, view_, *record++);
+    const kernel::PathRecord* const records = tile.records + math::pixel_index(at.x, at.y, tile.width) * samples;
+    for (std::uint32_t s = 0; s < samples; ++s)
+      image.layers.add(request_, view_, index_of(image, tile, at), records[s]);
   }
   if (tile.events == nullptr) return;
   for (const kernel::LightEvent* event = worker.events.begin(); event != worker.events.next; ++event) {
     const auto within = static_cast<int>(event->path / samples);
-    film::LayerPixel& pixel = image.layers[index_of(image, tile, {within % tile.width, within / tile.width})];
-    pixel.add(request_, tile.records[event->path], *event);
+    image.layers.add(request_, index_of(image, tile, {within % tile.width, within / tile.width}),
+                     tile.records[event->path], *event);
   }
 }
 

@@ -38,9 +38,10 @@ class LightEventBuffer : public kernel::LightEvents {
 struct TileWorker {
   std::unique_ptr<kernel::PathStream> stream;
   std::vector<kernel::PathRecord> records;
-  std::vector<kernel::PixelSum> light;   ///< sums of a tile's pixels
-  std::vector<float> largest;            ///< largest samples of a tile's pixels
-  std::vector<kernel::GuideSum> guides;  ///< guides of a tile's pixels
+  // Of a tile's pixels:
+  std::vector<kernel::PixelSum> light;
+  std::vector<float> largest;
+  std::vector<kernel::GuideSum> guides;
   LightEventBuffer events;
   kernel::TileCounts counts;
 };
@@ -68,7 +69,7 @@ class TilePool {
   std::unique_ptr<Impl> impl_;
 };
 
-/// Renders tiles in the scene's precision and adds their paths to the layers, if there are any.
+/// Renders tiles in the scene's precision, in buffers of the thread, and adds them to the image.
 class TileRenderer {
  public:
   /// Selects the kernel's instance for the scene. In adaptive sampling, samples from Sampler::kSecondHalf on are the
@@ -77,17 +78,16 @@ class TileRenderer {
   /// Domain     all arguments outlive this
   TileRenderer(const compile::CompiledScene& compiled, const accel::Accel& accel, const Settings& settings);
 
-  /// Renders one tile, and adds its paths to the layers and halves of the image.
+  /// Renders the pixels and samples of a tile without buffers, and adds its paths to the image.
   void operator()(const kernel::Tile& tile, TileWorker& worker, film::Partial& image) const;
 
  private:
-  /// Gives a tile the buffers that the layers need.
-  void attach_buffers(kernel::Tile& tile, TileWorker& worker) const;
+  /// Gives a tile empty buffers.
+  void attach_buffers(kernel::Tile& tile, TileWorker& worker, bool is_adaptive) const;
+  /// Adds the sums of a tile, which belongs to one half of the samples, to the image.
+  void add_sums(const kernel::Tile& tile, film::Partial& image) const;
   /// Adds the records and light events of a tile to its layers.
   void add_records(const kernel::Tile& tile, const TileWorker& worker, film::Partial& image) const;
-  /// Adds a tile of one half to the sums and to that half of the image.
-  void add_half(const kernel::Tile& tile, const kernel::Tile& part, const TileWorker& worker,
-                film::Partial& image) const;
 
   kernel::SceneView view_;
   kernel::Tracer tracer_;

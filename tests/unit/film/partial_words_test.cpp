@@ -8,50 +8,50 @@
 #include <random>
 
 #include "base/error.h"
-#include "film/film.h"
-#include "film/layer_pixel.h"
-#include "kernel/path_record.h"
 
 namespace orrery::film {
 namespace {
 
+/// Requests layers that need every array.
+LayerRequest every_layer(std::size_t light_groups = 1) {
+  LayerRequest r;
+  r.z = r.normal = r.position = r.albedo = r.variance = r.coverage = r.deep = true;
+  r.light_groups = true;
+  r.groups.assign(light_groups, {"g", true, true});
+  return r;
+}
+
 /// A partial render with a different value in every number.
 Partial full_partial(bool is_adaptive, bool goals, bool layers, bool halves, std::size_t light_groups = 1) {
-  Partial p(5, 3);
+  LayerRequest request = layers ? every_layer(light_groups) : LayerRequest{};
+  request.halves = halves;
+  Partial p(5, 3, request, is_adaptive);
   std::mt19937_64 random(3);
   const auto number = [&] { return static_cast<std::int64_t>(random()); };
+  const auto count = [&] { return static_cast<std::uint32_t>(random()); };
   const auto large = [&] { return static_cast<kernel::Int128>(number()) * 0x100000001 + number(); };
-  const auto fill = [&](Film& film) {
-    for (kernel::PixelSum& s : film.sums()) s = {{large(), -large(), large()}, number()};
-  };
-  fill(p.film);
-  if (is_adaptive) p.add_second_half();
+  for (auto& sums : p.light)
+    for (kernel::PixelSum& s : sums) s = {{large(), -large(), large()}, count()};
+  for (auto& sums : p.guides)
+    for (kernel::GuideSum& s : sums)
+      s = {large(), number(), {number(), number(), number()}, {number(), number(), number()}};
   for (float& v : p.largest) v = static_cast<float>(random() % 1000) / 7;
-  fill(p.second);
-  for (std::uint32_t& n : p.counts) n = static_cast<std::uint32_t>(random());
+  for (std::uint32_t& n : p.counts) n = count();
   if (goals)
     for (const std::uint32_t n : p.counts) p.goals.push_back(n + 7);
-  if (layers) p.layers.resize(15);
-  for (LayerPixel& l : p.layers) {
-    l.light.resize(light_groups * kernel::kLobes);
-    for (auto& cell : l.light)
-      for (auto& v : cell) v = large();
-    for (auto* vector : {&l.squares, &l.normal, &l.albedo})
-      for (auto& v : *vector) v = large();
-    for (auto* v : {&l.weight, &l.lit, &l.covered}) *v = number();
-    l.depth = static_cast<double>(number());
-    l.z = 1 / l.depth;
-    for (double& v : l.position) v = static_cast<double>(number());
-    l.sphere = static_cast<std::uint32_t>(random());
+  LayerSums& l = p.layers;
+  for (auto* sums : {&l.light, &l.squares, &l.normal, &l.albedo})
+    for (auto& channels : *sums)
+      for (auto& v : channels) v = large();
+  for (auto* counts : {&l.covered, &l.hit})
+    for (auto& v : *counts) v = count();
+  for (double& v : l.depth) v = static_cast<double>(number());
+  for (float& v : l.z) v = 1 / static_cast<float>(number());
+  for (auto& at : l.position)
+    for (float& v : at) v = static_cast<float>(number());
+  for (auto& shares : l.shares)
     for (std::uint32_t s = 0; s < random() % 4; ++s)
-      l.shares.push_back({3 * s, number(), {large(), large(), large()}, 0.1 * s, 1e30});
-  }
-  if (halves) p.halves.resize(15);
-  for (Halves& pixel : p.halves)
-    for (HalfSums& half : pixel) {
-      half.light = {{large(), -large(), large()}, number()};
-      half.guides = {large(), number(), {number(), number(), number()}, {number(), number(), number()}};
-    }
+      shares.push_back({3 * s, number(), {large(), large(), large()}, 0.1 * s, 1e30});
   p.work = {1ull << 40, 1ull << 50, 3, 12.625};
   return p;
 }
@@ -62,41 +62,40 @@ TEST(FilmPartialWords, RoundTrip) {
     const std::vector<std::uint32_t> words = to_words(p);
     const Partial q = from_words(words, 5, 3);
     EXPECT_EQ(to_words(q), words) << kind;
-    EXPECT_EQ(q.film.width(), 5);
-    EXPECT_EQ(q.film.height(), 3);
+    EXPECT_EQ(q.width, 5);
+    EXPECT_EQ(q.height, 3);
+    EXPECT_TRUE(q.has_arrays_of(p) && p.has_arrays_of(q));
     EXPECT_EQ(q.counts, p.counts);
     EXPECT_EQ(q.goals, p.goals);
     EXPECT_EQ(q.largest, p.largest);
     EXPECT_EQ(q.is_adaptive(), p.is_adaptive());
-    EXPECT_TRUE(q.film.sums()[7].rgb[1] == p.film.sums()[7].rgb[1]);
+    EXPECT_TRUE(q.light[0][7].rgb[1] == p.light[0][7].rgb[1]);
     EXPECT_EQ(q.work.seconds, 12.625);
-    ASSERT_EQ(q.halves.size(), p.halves.size());
-    if (!p.halves.empty()) {
-      EXPECT_TRUE(q.halves[14][1].light.rgb[2] == p.halves[14][1].light.rgb[2]);
-      EXPECT_TRUE(q.halves[14][1].guides.inverse_depth == p.halves[14][1].guides.inverse_depth);
-      EXPECT_EQ(q.halves[3][0].guides.normal[2], p.halves[3][0].guides.normal[2]);
-      EXPECT_EQ(q.halves[3][0].guides.weight, p.halves[3][0].guides.weight);
+    if (p.has_halves()) {
+      EXPECT_TRUE(q.light[1][14].rgb[2] == p.light[1][14].rgb[2]);
     }
-    ASSERT_EQ(q.layers.size(), p.layers.size());
-    if (p.layers.empty()) continue;
-    EXPECT_EQ(q.layers[3].shares.size(), p.layers[3].shares.size());
-    EXPECT_TRUE(q.layers[14].normal[2] == p.layers[14].normal[2]);
-    EXPECT_TRUE(q.layers[2].squares[1] == p.layers[2].squares[1]);
-    EXPECT_EQ(q.layers[9].position[1], p.layers[9].position[1]);
+    if (!p.guides[0].empty()) {
+      EXPECT_TRUE(q.guides[1][14].inverse_depth == p.guides[1][14].inverse_depth);
+      EXPECT_EQ(q.guides[0][3].normal[2], p.guides[0][3].normal[2]);
+      EXPECT_EQ(q.guides[0][3].weight, p.guides[0][3].weight);
+    }
+    if (p.layers.hit.empty()) continue;
+    EXPECT_EQ(q.layers.shares[3].size(), p.layers.shares[3].size());
+    EXPECT_TRUE(q.layers.normal[14][2] == p.layers.normal[14][2]);
+    EXPECT_TRUE(q.layers.squares[2][1] == p.layers.squares[2][1]);
+    EXPECT_EQ(q.layers.position[9][1], p.layers.position[9][1]);
+    EXPECT_EQ(q.layers.depth, p.layers.depth);
   }
 }
 
 TEST(FilmPartialWords, LightGroupsRoundTrip) {
   Partial p = full_partial(false, false, true, false, 3);
-  p.layers[4].light.clear();  // a pixel of another shard
+  for (std::size_t cell = 0; cell < 24; ++cell) p.layers.light[4 * 24 + cell] = {};  // a pixel of another shard
   const std::vector<std::uint32_t> words = to_words(p);
   const Partial q = from_words(words, 5, 3);
   EXPECT_EQ(to_words(q), words);
-  ASSERT_EQ(q.layers[14].light.size(), 24u);
-  for (std::size_t i = 0; i < 24; ++i) EXPECT_TRUE(q.layers[14].light[i] == p.layers[14].light[i]);
-  EXPECT_TRUE(q.layers[4].light[23][2] == 0);
-  for (LayerPixel& l : p.layers) l.light.clear();  // layers without light
-  EXPECT_TRUE(from_words(to_words(p), 5, 3).layers[14].light.empty());
+  ASSERT_EQ(q.layers.light.size(), 15 * 24u);
+  EXPECT_TRUE(q.layers.light == p.layers.light);
 }
 
 TEST(FilmPartialWords, TruncatedWordsAreRefused) {
@@ -112,9 +111,7 @@ TEST(FilmPartialWords, TheWrongSizeIsRefused) {
 }
 
 TEST(FilmPartialWords, ConstantPlanesAreStoredAsOneWord) {
-  Partial empty(500, 400);
-  empty.layers.resize(empty.pixel_count());
-  empty.halves.resize(empty.pixel_count());
+  const Partial empty(500, 400, every_layer());
   EXPECT_LT(to_words(empty).size(), 1000u);
   EXPECT_EQ(to_words(from_words(to_words(empty), 500, 400)), to_words(empty));
 }

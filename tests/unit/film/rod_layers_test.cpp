@@ -6,7 +6,7 @@
 #include <cmath>
 #include <random>
 
-#include "film/layer_pixel.h"
+#include "film/layer_sums.h"
 #include "film/layers.h"
 #include "kernel/path_record.h"
 #include "kernel/scene_view.h"
@@ -76,18 +76,20 @@ TEST(FilmRodLayers, PositionNormalAndExit) {
     path.object = 1 + static_cast<std::uint32_t>(i % 2);
     path.offset = point - a;
     path.direction = direction;
-    LayerPixel pixel;
-    pixel.add(request, view, path);
+    LayerSums sums(request, 1);
+    sums.add(request, view, 0, path);
 
-    EXPECT_NEAR(pixel.z, 5, 1e-12);
-    for (int k = 0; k < 3; ++k) {
+    EXPECT_FLOAT_EQ(sums.z[0], 5);
+    for (std::size_t k = 0; k < 3; ++k) {
       const double at = k == 0 ? point.x : k == 1 ? point.y : point.z;
-      EXPECT_NEAR(pixel.position[k], at, 1e-13);
-      EXPECT_NEAR(kernel::from_fixed_point(pixel.normal[k]), k == 0 ? out.x : k == 1 ? out.y : out.z, 1e-12);
+      EXPECT_FLOAT_EQ(sums.position[0][k], static_cast<float>(at));
+      EXPECT_NEAR(kernel::from_fixed_point(sums.normal[0][k]), k == 0 ? out.x : k == 1 ? out.y : out.z, 1e-12);
     }
-    ASSERT_EQ(pixel.shares.size(), 1u);
-    EXPECT_EQ(pixel.shares[0].sphere, path.object);
-    const double chord = pixel.shares[0].back - pixel.shares[0].front;
+    ASSERT_EQ(sums.shares[0].size(), 1u);
+    const SphereCoverage& share = sums.shares[0][0];
+    EXPECT_EQ(share.sphere, path.object);
+    EXPECT_NEAR(share.front, 5, 1e-12);
+    const double chord = share.back - share.front;
     const Vec3d exit = point + direction * chord;
     ASSERT_GT(chord, 0);
     ASSERT_NEAR(length(off_axis(rod, exit)), rod.radius, 1e-12 * (1 + chord)) << i;

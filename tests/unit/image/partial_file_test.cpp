@@ -11,6 +11,7 @@
 #include "image/header.h"
 #include "image/read.h"
 #include "image/write.h"
+#include "support/picture_of.h"
 #include "support/temp_dir.h"
 
 namespace orrery::image {
@@ -19,13 +20,14 @@ namespace {
 constexpr int kWidth = 23, kHeight = 11;
 
 film::Partial some_partial() {
-  film::Partial p(kWidth, kHeight);
+  film::LayerRequest request;
+  request.deep = true;
+  film::Partial p(kWidth, kHeight, request);
   std::mt19937_64 random(1);
-  for (kernel::PixelSum& s : p.film.sums())
+  for (kernel::PixelSum& s : p.light[0])
     s = {{static_cast<std::int64_t>(random() >> 4), static_cast<std::int64_t>(random() >> 4), 5}, 3};
   for (std::uint32_t& n : p.counts) n = 3;
-  p.layers.resize(p.pixel_count());
-  for (film::LayerPixel& l : p.layers) l.shares.resize(1);
+  for (auto& shares : p.layers.shares) shares.resize(1);
   p.work.seconds = 1.5;
   return p;
 }
@@ -34,7 +36,7 @@ class ImagePartialFile : public testing::Test {
  protected:
   void SetUp() override { write(file_); }
   void write(const std::filesystem::path& file) const {
-    film::Picture preview = partial_.film.picture();
+    film::Picture preview = test::picture_of(partial_);
     preview.frame_width = 40;
     preview.frame_height = 20;
     preview.x = 3;
@@ -90,7 +92,7 @@ TEST_F(ImagePartialFile, ThePreviewIsAnOrdinaryExr) {
   ASSERT_NE(seen.find("R"), nullptr);
   EXPECT_EQ(seen.planes.size(), 4u);
   EXPECT_EQ(seen.width, 40);
-  const film::Picture shown = partial_.film.picture();
+  const film::Picture shown = test::picture_of(partial_);
   const float there = shown.find("R")->values[5 * kWidth + 4];
   EXPECT_NEAR(seen.find("R")->values[(5 + 2) * 40 + 4 + 3], there, there / 1024);
 }
@@ -131,7 +133,7 @@ TEST_F(ImagePartialFile, TruncatedAndExtendedFilesAreRefused) {
 }
 
 TEST_F(ImagePartialFile, OrdinaryAndMissingFilesAreRefused) {
-  film::Picture picture = partial_.film.picture();
+  film::Picture picture = test::picture_of(partial_);
   write_exr(file_, picture, {}, {});
   expect_refused("an ordinary image");
   std::filesystem::remove(file_);

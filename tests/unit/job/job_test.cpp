@@ -21,6 +21,7 @@
 #include "job/shards.h"
 #include "render/settings.h"
 #include "support/exr_file.h"
+#include "support/picture_of.h"
 #include "unit/job/job_fixture.h"
 
 namespace orrery::job {
@@ -126,9 +127,10 @@ TEST_F(JobRun, RejectsACheckpointWithOtherSumsThanItsHeaderSays) {
   stop_while_rendering();
   const image::PartialFile right = image::read_partial(checkpoint, 200, 100);
   const std::vector<std::function<void(film::Partial&)>> changes = {
-      [](film::Partial& sums) { sums.layers.clear(); }, [](film::Partial& sums) { sums.halves.clear(); },
-      [](film::Partial& sums) { sums.add_second_half(); }, [](film::Partial& sums) { sums.layers[5].sphere = 1; }};
-  film::Picture preview = right.partial.film.picture();
+      [](film::Partial& sums) { sums.layers = {}; }, [](film::Partial& sums) { sums.guides = {}; },
+      [](film::Partial& sums) { sums.largest.resize(sums.pixel_count()); },
+      [](film::Partial& sums) { sums.layers.hit[5] = 2; }};
+  film::Picture preview = test::picture_of(right.partial);
   preview.frame_width = 200;
   preview.frame_height = 100;
   for (const auto& change : changes) {

@@ -12,7 +12,7 @@
 #include "compile/compile.h"
 #include "compile/compiled_scene.h"
 #include "film/cryptomatte.h"
-#include "film/layer_film.h"
+#include "film/layer_planes.h"
 #include "job/outputs.h"
 #include "scene/layers.h"
 #include "scene/limits.h"

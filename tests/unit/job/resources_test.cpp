@@ -9,7 +9,7 @@
 #include "base/error.h"
 #include "compile/compile.h"
 #include "compile/compiled_scene.h"
-#include "film/layer_pixel.h"
+#include "film/layer_sums.h"
 #include "film/layers.h"
 #include "generate/generate.h"
 #include "job/job.h"
@@ -122,9 +122,9 @@ TEST(JobMemoryEstimate, GrowsWithLightGroups) {
     return estimate_memory(compiled, request).film;
   };
   // The light of a pixel with emitters in two groups and the background in a third.
-  const std::uint64_t sum = 8 * 3 * 16, planes = (2 * 8 + 8) * 3 * 8, heap = 16;
-  EXPECT_EQ(film_of({"light_groups"}) - film_of({"samples"}), 1000 * (3 * sum + heap + planes - 8));
-  EXPECT_EQ(film_of({"emission"}) - film_of({"samples"}), 1000 * (sum + heap + 3 * 8 - 8));
+  const std::uint64_t sum = 8 * 3 * 16, planes = (2 * 8 + 8) * 3 * 8;
+  EXPECT_EQ(film_of({"light_groups"}) - film_of({"samples"}), 1000 * (3 * sum + planes - 8));
+  EXPECT_EQ(film_of({"emission"}) - film_of({"samples"}), 1000 * (sum + 3 * 8 - 8));
 }
 
 /// A pixel has a sum for each object of a matte that its paths hit, and for each sphere of a deep image.
@@ -144,7 +144,8 @@ TEST(JobMemoryEstimate, GrowsWithTheCoverageOfMattesAndDeepImages) {
     request.deep = deep;
     return estimate_memory(compiled, request).film;
   };
-  const std::uint64_t planes = (12 - 1) * 8, share = sizeof(film::SphereCoverage) * 3 / 2, heap = 16;
+  const std::uint64_t planes = (12 - 1) * 8, share = sizeof(film::SphereCoverage) * 3 / 2,
+                      heap = 16 + sizeof(std::vector<film::SphereCoverage>);
   EXPECT_EQ(film_of({"CryptoObject"}, false) - film_of({"samples"}, false), 1000 * (planes + share + heap))
       << "one object";
   EXPECT_EQ(film_of({"samples"}, true) - film_of({"samples"}, false), 1000 * (102 * share + heap));
@@ -152,7 +153,7 @@ TEST(JobMemoryEstimate, GrowsWithTheCoverageOfMattesAndDeepImages) {
   EXPECT_EQ(film_of({"samples"}, true) - film_of({"samples"}, false), 1000 * (5 * share + heap)) << "five paths";
 }
 
-/// Denoising alone needs no records of paths.
+/// Denoising needs a second sum of the light, and two of the guides.
 TEST(JobMemoryEstimate, CountsTheHalvesOnlyWhereTheyAreNeeded) {
   scene::Scene scene;
   scene.image = {100, 10};
@@ -162,7 +163,7 @@ TEST(JobMemoryEstimate, CountsTheHalvesOnlyWhereTheyAreNeeded) {
   const std::uint64_t beauty = film();
   request.halves = true;
   constexpr std::uint64_t kPlanes = 20 * 8;
-  EXPECT_EQ(film() - beauty, 1000 * (sizeof(film::Halves) + kPlanes));
+  EXPECT_EQ(film() - beauty, 1000 * (sizeof(kernel::PixelSum) + 2 * sizeof(kernel::GuideSum) + kPlanes));
 }
 
 TEST(JobMemoryEstimate, CountsTheLightTreeAndItsBuild) {

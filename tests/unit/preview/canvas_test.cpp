@@ -7,7 +7,6 @@
 #include <set>
 #include <thread>
 
-#include "film/film.h"
 #include "film/partial.h"
 #include "kernel/pixel_sum.h"
 #include "unit/preview/pictures.h"
@@ -24,12 +23,12 @@ std::vector<float> read_all(const Canvas& canvas) {
 
 TEST(PreviewCanvas, HoldsTheMeansOfBothHalves) {
   film::Partial state = partial(5, 3);
-  state.second = film::Film(5, 3);
-  for (kernel::PixelSum& sum : state.second.sums()) {
+  state.light[1].resize(state.pixel_count());
+  for (kernel::PixelSum& sum : state.light[1]) {
     sum.rgb[0] = kernel::to_fixed_point(7);
     sum.weight = 3;
   }
-  state.film.sums()[4].weight = -3;  // no samples in total, and thus black
+  state.light[0][4] = state.light[1][4] = {};  // no samples, and thus black
   Canvas canvas(5, 3);
   write_all(state, canvas);
   EXPECT_EQ(read_all(canvas), means(state));
@@ -52,7 +51,7 @@ TEST(PreviewCanvas, MarksTheCellsOfARectangleOnce) {
   EXPECT_EQ((std::vector<int>{last.x, last.y, last.width, last.height}), (std::vector<int>{96, 64, 4, 6}));
   float rgb[3], want[3];
   canvas.read(99, 69, 1, rgb);
-  state.mean(99, 69, want);
+  state.mean(math::pixel_index(99, 69, 100), want);
   EXPECT_EQ(rgb[1], want[1]);
   canvas.read(31, 62, 1, rgb);
   EXPECT_EQ(rgb[1], 0.0f);  // in the rectangle, but not among its pixels

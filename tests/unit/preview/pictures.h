@@ -6,6 +6,7 @@
 
 #include "film/partial.h"
 #include "kernel/pixel_sum.h"
+#include "math/pixels.h"
 #include "preview/canvas.h"
 
 namespace orrery::preview {
@@ -14,7 +15,7 @@ namespace orrery::preview {
 inline film::Partial partial(int width, int height, double offset = 0) {
   film::Partial state(width, height);
   for (std::size_t i = 0; i < state.pixel_count(); ++i) {
-    kernel::PixelSum& sum = state.film.sums()[i];
+    kernel::PixelSum& sum = state.light[0][i];
     for (int c = 0; c < 3; ++c) sum.rgb[c] = kernel::to_fixed_point(offset + 0.001 * static_cast<double>(3 * i) + c);
     sum.weight = 1;
   }
@@ -31,17 +32,17 @@ inline std::vector<kernel::PixelPlace> all_pixels(int width, int height) {
 
 template <class To>
 void write_all(const film::Partial& state, To& to) {
-  const std::vector<kernel::PixelPlace> pixels = all_pixels(state.film.width(), state.film.height());
-  to.write(state, {0, 0, state.film.width(), state.film.height(), pixels});
+  const std::vector<kernel::PixelPlace> pixels = all_pixels(state.width, state.height);
+  to.write(state, {0, 0, state.width, state.height, pixels});
 }
 
 /// The means of a partial, R, G, B of all pixels.
 inline std::vector<float> means(const film::Partial& state) {
   std::vector<float> out;
-  for (int y = 0; y < state.film.height(); ++y)
-    for (int x = 0; x < state.film.width(); ++x) {
+  for (int y = 0; y < state.height; ++y)
+    for (int x = 0; x < state.width; ++x) {
       float rgb[3];
-      state.mean(x, y, rgb);
+      state.mean(math::pixel_index(x, y, state.width), rgb);
       out.insert(out.end(), rgb, rgb + 3);
     }
   return out;

@@ -17,6 +17,7 @@
 #include "film/partial.h"
 #include "film/picture.h"
 #include "image/read.h"
+#include "support/picture_of.h"
 #include "support/temp_dir.h"
 #include "unit/preview/pictures.h"
 
@@ -99,7 +100,7 @@ display::Settings settings() {
 
 /// What the display transform makes of a whole image.
 std::vector<std::uint8_t> developed(const film::Partial& state) {
-  const std::vector<std::uint16_t> codes = display::develop(state.film.picture(), settings(), 8).values;
+  const std::vector<std::uint16_t> codes = display::develop(test::picture_of(state), settings(), 8).values;
   return {codes.begin(), codes.end()};
 }
 

@@ -13,7 +13,7 @@
 #include "accel/accel.h"
 #include "compile/compile.h"
 #include "compile/compiled_scene.h"
-#include "film/layer_pixel.h"
+#include "film/layer_sums.h"
 #include "film/layers.h"
 #include "render/tiles.h"
 #include "support/everything.h"
@@ -277,12 +277,11 @@ TEST(RenderLitLoop, LobesAddUpToTheBeauty) {
   render_tile(furnace.compiled, furnace.view, Kind::kLit, true, out);
   film::LayerRequest request;
   request.diffuse = request.background = true;
-  std::vector<film::LayerPixel> layers(out.sums.size());
-  for (std::size_t i = 0; i < out.records.size(); ++i) layers[i / 16].add(request, furnace.view, out.records[i]);
-  for (const kernel::LightEvent& e : out.all_events()) layers[e.path / 16].add(request, out.records[e.path], e);
-  for (std::size_t i = 0; i < layers.size(); ++i) {
+  film::LayerSums layers(request, out.sums.size());
+  for (const kernel::LightEvent& e : out.all_events()) layers.add(request, e.path / 16, out.records[e.path], e);
+  for (std::size_t i = 0; i < out.sums.size(); ++i) {
     kernel::Int128 sum = 0;
-    for (const auto& lobe : layers[i].light) sum += lobe[1];
+    for (std::size_t lobe = 0; lobe < kernel::kLobes; ++lobe) sum += layers.light[i * kernel::kLobes + lobe][1];
     EXPECT_TRUE(sum == out.sums[i].rgb[1]);
   }
 }
@@ -314,8 +313,8 @@ TEST(RenderLitLoop, ABadValueCostsAPathItsWeightOnce) {
       }
       film::LayerRequest request;
       request.diffuse = true;
-      film::LayerPixel layers;
-      for (const kernel::LightEvent& e : out.all_events()) layers.add(request, out.records[e.path], e);
+      film::LayerSums layers(request, 1);
+      for (const kernel::LightEvent& e : out.all_events()) layers.add(request, 0, out.records[e.path], e);
       for (const auto& lobe : layers.light) ASSERT_TRUE(lobe[0] == 0);
     }
   }

@@ -15,15 +15,16 @@
 #include "accel/accel.h"
 #include "compile/compile.h"
 #include "compile/compiled_scene.h"
-#include "film/film.h"
 #include "film/layers.h"
 #include "film/partial.h"
 #include "kernel/path_stream.h"
+#include "math/pixels.h"
 #include "render/render.h"
 #include "render/result.h"
 #include "render/settings.h"
 #include "support/add_matte.h"
 #include "support/everything.h"
+#include "support/picture_of.h"
 #include "support/plane_values.h"
 #include "support/tile_functions.h"
 
@@ -34,7 +35,7 @@ namespace {
 std::vector<float> rendered_in_pieces(const compile::CompiledScene& compiled, int side, int shards,
                                       bool one_lane = false) {
   const std::unique_ptr<accel::Accel> accel = accel::make_embree(compiled.view(), compiled.precision);
-  film::Film film(compiled.width, compiled.height);
+  film::Partial film(compiled.width, compiled.height);
   std::vector<kernel::Tile> pieces;
   for (int shard = 0; shard < shards; ++shard)
     for (int y = 0; y < compiled.height; y += side)
@@ -46,7 +47,7 @@ std::vector<float> rendered_in_pieces(const compile::CompiledScene& compiled, in
         piece.height = std::min(side, compiled.height - y);
         piece.sample_begin = static_cast<std::uint32_t>(compiled.samples * shard / shards);
         piece.sample_end = static_cast<std::uint32_t>(compiled.samples * (shard + 1) / shards);
-        piece.sums = film.at(x, y);
+        piece.sums = &film.light[0][math::pixel_index(x, y, compiled.width)];
         piece.row_stride = compiled.width;
         pieces.push_back(piece);
       }
@@ -57,7 +58,7 @@ std::vector<float> rendered_in_pieces(const compile::CompiledScene& compiled, in
                                              ? test::one_lane_tile_function()
                                              : kernel::render_tile_function(view.features, compiled.precision, false);
   for (const kernel::Tile& piece : pieces) render_tile(view, accel->tracer(), piece, *stream);
-  return test::plane_values(film.picture());
+  return test::plane_values(test::picture_of(film));
 }
 
 compile::CompiledScene world_of_everything() {
@@ -128,7 +129,8 @@ struct ReportedPixels {
       for (const kernel::PixelPlace p : rendered.pixels) {
         EXPECT_TRUE(p.x >= 0 && p.x < rendered.width && p.y >= 0 && p.y < rendered.height);
         const int x = rendered.x + p.x, y = rendered.y + p.y;
-        state.mean(x, y, &rgb[3 * static_cast<std::size_t>(y * width + x)]);
+        const std::size_t i = math::pixel_index(x, y, width);
+        state.mean(i, &rgb[3 * i]);
       }
     };
   }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "film/layer_film.h"
+#include "film/layer_planes.h"
 
 #include <gtest/gtest.h>
 
@@ -7,6 +7,7 @@
 #include <cmath>
 #include <cstring>
 #include <limits>
+#include <optional>
 #include <random>
 
 #include "base/image_limits.h"
@@ -15,14 +16,15 @@
 #include "kernel/path_record.h"
 #include "kernel/scene_view.h"
 #include "support/add_matte.h"
+#include "support/picture_of.h"
 
 namespace orrery::film {
 namespace {
 
 /// Two spheres in front of a camera at the origin that looks along -z, and the sums of one pixel.
-class FilmLayerFilm : public testing::Test {
+class FilmLayerPlanes : public testing::Test {
  protected:
-  FilmLayerFilm() {
+  FilmLayerPlanes() {
     view_.spheres = spheres_;
     view_.object_materials = object_materials_;
     view_.materials = materials_;
@@ -47,24 +49,26 @@ class FilmLayerFilm : public testing::Test {
     add(path, {event});
   }
   void add(const kernel::PathRecord& path, const std::vector<kernel::LightEvent>& events) {
-    pixel_.add(request_, view_, path);
+    sums().layers.add(request_, view_, 0, path);
+    ++sums().counts[0];
     if (request_.lights())
-      for (const kernel::LightEvent& event : events) pixel_.add(request_, path, event);
+      for (const kernel::LightEvent& event : events) sums().layers.add(request_, 0, path, event);
     if (!kernel::is_valid_sample(path.light[0], path.light[1], path.light[2])) return;
-    for (int c = 0; c < 3; ++c) beauty_.rgb[c] += kernel::to_fixed_point(path.light[c]);
-    ++beauty_.weight;
+    for (int c = 0; c < 3; ++c) beauty().rgb[c] += kernel::to_fixed_point(path.light[c]);
+    ++beauty().weight;
   }
-  void clear() { pixel_ = {}, halves_ = {}, beauty_ = {}; }
+  /// The sums of the paths so far, of the layers that are requested when the first is added.
+  Partial& sums() {
+    if (!sums_) sums_.emplace(1, 1, request_);
+    return *sums_;
+  }
+  kernel::PixelSum& beauty() { return sums().light[0][0]; }
+  void clear() { sums_.reset(); }
 
   /// An image of one pixel from the paths added so far.
   Picture picture() {
-    LayerFilm film(request_, view_, 1, 1);
-    film.set(0, pixel_, halves_, beauty_);
-    deep_ = {};
-    Picture out{1, 1, {{"R", {0}}, {"A", {1}}}};
-    film.move_to(out);
-    deep_ = film.take_deep();
-    return out;
+    if (request_.deep) deep_ = deep_samples(sums(), 0, !request_.coverage);
+    return test::picture_of(sums(), request_, view_);
   }
   static float value(const Picture& picture, const std::string& plane) {
     const Plane* found = picture.find(plane);
@@ -77,18 +81,16 @@ class FilmLayerFilm : public testing::Test {
   kernel::Material materials_[2];
   kernel::SceneView view_;
   LayerRequest request_;
-  LayerPixel pixel_;
-  Halves halves_;
-  kernel::PixelSum beauty_;
-  DeepPicture deep_;
+  std::optional<Partial> sums_;
+  std::vector<DeepSample> deep_;
 };
 
-TEST_F(FilmLayerFilm, NoRequestGivesNoPlanes) {
+TEST_F(FilmLayerPlanes, NoRequestGivesNoPlanes) {
   EXPECT_FALSE(request_.any());
   EXPECT_TRUE(planes_of(request_).empty());
 }
 
-TEST_F(FilmLayerFilm, DistancesAndIdsComeFromTheNearestHit) {
+TEST_F(FilmLayerPlanes, DistancesAndIdsComeFromTheNearestHit) {
   request_.z = request_.depth = request_.position = request_.object_id = request_.material_id = true;
   request_.material_numbers = {7, 9};
   view_.camera.origin.x = 3;  // the axis is still along -z, so z and distance differ
@@ -104,7 +106,7 @@ TEST_F(FilmLayerFilm, DistancesAndIdsComeFromTheNearestHit) {
   EXPECT_EQ(value(p, "material_id.X"), 7);
 }
 
-TEST_F(FilmLayerFilm, WithoutAHitDistancesAreFarAndIdsZero) {
+TEST_F(FilmLayerPlanes, WithoutAHitDistancesAreFarAndIdsZero) {
   request_.z = request_.depth = request_.normal = request_.object_id = request_.samples = true;
   add(kernel::PathRecord{});
   const Picture p = picture();
@@ -115,7 +117,7 @@ TEST_F(FilmLayerFilm, WithoutAHitDistancesAreFarAndIdsZero) {
   EXPECT_EQ(value(p, "samples.X"), 1);
 }
 
-TEST_F(FilmLayerFilm, NormalsAndAlbedoAreMeansAndFaceTheCamera) {
+TEST_F(FilmLayerPlanes, NormalsAndAlbedoAreMeansAndFaceTheCamera) {
   request_.normal = request_.albedo = true;
   add(path_to(0));
   add(path_to(1));
@@ -127,7 +129,7 @@ TEST_F(FilmLayerFilm, NormalsAndAlbedoAreMeansAndFaceTheCamera) {
   EXPECT_EQ(value(p, "albedo.G"), 0.5F);
 
   view_.camera.origin.z = -5;  // inside the first sphere
-  pixel_ = {};
+  clear();
   kernel::PathRecord back = path_to(0);
   back.offset.z = -1;
   add(back);
@@ -149,7 +151,7 @@ void expect_sum(std::vector<float> values, float sum, std::mt19937& random, cons
 
 /// Random light in random lobes and groups: the lobes, the groups, and the lobes of the groups each add up to the
 /// beauty, the lobes of a group to the group, and the parts of a lobe to the lobe.
-TEST_F(FilmLayerFilm, LightAddsUpToTheBeautyInAnyOrder) {
+TEST_F(FilmLayerPlanes, LightAddsUpToTheBeautyInAnyOrder) {
   request_.diffuse = request_.specular = request_.transmission = request_.background = request_.emission = true;
   std::mt19937 random(1);
   std::uniform_real_distribution<double> uniform(0, 1);
@@ -183,7 +185,7 @@ TEST_F(FilmLayerFilm, LightAddsUpToTheBeautyInAnyOrder) {
     const Picture p = picture();
     for (int c = 0; c < 3; ++c) {
       const std::string channel = std::string(".") + "RGB"[c], what = "trial " + std::to_string(trial) + channel;
-      const auto beauty = static_cast<float>(mean(beauty_.rgb[c], beauty_.weight));
+      const auto whole = static_cast<float>(mean(beauty().rgb[c], beauty().weight));
       std::vector<float> lobes, groups, products;
       for (const char* lobe : kLobeNames) {
         lobes.push_back(value(p, lobe + channel));
@@ -193,7 +195,7 @@ TEST_F(FilmLayerFilm, LightAddsUpToTheBeautyInAnyOrder) {
         if (request_.light_groups) expect_sum(parts, lobes.back(), random, what);
         products.insert(products.end(), parts.begin(), parts.end());
       }
-      expect_sum(lobes, beauty, random, what);
+      expect_sum(lobes, whole, random, what);
       if (!request_.light_groups) continue;
       for (const LightGroup& g : request_.groups) {
         groups.push_back(value(p, g.name + channel));
@@ -201,15 +203,15 @@ TEST_F(FilmLayerFilm, LightAddsUpToTheBeautyInAnyOrder) {
         for (const char* lobe : kLobeNames) parts.push_back(value(p, g.name + "_" + lobe + channel));
         expect_sum(parts, groups.back(), random, what);
       }
-      expect_sum(groups, beauty, random, what);
-      expect_sum(products, beauty, random, what);
+      expect_sum(groups, whole, random, what);
+      expect_sum(products, whole, random, what);
     }
     if (HasFatalFailure()) return;
   }
 }
 
-/// The rounding errors of the layers, in units of the beauty's last bit, and cells without light.
-TEST_F(FilmLayerFilm, LightIsRoundedToTheLastBitOfTheBeauty) {
+/// The rounding errors of the layers, in units of the whole's last bit, and cells without light.
+TEST_F(FilmLayerPlanes, LightIsRoundedToTheLastBitOfTheBeauty) {
   request_.diffuse = request_.emission = request_.light_groups = true;
   request_.groups = {{"a", true, true}, {"b", true, true}, {"c", true, true}};
   std::mt19937 random(2);
@@ -256,22 +258,21 @@ TEST_F(FilmLayerFilm, LightIsRoundedToTheLastBitOfTheBeauty) {
 
 /// Paths whose rounded sums differ from their events, where the mean of a pixel is half way between two floats and the
 /// rounding of that difference decides.
-TEST_F(FilmLayerFilm, RoundingErrorsNeitherLoseTheLastBitNorMakeLightNegative) {
+TEST_F(FilmLayerPlanes, RoundingErrorsNeitherLoseTheLastBitNorMakeLightNegative) {
   request_.diffuse = true;
   const kernel::Int128 half_way = (kernel::Int128{1} << 60) + (kernel::Int128{1} << 36);  // 1 + 2^-24
-  pixel_.light.resize(kernel::kLobes);
-  beauty_ = {{3 * half_way + 512, 0, 0}, 3};
-  pixel_.light[1][0] = beauty_.rgb[0] - 300;
+  beauty() = {{3 * half_way + 512, 0, 0}, 3};
+  sums().layers.light[1][0] = beauty().rgb[0] - 300;
   EXPECT_EQ(value(picture(), "diffuse_direct.R"), 1 + 0x1p-23F);
-  beauty_ = {{3 * half_way, 0, 0}, 3};
-  pixel_.light[1][0] = beauty_.rgb[0] + 300;
-  pixel_.light[2][0] = 1;
+  beauty() = {{3 * half_way, 0, 0}, 3};
+  sums().layers.light[1][0] = beauty().rgb[0] + 300;
+  sums().layers.light[2][0] = 1;
   EXPECT_EQ(value(picture(), "diffuse_direct.R"), 1);
   EXPECT_EQ(value(picture(), "diffuse_indirect.R"), 0);
 }
 
 /// A lobe layer has the same bits whether or not light groups are requested.
-TEST_F(FilmLayerFilm, LightGroupsDoNotChangeTheLobes) {
+TEST_F(FilmLayerPlanes, LightGroupsDoNotChangeTheLobes) {
   request_.diffuse = request_.specular = request_.background = request_.emission = true;
   std::mt19937 random(3);
   std::uniform_real_distribution<float> uniform(0, 1);
@@ -298,7 +299,7 @@ TEST_F(FilmLayerFilm, LightGroupsDoNotChangeTheLobes) {
 }
 
 /// A group has layers only for the lobes that its sources can have, and none without sources.
-TEST_F(FilmLayerFilm, LightGroupsHaveTheLayersOfTheirSources) {
+TEST_F(FilmLayerPlanes, LightGroupsHaveTheLayersOfTheirSources) {
   request_.light_groups = true;
   request_.groups = {{"default", false, false}, {"key", true, false}, {"sky", false, true}};
   std::string names;
@@ -318,21 +319,21 @@ TEST_F(FilmLayerFilm, LightGroupsHaveTheLayersOfTheirSources) {
 }
 
 /// Shards have sums of the same paths in two pixels.
-TEST_F(FilmLayerFilm, MergedPixelsAddTheirLight) {
+TEST_F(FilmLayerPlanes, MergedPixelsAddTheirLight) {
   request_.light_groups = true;
   request_.groups = {{"a", true, true}, {"b", true, true}};
   const kernel::PathRecord path = path_to(0, 0.5);
   add(path, {{{0.5, 0.5, 0.5}, 0, 1, kernel::Lobe::kEmission}});
-  const LayerPixel first = pixel_;
-  pixel_ = {};
-  pixel_.add(first);  // a pixel that this shard does not own
+  const Partial first = sums();
+  clear();
+  sums().add(first);  // a pixel that this shard does not own
   add(path, {{{0.5, 0.5, 0.5}, 0, 0, kernel::Lobe::kDiffuseDirect}});
-  pixel_.add(LayerPixel{});
+  sums().add(Partial(1, 1, request_));
   EXPECT_EQ(value(picture(), "b_emission.R"), 0.25F);
   EXPECT_EQ(value(picture(), "a.G"), 0.25F);
 }
 
-TEST_F(FilmLayerFilm, InvalidRadianceIsIgnored) {
+TEST_F(FilmLayerPlanes, InvalidRadianceIsIgnored) {
   request_.diffuse = request_.samples = request_.albedo = true;
   add(path_to(0, 0.5));
   add(path_to(0, std::numeric_limits<double>::quiet_NaN()));
@@ -344,7 +345,7 @@ TEST_F(FilmLayerFilm, InvalidRadianceIsIgnored) {
 }
 
 /// The values 1, 2, 3, 6 have mean 3 and variance 14/3; the variance of the mean is a fourth of that.
-TEST_F(FilmLayerFilm, VarianceIsThatOfTheMean) {
+TEST_F(FilmLayerPlanes, VarianceIsThatOfTheMean) {
   request_.variance = true;
   for (const double light : {1.0, 2.0, 3.0, 6.0}) add(path_to(0, light));
   EXPECT_FLOAT_EQ(value(picture(), "variance.R"), 14.0F / 12);
@@ -355,16 +356,16 @@ TEST_F(FilmLayerFilm, VarianceIsThatOfTheMean) {
 
 /// Squares below 2^14 are converted in 64 bits, others in two steps.
 /// Up to kLargestSquare.
-TEST_F(FilmLayerFilm, SquaresAreExact) {
+TEST_F(FilmLayerPlanes, SquaresAreExact) {
   request_.variance = true;
   for (const std::int64_t light : {1LL, 127LL, 128LL, 129LL, 200LL, 1LL << 20, 11'863'283LL}) {
     clear();
     add(path_to(0, static_cast<double>(light)));
-    EXPECT_TRUE(pixel_.squares[0] == static_cast<kernel::Int128>(light * light) << 48) << light;
+    EXPECT_TRUE(sums().layers.squares[0][0] == static_cast<kernel::Int128>(light * light) << 48) << light;
   }
 }
 
-TEST_F(FilmLayerFilm, ConstantRadianceHasNoVariance) {
+TEST_F(FilmLayerPlanes, ConstantRadianceHasNoVariance) {
   request_.variance = true;
   for (const double light : {0.3, 1.0 / 3, 7.7, 1e-3, 123456.7}) {
     clear();
@@ -374,7 +375,7 @@ TEST_F(FilmLayerFilm, ConstantRadianceHasNoVariance) {
 }
 
 /// A lens larger than a sphere: some rays start inside the sphere.
-TEST_F(FilmLayerFilm, NormalsPointAgainstTheRay) {
+TEST_F(FilmLayerPlanes, NormalsPointAgainstTheRay) {
   request_.normal = true;
   kernel::PathRecord path = path_to(0);
   path.direction.x = 0.6, path.direction.z = 0.8;  // leaves through the side that faces the camera
@@ -384,7 +385,7 @@ TEST_F(FilmLayerFilm, NormalsPointAgainstTheRay) {
   EXPECT_FLOAT_EQ(value(picture(), "N.Z"), 0);
 }
 
-TEST_F(FilmLayerFilm, VarianceIsFiniteForTheLargestRadiance) {
+TEST_F(FilmLayerPlanes, VarianceIsFiniteForTheLargestRadiance) {
   request_.variance = true;
   for (const double light : {0.0, 0x1p34}) add(path_to(0, light));
   // Squares are clamped to 2^47; the variance must be finite and not negative.
@@ -393,25 +394,22 @@ TEST_F(FilmLayerFilm, VarianceIsFiniteForTheLargestRadiance) {
 }
 
 /// All that two halves of the maximum number of samples can add up to fits into the sums.
-TEST_F(FilmLayerFilm, SumsHoldTheMaximumCountOfTheBrightestPaths) {
+TEST_F(FilmLayerPlanes, SumsHoldTheMaximumCountOfTheBrightestPaths) {
   request_.variance = request_.diffuse = true;
-  const auto twice = [&] {
-    pixel_.add(LayerPixel(pixel_));
-    beauty_ += kernel::PixelSum(beauty_);
-  };
+  const auto twice = [&] { sums().add(Partial(sums())); };
   for (int bit = 0; bit < 31; ++bit) {
     twice();
     add(path_to(0, kernel::kLargestSample));
   }
   twice();
-  EXPECT_EQ(pixel_.weight, 2 * ((std::int64_t{1} << 31) - 1));
+  EXPECT_EQ(beauty().weight, 2 * ((1U << 31) - 1));
   const Picture p = picture();
   EXPECT_EQ(value(p, "diffuse_direct.R"), 0x1p35F);
-  EXPECT_EQ(mean(beauty_.rgb[0], beauty_.weight), 0x1p35);
-  for (int c = 0; c < 3; ++c) EXPECT_TRUE(pixel_.squares[c] > 0) << "overflow";
+  EXPECT_EQ(mean(beauty().rgb[0], beauty().weight), 0x1p35);
+  for (std::size_t c = 0; c < 3; ++c) EXPECT_TRUE(sums().layers.squares[0][c] > 0) << "overflow";
 }
 
-TEST_F(FilmLayerFilm, MattesRankIdsByCoverage) {
+TEST_F(FilmLayerPlanes, MattesRankIdsByCoverage) {
   test::add_matte(request_, "CryptoObject", {0x3f000000u, 0x40000000u});
   for (int i = 0; i < 3; ++i) add(path_to(1));
   for (int i = 0; i < 2; ++i) add(path_to(0));
@@ -426,7 +424,7 @@ TEST_F(FilmLayerFilm, MattesRankIdsByCoverage) {
   EXPECT_EQ(p.find("CryptoObject03.R"), nullptr);
 }
 
-TEST_F(FilmLayerFilm, SpheresWithOneIdShareARankAndIdZeroHasNone) {
+TEST_F(FilmLayerPlanes, SpheresWithOneIdShareARankAndIdZeroHasNone) {
   test::add_matte(request_, "A", {0x3f000000u, 0x3f000000u});
   test::add_matte(request_, "B", {0, 0});
   add(path_to(1));
@@ -438,7 +436,7 @@ TEST_F(FilmLayerFilm, SpheresWithOneIdShareARankAndIdZeroHasNone) {
 }
 
 /// Memory does not grow with the spheres of an object, except in a deep image.
-TEST_F(FilmLayerFilm, SpheresOfOneClassHaveOneSum) {
+TEST_F(FilmLayerPlanes, SpheresOfOneClassHaveOneSum) {
   test::add_matte(request_, "A", {0x3f000000u, 0x3f000000u});
   request_.matte_classes = std::make_shared<MatteClasses>(MatteClasses{{2, 0}, {0}});
   for (const bool deep : {false, true}) {
@@ -446,26 +444,26 @@ TEST_F(FilmLayerFilm, SpheresOfOneClassHaveOneSum) {
     request_.deep = deep;
     add(path_to(1));
     add(path_to(0));
-    EXPECT_EQ(pixel_.shares.size(), deep ? 2u : 1u);
+    EXPECT_EQ(sums().layers.shares[0].size(), deep ? 2u : 1u);
     EXPECT_EQ(value(picture(), "A00.G"), 1);
   }
 }
 
-TEST_F(FilmLayerFilm, EqualCoverageRanksBySmallerId) {
+TEST_F(FilmLayerPlanes, EqualCoverageRanksBySmallerId) {
   test::add_matte(request_, "A", {0x40000000u, 0x3f000000u});
   add(path_to(0));
   add(path_to(1));
   EXPECT_EQ(value(picture(), "A00.R"), 0.5F);
 }
 
-TEST_F(FilmLayerFilm, CoverageBecomesAlpha) {
+TEST_F(FilmLayerPlanes, CoverageBecomesAlpha) {
   request_.coverage = true;
   add(path_to(0));
   for (int i = 0; i < 3; ++i) add(kernel::PathRecord{});
   EXPECT_EQ(value(picture(), "A"), 0.25F);
 }
 
-TEST_F(FilmLayerFilm, DeepSamplesCompositeToTheFlatPixel) {
+TEST_F(FilmLayerPlanes, DeepSamplesCompositeToTheFlatPixel) {
   request_.deep = true;
   kernel::PathRecord sky;
   std::fill_n(sky.light, 3, 1.0);
@@ -473,8 +471,7 @@ TEST_F(FilmLayerFilm, DeepSamplesCompositeToTheFlatPixel) {
   add(path_to(0, 0.25));
   add(sky);
   picture();
-  ASSERT_EQ(deep_.pixels.size(), 1u);
-  const auto& samples = deep_.pixels[0];
+  const auto& samples = deep_;
   ASSERT_EQ(samples.size(), 3u);
   EXPECT_EQ(samples[0].front, 4);
   EXPECT_EQ(samples[0].back, 6);
@@ -491,14 +488,14 @@ TEST_F(FilmLayerFilm, DeepSamplesCompositeToTheFlatPixel) {
   EXPECT_FLOAT_EQ(color, (0.25F + 2 * 0.5F + 1) / 4);
 }
 
-TEST_F(FilmLayerFilm, ATransparentBackgroundHasNoDeepSample) {
+TEST_F(FilmLayerPlanes, ATransparentBackgroundHasNoDeepSample) {
   request_.deep = request_.coverage = true;
   add(kernel::PathRecord{});
   picture();
-  EXPECT_TRUE(deep_.pixels[0].empty());
+  EXPECT_TRUE(deep_.empty());
 }
 
-TEST_F(FilmLayerFilm, LayersHaveTheirChannelNamesAndKinds) {
+TEST_F(FilmLayerPlanes, LayersHaveTheirChannelNamesAndKinds) {
   request_.z = request_.depth = request_.normal = request_.position = request_.albedo = true;
   request_.diffuse = request_.specular = request_.transmission = request_.background = request_.emission = true;
   request_.variance = request_.samples = request_.object_id = request_.material_id = true;
@@ -518,15 +515,14 @@ TEST_F(FilmLayerFilm, LayersHaveTheirChannelNamesAndKinds) {
 }
 
 /// Halves of two paths each.
-TEST_F(FilmLayerFilm, HalvesAreMeansOfTheirOwnPaths) {
+TEST_F(FilmLayerPlanes, HalvesAreMeansOfTheirOwnPaths) {
   request_.halves = request_.guide_albedo = request_.guide_normal = true;
   const auto one = static_cast<std::int64_t>(1 / kernel::kGuideUnit);
   const kernel::Int128 unit = kernel::to_fixed_point(1);
-  HalfSums &a = halves_[0], &b = halves_[1];
-  a.light = {{3 * unit, 0, 0}, 2};
-  a.guides = {unit / 2, 2, {0, one / 2, 0}, {0, 0, one}};
-  b.light = {{0, 5 * unit, 0}, 1};  // one of its two paths is invalid
-  b.guides = {unit / 8, 2, {one, 0, 0}, {0, 0, -one}};
+  sums().light[0][0] = {{3 * unit, 0, 0}, 2};
+  sums().guides[0][0] = {unit / 2, 2, {0, one / 2, 0}, {0, 0, one}};
+  sums().light[1][0] = {{0, 5 * unit, 0}, 1};  // one of its two paths is invalid
+  sums().guides[1][0] = {unit / 8, 2, {one, 0, 0}, {0, 0, -one}};
   const Picture p = picture();
   EXPECT_EQ(value(p, "half_a.R"), 1.5F);
   EXPECT_EQ(value(p, "half_b.G"), 5);
@@ -540,12 +536,15 @@ TEST_F(FilmLayerFilm, HalvesAreMeansOfTheirOwnPaths) {
   EXPECT_EQ(value(p, "denoise.normal.Z"), 0);
 }
 
-TEST_F(FilmLayerFilm, MergedHalvesAreSums) {
+TEST_F(FilmLayerPlanes, MergedHalvesAreSums) {
   request_.halves = true;
   const kernel::Int128 unit = kernel::to_fixed_point(1);
-  const HalfSums of_one_path{{{unit, unit, unit}, 1}, {unit, 1, {0, 0, 0}, {0, 0, 0}}};
-  halves_[1] = {{{3 * unit, 0, 0}, 1}, {unit / 2, 1, {0, 0, 0}, {0, 0, 0}}};
-  halves_[1] += of_one_path;
+  Partial of_one_path(1, 1, request_);
+  of_one_path.light[1][0] = {{unit, unit, unit}, 1};
+  of_one_path.guides[1][0] = {unit, 1, {0, 0, 0}, {0, 0, 0}};
+  sums().light[1][0] = {{3 * unit, 0, 0}, 1};
+  sums().guides[1][0] = {unit / 2, 1, {0, 0, 0}, {0, 0, 0}};
+  sums().add(of_one_path);
   const Picture p = picture();
   EXPECT_TRUE(std::isnan(value(p, "half_a.R"))) << "without paths there is no mean";
   EXPECT_TRUE(std::isnan(value(p, "half_a.inverse_depth.X")));

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "film/layer_pixel.h"
+#include "film/layer_sums.h"
 
 #include <algorithm>
 #include <array>
@@ -137,79 +137,89 @@ Vec3d normal_of(const kernel::SceneView& scene, const PathRecord& path) {
 
 }  // namespace
 
-void LayerPixel::add(const LayerRequest& request, const kernel::SceneView& scene, const PathRecord& path) {
-  ++weight;
-  if (is_valid(path.light)) {
-    ++lit;
-    for (int k = 0; request.variance && k < 3; ++k) squares[k] += square(path.light[k]);
-  }
+LayerSums::LayerSums(const LayerRequest& request, std::size_t pixels)
+    : light(request.light_cells() * pixels),
+      squares(request.variance ? pixels : 0),
+      normal(request.normal ? pixels : 0),
+      albedo(request.albedo ? pixels : 0),
+      covered(request.coverage ? pixels : 0),
+      hit(request.nearest() ? pixels : 0),
+      depth(hit.size()),
+      z(request.z ? pixels : 0),
+      position(request.position ? pixels : 0),
+      shares(request.deep || !request.mattes.empty() ? pixels : 0) {}
+
+void LayerSums::add(const LayerRequest& request, const kernel::SceneView& scene, std::size_t pixel,
+                    const PathRecord& path) {
+  if (request.variance && is_valid(path.light))
+    for (std::size_t k = 0; k < 3; ++k) squares[pixel][k] += square(path.light[k]);
   const bool hits = path.object != kernel::kNone;
-  Hit hit{};
-  const bool is_candidate = hits && request.nearest() && may_be_nearer(scene, path, depth);
-  if (is_candidate || (hits && request.deep)) hit = locate(scene, path);
+  Hit at{};
+  const double nearest = request.nearest() && hit[pixel] != 0 ? depth[pixel] : std::numeric_limits<double>::infinity();
+  const bool is_candidate = hits && request.nearest() && may_be_nearer(scene, path, nearest);
+  if (is_candidate || (hits && request.deep)) at = locate(scene, path);
   if (request.deep || (hits && !request.mattes.empty())) {
-    SphereCoverage& share = share_of(shares, request.coverage_key(path.object));
+    SphereCoverage& share = share_of(shares[pixel], request.coverage_key(path.object));
     ++share.weight;
     if (request.deep && is_valid(path.light)) add3(share.light, path.light);
-    share.front = std::min(share.front, hits ? hit.z : double{kNothingHit});
-    share.back = std::max(share.back, hits ? hit.exit_z : double{kNothingHit});
+    share.front = std::min(share.front, hits ? at.z : double{kNothingHit});
+    share.back = std::max(share.back, hits ? at.exit_z : double{kNothingHit});
   }
   if (!hits) return;
 
-  ++covered;
+  if (request.coverage) ++covered[pixel];
   if (request.albedo) {
     const double* const constant = scene.materials[scene.object_materials[path.object]].albedo;
     if (scene.features.rich_materials) {
-      add3(albedo, path.albedo);
+      add3(albedo[pixel], path.albedo);
     } else {
-      add3(albedo, constant);
+      add3(albedo[pixel], constant);
     }
   }
   if (request.normal) {
     const Vec3d n = normal_of(scene, path);
-    add3(normal, std::array{n.x, n.y, n.z});
+    add3(normal[pixel], std::array{n.x, n.y, n.z});
   }
-  if (!is_candidate || !(hit.distance < depth)) return;
-  depth = hit.distance;
-  z = hit.z;
-  sphere = path.object;
-  const Vec3d at = base_of(scene, path.object, path.time) + path.offset;
-  position[0] = at.x;
-  position[1] = at.y;
-  position[2] = at.z;
+  if (!is_candidate || !(at.distance < nearest)) return;
+  hit[pixel] = path.object + 1;
+  depth[pixel] = at.distance;
+  if (request.z) z[pixel] = static_cast<float>(at.z);
+  if (!request.position) return;
+  const Vec3d p = base_of(scene, path.object, path.time) + path.offset;
+  position[pixel] = {static_cast<float>(p.x), static_cast<float>(p.y), static_cast<float>(p.z)};
 }
 
-void LayerPixel::add(const LayerRequest& request, const PathRecord& path, const kernel::LightEvent& event) {
-  if (!is_valid(path.light)) return;
-  const std::size_t cell = request.light_cell(event.group, event.lobe);
-  if (cell >= light.size()) light.resize(request.light_cells());
-  add3(light[cell], event.value);
+void LayerSums::add(const LayerRequest& request, std::size_t pixel, const PathRecord& path,
+                    const kernel::LightEvent& event) {
+  if (is_valid(path.light))
+    add3(light[pixel * request.light_cells() + request.light_cell(event.group, event.lobe)], event.value);
 }
 
-void LayerPixel::add(const LayerPixel& other) {
+void LayerSums::add(const LayerSums& other) {
   const auto add_all = [](auto& to, const auto& from) {
-    for (std::size_t k = 0; k < 3; ++k) to[k] += from[k];
+    for (std::size_t i = 0; i < to.size(); ++i)
+      for (std::size_t k = 0; k < 3; ++k) to[i][k] += from[i][k];
   };
-  light.resize(std::max(light.size(), other.light.size()));
-  for (std::size_t i = 0; i < other.light.size(); ++i) add_all(light[i], other.light[i]);
+  add_all(light, other.light);
   add_all(squares, other.squares);
   add_all(normal, other.normal);
   add_all(albedo, other.albedo);
-  weight += other.weight;
-  lit += other.lit;
-  covered += other.covered;
-  for (const SphereCoverage& from : other.shares) {
-    SphereCoverage& to = share_of(shares, from.sphere);
-    to.weight += from.weight;
-    add_all(to.light, from.light);
-    to.front = std::min(to.front, from.front);
-    to.back = std::max(to.back, from.back);
+  for (std::size_t i = 0; i < covered.size(); ++i) covered[i] += other.covered[i];
+  for (std::size_t i = 0; i < shares.size(); ++i)
+    for (const SphereCoverage& from : other.shares[i]) {
+      SphereCoverage& to = share_of(shares[i], from.sphere);
+      to.weight += from.weight;
+      for (std::size_t k = 0; k < 3; ++k) to.light[k] += from.light[k];
+      to.front = std::min(to.front, from.front);
+      to.back = std::max(to.back, from.back);
+    }
+  for (std::size_t i = 0; i < hit.size(); ++i) {
+    if (other.hit[i] == 0 || (hit[i] != 0 && !(other.depth[i] < depth[i]))) continue;
+    hit[i] = other.hit[i];
+    depth[i] = other.depth[i];
+    if (!z.empty()) z[i] = other.z[i];
+    if (!position.empty()) position[i] = other.position[i];
   }
-  if (!(other.depth < depth)) return;
-  depth = other.depth;
-  z = other.z;
-  sphere = other.sphere;
-  std::copy_n(other.position, 3, position);
 }
 
 }  // namespace orrery::film
