@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <bit>
 #include <cstddef>
-#include <functional>
+#include <cstring>
 #include <string>
 #include <type_traits>
 
@@ -17,35 +17,24 @@ namespace {
 
 constexpr std::uint32_t kFormat = 8;
 
-/// Number of words of a number.
+/// Number of words of an element.
 template <class T>
 constexpr std::size_t kWords = sizeof(T) / sizeof(std::uint32_t);
 
-/// Word `w` of a number, least significant first.
-template <class T>
-std::uint32_t word(const T& v, std::size_t w) {
-  if constexpr (kWords<T> == 1) {
-    return std::bit_cast<std::uint32_t>(v);
-  } else if constexpr (kWords<T> == 2) {
-    return static_cast<std::uint32_t>(std::bit_cast<std::uint64_t>(v) >> 32 * w);
-  } else {
-    return static_cast<std::uint32_t>(v >> 32 * w);
-  }
-}
+static_assert(std::endian::native == std::endian::little, "words of a number are stored least significant first");
 
-/// The number of these words.
+/// Word `w` of an element, in the order of memory.
 template <class T>
-T joined(const std::uint32_t* words) {
-  if constexpr (kWords<T> == 1) {
-    return std::bit_cast<T>(words[0]);
-  } else if constexpr (kWords<T> == 2) {
-    return std::bit_cast<T>(std::uint64_t{words[1]} << 32 | words[0]);
-  } else {
-    __extension__ using Unsigned = unsigned __int128;
-    Unsigned v = 0;
-    for (std::size_t w = kWords<T>; w-- > 0;) v = v << 32 | words[w];
-    return static_cast<T>(v);
-  }
+std::uint32_t word(const T& element, std::size_t w) {
+  std::uint32_t out;
+  std::memcpy(&out, reinterpret_cast<const std::byte*>(&element) + w * sizeof(out), sizeof(out));
+  return out;
+}
+/// Leaves a word that has the value already untouched, so that pages without sums stay empty.
+template <class T>
+void set_word(T& element, std::size_t w, std::uint32_t value) {
+  if (word(element, w) == value) return;
+  std::memcpy(reinterpret_cast<std::byte*>(&element) + w * sizeof(value), &value, sizeof(value));
 }
 
 /// Header word of a plane: kConstant is followed by one word for all pixels, kPlane by one word per pixel.
@@ -53,7 +42,7 @@ constexpr std::uint32_t kConstant = 0, kPlane = 1;
 
 constexpr const char* kInconsistent = "its sample data are inconsistent";
 
-/// Appends numbers as 32-bit words, least significant first.
+/// Appends numbers as 32-bit words.
 class Writer {
  public:
   explicit Writer(std::vector<std::uint32_t>& out) : out_(out) {}
@@ -62,9 +51,9 @@ class Writer {
   void number(const T& v) {
     for (std::size_t w = 0; w < kWords<T>; ++w) out_.push_back(word(v, w));
   }
-  /// Appends one number of each of `count` things, as one plane per word of the number.
+  /// Appends `count` elements, as one plane for each of their words.
   template <class At>
-  void numbers(std::size_t count, At at) {
+  void elements(std::size_t count, At at) {
     using T = std::remove_cvref_t<decltype(at(0))>;
     for (std::size_t w = 0; w < kWords<T> && count > 0; ++w) {
       const std::uint32_t first = word(at(0), w);
@@ -96,32 +85,19 @@ class Reader {
   template <class T>
   void number(T& v) {
     need(kWords<T>);
-    v = joined<T>(&in_[at_]);
-    at_ += kWords<T>;
+    for (std::size_t w = 0; w < kWords<T>; ++w) set_word(v, w, in_[at_++]);
   }
   template <class At>
-  void numbers(std::size_t count, At at) {
+  void elements(std::size_t count, At at) {
     using T = std::remove_cvref_t<decltype(at(0))>;
-    if (count == 0) return;
-    const std::uint32_t* planes[kWords<T>];
-    std::size_t steps[kWords<T>];
-    for (std::size_t w = 0; w < kWords<T>; ++w) {
+    for (std::size_t w = 0; w < kWords<T> && count > 0; ++w) {
       std::uint32_t kind = 0;
       number(kind);
       if (kind > kPlane) throw base::Error(base::ErrorKind::kBadData, kInconsistent);
-      steps[w] = kind == kPlane ? 1 : 0;
-      const std::size_t size = kind == kPlane ? count : 1;
+      const std::size_t step = kind == kPlane ? 1 : 0, size = kind == kPlane ? count : 1;
       need(size);
-      planes[w] = &in_[at_];
+      for (std::size_t i = 0; i < count; ++i) set_word(at(i), w, in_[at_ + i * step]);
       at_ += size;
-    }
-    for (std::size_t i = 0; i < count; ++i) {
-      std::uint32_t words[kWords<T>];
-      for (std::size_t w = 0; w < kWords<T>; ++w) {
-        words[w] = *planes[w];
-        planes[w] += steps[w];
-      }
-      at(i) = joined<T>(words);
     }
   }
   /// Resizes an array to as many elements of a pixel as were written, at most `most`.
@@ -143,12 +119,6 @@ class Reader {
   std::size_t at_ = 0;
 };
 
-/// An element of a member that is an array.
-template <class Member>
-auto element(Member member, int k) {
-  return [=](auto& thing) -> auto& { return (thing.*member)[k]; };
-}
-
 /// Reads or writes all numbers of a partial render in file order, except sphere coverage, whose count varies by pixel.
 template <class Io, class P>
 void each_number(Io& io, P& partial) {
@@ -157,63 +127,46 @@ void each_number(Io& io, P& partial) {
   io.number(partial.work.bad_samples);
   io.number(partial.work.seconds);
   const std::size_t pixels = partial.pixel_count();
-  const auto several = [&](std::size_t most, auto& things, auto... ats) {
-    io.extent(things, pixels, most);
-    const std::size_t of_pixel = things.size() / pixels;
-    for (std::size_t k = 0; k < of_pixel; ++k)
-      (io.numbers(
-           pixels, [&, at = ats ](std::size_t i) -> auto& { return std::invoke(at, things[i * of_pixel + k]); }),
-       ...);
+  const auto arrays = [&](std::size_t most, auto&... sums) {
+    const auto array = [&](auto& of_pixels) {
+      io.extent(of_pixels, pixels, most);
+      const std::size_t of_pixel = of_pixels.size() / pixels;
+      for (std::size_t k = 0; k < of_pixel; ++k)
+        io.elements(
+            pixels, [&](std::size_t i) -> auto& { return of_pixels[i * of_pixel + k]; });
+    };
+    (array(sums), ...);
   };
-  const auto array = [&](auto& things, auto... ats) { several(1, things, ats...); };
-  const auto itself = [](auto& v) -> auto& { return v; };
-  const auto value = [](std::size_t k) {
-    return [=](auto& values) -> auto& { return values[k]; };
-  };
-  for (auto& sums : partial.light) {
-    using Sum = kernel::PixelSum;
-    array(sums, element(&Sum::rgb, 0), element(&Sum::rgb, 1), element(&Sum::rgb, 2), &Sum::weight);
-  }
-  for (auto& sums : partial.guides) {
-    using Sum = kernel::GuideSum;
-    array(sums, &Sum::inverse_depth, &Sum::weight, element(&Sum::albedo, 0), element(&Sum::albedo, 1),
-          element(&Sum::albedo, 2), element(&Sum::normal, 0), element(&Sum::normal, 1), element(&Sum::normal, 2));
-  }
-  array(partial.largest, itself);
-  array(partial.counts, itself);
-  array(partial.goals, itself);
   auto& layers = partial.layers;
-  several(base::kMaxLightGroups * kernel::kLobes, layers.light, value(0), value(1), value(2));
-  for (auto* const sums : {&layers.squares, &layers.normal, &layers.albedo}) array(*sums, value(0), value(1), value(2));
-  array(layers.covered, itself);
-  array(layers.hit, itself);
-  array(layers.depth, itself);
-  array(layers.z, itself);
-  array(layers.position, value(0), value(1), value(2));
+  arrays(1, partial.light[0], partial.light[1], partial.guides[0], partial.guides[1]);
+  arrays(1, partial.largest, partial.counts, partial.goals);
+  arrays(base::kMaxLightGroups * kernel::kLobes, layers.light);
+  arrays(1, layers.squares, layers.normal, layers.albedo, layers.covered, layers.hit, layers.depth, layers.z,
+         layers.position);
 }
 
+/// Reads or writes sphere coverage.
 template <class Io, class Shares>
 void each_share_number(Io& io, Shares& shares) {
-  using Share = SphereCoverage;
-  const auto numbers = [&](auto... ats) {
-    (io.numbers(
-         shares.size(), [&, at = ats ](std::size_t i) -> auto& { return std::invoke(at, shares[i]); }),
+  const auto numbers = [&](auto... members) {
+    (io.elements(
+         shares.size(), [&](std::size_t i) -> auto& { return shares[i].*members; }),
      ...);
   };
-  numbers(&Share::sphere, &Share::weight, element(&Share::light, 0), element(&Share::light, 1),
-          element(&Share::light, 2), &Share::front, &Share::back);
+  using Share = SphereCoverage;
+  numbers(&Share::sphere, &Share::weight, &Share::light, &Share::front, &Share::back);
 }
 
 void write_shares(Writer& out, const std::vector<std::vector<SphereCoverage>>& of_pixels) {
   std::vector<SphereCoverage> shares;
   for (const auto& of_pixel : of_pixels) shares.insert(shares.end(), of_pixel.begin(), of_pixel.end());
-  out.numbers(of_pixels.size(), [&](std::size_t i) { return static_cast<std::uint32_t>(of_pixels[i].size()); });
+  out.elements(of_pixels.size(), [&](std::size_t i) { return static_cast<std::uint32_t>(of_pixels[i].size()); });
   each_share_number(out, shares);
 }
 
 void read_shares(Reader& in, std::vector<std::vector<SphereCoverage>>& of_pixels) {
   std::vector<std::uint32_t> counts(of_pixels.size());
-  in.numbers(
+  in.elements(
       counts.size(), [&](std::size_t i) -> auto& { return counts[i]; });
   std::size_t total = 0;
   for (const std::uint32_t n : counts) total += n;

@@ -23,7 +23,7 @@ struct PixelSum {
   typedef Int128 Sum __attribute__((aligned(4)));
 
   Sum rgb[3] = {0, 0, 0};
-  std::uint32_t weight = 0;  ///< number of valid samples
+  std::uint32_t weight = 0;  ///< number of valid samples: of both halves, less than 2^32
 
   PixelSum& operator+=(const PixelSum& other) noexcept {
     for (int c = 0; c < 3; ++c) rgb[c] += other.rgb[c];
