@@ -217,7 +217,7 @@ TEST_F(Info, JsonHoldsTheSameValues) {
   EXPECT_EQ(json["spheres"], 3);
   EXPECT_EQ(json["bounds"]["lower"][0], -0.5);
   EXPECT_EQ(json["radius"]["largest"], 0.5);
-  EXPECT_EQ(json["memory_bytes"]["film"], 24 * 16 * (72 + 8));  // sums and image, counts and goals
+  EXPECT_EQ(json["memory_bytes"]["film"], 24 * 16 * (52 + 4 + 16));  // sums, counts, image
   EXPECT_EQ(json["settings"][0]["key"], "image.width");
 }
 

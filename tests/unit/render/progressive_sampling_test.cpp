@@ -214,7 +214,7 @@ TEST(RenderPixelShard, ShardsAddUpToTheImageAndItsLayers) {
   const compile::CompiledScene compiled = world_of_everything();
   const Settings whole = with_layers();
   for (const int count : {2, 5}) {
-    film::Partial sum(compiled.width, compiled.height);
+    film::Partial sum(compiled.width, compiled.height, whole.layers);
     for (int i = 0; i < count; ++i) {
       for (const std::uint32_t begin : {0u, 6u}) {
         Settings settings = with_layers();
