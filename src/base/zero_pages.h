@@ -53,7 +53,7 @@ struct ZeroPageAllocator {
   }
 };
 
-/// A vector of one size, of elements whose bytes are all zero until they are set.
+/// A vector whose elements are zero until they are set. Its size changes once: elements of an earlier size keep values.
 template <class T>
 using ZeroVector = std::vector<T, ZeroPageAllocator<T>>;
 

@@ -76,7 +76,7 @@ std::vector<PaddedPlane> filtered_guides(SourcePlanes& planes, Frame frame, Tile
   std::vector<PaddedPlane> out;
   for (Values& values : clean) {
     out.push_back(padded(values, frame));
-    values = {};
+    values = Values();  // frees its memory
   }
   return out;
 }
@@ -120,7 +120,7 @@ FilteredHalves filtered_halves(SourcePlanes& planes, const std::vector<PaddedPla
   for (std::size_t c = 0; c < 3; ++c)
     for (const std::size_t half : {2 * c, 2 * c + 1}) {
       (half == 2 * c ? out.a : out.b)[c] = padded(clean[half], frame);
-      clean[half] = {};
+      clean[half] = Values();
     }
   return out;
 }

@@ -97,12 +97,16 @@ class HalfPlanes {
     return counts_.with_one == 0 ? HalfPair{&a, &b, scale} : HalfPair{&filled(a, b), &filled(b, a), scale};
   }
 
-  /// Removes a channel, unless the picture keeps its halves.
+  /// Frees the memory of a channel, unless the picture keeps its halves.
+  ///
+  /// Domain     in the order of of()
   void release(const std::string& end) {
-    filled_.clear();
-    if (keeps_) return;
-    for (const char* half : {"half_a", "half_b"})
-      std::erase_if(picture_.planes, [&](const film::Plane& plane) { return plane.name == half + end; });
+    for (const std::string half : {"half_a", "half_b"}) {
+      if (!filled_.empty()) filled_.pop_front();
+      if (keeps_) continue;
+      for (film::Plane& plane : picture_.planes)
+        if (plane.name == half + end) plane.values = Values();
+    }
   }
 
  private:
@@ -215,8 +219,8 @@ SourcePlanes source_planes(film::Picture& picture, bool keeps_halves) {
     for (std::size_t c = 0; c < 3; ++c) {
       out.a[c] = padded(*halves[c].a, frame);
       out.b[c] = padded(*halves[c].b, frame);
+      half_planes.release(std::string(".") + "RGB"[c]);
     }
-    for (const char* channel : {".R", ".G", ".B"}) half_planes.release(channel);
   } else {
     out.variance = padded(variance_without_halves(picture, has_variance, frame), frame);
     out.missing.push_back(has_planes ? "halves (one half has no samples)" : "halves");

@@ -147,7 +147,7 @@ class AdaptiveSampling {
   /// Renders all pixels up to their goals.
   bool run_iteration() {
     if (!passes_.run(kSide, [this](int x, int y) { update(x, y); })) return false;
-    state_.goals = {};
+    state_.goals = base::ZeroVector<std::uint32_t>();
     // The last iteration counts most, since the pixels that continue are unlike the others. Its time includes choosing
     // them.
     const double seconds = progress_.seconds() - iteration_begin_;

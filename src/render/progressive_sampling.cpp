@@ -174,7 +174,7 @@ bool render_progressively(const compile::CompiledScene& compiled, const Settings
     state.goals.resize(state.pixel_count());
     for (std::size_t i = 0; i < state.goals.size(); ++i) state.goals[i] = owned[i] ? goal : 0;
     const bool completed = passes.run(side_for(goal - done));
-    state.goals = {};  // not needed to resume
+    state.goals = base::ZeroVector<std::uint32_t>();  // not needed to resume; frees its memory
     if (!completed) return false;
     done = goal;
   }

@@ -16,7 +16,7 @@ TEST(BaseZeroPages, ElementsAreZero) {
     v.resize(count);
     EXPECT_EQ(std::count(v.begin(), v.end(), 0u), static_cast<std::ptrdiff_t>(count));
     std::fill(v.begin(), v.end(), 7u);
-    v = {};
+    v = ZeroVector<std::uint32_t>();
     v.resize(count);
     EXPECT_EQ(std::count(v.begin(), v.end(), 0u), static_cast<std::ptrdiff_t>(count));
   }
