@@ -194,20 +194,25 @@ def graft(package, files, stub_of):
     for file in [*files, *folder.iterdir()]:
         renamed = [word for name in needed(file) if name in new_name for word in ("--replace-needed", name, new_name[name])]
         origin = "$ORIGIN/" + os.path.relpath(folder, file.parent)
-        patchelf("--force-rpath", "--set-rpath", origin, *renamed, file)
+        patchelf(*renamed, file)
+        patchelf("--force-rpath", "--set-rpath", origin, file)  # patchelf 0.14 mixes up both in one call
     return found
 
 
 def oldest_glibc(files):
-    """The version of glibc that files need. Exits if they need another library of the system than SYSTEM."""
-    versions = set()
+    """The version of glibc that files need, and with it, as a manylinux tag, all that they expect of the system. Exits if
+    they need another library than SYSTEM, or a later libstdc++ than that of GCC 12."""
+    minors = {"GLIBC_2": {0}, "GLIBCXX_3.4": {0}}
     names = {file.name for file in files}
     for file in files:
         for name in needed(file):
             if name not in names and not SYSTEM.fullmatch(name):
                 sys.exit(f"bundle.py: {file.name} needs {name}, which is not in the wheel")
-        versions |= set(re.findall(r"\bGLIBC_2\.(\d+)", output("objdump", "-p", file)))
-    return max(map(int, versions))
+        for version, minor in re.findall(r"\b(GLIBC_2|GLIBCXX_3\.4)\.(\d+)", output("objdump", "-p", file)):
+            minors[version].add(int(minor))
+    if max(minors["GLIBCXX_3.4"]) > 30:
+        sys.exit("bundle.py: the wheel needs a later libstdc++ than that of GCC 12; build it in Debian 12")
+    return max(minors["GLIBC_2"])
 
 
 def metadata(build):
@@ -218,8 +223,8 @@ def metadata(build):
     lines = [
         "Metadata-Version: 2.1", f"Name: {project['name']}", f"Version: {version}", f"Summary: {project['description']}",
         f"License: {project['license']['text']}", *(f"Author: {author['name']}" for author in project["authors"]),
-        *(f"Keywords: {','.join(project['keywords'])}" for _ in [0]),
-        *(f"Project-URL: {name}, {url}" for name, url in project["urls"].items()),
+        f"Keywords: {','.join(project['keywords'])}",
+        *(f"Project-URL: {name}, {url}" for name, url in project.get("urls", {}).items()),
         *(f"Classifier: {name}" for name in project["classifiers"]), f"Requires-Python: ==3.{python}.*",
         *(f"Requires-Dist: {name}" for name in project["dependencies"]), "Description-Content-Type: text/markdown",
     ]  # fmt: skip

@@ -48,9 +48,11 @@ void export_symbols() {
       dlopen(own.dli_fname, RTLD_NOW | RTLD_NOLOAD | RTLD_GLOBAL) == nullptr)
     throw base::Error(base::ErrorKind::kInternal, "cannot export the symbols of orrery's Python module");
   const std::filesystem::path package = std::filesystem::path(own.dli_fname).parent_path();
-  const std::filesystem::path installed = (package / ORRERY_INSTALLED_MODULES).lexically_normal();
-  const bool is_installed = std::filesystem::exists(installed);
-  base::set_module_folder(is_installed ? installed : (package / ORRERY_BUILT_MODULES).lexically_normal());
+  // In a wheel, the modules are inside the package.
+  for (const char* const folder : {"libexec/orrery", ORRERY_INSTALLED_MODULES, ORRERY_BUILT_MODULES}) {
+    std::filesystem::path modules = (package / folder).lexically_normal();
+    if (std::filesystem::exists(modules)) return base::set_module_folder(std::move(modules));
+  }
 }
 
 /// The text that the program prints for an error, with the names of arguments for those of options.

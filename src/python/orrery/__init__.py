@@ -13,6 +13,7 @@
 The keys of scenes, their units and their defaults are those of scene files (docs/scene-format.md).
 """
 
+from orrery import _processor  # noqa: F401  before the extension module
 from orrery._errors import Error, MissingInputError, OutOfMemoryError, OutputError, SceneError, SceneWarning, UsageError
 from orrery import _keys
 from orrery._keys import *  # noqa: F403
