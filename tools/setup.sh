@@ -42,7 +42,7 @@ install_missing() {
 Install them as root (apt-get install --no-install-recommends $missing) or install sudo, then try again."
     as_root=(sudo)
   fi
-  say "Installing missing packages: $missing"
+  say "Installing missing packages${as_root:+ with sudo}: $missing"
   local log
   log=$(mktemp)
   # A stale index does not matter if the packages can be installed.
@@ -97,19 +97,24 @@ release_version() {
   printf '%s\n' "$version"
 }
 
-# show_progress LOG: writes Ninja's lines to LOG, and shows the percentage and the elapsed time: on a terminal in one line,
-# elsewhere each quarter. A build that takes less than three seconds shows nothing.
+# show_progress LOG: writes Ninja's lines to LOG, and shows the percentage, the elapsed time and, from the pace so far, the
+# remaining minutes: on a terminal in one line, elsewhere each quarter. A build that takes less than three seconds shows
+# nothing.
 show_progress() {
   local line shown=0 begin=$SECONDS
   while IFS= read -r line; do
     printf '%s\n' "$line" >&4
-    if ! [[ "$line" =~ ^\[([0-9]+)/([0-9]+)\] ]] || [ $((SECONDS - begin)) -lt 3 ]; then continue; fi
-    local percent=$((100 * BASH_REMATCH[1] / BASH_REMATCH[2]))
+    local seconds=$((SECONDS - begin))
+    if ! [[ "$line" =~ ^\[([0-9]+)/([0-9]+)\] ]] || [ "$seconds" -lt 3 ]; then continue; fi
+    local done=${BASH_REMATCH[1]} total=${BASH_REMATCH[2]}
+    local percent=$((100 * done / total)) left=$((seconds * (total - done) / (done > 0 ? done : 1)))
+    local remaining=""
+    if [ "$left" -gt 0 ]; then remaining=", about $(((left + 59) / 60)) min left"; fi
     if [ -t 2 ]; then
-      printf '\r%3d %% %d:%02d' "$percent" $(((SECONDS - begin) / 60)) $(((SECONDS - begin) % 60)) >&2
+      printf '\r\033[K%3d %% %d:%02d%s' "$percent" $((seconds / 60)) $((seconds % 60)) "$remaining" >&2
     elif [ $((percent / 25)) -gt "$shown" ]; then
       shown=$((percent / 25))
-      say "  $percent % after $((SECONDS - begin)) s"
+      say "  $percent % after $seconds s$remaining"
     fi
   done 4>"$1"
   if [ -t 2 ] && [ $((SECONDS - begin)) -ge 3 ]; then printf '\r\033[K' >&2; fi
