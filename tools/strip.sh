@@ -1,0 +1,15 @@
+#!/usr/bin/env bash
+# SPDX-License-Identifier: Apache-2.0
+# Makes docs/strip.jpg, the image of README.md, from images of docs/: run it when they have changed. Needs oiiotool
+# (openimageio-tools).
+#
+#   tools/strip.sh
+set -euo pipefail
+cd "$(dirname "${BASH_SOURCE[0]}")/../docs"
+tiles=()
+for picture in gallery/capsomer.jpg gallery/virus-open.jpg gallery/pour.jpg final.jpg; do
+  # Cut to 4:3 about the middle.
+  tiles+=("$picture" --resize 0x330 --cut '440x330+{(TOP.width-440)//2}+0' --origin +0+0 --fullpixels)
+done
+# Attributes hold commands with paths.
+oiiotool --nosoftwareattrib "${tiles[@]}" --mosaic:pad=6 4x1 --eraseattrib '.*' --compression jpeg:85 -o strip.jpg
