@@ -5,7 +5,8 @@
 #
 #   tools/documents.sh [PAGE...]      default: README.md, the pages of docs/, scenes/ and examples/
 #
-# ORRERY is the program; default: build/src/orrery; the Python package is that of the same build. Exit status: 0 if no command fails.
+# ORRERY is the program; default: build/src/orrery; the Python package is that of the same build. Exit status: 0 if no
+# command fails; 77 if the build has no Python package, or this is no git repository.
 #
 # tests/documents/ has the parts: commands.awk finds the commands, rules.sed names those that are not run and why,
 # stand_ins.py writes the data, orrery.sh makes images small. The Python of docs/python.md is tested separately.
@@ -14,6 +15,9 @@ root=$(cd "$(dirname "${BASH_SOURCE[0]}")/.." && pwd)
 ORRERY=$(realpath "${ORRERY:-$root/build/src/orrery}")
 export ORRERY
 parts=$root/tests/documents
+build=$(dirname "$(dirname "$ORRERY")")
+if ! git -C "$root" rev-parse HEAD >/dev/null 2>&1; then echo "skipped: $root is no git repository"; exit 77; fi
+if [ ! -d "$build/lib/python3/dist-packages" ]; then echo "skipped: the build has no Python package"; exit 77; fi
 work=$(mktemp -d)
 trap 'rm -rf "$work"' EXIT
 
@@ -25,7 +29,6 @@ done
 mkdir "$work/bin"
 ln -s "$parts/orrery.sh" "$work/bin/orrery"
 ln -s /usr/bin/python3 "$work/bin/python3" # Debian's, which the package is built for
-build=$(dirname "$(dirname "$ORRERY")")
 export PATH="$work/bin:$PATH" PYTHONPATH=$build/lib/python3/dist-packages PYTHONDONTWRITEBYTECODE=1
 
 ran=0 failed=0 skipped=0

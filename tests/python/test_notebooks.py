@@ -42,12 +42,13 @@ def run_cells(file):
         cells = json.load(text)["cells"]
     names, out = {}, []
     for index, cell in enumerate(cell for cell in cells if cell["cell_type"] == "code"):
-        if cell["outputs"]:
-            raise ValueError(f"{file}: cell {index} has stored outputs")
         module = ast.parse("".join(cell["source"]), f"{file}, cell {index}")
         last = module.body.pop() if isinstance(module.body[-1], ast.Expr) else None
         exec(compile(module, f"{file}, cell {index}", "exec"), names)
         value = None if last is None else eval(compile(ast.Expression(last.value), f"{file}, cell {index}", "eval"), names)
+        has_image = any("image/jpeg" in output.get("data", {}) for output in cell["outputs"])
+        if has_image != isinstance(value, (orrery.Picture, orrery.Movie)):
+            raise ValueError(f"{file}, cell {index}: the stored image is missing or superfluous; run tools/notebooks.py")
         if value is not None:
             out.append(shown(value))
     return out
