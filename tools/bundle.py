@@ -162,7 +162,8 @@ def make_archive(build, archive, work):
         (tree / name).parent.mkdir(parents=True, exist_ok=True)
         shutil.copy(ROOT / name, tree / name)
     (tree / "scenes").symlink_to("share/doc/orrery/scenes")
-    shutil.copy(ROOT / "tools/portable/README", tree)
+    for file in sorted((ROOT / "tools/portable").iterdir()):
+        shutil.copy(file, tree)
 
     def entry(info):
         info.uid = info.gid = 0
