@@ -26,6 +26,8 @@ constexpr double kMargin = 1, kBarThickness = 0.3, kTextGap = 0.4, kMiddle = 0.3
 /// Font sizes in the height of the image, and smallest font.
 constexpr double kFontShare = 32;
 constexpr double kSmallestFont = 9;
+/// Font size in print, inches: 8 points.
+constexpr double kPrintFont = 8.0 / 72;
 /// Names in a legend; the others are counted.
 constexpr std::size_t kMaxLabels = 20;
 /// Width of the texts of a legend, in widths of the image; of a letter, in font sizes; and fewest letters that are
@@ -103,6 +105,19 @@ std::string field_text(const std::string& field, int frame, const scene::HeaderN
   }
 }
 
+/// The labels of particles, and letters beyond the tips of the axes that `plot --axes` draws.
+std::vector<scene::Label> labels_of(const scene::Scene& scene) {
+  constexpr std::string_view kAxis = "axis_";
+  constexpr double kBeyond = 0.3;  // in lengths of an axis
+  std::vector<scene::Label> out;
+  for (const scene::Rod& rod : scene.rods)
+    if (rod.name.starts_with(kAxis))
+      out.push_back({rod.to + (rod.to - rod.from) * kBeyond, rod.name.substr(kAxis.size())});
+  for (const scene::Points& points : scene.points)
+    out.insert(out.end(), points.placed_labels.begin(), points.placed_labels.end());
+  return out;
+}
+
 }  // namespace
 
 std::string title_of(const std::string& title, int frame, const scene::HeaderNumbers& header) {
@@ -148,24 +163,32 @@ LegendColors legend_of(const scene::Scene& scene, const std::string& ocio) {
 
 Drawing drawing_of(const scene::Scene& scene, const LegendColors& legend, const View& view) {
   const scene::Annotation& annotation = scene.annotation;
-  const double size = std::max(kSmallestFont, std::round(view.height / kFontShare)), margin = kMargin * size;
-  const bool has_labels = std::any_of(scene.points.begin(), scene.points.end(),
-                                      [](const scene::Points& points) { return !points.placed_labels.empty(); });
+  const double automatic = scene.image.dpi > 0 ? kPrintFont * scene.image.dpi : view.height / kFontShare;
+  const double size = annotation.font_size > 0 ? annotation.font_size : std::max(kSmallestFont, std::round(automatic));
+  const double margin = kMargin * size;
+  const std::vector<scene::Label> labels = view.project ? labels_of(scene) : std::vector<scene::Label>();
   Drawing out;
   out.width = view.width;
   out.height = view.height;
   out.ink = ink_over(scene.background);
   out.outline_px = annotation.outline;
-  if (!annotation.title.empty() || annotation.scale_bar || annotation.color_bar || has_labels)
+  if (!annotation.title.empty() || annotation.scale_bar || annotation.color_bar || !labels.empty())
     out.font = image::font_file(font_of(scene, view));
+  // The legend is below a title and above a scale bar at its side.
+  const bool is_left = annotation.color_at.ends_with("left"), is_top = annotation.color_at.starts_with("top");
+  const double above = is_left && !annotation.title.empty() ? 2 * size : 0;
+  const double below = is_left && annotation.scale_bar ? 2 * size : 0;
   Drawing bar;
   if (annotation.color_bar && !legend.is_empty()) {
     const auto most_bytes =
         static_cast<std::size_t>(std::max(kLegendWidth * view.width / (kLetterWidth * size), kFewestLetters));
-    bar = legend_drawing(legend, {size, view.height - 2 * margin, kMaxLabels, most_bytes, out.ink}, out.font);
+    LegendColors titled = legend;
+    if (!annotation.color_title.empty()) titled.title = annotation.color_title;
+    bar = legend_drawing(titled, {size, view.height - 2 * margin - above - below, kMaxLabels, most_bytes, out.ink},
+                         out.font);
   }
   if (!annotation.title.empty()) {
-    const double beside = bar.is_empty() ? 0 : bar.width + margin;
+    const double beside = bar.is_empty() || is_left || !is_top ? 0 : bar.width + margin;
     out.texts.push_back(fitted(title_of(scene, view.frame), view.width - 2 * margin - beside, size, out.font));
   }
   if (annotation.scale_bar && scene.camera.width) {
@@ -175,11 +198,12 @@ Drawing drawing_of(const scene::Scene& scene, const LegendColors& legend, const 
     out.boxes.push_back({margin, top, margin + width, bottom, out.ink});
     out.texts.push_back({scene::number_text(*annotation.scale_bar) + unit, margin, top - kTextGap * size, size, 0});
   }
-  if (!bar.is_empty()) place(bar, view.width - margin - bar.width, margin, out);
-  for (const scene::Points& points : scene.points)
-    for (const scene::Label& label : points.placed_labels)
-      if (const auto at = view.project(label.at))
-        out.labels.push_back({label.text, at->first, at->second + kMiddle * size, size, 0.5});
+  if (!bar.is_empty())
+    place(bar, is_left ? margin : view.width - margin - bar.width,
+          is_top ? margin + above : view.height - margin - below - bar.height, out);
+  for (const scene::Label& label : labels)
+    if (const auto at = view.project(label.at))
+      out.labels.push_back({label.text, at->first, at->second + kMiddle * size, size, 0.5});
   return out;
 }
 

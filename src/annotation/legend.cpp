@@ -24,7 +24,7 @@ namespace {
 
 // Lengths in font sizes.
 constexpr double kTitleHeight = 1.5, kTitleBaseline = 0.8, kColorWidth = 1, kBarHeight = 12, kColorGap = 0.4,
-                 kTickLength = 0.3, kLineWidth = 0.06, kPatchPitch = 1.5, kMiddleOfText = 0.36;
+                 kTickLength = 0.3, kLineWidth = 0.06, kPatchPitch = 1.5, kMiddleOfText = 0.36, kTickPitch = 1.1;
 
 /// Of legends in files, px. Screens and papers show SVG at its own size.
 constexpr double kSvgFont = 14, kImageFont = 28;
@@ -52,7 +52,7 @@ class LegendLayout {
     const double height = std::max(1.0, std::min(kBarHeight * em_, style_.height_px - y_ - em_));
     add_frame(right, height);
     out_.bars.push_back({0, y_, right, y_ + height, colors.bar});
-    for (const Tick& tick : ticks_of(scale)) {
+    for (const Tick& tick : ticks_of(scale, std::max(0.1, kTickPitch * em_ / height))) {
       const double y = y_ + height * (1 - scale.share_of(tick.value)), end = right + kTickLength * em_;
       out_.boxes.push_back({right, y - line_ / 2, end, y + line_ / 2, out_.ink});
       add_text(tick.label, end + kColorGap * em_, y + kMiddleOfText * em_);
@@ -142,6 +142,7 @@ void LegendColors::add(const scene::Points& frame, const std::vector<Vec3d>& pal
   const scene::PointsColor& key = frame.color;
   title = !key.column.empty() ? key.column : key.element.empty() ? "type" : "element";
   for (std::size_t i = 0; i < std::min(palette.size(), frame.color_names.size()); ++i) {
+    if (frame.color_names[i].empty()) continue;
     const auto [label, is_new] = labels.try_emplace(frame.color_names[i], palette[i]);
     has_conflict = has_conflict || (!is_new && label->second != palette[i]);
   }

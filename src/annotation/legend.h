@@ -25,14 +25,16 @@ struct Tick {
 /// All labels are fixed ("0.25"), or, if the range reaches 1e6 or is below 1e-3, scientific with a common exponent
 /// ("0.5e-7").
 ///
+/// `least`    least distance of ticks, as a share of the range
 /// Domain     finite ends in any order
-/// Result     4 to 11 ascending ticks; one if the ends are equal or too close to be distinguished; the ends if their
+/// Result     by default 4 to 11 ascending ticks; one if the ends are equal or too close to be distinguished; the ends
+/// if their
 ///            difference is not finite
-std::vector<Tick> nice_ticks(double first, double last);
+std::vector<Tick> nice_ticks(double first, double last, double least = 0.1);
 
 /// Returns the ticks of a scale: nice_ticks(), or on a logarithmic one of at least a decade powers of ten, with their
 /// double and fivefold on less than three decades.
-std::vector<Tick> ticks_of(const points::ValueScale& scale);
+std::vector<Tick> ticks_of(const points::ValueScale& scale, double least = 0.1);
 
 /// Orders numbers by value, before other strings.
 struct LabelOrder {

@@ -13,8 +13,6 @@ namespace orrery::annotation {
 
 namespace {
 
-/// Ticks are at least this share of the range apart.
-constexpr double kMinShare = 0.1;
 /// Numbers from this size on, and ranges below the second, have an exponent.
 constexpr double kLargestFixed = 1e6, kSmallestFixed = 1e-3;
 /// Smaller ranges have one tick, because the spacing of doubles would be visible.
@@ -33,16 +31,16 @@ std::string shortest_text(double value) {
 
 }  // namespace
 
-std::vector<Tick> nice_ticks(double first, double last) {
+std::vector<Tick> nice_ticks(double first, double last, double least) {
   const double low = std::min(first, last), high = std::max(first, last);
   const double size = std::max(std::abs(low), std::abs(high)), range = high - low;
   if (!std::isfinite(range)) return {{low, shortest_text(low)}, {high, shortest_text(high)}};
   const bool is_fixed = size == 0 || (size >= kSmallestFixed && size < kLargestFixed);
   if (!(range > std::max(kMinRange, kMinRelativeRange * size))) return {{low, shortest_text(low)}};
-  int exponent = exponent_of(range * kMinShare);
+  int exponent = exponent_of(range * least);
   double digit = 1;
   for (const double larger : {2.0, 5.0, 10.0}) {
-    if (digit * std::pow(10, exponent) >= range * kMinShare * (1 - 1e-9)) break;
+    if (digit * std::pow(10, exponent) >= range * least * (1 - 1e-9)) break;
     digit = larger;
   }
   if (digit == 10) {
@@ -68,18 +66,18 @@ std::vector<Tick> nice_ticks(double first, double last) {
   return out;
 }
 
-std::vector<Tick> ticks_of(const points::ValueScale& scale) {
+std::vector<Tick> ticks_of(const points::ValueScale& scale, double least) {
   const double low = std::min(scale.first(), scale.last()), high = std::max(scale.first(), scale.last());
   constexpr double kTiny = 1e-9;  // relative; ends may be rounded
   const double decades = scale.is_log() ? std::log10(high / low) : 0;
-  if (!(decades >= 1 - kTiny) || !std::isfinite(decades)) return nice_ticks(scale.first(), scale.last());
-  constexpr double kMaxTicks = 8;
-  const int step = static_cast<int>(std::ceil(decades / kMaxTicks));
+  if (!(decades >= 1 - kTiny) || !std::isfinite(decades)) return nice_ticks(scale.first(), scale.last(), least);
+  const double most_ticks = std::min(8.0, std::max(1.0, 1 / least));
+  const int step = static_cast<int>(std::ceil(decades / most_ticks));
   std::vector<Tick> out;
   for (int exponent = exponent_of(low); exponent <= exponent_of(high * (1 + kTiny)); ++exponent) {
     if (exponent % step != 0) continue;
     for (const int digit : {1, 2, 5}) {
-      if (digit > 1 && decades >= 3) continue;
+      if (digit > 1 && (decades >= 3 || 3 * decades > most_ticks)) continue;
       // The closest double; 0 if there is none.
       const double value = base::number_of<double>(fmt::format("{}e{}", digit, exponent)).value_or(0);
       if (value >= low * (1 - kTiny) && value <= high * (1 + kTiny)) out.push_back({value, shortest_text(value)});

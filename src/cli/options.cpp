@@ -30,6 +30,7 @@ void SceneOptions::add_to(Command& command, Short forms) {
   };
   add("--width", "image.width", "N", "Image width in pixels");
   add("--height", "image.height", "N", "Image height in pixels");
+  add("--dpi", "image.dpi", "X", "Resolution in print, in pixels per inch, e.g. 300: PNG, TIFF and JPEG carry it");
   if (forms == Short::kSize) return;
   add("--samples", "render.samples", "N", "Samples per pixel");
   add("--precision", "render.precision", "NAME", "Arithmetic: exact, fast or book");

@@ -77,6 +77,7 @@ struct EncodedPicture {
   bool is_srgb = false;               ///< the values are sRGB codes
   std::vector<std::uint16_t> values;  ///< width * height * channels, row by row from the top, R G B or R G B A
   int channels = 3;                   ///< 3, or 4 with straight (unpremultiplied) alpha
+  double dpi = 0;                     ///< px per inch in print; 0: not known
 };
 
 /// Radiance and coverage of one sphere, or of the background, in a pixel.

@@ -34,6 +34,7 @@ struct Header {
   std::vector<Attribute> attributes;
   std::vector<Attribute>
       matte_attributes;    ///< Cryptomatte metadata; written to the first part and to the parts of the mattes
+  double dpi = 0;          ///< px per inch in print, of display formats; 0: not known
   std::string stamp = {};  ///< hash of everything that determines the image; see kStampName
 };
 

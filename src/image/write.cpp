@@ -69,6 +69,11 @@ ImageSpec encoded_spec(const film::EncodedPicture& picture, const std::string& s
   if (!stamp.empty()) spec.attribute("ImageDescription", fmt::format("{} {}", kStampName, stamp));
   if (picture.channels > 3) spec.attribute("oiio:UnassociatedAlpha", 1);  // else OpenImageIO divides by alpha
   if (picture.is_srgb) spec.attribute("oiio:ColorSpace", "sRGB");
+  if (picture.dpi > 0) {
+    spec.attribute("XResolution", static_cast<float>(picture.dpi));
+    spec.attribute("YResolution", static_cast<float>(picture.dpi));
+    spec.attribute("ResolutionUnit", "in");
+  }
   return spec;
 }
 

@@ -37,12 +37,14 @@ film::EncodedPicture develop_annotated(const film::Picture& picture, const annot
   return out;
 }
 
-void DisplayWriter::write(const std::filesystem::path& file, const std::string& software, const std::string& stamp) {
+void DisplayWriter::write(const std::filesystem::path& file, const std::string& software, const std::string& stamp,
+                          double dpi) {
   const bool keeps_alpha = picture_.is_transparent && image::holds_alpha(image::format_of(file));
   const display::Alpha alpha = keeps_alpha ? display::Alpha::kStraight : display::Alpha::kOverBlack;
   if (image::format_of(file) == image::Format::kSvg) return write_svg(file, alpha);
   std::optional<film::EncodedPicture>& developed = keeps_alpha ? with_alpha_ : over_black_;
   if (!developed) developed = develop_annotated(picture_, drawing_, settings_, bits_, alpha);
+  developed->dpi = dpi;
   image::write_encoded(file, *developed, software, stamp);
 }
 
@@ -81,7 +83,7 @@ image::WriteReport write_outputs(const Outputs& outputs, const display::Settings
   };
   const auto write = [&](const std::filesystem::path& output, image::Format format) {
     if (image::is_display_format(format)) {
-      developed.write(output, header.software, header.stamp);
+      developed.write(output, header.software, header.stamp, header.dpi);
     } else if (format == image::Format::kHdr) {
       add(image::write_hdr(output, picture));
     } else {

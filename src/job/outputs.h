@@ -106,8 +106,10 @@ class DisplayWriter {
 
   /// Writes a file in the display format of its extension.
   ///
+  /// `dpi`      resolution in print, px per inch; 0: not known
   /// Errors     those of display::develop, image::write_encoded and base::write_text_file
-  void write(const std::filesystem::path& file, const std::string& software, const std::string& stamp = {});
+  void write(const std::filesystem::path& file, const std::string& software, const std::string& stamp = {},
+             double dpi = 0);
 
  private:
   void write_svg(const std::filesystem::path& file, display::Alpha alpha) const;

@@ -104,6 +104,7 @@ image::Header picture_header(const load::ReadResult& read, const compile::Compil
                              const JobReport& report, bool reproducible) {
   image::Header header;
   header.software = "orrery " + program_version();
+  header.dpi = read.scene.image.dpi;
   const CameraMatrices matrices = camera_matrices(read.scene.camera, read.scene.image);
   header.world_to_camera = matrices.world_to_camera;
   header.world_to_ndc = matrices.world_to_ndc;

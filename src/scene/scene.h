@@ -38,6 +38,7 @@ struct Image {
   double pixel_aspect = 1;          ///< pixel width divided by pixel height
   std::optional<Window> crop = {};  ///< rendered window; default: the whole frame
   int overscan = 0;                 ///< px rendered beyond each edge of the frame
+  double dpi = 0;                   ///< px per inch in print; 0: not known
 
   /// Returns the rendered window.
   Window data_window() const {
@@ -212,11 +213,12 @@ using ColorsByType = std::vector<std::pair<std::string, Vec3d>>;
 /// Radii of the spheres of a points file, set by one of `value`, `column`, `element` and `types`; if none is set, those
 /// in the file.
 struct PointsRadius {
-  std::optional<double> value;  ///< radius of every sphere, scene units
-  std::string column;           ///< name of a column
-  std::string element;          ///< "vdw", "covalent" or "ball"
-  NumbersByType types;          ///< scene units
-  double scale = 1;             ///< multiplies column and element radii
+  std::optional<double> value;     ///< radius of every sphere, scene units
+  std::string column;              ///< name of a column
+  std::string element;             ///< "vdw", "covalent" or "ball"
+  NumbersByType types;             ///< scene units
+  double scale = 1;                ///< multiplies column and element radii
+  std::vector<std::string> where;  ///< "CONDITION: NUMBER"; the last that matches decides
   bool operator==(const PointsRadius&) const = default;
 };
 
@@ -231,11 +233,13 @@ struct PointsColor {
   std::optional<Interval> range;   ///< range of the column's values; default: that of the selected spheres
   bool log = false;                ///< the map is linear in the logarithms of the values
   Vec3d nan_color{0.5, 0.5, 0.5};  ///< colour of NaN values
-  std::string element;             ///< "jmol"
+  std::string element;             ///< "jmol" or "soft"
+  std::string carbon;              ///< with `element`: carbon atoms are coloured by this column and the map
   ColorsByType types;
-  bool rgb = false;  ///< the file's colours
+  bool rgb = false;                ///< the file's colours
+  std::vector<std::string> where;  ///< "CONDITION: COLOUR"; the last that matches decides
 
-  bool is_set() const { return has_legend() || rgb; }
+  bool is_set() const { return has_legend() || rgb || !where.empty(); }
   /// True if each colour stands for a value, a type or an element.
   bool has_legend() const { return !column.empty() || !element.empty() || !types.empty(); }
   bool has_map_file() const { return is_file_name(map); }
@@ -317,10 +321,11 @@ struct PointsKeys {
   PointsBonds bonds;
   PointsVectors vectors;
   PointsOpacity opacity;
-  std::string select;        ///< condition on columns; empty: all
-  Vec3d replicate{1, 1, 1};  ///< number of periodic boxes along each box edge
-  bool unwrap = false;       ///< unwrap coordinates with the periodic image flags of the file
-  std::string assembly;      ///< biological assembly; empty: the file's own atoms
+  std::vector<std::string> representation;  ///< "CONDITION: KIND" or "KIND"; the last that matches decides
+  std::string select;                       ///< condition on columns; empty: all
+  Vec3d replicate{1, 1, 1};                 ///< number of periodic boxes along each box edge
+  bool unwrap = false;                      ///< unwrap coordinates with the periodic image flags of the file
+  std::string assembly;                     ///< biological assembly; empty: the file's own atoms
   PointsTransform transform;
   std::array<std::optional<Interval>, 3> clip = {};  ///< keeps spheres with centres in these intervals of x, y and z
   std::string material_column = "material";          ///< indices into Scene::materials, in PLY files; empty: none
@@ -338,6 +343,7 @@ struct PointsSpheres {
   std::vector<std::uint16_t> colors = {};     ///< one per centre, index into `palette`; empty: the material's colour
   /// One per centre; below 0: that of the material. Empty: PointsOpacity::value, or that of the material, for all.
   std::vector<float> opacities = {};
+  std::vector<std::uint8_t> are_traces = {};  ///< one per centre: its bonds have `trace_radius`; empty: none
   std::vector<SphereBond> bond_pairs = {};
   std::vector<BondStub> bond_stubs = {};
   PointArray sphere_vectors = {};  ///< one per centre, while arrows are to be added
@@ -345,7 +351,7 @@ struct PointsSpheres {
   /// Bytes of the spheres and bonds.
   std::size_t bytes() const {
     return centers.bytes() + radii.bytes() + materials.size() * sizeof(materials[0]) +
-           colors.size() * sizeof(colors[0]) + bond_pairs.size() * sizeof(bond_pairs[0]) +
+           colors.size() * sizeof(colors[0]) + are_traces.size() + bond_pairs.size() * sizeof(bond_pairs[0]) +
            bond_stubs.size() * sizeof(bond_stubs[0]) + opacities.size() * sizeof(opacities[0]);
   }
 };
@@ -355,21 +361,23 @@ using HeaderNumbers = std::vector<std::pair<std::string, double>>;
 
 /// What else the data of a points table determine: it is kept when the spheres are released.
 struct PointsFindings {
-  std::vector<Vec3d> palette = {};            ///< colours that replace those of the material
-  std::size_t palette_rec709 = 0;             ///< leading colours that are linear Rec.709; others are in Color::space
-  std::vector<std::string> color_names = {};  ///< of the colours in `palette`, if they represent types or elements
-  std::optional<Interval> color_range = {};   ///< range of the colour map, if there is one
-  bool has_nan_color = false;                 ///< values without a colour in the map have the last one of `palette`
-  std::vector<std::string> unused = {};       ///< unused columns of the file, such as colours
-  HeaderNumbers header = {};                  ///< numbers of the frame's header, e.g. its `step`
-  std::vector<Label> placed_labels = {};      ///< those of PointsKeys::labels
-  std::size_t arrow_count = 0;                ///< number of arrows; their shafts are the last of `bond_pairs`
-  std::size_t arrow_spheres = 0;              ///< number of spheres of their heads, after all others
-  double rms_vector = 0;                      ///< root mean square length of the vectors, times their scale
+  std::vector<Vec3d> palette = {};  ///< colours that replace those of the material
+  std::size_t palette_rec709 = 0;   ///< leading colours that are linear Rec.709; others are in Color::space
+  /// Of the colours in `palette`, if they represent types or elements; empty: that of a condition.
+  std::vector<std::string> color_names = {};
+  std::optional<Interval> color_range = {};  ///< range of the colour map, if there is one
+  bool has_nan_color = false;                ///< values without a colour in the map have the last one of `palette`
+  std::vector<std::string> unused = {};      ///< unused columns of the file, such as colours
+  HeaderNumbers header = {};                 ///< numbers of the frame's header, e.g. its `step`
+  std::vector<Label> placed_labels = {};     ///< those of PointsKeys::labels
+  std::size_t arrow_count = 0;               ///< number of arrows; their shafts are the last of `bond_pairs`
+  std::size_t arrow_spheres = 0;             ///< number of spheres of their heads, after all others
+  double rms_vector = 0;                     ///< root mean square length of the vectors, times their scale
   std::vector<std::uint32_t> objects = {};  ///< with `cryptomatte`: indices into `object_names`, of centres, then stubs
   std::vector<std::string> object_names = {};  ///< ".A", appended to the name of the table
   std::string bonds_from = {};                 ///< resolved PointsBonds::from; empty: bonds are not drawn
-  double bond_radius = 0;                      ///< of the rods of all bonds, scene units
+  double bond_radius = 0;                      ///< of the rods of bonds, scene units
+  double trace_radius = 0;                     ///< of the rods of traces, scene units
   bool spheres_are_rows = true;  ///< sphere i is row i of the file: no selection, sorting, copying or clipping
 };
 
@@ -378,6 +386,10 @@ struct Points : PointsKeys, PointsSpheres, PointsFindings {
   /// Number of spheres without those of arrows.
   std::size_t particle_count() const { return centers.size() - arrow_spheres; }
   /// Number of rods of the bonds and arrows.
+  /// Radius of the bonds of a sphere.
+  double bond_radius_of(std::size_t sphere) const {
+    return !are_traces.empty() && are_traces[sphere] != 0 ? trace_radius : bond_radius;
+  }
   std::size_t bond_count() const { return bond_pairs.size() + bond_stubs.size(); }
   std::size_t bytes() const { return PointsSpheres::bytes() + objects.size() * sizeof(objects[0]); }
   /// Calls `f` with each array that has a value of each sphere and is not empty, except centres, radii and vectors.
@@ -392,6 +404,7 @@ struct Points : PointsKeys, PointsSpheres, PointsFindings {
     visit(colors);
     visit(opacities);
     visit(objects);
+    visit(are_traces);
   }
   /// Frees the memory of the spheres and bonds.
   void release_spheres() { static_cast<PointsSpheres&>(*this) = {}; }
@@ -440,12 +453,15 @@ struct Color {
 
 /// Text, scales and lines over the image: burnt into display formats, and a layer of EXR files.
 struct Annotation {
-  std::string title;                ///< at the top left; {EXPRESSION} of frame and header numbers becomes its value
-  std::optional<double> scale_bar;  ///< length, scene units
-  std::string unit;                 ///< of the scale bar, as text
-  bool color_bar = false;           ///< the colours of the first coloured points table
-  double outline = 0;               ///< width of the outlines of objects, px; 0: none
-  std::filesystem::path font;       ///< name or file; empty: DejaVu Sans
+  std::string title;                   ///< at the top left; {EXPRESSION} of frame and header numbers becomes its value
+  std::optional<double> scale_bar;     ///< length, scene units
+  std::string unit;                    ///< of the scale bar, as text
+  bool color_bar = false;              ///< the colours of the first coloured points table
+  std::string color_title;             ///< title of the colour bar; empty: the column
+  std::string color_at = "top right";  ///< corner of the colour bar
+  double font_size = 0;                ///< px; 0: depends on the image
+  double outline = 0;                  ///< width of the outlines of objects, px; 0: none
+  std::filesystem::path font;          ///< name or file; empty: DejaVu Sans
 
   /// True if something is drawn.
   bool is_set() const { return !title.empty() || scale_bar || color_bar || outline > 0; }

@@ -34,7 +34,14 @@ Table image_table() {
                &Image::crop)),
        integer("overscan", {0, kWidestOverscan},
                {"Rows and columns to render beyond each edge of the image. Cannot be combined with `crop`", "px", cost},
-               &Image::overscan)});
+               &Image::overscan),
+       changes(
+           Part::kOutput,
+           otherwise("none",
+                     number("dpi", {1, 10000, false, false},
+                            {"Resolution in print, which PNG, TIFF and JPEG files carry. Texts are 8 points high then",
+                             "px per inch"},
+                            &Image::dpi)))});
 }
 
 Table camera_table() {
@@ -222,6 +229,12 @@ Table annotation_table() {
        text("unit", {"Text after the length of the scale bar, e.g. `nm`"}, &Annotation::unit),
        boolean("color_bar", {"Legend of the first points table that is coloured by a column, type or element"},
                &Annotation::color_bar),
+       text("color_title", {"Title of the colour bar, e.g. `Speed (m/s)`. Default: the column"},
+            &Annotation::color_title),
+       choice("color_at", {"top right", "bottom right", "top left", "bottom left"}, {"Corner of the colour bar"},
+              &Annotation::color_at),
+       otherwise("a 32nd of the height, or with `image.dpi` 8 points; at least 9",
+                 number("font_size", {4, 1000}, {"Height of the texts", "px"}, &Annotation::font_size)),
        number("outline", {0, kWidestOutline},
               {"Width of the outlines of objects, drawn at discontinuities of the depth. 0: none. Drawn as at shutter "
                "open, without a lens",

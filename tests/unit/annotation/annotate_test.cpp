@@ -205,5 +205,81 @@ TEST_F(AnnotationAnnotate, MissingFontsAndGlyphsAreReported) {
   EXPECT_THROW(drawing(), base::Error);
 }
 
+TEST_F(AnnotationAnnotate, LegendsHaveATitleAndACorner) {
+  scene.points.emplace_back().color.column = "q";
+  scene.points[0].palette = {{0, 0, 0}, {1, 1, 1}};
+  scene.points[0].color_range = scene::Interval{0, 1};
+  scene.annotation.color_bar = true;
+  scene.annotation.title = "Title";
+  scene.annotation.scale_bar = 10;
+  scene.annotation.color_title = "Speed (m/s)";
+  const double right = line("Speed (m/s)").x, top = line("Speed (m/s)").y;
+  EXPECT_GT(right, 200);
+  scene.annotation.color_at = "bottom left";
+  EXPECT_LT(line("Speed (m/s)").x, right);
+  EXPECT_GT(line("Speed (m/s)").y, top);
+  EXPECT_LT(line("0.0").y, line("10").y) << "above the scale bar";
+  scene.annotation.color_at = "top left";
+  EXPECT_GT(line("Speed (m/s)").y, line("Title").y) << "below the title";
+}
+
+/// In all corners and sizes, the boxes of the scale bar and of the legend are apart.
+TEST_F(AnnotationAnnotate, BarsDoNotOverlap) {
+  scene.points.emplace_back().color.column = "q";
+  scene.points[0].palette = {{0, 0, 0}, {1, 1, 1}};
+  scene.points[0].color_range = scene::Interval{0, 1};
+  scene.annotation.color_bar = true;
+  scene.annotation.scale_bar = 10;
+  for (const auto& [width, height] : {std::pair(200, 120), std::pair(160, 90), std::pair(1920, 1080)})
+    for (const char* corner : {"top right", "bottom right", "top left", "bottom left"}) {
+      view.width = width;
+      view.height = height;
+      scene.annotation.color_at = corner;
+      const std::vector<Box> boxes = covered_by(drawing());
+      const auto overlap = [](const Box& a, const Box& b) {
+        return a.left < b.right && b.left < a.right && a.top < b.bottom && b.top < a.bottom;
+      };
+      const Drawing all = drawing();
+      const Box scale = all.boxes.front();  // the scale bar is drawn first
+      for (const Box& box : boxes) {
+        EXPECT_GE(box.left, 0) << corner << width;
+        EXPECT_LE(box.right, width) << corner << width;
+        EXPECT_GE(box.top, 0) << corner << width;
+        EXPECT_LE(box.bottom, height) << corner << width;
+      }
+      for (const Bar& bar : all.bars)
+        EXPECT_FALSE(overlap(scale, {bar.left, bar.top, bar.right, bar.bottom, {}})) << corner << width;
+    }
+}
+
+TEST_F(AnnotationAnnotate, TicksOfASmallLegendAreApart) {
+  scene.points.emplace_back().color.column = "q";
+  scene.points[0].palette = {{0, 0, 0}, {1, 1, 1}};
+  scene.points[0].color_range = scene::Interval{0, 10};
+  scene.annotation.color_bar = true;
+  view.width = 200;
+  view.height = 120;
+  std::vector<image::TextLine> ticks = drawing().texts;
+  std::sort(ticks.begin(), ticks.end(), [](const auto& a, const auto& b) { return a.y < b.y; });
+  ASSERT_GE(ticks.size(), 3u);
+  for (std::size_t i = 1; i < ticks.size(); ++i) EXPECT_GE(ticks[i].y - ticks[i - 1].y, ticks[i].size_px);
+}
+
+TEST_F(AnnotationAnnotate, TextsHaveTheirSizeInPrint) {
+  scene.annotation.title = "T";
+  EXPECT_EQ(line("T").size_px, 10);
+  scene.image.dpi = 300;
+  EXPECT_EQ(line("T").size_px, 33) << "8 points";
+  scene.annotation.font_size = 20;
+  EXPECT_EQ(line("T").size_px, 20);
+}
+
+TEST_F(AnnotationAnnotate, AxesHaveLetters) {
+  scene.rods.push_back({{10, 10, 0}, {20, 10, 0}, 1, {}, "axis_x"});
+  EXPECT_GT(line("x").x, 20);
+  scene.rods[0].name = "box";
+  EXPECT_TRUE(drawing().labels.empty());
+}
+
 }  // namespace
 }  // namespace orrery::annotation

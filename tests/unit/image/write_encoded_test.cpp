@@ -45,6 +45,19 @@ TEST_F(ImageWriteEncoded, LosslessFormatsKeepEveryLevel) {
   for (const char* name : {"a.png", "a.tif"}) EXPECT_LT(round_trip(name, test_encoded(61, 43, 16)), 0.01) << name;
 }
 
+TEST_F(ImageWriteEncoded, FilesCarryTheResolutionInPrint) {
+  film::EncodedPicture picture = test_encoded(61, 43, 8);
+  picture.dpi = 300;
+  for (const char* name : {"a.png", "a.tif", "a.jpg"}) {
+    write_encoded(folder_ / name, picture, "orrery");
+    const auto file = OIIO::ImageInput::open((folder_ / name).string());
+    ASSERT_TRUE(file) << name;
+    const float scale = file->spec().get_string_attribute("ResolutionUnit") == "cm" ? 2.54F : 1;
+    EXPECT_NEAR(file->spec().get_float_attribute("XResolution") * scale, 300, 0.1) << name;
+    EXPECT_NEAR(file->spec().get_float_attribute("YResolution") * scale, 300, 0.1) << name;
+  }
+}
+
 TEST_F(ImageWriteEncoded, LargeImagesRoundTrip) {
   // Larger than all buffers. Regression test: a TIFF lost its directory at this size.
   film::EncodedPicture picture = test_encoded(700, 500, 8);
