@@ -17,27 +17,40 @@
 #include "base/available_memory.h"
 #include "base/error.h"
 #include "base/frames.h"
+#include "base/image_limits.h"
 #include "base/text.h"
 #include "job/job.h"
 #include "plot/range.h"
-#include "points/sources.h"
+#include "points/color_map.h"
+#include "points/rules.h"
 #include "scene/limits.h"
 #include "scene/value_text.h"
 
 namespace orrery::cli {
 namespace {
 
+/// Adds a rule "CONDITION: VALUE" of an option to those before it.
+///
+/// `parse`    value of a text; throws base::Error
+/// Result     false if the text has no condition
+template <class T>
+bool add_rule(const char* option, const std::string& text, T (*parse)(const std::string&),
+              std::vector<std::string>& rules) {
+  if (points::end_of_expression(text) == std::string::npos) return false;
+  try {
+    parse(points::split_rule(text).second);
+  } catch (const base::Error& error) {
+    base::refuse(fmt::format("{}: {}", option, error.what()));
+  }
+  rules.push_back(text);
+  return true;
+}
+
 /// Adds an --opacity to those before it. One without a condition matches all particles, so that it replaces them.
 void read_opacity(const std::string& text, scene::PointsOpacity& opacity) {
-  if (text.find(':') != std::string::npos) {
-    try {
-      points::parse_opacity_rule(text);
-    } catch (const base::Error& error) {
-      base::refuse(std::string("--opacity: ") + error.what());
-    }
-    if (opacity.value) opacity.where.push_back(scene::number_text(*opacity.value));
+  if (add_rule("--opacity", text, points::parse_opacity, opacity.where)) {
+    if (opacity.value) opacity.where.insert(opacity.where.end() - 1, scene::number_text(*opacity.value));
     opacity.value.reset();
-    opacity.where.push_back(text);
     return;
   }
   opacity = {};
@@ -49,6 +62,8 @@ void read_opacity(const std::string& text, scene::PointsOpacity& opacity) {
 }
 
 void read_radius(const std::string& text, scene::PointsRadius& radius) {
+  if (add_rule("--radius", text, points::parse_radius, radius.where)) return;
+  radius.column.clear();
   radius.value = base::number_of<double>(text);
   if (!radius.value) {
     radius.column = text;
@@ -57,6 +72,14 @@ void read_radius(const std::string& text, scene::PointsRadius& radius) {
   if (!(*radius.value > 0) || !std::isfinite(*radius.value)) base::refuse("--radius: must be above 0");
   if (radius.scale != 1)
     base::refuse("--radius-scale applies to radii of the data; scale the number in --radius instead");
+}
+
+/// Adds a --representation to those before it. One without a condition matches all particles, so that it replaces them.
+void read_representation(const std::string& text, plot::PlotOptions& plot) {
+  std::vector<std::string>& rules = plot.points.representation;
+  if (add_rule("--representation", text, points::parse_representation, rules)) return;
+  rules.clear();
+  plot.representation = points::parse_representation(text);
 }
 
 /// The number of a frame, from 1; below 0 it is counted from the end.
@@ -93,11 +116,25 @@ std::pair<int, double> slice_of(const std::string& text) {
 void add_view_options(Command& command, plot::PlotOptions& plot) {
   const OptionGroup group(command, kViewOptions);
   command
-      .add_option("--look-from", plot.look_from, "VIEW",
-                  "View: iso, +x, -x, +y, -y, +z, -z, or azimuth and elevation in degrees, e.g. 30,20; default: iso")
-      ->details("iso: from 45 degrees to the right of the front and 35.26 degrees above.");
+      .add_option(
+          "--look-from", plot.look_from, "VIEW",
+          "View: auto, iso, +x, -x, +y, -y, +z, -z, or azimuth and elevation in degrees; default: auto or 30,20")
+      ->details(
+          "auto, the default for molecules: along the direction in which they are least extended. 30,20, the default "
+          "for "
+          "others: from 30 degrees to the right of the front and 20 degrees above; with one --slice: from its axis. "
+          "iso: "
+          "45 and 35.26 degrees.");
   command.add_option("--zoom", plot.zoom, "X", "Magnification, relative to the view that shows all; default: 1")
       ->check(real_number(1e-3, 1e6));
+  command.add_option("--fit", plot.fit, "CONDITION",
+                     "Fit the camera to the particles that match, e.g. 'within 5 of (residue HEM)'");
+  command
+      .add_option("--near", plot.near, "X",
+                  "Remove the particles that are more than X in front of those of --fit or --center")
+      ->check(real_number(0, scene::kLargestLength));
+  command.add_option("--far", plot.far, "X", "Remove the particles that are more than X behind them")
+      ->check(real_number(0, scene::kLargestLength));
   command.add_option("--center", plot.center, "CONDITION",
                      "Look at the middle of the particles that match, e.g. 'residue == \"HEM\"'");
   command
@@ -123,6 +160,28 @@ void read_scale_bar(const std::string& text, scene::Annotation& annotation) {
   annotation.scale_bar = length;
   if (unit != end && *unit == ' ') ++unit;
   annotation.unit.assign(unit, end);
+}
+
+/// Sets the size of the image from its width in print and its resolution.
+void set_print_width(const std::string& text, SceneOptions& scene) {
+  if (text.empty()) return;
+  const load::Overrides overrides = scene.overrides();
+  double length = 0;
+  const char* const end = text.data() + text.size();
+  const std::string unit(std::from_chars(text.data(), end, length).ptr, end);
+  const double inches = unit == "in" ? 1 : unit == "cm" ? 1 / 2.54 : unit == "mm" ? 1 / 25.4 : 0;
+  if (!(length > 0) || inches == 0)
+    base::refuse(fmt::format("--print-width: `{}` is not a length; write e.g. 8.5cm, 85mm or 3.3in", text));
+  const std::optional<double> dpi = overrides.number("image.dpi");
+  if (!dpi) base::refuse("--print-width: the number of pixels depends on the resolution; add --dpi, e.g. --dpi 300");
+  if (overrides.sets("image.width")) base::refuse("--print-width and --width exclude each other");
+  const double width = length * inches * *dpi;
+  if (!(width >= 1 && width <= base::kLargestSide))
+    base::refuse(fmt::format("--print-width {} at {} dpi is {:.0f} pixels; it must be 1 to {}", text, *dpi, width,
+                             base::kLargestSide));
+  scene.set(fmt::format("image.width={:.0f}", width));
+  constexpr double kAspect = 16.0 / 9;  // that of the default size
+  if (!overrides.sets("image.height")) scene.set(fmt::format("image.height={:.0f}", std::max(1.0, width / kAspect)));
 }
 
 /// Parses --bonds, except none and auto.
@@ -178,7 +237,12 @@ void DataArguments::add_to(Command& command, plot::DataOptions& data, const std:
   command.add_flag("--skip-bad", points.skip_bad, "Skip rows with non-finite coordinates or radii")
       ->details("Otherwise they are an error.");
   const OptionGroup look(command, kLookOptions);
-  command.add_option("--radius", radius, "X|COLUMN", "Radius: a number, or a column of radii; default: from the file");
+  command
+      .add_option(
+          "--radius", radius, "X|COLUMN|CONDITION:X",
+          "Radius: a number, a column of radii, or of those that match, e.g. 'type == 2: 0.5'; default: from the "
+          "file; can be repeated")
+      ->repeatable();
   command
       .add_option("--radius-scale", points.radius.scale, "X",
                   "Scale factor for radii of the data and for the default radius, e.g. 0.5 for a column of diameters")
@@ -189,15 +253,23 @@ void DataArguments::add_to(Command& command, plot::DataOptions& data, const std:
       ->details("In angstrom.")
       ->choices({"vdw", "covalent", "ball"});
   command
-      .add_option("--color-by", data.color_by, "COLUMN",
-                  "Colour by a column, an expression such as 'sqrt(vx^2+vy^2)', element, type, rgb or none")
+      .add_option(
+          "--color-by", data.color_by, "COLUMN",
+          "Colour by a column, an expression such as 'sqrt(vx^2+vy^2)', element, type, chain+element, rgb or none")
       ->details(
-          "rgb: the file's own colours. none: one colour. The default depends on the file. Expressions have the "
+          "COLUMN+element: by element, but carbon atoms by the column. rgb: the file's own colours. none: one colour. "
+          "The default depends on the file. Expressions have the "
           "operators and functions of conditions.");
+  command
+      .add_option("--color", data.points.color.where, "CONDITION:COLOR",
+                  "Colour of those that match, e.g. 'residue HEM: red' or 'id == 5: #ffaa00'; can be repeated")
+      ->repeatable();
+  command.add_option("--carbon", data.points.color.carbon, "COLUMN",
+                     "With --color-by element: colour carbon atoms by a column, e.g. chain");
   map = command
             .add_option("--map,--colormap", points.color.map, "MAP",
                         "Colour map, e.g. viridis, fast, coolwarm, viridis_r for the reverse, or a file")
-            ->details("docs/data.md lists the maps. The default is fast, for types and strings tab10.");
+            ->details("docs/data.md lists the maps. The default is fast, for types and strings set2.");
   command
       .add_option("--range", range, "RANGE",
                   "Values at both ends of the colour map, e.g. 0:12, 1%:99%, log, symmetric; default: 0%:100%")
@@ -220,7 +292,8 @@ void DataArguments::read(plot::DataOptions& data) const {
   if (!frames.empty() && !data.all_frames) data.frames = base::parse_frames(frames);
   data.has_map = map->count() > 0;
   scene::PointsKeys& points = data.points;
-  if (!radius.empty()) read_radius(radius, points.radius);
+  for (const std::string& text : points.color.where) points::parse_color(points::split_rule(text).second);
+  for (const std::string& text : radius) read_radius(text, points.radius);
   for (const std::string& text : opacity) read_opacity(text, points.opacity);
   if (!replicate.empty()) points.replicate = copies_of(replicate);
   if (!range.empty()) {
@@ -236,12 +309,16 @@ void PlotArguments::add_look_to(Command& command) {
   add_view_options(command, options);
   const OptionGroup group(command, kLookOptions);
   command
-      .add_option("--representation", look_.representation, "KIND",
-                  "Particles as spheres, ball-and-stick or sticks, the latter two with bonds; default: spheres")
+      .add_option(
+          "--representation", look_.representation, "KIND|CONDITION:KIND",
+          "Particles as spheres, ball-and-stick, sticks, trace or points, or those that match, e.g. 'residue HEM: "
+          "sticks'; default: spheres; can be repeated")
       ->details(
           "ball-and-stick: a quarter of the van der Waals radii, or without elements half the default radius. sticks: "
-          "spheres have the radius of the bonds.")
-      ->choices(plot::representation_names());
+          "spheres have the radius of the bonds. trace: a tube along the C-alpha or phosphorus atoms of PDB and mmCIF "
+          "files, the default for files of these atoms alone. points: spheres of the radius of bonds. The last that "
+          "matches a particle decides.")
+      ->repeatable();
   command
       .add_option(
           "--bonds", look_.bonds, "SOURCE",
@@ -276,7 +353,7 @@ void PlotArguments::add_look_to(Command& command) {
       ->choices(plot::quality_names());
   command
       .add_option("--material", options.material, "MATERIAL",
-                  "Material of the spheres: matte, plastic, metal or glass; default: matte")
+                  "Material of the spheres: matte, plastic, metal or glass; default: plastic with rods, else matte")
       ->details("plastic: matte with a soft highlight. metal: brushed. glass: clear, without colours.")
       ->choices(plot::material_names());
   command.add_flag("--allow-empty", options.allow_empty,
@@ -296,6 +373,16 @@ void PlotArguments::add_annotations_to(Command& command) {
   command.add_option("--scale-bar", look_.scale_bar, "LENGTH",
                      "Scale bar: auto, or a length, with a unit to be shown, e.g. '20 nm'; not with --perspective");
   command.add_flag("--color-bar", annotation.color_bar, "Legend of the colours in the image");
+  command.add_option("--color-title", annotation.color_title, "TEXT",
+                     "Title of the legend, e.g. 'Speed (m/s)'; implies --color-bar; default: the column");
+  command.add_option("--color-at", annotation.color_at, "CORNER", "Corner of the legend; default: 'top right'")
+      ->choices({"top right", "bottom right", "top left", "bottom left"});
+  command
+      .add_option("--font-size", annotation.font_size, "PX",
+                  "Height of all texts in pixels; default: a 32nd of the image, with --dpi 8 points")
+      ->check(real_number(4, 1000));
+  command.add_option("--print-width", look_.print_width, "LENGTH",
+                     "Width in print, e.g. 8.5cm, 85mm or 3.3in: with --dpi, it sets the width in pixels");
   command
       .add_option("--label", options.points.labels, "CONDITION: TEXT",
                   "Label the middle of the particles that match, e.g. 'id == 5: Fe'; can be repeated")
@@ -305,12 +392,14 @@ void PlotArguments::add_annotations_to(Command& command) {
   command.add_option("--font", annotation.font, "FONT", "Name or file of the font; default: DejaVuSans");
 }
 
-void PlotArguments::read(const SceneOptions& scene, const job::Job& job) {
+void PlotArguments::read(SceneOptions& scene, const job::Job& job) {
   plot::PlotOptions& plot = options;
+  set_print_width(look_.print_width, scene);
+  plot.annotation.color_bar = plot.annotation.color_bar || !plot.annotation.color_title.empty();
   plot.style = plot::style_of(look_.style);
   plot.quality = plot::quality_of(look_.quality);
-  if (!look_.background.empty()) plot.background = plot::color_of(look_.background);
-  plot.representation = plot::representation_of(look_.representation).value_or(plot.representation);
+  if (!look_.background.empty()) plot.background = points::parse_color(look_.background);
+  for (const std::string& text : look_.representation) read_representation(text, plot);
   std::istringstream columns(look_.vectors);
   for (std::string column; std::getline(columns, column, ',');) plot.points.vectors.columns.push_back(column);
   read_scale_bar(look_.scale_bar, plot.annotation);
@@ -324,6 +413,8 @@ void PlotArguments::read(const SceneOptions& scene, const job::Job& job) {
            {!annotation.title.empty(), "--title", "annotation.title"},
            {annotation.scale_bar.has_value(), "--scale-bar", "annotation.scale_bar"},
            {annotation.color_bar, "--color-bar", "annotation.color_bar"},
+           {!annotation.color_title.empty(), "--color-title", "annotation.color_title"},
+           {annotation.font_size != 0, "--font-size", "annotation.font_size"},
            {annotation.outline != 0, "--outline", "annotation.outline"},
            {!annotation.font.empty(), "--font", "annotation.font"},
            {plot.vfov_deg.has_value(), "--perspective", "camera.vfov"}})

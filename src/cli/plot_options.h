@@ -14,8 +14,8 @@ namespace orrery::cli {
 
 /// Arguments of the data options that need further parsing.
 struct DataArguments {
-  std::string frame, frames, radius, range, replicate;
-  std::vector<std::string> select, slice, opacity;
+  std::string frame, frames, range, replicate;
+  std::vector<std::string> select, slice, opacity, radius;
   const Option* map = nullptr;
 
   /// Adds FILE and the options that all commands on data files share. Values go to `data`, or to this and then to
@@ -44,13 +44,15 @@ class PlotArguments {
 
   /// Sets the members of the options that DataArguments::read() leaves, except those for outputs. Called after it.
   ///
+  /// `scene`    receives the size of --print-width
   /// Errors     base::Error(kUsage)
-  void read(const SceneOptions& scene, const job::Job& job);
+  void read(SceneOptions& scene, const job::Job& job);
 
  private:
   /// Arguments that need further parsing; empty: not set.
   struct {
-    std::string style, quality, representation, bonds, vectors, background, scale_bar;
+    std::string style, quality, bonds, vectors, background, scale_bar, print_width;
+    std::vector<std::string> representation;
   } look_;
 };
 

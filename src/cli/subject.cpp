@@ -55,10 +55,11 @@ view::Subject data_subject(ShownOptions& shown, const FilmSettings* film) {
   out.chosen["--map"] = color.map;
   if (color.range)
     out.chosen["--range"] = fmt::format("{}{}:{}", color.log ? "log," : "", color.range->low, color.range->high);
-  out.chosen["--representation"] = plot::representation_names()[static_cast<std::size_t>(plot.representation)];
+  out.chosen["--representation"] = plot::representation_names()[static_cast<std::size_t>(
+      plot.representation.value_or(plot::Representation::kSpheres))];
   out.chosen["--bonds"] = made.points.bonds.are_drawn ? "auto" : "none";
   out.chosen["--style"] = plot::style_names()[static_cast<std::size_t>(plot.style.value_or(plot::Style::kStudio))];
-  out.chosen["--material"] = plot.material;
+  out.chosen["--material"] = made.material;
   if (plot.quality || made.noise)
     out.chosen["--quality"] =
         plot::quality_names()[static_cast<std::size_t>(plot.quality.value_or(plot::Quality::kGood))];

@@ -75,8 +75,10 @@ view::Controls controls_of(const std::filesystem::path& file) {
   out.options["--background"] = {"white", "black", "grey"};
   out.options["--scale-bar"] = {"auto"};
   for (const char* option :
-       {"--ground", "--opacity", "--box", "--axes", "--vectors", "--range", "--select", "--slice", "--radius-scale",
-        "--frame", view::kAllFrames, "--perspective", "--center", "--title", "--color-bar", "--label", "--outline"})
+       {"--ground",       "--opacity",      "--box",         "--axes",     "--vectors",   "--range",     "--select",
+        "--slice",        "--radius-scale", "--radius",      "--color",    "--carbon",    "--look-from", "--fit",
+        "--near",         "--far",          "--color-title", "--color-at", "--font-size", "--dpi",       "--frame",
+        view::kAllFrames, "--perspective",  "--center",      "--title",    "--color-bar", "--label",     "--outline"})
     out.options[option] = {};
   return out;
 }

@@ -108,17 +108,18 @@ void set_rods(const scene::Scene& scene, CompiledScene& compiled) {
   auto first = static_cast<std::uint32_t>(scene.spheres.size());  // sphere of the points table
   for (const scene::Points& points : scene.points) {
     for (const scene::BondStub& stub : points.bond_stubs)
-      add(points.centers[stub.sphere], stub.end, points.bond_radius);
+      add(points.centers[stub.sphere], stub.end, points.bond_radius_of(stub.sphere));
     const auto radius = static_cast<std::uint32_t>(compiled.bond_radii.size());
     for (std::size_t i = 0; i < points.bond_pairs.size(); ++i) {
       stop.check(i);
       auto [a, b] = points.bond_pairs[i];
       if (is_reversed(points.centers[a], points.centers[b])) std::swap(a, b);
-      compiled.bonds.push_back({first + a, first + b, radius});
+      const bool is_trace = !points.are_traces.empty() && points.are_traces[a] != 0;
+      compiled.bonds.push_back({first + a, first + b, radius + (is_trace ? 1 : 0)});
     }
     compiled.stub_counts.push_back(points.bond_stubs.size());
     compiled.bond_counts.push_back(points.bond_pairs.size());
-    compiled.bond_radii.push_back(points.bond_radius);
+    compiled.bond_radii.insert(compiled.bond_radii.end(), {points.bond_radius, points.trace_radius});
     first += static_cast<std::uint32_t>(points.centers.size());
   }
 }

@@ -35,7 +35,7 @@ struct CompiledScene : kernel::SceneSettings {
   /// With ordered ends: [[rod]] tables, then each [[rods]] file, then the stubs of bonds of each points table.
   std::vector<kernel::Rod> rods;
   std::vector<kernel::Bond> bonds;               ///< of each points table; in ids, they follow `rods`
-  std::vector<double> bond_radii;                ///< one per points table
+  std::vector<double> bond_radii;                ///< two per points table: of bonds and of traces
   std::vector<std::size_t> rod_file_sizes;       ///< number of rods of each file
   std::vector<std::size_t> stub_counts;          ///< number of stubs of bonds of each points table
   std::vector<std::size_t> bond_counts;          ///< number of bonds of each points table, without those in stubs

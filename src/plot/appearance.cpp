@@ -11,6 +11,7 @@
 
 #include "base/error.h"
 #include "base/text.h"
+#include "data/columns.h"
 #include "plot/plot.h"
 #include "plot/range.h"
 #include "points/bonds.h"
@@ -25,10 +26,17 @@ using scene::number_text;
 
 /// Colour map of numbers, and of categories.
 constexpr const char* kMap = "fast";
-constexpr const char* kCategoricalMap = "tab10";
+constexpr const char* kCategoricalMap = "set2";
+
+/// Colours by element, but of carbons by the column before this.
+constexpr const char* kWithElements = "+element";
 
 /// Atoms from which colours by element are noise, and chains are shown instead.
 constexpr std::uint64_t kManyAtoms = 5000;
+
+/// Neighbours at the distance of covalent bonds, of an atom on average: fewer in molecules, more in metals, salts and
+/// other networks, in which van der Waals radii would bury all but the surface.
+constexpr double kNetworkCoordination = 2.5;
 
 /// Radius of the spheres of a ball-and-stick model or of sticks without elements, as a fraction of that of spheres;
 /// radius of sticks between elements, in the unit of the file.
@@ -56,6 +64,7 @@ class Appearance {
     // Determining the radius from the spacing requires reading the file, so the colour options are checked first.
     const std::vector<std::string> color_choices = choose_color();
     name_components();
+    choose_representation();
     if (!points_.vectors.columns.empty() && options_.material == "glass")
       base::refuse("--vectors: arrows of glass are not supported; use another --material");
     choose_radius();
@@ -90,22 +99,42 @@ class Appearance {
 
   void chose(const std::string& what, const std::string& why) { choices_.push_back(fmt::format("{}: {}", what, why)); }
 
+  /// Atoms of a trace alone are drawn as one. Representations of some particles leave the radii of the others.
+  void choose_representation() {
+    std::vector<std::string>& rules = points_.representation;
+    if (options_.representation) {
+      representation_ = *options_.representation;
+    } else if (rules.empty() && points_.vectors.columns.empty() && data::has_column(info_.columns, "name") &&
+               data::has_column(info_.columns, "residue_number") && !info_.roles.chain.empty()) {
+      const std::vector<std::string> names = data_.distinct_values(points_, "name");
+      if (names == std::vector<std::string>{"CA"} || names == std::vector<std::string>{"P"}) {
+        representation_ = Representation::kTrace;
+        chose("representation trace", "all atoms are " + names[0] + " atoms; --representation spheres shows them");
+      }
+    }
+    const bool has_keys = representation_ == Representation::kTrace || representation_ == Representation::kPoints;
+    if (!has_keys && rules.empty()) return;
+    if (representation_ != Representation::kSpheres)
+      rules.insert(rules.begin(), representation_names()[static_cast<std::size_t>(representation_)]);
+    representation_ = Representation::kSpheres;
+  }
+
   void choose_radius() {
     scene::PointsRadius& radius = points_.radius;
     if (radius.value || !radius.column.empty() || !radius.element.empty() || !radius.types.empty()) return;
     const bool has_elements = !info_.roles.element.empty();
-    const bool is_spheres = options_.representation == Representation::kSpheres;
-    const bool is_sticks = options_.representation == Representation::kSticks;
+    const bool is_spheres = representation_ == Representation::kSpheres;
+    const bool is_sticks = representation_ == Representation::kSticks;
     const bool has_arrows = !points_.vectors.columns.empty() && is_spheres;
     const double fraction = has_arrows   ? kArrowSphereFraction
                             : is_spheres ? 1
                             : is_sticks  ? kStickFraction
                                          : kBallFraction;
-    const std::string why =
-        has_arrows   ? fmt::format(", times {} beside arrows", number_text(fraction))
-        : is_spheres ? ""
-                     : fmt::format(", times {} for {}", number_text(fraction),
-                                   representation_names()[static_cast<std::size_t>(options_.representation)]);
+    const std::string why = has_arrows ? fmt::format(", times {} beside arrows", number_text(fraction))
+                            : is_spheres
+                                ? ""
+                                : fmt::format(", times {} for {}", number_text(fraction),
+                                              representation_names()[static_cast<std::size_t>(representation_)]);
     if (is_sticks && has_elements) {
       radius.value = rounded(kStickRadius * radius.scale);
       chose("radius " + number_text(*radius.value), "that of sticks");
@@ -118,6 +147,7 @@ class Appearance {
             (info_.roles.radius_scale == 1 ? "a column of radii" : "a column of diameters, halved") + why);
     } else if (has_elements) {
       const bool is_full = is_spheres && !has_arrows;
+      if (is_full && data_.mean_coordination(points_) > kNetworkCoordination) return choose_network_radius();
       radius.element = is_full ? "vdw" : "ball";
       chose("radius " + radius.element,
             is_full ? "van der Waals radii of the elements" : "a quarter of the van der Waals radii of the elements");
@@ -133,18 +163,32 @@ class Appearance {
     }
   }
 
+  /// Chooses the radius of atoms that have many neighbours.
+  void choose_network_radius() {
+    scene::PointsRadius& radius = points_.radius;
+    const double distance = measured(false).spacing;
+    const std::string why = "a metal, a salt or another network, which van der Waals radii would bury";
+    if (distance > 0 && data_.distinct_values(points_, info_.roles.element).size() == 1) {
+      radius.value = rounded(distance / 2 * radius.scale);
+      chose("radius " + number_text(*radius.value), "half the median distance to the nearest neighbour; " + why);
+    } else {
+      radius.element = "covalent";
+      chose("radius covalent", "covalent radii of the elements; " + why);
+    }
+  }
+
   /// Sticks have one radius, that of spheres and bonds. The radius of bonds between spheres with a column of radii is
   /// that between all of them, whatever is selected; of sticks, their mean radius.
   void choose_bonds() {
     scene::PointsBonds& bonds = points_.bonds;
-    bonds.are_drawn = options_.bonds.value_or(options_.representation != Representation::kSpheres);
-    if (bonds.are_drawn && options_.representation == Representation::kSticks) bonds.radius = points_.radius.value;
+    bonds.are_drawn = options_.bonds.value_or(representation_ != Representation::kSpheres);
+    if (bonds.are_drawn && representation_ == Representation::kSticks) bonds.radius = points_.radius.value;
     const scene::PointsRadius& radius = points_.radius;
     const bool varies = !radius.value && radius.element.empty() && radius.types.empty();
     if (!bonds.are_drawn || bonds.radius || !varies || !info_.roles.element.empty()) return;
     if (const double mean = measured(true).mean_radius; mean > 0)
-      bonds.radius = rounded(
-          options_.representation == Representation::kSticks ? mean : points::bond_radius(info_, bonds, {mean}));
+      bonds.radius =
+          rounded(representation_ == Representation::kSticks ? mean : points::bond_radius(info_, bonds, {mean}));
   }
 
   /// Arrows of a root mean square vector are somewhat longer than the distance to the nearest neighbour. All frames
@@ -174,7 +218,7 @@ class Appearance {
   std::vector<std::string> choose_color() {
     scene::PointsColor& color = points_.color;
     const data::Roles& roles = info_.roles;
-    std::string by = options_.color_by;
+    std::string by = options_.color_by.empty() && !color.carbon.empty() ? "element" : options_.color_by;
     std::string why;
     std::vector<std::string> out;
     const bool is_glass = options_.material == "glass";
@@ -185,7 +229,8 @@ class Appearance {
       const bool is_assembly = !options_.points.assembly.empty();
       const bool has_many = may_be_chain && !is_assembly && shown_count() >= kManyAtoms;
       const bool by_chain =
-          may_be_chain && (is_assembly || has_many || (!roles.element.empty() && data_.has_one_element(points_)));
+          may_be_chain && (is_assembly || has_many ||
+                           (!roles.element.empty() && data_.distinct_values(points_, roles.element).size() == 1));
       by = is_glass                 ? "none"
            : !roles.rgb[0].empty()  ? "rgb"
            : by_chain               ? roles.chain
@@ -199,6 +244,11 @@ class Appearance {
             : is_assembly                     ? "an assembly; --color-by element shows elements"
             : has_many                        ? "many atoms; --color-by element shows elements"
                                               : "all atoms are of one element; --color-by element shows it";
+      if (may_be_chain && by == "element" && color.carbon.empty() &&
+          data_.distinct_values(points_, roles.chain).size() > 1) {
+        by = roles.chain + kWithElements;
+        why = "several chains; --color-by element shows elements alone";
+      }
       out.push_back(fmt::format("{}: {}", by == "none" ? "no colour" : "colour by " + by, why));
     }
     if (set_color(options_, by, info_, color))
@@ -213,6 +263,7 @@ class Appearance {
   }
 
   const PlotOptions& options_;
+  Representation representation_ = Representation::kSpheres;  ///< of all particles
   const DataFrames& data_;
   const data::FrameInfo& info_;
   scene::PointsKeys& points_;
@@ -226,21 +277,25 @@ bool set_color(const DataOptions& options, const std::string& color_by, const da
                scene::PointsColor& color) {
   const data::Roles& roles = info.roles;
   const bool is_type = color_by == "type", has_range = options.range.is_set || options.points.color.range;
+  const bool has_elements = color_by.ends_with(kWithElements);
+  if (has_elements) color.carbon = color_by.substr(0, color_by.size() - std::string_view(kWithElements).size());
+  if (color.carbon == "chain" && !roles.chain.empty()) color.carbon = roles.chain;
   if (color_by == "rgb" && data::find_named(info.columns, "rgb") == nullptr)
     color.rgb = true;
-  else if (color_by == "element" && !options.has_map)
-    color.element = "jmol";
+  else if (has_elements || (color_by == "element" && (!options.has_map || !color.carbon.empty())))
+    color.element = "soft";
   else if (color_by != "none")
     color.column = is_type && !roles.type.empty()                    ? roles.type
                    : color_by == "element" && !roles.element.empty() ? roles.element
                                                                      : color_by;
-  if (color.column.empty() && (options.has_map || has_range))
+  const std::string& mapped = color.element.empty() ? color.column : color.carbon;
+  if ((mapped.empty() && options.has_map) || (color.column.empty() && has_range))
     base::refuse(std::string(options.has_map ? "--map" : "--range") +
                  " has nothing to map: the colours are not those of a column; add --color-by COLUMN");
-  const bool is_chosen = !color.column.empty() && !options.has_map;
+  const bool is_chosen = !mapped.empty() && !options.has_map;
   if (is_chosen)
-    color.map = is_type || (is_group(color.column, info.roles) && !has_range) ||
-                        points::type_of(info, color.column) == data::ColumnType::kText
+    color.map = is_type || !color.carbon.empty() || (is_group(mapped, info.roles) && !has_range) ||
+                        points::type_of(info, mapped) == data::ColumnType::kText
                     ? kCategoricalMap
                     : kMap;
   const auto map = points::find_color_map(color.map);

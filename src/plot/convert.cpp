@@ -153,7 +153,8 @@ class Converter {
     has_radius_ = radius.value || !radius.column.empty() || !radius.element.empty() || !roles.radius.empty();
     if (!has_radius_) radius.value = 1;
     if (!options.color_by.empty()) set_color(options, options.color_by, data_.info(), keys_.color);
-    for (const auto& plane : options.slices) slice(plane, view_axes("iso", data_.info().z_up ? "z" : "y"), keys_);
+    for (const auto& plane : options.slices)
+      slice(plane, view_axes(kDefaultView, data_.info().z_up ? "z" : "y"), keys_);
   }
 
   void run(const std::function<void(const ConvertedFile&)>& written) {

@@ -181,10 +181,41 @@ Measures DataFrames::measures(const scene::PointsKeys& keys, bool of_spacing, bo
   return out;
 }
 
-bool DataFrames::has_one_element(const scene::PointsKeys& keys) const {
+std::vector<std::string> DataFrames::distinct_values(const scene::PointsKeys& keys, const std::string& column) const {
   scene::PointsKeys all_particles = everything(keys);
-  all_particles.color.element = "jmol";
-  return load(described_, all_particles).points.color_names.size() == 1;
+  all_particles.color.column = column;
+  all_particles.color.map = "set2";
+  return load(described_, all_particles).points.color_names;
+}
+
+double DataFrames::mean_coordination(const scene::PointsKeys& keys) const {
+  constexpr std::size_t kMany = 100'000, kSample = 20'000;
+  scene::PointsKeys sample = everything(keys);
+  if (info_.rows > kMany) {
+    const scene::PointArray centers = load(described_, sample).points.centers;
+    if (centers.empty()) return 0;
+    const math::Vec3d middle = centers[centers.size() / 2];
+    std::vector<double> distances;
+    for (const math::Vec3d center : centers) {
+      const math::Vec3d d = center - middle;
+      distances.push_back(std::max({std::abs(d.x), std::abs(d.y), std::abs(d.z)}));
+    }
+    const auto last = distances.begin() + static_cast<std::ptrdiff_t>(std::min(kSample, distances.size() - 1));
+    std::nth_element(distances.begin(), last, distances.end());
+    const double coordinates[] = {middle.x, middle.y, middle.z};
+    for (std::size_t k = 0; k < 3; ++k)
+      sample.select +=
+          fmt::format("{}abs(`{}` - ({})) <= {}", k == 0 ? "" : " && ", info_.roles.position[k], coordinates[k], *last);
+  }
+  sample.bonds.are_drawn = true;
+  sample.bonds.from = "distance";
+  try {
+    const scene::Points points = load(described_, sample).points;
+    const std::size_t ends = 2 * points.bond_pairs.size() + points.bond_stubs.size();
+    return static_cast<double>(ends) / static_cast<double>(std::max<std::size_t>(points.centers.size(), 1));
+  } catch (const base::Error&) {
+    return 0;
+  }
 }
 
 std::string all_of(const std::vector<std::string>& conditions) {

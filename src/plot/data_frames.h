@@ -100,10 +100,15 @@ class DataFrames {
   /// Errors     as load()
   /// Cost       one pass over these frames; another over a frame that has particles without a valid radius
   Measures measures(const scene::PointsKeys& keys, bool of_spacing, bool of_radii) const;
-  /// Whether all particles of the first frame are of one element, as those of a trace of C-alpha atoms.
+  /// The distinct values of a column in the frame that is described, as text.
   ///
-  /// Errors     as load()
-  bool has_one_element(const scene::PointsKeys& keys) const;
+  /// Errors     as load(); kBadData if there are more than 4096
+  std::vector<std::string> distinct_values(const scene::PointsKeys& keys, const std::string& column) const;
+  /// The mean number of atoms that are as close to an atom as covalent bonds are long, in the first frame; of more than
+  /// 100,000 atoms, that of 20,000 around one of them.
+  ///
+  /// Result     0 for elements without a covalent radius, and for more such atoms than find_bonds() accepts
+  double mean_coordination(const scene::PointsKeys& keys) const;
 
  private:
   void require_frames() const;

@@ -63,15 +63,21 @@ std::vector<std::string> expected_columns(const PlotOptions& options, data::Fram
   points::add_derived_columns(info);
   const data::Roles& roles = info.roles;
   const scene::PointsKeys& points = options.points;
-  std::vector<std::string> texts = {options.color_by, options.center, points.select, points.radius.column,
-                                    points.opacity.column};
-  for (const auto& list : {points.labels, points.opacity.where, points.cryptomatte, points.vectors.columns})
+  std::vector<std::string> texts = {options.color_by, points.color.carbon,  options.center,
+                                    points.select,    points.radius.column, points.opacity.column};
+  for (const auto& list : {points.labels, points.opacity.where, points.radius.where, points.color.where,
+                           points.representation, points.cryptomatte, points.vectors.columns})
     texts.insert(texts.end(), list.begin(), list.end());
   const auto is_named = [&](const std::string& column) {
     return std::any_of(texts.begin(), texts.end(),
                        [&](const std::string& text) { return text.find(column) != std::string::npos; });
   };
-  std::vector<std::string> wanted = {roles.id, roles.element, roles.type, roles.radius};
+  std::vector<std::string> wanted = {roles.id, roles.element, roles.type, roles.radius, roles.chain};
+  const auto mentions_residues = [](const std::string& text) {
+    return text.find("res") != std::string::npos || text.find("trace") != std::string::npos;
+  };
+  if (std::any_of(texts.begin(), texts.end(), mentions_residues))
+    wanted.insert(wanted.end(), {"name", "chain", "segment", "residue", "residue_number"});
   for (const auto& triple : {roles.position, roles.rgb, points.unwrap ? roles.image : std::array<std::string, 3>()})
     wanted.insert(wanted.end(), triple.begin(), triple.end());
   for (const data::ColumnInfo& column : info.columns)
@@ -115,10 +121,11 @@ class PlotMaker {
     const scene::PointsKeys& points = out_.points;
     for (const std::string& text :
          {points.file.string(), options.color_by, points.color.column, points.color.map, points.radius.column,
-          points.opacity.column, points.select, points.assembly, options.center})
+          points.opacity.column, points.select, points.assembly, options.center, options.fit, points.color.carbon})
       require_utf8(text);
-    for (const std::string& text : points.opacity.where) require_utf8(text);
-    for (const std::string& text : points.labels) require_utf8(text);
+    for (const auto& list :
+         {points.opacity.where, points.labels, points.radius.where, points.color.where, points.representation})
+      for (const std::string& text : list) require_utf8(text);
     require_utf8(options.annotation.title);
     require_utf8(options.annotation.unit);
   }
@@ -141,23 +148,28 @@ class PlotMaker {
     describe_data();
     for (std::string& choice : choose_appearance(options_, data_, out_.points))
       out_.choices.push_back(std::move(choice));
-    if (options_.up.empty())
-      chose("up " + up_name_, info_.z_up ? "customary for simulations and scans" : "customary for molecules");
-    const ViewAxes axes = view_axes(options_.look_from, up_name_);
+    out_.material = material_of_points();
+    const ViewAxes axes = choose_view();
     for (const auto& plane : options_.slices) slice(plane, axes, out_.points);
     // A camera that looks along the up axis orbits around the vertical of its image.
     const bool is_vertical = math::length(math::cross(up_, axes.back)) < kSmallestSine;
-    const math::Vec3d pole = is_turntable_ && !is_vertical ? up_ : axes.up;
+    const math::Vec3d pole = is_turntable_ && !is_vertical && look_from_ != kAuto ? up_ : axes.up;
     // The axes of an orbit are those of the view at the height of its target.
     ViewExtent extent(is_turntable_ ? ViewAxes{axes.right, pole, math::cross(axes.right, pole)} : axes);
+    const std::optional<ViewExtent> fit = extent_of(options_.fit, "--fit", axes);
+    const std::optional<ViewExtent> middle = extent_of(options_.center, "--center", axes);
+    clip_depth(fit ? fit : middle, axes);
     visit_frames(extent);
     if (extent.is_empty()) report_empty();
     add_guides(extent);
-    const std::optional<math::Vec3d> target = target_of(axes);
-    if (is_turntable_ && !extent.is_empty()) extent = orbit(axes, target.value_or(extent.center()), pole);
-    scene::Camera camera = fitted_to(extent);
+    const math::Vec3d target = middle ? middle->center() : fit ? fit->center() : extent.center();
+    if (is_turntable_ && !extent.is_empty()) extent = orbit(axes, target, pole);
+    scene::Camera camera = fitted_to(fit && !is_turntable_ ? *fit : extent);
     camera.up = pole;
-    if (target) look_at(*target, axes, camera);
+    if (middle) look_at(target, axes, camera);
+    // Parallel rays begin in front of all spheres, not only of those that the camera is fitted to.
+    if (fit && !vfov_)
+      camera.look_from = camera.look_at + axes.back * (extent.radius() * 2 + math::length(extent.center() - target));
     magnify(camera, options_.zoom);
     report_view(camera);
     choose_display_view();
@@ -172,7 +184,8 @@ class PlotMaker {
     scene.color.view = out_.view;
     scene.points.push_back({out_.points, {}, {}});
     scene.rods = guides_.rods();
-    const Stage stage{axes, extent.center(), extent.radius(), guides_.reach(), choose_ground(extent, camera)};
+    const Stage stage{
+        axes, out_.material, extent.center(), extent.radius(), guides_.reach(), choose_ground(extent, camera)};
     if (!options_.style) chose("style studio", "a key light from the upper left, and white light from all directions");
     if (!options_.overrides.sets("image.width") && !options_.overrides.sets("image.height"))
       chose(fmt::format("size {} x {}", width_, height_), "--width and --height change it");
@@ -186,6 +199,8 @@ class PlotMaker {
   }
 
  private:
+  /// The view along the principal axes of what is shown.
+  static constexpr const char* kAuto = "auto";
   /// Minimum sine of the angle between the camera and the up axis for an orbit around that axis.
   static constexpr double kSmallestSine = 1e-6;
 
@@ -203,12 +218,57 @@ class PlotMaker {
     for (const data::ColumnInfo& column : info_.columns) out_.columns.push_back(column.name);
   }
 
+  std::string material_of_points() {
+    if (!options_.material.empty()) return options_.material;
+    const scene::PointsKeys& points = out_.points;
+    const bool has_rods = points.bonds.are_drawn || !points.representation.empty() || !points.vectors.columns.empty();
+    if (has_rods) chose("material plastic", "highlights show the form of rods");
+    return has_rods ? "plastic" : "matte";
+  }
+
+  /// The axes of the view. Without one, molecules are seen along their principal axes, data that are cut by a plane
+  /// from its axis, and others from above and from the side.
+  ViewAxes choose_view() {
+    const bool is_molecule = !info_.z_up || (!info_.roles.element.empty() && !info_.box);
+    look_from_ = !options_.look_from.empty()   ? options_.look_from
+                 : options_.slices.size() == 1 ? std::string("+") + "xyz"[options_.slices[0].first]
+                 : is_molecule && options_.up.empty() && !options_.ground ? kAuto
+                                                                          : kDefaultView;
+    if (look_from_ != kAuto) {
+      if (options_.up.empty())
+        chose("up " + up_name_, info_.z_up ? "customary for simulations and scans" : "customary for molecules");
+      return view_axes(look_from_, up_name_);
+    }
+    // The first frame of the file decides, whichever are shown. If it is shown, it is read for visit_frames(), too.
+    const int first = data_.is_sequence() ? data_.all().front() : 1,
+              shown = data_.fixed_frame().value_or(data_.all().front());
+    scene::PointsKeys keys = selected(options_.fit);
+    if (!data_.is_sequence()) keys.frame = first;
+    const bool is_shown =
+        shown == first && options_.slices.empty() && options_.fit.empty() && !options_.near && !options_.far;
+    LoadedFrame loaded = is_shown ? load_frame(data_.all().front()) : data_.load(first, keys);
+    const ViewAxes axes = principal_axes(loaded.points.centers, loaded.points.particle_count(),
+                                         view_axes(kDefaultView, up_name_), aspect() < 1);
+    if (is_shown) first_ = std::move(loaded);
+    return axes;
+  }
+
+  /// Reads a frame that is shown, and the values for the range of the colour map.
+  LoadedFrame load_frame(int frame) {
+    if (first_) return *std::exchange(first_, std::nullopt);
+    const auto on_value = needs_range() ? [&](double value) { finder_.add(value); } : std::function<void(double)>();
+    return data_.load(frame, out_.points, nullptr, on_value);
+  }
+
+  bool needs_range() const { return !out_.points.color.column.empty() && !out_.points.color.range; }
+
   void report_view(const scene::Camera& camera) {
-    chose(fmt::format("view {}, {}", options_.look_from,
+    chose(fmt::format("view {}, {}", look_from_,
                       vfov_ ? fmt::format("vertical field of view {}", number_text(rounded(camera.vfov)))
                             : number_text(rounded(*camera.width)) + " wide"),
-          fmt::format("fitted to the spheres{}{}{}", out_.frames.size() > 1 ? " of all frames" : "",
-                      is_turntable_ ? " and the whole orbit" : "",
+          fmt::format("{}fitted to {}{}{}{}", look_from_ == kAuto ? "along the principal axes of what is shown; " : "",
+                      options_.fit.empty() ? "the spheres" : "those of --fit",
+                      out_.frames.size() > 1 ? " of all frames" : "", is_turntable_ ? " and the whole orbit" : "",
                       options_.zoom == 1 ? "" : ", times " + number_text(options_.zoom)));
   }
 
@@ -216,7 +276,7 @@ class PlotMaker {
     if (!options_.ground || extent.is_empty()) return {};
     const Ground out = ground_below(guides_.lowest(), up_, extent);
     if (!hides_view(out, camera, aspect())) return out;
-    chose("no ground", fmt::format("it would hide the spheres from {}; look from further above", options_.look_from));
+    chose("no ground", fmt::format("it would hide the spheres from {}; look from further above", look_from_));
     return {};
   }
 
@@ -355,28 +415,52 @@ class PlotMaker {
         fmt::format("{}{}; --quality, --noise, --time or --samples change it", what, out_.denoise ? ", denoised" : ""));
   }
 
-  /// The middle of the particles that --center selects, in all frames; none without it.
-  std::optional<math::Vec3d> target_of(const ViewAxes& axes) {
-    if (options_.center.empty()) return {};
-    scene::PointsKeys selected = out_.points;
-    selected.select =
-        all_of(selected.select.empty() ? std::vector{options_.center} : std::vector{selected.select, options_.center});
-    ViewExtent extent(axes);
-    data_.visit([&](int frame) { extent.add(data_.load(frame, selected).points); });
-    if (extent.is_empty())
+  /// The keys, but only of the particles that also meet a condition.
+  scene::PointsKeys selected(const std::string& condition) const {
+    scene::PointsKeys out = out_.points;
+    if (!condition.empty())
+      out.select = all_of(out.select.empty() ? std::vector{condition} : std::vector{out.select, condition});
+    return out;
+  }
+
+  /// The extent of the particles that an option selects, in all frames; none without it.
+  std::optional<ViewExtent> extent_of(const std::string& condition, const char* option, const ViewAxes& axes) {
+    if (condition.empty()) return {};
+    ViewExtent out(axes);
+    data_.visit([&](int frame) { out.add(data_.load(frame, selected(condition)).points); });
+    if (out.is_empty())
       throw base::Error(base::ErrorKind::kBadData,
-                        fmt::format("--center `{}` matches none of the particles that are drawn", options_.center));
-    return extent.center();
+                        fmt::format("{} `{}` matches none of the particles that are drawn", option, condition));
+    return out;
+  }
+
+  /// Removes the particles further in front of the target, or behind it, than --near and --far say: by a condition on
+  /// their coordinates.
+  void clip_depth(const std::optional<ViewExtent>& target, const ViewAxes& axes) {
+    if (!options_.near && !options_.far) return;
+    const char* const option = options_.near ? "--near" : "--far";
+    if (!target)
+      base::refuse(fmt::format("{} is a distance from a target; add --fit CONDITION or --center CONDITION", option));
+    const scene::PointsKeys& points = out_.points;
+    if (points.unwrap || !points.assembly.empty() || !(points.replicate == math::Vec3d{1, 1, 1}))
+      base::refuse(fmt::format(
+          "{} excludes --assembly, --replicate and --unwrap: it selects by the coordinates of the file", option));
+    const std::array<std::string, 3>& position = info_.roles.position;
+    const std::string depth = fmt::format("`{}` * ({}) + `{}` * ({}) + `{}` * ({})", position[0], axes.back.x,
+                                          position[1], axes.back.y, position[2], axes.back.z);
+    const auto [back, front] = target->depth();
+    std::vector<std::string> conditions;
+    if (!points.select.empty()) conditions.push_back(points.select);
+    if (options_.near) conditions.push_back(fmt::format("{} <= {}", depth, front + *options_.near));
+    if (options_.far) conditions.push_back(fmt::format("{} >= {}", depth, back - *options_.far));
+    out_.points.select = all_of(conditions);
   }
 
   /// Reads all frames once, so that the view contains all of them and a single range of the colour map avoids flicker.
   void visit_frames(ViewExtent& extent) {
-    const bool needs_range = !out_.points.color.column.empty() && !out_.points.color.range;
-    RangeFinder finder(options_.range);
-    const auto on_value = needs_range ? [&](double value) { finder.add(value); } : std::function<void(double)>();
     std::size_t fewest = std::numeric_limits<std::size_t>::max(), most = 0, fewest_bonds = fewest, most_bonds = 0;
     data_.visit([&](int frame) {
-      LoadedFrame loaded = data_.load(frame, out_.points, nullptr, on_value);
+      LoadedFrame loaded = load_frame(frame);
       const scene::Points& points = loaded.points;
       fewest = std::min(fewest, points.particle_count());
       most = std::max(most, points.particle_count());
@@ -397,15 +481,15 @@ class PlotMaker {
     choose_frames();
     report_count(fewest, most);
     report_bonds(fewest_bonds, most_bonds);
-    if (!finder.is_empty()) out_.legend.range = finder.range();
+    if (!finder_.is_empty()) out_.legend.range = finder_.range();
     if (out_.points.color.range) out_.legend.range = out_.points.color.range;
     if (out_.legend.has_conflict)
       out_.warnings.push_back(
           fmt::format("colour by {}: the frames do not have the same values, and one value has different colours in "
                       "different frames; colour by a column of integers",
                       out_.legend.title));
-    if (needs_range && !finder.is_empty()) {
-      choose_range(*out_.legend.range, finder.crowded());
+    if (needs_range() && !finder_.is_empty()) {
+      choose_range(*out_.legend.range, finder_.crowded());
       out_.loaded.reset();  // read without the range, so in other colours
     }
   }
@@ -461,8 +545,9 @@ class PlotMaker {
   /// The space that the spheres of all frames pass through on the orbit of the camera.
   ViewExtent orbit(const ViewAxes& axes, const math::Vec3d& pivot, const math::Vec3d& pole) {
     ViewExtent out(axes);
-    data_.visit([&](int frame) { out.add_orbits(data_.load(frame, out_.points).points, pivot, pole); });
-    out.add_orbits(guides_.ends(), pivot, pole);
+    const scene::PointsKeys keys = selected(options_.fit);
+    data_.visit([&](int frame) { out.add_orbits(data_.load(frame, keys).points, pivot, pole); });
+    if (options_.fit.empty()) out.add_orbits(guides_.ends(), pivot, pole);
     return out;
   }
 
@@ -475,8 +560,11 @@ class PlotMaker {
   std::string up_name_;         ///< "x", "y" or "z"
   math::Vec3d up_;
   Guides guides_;
-  std::string bonds_from_;       ///< see scene::PointsFindings
-  scene::HeaderNumbers header_;  ///< see scene::PointsFindings
+  std::string look_from_;  ///< the view that was chosen
+  RangeFinder finder_{options_.range};
+  std::optional<LoadedFrame> first_;  ///< the first frame to be shown, if it has been read
+  std::string bonds_from_;            ///< see scene::PointsFindings
+  scene::HeaderNumbers header_;       ///< see scene::PointsFindings
   PlotScene out_;
 };
 

@@ -11,6 +11,7 @@
 #include "display/settings.h"
 #include "load/load_scene.h"
 #include "plot/data_frames.h"
+#include "points/rules.h"
 
 /// Makes a scene for a data file: settings that the user did not choose are chosen from the data, and reported.
 namespace orrery::plot {
@@ -20,15 +21,8 @@ enum class Style { kStudio, kSoft, kFlat, kNight, kAmbient };
 /// How little noise an image has, and how long it takes.
 enum class Quality { kDraft, kGood, kFinal };
 
-/// How particles are represented.
-enum class Representation {
-  kSpheres,
-  kBallAndStick,  ///< small spheres, and bonds
-  kSticks,        ///< bonds, and spheres of their radius
-};
-
-/// Names of the representations, in the order of the enumerators.
-const std::vector<std::string>& representation_names();
+using points::Representation;
+using points::representation_names;
 
 /// Names of the styles and of the qualities, in the order of the enumerators.
 const std::vector<std::string>& style_names();
@@ -37,29 +31,27 @@ const std::vector<std::string>& quality_names();
 /// Materials of the spheres, by name.
 const std::vector<std::string>& material_names();
 
-/// The representation, style or quality with one of these names; none for an empty name.
-std::optional<Representation> representation_of(const std::string& name);
+/// The style or quality with one of these names; none for an empty name.
 std::optional<Style> style_of(const std::string& name);
 std::optional<Quality> quality_of(const std::string& name);
 
-/// The colour with a name or in the form #rrggbb, as a display shows it.
-///
-/// Result     linear Rec.709
-/// Errors     base::Error(kUsage)
-math::Vec3d color_of(const std::string& text);
-
 struct PlotOptions : DataOptions {
-  std::string look_from = "iso";          ///< "iso", "+x" .. "-z", or "azimuth,elevation" in degrees
-  std::string up;                         ///< "x", "y" or "z"; empty: depends on the format
-  std::optional<double> vfov_deg;         ///< vertical field of view of a perspective camera; none: orthographic
-  double zoom = 1;                        ///< magnification, relative to the camera that sees all
+  std::string look_from;           ///< "auto", or as view_axes() takes it; empty: depends on the data
+  std::string up;                  ///< "x", "y" or "z"; empty: depends on the format
+  std::optional<double> vfov_deg;  ///< vertical field of view of a perspective camera; none: orthographic
+  double zoom = 1;                 ///< magnification, relative to the camera that sees all
+  std::string fit;                 ///< condition: the camera sees the particles that match; empty: all
+  /// Particles further in front of, or behind, those of `fit` or `center` are removed; scene units.
+  std::optional<double> near, far;
   std::string center;                     ///< condition: the camera looks at the middle of the particles that match
   std::optional<Style> style;             ///< default: kStudio
   std::optional<Quality> quality;         ///< default: kGood
   std::optional<math::Vec3d> background;  ///< colour behind the spheres, linear Rec.709; default: that of the style
   bool transparent = false;               ///< the background is transparent
-  std::string material = "matte";         ///< one of material_names()
-  Representation representation = Representation::kSpheres;
+  std::string material;                   ///< one of material_names(); empty: plastic with rods, else matte
+  /// Of all particles; none: spheres, or a trace if all atoms are C-alpha or phosphorus atoms. Those of some particles
+  /// are in `points`.
+  std::optional<Representation> representation;
   std::optional<bool> bonds;  ///< draws bonds by the keys in `points.bonds`; default: unless kSpheres
   bool ground = false;
   /// Text and lines over the image. A scale bar of length 0 has a length that suits the view.
@@ -85,6 +77,7 @@ struct PlotScene {
   scene::PointsKeys points;
   annotation::LegendColors legend;
   std::string view;                  ///< view of the display
+  std::string material;              ///< of the spheres
   math::Vec3d up;                    ///< the up axis
   std::vector<std::string> columns;  ///< columns of the data that can be colours
   std::optional<int> frame_count;    ///< of the file; empty: unknown, since counting would read it

@@ -122,11 +122,6 @@ constexpr double kBoxRadius = 0.004, kAxisLength = 0.15, kAxisRadius = 0.01;
 
 }  // namespace
 
-const std::vector<std::string>& representation_names() {
-  static const std::vector<std::string> names = {"spheres", "ball-and-stick", "sticks"};
-  return names;
-}
-
 const std::vector<std::string>& style_names() {
   static const std::vector<std::string> names = {"studio", "soft", "flat", "night", "ambient"};
   return names;
@@ -137,35 +132,9 @@ const std::vector<std::string>& quality_names() {
   return names;
 }
 
-std::optional<Representation> representation_of(const std::string& name) {
-  return enumerator_of<Representation>(name, representation_names());
-}
-
 std::optional<Style> style_of(const std::string& name) { return enumerator_of<Style>(name, style_names()); }
 
 std::optional<Quality> quality_of(const std::string& name) { return enumerator_of<Quality>(name, quality_names()); }
-
-math::Vec3d color_of(const std::string& text) {
-  // Those of CSS that are used as backgrounds.
-  constexpr std::pair<std::string_view, std::string_view> kNames[] = {
-      {"white", "#fff"},        {"black", "#000"},           {"grey", "#808080"},
-      {"gray", "#808080"},      {"silver", "#c0c0c0"},       {"lightgrey", "#d3d3d3"},
-      {"lightgray", "#d3d3d3"}, {"darkgrey", "#a9a9a9"},     {"darkgray", "#a9a9a9"},
-      {"red", "#f00"},          {"green", "#008000"},        {"blue", "#00f"},
-      {"navy", "#000080"},      {"midnightblue", "#191970"}, {"teal", "#008080"},
-      {"cyan", "#0ff"},         {"magenta", "#f0f"},         {"yellow", "#ff0"},
-      {"orange", "#ffa500"},    {"brown", "#a52a2a"},        {"maroon", "#800000"},
-      {"purple", "#800080"},    {"ivory", "#fffff0"},        {"beige", "#f5f5dc"}};
-  const auto* const known =
-      std::find_if(std::begin(kNames), std::end(kNames), [&](const auto& n) { return n.first == base::lower(text); });
-  std::string code(known == std::end(kNames) ? text : known->second);
-  if (code.size() == 4) code = {code[0], code[1], code[1], code[2], code[2], code[3], code[3]};  // #rgb
-  const std::optional<math::Vec3d> srgb = points::parse_hex(code);
-  if (!srgb)
-    base::refuse(
-        fmt::format("`{}` is not a colour; write white, grey, navy or the like, or #rrggbb, e.g. '#202030'", text));
-  return points::linear_from_srgb(*srgb / 255);
-}
 
 const std::vector<std::string>& material_names() {
   static const std::vector<std::string> names = [] {
@@ -188,8 +157,8 @@ std::string scene_text(const PlotOptions& options, const Stage& stage, scene::Sc
     return static_cast<std::uint32_t>(scene.materials.size() - 1);
   };
   for (const scene::Material& of_spheres : sphere_materials())
-    if (of_spheres.name == options.material)
-      scene.points[0].material = material(options.material.c_str(), of_spheres.model);
+    if (of_spheres.name == stage.material)
+      scene.points[0].material = material(stage.material.c_str(), of_spheres.model);
   if (stage.ground)
     scene.spheres.push_back(
         {stage.ground->center, stage.ground->radius, material("ground", scene::Lambertian{light.ground}), "ground"});

@@ -2,9 +2,11 @@
 #include "plot/view.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <numbers>
 #include <optional>
+#include <tuple>
 
 #include <fmt/core.h>
 
@@ -49,6 +51,51 @@ Vec3d clean(Vec3d v) {
   return {rounded(v.x), rounded(v.y), rounded(v.z)};
 }
 
+/// A direction, and the standard deviation of points along it.
+struct PrincipalAxis {
+  double deviation = 0;
+  Vec3d direction;
+};
+
+/// The principal axes of points, the one with the largest deviation first.
+std::array<PrincipalAxis, 3> principal_axes_of(const scene::PointArray& points, std::size_t count) {
+  const double share = 1 / static_cast<double>(count);
+  Vec3d mean{0, 0, 0};
+  for (std::size_t i = 0; i < count; ++i) mean = mean + points[i] * share;
+  std::array<std::array<double, 3>, 3> a{};  // the covariance matrix
+  for (std::size_t i = 0; i < count; ++i) {
+    const Vec3d d = points[i] - mean;
+    const double from_mean[3] = {d.x, d.y, d.z};
+    for (std::size_t row = 0; row < 3; ++row)
+      for (std::size_t column = 0; column < 3; ++column) a[row][column] += from_mean[row] * from_mean[column] * share;
+  }
+  // Jacobi's method: rotations about the axes, each of which makes an element 0.
+  std::array<Vec3d, 3> axes = {Vec3d{1, 0, 0}, Vec3d{0, 1, 0}, Vec3d{0, 0, 1}};
+  constexpr int kSweeps = 12;  // converges quadratically
+  for (int step = 0; step < 3 * kSweeps; ++step) {
+    const auto p = static_cast<std::size_t>(step % 3), q = (p + 1) % 3;
+    if (a[p][q] == 0) continue;
+    const double theta = std::atan2(2 * a[p][q], a[p][p] - a[q][q]) / 2, c = std::cos(theta), s = std::sin(theta);
+    for (std::size_t k = 0; k < 3; ++k)
+      std::tie(a[k][p], a[k][q]) = std::pair(c * a[k][p] + s * a[k][q], c * a[k][q] - s * a[k][p]);
+    for (std::size_t k = 0; k < 3; ++k)
+      std::tie(a[p][k], a[q][k]) = std::pair(c * a[p][k] + s * a[q][k], c * a[q][k] - s * a[p][k]);
+    std::tie(axes[p], axes[q]) = std::pair(axes[p] * c + axes[q] * s, axes[q] * c - axes[p] * s);
+  }
+  std::array<PrincipalAxis, 3> out;
+  for (std::size_t k = 0; k < 3; ++k) out[k] = {std::sqrt(std::max(a[k][k], 0.0)), axes[k]};
+  std::sort(out.begin(), out.end(), [](const auto& x, const auto& y) { return x.deviation > y.deviation; });
+  return out;
+}
+
+/// The part of a vector that is perpendicular to a unit vector, of length 1; that of `other` if they are parallel.
+Vec3d perpendicular(Vec3d v, Vec3d axis, Vec3d other) {
+  constexpr double kParallel = 0.99;
+  const double along = math::dot(v, axis);
+  return std::abs(along) > kParallel ? math::normalized(other - axis * math::dot(other, axis))
+                                     : math::normalized(v - axis * along);
+}
+
 }  // namespace
 
 Vec3d axis_of(const std::string& name) {
@@ -73,7 +120,7 @@ ViewAxes view_axes(const std::string& look_from, const std::string& up) {
     angles = parse_angles(look_from);
   if (!angles)
     base::refuse(
-        fmt::format("--look-from: `{}` is not a view; write iso, +x, -x, +y, "
+        fmt::format("--look-from: `{}` is not a view; write auto, iso, +x, -x, +y, "
                     "-y, +z, -z, or AZIMUTH,ELEVATION in degrees, e.g. 30,20",
                     look_from));
   const double azimuth = angles->first / 180 * std::numbers::pi, elevation = angles->second / 180 * std::numbers::pi;
@@ -82,6 +129,38 @@ ViewAxes view_axes(const std::string& look_from, const std::string& up) {
   out.back = clean(level * std::cos(elevation) + scene.up * std::sin(elevation));
   out.right = clean(scene.right * std::cos(azimuth) - scene.front * std::sin(azimuth));
   out.up = clean(math::cross(out.back, out.right));
+  return out;
+}
+
+ViewAxes principal_axes(const scene::PointArray& points, std::size_t count, const ViewAxes& near, bool is_tall) {
+  constexpr double kAlike = 1.1, kRounding = 1e-6;
+  if (count == 0) return near;
+  const auto [longest, middle, shortest] = principal_axes_of(points, count);
+  const double rounding = kRounding * longest.deviation;
+  const bool is_disc = longest.deviation <= kAlike * middle.deviation;
+  const bool is_rod = middle.deviation <= kAlike * shortest.deviation || middle.deviation <= rounding;
+  if (is_disc && is_rod) return near;
+  const auto toward = [](Vec3d axis, Vec3d direction) { return math::dot(axis, direction) < 0 ? axis * -1.0 : axis; };
+  if (is_disc) {
+    const Vec3d back = toward(shortest.direction, near.back), up = perpendicular(near.up, back, near.right * -1.0);
+    return {math::cross(up, back), up, back};
+  }
+  if (is_rod) {
+    const Vec3d along = toward(longest.direction, is_tall ? near.up : near.right);
+    const Vec3d back = perpendicular(near.back, along, is_tall ? near.right : near.up);
+    return is_tall ? ViewAxes{math::cross(along, back), along, back} : ViewAxes{along, math::cross(back, along), back};
+  }
+  ViewAxes out = near;
+  double closest = -math::kInfinity;
+  for (const double sign : {1.0, -1.0})
+    for (const double other_sign : {1.0, -1.0}) {
+      const Vec3d right = (is_tall ? middle : longest).direction * sign;
+      const Vec3d up = (is_tall ? longest : middle).direction * other_sign, back = math::cross(right, up);
+      const double closeness = math::dot(right, near.right) + math::dot(up, near.up) + math::dot(back, near.back);
+      if (closeness <= closest) continue;
+      closest = closeness;
+      out = {right, up, back};
+    }
   return out;
 }
 
@@ -98,7 +177,7 @@ void slice(std::pair<int, double> plane, const ViewAxes& axes, scene::PointsKeys
 
 void ViewExtent::add(const scene::Points& points) {
   for (std::size_t i = 0; i < points.centers.size(); ++i) add(points.centers[i], points.radii[i]);
-  for (const scene::BondStub& stub : points.bond_stubs) add(stub.end, points.bond_radius);
+  for (const scene::BondStub& stub : points.bond_stubs) add(stub.end, points.bond_radius_of(stub.sphere));
 }
 
 void ViewExtent::add(Vec3d center, double radius) {
@@ -119,7 +198,7 @@ void ViewExtent::add_orbits(const scene::Points& points, Vec3d pivot, Vec3d axis
     is_empty_ = false;
   };
   for (std::size_t i = 0; i < points.centers.size(); ++i) add_orbit(points.centers[i], points.radii[i]);
-  for (const scene::BondStub& stub : points.bond_stubs) add_orbit(stub.end, points.bond_radius);
+  for (const scene::BondStub& stub : points.bond_stubs) add_orbit(stub.end, points.bond_radius_of(stub.sphere));
 }
 
 void ViewExtent::add(int k, double at, double reach) {

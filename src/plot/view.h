@@ -21,10 +21,22 @@ struct ViewAxes {
 /// Returns the axes of a view.
 ///
 /// `look_from`  "iso": azimuth 45 degrees to the right of the front, elevation 35.26; "+x" .. "-z"; or
-///              "azimuth,elevation" in degrees: from the front, to the right and upwards
+///              "azimuth,elevation" in degrees: from the front, to the right and upwards; kDefaultView is one
 /// `up`         "x", "y" or "z"
 /// Errors       base::Error(kUsage)
 ViewAxes view_axes(const std::string& look_from, const std::string& up);
+
+/// A view that shows three faces of a box, none of whose corners is in front of another.
+inline constexpr const char* kDefaultView = "30,20";
+
+/// Returns the axes of a view along the direction in which points are least extended, with the one in which they are
+/// most extended along the longer side of the image. Of the four such views, the one that is closest to `near`.
+/// Directions in which the standard deviations differ by less than a tenth are alike: those of `near` are kept among
+/// them, so that noise does not turn the view. A ball of points, and a single one, are seen from `near`.
+///
+/// `count`    the number of points to use, from the first
+/// `is_tall`  the image is higher than wide
+ViewAxes principal_axes(const scene::PointArray& points, std::size_t count, const ViewAxes& near, bool is_tall);
 
 /// Removes the spheres on the camera's side of a plane, given by axis 0, 1 or 2, and position: narrows their clip.
 void slice(std::pair<int, double> plane, const ViewAxes& axes, scene::PointsKeys& points);
@@ -59,6 +71,8 @@ class ViewExtent {
   scene::Camera camera(double aspect, std::optional<double> vfov_deg = {},
                        const std::vector<Reserved>& reserved = {}) const;
 
+  /// Distances along the view axis, of the back and of the front, from the origin.
+  std::pair<double, double> depth() const { return {low_[2], high_[2]}; }
   Vec3d center() const;   ///< centre of the box along the axes
   double radius() const;  ///< radius of a sphere around center() that contains all spheres, scene units
 

@@ -235,4 +235,26 @@ ColorMap read_color_map(const std::filesystem::path& file) {
   return reader.take(file.filename().string());
 }
 
+Vec3d parse_color(const std::string& text) {
+  // Those of CSS that are used as backgrounds.
+  constexpr std::pair<std::string_view, std::string_view> kNames[] = {
+      {"white", "#fff"},        {"black", "#000"},           {"grey", "#808080"},
+      {"gray", "#808080"},      {"silver", "#c0c0c0"},       {"lightgrey", "#d3d3d3"},
+      {"lightgray", "#d3d3d3"}, {"darkgrey", "#a9a9a9"},     {"darkgray", "#a9a9a9"},
+      {"red", "#f00"},          {"green", "#008000"},        {"blue", "#00f"},
+      {"navy", "#000080"},      {"midnightblue", "#191970"}, {"teal", "#008080"},
+      {"cyan", "#0ff"},         {"magenta", "#f0f"},         {"yellow", "#ff0"},
+      {"orange", "#ffa500"},    {"brown", "#a52a2a"},        {"maroon", "#800000"},
+      {"purple", "#800080"},    {"ivory", "#fffff0"},        {"beige", "#f5f5dc"}};
+  const auto* const known =
+      std::find_if(std::begin(kNames), std::end(kNames), [&](const auto& n) { return n.first == base::lower(text); });
+  std::string code(known == std::end(kNames) ? text : known->second);
+  if (code.size() == 4) code = {code[0], code[1], code[1], code[2], code[2], code[3], code[3]};  // #rgb
+  const std::optional<Vec3d> srgb = parse_hex(code);
+  if (!srgb)
+    base::refuse(
+        fmt::format("`{}` is not a colour; write white, grey, navy or the like, or #rrggbb, e.g. '#202030'", text));
+  return linear_from_srgb(*srgb / 255);
+}
+
 }  // namespace orrery::points

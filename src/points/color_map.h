@@ -40,6 +40,12 @@ Vec3d bytes_of(std::uint32_t code);
 /// The colour `#rrggbb`, 0 to 255; none for other text.
 std::optional<Vec3d> parse_hex(std::string_view text);
 
+/// The colour with a name, such as `grey`, or in the form #rrggbb or #rgb, as a display shows it.
+///
+/// Result     linear Rec.709
+/// Errors     base::Error(kUsage)
+Vec3d parse_color(const std::string& text);
+
 /// Returns the names of the built-in colour maps, the categorical ones last.
 const std::vector<std::string>& color_map_names();
 

@@ -29,6 +29,14 @@ using data::Vec3d;
 /// Rows are numbered by 32 bits.
 constexpr std::uint64_t kMaxRows = std::numeric_limits<std::uint32_t>::max();
 
+/// Columns of traces.
+constexpr const char *kAtomName = "name", *kResidueNumber = "residue_number";
+/// Radius of a trace, in radii of bonds.
+constexpr double kTraceFraction = 6;
+
+/// The largest distance of an atom with this name to the one before in a trace; 0 for atoms beside it.
+double longest_step(const std::string& name) { return name == "CA" ? 4.6 : name == "P" ? 8.6 : 0; }
+
 std::shared_ptr<data::DataFile> open(const LoadRequest& request, const scene::PointsKeys& points) {
   data::OpenOptions options;
   options.component = points.component;
@@ -102,19 +110,22 @@ class Loader {
     color_ = color_source(info_, points_.color, request_.folder, faults_);
     for (const std::string& column : color_.columns) need(column);
     opacity_ = opacity_source(info_, points_.opacity, faults_);
-    for (const std::string& column : opacity_.needed) need(column);
+    need(opacity_.column);
     need(info_.roles.id);
     for (const std::string& column : points_.cryptomatte)
       if (require_column(info_, column, false, ".cryptomatte", faults_)) need(column);
-    labels_ = label_rules(info_, points_, faults_);
-    for (const LabelRule& label : labels_)
-      for (const std::string& column : label.condition.columns) need(column);
+    labels_ = rules_of(info_, points_.labels, ".labels", parse_label, faults_, false);
+    representations_ = rules_of(info_, points_.representation, ".representation", parse_representation, faults_);
+    need_columns_of(radius_.rules, color_.rules, opacity_.rules, labels_, representations_);
+    plan_traces();
     plan_selection();
     copies_ = copies_of(info_, points_, faults_);
     if (std::any_of(copies_.begin(), copies_.end(), [](const Copy& c) { return c.chains != nullptr; }))
       need(info_.roles.chain);
     if (points_.unwrap) plan_unwrap();
-    if (points_.bonds.are_drawn) {
+    draws_bonds_ =
+        points_.bonds.are_drawn || has_rule_for(Representation::kBallAndStick) || has_rule_for(Representation::kSticks);
+    if (draws_bonds_) {
       bond_source_ = bond_source(info_, points_.bonds, faults_);
       need(bond_source_.element);
       points_.bonds_from = !bond_source_.is_distance ? "file" : bond_source_.is_file ? "both" : "distance";
@@ -133,9 +144,36 @@ class Loader {
       faults_.error(".file", fmt::format("has {} rows; the maximum is {}", info_.rows, kMaxRows));
   }
 
+  /// Needs the columns of the conditions of rules.
+  void need_columns_of(const auto&... lists) {
+    const auto need_list = [&](const auto& rules) {
+      for (const auto& rule : rules)
+        for (const std::string& column : rule.condition.columns) need(column);
+    };
+    (need_list(lists), ...);
+  }
+
+  bool has_rule_for(Representation kind) const {
+    return std::any_of(representations_.begin(), representations_.end(),
+                       [&](const auto& rule) { return rule.value == kind; });
+  }
+
+  void plan_traces() {
+    if (!has_rule_for(Representation::kTrace)) return;
+    for (const std::string& column : {std::string(kAtomName), info_.roles.chain, std::string(kResidueNumber)}) {
+      if (data::has_column(info_.columns, column))
+        need(column);
+      else
+        return faults_.error(
+            ".representation",
+            fmt::format("a trace needs the columns `{}`, `{}` and a chain, which PDB and mmCIF files have", kAtomName,
+                        kResidueNumber));
+    }
+  }
+
   void plan_selection() {
     try {
-      selection_ = parse_selection(points_.select, info_.columns);
+      selection_ = parse_selection(points_.select, info_.columns, info_.roles.position);
     } catch (const base::Error& error) {
       return faults_.error(".select", fault_text(error));
     }
@@ -190,7 +228,7 @@ class Loader {
       if (!is_replaced_by_centers(column)) row_bytes += data::bytes_per_value(type_of(info_, column));
     std::uint64_t sphere_bytes = bytes_per_sphere(info_, points_, radius_, are_rounded);
     if (!material_.empty()) sphere_bytes += sizeof(std::uint32_t);
-    if (!color_.columns.empty()) sphere_bytes += sizeof(std::uint16_t);
+    if (color_.is_set()) sphere_bytes += sizeof(std::uint16_t);
     if (opacity_.is_set()) sphere_bytes += sizeof(float);
     if (!points_.cryptomatte.empty()) sphere_bytes += sizeof(std::uint32_t);
     if (request_.source != nullptr) sphere_bytes += sizeof(std::uint32_t) + row_bytes;
@@ -199,7 +237,7 @@ class Loader {
     double spheres = static_cast<double>(count) * images;
     double bytes = static_cast<double>(file_->memory() + info_.rows * row_bytes) +
                    images * static_cast<double>(copies_.size() * sizeof(Copy));
-    if (points_.bonds.are_drawn) {
+    if (draws_bonds_) {
       const std::size_t rods = bonds.pairs.size() + 2 * bonds.crossing.size();  // those to other images are two stubs
       bytes += images * static_cast<double>(copies_.size() * rods * sizeof(scene::SphereBond));
       if (bond_source_.is_file) bytes += static_cast<double>(info_.bonds * kFileBondBytes);
@@ -237,8 +275,8 @@ class Loader {
     if (const data::Column* column = read->table.find(info_.roles.chain); column != nullptr)
       chains = labels_of(*column, rows, read->table.rows);
     const Lattice lattice(points_.assembly.empty() ? info_.box : std::nullopt);
-    const BondSet bonds =
-        points_.bonds.are_drawn ? bonds_of(read->table, rows, read->centers, lattice, frame) : BondSet();
+    BondSet bonds = draws_bonds_ ? bonds_of_rods(read->table, rows, read->centers, lattice, frame) : BondSet();
+    if (!points_.are_traces.empty()) add_traces(read->table, rows, read->centers, bonds);
     if (faults_.has_errors()) return;
     const std::vector<Copy> ends = is_replicated() ? outermost(copies_, *info_.box, points_.replicate) : copies_;
     require_memory(copied_count(copies_, chains, rows.size()), are_rounded(ends, points_, read->centers, read->radii),
@@ -270,8 +308,11 @@ class Loader {
       faults_.warning(
           table.rows == 0 ? ".file" : ".select",
           table.rows == 0 ? "the frame has no particles" : fmt::format("selects none of the {} particles", table.rows));
+    if (!representations_.empty()) rows = represented(table, rows);
     const bool are_all_rows = rows.is_all();
     scene::NumberArray radii = radii_of(table, rows, radius_, points_.radius, faults_);
+    bond_radius_ = bond_radius(info_, points_.bonds, radii);
+    if (!representations_.empty() && !faults_.has_errors()) set_radii_of_representations(table, rows, radii);
     if (are_needed_once(std::array{radius_.column}))
       std::erase_if(table.columns, [&](const data::Column& column) { return column.name == radius_.column; });
     const std::array<std::string, 3>& position = info_.roles.position;
@@ -285,6 +326,90 @@ class Loader {
     keep_valid(points_, may_be_hollow, rows, centers, radii, faults_);
     if (faults_.has_errors()) return {};
     return Particles{std::move(table), std::move(rows), std::move(centers), std::move(radii), are_all_rows};
+  }
+
+  /// Determines how the rows are represented. Of those that are traces, the atoms that these pass through are left; the
+  /// others are returned in their order.
+  Rows represented(const data::Table& table, const Rows& rows) {
+    kinds_.assign(rows.size(), std::nullopt);
+    apply_rules(table, rows, representations_, points_.representation, ".representation", faults_,
+                [&](std::size_t i, Representation kind) { kinds_[i] = kind; });
+    if (!has_rule_for(Representation::kTrace)) return rows;
+    const auto& names = std::get<data::Words>(table.find(kAtomName)->values);
+    std::vector<std::uint32_t> list;
+    std::size_t kept = 0;
+    for (std::size_t i = 0; i < rows.size(); ++i) {
+      const bool is_trace = kinds_[i] == Representation::kTrace;
+      if (is_trace && longest_step(names.words[names.index[rows[i]]]) == 0) continue;
+      list.push_back(static_cast<std::uint32_t>(rows[i]));
+      points_.are_traces.push_back(is_trace ? 1 : 0);
+      kinds_[kept++] = kinds_[i];
+    }
+    kinds_.resize(kept);
+    if (std::find(points_.are_traces.begin(), points_.are_traces.end(), 1) == points_.are_traces.end())
+      faults_.warning(".representation", "there are no C-alpha or phosphorus atoms for a trace");
+    return list.size() == rows.size() ? rows : Rows(std::move(list));
+  }
+
+  /// Spheres of a trace close its ends and joints.
+  double trace_radius() const { return points_.radius.value.value_or(kTraceFraction * bond_radius_); }
+
+  void set_radii_of_representations(const data::Table& table, const Rows& rows, scene::NumberArray& radii) {
+    constexpr double kBallFraction = 0.5;  // without elements
+    scene::NumberArray balls;
+    if (has_rule_for(Representation::kBallAndStick) && !info_.roles.element.empty()) {
+      scene::PointsRadius ball;
+      ball.element = "ball";
+      balls = radii_of(table, rows, radius_source(info_, ball, faults_), ball, faults_);
+      if (balls.size() != rows.size()) return;
+    }
+    for (std::size_t i = 0; i < rows.size(); ++i) {
+      if (!kinds_[i] || *kinds_[i] == Representation::kSpheres) continue;
+      radii.set(i, *kinds_[i] == Representation::kTrace          ? trace_radius()
+                   : *kinds_[i] != Representation::kBallAndStick ? bond_radius_
+                   : balls.empty()                               ? kBallFraction * radii[i]
+                                                                 : balls[i]);
+    }
+    apply_rules(table, rows, radius_.rules, points_.radius.where, ".radius.where", faults_,
+                [&](std::size_t i, double value) { radii.set(i, value); });
+  }
+
+  /// Returns the bonds between the spheres of the rows that are represented with bonds.
+  BondSet bonds_of_rods(const data::Table& table, const Rows& rows, const scene::PointArray& centers,
+                        const Lattice& lattice, int frame) {
+    if (kinds_.empty()) return bonds_of(table, rows, centers, lattice, frame);
+    std::vector<std::uint32_t> spheres, list;
+    scene::PointArray places;
+    for (std::uint32_t i = 0; i < rows.size(); ++i) {
+      const bool has_bonds = kinds_[i]
+                                 ? *kinds_[i] == Representation::kBallAndStick || *kinds_[i] == Representation::kSticks
+                                 : points_.bonds.are_drawn;
+      if (!has_bonds) continue;
+      spheres.push_back(i);
+      list.push_back(static_cast<std::uint32_t>(rows[i]));
+      places.push_back(centers[i]);
+    }
+    BondSet out = bonds_of(table, Rows(std::move(list)), places, lattice, frame);
+    for (scene::SphereBond& bond : out.pairs) bond = {spheres[bond.a], spheres[bond.b]};
+    for (CrossingBond& bond : out.crossing) bond = {spheres[bond.a], spheres[bond.b], bond.shift};
+    return out;
+  }
+
+  /// Joins the atoms of traces that follow each other in a chain, unless residues between them are missing.
+  void add_traces(const data::Table& table, const Rows& rows, const scene::PointArray& centers, BondSet& bonds) const {
+    const auto& names = std::get<data::Words>(table.find(kAtomName)->values);
+    const auto& chains = std::get<data::Words>(table.find(info_.roles.chain)->values);
+    const data::Column& numbers = *table.find(kResidueNumber);
+    for (std::uint32_t b = 1, a = 0; b < rows.size(); ++b) {
+      if (points_.are_traces[b] == 0) continue;
+      const std::size_t from = rows[a], to = rows[b];
+      const bool follows = points_.are_traces[a] != 0 && chains.index[from] == chains.index[to] &&
+                           std::abs(numbers.number(to) - numbers.number(from)) <= 1;
+      if (follows && math::length(centers[b] - centers[a]) <= longest_step(names.words[names.index[to]]))
+        bonds.pairs.push_back({a, b});
+      a = b;
+    }
+    std::sort(bonds.pairs.begin(), bonds.pairs.end());
   }
 
   /// Sets what the spheres have besides centre and radius: colour, opacity, object, label, material, vector.
@@ -303,9 +428,9 @@ class Loader {
   /// Makes the images of all spheres in periodic boxes and assemblies, with their bonds and arrows, and clips them.
   void make_images(const Labels& chains, const BondSet& bonds, const Lattice& lattice) {
     if (is_replicated()) copies_ = replicated(copies_, *info_.box, points_.replicate);
-    if (points_.bonds.are_drawn || !points_.vectors.columns.empty()) {
-      points_.bond_radius =
-          points_.vectors.radius.value_or(bond_radius(info_, points_.bonds, points_.radii)) * points_.transform.scale;
+    if (draws_bonds_ || !points_.are_traces.empty() || !points_.vectors.columns.empty()) {
+      points_.bond_radius = points_.vectors.radius.value_or(bond_radius_) * points_.transform.scale;
+      points_.trace_radius = trace_radius() * points_.transform.scale;
       copy_bonds(bonds, copies_, chains, lattice, points_);
     }
     std::vector<std::uint32_t>* const row_of_sphere = request_.source == nullptr ? nullptr : &request_.source->rows;
@@ -411,7 +536,11 @@ class Loader {
   ColorSource color_;
   OpacitySource opacity_;
   Selection selection_;
-  std::vector<LabelRule> labels_;
+  std::vector<Rule<std::string>> labels_;
+  std::vector<Rule<Representation>> representations_;
+  std::vector<std::optional<Representation>> kinds_;  ///< of the rows; none: as the keys of radius and bonds say
+  bool draws_bonds_ = false;
+  double bond_radius_ = 0;  ///< before the transform
   std::vector<Copy> copies_;
   BondSource bond_source_;
   std::vector<std::string> speed_sources_;  ///< columns that `speed` is computed from; empty: it is not needed

@@ -67,15 +67,18 @@ std::vector<std::size_t> categories_of(const Labels& labels, const data::Column&
   return out;
 }
 
-/// Distributes distinct strings evenly over a continuous map, or assigns the colours of a categorical one.
+/// Distributes distinct values evenly over a continuous map, or assigns the colours of a categorical one.
+std::vector<Vec3d> colors_of(const Labels& labels, const data::Column& column, const ColorMap& map) {
+  if (!map.is_categorical) return palette(map, std::max<std::size_t>(labels.names.size(), 1));
+  std::vector<Vec3d> out;
+  for (const std::size_t category : categories_of(labels, column, map.knots.size()))
+    out.push_back(linear_from_srgb(map.knots[category % map.knots.size()].srgb));
+  return out;
+}
+
 void color_by_label(const Labels& labels, const data::Column& column, const ColorMap& map, scene::Points& points) {
   set_labels(labels, points);
-  if (map.is_categorical) {
-    for (const std::size_t category : categories_of(labels, column, map.knots.size()))
-      points.palette.push_back(linear_from_srgb(map.knots[category % map.knots.size()].srgb));
-  } else {
-    points.palette = palette(map, std::max<std::size_t>(labels.names.size(), 1));
-  }
+  points.palette = colors_of(labels, column, map);
   points.palette_rec709 = points.palette.size();
   if (!labels.values.empty() && std::isnan(labels.values.back())) {
     points.palette.back() = points.color.nan_color;
@@ -155,6 +158,28 @@ void color_by_map(const data::Table& table, const Rows& rows, const ColorSource&
     color_by_label(*labels, column, *source.map, points);
 }
 
+/// Gives carbon atoms the colours of another column, after those of the elements.
+void color_carbons(const data::Table& table, const Rows& rows, const ColorMap& map, scene::Points& points,
+                   KeyFaults& faults) {
+  const auto carbon = std::find_if(points.color_names.begin(), points.color_names.end(), [](const std::string& name) {
+    return data::find_element(name) == data::find_element(6);
+  });
+  const std::string& name = points.color.carbon;
+  const std::optional<Labels> labels = labels_or_fault(table, rows, name, ".color.carbon", faults);
+  if (!labels || carbon == points.color_names.end()) return;
+  // The first of the colours replaces that of carbon.
+  const auto first = static_cast<std::size_t>(carbon - points.color_names.begin()), rest = points.palette.size() - 1;
+  const std::vector<Vec3d> colors = colors_of(*labels, *table.find(name), map);
+  points.palette[first] = colors[0];
+  points.palette.insert(points.palette.end(), colors.begin() + 1, colors.end());
+  for (std::size_t i = 0; i < rows.size(); ++i)
+    if (points.colors[i] == first && labels->of_rows[i] > 0)
+      points.colors[i] = static_cast<std::uint16_t>(rest + labels->of_rows[i]);
+  points.color_names[first] = fmt::format("C ({})", labels->names[0]);
+  for (std::size_t label = 1; label < labels->names.size(); ++label)
+    points.color_names.push_back(fmt::format("C ({})", labels->names[label]));
+}
+
 void color_by_element(const data::Table& table, const Rows& rows, const ColorSource& source, scene::Points& points,
                       KeyFaults& faults) {
   const auto labels = labels_or_fault(table, rows, source.columns[0], ".color.element", faults);
@@ -162,10 +187,18 @@ void color_by_element(const data::Table& table, const Rows& rows, const ColorSou
   set_labels(*labels, points);
   // Unknown elements have Jmol's colour of unknown elements.
   constexpr std::uint32_t kUnknown = 0xFF1493;
+  // Colours of full saturation look like neon beside others, and on shaded spheres have no highlights. Grey stays.
+  constexpr double kWhite = 0.25;
   for (const std::string& name : labels->names) {
     const data::Element* const element = data::find_element(name);
-    points.palette.push_back(linear_from_code(element != nullptr ? element->color : kUnknown));
+    Vec3d srgb = bytes_of(element != nullptr ? element->color : kUnknown) / 255;
+    if (points.color.element == "soft") {
+      const double white = kWhite * (std::max({srgb.x, srgb.y, srgb.z}) - std::min({srgb.x, srgb.y, srgb.z}));
+      srgb = srgb * (1 - white) + Vec3d{white, white, white};
+    }
+    points.palette.push_back(linear_from_srgb(srgb));
   }
+  if (!points.color.carbon.empty()) color_carbons(table, rows, *source.map, points, faults);
   points.palette_rec709 = points.palette.size();
 }
 
@@ -277,13 +310,39 @@ bool is_expression(const std::string& text, const data::FrameInfo& info) {
   return data::find_named(info.columns, text) == nullptr && text.find_first_of(kSymbols) != std::string::npos;
 }
 
-void parse_color(const std::string& text, const data::FrameInfo& info, ColorSource& out, KeyFaults& faults) {
+void parse_column(const std::string& text, const data::FrameInfo& info, ColorSource& out, KeyFaults& faults) {
   try {
     out.expression = parse_expression(text, info.columns);
     out.columns = out.expression->columns();
   } catch (const base::Error& error) {
     faults.error(".color.column", fmt::format("`{}` is no column, and no expression: {}", text, fault_text(error)));
   }
+}
+
+/// Gives rows that match rules the colours of these, which are the last linear Rec.709 ones of the palette.
+void color_by_rules(const data::Table& table, const Rows& rows, const std::vector<Rule<Vec3d>>& rules,
+                    scene::Points& points, KeyFaults& faults) {
+  if (points.colors.empty()) {
+    constexpr Vec3d kOthers{0.8, 0.8, 0.8};
+    points.colors.assign(rows.size(), 0);
+    points.palette = {kOthers};
+    points.palette_rec709 = 1;
+  }
+  const std::size_t first = points.palette_rec709, count = rules.size();
+  if (points.palette.size() + count > kMaxPalette)
+    return faults.error(".color.where", "there are too many colours; leave out `color.rgb`, or some of the rules");
+  for (std::uint16_t& color : points.colors)
+    if (color >= first) color = static_cast<std::uint16_t>(color + count);
+  const auto at = static_cast<std::ptrdiff_t>(first);
+  for (std::size_t r = 0; r < count; ++r)
+    points.palette.insert(points.palette.begin() + at + static_cast<std::ptrdiff_t>(r), rules[r].value);
+  if (!points.color_names.empty()) points.color_names.insert(points.color_names.begin() + at, count, "");
+  points.palette_rec709 += count;
+  std::size_t rule = 0;
+  std::vector<Rule<std::uint16_t>> indices;
+  for (const Rule<Vec3d>& of : rules) indices.push_back({of.condition, static_cast<std::uint16_t>(first + rule++)});
+  apply_rules(table, rows, indices, points.color.where, ".color.where", faults,
+              [&](std::size_t i, std::uint16_t color) { points.colors[i] = color; });
 }
 
 }  // namespace
@@ -314,13 +373,17 @@ ColorSource color_source(const data::FrameInfo& info, const scene::PointsColor& 
     out.kind = ColorSource::Kind::kMap;
     set_map(color, folder, out, faults);
     if (is_expression(color.column, info)) {
-      parse_color(color.column, info, out, faults);
+      parse_column(color.column, info, out, faults);
     } else if (require_column(info, color.column, false, ".color.column", faults)) {
       out.columns = {color.column};
     }
   } else if (!color.element.empty()) {
     out.kind = ColorSource::Kind::kElement;
     out.columns = {require_role(info, info.roles.element, "column of chemical elements", ".color.element", faults)};
+    if (!color.carbon.empty()) {
+      set_map(color, folder, out, faults);
+      if (require_column(info, color.carbon, false, ".color.carbon", faults)) out.columns.push_back(color.carbon);
+    }
   } else if (!color.types.empty()) {
     out.kind = ColorSource::Kind::kType;
     out.columns = {require_role(info, info.roles.type, "column of particle types", ".color.type", faults)};
@@ -330,6 +393,7 @@ ColorSource color_source(const data::FrameInfo& info, const scene::PointsColor& 
     out.rgb_maximum = info.roles.rgb_maximum;
     require_role(info, info.roles.rgb[0], "colours", ".color.rgb", faults);
   }
+  out.rules = rules_of(info, color.where, ".color.where", parse_color, faults);
   return out;
 }
 
@@ -342,6 +406,7 @@ void set_colors(const data::Table& table, const Rows& rows, const ColorSource& s
     case ColorSource::Kind::kType: color_by_type(table, rows, source, points, faults); break;
     case ColorSource::Kind::kRgb: color_by_rgb(table, rows, source, points, faults); break;
   }
+  if (!source.rules.empty()) color_by_rules(table, rows, source.rules, points, faults);
 }
 
 }  // namespace orrery::points

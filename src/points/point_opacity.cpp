@@ -19,23 +19,7 @@ constexpr float kOfMaterial = -1;
 
 bool is_opacity(double x) { return x >= 0 && x <= 1; }  // false for NaN
 
-[[noreturn]] void refuse_rule(const std::string& text, const std::string& fault) {
-  base::refuse(fmt::format("`{}` {}; write CONDITION:NUMBER, e.g. 'type == 2: 0.2'", text, fault));
-}
-
 }  // namespace
-
-OpacityRule parse_opacity_rule(const std::string& text) {
-  const std::size_t colon = end_of_expression(text);
-  const bool has_condition = colon != std::string::npos;
-  OpacityRule out;
-  if (has_condition) out.condition = data::trimmed(std::string_view(text).substr(0, colon));
-  const std::string_view number = std::string_view(text).substr(has_condition ? colon + 1 : 0);
-  if (!base::from_text(data::trimmed(number), out.opacity) || !is_opacity(out.opacity))
-    refuse_rule(text, has_condition ? "does not end in a number in 0..1" : "has no colon, and is no number in 0..1");
-  if (has_condition && out.condition.empty()) refuse_rule(text, "has no condition before its colon");
-  return out;
-}
 
 OpacitySource opacity_source(const data::FrameInfo& info, const scene::PointsOpacity& opacity, KeyFaults& faults) {
   OpacitySource out;
@@ -47,17 +31,7 @@ OpacitySource opacity_source(const data::FrameInfo& info, const scene::PointsOpa
   } else if (!opacity.types.empty()) {
     out.column = require_role(info, info.roles.type, "column of particle types", ".opacity.type", faults);
   }
-  if (!out.column.empty()) out.needed.push_back(out.column);
-  for (std::size_t i = 0; i < opacity.where.size(); ++i) {
-    const std::string key = fmt::format(".opacity.where[{}]", i);
-    try {
-      const OpacityRule rule = parse_opacity_rule(opacity.where[i]);
-      out.rules.push_back({parse_selection(rule.condition, info.columns), static_cast<float>(rule.opacity)});
-      for (const std::string& column : out.rules.back().condition.columns) out.needed.push_back(column);
-    } catch (const base::Error& error) {
-      faults.error(key, fault_text(error));
-    }
-  }
+  out.rules = rules_of(info, opacity.where, ".opacity.where", parse_opacity, faults);
   return out;
 }
 
@@ -66,20 +40,10 @@ std::vector<float> opacities_of(const data::Table& table, const Rows& rows, cons
   const scene::PointsOpacity& opacity = points.opacity;
   std::vector<float> out(rows.size(), kOfMaterial);
   std::vector<std::uint8_t> has_rule(rows.size());
-  for (std::size_t r = 0; r < source.rules.size(); ++r) {
-    const OpacitySource::Rule& rule = source.rules[r];
-    const std::vector<std::uint8_t> mask = rule.condition.evaluate(table);
-    bool matches = false;
-    for (std::size_t i = 0; i < rows.size(); ++i)
-      if (mask[rows[i]] != 0) {
-        matches = true;
-        has_rule[i] = 1;
-        out[i] = rule.opacity;
-      }
-    if (!matches && rows.size() > 0)
-      faults.warning(fmt::format(".opacity.where[{}]", r),
-                     fmt::format("`{}` matches none of the particles that are drawn", opacity.where[r]));
-  }
+  apply_rules(table, rows, source.rules, opacity.where, ".opacity.where", faults, [&](std::size_t i, float value) {
+    has_rule[i] = 1;
+    out[i] = value;
+  });
   if (source.column.empty()) return out;
   if (!opacity.types.empty()) {
     const std::optional<Labels> labels = require_labels(table, rows, source.column, kMaxTypes, ".opacity.type", faults);

@@ -94,11 +94,14 @@ RadiusSource radius_source(const data::FrameInfo& info, const scene::PointsRadiu
         "= { column = \"size\", scale = 0.5 }`; its columns are " +
             data::listed(info.columns));
   }
+  out.rules = rules_of(info, radius.where, ".radius.where", parse_radius, faults);
   return out;
 }
 
-scene::NumberArray radii_of(const data::Table& table, const Rows& rows, const RadiusSource& source,
-                            const scene::PointsRadius& radius, KeyFaults& faults) {
+namespace {
+
+scene::NumberArray radii_of_source(const data::Table& table, const Rows& rows, const RadiusSource& source,
+                                   const scene::PointsRadius& radius, KeyFaults& faults) {
   if (source.kind == RadiusSource::Kind::kValue) return scene::NumberArray(rows.size(), radius.value.value_or(1));
   scene::NumberArray out;
   out.reserve(rows.size());
@@ -110,6 +113,17 @@ scene::NumberArray radii_of(const data::Table& table, const Rows& rows, const Ra
   if (!labels) return out;
   const std::vector<double> of_labels = radii_of_labels(*labels, source, radius, faults);
   for (std::size_t i = 0; i < rows.size(); ++i) out.push_back(of_labels[labels->of_rows[i]]);
+  return out;
+}
+
+}  // namespace
+
+scene::NumberArray radii_of(const data::Table& table, const Rows& rows, const RadiusSource& source,
+                            const scene::PointsRadius& radius, KeyFaults& faults) {
+  scene::NumberArray out = radii_of_source(table, rows, source, radius, faults);
+  if (out.size() == rows.size())
+    apply_rules(table, rows, source.rules, radius.where, ".radius.where", faults,
+                [&](std::size_t i, double value) { out.set(i, value); });
   return out;
 }
 

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <array>
 #include <cstddef>
 #include <cstdint>
 #include <functional>
@@ -28,19 +29,30 @@ struct TextTest {
   std::vector<std::string> words;  ///< without a particular order
 };
 
+/// A condition on rows by others that meet one: those near them, or of the same group. It is tested for all rows before
+/// the other steps.
+struct RowTest {
+  std::vector<SelectionStep> steps;  ///< of the condition on the others
+  double distance = 0;               ///< of near rows: at most this far from one of the others; 0: of a group
+  std::vector<std::size_t> columns;  ///< of the position, or of the group; indices into the columns of the selection
+};
+
 /// A condition on the rows of a table: `type == 2 && z > 0`, `element == "C" || !(chain in {A, B})`.
 ///
 /// Operators by precedence, weakest first: `||` or `or`, `&&` or `and`, the prefix `!` or `not`, one of
 /// `== != < <= > >= in`, `+ -`, `* /`, the prefix `-`, and `^`; parentheses; functions abs(x), sqrt(x), exp(x), log(x),
 /// log10(x), floor(x), min(x, y, ...), max(x, y, ...). `x in [1, 5:8, 20:]` tests for numbers and closed ranges,
 /// `chain in {A, B}` for strings; `id 1 5:8 20:` and `chain A B` are the same. Strings are quoted, except in these two,
-/// and can be compared with ==, != and `in`. Columns are written by name, or `in backquotes` if the name contains
-/// characters other than letters, digits, `_`, `.` and indices as in `c_stress[1]`.
+/// and can be compared with ==, != and `in`. `within 5 of (CONDITION)` are the rows at most 5 from one that meets the
+/// condition, which are rows of it, too; `same chain as (CONDITION)` those with the same value in a column; of the
+/// column `residue`, which holds a name, in those that identify a residue. Columns are written by name, or `in
+/// backquotes` if the name contains characters other than letters, digits, `_`, `.` and indices as in `c_stress[1]`.
 ///
 /// Any comparison with NaN is false, even `!=`. Numbers are double: integers beyond 2^53 are rounded.
 struct Selection {
   std::vector<std::string> columns;  ///< those that it reads, each once, in order of appearance
   std::vector<TextTest> text_tests;
+  std::vector<RowTest> row_tests;    ///< each refers at most to those before it
   std::vector<SelectionStep> steps;  ///< empty: all rows are selected
 
   /// Returns for each row of a table whether it is selected, 1 or 0.
@@ -63,9 +75,11 @@ struct Expression {
 
 /// Parses a selection of the rows of a table with some columns. A blank string selects all rows.
 ///
+/// `position` columns of the position
 /// Errors     base::Error(kBadData) with one diagnostic: what is wrong, the remedy, and the selection as source line
 ///            with column and width. The caller sets file and line.
-Selection parse_selection(std::string_view text, const std::vector<data::ColumnInfo>& columns);
+Selection parse_selection(std::string_view text, const std::vector<data::ColumnInfo>& columns,
+                          const std::array<std::string, 3>& position = {"x", "y", "z"});
 
 /// Parses an expression on the columns of a table; errors are those of parse_selection().
 Expression parse_expression(std::string_view text, const std::vector<data::ColumnInfo>& columns);

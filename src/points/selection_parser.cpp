@@ -2,6 +2,7 @@
 #include <system_error>
 
 #include <algorithm>
+#include <array>
 #include <charconv>
 #include <cmath>
 #include <cstddef>
@@ -185,15 +186,14 @@ constexpr Replacement kAliases[] = {{"resid", "residue_number"},
                                     {"resn", "residue"}};
 
 /// Groups of atoms that those programs know, and what selects them here.
-constexpr Replacement kGroups[] = {{"protein", "record == \"ATOM\""},
-                                   {"nucleic", "record == \"ATOM\""},
-                                   {"polymer", "record == \"ATOM\""},
-                                   {"hetatm", "record == \"HETATM\""},
-                                   {"water", "residue in {HOH, WAT}"},
-                                   {"solvent", "residue in {HOH, WAT}"},
-                                   {"backbone", "name N CA C O"},
-                                   {"hydrogen", "element H"},
-                                   {"within", "sqrt((x - 1)^2 + (y - 2)^2 + (z - 3)^2) < 5"}};
+constexpr Replacement kGroups[] = {{"protein", "record == \"ATOM\""},  {"nucleic", "record == \"ATOM\""},
+                                   {"polymer", "record == \"ATOM\""},  {"hetatm", "record == \"HETATM\""},
+                                   {"water", "residue in {HOH, WAT}"}, {"solvent", "residue in {HOH, WAT}"},
+                                   {"backbone", "name N CA C O"},      {"hydrogen", "element H"}};
+
+/// Columns that tell residues apart, those that a file has. The number is always needed.
+constexpr std::string_view kResidueNumber = "residue_number";
+constexpr std::string_view kResidue[] = {"chain", "subchain", "segment", "residue", kResidueNumber};
 
 /// Returns the replacement of a word; empty if there is none.
 std::string_view replacement(std::span<const Replacement> all, std::string_view word) {
@@ -263,7 +263,9 @@ struct Operand {
 /// Parses a selection, checks its types and adds its steps, all in one pass.
 class Parser {
  public:
-  Parser(std::string_view text, const std::vector<data::ColumnInfo>& columns) : columns_(columns) {
+  Parser(std::string_view text, const std::vector<data::ColumnInfo>& columns,
+         const std::array<std::string, 3>& position = {})
+      : columns_(columns), position_(position) {
     if (text.size() > kMaxLength)
       fail_selection("", {}, "the condition is longer than " + base::bytes_text(kMaxLength),
                      "select by ranges, or filter the file");
@@ -495,6 +497,8 @@ class Parser {
   Operand parse_name() {
     const Token token = token_;
     if (is_word("in")) fail_at_token("expected a column before `in`", "e.g. chain in {A, B}");
+    if (is_word("within") && known_.count("within") == 0) return parse_near();
+    if (is_word("same") && known_.count("same") == 0) return parse_group();
     const bool is_compared = follows_equality_;
     auto found = known_.find(token.text);
     if (found == known_.end()) found = known_.find(replacement(kAliases, token.text));
@@ -502,12 +506,57 @@ class Parser {
     read(is_text);
     if (token.kind == TokenKind::kName && is_symbol("(")) return parse_call(token);
     if (found == known_.end()) fail_unknown_column(token, is_compared);
-    std::size_t& index = found->second.index;
-    if (index == kUnused) {
-      index = selection_.columns.size();
-      selection_.columns.emplace_back(found->first);
-    }
+    const std::size_t index = use(*found);
     return is_text ? parse_words(token, index) : parse_numbers(token, index);
+  }
+
+  /// Parses `within 5 of CONDITION`.
+  Operand parse_near() {
+    const Span span = token_.span;
+    constexpr const char* kExample = "e.g. within 5 of (residue HEM)";
+    read();
+    RowTest test;
+    const Span length = token_.span;
+    test.distance = parse_number();
+    if (!(test.distance > 0)) fail(length, "the distance must be above 0", kExample);
+    for (const std::string& column : position_) {
+      const auto found = known_.find(column);
+      if (found == known_.end() || found->second.is_text) fail(span, "the data have no positions", "select by columns");
+      test.columns.push_back(use(*found));
+    }
+    return parse_others("of", std::move(test), span, kExample);
+  }
+
+  /// Parses `same COLUMN as CONDITION`.
+  Operand parse_group() {
+    const Span span = token_.span;
+    constexpr const char* kExample = "e.g. same residue as (within 5 of (residue HEM))";
+    read();
+    const Token column = token_;
+    if (column.kind != TokenKind::kName && column.kind != TokenKind::kQuotedName)
+      fail_at_token("expected a column after `same`", kExample);
+    read();
+    RowTest test;
+    if (column.text == "residue" && known_.count(kResidueNumber) > 0) {
+      for (const std::string_view part : kResidue)
+        if (const auto found = known_.find(part); found != known_.end()) test.columns.push_back(use(*found));
+    } else {
+      const auto found = known_.find(column.text);
+      if (found == known_.end()) fail_unknown_column(column, false);
+      test.columns.push_back(use(*found));
+    }
+    return parse_others("as", std::move(test), span, kExample);
+  }
+
+  /// Parses a word, and the condition that follows it.
+  Operand parse_others(const char* word, RowTest test, Span span, const char* example) {
+    if (!is_word(word)) fail_at_token(fmt::format("expected `{}`", word), example);
+    read();
+    std::vector<SelectionStep> outer = std::exchange(selection_.steps, {});
+    require(parse_comparison(), Type::kTruth, span, example);
+    test.steps = std::exchange(selection_.steps, std::move(outer));
+    selection_.row_tests.push_back(std::move(test));
+    return emit([index = selection_.row_tests.size() - 1](Run& run) { run.test_rows(index); }, Type::kTruth, span);
   }
 
   /// Parses what follows a column of strings: `chain A B`, and `chain A+B` as in PyMOL, are `chain in {A, B}`.
@@ -641,6 +690,16 @@ class Parser {
     return out;
   }
 
+  /// The index of a column in those of the selection, to which it is added if necessary.
+  std::size_t use(auto& known) {
+    std::size_t& index = known.second.index;
+    if (index == kUnused) {
+      index = selection_.columns.size();
+      selection_.columns.emplace_back(known.first);
+    }
+    return index;
+  }
+
   static constexpr std::size_t kUnused = std::numeric_limits<std::size_t>::max();
   struct Known {
     bool is_text;
@@ -649,6 +708,7 @@ class Parser {
 
   std::string text_;
   const std::vector<data::ColumnInfo>& columns_;
+  std::array<std::string, 3> position_;
   std::unordered_map<std::string_view, Known> known_;
   Selection selection_;
   SelectionLexer lexer_{text_};
@@ -659,8 +719,9 @@ class Parser {
 
 }  // namespace
 
-Selection parse_selection(std::string_view text, const std::vector<data::ColumnInfo>& columns) {
-  return Parser(text, columns).parse();
+Selection parse_selection(std::string_view text, const std::vector<data::ColumnInfo>& columns,
+                          const std::array<std::string, 3>& position) {
+  return Parser(text, columns, position).parse();
 }
 
 Expression parse_expression(std::string_view text, const std::vector<data::ColumnInfo>& columns) {

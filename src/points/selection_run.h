@@ -56,6 +56,8 @@ class SelectionRun {
   void find(const std::vector<NumberRange>& ranges);
   /// Pushes the result of a text test.
   void test_text(std::size_t index);
+  /// Pushes the result of a row test.
+  void test_rows(std::size_t index);
   void negate();
   /// Replaces two truth values a and b by f(a, b).
   template <class F>
@@ -67,7 +69,8 @@ class SelectionRun {
   }
 
  private:
-  void run(std::size_t begin, std::size_t count);
+  void run(const std::vector<SelectionStep>& steps, std::size_t begin, std::size_t count);
+  std::vector<Truth> truths_of(const RowTest& test, std::size_t rows);
   /// The topmost numbers, `depth` blocks.
   double* numbers(std::size_t depth) { return numbers_.data() + number_end_ - depth * kRows; }
   double* push_numbers();
@@ -84,6 +87,7 @@ class SelectionRun {
   const Selection& selection_;
   std::vector<const data::Column*> columns_;
   std::vector<std::vector<std::uint32_t>> places_;  ///< for each text test and distinct string, its index in the others
+  std::vector<std::vector<Truth>> of_rows_;         ///< results of the row tests
   std::size_t begin_ = 0, count_ = 0;
   std::vector<double> numbers_;
   std::vector<Truth> truths_;

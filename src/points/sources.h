@@ -12,6 +12,7 @@
 #include "points/color_map.h"
 #include "points/copies.h"
 #include "points/rows.h"
+#include "points/rules.h"
 #include "points/selection.h"
 #include "scene/forward.h"
 
@@ -23,8 +24,9 @@ namespace orrery::points {
 struct RadiusSource {
   enum class Kind { kValue, kColumn, kElement, kType };
   Kind kind = Kind::kValue;
-  std::string column;  ///< column to read; empty: none
-  double scale = 1;    ///< multiplies column and element radii
+  std::string column;               ///< column to read; empty: none
+  double scale = 1;                 ///< multiplies column and element radii
+  std::vector<Rule<double>> rules;  ///< see scene::PointsRadius::where
 };
 
 /// Determines the source of the radii. Reports a missing radius, unknown columns, and mutually exclusive keys.
@@ -50,6 +52,10 @@ struct ColorSource {
   std::optional<Expression> expression;  ///< kMap: of these columns; none: the column itself
   double rgb_maximum = 255;
   std::optional<ColorMap> map;
+  std::vector<Rule<Vec3d>> rules;  ///< see scene::PointsColor::where; linear Rec.709
+
+  /// Whether spheres have colours of their own.
+  bool is_set() const { return kind != Kind::kNone || !rules.empty(); }
 };
 
 /// Determines the source of the colours. Reports unknown columns and maps, and mutually exclusive keys.
@@ -78,31 +84,10 @@ void for_each_shown(const data::Column& column, const Rows& rows, bool is_log, F
 void set_colors(const data::Table& table, const Rows& rows, const ColorSource& source, scene::Points& points,
                 KeyFaults& faults);
 
-/// Returns the place of the colon that ends an expression: the first one outside quotes, brackets and braces, which
-/// contain ranges and strings; npos if there is none.
-std::size_t end_of_expression(std::string_view text);
-
-/// An opacity, and the condition under which a sphere has it; empty: always.
-struct OpacityRule {
-  std::string condition;
-  double opacity = 1;
-};
-
-/// Parses an element of scene::PointsOpacity::where: a selection, a colon, a number in 0..1; or the number alone.
-///
-/// Errors     base::Error(kUsage)
-OpacityRule parse_opacity_rule(const std::string& text);
-
 /// How the opacities of a file's spheres are determined.
 struct OpacitySource {
-  /// A rule with its condition.
-  struct Rule {
-    Selection condition;
-    float opacity;
-  };
-  std::string column;               ///< of opacities or of types; empty: none
-  std::vector<std::string> needed;  ///< columns to read, of the conditions, too
-  std::vector<Rule> rules;
+  std::string column;              ///< of opacities or of types; empty: none
+  std::vector<Rule<float>> rules;  ///< see scene::PointsOpacity::where
 
   /// Whether spheres have opacities of their own.
   bool is_set() const { return !column.empty() || !rules.empty(); }
@@ -117,19 +102,15 @@ OpacitySource opacity_source(const data::FrameInfo& info, const scene::PointsOpa
 std::vector<float> opacities_of(const data::Table& table, const Rows& rows, const OpacitySource& source,
                                 const scene::PointsKeys& points, KeyFaults& faults);
 
-/// A label of a points table, and the condition on the particles that it labels.
-struct LabelRule {
-  Selection condition;
-  std::string text;
-};
-
-/// Parses scene::Points::labels. Reports those that are not valid.
-std::vector<LabelRule> label_rules(const data::FrameInfo& info, const scene::PointsKeys& points, KeyFaults& faults);
+/// The text of a rule of scene::PointsKeys::labels.
+///
+/// Errors     base::Error(kUsage) if it is empty
+std::string parse_label(const std::string& text);
 
 /// Places each label at the middle of the rows that match, in the first copy of the particles. Reports labels that
 /// match none, and omits them.
 std::vector<scene::Label> placed_labels(const data::Table& table, const Rows& rows, const scene::PointArray& centers,
-                                        const std::vector<LabelRule>& rules, const Copy& first,
+                                        const std::vector<Rule<std::string>>& rules, const Copy& first,
                                         const scene::PointsKeys& points, KeyFaults& faults);
 
 /// Returns the type of a column of a frame.

@@ -58,7 +58,11 @@ std::vector<Key<P>> make_keys() {
                        &PointsRadius::types),
                 number("scale", {0, kLargestLength, true, false},
                        {"Scale factor for radii from a column or by element, e.g. 0.5 for a column of diameters"},
-                       &PointsRadius::scale)}));
+                       &PointsRadius::scale),
+                key_of("where", ValueType::kTexts, {},
+                       {"Radii of the spheres that match a [condition](data.md#selections), e.g. `[\"type == 2: "
+                        "0.5\"]`. The last that matches decides, with precedence over the other radii"},
+                       &PointsRadius::where)}));
   add(subtable(
       "color", Part::kAssignment, &P::color,
       {text("column",
@@ -75,11 +79,21 @@ std::vector<Key<P>> make_keys() {
        boolean("log", {"The map is linear in the logarithms of the values. Those up to 0 have `color.nan_color`"},
                &PointsColor::log),
        vector("nan_color", {0, 1}, {"Colour of NaN values", "scene-linear"}, &PointsColor::nan_color),
-       choice("element", {"jmol"}, {"Colours by chemical element. `jmol`: those of Jmol, with hydrogen in light grey"},
-              &PointsColor::element),
+       choice(
+           "element", {"jmol", "soft"},
+           {"Colours by chemical element. `jmol`: those of Jmol, with hydrogen in light grey. `soft`: the same, mixed "
+            "with white"},
+           &PointsColor::element),
+       text("carbon", {"With `color.element`: carbon atoms have the colours of this column, by `color.map`"},
+            &PointsColor::carbon),
        key_of("type", ValueType::kColorsByType, kUnit,
               {"Colours by particle type. Each type that occurs must be listed", "scene-linear"}, &PointsColor::types),
-       boolean("rgb", {"Uses the colours in the file, as sRGB"}, &PointsColor::rgb)}));
+       boolean("rgb", {"Uses the colours in the file, as sRGB"}, &PointsColor::rgb),
+       key_of(
+           "where", ValueType::kTexts, {},
+           {"Colours of the spheres that match a [condition](data.md#selections), e.g. `[\"type == 2: red\", "
+            "\"id == 5: #ffaa00\"]`, as sRGB. The last that matches decides, with precedence over the other colours"},
+           &PointsColor::where)}));
   add(subtable(
       "bonds", {}, &P::bonds,
       {otherwise("false", key_of_bonds()),
@@ -127,7 +141,12 @@ std::vector<Key<P>> make_keys() {
               {"Opacities of the spheres that match a [condition](data.md#selections), e.g. `[\"type == 2: 0.2\"]`. A "
                "number alone matches all. The last that matches decides, with precedence over the other opacities"},
               &PointsOpacity::where)}));
-  add({text("select", {"Condition on the columns, e.g. `type == 2 && z > 0`; see [Selections](data.md#selections)"},
+  add({key_of("representation", ValueType::kTexts, {},
+              {"How the particles that match a [condition](data.md#selections) are drawn: `spheres`, `ball-and-stick`, "
+               "`sticks`, `trace` or `points`, e.g. `[\"trace\", \"residue HEM: sticks\"]`. A kind alone matches all. "
+               "The last that matches decides; see [Representations](data.md#representations)"},
+              &P::representation),
+       text("select", {"Condition on the columns, e.g. `type == 2 && z > 0`; see [Selections](data.md#selections)"},
             &P::select),
        vector("replicate", {1, kMaxCopies},
               {"Number of periodic boxes along each box edge", "", "Each copy adds its spheres"}, &P::replicate),

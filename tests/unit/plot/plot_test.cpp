@@ -23,6 +23,7 @@
 #include "plot/data_frames.h"
 #include "points/color_map.h"
 #include "scene/animation.h"
+#include "support/mentions.h"
 #include "support/temp_dir.h"
 
 namespace orrery::plot {
@@ -136,7 +137,7 @@ TEST_F(PlotPlot, DefaultsWithoutRadiusAndColor) {
             "radius 2: half the median distance to the nearest neighbour\n"
             "no colour: light grey; --color-by COLUMN shows values\n"
             "up z: customary for simulations and scans\n"
-            "view iso, 20.8 wide: fitted to the spheres\n"
+            "view 30,20, 19.02 wide: fitted to the spheres\n"
             "style studio: a key light from the upper left, and white light from all directions\n"
             "size 1920 x 1080: --width and --height change it\n"
             "quality good: noise 0.1, denoised; --quality, --noise, --time or --samples change it\n");
@@ -188,12 +189,13 @@ TEST_F(PlotPlot, MoleculesHaveRadiiAndColorsOfTheirElements) {
        "ATOM      1  CA  ALA A   1       1.000   2.000   3.000  1.00  0.00           C\n"
        "ATOM      2  N   ALA B   1       4.000   5.000   6.000  1.00  0.00           N\nEND\n");
   EXPECT_TRUE(chose("radius vdw: van der Waals radii of the elements")) << choices();
-  EXPECT_TRUE(chose("colour by element: the file has no colours; --color-by changes it")) << choices();
-  EXPECT_TRUE(chose("up y: customary for molecules")) << choices();
+  EXPECT_TRUE(chose("colour by chain+element: several chains; --color-by element shows elements alone")) << choices();
+  EXPECT_TRUE(test::mentions(choices(), {"view auto", "principal axes"})) << choices();
   const scene::Scene scene = read();
   EXPECT_EQ(scene.points[0].radii, (std::vector<double>{1.70, 1.55}));
-  EXPECT_EQ(scene.points[0].color.element, "jmol");
-  EXPECT_EQ(scene.points[0].palette.size(), 2u);
+  EXPECT_EQ(scene.points[0].color.element, "soft");
+  EXPECT_EQ(scene.points[0].palette.size(), 3u);
+  EXPECT_EQ(scene.points[0].color_names[0], "C (A)");
   options.points.radius.element = "ball";
   make();
   EXPECT_EQ(read().points[0].radii[0], 0.25 * 1.70);
@@ -421,8 +423,8 @@ TEST_F(PlotPlot, TypesAreCategories) {
   make("a.dump", frame("x y z radius type", {"1 0 0 1 2", "2 0 0 1 1"}));
   EXPECT_TRUE(chose("colour by type: the file has no colours; --color-by changes it")) << choices();
   const scene::Points points = read().points[0];
-  EXPECT_EQ(points.color.map, "tab10");
-  EXPECT_EQ(points.palette, points::palette(*points::find_color_map("tab10"), 2));
+  EXPECT_EQ(points.color.map, "set2");
+  EXPECT_EQ(points.palette, points::palette(*points::find_color_map("set2"), 2));
   EXPECT_EQ(made.legend.labels, (Labels{{"1", points.palette[0]}, {"2", points.palette[1]}}));
   options.points.color.map = "viridis";
   options.has_map = true;
@@ -432,7 +434,7 @@ TEST_F(PlotPlot, TypesAreCategories) {
 
 TEST_F(PlotPlot, NumbersOfGroupsAreCategories) {
   for (const auto& [column, map] :
-       {std::pair("mol", "tab10"), std::pair("cluster_ID", "tab10"), std::pair("n", "fast")}) {
+       {std::pair("mol", "set2"), std::pair("cluster_ID", "set2"), std::pair("n", "fast")}) {
     options.color_by = column;
     make("a.dump", frame("x y z radius " + std::string(column), {"1 0 0 1 2", "2 0 0 1 1"}));
     EXPECT_EQ(read().points[0].color.map, map) << column;
@@ -501,8 +503,8 @@ TEST_F(PlotPlot, OneRangeAndOneViewForAllFrames) {
 TEST_F(PlotPlot, TheLegendExplainsAllFrames) {
   options.all_frames = true;
   make("a.dump", frame("x y z radius type", {"0 0 0 1 2"}) + frame("x y z radius type", {"0 0 0 1 10", "1 0 0 1 1"}));
-  const std::vector<Vec3d> tab10 = points::palette(*points::find_color_map("tab10"), 10);
-  EXPECT_EQ(made.legend.labels, (Labels{{"1", tab10[0]}, {"2", tab10[1]}, {"10", tab10[9]}}));
+  const std::vector<Vec3d> set2 = points::palette(*points::find_color_map("set2"), 8);
+  EXPECT_EQ(made.legend.labels, (Labels{{"1", set2[0]}, {"2", set2[1]}, {"10", set2[1]}}));
   EXPECT_EQ(made.legend.labels.rbegin()->first, "10") << "numbers by value";
   EXPECT_FALSE(made.legend.has_conflict);
   EXPECT_TRUE(made.warnings.empty());
@@ -623,7 +625,7 @@ TEST_F(PlotPlot, SequencesOfFiles) {
   options.frames = {1, 2};
   make();
   EXPECT_EQ(read(2).points[0].centers[0].x, 5);
-  EXPECT_EQ(read(1).camera.look_at.x, 3);
+  EXPECT_NEAR(read(1).camera.look_at.x, 3, 1e-9);
   options.frames.clear();
   options.all_frames = true;
   EXPECT_NE(error().find("--frames: `all` selects the frames of a single file"), std::string::npos) << error();
@@ -736,7 +738,8 @@ TEST_F(PlotPlot, SlicesRemoveTheSideOfTheCamera) {
     return out;
   };
   options.slices = {{2, 1.0}};
-  EXPECT_EQ(kept(), (std::vector<double>{-5, 0})) << "iso looks from above";
+  EXPECT_EQ(kept(), (std::vector<double>{-5, 0})) << "a plane is seen from its axis";
+  EXPECT_TRUE(test::mentions(choices(), {"view +z"})) << choices();
   options.slices = {{2, 1.0}, {2, -1.0}};
   EXPECT_EQ(kept(), (std::vector<double>{-5})) << "all slices apply";
   options.slices = {{2, -1.0}, {2, 1.0}};
@@ -874,19 +877,19 @@ TEST_F(PlotPlot, TheMeanOfASphereIsItsColor) {
 }
 
 TEST_F(PlotPlot, TheBackgroundIsAColorOrTransparent) {
-  options.background = color_of("#ff8000");
+  options.background = points::parse_color("#ff8000");
   make("a.csv", kCorners);
   EXPECT_EQ(shown(read())[0], (std::array<int, 3>{255, 128, 0}));
   EXPECT_EQ(read().background.alpha, 1);
   options.transparent = true;
   make();
   EXPECT_EQ(read().background.alpha, 0);
-  EXPECT_EQ(color_of("black"), (Vec3d{0, 0, 0}));
-  EXPECT_EQ(color_of("#f80"), color_of("#ff8800"));
-  EXPECT_EQ(color_of("Navy"), color_of("#000080"));
-  EXPECT_EQ(color_of("grey"), color_of("gray"));
+  EXPECT_EQ(points::parse_color("black"), (Vec3d{0, 0, 0}));
+  EXPECT_EQ(points::parse_color("#f80"), points::parse_color("#ff8800"));
+  EXPECT_EQ(points::parse_color("Navy"), points::parse_color("#000080"));
+  EXPECT_EQ(points::parse_color("grey"), points::parse_color("gray"));
   for (const char* text : {"", "puce", "#ff800", "#ff", "#ff80000", "#gg0000", "ff8000"})
-    EXPECT_THROW(color_of(text), base::Error) << text;
+    EXPECT_THROW(points::parse_color(text), base::Error) << text;
 }
 
 TEST_F(PlotPlot, QualitiesAreNoiseOrSamples) {
@@ -943,7 +946,7 @@ TEST_F(PlotPlot, ManyAtomsAreColoredByChain) {
                         i % 2 == 0 ? 'A' : 'B', i % 1000, i % 50 * 2.0, i / 50 % 50 * 2.0, i / 2500 * 2.0);
   make("a.pdb", text + "END\n");
   EXPECT_TRUE(chose("colour by chain: many atoms; --color-by element shows elements")) << choices();
-  EXPECT_EQ(read().points[0].color.map, "tab10");
+  EXPECT_EQ(read().points[0].color.map, "set2");
   EXPECT_EQ(read().points[0].palette.size(), 2u);
   options.has_map = true;
   options.points.color.map = "set2";
@@ -953,12 +956,12 @@ TEST_F(PlotPlot, ManyAtomsAreColoredByChain) {
   options.points.color.map = {};
   options.points.select = "residue_number < 10";  // few of them are shown
   make("few.pdb", text + "ATOM   5000  O   ALA A 999      90.000  90.000  90.000  1.00  0.00           O\nEND\n");
-  EXPECT_TRUE(chose("colour by element: the file has no colours; --color-by changes it")) << choices();
+  EXPECT_TRUE(chose("colour by chain+element: several chains; --color-by element shows elements alone")) << choices();
   options.points.select.clear();
   write("a.pdb", text + "END\n");
   options.color_by = "element";
   make();
-  EXPECT_EQ(read().points[0].color.element, "jmol");
+  EXPECT_EQ(read().points[0].color.element, "soft");
   options.color_by.clear();
   const std::string assembly =
       "REMARK 350 BIOMOLECULE: 1\nREMARK 350 APPLY THE FOLLOWING TO CHAINS: A\n"
@@ -972,7 +975,7 @@ TEST_F(PlotPlot, ManyAtomsAreColoredByChain) {
 
 TEST_F(PlotPlot, AtomsOfOneElementAreColoredByChain) {
   const auto atom = [](int i, char element) {
-    return fmt::format("ATOM  {:5}  CA  ALA {} {:3}    {:8.3f}{:8.3f}{:8.3f}  1.00  0.00           {}\n", i,
+    return fmt::format("ATOM  {:5}  CB  ALA {} {:3}    {:8.3f}{:8.3f}{:8.3f}  1.00  0.00           {}\n", i,
                        i % 2 == 0 ? 'A' : 'B', i, i * 2.0, 0.0, 0.0, element);
   };
   make("a.pdb", atom(1, 'C') + atom(2, 'C') + "END\n");
@@ -980,7 +983,7 @@ TEST_F(PlotPlot, AtomsOfOneElementAreColoredByChain) {
   EXPECT_EQ(read().points[0].palette.size(), 2u);
   options.points.select = "element == \"C\"";  // not what is shown decides
   make("a.pdb", atom(1, 'C') + atom(2, 'O') + "END\n");
-  EXPECT_TRUE(chose("colour by element: the file has no colours; --color-by changes it")) << choices();
+  EXPECT_TRUE(chose("colour by chain+element: several chains; --color-by element shows elements alone")) << choices();
 }
 
 /// The columns of a long row would reach below the colour bar.
@@ -1009,6 +1012,142 @@ TEST_F(PlotPlot, SpheresAreBesideTheAnnotation) {
   make("b.csv", row);
   EXPECT_GT(*read().camera.width, beside_the_bar);
   expect_spheres_beside_annotation();
+}
+
+TEST_F(PlotPlot, AtomsOfATraceAreDrawnAsOne) {
+  const auto atom = [](int i, const char* name) {
+    return fmt::format("ATOM  {:5} {:<4} ALA A {:3}    {:8.3f}{:8.3f}{:8.3f}  1.00  0.00           C\n", i, name, i,
+                       i * 3.8, 0.0, 0.0);
+  };
+  make("a.pdb", atom(1, " CA") + atom(2, " CA") + atom(4, " CA") + "END\n");
+  EXPECT_TRUE(test::mentions(choices(), {"representation trace", "material plastic"})) << choices();
+  EXPECT_EQ(read().points[0].bond_pairs.size(), 1u) << "residue 3 is missing";
+  make("b.pdb", atom(1, " CA") + atom(2, " CB") + "END\n");
+  EXPECT_TRUE(read().points[0].bond_pairs.empty());
+  options.representation = Representation::kSpheres;
+  make("a.pdb", atom(1, " CA") + atom(2, " CA") + "END\n");
+  EXPECT_TRUE(read().points[0].bond_pairs.empty());
+}
+
+/// A crystal of n^3 cells with atoms at some places.
+std::string crystal(const std::vector<std::pair<std::string, Vec3d>>& atoms, double edge, int n) {
+  std::string rows;
+  for (int i = 0; i < n * n * n; ++i)
+    for (const auto& [element, at] : atoms)
+      rows += fmt::format("{} {} {} {}\n", element, (i % n + at.x) * edge, (i / n % n + at.y) * edge,
+                          (i / n / n + at.z) * edge);
+  const double length = n * edge;
+  return fmt::format("{}\nLattice=\"{} 0 0 0 {} 0 0 0 {}\" Properties=species:S:1:pos:R:3\n{}",
+                     static_cast<int>(atoms.size()) * n * n * n, length, length, length, rows);
+}
+
+/// Van der Waals radii would bury the lattice.
+TEST_F(PlotPlot, AtomsOfNetworksHaveSmallerRadii) {
+  make("cu.xyz",
+       crystal({{"Cu", {0, 0, 0}}, {"Cu", {0.5, 0.5, 0}}, {"Cu", {0.5, 0, 0.5}}, {"Cu", {0, 0.5, 0.5}}}, 3.6, 3));
+  EXPECT_NEAR(read().points[0].radii[0], 3.6 / std::sqrt(8), 1e-3) << "half the distance to the nearest neighbour";
+  EXPECT_TRUE(test::mentions(choices(), {"half the median distance", "metal"})) << choices();
+  make("salt.xyz", crystal({{"Na", {0, 0, 0}},
+                            {"Cl", {0.5, 0, 0}},
+                            {"Na", {0.5, 0.5, 0}},
+                            {"Cl", {0, 0.5, 0}},
+                            {"Cl", {0, 0, 0.5}},
+                            {"Na", {0.5, 0, 0.5}},
+                            {"Cl", {0.5, 0.5, 0.5}},
+                            {"Na", {0, 0.5, 0.5}}},
+                           5.64, 2));
+  EXPECT_EQ(read().points[0].radius.element, "covalent");
+  make("water.xyz", "3\n\nO 0 0 0\nH 0.96 0 0\nH -0.24 0.93 0\n");
+  EXPECT_EQ(read().points[0].radius.element, "vdw");
+  make("argon.xyz", crystal({{"Ar", {0, 0, 0}}}, 3.8, 3));
+  EXPECT_EQ(read().points[0].radius.element, "vdw");
+  options.points.radius.element = "vdw";
+  make("cu.xyz", crystal({{"Cu", {0, 0, 0}}}, 2.5, 3));
+  EXPECT_EQ(read().points[0].radius.element, "vdw") << "the user's";
+}
+
+/// Of many atoms, those around one of them are a sample.
+TEST_F(PlotPlot, NetworksOfManyAtomsAreRecognized) {
+  make("cu.xyz", crystal({{"Cu", {0, 0, 0}}}, 2.5, 48));
+  EXPECT_EQ(read().points[0].radius.value, 1.25) << choices();
+}
+
+TEST_F(PlotPlot, MoleculesAreSeenAlongTheirPrincipalAxes) {
+  // A planar molecule, tilted.
+  std::string rows;
+  for (int i = 0; i < 24; ++i) {
+    const double x = 3 * std::cos(i * 0.26), y = 2 * std::sin(i * 0.26);
+    rows += fmt::format("C {} {} {}\n", x, y * 0.8, y * 0.6);
+  }
+  options.points.radius.value = 0.1;
+  write("a.xyz", "24\n\n" + rows);
+  make();
+  const auto back = [&] {
+    const scene::Camera camera = read().camera;
+    return math::normalized(camera.look_from - camera.look_at);
+  };
+  EXPECT_NEAR(std::abs(math::dot(back(), Vec3d{0, -0.6, 0.8})), 1, 1e-6);
+  EXPECT_NEAR(std::abs(read().camera.up.x), 0, 0.01) << "the longest direction is horizontal";
+  const Vec3d all = back();
+  options.points.select = "x < 0 || y > 0";
+  make();
+  EXPECT_LT(math::length(math::cross(back(), all)), 1e-6) << "of what is shown, which is as planar";
+  options.points.select.clear();
+  options.up = "z";
+  make();
+  EXPECT_TRUE(test::mentions(choices(), {"view 30,20"})) << "an axis that shall point up does: " << choices();
+  options.up.clear();
+  options.look_from = "auto";
+  make("b.csv", "x,y,z,radius\n0,0,0,1\n9,0,0,1\n");
+  EXPECT_NEAR(std::abs(read().camera.up.x), 0, 1e-6) << "on request, any data";
+}
+
+/// The view is that of the first frame, whichever is shown.
+TEST_F(PlotPlot, AllFramesHaveTheViewOfTheFirst) {
+  const std::string first = "3\n\nC 0 0 0\nC 1 0 0\nC 0 3 0\n", second = "3\n\nC 0 0 0\nC 0 1 0\nC 0 0 3\n";
+  write("a.xyz", first + second);
+  make();
+  const scene::Camera of_first = read().camera;
+  options.points.frame = 2;
+  make();
+  const scene::Camera of_second = read().camera;
+  EXPECT_LT(math::length(math::normalized(of_first.look_from - of_first.look_at) -
+                         math::normalized(of_second.look_from - of_second.look_at)),
+            1e-9);
+  EXPECT_LT(math::length(of_first.up - of_second.up), 1e-9);
+}
+
+TEST_F(PlotPlot, TheCameraIsFittedToSomeParticlesAndOthersAreClipped) {
+  write("a.csv", kCorners);
+  options.look_from = "+z";
+  make();
+  const double all = *read().camera.width;
+  options.fit = "mass in [5, 6]";  // at 0 and 4, 0, 4
+  make();
+  const scene::Camera camera = read().camera;
+  EXPECT_LT(*camera.width, all);
+  EXPECT_LT(math::length(camera.look_at - Vec3d{2, 0, 4}), 1e-9);
+  EXPECT_EQ(read().points[0].centers.size(), 9u);
+  for (const Vec3d& center : read().points[0].centers)
+    EXPECT_LT(center.z + 2, camera.look_from.z) << "the camera is in front of all spheres";
+  options.fit = "mass == 9";  // at 1, 0, 0
+  options.near = 0;
+  make();
+  EXPECT_EQ(read().points[0].centers.size(), 5u) << "those in front are removed";
+  options.near = 3.9;
+  EXPECT_EQ((make(), read().points[0].centers.size()), 9u) << "from the front of the target";
+  options.near = 0;
+  options.fit = "mass == 5";
+  options.far = 0;
+  EXPECT_EQ((make(), read().points[0].centers.size()), 4u) << "and those behind";
+  options.fit.clear();
+  EXPECT_TRUE(test::mentions(error(), {"--near", "--fit CONDITION"}));
+  options.fit = "mass == 50";
+  EXPECT_TRUE(test::mentions(error(), {"--fit", "matches none"}));
+  write("a.dump", frame("x y z radius", {"1 0 0 1", "2 0 0 1"}));
+  options.fit = "x == 1";
+  options.points.replicate = {2, 1, 1};
+  EXPECT_TRUE(test::mentions(error(), {"--near excludes", "--replicate"}));
 }
 
 TEST_F(PlotPlot, APerspectiveCameraIsFitted) {
@@ -1138,6 +1277,7 @@ TEST_F(PlotPlot, DataOutsideTheRangeOfAPlotAreNamed) {
     return "no error";
   };
   options.points.radius.value = 1;
+  options.look_from = "iso";
   const std::string far = "0,-1e17,0\n";
   EXPECT_EQ(remedy_for(far), "use a larger unit of length, in which the spheres are within 2.2e+16");
   EXPECT_EQ(error(),

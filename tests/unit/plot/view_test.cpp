@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <random>
 
@@ -227,6 +228,65 @@ TEST(PlotView, ExtentsOfFramesAreJoined) {
   extent.add(points);
   EXPECT_EQ(extent.center(), (Vec3d{12, 0, 0}));
   EXPECT_NEAR(*extent.camera(1).width, 6 / 0.9, 1e-12);
+}
+
+/// Points of a box with edges along three perpendicular directions, with noise of a size.
+scene::PointArray box_of(const std::array<Vec3d, 3>& edges, double noise = 0, unsigned seed = 1) {
+  std::mt19937 random(seed);
+  std::uniform_real_distribution<double> share(-1, 1);
+  scene::PointArray out;
+  for (int i = 0; i < 729; ++i)
+    out.push_back(edges[0] * (i % 9 / 4.0 - 1) + edges[1] * (i / 9 % 9 / 4.0 - 1) + edges[2] * (i / 81 / 4.0 - 1) +
+                  Vec3d{share(random), share(random), share(random)} * noise);
+  return out;
+}
+
+TEST(PlotView, PrincipalAxesShowTheLargestFace) {
+  const Vec3d a = math::normalized(Vec3d{1, 2, -0.5}), b = math::normalized(math::cross(a, {0, 0, 1})),
+              c = math::cross(a, b);
+  const ViewAxes near = view_axes(kDefaultView, "y");
+  for (const bool is_tall : {false, true}) {
+    const ViewAxes axes = principal_axes(box_of({a * 9, b * 3, c}), 729, near, is_tall);
+    EXPECT_NEAR(std::abs(math::dot(is_tall ? axes.up : axes.right, a)), 1, 1e-9);
+    EXPECT_NEAR(std::abs(math::dot(axes.back, c)), 1, 1e-9);
+    EXPECT_LT(difference(math::cross(axes.right, axes.up), axes.back), 1e-12) << "right-handed";
+    for (const auto& [x, y] : {std::pair(-1.0, -1.0), std::pair(-1.0, 1.0), std::pair(1.0, -1.0)}) {
+      const Vec3d right = axes.right * x, up = axes.up * y, back = math::cross(right, up);
+      EXPECT_GT(math::dot(axes.right, near.right) + math::dot(axes.up, near.up) + math::dot(axes.back, near.back),
+                math::dot(right, near.right) + math::dot(up, near.up) + math::dot(back, near.back))
+          << "the closest to the default view";
+    }
+  }
+}
+
+TEST(PlotView, PrincipalAxesAreStableUnderNoise) {
+  const ViewAxes near = view_axes(kDefaultView, "z");
+  // A box, a plate, a rod and a cube along the axes of the file.
+  for (const Vec3d& size :
+       {Vec3d{9, 3, 1}, Vec3d{4, 4, 1}, Vec3d{9, 1, 1}, Vec3d{1, 1, 1}, Vec3d{9, 3, 0}, Vec3d{9, 0, 0}}) {
+    const std::array<Vec3d, 3> edges = {Vec3d{size.x, 0, 0}, Vec3d{0, size.y, 0}, Vec3d{0, 0, size.z}};
+    const ViewAxes axes = principal_axes(box_of(edges), 729, near, false);
+    for (unsigned seed = 1; seed < 9; ++seed) {
+      const ViewAxes noisy = principal_axes(box_of(edges, 0.05, seed), 729, near, false);
+      EXPECT_LT(difference(axes.back, noisy.back), 0.05) << size.x << size.y << size.z;
+      EXPECT_LT(difference(axes.up, noisy.up), 0.05) << size.x << size.y << size.z;
+    }
+  }
+}
+
+TEST(PlotView, WithoutADirectionTheDefaultViewRemains) {
+  const ViewAxes near = view_axes(kDefaultView, "z");
+  scene::PointArray points;
+  EXPECT_EQ(principal_axes(points, 0, near, false).back, near.back);
+  points.push_back({1, 2, 3});
+  EXPECT_EQ(principal_axes(points, 1, near, false).back, near.back);
+  points.push_back({1, 2, 3});
+  EXPECT_EQ(principal_axes(points, 2, near, false).back, near.back) << "two at one place";
+  EXPECT_EQ(principal_axes(box_of({Vec3d{2, 0, 0}, {0, 2, 0}, {0, 0, 2}}), 729, near, false).back, near.back);
+  points.push_back({1, 2, 5});
+  const ViewAxes two = principal_axes(points, 3, near, false);
+  EXPECT_NEAR(std::abs(two.right.z), 1, 1e-9) << "two atoms are seen from the side";
+  EXPECT_NEAR(math::length(two.up), 1, 1e-9);
 }
 
 }  // namespace

@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cstdio>
 
 #include "base/error.h"
 #include "data/data_file.h"
@@ -689,6 +690,66 @@ TEST_F(PointsLoadPoints, FaultsOfTheFileAreThrown) {
     EXPECT_EQ(error.kind(), base::ErrorKind::kMissingInput);
   }
   EXPECT_THROW(load("b.csv", "x,y,z,radius\n1,2,three,1\n"), base::Error);
+}
+
+/// A chain of four residues, of which number 3 is missing, and a ligand.
+std::string chain_and_ligand() {
+  std::string out;
+  int serial = 0;
+  const auto add = [&](const char* record, const char* name, const char* residue, int number, double x, double y,
+                       const char* element) {
+    char line[96];
+    std::snprintf(line, sizeof line, "%-6s%5d %-4s %3s A%4d    %8.3f%8.3f%8.3f  1.00  0.00          %2s\n", record,
+                  ++serial, name, residue, number, x, y, 0.0, element);
+    out += line;
+  };
+  for (const int number : {1, 2, 4, 5}) {
+    add("ATOM", " N", "ALA", number, 3.8 * number - 1.4, 0, "N");
+    add("ATOM", " CA", "ALA", number, 3.8 * number, 0, "C");
+  }
+  add("HETATM", " C1", "LIG", 9, 0, 20, "C");
+  add("HETATM", " O1", "LIG", 9, 1.2, 20, "O");
+  return out + "END\n";
+}
+
+TEST_F(PointsLoadPoints, TracesJoinResiduesThatFollowEachOther) {
+  points.radius.element = "vdw";
+  points.representation = {"trace", "residue LIG: sticks"};
+  EXPECT_EQ(load("a.pdb", chain_and_ligand()), "");
+  ASSERT_EQ(points.centers.size(), 6u) << "C-alpha atoms and the ligand";
+  EXPECT_EQ(points.bond_pairs, (std::vector<scene::SphereBond>{{0, 1}, {2, 3}, {4, 5}}))
+      << "not beyond the missing residue";
+  EXPECT_DOUBLE_EQ(points.trace_radius, 0.9);
+  EXPECT_EQ(points.bond_radius, 0.15);
+  EXPECT_EQ(points.radii, (std::vector<double>{points.trace_radius, points.trace_radius, points.trace_radius,
+                                               points.trace_radius, 0.15, 0.15}));
+  EXPECT_EQ(points.bond_radius_of(0), points.trace_radius);
+  EXPECT_EQ(points.bond_radius_of(5), points.bond_radius);
+  points.transform.scale = 2;
+  EXPECT_EQ(load(), "");
+  EXPECT_DOUBLE_EQ(points.trace_radius, 1.8);
+  EXPECT_DOUBLE_EQ(points.radii[0], 1.8);
+}
+
+TEST_F(PointsLoadPoints, RepresentationsOfSomeParticlesLeaveTheOthers) {
+  points.radius.element = "vdw";
+  points.representation = {"residue LIG: ball-and-stick", "name O1: points"};
+  EXPECT_EQ(load("a.pdb", chain_and_ligand()), "");
+  ASSERT_EQ(points.centers.size(), 10u);
+  EXPECT_EQ(points.radii[0], 1.55);
+  EXPECT_EQ(points.radii[8], 0.25 * 1.7);
+  EXPECT_EQ(points.radii[9], 0.15);
+  EXPECT_TRUE(points.bond_pairs.empty()) << "a point has no bonds, nor have spheres";
+  points.representation = {"ball-and-stick", "residue_number in [1:2]: spheres"};
+  EXPECT_EQ(load(), "");
+  EXPECT_EQ(points.radii[1], 1.7);
+  EXPECT_EQ(points.bond_pairs, (std::vector<scene::SphereBond>{{4, 5}, {6, 7}, {8, 9}}));
+}
+
+TEST_F(PointsLoadPoints, TracesNeedNamesAndResidues) {
+  points.representation = {"trace"};
+  points.radius.value = 1;
+  EXPECT_TRUE(test::mentions(load("a.csv", kCsv), {"error points[0].representation", "residue_number"}));
 }
 
 }  // namespace

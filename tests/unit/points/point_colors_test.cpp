@@ -360,5 +360,27 @@ TEST_F(PointsPointColors, UnknownNamesAreReportedWithThoseThatExist) {
   EXPECT_TRUE(test::mentions(diagnostics, {"points[0].color", "`column`", "`element`", "`type`"}));
 }
 
+TEST_F(PointsFile, CarbonsHaveTheColorsOfAColumn) {
+  points.radius.value = 1;
+  points.color.element = "soft";
+  points.color.carbon = "chain";
+  points.color.map = "set2";
+  EXPECT_EQ(load("a.pdb",
+                 "ATOM      1  CA  ALA A   1       1.000   2.000   3.000  1.00  0.00           C\n"
+                 "ATOM      2  N   ALA A   1       4.000   5.000   6.000  1.00  0.00           N\n"
+                 "ATOM      3  CA  ALA B   1       7.000   5.000   6.000  1.00  0.00           C\nEND\n"),
+            "");
+  const std::vector<Vec3d> set2 = palette(*find_color_map("set2"), 2);
+  EXPECT_EQ(color(0), set2[0]);
+  EXPECT_EQ(color(2), set2[1]);
+  EXPECT_EQ(points.color_names, (std::vector<std::string>{"C (A)", "N", "C (B)"}));
+  const Vec3d soft = color(1);
+  points.color.element = "jmol";
+  points.color.carbon.clear();
+  EXPECT_EQ(load(), "");
+  EXPECT_GT(soft.x, color(1).x) << "mixed with white";
+  EXPECT_NE(color(0), set2[0]);
+}
+
 }  // namespace
 }  // namespace orrery::points

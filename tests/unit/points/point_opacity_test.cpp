@@ -25,15 +25,6 @@ class PointsPointOpacity : public PointsFile {
   }
 };
 
-std::string fault_of_rule(const std::string& text) {
-  try {
-    parse_opacity_rule(text);
-  } catch (const base::Error& error) {
-    return error.what();
-  }
-  return "";
-}
-
 TEST_F(PointsPointOpacity, NoneAndOneNumberNeedNoArray) {
   EXPECT_EQ(load(), "");
   EXPECT_TRUE(points.opacities.empty());
@@ -105,24 +96,11 @@ TEST_F(PointsPointOpacity, ReportsFaultyKeys) {
   const std::string text = load();
   EXPECT_NE(text.find("error points[0].opacity.column: the file has no column `weight`"), std::string::npos) << text;
   EXPECT_NE(text.find("error points[0].opacity.where[0]: at character 6:"), std::string::npos) << text;
-  EXPECT_NE(text.find("error points[0].opacity.where[1]: `type == 2` has no colon, and is no number"),
-            std::string::npos)
-      << text;
+  EXPECT_NE(text.find("error points[0].opacity.where[1]: `type == 2` is not an opacity"), std::string::npos) << text;
   points.opacity = {};
   points.opacity.column = "w";
   points.opacity.types = {{"1", 0.5}};
   EXPECT_TRUE(test::mentions(load(), {"points[0].opacity", "`column`", "`type`"}));
-}
-
-TEST_F(PointsPointOpacity, RulesEndInAColonAndANumber) {
-  EXPECT_EQ(parse_opacity_rule("x in [1:2] : 0.25 ").condition, "x in [1:2]");
-  EXPECT_EQ(parse_opacity_rule("x in [1:2] : 0.25 ").opacity, 0.25);
-  EXPECT_EQ(parse_opacity_rule(" 0.25").condition, "");
-  EXPECT_EQ(parse_opacity_rule(" 0.25").opacity, 0.25);
-  for (const char* text : {"", "2", "x in [1:2]", "type == 2:", "type == 2: 1.01", "type == 2: -0.1", "type == 2: nan",
-                           "type == 2: 0.5x", "type == 2"})
-    EXPECT_NE(fault_of_rule(text).find("write CONDITION:NUMBER, e.g. 'type == 2: 0.2'"), std::string::npos) << text;
-  EXPECT_NE(fault_of_rule(" : 0.5").find("has no condition"), std::string::npos);
 }
 
 }  // namespace

@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 
@@ -344,6 +345,104 @@ TEST(PointsSelection, HostileSelectionsAreRefusedOrEvaluated) {
   std::string nested = "z > 2";
   for (int i = 0; i < 49; ++i) nested = "(x == 0 || (" + nested + "))";
   EXPECT_EQ(rows(nested), "045");
+}
+
+/// Two chains of three residues with two atoms each, one unit apart along x.
+Table residues() {
+  Table table;
+  table.rows = 12;
+  std::vector<double> x, zero(12);
+  std::vector<std::int64_t> number;
+  std::vector<std::uint32_t> chain, residue;
+  for (std::uint32_t i = 0; i < 12; ++i) {
+    x.push_back(i);
+    number.push_back(i % 6 / 2 + 1);
+    chain.push_back(i / 6);
+    residue.push_back(i / 2 % 2);
+  }
+  table.columns = {Column{"x", x},
+                   Column{"y", zero},
+                   Column{"z", zero},
+                   Column{"residue_number", number},
+                   Column{"chain", Words{{"A", "B"}, chain}},
+                   Column{"residue", Words{{"ALA", "GLY"}, residue}}};
+  return table;
+}
+
+std::vector<std::size_t> selected(const std::string& text, const Table& table) {
+  std::vector<data::ColumnInfo> columns;
+  for (const Column& column : table.columns) columns.push_back({column.name, column.type()});
+  std::vector<std::size_t> out;
+  const std::vector<std::uint8_t> mask = parse_selection(text, columns).evaluate(table);
+  for (std::size_t row = 0; row < mask.size(); ++row)
+    if (mask[row] != 0) out.push_back(row);
+  return out;
+}
+
+using Places = std::vector<std::size_t>;
+
+TEST(PointsSelection, RowsNearOthers) {
+  const Table table = residues();
+  EXPECT_EQ(selected("within 1 of (x == 5)", table), (Places{4, 5, 6}))
+      << "the distance is included, and the row itself";
+  EXPECT_EQ(selected("within 0.5 of x == 5", table), (Places{5}));
+  EXPECT_EQ(selected("within 1 of (x in [0, 11]) && chain A", table), (Places{0, 1}));
+  EXPECT_EQ(selected("!(within 1e9 of (x == 5))", table), (Places{}));
+  EXPECT_EQ(selected("within 5 of (x > 99)", table), (Places{})) << "none is near nothing";
+  EXPECT_EQ(selected("within 1 of (within 1 of (x == 5)) && !(within 1 of (x == 5))", table), (Places{3, 7}));
+  Table far = residues();
+  std::get<std::vector<double>>(far.columns[0].values) = {0, 1, kMissing, 1e300, -1e300, 3, 4, 5, 6, 7, 8, 9};
+  EXPECT_EQ(selected("within 1 of (chain A)", far), (Places{0, 1, 2, 3, 4, 5, 6}));
+  EXPECT_EQ(selected("within 1 of (x == 0)", far), (Places{0, 1})) << "a missing coordinate is near nothing";
+}
+
+TEST(PointsSelection, NearRowsAreThoseOfAllPairs) {
+  Table table;
+  std::vector<double> coordinates[3];
+  std::uint64_t state = 1;
+  for (int i = 0; i < 900; ++i) {
+    state = state * 6364136223846793005u + 1442695040888963407u;
+    coordinates[i % 3].push_back(static_cast<double>(state >> 40) / (1 << 24) * 10 - 5);
+  }
+  table.rows = 300;
+  table.columns = {Column{"x", coordinates[0]}, Column{"y", coordinates[1]}, Column{"z", coordinates[2]}};
+  const Places others = selected("x * y > 5", table);
+  ASSERT_GT(others.size(), 10u);
+  for (const double distance : {0.3, 1.0, 2.7}) {
+    Places expected;
+    for (std::size_t row = 0; row < table.rows; ++row)
+      if (std::any_of(others.begin(), others.end(), [&](std::size_t other) {
+            double square = 0;
+            for (const auto& axis : coordinates) square += (axis[row] - axis[other]) * (axis[row] - axis[other]);
+            return square <= distance * distance;
+          }))
+        expected.push_back(row);
+    EXPECT_EQ(selected("within " + std::to_string(distance) + " of (x * y > 5)", table), expected) << distance;
+  }
+}
+
+TEST(PointsSelection, RowsOfTheSameGroup) {
+  const Table table = residues();
+  EXPECT_EQ(selected("same residue as (x == 2)", table), (Places{2, 3})) << "not those of the other chain";
+  EXPECT_EQ(selected("same chain as (x == 2)", table), (Places{0, 1, 2, 3, 4, 5}));
+  EXPECT_EQ(selected("same residue_number as (x == 2)", table), (Places{2, 3, 8, 9}));
+  EXPECT_EQ(selected("same residue as (within 1 of (x == 1))", table), (Places{0, 1, 2, 3}));
+}
+
+TEST(PointsSelection, FaultsOfRowsByOthers) {
+  const Table table = residues();
+  for (const auto& [text, fault] :
+       {std::pair("within of (x == 1)", "expected a number"), std::pair("within 0 of (x == 1)", "above 0"),
+        std::pair("within 5 (x == 1)", "expected `of`"), std::pair("within 5 of x", "expects a condition"),
+        std::pair("same residue (x == 1)", "expected `as`"),
+        std::pair("same molecule as (x == 1)", "unknown column molecule")}) {
+    try {
+      selected(text, table);
+      ADD_FAILURE() << text;
+    } catch (const base::Error& error) {
+      EXPECT_TRUE(test::mentions(fault_text(error), {fault})) << text << ": " << fault_text(error);
+    }
+  }
 }
 
 }  // namespace

@@ -1,0 +1,63 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "points/rules.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "base/error.h"
+#include "base/text.h"
+#include "data/text_lines.h"
+#include "scene/limits.h"
+
+namespace orrery::points {
+
+std::size_t end_of_expression(std::string_view text) {
+  constexpr std::string_view kQuotes = "\"'`", kOpening = "[{(", kClosing = "]})";
+  int depth = 0;
+  for (std::size_t at = 0; at < text.size(); ++at) {
+    if (text[at] == ':' && depth <= 0) return at;
+    if (kOpening.find(text[at]) != std::string_view::npos) ++depth;
+    if (kClosing.find(text[at]) != std::string_view::npos) --depth;
+    if (kQuotes.find(text[at]) != std::string_view::npos) at = std::min(text.find(text[at], at + 1), text.size());
+  }
+  return std::string_view::npos;
+}
+
+std::pair<std::string, std::string> split_rule(const std::string& text) {
+  const std::size_t colon = end_of_expression(text);
+  if (colon == std::string::npos) return {"", std::string(data::trimmed(text))};
+  const std::string_view all = text;
+  std::pair<std::string, std::string> out(data::trimmed(all.substr(0, colon)), data::trimmed(all.substr(colon + 1)));
+  if (out.first.empty()) base::refuse(fmt::format("`{}` has no condition before its colon", text));
+  return out;
+}
+
+float parse_opacity(const std::string& text) {
+  double out = 0;
+  if (!base::from_text(text, out) || !(out >= 0 && out <= 1))
+    base::refuse(fmt::format("`{}` is not an opacity; write a number in 0..1, e.g. 'type == 2: 0.2'", text));
+  return static_cast<float>(out);
+}
+
+double parse_radius(const std::string& text) {
+  double out = 0;
+  if (!base::from_text(text, out) || !(out >= scene::kSmallestRadius && out <= scene::kLargestLength))
+    base::refuse(fmt::format("`{}` is not a radius; write a number above 0, e.g. 'type == 2: 0.5'", text));
+  return out;
+}
+
+const std::vector<std::string>& representation_names() {
+  static const std::vector<std::string> names = {"spheres", "ball-and-stick", "sticks", "trace", "points"};
+  return names;
+}
+
+Representation parse_representation(const std::string& name) {
+  const std::vector<std::string>& names = representation_names();
+  const auto found = std::find(names.begin(), names.end(), name);
+  if (found == names.end())
+    base::refuse(
+        fmt::format("`{}` is not a representation; write {}, e.g. 'residue HEM: sticks'", name, base::joined(names)));
+  return static_cast<Representation>(found - names.begin());
+}
+
+}  // namespace orrery::points
