@@ -5,8 +5,8 @@
 # command. `$ ` before it is dropped, and with it the other lines of the block, which show its output.
 function is_command(line) {
   sub(/^([A-Z_]+=[^ ]* )+/, "", line)
-  return line ~ /^(orrery|\.\/(run|test)\.sh|time|oiiotool|iinfo|printf|awk|cmake|ctest|ninja|apt(-get)?|perf|jq|ssh|lmp|git|cd|pip|python3|mkdocs)( |$)/ ||
-    line ~ /^(bench|tools|tests|build|build-ci|examples|venv)\/[^ ]+( |$)/
+  return line ~ /^(orrery|\.\/(run|test)\.sh|time|oiiotool|iinfo|printf|awk|cmake|ctest|ninja|apt(-get)?|perf|jq|ssh|lmp|git|cd|pip|python3|mkdocs|tar|docker|apptainer)( |$)/ ||
+    line ~ /^(bench|tools|tests|build|build-ci|examples|venv|orrery-[^ \/]*)\/[^ ]+( |$)/
 }
 function flush() {
   if (text != "") print start "\t" text
