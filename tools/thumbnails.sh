@@ -1,7 +1,7 @@
 #!/bin/sh
 # SPDX-License-Identifier: Apache-2.0
-# Renders scenes/thumbnails/, the images in scenes/README.md, and docs/final.jpg, the image in README.md. Takes three or
-# four minutes on two cores.
+# Renders scenes/thumbnails/, the images in scenes/README.md, and docs/final.jpg, of which tools/strip.sh makes a part of the
+# image in README.md. Takes three or four minutes on two cores.
 #   tools/thumbnails.sh [PROGRAM]     default: build/src/orrery, which ./run.sh builds
 set -eu
 cd "$(dirname "$0")/.."
