@@ -1,14 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "kernel/intersect_lanes.h"
 
-#undef HWY_TARGET_INCLUDE
-#define HWY_TARGET_INCLUDE "kernel/intersect_lanes.cpp"
-#include <hwy/foreach_target.h>  // IWYU pragma: keep
-// After foreach_target:
-#include <hwy/highway.h>
-
 #include "kernel/intersect-inl.h"
-#include "support/best.h"
 
 HWY_BEFORE_NAMESPACE();
 namespace orrery::bench::HWY_NAMESPACE {
@@ -104,36 +97,21 @@ void point_fast_all(const RayPacket<float>& p, const SphereLanes<float>& s, Poin
 }  // namespace orrery::bench::HWY_NAMESPACE
 HWY_AFTER_NAMESPACE();
 
-#if HWY_ONCE
 namespace orrery::bench {
-
-HWY_EXPORT(nearest_exact_one);
-HWY_EXPORT(nearest_exact_all);
-HWY_EXPORT(nearest_book_one);
-HWY_EXPORT(nearest_book_all);
-HWY_EXPORT(nearest_fast_one);
-HWY_EXPORT(nearest_fast_all);
-HWY_EXPORT(point_exact_one);
-HWY_EXPORT(point_exact_all);
-HWY_EXPORT(point_book_one);
-HWY_EXPORT(point_book_all);
-HWY_EXPORT(point_fast_one);
-HWY_EXPORT(point_fast_all);
 
 IntersectFunctions<double> intersect_double(kernel::Precision precision, test::Lanes lanes) {
   const bool one = lanes == test::Lanes::kOne;
   if (precision == kernel::Precision::kBook) {
-    if (one) return {ORRERY_BEST(nearest_book_one), ORRERY_BEST(point_book_one)};
-    return {ORRERY_BEST(nearest_book_all), ORRERY_BEST(point_book_all)};
+    if (one) return {HWY_NAMESPACE::nearest_book_one, HWY_NAMESPACE::point_book_one};
+    return {HWY_NAMESPACE::nearest_book_all, HWY_NAMESPACE::point_book_all};
   }
-  if (one) return {ORRERY_BEST(nearest_exact_one), ORRERY_BEST(point_exact_one)};
-  return {ORRERY_BEST(nearest_exact_all), ORRERY_BEST(point_exact_all)};
+  if (one) return {HWY_NAMESPACE::nearest_exact_one, HWY_NAMESPACE::point_exact_one};
+  return {HWY_NAMESPACE::nearest_exact_all, HWY_NAMESPACE::point_exact_all};
 }
 
 IntersectFunctions<float> intersect_float(test::Lanes lanes) {
-  if (lanes == test::Lanes::kOne) return {ORRERY_BEST(nearest_fast_one), ORRERY_BEST(point_fast_one)};
-  return {ORRERY_BEST(nearest_fast_all), ORRERY_BEST(point_fast_all)};
+  if (lanes == test::Lanes::kOne) return {HWY_NAMESPACE::nearest_fast_one, HWY_NAMESPACE::point_fast_one};
+  return {HWY_NAMESPACE::nearest_fast_all, HWY_NAMESPACE::point_fast_all};
 }
 
 }  // namespace orrery::bench
-#endif

@@ -9,19 +9,10 @@
 #include <random>
 #include <vector>
 
-#undef HWY_TARGET_INCLUDE
-#define HWY_TARGET_INCLUDE "statistical/bsdf_test.cpp"
-#include <hwy/foreach_target.h>  // IWYU pragma: keep
-// After foreach_target:
-#include <hwy/highway.h>
-
 #include "kernel/scatter-inl.h"
-#include "support/best.h"
 #include "support/chi_square.h"
 
 namespace orrery::test {
-#ifndef ORRERY_STATISTICAL_BSDF_TEST_CASE_
-#define ORRERY_STATISTICAL_BSDF_TEST_CASE_
 /// A surface interaction at the top of a unit sphere, with the incident ray in the plane z = 0; the normal is +y.
 struct Interaction {
   kernel::MaterialKind kind = kernel::MaterialKind::kLambertian;
@@ -36,7 +27,6 @@ struct Directions {
   std::vector<bool> alive;  ///< neither absorbed nor, of plastic, scattered by the other lobe
   explicit Directions(std::size_t count) : x(count), y(count), z(count), pdf(count), alive(count) {}
 };
-#endif
 }  // namespace orrery::test
 
 HWY_BEFORE_NAMESPACE();
@@ -122,14 +112,8 @@ void judge_float(const Interaction& interaction, Directions& out) { judge<float>
 }  // namespace orrery::test::HWY_NAMESPACE
 HWY_AFTER_NAMESPACE();
 
-#if HWY_ONCE
 namespace orrery::test {
 namespace {
-
-HWY_EXPORT(sample);
-HWY_EXPORT(sample_extended);
-HWY_EXPORT(judge_double);
-HWY_EXPORT(judge_float);
 
 using kernel::MaterialKind;
 
@@ -247,7 +231,7 @@ TEST(StatisticalBsdf, SamplesHaveTheDensity) {
       const auto v_of = [&](int i) { return (bin / kSide + (i / kFine + 0.5) / kFine) / kSide; };
       for (int i = 0; i < kFine * kFine; ++i)
         chart.direction(v_of(i), (bin % kSide + (i % kFine + 0.5) / kFine) / kSide, fine.x[i], fine.y[i], fine.z[i]);
-      ORRERY_BEST(judge_double)(interaction, fine);
+      HWY_NAMESPACE::judge_double(interaction, fine);
       double sum = 0;
       bool is_cut = false;
       for (int i = 0; i < kFine * kFine; ++i) {
@@ -268,7 +252,7 @@ TEST(StatisticalBsdf, SamplesHaveTheDensity) {
     const double samples = double{kBatch} * kBatches / (total + expected[kAbsorbed]);
     for (double& e : expected) e *= samples;
     for (std::uint32_t n = 0; n < kBatches; ++n) {
-      ORRERY_BEST(sample)(interaction, n * kBatch, batch);
+      HWY_NAMESPACE::sample(interaction, n * kBatch, batch);
       for (std::uint32_t i = 0; i < kBatch; ++i) {
         std::size_t bin = kAbsorbed;
         if (batch.alive[i]) {
@@ -302,7 +286,7 @@ TEST(StatisticalBsdf, DensityIsTheClosedFormInBothPrecisions) {
       if (!std::isfinite(at.x[i] + at.z[i])) at.x[i] = 0, at.y[i] = -1, at.z[i] = 0;
     }
     for (const bool in_double : {true, false}) {
-      (in_double ? ORRERY_BEST(judge_double) : ORRERY_BEST(judge_float))(interaction, at);
+      (in_double ? HWY_NAMESPACE::judge_double : HWY_NAMESPACE::judge_float)(interaction, at);
       // A float's direction is off by 1e-7, and the narrowest cone is 1e-3 wide.
       const double most = in_double ? 1e-9 : interaction.fuzz < 0.01 ? 0.03 : 1e-4;
       for (int i = 0; i < kCount; ++i) {
@@ -323,8 +307,8 @@ TEST(StatisticalBsdf, DeltaMaterialsHaveNoDensity) {
   for (const Interaction& interaction :
        {Interaction{MaterialKind::kMetal, 0, 0.6}, Interaction{MaterialKind::kDielectric, 0, 0.6},
         Interaction{MaterialKind::kPlastic, 0, 0.6, true, true}}) {
-    ORRERY_BEST(sample)(interaction, 0, at);
-    ORRERY_BEST(judge_double)(interaction, at);
+    HWY_NAMESPACE::sample(interaction, 0, at);
+    HWY_NAMESPACE::judge_double(interaction, at);
     EXPECT_EQ(at.pdf, std::vector<double>(16, 0.0));
   }
 }
@@ -349,9 +333,9 @@ TEST(StatisticalBsdf, RoughGlassIsFuzzyAroundTheReflectedAndTheRefractedDirectio
   Moments metal, reflected, refracted;
   const double across = kSine / 1.5, down = -std::sqrt(1 - across * across);
   for (std::uint32_t n = 0; n < kBatches; ++n) {
-    ORRERY_BEST(sample)({MaterialKind::kMetal, kFuzz, kCosine}, n * kBatch, batch);
+    HWY_NAMESPACE::sample({MaterialKind::kMetal, kFuzz, kCosine}, n * kBatch, batch);
     for (std::uint32_t i = 0; i < kBatch; ++i) metal.add(kSine, kCosine, batch.x[i], batch.y[i], batch.z[i]);
-    ORRERY_BEST(sample_extended)({MaterialKind::kDielectric, kFuzz, kCosine}, (kBatches + n) * kBatch, batch);
+    HWY_NAMESPACE::sample_extended({MaterialKind::kDielectric, kFuzz, kCosine}, (kBatches + n) * kBatch, batch);
     for (std::uint32_t i = 0; i < kBatch; ++i) {
       ASSERT_TRUE(batch.alive[i]) << "both cones are clear of the surface";
       if (batch.y[i] > 0) {
@@ -371,15 +355,14 @@ TEST(StatisticalBsdf, RoughGlassIsFuzzyAroundTheReflectedAndTheRefractedDirectio
 
 TEST(StatisticalBsdf, RoughGlassAbsorbsWhatLeavesOnTheWrongSide) {
   Directions batch(1 << 14);
-  ORRERY_BEST(sample_extended)({MaterialKind::kDielectric, 0.9, 0.3}, 0, batch);
+  HWY_NAMESPACE::sample_extended({MaterialKind::kDielectric, 0.9, 0.3}, 0, batch);
   int absorbed = 0;
   for (std::size_t i = 0; i < batch.x.size(); ++i) absorbed += batch.alive[i] ? 0 : 1;
   EXPECT_GT(absorbed, 500);
   EXPECT_LT(absorbed, 8000);
-  ORRERY_BEST(sample_extended)({MaterialKind::kDielectric, 0, 0.3}, 0, batch);
+  HWY_NAMESPACE::sample_extended({MaterialKind::kDielectric, 0, 0.3}, 0, batch);
   EXPECT_EQ(std::count(batch.alive.begin(), batch.alive.end(), false), 0);
 }
 
 }  // namespace
 }  // namespace orrery::test
-#endif

@@ -14,6 +14,8 @@
 #include <string>
 #include <vector>
 
+#include "support/every_set.h"
+
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "statistical/environment_test.cpp"
 #include <hwy/foreach_target.h>  // IWYU pragma: keep

@@ -1,14 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "support/caustic_batch.h"
 
-#undef HWY_TARGET_INCLUDE
-#define HWY_TARGET_INCLUDE "support/caustic_batch.cpp"
-#include <hwy/foreach_target.h>  // IWYU pragma: keep
-// After foreach_target:
-#include <hwy/highway.h>
-
 #include "kernel/caustic_sampling-inl.h"
-#include "support/best.h"
 
 HWY_BEFORE_NAMESPACE();
 namespace orrery::test::HWY_NAMESPACE {
@@ -48,18 +41,13 @@ CausticDirection in_float(const CausticPlace& place, int events, double u, doubl
 }  // namespace orrery::test::HWY_NAMESPACE
 HWY_AFTER_NAMESPACE();
 
-#if HWY_ONCE
 namespace orrery::test {
 
-HWY_EXPORT(in_double);
-HWY_EXPORT(in_float);
-
 CausticDirection caustic_direction(const CausticPlace& place, int events, double u, double v, double choice) {
-  return ORRERY_BEST(in_double)(place, events, u, v, choice);
+  return HWY_NAMESPACE::in_double(place, events, u, v, choice);
 }
 CausticDirection caustic_direction_in_float(const CausticPlace& place, int events, double u, double v, double choice) {
-  return ORRERY_BEST(in_float)(place, events, u, v, choice);
+  return HWY_NAMESPACE::in_float(place, events, u, v, choice);
 }
 
 }  // namespace orrery::test
-#endif

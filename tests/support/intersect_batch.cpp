@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "support/intersect_batch.h"
 
+#include "support/every_set.h"
+
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "support/intersect_batch.cpp"
 #include <hwy/foreach_target.h>  // IWYU pragma: keep

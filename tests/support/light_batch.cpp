@@ -1,14 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "support/light_batch.h"
 
-#undef HWY_TARGET_INCLUDE
-#define HWY_TARGET_INCLUDE "support/light_batch.cpp"
-#include <hwy/foreach_target.h>  // IWYU pragma: keep
-// After foreach_target:
-#include <hwy/highway.h>
-
 #include "kernel/light-inl.h"
-#include "support/best.h"
 #include "support/first_lane-inl.h"
 
 HWY_BEFORE_NAMESPACE();
@@ -48,22 +41,16 @@ double probability(const kernel::SceneView& scene, math::Vec3d point, math::Vec3
 }  // namespace orrery::test::HWY_NAMESPACE
 HWY_AFTER_NAMESPACE();
 
-#if HWY_ONCE
 namespace orrery::test {
 
-HWY_EXPORT(sample_point);
-HWY_EXPORT(choose);
-HWY_EXPORT(probability);
-
 VisiblePoint visible_point(math::Vec3d center, double radius, double u, double v) {
-  return ORRERY_BEST(sample_point)(center, radius, u, v);
+  return HWY_NAMESPACE::sample_point(center, radius, u, v);
 }
 Choice choose_light(const kernel::SceneView& scene, math::Vec3d point, math::Vec3d normal, double u, double fresh) {
-  return ORRERY_BEST(choose)(scene, point, normal, u, fresh);
+  return HWY_NAMESPACE::choose(scene, point, normal, u, fresh);
 }
 double choice_probability(const kernel::SceneView& scene, math::Vec3d point, math::Vec3d normal, std::uint32_t sphere) {
-  return ORRERY_BEST(probability)(scene, point, normal, sphere);
+  return HWY_NAMESPACE::probability(scene, point, normal, sphere);
 }
 
 }  // namespace orrery::test
-#endif

@@ -1,16 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "support/samplers.h"
 
-#undef HWY_TARGET_INCLUDE
-#define HWY_TARGET_INCLUDE "support/samplers.cpp"
-#include <hwy/foreach_target.h>  // IWYU pragma: keep
-// After foreach_target:
-#include <hwy/highway.h>
-
 #include "kernel/camera-inl.h"
 #include "kernel/intersect-inl.h"
 #include "kernel/scatter-inl.h"
-#include "support/best.h"
 
 HWY_BEFORE_NAMESPACE();
 namespace orrery::test::HWY_NAMESPACE {
@@ -60,14 +53,10 @@ void draw_all(Shape shape, std::uint32_t first, std::size_t count, double* x, do
 }  // namespace orrery::test::HWY_NAMESPACE
 HWY_AFTER_NAMESPACE();
 
-#if HWY_ONCE
 namespace orrery::test {
 
-HWY_EXPORT(draw_all);
-
 void draw(Shape shape, std::uint32_t first, std::size_t count, double* x, double* y, double* z) {
-  ORRERY_BEST(draw_all)(shape, first, count, x, y, z);
+  HWY_NAMESPACE::draw_all(shape, first, count, x, y, z);
 }
 
 }  // namespace orrery::test
-#endif

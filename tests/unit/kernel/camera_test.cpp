@@ -5,26 +5,16 @@
 #include <cmath>
 #include <random>
 
-#undef HWY_TARGET_INCLUDE
-#define HWY_TARGET_INCLUDE "unit/kernel/camera_test.cpp"
-#include <hwy/foreach_target.h>  // IWYU pragma: keep
-// After foreach_target:
-#include <hwy/highway.h>
-
 #include "kernel/camera-inl.h"
-#include "support/best.h"
 #include "support/first_lane-inl.h"
 
 namespace orrery::kernel {
-#ifndef ORRERY_UNIT_KERNEL_CAMERA_TEST_CASE_
-#define ORRERY_UNIT_KERNEL_CAMERA_TEST_CASE_
 struct CameraCase {
   Camera camera;
   bool has_lens = true;
   double pixel[2] = {0, 0}, random[4] = {0.5, 0.5, 0.5, 0.5};
   double offset[3] = {}, direction[3] = {};
 };
-#endif
 }  // namespace orrery::kernel
 
 HWY_BEFORE_NAMESPACE();
@@ -47,11 +37,8 @@ void camera_case(CameraCase& c) {
 }  // namespace orrery::kernel::HWY_NAMESPACE
 HWY_AFTER_NAMESPACE();
 
-#if HWY_ONCE
 namespace orrery::kernel {
 namespace {
-
-HWY_EXPORT(camera_case);
 
 /// Looks along -z through a lens of radius 2; the focus plane is at distance 10, with one unit per pixel.
 CameraCase lens_case() {
@@ -72,7 +59,7 @@ TEST(KernelCamera, LensRaysStartOnTheLensAndIntersectOnTheFocusPlane) {
     c.pixel[0] = 6;
     c.pixel[1] = 1;
     for (double& u : c.random) u = static_cast<double>(engine() >> 11) * 0x1p-53;
-    ORRERY_BEST(camera_case)(c);
+    HWY_NAMESPACE::camera_case(c);
     const double x = c.pixel[0] + c.random[0] - 4, y = -(c.pixel[1] + c.random[1] - 3);  // on the plane
     const double along = -10 / c.direction[2];
     EXPECT_NEAR(c.offset[0] + along * c.direction[0], x, 1e-13);
@@ -91,7 +78,7 @@ TEST(KernelCamera, PinholeRaysStartAtThePinhole) {
   CameraCase c = lens_case();
   c.has_lens = false;
   c.random[2] = 0.9;
-  ORRERY_BEST(camera_case)(c);
+  HWY_NAMESPACE::camera_case(c);
   for (const double x : c.offset) EXPECT_EQ(x, 0);
   EXPECT_NEAR(c.direction[0] / c.direction[2], (0.5 - 4) / -10, 1e-15);
   EXPECT_NEAR(c.direction[1] / c.direction[2], (3 - 0.5) / -10, 1e-15);
@@ -104,7 +91,7 @@ TEST(KernelCamera, OrthographicRaysAreParallel) {
     c.camera.is_orthographic = true;
     c.random[0] = place;
     c.pixel[1] = 5;
-    ORRERY_BEST(camera_case)(c);
+    HWY_NAMESPACE::camera_case(c);
     EXPECT_EQ(c.offset[0], place - 4);
     EXPECT_EQ(c.offset[1], -2.5);
     EXPECT_EQ(c.offset[2], 0);
@@ -119,7 +106,7 @@ TEST(KernelCamera, OrthographicLensRaysIntersectOnTheFocusPlane) {
   c.camera.is_orthographic = true;
   c.random[2] = 0.1;
   c.random[3] = 0.7;
-  ORRERY_BEST(camera_case)(c);
+  HWY_NAMESPACE::camera_case(c);
   const double along = -10 / c.direction[2];
   EXPECT_NE(c.direction[0], 0);
   EXPECT_NEAR(c.offset[0] + along * c.direction[0], 0.5 - 4, 1e-13);
@@ -128,4 +115,3 @@ TEST(KernelCamera, OrthographicLensRaysIntersectOnTheFocusPlane) {
 
 }  // namespace
 }  // namespace orrery::kernel
-#endif

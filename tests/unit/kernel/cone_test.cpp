@@ -6,26 +6,17 @@
 #include <cmath>
 #include <string>
 
-#undef HWY_TARGET_INCLUDE
-#define HWY_TARGET_INCLUDE "unit/kernel/cone_test.cpp"
-#include <hwy/foreach_target.h>  // IWYU pragma: keep
-// After foreach_target:
-#include <hwy/highway.h>
-
 #include "kernel/cone-inl.h"
-#include "support/best.h"
 #include "support/first_lane-inl.h"
 
 namespace orrery::kernel {
-#ifndef ORRERY_UNIT_KERNEL_CONE_TEST_CASE_
-#define ORRERY_UNIT_KERNEL_CONE_TEST_CASE_
 /// A cone, scalar.
 struct Moments {
   double width2 = 0, mixed = 0, slope2 = 0;
 
   double width2_at(double t) const { return width2 + 2 * t * mixed + t * t * slope2; }
 };
-struct ScatterCase {
+struct ConeCase {
   Moments cone;
   double arriving[3] = {}, leaving[3] = {}, normal[3] = {};
   bool from_outside = true;
@@ -40,7 +31,6 @@ struct CameraConeCase {
   Moments cone;
   double offset[3] = {}, direction[3] = {};
 };
-#endif
 }  // namespace orrery::kernel
 
 HWY_BEFORE_NAMESPACE();
@@ -52,7 +42,7 @@ using V1 = hn::Vec<One>;
 Moments moments_of(const RayCone<V1>& cone) {
   return {hn::GetLane(cone.width2), hn::GetLane(cone.mixed), hn::GetLane(cone.slope2)};
 }
-Surface<One> surface_of(One d, const ScatterCase& c) {
+Surface<One> surface_of(One d, const ConeCase& c) {
   Surface<One> at;
   at.direction = set3(d, c.arriving);
   at.normal = set3(d, c.normal);
@@ -63,7 +53,7 @@ Surface<One> surface_of(One d, const ScatterCase& c) {
   at.kind = hn::Set(IdTag<One>(), static_cast<hn::TFromD<IdTag<One>>>(c.kind));
   return at;
 }
-void scatter_cone(ScatterCase& c, double width) {
+void scatter_cone(ConeCase& c, double width) {
   const One d;
   const RayCone<V1> cone{hn::Set(d, c.cone.width2), hn::Set(d, c.cone.mixed), hn::Set(d, c.cone.slope2)};
   c.cone = moments_of(scattered_cone(d, cone, surface_of(d, c), hn::Set(d, c.radius), set3(d, c.leaving), width));
@@ -90,22 +80,19 @@ void camera_cone_case(CameraConeCase& c) {
 }  // namespace orrery::kernel::HWY_NAMESPACE
 HWY_AFTER_NAMESPACE();
 
-#if HWY_ONCE
 namespace orrery::kernel {
 namespace {
 
-HWY_EXPORT(scatter_cone);
-HWY_EXPORT(advance_cone);
-HWY_EXPORT(camera_cone_case);
-
 struct Vector {
   long double x = 0, y = 0, z = 0;
+
+  // Friends, because operators of this namespace would hide those of lanes.
+  friend Vector operator+(const Vector& a, const Vector& b) { return {a.x + b.x, a.y + b.y, a.z + b.z}; }
+  friend Vector operator*(const Vector& a, long double s) { return {a.x * s, a.y * s, a.z * s}; }
 };
-Vector operator+(const Vector& a, const Vector& b) { return {a.x + b.x, a.y + b.y, a.z + b.z}; }
-Vector operator*(const Vector& a, long double s) { return {a.x * s, a.y * s, a.z * s}; }
 long double dot(const Vector& a, const Vector& b) { return a.x * b.x + a.y * b.y + a.z * b.z; }
 Vector unit(const Vector& a) { return a * (1 / std::sqrt(dot(a, a))); }
-void set(double (&to)[3], const Vector& v) {
+void copy_to(double (&to)[3], const Vector& v) {
   to[0] = static_cast<double>(v.x);
   to[1] = static_cast<double>(v.y);
   to[2] = static_cast<double>(v.z);
@@ -148,17 +135,17 @@ double error_of_cone(Vector origin, const Vector& towards, long double radius, b
   const Traced beside =
       trace(origin, direction + Vector{0, kSlope, 0}, radius, from_outside, reflects, static_cast<long double>(eta));
   if (centre.is_total || beside.is_total) return 0;
-  ScatterCase c;
+  ConeCase c;
   c.kind = reflects ? MaterialKind::kMetal : MaterialKind::kDielectric;
   c.from_outside = from_outside;
   c.radius = static_cast<double>(radius);
   c.eta = eta;
-  set(c.arriving, direction);
-  set(c.leaving, centre.direction);
-  set(c.normal, centre.normal);
+  copy_to(c.arriving, direction);
+  copy_to(c.leaving, centre.direction);
+  copy_to(c.normal, centre.normal);
   const auto distance = static_cast<double>(centre.distance);
   c.cone = {distance * distance, distance, 1};
-  ORRERY_BEST(scatter_cone)(c, 0);
+  HWY_NAMESPACE::scatter_cone(c, 0);
   double worst = 0;
   for (const double t : {0.0, 0.1, 0.7, 2.0, 9.0}) {
     const auto expected =
@@ -194,43 +181,43 @@ TEST(KernelCone, GlassSpheresBendConesAsNeighbouringRaysShow) {
 TEST(KernelCone, AConeMeasuredFromAPointAlongItIsTheSameCone) {
   const Moments cone{4, -1, 0.5};  // converges, as after a concave mirror
   Moments later = cone;
-  ORRERY_BEST(advance_cone)(later, 3);
+  HWY_NAMESPACE::advance_cone(later, 3);
   for (const double t : {0.0, 1.0, 5.0}) EXPECT_NEAR(later.width2_at(t), cone.width2_at(3 + t), 1e-14) << t;
   EXPECT_EQ(later.width2, 2.5);
 }
 
 TEST(KernelCone, AHugeSphereIsAPlane) {
-  ScatterCase c;
+  ConeCase c;
   const double cosine = 0.6, sine = 0.8;
-  set(c.arriving, {sine, 0, -cosine});
-  set(c.leaving, {sine, 0, cosine});
-  set(c.normal, {0, 0, 1});
+  copy_to(c.arriving, {sine, 0, -cosine});
+  copy_to(c.leaving, {sine, 0, cosine});
+  copy_to(c.normal, {0, 0, 1});
   c.radius = 1e15;
   c.cone = {4, 1, 0.5};
-  ORRERY_BEST(scatter_cone)(c, 0);
+  HWY_NAMESPACE::scatter_cone(c, 0);
   EXPECT_NEAR(c.cone.width2, 4, 1e-12);
   EXPECT_NEAR(c.cone.mixed, 1, 1e-12);
   EXPECT_NEAR(c.cone.slope2, 0.5, 1e-12);
 }
 
 TEST(KernelCone, LobesAddToTheSlopeAndDiffuseSurfacesReplaceIt) {
-  ScatterCase c;
-  set(c.arriving, {0, 0, -1});
-  set(c.leaving, {0, 0, 1});
-  set(c.normal, {0, 0, 1});
+  ConeCase c;
+  copy_to(c.arriving, {0, 0, -1});
+  copy_to(c.leaving, {0, 0, 1});
+  copy_to(c.normal, {0, 0, 1});
   c.radius = 1e15;
   c.cone = {4, 1, 0.5};
   c.fuzz = 0.3;
-  ScatterCase fuzzy = c, diffuse = c;
-  ORRERY_BEST(scatter_cone)(fuzzy, 0.125);
+  ConeCase fuzzy = c, diffuse = c;
+  HWY_NAMESPACE::scatter_cone(fuzzy, 0.125);
   EXPECT_NEAR(fuzzy.cone.slope2, 0.5 + 0.075 * 0.075, 1e-12) << "an eighth of an angle of 0.6";
   EXPECT_NEAR(fuzzy.cone.mixed, 1, 1e-12);
   for (const MaterialKind kind : {MaterialKind::kLambertian, MaterialKind::kHemisphere}) {
-    ScatterCase d = diffuse;
+    ConeCase d = diffuse;
     d.kind = kind;
     d.fuzz = 0;
     d.radius = 0.1;
-    ORRERY_BEST(scatter_cone)(d, 0.125);
+    HWY_NAMESPACE::scatter_cone(d, 0.125);
     EXPECT_EQ(d.cone.slope2, 0.0625);
     EXPECT_EQ(d.cone.mixed, 0);
     EXPECT_EQ(d.cone.width2, 4);
@@ -271,15 +258,15 @@ TEST(KernelCone, CameraConesAreAsWideAsThePixelAcrossTheRay) {
       c.pixel[0] = column;
       c.pixel[1] = beside.pixel[1] = -0.5;
       beside.pixel[0] = column + kStep;
-      ORRERY_BEST(camera_cone_case)(c);
-      ORRERY_BEST(camera_cone_case)(beside);
+      HWY_NAMESPACE::camera_cone_case(c);
+      HWY_NAMESPACE::camera_cone_case(beside);
       for (const double t : {0.5, 3.0, 40.0})
         EXPECT_NEAR(c.cone.width2_at(t) * kStep * kStep / squared_gap(c, beside, t), 1, 1e-4)
             << is_orthographic << ' ' << column << ' ' << t;
     }
   CameraConeCase c = camera_case();
   c.camera.right = {2, 0, 0};
-  ORRERY_BEST(camera_cone_case)(c);
+  HWY_NAMESPACE::camera_cone_case(c);
   EXPECT_NEAR(c.cone.slope2, 0.05 * 0.05, 1e-4) << "the smaller side of a pixel that is not square";
 }
 
@@ -291,9 +278,9 @@ TEST(KernelCone, LensesAddConesThatAreNarrowestInFocus) {
     c.random[2] = 0;  // the centre of the lens
     c.width = 0.125;
     CameraConeCase pinhole = c;
-    ORRERY_BEST(camera_cone_case)(pinhole);
+    HWY_NAMESPACE::camera_cone_case(pinhole);
     c.has_lens = true;
-    ORRERY_BEST(camera_cone_case)(c);
+    HWY_NAMESPACE::camera_cone_case(c);
     const double focus = 10 / -c.direction[2];
     EXPECT_NEAR(c.cone.width2_at(focus), pinhole.cone.width2_at(focus), 1e-12);
     // The lens is four units wide; at half the distance of focus and at 1.5 times it, its cone has half its width.
@@ -305,4 +292,3 @@ TEST(KernelCone, LensesAddConesThatAreNarrowestInFocus) {
 
 }  // namespace
 }  // namespace orrery::kernel
-#endif

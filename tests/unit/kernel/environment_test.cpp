@@ -11,24 +11,14 @@
 #include <random>
 #include <vector>
 
-#undef HWY_TARGET_INCLUDE
-#define HWY_TARGET_INCLUDE "unit/kernel/environment_test.cpp"
-#include <hwy/foreach_target.h>  // IWYU pragma: keep
-// After foreach_target:
-#include <hwy/highway.h>
-
 #include "kernel/environment-inl.h"
-#include "support/best.h"
 
 namespace orrery::kernel {
-#ifndef ORRERY_UNIT_KERNEL_ENVIRONMENT_TEST_CASE_
-#define ORRERY_UNIT_KERNEL_ENVIRONMENT_TEST_CASE_
 /// A direction and the radiance from there.
 struct Look {
   double x = 0, y = 0, z = 0;
   double rgb[3] = {};
 };
-#endif
 }  // namespace orrery::kernel
 
 HWY_BEFORE_NAMESPACE();
@@ -60,13 +50,8 @@ void look_one(const Environment& env, std::vector<Look>& looks) { look_all(hn::F
 }  // namespace orrery::kernel::HWY_NAMESPACE
 HWY_AFTER_NAMESPACE();
 
-#if HWY_ONCE
 namespace orrery::kernel {
 namespace {
-
-HWY_EXPORT(look_double);
-HWY_EXPORT(look_float);
-HWY_EXPORT(look_one);
 
 /// A map and its view.
 struct Map {
@@ -95,7 +80,7 @@ void fill_halves(Map& map) {
 
 Look seen(const Map& map, double x, double y, double z) {
   std::vector<Look> one = {{x, y, z}};
-  ORRERY_BEST(look_double)(map.view, one);
+  HWY_NAMESPACE::look_double(map.view, one);
   return one[0];
 }
 
@@ -183,9 +168,9 @@ TEST(KernelEnvironment, LookupIsBilinearAndWrapsAround) {
     for (float& t : map.texels) t = uniform(random);
     map.view.turn = 0.3;
     std::vector<Look> looks = directions_of_all_kinds(), narrow = looks, one = looks;
-    ORRERY_BEST(look_double)(map.view, looks);
-    ORRERY_BEST(look_float)(map.view, narrow);
-    ORRERY_BEST(look_one)(map.view, one);
+    HWY_NAMESPACE::look_double(map.view, looks);
+    HWY_NAMESPACE::look_float(map.view, narrow);
+    HWY_NAMESPACE::look_one(map.view, one);
     for (std::size_t i = 0; i < looks.size(); ++i) {
       for (int c = 0; c < 3; ++c) {
         const double wanted = expected(map, looks[i], c);
@@ -202,11 +187,10 @@ TEST(KernelEnvironment, ADirectionThatIsNotANumberReadsInsideTheMap) {
   constexpr double kNaN = std::numeric_limits<double>::quiet_NaN(), kInf = std::numeric_limits<double>::infinity();
   std::vector<Look> looks = {{kNaN, 0, 0}, {0, kNaN, 0}, {0, 0, kNaN},       {kNaN, kNaN, kNaN},
                              {kInf, 0, 0}, {0, kInf, 0}, {-kInf, kInf, kInf}};
-  ORRERY_BEST(look_double)(map.view, looks);  // under the address sanitizer, a read elsewhere fails
-  ORRERY_BEST(look_float)(map.view, looks);
-  ORRERY_BEST(look_one)(map.view, looks);
+  HWY_NAMESPACE::look_double(map.view, looks);  // under the address sanitizer, a read elsewhere fails
+  HWY_NAMESPACE::look_float(map.view, looks);
+  HWY_NAMESPACE::look_one(map.view, looks);
 }
 
 }  // namespace
 }  // namespace orrery::kernel
-#endif

@@ -10,14 +10,7 @@
 
 #include "support/chi_square.h"
 
-#undef HWY_TARGET_INCLUDE
-#define HWY_TARGET_INCLUDE "unit/kernel/opacity_test.cpp"
-#include <hwy/foreach_target.h>  // IWYU pragma: keep
-// After foreach_target:
-#include <hwy/highway.h>
-
 #include "kernel/opacity-inl.h"
-#include "support/best.h"
 
 HWY_BEFORE_NAMESPACE();
 namespace orrery::kernel::HWY_NAMESPACE {
@@ -58,26 +51,21 @@ void keys_of_paths(std::uint32_t* out, std::size_t count) {
 }  // namespace orrery::kernel::HWY_NAMESPACE
 HWY_AFTER_NAMESPACE();
 
-#if HWY_ONCE
 namespace orrery::kernel {
 namespace {
-
-HWY_EXPORT(visible_in_double);
-HWY_EXPORT(visible_in_float);
-HWY_EXPORT(keys_of_paths);
 
 using Visible = std::vector<std::uint8_t>;
 constexpr std::size_t kCount = std::size_t{1} << 18;
 
 std::vector<std::uint32_t> path_keys(std::size_t count = kCount) {
   std::vector<std::uint32_t> keys(count);
-  ORRERY_BEST(keys_of_paths)(keys.data(), count);
+  HWY_NAMESPACE::keys_of_paths(keys.data(), count);
   return keys;
 }
 
 Visible visible(const std::vector<std::uint32_t>& keys, std::uint32_t id, float opacity) {
   Visible out(keys.size());
-  ORRERY_BEST(visible_in_double)(keys.data(), keys.size(), id, opacity, out.data());
+  HWY_NAMESPACE::visible_in_double(keys.data(), keys.size(), id, opacity, out.data());
   return out;
 }
 
@@ -103,7 +91,7 @@ TEST(KernelOpacity, BothPrecisionsDecideAlike) {
   for (std::uint32_t id = 0; id < 20; ++id) {
     const float opacity = 0.1F + 0.04F * static_cast<float>(id);
     Visible in_float(kCount);
-    ORRERY_BEST(visible_in_float)(keys.data(), kCount, id, opacity, in_float.data());
+    HWY_NAMESPACE::visible_in_float(keys.data(), kCount, id, opacity, in_float.data());
     EXPECT_EQ(visible(keys, id, opacity), in_float) << id;
   }
 }
@@ -173,4 +161,3 @@ TEST(KernelOpacity, DecisionsOfConsecutiveRaysAreIndependent) {
 
 }  // namespace
 }  // namespace orrery::kernel
-#endif

@@ -3,14 +3,7 @@
 
 #include <cstdint>
 
-#undef HWY_TARGET_INCLUDE
-#define HWY_TARGET_INCLUDE "unit/kernel/random_test.cpp"
-#include <hwy/foreach_target.h>  // IWYU pragma: keep
-// After foreach_target:
-#include <hwy/highway.h>
-
 #include "kernel/sampler-inl.h"
-#include "support/best.h"
 
 HWY_BEFORE_NAMESPACE();
 namespace orrery::kernel::HWY_NAMESPACE {
@@ -62,14 +55,8 @@ void numbers_of_a_path(double* out) {
 }  // namespace orrery::kernel::HWY_NAMESPACE
 HWY_AFTER_NAMESPACE();
 
-#if HWY_ONCE
 namespace orrery::kernel {
 namespace {
-
-HWY_EXPORT(philox_64);
-HWY_EXPORT(philox_32);
-HWY_EXPORT(unit_ends);
-HWY_EXPORT(numbers_of_a_path);
 
 struct KnownAnswer {
   std::uint32_t counter[4], key[2], answer[4];
@@ -88,8 +75,8 @@ constexpr KnownAnswer kAnswers[] = {
 TEST(KernelRandom, MatchesThePublishedVectorsInBothLaneWidths) {
   for (const KnownAnswer& known : kAnswers) {
     std::uint32_t wide[4], narrow[4];
-    ORRERY_BEST(philox_64)(known.counter, known.key, wide);
-    ORRERY_BEST(philox_32)(known.counter, known.key, narrow);
+    HWY_NAMESPACE::philox_64(known.counter, known.key, wide);
+    HWY_NAMESPACE::philox_32(known.counter, known.key, narrow);
     for (int i = 0; i < 4; ++i) {
       EXPECT_EQ(wide[i], known.answer[i]) << i;
       EXPECT_EQ(narrow[i], known.answer[i]) << i;
@@ -100,7 +87,7 @@ TEST(KernelRandom, MatchesThePublishedVectorsInBothLaneWidths) {
 TEST(KernelRandom, UnitNumbersAreInTheOpenInterval) {
   double ends[2];
   float ends_fast[2];
-  ORRERY_BEST(unit_ends)(ends, ends_fast);
+  HWY_NAMESPACE::unit_ends(ends, ends_fast);
   EXPECT_EQ(ends[0], 0x1p-33);
   EXPECT_EQ(ends[1], 1 - 0x1p-33);
   EXPECT_EQ(ends_fast[0], 0x1p-24f);
@@ -109,11 +96,10 @@ TEST(KernelRandom, UnitNumbersAreInTheOpenInterval) {
 
 TEST(KernelRandom, VerticesAndDimensionsHaveDistinctNumbers) {
   double numbers[16];
-  ORRERY_BEST(numbers_of_a_path)(numbers);
+  HWY_NAMESPACE::numbers_of_a_path(numbers);
   for (int i = 0; i < 16; ++i)
     for (int j = 0; j < i; ++j) EXPECT_NE(numbers[i], numbers[j]) << i << ' ' << j;
 }
 
 }  // namespace
 }  // namespace orrery::kernel
-#endif

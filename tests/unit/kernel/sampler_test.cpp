@@ -9,14 +9,7 @@
 #include <set>
 #include <vector>
 
-#undef HWY_TARGET_INCLUDE
-#define HWY_TARGET_INCLUDE "unit/kernel/sampler_test.cpp"
-#include <hwy/foreach_target.h>  // IWYU pragma: keep
-// After foreach_target:
-#include <hwy/highway.h>
-
 #include "kernel/sampler-inl.h"
-#include "support/best.h"
 
 HWY_BEFORE_NAMESPACE();
 namespace orrery::kernel::HWY_NAMESPACE {
@@ -57,13 +50,8 @@ void numbers(const Sampler& sampler, std::uint32_t pixel, std::uint32_t vertex, 
 }  // namespace orrery::kernel::HWY_NAMESPACE
 HWY_AFTER_NAMESPACE();
 
-#if HWY_ONCE
 namespace orrery::kernel {
 namespace {
-
-HWY_EXPORT(points_64);
-HWY_EXPORT(points_32);
-HWY_EXPORT(numbers);
 
 struct Point {
   std::uint32_t v[4];
@@ -71,14 +59,14 @@ struct Point {
 
 std::vector<Point> points_of(std::uint32_t name, std::uint32_t first, std::size_t count, std::uint32_t order = 0) {
   std::vector<Point> out(count);
-  ORRERY_BEST(points_32)(name, order, first, count, out[0].v);
+  HWY_NAMESPACE::points_32(name, order, first, count, out[0].v);
   return out;
 }
 
 std::vector<double> numbers_of(const Sampler& sampler, std::uint32_t pixel, std::uint32_t vertex, std::uint32_t first,
                                std::size_t count, bool second = false) {
   std::vector<double> out(4 * count);
-  ORRERY_BEST(numbers)(sampler, pixel, vertex, second, first, count, out.data());
+  HWY_NAMESPACE::numbers(sampler, pixel, vertex, second, first, count, out.data());
   return out;
 }
 
@@ -103,8 +91,8 @@ TEST(KernelSampler, BothLaneWidthsGiveTheSamePoints) {
   std::vector<std::uint32_t> wide(4 * 1000), narrow(4 * 1000);
   for (const std::uint32_t name : {0u, 1u, 0xdeadbeefu}) {
     for (std::uint32_t order = 0; order < kSobolOrders.size(); ++order) {
-      ORRERY_BEST(points_64)(name, order, 37, 1000, wide.data());
-      ORRERY_BEST(points_32)(name, order, 37, 1000, narrow.data());
+      HWY_NAMESPACE::points_64(name, order, 37, 1000, wide.data());
+      HWY_NAMESPACE::points_32(name, order, 37, 1000, narrow.data());
       EXPECT_EQ(wide, narrow);
     }
   }
@@ -291,4 +279,3 @@ TEST(KernelSampler, BlueNoiseNeighboursShareOneSequence) {
 
 }  // namespace
 }  // namespace orrery::kernel
-#endif

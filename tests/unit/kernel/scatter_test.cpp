@@ -7,19 +7,10 @@
 #include <cmath>
 #include <type_traits>
 
-#undef HWY_TARGET_INCLUDE
-#define HWY_TARGET_INCLUDE "unit/kernel/scatter_test.cpp"
-#include <hwy/foreach_target.h>  // IWYU pragma: keep
-// After foreach_target:
-#include <hwy/highway.h>
-
 #include "kernel/scatter-inl.h"
-#include "support/best.h"
 #include "support/first_lane-inl.h"
 
 namespace orrery::kernel {
-#ifndef ORRERY_UNIT_KERNEL_SCATTER_TEST_CASE_
-#define ORRERY_UNIT_KERNEL_SCATTER_TEST_CASE_
 /// A ray incident on the top of a unit sphere, and its scattered directions.
 struct ScatterCase {
   double cos_arriving = 1, eta = 1, r0 = 0, fuzz = 0, u = 0.5;
@@ -28,7 +19,6 @@ struct ScatterCase {
   double glass[3] = {}, metal[3] = {}, reflectance = 0;
   bool metal_alive = false;
 };
-#endif
 }  // namespace orrery::kernel
 
 HWY_BEFORE_NAMESPACE();
@@ -58,14 +48,11 @@ void scatter_case(ScatterCase& c) {
 }  // namespace orrery::kernel::HWY_NAMESPACE
 HWY_AFTER_NAMESPACE();
 
-#if HWY_ONCE
 namespace orrery::kernel {
 namespace {
 
-HWY_EXPORT(scatter_case);
-
 ScatterCase scattered(ScatterCase c) {
-  ORRERY_BEST(scatter_case)(c);
+  HWY_NAMESPACE::scatter_case(c);
   return c;
 }
 
@@ -118,4 +105,3 @@ TEST(KernelScatter, FuzzThatCancelsTheMirrorDirectionAbsorbs) {
 
 }  // namespace
 }  // namespace orrery::kernel
-#endif

@@ -11,25 +11,15 @@
 #include <random>
 #include <vector>
 
-#undef HWY_TARGET_INCLUDE
-#define HWY_TARGET_INCLUDE "unit/kernel/texture_levels_test.cpp"
-#include <hwy/foreach_target.h>  // IWYU pragma: keep
-// After foreach_target:
-#include <hwy/highway.h>
-
 #include "kernel/texture-inl.h"
-#include "support/best.h"
 
 namespace orrery::kernel {
-#ifndef ORRERY_UNIT_KERNEL_TEXTURE_LEVELS_TEST_CASE_
-#define ORRERY_UNIT_KERNEL_TEXTURE_LEVELS_TEST_CASE_
 /// A point of a sphere, the width of the ray cone there, and the colour.
 struct LevelLook {
   double outward[3] = {0, 0, 1};
   double width = 0;  ///< radians, seen from the centre
   double rgb[3] = {};
 };
-#endif
 }  // namespace orrery::kernel
 
 HWY_BEFORE_NAMESPACE();
@@ -65,13 +55,8 @@ void levels_narrow(const TextureImage& t, std::vector<LevelLook>& v) { look_at_l
 }  // namespace orrery::kernel::HWY_NAMESPACE
 HWY_AFTER_NAMESPACE();
 
-#if HWY_ONCE
 namespace orrery::kernel {
 namespace {
-
-HWY_EXPORT(levels_wide);
-HWY_EXPORT(levels_one);
-HWY_EXPORT(levels_narrow);
 
 constexpr double kPi = std::numbers::pi;
 
@@ -106,7 +91,7 @@ Levels random_levels() {
 
 double seen(const TextureImage& image, double x, double y, double z, double width) {
   std::vector<LevelLook> one = {{{x, y, z}, width}};
-  ORRERY_BEST(levels_wide)(image, one);
+  HWY_NAMESPACE::levels_wide(image, one);
   return one[0].rgb[1];
 }
 
@@ -154,8 +139,8 @@ TEST(KernelTextureLevels, AMagnifiedImageIsInterpolatedBilinearly) {
   }
   std::vector<LevelLook> plain = looks;
   for (LevelLook& look : plain) look.width = 0.3;
-  ORRERY_BEST(levels_wide)(image.view, looks);
-  ORRERY_BEST(levels_wide)(alone, plain);
+  HWY_NAMESPACE::levels_wide(image.view, looks);
+  HWY_NAMESPACE::levels_wide(alone, plain);
   for (std::size_t i = 0; i < looks.size(); ++i) EXPECT_EQ(looks[i].rgb[0], plain[i].rgb[0]) << i;
 }
 
@@ -182,9 +167,9 @@ TEST(KernelTextureLevels, LanesOfDifferentLevelsHaveTheBitsOfOneLane) {
     wide.push_back({{v[0] / length, v[1] / length, v[2] / length}, std::exp(normal(random) - 4)});
   }
   std::vector<LevelLook> one = wide, narrow = wide;
-  ORRERY_BEST(levels_wide)(image.view, wide);
-  ORRERY_BEST(levels_one)(image.view, one);
-  ORRERY_BEST(levels_narrow)(image.view, narrow);
+  HWY_NAMESPACE::levels_wide(image.view, wide);
+  HWY_NAMESPACE::levels_one(image.view, one);
+  HWY_NAMESPACE::levels_narrow(image.view, narrow);
   for (std::size_t i = 0; i < wide.size(); ++i) {
     ASSERT_EQ(wide[i].rgb[0], one[i].rgb[0]) << i;
     ASSERT_NEAR(wide[i].rgb[0], narrow[i].rgb[0], 1e-3) << i;
@@ -193,4 +178,3 @@ TEST(KernelTextureLevels, LanesOfDifferentLevelsHaveTheBitsOfOneLane) {
 
 }  // namespace
 }  // namespace orrery::kernel
-#endif

@@ -11,6 +11,8 @@
 #include <string>
 #include <vector>
 
+#include "support/every_set.h"
+
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "unit/kernel/texture_test.cpp"
 #include <hwy/foreach_target.h>  // IWYU pragma: keep

@@ -8,6 +8,8 @@
 #include <random>
 #include <vector>
 
+#include "support/every_set.h"
+
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "unit/math/functions_test.cpp"
 #include <hwy/foreach_target.h>  // IWYU pragma: keep
