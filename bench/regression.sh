@@ -9,15 +9,17 @@
 # replaced by single rays where packets pay, or a kernel that is no longer inlined. They do not detect a loss of a tenth;
 # for that, bench/instructions.py counts the instructions of two builds.
 #
-# On the scenes of bench/render/traversal.cpp, with AVX-512 and AVX2, the traversals of the rule must reach 0.9 of the
-# better one of packets and single rays.
+# On scenes of bench/render/traversal.cpp, with AVX-512 and AVX2, the traversals of the rule must reach 0.9 of the better one
+# of packets and single rays: one scene for each case of the rule, or with `all` every scene.
 #
-#   bench/regression.sh BUILD       BUILD: a build folder configured with -DORRERY_BENCH=ON
+#   bench/regression.sh BUILD [all]       BUILD: a build folder configured with -DORRERY_BENCH=ON
 #
 # Exit status: 0 no ratio is below its limit, 1 one is, 77 the processor has no AVX2, for which there are no limits.
 set -euo pipefail
 root=$(cd "$(dirname "${BASH_SOURCE[0]}")/.." && pwd)
-programs=${1:?usage: bench/regression.sh BUILD}/bench
+programs=${1:?usage: bench/regression.sh BUILD [all]}/bench
+scenes='final|layer/6400|cloud/10000'
+if [ "${2:-}" = all ]; then scenes='.*'; fi
 result=$(mktemp)
 trap 'rm -f "$result"' EXIT
 
@@ -73,6 +75,6 @@ if [ -z "$(names | awk '/avx/')" ]; then
   exit 77
 fi
 attempt final_scene
-for scene in $(names | sed -n 's|^render/traversal/\(.*\)/avx[0-9]*/fast/rule$|\1|p' | sort -u); do
+for scene in $(names | sed -n -E "s#^render/traversal/($scenes)/avx[0-9]*/fast/rule\$#\1#p" | sort -u); do
   attempt traversals "$scene"
 done
