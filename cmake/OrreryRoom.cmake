@@ -60,7 +60,7 @@ endfunction()
 # Compiles a source of a room once for each of ORRERY_TARGETS, and for each definition if there are any. Its functions are
 # in the namespaces of Highway's targets; ORRERY_DECLARE_INSTANCES (src/math/dispatch.h) declares them for the sources of
 # the room that choose among them. More instruction sets do not recompile what is there. Function clones for constant
-# arguments gain nothing here and take time to compile.
+# arguments gain nothing here and take time to compile; so does debug information beyond lines, as long as the code.
 function(orrery_instances room source)
   set(target orrery_${room})
   get_target_property(sources ${target} SOURCES)
@@ -81,7 +81,7 @@ function(orrery_instances room source)
       target_include_directories(${objects} PRIVATE ${CMAKE_CURRENT_SOURCE_DIR})
       target_compile_features(${objects} PRIVATE cxx_std_20)
       target_compile_options(${objects} PRIVATE ${ORRERY_WARNINGS} ${ORRERY_ARITHMETIC} ${ORRERY_SIMD}
-                             $<$<CXX_COMPILER_ID:GNU>:-fno-ipa-cp-clone>)
+                             $<$<CXX_COMPILER_ID:GNU>:-fno-ipa-cp-clone> $<$<CONFIG:RelWithDebInfo>:-g1>)
       target_compile_definitions(${objects} PRIVATE HWY_COMPILE_ONLY_STATIC $<$<NOT:$<STREQUAL:${definition},none>>:ORRERY_${definition}>)
       if(NOT isa STREQUAL "STATIC")
         target_compile_definitions(${objects} PRIVATE HWY_BASELINE_TARGETS=HWY_${isa})
