@@ -202,7 +202,7 @@ def graft(package, files, stub_of):
 
 def oldest_glibc(files):
     """The version of glibc that files need, and with it, as a manylinux tag, all that they expect of the system. Exits if
-    they need another library than SYSTEM, or a later libstdc++ than that of GCC 12."""
+    they need another library than SYSTEM, or a later libstdc++ than such systems have: GCC 12 in Debian 12, 14 in 13."""
     minors = {"GLIBC_2": {0}, "GLIBCXX_3.4": {0}}
     names = {file.name for file in files}
     for file in files:
@@ -211,9 +211,10 @@ def oldest_glibc(files):
                 sys.exit(f"bundle.py: {file.name} needs {name}, which is not in the wheel")
         for version, minor in re.findall(r"\b(GLIBC_2|GLIBCXX_3\.4)\.(\d+)", output("objdump", "-p", file)):
             minors[version].add(int(minor))
-    if max(minors["GLIBCXX_3.4"]) > 30:
-        sys.exit("bundle.py: the wheel needs a later libstdc++ than that of GCC 12; build it in Debian 12")
-    return max(minors["GLIBC_2"])
+    glibc = max(minors["GLIBC_2"])
+    if max(minors["GLIBCXX_3.4"]) > (30 if glibc <= 36 else 33):
+        sys.exit(f"bundle.py: the wheel needs a later libstdc++ than systems with glibc 2.{glibc} have")
+    return glibc
 
 
 def metadata(build):
