@@ -8,8 +8,6 @@
 #include <utility>
 #include <vector>
 
-#include <fmt/core.h>
-
 #include "base/error.h"
 #include "points/rows.h"
 #include "points/selection.h"
@@ -61,6 +59,9 @@ struct Rule {
   T value;
 };
 
+/// The key of a rule in a list: ".opacity.where[2]".
+inline std::string rule_key(const char* key, std::size_t index) { return key + ("[" + std::to_string(index) + "]"); }
+
 /// Parses rules. Reports those that are not valid.
 ///
 /// `key`      of the list, ".opacity.where"
@@ -74,10 +75,10 @@ std::vector<Rule<T>> rules_of(const data::FrameInfo& info, const std::vector<std
     try {
       const auto [condition, value] = split_rule(texts[i]);
       if (condition.empty() && !may_match_all)
-        base::refuse(fmt::format("`{}` has no condition; write CONDITION: VALUE", texts[i]));
+        base::refuse("`" + texts[i] + "` has no condition; write CONDITION: VALUE");
       out.push_back({parse_selection(condition, info.columns, info.roles.position), parse(value)});
     } catch (const base::Error& error) {
-      faults.error(fmt::format("{}[{}]", key, i), fault_text(error));
+      faults.error(rule_key(key, i), fault_text(error));
     }
   }
   return out;
@@ -98,8 +99,7 @@ void apply_rules(const data::Table& table, const Rows& rows, const std::vector<R
       set(i, rules[r].value);
     }
     if (!matches && rows.size() > 0)
-      faults.warning(fmt::format("{}[{}]", key, r),
-                     fmt::format("`{}` matches none of the particles that are drawn", texts[r]));
+      faults.warning(rule_key(key, r), "`" + texts[r] + "` matches none of the particles that are drawn");
   }
 }
 
