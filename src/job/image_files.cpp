@@ -16,9 +16,9 @@
 #include "image/library.h"
 #include "image/read.h"
 #include "image/write.h"
-#include "job/outputs.h"
 #include "job/resources.h"
 #include "job/version.h"
+#include "job/write_outputs.h"
 #include "load/read_scene.h"
 
 namespace orrery::job {

@@ -20,7 +20,7 @@
 #include "base/stop_point.h"
 #include "film/picture.h"
 #include "image/read.h"
-#include "job/job.h"
+#include "job/run_job.h"
 #include "support/peak_memory.h"
 #include "support/temp_dir.h"
 
@@ -82,11 +82,7 @@ Frame finished(Viewer& viewer, std::uint64_t after = 0) {
 }
 
 film::Picture rendered(const std::vector<std::string>& words) {
-  job::Job job = subject_of(words).job;
-  job::Rendering rendering;
-  job.keep = &rendering;
-  job::run_job(job);
-  return rendering.picture;
+  return job::render_in_memory(subject_of(words).job).picture;
 }
 
 void expect_same(const film::Picture& a, const film::Picture& b) {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "job/job.h"
+#include "job/run_job.h"
 
 #include <gtest/gtest.h>
 #include <sys/resource.h>
