@@ -230,10 +230,10 @@ class Run {
   /// Denoises the image, and removes the halves unless the scene requests them.
   void denoise_picture(film::Picture& picture) const {
     const bool keeps_halves = base::contains(scene::requested_layers(own_.scene()), scene::kHalvesLayer);
-    if (!denoise::denoise(picture, threads_, keeps_halves).missing.empty())
+    if (!denoise::denoise(picture, threads_, keeps_halves).is_filtered)
       job_.hooks.warn(base::file_diagnostic(
           base::Severity::kWarning, job_.scene.file.string(),
-          "the noise cannot be measured, because one half of the samples is missing; the image is hardly denoised",
+          "the noise cannot be measured, because one half of the samples is missing; the image is not denoised",
           "render at least 2 samples per pixel"));
     if (job_.hooks.on_denoised) job_.hooks.on_denoised(picture);
   }
