@@ -648,16 +648,6 @@ TEST_F(PointsLoadPointsMemory, CopiesFarFromTheOriginNeedMore) {
   EXPECT_EQ(needed(), near_images + 6 * 12);
 }
 
-TEST(PointsReadMemory, CopiesOfAssembliesAreInSinglePrecision) {
-  data::FrameInfo info;
-  info.roles.position = {"x", "y", "z"};
-  scene::Points assembly;
-  assembly.assembly = "1";
-  EXPECT_EQ(bytes_per_sphere(info, {}, RadiusSource(), false), 3 * sizeof(double));
-  EXPECT_EQ(bytes_per_sphere(info, assembly, RadiusSource(), true), 3 * sizeof(float));
-  EXPECT_EQ(bytes_per_sphere(info, assembly, RadiusSource(), false), 3 * sizeof(double));
-}
-
 TEST_F(PointsLoadPoints, RowsOfTheSpheres) {
   const std::string dump =
       frame("id type x y z radius c", {"3 2 30 0 0 0.3 13", "1 1 10 0 0 0.1 11", "2 2 20 5 0 0.2 12"});
