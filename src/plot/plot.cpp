@@ -303,6 +303,9 @@ class PlotMaker {
     std::vector<std::string> out;
     if (!options_.points.select.empty()) out.emplace_back("--select");
     if (!options_.slices.empty()) out.emplace_back("--slice");
+    if (options_.near) out.emplace_back("--near");
+    if (options_.far) out.emplace_back("--far");
+    if (!out_.points.representation.empty()) out.emplace_back("--representation");
     return base::joined(out);
   }
 

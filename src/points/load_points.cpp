@@ -32,7 +32,7 @@ constexpr std::uint64_t kMaxRows = std::numeric_limits<std::uint32_t>::max();
 /// Columns of traces.
 constexpr const char *kNameColumn = "name", *kResidueColumn = "residue_number";
 /// Radius of a trace, in radii of bonds.
-constexpr double kTraceFraction = 6;
+constexpr double kTraceFraction = 4;
 
 /// The largest distance of an atom with this name to the one before in a trace; 0 for atoms beside it.
 double longest_step(const std::string& name) { return name == "CA" ? 4.6 : name == "P" ? 8.6 : 0; }
@@ -114,7 +114,7 @@ class Loader {
     need(info_.roles.id);
     for (const std::string& column : points_.cryptomatte)
       if (require_column(info_, column, false, ".cryptomatte", faults_)) need(column);
-    labels_ = rules_of(info_, points_.labels, ".labels", parse_label, faults_, false);
+    labels_ = rules_of(info_, points_.labels, ".labels", parse_label, faults_, Colon::kFirst);
     representations_ = rules_of(info_, points_.representation, ".representation", parse_representation, faults_);
     need_columns_of(radius_.rules, color_.rules, opacity_.rules, labels_, representations_);
     plan_traces();

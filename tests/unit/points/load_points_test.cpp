@@ -709,7 +709,7 @@ TEST_F(PointsLoadPoints, TracesJoinResiduesThatFollowEachOther) {
   ASSERT_EQ(points.centers.size(), 6u) << "C-alpha atoms and the ligand";
   EXPECT_EQ(points.bond_pairs, (std::vector<scene::SphereBond>{{0, 1}, {2, 3}, {4, 5}}))
       << "not beyond the missing residue";
-  EXPECT_DOUBLE_EQ(points.trace_radius, 0.9);
+  EXPECT_DOUBLE_EQ(points.trace_radius, 0.6);
   EXPECT_EQ(points.bond_radius, 0.15);
   EXPECT_EQ(points.radii, (std::vector<double>{points.trace_radius, points.trace_radius, points.trace_radius,
                                                points.trace_radius, 0.15, 0.15}));
@@ -717,8 +717,8 @@ TEST_F(PointsLoadPoints, TracesJoinResiduesThatFollowEachOther) {
   EXPECT_EQ(points.bond_radius_of(5), points.bond_radius);
   points.transform.scale = 2;
   EXPECT_EQ(load(), "");
-  EXPECT_DOUBLE_EQ(points.trace_radius, 1.8);
-  EXPECT_DOUBLE_EQ(points.radii[0], 1.8);
+  EXPECT_DOUBLE_EQ(points.trace_radius, 1.2);
+  EXPECT_DOUBLE_EQ(points.radii[0], 1.2);
 }
 
 TEST_F(PointsLoadPoints, RepresentationsOfSomeParticlesLeaveTheOthers) {
