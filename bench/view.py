@@ -17,7 +17,7 @@ import time
 sys.path.insert(0, str(pathlib.Path(__file__).resolve().parent.parent / "tests/browser"))
 from webdriver import Browser, exit_if_missing
 
-SETTLED = "return document.getElementById('picture').dataset.settled === 'true'"
+SETTLED = "const { settled, shown } = document.getElementById('picture').dataset; return settled === 'true' && shown"
 
 # Sends moves of the pointer, each when the image of the one before is shown; returns the times in ms.
 MOVES = """
@@ -68,13 +68,14 @@ const begin = performance.now(), timer = setInterval(() => {
 
 # Changes a control; returns the time to the first image in ms.
 CHANGE = """
-const [id, value, done] = arguments, canvas = document.getElementById('picture');
-const field = document.getElementById(id), asked = Number(canvas.dataset.asked), begin = performance.now();
+const [selector, value, done] = arguments, canvas = document.getElementById('picture');
+const field = document.querySelector(selector), asked = Number(canvas.dataset.asked), begin = performance.now();
 new MutationObserver((changes, observer) => {
   if (Number(canvas.dataset.shown) <= asked) return;
   observer.disconnect();
   done(performance.now() - begin);
 }).observe(canvas, { attributes: true });
+if (field.type === 'radio') return field.click();
 field.value = value;
 field.dispatchEvent(new Event('change'));
 """
@@ -92,7 +93,7 @@ def main():
         browser = Browser(width=1400, height=900)
         opened = time.monotonic()
         browser.open(url)
-        browser.wait("return document.getElementById('status').textContent !== 'Starting ...'", pause=0.01)
+        browser.wait("return document.getElementById('status').textContent !== 'Starting'", pause=0.01)
         print(f"start to the first words in the page: {time.monotonic() - opened:.2f} s")
         browser.wait("return document.getElementById('picture').dataset.frame", pause=0.01)
         print(f"start of the program to the first image: {time.monotonic() - begin:.2f} s")
@@ -105,13 +106,14 @@ def main():
         rate, size, complete = browser.run_async(DRAG)
         print(f"drag: {rate:.1f} images/s of {size}; complete image after {complete / 1000:.2f} s")
         if browser.run("return document.getElementById('style') !== null"):
-            for control, values in (("map", ("magma", "viridis")), ("range", ("0:1", "0:2")), ("style", ("flat", "ambient")),
-                                    ("radius-scale", ("0.9", "1.1"))):
+            for control, values in (("--map", ("magma", "viridis")), ("#range", ("0:1", "0:2")), ("--style", ("flat", "ambient")),
+                                    ("#radius-scale", ("0.9", "1.1"))):
                 for value in values:
                     browser.wait(SETTLED, pause=0.01)
-                    print(f"{control} {value} to the first image: {browser.run_async(CHANGE, control, value):.0f} ms")
+                    selector = control if control.startswith("#") else f"input[name='{control}'][value='{value}']"
+                    print(f"{control} {value} to the first image: {browser.run_async(CHANGE, selector, value):.0f} ms")
         sizes = browser.run("return performance.getEntriesByType('resource').concat("
-                            "performance.getEntriesByType('navigation')).filter(e => !/frame|wish|state|pick/.test(e.name))"
+                            "performance.getEntriesByType('navigation')).filter(e => !/frame|wish|state|pick|column|bounds/.test(e.name))"
                             ".map(e => e.transferSize)")
         print(f"transferred bytes without images and states: {sum(sizes)}")
     finally:

@@ -3,7 +3,7 @@
 
 #include <cmath>
 
-#include "support/sphere_points.h"
+#include "accel/embree_api.h"
 
 namespace orrery::bench::baseline {
 namespace {

@@ -96,21 +96,12 @@ class LegendLayout {
   Drawing out_;
 };
 
-/// The colours as a display shows them, 0..1.
-LegendColors seen(LegendColors colors, const display::Settings& display) {
-  const std::function<Vec3d(const Vec3d&)> shown = shown_by(display);
-  for (auto& [label, color] : colors.labels) color = shown(color);
-  for (Vec3d& color : colors.bar) color = shown(color);
-  if (colors.nan_color) colors.nan_color = shown(*colors.nan_color);
-  return colors;
-}
-
 /// A legend on white, in display colours.
 Drawing page(const LegendColors& colors, const display::Settings& display, double font_px) {
   constexpr double kAny = std::numeric_limits<double>::infinity();
   constexpr std::size_t kMany = std::numeric_limits<std::size_t>::max();
-  const Drawing legend =
-      legend_drawing(seen(colors, display), {font_px, kAny, kMany, kMaxTextBytes}, image::font_file(kDefaultFont));
+  const Drawing legend = legend_drawing(shown_colors(colors, display), {font_px, kAny, kMany, kMaxTextBytes},
+                                        image::font_file(kDefaultFont));
   Drawing out;
   out.font = legend.font;
   out.width = legend.width + static_cast<int>(2 * font_px);
@@ -170,14 +161,19 @@ Drawing legend_drawing(const LegendColors& colors, const LegendStyle& style, con
   return layout.take();
 }
 
-std::string legend_svg(const LegendColors& colors, const display::Settings& display) {
-  return colors.is_empty() ? "" : svg(page(colors, display, kSvgFont), std::identity());
+LegendColors shown_colors(LegendColors colors, const display::Settings& display) {
+  const std::function<Vec3d(const Vec3d&)> shown = shown_by(display);
+  for (auto& [label, color] : colors.labels) color = shown(color);
+  for (Vec3d& color : colors.bar) color = shown(color);
+  if (colors.nan_color) colors.nan_color = shown(*colors.nan_color);
+  return colors;
 }
 
 void write_legend(const std::filesystem::path& file, const LegendColors& colors, const display::Settings& display) {
   if (colors.is_empty())
     base::refuse("--legend: there is no legend: no colour is that of a value of a column, of a type or of an element");
-  if (base::extension(file) == ".svg") return base::write_text_file(file, legend_svg(colors, display));
+  if (base::extension(file) == ".svg")
+    return base::write_text_file(file, svg(page(colors, display, kSvgFont), std::identity()));
   if (!image::is_display_format(image::format_of(file))) base::refuse("--legend: name an .svg or .png file");
   if (colors.labels.size() > kMaxImageLabels)
     base::refuse(fmt::format("--legend: an image shows up to {} values; name an .svg file", kMaxImageLabels));

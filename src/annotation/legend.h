@@ -74,15 +74,15 @@ struct LegendStyle {
 /// Errors     those of image::text_widths()
 Drawing legend_drawing(const LegendColors& colors, const LegendStyle& style, const std::filesystem::path& font);
 
-/// The legend of a plot's colours as SVG, see write_legend(); empty if there are none.
-std::string legend_svg(const LegendColors& colors, const display::Settings& display);
+/// The colours as a display shows them, 0..1.
+LegendColors shown_colors(LegendColors colors, const display::Settings& display);
 
 /// Writes the legend of a plot's colours as SVG or as an image. Applies the display transform of the plot's images, so
 /// that the colours match.
 ///
 /// `display`  display transform of the images; its working space is not used
 /// Errors     base::Error: kUsage for another extension, if there are no colours, and for an image of too many labels;
-///            those of legend_svg(); kCannotCreate, kIo
+///            those of legend_drawing(); kCannotCreate, kIo
 void write_legend(const std::filesystem::path& file, const LegendColors& colors, const display::Settings& display);
 
 }  // namespace orrery::annotation

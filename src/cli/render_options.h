@@ -5,7 +5,7 @@
 #include <string>
 
 #include "cli/options.h"
-#include "job/batch.h"
+#include "job/job.h"
 
 namespace orrery::cli {
 

@@ -47,7 +47,7 @@ view::Subject data_subject(ShownOptions& shown, const FilmSettings* film) {
   out.job.scene.overrides = plot.overrides;
   out.notes = made.choices;
   for (const std::string& warning : made.warnings) out.notes.push_back("warning: " + warning);
-  out.columns = made.columns;
+  out.data = made.data;
   out.frame_count = made.frame_count;
   out.frames = made.frames;
   out.up = made.up;
@@ -63,7 +63,7 @@ view::Subject data_subject(ShownOptions& shown, const FilmSettings* film) {
   if (plot.quality || made.noise)
     out.chosen["--quality"] =
         plot::quality_names()[static_cast<std::size_t>(plot.quality.value_or(plot::Quality::kGood))];
-  out.legend = annotation::legend_svg(made.legend, plot::legend_display(plot, made));
+  out.legend = annotation::shown_colors(made.legend, plot::legend_display(plot, made));
   return out;
 }
 
@@ -77,6 +77,13 @@ void parse_shown(const std::string& file, std::vector<std::string> words,
     shown.plot.data.add_frames_to(parsed);
   };
   parse_words(words, add, [&] { use(shown); });
+}
+
+/// The page may name no files but those given on the command line.
+void require_allowed(const ShownOptions& shown, const std::set<std::string>& allowed) {
+  for (const std::string& name : files_of(shown))
+    if (allowed.count(name) == 0)
+      base::refuse(fmt::format("`{}` names a file; start orrery view with this option", name));
 }
 
 }  // namespace
@@ -97,14 +104,22 @@ std::set<std::string> files_of(const ShownOptions& shown) {
   return out;
 }
 
+void check_film(const std::string& file, const std::vector<std::string>& words, const std::set<std::string>& allowed) {
+  std::vector<std::string> shown;
+  for (std::size_t i = 0; i < words.size(); ++i) {
+    if (words[i] == "--turntable" || words[i] == "--fps")
+      ++i;
+    else
+      shown.push_back(words[i]);
+  }
+  parse_shown(file, shown, [&](const ShownOptions& parsed) { require_allowed(parsed, allowed); });
+}
+
 view::Subject subject_of(const std::filesystem::path& file, const std::vector<std::string>& words,
                          const std::set<std::string>& allowed) {
   view::Subject out;
   parse_shown(file.string(), words, [&](ShownOptions& shown) {
-    // The page may name no files but those given on the command line.
-    for (const std::string& name : files_of(shown))
-      if (allowed.count(name) == 0)
-        base::refuse(fmt::format("`{}` names a file; start orrery view with this option", name));
+    require_allowed(shown, allowed);
     out = load::is_scene_file(file) ? scene_subject(shown) : data_subject(shown, nullptr);
   });
   return out;

@@ -27,6 +27,12 @@ struct ShownOptions {
 /// The files that options name besides FILE.
 std::set<std::string> files_of(const ShownOptions& shown);
 
+/// Checks the words of a film: the options of an image, and --frames, --turntable and --fps.
+///
+/// `allowed`    the files that they may name
+/// Errors       base::Error(kUsage)
+void check_film(const std::string& file, const std::vector<std::string>& words, const std::set<std::string>& allowed);
+
 /// Returns what `orrery view` shows of a scene or a data file.
 ///
 /// `words`      options and their values, as typed

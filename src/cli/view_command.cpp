@@ -5,10 +5,12 @@
 #include <algorithm>
 #include <atomic>
 #include <chrono>
+#include <cmath>
 #include <cstdio>
 #include <filesystem>
 #include <fstream>
 #include <memory>
+#include <optional>
 #include <set>
 #include <string>
 #include <thread>
@@ -23,10 +25,12 @@
 #include "base/input_file.h"
 #include "base/text.h"
 #include "cli/commands.h"
+#include "cli/films.h"
 #include "cli/messages.h"
 #include "cli/signals.h"
 #include "cli/subject.h"
 #include "http/server.h"
+#include "info/data_info.h"
 #include "load/read_scene.h"
 #include "plot/plot.h"
 #include "points/color_map.h"
@@ -41,70 +45,91 @@ struct ViewArguments {
   std::string host = "127.0.0.1";
   int port = 0;
   bool opens = false, once = false;
+  std::filesystem::path folder;    ///< of films; empty: none
   std::vector<const Option*> own;  ///< those that are not part of `shown`
 };
 
 /// With --once, a page that is reloaded within this time has not been closed.
 constexpr std::chrono::seconds kGrace{30};
 
-/// What the page may set, for a kind of file.
-view::Controls controls_of(const std::filesystem::path& file) {
-  view::Controls out;
-  out.title = file.filename().string();
-  const std::string command =
-      fmt::format("orrery {} {}", load::is_scene_file(file) ? "render" : "plot", base::shell_quoted(file.string()));
-  const auto line = [command](const std::vector<std::string>& words, const char* rest) {
-    std::string text = command;
-    for (const std::string& word : words) text += " " + base::shell_quoted(word);
-    return text + rest;
-  };
-  out.command = [line](const std::vector<std::string>& words) { return line(words, " -o picture.png"); };
-  out.film = [line](const std::vector<std::string>& words) {
-    return line(words, " --set animation.turntable=120 --frames 1-120 -o film.####.png");
-  };
-  for (const char* option : {"--samples", "--noise", "--denoise", "--set", "--width", "--height"})
-    out.options[option] = {};
-  if (load::is_scene_file(file)) return out;
-  out.options["--color-by"] = {"none", "element", "type", "rgb"};
-  out.options["--map"] = points::color_map_names();
-  out.options["--style"] = plot::style_names();
-  out.options["--material"] = plot::material_names();
-  out.options["--representation"] = plot::representation_names();
-  out.options["--bonds"] = {"auto", "none", "file", "distance", "both"};
-  out.options["--quality"] = plot::quality_names();
-  out.options["--background"] = {"white", "black", "grey"};
-  out.options["--scale-bar"] = {"auto"};
-  for (const char* option :
-       {"--ground",       "--opacity",      "--box",         "--axes",     "--vectors",   "--range",     "--select",
-        "--slice",        "--radius-scale", "--radius",      "--color",    "--carbon",    "--look-from", "--fit",
-        "--near",         "--far",          "--color-title", "--color-at", "--font-size", "--dpi",       "--frame",
-        view::kAllFrames, "--perspective",  "--center",      "--title",    "--color-bar", "--label",     "--outline"})
-    out.options[option] = {};
+/// Options of the command that the page does not have: they do not change the image, or not in the same way again, or
+/// name files.
+bool is_control(const Option& option, bool is_scene) {
+  const OptionText text = option.text();
+  const bool is_of_data =
+      base::contains({kDataOptions, kViewOptions, kLookOptions, kAnnotationOptions}, option.heading());
+  return !option.name().empty() && !(is_scene && is_of_data) && text.type != "FILE" && text.type != "FONT" &&
+         !base::contains({"--help", "--time", "--threads", "--memory-limit", "--layers"}, option.name());
+}
+
+/// Colours of a map for a gradient.
+std::vector<std::string> gradient_of(const std::string& name) {
+  constexpr int kSteps = 16;
+  const points::ColorMap& map = *points::find_color_map(name);
+  std::vector<std::string> out;
+  for (int i = 0; i < kSteps; ++i) {
+    const math::Vec3d c = points::srgb_at(map, i / (kSteps - 1.0));
+    const auto code = [](double v) { return std::lround(255 * v); };
+    out.push_back(fmt::format("#{:02x}{:02x}{:02x}", code(c.x), code(c.y), code(c.z)));
+  }
   return out;
 }
 
-/// Moves the values of controls from words to a wish, from which the page can change them.
-view::Wish first_wish(std::vector<std::string>& words, const view::Controls& controls) {
+/// What the page offers.
+///
+/// `options`    those that it may set
+/// `allowed`    the files that they may name
+/// `component`  of HDF5 files
+view::Controls controls_of(const std::filesystem::path& file, const std::vector<const Option*>& options,
+                           const std::set<std::string>& allowed, const std::optional<int>& component, Films* films) {
+  view::Controls out;
+  out.title = file.filename().string();
+  const bool is_scene = load::is_scene_file(file);
+  const std::string film = is_scene ? "film.####.png" : "film.mp4";
+  const std::string command = is_scene ? "render" : "plot";
+  const auto line = [=](const std::vector<std::string>& words, const std::string& output) {
+    std::string text = fmt::format("orrery {} {}", command, base::shell_quoted(file.string()));
+    for (const std::string& word : words) text += " " + base::shell_quoted(word);
+    return text + " -o " + output;
+  };
+  out.command = [line](const std::vector<std::string>& words) { return line(words, "picture.png"); };
+  out.film_command = [line, film](const std::vector<std::string>& words) { return line(words, film); };
+  if (films != nullptr) {
+    out.film = [=](const std::vector<std::string>& words) {
+      check_film(file.string(), words, allowed);
+      films->start(command, file, words, film);
+    };
+    out.film_state = [films] { return films->state(); };
+    out.film_cancel = [films] { films->cancel(); };
+  }
+  for (const Option* const option : options) {
+    const OptionText text = option->text();
+    out.options.push_back(
+        {option->name(), text.heading, text.type, text.description, text.choices, text.is_repeatable});
+  }
+  if (is_scene) return out;
+  for (const std::string& name : points::color_map_names()) out.maps[name] = gradient_of(name);
+  out.column = [=](int frame, const std::string& column, bool is_log) {
+    const std::string name = base::input_at_frame({}, file.string(), frame);
+    return info::column_values_json({name, name == file ? frame : 1, component}, column, is_log);
+  };
+  return out;
+}
+
+/// Moves the values of controls from the command line to a wish, from which the page can change them.
+view::Wish first_wish(const std::vector<const Option*>& options) {
   view::Wish out;
-  std::vector<std::string> fixed;
-  for (std::size_t i = 0; i < words.size(); ++i) {
-    const std::size_t equals = words[i].find('=');
-    const bool is_joined = words[i].starts_with("--") && equals != std::string::npos;
-    const std::string option = is_joined ? words[i].substr(0, equals) : words[i];
-    if (controls.options.count(option) == 0) {
-      fixed.push_back(words[i]);
-      continue;
+  for (const Option* const option : options) {
+    const std::vector<std::string> words = option->arguments();
+    for (std::size_t i = 0; i < words.size(); ++i) {
+      std::vector<std::string>& values = out.options[option->name()];
+      const std::size_t equals = words[i].find('=');
+      if (words[i].starts_with("--") && equals != std::string::npos)
+        values.push_back(words[i].substr(equals + 1));
+      else if (!option->text().type.empty())
+        values.push_back(words[++i]);
     }
-    std::string& value = out.options[option];
-    if (!value.empty()) value += option == "--select" ? " && " : "\n";
-    const std::string one = view::is_flag(option) ? "on" : is_joined ? words[i].substr(equals + 1) : words[++i];
-    value += option == "--select" ? "(" + one + ")" : one;
   }
-  if (controls.options.count("--style") > 0 && out.options.count("--width") + out.options.count("--height") == 0) {
-    out.options["--width"] = "960";
-    out.options["--height"] = "540";
-  }
-  words = std::move(fixed);
   return out;
 }
 
@@ -135,12 +160,26 @@ int run_view(ViewArguments& arguments, const Command& command) {
   if (!base::has_frame_pattern(file.filename().string())) base::require_readable(file);
   if (!load::is_scene_file(file)) plot::require_utf8(file.string());
   const std::set<std::string> allowed = files_of(arguments.shown);
-  const view::Controls controls = controls_of(file);
-  const std::vector<const Option*>& own = arguments.own;
-  std::vector<std::string> fixed = command.arguments([&](const Option& option) {
-    return !option.name().empty() && std::find(own.begin(), own.end(), &option) == own.end();  // FILE has no name
+  const auto is_in = [](const std::vector<const Option*>& list, const Option& option) {
+    return std::find(list.begin(), list.end(), &option) != list.end();
+  };
+  std::vector<const Option*> options;
+  for (const Option& option : command.options())
+    if (!is_in(arguments.own, option) && is_control(option, load::is_scene_file(file))) options.push_back(&option);
+  std::optional<Films> films;
+  if (!arguments.folder.empty()) films.emplace(arguments.folder);
+  view::Controls controls =
+      controls_of(file, options, allowed, arguments.shown.plot.options.points.component, films ? &*films : nullptr);
+  view::Wish first = first_wish(options);
+  const std::vector<std::string> fixed = command.arguments([&](const Option& option) {
+    return !option.name().empty() && !is_in(arguments.own, option) && !is_in(options, option);
   });
-  const view::Wish first = first_wish(fixed, controls);
+  controls.fills_window =
+      first.options.count("--width") + first.options.count("--height") + first.options.count("--print-width") == 0;
+  if (controls.fills_window) {  // until a page knows the size of its window
+    first.options["--width"] = {"960"};
+    first.options["--height"] = {"540"};
+  }
   const std::atomic<bool>& stops = stop_on_signals();
   const auto make = [&](const std::vector<std::string>& words) { return subject_of(file, words, allowed); };
   view::Viewer viewer(make, fixed, first);
@@ -179,6 +218,8 @@ void add_view(Command& program) {
           "--host", arguments->host, "ADDRESS",
           "IPv4 address to listen on; default: 127.0.0.1, which only this machine reaches; 0.0.0.0: all, "
           "in a container"),
+      command.add_option("--save-to", arguments->folder, "DIR",
+                         "Folder into which the page may write films; default: none"),
       command.add_flag("--open", arguments->opens, "Open the page in the browser of this machine"),
       command.add_flag("--once", arguments->once, "End when the page has been closed"),
   };

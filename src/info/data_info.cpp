@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <limits>
+#include <map>
 #include <type_traits>
 #include <utility>
 
@@ -17,6 +19,7 @@
 #include "base/text.h"
 #include "data/data_file.h"
 #include "job/report_text.h"
+#include "points/color_map.h"
 #include "points/rows.h"
 
 namespace orrery::info {
@@ -211,21 +214,91 @@ json json_of(const ColumnSummary& summary) {
   return out;
 }
 
-}  // namespace
-
-DataInfo data_info(const DataInfoRequest& request) {
+/// Opens a file that has the requested frame.
+std::unique_ptr<data::DataFile> opened(const DataInfoRequest& request) {
   data::OpenOptions options;
   options.component = request.component;
   options.limit_memory(base::available_memory().value_or(0));
-  const std::unique_ptr<data::DataFile> file = data::open(request.file, options);
+  std::unique_ptr<data::DataFile> file = data::open(request.file, options);
+  if (request.frame < 1 || !file->has_frame(request.frame - 1))
+    base::refuse(fmt::format("--frame {}: {} has {}", request.frame, request.file.string(),
+                             base::counted(static_cast<std::uint64_t>(file->frame_count()), "frame")));
+  return file;
+}
+
+/// The most frequent values, and their numbers.
+json classes_of(std::vector<std::pair<std::string, std::uint64_t>> out) {
+  constexpr std::size_t kMostClasses = 200;
+  std::stable_sort(out.begin(), out.end(), [](const auto& a, const auto& b) { return a.second > b.second; });
+  out.resize(std::min(out.size(), kMostClasses));
+  return out;
+}
+
+/// Adds what column_values_json() tells of a column of text.
+void add_values(const data::Words& words, json& out) {
+  std::vector<std::pair<std::string, std::uint64_t>> counts;
+  for (const std::string& word : words.words) counts.emplace_back(word, 0);
+  for (const std::uint32_t index : words.index) ++counts[index].second;
+  out["distinct"] = counts.size();
+  out["classes"] = classes_of(std::move(counts));
+}
+
+/// Adds what column_values_json() tells of a column of numbers.
+void add_values(const data::Column& column, std::size_t rows, bool is_log, json& out) {
+  constexpr std::size_t kBins = 64, kMostDistinct = 1000;
+  double low = std::numeric_limits<double>::infinity(), high = -low;
+  std::uint64_t nan_count = 0;
+  std::map<double, std::uint64_t> counts;
+  const auto is_shown = [is_log](double v) { return std::isfinite(v) && (v > 0 || !is_log); };
+  points::for_each_number(column, points::Rows(rows), [&](std::size_t, double v) {
+    nan_count += std::isnan(v) ? 1 : 0;
+    if (counts.size() <= kMostDistinct && std::isfinite(v)) ++counts[v];
+    if (!is_shown(v)) return;
+    low = std::min(low, v);
+    high = std::max(high, v);
+  });
+  out["nan"] = nan_count;
+  if (low > high) return;
+  std::vector<std::uint64_t> bins(kBins);
+  const points::ValueScale scale(low, high, is_log);
+  points::for_each_number(column, points::Rows(rows), [&](std::size_t, double v) {
+    if (is_shown(v)) ++bins[std::min(static_cast<std::size_t>(scale.share_of(v) * kBins), kBins - 1)];
+  });
+  out.update({{"low", low}, {"high", high}, {"bins", bins}});
+  if (counts.size() > kMostDistinct) return;
+  std::vector<std::pair<std::string, std::uint64_t>> texts;
+  for (const auto& [value, count] : counts) texts.emplace_back(fmt::format("{}", value), count);
+  out["distinct"] = texts.size();
+  out["classes"] = classes_of(std::move(texts));
+}
+
+}  // namespace
+
+std::string column_values_json(const DataInfoRequest& request, const std::string& column, bool is_log) {
+  const std::unique_ptr<data::DataFile> file = opened(request);
+  data::FrameInfo described = file->describe(request.frame - 1);
+  points::add_derived_columns(described);
+  const data::ColumnInfo* const known = data::find_named(described.columns, column);
+  if (known == nullptr) base::refuse(fmt::format("{} has no column `{}`", request.file.string(), column));
+  const std::vector<std::string> sources =
+      known->is_derived ? points::sources_of(described, column) : std::vector{column};
+  data::Table table = file->read(request.frame - 1, sources);
+  if (known->is_derived) points::compute_speed(sources, table);
+  json out = {{"name", column}};
+  if (const auto* const words = std::get_if<data::Words>(&table.find(column)->values))
+    add_values(*words, out);
+  else
+    add_values(*table.find(column), table.rows, is_log, out);
+  return out.dump(-1, ' ', false, json::error_handler_t::replace);
+}
+
+DataInfo data_info(const DataInfoRequest& request) {
+  const std::unique_ptr<data::DataFile> file = opened(request);
   DataInfo info;
   info.file = request.file;
   info.format = file->format;
   info.frames = file->frame_count();
   info.frame = request.frame;
-  if (request.frame < 1 || request.frame > info.frames)
-    base::refuse(fmt::format("--frame {}: {} has {}", request.frame, request.file.string(),
-                             base::counted(static_cast<std::uint64_t>(info.frames), "frame")));
   info.described = file->describe(request.frame - 1);
   for (const data::ColumnInfo& column : info.described.columns) info.columns.push_back({column});
   points::add_derived_columns(info.described);

@@ -51,6 +51,14 @@ struct DataInfo {
 ///            25 million particles with 8 columns in 6 s with all columns at once (1.6 GB), 20 s with one (0.2 GB)
 DataInfo data_info(const DataInfoRequest& request);
 
+/// The values of a column of a frame as JSON, for a person who chooses among them: `low` and `high` of the finite ones,
+/// `nan`, their number; `bins`, a histogram of 64 equal parts from `low` to `high`; `distinct` values if they are few,
+/// and `classes`, pairs of a value and its number, the most frequent first, up to 200.
+///
+/// `is_log`   equal parts are those of logarithms, of the values above 0
+/// Errors     base::Error: those of data::open() and data::DataFile; kUsage if there is no such frame or column
+std::string column_values_json(const DataInfoRequest& request, const std::string& column, bool is_log);
+
 /// The properties as text.
 std::string data_info_text(const DataInfo& info);
 /// The properties as JSON, schema "orrery.data/1".

@@ -17,6 +17,7 @@
 #include "compile/compiled_scene.h"
 #include "film/cryptomatte.h"
 #include "image/format.h"
+#include "job/outputs.h"
 #include "scene/layers.h"
 
 namespace orrery::job {

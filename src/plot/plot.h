@@ -79,7 +79,7 @@ struct PlotScene {
   std::string view;                  ///< view of the display
   std::string material;              ///< of the spheres
   math::Vec3d up;                    ///< the up axis
-  std::vector<std::string> columns;  ///< columns of the data that can be colours
+  data::FrameInfo data;              ///< what the first frame contains, including derived columns
   std::optional<int> frame_count;    ///< of the file; empty: unknown, since counting would read it
   std::optional<double> noise = {};  ///< target noise, unless the user limits samples, noise or time
   bool denoise = false;              ///< the quality is that of denoised images

@@ -8,6 +8,8 @@
 #include <utility>
 #include <vector>
 
+#include <fmt/core.h>
+
 #include "base/error.h"
 #include "points/rows.h"
 #include "points/selection.h"
@@ -16,19 +18,14 @@
 /// last that matches a particle decides.
 namespace orrery::points {
 
-/// The colon that ends an expression.
-enum class Colon { kFirst, kLast };
-
 /// Returns the place of the colon that ends an expression: the first one outside quotes, brackets and braces, which
 /// contain ranges and strings; npos if there is none.
-///
-/// `which`    kLast: the last such one, before a value that has no colon: `id 2:5: 0.3`
-std::size_t end_of_expression(std::string_view text, Colon which = Colon::kFirst);
+std::size_t end_of_expression(std::string_view text);
 
 /// Splits "CONDITION: VALUE" into both parts, without spaces around them. "VALUE" alone has no condition.
 ///
 /// Errors     base::Error(kUsage) for an empty condition
-std::pair<std::string, std::string> split_rule(const std::string& text, Colon which = Colon::kLast);
+std::pair<std::string, std::string> split_rule(const std::string& text);
 
 /// An opacity.
 ///
@@ -64,26 +61,23 @@ struct Rule {
   T value;
 };
 
-/// The key of a rule in a list: ".opacity.where[2]".
-inline std::string rule_key(const char* key, std::size_t index) { return key + ("[" + std::to_string(index) + "]"); }
-
 /// Parses rules. Reports those that are not valid.
 ///
 /// `key`      of the list, ".opacity.where"
 /// `parse`    value of a text; throws base::Error
-/// `which`    kFirst: values may have colons, and conditions are needed
+/// `may_match_all`  a rule may have no condition
 template <class T>
 std::vector<Rule<T>> rules_of(const data::FrameInfo& info, const std::vector<std::string>& texts, const char* key,
-                              T (*parse)(const std::string&), KeyFaults& faults, Colon which = Colon::kLast) {
+                              T (*parse)(const std::string&), KeyFaults& faults, bool may_match_all = true) {
   std::vector<Rule<T>> out;
   for (std::size_t i = 0; i < texts.size(); ++i) {
     try {
-      const auto [condition, value] = split_rule(texts[i], which);
-      if (condition.empty() && which == Colon::kFirst)
-        base::refuse("`" + texts[i] + "` has no condition; write CONDITION: VALUE");
+      const auto [condition, value] = split_rule(texts[i]);
+      if (condition.empty() && !may_match_all)
+        base::refuse(fmt::format("`{}` has no condition; write CONDITION: VALUE", texts[i]));
       out.push_back({parse_selection(condition, info.columns, info.roles.position), parse(value)});
     } catch (const base::Error& error) {
-      faults.error(rule_key(key, i), fault_text(error));
+      faults.error(fmt::format("{}[{}]", key, i), fault_text(error));
     }
   }
   return out;
@@ -104,7 +98,8 @@ void apply_rules(const data::Table& table, const Rows& rows, const std::vector<R
       set(i, rules[r].value);
     }
     if (!matches && rows.size() > 0)
-      faults.warning(rule_key(key, r), "`" + texts[r] + "` matches none of the particles that are drawn");
+      faults.warning(fmt::format("{}[{}]", key, r),
+                     fmt::format("`{}` matches none of the particles that are drawn", texts[r]));
   }
 }
 

@@ -91,16 +91,22 @@ class ScenePage {
             int threads, std::uint64_t memory_limit) {
     job::Job job;
     job.resources = {threads, memory_limit};
+    view::Wish wish;
+    for (const auto& [option, value] : options)
+      wish.options[option] = option == "--denoise" ? std::vector<std::string>() : std::vector{value};
     viewer_ = std::make_unique<view::Viewer>(
         [scene = std::move(scene), job](const std::vector<std::string>& words) {
           return subject_of(scene, job, words);
         },
-        std::vector<std::string>(), view::Wish{std::move(options)});
+        std::vector<std::string>(), wish);
     view::Controls controls;
     controls.title = title;
     controls.command = statements;
-    for (const char* option : {"--samples", "--noise", "--denoise", "--set", "--width", "--height"})
-      controls.options[option] = {};
+    for (const char* const option : {"--samples", "--noise", "--width", "--height"})
+      controls.options.push_back({option, "", "N", ""});
+    controls.options.push_back({"--denoise", "", "", ""});
+    controls.options.push_back({"--set", "", "KEY=VALUE", "", {}, true});
+    controls.fills_window = wish.options.count("--width") + wish.options.count("--height") == 0;
     const std::string secret = view::random_secret();
     site_ = std::make_unique<view::Site>(*viewer_, std::move(controls), "127.0.0.1", secret);
     server_ = http::serve(

@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "job/batch.h"
+#include "job/job.h"
 
 namespace orrery::submit {
 

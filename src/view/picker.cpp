@@ -67,6 +67,21 @@ std::optional<Picked> Picker::pick(double x, double y) {
   return rods.contains(*id) ? describe_rod(rods.index(*id)) : describe_sphere(*id);
 }
 
+std::optional<std::array<math::Vec3d, 2>> Picker::bounds() {
+  const std::shared_lock lock(looks_);
+  if (!is_open_) return {};
+  const compile::SphereStore& spheres = prepared_.compiled().spheres;
+  std::optional<std::array<math::Vec3d, 2>> out;
+  // Lamps and grounds are not data.
+  for (std::size_t i = scene().points.empty() ? 0 : scene().spheres.size(); i < spheres.size(); ++i) {
+    const kernel::Sphere sphere = spheres[i];
+    const math::Vec3d center{sphere.x, sphere.y, sphere.z};
+    out = out ? std::array{math::least((*out)[0], center), math::greatest((*out)[1], center)}
+              : std::array{center, center};
+  }
+  return out;
+}
+
 void Picker::close(load::SceneSource source, bool is_new) {
   is_open_ = false;  // calls of pick() from now on do not keep this waiting
   const std::unique_lock lock(looks_);

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <array>
 #include <atomic>
 #include <cstddef>
 #include <memory>
@@ -40,13 +41,18 @@ class Picker {
   /// Cost       reads the data file, unless its columns take little memory and the particle before was of the same file
   std::optional<Picked> pick(double x, double y);
 
-  /// Waits until no call of pick() looks at the scene, so that it can change.
+  /// Opposite corners of the box around the centres of the particles, or in a scene without data of all spheres; empty:
+  /// there are none, or until open().
+  std::optional<std::array<math::Vec3d, 2>> bounds();
+
+  /// Waits until no call of pick() or bounds() looks at the scene, so that it can change.
   ///
   /// `source`   of the next scene
   /// `is_new`   its data files may be others
   void close(load::SceneSource source, bool is_new);
   /// The scene has its BVH.
   void open() { is_open_ = true; }
+  bool is_open() const { return is_open_; }
 
  private:
   struct Source;

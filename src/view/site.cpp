@@ -3,11 +3,14 @@
 
 #include <sys/random.h>
 
+#include <algorithm>
 #include <array>
+#include <cmath>
 #include <cstdint>
 #include <filesystem>
 #include <fstream>
 #include <optional>
+#include <set>
 #include <string_view>
 #include <utility>
 
@@ -23,8 +26,8 @@
 
 namespace orrery::view {
 
-// The files of the page: page.cpp.in.
-extern const char *const kPageHtml, *const kPageStyle, *const kPageScript, *const kCameraScript;
+// The files of the page by name: page.cpp.in. They are the same for everybody.
+extern const std::map<std::string, const char*> kPageFiles;
 
 namespace {
 
@@ -32,6 +35,7 @@ using Json = nlohmann::json;
 
 /// How long a request for a frame waits. Proxies give up after a minute.
 constexpr std::chrono::seconds kPatience{20};
+constexpr std::size_t kMostLabels = 500, kMostObjects = 1000;  // of a legend, and of a list in the page
 
 http::Response text(int status, const std::string& message) {
   return {status, "text/plain; charset=utf-8", std::make_shared<const std::string>(message + "\n")};
@@ -61,6 +65,43 @@ Json json_of(const scene::Camera& camera) {
           {"size", is_perspective ? camera.vfov : camera.width.value_or(1)}};
 }
 
+/// As read_wish() reads them.
+Json json_of(const decltype(Wish::options)& options) {
+  Json out = Json::object();
+  for (const auto& [option, values] : options) out[option] = values.empty() ? Json(true) : Json(values);
+  return out;
+}
+
+std::string hex_of(const math::Vec3d& display) {
+  const auto code = [](double v) { return std::lround(255 * std::clamp(v, 0.0, 1.0)); };
+  return fmt::format("#{:02x}{:02x}{:02x}", code(display.x), code(display.y), code(display.z));
+}
+
+Json json_of(const annotation::LegendColors& legend) {
+  Json labels = Json::array(), bar = Json::array();
+  for (const auto& [label, color] : legend.labels)
+    if (labels.size() < kMostLabels) labels.push_back({label, hex_of(color)});
+  for (const math::Vec3d& color : legend.bar) bar.push_back(hex_of(color));
+  Json out = {{"title", legend.title}, {"labels", labels}, {"bar", bar}, {"log", legend.is_log}};
+  if (legend.range) out["range"] = {legend.range->low, legend.range->high};
+  if (legend.nan_color) out["nan"] = hex_of(*legend.nan_color);
+  return out;
+}
+
+Json json_of(const data::FrameInfo& data) {
+  Json columns = Json::array();
+  for (const data::ColumnInfo& column : data.columns) columns.push_back({column.name, data::type_name(column.type)});
+  Json out = {{"rows", data.rows},    {"columns", columns},      {"position", data.roles.position},
+              {"id", data.roles.id},  {"type", data.roles.type}, {"element", data.roles.element},
+              {"header", data.header}};
+  if (data.step) out["step"] = *data.step;
+  if (data.box)
+    out["box"] = {
+        {"edges", {vector_of(data.box->edges[0]), vector_of(data.box->edges[1]), vector_of(data.box->edges[2])}},
+        {"periodic", data.box->periodic}};
+  return out;
+}
+
 /// Compares in a time that does not depend on where the texts differ.
 bool is_equal(std::string_view a, std::string_view b) {
   if (a.size() != b.size()) return false;
@@ -69,12 +110,16 @@ bool is_equal(std::string_view a, std::string_view b) {
   return difference == 0;
 }
 
-/// The types and the texts of the page and the files that it loads. They are the same for everybody.
-const std::map<std::string, std::pair<const char*, const char*>> kPageFiles = {
-    {"/", {"text/html; charset=utf-8", kPageHtml}},
-    {"/view.js", {"text/javascript; charset=utf-8", kPageScript}},
-    {"/camera.js", {"text/javascript; charset=utf-8", kCameraScript}},
-    {"/view.css", {"text/css; charset=utf-8", kPageStyle}}};
+/// The type of a file of the page.
+std::string type_of(const std::string& name) {
+  return std::string(name.ends_with(".js")    ? "text/javascript"
+                     : name.ends_with(".css") ? "text/css"
+                                              : "text/html") +
+         "; charset=utf-8";
+}
+
+const std::set<std::string> kPosts = {"/wish", "/cancel", "/film/start", "/film/command", "/film/cancel"};
+const std::set<std::string> kFilmOptions = {"--turntable", "--fps"};
 
 /// A number in the address of a request; empty if there is none.
 template <class T>
@@ -95,7 +140,11 @@ std::string random_secret() {
 }
 
 Site::Site(Viewer& viewer, Controls controls, std::string host, std::string secret)
-    : viewer_(viewer), controls_(std::move(controls)), host_(std::move(host)), secret_(std::move(secret)) {}
+    : viewer_(viewer),
+      controls_(std::move(controls)),
+      host_(std::move(host)),
+      secret_(std::move(secret)),
+      first_(viewer.state().wish) {}
 
 std::chrono::seconds Site::idle() const {
   const Clock::time_point last = last_request_;
@@ -123,12 +172,13 @@ bool Site::admits(const http::Request& request) const {
 
 http::Response Site::answer(const http::Request& request) {
   http::Response out;
-  const bool is_post = request.path == "/wish";
-  const auto file = request.method == "GET" ? kPageFiles.find(request.path) : kPageFiles.end();
+  const bool is_post = kPosts.count(request.path) > 0;
+  const std::string name = request.path == "/" ? "/view.html" : request.path;
+  const auto file = request.method == "GET" ? kPageFiles.find(name) : kPageFiles.end();
   if (!is_for_us(request)) {
     out = text(403, "orrery view: open the address that the command printed, not another name of this machine");
   } else if (file != kPageFiles.end()) {
-    out = {200, file->second.first, std::make_shared<const std::string>(file->second.second)};
+    out = {200, type_of(name), std::make_shared<const std::string>(file->second)};
   } else if (!admits(request)) {
     out = text(403, "orrery view: open the address that the command printed");
   } else if (request.method != (is_post ? "POST" : "GET")) {
@@ -136,22 +186,7 @@ http::Response Site::answer(const http::Request& request) {
     out.fields.emplace_back("Allow", is_post ? "POST" : "GET");
   } else {
     last_request_ = Clock::now();
-    if (is_post)
-      out = change(request);
-    else if (request.path == "/frame")
-      out = frame(request);
-    else if (request.path == "/state")
-      out = state();
-    else if (request.path == "/pick")
-      out = pick(request);
-    else if (request.path == "/picture.png")
-      out = picture(".png");
-    else if (request.path == "/picture.exr")
-      out = picture(".exr");
-    else if (request.path == "/scene.toml")
-      out = scene();
-    else
-      out = text(404, "not found");
+    out = answer_client(request);
   }
   out.fields.emplace_back("Cache-Control", "no-store");
   out.fields.emplace_back("X-Content-Type-Options", "nosniff");
@@ -161,6 +196,57 @@ http::Response Site::answer(const http::Request& request) {
                           "default-src 'none'; script-src 'self'; style-src 'self'; img-src 'self' blob: data:; "
                           "connect-src 'self'; base-uri 'none'; form-action 'none'");
   return out;
+}
+
+http::Response Site::answer_client(const http::Request& request) {
+  const std::string& path = request.path;
+  if (path == "/page") return page();
+  if (path == "/state") return state();
+  if (path == "/frame") return frame(request);
+  if (path == "/column" && controls_.column) return column(request);
+  if (path == "/film" && controls_.film)
+    return {200, "application/json", std::make_shared<const std::string>(controls_.film_state())};
+  if (path == "/film/start" && controls_.film) return film(request, true);
+  if (path == "/film/command" && controls_.film_command) return film(request, false);
+  if (path == "/film/cancel" && controls_.film) {
+    controls_.film_cancel();
+    return json(true);
+  }
+  if (path == "/wish") return change(request);
+  if (path == "/cancel") {
+    viewer_.cancel();
+    return json(true);
+  }
+  const bool is_image = path == "/picture.png" || path == "/picture.exr";
+  if (!is_image && path != "/pick" && path != "/bounds" && path != "/scene.toml") return text(404, "not found");
+  const auto client = request.query.find("client");
+  if (client != request.query.end() && client->second != viewer_.state().wish.client)
+    return text(409, "another page has asked since");
+  if ((path == "/pick" || path == "/bounds") && !viewer_.can_pick()) return text(409, "the scene is being read");
+  if (path == "/pick") return pick(request);
+  if (path == "/scene.toml") return scene(request.query.count("brief") > 0);
+  if (is_image) return picture(path.substr(path.rfind('.')));
+  const auto bounds = viewer_.bounds();
+  return json(bounds ? Json{vector_of((*bounds)[0]), vector_of((*bounds)[1])} : Json());
+}
+
+/// What the page offers, which does not change.
+http::Response Site::page() const {
+  Json options = Json::array();
+  for (const Control& control : controls_.options)
+    options.push_back({{"name", control.name},
+                       {"heading", control.heading},
+                       {"type", control.type},
+                       {"help", control.help},
+                       {"values", control.values},
+                       {"repeatable", control.is_repeatable}});
+  return json({{"title", controls_.title},
+               {"options", options},
+               {"maps", controls_.maps},
+               {"first", json_of(first_.options)},
+               {"fills", controls_.fills_window},
+               {"films", bool{controls_.film_command}},
+               {"saves", bool{controls_.film}}});
 }
 
 /// The first image after that of number `after`, or 204 if there is none but another state than that of number `state`.
@@ -174,6 +260,7 @@ http::Response Site::frame(const http::Request& request) {
     out = {200, frame.type, frame.bytes};
     add("X-Frame", std::to_string(frame.number));
     add("X-Wish", std::to_string(frame.wish));
+    add("X-Client", frame.client);
     add("X-Samples", fmt::format("{:.4g}", frame.samples));
     if (frame.noise) add("X-Noise", fmt::format("{:.2g}", *frame.noise));
     if (frame.is_finished) add("X-Finished", "1");
@@ -202,45 +289,72 @@ http::Response Site::pick(const http::Request& request) {
 
 http::Response Site::state() const {
   const State state = viewer_.state();
-  Json options = Json::object();
-  for (const auto& [option, values] : controls_.options) {
-    const auto set = state.wish.options.find(option);
-    const auto chosen = state.subject.chosen.find(option);
-    options[option] = {{"value", set != state.wish.options.end() ? set->second : ""},
-                       {"chosen", chosen != state.subject.chosen.end() ? chosen->second : ""},
-                       {"values", values},
-                       {"flag", is_flag(option)},
-                       {"lines", is_repeated(option)}};
-  }
-  if (options.contains("--color-by"))
-    for (const std::string& column : state.subject.columns) options["--color-by"]["values"].push_back(column);
+  const Subject& subject = *state.subject;
   Json out = {{"number", state.number},
-              {"title", controls_.title},
-              {"options", options},
-              {"frames", state.subject.frame_count.value_or(0)},
+              {"client", state.wish.client},
+              {"asked", state.asked},
+              {"served", state.served},
+              {"options", json_of(state.wish.options)},
+              {"chosen", subject.chosen},
+              {"frames", subject.frame_count.value_or(0)},
               {"width", state.width},
               {"height", state.height},
-              {"first_size", state.first_size},
-              {"notes", state.subject.notes},
+              {"notes", subject.notes},
               {"warnings", state.warnings},
-              {"legend", state.subject.legend},
+              {"legend", json_of(subject.legend)},
               {"activity", state.activity},
+              {"progress", state.progress},
               {"problem", state.problem},
-              {"served", state.served},
               {"fitted", !state.wish.camera},
-              {"up", vector_of(state.subject.up.value_or(math::Vec3d{0, 1, 0}))},
-              {"command", controls_.command(state.words)},
-              {"film", controls_.film ? controls_.film(state.words) : ""}};
+              {"up", vector_of(subject.up.value_or(math::Vec3d{0, 1, 0}))},
+              {"command", controls_.command(state.words)}};
   out["camera"] = state.camera ? json_of(*state.camera) : Json();
+  out["data"] = subject.data ? json_of(*subject.data) : Json();
   return json(out);
+}
+
+http::Response Site::column(const http::Request& request) const {
+  const auto frame = number_of<int>(request, "frame");
+  const auto name = request.query.find("name");
+  if (!frame || name == request.query.end()) return text(400, "`frame` must be a number, and `name` a column");
+  try {
+    return {
+        200, "application/json",
+        std::make_shared<const std::string>(controls_.column(*frame, name->second, request.query.count("log") > 0))};
+  } catch (const base::Error& error) {
+    return text(400, text_of(error));
+  }
+}
+
+/// Reads the wish of a request, which may have options of films.
+///
+/// Errors     base::Error(kUsage)
+Wish Site::wish_of(const http::Request& request) const {
+  return read_wish(request.body, [&](const std::string& option) {
+    const auto is_it = [&](const Control& control) { return control.name == option; };
+    return std::any_of(controls_.options.begin(), controls_.options.end(), is_it) || option == kAllFrames ||
+           (request.path != "/wish" && kFilmOptions.count(option) > 0);
+  });
 }
 
 http::Response Site::change(const http::Request& request) {
   try {
-    Wish wish = read_wish(request.body, [&](const std::string& option) { return controls_.options.count(option) > 0; });
-    return json({{"wish", viewer_.ask(std::move(wish))}});
+    Wish wish = wish_of(request);
+    const std::string command = controls_.command(viewer_.words(wish));
+    return json({{"wish", viewer_.ask(std::move(wish))}, {"command", command}});
   } catch (const base::Error& error) {
     return text(400, error.what());
+  }
+}
+
+/// The command that makes a film, or its start.
+http::Response Site::film(const http::Request& request, bool starts) const {
+  try {
+    const std::vector<std::string> words = viewer_.words(wish_of(request));
+    if (starts) controls_.film(words);
+    return json({{"command", controls_.film_command(words)}});
+  } catch (const base::Error& error) {
+    return text(400, text_of(error));
   }
 }
 
@@ -257,12 +371,17 @@ http::Response Site::picture(const std::string& extension) const {
   return download("picture" + extension, extension == ".png" ? "image/png" : "image/x-exr", std::move(bytes));
 }
 
-http::Response Site::scene() const {
+/// The scene file. `is_brief`: only the first objects of each kind, and without waiting for the image
+http::Response Site::scene(bool is_brief) const {
   const std::shared_ptr<const job::Rendering> rendering = viewer_.finished();
-  if (!rendering) return text(409, "the image is not finished yet");
-  const load::SceneSource& source = rendering->job.scene;
+  if (!rendering && !is_brief) return text(409, "the image is not finished yet");
+  scene::Scene scene = load::authored_scene(is_brief ? viewer_.state().subject->job.scene : rendering->job.scene);
+  if (is_brief) {
+    scene.spheres.resize(std::min(scene.spheres.size(), kMostObjects));
+    scene.rods.resize(std::min(scene.rods.size(), kMostObjects));
+  }
   return download("scene.toml", "application/toml",
-                  load::marked_text(load::scene_text(load::authored_scene(source), "Written by orrery view")));
+                  load::marked_text(load::scene_text(scene, "Written by orrery view")));
 }
 
 }  // namespace orrery::view

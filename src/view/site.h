@@ -13,13 +13,29 @@
 
 namespace orrery::view {
 
+/// An option that the page may set.
+struct Control {
+  std::string name;                      ///< "--style"
+  std::string heading, type, help;       ///< as --help shows them; type: empty for a flag
+  std::vector<std::string> values = {};  ///< if it has no others
+  bool is_repeatable = false;
+};
+
 /// What the page offers for a command.
 struct Controls {
   std::string title;  ///< name of the file
-  /// What a user types to make the picture of these words, and a film of it, if there is a way.
-  std::function<std::string(const std::vector<std::string>&words)> command, film;
-  /// Options that the page may set, with the values among which it lets choose; none: any text.
-  std::map<std::string, std::vector<std::string>> options;
+  /// What a user types to make the picture of these words.
+  std::function<std::string(const std::vector<std::string>& words)> command;
+  std::vector<Control> options;
+  bool fills_window = false;                                  ///< the page chooses the size of the image
+  std::map<std::string, std::vector<std::string>> maps = {};  ///< colours of colour maps, #rrggbb
+  /// The values of a column of a frame as JSON, see info::column_values_json(); empty: there are no columns.
+  std::function<std::string(int frame, const std::string& column, bool is_log)> column = {};
+  /// The command that makes a film of these words, and starts or cancels it, if there is a folder for it.
+  std::function<std::string(const std::vector<std::string>& words)> film_command = {};
+  std::function<void(const std::vector<std::string>& words)> film = {};
+  std::function<std::string()> film_state = {};  ///< as JSON
+  std::function<void()> film_cancel = {};
 };
 
 /// The page and what it requests, by HTTP.
@@ -27,7 +43,7 @@ struct Controls {
 /// A request is answered only if it carries the secret in a header, and names this host by its address or a name of the
 /// loopback interface: pages of other sites cannot ask, not even with a DNS name of their own that they redirect. The
 /// page itself is the same for everybody; it finds the secret in its address. Nothing that a client sends is a name of
-/// a file.
+/// a file. Each page shows its own images: what belongs to the wish of another one is answered with 409.
 class Site {
  public:
   /// `host`     address that the server listens on; "0.0.0.0": all addresses
@@ -46,16 +62,22 @@ class Site {
   using Clock = std::chrono::steady_clock;
 
   bool is_for_us(const http::Request& request) const;
+  http::Response answer_client(const http::Request& request);
   http::Response frame(const http::Request& request);
+  http::Response page() const;
   http::Response state() const;
+  http::Response column(const http::Request& request) const;
   http::Response pick(const http::Request& request);
   http::Response change(const http::Request& request);
+  http::Response film(const http::Request& request, bool starts) const;
+  Wish wish_of(const http::Request& request) const;
   http::Response picture(const std::string& extension) const;
-  http::Response scene() const;
+  http::Response scene(bool is_brief) const;
 
   Viewer& viewer_;
   const Controls controls_;
   const std::string host_, secret_;
+  const Wish first_;                               ///< that of the command line
   std::atomic<Clock::time_point> last_request_{};  ///< that carried the secret
 };
 

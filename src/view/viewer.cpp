@@ -21,9 +21,8 @@
 #include "display/settings.h"
 #include "film/picture.h"
 #include "image/write.h"
+#include "job/job.h"
 #include "job/outputs.h"
-#include "job/run_job.h"
-#include "job/write_outputs.h"
 #include "load/read_scene.h"
 #include "math/pixels.h"
 
@@ -115,6 +114,7 @@ struct Viewer::Live {
   Clock::time_point next = Clock::now();
   std::atomic<double> samples{0};  ///< per pixel
   std::uint64_t wish = 0;
+  std::string client;
 };
 
 Viewer::Viewer(MakeSubject make, std::vector<std::string> fixed, Wish first)
@@ -143,8 +143,15 @@ std::uint64_t Viewer::ask(Wish wish) {
   const bool keeps_moving = moves_ && wish.options == state_.wish.options;
   if (is_cancellable_ && !keeps_moving) cancel_ = true;  // images of a drag are completed, or none would be seen
   state_.wish = std::move(wish);
+  finished_ = nullptr;
+  ++state_.asked;
   announce();
-  return ++asked_;
+  return state_.asked;
+}
+
+void Viewer::cancel() {
+  const std::lock_guard lock(mutex_);
+  if (is_cancellable_) cancel_ = true;
 }
 
 State Viewer::state() const {
@@ -179,9 +186,10 @@ void Viewer::announce() {
   changed_.notify_all();
 }
 
-void Viewer::set_activity(const std::string& activity) {
+void Viewer::set_activity(const std::string& activity, double progress) {
   const std::lock_guard lock(mutex_);
   state_.activity = activity;
+  state_.progress = progress;
   announce();
 }
 
@@ -227,6 +235,7 @@ void Viewer::refresh(Live& live) {
   if (live_.get() != &live) return;  // finished meanwhile
   frame.number = frame_.number + 1;
   frame.wish = live.wish;
+  frame.client = live.client;
   frame_ = std::move(frame);
   changed_.notify_all();
 }
@@ -234,16 +243,15 @@ void Viewer::refresh(Live& live) {
 void Viewer::run() {
   std::unique_lock lock(mutex_);
   for (;;) {
-    changed_.wait(lock, [this] { return stops_ || asked_ != served_; });
+    changed_.wait(lock, [this] { return stops_ || state_.asked != served_; });
     if (stops_) return;
     Wish wish = state_.wish;
-    const std::uint64_t number = asked_;
+    const std::uint64_t number = state_.asked;
     moves_ = wish.moves;
     cancel_ = false;
     is_cancellable_ = made_options_ != wish.options;  // make_subject() may read for long
     lock.unlock();
     std::string problem;
-    bool was_stopped = false;
     try {
       if (made_options_ != wish.options) make_subject(wish, number);
       if (wish.camera && wish.camera->projection != projection_) {  // its settings would fit another camera
@@ -255,8 +263,7 @@ void Viewer::run() {
       sketched_words_ = words;
       if (!wish.moves) render(wish, number, false);
     } catch (const base::Error& error) {
-      was_stopped = error.kind() == base::ErrorKind::kStopped;
-      if (!was_stopped) problem = text_of(error);
+      problem = error.kind() == base::ErrorKind::kStopped ? "stopped" : text_of(error);
     } catch (const std::bad_alloc&) {
       problem = "out of memory";
     } catch (const std::exception& error) {
@@ -266,52 +273,50 @@ void Viewer::run() {
     live_ = nullptr;
     moves_ = false;
     served_ = number;
-    if (was_stopped) continue;
-    if (!problem.empty()) set_served(number, problem);
+    if (!problem.empty() && (problem != "stopped" || state_.asked == number)) set_served(number, problem);
   }
 }
 
 /// Replaces a wish, unless another one has come.
 void Viewer::correct(const Wish& wish, std::uint64_t number) {
   const std::lock_guard lock(mutex_);
-  if (asked_ == number) state_.wish = wish;
+  if (state_.asked == number) state_.wish = wish;
 }
 
 void Viewer::make_subject(Wish& wish, std::uint64_t number) {
   set_activity("reading");
   const base::StopScope scope(&cancel_);
   if (wish.options.erase(kAllFrames) > 0) {
-    std::map<std::string, std::string> film = wish.options;
-    film.erase("--frame");
-    film[kAllFrames] = "all";
-    const Subject all = make_(words_of(fixed_, {film}));
+    Wish film{wish.options};
+    film.options.erase("--frame");
+    film.options[kAllFrames] = {"all"};
+    const Subject all = make_(words_of(fixed_, film));
     if (const auto range = all.chosen.find("--range"); range != all.chosen.end())
-      wish.options["--range"] = range->second;
+      wish.options["--range"] = {range->second};
     correct(wish, number);
   }
   Subject subject = make_(words_of(fixed_, {wish.options}));  // without the camera
   const scene::Scene scene = load::authored_scene(subject.job.scene);
   if (!subject.up) subject.up = scene.camera.up;
-  if (scene.annotation.color_bar) subject.legend.clear();  // it is in the image
+  if (scene.annotation.color_bar) subject.legend = {};  // it is in the image
   made_options_ = wish.options;
   is_new_subject_ = true;
   projection_ = scene.camera.projection;
   shading_ = scene.render.shading;
   const std::lock_guard lock(mutex_);
-  if (state_.width == 0) state_.first_size = {scene.image.width, scene.image.height};
   state_.width = scene.image.width;
   state_.height = scene.image.height;
-  state_.subject = std::move(subject);
+  state_.subject = std::make_shared<const Subject>(std::move(subject));
 }
 
 /// An image that is made for a wish.
 struct Viewer::Image {
   std::uint64_t wish = 0;  ///< its number
+  std::string client;
   bool is_sketch = false;
   bool is_last = false;  ///< of the wish
   std::vector<std::string> warnings = {};
-  std::shared_ptr<job::Rendering> rendering = nullptr;
-  bool has_outlines = false;
+  std::shared_ptr<job::Rendering> rendering = std::make_shared<job::Rendering>();
   std::shared_ptr<Live> live = nullptr;  ///< null for a sketch
   double build_reported = -1;            ///< fraction of the BVH build that the state tells; negative: none
 };
@@ -323,10 +328,10 @@ void Viewer::render(const Wish& wish, std::uint64_t number, bool is_sketch) {
     is_cancellable_ = false;  // until the scene is prepared
     finished_ = nullptr;
   }
-  job::Job job = state_.subject.job;  // the subject and its size are written by this thread only
+  job::Job job = state_.subject->job;  // the subject and its size are written by this thread only
   if (wish.camera)
     for (const std::string& setting : camera_settings(*wish.camera)) job.scene.overrides.add(setting);
-  Image image{number, is_sketch, is_sketch == wish.moves};
+  Image image{number, wish.client, is_sketch, is_sketch == wish.moves};
   if (is_sketch) {
     const int width = state_.width, height = state_.height;
     const double pixels = std::max(pixels_per_second_ * kSketchTime_s, 1.0);
@@ -345,8 +350,9 @@ void Viewer::render(const Wish& wish, std::uint64_t number, bool is_sketch) {
   picker_.close(job.scene, std::exchange(is_new_subject_, false));
   job.prepared = prepared_;
   job.hooks = hooks_for(image);
+  job.keep = image.rendering.get();
   const base::Stopwatch watch;
-  image.rendering = std::make_shared<job::Rendering>(job::render_in_memory(job));
+  job::run_job(job);
   picker_.open();
   finish(image);
   const job::Phases& phases = image.rendering->report.phases;
@@ -362,11 +368,9 @@ job::Hooks Viewer::hooks_for(Image& image) {
   hooks.on_preparation = [this, &image](const char* phase, double fraction) {
     if (std::string_view(phase) != "building" || fraction - image.build_reported < 0.05) return;
     image.build_reported = fraction;
-    set_activity(fmt::format("building the BVH: {:.0f} %", 100 * fraction));
+    set_activity("building the BVH", fraction);
   };
-  hooks.on_start = [this, &image](const display::PictureInfo& info, const annotation::Drawing& drawing) {
-    begin(image, info, drawing);
-  };
+  hooks.on_start = [this, &image](const display::PictureInfo& info) { begin(image, info); };
   if (image.is_sketch) return hooks;
   hooks.on_pixels = [&image](const film::Partial& state, const film::RenderedPixels& rendered) {
     image.live->canvas.write(state, rendered);
@@ -374,7 +378,7 @@ job::Hooks Viewer::hooks_for(Image& image) {
   hooks.on_progress = [this, &image](const render::Progress& progress) {
     // There is no progress before the BVH has been built. Outlines of translucent objects replace the opacities that a
     // pick would read, see render::outlines(): it is then possible when the image is complete.
-    if (!image.has_outlines || prepared_->compiled().opacity.empty()) picker_.open();
+    if (image.rendering->drawing.outline_px == 0 || prepared_->compiled().opacity.empty()) picker_.open();
     if (std::exchange(image.build_reported, -1) >= 0) set_activity("");
     const preview::Canvas& canvas = image.live->canvas;
     image.live->samples = static_cast<double>(progress.samples_done) / pixels_of(canvas.width(), canvas.height());
@@ -383,11 +387,11 @@ job::Hooks Viewer::hooks_for(Image& image) {
 }
 
 /// Tells clients about an image whose scene has been read.
-void Viewer::begin(Image& image, const display::PictureInfo& info, const annotation::Drawing& drawing) {
-  image.has_outlines = drawing.outline_px > 0;
+void Viewer::begin(Image& image, const display::PictureInfo& info) {
   if (!image.is_sketch) {
-    image.live = std::make_shared<Live>(info, drawing, sketch_);
+    image.live = std::make_shared<Live>(info, image.rendering->drawing, sketch_);
     image.live->wish = image.wish;
+    image.live->client = image.client;
   }
   const scene::Scene& scene = prepared_->loaded().read.scene;
   const std::lock_guard lock(mutex_);
@@ -395,7 +399,7 @@ void Viewer::begin(Image& image, const display::PictureInfo& info, const annotat
   is_cancellable_ = true;
   state_.warnings = image.warnings;
   state_.camera = scene.camera;
-  if (!image.is_sketch && asked_ != image.wish) cancel_ = true;
+  if (!image.is_sketch && state_.asked != image.wish) cancel_ = true;
   state_.activity.clear();
   state_.problem.clear();  // that of a wish before
   announce();
@@ -414,6 +418,7 @@ void Viewer::finish(Image& image) {
   frame.height = picture.height;
   frame.samples = static_cast<double>(statistics.paths) / pixels_of(picture.width, picture.height);
   frame.wish = image.wish;
+  frame.client = image.client;
   frame.is_finished = !image.is_sketch;
   frame.noise = statistics.noise;
   frame.type = image.is_sketch ? "image/jpeg" : "image/png";
@@ -427,7 +432,7 @@ void Viewer::finish(Image& image) {
   }
   const std::lock_guard lock(mutex_);
   live_ = nullptr;
-  if (!image.is_sketch) finished_ = image.rendering;
+  if (!image.is_sketch && state_.asked == image.wish) finished_ = image.rendering;
   frame.number = frame_.number + 1;
   frame_ = std::move(frame);
   changed_.notify_all();

@@ -15,7 +15,9 @@
 #include <thread>
 #include <vector>
 
+#include "annotation/legend.h"
 #include "base/error.h"
+#include "data/table.h"
 #include "film/picture.h"
 #include "job/job.h"
 #include "job/prepared_scene.h"
@@ -32,11 +34,11 @@ namespace orrery::view {
 struct Subject {
   job::Job job;                                    ///< scene and sampling; no outputs
   std::vector<std::string> notes = {};             ///< choices and warnings, a line each
-  std::vector<std::string> columns = {};           ///< columns of a data file that can be colours
+  std::optional<data::FrameInfo> data = {};        ///< what the frame of a data file contains
   std::map<std::string, std::string> chosen = {};  ///< values of controls that the data decided, by option
   std::optional<int> frame_count = 1;              ///< frames of a data file; empty: unknown
   std::vector<int> frames = {};                    ///< to render, of a film
-  std::string legend = {};                         ///< SVG; empty: none
+  annotation::LegendColors legend = {};            ///< as a display shows them
   std::optional<math::Vec3d> up = {};              ///< what drags keep upright; empty: that of the scene's camera
 };
 
@@ -56,6 +58,7 @@ using MakeSubject = std::function<Subject(const std::vector<std::string>& words)
 struct Frame {
   std::uint64_t number = 0;  ///< 0: none yet
   std::uint64_t wish = 0;    ///< number of the wish that it grants
+  std::string client = {};   ///< of that wish
   std::shared_ptr<const std::string> bytes = nullptr;
   std::string type = {};  ///< "image/jpeg"; "image/png" if it is finished
   int width = 0, height = 0;
@@ -68,13 +71,14 @@ struct Frame {
 struct State {
   std::uint64_t number = 0;  ///< changes with every other member
   Wish wish;
-  Subject subject;
+  std::uint64_t asked = 1;                                                     ///< number of the wish
+  std::shared_ptr<const Subject> subject = std::make_shared<const Subject>();  ///< of the last wish that was read
   std::vector<std::string> words;       ///< of the command that makes this picture, without outputs
   std::optional<scene::Camera> camera;  ///< of the scene that is shown
   int width = 0, height = 0;            ///< of the finished image
-  std::array<int, 2> first_size = {};   ///< that of the first image
   std::uint64_t served = 0;             ///< number of the last wish that was granted, or refused as `problem` says
-  std::string activity;                 ///< "reading", "building the BVH: 40 %"; empty: rendering or finished
+  std::string activity;                 ///< "reading", "building the BVH"; empty: rendering or finished
+  double progress = 0;                  ///< of the activity, 0 to 1; 0: unknown
   std::string problem;                  ///< why the last wish was not granted
   std::vector<std::string> warnings;    ///< about the image that is shown
 };
@@ -95,13 +99,20 @@ class Viewer {
 
   /// Returns the number of the wish.
   std::uint64_t ask(Wish wish);
+  /// Stops what is done for the last wish, unless a scene is prepared, which would be lost.
+  void cancel();
 
   /// The first frame with a larger number. Waits for it, but not longer than `patience`, nor when the state has another
   /// number than `state`; then the number of the frame is not larger.
   Frame frame(std::uint64_t after, std::chrono::milliseconds patience, std::optional<std::uint64_t> state = {});
 
-  /// See Picker::pick().
+  /// The words of the command that grants a wish.
+  std::vector<std::string> words(const Wish& wish) const { return words_of(fixed_, wish); }
+
+  /// See Picker.
+  bool can_pick() const { return picker_.is_open(); }
   std::optional<Picked> pick(double x, double y) { return picker_.pick(x, y); }
+  std::optional<std::array<math::Vec3d, 2>> bounds() { return picker_.bounds(); }
   State state() const;
 
   /// The finished image; null while it is rendered.
@@ -119,10 +130,10 @@ class Viewer {
   void correct(const Wish& wish, std::uint64_t number);
   void render(const Wish& wish, std::uint64_t number, bool is_sketch);
   job::Hooks hooks_for(Image& image);
-  void begin(Image& image, const display::PictureInfo& info, const annotation::Drawing& drawing);
+  void begin(Image& image, const display::PictureInfo& info);
   void finish(Image& image);
   void announce();
-  void set_activity(const std::string& activity);
+  void set_activity(const std::string& activity, double progress = 0);
   void set_served(std::uint64_t wish, const std::string& problem);
   void refresh(Live& live);
 
@@ -133,8 +144,8 @@ class Viewer {
   mutable std::condition_variable changed_;
   State state_;
   Frame frame_;
-  std::uint64_t asked_ = 1, served_ = 0;  ///< numbers of wishes
-  bool moves_ = false;                    ///< the wish that is rendered moves
+  std::uint64_t served_ = 0;  ///< number of the last wish that was taken up
+  bool moves_ = false;        ///< the wish that is rendered moves
   /// The rendering thread does what may be interrupted. Otherwise it prepares the scene, which would be lost.
   bool is_cancellable_ = false;
   bool stops_ = false;
@@ -143,10 +154,10 @@ class Viewer {
 
   std::atomic<bool> cancel_{false};
   // Of the rendering thread.
-  bool is_new_subject_ = false;                                     ///< it has not been rendered yet
-  std::optional<std::map<std::string, std::string>> made_options_;  ///< of the subject
-  scene::Projection projection_ = {};                               ///< of the subject's own camera
-  scene::Shading shading_ = {};                                     ///< of the subject
+  bool is_new_subject_ = false;                          ///< it has not been rendered yet
+  std::optional<decltype(Wish::options)> made_options_;  ///< of the subject
+  scene::Projection projection_ = {};                    ///< of the subject's own camera
+  scene::Shading shading_ = {};                          ///< of the subject
   std::shared_ptr<job::PreparedScene> prepared_;
   Picker picker_;
   double pixels_per_second_ = 4e6;                          ///< of sketches

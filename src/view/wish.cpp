@@ -4,13 +4,11 @@
 #include <array>
 #include <cmath>
 #include <cstddef>
-#include <sstream>
 #include <variant>
 
 #include <nlohmann/json.hpp>
 
 #include "base/error.h"
-#include "base/text.h"
 #include "scene/limits.h"
 #include "scene/schema.h"
 #include "scene/texture.h"
@@ -20,6 +18,16 @@ namespace orrery::view {
 namespace {
 
 constexpr std::size_t kLongestValue = 10000;  // of a control
+constexpr std::size_t kLongestClient = 64;
+
+/// Adds the values of an option.
+void read_option(const nlohmann::json& value, std::vector<std::string>& out) {
+  for (const nlohmann::json& one : value) {
+    if (!one.is_string() || one.get_ref<const std::string&>().size() > kLongestValue)
+      base::refuse("values of `options` must be short strings, lists of them, or true");
+    out.push_back(one.get<std::string>());
+  }
+}
 
 std::optional<math::Vec3d> read_vector(const nlohmann::json& value) {
   if (!value.is_array() || value.size() != 3) return {};
@@ -84,10 +92,12 @@ Wish read_wish(const std::string& json, const std::function<bool(const std::stri
     } else if (key == "options" && member.is_object()) {
       for (const auto& [option, setting] : member.items()) {
         if (!is_control(option)) base::refuse("`options` must be those of the page");
-        if (!setting.is_string() || setting.get_ref<const std::string&>().size() > kLongestValue)
-          base::refuse("values of `options` must be short strings");
-        out.options[option] = setting.get<std::string>();
+        if (setting == "" || setting == nlohmann::json::array()) continue;
+        std::vector<std::string>& values = out.options[option];
+        if (setting != true) read_option(setting.is_array() ? setting : nlohmann::json{setting}, values);
       }
+    } else if (key == "client" && member.is_string() && member.get_ref<const std::string&>().size() <= kLongestClient) {
+      out.client = member.get<std::string>();
     } else {
       base::refuse("the body has an unknown member");
     }
@@ -107,14 +117,6 @@ std::set<std::string> named_files(const load::Overrides& overrides) {
   return out;
 }
 
-bool is_flag(const std::string& option) {
-  return base::contains({"--denoise", "--ground", "--box", "--axes", "--color-bar"}, option);
-}
-
-bool is_repeated(const std::string& option) {
-  return base::contains({"--set", "--slice", "--opacity", "--label"}, option);
-}
-
 std::vector<std::string> camera_settings(const scene::Camera& camera) {
   std::vector<std::string> out = {
       "camera.look_from=" + scene::vector_text(camera.look_from),
@@ -130,21 +132,12 @@ std::vector<std::string> camera_settings(const scene::Camera& camera) {
 
 std::vector<std::string> words_of(const std::vector<std::string>& fixed, const Wish& wish) {
   std::vector<std::string> out = fixed;
-  const auto add = [&out](const std::string& option, const std::string& value) {
-    if (value.empty()) return;
-    out.push_back(option);
-    if (!is_flag(option)) out.push_back(value);
-  };
-  for (const auto& [option, value] : wish.options) {
-    if (!is_repeated(option)) {
-      add(option, value);
-      continue;
-    }
-    std::istringstream lines(value);
-    for (std::string line; std::getline(lines, line);) add(option, line);
+  for (const auto& [option, values] : wish.options) {
+    if (values.empty()) out.push_back(option);
+    for (const std::string& value : values) out.insert(out.end(), {option, value});
   }
   if (wish.camera)
-    for (const std::string& setting : camera_settings(*wish.camera)) add("--set", setting);
+    for (const std::string& setting : camera_settings(*wish.camera)) out.insert(out.end(), {"--set", setting});
   return out;
 }
 

@@ -15,13 +15,15 @@ namespace orrery::view {
 
 /// What a client wants to see.
 struct Wish {
-  /// Values of controls, by option: "--color-by"; empty: not set. That of a flag is "on".
-  std::map<std::string, std::string> options = {};
+  /// Values of controls, by option: "--color-by"; several of one that is repeated, none of a flag.
+  std::map<std::string, std::vector<std::string>> options = {};
   std::optional<scene::Camera> camera = {};  ///< empty: that of the subject
   bool moves = false;                        ///< soon followed by another one: speed counts, not quality
+  std::string client = {};                   ///< the page that asks: each shows its own images
 };
 
-/// Reads a wish: a JSON object with `options`, `camera` and `moves`, each optional.
+/// Reads a wish: a JSON object with `options`, `camera`, `moves` and `client`, each optional. The value of an option is
+/// a string, a list of strings, or `true` for a flag; an empty string is no value.
 ///
 /// `is_control`  whether clients may set an option
 /// Errors        base::Error(kUsage), for anything else
@@ -29,12 +31,6 @@ Wish read_wish(const std::string& json, const std::function<bool(const std::stri
 
 /// The files that settings may name. A page may set only those that were given on the command line.
 std::set<std::string> named_files(const load::Overrides& overrides);
-
-/// Whether a control is an option without a value.
-bool is_flag(const std::string& option);
-
-/// Whether a control is an option that can be repeated: its value has one line for each.
-bool is_repeated(const std::string& option);
 
 /// The settings, KEY=VALUE, that give a scene this camera.
 std::vector<std::string> camera_settings(const scene::Camera& camera);

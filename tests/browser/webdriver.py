@@ -48,7 +48,7 @@ class Browser:
             self._kill()
             raise
         # Windows cannot be as narrow as that of a phone.
-        self._devtools("Emulation.setDeviceMetricsOverride", width=width, height=height, deviceScaleFactor=1, mobile=False)
+        self.resize(width, height)
         scheme = {"name": "prefers-color-scheme", "value": "dark" if dark else "light"}
         self._devtools("Emulation.setEmulatedMedia", features=[scheme])
 
@@ -134,6 +134,17 @@ class Browser:
     def keys(self, text):
         actions = [action for c in text for action in ({"type": "keyDown", "value": c}, {"type": "keyUp", "value": c})]
         self.act({"type": "key", "id": "keys", "actions": actions})
+
+    def keys_with(self, held, text):
+        """Presses keys while another one is held."""
+        actions = [{"type": "keyDown", "value": held}]
+        for c in text:
+            actions += [{"type": "keyDown", "value": c}, {"type": "keyUp", "value": c}]
+        self.act({"type": "key", "id": "keys", "actions": [*actions, {"type": "keyUp", "value": held}]})
+
+    def resize(self, width, height, pixels=1):
+        """Sets the size of the page in CSS pixels, and the pixels of the screen for each of them."""
+        self._devtools("Emulation.setDeviceMetricsOverride", width=width, height=height, deviceScaleFactor=pixels, mobile=False)
 
     def screenshot(self, file):
         with open(file, "wb") as out:

@@ -56,11 +56,15 @@ class Served {
 
   support::HttpAnswer get(const std::string& path) const { return support::http_request(port_, "GET", path, secret_); }
 
+  support::HttpAnswer post(const std::string& path, const Json& body) const {
+    return support::http_request(port_, "POST", path, secret_, body.dump());
+  }
+
   /// Requests an image and waits until it is complete, or refused.
   ///
   /// Result     the state of the page
   Json wish(const Json& wanted) const {
-    const support::HttpAnswer answer = support::http_request(port_, "POST", "/wish", secret_, wanted.dump());
+    const support::HttpAnswer answer = post("/wish", wanted);
     EXPECT_EQ(answer.status, 200) << answer.body;
     const int number = Json::parse(answer.body)["wish"];
     for (;;) {
@@ -136,8 +140,8 @@ TEST_F(CliView, RandomWalksThroughTheControlsMakeThePictureOfTheCommand) {
   const Served view(folder_, {"melt.dump", "--width", "48", "--height", "36", "--samples", "2"});
   ASSERT_GT(view.port(), 0) << text_of(folder_ / ".err");
   std::mt19937 random(1);
-  const auto choose = [&](const std::vector<std::string>& values) { return values[random() % values.size()]; };
-  const std::vector<std::pair<std::string, std::vector<std::string>>> controls = {
+  const auto choose = [&](const std::vector<Json>& values) { return values[random() % values.size()]; };
+  const std::vector<std::pair<std::string, std::vector<Json>>> controls = {
       {"--color-by", {"", "speed", "type", "none", "no such column"}},
       {"--map", {"", "magma", "fast"}},
       {"--range", {"", "0:10", "5:1"}},
@@ -145,25 +149,28 @@ TEST_F(CliView, RandomWalksThroughTheControlsMakeThePictureOfTheCommand) {
       {"--material", {"", "plastic", "metal", "glass"}},
       {"--bonds", {"", "length=1.5", "none", "file"}},
       {"--representation", {"", "spheres", "sticks"}},
-      {"--select", {"", "type == 1", "z > 0 && \"x\" < 2", "type =="}},
-      {"--slice", {"", "z=1.5", "x=2\ny=2"}},
+      {"--select", {"", "type == 1", Json::array({"type != 2", "!(id in [1, 2])"}), "z > 0 && \"x\" < 2", "type =="}},
+      {"--slice", {"", "z=1.5", Json::array({"x=2", "y=2"})}},
       {"--radius-scale", {"", "0.5", "1.2"}},
-      {"--opacity", {"", "0.4", "0.1\ntype == 1: 0.8", "type == 1: 2"}},
-      {"--ground", {"", "on"}},
-      {"--box", {"", "on"}},
-      {"--axes", {"", "on"}},
+      {"--opacity", {"", "0.4", Json::array({"0.1", "type == 1: 0.8"}), "type == 1: 2"}},
+      {"--ground", {"", true}},
+      {"--box", {"", true}},
+      {"--axes", {"", true}},
       {"--vectors", {"", "vx,vy,vz", "x,y"}},
-      {"--denoise", {"", "on"}},
+      {"--denoise", {"", true}},
       {"--outline", {"", "2", "-1"}},
       {"--title", {"", "t = {step}", "{"}},
-      {"--label", {"", "id == 1: Fe", "id == 1: Fe\nid == 5: O"}},
+      {"--label", {"", "id == 1: Fe", Json::array({"id == 1: Fe", "id == 5: O"})}},
       {"--scale-bar", {"", "auto", "1 nm"}},
-      {"--color-bar", {"", "on"}},
+      {"--color-bar", {"", true}},
       {"--perspective", {"", "30"}},
       {"--center", {"", "type == 2"}},
       {"--background", {"", "black", "#102030"}},
+      {"--look-from", {"", "+x", "30,20"}},
+      {"--zoom", {"", "1.5"}},
+      {"--replicate", {"", "2,1,1"}},
       {"--frame", {"", "2", "3", "4"}},
-      {"--set", {"", "render.seed=7\nimage.overscan=0", "render.max_depth=3"}},
+      {"--set", {"", Json::array({"render.seed=7", "image.overscan=0"}), "render.max_depth=3"}},
   };
   Json wanted = {{"options", {{"--width", "48"}, {"--height", "36"}, {"--samples", "2"}}}, {"moves", false}};
   int pictures = 0, problems = 0;
@@ -197,15 +204,15 @@ TEST_F(CliView, PlayUsesTheRangeOfAllFrames) {
   const Json options = {{"--width", "48"}, {"--height", "36"}, {"--samples", "2"}, {"--color-by", "speed"}};
   Json wanted = {{"options", options}};
   wanted["options"]["--frame"] = "2";
-  EXPECT_EQ(view.wish(wanted)["options"]["--range"]["chosen"], "0:26");
+  EXPECT_EQ(view.wish(wanted)["chosen"]["--range"], "0:26");
   wanted["options"]["--frames"] = "all";
   const Json shown = view.wish(wanted);
   EXPECT_EQ(shown["problem"], "");
-  EXPECT_EQ(shown["options"]["--range"]["value"], "0:52");
+  EXPECT_EQ(shown["options"]["--range"][0], "0:52");
   expect_same_picture(view, shown);
-  EXPECT_NE(shown["legend"], "");
-  wanted["options"]["--color-bar"] = "on";
-  EXPECT_EQ(view.wish(wanted)["legend"], "") << "it is in the image";
+  EXPECT_EQ(shown["legend"]["range"], Json({0, 52}));
+  wanted["options"]["--color-bar"] = true;
+  EXPECT_EQ(view.wish(wanted)["legend"]["bar"], Json::array()) << "it is in the image";
 }
 
 TEST_F(CliView, ACameraOfAnotherKindMakesThePictureOfTheCommand) {
@@ -307,6 +314,38 @@ TEST_F(CliView, APageMayNotNameFiles) {
     EXPECT_NE(state["problem"], "") << setting;
     EXPECT_TRUE(contains(state["problem"], "start orrery view with this option")) << state["problem"];
   }
+}
+
+TEST_F(CliView, AFilmMayNotNameFilesAndReplacesNone) {
+  write("other.toml", "");
+  write("film.0001.png", "mine");
+  std::filesystem::create_directory(folder_ / "films");
+  const Served view(folder_, {"good.toml", "--save-to", "films"});
+  for (const char* setting : {"color.config=other.toml", "background={type=\"image\", file=\"other.toml\"}"}) {
+    const Json wanted = {{"options", {{"--set", setting}, {"--frames", "1-2"}}}};
+    const support::HttpAnswer answer = view.post("/film/start", wanted);
+    EXPECT_EQ(answer.status, 400) << setting;
+    EXPECT_TRUE(contains(answer.body, "start orrery view with this option")) << answer.body;
+  }
+  EXPECT_EQ(view.post("/film/start", {{"options", {{"--frames", "1-2"}, {"--output", "x.png"}}}}).status, 400);
+  for (const char* const file : {"film.0002.png", "film-2.0002.png"}) {
+    EXPECT_EQ(view.post("/film/start", {{"options", {{"--frames", "1-2"}, {"--samples", "1"}}}}).status, 200);
+    Json film;
+    do film = Json::parse(view.get("/film").body);
+    while (film["is_running"]);
+    EXPECT_EQ(film["status"], 0) << film.dump();
+    EXPECT_TRUE(std::filesystem::exists(folder_ / "films" / file)) << file;
+  }
+  EXPECT_EQ(run("view good.toml --save-to nowhere").status, 66);
+}
+
+TEST_F(CliView, TheHistogramIsThatOfTheFrame) {
+  write_melt();
+  const Served view(folder_, {"melt.dump", "--width", "48", "--height", "36", "--samples", "2"});
+  EXPECT_EQ(Json::parse(view.get("/column?frame=2&name=speed").body)["high"], 26);
+  EXPECT_EQ(Json::parse(view.get("/column?frame=3&name=speed").body)["high"], 52);
+  EXPECT_EQ(view.get("/column?frame=9&name=speed").status, 400);
+  EXPECT_EQ(view.get("/column?frame=1&name=%3Cb%3E").status, 400);
 }
 
 TEST_F(CliView, ErrorsInThePageHaveThePlaceInTheFile) {

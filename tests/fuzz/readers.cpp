@@ -302,10 +302,12 @@ std::string fault_with_wish(const std::filesystem::path&, const std::string& byt
   } catch (const base::Error& error) {
     return error.kind() == base::ErrorKind::kUsage ? "" : "refused as another kind: " + std::string(error.what());
   }
-  const std::vector<std::string> words = view::words_of({}, {wish.options, {}, false});
-  if (words.size() % 2 != 0) return "an option without a value";
-  for (std::size_t i = 0; i < words.size(); i += 2)
-    if (words[i] != "--select" && words[i] != "--set") return "an option that is no control";
+  std::size_t words = 0;
+  for (const auto& [option, values] : wish.options) {
+    if (option != "--select" && option != "--set") return "an option that is no control";
+    words += values.empty() ? 1 : 2 * values.size();
+  }
+  if (view::words_of({}, {wish.options}).size() != words) return "a value without an option";
   if (!wish.camera) return "";
   load::Overrides overrides;
   for (const std::string& setting : view::camera_settings(*wish.camera)) overrides.add(setting);

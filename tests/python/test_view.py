@@ -50,7 +50,7 @@ class View(FolderTest):
             camera["look_from"][0] += 1
             state = page.wish({
                 "--width": "48", "--height": "36", "--samples": "3",
-                "--set": "background.color=[0.5, 0.6, 0.7]\nbackground.type=constant"}, camera)
+                "--set": ["background.color=[0.5, 0.6, 0.7]", "background.type=constant"]}, camera)
             self.assertEqual(state["problem"], "")
             pathlib.Path("page.exr").write_bytes(page.get("picture.exr"))
             settings = view.settings()

@@ -1,12 +1,14 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: Apache-2.0
-"""Uses `orrery view` in a browser as a user would: tests/view/browser.py ORRERY WORK_FOLDER controls|dark|tabs|scene
+"""Uses `orrery view` in a browser as a user would: tests/view/browser.py ORRERY WORK_FOLDER WALK
 
-Exit status 77 if Chromium or its driver is not installed. Screenshots stay in WORK_FOLDER.
+WALK is a key of WALKS, below. Exit status 77 if Chromium or its driver is not installed. Screenshots stay in WORK_FOLDER.
+Nothing here depends on time: each step waits until the page shows what it is about.
 """
 import atexit
 import html
 import pathlib
+import random
 import shlex
 import shutil
 import signal
@@ -21,11 +23,13 @@ exit_if_missing()
 shutil.rmtree(work, ignore_errors=True)
 work.mkdir(parents=True)
 
-SHIFT = "\ue008"
+SHIFT, CONTROL, ESCAPE = "\ue008", "\ue009", "\ue00c"
+SMALL = ["--width", "320", "--height", "240", "--noise", "0.2"]
+HOSTILE = "<img src=x onerror=alert(1)>"
 frames = []
 for frame in range(3):
     rows = "".join(f"{i + 1} {1 + i % 2} {i % 4} {i // 4 % 4} {i // 16 + 0.2 * frame} {i * (frame + 1)}\n" for i in range(64))
-    frames.append(f"ITEM: TIMESTEP\n{frame}\nITEM: NUMBER OF ATOMS\n64\nITEM: BOX BOUNDS pp pp pp\n0 4\n0 4\n0 5\n"
+    frames.append(f"ITEM: TIMESTEP\n{1000 * frame}\nITEM: NUMBER OF ATOMS\n64\nITEM: BOX BOUNDS pp pp pp\n0 4\n0 4\n0 5\n"
                   f"ITEM: ATOMS id type x y z speed\n{rows}")
 (work / "melt.dump").write_text("".join(frames))
 
@@ -43,43 +47,91 @@ class Program:
         return self._process.wait()
 
 
-def command_of(browser):
-    return browser.run("return document.getElementById('command').value")
-
-
-def settle(browser, problem=""):
-    """Waits until the last wish is granted, or refused with this problem."""
-    browser.wait("const p = document.getElementById('problem');"
-                 "return document.getElementById('picture').dataset.settled === 'true' "
-                 "&& (p.hidden ? '' : p.textContent).includes(arguments[0])", problem)
-    text = browser.run("const p = document.getElementById('problem'); return p.hidden ? '' : p.textContent")
-    expect(bool(problem) == bool(text), text)
-
-
-def choose(browser, option, value):
-    browser.run("const f = document.getElementById(arguments[0]);"
-                "if (f.type === 'checkbox') f.checked = arguments[1] !== ''; else f.value = arguments[1];"
-                "f.dispatchEvent(new Event('change'))", option, value)
-
-
 def expect(condition, text):
     if not condition:
         raise AssertionError(text)
 
 
-def check_command(browser, name):
-    """The command that the page shows makes the picture that it shows."""
-    command = shlex.split(command_of(browser))
-    expect(command[0] == "orrery", command)
-    subprocess.run([orrery, *command[1:-2], "-q", "-o", f"{name}.png"], cwd=work, check=True)
+def command_of(browser):
+    return browser.run("return document.getElementById('command').value")
+
+
+def settle(browser, problem=""):
+    """Waits until the last wish is granted, or refused with this problem, and its command is shown."""
+    browser.wait("const c = document.getElementById('picture');"
+                 "return c && c.dataset.settled === 'true' && c.dataset.shown && (c.dataset.problem || '').includes(arguments[0])", problem)
+    text = browser.run("return document.getElementById('picture').dataset.problem || ''")
+    expect(bool(problem) == bool(text), text)
+
+
+def wait_for_command(browser, part, is_part=True):
+    browser.wait("return document.getElementById('command').value.includes(arguments[0]) === arguments[1]", part, is_part)
+    settle(browser)
+
+
+def choose(browser, option, value):
+    """Sets a field by its id, once the page has it."""
+    browser.wait("return document.getElementById(arguments[0])", option)
+    browser.run("const f = document.getElementById(arguments[0]), v = arguments[1];"
+                "const radio = [...f.querySelectorAll('input')].find(one => one.value === v);"
+                "if (radio) { radio.click(); return; }"
+                "if (f.type === 'checkbox') f.checked = v !== ''; else f.value = v;"
+                "f.dispatchEvent(new Event('change'))", option, value)
+
+
+def place_of(browser, selector, index=0):
+    """The middle of an element, once it can be seen, after its tab and its fold were opened."""
+    browser.wait("return document.querySelectorAll(arguments[0])[arguments[1]]", selector, index)
+    return browser.wait(
+        "const e = document.querySelectorAll(arguments[0])[arguments[1]]; if (!e) return null;"
+        "e.scrollIntoView({ block: 'nearest' }); const b = e.getBoundingClientRect();"
+        "return b.width > 0 && [Math.round(b.left + b.width / 2), Math.round(b.top + b.height / 2)]", selector, index)
+
+
+class Hand:
+    """Clicks with the mouse, and counts."""
+
+    def __init__(self, browser):
+        self.browser, self.clicks = browser, 0
+
+    def click(self, selector, index=0):
+        self.at(*place_of(self.browser, selector, index))
+
+    def at(self, x, y, key=None):
+        self.clicks += 1
+        if not key:
+            return self.browser.click(x, y)
+        self.browser.drag((x, y), (x, y), steps=1, key=key)
+
+    def drag(self, selector, dx, dy, index=0):
+        self.clicks += 1
+        x, y = place_of(self.browser, selector, index)
+        self.browser.drag((x, y), (x + dx, y + dy))
+
+
+def compare(browser, name, command):
+    subprocess.run([orrery, *shlex.split(command)[1:-2], "-q", "-o", f"{name}.png"], cwd=work, check=True)
     mine = download(browser, "picture.png").rename(work / f"{name}.page.png")
     status = subprocess.run([orrery, "compare", mine, f"{name}.png", "--fail-above", "max=0"], cwd=work, capture_output=True, text=True)
-    expect(status.returncode == 0, f"{name}: {command_of(browser)}\n{status.stdout}{status.stderr}")
+    expect(status.returncode == 0, f"{name}: {command}\n{status.stdout}{status.stderr}")
+
+
+def check_command(browser, name):
+    """The command that the page shows makes the picture that it shows."""
+    settle(browser)
+    command = command_of(browser)
+    expect(shlex.split(command)[0] == "orrery", command)
+    compare(browser, name, command)
 
 
 def download(browser, name):
     (work / "downloads").mkdir(exist_ok=True)
     return browser.download((work / "downloads").resolve(), name, f'[data-file="{name}"]')
+
+
+def errors_of(browser):
+    """Errors of the console, except answers that make the page ask again."""
+    return [error for error in browser.errors() if "409 (Conflict)" not in error]
 
 
 def watch_for_darkness(browser):
@@ -90,103 +142,57 @@ def watch_for_darkness(browser):
           const canvas = document.getElementById('picture');
           const { data } = canvas.getContext('2d').getImageData(0, 0, canvas.width, canvas.height);
           for (let i = 0; i < data.length; i += 4)
-            window.darkest = Math.min(window.darkest, Math.max(data[i], data[i + 1], data[i + 2]));
+            if (data[i + 3] === 255) window.darkest = Math.min(window.darkest, Math.max(data[i], data[i + 1], data[i + 2]));
           requestAnimationFrame(look);
         };
         look();""")
 
 
-def look(browser, program, name, options):
-    browser.open(program.url)
-    settle(browser)
+def position(browser):
+    """The middle of the picture, in the window."""
+    return place_of(browser, "#picture")
+
+
+def is_empty(browser, selector):
+    return browser.run("const e = document.querySelector(arguments[0]); return !e || e.hidden || e.textContent === ''", selector)
+
+
+def look(browser, name, options):
     expect("token" not in browser.run("return location.href"), "the address does not show the secret")
     check_command(browser, f"{name}-first")
-    box = position(browser)
+    x, y = position(browser)
     before = command_of(browser)
     up = browser.run("return fetch('state', { headers: { Authorization: 'Bearer ' + sessionStorage.getItem('secret') } })"
                      ".then(a => a.json())")["up"]
-    browser.drag(box, (box[0] + 80, box[1] + 30))
+    browser.drag((x, y), (x + 80, y + 30))
+    browser.wait("return document.getElementById('command').value !== arguments[0]", before)
     settle(browser)
-    expect(command_of(browser) != before, "a drag moves the camera")
     up = ", ".join(f"{x:g}" for x in up)
     expect(f"camera.up=[{up}]" in command_of(browser), f"a drag keeps the horizon: {command_of(browser)}")
-    browser.drag(box, (box[0] + 40, box[1]), key=SHIFT)
-    browser.drag(box, (box[0] - 30, box[1] + 20), button=2)
-    browser.wheel(round(box[0]), round(box[1]), -200)
+    browser.drag((x, y), (x + 40, y), key=SHIFT)
+    browser.drag((x, y), (x - 30, y + 20), button=2)
+    browser.wheel(x, y, -200)
     settle(browser)
     check_command(browser, f"{name}-moved")
     for option, value in options:
         choose(browser, option, value)
         settle(browser)
     check_command(browser, f"{name}-chosen")
-    browser.screenshot(work / f"{name}.png.screen.png")
+    browser.screenshot(work / f"{name}.screen.png")
     command = command_of(browser)
     browser.run("location.reload()")
-    settle(browser)
-    expect(command_of(browser) == command, "a reload shows the same picture")
+    wait_for_command(browser, command)
 
 
-def position(browser):
-    """The middle of the picture, in the window."""
-    return browser.run("const b = document.getElementById('picture').getBoundingClientRect();"
-                       "return [b.left + b.width / 2, b.top + b.height / 2]")
-
-
-def pick(browser):
-    x, y = (round(v) for v in position(browser))
-    browser.click(x, y)
-    browser.wait("return !document.getElementById('picked').hidden")
-    text = browser.run("return document.getElementById('picked').innerText")
-    for word in ("row ", "melt.dump", "centre", "radius", "speed", "type"):
-        expect(word in text, f"`{word}` is missing:\n{text}")
-    before = command_of(browser)
-    browser.click(x + 40, y + 20, count=2)
-    browser.wait("return document.getElementById('command').value !== arguments[0]", before)
-    settle(browser)
-    browser.click(x, y)
-    center = browser.run("return document.querySelector('#picked-values dd').textContent").split(", ")
-    look_at = command_of(browser).split("camera.look_at=[")[1].split("]")[0].split(", ")
-    expect(all(abs(float(a) - float(b)) < 1e-4 for a, b in zip(center, look_at)), f"{center} is not {look_at}")
-
-
-def play(browser):
-    def frame():
-        return int(browser.run("return document.getElementById('frame').value"))
-    choose(browser, "frame", "1")
-    settle(browser)
-    camera = command_of(browser).split("--set")[1:]
-    browser.run("document.getElementById('play').click()")
-    for number in (2, 3, 1, 2):
-        browser.wait(f"return document.getElementById('frame').value === '{number}'")
-    browser.run("document.getElementById('play').click()")
-    settle(browser)
-    expect(command_of(browser).split("--set")[1:] == camera, "frames do not move the camera")
-    expect(f"--frame {frame()} " in command_of(browser) or frame() == 1, command_of(browser))
-
-
-def never_black(browser, program):
-    """Neither while it is dragged nor while the next image is rendered is a pixel darker than the scene."""
-    for option, value in [("style", "flat"), ("color-by", "none"), ("samples", "300"), ("size", "1280 720")]:
-        choose(browser, option, value)
-        settle(browser)
-    watch_for_darkness(browser)
-    box = position(browser)
-    for dx in (60, -40):
-        browser.drag(box, (box[0] + dx, box[1] + 20))
-        settle(browser)
-    darkest = browser.run("return window.darkest")
-    expect(darkest > 60, f"a pixel had the brightness {darkest}")
-
-
-def view_data(walk):
+def view_data(walk, *words, size=(1400, 900)):
     """Walks through the page of a data file."""
-    program = Program("melt.dump", "--width", "320", "--height", "240", "--noise", "0.2")
-    browser = Browser()
+    program = Program("melt.dump", *words)
+    browser = Browser(*size)
     try:
         browser.open(program.url)
         settle(browser)
         walk(browser, program)
-        errors = browser.errors()
+        errors = errors_of(browser)
         expect(not errors, errors)
     finally:
         browser.close()
@@ -194,43 +200,291 @@ def view_data(walk):
 
 
 def use_controls(browser, program):
-    look(browser, program, "melt", [("color-by", "speed"), ("map", "magma"), ("range", "0:100"), ("style", "night"),
-                                    ("material", "plastic"), ("select", "type == 1"), ("radius-scale", "1.3"),
-                                    ("opacity", "0.5\ntype == 1: 0.3"), ("frame", "3")])
+    look(browser, "melt", [("columns", "speed"), ("range", "0:100"), ("style", "night"),
+                           ("material", "plastic"), ("select", "type == 1"), ("radius-scale", "1.3"),
+                           ("opacity", "0.5"), ("outline", "2"), ("ground", "on"), ("frame", "3")])
+    browser.run("document.querySelector('input[name=\"--map\"][value=\"magma\"]').click()")
+    wait_for_command(browser, "--map magma")
+    check_command(browser, "melt-map")
     choose(browser, "select", "nothing ==")
     settle(browser, problem="nothing")
-    choose(browser, "select", "")
-    choose(browser, "opacity", "")
+    message = browser.run("return [...document.querySelectorAll('.message')].filter(m => !m.hidden).map(m => m.textContent).join()")
+    expect("nothing" in message, f"the message is under the field: {message}")
+    browser.run("document.getElementById('undo').click()")
+    settle(browser)
+    expect("nothing" not in command_of(browser), "undo takes back what was wrong")
+
+
+def walk_at_random(browser, program):
+    """A random walk through the controls: the picture is that of the command, and undo goes all the way back."""
+    chance = random.Random(1)
+    first = command_of(browser)
+    steps = [("columns", ["speed", "none", ""]), ("style", ["flat", "night", "studio"]), ("material", ["metal", "matte"]),
+             ("select", ["type == 1", "z > 0\nx < 3", ""]), ("slice", ["z=2", ""]), ("representation", ["ball-and-stick", "spheres"]),
+             ("outline", ["1.5", "0"]), ("opacity", ["0.4", "1"]), ("title", ["t = {step}", ""]), ("box", ["on", ""]),
+             ("perspective", ["30", "0"]), ("background", ["navy", ""]), ("color-bar", ["on", ""]), ("frame", ["2", "1"])]
+    changes = 0
+    for i in range(14):
+        option, values = chance.choice(steps)
+        before = command_of(browser)
+        choose(browser, option, chance.choice(values))
+        browser.wait("return document.getElementById('picture').dataset.settled === 'true'")
+        if browser.run("return document.getElementById('picture').dataset.problem"):  # options that do not go together
+            browser.run("document.getElementById('undo').click()")
+            settle(browser)
+        changes += command_of(browser) != before
+        if i % 4 == 3:
+            check_command(browser, f"walk-{i}")
+    expect(changes > 5, changes)
+    for _ in range(100):
+        if browser.run("return document.getElementById('undo').disabled"):
+            break
+        browser.keys_with(CONTROL, "z")
+        settle(browser)
+    expect(command_of(browser) == first, f"{command_of(browser)} is not {first}")
+    browser.run("document.getElementById('redo').click()")
+    browser.wait("return document.getElementById('command').value !== arguments[0]", first)
+    settle(browser)
+    browser.run("history.back()")
     settle(browser)
 
 
+def do_tasks(browser, program):
+    """The five tasks of a new user, with the mouse and without typing, and how many clicks they take."""
+    hand = Hand(browser)
+
+    def task(name, most, *parts):
+        for part in parts:
+            wait_for_command(browser, part)
+        expect(hand.clicks <= most, f"{name}: {hand.clicks} clicks")
+        check_command(browser, name)
+        browser.screenshot(work / f"{name}.screen.png")
+        hand.clicks = 0
+
+    # A list of the browser's own opens outside the page, so its choice is made by the keyboard; it counts as two clicks.
+    choose(browser, "columns", "speed")
+    hand.clicks += 2
+    settle(browser)
+    browser.wait("const h = document.querySelector('.histogram'); return h && !h.hidden")
+    hand.drag(".handle", -80, 0, index=1)
+    task("colour", 3, "--color-by speed", "--range 0:")
+    choose(browser, "columns", "type")
+    settle(browser)
+    browser.wait("return document.querySelectorAll('.class').length === 2")
+    hand.click(".class .name", 1)
+    task("hide", 2, "--select 'type != 2'")
+    hand.click(".class .name", 1)
+    wait_for_command(browser, "--select", False)
+    hand.clicks = 0
+    hand.click("label:has(> input[name=cut][value=z])")
+    task("cut", 2, "--slice z=")
+    hand.drag("#plane", 0, 40)
+    before = command_of(browser)
+    hand.click("label:has(> input[name=cut][value=off])")
+    wait_for_command(browser, "--slice", False)
+    expect("--slice z=1.5 " not in before, f"the plane is dragged: {before}")
+    hand.clicks = 0
+    x, y = position(browser)
+    hand.at(x - 60, y + 40)
+    browser.wait("return !document.getElementById('picked').hidden")
+    hand.at(x + 70, y + 90, key=SHIFT)
+    browser.wait("return document.getElementById('measures').textContent.includes('distance')")
+    distance = browser.run("return document.querySelector('#measures dd').textContent")
+    expect(float(distance.split(",")[0]) > 0, distance)
+    task("distance", 3)
+    browser.keys(ESCAPE)
+    browser.wait("return document.getElementById('picked').hidden")
+    hand.click("#film-bar")
+    hand.click("#film")
+    browser.wait("return [...document.querySelectorAll('.toast')].some(t => t.textContent.includes('film'))")
+    expect(hand.clicks <= 3, hand.clicks)
+    if (work / "films").exists():
+        browser.wait("return [...document.querySelectorAll('.toast')].some(t => t.textContent.includes('Film saved'))")
+        expect((work / "films/film.mp4").stat().st_size > 0, "the film is in the folder of --save-to")
+
+
+def use_films(browser, program):
+    """A film that is cancelled leaves no film, and the next one does not replace it."""
+    hand = Hand(browser)
+    choose(browser, "samples", "20000")
+    browser.wait("return document.getElementById('command').value.includes('--samples 20000')")
+    hand.click("label:has(#for-export)")
+    hand.click("#film")
+    hand.click("#film-cancel")
+    browser.wait("return [...document.querySelectorAll('.toast')].some(t => t.textContent.includes('stopped'))")
+    expect(not (work / "films/film.mp4").exists(), "no film is left")
+    choose(browser, "samples", "1")
+    settle(browser)
+    (work / "films/film.mp4").write_text("mine")
+    hand.click("#film")
+    browser.wait("return [...document.querySelectorAll('.toast')].some(t => t.textContent.includes('film-2.mp4'))")
+    expect((work / "films/film.mp4").read_text() == "mine", "nothing is replaced")
+
+
+def pick(browser):
+    x, y = position(browser)
+    browser.click(x, y)
+    browser.wait("return !document.getElementById('picked').hidden")
+    text = browser.run("return document.getElementById('picked').innerText")
+    for word in ("row ", "melt.dump", "centre", "radius", "speed", "type"):
+        expect(word in text, f"`{word}` is missing:\n{text}")
+    expect(browser.run("return document.querySelectorAll('#marks circle').length") == 2, "the particle has a mark")
+    before = command_of(browser)
+    browser.keys(ESCAPE)
+    browser.click(x + 40, y + 20, count=2)
+    browser.wait("return document.getElementById('command').value !== arguments[0]", before)
+    settle(browser)
+    browser.keys(ESCAPE)
+    browser.wait("return document.getElementById('picked').hidden")
+    browser.click(x, y)
+    browser.wait("return !document.getElementById('picked').hidden")
+    center = browser.run("return document.querySelector('#picked-values dd').textContent").split(", ")
+    look_at = command_of(browser).split("camera.look_at=[")[1].split("]")[0].split(", ")
+    expect(all(abs(float(a) - float(b)) < 1e-3 for a, b in zip(center, look_at)), f"{center} is not {look_at}")
+    browser.run("[...document.querySelectorAll('#picked-actions button')].find(b => b.textContent === 'Hide').click()")
+    wait_for_command(browser, "!(id ==")
+    check_command(browser, "hidden")
+    browser.run("document.getElementById('undo').click()")
+    wait_for_command(browser, "!(id ==", False)
+
+
+def play(browser):
+    choose(browser, "frame", "1")
+    settle(browser)
+    camera = command_of(browser).split("--set")[1:]
+    browser.run("document.getElementById('speed').value = '50'; document.getElementById('play').click()")
+    for number in (2, 3, 1, 2):
+        browser.wait(f"return document.getElementById('frame').value === '{number}'", pause=0.001)
+    browser.wait("return document.getElementById('ahead').style.width === '100%'")  # all frames are kept
+    browser.run("document.getElementById('play').click()")
+    settle(browser)
+    expect(command_of(browser).split("--set")[1:] == camera, "frames do not move the camera")
+    number = browser.run("return document.getElementById('frame').value")
+    expect(f"--frame {number} " in command_of(browser) or number == "1", command_of(browser))
+    choose(browser, "frame", "3")
+    wait_for_command(browser, "--frame 3")
+    browser.wait("return document.getElementById('frame-number').value.includes('step 2,000')")
+
+
+def never_black(browser, program):
+    """Neither while it is dragged nor while the next image is rendered is a pixel darker than the scene."""
+    for option, value in [("style", "flat"), ("columns", "none"), ("samples", "300"), ("size", "1280 720")]:
+        choose(browser, option, value)
+        settle(browser)
+    watch_for_darkness(browser)
+    x, y = position(browser)
+    for dx in (60, -40):
+        browser.drag((x, y), (x + dx, y + 20))
+        settle(browser)
+    darkest = browser.run("return window.darkest")
+    expect(darkest > 60, f"a pixel had the brightness {darkest}")
+
+
 def use_tabs(browser, program):
-    for option, value in [("color-by", "speed"), ("frame", "3")]:
+    for option, value in [("columns", "speed"), ("frame", "3")]:
         choose(browser, option, value)
         settle(browser)
     pick(browser)
     play(browser)
     choose(browser, "size", "640 360")
-    settle(browser)
+    wait_for_command(browser, "--width 640")
     check_command(browser, "melt-larger")
-    first = browser.tabs()[0]
+    command, first = command_of(browser), browser.tabs()[0]
     browser.new_tab()
     browser.open(program.url)
     settle(browser)
-    sizes = browser.run("return [...document.getElementById('size').options].map(option => option.value)")
-    expect(sizes[0] == "320 240" and sizes.count("640 360") == 1, f"the size of the start is not offered: {sizes}")
-    command = command_of(browser)
+    expect("--width 320" in command_of(browser), f"another tab begins as the command line says: {command_of(browser)}")
+    choose(browser, "style", "flat")
+    wait_for_command(browser, "--style flat")
+    check_command(browser, "second-tab")
     browser.switch(first)
-    browser.wait("return document.getElementById('command').value === arguments[0]", command)
+    expect(command_of(browser) == command, "each tab has a view of its own")
+    check_command(browser, "first-tab")  # asks for its image again
     # In the frame of a notebook, without cookies.
     frame = work / "frame.html"
     frame.write_text(f'<iframe src="{html.escape(program.url)}" width="900" height="700"></iframe>')
     browser.open(frame.resolve().as_uri())
     browser.enter_frame(0)
     settle(browser)
-    expect(command_of(browser) == command, "a frame shows the same")
+    choose(browser, "style", "night")
+    wait_for_command(browser, "--style night")
+    browser.run("document.getElementById('undo').click()")
+    wait_for_command(browser, "--style night", False)
     download(browser, "scene.toml")
-    expect(browser.run("return document.getElementById('problem').hidden"), "a frame downloads as well")
+    expect(is_empty(browser, "#errors"), "a frame downloads as well")
+
+
+def fill_window(browser, program):
+    """The picture has the pixels of its place, also when the window changes, and after the end of the program."""
+    size = browser.run("const b = document.getElementById('stage').getBoundingClientRect(); return [b.width, b.height]")
+    expect(f"--width {round(size[0])}" in command_of(browser) and f"--height {round(size[1])}" in command_of(browser), command_of(browser))
+    check_command(browser, "window")
+    browser.resize(420, 800)
+    wait_for_command(browser, "--width 420")
+    expect(browser.run("return document.documentElement.scrollWidth <= innerWidth"), "too wide for a phone")
+    browser.resize(420, 800, pixels=2)
+    wait_for_command(browser, "--width 840")
+    check_command(browser, "dense")
+    program.end()
+    browser.wait("return document.getElementById('errors').textContent.includes('has ended')")
+    expect("Copy command" in browser.run("return document.getElementById('errors').textContent"), "the command is offered")
+
+
+def audit(browser, program):
+    """Everything can be reached with the keyboard and has a name."""
+    browser.run("for (const d of document.querySelectorAll('details')) d.open = true;"
+                "for (const t of document.querySelectorAll('.tab')) t.hidden = false;")
+    nameless = browser.run("""
+        const named = e => e.getAttribute('aria-label') || e.labels?.length && [...e.labels].some(l => l.textContent.trim())
+          || e.title || (e.tagName === 'BUTTON' && e.textContent.trim()) || e.getAttribute('aria-labelledby');
+        return [...document.querySelectorAll('button, input, select, textarea, [role=slider], canvas[tabindex], progress')]
+          .filter(e => !named(e)).map(e => e.outerHTML)""")
+    expect(not nameless, nameless)
+    ids = browser.run("return [...document.querySelectorAll('[id]')].map(e => e.id)")
+    expect(len(ids) == len(set(ids)), sorted(i for i in ids if ids.count(i) > 1))
+    browser.run("location.reload()")
+    settle(browser)
+    browser.run("document.activeElement.blur()")
+    browser.keys("?")
+    browser.wait("return document.getElementById('keys').open")
+    browser.keys(ESCAPE)
+    browser.wait("return !document.getElementById('keys').open")
+    browser.keys("5")
+    browser.wait("return !document.getElementById('tab-export').hidden")
+    browser.keys("]")
+    wait_for_command(browser, "--frame 2")
+    browser.keys("[")
+    wait_for_command(browser, "--frame 2", False)
+    browser.keys("x")
+    wait_for_command(browser, "camera.look_from")
+
+
+def view_hostile():
+    """Names of files, columns and classes are text, whatever is in them."""
+    name = f"{HOSTILE}'\"`&.csv".replace("/", "")
+    rows = "".join(f"{i},0,0,\"{HOSTILE}{i % 3}\",{'nan' if i == 2 else i}\n" for i in range(9))
+    (work / name).write_text(f"x,y,z,\"{HOSTILE}\",value\n{rows}")
+    program = Program(name, *SMALL, "--radius", "0.4", "--color-by", HOSTILE)
+    browser = Browser()
+    try:
+        browser.open(program.url)
+        settle(browser)
+        browser.wait("return document.querySelectorAll('.class').length === 3")
+        x, y = position(browser)
+        browser.click(x, y)
+        browser.wait("return !document.getElementById('picked').hidden")
+        expect(browser.run("return document.querySelectorAll('img').length") == 0, "a name has become HTML")
+        browser.run("document.querySelector('.class .name').click()")
+        wait_for_command(browser, "--select")
+        check_command(browser, "hostile")
+        choose(browser, "columns", "value")
+        settle(browser)
+        browser.wait("const h = document.querySelector('.histogram'); return h && !h.hidden")
+        errors = errors_of(browser)
+        expect(not errors, errors)
+    finally:
+        browser.close()
+    program.end()
 
 
 def view_scene():
@@ -239,10 +493,18 @@ def view_scene():
     for width, dark in ((1600, False), (400, True)):
         browser = Browser(width=width, dark=dark)
         try:
-            if not dark:
-                look(browser, program, "final", [("set", "render.seed=7\nbackground.type=constant")])
             browser.open(program.url)
             settle(browser)
+            if not dark:
+                look(browser, "final", [("set", "render.seed=7\nbackground.type=constant")])
+                browser.wait("return document.querySelectorAll('.object').length > 100")
+                browser.run("const o = [...document.querySelectorAll('.object')].find(o => o.dataset.name === 'material.ground');"
+                            "o.open = true;")
+                browser.wait("return document.querySelector('[aria-label=\"material.ground.albedo\"]')")
+                browser.run("const f = document.querySelector('[aria-label=\"material.ground.albedo\"]');"
+                            "f.value = '[0.9, 0.1, 0.1]'; f.dispatchEvent(new Event('change'))")
+                wait_for_command(browser, "material.ground.albedo=[0.9, 0.1, 0.1]")
+                check_command(browser, "final-material")
             browser.screenshot(work / f"final-{width}.screen.png")
             expect(browser.run("return document.documentElement.scrollWidth <= innerWidth"), f"{width}: too wide")
         finally:
@@ -250,5 +512,28 @@ def view_scene():
     expect(program.end() == 0, "TERM ends the program with status 0")
 
 
-{"controls": lambda: view_data(use_controls), "dark": lambda: view_data(never_black),
- "tabs": lambda: view_data(use_tabs), "scene": view_scene}[sys.argv[3]]()
+def with_films(walk):
+    (work / "films").mkdir()
+    if shutil.which("ffmpeg"):
+        view_data(walk, *SMALL, "--samples", "4", "--save-to", "films")
+
+
+def view_window():
+    program = Program("melt.dump", "--samples", "4")
+    browser = Browser(1000, 700)
+    try:
+        browser.open(program.url)
+        settle(browser)
+        fill_window(browser, program)
+    finally:
+        browser.close()
+
+
+WALKS = {
+    "controls": lambda: view_data(use_controls, *SMALL), "random": lambda: view_data(walk_at_random, *SMALL),
+    "tasks": lambda: with_films(do_tasks), "films": lambda: with_films(use_films),
+    "dark": lambda: view_data(never_black, *SMALL), "tabs": lambda: view_data(use_tabs, *SMALL),
+    "audit": lambda: view_data(audit, *SMALL), "scene": view_scene, "hostile": view_hostile,
+    "window": view_window,
+}
+WALKS[sys.argv[3]]()

@@ -74,3 +74,41 @@ export function alongAxis(camera, axis, side, vertical) {
   const above = [[0, 0, side], [0, 0, -side], [0, side, 0]][axis];
   return { ...camera, look_from: add(camera.look_at, scale(direction, distance)), up: isAlongUp ? above : vertical };
 }
+
+// Where a point is in an image of this size: x and y in pixels, and pixels per scene unit there; null: behind the camera.
+export function project(camera, point, width, height) {
+  const { back, right, up } = axes(camera), offset = subtract(point, camera.look_from);
+  const distance = -dot(offset, back);
+  if (camera.perspective && distance <= 0) return null;
+  const scaled = camera.perspective ? height / (2 * distance * Math.tan(camera.size * Math.PI / 360)) : width / camera.size;
+  return { x: width / 2 + scaled * dot(offset, right), y: height / 2 - scaled * dot(offset, up), scale: scaled };
+}
+
+// The axis, 0 to 2, that points most at the camera, and the side.
+export function facing(camera) {
+  const { back } = axes(camera);
+  const axis = [0, 1, 2].reduce((best, i) => Math.abs(back[i]) > Math.abs(back[best]) ? i : best, 0);
+  return { axis, side: Math.sign(back[axis]) || 1 };
+}
+
+// The shortest vector between two points of a periodic box: `box` has `edges` and `periodic`; null: no box.
+export function shortest(a, b, box) {
+  const direct = subtract(b, a);
+  if (!box) return direct;
+  const [u, v, w] = box.edges, volume = dot(u, cross(v, w));
+  if (!volume) return direct;
+  const shares = [cross(v, w), cross(w, u), cross(u, v)].map(normal => dot(direct, normal) / volume);
+  const near = shares.map((share, i) => box.periodic[i] ? -Math.round(share) : 0);
+  const range = [0, 1, 2].map(i => box.periodic[i] ? [-1, 0, 1] : [0]);
+  let best = direct;
+  for (const i of range[0]) for (const j of range[1]) for (const k of range[2]) {
+    const steps = [near[0] + i, near[1] + j, near[2] + k];
+    const candidate = box.edges.reduce((sum, edge, n) => add(sum, scale(edge, steps[n])), direct);
+    if (Math.hypot(...candidate) < Math.hypot(...best)) best = candidate;
+  }
+  return best;
+}
+
+export const distance = v => Math.hypot(...v);
+// The angle between two vectors in degrees.
+export const angle = (a, b) => Math.acos(Math.max(-1, Math.min(1, dot(normalized(a), normalized(b))))) * 180 / Math.PI;

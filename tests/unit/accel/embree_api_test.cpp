@@ -6,7 +6,6 @@
 #include <string>
 
 #include "base/error.h"
-#include "support/sphere_points.h"
 
 namespace orrery::accel {
 namespace {

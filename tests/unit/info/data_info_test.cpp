@@ -3,6 +3,9 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <string>
+
 #include <nlohmann/json.hpp>
 
 #include "base/error.h"
@@ -35,6 +38,46 @@ class InfoDataInfo : public testing::Test {
 
   support::TempDir folder_;
 };
+
+TEST_F(InfoDataInfo, TellsTheValuesOfAColumn) {
+  support::write_bytes(folder_ / "a.dump", kDump);
+  DataInfoRequest request;
+  request.file = folder_ / "a.dump";
+  request.frame = 2;
+  const auto values = [&](const char* column, bool is_log = false) {
+    return nlohmann::json::parse(column_values_json(request, column, is_log));
+  };
+  const nlohmann::json x = values("x");
+  EXPECT_EQ(x["low"], -1e-9);
+  EXPECT_EQ(x["high"], 1.5);
+  EXPECT_EQ(x["bins"].size(), 64u);
+  EXPECT_EQ(x["bins"][0], 1);
+  EXPECT_EQ(x["bins"][63], 2);
+  EXPECT_EQ(x["classes"][0], nlohmann::json({"1.5", 2}));
+  EXPECT_EQ(values("x", true)["low"], 1.5) << "logarithms have values above 0";
+  EXPECT_EQ(values("element")["classes"].dump(), R"([["C",2],["Ar",1]])");
+  const nlohmann::json vz = values("vz");
+  EXPECT_EQ(vz["nan"], 1);
+  EXPECT_EQ(vz["high"], -4) << "infinity has no place in a histogram";
+  EXPECT_EQ(values("speed")["low"], 5) << "a column that is computed";
+  EXPECT_THROW(values("nothing"), base::Error);
+  request.frame = 3;
+  EXPECT_THROW(values("x"), base::Error);
+}
+
+TEST_F(InfoDataInfo, HasTheMostFrequentOfManyClasses) {
+  std::string bytes = "x,y,z,name\n";
+  for (int i = 0; i < 5000; ++i)
+    bytes += "0,0," + std::to_string(i) + ",<b>" + std::to_string(std::min(i, 4000)) + "\n";
+  support::write_bytes(folder_ / "a.csv", bytes);
+  DataInfoRequest request;
+  request.file = folder_ / "a.csv";
+  const auto names = nlohmann::json::parse(column_values_json(request, "name", false));
+  EXPECT_EQ(names["distinct"], 4001);
+  EXPECT_EQ(names["classes"].size(), 200u);
+  EXPECT_EQ(names["classes"][0], nlohmann::json({"<b>4000", 1000}));
+  EXPECT_FALSE(nlohmann::json::parse(column_values_json(request, "z", false)).contains("classes"));
+}
 
 TEST_F(InfoDataInfo, DescribesAFrame) {
   DataInfoRequest request;

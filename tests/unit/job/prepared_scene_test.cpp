@@ -11,7 +11,8 @@
 
 #include "base/error.h"
 #include "film/picture.h"
-#include "job/run_job.h"
+#include "job/job.h"
+#include "job/rendering.h"
 #include "load/load_scene.h"
 #include "support/temp_dir.h"
 
@@ -163,8 +164,9 @@ class JobPreparedScene : public testing::Test {
   std::string render(std::shared_ptr<PreparedScene> prepared, Rendering& out) const {
     Job job = job_;
     job.prepared = std::move(prepared);
+    job.keep = &out;
     try {
-      out = render_in_memory(job);
+      run_job(job);
       return {};
     } catch (const base::Error& error) {
       std::string text = error.what();

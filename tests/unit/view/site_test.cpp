@@ -3,9 +3,12 @@
 
 #include <gtest/gtest.h>
 
-#include <nlohmann/json.hpp>
+#include <chrono>
 #include <string>
 
+#include <nlohmann/json.hpp>
+
+#include "base/error.h"
 #include "base/text.h"
 #include "fuzz/mutator.h"
 
@@ -21,7 +24,8 @@ Subject small_subject(const std::vector<std::string>&) {
   out.job.scene.file = "scene.toml";
   out.job.scene.text = std::make_shared<const std::string>("[image]\nwidth = 16\nheight = 8\n[render]\nsamples = 1\n");
   out.job.scene.has_file = false;
-  out.columns = {"speed"};
+  out.data.emplace();
+  out.data->columns = {{"speed"}, {"<b>\xff"}};
   out.notes = {"a note with a byte that is not UTF-8: \xff"};
   return out;
 }
@@ -34,10 +38,19 @@ std::string command_of(const std::vector<std::string>& words) {
 
 class ViewSite : public testing::Test {
  protected:
-  ViewSite()
-      : viewer_(small_subject, {}, {}),
-        site_(viewer_, {"a file.dump", command_of, command_of, {{"--color-by", {"none"}}, {"--style", {"studio"}}}},
-              "127.0.0.1", kSecret) {}
+  ViewSite() : viewer_(small_subject, {}, {}), site_(viewer_, controls(), "127.0.0.1", kSecret) {}
+
+  static Controls controls() {
+    Controls out;
+    out.title = "a file.dump";
+    out.command = out.film_command = command_of;
+    out.options = {{"--color-by", "Look options", "COLUMN", ""}, {"--style", "Look options", "STYLE", "", {"studio"}}};
+    out.column = [](int frame, const std::string& column, bool) {
+      if (column != "speed") base::refuse("no such column");
+      return "{\"frame\": " + std::to_string(frame) + "}";
+    };
+    return out;
+  }
 
   static http::Request request(const std::string& method, const std::string& path) {
     http::Request out;
@@ -48,8 +61,8 @@ class ViewSite : public testing::Test {
     return out;
   }
 
-  http::Response post(const std::string& body) {
-    http::Request out = request("POST", "/wish");
+  http::Response post(const std::string& body, const char* path = "/wish") {
+    http::Request out = request("POST", path);
     out.body = body;
     return site_.answer(out);
   }
@@ -103,7 +116,7 @@ TEST_F(ViewSite, OnlyThisHostAdmits) {
 
 TEST_F(ViewSite, AllAddressesAreServedOnRequest) {
   const auto status = [this](const char* listens_on, const char* host) {
-    Site site(viewer_, {"", command_of, command_of, {}}, listens_on, kSecret);
+    Site site(viewer_, {"", command_of, {}}, listens_on, kSecret);
     http::Request one = request("GET", "/state");
     one.host = host;
     return site.answer(one).status;
@@ -137,16 +150,52 @@ TEST_F(ViewSite, ThePageHasAPolicyAndNoSecret) {
   EXPECT_EQ(policy.find("unsafe"), std::string::npos) << "no scripts and styles within the page";
   EXPECT_EQ(page.body->find("http"), std::string::npos) << "nothing is loaded from elsewhere";
   std::size_t bytes = 0;
-  for (const char* path : {"/", "/view.js", "/camera.js", "/view.css"})
+  for (const char* path : {"/", "/view.css", "/view.js", "/camera.js", "/data.js", "/legend.js", "/panel.js",
+                           "/picks.js", "/picture.js", "/rules.js", "/scene.js", "/store.js", "/time.js", "/toasts.js"})
     bytes += site_.answer(request("GET", path)).body->size();
-  EXPECT_LT(bytes, 100'000u);
+  EXPECT_LT(bytes, 120'000u);
 }
 
 TEST_F(ViewSite, StateNamesTheCommandAndTheControls) {
   EXPECT_EQ(post(R"({"options": {"--style": "a b", "--color-by": "speed"}})").status, 200);
+  while (!viewer_.state().subject->data) viewer_.frame(1000000, std::chrono::milliseconds(10));
   const Json state = Json::parse(*site_.answer(request("GET", "/state")).body);
   EXPECT_EQ(state["command"], "orrery plot 'a file.dump' --color-by speed --style 'a b'");
-  EXPECT_EQ(state["options"]["--style"]["value"], "a b");
+  EXPECT_EQ(state["options"]["--style"], Json::array({"a b"}));
+  EXPECT_EQ(state["data"]["columns"][0], Json({"speed", "float64"}));
+  const Json page = Json::parse(*site_.answer(request("GET", "/page")).body);
+  EXPECT_EQ(page["options"][1]["values"], Json::array({"studio"}));
+  EXPECT_EQ(page["first"], Json::object());
+}
+
+TEST_F(ViewSite, APageIsAnsweredAboutItsOwnImageOnly) {
+  EXPECT_EQ(post(R"({"client": "a"})").status, 200);
+  for (const char* path : {"/pick", "/bounds", "/picture.png", "/scene.toml"}) {
+    http::Request one = request("GET", path);
+    one.query = {{"client", "b"}, {"x", "0.5"}, {"y", "0.5"}};
+    EXPECT_EQ(site_.answer(one).status, 409) << path;
+  }
+  while (viewer_.frame(0, std::chrono::seconds(60)).client != "a") {
+  }
+}
+
+TEST_F(ViewSite, ColumnsAreThoseOfTheData) {
+  http::Request one = request("GET", "/column");
+  one.query = {{"frame", "2"}, {"name", "speed"}};
+  EXPECT_EQ(*site_.answer(one).body, "{\"frame\": 2}");
+  one.query["name"] = "<b>";
+  EXPECT_EQ(site_.answer(one).status, 400);
+  one.query = {{"name", "speed"}};
+  EXPECT_EQ(site_.answer(one).status, 400);
+}
+
+TEST_F(ViewSite, FilmsAreMadeOnlyIntoAFolderOfTheCommandLine) {
+  const http::Response answer = post(R"({"options": {"--turntable": "4s", "--style": "studio"}})", "/film/command");
+  EXPECT_EQ(Json::parse(*answer.body)["command"], "orrery plot 'a file.dump' --style studio --turntable 4s");
+  EXPECT_EQ(post(R"({"options": {"--output": "x"}})", "/film/command").status, 400);
+  EXPECT_EQ(post(R"({"options": {"--turntable": "4s"}})").status, 400) << "an option of films only";
+  EXPECT_EQ(post("{}", "/film/start").status, 404);
+  EXPECT_EQ(site_.answer(request("GET", "/film")).status, 404);
 }
 
 TEST_F(ViewSite, FramesHaveNumbers) {
@@ -177,6 +226,7 @@ TEST_F(ViewSite, PickedPlacesAreFractions) {
   http::Request one = request("GET", "/pick");
   for (const char* x : {"", "x", "-0.1", "1.1", "nan", "inf", "0.5x"}) {
     one.query = {{"x", x}, {"y", "0.5"}};
+    while (!viewer_.can_pick()) viewer_.frame(1000000, std::chrono::milliseconds(10));
     EXPECT_EQ(site_.answer(one).status, 400) << x;
   }
   one.query["x"] = "0.5";
@@ -199,7 +249,10 @@ TEST_F(ViewSite, FaultyWishesAreRefused) {
           R"({"moves": 1})",
           R"({"options": []})",
           R"({"options": {"--style": 1}})",
+          R"({"options": {"--style": false}})",
+          R"({"options": {"--style": [1]}})",
           R"({"options": {"--output": "x.png"}})",
+          R"({"client": 1})",
           R"({"options": {"--save-scene": "x.toml"}})",
           R"({"camera": {"look_from": [0, 0], "look_at": [0, 0, 0], "up": [0, 1, 0], "perspective": true, "size": 40}})",
           R"({"camera": {"look_from": [0, 0, 1e999], "look_at": [0, 0, 0], "up": [0, 1, 0], "perspective": true, "size": 40}})",

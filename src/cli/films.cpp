@@ -1,0 +1,125 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "cli/films.h"
+
+#include <csignal>
+#include <cstdio>
+#include <cstdlib>
+#include <utility>
+
+#include <fcntl.h>
+#include <spawn.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <fmt/core.h>
+#include <nlohmann/json.hpp>
+
+#include "base/error.h"
+#include "base/frames.h"
+
+namespace orrery::cli {
+namespace {
+
+constexpr std::size_t kMostMessages = 20;  // that are kept: the last ones
+
+/// A name that the folder has not, with a number before its first dot.
+std::filesystem::path unused(const std::filesystem::path& folder, const std::string& name) {
+  const std::size_t dot = name.find('.');
+  std::filesystem::path out = folder / name;
+  const auto exists = [](const std::filesystem::path& path) {
+    std::error_code none;
+    return std::filesystem::exists(base::with_frame(path.string(), 1), none);
+  };
+  for (int i = 2; exists(out); ++i) out = folder / fmt::format("{}-{}{}", name.substr(0, dot), i, name.substr(dot));
+  return out;
+}
+
+}  // namespace
+
+Films::Films(std::filesystem::path folder) : folder_(std::move(folder)) {
+  if (!std::filesystem::is_directory(folder_))
+    throw base::Error(base::ErrorKind::kMissingInput,
+                      fmt::format("--save-to: there is no folder {}", folder_.string()));
+}
+
+Films::~Films() {
+  cancel();
+  if (reader_.joinable()) reader_.join();
+}
+
+void Films::start(const std::string& command, const std::filesystem::path& file, const std::vector<std::string>& words,
+                  const std::string& name) {
+  const std::lock_guard lock(mutex_);
+  if (process_ != 0) base::refuse("a film is being made; cancel it, or wait until it is complete");
+  if (reader_.joinable()) reader_.join();  // it has ended
+  file_ = unused(folder_, name);
+  progress_ = "null";
+  messages_.clear();
+  // In an archive, the program is run by a loader beside it: launcher.cpp.
+  const std::filesystem::path self = std::filesystem::read_symlink("/proc/self/exe");
+  std::vector<std::string> all = {"orrery"};
+  if (self.filename() == "orrery-loader")
+    all = {self, "--inhibit-cache", "--argv0", "orrery", self.parent_path() / "orrery-program"};
+  all.insert(all.end(), {command, file.string()});
+  all.insert(all.end(), words.begin(), words.end());
+  all.insert(all.end(), {"-o", file_.string(), "--progress", "json"});
+  std::vector<char*> arguments;
+  for (std::string& word : all) arguments.push_back(word.data());
+  arguments.push_back(nullptr);
+  int ends[2];
+  if (pipe2(ends, O_CLOEXEC) != 0) throw base::Error(base::ErrorKind::kInternal, "no pipe for a film");
+  posix_spawn_file_actions_t actions;
+  posix_spawn_file_actions_init(&actions);
+  posix_spawn_file_actions_addopen(&actions, STDIN_FILENO, "/dev/null", O_RDONLY, 0);
+  posix_spawn_file_actions_adddup2(&actions, ends[1], STDOUT_FILENO);
+  posix_spawn_file_actions_adddup2(&actions, ends[1], STDERR_FILENO);
+  const int failure = posix_spawn(&process_, self.c_str(), &actions, nullptr, arguments.data(), environ);
+  posix_spawn_file_actions_destroy(&actions);
+  close(ends[1]);
+  if (failure != 0) {
+    close(ends[0]);
+    process_ = 0;
+    throw base::Error(base::ErrorKind::kInternal, "the command of a film cannot be started");
+  }
+  reader_ = std::thread([this, output = ends[0]] { follow(output); });
+}
+
+/// Reads what the command prints until it ends.
+void Films::follow(int output) {
+  std::FILE* const lines = fdopen(output, "r");
+  char* line = nullptr;
+  std::size_t size = 0;
+  while (lines != nullptr && getline(&line, &size, lines) > 0) {
+    const nlohmann::json value = nlohmann::json::parse(line, nullptr, false);
+    const std::lock_guard lock(mutex_);
+    if (value.is_object() && value.contains("progress"))
+      progress_ = line;
+    else
+      messages_.push_back(value.is_object() ? value.value("message", "") : line);
+    if (messages_.size() > kMostMessages) messages_.erase(messages_.begin());
+  }
+  std::free(line);
+  if (lines != nullptr) std::fclose(lines);
+  siginfo_t ended;
+  waitid(P_PID, static_cast<id_t>(process_), &ended, WEXITED | WNOWAIT);
+  const std::lock_guard lock(mutex_);  // from here on the number may be that of another process
+  int status = 0;
+  waitpid(process_, &status, 0);
+  process_ = 0;
+  status_ = WIFEXITED(status) ? WEXITSTATUS(status) : 128 + WTERMSIG(status);
+}
+
+void Films::cancel() {
+  const std::lock_guard lock(mutex_);
+  if (process_ != 0) kill(process_, SIGINT);
+}
+
+std::string Films::state() const {
+  const std::lock_guard lock(mutex_);
+  nlohmann::json out = {{"file", file_.string()}, {"is_running", process_ != 0}, {"status", status_}};
+  out["progress"] = nlohmann::json::parse(progress_, nullptr, false);
+  out["messages"] = messages_;
+  return out.dump(-1, ' ', false, nlohmann::json::error_handler_t::replace);
+}
+
+}  // namespace orrery::cli

@@ -1,0 +1,355 @@
+// SPDX-License-Identifier: Apache-2.0
+// The state of the page, and the program that grants its wishes. The state is `view`: options by name (a string, a list
+// of strings for one that is repeated, true for a flag), a camera or null for that of the data, and whether the image
+// fills the window. It is in the address after #, and in the list that undo and redo walk.
+
+export const $ = id => document.getElementById(id);
+
+// Makes an element. Properties with a dash are attributes.
+export function element(tag, properties = {}, ...children) {
+  const out = document.createElement(tag);
+  for (const [name, value] of Object.entries(properties)) {
+    if (value === undefined) continue;
+    if (name.includes("-") || name === "role" || name === "list") out.setAttribute(name, value);
+    else out[name] = value;
+  }
+  out.append(...children);
+  return out;
+}
+
+const target = new EventTarget();
+const emit = (name, detail) => target.dispatchEvent(new CustomEvent(name, { detail }));
+// Events: "view", the state of the page has changed; "state", that of the program; "image"; "settled"; "problem".
+export const on = (name, f) => target.addEventListener(name, event => f(event.detail));
+
+export const UNREACHABLE = "orrery has ended, or cannot be reached.";
+const SETTLED_ms = 250;       // after the last step of the wheel or of a key
+const MOST_STEPS = 200;       // of undo
+const MOST_PIXELS = 3840 * 2160;
+const FITTED = new Set(["--perspective", "--center", "--look-from", "--zoom", "--up", "--fit", "--view"]);  // no moved camera
+
+export let page = null;       // what the program offers
+export let state = null;      // what it has told about the last wish of this page
+export let view = { options: {}, camera: null, fills: false };
+export let lastOption = "";   // that was changed last
+
+const client = Array.from(crypto.getRandomValues(new Uint8Array(12)), byte => byte.toString(16).padStart(2, "0")).join("");
+let lastWish = 0, granted = 0, isMoving = false, isSending = false, next = null;
+let shownFrame = 0, knownState = 0, isReachable = true;
+const steps = [];             // states as text
+let step = -1;
+
+// The secret moves from the address to the storage of this tab, where a reload finds it. In a frame nobody sees the
+// address, and browsers may refuse the storage.
+const isFramed = window.top !== window;
+let secret = new URLSearchParams(location.search).get("token");
+if (!isFramed) {
+  secret ??= sessionStorage.getItem("secret") ?? "";
+  sessionStorage.setItem("secret", secret);
+  history.replaceState(null, "", location.pathname + location.hash);
+}
+
+// ---- Requests -----------------------------------------------------------------------------------------------------
+
+export async function request(path, body) {
+  const headers = { Authorization: `Bearer ${secret}` };
+  const sent = body === undefined ? { headers } : { method: "POST", headers, body: JSON.stringify(body) };
+  try {
+    const answer = await fetch(path, sent);
+    if (!isReachable) emit("reachable", isReachable = true);
+    return answer;
+  } catch {
+    if (isReachable) emit("reachable", isReachable = false);
+    return null;
+  }
+}
+
+// The JSON of an answer; null, with a message if there is one, if it is an error.
+export async function ask(path, body, isQuiet) {
+  const answer = await request(path, body);
+  if (answer?.ok) return answer.json();
+  if (answer && !isQuiet) emit("problem", (await answer.text()).trim());
+  return null;
+}
+
+// The answer to a request about the image of this page; null: there is none. Waits until the scene is read, or the image is
+// complete. If another page has asked since, the image is asked for again.
+export async function own(path) {
+  const address = `${path}${path.includes("?") ? "&" : "?"}client=${client}`;
+  for (;;) {
+    const answer = await request(address);
+    if (answer?.status !== 409) return answer;
+    if (isSettled() && state.problem) return null;
+    if ((await answer.text()).startsWith("another") && !isSending) wish(false);
+    await new Promise(done => setTimeout(done, 100));
+  }
+}
+
+// ---- Wishes -------------------------------------------------------------------------------------------------------
+
+// What is asked for, without what the page keeps for itself.
+export const wanted = () => ({ options: view.options, camera: view.camera });
+
+// Sends what the client wants to see. While a wish is under way, only the last one waits. Returns its number.
+export async function wish(moves, changes = {}) {
+  next = { ...wanted(), ...changes, moves, client };
+  isMoving = moves;
+  settled();
+  if (isSending) return;
+  isSending = true;
+  while (next) {
+    const body = next;
+    next = null;
+    const answer = await ask("wish", body);
+    if (answer) {
+      lastWish = answer.wish;
+      if (!next) emit("command", answer.command);
+    } else {
+      granted = lastWish;
+    }
+  }
+  isSending = false;
+  settled();
+}
+
+export const isSettled = () => !isSending && !next && !isMoving && granted >= lastWish;
+
+function settled() {
+  const { dataset } = $("picture");
+  dataset.settled = isSettled();
+  dataset.asked = lastWish;
+  emit("settled");
+}
+
+// ---- Changes ------------------------------------------------------------------------------------------------------
+
+export const control = name => page.options.find(option => option.name === name);
+export const option = name => view.options[name] ?? (control(name)?.repeatable ? [] : "");
+export const command = name => Boolean(control(name));
+
+// Options as the program sends them: all values are in lists.
+function normalized(options) {
+  const out = {};
+  for (const [name, value] of Object.entries(options)) {
+    if (value === true || control(name)?.repeatable) out[name] = value;
+    else if (value.length > 0) out[name] = value[0];
+  }
+  return out;
+}
+
+const isEmpty = value => value === "" || value === false || value == null || value.length === 0;
+
+// Changes options. `moves`: more changes follow at once, as of a slider that is dragged.
+export function set(changes, moves = false) {
+  const options = { ...view.options };
+  for (const [name, value] of Object.entries(changes)) {
+    delete options[name];
+    if (!isEmpty(value)) options[name] = value;
+    if (FITTED.has(name)) view.camera = null;
+    if (name === "--quality") for (const other of ["--noise", "--samples", "--denoise"]) delete options[other];
+    if ((name === "--noise" || name === "--samples") && !isEmpty(value)) delete options["--quality"];
+    lastOption = name;
+  }
+  view = { ...view, options };
+  changed(moves);
+}
+
+// Changes an option whose control must not move the camera, which would follow what is shown.
+export function setStill(changes, moves) {
+  view.camera = current();
+  set(changes, moves);
+}
+
+let settling = 0;
+// Shows another camera; null: that of the data. `isDragging`: release() follows.
+export function move(camera, isDragging) {
+  view = { ...view, camera };
+  clearTimeout(settling);
+  if (!isDragging) settling = setTimeout(() => changed(false), SETTLED_ms);
+  emit("view");
+  wish(true);
+}
+
+export function look(camera) {
+  view = { ...view, camera };
+  changed(false);
+}
+
+export function release() {
+  if (isMoving) changed(false);
+}
+
+function changed(moves) {
+  clearTimeout(settling);
+  if (!moves) record();
+  emit("view");
+  wish(moves);
+}
+
+// The camera that a move starts from.
+export const current = () => view.camera ?? state?.camera ?? null;
+
+// ---- Address, undo and redo ---------------------------------------------------------------------------------------
+
+export function textOf({ options, camera, fills }) {
+  const out = new URLSearchParams();
+  for (const [name, value] of Object.entries(options)) {
+    if (fills && (name === "--width" || name === "--height")) continue;
+    for (const one of [value].flat()) out.append(name.slice(2), one === true ? "" : one);
+  }
+  if (camera) out.set(".camera", JSON.stringify(camera));
+  if (fills) out.set(".window", "");
+  return out.toString();
+}
+
+function viewOf(text) {
+  const out = { options: {}, camera: null, fills: false };
+  for (const [key, value] of new URLSearchParams(text)) {
+    const known = control(`--${key}`);
+    if (key === ".window") out.fills = true;
+    else if (key === ".camera") try { out.camera = JSON.parse(value); } catch { /* the camera of the data */ }
+    else if (!known) emit("problem", `The address names --${key}, an option that this page does not have.`);
+    else if (known.repeatable) (out.options[known.name] ??= []).push(value);
+    else out.options[known.name] = known.type === "" ? true : value;
+  }
+  if (out.fills) Object.assign(out.options, windowSize());
+  return out;
+}
+
+function record() {
+  const text = textOf(view);
+  if (text === steps[step]) return;
+  steps.splice(step + 1, Infinity, text);
+  if (steps.length > MOST_STEPS) steps.shift();
+  step = steps.length - 1;
+  if (!isFramed) try { history.pushState(null, "", `#${text}`); } catch { /* too many in a short time */ }
+}
+
+export const canStep = by => steps[step + by] !== undefined;
+
+export function undo(by = -1) {
+  if (!canStep(by)) return;
+  step += by;
+  view = viewOf(steps[step]);
+  if (!isFramed) history.replaceState(null, "", `#${steps[step]}`);
+  changed(false);
+}
+
+export function restore(text) {
+  view = viewOf(text);
+  changed(false);
+}
+
+window.addEventListener("popstate", () => {
+  const text = location.hash.slice(1), known = steps.lastIndexOf(text);
+  if (text === textOf(view)) return;
+  if (known >= 0) step = known;
+  view = viewOf(text);
+  changed(false);
+});
+
+// ---- Size ---------------------------------------------------------------------------------------------------------
+
+// The size of the picture's place in pixels of the screen.
+function windowSize() {
+  const box = $("stage").getBoundingClientRect();
+  const pixels = Math.min(devicePixelRatio || 1, Math.sqrt(MOST_PIXELS / Math.max(box.width * box.height, 1)));
+  return { "--width": String(Math.max(16, Math.round(box.width * pixels))),
+           "--height": String(Math.max(16, Math.round(box.height * pixels))) };
+}
+
+// Chooses the size: [width, height], or null for that of the window.
+export function resize(size) {
+  view = { ...view, fills: !size };
+  set(size ? { "--width": String(size[0]), "--height": String(size[1]) } : windowSize());
+}
+
+let resizing = 0;
+function followWindow() {
+  const size = windowSize();
+  emit("view");
+  if (!view.fills || (size["--width"] === option("--width") && size["--height"] === option("--height"))) return;
+  view = { ...view, options: { ...view.options, ...size } };
+  wish(true);
+  clearTimeout(resizing);
+  resizing = setTimeout(() => wish(false), SETTLED_ms);
+}
+
+// ---- Images and state ---------------------------------------------------------------------------------------------
+
+async function showFrames() {
+  for (;;) {
+    const answer = await request(`frame?after=${shownFrame}&state=${knownState}`);
+    if (!answer) {
+      await new Promise(done => setTimeout(done, 1000));
+      continue;
+    }
+    if (answer.status === 403) return emit("problem", "Open the address that the program printed.");
+    const header = name => answer.headers.get(name);
+    if (answer.status === 200) {
+      shownFrame = Number(header("X-Frame"));
+      if (header("X-Client") === client) {
+        const number = Number(header("X-Wish")), isFinished = header("X-Finished") === "1";
+        const blob = await answer.blob();
+        await Promise.all(listeners.map(f => f({ blob, number, isFinished, isLast: number === lastWish && !isSending,
+                                                 frame: shownFrame, samples: Number(header("X-Samples")),
+                                                 noise: Number(header("X-Noise")) })));
+        if (isFinished) granted = Math.max(granted, number);
+      }
+    }
+    const hasNewState = Number(header("X-State")) !== knownState;
+    knownState = Number(header("X-State"));
+    // While a camera moves, its frames are all there is to know.
+    if (!state || (hasNewState && (!isMoving || isPlaying))) await showState();
+    settled();
+  }
+}
+
+const listeners = [];
+// Adds what is done with an image before the next one is asked for.
+export const onImage = f => listeners.push(f);
+let isPlaying = false;
+// While frames are played, the state of each is wanted.
+export const setPlaying = value => { isPlaying = value; };
+
+async function showState() {
+  const told = await ask("state", undefined, true);
+  if (!told) return;
+  knownState = told.number;
+  const isOwn = told.client === client;
+  if (!isOwn && state) {
+    emit("busy", told);
+    if (!isSettled() && told.served >= told.asked && !document.hidden && !isSending) wish(isMoving);
+    return;
+  }
+  const isCurrent = isOwn && told.asked === lastWish && !isSending && !next;
+  if (isCurrent && told.problem) granted = Math.max(granted, told.served);
+  state = told;
+  if (isCurrent) {  // the program may have corrected the wish
+    const options = normalized(told.options);
+    if (!isMoving && JSON.stringify(sorted(options)) !== JSON.stringify(sorted(view.options))) view = { ...view, options };
+    if (told.fitted && !told.activity) view = { ...view, camera: null };
+  }
+  emit("state", isOwn);
+}
+
+const sorted = options => Object.entries(options).sort(([a], [b]) => a < b ? -1 : 1);
+
+document.addEventListener("visibilitychange", () => {
+  if (!document.hidden && state && state.client !== client && !isSettled()) wish(false);
+});
+
+export async function start() {
+  page = await ask("page");
+  if (!page) return;
+  view = location.hash.length > 1 ? viewOf(location.hash.slice(1))
+    : { options: normalized(page.first), camera: null, fills: page.fills };
+  if (view.fills) Object.assign(view.options, windowSize());
+  steps.push(textOf(view));
+  step = 0;
+  emit("page");
+  emit("view");
+  new ResizeObserver(followWindow).observe($("stage"));
+  wish(false);
+  showFrames();
+}

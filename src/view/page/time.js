@@ -1,0 +1,136 @@
+// SPDX-License-Identifier: Apache-2.0
+// The frames of a trajectory: timeline and play. Frames that were rendered are kept, and further ones are rendered ahead
+// of the one that is shown, so that a loop is smooth.
+import { $, current, on, option, set, setPlaying, state, view, wanted, wish } from "./store.js";
+import { frameNumber } from "./data.js";
+import { canvas, draw, setTaker } from "./picture.js";
+
+const AHEAD = 60;             // frames
+const MOST_BYTES = 256 << 20;
+const cache = new Map();      // images by frame
+let cached = "", bytes = 0;   // of which state the images are
+let isPlaying = false, shown = 1, asked = 0, timer = 0, held = "";
+
+const count = () => state?.frames ?? 1;
+const key = () => JSON.stringify({ ...view, camera: current(), options: { ...view.options, "--frame": "", "--frames": "" } });
+
+function keep() {
+  if (cached === key()) return;
+  cached = key();
+  cache.clear();
+  bytes = 0;
+}
+
+// The frame after one, or before it; null: there is none.
+function after(frame, by = 1) {
+  const next = frame + by;
+  if (next >= 1 && next <= count()) return next;
+  return $("loop").checked ? (by > 0 ? 1 : count()) : null;
+}
+
+const asksFor = frame => ({ ...wanted(), options: { ...view.options, "--frame": String(frame) }, camera: current() });
+
+// Asks for the next frame that is missing.
+function render() {
+  keep();
+  let frame = shown;
+  for (let i = 0; i < AHEAD && frame !== null; ++i, frame = after(frame))
+    if (!cache.has(frame)) {
+      if (bytes > MOST_BYTES) return;
+      asked = frame;
+      wish(true, asksFor(frame));
+      return;
+    }
+  asked = 0;
+}
+
+async function display(frame) {
+  shown = frame;
+  const bitmap = await createImageBitmap(cache.get(frame));
+  if (frame === shown) draw(bitmap);
+  tell();
+}
+
+function tick() {
+  timer = setTimeout(tick, 1000 / Number($("speed").value));
+  const next = after(shown);
+  if (next === null) return stop();
+  if (cache.has(next)) display(next);
+  if (asked === 0) render();
+}
+
+function takes({ blob, isLast }) {
+  if (!isPlaying) return false;
+  canvas.dataset.played = asked;
+  if (asked > 0 && isLast) {
+    keep();
+    cache.set(asked, blob);
+    bytes += blob.size;
+    render();
+  }
+  return true;
+}
+
+function start() {
+  isPlaying = true;
+  setPlaying(true);
+  setTaker(takes);
+  shown = frameNumber();
+  view.camera = current();
+  const { "--range": range } = state.chosen;
+  if (range && (!option("--range") || option("--range") === held)) view.options["--frames"] = "all";  // for the range of all frames
+  asked = 0;
+  render();
+  timer = setTimeout(tick, 0);
+  tell();
+}
+
+function stop() {
+  isPlaying = false;
+  setPlaying(false);
+  setTaker(null);
+  clearTimeout(timer);
+  delete view.options["--frames"];
+  show(shown);
+}
+
+export const toggle = () => isPlaying ? stop() : start();
+
+// Shows a frame with the camera and the range of the one before.
+function show(frame, moves = false) {
+  view.camera = current();
+  const { "--range": range } = state.chosen;
+  const changes = { "--frame": frame === 1 ? "" : String(frame) };
+  if (range && !option("--range")) changes["--range"] = held = range;
+  set(changes, moves);
+}
+
+export function step(by) {
+  const next = after(frameNumber(), by);
+  if (count() > 1 && !isPlaying && next !== null) show(next);
+}
+
+function tell() {
+  const isMany = count() > 1, frame = isPlaying ? shown : frameNumber();
+  $("time").hidden = !isMany;
+  document.body.classList.toggle("timed", isMany);
+  if (!isMany) return;
+  $("play").textContent = isPlaying ? "❚❚" : "▶";
+  $("play").setAttribute("aria-label", isPlaying ? "Pause" : "Play");
+  $("frame").max = count();
+  if (document.activeElement !== $("frame") || isPlaying) $("frame").value = frame;
+  const words = [`frame ${frame} / ${count()}`], data = state.data;
+  if (!isPlaying && data?.step !== undefined && state.asked === Number(canvas.dataset.asked)) words.push(`step ${data.step.toLocaleString("en")}`);
+  if (!isPlaying) for (const [name, value] of data?.header ?? []) if (/^time$/i.test(name)) words.push(`time ${Number(value.toPrecision(6))}`);
+  $("frame-number").value = words.join(" · ");
+  const share = cached === key() ? cache.size / count() : 0;
+  $("ahead").style.width = `${100 * share}%`;
+}
+
+$("frame").addEventListener("input", () => { if (isPlaying) shown = Number($("frame").value); else show(Number($("frame").value), true); });
+$("frame").addEventListener("change", () => { if (!isPlaying) show(Number($("frame").value)); });
+$("play").addEventListener("click", toggle);
+$("previous").addEventListener("click", () => step(-1));
+$("next").addEventListener("click", () => step(1));
+on("state", tell);
+on("view", tell);
