@@ -1,4 +1,4 @@
-#!/usr/bin/env python3
+#!/usr/bin/python3
 # SPDX-License-Identifier: Apache-2.0
 """Bundles a build with the libraries that it needs: an archive that runs on any Linux, or a wheel of the Python package.
 

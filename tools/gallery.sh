@@ -1,6 +1,7 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: Apache-2.0
-# Renders the images of docs/gallery.md with the commands in it.
+# Renders the images of docs/gallery.md with the commands in it, and counts the defaults that they override: a default that
+# figures override is wrong.
 #
 #   tools/gallery.sh DATA [NAME...]    DATA: folder with the data files that the page names; tools/lammps/ makes some
 #                                      NAME: images to render, e.g. virus; default: all
@@ -22,6 +23,9 @@ PATH="$work/bin:$PATH"
 commands_of() {
   awk -v name="$1" '/^## /{found = ($2 == name ":")} /^```/{inside = found && !inside; next} inside' "$root/docs/gallery.md"
 }
+
+sed -n '/^```sh/,/^```/p' "$root/docs/gallery.md" | grep -oE -e '--(look-from|map|material|style)\b' | sort | uniq -c |
+  awk '{ count += $1; print $2 ": " $1 } END { print "overridden defaults: " count + 0 ", at most 4, each with a reason" }'
 
 names=("$@")
 if [ ${#names[@]} -eq 0 ]; then mapfile -t names < <(sed -n 's/^## \([a-z-]*\):.*/\1/p' "$root/docs/gallery.md"); fi

@@ -1,4 +1,4 @@
-#!/usr/bin/env python3
+#!/usr/bin/python3
 # SPDX-License-Identifier: Apache-2.0
 """Runs the notebooks of examples/notebooks and stores what they print and show, for pages that only display them.
 

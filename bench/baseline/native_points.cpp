@@ -3,7 +3,7 @@
 
 #include <cmath>
 
-#include "accel/embree_api.h"
+#include "support/sphere_points.h"
 
 namespace orrery::bench::baseline {
 namespace {

@@ -11,11 +11,8 @@
 #include <atomic>
 #include <cstddef>
 #include <cstdint>
-#include <functional>
 #include <string>
 #include <type_traits>
-
-#include "kernel/sphere.h"
 
 namespace orrery::accel {
 
@@ -119,11 +116,5 @@ class OwnedScene {
   RTCDevice device_ = nullptr;
   RTCScene scene_ = nullptr;
 };
-
-/// Builds a scene of Embree's built-in sphere points, rounded to float; radii are not padded.
-///
-/// Errors     those of OwnedScene::commit()
-void build_sphere_points(OwnedScene& scene, std::size_t count,
-                         const std::function<kernel::Sphere(std::size_t i)>& sphere_at);
 
 }  // namespace orrery::accel

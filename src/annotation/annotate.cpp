@@ -32,7 +32,7 @@ constexpr double kPrintFont = 8.0 / 72;
 constexpr std::size_t kMaxLabels = 20;
 /// Width of the texts of a legend, in widths of the image; of a letter, in font sizes; and fewest letters that are
 /// shown.
-constexpr double kLegendWidth = 0.25, kLetterWidth = 0.6, kFewestLetters = 8;
+constexpr double kLegendWidth = 0.25, kLetterWidth = 0.6, kFewestLetters = 8, kFewestInLegend = 12;
 
 /// Linear Rec.709, of legends and ink.
 constexpr const char* kLegendSpace = "lin_rec709";
@@ -181,7 +181,7 @@ Drawing drawing_of(const scene::Scene& scene, const LegendColors& legend, const 
   Drawing bar;
   if (annotation.color_bar && !legend.is_empty()) {
     const auto most_bytes =
-        static_cast<std::size_t>(std::max(kLegendWidth * view.width / (kLetterWidth * size), kFewestLetters));
+        static_cast<std::size_t>(std::max(kLegendWidth * view.width / (kLetterWidth * size), kFewestInLegend));
     LegendColors titled = legend;
     if (!annotation.color_title.empty()) titled.title = annotation.color_title;
     bar = legend_drawing(titled, {size, view.height - 2 * margin - above - below, kMaxLabels, most_bytes, out.ink},

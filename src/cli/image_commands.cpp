@@ -44,10 +44,10 @@ std::string text_of(const job::Denoising& denoising, const job::DenoisedFile& do
     if (is_so) out += base::warning_line(text);
   };
   warn(done.written.had_attributes, input + " was denoised already and has been filtered again");
-  warn(!report.missing.empty(),
-       fmt::format("{} lacks the layers {}: {}; render with --layers halves for the best result", input,
-                   base::joined(report.missing),
-                   report.has_guides ? "noise was estimated from the beauty" : "only the beauty guided the filter"));
+  warn(!report.is_filtered,
+       input +
+           " was not filtered: one half of the samples is missing, so that the noise cannot be measured; render at "
+           "least 2 samples per pixel");
   warn(report.bad_pixels > 0,
        fmt::format("{} pixels have no samples, or values that are not finite or too large; they were not changed",
                    report.bad_pixels));
@@ -89,14 +89,14 @@ void add_develop(Command& program) {
 void add_denoise(Command& program) {
   const auto options = std::make_shared<DenoiseOptions>();
   Command& command = *program.add_subcommand("denoise", "Denoise an EXR image and its light layers");
-  command.add_option("IN", options->denoising.input, "FILE", "EXR image; best rendered with --layers halves")
+  command.add_option("IN", options->denoising.input, "FILE", "EXR image that was rendered with --layers halves")
       ->required();
   command.add_option("-o,--output", options->denoising.output, "FILE", "EXR file to write")->required();
   add_threads_option(command, options->denoising.threads);
   command.add_flag("-q,--quiet", options->quiet, "Print only errors");
   command.details(
       "The light layers are filtered with the same weights, so that they still add up to the beauty. Other channels, "
-      "parts, attributes and pixel types are kept. Layers that the image lacks are reported.");
+      "parts, attributes and pixel types are kept.");
   command.footer(
       "Examples:\n"
       "  orrery render scene.toml -o noisy.exr --samples 32 --layers halves,light_groups\n"

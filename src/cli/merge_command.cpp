@@ -7,7 +7,7 @@
 #include "cli/messages.h"
 #include "cli/render_options.h"
 #include "cli/signals.h"
-#include "job/job.h"
+#include "job/run_job.h"
 #include "job/shards.h"
 
 namespace orrery::cli {

@@ -122,9 +122,8 @@ void add_view_options(Command& command, plot::PlotOptions& plot) {
       ->details(
           "auto, the default for molecules: along the direction in which they are least extended. 30,20, the default "
           "for "
-          "others: from 30 degrees to the right of the front and 20 degrees above; with one --slice: from its axis. "
-          "iso: "
-          "45 and 35.26 degrees.");
+          "others: from 30 degrees to the right of the front and 20 degrees above; 30,40 for flat data; with one "
+          "--slice: from its axis. iso: 45 and 35.26 degrees.");
   command.add_option("--zoom", plot.zoom, "X", "Magnification, relative to the view that shows all; default: 1")
       ->check(real_number(1e-3, 1e6));
   command.add_option("--fit", plot.fit, "CONDITION",

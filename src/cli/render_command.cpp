@@ -20,7 +20,7 @@
 #include "film/partial.h"
 #include "film/picture.h"
 #include "job/checkpoint.h"
-#include "job/job.h"
+#include "job/run_job.h"
 #include "load/read_scene.h"
 #include "preview/preview.h"
 #include "render/settings.h"
@@ -97,7 +97,7 @@ std::unique_ptr<preview::Preview> start_preview(const std::filesystem::path& fil
   if (file.empty()) return nullptr;
   auto out = std::make_unique<preview::Preview>(file, std::move(note));
   preview::Preview* const started = out.get();
-  hooks.on_start = [started](const display::PictureInfo& picture) { started->begin(picture); };
+  hooks.on_start = [started](const display::PictureInfo& picture, const auto&) { started->begin(picture); };
   hooks.on_pixels = [started](const film::Partial& state, const film::RenderedPixels& rendered) {
     started->write(state, rendered);
   };

@@ -5,7 +5,7 @@
 #include <string>
 
 #include "cli/options.h"
-#include "job/job.h"
+#include "job/batch.h"
 
 namespace orrery::cli {
 

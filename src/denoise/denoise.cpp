@@ -5,6 +5,7 @@
 #include <array>
 #include <cstddef>
 #include <optional>
+#include <utility>
 
 #include <tbb/parallel_for.h>
 #include <tbb/task_arena.h>
@@ -17,12 +18,9 @@
 namespace orrery::denoise {
 namespace {
 
-/// Squared differences of patches of the beauty, in units of the variance, at which their similarity becomes 0: for
-/// filtered halves, and without halves.
-constexpr float kTolerance = 12, kToleranceOfImage = 2.5F;
-
-/// Squared differences of patches, in units of the variance, at which their similarity becomes 0.
-constexpr float kGuideTolerance = 4, kVarianceTolerance = 5;
+/// Squared differences of patches, in units of the variance, at which their similarity becomes 0: of the filtered
+/// halves, of the guides, and of the noisy halves.
+constexpr float kTolerance = 12, kGuideTolerance = 4, kVarianceTolerance = 5;
 
 /// Radius of the windows, px. Guides are less noisy than the beauty. A larger window for the halves would blur shadows
 /// before the final weights can distinguish them.
@@ -129,16 +127,14 @@ FilteredHalves filtered_halves(SourcePlanes& planes, const std::vector<PaddedPla
 WeightSource beauty_source(const SourcePlanes& planes, const FilteredHalves& halves,
                            const std::vector<PaddedPlane>& guides) {
   WeightSource source;
-  source.tolerance = planes.has_halves ? kTolerance : kToleranceOfImage;
+  source.tolerance = kTolerance;
   source.valid = &planes.valid;
   source.target = {&planes.beauty[0], &planes.beauty[1], &planes.beauty[2]};
-  source.variance = planes.has_halves ? &halves.variance : &planes.variance;
-  for (std::size_t c = 0; c < 3; ++c)
-    source.compared.push_back(planes.has_halves ? ComparedChannel{&halves.a[c], &halves.b[c]}
-                                                : ComparedChannel{&planes.beauty[c], &planes.beauty[c]});
+  source.variance = &halves.variance;
+  for (std::size_t c = 0; c < 3; ++c) source.compared.push_back({&halves.a[c], &halves.b[c]});
   for (const PaddedPlane& guide : guides) source.guides.push_back(&guide);
   source.guide_variance = &planes.guide_variance;
-  source.has_regression = !guides.empty();
+  source.has_regression = true;
   return source;
 }
 
@@ -201,12 +197,11 @@ std::optional<std::size_t> partial_alpha(const film::Picture& picture) {
   return static_cast<std::size_t>(plane - picture.planes.data());
 }
 
-Report filter(film::Picture& picture, bool keeps_halves) {
+Report filter(film::Picture& picture, SourcePlanes planes) {
   const int width = picture.width, height = picture.height;
-  SourcePlanes planes = source_planes(picture, keeps_halves);
   const LightLayers lights = find_light_layers(picture);
   const bool is_complete = are_complete(picture, lights);
-  Report report{lights.names, planes.missing, !planes.guides.empty(), 0};
+  Report report{lights.names, true, 0};
   std::array<bool, 3> is_positive{};
   for (std::size_t c = 0; c < 3; ++c) {
     const std::vector<float>& beauty = picture.planes[lights.channels[c].beauty].values;
@@ -214,9 +209,8 @@ Report filter(film::Picture& picture, bool keeps_halves) {
   }
   Tiles tiles(width, height);
   const Frame frame{width, height};
-  const std::vector<PaddedPlane> guides =
-      planes.guides.empty() ? std::vector<PaddedPlane>() : filtered_guides(planes, frame, tiles);
-  const FilteredHalves halves = planes.has_halves ? filtered_halves(planes, guides, frame, tiles) : FilteredHalves();
+  const std::vector<PaddedPlane> guides = filtered_guides(planes, frame, tiles);
+  const FilteredHalves halves = filtered_halves(planes, guides, frame, tiles);
   const WeightSource source = beauty_source(planes, halves, guides);
   std::vector<std::vector<PaddedPlane>> cells;
   for (std::size_t c = 0; c < 3; ++c) {
@@ -261,7 +255,12 @@ Report filter(film::Picture& picture, bool keeps_halves) {
 Report denoise(film::Picture& picture, int threads, bool keeps_halves) {
   for (const char* name : {"R", "G", "B"}) picture.at(name);  // fails without the beauty
   tbb::task_arena arena(threads > 0 ? threads : tbb::task_arena::automatic);
-  return arena.execute([&] { return filter(picture, keeps_halves); });
+  return arena.execute([&] {
+    std::optional<SourcePlanes> planes = source_planes(picture, keeps_halves);
+    if (!keeps_halves)
+      std::erase_if(picture.planes, [](const film::Plane& plane) { return film::is_half(plane.name); });
+    return planes ? filter(picture, std::move(*planes)) : Report();
+  });
 }
 
 }  // namespace orrery::denoise

@@ -14,9 +14,10 @@ inline constexpr const char* kAttribute = "orrery/denoised";
 
 /// Report of denoise().
 struct Report {
-  std::vector<std::string> layers;   ///< light layers that were filtered with the beauty
-  std::vector<std::string> missing;  ///< layers that would improve the result, but that the image lacks
-  bool has_guides = false;           ///< the filter used albedo and normal as guides
+  std::vector<std::string> layers;  ///< light layers that were filtered with the beauty
+  /// False: more than a sixteenth of the pixels have samples in one half only, so that the noise cannot be measured.
+  /// The image is unchanged.
+  bool is_filtered = false;
   /// Pixels without samples, or whose beauty is not finite or too large. They remain unchanged.
   std::uint64_t bad_pixels = 0;
 };
@@ -26,13 +27,12 @@ struct Report {
 /// is filtered with the same weights if part of the image is transparent, since colours are premultiplied. Other planes
 /// are unchanged. The sum over the image is preserved, within the limits of LightBalance.
 ///
-/// The weights come from the layer `halves`, or, if the image lacks it, from the guides `denoise.albedo`,
-/// `denoise.normal` and `depth`, from `variance` and from the beauty itself.
+/// The weights come from the layer `halves`.
 ///
 /// `threads`       number of threads; 0: all that the process may use
 /// `keeps_halves`  false: removes the layer `halves` early, which saves memory
 /// Result     the same bits on any number of threads and with any instruction set
-/// Errors     base::Error(kBadData) if the image has no R, G and B
+/// Errors     base::Error(kBadData) if the image lacks R, G, B or the layer `halves`
 /// Reference  rousselle2012, bitterli2016
 Report denoise(film::Picture& picture, int threads = 0, bool keeps_halves = true);
 

@@ -2,7 +2,7 @@
 #pragma once
 
 #include <array>
-#include <string>
+#include <optional>
 #include <vector>
 
 #include "denoise/outliers.h"
@@ -14,20 +14,20 @@ namespace orrery::denoise {
 
 /// The planes of an image that guide its filter.
 struct SourcePlanes {
-  bool has_halves = false;                  ///< `a` and `b` are independent
   std::array<PaddedPlane, 3> beauty, a, b;  ///< the beauty, and that of two halves of the samples
   Outliers outliers;                        ///< already reduced in `beauty`, `a` and `b`
   PaddedPlane variance;                     ///< variance of the beauty, summed over the channels
-  std::vector<PaddedPlane> guides;          ///< kGuides, or empty
+  std::vector<PaddedPlane> guides;          ///< kGuides
   PaddedPlane guide_variance;               ///< sum over the guides
   PaddedPlane valid;                        ///< 1; 0 outside the image and where the beauty is not finite
-  std::vector<std::string> missing;         ///< layers that the image lacks
 };
 
-/// Prepares the planes of an image with a beauty R, G, B: halves, guides and variance, if present. Values that are not
-/// finite are replaced by 0.
+/// Prepares the planes of an image with a beauty R, G, B and the layer `halves`. Values that are not finite are
+/// replaced by 0.
 ///
 /// `keeps_halves`  false: the layer `halves` is removed, each plane as soon as it is not needed
-SourcePlanes source_planes(film::Picture& picture, bool keeps_halves);
+/// Result     empty if more than a sixteenth of the pixels have samples in one half only: the noise cannot be measured
+/// Errors     base::Error(kBadData) if the image lacks the layer `halves`
+std::optional<SourcePlanes> source_planes(film::Picture& picture, bool keeps_halves);
 
 }  // namespace orrery::denoise

@@ -1,11 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
+#include "job/batch.h"
+
 #include <fmt/core.h>
 
 #include "base/error.h"
 #include "base/frames.h"
 #include "base/text.h"
 #include "job/check_job.h"
-#include "job/job.h"
 #include "job/prepared_scene.h"
 #include "load/read_scene.h"
 

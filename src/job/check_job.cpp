@@ -12,7 +12,7 @@
 #include "compile/compiled_scene.h"
 #include "image/format.h"
 #include "job/checkpoint.h"
-#include "job/job.h"
+#include "job/resources.h"
 #include "load/read_scene.h"
 #include "scene/scene.h"
 
@@ -23,7 +23,7 @@ namespace {
 std::vector<NamedOutput> outputs_of(const Job& job) {
   std::vector<NamedOutput> out;
   each_named(job.outputs, [&](const std::filesystem::path& file, const char* role) { out.push_back({file, role}); });
-  if (job.merge.shards.empty() && job.keep == nullptr)
+  if (job.merge.shards.empty() && !job.is_in_memory())
     out.push_back({checkpoint_file(job.outputs.images.front().path), "checkpoint"});
   return out;
 }
@@ -62,7 +62,7 @@ void check_request(const Job& job) {
 }
 
 void check_layers(const Job& job, const scene::Scene& scene) {
-  if (!job.outputs.has_exr() && job.keep == nullptr && job.merge.shards.empty() && !scene.output.layers.empty() &&
+  if (!job.outputs.has_exr() && !job.is_in_memory() && job.merge.shards.empty() && !scene.output.layers.empty() &&
       job.scene.overrides.sets("output.layers"))
     base::refuse("no output can hold the requested layers; add -o FILE.exr");
 }

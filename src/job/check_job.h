@@ -5,11 +5,10 @@
 
 #include "base/file_set.h"
 #include "compile/forward.h"
+#include "job/job.h"
 #include "scene/forward.h"
 
 namespace orrery::job {
-
-struct Job;
 
 /// Adds the files that a job reads and writes according to its command line. The names of Cryptomatte manifests are
 /// reserved for every EXR image, because the scene has not been read yet.

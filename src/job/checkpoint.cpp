@@ -20,10 +20,7 @@
 #include "film/layer_planes.h"
 #include "film/partial.h"
 #include "image/read.h"
-#include "job/job.h"
-#include "job/layers.h"
 #include "job/picture_header.h"
-#include "job/scene_hash.h"
 #include "job/version.h"
 #include "load/read_scene.h"
 #include "render/settings.h"
@@ -215,21 +212,19 @@ std::filesystem::path checkpoint_file(const std::filesystem::path& first_output)
   return first_output.parent_path() / base::companion_name(first_output.stem().string(), ".checkpoint.exr");
 }
 
-Checkpoint::Checkpoint(std::filesystem::path file, const CheckpointSettings& settings, const Hooks& hooks,
-                       image::Provenance provenance, Write write)
-    : settings_(settings),
-      hooks_(hooks),
-      file_(std::move(file)),
+Checkpoint::Checkpoint(const Job& job, image::Provenance provenance, Write write)
+    : settings_(job.checkpoint),
+      hooks_(job.hooks),
+      file_(checkpoint_file(job.outputs.images.front().path)),
       provenance_(std::move(provenance)),
       write_(std::move(write)) {}
 
 std::optional<film::Partial> Checkpoint::load(int width_px, int height_px) {
   if (!std::filesystem::exists(file_)) return {};
   if (!settings_.resume) {
-    if (hooks_.on_warning)
-      hooks_.on_warning(base::file_diagnostic(base::Severity::kWarning, file_.string(),
-                                              "checkpoint of an earlier render, replaced if this one is stopped; "
-                                              "--resume continues from it"));
+    hooks_.warn(base::file_diagnostic(base::Severity::kWarning, file_.string(),
+                                      "checkpoint of an earlier render, replaced if this one is stopped; "
+                                      "--resume continues from it"));
     return {};
   }
   try {
@@ -260,9 +255,8 @@ void Checkpoint::write_snapshot(const film::Partial& partial) {
     write(partial);
     if (was_requested && hooks_.on_note) hooks_.on_note("wrote " + file_.string());
   } catch (const base::Error& error) {
-    if (hooks_.on_warning)
-      hooks_.on_warning(base::file_diagnostic(base::Severity::kWarning, file_.string(),
-                                              std::string("checkpoint not written: ") + error.what()));
+    hooks_.warn(base::file_diagnostic(base::Severity::kWarning, file_.string(),
+                                      std::string("checkpoint not written: ") + error.what()));
   }
   since_last_.lap();
 }
@@ -272,8 +266,8 @@ void Checkpoint::write(const film::Partial& partial) {
   is_ours_ = true;
 }
 
-void Checkpoint::finish(const film::Partial* partial) {
-  if (settings_.keep && partial != nullptr) return write_snapshot(*partial);
+void Checkpoint::finish(const film::Partial& partial) {
+  if (settings_.keep) return write_snapshot(partial);
   std::error_code ignored;
   if (is_ours_) std::filesystem::remove(file_, ignored);
 }

@@ -14,16 +14,13 @@
 #include "film/forward.h"
 #include "image/header.h"
 #include "image/partial_file.h"
+#include "job/job.h"
+#include "job/layers.h"
+#include "job/scene_hash.h"
 #include "load/read_scene.h"
 #include "render/forward.h"
 
 namespace orrery::job {
-
-struct CheckpointSettings;
-struct Hooks;
-struct Job;
-struct Layers;
-struct SceneHashes;
 
 /// The provenance of a shard or checkpoint of this job: program version, scene, and every setting that its sums depend
 /// on. It prevents merging or resuming incompatible files.
@@ -78,9 +75,8 @@ class Checkpoint {
 
   /// Starts the first interval; no file is read or written yet.
   ///
-  /// Domain     `settings` and `hooks` outlive this
-  Checkpoint(std::filesystem::path file, const CheckpointSettings& settings, const Hooks& hooks,
-             image::Provenance provenance, Write write);
+  /// Domain     `job` outlives this
+  Checkpoint(const Job& job, image::Provenance provenance, Write write);
 
   const std::filesystem::path& file() const { return file_; }
 
@@ -104,8 +100,8 @@ class Checkpoint {
   /// Removes the checkpoint if this job wrote it or resumed from it; writes it instead if the settings keep it. Call
   /// after the images are written.
   ///
-  /// `partial`  the finished sums; null for a merge, which has no checkpoint
-  void finish(const film::Partial* partial);
+  /// `partial`  the finished sums
+  void finish(const film::Partial& partial);
 
  private:
   const CheckpointSettings& settings_;

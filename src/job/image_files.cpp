@@ -3,8 +3,6 @@
 
 #include <string>
 
-#include <fmt/core.h>
-
 #include "annotation/drawing.h"
 #include "base/available_memory.h"
 #include "base/error.h"
@@ -16,9 +14,9 @@
 #include "image/library.h"
 #include "image/read.h"
 #include "image/write.h"
-#include "job/outputs.h"
 #include "job/resources.h"
 #include "job/version.h"
+#include "job/write_outputs.h"
 #include "load/read_scene.h"
 
 namespace orrery::job {
@@ -70,11 +68,11 @@ DenoisedFile denoise_file(const Denoising& denoising) {
   image::set_threads(threads);
   DenoisedFile out;
   const auto edit = [&](film::Picture& picture) {
-    for (const char* channel : {"R", "G", "B"})
-      if (picture.find(channel) == nullptr)
-        throw base::Error(base::ErrorKind::kBadData,
-                          fmt::format("{} has no half or float channel {}", denoising.input.string(), channel));
-    out.report = denoise::denoise(picture, threads);
+    try {
+      out.report = denoise::denoise(picture, threads);
+    } catch (const base::Error& error) {
+      throw base::Error(error.kind(), denoising.input.string() + ": " + error.what());
+    }
     return std::vector<image::Attribute>{{denoise::kAttribute, "orrery " + program_version()}};
   };
   out.written = image::rewrite_exr(denoising.input, denoising.output, edit);

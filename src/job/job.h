@@ -3,6 +3,7 @@
 
 #include <atomic>
 #include <cstddef>
+#include <cstdint>
 #include <filesystem>
 #include <functional>
 #include <memory>
@@ -11,6 +12,7 @@
 #include <utility>
 #include <vector>
 
+#include "annotation/drawing.h"
 #include "base/error.h"
 #include "base/file_set.h"
 #include "display/forward.h"
@@ -19,8 +21,6 @@
 #include "image/header.h"
 #include "image/write.h"
 #include "job/outputs.h"
-#include "job/resources.h"
-#include "job/shards.h"
 #include "load/load_scene.h"
 #include "render/result.h"
 #include "render/settings.h"
@@ -28,7 +28,13 @@
 namespace orrery::job {
 
 class PreparedScene;
-struct Rendering;
+
+/// Limits on the job's use of the machine.
+struct Resources {
+  int threads = 0;                 ///< 0: default_threads()
+  std::uint64_t memory_limit = 0;  ///< bytes; 0: the free memory
+  std::uint64_t disk_limit = 0;    ///< bytes per file system; 0: its free space
+};
 
 /// When checkpoints are written and read.
 struct CheckpointSettings {
@@ -55,7 +61,8 @@ struct Hooks {
   std::function<void(const render::Progress&)> on_progress;  ///< see render::Settings
   /// Called before the first sample with what is done, "reading", "compiling" or "building", and its progress, 0..1.
   std::function<void(const char* phase, double fraction)> on_preparation;
-  std::function<void(const display::PictureInfo&)> on_start;  ///< called before rendering starts
+  /// Called before rendering starts, with what is drawn over the image, without outlines. Not called for a merge.
+  std::function<void(const display::PictureInfo&, const annotation::Drawing&)> on_start;
   /// See render::Settings. Not called for a merge.
   std::function<void(const film::Partial&, const film::RenderedPixels&)> on_pixels;
   std::function<void(const film::Picture&)> on_denoised;  ///< receives the denoised image
@@ -64,9 +71,17 @@ struct Hooks {
   std::function<void(const std::string&)> on_note;  ///< receives replies to requests that were made by a signal
   const std::atomic<bool>* cancel = nullptr;        ///< true stops the job
   std::atomic<bool>* snapshot = nullptr;            ///< true requests a checkpoint; the job resets it to false
+
+  bool is_cancelled() const { return cancel != nullptr && cancel->load(std::memory_order_relaxed); }
+  void warn(const base::Diagnostic& diagnostic) const {
+    if (on_warning) on_warning(diagnostic);
+  }
+  void prepare(const char* phase, double fraction = 0) const {
+    if (on_preparation) on_preparation(phase, fraction);
+  }
 };
 
-/// A request to `orrery render` or `orrery merge`.
+/// A request to render or to merge; run_job.h.
 struct Job {
   load::SceneSource scene;
   Outputs outputs;
@@ -84,14 +99,14 @@ struct Job {
   std::shared_ptr<base::FileSet> files = nullptr;
   /// The scene of an earlier job, of which this job prepares only what has changed; null: nothing is kept.
   std::shared_ptr<PreparedScene> prepared = nullptr;
-  /// Receives the image and all layers of the scene; before `on_start`, what is drawn over the image, without outlines.
-  /// No file is written.
-  Rendering* keep = nullptr;
   double prepare_s = 0;  ///< time taken to create the scene, for the report
+
+  /// True if the image, with all layers of the scene, stays in memory.
+  bool is_in_memory() const { return outputs.images.empty(); }
 };
 
 /// True if the scene's sample count limits adaptive sampling, because an override sets it.
-bool is_limited(const Job& job);
+inline bool is_limited(const Job& job) { return job.scene.overrides.sets("render.samples"); }
 
 /// True if the output is a shard, not an image.
 inline bool is_shard(const Job& job) { return job.as_shard || job.sampling.is_partial(); }
@@ -131,37 +146,5 @@ struct JobReport {
   bool was_skipped = false;          ///< its files existed and were up to date
   int exit_status = 0;               ///< of the program: 0 or kTargetMissed
 };
-
-/// Renders a scene to files, or merges shards: load, prepare, render or merge, finish, write.
-///
-/// A shard is an EXR of exact sums; so is the checkpoint of a stopped job. A resumed job gives the same bits as one
-/// that was never stopped. No output replaces an input, including the scene's points files and OCIO configs.
-///
-/// Before rendering starts, the job checks that its files can be created and that formats, compression, display and
-/// view exist. The statistics file is also written if the job is stopped or fails after these checks.
-///
-/// Domain     at least one output, or `keep` and none: no deep image, no checkpoint, no shard
-/// Errors     base::Error of any kind; kStopped if `cancel` stopped the job, in which case no image was written
-JobReport run_job(const Job& job);
-
-/// Frames and scenes to render with one command.
-struct Batch {
-  Job job;  ///< the settings that all jobs share; its file names have patterns for the frame and the scene
-  std::vector<std::filesystem::path> scenes;
-  std::vector<int> frames;          ///< empty: one still image per scene
-  std::vector<NamedOutput> others;  ///< files that the caller writes
-};
-
-/// Replaces the patterns in the name of an output: `{scene}` by the scene's file name without its extension; `####` and
-/// `%04d` by the frame, if there is one.
-std::filesystem::path output_name(const std::filesystem::path& name, const std::filesystem::path& scene,
-                                  std::optional<int> frame);
-
-/// Creates one job per frame and scene, with output_name() for its files. The jobs share one set of files, which
-/// detects conflicts between them.
-///
-/// Errors     base::Error: kUsage if a file would be written twice, if an output is an input, or if a name lacks a
-///            needed pattern or has a frame pattern without frames; kCannotCreate for one of the `others`
-std::vector<Job> jobs_of(const Batch& batch);
 
 }  // namespace orrery::job

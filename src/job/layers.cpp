@@ -17,7 +17,6 @@
 #include "compile/compiled_scene.h"
 #include "film/cryptomatte.h"
 #include "image/format.h"
-#include "job/outputs.h"
 #include "scene/layers.h"
 
 namespace orrery::job {

@@ -12,11 +12,10 @@
 #include "compile/forward.h"
 #include "film/layers.h"
 #include "image/header.h"
+#include "job/outputs.h"
 #include "scene/forward.h"
 
 namespace orrery::job {
-
-struct Outputs;
 
 /// The layers that are Cryptomattes.
 inline constexpr std::array kMatteLayers = {"CryptoObject", "CryptoMaterial", "CryptoGroup"};

@@ -11,7 +11,6 @@
 #include "compile/camera_basis.h"
 #include "compile/compiled_scene.h"
 #include "display/color_space.h"
-#include "job/job.h"
 #include "job/version.h"
 #include "load/read_scene.h"
 #include "scene/scene.h"

@@ -6,6 +6,7 @@
 
 #include "compile/forward.h"
 #include "image/header.h"
+#include "job/job.h"
 #include "load/read_scene.h"
 #include "scene/forward.h"
 
@@ -21,8 +22,6 @@ struct CameraMatrices {
 ///
 /// Reference  openexr-standard-attributes
 CameraMatrices camera_matrices(const scene::Camera& camera, const scene::Image& image);
-
-struct JobReport;
 
 /// The header of a job's images: camera, colour space, settings, statistics.
 ///

@@ -7,7 +7,7 @@
 #include "image/format.h"
 #include "job/checkpoint.h"
 #include "job/layers.h"
-#include "job/outputs.h"
+#include "job/write_outputs.h"
 #include "load/read_scene.h"
 
 namespace orrery::job {

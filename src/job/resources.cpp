@@ -20,7 +20,6 @@
 #include "film/layers.h"
 #include "film/partial.h"
 #include "image/format.h"
-#include "job/job.h"
 #include "kernel/isa.h"
 #include "math/pixels.h"
 #include "render/render.h"

@@ -8,18 +8,10 @@
 
 #include "compile/forward.h"
 #include "film/forward.h"
+#include "job/job.h"
 #include "scene/forward.h"
 
 namespace orrery::job {
-
-struct Job;
-
-/// Limits on the job's use of the machine.
-struct Resources {
-  int threads = 0;                 ///< 0: default_threads()
-  std::uint64_t memory_limit = 0;  ///< bytes; 0: the free memory
-  std::uint64_t disk_limit = 0;    ///< bytes per file system; 0: its free space
-};
 
 /// Default thread count: the minimum of the affinity mask's CPUs, the CPU quotas of the process's control groups,
 /// SLURM_CPUS_PER_TASK and CUE_THREADS. A variable that is not a positive integer is ignored.

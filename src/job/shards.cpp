@@ -20,15 +20,14 @@
 #include "base/file_set.h"
 #include "base/stop_point.h"
 #include "base/text.h"
-#include "compile/compiled_scene.h"
 #include "film/partial.h"
 #include "image/partial_file.h"
+#include "job/batch.h"
 #include "job/checkpoint.h"
-#include "job/job.h"
+#include "job/prepare_job.h"
 #include "math/pixels.h"
 #include "render/render.h"
 #include "render/result.h"
-#include "render/settings.h"
 
 namespace orrery::job {
 namespace {
@@ -116,7 +115,9 @@ std::string missing_shards(const std::vector<ShardFile>& shards) {
 }
 
 /// Adds the sums of a job's shards, and reports which samples are missing and which machines rendered the others.
-film::Partial sum_of_shards(const Job& job, const compile::CompiledScene& compiled, JobReport& report) {
+film::Partial sum_of_shards(const PreparedJob& prepared, JobReport& report) {
+  const Job& job = prepared.job;
+  const compile::CompiledScene& compiled = prepared.compiled();
   const bool allow_missing = job.merge.allow_missing;
   const auto samples = static_cast<std::uint32_t>(compiled.samples);
   std::vector<ShardFile> shards = job.merge.shards;
@@ -173,30 +174,29 @@ film::Partial sum_of_shards(const Job& job, const compile::CompiledScene& compil
     refuse(ErrorKind::kBadData, {error_in("the shards", report.missing + " are in no shard",
                                           absent.empty() ? "render them, or add --allow-missing" : absent)});
   }
-  if (job.hooks.on_warning)
-    for (const base::Diagnostic& diagnostic : left_out) job.hooks.on_warning(as_left_out(diagnostic));
+  for (const base::Diagnostic& diagnostic : left_out) job.hooks.warn(as_left_out(diagnostic));
   return std::move(*sum);
 }
 
 /// Requires that a shard has these properties of the scene.
-void require_same(const Job& job, const image::Provenance& provenance, const std::vector<std::string>& keys) {
-  const ShardFile& first = job.merge.shards.front();
-  if (const std::string wrong = difference(first.provenance, provenance, keys); !wrong.empty())
+void require_same(const PreparedJob& prepared, const std::vector<std::string>& keys) {
+  const ShardFile& first = prepared.job.merge.shards.front();
+  if (const std::string wrong = difference(first.provenance, prepared.provenance, keys); !wrong.empty())
     throw base::Error(ErrorKind::kBadData,
                       fmt::format("{} has {} as {}; the scene has changed, or --scene names another one",
-                                  first.file.string(), wrong, job.scene.file.string()));
+                                  first.file.string(), wrong, prepared.job.scene.file.string()));
 }
 
 /// Requires that the sums have the layers of the image.
-void require_layers(const Job& job, const film::LayerRequest& layers, const image::Provenance& provenance,
-                    const film::Partial& sum) {
+void require_layers(const PreparedJob& prepared, const film::Partial& sum) {
+  const film::LayerRequest& layers = prepared.layers.request;
   const auto fail = [](const std::string& text) { throw base::Error(ErrorKind::kBadData, text); };
   const bool has_guides = !sum.guides[0].empty();
-  if (job.denoise && !has_guides)
+  if (prepared.job.denoise && !has_guides)
     fail("the shards have no halves to denoise from; render them with --denoise or --layers halves");
-  if (job.outputs.has_exr()) {  // other formats do not hold the layers that the shards may have
+  if (prepared.job.outputs.has_exr()) {  // other formats do not hold the layers that the shards may have
     if (has_guides && !layers.guides()) fail("the shards were rendered with --denoise; merge them with --denoise");
-    require_same(job, provenance, {"layers"});
+    require_same(prepared, {"layers"});
   }
   if (!sum.has_arrays_of(film::Partial(sum.width, sum.height, layers)))
     fail("the shards were rendered without the requested layers");
@@ -257,12 +257,11 @@ void take_scene(const ShardFile& shard, Job& job) {
   });
 }
 
-render::Result merge_shards(const Job& job, const compile::CompiledScene& compiled, const render::Settings& settings,
-                            const image::Provenance& provenance, JobReport& report) {
-  require_same(job, provenance, {"version", "sceneHash"});
-  const film::Partial sum = sum_of_shards(job, compiled, report);
-  require_layers(job, settings.layers, provenance, sum);
-  render::Result result = render::finished(compiled, settings.layers, sum, settings.threads);
+render::Result merge_shards(const PreparedJob& prepared, int threads, JobReport& report) {
+  require_same(prepared, {"version", "sceneHash"});
+  const film::Partial sum = sum_of_shards(prepared, report);
+  require_layers(prepared, sum);
+  render::Result result = render::finished(prepared.compiled(), prepared.layers.request, sum, threads);
   const auto [fewest, most] = std::minmax_element(sum.counts.begin(), sum.counts.end());
   result.statistics = {};
   result.statistics.min_samples = *fewest;

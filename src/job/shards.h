@@ -6,15 +6,12 @@
 #include <vector>
 
 #include "base/error.h"
-#include "compile/forward.h"
-#include "image/header.h"
+#include "job/job.h"
 #include "render/forward.h"
 
 namespace orrery::job {
 
-struct Job;
-struct JobReport;
-struct ShardFile;
+struct PreparedJob;
 
 /// Reads the provenance of shards and checks that they belong to one image.
 ///
@@ -32,11 +29,10 @@ void take_scene(const ShardFile& shard, Job& job);
 /// Merges the shards of a job instead of rendering: adds their sums, one shard at a time in memory. The sums equal
 /// those of a single render, whatever the order of the files.
 ///
-/// `settings` threads and layers
+/// `report`   receives the machines that rendered the image, and which samples are missing
 /// Domain     the shards are a result of read_shards
 /// Errors     base::Error(kBadData) if the scene has changed since, or naming shards that overlap, are unfinished or of
 ///            another size, and missing samples
-render::Result merge_shards(const Job& job, const compile::CompiledScene& compiled, const render::Settings& settings,
-                            const image::Provenance& provenance, JobReport& report);
+render::Result merge_shards(const PreparedJob& prepared, int threads, JobReport& report);
 
 }  // namespace orrery::job

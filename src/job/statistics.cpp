@@ -7,7 +7,6 @@
 
 #include "base/atomic_file.h"
 #include "film/picture.h"
-#include "job/job.h"
 #include "job/report_text.h"
 #include "job/version.h"
 

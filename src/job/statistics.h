@@ -5,10 +5,9 @@
 #include <string>
 
 #include "base/error.h"
+#include "job/job.h"
 
 namespace orrery::job {
-
-struct JobReport;
 
 /// Statistics of a job as JSON, schema "orrery.stats/1": docs/statistics.md.
 ///

@@ -42,6 +42,9 @@ constexpr double kNetworkCoordination = 2.5;
 /// radius of sticks between elements, in the unit of the file.
 constexpr double kBallFraction = 0.5, kStickFraction = 0.3, kStickRadius = 0.2;
 
+/// Radius of a trace that is all there is, angstrom.
+constexpr double kTraceRadius = 0.9;
+
 /// Length of arrows and radius of their shafts, in distances to the nearest neighbour; radius of spheres with arrows,
 /// as a fraction of that without.
 constexpr double kArrowLength = 1.2, kShaftRadius = 0.07, kArrowSphereFraction = 0.25;
@@ -104,11 +107,13 @@ class Appearance {
     std::vector<std::string>& rules = points_.representation;
     if (options_.representation) {
       representation_ = *options_.representation;
-    } else if (rules.empty() && points_.vectors.columns.empty() && data::has_column(info_.columns, "name") &&
-               data::has_column(info_.columns, "residue_number") && !info_.roles.chain.empty()) {
+    } else if (rules.empty() && !options_.bonds && points_.vectors.columns.empty() &&
+               data::has_column(info_.columns, "name") && data::has_column(info_.columns, "residue_number") &&
+               !info_.roles.chain.empty()) {
       const std::vector<std::string> names = data_.distinct_values(points_, "name");
       if (names == std::vector<std::string>{"CA"} || names == std::vector<std::string>{"P"}) {
         representation_ = Representation::kTrace;
+        if (!has_radius()) points_.radius.value = rounded(kTraceRadius * points_.radius.scale);
         chose("representation trace", "all atoms are " + names[0] + " atoms; --representation spheres shows them");
       }
     }
@@ -119,9 +124,14 @@ class Appearance {
     representation_ = Representation::kSpheres;
   }
 
+  bool has_radius() const {
+    const scene::PointsRadius& radius = points_.radius;
+    return radius.value || !radius.column.empty() || !radius.element.empty() || !radius.types.empty();
+  }
+
   void choose_radius() {
     scene::PointsRadius& radius = points_.radius;
-    if (radius.value || !radius.column.empty() || !radius.element.empty() || !radius.types.empty()) return;
+    if (has_radius()) return;
     const bool has_elements = !info_.roles.element.empty();
     const bool is_spheres = representation_ == Representation::kSpheres;
     const bool is_sticks = representation_ == Representation::kSticks;

@@ -229,28 +229,40 @@ class PlotMaker {
   /// The axes of the view. Without one, molecules are seen along their principal axes, data that are cut by a plane
   /// from its axis, and others from above and from the side.
   ViewAxes choose_view() {
-    const bool is_molecule = !info_.z_up || (!info_.roles.element.empty() && !info_.box);
-    look_from_ = !options_.look_from.empty()   ? options_.look_from
-                 : options_.slices.size() == 1 ? std::string("+") + "xyz"[options_.slices[0].first]
-                 : is_molecule && options_.up.empty() && !options_.ground ? kAuto
-                                                                          : kDefaultView;
-    if (look_from_ != kAuto) {
-      if (options_.up.empty())
-        chose("up " + up_name_, info_.z_up ? "customary for simulations and scans" : "customary for molecules");
-      return view_axes(look_from_, up_name_);
+    const ViewAxes near = view_axes(kDefaultView, up_name_);
+    look_from_ = options_.look_from;
+    if (look_from_.empty() && options_.slices.size() == 1) {
+      const int axis = options_.slices[0].first;
+      const double back[3] = {near.back.x, near.back.y, near.back.z};
+      look_from_ = {back[axis] < 0 ? '-' : '+', "xyz"[axis]};
     }
-    // The first frame of the file decides, whichever are shown. If it is shown, it is read for visit_frames(), too.
-    const int first = data_.is_sequence() ? data_.all().front() : 1,
-              shown = data_.fixed_frame().value_or(data_.all().front());
+    const bool is_molecule = !info_.z_up || (!info_.roles.element.empty() && !info_.box);
+    if (look_from_.empty() && is_molecule && options_.up.empty() && !options_.ground) look_from_ = kAuto;
+    if (look_from_.empty() || look_from_ == kAuto) {
+      std::optional<LoadedFrame> other;
+      const LoadedFrame& first = first_frame(other);
+      const scene::PointArray& centers = first.points.centers;
+      const std::size_t count = first.points.particle_count();
+      if (look_from_ == kAuto) return principal_axes(centers, count, near, aspect() < 1);
+      look_from_ = are_flat(centers, count, up_) ? kFlatView : kDefaultView;
+    }
+    if (options_.up.empty())
+      chose("up " + up_name_, info_.z_up ? "customary for simulations and scans" : "customary for molecules");
+    return view_axes(look_from_, up_name_);
+  }
+
+  /// The first frame of the file, which decides about the view, whichever are shown. If it is shown, visit_frames()
+  /// does not read it again.
+  ///
+  /// `other`    holds the frame if it is not shown
+  const LoadedFrame& first_frame(std::optional<LoadedFrame>& other) {
+    const int first = data_.is_sequence() ? data_.all().front() : 1;
+    const bool is_shown = data_.fixed_frame().value_or(data_.all().front()) == first && options_.slices.empty() &&
+                          options_.fit.empty() && !options_.near && !options_.far;
+    if (is_shown) return first_.emplace(load_frame(data_.all().front()));
     scene::PointsKeys keys = selected(options_.fit);
     if (!data_.is_sequence()) keys.frame = first;
-    const bool is_shown =
-        shown == first && options_.slices.empty() && options_.fit.empty() && !options_.near && !options_.far;
-    LoadedFrame loaded = is_shown ? load_frame(data_.all().front()) : data_.load(first, keys);
-    const ViewAxes axes = principal_axes(loaded.points.centers, loaded.points.particle_count(),
-                                         view_axes(kDefaultView, up_name_), aspect() < 1);
-    if (is_shown) first_ = std::move(loaded);
-    return axes;
+    return other.emplace(data_.load(first, keys));
   }
 
   /// Reads a frame that is shown, and the values for the range of the colour map.
@@ -303,6 +315,9 @@ class PlotMaker {
     std::vector<std::string> out;
     if (!options_.points.select.empty()) out.emplace_back("--select");
     if (!options_.slices.empty()) out.emplace_back("--slice");
+    if (options_.near) out.emplace_back("--near");
+    if (options_.far) out.emplace_back("--far");
+    if (!out_.points.representation.empty()) out.emplace_back("--representation");
     return base::joined(out);
   }
 

@@ -132,6 +132,13 @@ ViewAxes view_axes(const std::string& look_from, const std::string& up) {
   return out;
 }
 
+bool are_flat(const scene::PointArray& points, std::size_t count, Vec3d up) {
+  constexpr double kFlat = 0.25, kParallel = 0.9;
+  if (count == 0) return false;
+  const auto [longest, middle, shortest] = principal_axes_of(points, count);
+  return shortest.deviation < kFlat * middle.deviation && std::abs(math::dot(shortest.direction, up)) > kParallel;
+}
+
 ViewAxes principal_axes(const scene::PointArray& points, std::size_t count, const ViewAxes& near, bool is_tall) {
   constexpr double kAlike = 1.1, kRounding = 1e-6;
   if (count == 0) return near;

@@ -28,6 +28,13 @@ ViewAxes view_axes(const std::string& look_from, const std::string& up);
 
 /// A view that shows three faces of a box, none of whose corners is in front of another.
 inline constexpr const char* kDefaultView = "30,20";
+/// The same from further above, for flat data.
+inline constexpr const char* kFlatView = "30,40";
+
+/// Whether points lie in a layer perpendicular to the up axis, of less than a quarter of its extent.
+///
+/// `count`    the number of points to use, from the first
+bool are_flat(const scene::PointArray& points, std::size_t count, Vec3d up);
 
 /// Returns the axes of a view along the direction in which points are least extended, with the one in which they are
 /// most extended along the longer side of the image. Of the four such views, the one that is closest to `near`.

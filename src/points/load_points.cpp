@@ -30,9 +30,9 @@ using data::Vec3d;
 constexpr std::uint64_t kMaxRows = std::numeric_limits<std::uint32_t>::max();
 
 /// Columns of traces.
-constexpr const char *kAtomName = "name", *kResidueNumber = "residue_number";
+constexpr const char *kNameColumn = "name", *kResidueColumn = "residue_number";
 /// Radius of a trace, in radii of bonds.
-constexpr double kTraceFraction = 6;
+constexpr double kTraceFraction = 4;
 
 /// The largest distance of an atom with this name to the one before in a trace; 0 for atoms beside it.
 double longest_step(const std::string& name) { return name == "CA" ? 4.6 : name == "P" ? 8.6 : 0; }
@@ -114,7 +114,7 @@ class Loader {
     need(info_.roles.id);
     for (const std::string& column : points_.cryptomatte)
       if (require_column(info_, column, false, ".cryptomatte", faults_)) need(column);
-    labels_ = rules_of(info_, points_.labels, ".labels", parse_label, faults_, false);
+    labels_ = rules_of(info_, points_.labels, ".labels", parse_label, faults_, Colon::kFirst);
     representations_ = rules_of(info_, points_.representation, ".representation", parse_representation, faults_);
     need_columns_of(radius_.rules, color_.rules, opacity_.rules, labels_, representations_);
     plan_traces();
@@ -160,14 +160,14 @@ class Loader {
 
   void plan_traces() {
     if (!has_rule_for(Representation::kTrace)) return;
-    for (const std::string& column : {std::string(kAtomName), info_.roles.chain, std::string(kResidueNumber)}) {
+    for (const std::string& column : {std::string(kNameColumn), info_.roles.chain, std::string(kResidueColumn)}) {
       if (data::has_column(info_.columns, column))
         need(column);
       else
         return faults_.error(
             ".representation",
-            fmt::format("a trace needs the columns `{}`, `{}` and a chain, which PDB and mmCIF files have", kAtomName,
-                        kResidueNumber));
+            fmt::format("a trace needs the columns `{}`, `{}` and a chain, which PDB and mmCIF files have", kNameColumn,
+                        kResidueColumn));
     }
   }
 
@@ -335,7 +335,7 @@ class Loader {
     apply_rules(table, rows, representations_, points_.representation, ".representation", faults_,
                 [&](std::size_t i, Representation kind) { kinds_[i] = kind; });
     if (!has_rule_for(Representation::kTrace)) return rows;
-    const auto& names = std::get<data::Words>(table.find(kAtomName)->values);
+    const auto& names = std::get<data::Words>(table.find(kNameColumn)->values);
     std::vector<std::uint32_t> list;
     std::size_t kept = 0;
     for (std::size_t i = 0; i < rows.size(); ++i) {
@@ -397,9 +397,9 @@ class Loader {
 
   /// Joins the atoms of traces that follow each other in a chain, unless residues between them are missing.
   void add_traces(const data::Table& table, const Rows& rows, const scene::PointArray& centers, BondSet& bonds) const {
-    const auto& names = std::get<data::Words>(table.find(kAtomName)->values);
+    const auto& names = std::get<data::Words>(table.find(kNameColumn)->values);
     const auto& chains = std::get<data::Words>(table.find(info_.roles.chain)->values);
-    const data::Column& numbers = *table.find(kResidueNumber);
+    const data::Column& numbers = *table.find(kResidueColumn);
     for (std::uint32_t b = 1, a = 0; b < rows.size(); ++b) {
       if (points_.are_traces[b] == 0) continue;
       const std::size_t from = rows[a], to = rows[b];

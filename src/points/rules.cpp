@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "points/rules.h"
 
+#include <fmt/core.h>
+
 #include <algorithm>
 #include <cmath>
 
@@ -11,20 +13,22 @@
 
 namespace orrery::points {
 
-std::size_t end_of_expression(std::string_view text) {
+std::size_t end_of_expression(std::string_view text, Colon which) {
   constexpr std::string_view kQuotes = "\"'`", kOpening = "[{(", kClosing = "]})";
   int depth = 0;
+  std::size_t last = std::string_view::npos;
   for (std::size_t at = 0; at < text.size(); ++at) {
-    if (text[at] == ':' && depth <= 0) return at;
+    if (text[at] == ':' && depth <= 0) last = at;
+    if (last != std::string_view::npos && which == Colon::kFirst) return last;
     if (kOpening.find(text[at]) != std::string_view::npos) ++depth;
     if (kClosing.find(text[at]) != std::string_view::npos) --depth;
     if (kQuotes.find(text[at]) != std::string_view::npos) at = std::min(text.find(text[at], at + 1), text.size());
   }
-  return std::string_view::npos;
+  return last;
 }
 
-std::pair<std::string, std::string> split_rule(const std::string& text) {
-  const std::size_t colon = end_of_expression(text);
+std::pair<std::string, std::string> split_rule(const std::string& text, Colon which) {
+  const std::size_t colon = end_of_expression(text, which);
   if (colon == std::string::npos) return {"", std::string(data::trimmed(text))};
   const std::string_view all = text;
   std::pair<std::string, std::string> out(data::trimmed(all.substr(0, colon)), data::trimmed(all.substr(colon + 1)));

@@ -8,8 +8,6 @@
 #include <utility>
 #include <vector>
 
-#include <fmt/core.h>
-
 #include "base/error.h"
 #include "points/rows.h"
 #include "points/selection.h"
@@ -18,14 +16,19 @@
 /// last that matches a particle decides.
 namespace orrery::points {
 
+/// The colon that ends an expression.
+enum class Colon { kFirst, kLast };
+
 /// Returns the place of the colon that ends an expression: the first one outside quotes, brackets and braces, which
 /// contain ranges and strings; npos if there is none.
-std::size_t end_of_expression(std::string_view text);
+///
+/// `which`    kLast: the last such one, before a value that has no colon: `id 2:5: 0.3`
+std::size_t end_of_expression(std::string_view text, Colon which = Colon::kFirst);
 
 /// Splits "CONDITION: VALUE" into both parts, without spaces around them. "VALUE" alone has no condition.
 ///
 /// Errors     base::Error(kUsage) for an empty condition
-std::pair<std::string, std::string> split_rule(const std::string& text);
+std::pair<std::string, std::string> split_rule(const std::string& text, Colon which = Colon::kLast);
 
 /// An opacity.
 ///
@@ -61,23 +64,26 @@ struct Rule {
   T value;
 };
 
+/// The key of a rule in a list: ".opacity.where[2]".
+inline std::string rule_key(const char* key, std::size_t index) { return key + ("[" + std::to_string(index) + "]"); }
+
 /// Parses rules. Reports those that are not valid.
 ///
 /// `key`      of the list, ".opacity.where"
 /// `parse`    value of a text; throws base::Error
-/// `may_match_all`  a rule may have no condition
+/// `which`    kFirst: values may have colons, and conditions are needed
 template <class T>
 std::vector<Rule<T>> rules_of(const data::FrameInfo& info, const std::vector<std::string>& texts, const char* key,
-                              T (*parse)(const std::string&), KeyFaults& faults, bool may_match_all = true) {
+                              T (*parse)(const std::string&), KeyFaults& faults, Colon which = Colon::kLast) {
   std::vector<Rule<T>> out;
   for (std::size_t i = 0; i < texts.size(); ++i) {
     try {
-      const auto [condition, value] = split_rule(texts[i]);
-      if (condition.empty() && !may_match_all)
-        base::refuse(fmt::format("`{}` has no condition; write CONDITION: VALUE", texts[i]));
+      const auto [condition, value] = split_rule(texts[i], which);
+      if (condition.empty() && which == Colon::kFirst)
+        base::refuse("`" + texts[i] + "` has no condition; write CONDITION: VALUE");
       out.push_back({parse_selection(condition, info.columns, info.roles.position), parse(value)});
     } catch (const base::Error& error) {
-      faults.error(fmt::format("{}[{}]", key, i), fault_text(error));
+      faults.error(rule_key(key, i), fault_text(error));
     }
   }
   return out;
@@ -98,8 +104,7 @@ void apply_rules(const data::Table& table, const Rows& rows, const std::vector<R
       set(i, rules[r].value);
     }
     if (!matches && rows.size() > 0)
-      faults.warning(fmt::format("{}[{}]", key, r),
-                     fmt::format("`{}` matches none of the particles that are drawn", texts[r]));
+      faults.warning(rule_key(key, r), "`" + texts[r] + "` matches none of the particles that are drawn");
   }
 }
 

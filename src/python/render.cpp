@@ -19,7 +19,7 @@
 
 #include "base/error.h"
 #include "base/stop_point.h"
-#include "job/rendering.h"
+#include "job/run_job.h"
 #include "python/arrays.h"
 #include "python/picture.h"
 #include "render/settings.h"
@@ -173,9 +173,8 @@ Picture render(const std::function<job::Job()>& make_job, const py::object& on_p
   job::Rendering rendering;
   const auto work = [&](const job::Hooks& hooks) {
     job::Job job = make_job();
-    job.keep = &rendering;
     job.hooks = hooks;
-    job::run_job(job);
+    rendering = job::render_in_memory(job);
   };
   run(work, on_progress, on_warning);
   const std::uint64_t paths = rendering.report.render.paths;

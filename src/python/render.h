@@ -25,7 +25,7 @@ void run(const std::function<void(const job::Hooks&)>& work, const pybind11::obj
 /// Renders an image by run().
 ///
 /// `make_job`     called on that thread; the job has no outputs and no hooks
-/// Errors         those of make_job and job::run_job; those of the callbacks
+/// Errors         those of make_job and job::render_in_memory; those of the callbacks
 Picture render(const std::function<job::Job()>& make_job, const pybind11::object& on_progress,
                const pybind11::object& on_warning);
 

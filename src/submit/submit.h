@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "job/job.h"
+#include "job/batch.h"
 
 namespace orrery::submit {
 

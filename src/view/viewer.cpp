@@ -21,8 +21,9 @@
 #include "display/settings.h"
 #include "film/picture.h"
 #include "image/write.h"
-#include "job/job.h"
 #include "job/outputs.h"
+#include "job/run_job.h"
+#include "job/write_outputs.h"
 #include "load/read_scene.h"
 #include "math/pixels.h"
 
@@ -316,7 +317,8 @@ struct Viewer::Image {
   bool is_sketch = false;
   bool is_last = false;  ///< of the wish
   std::vector<std::string> warnings = {};
-  std::shared_ptr<job::Rendering> rendering = std::make_shared<job::Rendering>();
+  std::shared_ptr<job::Rendering> rendering = nullptr;
+  bool has_outlines = false;
   std::shared_ptr<Live> live = nullptr;  ///< null for a sketch
   double build_reported = -1;            ///< fraction of the BVH build that the state tells; negative: none
 };
@@ -350,9 +352,8 @@ void Viewer::render(const Wish& wish, std::uint64_t number, bool is_sketch) {
   picker_.close(job.scene, std::exchange(is_new_subject_, false));
   job.prepared = prepared_;
   job.hooks = hooks_for(image);
-  job.keep = image.rendering.get();
   const base::Stopwatch watch;
-  job::run_job(job);
+  image.rendering = std::make_shared<job::Rendering>(job::render_in_memory(job));
   picker_.open();
   finish(image);
   const job::Phases& phases = image.rendering->report.phases;
@@ -370,7 +371,9 @@ job::Hooks Viewer::hooks_for(Image& image) {
     image.build_reported = fraction;
     set_activity("building the BVH", fraction);
   };
-  hooks.on_start = [this, &image](const display::PictureInfo& info) { begin(image, info); };
+  hooks.on_start = [this, &image](const display::PictureInfo& info, const annotation::Drawing& drawing) {
+    begin(image, info, drawing);
+  };
   if (image.is_sketch) return hooks;
   hooks.on_pixels = [&image](const film::Partial& state, const film::RenderedPixels& rendered) {
     image.live->canvas.write(state, rendered);
@@ -378,7 +381,7 @@ job::Hooks Viewer::hooks_for(Image& image) {
   hooks.on_progress = [this, &image](const render::Progress& progress) {
     // There is no progress before the BVH has been built. Outlines of translucent objects replace the opacities that a
     // pick would read, see render::outlines(): it is then possible when the image is complete.
-    if (image.rendering->drawing.outline_px == 0 || prepared_->compiled().opacity.empty()) picker_.open();
+    if (!image.has_outlines || prepared_->compiled().opacity.empty()) picker_.open();
     if (std::exchange(image.build_reported, -1) >= 0) set_activity("");
     const preview::Canvas& canvas = image.live->canvas;
     image.live->samples = static_cast<double>(progress.samples_done) / pixels_of(canvas.width(), canvas.height());
@@ -387,9 +390,10 @@ job::Hooks Viewer::hooks_for(Image& image) {
 }
 
 /// Tells clients about an image whose scene has been read.
-void Viewer::begin(Image& image, const display::PictureInfo& info) {
+void Viewer::begin(Image& image, const display::PictureInfo& info, const annotation::Drawing& drawing) {
+  image.has_outlines = drawing.outline_px > 0;
   if (!image.is_sketch) {
-    image.live = std::make_shared<Live>(info, image.rendering->drawing, sketch_);
+    image.live = std::make_shared<Live>(info, drawing, sketch_);
     image.live->wish = image.wish;
     image.live->client = image.client;
   }

@@ -130,7 +130,7 @@ class Viewer {
   void correct(const Wish& wish, std::uint64_t number);
   void render(const Wish& wish, std::uint64_t number, bool is_sketch);
   job::Hooks hooks_for(Image& image);
-  void begin(Image& image, const display::PictureInfo& info);
+  void begin(Image& image, const display::PictureInfo& info, const annotation::Drawing& drawing);
   void finish(Image& image);
   void announce();
   void set_activity(const std::string& activity, double progress = 0);

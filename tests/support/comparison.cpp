@@ -4,11 +4,11 @@
 #include <memory>
 
 #include "accel/accel.h"
-#include "accel/embree_api.h"
 #include "accel/embree_scene.h"
 #include "accel/sphere_classes.h"
 #include "kernel/ray_packet.h"
 #include "kernel/scene_view.h"
+#include "support/sphere_points.h"
 
 namespace orrery::accel {
 namespace {

@@ -6,6 +6,7 @@
 #include <string>
 
 #include "base/error.h"
+#include "support/sphere_points.h"
 
 namespace orrery::accel {
 namespace {

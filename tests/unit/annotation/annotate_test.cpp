@@ -136,7 +136,7 @@ TEST_F(AnnotationAnnotate, CategoriesHavePatches) {
   EXPECT_LT(line("12 more").y, 310) << "within the margin";
   view.width = 200;
   scene.points[0].color_names = {"a name longer than a quarter of the image"};
-  line("a name l…");
+  line("a name longe…");
 }
 
 /// Palettes are in the working space: whatever it is, a legend has the colours of the spheres.

@@ -5,7 +5,6 @@
 
 #include <cmath>
 
-#include "compile/camera_basis.h"
 #include "compile/compiled_scene.h"
 #include "compile/environment.h"
 #include "scene/scene.h"
@@ -21,24 +20,6 @@ scene::Scene one_of_each() {
                  {"glass", scene::Dielectric{1.5, scene::Fresnel::kExact}}};
   s.spheres = {{{0, 0, -1}, 0.5, 1, ""}, {{1, 0, -1}, 0.5, 2, ""}, {{1, 0, -1}, -0.4, 2, ""}, {{2, 0, 0}, -1, 1, ""}};
   return s;
-}
-
-TEST(CompileCamera, ViewVectorsFitIntoSinglePrecision) {
-  const auto length_of = [](const kernel::Camera& c) { return length(c.forward); };
-  for (const double distance : {1e-25, 1e18}) {
-    scene::Scene scene;
-    scene.camera.look_from = {0, 0, distance};
-    scene.camera.look_at = {0, 0, 0};
-    const double length = length_of(compile(scene).camera);
-    EXPECT_GE(length, 1) << distance;
-    EXPECT_LE(length, 2) << distance;
-    EXPECT_EQ(std::ldexp(length, std::ilogb(distance)), distance) << "scaled by a power of two";
-    scene.camera.defocus_angle = 1;
-    EXPECT_EQ(length_of(compile(scene).camera), distance) << "a lens has a size";
-  }
-  scene::Scene usual;
-  usual.camera.look_from = {0, 0, 999};  // looks at z = -1
-  EXPECT_EQ(length_of(compile(usual).camera), 1000);
 }
 
 TEST(CompileCompile, LeavesOutUnusedMaterials) {
@@ -158,35 +139,6 @@ TEST(CompileCompile, AConstantBackgroundIgnoresTheDirection) {
   EXPECT_EQ(compiled.background.bottom.z, 0.75);
 }
 
-TEST(CompileCameraBasis, SpansTheImageOnTheFocusPlane) {
-  scene::Camera camera;
-  camera.look_from = {0, 0, 10};
-  camera.look_at = {0, 0, 0};
-  camera.vfov = 90;
-  camera.defocus_angle = 90;
-  camera.focus_distance = 2;
-  const kernel::Camera c = compile_camera(camera, {200, 100}, 1);
-  EXPECT_DOUBLE_EQ(c.forward.z, -2);
-  EXPECT_DOUBLE_EQ(c.right.x * 100, 4);  // 2 tan(45 degrees) at distance 2, divided by the height in pixels
-  EXPECT_DOUBLE_EQ(c.down.y * 100, -4);
-  EXPECT_DOUBLE_EQ(c.lens_u.x, 2);
-  EXPECT_EQ(c.half_width, 100);
-}
-
-TEST(CompileCameraBasis, AnOrthographicImageHasItsWidthAtAnyDistance) {
-  scene::Camera camera;
-  camera.projection = scene::Projection::kOrthographic;
-  camera.width = 3;
-  for (const double distance : {1e-3, 7.0, 1e9}) {
-    camera.look_from = {0, 0, distance};
-    camera.look_at = {0, 0, 0};
-    const kernel::Camera c = compile_camera(camera, {200, 100, 2}, 1);
-    EXPECT_TRUE(c.is_orthographic);
-    EXPECT_DOUBLE_EQ(c.right.x * 200, 3);
-    EXPECT_DOUBLE_EQ(c.down.y * 100, -0.75) << "pixels are twice as wide as high";
-  }
-}
-
 TEST(CompileCompile, HemisphereFeatureIsSetOnlyIfUsed) {
   scene::Scene s = one_of_each();
   s.materials[0].model = scene::Hemisphere{{1, 1, 1}};
@@ -208,13 +160,6 @@ TEST(CompileCompile, PlasticReflectsTheSameOnBothSides) {
   EXPECT_NEAR(m.r0[0], 0.04, 1e-15);
   EXPECT_EQ(m.r0[1], m.r0[0]);
   EXPECT_EQ(out.object_materials[3], out.object_materials[0]) << "a negative radius";
-}
-
-TEST(CompileCameraBasis, FocusesOnLookAtByDefault) {
-  scene::Camera camera;
-  camera.look_from = {3, 0, 4};
-  camera.look_at = {0, 0, 0};
-  EXPECT_EQ(focus_distance(camera), 5);
 }
 
 TEST(CompileCompile, SkiesAreBakedWithTheirSun) {

@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
-// The jobs of a batch: names, frames, and files that two of them would write.
+#include "job/batch.h"
+
 #include <gtest/gtest.h>
 
 #include <string>
 #include <vector>
 
 #include "base/error.h"
-#include "job/job.h"
 #include "support/temp_dir.h"
 #include "unit/job/job_fixture.h"
 

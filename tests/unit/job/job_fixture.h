@@ -9,7 +9,7 @@
 #include <nlohmann/json.hpp>
 
 #include "base/error.h"
-#include "job/job.h"
+#include "job/run_job.h"
 #include "support/temp_dir.h"
 
 namespace orrery::job {

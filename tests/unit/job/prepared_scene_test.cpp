@@ -11,8 +11,7 @@
 
 #include "base/error.h"
 #include "film/picture.h"
-#include "job/job.h"
-#include "job/rendering.h"
+#include "job/run_job.h"
 #include "load/load_scene.h"
 #include "support/temp_dir.h"
 
@@ -164,9 +163,8 @@ class JobPreparedScene : public testing::Test {
   std::string render(std::shared_ptr<PreparedScene> prepared, Rendering& out) const {
     Job job = job_;
     job.prepared = std::move(prepared);
-    job.keep = &out;
     try {
-      run_job(job);
+      out = render_in_memory(job);
       return {};
     } catch (const base::Error& error) {
       std::string text = error.what();

@@ -6,6 +6,7 @@
 #include <cstdlib>
 
 #include "base/error.h"
+#include "job/run_job.h"
 #include "support/temp_dir.h"
 
 namespace orrery::job {
@@ -34,7 +35,6 @@ class JobRendering : public testing::Test {
     ::unsetenv("OCIO");
     support::write_bytes(folder_ / "scene.toml", kSceneWithLayers);
     job_.scene.file = folder_ / "scene.toml";
-    job_.keep = &rendering_;
   }
 
   Outputs outputs(const std::string& name) {
@@ -46,24 +46,22 @@ class JobRendering : public testing::Test {
 
   support::TempDir folder_;
   Job job_;
-  Rendering rendering_;
 };
 
 TEST_F(JobRendering, KeepsTheImageAndWritesNothing) {
-  run_job(job_);
-  EXPECT_EQ(rendering_.picture.width, 24);
-  EXPECT_NE(rendering_.picture.find("Z"), nullptr) << "layers are kept without an EXR";
+  const Rendering rendering = render_in_memory(job_);
+  EXPECT_EQ(rendering.picture.width, 24);
+  EXPECT_NE(rendering.picture.find("Z"), nullptr) << "layers are kept without an EXR";
   EXPECT_EQ(folder_.count(), 1u) << "the scene";
 }
 
 TEST_F(JobRendering, FilesAreThoseOfAJob) {
-  run_job(job_);
+  const Rendering rendering = render_in_memory(job_);
   for (const char* extension : {".exr", ".hdr"}) {
     Job direct = job_;
-    direct.keep = nullptr;
     direct.outputs = outputs(std::string("direct") + extension);
     run_job(direct);
-    write_rendering(rendering_, outputs(std::string("kept") + extension));
+    write_rendering(rendering, outputs(std::string("kept") + extension));
     EXPECT_EQ(support::file_bytes(folder_ / (std::string("direct") + extension)),
               support::file_bytes(folder_ / (std::string("kept") + extension)))
         << extension;
@@ -71,26 +69,26 @@ TEST_F(JobRendering, FilesAreThoseOfAJob) {
 }
 
 TEST_F(JobRendering, ChecksFilesBeforeItWrites) {
-  run_job(job_);
+  const Rendering rendering = render_in_memory(job_);
   Outputs twice = outputs("a.exr");
   twice.images.emplace_back(folder_ / "a.exr");
-  EXPECT_THROW(write_rendering(rendering_, twice), base::Error);
+  EXPECT_THROW(write_rendering(rendering, twice), base::Error);
   Outputs bad = outputs("a.exr");
   bad.images.emplace_back(folder_ / "missing" / "a.exr");
-  EXPECT_THROW(write_rendering(rendering_, bad), base::Error);
+  EXPECT_THROW(write_rendering(rendering, bad), base::Error);
   Outputs unknown = outputs("a.png");
   unknown.display.view = "no such view";
-  EXPECT_THROW(write_rendering(rendering_, unknown), base::Error);
+  EXPECT_THROW(write_rendering(rendering, unknown), base::Error);
   Outputs config = outputs("a.exr");
   config.display.config = folder_ / "a.exr";
-  EXPECT_THROW(write_rendering(rendering_, config), base::Error);
+  EXPECT_THROW(write_rendering(rendering, config), base::Error);
   EXPECT_EQ(folder_.count(), 1u);
 }
 
 TEST_F(JobRendering, AStoppedRenderWritesNoCheckpoint) {
   const std::atomic<bool> cancel{true};
   job_.hooks.cancel = &cancel;
-  EXPECT_THROW(run_job(job_), base::Error);
+  EXPECT_THROW(render_in_memory(job_), base::Error);
   EXPECT_EQ(folder_.count(), 1u);
 }
 

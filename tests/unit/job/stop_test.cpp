@@ -13,7 +13,7 @@
 #include "compile/compiled_scene.h"
 #include "data/data_file.h"
 #include "data/write_table.h"
-#include "job/job.h"
+#include "job/run_job.h"
 #include "job/scene_hash.h"
 #include "scene/diagnostic.h"
 #include "scene/number_array.h"

@@ -744,6 +744,9 @@ TEST_F(PlotPlot, SlicesRemoveTheSideOfTheCamera) {
   EXPECT_EQ(kept(), (std::vector<double>{-5})) << "all slices apply";
   options.slices = {{2, -1.0}, {2, 1.0}};
   EXPECT_EQ(kept(), (std::vector<double>{-5})) << "in any order";
+  options.slices = {{1, -1.0}};
+  kept();
+  EXPECT_TRUE(test::mentions(choices(), {"view -y"})) << "from the front: " << choices();
   options.slices = {{2, 1.0}};
   options.look_from = "-z";
   EXPECT_EQ(kept(), (std::vector<double>{5}));

@@ -274,6 +274,14 @@ TEST(PlotView, PrincipalAxesAreStableUnderNoise) {
   }
 }
 
+TEST(PlotView, LayersAreFlat) {
+  EXPECT_TRUE(are_flat(box_of({Vec3d{9, 0, 0}, {0, 5, 0}, {0, 0, 1}}), 729, {0, 0, 1}));
+  EXPECT_FALSE(are_flat(box_of({Vec3d{9, 0, 0}, {0, 5, 0}, {0, 0, 1}}), 729, {0, 1, 0})) << "upright";
+  EXPECT_FALSE(are_flat(box_of({Vec3d{9, 0, 0}, {0, 5, 0}, {0, 0, 2}}), 729, {0, 0, 1}));
+  EXPECT_FALSE(are_flat(box_of({Vec3d{9, 0, 0}, {0, 0, 0}, {0, 0, 0}}), 729, {0, 0, 1})) << "a row";
+  EXPECT_FALSE(are_flat({}, 0, {0, 0, 1}));
+}
+
 TEST(PlotView, WithoutADirectionTheDefaultViewRemains) {
   const ViewAxes near = view_axes(kDefaultView, "z");
   scene::PointArray points;

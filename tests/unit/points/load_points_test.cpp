@@ -648,16 +648,6 @@ TEST_F(PointsLoadPointsMemory, CopiesFarFromTheOriginNeedMore) {
   EXPECT_EQ(needed(), near_images + 6 * 12);
 }
 
-TEST(PointsReadMemory, CopiesOfAssembliesAreInSinglePrecision) {
-  data::FrameInfo info;
-  info.roles.position = {"x", "y", "z"};
-  scene::Points assembly;
-  assembly.assembly = "1";
-  EXPECT_EQ(bytes_per_sphere(info, {}, RadiusSource(), false), 3 * sizeof(double));
-  EXPECT_EQ(bytes_per_sphere(info, assembly, RadiusSource(), true), 3 * sizeof(float));
-  EXPECT_EQ(bytes_per_sphere(info, assembly, RadiusSource(), false), 3 * sizeof(double));
-}
-
 TEST_F(PointsLoadPoints, RowsOfTheSpheres) {
   const std::string dump =
       frame("id type x y z radius c", {"3 2 30 0 0 0.3 13", "1 1 10 0 0 0.1 11", "2 2 20 5 0 0.2 12"});
@@ -719,7 +709,7 @@ TEST_F(PointsLoadPoints, TracesJoinResiduesThatFollowEachOther) {
   ASSERT_EQ(points.centers.size(), 6u) << "C-alpha atoms and the ligand";
   EXPECT_EQ(points.bond_pairs, (std::vector<scene::SphereBond>{{0, 1}, {2, 3}, {4, 5}}))
       << "not beyond the missing residue";
-  EXPECT_DOUBLE_EQ(points.trace_radius, 0.9);
+  EXPECT_DOUBLE_EQ(points.trace_radius, 0.6);
   EXPECT_EQ(points.bond_radius, 0.15);
   EXPECT_EQ(points.radii, (std::vector<double>{points.trace_radius, points.trace_radius, points.trace_radius,
                                                points.trace_radius, 0.15, 0.15}));
@@ -727,8 +717,8 @@ TEST_F(PointsLoadPoints, TracesJoinResiduesThatFollowEachOther) {
   EXPECT_EQ(points.bond_radius_of(5), points.bond_radius);
   points.transform.scale = 2;
   EXPECT_EQ(load(), "");
-  EXPECT_DOUBLE_EQ(points.trace_radius, 1.8);
-  EXPECT_DOUBLE_EQ(points.radii[0], 1.8);
+  EXPECT_DOUBLE_EQ(points.trace_radius, 1.2);
+  EXPECT_DOUBLE_EQ(points.radii[0], 1.2);
 }
 
 TEST_F(PointsLoadPoints, RepresentationsOfSomeParticlesLeaveTheOthers) {

@@ -27,6 +27,9 @@ TEST(PointsRules, ExpressionsEndAtTheFirstColonOutsideQuotesAndBrackets) {
 TEST(PointsRules, AreSplitAtTheColon) {
   EXPECT_EQ(split_rule(" x in [1:2] : 0.25 "), (std::pair<std::string, std::string>("x in [1:2]", "0.25")));
   EXPECT_EQ(split_rule(" 0.25"), (std::pair<std::string, std::string>("", "0.25")));
+  EXPECT_EQ(split_rule("resid 2:5: red"), (std::pair<std::string, std::string>("resid 2:5", "red")))
+      << "values have no colons";
+  EXPECT_EQ(split_rule("id 5: a: b", Colon::kFirst), (std::pair<std::string, std::string>("id 5", "a: b")));
   EXPECT_THROW(split_rule(": 1"), base::Error);
 }
 

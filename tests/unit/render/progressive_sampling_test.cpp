@@ -199,17 +199,6 @@ TEST(RenderProgressiveSampling, SnapshotsAreCompleteAndChangeNoBits) {
   }
 }
 
-TEST(RenderPixelShard, EveryPixelBelongsToOneShard) {
-  for (const int count : {1, 2, 3, 17, 1000}) {
-    std::vector<int> owners(130 * 67, 0);
-    for (int i = 0; i < count; ++i) {
-      const std::vector<bool> owned = pixels_of({i, count}, 130, 67);
-      for (std::size_t p = 0; p < owners.size(); ++p) owners[p] += owned[p] ? 1 : 0;
-    }
-    EXPECT_EQ(std::count(owners.begin(), owners.end(), 1), 130 * 67) << count;
-  }
-}
-
 TEST(RenderPixelShard, ShardsAddUpToTheImageAndItsLayers) {
   const compile::CompiledScene compiled = world_of_everything();
   const Settings whole = with_layers();

@@ -10,7 +10,6 @@
 #include <filesystem>
 #include <fstream>
 #include <optional>
-#include <set>
 #include <stdexcept>
 #include <string>
 #include <thread>
@@ -21,7 +20,7 @@
 #include "base/stop_point.h"
 #include "film/picture.h"
 #include "image/read.h"
-#include "job/job.h"
+#include "job/run_job.h"
 #include "support/peak_memory.h"
 #include "support/temp_dir.h"
 
@@ -83,11 +82,7 @@ Frame finished(Viewer& viewer, std::uint64_t after = 0) {
 }
 
 film::Picture rendered(const std::vector<std::string>& words) {
-  job::Job job = subject_of(words).job;
-  job::Rendering rendering;
-  job.keep = &rendering;
-  job::run_job(job);
-  return rendering.picture;
+  return job::render_in_memory(subject_of(words).job).picture;
 }
 
 void expect_same(const film::Picture& a, const film::Picture& b) {
@@ -407,29 +402,6 @@ TEST(ViewViewer, TextIsDrawnOverEveryImage) {
   };
   EXPECT_LT(darkest_at_title(first_of(titled)), 0.3f);
   EXPECT_GT(darkest_at_title(first_of(plain)), 0.4f);
-}
-
-TEST(ViewWish, ValuesAreStringsListsOrFlags) {
-  const auto is_control = [](const std::string&) { return true; };
-  const Wish wish = read_wish(
-      R"({"options": {"--set": ["a=1", "b=2"], "--style": "", "--box": true, "--map": "fast", "--slice": []}})",
-      is_control);
-  EXPECT_EQ(words_of({"--frame", "3"}, wish),
-            (std::vector<std::string>{"--frame", "3", "--box", "--map", "fast", "--set", "a=1", "--set", "b=2"}));
-}
-
-TEST(ViewWish, SettingsThatMayNameFilesAreKnown) {
-  for (const char* setting : {"background.file=a.exr", "color.config=a.ocio", "points[0].file=a.csv",
-                              "rods[0].file=a.csv", "points[0].color.map=a.txt", "material.a.albedo.file=a.png",
-                              "material.a.fuzz={file=\"a\"}", "points=[{file=\"a\"}]"}) {
-    load::Overrides overrides;
-    overrides.add(setting);
-    EXPECT_EQ(named_files(overrides).size(), 1u) << setting;
-  }
-  load::Overrides other;
-  other.add("camera.vfov=30");
-  other.add("background.color=[1, 1, 1]");
-  EXPECT_EQ(named_files(other), std::set<std::string>());
 }
 
 TEST(ViewViewerMemory, DoesNotGrowWithMoves) {

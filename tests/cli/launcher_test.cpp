@@ -17,7 +17,7 @@ namespace {
 
 constexpr char kStubs[] = "orrery-image-stubs";  // a folder beside the modules
 
-class CliStartup : public ProgramTest {
+class CliLauncher : public ProgramTest {
  protected:
   /// Runs `orrery WORDS`; calls `prepare` in the child process before exec.
   ///
@@ -78,7 +78,7 @@ class CliStartup : public ProgramTest {
   }
 };
 
-TEST_F(CliStartup, PendingUsr1WritesACheckpoint) {
+TEST_F(CliLauncher, PendingUsr1WritesACheckpoint) {
   EXPECT_EQ(run_prepared({"render", "good.toml", "-o", "a.png"}, raise_blocked), 0);
   EXPECT_NE(text_of(folder_ / ".err").find("wrote a.checkpoint.exr"), std::string::npos) << text_of(folder_ / ".err");
   EXPECT_TRUE(std::filesystem::exists(folder_ / "a.png"));
@@ -86,7 +86,7 @@ TEST_F(CliStartup, PendingUsr1WritesACheckpoint) {
 
 /// The program that the launcher executes has USR1 blocked, so that the signal cannot end it while its libraries load.
 /// Here it is grep, which prints its own mask of blocked signals.
-TEST_F(CliStartup, TheLauncherBlocksUsr1) {
+TEST_F(CliLauncher, TheLauncherBlocksUsr1) {
   for (const char* folder : {"bin", "libexec/orrery"}) std::filesystem::create_directories(folder_ / folder);
   std::filesystem::copy_file(ORRERY_PROGRAM, folder_ / "bin/orrery");
   std::filesystem::create_symlink("/bin/grep", folder_ / "libexec/orrery/orrery-program");
@@ -96,7 +96,7 @@ TEST_F(CliStartup, TheLauncherBlocksUsr1) {
 }
 
 /// The archive for all systems has a loader beside the program. Here it is echo, which prints its arguments.
-TEST_F(CliStartup, TheLauncherStartsTheLoaderBesideTheProgram) {
+TEST_F(CliLauncher, TheLauncherStartsTheLoaderBesideTheProgram) {
   for (const char* folder : {"bin", "libexec/orrery"}) std::filesystem::create_directories(folder_ / folder);
   std::filesystem::copy_file(ORRERY_PROGRAM, folder_ / "bin/orrery");
   std::filesystem::create_symlink("/bin/echo", folder_ / "libexec/orrery/orrery-loader");
@@ -105,7 +105,7 @@ TEST_F(CliStartup, TheLauncherStartsTheLoaderBesideTheProgram) {
   EXPECT_EQ(text_of(folder_ / ".out"), "--inhibit-cache --argv0 bin/orrery " + program + " info a b\n");
 }
 
-TEST_F(CliStartup, CheckpointOfTheLongestNameIsWritten) {
+TEST_F(CliLauncher, CheckpointOfTheLongestNameIsWritten) {
   const std::string picture = std::string(251, 'n') + ".exr";
   EXPECT_EQ(run_prepared({"render", "good.toml", "-o", picture.c_str()}, raise_blocked), 0);
   EXPECT_NE(text_of(folder_ / ".err").find(".checkpoint.exr\n"), std::string::npos) << text_of(folder_ / ".err");
@@ -113,12 +113,12 @@ TEST_F(CliStartup, CheckpointOfTheLongestNameIsWritten) {
   EXPECT_TRUE(std::filesystem::exists(folder_ / picture));
 }
 
-TEST_F(CliStartup, Usr1DoesNotEndOtherCommands) {
+TEST_F(CliLauncher, Usr1DoesNotEndOtherCommands) {
   EXPECT_EQ(run_prepared({"info", "good.toml"}, raise_blocked), 0);
   EXPECT_EQ(run_prepared({"generate", "final", "-o", "f.toml"}, raise_blocked), 0);
 }
 
-TEST_F(CliStartup, OnlyCommandsWithImagesLoadOpenImageIO) {
+TEST_F(CliLauncher, OnlyCommandsWithImagesLoadOpenImageIO) {
   const auto loads_it = [this](const std::string& words) {
     const std::string loaded = libraries_of(words);
     for (const char* unused : {"orrery-data", "libarchive"}) EXPECT_FALSE(contains(loaded, unused)) << words;
@@ -141,7 +141,7 @@ std::string copied_program(const std::filesystem::path& folder) {
   return "'" + (folder / "orrery-program").string() + "' ";
 }
 
-TEST_F(CliStartup, AnImageLibraryThatCannotBeLoadedIsReportedBeforeRendering) {
+TEST_F(CliLauncher, AnImageLibraryThatCannotBeLoadedIsReportedBeforeRendering) {
   const std::string program = copied_program(folder_ / "program");
   write("program/orrery-image.so", "no library");
   write("a.csv", "x,y,z\n0,0,0\n3,0,0\n");
@@ -174,7 +174,7 @@ std::vector<std::string> folders_of(const std::string& name, const std::string& 
   return folders;
 }
 
-TEST_F(CliStartup, StubsStandInForLibrariesThatNoFormatUses) {
+TEST_F(CliLauncher, StubsStandInForLibrariesThatNoFormatUses) {
   if (!std::filesystem::exists(std::filesystem::path(ORRERY_MODULES) / kStubs)) GTEST_SKIP() << "ORRERY_STUBS=OFF";
   const std::string loaded = libraries_of("render good.toml -o a.exr -o a.png -q");
   const std::string stub_folder = std::filesystem::path(ORRERY_MODULES) / kStubs;
@@ -187,7 +187,7 @@ TEST_F(CliStartup, StubsStandInForLibrariesThatNoFormatUses) {
     EXPECT_EQ(folder, std::filesystem::path(ORRERY_MODULES) / "orrery-data-stubs");
 }
 
-TEST_F(CliStartup, AStubThatLacksASymbolIsNotUsed) {
+TEST_F(CliLauncher, AStubThatLacksASymbolIsNotUsed) {
   const std::vector<std::string> sonames = stubs();
   if (sonames.empty()) GTEST_SKIP() << "OpenImageIO needs no library that could have a stub";
   const std::string program = copied_program(folder_ / "program");
@@ -209,7 +209,7 @@ TEST_F(CliStartup, AStubThatLacksASymbolIsNotUsed) {
   EXPECT_NE(folders.back(), stub.parent_path()) << "the library is not loaded";
 }
 
-TEST_F(CliStartup, AnErrorDoesNotWaitForTheImageLibrary) {
+TEST_F(CliLauncher, AnErrorDoesNotWaitForTheImageLibrary) {
   const std::string program = copied_program(folder_ / "program");
   // Opening a pipe that nobody writes to takes forever.
   ASSERT_EQ(mkfifo((folder_ / "program/orrery-image.so").c_str(), 0600), 0);
@@ -225,7 +225,7 @@ TEST_F(CliStartup, AnErrorDoesNotWaitForTheImageLibrary) {
   }
 }
 
-TEST_F(CliStartup, BrokenStderrPipeDoesNotStopTheRender) {
+TEST_F(CliLauncher, BrokenStderrPipeDoesNotStopTheRender) {
   EXPECT_EQ(run_prepared({"render", "good.toml", "-o", "a.png", "-v"}, [] { break_pipe(2); }), 0);
   EXPECT_TRUE(std::filesystem::exists(folder_ / "a.png"));
   EXPECT_EQ(run_prepared({"render", "good.toml", "-o", "b.png"},
@@ -238,7 +238,7 @@ TEST_F(CliStartup, BrokenStderrPipeDoesNotStopTheRender) {
 }
 
 /// head(1) has what it wanted: that is no failure, as in other tools.
-TEST_F(CliStartup, ABrokenStdoutPipeIsNoError) {
+TEST_F(CliLauncher, ABrokenStdoutPipeIsNoError) {
   for (const std::vector<const char*>& words : std::vector<std::vector<const char*>>{
            {"info", "good.toml"}, {"check", "good.toml"}, {"--help"}, {"--version"}}) {
     EXPECT_EQ(run_prepared(words, [] { break_pipe(1); }), 0) << words[0];
@@ -246,7 +246,7 @@ TEST_F(CliStartup, ABrokenStdoutPipeIsNoError) {
   }
 }
 
-TEST_F(CliStartup, ClosedStdoutExits74) {
+TEST_F(CliLauncher, ClosedStdoutExits74) {
   EXPECT_EQ(run_prepared({"info", "good.toml"}, [] { close(1); }), 74);
   EXPECT_NE(text_of(folder_ / ".err"), "");
 }
