@@ -58,9 +58,12 @@ const std::vector<std::string>& representation_names() {
 Representation parse_representation(const std::string& name) {
   const std::vector<std::string>& names = representation_names();
   const auto found = std::find(names.begin(), names.end(), name);
-  if (found == names.end())
+  if (found == names.end()) {
+    const std::string suggestion = base::did_you_mean(name, names);
     base::refuse(
-        fmt::format("`{}` is not a representation; write {}, e.g. 'residue HEM: sticks'", name, base::joined(names)));
+        fmt::format("`{}` is not a representation; {}", name,
+                    suggestion.empty() ? "write " + base::joined(names) + ", e.g. 'residue HEM: sticks'" : suggestion));
+  }
   return static_cast<Representation>(found - names.begin());
 }
 

@@ -279,7 +279,7 @@ TEST_F(CliConvert, PlotsAndTheirSavedScenesHaveOpacities) {
   for (const auto& [options, status, told] :
        std::vector<std::tuple<const char*, int, const char*>>{{"--opacity 1.5", 2, "--opacity: 1.5 must be in 0..1"},
                                                               {"--opacity nan", 2, "--opacity: nan must be in 0..1"},
-                                                              {"--opacity \"q == 1:2\"", 2, "write CONDITION:NUMBER"},
+                                                              {"--opacity \"q == 1:2\"", 2, "`2` is not an opacity"},
                                                               {"--opacity \"q = 1:1\"", 65, "at character 3"},
                                                               {"--opacity w", 65, "the file has no column `w`"}}) {
     const Outcome r = run(std::string("plot a.csv -o b.ppm --radius 0.4 ") + options + size);

@@ -194,6 +194,34 @@ TEST_F(CliPlot, BondsAreDrawnAndSaved) {
   EXPECT_TRUE(contains(text_of(folder_ / "f.toml"), "bonds = { factor = 1.1 }\n"));
 }
 
+TEST_F(CliPlot, RulesByConditionAreSaved) {
+  write("m.xyz", "3\n\nC 0 0 0\nC 1.5 0 0\nO 2.2 1.2 0\n");
+  const Outcome made = plot(
+      "m.xyz -o a.png --representation sticks --representation 'element O: spheres' --color 'element O: #f00' --radius "
+      "'element O: 0.7' --save-scene m.toml");
+  ASSERT_EQ(made.status, 0) << made.err;
+  const std::string text = text_of(folder_ / "m.toml");
+  for (const char* part : {R"(["sticks", "element O: spheres"])", R"(["element O: #f00"])", R"(["element O: 0.7"])"})
+    EXPECT_TRUE(contains(text, part)) << part << text;
+  ASSERT_EQ(run("render m.toml -o b.png -q --samples 1").status, 0);
+  EXPECT_EQ(run("compare a.png b.png --fail-above max=0").status, 0);
+  EXPECT_TRUE(contains(run("info m.toml").out, "3 spheres, 1 rod")) << "not to the sphere";
+  expect_error("plot m.xyz -o a.png --representation 'element O: cartoon'", 2, "--representation: `cartoon`");
+  expect_error("plot m.xyz -o a.png --color 'element O: reddish'", 2, "`reddish` is not a colour");
+  expect_error("plot m.xyz -o a.png --radius 'element O: 0'", 2, "--radius: `0` is not a radius");
+  expect_error("plot m.xyz -o a.png --fit 'element H'", 65, "--fit `element H` matches none");
+}
+
+TEST_F(CliPlot, TheSizeInPrintIsThatInPixels) {
+  const Outcome made = run("plot c.csv -o a.png --samples 1 --dpi 100 --print-width 2.54cm");
+  ASSERT_EQ(made.status, 0) << made.err;
+  EXPECT_TRUE(contains(made.err, "wrote a.png: 100 x 56")) << made.err;
+  expect_error("plot c.csv -o a.png --print-width 8cm", 2, "add --dpi");
+  expect_error("plot c.csv -o a.png --print-width 8 --dpi 300", 2, "`8` is not a length");
+  expect_error("plot c.csv -o a.png --print-width 8cm --dpi 300 --width 9", 2, "--print-width and --width");
+  expect_error("plot c.csv -o a.png --print-width 8000in --dpi 300", 2, "it must be 1 to");
+}
+
 TEST_F(CliPlot, BondsThatCannotBeDrawnAreErrors) {
   for (const std::string bonds : {"no", "length=", "length=0", "-1", "length=1e30", "nan"})
     expect_error("plot a.dump -o a.ppm --bonds=" + bonds, 2,
