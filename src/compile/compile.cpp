@@ -10,6 +10,7 @@
 #include <tuple>
 #include <utility>
 
+#include "base/parallel.h"
 #include "base/stop_point.h"
 #include "compile/camera_basis.h"
 #include "compile/caustic_list.h"
@@ -19,6 +20,7 @@
 #include "compile/material_table.h"
 #include "compile/pixel_filter.h"
 #include "kernel/sobol_columns.h"
+#include "math/scalar.h"
 #include "scene/layers.h"
 #include "sky/daylight.h"
 
@@ -251,12 +253,71 @@ void set_camera(const scene::Scene& opening, const scene::Scene* closing, Compil
   }
 }
 
+/// Nearest and farthest point of the spheres of points tables and of all rods along the view axis, as distances from
+/// the camera; empty if there are none.
+std::optional<scene::Interval> depth_range(const scene::Scene& scene, const CompiledScene& compiled) {
+  const Vec3d origin = scene.camera.look_from, forward = math::normalized(scene.camera.look_at - origin);
+  const kernel::SceneView view = compiled.view();
+  const std::size_t first = scene.spheres.size(), spheres = view.sphere_count - first;
+  constexpr scene::Interval kEmpty{math::kInfinity, -math::kInfinity};
+  const auto join = [](scene::Interval& range, const scene::Interval& other) {
+    range = {std::min(range.low, other.low), std::max(range.high, other.high)};
+  };
+  const auto add = [&](scene::Interval& range, const Vec3d& at, double radius) {
+    const double z = math::dot(at - origin, forward);
+    join(range, {z - radius, z + radius});
+  };
+  const scene::Interval range = base::accumulate_parallel(
+      spheres + view.rods.count, kEmpty,
+      [&](scene::Interval& so_far, std::size_t i) {
+        if (i < spheres) {
+          const kernel::Sphere s = view.spheres[first + i];
+          return add(so_far, {s.x, s.y, s.z}, s.radius);
+        }
+        const kernel::Rod rod = view.rods[i - spheres];
+        add(so_far, math::vector_of(rod.a), rod.radius);
+        add(so_far, math::vector_of(rod.b), rod.radius);
+      },
+      join);
+  if (!(range.low <= range.high)) return {};
+  return range;
+}
+
+kernel::DepthCue cue_of(const scene::Camera& camera, double strength, const scene::Interval& range) {
+  const double slope = strength / (range.high - range.low);
+  return {strength, slope * range.low, math::normalized(camera.look_at - camera.look_from) * slope};
+}
+
+/// Sets the depth cue, and that of the page. Unless the scene sets it, the cue begins behind the camera and a tenth of
+/// what is shown, whose colours are exact. The page ends behind all of it.
+void set_depth_cue(const scene::Scene& scene, CompiledScene& compiled) {
+  constexpr double kExactPart = 0.1, kPageBegin = 1, kPageEnd = 3;
+  const scene::Camera& camera = scene.camera;
+  const auto page = std::find_if(scene.spheres.begin(), scene.spheres.end(), [](const auto& s) { return s.is_page; });
+  const bool has_page = page != scene.spheres.end();
+  compiled.page = has_page ? static_cast<std::uint32_t>(page - scene.spheres.begin()) : kernel::kNone;
+  compiled.depth_cue = compiled.page_fade = {};
+  std::optional<scene::Interval> range;
+  if (has_page || (camera.depth_cue > 0 && !camera.depth_cue_range)) range = depth_range(scene, compiled);
+  if (range) {
+    range->low = std::max(range->low, 0.0);
+    const double depth = range->high - range->low;
+    if (has_page && depth > 0)
+      compiled.page_fade = cue_of(camera, 1, {range->high + kPageBegin * depth, range->high + kPageEnd * depth});
+    range->low += kExactPart * depth;
+  }
+  if (camera.depth_cue_range) range = camera.depth_cue_range;
+  if (camera.depth_cue > 0 && range && range->low < range->high)  // otherwise all is behind the camera
+    compiled.depth_cue = cue_of(camera, camera.depth_cue, *range);
+  compiled.features.depth_cue = compiled.depth_cue.strength > 0 || compiled.page_fade.strength > 0;
+}
+
 /// Compiles an image background or a sky; without one, the gradient or constant colour.
 void set_background(const scene::Scene& scene, CompiledScene& compiled) {
   const scene::Background& from = scene.background;
   compiled.backdrop = from.backdrop;
   compiled.environment = nullptr;
-  compiled.features.gradient = false;
+  compiled.features.gradient = compiled.features.tilted = false;
   std::shared_ptr<const scene::LatLongMap> image = from.image;
   if (!image && from.type == scene::BackgroundType::kSky)
     image = std::make_shared<const scene::LatLongMap>(sky::bake_sky(from));
@@ -272,9 +333,11 @@ void set_background(const scene::Scene& scene, CompiledScene& compiled) {
     return;
   }
   const bool gradient = from.type == scene::BackgroundType::kGradient;
+  compiled.background.up = math::normalized(from.up);
   compiled.background.bottom = gradient ? from.bottom : from.color;
   compiled.background.top = gradient ? from.top : from.color;
   compiled.features.gradient = gradient && !(from.bottom == from.top);
+  compiled.features.tilted = compiled.features.gradient && !(compiled.background.up == Vec3d{0, 1, 0});
 }
 
 /// With blue noise, a pixel owns a power of two of consecutive points of the sequence, at least as many as its samples;
@@ -305,6 +368,7 @@ void set_view(const scene::Scene& scene, const scene::Scene* closing, CompiledSc
   compiled.shading = static_cast<kernel::Shading>(scene.render.shading);
   compiled.filter = compile_filter(scene.render);
   set_camera(scene, closing, compiled);
+  set_depth_cue(scene, compiled);
 }
 
 void update_parts(const scene::Scene& scene, const scene::Scene* closing, scene::Parts changed,
@@ -367,6 +431,7 @@ kernel::SceneView CompiledScene::view() const noexcept {
   v.background_visible = backdrop || !environment || environment->view().visible;
   v.has_backdrop = backdrop.has_value();
   v.backdrop = backdrop.value_or(math::Vec3d());
+  v.page = page;
   if (!filter.empty()) v.filter.places = filter.data();
   v.window_x = static_cast<std::uint32_t>(window_x) & 0xffff;
   v.window_y = static_cast<std::uint32_t>(window_y) & 0xffff;

@@ -53,6 +53,7 @@ struct CompiledScene : kernel::SceneSettings {
       motion;  ///< motion of the first motion.size() spheres, see kernel::SceneView; empty: none moves
   std::vector<kernel::Rod> rod_motion;                ///< the same of the rods
   std::optional<math::Vec3d> backdrop;                ///< see scene::Background
+  std::uint32_t page = kernel::kNone;                 ///< sphere that is a part of the backdrop; kNone: there is none
   std::shared_ptr<const EnvironmentMap> environment;  ///< an image background; null: none
   Precision precision = Precision::kExact;
   Accelerator accelerator = Accelerator::kEmbree;

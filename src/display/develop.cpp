@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
+#include <vector>
 
 #include <fmt/core.h>
 
@@ -12,6 +13,7 @@
 #include "display/view.h"
 #include "film/picture.h"
 #include "math/pixels.h"
+#include "math/vec3.h"
 
 namespace orrery::display {
 namespace {
@@ -44,6 +46,31 @@ float fit(float v, float gain) {
 /// Divides a premultiplied value by alpha; 0 if alpha is 0.
 float unmultiplied(float v, float alpha) { return alpha > 0 ? v / alpha : 0.0f; }
 
+/// Applies a display transform to pixels, R, G, B each, with the gain.
+///
+/// `coverage` of each pixel by objects in front of the backdrop; null: unknown
+void apply(const View& view, float* rgb, const float* coverage, std::size_t pixels, const Settings& settings,
+           float gain) {
+  const auto transform = [pixels](const ocio::ConstCPUProcessorRcPtr& processor, float* values) {
+    ocio::PackedImageDesc image(values, static_cast<long>(pixels), 1, 3);
+    processor->apply(image);
+  };
+  if (!view.page || coverage == nullptr) return transform(view.processor, rgb);
+  // A pixel is objects over backdrop. The looks of the view apply to the colour of the objects alone.
+  std::vector<float> objects(3 * pixels);
+  const math::Vec3d& backdrop = *settings.backdrop;
+  const float behind[3] = {fit(static_cast<float>(backdrop.x), gain), fit(static_cast<float>(backdrop.y), gain),
+                           fit(static_cast<float>(backdrop.z), gain)};
+  for (std::size_t i = 0; i < 3 * pixels; ++i) {
+    const float of_page = (1 - coverage[i / 3]) * behind[i % 3];
+    objects[i] = unmultiplied(rgb[i] - of_page, coverage[i / 3]);
+  }
+  std::vector<float> looked = objects;
+  transform(view.looks, looked.data());
+  for (std::size_t i = 0; i < 3 * pixels; ++i) rgb[i] += (looked[i] - objects[i]) * coverage[i / 3];
+  transform(view.page, rgb);
+}
+
 std::uint16_t quantised(float v, double largest) {
   const double shown = v > 0 ? std::min(static_cast<double>(v), 1.0) : 0.0;  // NaN is not > 0
   return static_cast<std::uint16_t>(std::clamp(shown * largest + 0.5, 0.0, largest));
@@ -69,6 +96,7 @@ film::EncodedPicture develop(const film::Picture& picture, const Settings& setti
   out.values.resize(pixels * channels);
   const double largest = bits == 8 ? 255 : 65535;
   const float gain = gain_of(settings);
+  const bool over_page = covered == nullptr && !picture.coverage.empty();
   std::vector<float> rgb(std::min(pixels, kPixelsAtATime) * 3);
   for (std::size_t begin = 0; begin < pixels; begin += kPixelsAtATime) {
     const std::size_t count = std::min(kPixelsAtATime, pixels - begin);
@@ -77,8 +105,7 @@ film::EncodedPicture develop(const film::Picture& picture, const Settings& setti
         const float v = (*planes[c])[begin + i];
         rgb[i * 3 + c] = fit(covered != nullptr ? unmultiplied(v, covered[begin + i]) : v, gain);
       }
-    ocio::PackedImageDesc part(rgb.data(), static_cast<long>(count), 1, 3);
-    view.processor->apply(part);
+    apply(view, rgb.data(), over_page ? &picture.coverage[begin] : nullptr, count, settings, gain);
     for (std::size_t i = 0; i < count; ++i) {
       std::uint16_t* const pixel = &out.values[(begin + i) * channels];
       for (std::size_t c = 0; c < 3; ++c) pixel[c] = quantised(rgb[i * 3 + c], largest);
@@ -89,18 +116,18 @@ film::EncodedPicture develop(const film::Picture& picture, const Settings& setti
 }
 
 struct PixelDeveloper::Impl {
+  Settings settings;
   View view;
   float gain;
 };
 
 PixelDeveloper::PixelDeveloper(const Settings& settings)
-    : impl_(std::make_unique<Impl>(Impl{find_view(settings), gain_of(settings)})) {}
+    : impl_(std::make_unique<Impl>(Impl{settings, find_view(settings), gain_of(settings)})) {}
 PixelDeveloper::~PixelDeveloper() = default;
 
-void PixelDeveloper::operator()(float* rgb, std::size_t pixels, std::uint8_t* codes) const {
+void PixelDeveloper::operator()(float* rgb, const float* coverage, std::size_t pixels, std::uint8_t* codes) const {
   for (std::size_t i = 0; i < 3 * pixels; ++i) rgb[i] = fit(rgb[i], impl_->gain);
-  ocio::PackedImageDesc part(rgb, static_cast<long>(pixels), 1, 3);
-  impl_->view.processor->apply(part);
+  apply(impl_->view, rgb, coverage, pixels, impl_->settings, impl_->gain);
   for (std::size_t i = 0; i < 3 * pixels; ++i) codes[i] = static_cast<std::uint8_t>(quantised(rgb[i], 255));
 }
 

@@ -44,8 +44,9 @@ class PixelDeveloper {
   /// Develops pixels.
   ///
   /// `rgb`      3 * pixels scene-linear values; overwritten
+  /// `coverage` as film::Picture has it; null: unknown
   /// `codes`    3 * pixels
-  void operator()(float* rgb, std::size_t pixels, std::uint8_t* codes) const;
+  void operator()(float* rgb, const float* coverage, std::size_t pixels, std::uint8_t* codes) const;
 
  private:
   struct Impl;

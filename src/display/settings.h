@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "base/error.h"
+#include "math/vec3.h"
 
 namespace orrery::display {
 
@@ -18,9 +19,11 @@ struct Settings {
   std::string view;                          ///< empty: the display's default
   std::string look;                          ///< look applied before the view; empty: only the view's own
   std::optional<double> exposure;            ///< stops; empty: none
+  /// The page behind the objects, scene-linear: looks of the view do not apply to it. Empty: there is none.
+  std::optional<math::Vec3d> backdrop = {};
 
   double stops() const { return exposure.value_or(0); }
-  /// Takes what is empty from others, and their working space.
+  /// Takes what is empty from others, and their working space and backdrop.
   void complete(const Settings& others);
 };
 
@@ -32,6 +35,7 @@ struct Choice {
   std::string display, view;
   std::string working_space;  ///< canonical name in the config
   bool is_hdr = false;        ///< the display is high dynamic range
+  bool has_looks = false;     ///< the view has looks, which do not apply to a backdrop
 
   /// Default bits per channel. With 8 bits, banding is visible on high dynamic range displays.
   int default_bits() const { return is_hdr ? 16 : 8; }

@@ -50,19 +50,25 @@ bool is_srgb(const ocio::Config& config, const std::string& space) {
   return space.find("inear") == std::string::npos;  // "Linear Rec.709 (sRGB)"
 }
 
-ocio::ConstProcessorRcPtr transform(const ocio::Config& config, const Settings& settings, const Choice& choice) {
+/// Looks as a transform of the working space.
+ocio::LookTransformRcPtr look_transform(const std::string& looks, const Choice& choice) {
+  auto look = ocio::LookTransform::Create();
+  look->setSrc(choice.working_space.c_str());
+  look->setDst(choice.working_space.c_str());
+  look->setLooks(looks.c_str());
+  return look;
+}
+
+/// `has_looks`  with the looks of the view
+ocio::ConstProcessorRcPtr transform(const ocio::Config& config, const Settings& settings, const Choice& choice,
+                                    bool has_looks) {
   auto group = ocio::GroupTransform::Create();
-  if (!settings.look.empty()) {
-    auto look = ocio::LookTransform::Create();
-    look->setSrc(choice.working_space.c_str());
-    look->setDst(choice.working_space.c_str());
-    look->setLooks(settings.look.c_str());
-    group->appendTransform(look);
-  }
+  if (!settings.look.empty()) group->appendTransform(look_transform(settings.look, choice));
   auto view = ocio::DisplayViewTransform::Create();
   view->setSrc(choice.working_space.c_str());
   view->setDisplay(choice.display.c_str());
   view->setView(choice.view.c_str());
+  view->setLooksBypass(!has_looks);
   group->appendTransform(view);
   return config.getProcessor(group);
 }
@@ -113,8 +119,16 @@ View find_view(const Config& source, const Settings& settings) {
     check_look(source, settings);
     out.choice.working_space = find_color_space(source, settings.working_space);
     // Lossless, since the default optimization replaces curves by LUTs.
-    out.processor =
-        transform(*source.config, settings, out.choice)->getOptimizedCPUProcessor(ocio::OPTIMIZATION_LOSSLESS);
+    const auto lossless = [](const ocio::ConstProcessorRcPtr& processor) {
+      return processor->getOptimizedCPUProcessor(ocio::OPTIMIZATION_LOSSLESS);
+    };
+    out.processor = lossless(transform(*source.config, settings, out.choice, true));
+    const std::string looks = source.config->getDisplayViewLooks(out.choice.display.c_str(), out.choice.view.c_str());
+    out.choice.has_looks = !looks.empty();
+    if (out.choice.has_looks && settings.backdrop) {
+      out.looks = lossless(source.config->getProcessor(look_transform(looks, out.choice)));
+      out.page = lossless(transform(*source.config, settings, out.choice, false));
+    }
     out.choice.transform_id = out.processor->getCacheID();
     const std::string space = final_space(*source.config, out.choice);
     out.is_srgb = is_srgb(*source.config, space);
@@ -134,6 +148,7 @@ void Settings::complete(const Settings& others) {
     if ((this->*name).empty()) this->*name = others.*name;
   if (!exposure) exposure = others.exposure;
   working_space = others.working_space;
+  backdrop = others.backdrop;
 }
 
 LookUp look_up(const Settings& settings, const std::string& space) {

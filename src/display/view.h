@@ -13,7 +13,10 @@ namespace orrery::display {
 struct View {
   Choice choice;
   OCIO_NAMESPACE::ConstCPUProcessorRcPtr processor;  ///< look and view, without exposure
-  bool is_srgb = false;                              ///< the output is encoded for an sRGB display
+  // If the view has looks, for objects in front of a backdrop; null otherwise.
+  OCIO_NAMESPACE::ConstCPUProcessorRcPtr looks;  ///< of the view, in the working space
+  OCIO_NAMESPACE::ConstCPUProcessorRcPtr page;   ///< without the view's looks
+  bool is_srgb = false;                          ///< the output is encoded for an sRGB display
 };
 
 /// Loads the config and resolves the settings.

@@ -84,8 +84,7 @@ class PlaneList {
   void add_beauty() {
     add("", "RGBA", PlaneKind::kLight, [&r = r_, &sums = sums_](std::size_t i, float* v) {
       sums.mean(i, v);
-      const std::uint64_t paths = sums.paths(i);
-      v[3] = !r.coverage ? 1.0F : paths == 0 ? 0.0F : fraction(sums.layers.covered[i], paths);
+      v[3] = r.transparent ? sums.coverage(i) : 1.0F;
     });
   }
 

@@ -167,7 +167,6 @@ void LayerSums::add(const LayerRequest& request, const kernel::SceneView& scene,
   }
   if (!hits) return;
 
-  if (request.coverage) ++covered[pixel];
   if (request.albedo) {
     const double* const constant = scene.materials[scene.object_materials[path.object]].albedo;
     if (scene.features.rich_materials) {

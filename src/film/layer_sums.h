@@ -53,7 +53,7 @@ struct LayerSums {
   base::ZeroVector<Channels> light;           ///< radiance: LayerRequest::light_cells() sums for each pixel
   base::ZeroVector<Channels> squares;         ///< squared radiance, in units of kSquareUnit
   base::ZeroVector<Channels> normal, albedo;  ///< at the first hits
-  base::ZeroVector<std::uint32_t> covered;    ///< number of paths that hit a sphere
+  base::ZeroVector<std::int64_t> covered;     ///< coverage by what is not background, in units of kernel::kGuideUnit
   // The first hit nearest to the camera:
   base::ZeroVector<std::uint32_t> hit;  ///< id of its sphere plus 1; 0: there is none
   base::ZeroVector<double> depth;

@@ -54,10 +54,11 @@ struct LayerRequest {
   bool light_groups = false;
   bool variance = false, samples = false, object_id = false, material_id = false;
   bool guide_albedo = false, guide_normal = false;
-  bool halves = false;                          ///< beauty and guides of two halves of the samples, for denoising
-  bool coverage = false;                        ///< A is the fraction of the pixel that spheres cover, not 1
-  bool deep = false;                            ///< also render a deep image
-  int matte_ranks = 6;                          ///< maximum number of ids per pixel in a matte
+  bool halves = false;       ///< beauty and guides of two halves of the samples, for denoising
+  bool coverage = false;     ///< the fraction of the pixel that is not background, for display or as A
+  bool transparent = false;  ///< that fraction is A, which otherwise is 1, and the background is black; with `coverage`
+  bool deep = false;         ///< also render a deep image
+  int matte_ranks = 6;       ///< maximum number of ids per pixel in a matte
   std::vector<std::uint32_t> material_numbers;  ///< material_id of each material of the compiled scene
   std::vector<LightGroup> groups;               ///< light groups of the scene, indexed by kernel::LightEvent::group
   std::vector<Matte> mattes;
@@ -80,7 +81,7 @@ struct LayerRequest {
   bool path_records() const { return hits() || paths(); }           ///< sums over records of single paths
   bool records() const { return lights() || path_records(); }       ///< layers made from records or light events
   bool guides() const;                                              ///< sums of guides for denoising
-  bool any() const { return records() || guides(); }
+  bool any() const { return records() || guides() || coverage; }
 
   /// Number of sums that a pixel's light is divided into: one per lobe, or one per lobe and light group.
   std::size_t light_cells() const;
@@ -149,7 +150,7 @@ inline bool LayerRequest::lights() const { return detail::requests<LayerSource::
 inline bool LayerRequest::nearest() const { return detail::requests<LayerSource::kNearest>(*this); }
 inline bool LayerRequest::paths() const { return detail::requests<LayerSource::kPaths>(*this); }
 inline bool LayerRequest::hits() const {
-  return nearest() || detail::requests<LayerSource::kSums>(*this) || coverage || deep || !mattes.empty();
+  return nearest() || detail::requests<LayerSource::kSums>(*this) || deep || !mattes.empty();
 }
 inline bool LayerRequest::guides() const {
   return detail::requests<LayerSource::kGuide>(*this) || detail::requests<LayerSource::kHalves>(*this);

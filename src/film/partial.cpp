@@ -75,4 +75,10 @@ void Partial::mean(std::size_t pixel, float* rgb) const {
   for (int c = 0; c < 3; ++c) rgb[c] = static_cast<float>(film::mean(total.rgb[c], total.weight));
 }
 
+float Partial::coverage(std::size_t pixel) const {
+  if (paths(pixel) == 0) return 0;
+  return static_cast<float>(static_cast<double>(layers.covered[pixel]) * kernel::kGuideUnit /
+                            static_cast<double>(paths(pixel)));
+}
+
 }  // namespace orrery::film

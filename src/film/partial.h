@@ -63,6 +63,11 @@ struct Partial {
   /// Writes the mean of a pixel's samples, R, G and B; 0 without samples. These are the bits of the finished image.
   void mean(std::size_t pixel, float* rgb) const;
 
+  /// The fraction of a pixel that is not background; 0 without samples.
+  ///
+  /// Domain     with LayerRequest::coverage
+  float coverage(std::size_t pixel) const;
+
   int width, height;  ///< px
   /// Samples of both halves; without halves, all are in the first.
   std::array<base::ZeroVector<kernel::PixelSum>, 2> light;

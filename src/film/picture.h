@@ -35,6 +35,7 @@ struct Picture {
   int width = 0;   ///< px
   int height = 0;  ///< px
   std::vector<Plane> planes;
+  std::vector<float> coverage = {};       ///< of each pixel by what is not background; empty: unknown
   int x = 0, y = 0;                       ///< px, position of the upper left pixel in the frame
   int frame_width = 0, frame_height = 0;  ///< px; 0: the image is the whole frame
   std::string color_interop_id = {};      ///< colour space, "lin_rec709_scene"; empty: unknown

@@ -156,6 +156,7 @@ std::vector<Feature> features_of(const compile::CompiledScene& compiled, bool ha
       feature("motion blur", compiled.features.motion, "nothing moves while the shutter is open",
               "camera, spheres or rods move while the shutter is open"),
       feature("opacity", compiled.features.opacity, "all objects are opaque", "some objects have an opacity below 1"),
+      feature("depth cue", compiled.features.depth_cue, "camera.depth_cue is 0"),
       feature("lights", compiled.features.lit, "no emitters: no shadow rays"),
       feature("layers", has_layers, "none requested: paths are not recorded"),
       feature("light paths", compiled.shading == kernel::Shading::kPath, "render.shading uses the first hit only")};

@@ -138,6 +138,13 @@ void add_spheres(const scene::Scene& scene, const compile::CompiledScene& compil
   }
 }
 
+/// Number of sets of spheres that cannot be divided into smaller objects.
+std::size_t block_count(const scene::Scene& scene) {
+  std::size_t out = scene.spheres.size() + scene.rods.size() + scene.rod_files.size();
+  for (const scene::Points& points : scene.points) out += std::max<std::size_t>(1, points.object_names.size());
+  return out;
+}
+
 /// Adds the mattes whose layers are requested, in the order of kMatteLayers.
 ///
 /// `authored`   the authored material of each compiled material
@@ -157,8 +164,7 @@ void add_mattes(const scene::Scene& scene, const compile::CompiledScene& compile
       material_ids.push_back(materials.id_of(scene.materials[material].name));
 
   const std::size_t ids_of_all = compiled.object_materials.size();
-  std::size_t blocks = scene.spheres.size() + scene.rods.size() + scene.rod_files.size();
-  for (const scene::Points& points : scene.points) blocks += std::max<std::size_t>(1, points.object_names.size());
+  const std::size_t blocks = block_count(scene);
   const std::size_t most = std::min(ids_of_all, by_material ? blocks * material_ids.size() : blocks);
   SphereClasses classes(compiled.object_materials, std::move(material_ids), most);
   const auto ids_of = [&](const std::string& object, const std::string& group) {
@@ -208,20 +214,33 @@ std::filesystem::path manifest_file(const std::string& layer, const std::filesys
 
 }  // namespace
 
-Layers choose_layers(const scene::Scene& scene, const compile::CompiledScene& compiled) {
+Layers choose_layers(const scene::Scene& scene, const compile::CompiledScene& compiled, bool view_has_looks) {
   Layers out;
   film::LayerRequest& r = out.request;
   const std::vector<std::string> names = scene::requested_layers(scene);
   const auto requested = [&](const char* name) { return std::find(names.begin(), names.end(), name) != names.end(); };
   for (const film::LayerType& layer : film::kLayerTypes) r.*layer.requested = requested(layer.name);
   if (r.light_groups) r.groups = light_groups(scene, compiled);
-  r.coverage = scene.background.alpha == 0;
+  r.transparent = scene.background.alpha == 0;
+  r.coverage = r.transparent || (view_has_looks && scene.background.backdrop);
   std::vector<std::uint32_t> authored;
   if (r.material_id || requested("CryptoMaterial")) authored = authored_materials(compiled);
   if (r.material_id)
     for (const std::uint32_t material : authored) r.material_numbers.push_back(material + 1);
   add_mattes(scene, compiled, authored, requested, out);
   return out;
+}
+
+base::PackedArray object_classes(const scene::Scene& scene, const compile::CompiledScene& compiled) {
+  SphereClasses classes(compiled.object_materials, {}, std::min(compiled.object_materials.size(), block_count(scene)));
+  NameList names;
+  add_spheres(
+      scene, compiled,
+      [&](const std::string& object, const std::string&) {
+        return MatteIds{names.id_of(object), 0, 0};
+      },
+      classes);
+  return classes.take().of_sphere;
 }
 
 std::vector<image::Attribute> matte_attributes(const std::vector<MatteNames>& mattes,

@@ -9,6 +9,7 @@
 #include <utility>
 #include <vector>
 
+#include "base/huge_pages.h"
 #include "compile/forward.h"
 #include "film/layers.h"
 #include "image/header.h"
@@ -34,8 +35,14 @@ struct Layers {
 
 /// Returns the layer request and the mattes for the names in [output]. CryptoGroup is empty for a scene without groups.
 ///
+/// `view_has_looks`  the display transform needs the coverage of objects in front of a backdrop
 /// Domain     the scene is valid; `compiled` was compiled from it
-Layers choose_layers(const scene::Scene& scene, const compile::CompiledScene& compiled);
+Layers choose_layers(const scene::Scene& scene, const compile::CompiledScene& compiled, bool view_has_looks = false);
+
+/// The object of the CryptoObject matte that each sphere and each half of a rod belongs to, as a number.
+///
+/// Domain     as choose_layers()
+base::PackedArray object_classes(const scene::Scene& scene, const compile::CompiledScene& compiled);
 
 /// Maximum number of names in a manifest in the header. A larger manifest is written to a separate file next to the
 /// image, since every reader loads the whole header.

@@ -37,7 +37,7 @@ void load(const PreparedJob& own, base::FileSet& files, JobReport& report) {
 /// The layers that an output of the job holds; others are not computed.
 Layers layers_of(const PreparedJob& own) {
   const Job& job = own.job;
-  Layers out = choose_layers(own.scene(), own.compiled());
+  Layers out = choose_layers(own.scene(), own.compiled(), own.loaded().choice && own.loaded().choice->has_looks);
   out.request.deep = !job.outputs.deep.empty();
   out.request.halves = out.request.halves || job.denoise;
   image::check_lossless(film::planes_of(out.request), job.outputs.exr);
@@ -45,6 +45,7 @@ Layers layers_of(const PreparedJob& own) {
   if (job.outputs.has_exr() || job.is_in_memory()) return out;
   Layers none;
   none.request.coverage = out.request.coverage;
+  none.request.transparent = out.request.transparent;
   none.request.deep = out.request.deep;
   none.request.halves = job.denoise;
   return none;

@@ -124,6 +124,15 @@ SceneHashes scene_hashes(const compile::CompiledScene& compiled, Hash hash) {
   }
   add_all(hash, compiled.background.bottom);
   add_all(hash, compiled.background.top);
+  if (compiled.page != kernel::kNone) hash.add_bits(compiled.page);
+  if (!(compiled.background.up == math::Vec3d{0, 1, 0})) add_all(hash, compiled.background.up);
+  if (compiled.features.depth_cue) {
+    for (const kernel::DepthCue& cue : {compiled.depth_cue, compiled.page_fade}) {
+      add_all(hash, cue.slope);
+      hash.add(cue.offset);
+      hash.add(cue.strength);
+    }
+  }
   if (compiled.backdrop) add_all(hash, *compiled.backdrop);  // others keep the hash that they had before there was one
   for (const std::uint64_t v :
        {std::uint64_t(compiled.width), std::uint64_t(compiled.height), std::uint64_t{compiled.max_depth},

@@ -103,6 +103,27 @@ HWY_INLINE void deposit(D d, const BatchOf<T>& batch, int count, const SceneView
   add_sum();
 }
 
+/// Adds the coverage of a batch's paths to the sums of their pixels. On a transparent page, what a path lacks of the
+/// radiance of the backdrop becomes coverage, in black.
+template <class T>
+HWY_INLINE void add_coverage(BatchOf<T>& batch, int count, const SceneView& scene, const Tile& tile) {
+  const math::Vec3d& backdrop = scene.backdrop;
+  const auto whole = static_cast<T>(scene.has_backdrop ? backdrop.x + backdrop.y + backdrop.z : 3);
+  for (int i = 0; i < count; ++i) {
+    T coverage = batch.coverage[i];
+    if (coverage == T{kOnPage}) {
+      coverage = 0;
+      if (!scene.background_visible && whole > 0) {
+        const T seen = batch.radiance[0][i] + batch.radiance[1][i] + batch.radiance[2][i];
+        coverage = std::max(T{0}, 1 - std::max(T{0}, seen / whole));
+        for (auto& channel : batch.radiance) channel[i] = 0;
+      }
+    }
+    tile.covered[tile.index(place_of(batch.pixel[i], scene))] +=
+        static_cast<std::int64_t>(static_cast<double>(coverage) / kGuideUnit);
+  }
+}
+
 /// Raises the largest samples of pixels. Bad samples do not count.
 template <class T>
 HWY_INLINE void raise_largest(const BatchOf<T>& batch, int count, const SceneView& scene, const Tile& tile) {

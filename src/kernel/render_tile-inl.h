@@ -103,6 +103,7 @@ class TileLoop {
       begin(batch, counter);
       int alive = batch;
       for (depth_ = 0; alive > 0; ++depth_) alive = advance(alive);
+      if (kLoop.full && tile_.covered != nullptr) add_coverage(paths_.batch, batch, scene_, tile_);
       deposit(d, paths_.batch, batch, scene_, tile_, counts_);
       raise_largest(paths_.batch, batch, scene_, tile_);
       if (kLoop.full) record_light(paths_.batch, batch, scene_, tile_);

@@ -10,8 +10,8 @@ ORRERY_DECLARE_INSTANCES(RenderTile exact_tile(bool full); RenderTile fast_tile(
                          RenderTile book_tile(bool full);)
 
 RenderTile render_tile_function(const Features& features, Precision precision, bool records) {
-  const bool full =
-      records || features.motion || features.lit || features.rich_materials || features.rods || features.opacity;
+  const bool full = records || features.motion || features.lit || features.rich_materials || features.rods ||
+                    features.opacity || features.depth_cue || features.tilted;
   switch (precision) {
     case Precision::kExact: return ORRERY_BEST_INSTANCE(exact_tile)(full);
     case Precision::kFast: return ORRERY_BEST_INSTANCE(fast_tile)(full);

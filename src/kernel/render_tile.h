@@ -22,6 +22,9 @@ struct Tile {
   int chosen_count = 0;
   /// One record per path: the samples of a pixel, then the next pixel of the row. Null: not needed.
   PathRecord* records = nullptr;
+  /// Sums of the pixels' coverage by what is not background, in units of kGuideUnit, laid out like the sums; null: not
+  /// needed.
+  std::int64_t* covered = nullptr;
   GuideSum* guides = nullptr;     ///< guides of the upper left pixel, laid out like the sums; null: not needed
   LightEvents* events = nullptr;  ///< receives the paths' light events; null: not needed
   bool record_light = true;       ///< false: the records' light and light events are not needed

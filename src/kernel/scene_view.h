@@ -18,10 +18,23 @@
 
 namespace orrery::kernel {
 
-/// Background radiance: bottom + (top - bottom) (y + 1) / 2 for the unit direction of a ray that leaves the scene.
+/// Background radiance: bottom + (top - bottom) (h + 1) / 2 for a ray that leaves the scene, where h is the component
+/// of its unit direction along `up`.
 struct Background {
   math::Vec3d bottom{1, 1, 1};
   math::Vec3d top{1, 1, 1};
+  math::Vec3d up{0, 1, 0};  ///< unit
+};
+
+/// The share of the background in the colour of a path's first hit, at a depth of z along the view axis: `slope` z -
+/// `offset`, clamped to 0..`strength`.
+struct DepthCue {
+  double strength = 0;
+  double offset = 0;
+  math::Vec3d slope;  ///< along the view axis, 1 / scene units
+
+  /// The share at a depth, scene units.
+  double share(double z) const { return std::fmax(0, std::fmin(math::length(slope) * z - offset, strength)); }
 };
 
 /// Radiance that a material emits in all directions. An array, so that the kernel can gather the members as four
@@ -40,12 +53,14 @@ struct Features {
   bool lens = false;            ///< the camera has an aperture
   bool hemisphere = false;      ///< some sphere has a hemisphere material
   bool gradient = false;        ///< the background depends on the direction
+  bool tilted = false;          ///< the gradient rises in another direction than +y
   bool motion = false;          ///< camera or spheres move while the shutter is open
   bool lit = false;             ///< something emits, or is sampled: paths gain radiance at their vertices
   bool rich_materials = false;  ///< textures, rough glass or plastic
   bool rods = false;            ///< there are rods
   bool opacity = false;         ///< some opacity is below 1
   bool caustics = false;        ///< images of lights in balls are sampled
+  bool depth_cue = false;       ///< first hits fade into the background
 };
 
 /// Reciprocal of the throughput below which Russian roulette may end a path. Ending paths of higher throughput would
@@ -60,6 +75,9 @@ struct SceneSettings {
   DirectLighting direct_lighting = DirectLighting::kMis;
   Camera camera;
   Camera camera_motion;  ///< change of the camera's vectors until the shutter closes, if features.motion
+  // If features.depth_cue:
+  DepthCue depth_cue;
+  DepthCue page_fade;  ///< that of SceneView::page
   Background background;
   Features features;
   Shading shading = Shading::kPath;
@@ -101,6 +119,10 @@ struct SceneView : SceneSettings {
   bool background_visible = true;  ///< false: camera rays that leave the scene carry no radiance
   bool has_backdrop = false;       ///< camera rays that leave the scene carry `backdrop`, not the background's radiance
   math::Vec3d backdrop{0, 0, 0};
+  /// A sphere that is a part of the backdrop for camera rays: it does not cover them. If the background is invisible,
+  /// its radiance is not that of the pixel, but what it lacks compared to the backdrop is coverage. kNone: there is
+  /// none.
+  std::uint32_t page = kNone;
 };
 
 /// A sphere at a time between 0 (shutter opens) and 1 (shutter closes), computed like in the kernel's loops.

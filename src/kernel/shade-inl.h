@@ -32,8 +32,8 @@ namespace orrery::kernel::HWY_NAMESPACE {
 /// Compile-time options of an instance of the path loop.
 struct Loop {
   Precision precision = Precision::kExact;
-  /// Renders all features and fills the tile's records, events and guides; false: neither motion, lights, rods,
-  /// opacity, textures, rough glass nor plastic, and the sums alone.
+  /// Renders all features and fills the tile's records, events and guides; false: neither motion, lights, rods, other
+  /// gradients, opacity, textures, rough glass, plastic nor depth cue, and the sums alone.
   bool full = false;
 };
 
@@ -42,17 +42,18 @@ template <Loop kLoop>
 HWY_INLINE Features features_of(const SceneView& scene) {
   Features features = scene.features;
   if (!kLoop.full)
-    features.motion = features.lit = features.rich_materials = features.rods = features.opacity = features.caustics =
-        false;
+    features.tilted = features.motion = features.lit = features.rich_materials = features.rods = features.opacity =
+        features.caustics = features.depth_cue = false;
   return features;
 }
 
 template <class D, class V = hn::Vec<D>>
-HWY_INLINE Vec3<V> background(D d, const Background& sky, bool has_gradient, const Vec3<V>& direction) {
+HWY_INLINE Vec3<V> background(D d, const Background& sky, const Features& features, const Vec3<V>& direction) {
   const auto bottom = set3(d, sky.bottom);
-  if (!has_gradient) return bottom;
+  if (!features.gradient) return bottom;
   const V half = set(d, 0.5);
-  const V a = mul_add(direction.y, half, half);
+  const V height = features.tilted ? dot(set3(d, sky.up), direction) : direction.y;
+  const V a = mul_add(height, half, half);
   const V one_minus_a = 1 - a;
   return mul_add(set3(d, sky.top), a, bottom * one_minus_a);
 }
@@ -83,10 +84,13 @@ struct Arrivals {
   const hn::TFromD<D>* times = nullptr;  ///< null: nothing moves
   Ids pixels, samples;
   Vec3<V> throughput;  ///< before the hit
-  Ids history;         ///< only if the tile is recorded
-  Ids paths;           ///< as in PathStreamOf
-  V pdf;               ///< as in PathStreamOf
-  RayCone<V> cone;     ///< at the hits; only in scenes with ray cones
+  // Of paths that leave the scene and, with a depth cue, of those that see the background through their first hit.
+  hn::Mask<D> see_background;
+  Vec3<V> background_throughput;
+  Ids history;      ///< only if the tile is recorded
+  Ids paths;        ///< as in PathStreamOf
+  V pdf;            ///< as in PathStreamOf
+  RayCone<V> cone;  ///< at the hits; only in scenes with ray cones
 };
 
 /// Records first hits in scenes with rods; see Recorder::first_hit. Not inlined.
@@ -120,7 +124,7 @@ class Shader {
     const bool ends = scene_.shading == Shading::kPath && depth_ + 1 >= scene_.max_depth;
     for (int v = 0; v < packet.count; v += static_cast<int>(hn::Lanes(d))) {
       const Arrivals<D> at = arrive(packet, first, v);
-      if (!hn::AllFalse(d, at.missed)) leave(at);
+      if (!hn::AllFalse(d, at.see_background)) leave(at);
       if (hn::AllFalse(d, at.hit)) continue;
       if (features().lit) emit(at);
       if (ends && !(records() && depth_ == 0)) continue;
@@ -162,6 +166,10 @@ class Shader {
     at.samples = hn::Load(du, stream_.sample + i);
     at.paths = hn::Load(du, stream_.path + i);
     at.throughput = load3(d, stream_.throughput, i);
+    at.see_background = at.missed;
+    at.background_throughput = at.throughput;
+    if (features().depth_cue && depth_ == 0) fade(at);
+    if (kLoop.full && tile_.covered != nullptr && depth_ == 0) cover(at, i);
     if (records()) {
       at.history = hn::Load(du, stream_.history + i);
       if (depth_ == 0) recorder(at).begin(d, active, at.missed);
@@ -175,7 +183,33 @@ class Shader {
     return at;
   }
 
-  /// Adds the radiance of the background to paths that leave the scene.
+  HWY_INLINE hn::Mask<D> on_page(const Arrivals<D>& at) const {
+    return hn::RebindMask(d, at.hits == set(du, scene_.page));
+  }
+
+  /// Stores the coverage of paths.
+  ///
+  /// `i`        position in the stream, which is the index within the batch at first hits
+  HWY_INLINE void cover(const Arrivals<D>& at, int i) const {
+    V coverage = hn::IfThenElseZero(at.hit, at.throughput.x);  // 1 less what the depth cue takes
+    if (scene_.page != kNone) coverage = select(on_page(at), set(d, kOnPage), coverage);
+    hn::Store(coverage, d, paths_.batch.coverage + i);
+  }
+
+  /// Divides the throughput of first hits between them and the background.
+  HWY_INLINE void fade(Arrivals<D>& at) const {
+    const auto share_of = [&](const DepthCue& cue) {
+      const V depth = at.distance * dot(set3(d, cue.slope), at.ray.direction);
+      return hn::IfThenElseZero(at.hit, max(min(depth - cue.offset, set(d, cue.strength)), hn::Zero(d)));
+    };
+    V share = share_of(scene_.depth_cue);
+    if (scene_.page != kNone) share = select(on_page(at), share_of(scene_.page_fade), share);
+    at.see_background = hn::Or(at.missed, share > 0);
+    at.background_throughput = at.throughput * select(at.missed, set(d, 1), share);
+    at.throughput = at.throughput * (1 - share);
+  }
+
+  /// Adds the radiance of the background to paths that see it.
   HWY_INLINE void leave(const Arrivals<D>& at) {
     if (depth_ == 0 && !scene_.background_visible) return;
     Vec3<V> radiance;
@@ -186,17 +220,17 @@ class Shader {
       radiance = depth_ == 0 ? environment_radiance(d, *scene_.environment, at.ray.direction)
                              : weighted_environment(d, scene_, at.ray.direction, at.pdf);
       if (features().caustics)
-        radiance =
-            without_sampled_sun(d, scene_, radiance, at.ray.direction, at.missed, caustic_state_of(at), at.ray.self);
+        radiance = without_sampled_sun(d, scene_, radiance, at.ray.direction, at.see_background, caustic_state_of(at),
+                                       at.ray.self);
       groups = set(du, scene_.environment->light_group);
     } else {
-      radiance = background(d, scene_.background, features().gradient, at.ray.direction);
+      radiance = background(d, scene_.background, features(), at.ray.direction);
     }
-    const Vec3<V> light = radiance * at.throughput;
-    add(at, at.missed, light, groups, Lobe::kBackground);
+    const Vec3<V> light = radiance * at.background_throughput;
+    add(at, at.see_background, light, groups, Lobe::kBackground);
     if (records()) {
       const V zero = hn::Zero(d);
-      recorder(at).guide(d, hn::And(at.missed, guided(at)), {min(light.x, 1), min(light.y, 1), min(light.z, 1)},
+      recorder(at).guide(d, hn::And(at.see_background, guided(at)), {min(light.x, 1), min(light.y, 1), min(light.z, 1)},
                          {zero, zero, zero});
     }
   }
@@ -256,8 +290,9 @@ class Shader {
   HWY_INLINE void show(const Arrivals<D>& at, const Lookup<D>& look) {
     const V half = set(d, 0.5);
     const bool flat = scene_.shading == Shading::kFlat;
-    add(at, at.hit, flat ? look.albedo : mul_add(look.surface.normal, half, {half, half, half}), hn::Zero(du),
-        Lobe::kBackground);
+    Vec3<V> color = flat ? look.albedo : mul_add(look.surface.normal, half, {half, half, half});
+    if (features().depth_cue) color = color * at.throughput;
+    add(at, at.hit, color, hn::Zero(du), Lobe::kBackground);
   }
 
   /// The hits as points from which light is sampled.

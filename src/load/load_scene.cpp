@@ -293,6 +293,7 @@ class SceneLoader {
       out_.warnings.push_back(base::file_diagnostic(
           base::Severity::kWarning, request_.source.file.string(),
           fmt::format("{} colours are out of range in {} and were clamped", clamped, scene.color.working_space())));
+    if (scene.background.alpha != 0) out_.display.backdrop = scene.background.backdrop;
   }
 
   const SceneRequest& request_;

@@ -19,17 +19,19 @@ Canvas::Canvas(int width_px, int height_px)
     : width_(width_px),
       height_(height_px),
       cells_per_row_(cells_of(width_px)),
-      values_(3 * math::pixel_count(width_px, height_px)),
+      values_(kChannels * math::pixel_count(width_px, height_px)),
       changed_(cells_per_row_ * cells_of(height_px)) {}
 
-std::size_t Canvas::at(int x, int y) const noexcept { return 3 * math::pixel_index(x, y, width_); }
+std::size_t Canvas::at(int x, int y) const noexcept { return kChannels * math::pixel_index(x, y, width_); }
 
 void Canvas::write(const film::Partial& state, const film::RenderedPixels& rendered) noexcept {
   for (const kernel::PixelPlace p : rendered.pixels) {
-    float rgb[3];
-    state.mean(math::pixel_index(rendered.x + p.x, rendered.y + p.y, width_), rgb);
+    const std::size_t i = math::pixel_index(rendered.x + p.x, rendered.y + p.y, width_);
+    float values[kChannels] = {0, 0, 0, 1};
+    state.mean(i, values);
+    if (!state.layers.covered.empty()) values[3] = state.coverage(i);
     std::atomic<float>* const pixel = &values_[at(rendered.x + p.x, rendered.y + p.y)];
-    for (int c = 0; c < 3; ++c) pixel[c].store(rgb[c], std::memory_order_relaxed);
+    for (std::size_t c = 0; c < kChannels; ++c) pixel[c].store(values[c], std::memory_order_relaxed);
   }
   const int right = (rendered.x + rendered.width - 1) / kSide, bottom = (rendered.y + rendered.height - 1) / kSide;
   // A read-modify-write, unlike a store, keeps the pixels of an earlier writer visible to whoever resets the mark.
@@ -43,9 +45,12 @@ void Canvas::write(const film::Picture& picture) noexcept {
   std::size_t c = 0;
   for (const char* name : {"R", "G", "B"}) {
     const std::vector<float>& plane = picture.find(name)->values;
-    for (std::size_t i = 0; i < plane.size(); ++i) values_[3 * i + c].store(plane[i], std::memory_order_relaxed);
+    for (std::size_t i = 0; i < plane.size(); ++i)
+      values_[kChannels * i + c].store(plane[i], std::memory_order_relaxed);
     ++c;
   }
+  for (std::size_t i = 0; i < picture.coverage.size(); ++i)
+    values_[kChannels * i + c].store(picture.coverage[i], std::memory_order_relaxed);
   for (std::atomic<std::uint8_t>& changed : changed_) changed.fetch_or(1, std::memory_order_release);
 }
 
@@ -62,9 +67,12 @@ Cell Canvas::cell(std::size_t index) const noexcept {
   return {x, y, std::min(kSide, width_ - x), std::min(kSide, height_ - y)};
 }
 
-void Canvas::read(int x, int y, int count, float* rgb) const noexcept {
+void Canvas::read(int x, int y, int count, float* rgb, float* coverage) const noexcept {
   const std::atomic<float>* from = &values_[at(x, y)];
-  for (int i = 0; i < 3 * count; ++i) rgb[i] = from[i].load(std::memory_order_relaxed);
+  for (int i = 0; i < count; ++i) {
+    for (int c = 0; c < 3; ++c) *rgb++ = (from++)->load(std::memory_order_relaxed);
+    *coverage++ = (from++)->load(std::memory_order_relaxed);
+  }
 }
 
 }  // namespace orrery::preview

@@ -45,17 +45,19 @@ class Canvas {
   std::size_t cells_per_row() const noexcept { return cells_per_row_; }
   Cell cell(std::size_t index) const noexcept;
 
-  /// Copies a row of scene-linear R, G, B values.
+  /// Copies a row of scene-linear R, G, B values, and the coverage, which is 1 if the render does not determine it.
   ///
   /// `rgb`      3 * count values
-  void read(int x, int y, int count, float* rgb) const noexcept;
+  void read(int x, int y, int count, float* rgb, float* coverage) const noexcept;
 
  private:
+  static constexpr std::size_t kChannels = 4;
+
   std::size_t at(int x, int y) const noexcept;
 
   int width_, height_;
   std::size_t cells_per_row_;
-  std::vector<std::atomic<float>> values_;          ///< R, G, B of all pixels, row by row from the top
+  std::vector<std::atomic<float>> values_;          ///< R, G, B and coverage of all pixels
   std::vector<std::atomic<std::uint8_t>> changed_;  ///< 1: the cell has changed
 };
 

@@ -133,13 +133,14 @@ void Preview::set_up() {
 void Preview::refresh() {
   const std::vector<std::size_t> cells = canvas_->take_changed();
   if (cells.empty()) return;
-  std::vector<float> rgb(3 * math::pixel_count(Canvas::kSide, Canvas::kSide));
+  std::vector<float> coverage(math::pixel_count(Canvas::kSide, Canvas::kSide)), rgb(3 * coverage.size());
   std::vector<std::uint8_t> codes(rgb.size());
   for (const std::size_t index : cells) {
     const Cell cell = canvas_->cell(index);
     const auto row = [&](int y) { return 3 * math::pixel_index(0, y, cell.width); };
-    for (int y = 0; y < cell.height; ++y) canvas_->read(cell.x, cell.y + y, cell.width, &rgb[row(y)]);
-    (*develop_)(rgb.data(), math::pixel_count(cell.width, cell.height), codes.data());
+    for (int y = 0; y < cell.height; ++y)
+      canvas_->read(cell.x, cell.y + y, cell.width, &rgb[row(y)], &coverage[row(y) / 3]);
+    (*develop_)(rgb.data(), coverage.data(), math::pixel_count(cell.width, cell.height), codes.data());
     for (int y = 0; y < cell.height; ++y)
       std::copy_n(&codes[row(y)], row(1), &codes_.values[3 * math::pixel_index(cell.x, cell.y + y, codes_.width)]);
   }

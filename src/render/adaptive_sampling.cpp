@@ -54,9 +54,9 @@ class AdaptiveSampling {
         pixels_(compiled.width, compiled.height),
         iteration_begin_(progress.seconds()),
         iteration_begin_samples_(progress.done()) {
-    if (settings.layers.coverage) pixels_.known_black.resize(pixels_.samples.size());
+    if (settings.layers.transparent) pixels_.known_black.resize(pixels_.samples.size());
     kernel::SceneView view = compiled.view();
-    if (settings.layers.coverage) view.background_visible = false;
+    if (settings.layers.transparent) view.background_visible = false;
     pixels_.emitters = emitter_coverage(view, compiled.width, compiled.height);
     const auto update_row = [&](std::size_t y, TileWorker&) {
       for (int x = 0; x < compiled.width; ++x) update(x, static_cast<int>(y));
@@ -164,7 +164,7 @@ class AdaptiveSampling {
     const std::size_t i = pixels_.at(x, y);
     pixels_.set(i, state_.counts[i], state_.light[0][i], state_.light[1][i], state_.largest[i]);
     // With a transparent background, pixels in which no path hits a sphere are black.
-    if (settings_.layers.coverage) pixels_.known_black[i] = state_.layers.covered[i] == 0 ? 1 : 0;
+    if (settings_.layers.transparent) pixels_.known_black[i] = state_.layers.covered[i] == 0 ? 1 : 0;
   }
 
   const Settings& settings_;

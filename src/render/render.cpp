@@ -98,15 +98,17 @@ Result finished(const compile::CompiledScene& compiled, const film::LayerRequest
   result.picture.frame_width = compiled.frame_width;
   result.picture.frame_height = compiled.frame_height;
   result.picture.pixel_aspect = compiled.pixel_aspect;
-  result.picture.is_transparent = request.coverage;
+  result.picture.is_transparent = request.transparent;
   const kernel::SceneView view = compiled.view();
   const std::size_t pixels = partial.pixel_count();
   TilePool(threads > 0 ? threads : available_threads()).execute([&] {
     add_planes(film::image_planes(request, view, partial), pixels, result.picture);
+    if (request.coverage) result.picture.coverage.resize(pixels);
+    for (std::size_t i = 0; i < result.picture.coverage.size(); ++i) result.picture.coverage[i] = partial.coverage(i);
     if (!request.deep) return;
     result.deep = {partial.width, partial.height, std::vector<std::vector<film::DeepSample>>(pixels)};
     tbb::parallel_for(std::size_t{0}, pixels, [&](std::size_t i) {
-      result.deep.pixels[i] = film::deep_samples(partial, i, !request.coverage);
+      result.deep.pixels[i] = film::deep_samples(partial, i, !request.transparent);
     });
   });
   return result;

@@ -113,7 +113,7 @@ TileRenderer::TileRenderer(const compile::CompiledScene& compiled, const accel::
       // Each half of a low-discrepancy sequence is a sequence in its own right.
       second_half_(settings.sampling.is_adaptive() ? kernel::Sampler::kSecondHalf
                                                    : std::max(1U, static_cast<std::uint32_t>(compiled.samples) / 2)) {
-  if (request_.coverage) view_.background_visible = false;
+  if (request_.transparent) view_.background_visible = false;
   render_ = kernel::render_tile_function(view_.features, compiled.precision, request_.any());
 }
 
@@ -151,6 +151,10 @@ void TileRenderer::attach_buffers(kernel::Tile& tile, TileWorker& worker, bool i
     worker.guides.assign(pixels, {});
     tile.guides = worker.guides.data();
   }
+  if (request_.coverage) {
+    worker.covered.assign(pixels, 0);
+    tile.covered = worker.covered.data();
+  }
   if (!request_.records()) return;
   worker.records.resize(pixels * (tile.sample_end - tile.sample_begin));
   tile.records = worker.records.data();
@@ -168,6 +172,7 @@ void TileRenderer::add_sums(const kernel::Tile& tile, film::Partial& image) cons
     const std::size_t within = math::pixel_index(at.x, at.y, tile.width), pixel = index_of(image, tile, at);
     image.light[half][pixel] += tile.sums[within];
     if (tile.guides != nullptr) image.guides[half][pixel] += tile.guides[within];
+    if (tile.covered != nullptr) image.layers.covered[pixel] += tile.covered[within];
     if (tile.largest != nullptr) image.largest[pixel] = std::max(image.largest[pixel], tile.largest[within]);
   }
 }

@@ -40,6 +40,7 @@ struct TileWorker {
   std::vector<kernel::PathRecord> records;
   // Of a tile's pixels:
   std::vector<kernel::PixelSum> light;
+  std::vector<std::int64_t> covered;
   std::vector<float> largest;
   std::vector<kernel::GuideSum> guides;
   LightEventBuffer events;

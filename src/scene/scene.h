@@ -46,6 +46,12 @@ struct Image {
   }
 };
 
+/// An interval of numbers.
+struct Interval {
+  double low = 0, high = 1;
+  bool operator==(const Interval&) const = default;
+};
+
 enum class Projection { kPerspective, kOrthographic };
 
 struct Camera {
@@ -59,6 +65,8 @@ struct Camera {
   double shutter_close = 0;              ///< frames, relative to the frame; equal to shutter_open: no motion blur
   Projection projection = Projection::kPerspective;
   std::optional<double> width = {};  ///< orthographic: scene units, width of the frame
+  double depth_cue = 0;              ///< 0..1, share of the background in the colours of what is farthest away
+  std::optional<Interval> depth_cue_range = {};  ///< scene units along the view axis; default: that of the data
 };
 
 enum class BackgroundType { kGradient, kConstant, kImage, kSky };
@@ -67,6 +75,7 @@ struct Background {
   BackgroundType type = BackgroundType::kGradient;
   Vec3d bottom{1, 1, 1};               ///< gradient: radiance from straight below
   Vec3d top{0.5, 0.7, 1};              ///< gradient: radiance from straight above
+  Vec3d up{0, 1, 0};                   ///< gradient: the direction above
   Vec3d color{1, 1, 1};                ///< constant: radiance
   int alpha = 1;                       ///< 0: the background is transparent
   std::optional<Vec3d> backdrop = {};  ///< radiance that camera rays see in its place; default: they see it
@@ -188,6 +197,7 @@ struct Sphere {
   std::uint32_t material = 0;  ///< index into Scene::materials
   std::string name = {};       ///< optional, for mattes
   std::string group = {};      ///< optional, for mattes: all objects of a group are one matte
+  bool is_page = false;        ///< the camera sees it as a part of the backdrop, on which shadows fall
 };
 
 /// A sphere swept along a segment. It transmits no light.
@@ -198,12 +208,6 @@ struct Rod {
   std::array<std::uint32_t, 2> materials = {0, 0};
   std::string name = {};   ///< optional, for mattes
   std::string group = {};  ///< optional, for mattes
-};
-
-/// An interval of numbers.
-struct Interval {
-  double low = 0, high = 1;
-  bool operator==(const Interval&) const = default;
 };
 
 /// Numbers or colours by particle type, in the order of the types' names.
@@ -461,6 +465,8 @@ struct Annotation {
   std::string color_at = "top right";  ///< corner of the colour bar
   double font_size = 0;                ///< px; 0: depends on the image
   double outline = 0;                  ///< width of the outlines of objects, px; 0: none
+  bool outline_objects = false;        ///< divides lines into those between and within the objects of CryptoObject
+  double outline_depth = 0;            ///< smallest jump of the depth, scene units; 0: that of the front object
   std::filesystem::path font;          ///< name or file; empty: DejaVu Sans
 
   /// True if something is drawn.

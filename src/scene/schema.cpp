@@ -71,7 +71,19 @@ Table camera_table() {
               {"Shutter closing time, relative to the frame. If later than `shutter_open`, camera and spheres that "
                "move during the interval are motion-blurred",
                "frames", "Only if something moves: one extra random dimension per path, and motion-blurred bounds"},
-              &Camera::shutter_close)});
+              &Camera::shutter_close),
+       number("depth_cue", {0, 1},
+              {"Depth cue: share of the backdrop, or of the background where there is none, in the colours at the far "
+               "end of `depth_cue_range`. It rises linearly from 0 at the near end, along the view axis, and is that "
+               "of the first hit of each path. With `background.alpha = 0`, the share is transparent",
+               "", "At most 5 % of the render time"},
+              &Camera::depth_cue),
+       otherwise("from a tenth of the depth of all `[[points]]` and rods to their farthest point",
+                 key_of("depth_cue_range", ValueType::kInterval, kAnyLength,
+                        {"Where the depth cue begins and ends, as distances from `look_from` along the view axis. Set "
+                         "it for sequences: the default depends on the frame",
+                         "scene units"},
+                        &Camera::depth_cue_range))});
 }
 
 Table animation_table() {
@@ -90,12 +102,14 @@ Table background_table() {
   return table(
       "background", Part::kLook, &Scene::background,
       {choice("type", {"gradient", "constant", "image", "sky"},
-              {"`gradient`: from `bottom` to `top`, linear in the y component of the unit ray direction. `constant`: "
-               "`color`. `image`: the latitude-longitude map in `file`. `sky`: daylight, computed from the scattering "
+              {"`gradient`: from `bottom` to `top`, linear in the component of the unit ray direction along `up`. "
+               "`constant`: `color`. `image`: the latitude-longitude map in `file`. `sky`: daylight, computed from the "
+               "scattering "
                "of sunlight in the atmosphere; see [Daylight](#daylight)"},
               &Background::type),
        vector("bottom", kLight, {"Gradient: radiance from straight below", unit}, &Background::bottom),
        vector("top", kLight, {"Gradient: radiance from straight above", unit}, &Background::top),
+       vector("up", kAnyLength, {"Gradient: the direction above", "any length"}, &Background::up),
        vector("color", kLight, {"Constant: radiance from every direction", unit}, &Background::color),
        integer("alpha", {0, 1},
                {"1: the background is opaque. 0: the image is transparent where only the background is visible", "",
@@ -240,6 +254,15 @@ Table annotation_table() {
                "open, without a lens",
                "px", "16 rays per pixel, 32 with translucent objects"},
               &Annotation::outline),
+       boolean(
+           "outline_objects",
+           {"Draw outlines wherever objects of the CryptoObject matte meet, such as the chains with `cryptomatte = "
+            "[\"chain\"]` in `[[points]]`. Within objects, lines are half as wide and weaker, except against what is "
+            "far behind"},
+           &Annotation::outline_objects),
+       otherwise("a quarter of the radius of the object in front, twice the radius with `outline_objects`",
+                 number("outline_depth", {0, kLargestLength},
+                        {"Smallest jump of the depth that is an outline", "scene units"}, &Annotation::outline_depth)),
        file("font", kFontFile,
             {"Font of all texts: a name, or a file relative to the scene file. Default: DejaVu Sans"},
             &Annotation::font)});
@@ -311,7 +334,14 @@ const std::vector<Key<Sphere>>& sphere_keys() {
                       &Sphere::radius)),
       changes(Part::kOutput,
               text("name", {"Name in the CryptoObject matte. Default: `sphere.` and the index"}, &Sphere::name)),
-      changes(Part::kOutput, text("group", {"CryptoGroup name; objects of a group share one matte"}, &Sphere::group))};
+      changes(Part::kOutput, text("group", {"CryptoGroup name; objects of a group share one matte"}, &Sphere::group)),
+      changes(
+          Part::kView,
+          boolean("page",
+                  {"The camera sees the sphere as a part of the backdrop on which shadows fall: it is not tone mapped, "
+                   "and with `background.alpha = 0` its shadows are alpha. Its colour without shadows should be "
+                   "`background.backdrop`. One sphere of a scene"},
+                  &Sphere::is_page))};
   return keys;
 }
 

@@ -118,6 +118,27 @@ void check_shutter(const Camera& camera, KeyFaults& diagnostics) {
                                   number_text(camera.shutter_open)));
 }
 
+/// Checks that a depth cue knows where it begins and ends.
+void check_depth_cue(const Scene& scene, KeyFaults& diagnostics) {
+  const Camera& camera = scene.camera;
+  if (camera.depth_cue > 0 && !camera.depth_cue_range && scene.points.empty() && scene.rods.empty() &&
+      scene.rod_files.empty())
+    diagnostics.error("camera.depth_cue",
+                      "needs `depth_cue_range` in a scene without [[points]] and rods, whose depth is the default");
+  if (camera.depth_cue == 0 && camera.depth_cue_range)
+    diagnostics.warning("camera.depth_cue_range", "has no effect; set camera.depth_cue");
+}
+
+/// Checks that there is at most one page.
+void check_page(const Scene& scene, KeyFaults& diagnostics) {
+  bool has_page = false;
+  for (std::size_t i = 0; i < scene.spheres.size(); ++i) {
+    if (has_page && scene.spheres[i].is_page)
+      diagnostics.error(fmt::format("sphere[{}].page", i), "another sphere is the page; a scene has one");
+    has_page = has_page || scene.spheres[i].is_page;
+  }
+}
+
 /// Checks that the keys of the background belong to its type. The colours of other types are ignored silently, so that
 /// switching the type with --set is convenient; a setting of an image or a sky that is not used is probably
 /// a mistake.
@@ -125,6 +146,8 @@ void check_background(const Background& background, KeyFaults& diagnostics) {
   const bool is_image = background.type == BackgroundType::kImage;
   const bool is_sky = background.type == BackgroundType::kSky, has_map = is_image || is_sky;
   const Background unset;
+  if (!in_domain(background.up) || !has_direction(background.up))
+    diagnostics.error("background.up", fmt::format("{} has no direction", vector_text(background.up)));
   if (is_image && background.file.empty())
     diagnostics.error("background.file", "type \"image\" needs an EXR or HDR file");
   const auto unused_unless = [&](bool is_used, const char* types, const char* key, bool is_set) {
@@ -417,7 +440,9 @@ std::vector<SceneDiagnostic> validate(const Scene& scene) {
   check_lens(scene.camera, diagnostics);
   check_projection(scene.camera, diagnostics);
   check_shutter(scene.camera, diagnostics);
+  check_depth_cue(scene, diagnostics);
   check_spheres(scene, diagnostics);
+  check_page(scene, diagnostics);
   for (std::size_t p = 0; p < scene.points.size(); ++p) {
     check_points(p, scene, diagnostics);
     check_bonds(scene.points[p], fmt::format("points[{}]", p), scene, diagnostics);

@@ -211,14 +211,14 @@ void Viewer::refresh(Live& live) {
   // Samples at the end of the pass, so that all parts that it has rendered fade in alike.
   const double samples = std::exp2(2 * std::ceil(std::log2(std::max(live.samples.load(), 1.0)) / 2));
   const double fade = std::min(samples / kFadeSamples, 1.0);
-  std::vector<float> rgb(3 * static_cast<std::size_t>(preview::Canvas::kSide));
+  std::vector<float> coverage(preview::Canvas::kSide), rgb(3 * coverage.size());
   for (const std::size_t index : cells) {
     const preview::Cell cell = live.canvas.cell(index);
     for (int y = cell.y; y < cell.y + cell.height; ++y) {
       const std::size_t begin = 3 * math::pixel_index(cell.x, y, live.canvas.width());
       const std::span codes(&live.codes[begin], 3 * static_cast<std::size_t>(cell.width));
-      live.canvas.read(cell.x, y, cell.width, rgb.data());
-      live.develop(rgb.data(), static_cast<std::size_t>(cell.width), codes.data());
+      live.canvas.read(cell.x, y, cell.width, rgb.data(), coverage.data());
+      live.develop(rgb.data(), coverage.data(), static_cast<std::size_t>(cell.width), codes.data());
       for (std::size_t i = 0; i < codes.size(); ++i)
         codes[i] = static_cast<std::uint8_t>(std::lerp(live.base[begin + i], codes[i], fade) + 0.5);
       if (live.overlay) annotation::blend(*live.overlay, cell.x, y, codes);

@@ -28,6 +28,40 @@ TEST(CompileCompile, LeavesOutUnusedMaterials) {
   EXPECT_EQ(compiled.materials.size(), 3u);  // grey, glass, glass turned inside out
 }
 
+TEST(CompileCompile, ADepthCueBeginsInATenthOfTheDepthOfTheData) {
+  scene::Scene s;
+  s.materials = {{"grey", scene::Lambertian{}}};
+  s.camera.look_from = {0, 0, 20};
+  s.camera.look_at = {0, 0, 0};
+  s.camera.depth_cue = 0.5;
+  s.spheres = {{{0, -1000, 0}, 1000, 0}};  // is not data
+  scene::Points& points = s.points.emplace_back();
+  for (const double z : {4.0, -4.0}) points.centers.push_back({z, 1, z});
+  points.radii.assign(2, 1);
+  const auto share = [](const CompiledScene& compiled, double z) { return compiled.depth_cue.share(z); };
+  const CompiledScene compiled = compile(s);
+  EXPECT_TRUE(compiled.features.depth_cue);
+  EXPECT_EQ(share(compiled, 16), 0);  // from 15 to 25
+  EXPECT_NEAR(share(compiled, 20.5), 0.25, 1e-12);
+  EXPECT_EQ(share(compiled, 25), 0.5);
+  EXPECT_EQ(share(compiled, 100), 0.5);
+  s.camera.depth_cue_range = scene::Interval{10, 20};
+  EXPECT_NEAR(share(compile(s), 15), 0.25, 1e-12);
+  s.camera.depth_cue = 0;
+  EXPECT_FALSE(compile(s).features.depth_cue);
+}
+
+TEST(CompileCompile, ADepthCueWithoutDepthOrInFrontOfNothingIsNone) {
+  scene::Scene s;
+  s.materials = {{"grey", scene::Lambertian{}}};
+  s.camera.depth_cue = 0.5;
+  s.points.emplace_back();
+  EXPECT_FALSE(compile(s).features.depth_cue) << "no data";
+  s.points[0].centers.push_back({0, 0, 100});
+  s.points[0].radii.push_back(1);
+  EXPECT_FALSE(compile(s).features.depth_cue) << "behind the camera";
+}
+
 TEST(CompileCompile, ArrowsHaveTheOpacityOfTheMaterial) {
   scene::Scene s;
   s.materials = {{"grey", scene::Lambertian{}}};

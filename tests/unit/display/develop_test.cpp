@@ -63,7 +63,7 @@ TEST_F(DisplayDevelop, PixelsInGroupsAreThoseOfTheWholeImage) {
   const std::vector<std::uint16_t> whole = develop(picture, settings, 8).values;
   std::vector<std::uint8_t> codes(300);
   const PixelDeveloper developer(settings);
-  for (std::size_t i = 0; i < 100; i += 20) developer(&rgb[3 * i], 20, &codes[3 * i]);
+  for (std::size_t i = 0; i < 100; i += 20) developer(&rgb[3 * i], nullptr, 20, &codes[3 * i]);
   EXPECT_TRUE(std::equal(whole.begin(), whole.end(), codes.begin()));
 }
 
@@ -154,6 +154,38 @@ TEST_F(DisplayDevelop, ALookActsOnSaturatedColoursOnly) {
   EXPECT_EQ(plain[2], 0);
   EXPECT_GT(shown(saturated, settings)[2], 0);  // compressed into the gamut
   EXPECT_EQ(shown(neutral, settings), plain_grey);
+}
+
+TEST_F(DisplayDevelop, NeutralKeepsDarkColoursAndTheHueOfBrightOnes) {
+  for (const char* display : {"sRGB", "Display P3", "Gamma 2.0 Rec.709"}) {
+    const Settings neutral = on(display, "Neutral"), plain = on(display);
+    EXPECT_EQ(shown({0.02F, 0.4F, 0.79F}, neutral, 16), shown({0.02F, 0.4F, 0.79F}, plain, 16)) << display;
+    const float peak = 0.8F + 0.05F * std::log(1 + 1.2F / 0.05F);  // of 2
+    const std::vector<std::uint16_t> bright = shown({2, 1, 0.5F}, neutral, 16),
+                                     expected = shown({peak, peak / 2, peak / 4}, plain, 16);
+    for (std::size_t c = 0; c < 3; ++c) EXPECT_NEAR(bright[c], expected[c], 8) << display;
+  }
+}
+
+/// A white page stays white, and a pixel that objects half cover is half of each.
+TEST_F(DisplayDevelop, LooksOfTheViewDoNotApplyToTheBackdrop) {
+  Settings settings = on("sRGB", "Neutral");
+  settings.backdrop = math::Vec3d{1, 1, 1};
+  film::Picture picture{3, 1, {}};
+  const float peak = 0.8F + 0.05F * std::log(1 + 1.2F / 0.05F);
+  for (const char* name : {"R", "G", "B"}) picture.planes.push_back({name, {1, 1.5F, 2}});
+  picture.coverage = {0, 0.5F, 1};
+  const std::vector<std::uint16_t> values = develop(picture, settings, 16).values;
+  EXPECT_EQ(values[0], 65535);
+  EXPECT_NEAR(values[3], srgb((1 + peak) / 2) * 65535, 4);
+  EXPECT_NEAR(values[6], srgb(peak) * 65535, 4);
+  float rgb[] = {1, 1, 1};
+  std::uint8_t codes[3];
+  const PixelDeveloper developer(settings);
+  developer(rgb, picture.coverage.data(), 1, codes);
+  EXPECT_EQ(codes[0], 255);
+  picture.coverage.clear();
+  EXPECT_LT(develop(picture, settings, 16).values[0], 64000) << "unknown coverage";
 }
 
 TEST_F(DisplayDevelop, ResolvesTheWorkingSpaceByNameRoleAndAlias) {

@@ -67,7 +67,7 @@ class FilmLayerPlanes : public testing::Test {
 
   /// An image of one pixel from the paths added so far.
   Picture picture() {
-    if (request_.deep) deep_ = deep_samples(sums(), 0, !request_.coverage);
+    if (request_.deep) deep_ = deep_samples(sums(), 0, !request_.transparent);
     return test::picture_of(sums(), request_, view_);
   }
   static float value(const Picture& picture, const std::string& plane) {
@@ -458,8 +458,10 @@ TEST_F(FilmLayerPlanes, EqualCoverageRanksBySmallerId) {
 
 TEST_F(FilmLayerPlanes, CoverageBecomesAlpha) {
   request_.coverage = true;
-  add(path_to(0));
-  for (int i = 0; i < 3; ++i) add(kernel::PathRecord{});
+  sums().counts[0] = 4;
+  sums().layers.covered[0] = static_cast<std::int64_t>(1 / kernel::kGuideUnit);
+  EXPECT_EQ(value(picture(), "A"), 1);
+  request_.transparent = true;
   EXPECT_EQ(value(picture(), "A"), 0.25F);
 }
 
@@ -489,7 +491,7 @@ TEST_F(FilmLayerPlanes, DeepSamplesCompositeToTheFlatPixel) {
 }
 
 TEST_F(FilmLayerPlanes, ATransparentBackgroundHasNoDeepSample) {
-  request_.deep = request_.coverage = true;
+  request_.deep = request_.coverage = request_.transparent = true;
   add(kernel::PathRecord{});
   picture();
   EXPECT_TRUE(deep_.empty());

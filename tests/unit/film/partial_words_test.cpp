@@ -43,8 +43,8 @@ Partial full_partial(bool is_adaptive, bool goals, bool layers, bool halves, std
   for (auto* sums : {&l.light, &l.squares, &l.normal, &l.albedo})
     for (auto& channels : *sums)
       for (auto& v : channels) v = large();
-  for (auto* counts : {&l.covered, &l.hit})
-    for (auto& v : *counts) v = count();
+  for (auto& v : l.covered) v = number();
+  for (auto& v : l.hit) v = count();
   for (double& v : l.depth) v = static_cast<double>(number());
   for (float& v : l.z) v = 1 / static_cast<float>(number());
   for (auto& at : l.position)

@@ -194,7 +194,7 @@ TEST(RenderAdaptiveSampling, TransparentBackgroundIsKnownToBeBlack) {
   s.materials = {{"m", scene::Lambertian{{0.5, 0.5, 0.5}}}};
   s.spheres = {{{0, 0, 0}, 1, 0, ""}};
   Settings settings = noise(0.2);
-  settings.layers.coverage = true;
+  settings.layers.coverage = settings.layers.transparent = true;
   const Result r = render(compile::compile(s), settings);
   EXPECT_EQ(r.statistics.ended_by, "noise");
   EXPECT_EQ(r.statistics.min_samples, 16u);

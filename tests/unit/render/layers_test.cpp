@@ -89,11 +89,19 @@ scene::Scene with_light_groups(scene::Scene s) {
   return s;
 }
 
+/// The scene with a depth cue that begins in front of its middle.
+scene::Scene with_depth_cue(scene::Scene s) {
+  s.camera.depth_cue = 0.7;
+  s.camera.depth_cue_range = scene::Interval{4, 7};
+  return s;
+}
+
 TEST(RenderLayers, LobesAndLightGroupsAddUpToTheBeauty) {
   for (const auto precision : {scene::Precision::kExact, scene::Precision::kFast}) {
     for (const scene::Scene& scene : {test::everything(), with_light_groups(test::everything()),
                                       with_light_groups(test::with_plastic(test::everything())),
-                                      test::translucent(with_light_groups(test::everything()))}) {
+                                      test::translucent(with_light_groups(test::everything())),
+                                      with_depth_cue(with_light_groups(test::everything()))}) {
       scene::Scene s = scene;
       s.render.precision = precision;
       film::LayerRequest request = all_layers();
@@ -152,7 +160,7 @@ TEST(RenderLayers, TranslucentObjectsHaveTheirShareOfAPixel) {
                  {"back", scene::Metal{{0.5, 0.5, 0.5}, 0, {}, {}, 0.5}}};
   s.spheres = {{{0, 0, 0}, 1, 0, ""}, {{0, 0, -3}, 1, 1, ""}};
   film::LayerRequest request = all_layers();
-  request.coverage = true;
+  request.coverage = request.transparent = true;
   const Result r = render_with(s, request);
   // Binomial: |z| of the mean of a plane over the image.
   const auto expect_share = [&](const std::string& name, double share) {
@@ -351,7 +359,7 @@ TEST(RenderLayers, TransparentBackgroundLeavesNoHaloAtADefocusedEdge) {
     s.background.color = {0.25, 0.5, 0.75};
     const Result opaque = render_with(s, {});
     film::LayerRequest cut_out;
-    cut_out.coverage = true;
+    cut_out.coverage = cut_out.transparent = true;
     test::add_matte_of_spheres(cut_out, 0x3f000000u);
     const Result empty = render_with(s, cut_out);
     double worst = 0;
@@ -376,7 +384,7 @@ TEST(RenderLayers, ABackdropIlluminatesNothing) {
   scene::Scene s = test::everything();
   s.render.samples = 64;
   film::LayerRequest cut_out;
-  cut_out.coverage = true;
+  cut_out.coverage = cut_out.transparent = true;
   const Result empty = render_with(s, cut_out);
   s.background.backdrop = {0.25, 0.5, 0.75};
   const Result seen = render_with(s, {});
@@ -393,9 +401,88 @@ TEST(RenderLayers, ABackdropIlluminatesNothing) {
   EXPECT_EQ(plane(render_with(s, cut_out), "R"), plane(empty, "R")) << "a transparent background has none";
 }
 
+/// Spheres of radius 0.5 side by side, at depths of 4.5, 6, 8, and 14.5 of an orthographic camera, without lighting.
+scene::Scene row_in_depth() {
+  scene::Scene s;
+  s.image = {401, 101};
+  s.camera.projection = scene::Projection::kOrthographic;
+  s.camera.width = 8;
+  s.camera.look_from = {0, 0, 10};
+  s.camera.look_at = {0, 0, 0};
+  s.camera.depth_cue = 0.5;
+  s.camera.depth_cue_range = scene::Interval{5, 13};
+  s.background.backdrop = {1, 0.5, 0.25};
+  s.render.shading = scene::Shading::kFlat;
+  s.render.samples = 4;
+  s.materials = {{"blue", scene::Lambertian{{0.1, 0.2, 0.8}}}};
+  double x = -3;
+  for (const double depth : {4.5, 6.0, 8.0, 14.5}) {
+    s.spheres.push_back({{x, 0, 10 - depth - 0.5}, 0.5});
+    x += 2;
+  }
+  return s;
+}
+
+TEST(RenderLayers, ADepthCueIsLinearInTheDepthOfTheFirstHit) {
+  const scene::Scene s = row_in_depth();
+  const double shares[] = {0, 0.0625, 0.1875, 0.5};
+  film::LayerRequest cut_out;
+  cut_out.coverage = cut_out.transparent = true;
+  for (const auto precision : {scene::Precision::kExact, scene::Precision::kFast}) {
+    scene::Scene with_precision = s;
+    with_precision.render.precision = precision;
+    const Result seen = render_with(with_precision, {}), transparent = render_with(with_precision, cut_out);
+    for (std::size_t i = 0; i < 4; ++i) {
+      const std::size_t pixel = 50 * 401 + 50 + i * 100;
+      EXPECT_NEAR(plane(seen, "R")[pixel], 0.1 * (1 - shares[i]) + shares[i], 1e-4) << i;
+      EXPECT_NEAR(plane(seen, "B")[pixel], 0.8 * (1 - shares[i]) + 0.25 * shares[i], 1e-4) << i;
+      EXPECT_NEAR(plane(transparent, "B")[pixel], 0.8 * (1 - shares[i]), 1e-4) << i;
+      EXPECT_NEAR(plane(transparent, "A")[pixel], 1 - shares[i], 1e-4) << i;
+    }
+    EXPECT_EQ(plane(seen, "R")[50 * 401 + 50], 0.1F) << "exact in front";
+    EXPECT_EQ(plane(transparent, "A")[0], 0);
+  }
+}
+
+/// A ball on a page under a small lamp: the page has the colour of the backdrop except in the shadow.
+TEST(RenderLayers, APageIsTheBackdropExceptForShadows) {
+  scene::Scene s;
+  s.image = {60, 60};
+  s.camera.projection = scene::Projection::kOrthographic;
+  s.camera.width = 8;
+  s.camera.look_from = {0, 10, 0.1};
+  s.camera.look_at = {0, 0, 0};
+  s.background.type = scene::BackgroundType::kConstant;
+  s.background.color = {0, 0, 0};
+  s.background.backdrop = {0.5, 0.5, 0.5};
+  s.render.samples = 64;
+  // The irradiance of the lamp, which is far away, is pi times 10,000 (100 / 10,000)^2, at 45 degrees.
+  const double albedo = 0.5 * std::sqrt(2);
+  s.materials = {{"page", scene::Lambertian{{albedo, albedo, albedo}}},
+                 {"lamp", scene::Emitter{{10000, 10000, 10000}}},
+                 {"ball", scene::Lambertian{{0, 0, 0}}}};
+  s.spheres = {{{0, -1e6, 0}, 1e6, 0}, {{7071, 7071, 0}, 100, 1}, {{0, 1, 0}, 1, 2}};
+  s.spheres[0].is_page = true;
+  film::LayerRequest request;
+  request.coverage = true;
+  const auto at = [](double x, double z) {
+    return static_cast<std::size_t>(30 + z * 7.5) * 60 + static_cast<std::size_t>(30 + x * 7.5);
+  };
+  const Result seen = render_with(s, request);
+  EXPECT_NEAR(plane(seen, "R")[at(2, 2)], 0.5, 2e-3);
+  EXPECT_LT(plane(seen, "R")[at(-1.5, 0)], 0.01) << "in the shadow";
+  EXPECT_EQ(seen.picture.coverage[at(-1.5, 0)], 0) << "a page does not cover";
+  EXPECT_EQ(seen.picture.coverage[at(0, 0)], 1);
+  request.transparent = true;
+  const Result transparent = render_with(s, request);
+  EXPECT_NEAR(plane(transparent, "A")[at(2, 2)], 0, 5e-3);
+  EXPECT_NEAR(plane(transparent, "A")[at(-1.5, 0)], 1, 0.02);
+  EXPECT_EQ(plane(transparent, "R")[at(-1.5, 0)], 0);
+}
+
 TEST(RenderLayers, DeepSamplesFlattenToTheBeautyWithEveryFilter) {
   film::LayerRequest cut_out = all_layers();
-  cut_out.coverage = true;
+  cut_out.coverage = cut_out.transparent = true;
   for (const scene::Filter filter : kEveryFilter)
     for (const film::LayerRequest& request : {all_layers(), cut_out}) {
       scene::Scene s = test::everything();
@@ -493,7 +580,7 @@ TEST(RenderFilter, EdgeCoverageIsTheFilterIntegral) {
     s.render.filter = filter;
     s.render.filter_width = width;
     film::LayerRequest request;
-    request.coverage = true;
+    request.coverage = request.transparent = true;
     const Result r = render_with(s, request);
     // The same integral by numerical quadrature of the filter formulas.
     const auto f = [filter = filter, width = width](double x) {

@@ -113,7 +113,7 @@ TEST(RenderRods, GreyRodsInAWhiteFurnaceAreHalf) {
         if (each.render.precision != scene::Precision::kExact && !set.spheres.empty()) return;
         if (each.render.precision == scene::Precision::kFast && (offset > 0 || set.is_rounded)) return;
         Settings settings;
-        settings.layers.coverage = true;
+        settings.layers.coverage = settings.layers.transparent = true;
         const auto planes = render(compile::compile(each), settings).picture.planes;
         ASSERT_EQ(planes.size(), 4u);
         int covered = 0;
