@@ -172,6 +172,8 @@ Drawing drawing_of(const scene::Scene& scene, const LegendColors& legend, const 
   out.height = view.height;
   out.ink = ink_over(scene.background);
   out.outline_px = annotation.outline;
+  out.outline_depth = annotation.outline_depth;
+  out.outline_objects = annotation.outline_objects;
   if (!annotation.title.empty() || annotation.scale_bar || annotation.color_bar || !labels.empty())
     out.font = image::font_file(font_of(scene, view));
   // The legend is below a title and above a scale bar at its side.
@@ -220,7 +222,7 @@ std::function<Vec3d(const Vec3d&)> shown_by(display::Settings display) {
   return [developer = std::make_shared<display::PixelDeveloper>(display)](const Vec3d& color) {
     float rgb[] = {static_cast<float>(color.x), static_cast<float>(color.y), static_cast<float>(color.z)};
     std::uint8_t codes[3];
-    (*developer)(rgb, 1, codes);
+    (*developer)(rgb, nullptr, 1, codes);
     return Vec3d{double(codes[0]), double(codes[1]), double(codes[2])} / 255;
   };
 }

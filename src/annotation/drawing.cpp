@@ -210,8 +210,9 @@ std::string stamped(const std::string& stamp, const Drawing& drawing) {
   if (drawing.is_empty()) return stamp;
   std::ifstream font(drawing.font, std::ios::binary);
   const std::string glyphs(std::istreambuf_iterator<char>(font), {});
-  return base::text_hash(fmt::format("{}\n{}\n{}\n{}\n{}", stamp, drawing.font.string(), drawing.outline_px,
-                                     svg(drawing, std::identity()), glyphs));
+  return base::text_hash(fmt::format("{}\n{}\n{} {} {}\n{}\n{}", stamp, drawing.font.string(), drawing.outline_px,
+                                     drawing.outline_depth, drawing.outline_objects, svg(drawing, std::identity()),
+                                     glyphs));
 }
 
 void blend(const Overlay& overlay, film::EncodedPicture& picture) {

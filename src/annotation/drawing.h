@@ -34,6 +34,8 @@ struct Drawing {
   int width = 0, height = 0;            ///< px
   Vec3d ink{0, 0, 0};                   ///< of lines and text, linear Rec.709
   double outline_px = 0;                ///< width of the outlines; 0: none
+  double outline_depth = 0;             ///< as scene::Annotation has it
+  bool outline_objects = false;         ///< as scene::Annotation has it
   std::vector<float> lines;             ///< coverage by the outlines, one per pixel; empty: not known yet
   std::vector<Box> boxes;               ///< over the lines, in this order
   std::vector<Bar> bars;                ///< over the boxes

@@ -259,8 +259,11 @@ class Run {
     annotation::Drawing& drawing = own_.drawing;
     if (drawing.is_empty()) return;
     if (drawing.outline_px > 0)
-      if (accel::Accel* const accel = build(); accel != nullptr)
-        drawing.lines = render::outlines(compiled(), *accel, drawing.outline_px, threads_);
+      if (accel::Accel* const accel = build(); accel != nullptr) {
+        render::OutlineStyle style{drawing.outline_px, drawing.outline_depth, {}};
+        if (drawing.outline_objects) style.groups = object_classes(own_.scene(), compiled());
+        drawing.lines = render::outlines(compiled(), *accel, style, threads_);
+      }
     if (job_.outputs.has_exr() || job_.is_in_memory())
       annotation::add_layer(annotation::draw(drawing, std::identity()), picture);
   }

@@ -25,17 +25,27 @@ namespace {
 constexpr int kRays = 4;
 /// Side of a tile, px.
 constexpr int kTileSide = 64;
-/// Depth of an edge, in radii of the object in front, and in pixels.
-constexpr double kEdgeRadii = 0.25, kEdgePixels = 3;
+/// Depth of an edge, in radii of the object in front, in general and within a group, and in pixels.
+constexpr double kEdgeRadii = 0.25, kInnerEdgeRadii = 2, kEdgePixels = 3;
 /// Opacity from which an object hides the outlines behind it.
 constexpr float kSolid = 0.5f;
 /// Of a line of full strength.
 constexpr int kFullInk = 255;
+/// Width and strength of the lines within a group, and the jump from which they are like those between groups, in
+/// OutlineStyle::depth.
+constexpr double kFineWidth = 0.5, kFineStrength = 0.6, kFarBehind = 4;
 
 /// What a ray sees.
 struct Seen {
   std::uint64_t id = kernel::kNone;
   double depth = std::numeric_limits<double>::infinity();  ///< along the ray, scene units
+  double visible = 1;                                      ///< what a depth cue leaves
+};
+
+/// An edge between neighbouring rays.
+struct Edge {
+  double strength = 0;  ///< 0: there is none
+  double reach = 0;     ///< half of its line's width, rays
 };
 
 /// A tile with its border, as rays.
@@ -55,6 +65,7 @@ double radius_of(const kernel::SceneView& scene, std::uint64_t id) {
 template <class T>
 void trace_grid(const compile::CompiledScene& scene, const accel::Accel& accel, Grid& grid) {
   const kernel::Camera& camera = scene.camera;
+  const math::Vec3d forward = normalized(camera.forward);
   const kernel::Tracer tracer = accel.tracer();
   const int count = grid.width * grid.height;
   grid.seen.resize(static_cast<std::size_t>(count));
@@ -69,22 +80,28 @@ void trace_grid(const compile::CompiledScene& scene, const accel::Accel& accel, 
     }
     kernel::trace(tracer, packet);
     for (int lane = 0; lane < packet.count; ++lane)
-      if (packet.hit[lane] != kernel::kNone)
-        grid.seen[static_cast<std::size_t>(begin + lane)] = {packet.hit[lane],
-                                                             static_cast<double>(packet.distance[lane])};
+      if (packet.hit[lane] != kernel::kNone) {
+        const auto along = [&](int axis) { return static_cast<double>(packet.direction[axis][lane]); };
+        const auto depth = static_cast<double>(packet.distance[lane]);
+        const double cosine = dot({along(0), along(1), along(2)}, forward);
+        grid.seen[static_cast<std::size_t>(begin + lane)] = {packet.hit[lane], depth,
+                                                             1 - scene.depth_cue.share(depth * cosine)};
+      }
   }
 }
 
 class TileOutlines {
  public:
   /// `strength` of the outlines of each object; null: all have full strength
-  TileOutlines(const compile::CompiledScene& scene, const accel::Accel& accel, const float* strength, double width_px)
+  TileOutlines(const compile::CompiledScene& scene, const accel::Accel& accel, const float* strength,
+               const OutlineStyle& style)
       : scene_(scene),
         strength_(strength),
         view_(scene.view()),
         accel_(accel),
-        reach_(width_px / 2 * kRays),
-        border_(static_cast<int>(std::ceil(width_px / 2)) + 1),
+        style_(style),
+        reach_(style.width_px / 2 * kRays),
+        border_(static_cast<int>(std::ceil(style.width_px / 2)) + 1),
         pixel_(length(scene.camera.right)) {}
 
   /// Draws the outlines over those that `coverage` has.
@@ -102,11 +119,9 @@ class TileOutlines {
     for (int row = 0; row < grid.height; ++row)
       for (int column = 0; column < grid.width; ++column) {
         if (column + 1 < grid.width)
-          if (const auto strength = edge(grid.at(column, row), grid.at(column + 1, row)); strength > 0)
-            ink(grid, column + 0.5, row, strength, inked);
+          ink(grid, column + 0.5, row, edge(grid.at(column, row), grid.at(column + 1, row)), inked);
         if (row + 1 < grid.height)
-          if (const auto strength = edge(grid.at(column, row), grid.at(column, row + 1)); strength > 0)
-            ink(grid, column, row + 0.5, strength, inked);
+          ink(grid, column, row + 0.5, edge(grid.at(column, row), grid.at(column, row + 1)), inked);
       }
     for (int y = top; y < bottom; ++y)
       for (int x = left; x < right; ++x) {
@@ -116,22 +131,34 @@ class TileOutlines {
   }
 
  private:
-  /// The strength of the edge between neighbouring rays; 0: there is none.
-  std::uint8_t edge(const Seen& a, const Seen& b) const {
-    if (a.id == b.id) return 0;
+  Edge edge(const Seen& a, const Seen& b) const {
+    if (a.id == b.id) return {};
+    const bool has_groups = style_.groups.size() > 0;
+    const bool is_between = has_groups && group_of(a) != group_of(b);
     const Seen& front = a.depth <= b.depth ? a : b;
     const double jump = std::abs(a.depth - b.depth);
     // A pixel of a perspective image is as wide as the distance times its width at distance 1.
     const double pixel = scene_.camera.is_orthographic ? pixel_ : pixel_ * front.depth;
-    if (!(jump > std::max(kEdgeRadii * radius_of(view_, front.id), kEdgePixels * pixel))) return 0;
-    return static_cast<std::uint8_t>(strength_ == nullptr ? kFullInk : std::lround(kFullInk * strength_[front.id]));
+    const double radii = has_groups ? kInnerEdgeRadii : kEdgeRadii;
+    const double least = style_.depth > 0 ? style_.depth : radii * radius_of(view_, front.id);
+    if (!is_between && !(jump > std::max(least, kEdgePixels * pixel))) return {};
+    const double strength = front.visible * (strength_ == nullptr ? 1 : double{strength_[front.id]});
+    if (!has_groups || is_between || jump > kFarBehind * least) return {strength, reach_};
+    return {kFineStrength * strength, kFineWidth * reach_};
   }
 
-  /// Marks the rays within reach of a point between two rays.
-  void ink(const Grid& grid, double column, double row, std::uint8_t strength, std::vector<std::uint8_t>& inked) const {
-    for (int y = std::max(0, static_cast<int>(std::ceil(row - reach_)));
-         y <= std::min(grid.height - 1, static_cast<int>(std::floor(row + reach_))); ++y) {
-      const double half = std::sqrt(reach_ * reach_ - (y - row) * (y - row));
+  /// The group of what a ray sees; that of rays that see nothing is none of the others.
+  std::uint32_t group_of(const Seen& seen) const {
+    return seen.id == kernel::kNone ? kernel::kNone : style_.groups[seen.id];
+  }
+
+  /// Marks the rays within reach of an edge at a point between two rays.
+  void ink(const Grid& grid, double column, double row, const Edge& edge, std::vector<std::uint8_t>& inked) const {
+    const auto strength = static_cast<std::uint8_t>(std::lround(kFullInk * edge.strength));
+    if (strength == 0) return;
+    for (int y = std::max(0, static_cast<int>(std::ceil(row - edge.reach)));
+         y <= std::min(grid.height - 1, static_cast<int>(std::floor(row + edge.reach))); ++y) {
+      const double half = std::sqrt(edge.reach * edge.reach - (y - row) * (y - row));
       for (int x = std::max(0, static_cast<int>(std::ceil(column - half)));
            x <= std::min(grid.width - 1, static_cast<int>(std::floor(column + half))); ++x) {
         std::uint8_t& mark = inked[math::pixel_index(x, y, grid.width)];
@@ -153,7 +180,8 @@ class TileOutlines {
   const float* strength_;
   kernel::SceneView view_;
   const accel::Accel& accel_;
-  double reach_;  ///< half of the lines' width, rays
+  const OutlineStyle& style_;
+  double reach_;  ///< half of the lines' full width, rays
   int border_;    ///< px around a tile
   double pixel_;  ///< width of a pixel, scene units; of a perspective image, at distance 1
 };
@@ -174,7 +202,8 @@ void draw_outlines(const TileOutlines& tile_outlines, const compile::CompiledSce
 
 }  // namespace
 
-std::vector<float> outlines(const compile::CompiledScene& scene, accel::Accel& accel, double width_px, int threads) {
+std::vector<float> outlines(const compile::CompiledScene& scene, accel::Accel& accel, const OutlineStyle& style,
+                            int threads) {
   std::vector<float> coverage(math::pixel_count(scene.width, scene.height));
   const float* const opacity = scene.view().opacity;
   if (opacity != nullptr) {
@@ -191,10 +220,10 @@ std::vector<float> outlines(const compile::CompiledScene& scene, accel::Accel& a
     const Restore restore{accel, opacity};
     for (const float* const visible : {static_cast<const float*>(nullptr), std::as_const(solid).data()}) {
       accel.set_opacity(visible);
-      draw_outlines({scene, accel, opacity, width_px}, scene, threads, coverage);
+      draw_outlines({scene, accel, opacity, style}, scene, threads, coverage);
     }
   } else {
-    draw_outlines({scene, accel, nullptr, width_px}, scene, threads, coverage);
+    draw_outlines({scene, accel, nullptr, style}, scene, threads, coverage);
   }
   return coverage;
 }

@@ -35,7 +35,7 @@ scene::Scene scene_of(const std::vector<scene::Sphere>& spheres, int side) {
 
 std::vector<float> lines_of(const scene::Scene& scene, double width) {
   const compile::CompiledScene compiled = compile::compile(scene);
-  return outlines(compiled, *build(compiled, 1), width, 2);
+  return outlines(compiled, *build(compiled, 1), {width, 0, {}}, 2);
 }
 
 double sum(const std::vector<float>& lines) {
@@ -114,6 +114,46 @@ TEST(RenderOutlines, OfTranslucentObjectsAreAsWeakAsTheObjects) {
   EXPECT_EQ(hidden_by_strong, 0);
 }
 
+/// The line along the upper limb of a sphere.
+float limb(const scene::Scene& scene, const OutlineStyle& style, int row) {
+  const compile::CompiledScene compiled = compile::compile(scene);
+  const std::vector<float> lines = outlines(compiled, *build(compiled, 1), style, 1);
+  float out = 0;
+  for (int y = row - 3; y <= row + 3; ++y) out += lines[static_cast<std::size_t>(y * 101 + 50)];
+  return out;
+}
+
+TEST(RenderOutlines, AreAtJumpsOfAChosenDepth) {
+  // The smaller sphere is 2.5 in front of the larger one.
+  const scene::Scene scene = scene_of({{{0, 0, 3}, 0.5}, {{0, 0, -1}, 2}}, 101);
+  EXPECT_NEAR(limb(scene, {2, 1, {}}, 38), 2, 0.3);
+  EXPECT_EQ(limb(scene, {2, 3, {}}, 38), 0);
+}
+
+TEST(RenderOutlines, BetweenGroupsNeedNoJumpAndAreBolder) {
+  const scene::Scene touching = scene_of({{{0, 0.25, 0}, 0.5}, {{0, -0.25, 0}, 0.5}}, 101);
+  OutlineStyle style{2, 0, base::PackedArray(2, 1)};
+  style.groups.set(0, 0);
+  EXPECT_NEAR(limb(touching, style, 50), 2, 0.3) << "two groups";
+  style.groups.set(1, 0);
+  EXPECT_EQ(limb(touching, style, 50), 0) << "one group";
+  const scene::Scene stepped = scene_of({{{0, 0, 3}, 0.5}, {{0, 0, -1}, 2}}, 101);
+  style.depth = 2;
+  EXPECT_NEAR(limb(stepped, style, 38), 0.6, 0.2) << "half as wide, and weaker";
+  style.depth = 0.5;
+  EXPECT_NEAR(limb(stepped, style, 38), 2, 0.3) << "far behind";
+}
+
+TEST(RenderOutlines, FadeWithTheDepthCue) {
+  scene::Scene scene = scene_of({{{0, 0, 0}, 1}}, 101);
+  const float full = limb(scene, {2, 0, {}}, 25);
+  scene.camera.depth_cue = 0.5;
+  scene.camera.depth_cue_range = scene::Interval{10, 15};  // the limb is at 20
+  EXPECT_NEAR(limb(scene, {2, 0, {}}, 25), full / 2, 0.02);
+  scene.camera.depth_cue_range = scene::Interval{15, 25};
+  EXPECT_NEAR(limb(scene, {2, 0, {}}, 25), full * 0.75, 0.02);
+}
+
 /// The image after the outlines has the scene's opacities.
 TEST(RenderOutlines, LeaveTheOpacities) {
   scene::Scene scene = scene_of({{{0, 0, 0}, 1}}, 20);
@@ -122,7 +162,7 @@ TEST(RenderOutlines, LeaveTheOpacities) {
   scene.materials = {{"ghost", ghost}};
   const compile::CompiledScene compiled = compile::compile(scene);
   const auto used = build(compiled, 1), fresh = build(compiled, 1);
-  outlines(compiled, *used, 2, 1);
+  outlines(compiled, *used, {2, 0, {}}, 1);
   EXPECT_EQ(test::plane_values(render(compiled, *used, {}).picture),
             test::plane_values(render(compiled, *fresh, {}).picture));
 }
