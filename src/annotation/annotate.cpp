@@ -219,10 +219,12 @@ std::string missing_glyphs(const Drawing& drawing) {
 
 std::function<Vec3d(const Vec3d&)> shown_by(display::Settings display) {
   display.working_space = kLegendSpace;
+  display.backdrop = Vec3d{};  // annotations are on the page: looks of the view do not apply to them
   return [developer = std::make_shared<display::PixelDeveloper>(display)](const Vec3d& color) {
     float rgb[] = {static_cast<float>(color.x), static_cast<float>(color.y), static_cast<float>(color.z)};
     std::uint8_t codes[3];
-    (*developer)(rgb, nullptr, 1, codes);
+    const float coverage = 0;
+    (*developer)(rgb, &coverage, 1, codes);
     return Vec3d{double(codes[0]), double(codes[1]), double(codes[2])} / 255;
   };
 }

@@ -337,15 +337,22 @@ void PlotArguments::add_look_to(Command& command) {
       ->repeatable();
   command
       .add_option("--style,--lighting", look_.style, "STYLE",
-                  "Light: studio, soft, flat, night or ambient; default: studio")
+                  "Light: studio, soft, flat, night, ambient or illustration; default: studio")
       ->details(
           "studio: a key light from the upper left of the camera, and white light from all directions. soft: more of "
-          "the latter. flat: no shading. night: a lamp and a dark sky. ambient: white light from all directions alone.")
+          "the latter. flat: no shading. night: a lamp and a dark sky. ambient: white light from all directions alone. "
+          "illustration: soft, with outlines between chains and a depth cue.")
       ->choices(plot::style_names());
   command.add_option(
       "--background", look_.background, "COLOR",
       "Colour behind the spheres: white, grey, navy or the like, or #rrggbb; default: that of the style");
   command.add_flag("--transparent", options.transparent, "Transparent background, in EXR, PNG, TIFF and SVG");
+  command.add_flag("--exact-colors", options.exact_colors,
+                   "No tone mapping: bright colours are not compressed, and may clip; as with flat and ambient");
+  command
+      .add_option("--depth-cue", options.depth_cue, "X",
+                  "Fade what is far away into the background, 0 to 1 for the farthest; default: 0.35 for molecules")
+      ->check(real_number(0, 1));
   command
       .add_option("--quality", look_.quality, "NAME",
                   "draft (--samples 8 --denoise), good (--noise 0.1 --denoise) or final (--noise 0.02); default: good")
@@ -388,6 +395,12 @@ void PlotArguments::add_annotations_to(Command& command) {
       ->repeatable();
   command.add_option("--outline", annotation.outline, "PX", "Width of the outlines of objects in pixels, e.g. 2")
       ->check(real_number(0, scene::kWidestOutline));
+  command.add_option("--outline-by", options.outline_by, "COLUMN",
+                     "Outlines between the values of a column, e.g. chain; within them, thinner ones");
+  command
+      .add_option("--outline-depth", annotation.outline_depth, "LENGTH",
+                  "Outlines only where the depth jumps by more than a length, in units of the file")
+      ->check(real_number(scene::kSmallestRadius, scene::kLargestLength));
   command.add_option("--font", annotation.font, "FONT", "Name or file of the font; default: DejaVuSans");
 }
 
@@ -415,6 +428,8 @@ void PlotArguments::read(SceneOptions& scene, const job::Job& job) {
            {!annotation.color_title.empty(), "--color-title", "annotation.color_title"},
            {annotation.font_size != 0, "--font-size", "annotation.font_size"},
            {annotation.outline != 0, "--outline", "annotation.outline"},
+           {annotation.outline_depth != 0, "--outline-depth", "annotation.outline_depth"},
+           {plot.depth_cue.has_value(), "--depth-cue", "camera.depth_cue"},
            {!annotation.font.empty(), "--font", "annotation.font"},
            {plot.vfov_deg.has_value(), "--perspective", "camera.vfov"}})
     if (is_given) refuse_second(option, plot.overrides, key);

@@ -57,14 +57,23 @@ std::string from_scene(const std::string& name, const std::filesystem::path& sce
   return std::filesystem::proximate(name, folder.empty() ? "." : folder).string();
 }
 
+/// The column that divides the outlines; empty: none does.
+std::string outline_column(const PlotOptions& options, const data::FrameInfo& info) {
+  const auto is_chain = [](const data::ColumnInfo& column) { return column.name == "chain"; };
+  const bool has_chains = std::any_of(info.columns.begin(), info.columns.end(), is_chain);
+  if (options.outline_by.empty() && options.style == Style::kIllustration && has_chains) return "chain";
+  return options.outline_by;
+}
+
 /// The columns of a frame that a plot may read: those with a role, and those that an option names. One too many costs
 /// memory, one too few another pass over the file.
 std::vector<std::string> expected_columns(const PlotOptions& options, data::FrameInfo info) {
   points::add_derived_columns(info);
   const data::Roles& roles = info.roles;
   const scene::PointsKeys& points = options.points;
-  std::vector<std::string> texts = {options.color_by, points.color.carbon,  options.center,
-                                    points.select,    points.radius.column, points.opacity.column};
+  std::vector<std::string> texts = {
+      options.color_by,      points.color.carbon,          options.center, points.select, points.radius.column,
+      points.opacity.column, outline_column(options, info)};
   for (const auto& list : {points.labels, points.opacity.where, points.radius.where, points.color.where,
                            points.representation, points.cryptomatte, points.vectors.columns})
     texts.insert(texts.end(), list.begin(), list.end());
@@ -109,19 +118,21 @@ class PlotMaker {
         is_turntable_(options.overrides.number("animation.turntable").value_or(0) != 0),
         up_name_(options.up.empty() ? (info_.z_up ? "z" : "y") : options.up),
         up_(axis_of(up_name_)),
+        outline_by_(outline_column(options, info_)),
         guides_(up_) {
     const std::filesystem::path folder = options.scene_file.parent_path();
     out_.points = options.points;
     out_.points.material_column = "";  // the scene of a plot has one material
     out_.points.file = folder.empty() ? options.file : std::filesystem::proximate(options.file, folder);
     if (std::string& map = out_.points.color.map; options_.has_map) map = from_scene(map, options.scene_file);
+    if (!outline_by_.empty()) out_.points.cryptomatte = {outline_by_};
     out_.points.frame = data_.fixed_frame();
     out_.frames = data_.numbers();
     out_.up = up_;
     const scene::PointsKeys& points = out_.points;
-    for (const std::string& text :
-         {points.file.string(), options.color_by, points.color.column, points.color.map, points.radius.column,
-          points.opacity.column, points.select, points.assembly, options.center, options.fit, points.color.carbon})
+    for (const std::string& text : {points.file.string(), options.color_by, points.color.column, points.color.map,
+                                    points.radius.column, points.opacity.column, points.select, points.assembly,
+                                    options.center, options.fit, points.color.carbon, outline_by_})
       require_utf8(text);
     for (const auto& list :
          {points.opacity.where, points.labels, points.radius.where, points.color.where, points.representation})
@@ -172,6 +183,9 @@ class PlotMaker {
       camera.look_from = camera.look_at + axes.back * (extent.radius() * 2 + math::length(extent.center() - target));
     magnify(camera, options_.zoom);
     report_view(camera);
+    choose_depth_cue(extent, camera);
+    if (!outline_by_.empty() && options_.outline_by.empty())
+      chose("outlines by " + outline_by_, "of the style; --outline-by changes it");
     choose_display_view();
     scene::Scene scene;
     scene.image.width = width_;
@@ -184,14 +198,18 @@ class PlotMaker {
     scene.color.view = out_.view;
     scene.points.push_back({out_.points, {}, {}});
     scene.rods = guides_.rods();
-    const Stage stage{
-        axes, out_.material, extent.center(), extent.radius(), guides_.reach(), choose_ground(extent, camera)};
+    const Stage stage{axes,
+                      up_,
+                      out_.material,
+                      extent.center(),
+                      extent.radius(),
+                      guides_.reach(),
+                      choose_ground(extent, camera),
+                      light_gain()};
     if (!options_.style) chose("style studio", "a key light from the upper left, and white light from all directions");
     if (!options_.overrides.sets("image.width") && !options_.overrides.sets("image.height"))
       chose(fmt::format("size {} x {}", width_, height_), "--width and --height change it");
     choose_samples(scene.render.samples);
-    if (options_.develops && display_of(options_).view.empty() && out_.view == kPlainView)
-      chose(fmt::format("view transform {}", out_.view), "colours match the colour map");
     out_.text = scene_text(options_, stage, std::move(scene));
     // A still image is made of one frame, whose file need not stay open.
     if (!out_.loaded) out_.open_data = out_.frames.empty() ? points::handed_over(data_.open_data()) : data_.open_data();
@@ -284,6 +302,31 @@ class PlotMaker {
                       options_.zoom == 1 ? "" : ", times " + number_text(options_.zoom)));
   }
 
+  /// In sequences the range is that of all frames, so that colours do not flicker.
+  void choose_depth_cue(const ViewExtent& extent, scene::Camera& camera) {
+    constexpr double kExactPart = 0.1;
+    const bool is_default = !info_.z_up || options_.style == Style::kIllustration;  // up is y in files of molecules
+    camera.depth_cue = options_.depth_cue.value_or(is_default ? kDepthCue : 0);
+    if (camera.depth_cue == 0 || extent.is_empty()) return;
+    if (out_.frames.size() > 1 || is_turntable_) {
+      const scene::Interval depths = extent.depths(camera);
+      camera.depth_cue_range = scene::Interval{depths.low + kExactPart * (depths.high - depths.low), depths.high};
+    }
+    if (!options_.depth_cue)
+      chose("depth cue " + number_text(camera.depth_cue), "for molecules; --depth-cue 0 keeps the colours at the back");
+  }
+
+  /// The factor of the light. In a pile of spheres, each is in the shade of others, and half as bright as alone.
+  double light_gain() {
+    constexpr std::size_t kPile = 500;
+    constexpr double kStops = 0.4;
+    const Style style = options_.style.value_or(Style::kStudio);
+    const bool is_shaded = style == Style::kStudio || style == Style::kSoft || style == Style::kIllustration;
+    if (!is_shaded || options_.exact_colors || out_.points.bonds.are_drawn || largest_count_ < kPile) return 1;
+    chose(fmt::format("light +{} stops", kStops), "the spheres shade each other; --exact-colors omits it");
+    return std::exp2(kStops);
+  }
+
   std::optional<Ground> choose_ground(const ViewExtent& extent, const scene::Camera& camera) {
     if (!options_.ground || extent.is_empty()) return {};
     const Ground out = ground_below(guides_.lowest(), up_, extent);
@@ -367,8 +410,12 @@ class PlotMaker {
   /// times a power of ten that takes up to a fifth of the image.
   scene::Annotation annotation_of(const scene::Camera& camera) const {
     constexpr double kLargestShare = 0.2;
+    constexpr double kOutlineShare = 1.0 / 400;  // of the height: the same figure in any resolution
     scene::Annotation out = options_.annotation;
     out.font = from_scene(out.font.string(), options_.scene_file);
+    out.outline_objects = !outline_by_.empty();
+    if (out.outline == 0 && (out.outline_objects || options_.style == Style::kIllustration))
+      out.outline = rounded(kOutlineShare * height_);
     if (out.scale_bar == 0) {
       const double most = kLargestShare * camera.width.value_or(1), power = std::pow(10, std::floor(std::log10(most)));
       const double digit = std::floor(most / power);
@@ -398,13 +445,20 @@ class PlotMaker {
     return out;
   }
 
-  /// A view without tone mapping, which preserves the colours of the colour map.
+  /// Chooses the view of the display: with a shoulder for light and shade, unless exact colours are wanted.
   void choose_display_view() {
     const display::Settings display = display_of(options_);
     out_.view = display.view;
     if (!out_.view.empty()) return;
-    out_.view = display::view_or_default(display, kPlainView);
-    if (out_.view != kPlainView)
+    const Style style = options_.style.value_or(Style::kStudio);
+    const bool is_exact = options_.exact_colors || style == Style::kFlat || style == Style::kAmbient;
+    if (!is_exact) out_.view = display::view_or_default(display, kNeutralView);
+    if (out_.view != kNeutralView) out_.view = display::view_or_default(display, kPlainView);
+    if (out_.view == kNeutralView && options_.develops)
+      chose("view transform " + out_.view, "bright colours are compressed; --exact-colors keeps them");
+    if (out_.view == kPlainView && options_.develops)
+      chose("view transform " + out_.view, "colours match the colour map");
+    if (out_.view != kNeutralView && out_.view != kPlainView)
       chose("view transform " + out_.view, std::string("the default; the OCIO config has no view ") + kPlainView);
   }
 
@@ -494,6 +548,7 @@ class PlotMaker {
     });
     out_.frames = data_.numbers();
     choose_frames();
+    largest_count_ = most;
     report_count(fewest, most);
     report_bonds(fewest_bonds, most_bonds);
     if (!finder_.is_empty()) out_.legend.range = finder_.range();
@@ -574,12 +629,14 @@ class PlotMaker {
   bool is_turntable_;           ///< the camera orbits around the up axis
   std::string up_name_;         ///< "x", "y" or "z"
   math::Vec3d up_;
+  std::string outline_by_;  ///< column that divides the outlines; empty: none does
   Guides guides_;
   std::string look_from_;  ///< the view that was chosen
   RangeFinder finder_{options_.range};
   std::optional<LoadedFrame> first_;  ///< the first frame to be shown, if it has been read
   std::string bonds_from_;            ///< see scene::PointsFindings
   scene::HeaderNumbers header_;       ///< see scene::PointsFindings
+  std::size_t largest_count_ = 0;     ///< of particles in a frame
   PlotScene out_;
 };
 

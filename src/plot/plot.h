@@ -16,7 +16,7 @@
 /// Makes a scene for a data file: settings that the user did not choose are chosen from the data, and reported.
 namespace orrery::plot {
 
-enum class Style { kStudio, kSoft, kFlat, kNight, kAmbient };
+enum class Style { kStudio, kSoft, kFlat, kNight, kAmbient, kIllustration };
 
 /// How little noise an image has, and how long it takes.
 enum class Quality { kDraft, kGood, kFinal };
@@ -48,7 +48,11 @@ struct PlotOptions : DataOptions {
   std::optional<Quality> quality;         ///< default: kGood
   std::optional<math::Vec3d> background;  ///< colour behind the spheres, linear Rec.709; default: that of the style
   bool transparent = false;               ///< the background is transparent
-  std::string material;                   ///< one of material_names(); empty: plastic with rods, else matte
+  bool exact_colors = false;              ///< no tone mapping
+  std::optional<double> depth_cue;        ///< 0..1; default: see kDepthCue
+  /// Column whose values divide the outlines, see scene::Annotation::outline_objects; empty: they are not divided.
+  std::string outline_by;
+  std::string material;  ///< one of material_names(); empty: plastic with rods, else matte
   /// Of all particles; none: spheres, or a trace if all atoms are C-alpha or phosphorus atoms. Those of some particles
   /// are in `points`.
   std::optional<Representation> representation;
@@ -66,8 +70,12 @@ struct PlotOptions : DataOptions {
   load::Overrides overrides;
 };
 
-/// The view that reproduces the colours of the colour map, if the OCIO config defines it.
-inline constexpr const char* kPlainView = "Un-tone-mapped";
+/// Depth cue of molecules.
+inline constexpr double kDepthCue = 0.35;
+
+/// The view that reproduces the colours of the colour map, and the one that compresses bright colours, if the OCIO
+/// config defines them.
+inline constexpr const char *kPlainView = "Un-tone-mapped", *kNeutralView = "Neutral";
 
 struct PlotScene {
   std::string text;                  ///< the scene file

@@ -27,9 +27,9 @@ namespace {
 /// The light of a style: a spherical lamp to the upper left of the camera, a background, and what the camera sees of
 /// it.
 struct Lighting {
-  Vec3d background;               ///< radiance from all directions
+  Vec3d below, above;             ///< radiance of the background from straight below and above
   std::optional<Vec3d> backdrop;  ///< colour behind the spheres; none: the background
-  Vec3d ground;                   ///< albedo
+  std::optional<Vec3d> ground;    ///< albedo; none: that at which light on it, without shadows, is the backdrop
   // The lamp. It is behind the camera's plane, which does not see it.
   Vec3d radiance;   ///< 0: no lamp
   double up, left;  ///< its position along the image's axes, where the distance towards the camera is 1
@@ -39,23 +39,25 @@ struct Lighting {
   bool has_lamp() const { return !(radiance == Vec3d{}); }
 };
 
-/// Half of the light on a sphere comes from all directions, so that gaps between spheres are dark, and half from a lamp
-/// of 35 degrees, whose shadows are soft. It is far away, so that it illuminates all parts alike. The mean radiance
-/// over the image of an unoccluded matte sphere is then that of its albedo in white light of radiance 1 (test
+constexpr Vec3d grey(double value) { return {value, value, value}; }
+
+/// Three fifths of the light on a sphere come from a lamp of 35 degrees, whose shadows are soft, 55 degrees from the
+/// view axis, and the rest from all directions, more of it from above: gaps between spheres are dark, and large bodies
+/// look round. The lamp is far away, so that it illuminates all parts alike. The mean radiance over the image of an
+/// unoccluded matte sphere is then that of its albedo in white light of radiance 1, see lighting_of() (test
 /// PlotPlot.TheMeanOfASphereIsItsColor).
-constexpr Lighting kStudio{
-    {0.5, 0.5, 0.5}, Vec3d{1, 1, 1}, {0.75, 0.75, 0.75}, {10.896, 10.896, 10.896}, 0.7, 0.5, 100, 30};
+constexpr Lighting kStudio{grey(0.12), grey(0.68), grey(1), {}, grey(14.934), 1.1, 0.9, 3000, 900};
 /// The same mean, with more light from all directions and a lamp of 74 degrees: shadows are faint, and gaps dark.
-constexpr Lighting kSoft{
-    {0.7, 0.7, 0.7}, Vec3d{1, 1, 1}, {0.85, 0.85, 0.85}, {2.3165, 2.3165, 2.3165}, 0.9, 0.6, 100, 60};
-constexpr Lighting kWhite{{1, 1, 1}, {}, {0.95, 0.95, 0.95}, {}, 0, 0, 0, 0};
+constexpr Lighting kSoft{grey(0.7), grey(0.7), grey(1), {}, grey(2.3165), 0.9, 0.6, 3000, 1800};
+constexpr Lighting kWhite{grey(1), grey(1), {}, {}, {}, 0, 0, 0, 0};
 /// The irradiance at the centre, pi times radiance times (radius / distance)^2, is that of a white dome.
-constexpr Lighting kNight{{0.02, 0.02, 0.025}, {}, {0.1, 0.1, 0.1}, {25, 24.5, 23.5}, 0.9, 0.7, 6, 1.2};
+constexpr Lighting kNight{{0.02, 0.02, 0.025}, {0.02, 0.02, 0.025}, {}, grey(0.1), {25, 24.5, 23.5}, 0.9, 0.7, 6, 1.2};
 
 const Lighting& lighting_of(Style style) {
   switch (style) {
     case Style::kStudio: return kStudio;
-    case Style::kSoft: return kSoft;
+    case Style::kSoft:
+    case Style::kIllustration: return kSoft;
     case Style::kNight: return kNight;
     case Style::kFlat:
     case Style::kAmbient: return kWhite;
@@ -66,6 +68,37 @@ const Lighting& lighting_of(Style style) {
 scene::Sphere lamp_of(const Stage& stage, const Lighting& light) {
   const Vec3d toward = math::normalized(stage.axes.back + stage.axes.up * light.up - stage.axes.right * light.left);
   return {stage.center + toward * (light.distance * stage.radius), light.radius * stage.radius};
+}
+
+/// The light of a plot.
+Lighting lighting_of(const PlotOptions& options, const Stage& stage) {
+  Lighting out = lighting_of(options.style.value_or(Style::kStudio));
+  if (!(out.below == out.above)) {
+    // The normals of the visible half of a sphere have a mean of two thirds towards the camera, and the light on a
+    // surface has a mean of two thirds towards its normal. The lamp hides a part of the background.
+    const Vec3d middle = (out.below + out.above) / 2, half = (out.above - out.below) / 2;
+    const double factor = middle.x / (middle.x + half.x * 4 / 9 * math::dot(stage.axes.back, stage.up));
+    out.below = out.below * factor;
+    out.above = out.above * factor;
+    const Vec3d to_lamp = math::normalized(lamp_of(stage, out).center - stage.center);
+    out.radiance = out.radiance + (middle + half * math::dot(to_lamp, stage.up)) * factor;
+  }
+  for (Vec3d Lighting::*const of : {&Lighting::below, &Lighting::above, &Lighting::radiance})
+    out.*of = out.*of * stage.gain;
+  return out;
+}
+
+/// The albedo at which a ground without shadows has the colour of the backdrop, as far as one below 1 has.
+Vec3d page_albedo(const Stage& stage, const Lighting& light, const Vec3d& backdrop) {
+  // Of a Lambertian surface of albedo 1. The mean height of light is two thirds.
+  Vec3d out = (light.below + light.above) / 2 + (light.above - light.below) / 3;
+  if (light.has_lamp()) {
+    const scene::Sphere lamp = lamp_of(stage, light);
+    const double sine = light.radius / light.distance,
+                 cosine = math::dot(math::normalized(lamp.center - stage.center), stage.up);
+    out = out + light.radiance * (sine * sine * std::max(cosine, 0.0));
+  }
+  return {std::min(backdrop.x / out.x, 1.0), std::min(backdrop.y / out.y, 1.0), std::min(backdrop.z / out.z, 1.0)};
 }
 
 /// Rounds a number above 0 to two digits, so that what is within the result is within the number.
@@ -123,7 +156,7 @@ constexpr double kBoxRadius = 0.004, kAxisLength = 0.15, kAxisRadius = 0.01;
 }  // namespace
 
 const std::vector<std::string>& style_names() {
-  static const std::vector<std::string> names = {"studio", "soft", "flat", "night", "ambient"};
+  static const std::vector<std::string> names = {"studio", "soft", "flat", "night", "ambient", "illustration"};
   return names;
 }
 
@@ -146,9 +179,15 @@ const std::vector<std::string>& material_names() {
 }
 
 std::string scene_text(const PlotOptions& options, const Stage& stage, scene::Scene scene) {
-  const Lighting& light = lighting_of(options.style.value_or(Style::kStudio));
-  scene.background.type = scene::BackgroundType::kConstant;
-  scene.background.color = light.background;
+  const Lighting light = lighting_of(options, stage);
+  if (light.below == light.above) {
+    scene.background.type = scene::BackgroundType::kConstant;
+    scene.background.color = light.above;
+  } else {
+    scene.background.bottom = light.below;
+    scene.background.top = light.above;
+    scene.background.up = stage.up;
+  }
   scene.background.backdrop = options.background ? options.background : light.backdrop;
   scene.background.alpha = options.transparent ? 0 : 1;
   if (options.style == Style::kFlat) scene.render.shading = scene::Shading::kFlat;
@@ -159,9 +198,13 @@ std::string scene_text(const PlotOptions& options, const Stage& stage, scene::Sc
   for (const scene::Material& of_spheres : sphere_materials())
     if (of_spheres.name == stage.material)
       scene.points[0].material = material(stage.material.c_str(), of_spheres.model);
-  if (stage.ground)
+  if (stage.ground) {
+    const Vec3d albedo =
+        light.ground.value_or(page_albedo(stage, light, scene.background.backdrop.value_or(light.above)));
     scene.spheres.push_back(
-        {stage.ground->center, stage.ground->radius, material("ground", scene::Lambertian{light.ground}), "ground"});
+        {stage.ground->center, stage.ground->radius, material("ground", scene::Lambertian{albedo}), "ground"});
+    scene.spheres.back().is_page = !light.ground;
+  }
   for (const auto& [name, color] : kGuideColors) {
     const auto is_named = [&, &of_color = name](const scene::Rod& rod) { return rod.name == of_color; };
     if (std::none_of(scene.rods.begin(), scene.rods.end(), is_named)) continue;

@@ -17,11 +17,13 @@ struct PlotOptions;
 /// Where the spheres of a plot are, and how they are seen.
 struct Stage {
   const ViewAxes& axes;          ///< axes of the image
+  Vec3d up;                      ///< the up axis
   const std::string& material;   ///< of the spheres, one of material_names()
   Vec3d center;                  ///< centre of the spheres
   double radius = 1;             ///< radius of a sphere around `center` that contains all spheres
   double reach = 0;              ///< largest absolute coordinate of a point of the spheres
   std::optional<Ground> ground;  ///< ground below the spheres
+  double gain = 1;               ///< of the light
 };
 
 /// Returns the text of the scene file of a plot.

@@ -223,6 +223,15 @@ double ViewExtent::radius() const {
   return radius > 0 ? radius : 1;  // a single point has no extent
 }
 
+scene::Interval ViewExtent::depths(const scene::Camera& camera) const {
+  const Vec3d axes[3] = {axes_.right, axes_.up, axes_.back};
+  const Vec3d forward = math::normalized(camera.look_at - camera.look_from);
+  double half = 0;
+  for (int k = 0; k < 3; ++k) half += std::abs(math::dot(axes[k], forward)) * (high_[k] - low_[k]) / 2;
+  const double middle = math::dot(center() - camera.look_from, forward);
+  return {middle - half, middle + half};
+}
+
 Ground ground_below(double lowest, Vec3d up, const ViewExtent& extent) {
   constexpr double kLarge = 1000;
   const double radius = kLarge * extent.radius();

@@ -80,6 +80,9 @@ class ViewExtent {
 
   /// Distances along the view axis, of the back and of the front, from the origin.
   std::pair<double, double> depth() const { return {low_[2], high_[2]}; }
+  /// Depths along the view axis of a camera that the spheres reach, as distances from it.
+  scene::Interval depths(const scene::Camera& camera) const;
+
   Vec3d center() const;   ///< centre of the box along the axes
   double radius() const;  ///< radius of a sphere around center() that contains all spheres, scene units
 

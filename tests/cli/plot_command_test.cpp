@@ -83,7 +83,7 @@ TEST_F(CliPlot, TitlesHaveNumbersOfTheHeader) {
 TEST_F(CliPlot, ChoicesOfTheRenderArePrinted) {
   Outcome r = run("plot a.dump -o a.ppm --width 16 --height 9");
   EXPECT_TRUE(contains(r.err, "\nplot: frame 1 of 2: the first; --frames all renders all of them\n")) << r.err;
-  EXPECT_TRUE(contains(r.err, "\nplot: view transform Un-tone-mapped: ")) << r.err;
+  EXPECT_TRUE(contains(r.err, "\nplot: view transform Neutral: ")) << r.err;
   EXPECT_TRUE(
       contains(r.err, "\nplot: quality good: noise 0.1, denoised; --quality, --noise, --time or --samples change it\n"))
       << r.err;

@@ -144,7 +144,7 @@ TEST_F(DisplayView, UnknownNamesAreUsageErrorsWithTheKnownNames) {
   settings = {};
   settings.display = "Gamma 2.0 Rec.709";
   settings.view = "ACES 1.0 SDR Video";  // in the config, but not for this display
-  expect_error(settings, base::ErrorKind::kUsage, {"it has Un-tone-mapped, Raw"});
+  expect_error(settings, base::ErrorKind::kUsage, {"it has Un-tone-mapped, Neutral, Raw"});
   settings = {};
   settings.look = "ACES 1.3 gamut compres";
   expect_error(settings, base::ErrorKind::kUsage, {"no look", "did you mean `ACES 1.3 gamut compress`?"});

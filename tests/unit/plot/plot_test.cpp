@@ -150,9 +150,9 @@ TEST_F(PlotPlot, DefaultsWithoutRadiusAndColor) {
   EXPECT_EQ(scene.camera.projection, scene::Projection::kOrthographic);
   EXPECT_EQ(scene.image.width, 1920);
   EXPECT_EQ(scene.image.height, 1080);
-  EXPECT_EQ(scene.background.type, scene::BackgroundType::kConstant);
+  EXPECT_EQ(scene.background.type, scene::BackgroundType::kGradient);
+  EXPECT_EQ(scene.background.up, (Vec3d{0, 0, 1}));
   EXPECT_EQ(scene.background.backdrop, (Vec3d{1, 1, 1}));
-  EXPECT_EQ(scene.color.view, "Un-tone-mapped") << "colours match the colour map";
   EXPECT_EQ(scene.spheres.size(), 1u) << "the key light";
   EXPECT_TRUE(made.warnings.empty());
   EXPECT_TRUE(made.frames.empty());
@@ -388,6 +388,9 @@ std::vector<std::array<int, 3>> shown(const scene::Scene& scene) {
   }
   display::Settings settings;
   settings.view = scene.color.view;
+  settings.backdrop = colors[0];
+  row.coverage.assign(colors.size(), 1);
+  row.coverage[0] = 0;
   const film::EncodedPicture encoded = display::develop(row, settings, 8);
   std::vector<std::array<int, 3>> out(colors.size());
   for (std::size_t i = 0; i < 3 * colors.size(); ++i) out[i / 3][i % 3] = encoded.values[i];
@@ -829,9 +832,15 @@ TEST_F(PlotPlot, GlassHasNoColor) {
   EXPECT_TRUE(read().points[0].color.is_set());
 }
 
-/// The mean over the image of an unoccluded matte sphere: the mean over the visible normals of the irradiance from the
-/// lamp and the background, by quadrature.
-/// The mean over the image of a matte sphere's radiance, divided by its albedo.
+/// The radiance of the background in a direction; of a shorter vector, the mean of directions with this mean.
+double background_of(const scene::Scene& scene, const Vec3d& direction) {
+  const scene::Background& from = scene.background;
+  if (from.type == scene::BackgroundType::kConstant) return from.color.x;
+  return std::lerp(from.bottom.x, from.top.x, (1 + math::dot(direction, from.up)) / 2);
+}
+
+/// The mean over the image of an unoccluded matte sphere's radiance, divided by its albedo: the mean over the visible
+/// normals of the irradiance from the lamp, by quadrature, and from the background.
 double mean_of_sphere(const scene::Scene& scene) {
   const scene::Sphere& lamp = scene.spheres.at(0);
   const double distance = math::length(lamp.center), size = lamp.radius / distance;
@@ -853,30 +862,143 @@ double mean_of_sphere(const scene::Scene& scene) {
           const double cosine = 1 - (k + 0.5) / kSteps * (1 - std::sqrt(1 - size * size));
           const double sine = std::sqrt(1 - cosine * cosine), turn = (l + 0.5) / kSteps * 2 * kPi;
           const Vec3d to = toward * cosine + u * (sine * std::cos(turn)) + v * (sine * std::sin(turn));
-          sum += std::max(0.0, math::dot(normal, to));
+          sum += std::max(0.0, math::dot(normal, to)) * (radiance - background_of(scene, to));
         }
     }
   const double solid_angle = 2 * kPi * (1 - std::sqrt(1 - size * size));
   // The lamp hides a part of the background.
-  const double from_lamp = (radiance - scene.background.color.x) * solid_angle / kPi * sum / std::pow(kSteps, 4);
+  const double from_lamp = solid_angle / kPi * sum / std::pow(kSteps, 4);
   EXPECT_GT(math::dot(lamp.center - scene.camera.look_from, back), lamp.radius) << "behind the camera";
   EXPECT_LT(math::dot(lamp.center, math::cross(scene.camera.up, back)), 0) << "left";
   EXPECT_GT(math::dot(lamp.center, scene.camera.up), 0) << "above";
-  return from_lamp + scene.background.color.x;
+  return from_lamp + background_of(scene, back * (4.0 / 9));
 }
 
 TEST_F(PlotPlot, TheMeanOfASphereIsItsColor) {
-  for (const Style style : {Style::kStudio, Style::kSoft}) {
-    options.style = style;
-    make("a.csv", "x,y,z,radius\n0,0,0,1\n");
-    EXPECT_NEAR(mean_of_sphere(read()), 1, 2e-3) << static_cast<int>(style);
-  }
+  for (const Style style : {Style::kStudio, Style::kSoft, Style::kIllustration})
+    for (const char* view : {"iso", "0,0", "30,-40", "+z"}) {
+      options.style = style;
+      options.look_from = view;
+      make("a.csv", "x,y,z,radius\n0,0,0,1\n");
+      EXPECT_NEAR(mean_of_sphere(read()), 1, 3e-3) << static_cast<int>(style) << view;
+    }
   for (const Style style : {Style::kFlat, Style::kAmbient}) {
     options.style = style;
     make();
     EXPECT_EQ(read().background.color, (Vec3d{1, 1, 1})) << "white light";
     EXPECT_TRUE(read().spheres.empty()) << "alone";
   }
+}
+
+TEST_F(PlotPlot, ShadedStylesCompressBrightColors) {
+  options.develops = true;
+  make("a.csv", kCorners);
+  EXPECT_EQ(read().color.view, "Neutral");
+  EXPECT_TRUE(chose("view transform Neutral: bright colours are compressed; --exact-colors keeps them"));
+  options.style = Style::kFlat;
+  make();
+  EXPECT_EQ(read().color.view, "Un-tone-mapped");
+  options.style.reset();
+  options.exact_colors = true;
+  make();
+  EXPECT_EQ(read().color.view, "Un-tone-mapped");
+  EXPECT_TRUE(chose("view transform Un-tone-mapped: colours match the colour map"));
+}
+
+TEST_F(PlotPlot, ManySpheresHaveMoreLight) {
+  const auto light = [&] { return read().background.top.x; };
+  options.look_from = "0,0";
+  make("a.csv", kCorners);
+  const double few = light();
+  std::string rows = "x,y,z\n";
+  for (int i = 0; i < 500; ++i) rows += std::to_string(i % 10) + "," + std::to_string(i / 10) + ",0\n";
+  make("a.csv", rows);
+  EXPECT_NEAR(light() / few, std::exp2(0.4), 1e-9);
+  EXPECT_TRUE(chose("light +0.4 stops: the spheres shade each other; --exact-colors omits it"));
+  options.exact_colors = true;
+  make();
+  EXPECT_NEAR(light(), few, 1e-9);
+}
+
+TEST_F(PlotPlot, MoleculesHaveADepthCue) {
+  make("a.csv", kCorners);
+  EXPECT_EQ(read().camera.depth_cue, 0);
+  options.depth_cue = 0.5;
+  make();
+  EXPECT_EQ(read().camera.depth_cue, 0.5);
+  EXPECT_FALSE(read().camera.depth_cue_range) << "that of the image";
+  options.depth_cue.reset();
+  make("a.pdb",
+       "ATOM      1  CA  ALA A   1       0.000   0.000   0.000  1.00  0.00           C\n"
+       "ATOM      2  CA  ALA B   2       0.000   0.000   9.000  1.00  0.00           C\n");
+  EXPECT_EQ(read().camera.depth_cue, kDepthCue);
+  EXPECT_TRUE(chose("depth cue 0.35: for molecules; --depth-cue 0 keeps the colours at the back"));
+  options.depth_cue = 0;
+  make();
+  EXPECT_EQ(read().camera.depth_cue, 0);
+}
+
+/// Seen from +z, spheres of radius 1 at 0 and 10 in the frames.
+TEST_F(PlotPlot, TheDepthCueOfAllFramesHasOneRange) {
+  options.depth_cue = 0.4;
+  options.look_from = "+z";
+  options.all_frames = true;
+  options.points.radius.value = 1;
+  make("a.dump", frame("id x y z", {"1 0 0 0"}) + frame("id x y z", {"1 0 0 10"}));
+  const scene::Camera camera = read().camera;
+  ASSERT_TRUE(camera.depth_cue_range);
+  const double nearest = camera.look_from.z - 11, farthest = camera.look_from.z + 1;
+  EXPECT_NEAR(camera.depth_cue_range->high, farthest, 1e-9);
+  EXPECT_NEAR(camera.depth_cue_range->low, nearest + 0.1 * (farthest - nearest), 1e-9);
+}
+
+TEST_F(PlotPlot, OutlinesAreDividedByAColumn) {
+  options.outline_by = "mass";
+  make("a.csv", kCorners);
+  const scene::Scene scene = read();
+  EXPECT_EQ(scene.points[0].cryptomatte, std::vector<std::string>{"mass"});
+  EXPECT_TRUE(scene.annotation.outline_objects);
+  EXPECT_NEAR(scene.annotation.outline, 1080.0 / 400, 0.01) << "as wide in any resolution";
+  options.annotation.outline = 5;
+  make();
+  EXPECT_EQ(read().annotation.outline, 5);
+  options.outline_by = "none";
+  EXPECT_NE(error().find("`none`"), std::string::npos) << error();
+}
+
+TEST_F(PlotPlot, AnIllustrationHasOutlinesBetweenChains) {
+  options.style = Style::kIllustration;
+  make("a.csv", kCorners);
+  EXPECT_FALSE(read().annotation.outline_objects) << "no chains";
+  EXPECT_GT(read().annotation.outline, 0);
+  EXPECT_EQ(read().camera.depth_cue, kDepthCue);
+  make("a.csv", "x,y,z,chain\n0,0,0,A\n1,0,0,B\n");
+  EXPECT_EQ(read().points[0].cryptomatte, std::vector<std::string>{"chain"});
+  EXPECT_TRUE(chose("outlines by chain: of the style; --outline-by changes it"));
+}
+
+TEST_F(PlotPlot, TheGroundIsThePage) {
+  options.ground = true;
+  options.look_from = "30,20";
+  for (const Style style : {Style::kStudio, Style::kSoft, Style::kAmbient}) {
+    options.style = style;
+    make("a.csv", kCorners);
+    const scene::Scene scene = read();
+    EXPECT_TRUE(scene.spheres[0].is_page);
+    // The light on the ground, where nothing shades it.
+    double irradiance = background_of(scene, Vec3d{0, 0, 2.0 / 3});
+    if (scene.spheres.size() > 1) {
+      const scene::Sphere& lamp = scene.spheres[1];
+      const double distance = math::length(lamp.center - scene.camera.look_at);
+      irradiance += std::get<scene::Emitter>(scene.materials[lamp.material].model).radiance.x *
+                    std::pow(lamp.radius / distance, 2) * (lamp.center.z - scene.camera.look_at.z) / distance;
+    }
+    const double albedo = std::get<scene::Lambertian>(scene.materials[scene.spheres[0].material].model).albedo.x;
+    EXPECT_NEAR(albedo * irradiance, 1, 5e-3) << static_cast<int>(style);
+  }
+  options.style = Style::kNight;
+  make();
+  EXPECT_FALSE(read().spheres[0].is_page) << "a dark floor";
 }
 
 TEST_F(PlotPlot, TheBackgroundIsAColorOrTransparent) {
@@ -1282,11 +1404,11 @@ TEST_F(PlotPlot, DataOutsideTheRangeOfAPlotAreNamed) {
   options.points.radius.value = 1;
   options.look_from = "iso";
   const std::string far = "0,-1e17,0\n";
-  EXPECT_EQ(remedy_for(far), "use a larger unit of length, in which the spheres are within 2.2e+16");
+  EXPECT_EQ(remedy_for(far), "use a larger unit of length, in which the spheres are within 7.8e+14");
   EXPECT_EQ(error(),
-            "the spheres reach the coordinate 1e+17, and the lamp, ground and camera around them 4.4e+18; the largest "
+            "the spheres reach the coordinate 1e+17, and the lamp, ground and camera around them 1.3e+20; the largest "
             "coordinate of a scene is 1e+18");
-  EXPECT_EQ(remedy_for("0,-2.2e16,0\n"), "no error");
+  EXPECT_EQ(remedy_for("0,-7.7e14,0\n"), "no error");
   options.style = Style::kAmbient;
   EXPECT_EQ(remedy_for(far), "no error") << "without a lamp";
   options.ground = true;
