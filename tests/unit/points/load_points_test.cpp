@@ -693,9 +693,11 @@ std::string chain_and_ligand() {
                   ++serial, name, residue, number, x, y, 0.0, element);
     out += line;
   };
+  double x = 0;
   for (const int number : {1, 2, 4, 5}) {
-    add("ATOM", " N", "ALA", number, 3.8 * number - 1.4, 0, "N");
-    add("ATOM", " CA", "ALA", number, 3.8 * number, 0, "C");
+    x += 3.8;
+    add("ATOM", " N", "ALA", number, x - 1.4, 0, "N");
+    add("ATOM", " CA", "ALA", number, x, 0, "C");
   }
   add("HETATM", " C1", "LIG", 9, 0, 20, "C");
   add("HETATM", " O1", "LIG", 9, 1.2, 20, "O");

@@ -71,6 +71,7 @@ TEST_F(PointsRulesOfAFile, ColorsPrecedeThoseOfAMap) {
   EXPECT_EQ(color(2), palette(*find_color_map("viridis"), 2)[1]) << "others keep the map";
   EXPECT_EQ(color(3), (Vec3d{0.1, 0.2, 0.3}));
   EXPECT_EQ(points.palette.back(), points.color.nan_color) << "which is the last";
+  EXPECT_EQ(points.palette_rec709, 257u) << "the map and the rule";
   points.color.column = "type";
   points.color.map = "set2";
   EXPECT_EQ(load(), "");
