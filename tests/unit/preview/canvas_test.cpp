@@ -16,8 +16,10 @@ namespace {
 
 std::vector<float> read_all(const Canvas& canvas) {
   std::vector<float> out(3 * static_cast<std::size_t>(canvas.width()) * static_cast<std::size_t>(canvas.height()));
+  std::vector<float> coverage(static_cast<std::size_t>(canvas.width()));
   for (int y = 0; y < canvas.height(); ++y)
-    canvas.read(0, y, canvas.width(), &out[3 * static_cast<std::size_t>(y) * static_cast<std::size_t>(canvas.width())]);
+    canvas.read(0, y, canvas.width(), &out[3 * static_cast<std::size_t>(y) * static_cast<std::size_t>(canvas.width())],
+                coverage.data());
   return out;
 }
 
@@ -49,11 +51,12 @@ TEST(PreviewCanvas, MarksTheCellsOfARectangleOnce) {
   EXPECT_TRUE(canvas.take_changed().empty());
   const Cell last = canvas.cell(11);
   EXPECT_EQ((std::vector<int>{last.x, last.y, last.width, last.height}), (std::vector<int>{96, 64, 4, 6}));
-  float rgb[3], want[3];
-  canvas.read(99, 69, 1, rgb);
+  float rgb[3], want[3], coverage = 0;
+  canvas.read(99, 69, 1, rgb, &coverage);
+  EXPECT_EQ(coverage, 1) << "unknown";
   state.mean(math::pixel_index(99, 69, 100), want);
   EXPECT_EQ(rgb[1], want[1]);
-  canvas.read(31, 62, 1, rgb);
+  canvas.read(31, 62, 1, rgb, &coverage);
   EXPECT_EQ(rgb[1], 0.0f);  // in the rectangle, but not among its pixels
 }
 
@@ -71,12 +74,12 @@ TEST(PreviewCanvas, AReaderOfMarkedCellsHasEveryPixelInTheEnd) {
       }
       --writing;
     });
-  std::vector<float> copy(3 * kSide * kSide);
+  std::vector<float> copy(3 * kSide * kSide), coverage(kSide);
   const auto copy_changed = [&] {
     for (const std::size_t index : canvas.take_changed()) {
       const Cell cell = canvas.cell(index);
       for (int y = cell.y; y < cell.y + cell.height; ++y)
-        canvas.read(cell.x, y, cell.width, &copy[static_cast<std::size_t>(3 * (y * kSide + cell.x))]);
+        canvas.read(cell.x, y, cell.width, &copy[static_cast<std::size_t>(3 * (y * kSide + cell.x))], coverage.data());
     }
   };
   while (writing > 0) copy_changed();
