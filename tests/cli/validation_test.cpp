@@ -51,7 +51,7 @@ const Broken kBroken[] = {
     {"ALayerOption", "", "--layers Z,Y", 65, "--layers: error: output.layers[1] is \"Y\""},
     {"ASampleCount", "", "--samples 0", 65, "--samples: error: render.samples is 0; must be in"},
     {"ACameraWithoutDirection", "[camera]\nlook_at = [0, 0, 0]\n", "", 65, "error: camera.look_at: "},
-    {"ADepthCueWithoutData", "", "--set camera.depth_cue=0.5", 65, "camera.depth_cue needs `depth_cue_range`"},
+    {"ADepthCueWithoutData", "", "--set camera.depth_cue=0.5", 65, "camera.depth_cue: needs `depth_cue_range`"},
     {"AnEmptyDepthCueRange", "", "--set camera.depth_cue_range=[2,2]", 65, "error: camera.depth_cue_range"},
     {"ADepthCueAboveOne", "", "--set camera.depth_cue=1.5", 65, "must be in 0..1"},
     {"AGradientWithoutDirection", "", "--set background.up=[0,0,0]", 65, "background.up"},
