@@ -69,8 +69,13 @@ def pick_two(page):
     page.browser.click(x - 60, y + 30)
     page.browser.wait("return !document.getElementById('picked').hidden")
     yield
-    page.browser.drag((x + 70, y + 80), (x + 70, y + 80), steps=1, key="\ue008")
-    page.browser.wait("return document.getElementById('measures').textContent.includes('distance')")
+    for dx in range(-100, -220, -8):  # until there is a particle
+        page.browser.drag((x + dx, y + 60), (x + dx, y + 60), steps=1, key="\ue008")
+        try:
+            page.browser.wait("return document.getElementById('measures').textContent.includes('distance')", tries=20)
+            break
+        except AssertionError:
+            continue
     yield
 
 
@@ -116,10 +121,10 @@ def film(page):
     page.shoot(3)
 
 
-page = Page(melt, "--quality", "draft", size=(1280, 800))
+page = Page(melt, "--samples", "6", "--denoise", size=(1280, 800))
 film(page)
 page.end()
-small = f"fps=1.5,scale=800:-1:flags=lanczos,split[a][b];[a]palettegen=max_colors=48[p];[b][p]paletteuse=dither=none:diff_mode=rectangle"
+small = "fps=1.5,scale=800:-1:flags=lanczos,split[a][b];[a]palettegen=max_colors=48[p];[b][p]paletteuse=dither=none:diff_mode=rectangle"
 rate = page.shots / 60  # a minute
 subprocess.run(["ffmpeg", "-v", "error", "-y", "-framerate", str(rate), "-i", folder / "film.%03d.png",
                 "-filter_complex", small.replace("fps=1.5", f"fps={rate}"), root / "docs/view.gif"], check=True)

@@ -153,6 +153,21 @@ def position(browser):
     return place_of(browser, "#picture")
 
 
+def particles(browser):
+    """Two places in the window, far from each other and left of the middle, where the picture has a colour."""
+    return browser.run("""
+        const canvas = document.getElementById('picture'), box = canvas.getBoundingClientRect(), found = [];
+        const { data } = canvas.getContext('2d').getImageData(0, 0, canvas.width, canvas.height);
+        const has = (x, y) => { const i = 4 * (y * canvas.width + x), c = [data[i], data[i + 1], data[i + 2]];
+                                return Math.max(...c) - Math.min(...c) > 60; };
+        for (let y = 20; y < canvas.height - 5; ++y)
+          for (let x = Math.floor(canvas.width / 2); x > 5; --x)
+            if ([[0, 0], [4, 0], [-4, 0], [0, 4], [0, -4]].every(([dx, dy]) => has(x + dx, y + dy))
+                && found.every(([u, v]) => Math.hypot(x - u, y - v) > canvas.height / 4)) found.push([x, y]);
+        return found.slice(0, 2).map(([x, y]) => [Math.round(box.left + x * box.width / canvas.width),
+                                                  Math.round(box.top + y * box.height / canvas.height)]);""")
+
+
 def is_empty(browser, selector):
     return browser.run("const e = document.querySelector(arguments[0]); return !e || e.hidden || e.textContent === ''", selector)
 
@@ -284,10 +299,10 @@ def do_tasks(browser, program):
     wait_for_command(browser, "--slice", False)
     expect("--slice z=1.5 " not in before, f"the plane is dragged: {before}")
     hand.clicks = 0
-    x, y = position(browser)
-    hand.at(x - 60, y + 40)
+    first, second = particles(browser)
+    hand.at(*first)
     browser.wait("return !document.getElementById('picked').hidden")
-    hand.at(x + 70, y + 90, key=SHIFT)
+    hand.at(*second, key=SHIFT)
     browser.wait("return document.getElementById('measures').textContent.includes('distance')")
     distance = browser.run("return document.querySelector('#measures dd').textContent")
     expect(float(distance.split(",")[0]) > 0, distance)

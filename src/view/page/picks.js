@@ -104,10 +104,10 @@ export function drawMarks() {
     if (picks.length > 1) parts.push(svg("text", { x: place.x + r + 8, y: place.y + 4 }, String(i + 1)));
   });
   marks.replaceChildren(...parts);
-  placeCard(places.at(-1));
+  placeCard(places.filter(Boolean).sort((a, b) => a.x - b.x).at(-1));
 }
 
-// Keeps the card beside the last mark, within the picture.
+// Keeps the card beside the rightmost mark, within the picture.
 function placeCard(place) {
   const card = $("picked"), stage = $("stage").getBoundingClientRect(), frame = $("place").getBoundingClientRect();
   if (card.hidden || !place || matchMedia("(max-width: 700px)").matches) return;
