@@ -438,6 +438,7 @@ def fill_window(browser, program):
     wait_for_command(browser, "--width 420")
     expect(browser.run("return document.documentElement.scrollWidth <= innerWidth"), "too wide for a phone")
     browser.resize(420, 800, pixels=2)
+    browser.run("location.reload()")
     wait_for_command(browser, "--width 840")
     check_command(browser, "dense")
     program.end()

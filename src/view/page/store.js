@@ -275,6 +275,11 @@ function followWindow() {
   resizing = setTimeout(() => wish(false), SETTLED_ms);
 }
 
+// The page may move to a screen with other pixels.
+function followPixels() {
+  matchMedia(`(resolution: ${devicePixelRatio}dppx)`).addEventListener("change", () => { followWindow(); followPixels(); }, { once: true });
+}
+
 // ---- Images and state ---------------------------------------------------------------------------------------------
 
 async function showFrames() {
@@ -350,6 +355,7 @@ export async function start() {
   emit("page");
   emit("view");
   new ResizeObserver(followWindow).observe($("stage"));
+  followPixels();
   wish(false);
   showFrames();
 }
