@@ -14,14 +14,14 @@
 namespace orrery::denoise {
 namespace {
 
-constexpr int kWidth = 16, kHeight = 4;
+constexpr int kSmallWidth = 16, kSmallHeight = 4;
 constexpr float kNan = std::numeric_limits<float>::quiet_NaN();
 
 /// A grey image whose halves differ.
 film::Picture grey() {
-  film::Picture out{kWidth, kHeight, {}};
+  film::Picture out{kSmallWidth, kSmallHeight, {}};
   const auto add = [&](const std::string& name, float value) {
-    out.planes.push_back({name, std::vector<float>(kWidth * kHeight, value)});
+    out.planes.push_back({name, std::vector<float>(kSmallWidth * kSmallHeight, value)});
   };
   for (const char* name : {"R", "G", "B"}) add(name, 0.5F);
   for (const auto& [half, light] : {std::pair{"half_a", 0.4F}, std::pair{"half_b", 0.6F}}) {
@@ -60,7 +60,8 @@ TEST(DenoiseSourcePlanes, AHalfWithoutSamplesIsThatOfTheOther) {
 }
 
 TEST(DenoiseSourcePlanes, UpToASixteenthOfThePixelsMayHaveOneHalf) {
-  film::Picture few = without_half_b(kWidth * kHeight / 16), many = without_half_b(kWidth * kHeight / 16 + 1);
+  film::Picture few = without_half_b(kSmallWidth * kSmallHeight / 16),
+                many = without_half_b(kSmallWidth * kSmallHeight / 16 + 1);
   EXPECT_TRUE(source_planes(few, true));
   EXPECT_FALSE(source_planes(many, true));
 }
@@ -73,7 +74,7 @@ TEST(DenoiseSourcePlanes, PixelsWithoutAFiniteBeautyOrSamplesAreInvalid) {
   }
   const auto planes = source_planes(picture, true);
   ASSERT_TRUE(planes);
-  for (int x = 0; x < kWidth; ++x) EXPECT_EQ(*planes->valid.at(x, 0), x == 5 || x == 7 ? 0 : 1) << x;
+  for (int x = 0; x < kSmallWidth; ++x) EXPECT_EQ(*planes->valid.at(x, 0), x == 5 || x == 7 ? 0 : 1) << x;
 }
 
 TEST(DenoiseSourcePlanes, HalvesAreFreedUnlessTheyAreKept) {

@@ -57,7 +57,8 @@ class RandomScene {
       points.material = static_cast<std::uint32_t>(below(s.materials.size()));
       if (below(2) == 0) points.bonds.material = static_cast<std::uint32_t>(below(s.materials.size()));
       if (points.opacity.value) points.opacity = {*points.opacity.value, "", {}, {}};
-      if (points.radius.value) points.radius = {*points.radius.value, "", "", {}};  // excludes the keys of its table
+      if (points.radius.value)
+        points.radius = {*points.radius.value, "", "", {}, 1, {}};  // excludes the keys of its table
       s.points.push_back(points);
     }
     for (std::size_t i = below(4); i < 3; ++i) {

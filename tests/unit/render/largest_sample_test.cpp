@@ -22,7 +22,7 @@
 namespace orrery::render {
 namespace {
 
-constexpr std::uint32_t kSamples = 16;
+constexpr std::uint32_t kPassSamples = 16;
 
 /// Renders samples of the whole image; returns the largest samples, and the sums in `sums`.
 std::vector<float> rendered(const compile::CompiledScene& compiled, std::uint32_t begin, std::uint32_t end,
@@ -48,7 +48,7 @@ std::vector<float> rendered(const compile::CompiledScene& compiled, std::uint32_
 std::vector<float> one_by_one(const compile::CompiledScene& compiled) {
   std::vector<float> out(static_cast<std::size_t>(compiled.width * compiled.height));
   std::vector<kernel::PixelSum> sums;
-  for (std::uint32_t k = 0; k < kSamples; ++k) {
+  for (std::uint32_t k = 0; k < kPassSamples; ++k) {
     rendered(compiled, k, k + 1, sums);
     for (std::size_t i = 0; i < out.size(); ++i) {
       double light = 0;
@@ -74,7 +74,7 @@ TEST(RenderLargestSample, IsThatOfTheSamplesOneByOne) {
           const std::vector<float> expected = one_by_one(compiled);
           ASSERT_GT(*std::max_element(expected.begin(), expected.end()), 0);
           std::vector<kernel::PixelSum> sums;
-          const std::vector<float> largest = rendered(compiled, 0, kSamples, sums);
+          const std::vector<float> largest = rendered(compiled, 0, kPassSamples, sums);
           for (std::size_t i = 0; i < largest.size(); ++i)
             ASSERT_NEAR(largest[i], expected[i], 1e-6f * (1 + expected[i])) << isa << ", pixel " << i;
         }
@@ -89,11 +89,11 @@ TEST(RenderLargestSample, BadSamplesDoNotCount) {
   test::add_lamp(scene, {0, 1, 2}, 0.3, {0x1p34, 0x1p34, 0x1p34});
   compile::CompiledScene compiled = compile::compile(scene);
   std::vector<kernel::PixelSum> sums;
-  const std::vector<float> valid = rendered(compiled, 0, kSamples, sums);
+  const std::vector<float> valid = rendered(compiled, 0, kPassSamples, sums);
   EXPECT_GT(*std::max_element(valid.begin(), valid.end()), 0x1p35f);  // the sum of the channels
   for (auto& emission : compiled.emission)
     for (double& channel : emission.radiance) channel *= 4;
-  const std::vector<float> largest = rendered(compiled, 0, kSamples, sums);
+  const std::vector<float> largest = rendered(compiled, 0, kPassSamples, sums);
   EXPECT_LT(*std::max_element(largest.begin(), largest.end()), 3 * 0x1p35f);
 }
 
