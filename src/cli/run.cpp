@@ -59,7 +59,6 @@ constexpr Guess kGuesses[] = {
     {"--camera --rotate --azimuth --elevation", "--look-from", "--look-from VIEW, or AZIMUTH,ELEVATION"},
     {"--fov", "--perspective", "--perspective VFOV"},
     {"--size --res --resolution", "--width", "--width and --height, in pixels"},
-    {"--dpi", "--width", "--width and --height, in pixels: 3.5 inches at 300 dpi are 1050"},
     {"--spp", "--samples", "--samples N"},
     {"--bg", "--background", "--background COLOR"},
     {"--bg --background", "--set", "--set background.color=[R,G,B]"},

@@ -75,6 +75,7 @@ class Run {
   /// Renders, and keeps what is needed to write the image.
   Rendering render_in_memory(const base::FileSet& files) {
     render::Result result = render(nullptr);
+    result.partial.reset();  // the denoiser needs the memory, and no file the sums
     finish(result);
     Rendering out;
     out.job = job_;

@@ -2,6 +2,7 @@
 #include "scene/schema.h"
 
 #include <limits>
+#include <optional>
 #include <utility>
 
 #include <fmt/core.h>
@@ -15,6 +16,16 @@ namespace {
 template <class Member>
 Table table(const char* name, Part part, Member Scene::*member, std::vector<Key<Member>> keys) {
   return {name, part, keys_at<Scene>(member, std::move(keys))};
+}
+
+/// Builds a key for a member that is 0 if the scene does not say it; the range of the key excludes 0.
+template <class Target>
+Key<Target> number_or_none(const char* name, const Range& range, const KeyDoc& about, double Target::*at) {
+  Key<Target> key = number(name, range, about, at);
+  key.get = [at](const Target& target) {
+    return target.*at == 0 ? std::optional<Value>() : std::optional<Value>(target.*at);
+  };
+  return key;
 }
 
 Table image_table() {
@@ -35,13 +46,13 @@ Table image_table() {
        integer("overscan", {0, kWidestOverscan},
                {"Rows and columns to render beyond each edge of the image. Cannot be combined with `crop`", "px", cost},
                &Image::overscan),
-       changes(
-           Part::kOutput,
-           otherwise("none",
-                     number("dpi", {1, 10000, false, false},
-                            {"Resolution in print, which PNG, TIFF and JPEG files carry. Texts are 8 points high then",
-                             "px per inch"},
-                            &Image::dpi)))});
+       changes(Part::kOutput,
+               otherwise("none",
+                         number_or_none(
+                             "dpi", {1, 10000, false, false},
+                             {"Resolution in print, which PNG, TIFF and JPEG files carry. Texts are 8 points high then",
+                              "px per inch"},
+                             &Image::dpi)))});
 }
 
 Table camera_table() {
@@ -248,7 +259,7 @@ Table annotation_table() {
        choice("color_at", {"top right", "bottom right", "top left", "bottom left"}, {"Corner of the colour bar"},
               &Annotation::color_at),
        otherwise("a 32nd of the height, or with `image.dpi` 8 points; at least 9",
-                 number("font_size", {4, 1000}, {"Height of the texts", "px"}, &Annotation::font_size)),
+                 number_or_none("font_size", {4, 1000}, {"Height of the texts", "px"}, &Annotation::font_size)),
        number("outline", {0, kWidestOutline},
               {"Width of the outlines of objects, drawn at discontinuities of the depth. 0: none. Drawn as at shutter "
                "open, without a lens",

@@ -139,8 +139,8 @@ class Plot(PlotTest):
         atoms.arrays["forces"] = VELOCITIES
         self.assert_as_program(render(atoms, vectors="forces"), *words)
         columns = {"element": SYMBOLS, "f": VELOCITIES}
-        self.assert_as_program(render(PLACES, columns=columns, vectors="f"), *words)
-        self.assert_as_program(render({**dict(zip("xyz", PLACES.T)), **columns}, vectors="f"), *words)
+        self.assert_as_program(render(PLACES, columns=columns, cell=(9, 9, 9), vectors="f"), *words)
+        self.assert_as_program(render({**dict(zip("xyz", PLACES.T)), **columns}, cell=(9, 9, 9), vectors="f"), *words)
 
     def test_the_arrays_of_atoms_are_columns(self):
         self.assertNotEqual(render(Atoms(), color_by="tag").beauty.tobytes(), render(Atoms()).beauty.tobytes())

@@ -164,7 +164,7 @@ TEST(StatisticalOpacity, AlphaIsTheOpacity) {
   scene::Scene s = dark_scene(0.3);
   s.spheres.push_back({{0, 0, -10}, 1, kBlack});
   film::LayerRequest layers;
-  layers.coverage = true;
+  layers.coverage = layers.transparent = true;
   expect_mean(mean_of(s, 3, layers), 0.3, "alpha of one object");
   s.spheres.push_back({{0, 0, -20}, 1, kBlack});
   expect_mean(mean_of(s, 3, layers), 0.51, "alpha of two objects");

@@ -1252,8 +1252,9 @@ TEST_F(PlotPlot, TheCameraIsFittedToSomeParticlesAndOthersAreClipped) {
   const scene::Camera camera = read().camera;
   EXPECT_LT(*camera.width, all);
   EXPECT_LT(math::length(camera.look_at - Vec3d{2, 0, 4}), 1e-9);
-  EXPECT_EQ(read().points[0].centers.size(), 9u);
-  for (const Vec3d& center : read().points[0].centers)
+  const scene::Scene fitted = read();
+  EXPECT_EQ(fitted.points[0].centers.size(), 9u);
+  for (const Vec3d& center : fitted.points[0].centers)
     EXPECT_LT(center.z + 2, camera.look_from.z) << "the camera is in front of all spheres";
   options.fit = "mass == 9";  // at 1, 0, 0
   options.near = 0;
