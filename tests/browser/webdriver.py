@@ -89,6 +89,10 @@ class Browser:
     def open(self, url):
         self._request("POST", "/url", {"url": url})
 
+    def reload(self):
+        """Returns when the page has been loaded again: a script that reloads it would return before."""
+        self._request("POST", "/refresh", {})
+
     def run(self, script, *arguments):
         """Runs JavaScript and returns its result."""
         return self._request("POST", "/execute/sync", {"script": script, "args": list(arguments)})
@@ -98,12 +102,19 @@ class Browser:
         return self._request("POST", "/execute/async", {"script": script, "args": list(arguments)})
 
     def wait(self, script, *arguments, tries=3000, pause=0.1):
-        """Runs JavaScript until its result is true, and returns it. The number of tries ends a test that hangs."""
+        """Runs JavaScript until its result is true, and returns it. The number of tries ends a test that hangs.
+
+        A script may fail while the page is being replaced.
+        """
+        failure = ""
         for _ in range(tries):
-            if result := self.run(script, *arguments):
-                return result
+            try:
+                if result := self.run(script, *arguments):
+                    return result
+            except urllib.error.HTTPError as error:
+                failure = error.read().decode(errors="replace")
             time.sleep(pause)
-        raise AssertionError(f"never true: {script}")
+        raise AssertionError(f"never true: {script}\n{failure}")
 
     def act(self, *sources):
         self._request("POST", "/actions", {"actions": list(sources)})

@@ -195,7 +195,7 @@ def look(browser, name, options):
     check_command(browser, f"{name}-chosen")
     browser.screenshot(work / f"{name}.screen.png")
     command = command_of(browser)
-    browser.run("location.reload()")
+    browser.reload()
     wait_for_command(browser, command)
 
 
@@ -325,7 +325,8 @@ def use_films(browser, program):
     browser.wait("return document.getElementById('command').value.includes('--samples 20000')")
     hand.click("label:has(#for-export)")
     hand.click("#film")
-    hand.click("#film-cancel")
+    browser.wait("return !document.getElementById('film-cancel').hidden")
+    browser.run("document.getElementById('film-cancel').click()")  # it moves while the words beside it change
     browser.wait("return [...document.querySelectorAll('.toast')].some(t => t.textContent.includes('stopped'))")
     expect(not (work / "films/film.mp4").exists(), "no film is left")
     choose(browser, "samples", "1")
@@ -438,7 +439,7 @@ def fill_window(browser, program):
     wait_for_command(browser, "--width 420")
     expect(browser.run("return document.documentElement.scrollWidth <= innerWidth"), "too wide for a phone")
     browser.resize(420, 800, pixels=2)
-    browser.run("location.reload()")
+    browser.reload()
     wait_for_command(browser, "--width 840")
     check_command(browser, "dense")
     program.end()
@@ -458,7 +459,7 @@ def audit(browser, program):
     expect(not nameless, nameless)
     ids = browser.run("return [...document.querySelectorAll('[id]')].map(e => e.id)")
     expect(len(ids) == len(set(ids)), sorted(i for i in ids if ids.count(i) > 1))
-    browser.run("location.reload()")
+    browser.reload()
     settle(browser)
     browser.run("document.activeElement.blur()")
     browser.keys("?")

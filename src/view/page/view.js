@@ -103,6 +103,9 @@ function makeSizes() {
   });
 }
 
+// A program that is stopped before it can answer ends with another status than 75.
+let isFilmCancelled = false;
+
 // The wish for a film: frames of the file, or an orbit.
 function filmWish() {
   const { options, camera } = wanted(), seconds = Number($("film-seconds").value) || 4, fps = Number($("film-fps").value) || 24;
@@ -123,6 +126,7 @@ function filmWish() {
 }
 
 async function makeFilm() {
+  isFilmCancelled = false;
   const answer = await ask(page.saves ? "film/start" : "film/command", filmWish());
   if (!answer) return;
   if (!page.saves) return copy(answer.command, "the command that makes this film");
@@ -141,7 +145,7 @@ async function followFilm() {
         $("film-progress").hidden = $("film-cancel").hidden = true;
         $("film").disabled = false;
         const isMade = film.status === 0;
-        return toast(isMade ? `Film saved: ${film.file}` : film.status === 75 ? "The film was stopped; the same command goes on with it."
+        return toast(isMade ? `Film saved: ${film.file}` : film.status === 75 || isFilmCancelled ? "The film was stopped; the same command goes on with it."
           : `No film: ${film.messages.join("\n")}`, { isError: !isMade });
       }
     }
@@ -182,7 +186,7 @@ const ACTIONS = { c: copyCommand, s: () => download("picture.png"), " ": time.to
 
 document.addEventListener("keydown", event => {
   const key = event.key.length === 1 ? event.key.toLowerCase() : event.key, at = event.target;
-  if (at.closest("dialog") || !page) return;
+  if (at.closest("dialog[open]") || !page) return;
   const isTyping = at.matches("textarea, select, input:not([type=checkbox], [type=radio], [type=range])");
   if (event.ctrlKey || event.metaKey) {
     if (isTyping || !["z", "y"].includes(key)) return;
@@ -205,7 +209,7 @@ for (const button of document.querySelectorAll("[data-axis]"))
 for (const button of document.querySelectorAll("[data-tab]")) button.addEventListener("click", () => openTab(button.dataset.tab));
 $("help").addEventListener("click", () => $("keys").showModal());
 $("film").addEventListener("click", makeFilm);
-$("film-cancel").addEventListener("click", () => ask("film/cancel", {}));
+$("film-cancel").addEventListener("click", () => { isFilmCancelled = true; ask("film/cancel", {}); });
 $("hide-panel").addEventListener("click", () => {
   const isHidden = document.body.classList.toggle("wide");
   $("hide-panel").setAttribute("aria-expanded", String(!isHidden));
