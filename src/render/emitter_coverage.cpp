@@ -82,7 +82,7 @@ class Coverage {
     corners_.resize(static_cast<std::size_t>(width_ + 1) * static_cast<std::size_t>(height_ + 1));
     for (const double x : {left, right})
       for (const double y : {top, bottom})
-        corner(x, y) += Corner{coverage, coverage * radiance} * ((x == left) == (y == top) ? 1 : -1);
+        corner(x, y) += Corner{coverage * radiance, coverage * radiance * radiance} * ((x == left) == (y == top) ? 1 : -1);
   }
 
   /// Adds an emitter as far away as the sky.
@@ -107,7 +107,7 @@ class Coverage {
       for (int x = 0; x < width_; ++x) {
         row += corner(x, y);
         Corner& sum = above[static_cast<std::size_t>(x)] += row;
-        out.push_back({static_cast<float>(sum.coverage), static_cast<float>(sum.light)});
+        out.push_back(sum.emitters());
       }
     }
     return out;
@@ -116,12 +116,18 @@ class Coverage {
  private:
   /// What is added to all pixels to the right and below. Rectangles consist of four, so large ones cost no more.
   struct Corner {
-    double coverage = 0, light = 0;
-    Corner operator*(double factor) const { return {coverage * factor, light * factor}; }
+    double light = 0, square = 0;  ///< sums of coverage times radiance, and times its square
+    Corner operator*(double factor) const { return {light * factor, square * factor}; }
     Corner& operator+=(const Corner& other) {
-      coverage += other.coverage;
       light += other.light;
+      square += other.square;
       return *this;
+    }
+    /// The number of hits of several emitters says nothing about a rare bright one among them. Of a sample, the
+    /// relative variance is square / light^2, which is 1 / coverage for a single emitter.
+    EmitterCoverage emitters() const {
+      if (!(light > 0 && square > 0)) return {};
+      return {static_cast<float>(std::min(light * light / square, 1.0)), static_cast<float>(light)};
     }
   };
   Corner& corner(double x, double y) {

@@ -14,7 +14,8 @@ class TilePool;
 
 /// Light of small emitters in a pixel; see emitter_coverage.
 struct EmitterCoverage {
-  float coverage = 0;  ///< fraction of the pixel
+  /// Fraction of the pixel; of several, that of a single emitter whose light would have as large a variance.
+  float coverage = 0;
   float light = 0;     ///< radiance that they add to the pixel, mean of the three channels
 };
 

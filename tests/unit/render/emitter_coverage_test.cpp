@@ -106,6 +106,21 @@ TEST(RenderEmitterCoverage, LargeEmittersAndThoseOutsideTheImageDoNotCount) {
   EXPECT_TRUE(find(compile::compile(s)).empty()) << "no emitter";
 }
 
+TEST(RenderEmitterCoverage, DimEmittersDoNotHideBrightOnes) {
+  scene::Scene s = distant_lamp();
+  const std::vector<EmitterCoverage> alone = find(compile::compile(s));
+  for (int i = 1; i <= 6; ++i) test::add_lamp(s, {-2.13, 1.41, -0.2 * i}, 0.1, {2, 2, 2});
+  const std::vector<EmitterCoverage> all = find(compile::compile(s));
+  int lit = 0;
+  for (std::size_t i = 0; i < all.size(); ++i) {
+    if (alone[i].coverage < 1e-9f) continue;
+    ++lit;
+    EXPECT_GT(all[i].light, alone[i].light);
+    EXPECT_LT(all[i].coverage, 1.2f * alone[i].coverage) << "hits of the dim ones do not count";
+  }
+  EXPECT_GT(lit, 0);
+}
+
 TEST(RenderEmitterCoverage, RectanglesAreClippedToTheImage) {
   // A lamp so far out of focus that its image is larger than the frame.
   scene::Scene s = distant_lamp();
