@@ -93,7 +93,8 @@ class Pool {
       return compile::compile(scene.opening, scene.closing ? &*scene.closing : nullptr);
     };
     const compile::CompiledScene small = compiled(1);
-    emitters_ = render::emitter_coverage(small.view(), width_, height_);
+    const auto accel = render::build(small, 1, {});
+    emitters_ = render::emitter_coverage(small.view(), {accel->tracer(), small.precision}, width_, height_);
     // The samples of a pixel are pixels of a larger image.
     const int side = std::max(1, static_cast<int>(std::sqrt(o.samples)));
     count_ = static_cast<std::size_t>(side * side);

@@ -7,6 +7,7 @@
 #include <limits>
 #include <vector>
 
+#include "accel/accel.h"
 #include "compile/compiled_scene.h"
 #include "film/partial.h"
 #include "render/allocation.h"
@@ -42,8 +43,8 @@ std::string noise_text(double reached, double wanted) {
 
 class AdaptiveSampling {
  public:
-  AdaptiveSampling(const compile::CompiledScene& compiled, const Settings& settings, const TileRenderer& render_tile,
-                   TilePool& pool, ProgressReporter& progress, film::Partial& state)
+  AdaptiveSampling(const compile::CompiledScene& compiled, const accel::Accel& accel, const Settings& settings,
+                   const TileRenderer& render_tile, TilePool& pool, ProgressReporter& progress, film::Partial& state)
       : settings_(settings),
         passes_(settings, render_tile, pool, progress, state),
         pool_(pool),
@@ -57,7 +58,7 @@ class AdaptiveSampling {
     if (settings.layers.transparent) pixels_.known_black.resize(pixels_.samples.size());
     kernel::SceneView view = compiled.view();
     if (settings.layers.transparent) view.background_visible = false;
-    pixels_.emitters = emitter_coverage(view, compiled.width, compiled.height);
+    pixels_.emitters = emitter_coverage(view, {accel.tracer(), compiled.precision}, compiled.width, compiled.height);
     const auto update_row = [&](std::size_t y, TileWorker&) {
       for (int x = 0; x < compiled.width; ++x) update(x, static_cast<int>(y));
     };
@@ -184,10 +185,10 @@ class AdaptiveSampling {
 
 }  // namespace
 
-bool render_adaptively(const compile::CompiledScene& compiled, const Settings& settings,
+bool render_adaptively(const compile::CompiledScene& compiled, const accel::Accel& accel, const Settings& settings,
                        const TileRenderer& render_tile, TilePool& pool, ProgressReporter& progress,
                        film::Partial& state, Statistics& statistics) {
-  AdaptiveSampling rounds(compiled, settings, render_tile, pool, progress, state);
+  AdaptiveSampling rounds(compiled, accel, settings, render_tile, pool, progress, state);
   progress.expect(
       settings.sampling.unlimited ? std::uint64_t{1} << 62 : std::uint64_t(compiled.samples) * state.pixel_count(),
       settings.sampling.noise > 0 ? "noise" : "time");

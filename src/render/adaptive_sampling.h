@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include "accel/accel.h"
 #include "compile/forward.h"
 #include "film/forward.h"
 
@@ -20,7 +21,7 @@ struct Statistics;
 ///
 /// `state`    has halves; rendering continues from it, even within an iteration
 /// Result     false if cancelled by the settings' `cancel`
-bool render_adaptively(const compile::CompiledScene& compiled, const Settings& settings,
+bool render_adaptively(const compile::CompiledScene& compiled, const accel::Accel& accel, const Settings& settings,
                        const TileRenderer& render_tile, TilePool& pool, ProgressReporter& progress,
                        film::Partial& state, Statistics& statistics);
 

@@ -2,6 +2,7 @@
 #include "render/emitter_coverage.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
@@ -9,6 +10,8 @@
 #include <optional>
 #include <vector>
 
+#include "kernel/material.h"
+#include "kernel/ray_packet.h"
 #include "kernel/scene_view.h"
 #include "math/scalar.h"
 #include "math/vec3.h"
@@ -24,8 +27,19 @@ constexpr double kLargestCoverage = 0.5;
 /// Texels of a map count as emitters if they are brighter than its mean by this factor.
 constexpr double kBrightTexel = 8;
 
+/// Maximum number of reflections that are projected: with more balls, those of the strongest lights.
+constexpr std::size_t kMostReflections = std::size_t{1} << 20;
+
 /// The distance of the sky, in distances to the focus plane. The result does not depend on it as long as it is large.
 constexpr double kSkyDistance = 0x1p40;
+
+Vec3d center_of(const kernel::Sphere& sphere) { return {sphere.x, sphere.y, sphere.z}; }
+kernel::Sphere sphere_around(Vec3d center, double radius) { return {center.x, center.y, center.z, radius}; }
+
+/// The sphere at a share of the way from one to another of the same radius.
+kernel::Sphere mixed(const kernel::Sphere& from, const kernel::Sphere& to, double share) {
+  return sphere_around(center_of(from) * (1 - share) + center_of(to) * share, from.radius);
+}
 
 /// The camera when the shutter closes.
 kernel::Camera closing_camera(const kernel::SceneView& scene) {
@@ -35,17 +49,17 @@ kernel::Camera closing_camera(const kernel::SceneView& scene) {
   return out;
 }
 
-/// The image of a sphere: a rectangle around it, and its area without the blur of the lens.
-struct SphereImage {
+/// The image of a sphere, or of a part of a rod: a rectangle around it, and its area without the blur of the lens.
+struct Image {
   double x0, x1, y0, y1;  ///< px, relative to the rendered window
   double area;            ///< square pixels
 };
 
 /// Projects a sphere. Empty if the sphere is behind the camera or contains it.
-std::optional<SphereImage> image_of(const kernel::Camera& camera, Vec3d center, double radius) {
+std::optional<Image> image_of(const kernel::Camera& camera, const kernel::Sphere& sphere) {
   const Vec3d &forward = camera.forward, &right = camera.right, &down = camera.down;
-  const Vec3d to = center - camera.origin, across = cross(right, down);
-  const double determinant = dot(forward, across);
+  const Vec3d to = center_of(sphere) - camera.origin, across = cross(right, down);
+  const double determinant = dot(forward, across), radius = sphere.radius;
   const double depth = dot(to, across) / determinant;  // 1 at the focus plane
   if (!(depth * length(forward) > radius)) return std::nullopt;
   const double scale = camera.is_orthographic ? 1 : depth;
@@ -53,48 +67,209 @@ std::optional<SphereImage> image_of(const kernel::Camera& camera, Vec3d center, 
   const double y = dot(to, cross(forward, right)) / (determinant * scale) + camera.half_height;
   const double pixel_width = scale * length(right), pixel_height = scale * length(down);  // at the sphere
   const double blurred = radius + length(camera.lens_u) * std::abs(1 - depth);
-  return SphereImage{x - blurred / pixel_width, x + blurred / pixel_width, y - blurred / pixel_height,
-                     y + blurred / pixel_height, std::numbers::pi * radius * radius / (pixel_width * pixel_height)};
+  return Image{x - blurred / pixel_width, x + blurred / pixel_width, y - blurred / pixel_height,
+               y + blurred / pixel_height, std::numbers::pi * radius * radius / (pixel_width * pixel_height)};
+}
+
+/// The distance between the centres of two images, px.
+double distance(const Image& a, const Image& b) {
+  return std::hypot((a.x0 + a.x1 - b.x0 - b.x1) / 2, (a.y0 + a.y1 - b.y0 - b.y1) / 2);
+}
+
+/// The image of a cylinder between two spheres, and of a part of the spheres. Empty if one of them has none.
+std::optional<Image> between(const std::optional<Image>& a, const std::optional<Image>& b, double part) {
+  if (!a || !b) return std::nullopt;
+  return Image{std::min(a->x0, b->x0), std::max(a->x1, b->x1), std::min(a->y0, b->y0), std::max(a->y1, b->y1),
+               distance(*a, *b) * (std::sqrt(a->area) + std::sqrt(b->area)) / std::sqrt(std::numbers::pi) +
+                   part * (a->area + b->area) / 2};
+}
+
+/// How a light is seen in a ball.
+struct Reflection {
+  kernel::Sphere image;  ///< where the light seems to be, as large as it seems
+  Vec3d point;           ///< that reflects it, from the ball's centre
+  double cosine;         ///< of the angle of incidence
+};
+
+/// The reflection of a light in a ball. Empty if there is none, or if eye or light are within the ball.
+std::optional<Reflection> reflection_of(const kernel::Sphere& light, const kernel::Sphere& ball, Vec3d eye) {
+  constexpr int kSteps = 24;  // to 1e-7 radii
+  constexpr double kParallel = 1e-3;
+  const Vec3d center = center_of(ball), to_eye = (eye - center) / ball.radius,
+              to_light = (center_of(light) - center) / ball.radius;
+  const double p = length(to_eye), d = length(to_light), radius = light.radius / ball.radius;
+  if (!(p > 1 && d > 1 + radius)) return std::nullopt;
+
+  // The point on the arc between both at which both have the same angle to the normal.
+  Vec3d nearer = to_eye / p, farther = to_light / d, point;
+  const double sine = length(cross(nearer, farther));
+  double cosine = 0;
+  for (int i = 0; i < kSteps; ++i) {
+    point = normalized(nearer + farther);
+    cosine = dot(point, normalized(to_eye - point));
+    (cosine > dot(point, normalized(to_light - point)) ? nearer : farther) = point;
+  }
+  if (!(cosine > 0)) return std::nullopt;  // behind the ball
+
+  // A ray of the impact parameter s = sin i turns around the centre by an angle Theta(i) whose derivative is h(i). The
+  // directions in which the light is seen are those of s ds, and those in which the ball sees it of sin Theta dTheta.
+  const double s2 = 1 - cosine * cosine, from_eye = std::sqrt(p * p - s2), from_light = std::sqrt(d * d - s2);
+  const double h = 2 - cosine / from_eye - cosine / from_light;
+  const double ratio = sine > kParallel ? std::sqrt(s2) / sine : 1 / h;
+  const double square = radius * radius / (d * from_light) * ratio * cosine / h / (p * from_eye);  // of half its angle
+  const Vec3d along = normalized(point - to_eye);
+  const double away = length(point - to_eye) + cosine / 2;  // a small mirror's focal length, as it makes images blur
+  const Vec3d seen = center + (to_eye + along * away) * ball.radius;
+  return Reflection{sphere_around(seen, away * std::sqrt(square) * ball.radius), point * ball.radius, cosine};
+}
+
+/// An object when the shutter opens and closes.
+template <class T>
+using Moving = std::array<T, 2>;
+using MovingImage = Moving<std::optional<Image>>;
+
+/// A line of sight from the camera, or from a sphere. It may touch what it starts from and what it leads to.
+struct Sightline {
+  Vec3d center, offset;  ///< of the sphere, and from there to the start
+  Vec3d to;              ///< from the start to the end
+  std::uint32_t from, target;
+  double time;
+};
+constexpr int kSightlines = kernel::kPacketSize;
+using Sightlines = std::array<Sightline, kSightlines>;
+
+/// Returns a bit for each line that nothing blocks.
+template <class T>
+std::uint32_t free_lines(const kernel::Tracer& tracer, const Sightlines& lines) {
+  kernel::ShadowPacket<T> packet{};
+  packet.count = kSightlines;
+  for (int i = 0; i < kSightlines; ++i) {
+    const Sightline& line = lines[static_cast<std::size_t>(i)];
+    const double away = length(line.to);
+    const double from[3] = {line.center.x, line.center.y, line.center.z},
+                 offset[3] = {line.offset.x, line.offset.y, line.offset.z},
+                 direction[3] = {line.to.x / away, line.to.y / away, line.to.z / away};
+    for (int k = 0; k < 3; ++k) {
+      packet.offset[k][i] = static_cast<T>(offset[k]);
+      packet.origin[k][i] = static_cast<T>(from[k]) + packet.offset[k][i];
+      packet.origin_low[k][i] = packet.offset[k][i] - (packet.origin[k][i] - static_cast<T>(from[k]));
+      packet.direction[k][i] = static_cast<T>(direction[k]);
+    }
+    packet.inverse_square[i] = 1;
+    packet.distance[i] = static_cast<T>(away);
+    packet.self[i] = line.from;
+    packet.target[i] = line.target;
+    packet.time[i] = static_cast<T>(line.time);
+    packet.key[i] = static_cast<std::uint32_t>(i) * 0x9e3779b1u;  // sees what is translucent, and what is behind it
+  }
+  kernel::occlude(tracer, packet);
+  std::uint32_t out = 0;
+  for (int i = 0; i < kSightlines; ++i) out |= packet.occluded[i] == 0 ? 1U << i : 0U;
+  return out;
+}
+
+/// Points on the unit disc, of about even density.
+std::array<std::array<double, 2>, kSightlines> disc_points() {
+  std::array<std::array<double, 2>, kSightlines> out{};
+  for (int i = 0; i < kSightlines; ++i) {
+    const double radius = std::sqrt((i + 0.5) / kSightlines), angle = i * std::numbers::pi * (3 - std::sqrt(5.0));
+    out[static_cast<std::size_t>(i)] = {radius * math::cosine(angle), radius * math::sine(angle)};
+  }
+  return out;
 }
 
 /// Adds up the images of emitters.
 class Coverage {
  public:
-  Coverage(const kernel::SceneView& scene, int width_px, int height_px)
+  Coverage(const kernel::SceneView& scene, const Visibility& visibility, int width_px, int height_px)
       : scene_(scene),
+        visibility_(visibility),
         width_(width_px),
         height_(height_px),
         margin_(scene.filter.places != nullptr ? scene.filter.places[kernel::PixelFilter::kSteps] - 0.5 : 0) {}
 
-  /// `opening`, `closing`  spheres when the shutter opens and closes
-  /// `radiance`            mean of the channels
-  void add(const kernel::Sphere& opening, const kernel::Sphere& closing, double radiance, double opacity = 1) {
-    const auto a = image_of(cameras_[0], {opening.x, opening.y, opening.z}, opening.radius);
-    const auto b = image_of(cameras_[1], {closing.x, closing.y, closing.z}, closing.radius);
-    if (!a || !b) return;
-    const double left = std::floor(std::min(a->x0, b->x0) - margin_);
-    const double right = std::floor(std::max(a->x1, b->x1) + margin_) + 1;
-    const double top = std::floor(std::min(a->y0, b->y0) - margin_);
-    const double bottom = std::floor(std::max(a->y1, b->y1) + margin_) + 1;
-    if (!(right > 0 && left < width_ && bottom > 0 && top < height_)) return;
-    const double coverage = opacity * (a->area + b->area) / 2 / ((right - left) * (bottom - top));
-    if (!(coverage < kLargestCoverage)) return;
-    corners_.resize(static_cast<std::size_t>(width_ + 1) * static_cast<std::size_t>(height_ + 1));
-    for (const double x : {left, right})
-      for (const double y : {top, bottom})
-        corner(x, y) += Corner{coverage * radiance, coverage * radiance * radiance} * ((x == left) == (y == top) ? 1 : -1);
+  MovingImage images_of(const Moving<kernel::Sphere>& sphere) const {
+    return {image_of(cameras_[0], sphere[0]), image_of(cameras_[1], sphere[1])};
   }
 
-  /// Adds an emitter as far away as the sky.
+  /// Whether images touch a pixel.
+  bool is_seen(const MovingImage& images) const {
+    const Rectangle r = rectangle_of(images);
+    return r.right > 0 && r.left < width_ && r.bottom > 0 && r.top < height_;
+  }
+
+  /// Adds a light, unless it is hidden.
+  ///
+  /// `id`        of the object; kNone: it is in the sky
+  /// `radiance`  mean of the channels
+  void add(const Moving<kernel::Sphere>& light, std::uint32_t id, double radiance, double opacity = 1) {
+    const MovingImage images = images_of(light);
+    add(images, radiance, opacity, [&] { return free_lines(sightlines(light, id)) != 0; });
+  }
+
+  /// Adds half of a rod, in parts of about a pixel: a rectangle around all of it would consist of other pixels.
+  ///
+  /// `from`      its middle
+  void add_half_rod(const Moving<kernel::Sphere>& from, const Moving<kernel::Sphere>& to, std::uint32_t id,
+                    double radiance, double opacity) {
+    constexpr double kMostParts = 4096;
+    const MovingImage a = images_of(from), b = images_of(to);
+    double parts = 1;
+    for (int k = 0; k < 2; ++k) parts = std::max(parts, a[k] && b[k] ? std::ceil(distance(*a[k], *b[k])) : kMostParts);
+    parts = std::min(parts, kMostParts);
+    const double cap = 1 / parts;  // its whole disc is seen along the axis
+    MovingImage last = a;
+    for (double i = 1; i <= parts; ++i) {
+      const auto at = [&](double share) {
+        return Moving<kernel::Sphere>{mixed(from[0], to[0], share), mixed(from[1], to[1], share)};
+      };
+      const MovingImage next = images_of(at(i / parts));
+      add({between(last[0], next[0], cap), between(last[1], next[1], cap)}, radiance, opacity,
+          [&] { return free_lines(sightlines(at((i - 0.5) / parts), id)) != 0; });
+      last = next;
+    }
+  }
+
+  /// Adds the reflection of a light.
+  ///
+  /// `reflectance`  of the ball, as a function of the cosine of the angle of incidence
+  template <class Reflectance>
+  void add_reflection(const Moving<kernel::Sphere>& light, std::uint32_t id, double radiance,
+                      const Moving<kernel::Sphere>& ball, std::uint32_t ball_id, Reflectance reflectance) {
+    MovingImage images;
+    Moving<kernel::Sphere> points;
+    double reflected = 0;
+    for (int k = 0; k < 2; ++k) {
+      const auto seen = reflection_of(light[k], ball[k], eye(k, center_of(ball[k])));
+      if (!seen) return;
+      images[k] = image_of(cameras_[k], seen->image);
+      points[k] = sphere_around(center_of(ball[k]) + seen->point, 0);
+      reflected += radiance * reflectance(seen->cosine) / 2;
+    }
+    add(images, reflected, 1, [&] {
+      const Sightlines to_ball = sightlines(points, ball_id);
+      Sightlines to_light = sightlines(light, id);
+      for (std::size_t i = 0; i < to_light.size(); ++i) {
+        Sightline& line = to_light[i];
+        const kernel::Sphere at = mixed(points[0], points[1], line.time);
+        line.to = line.center + line.offset + line.to - center_of(at);
+        line.center = center_of(mixed(ball[0], ball[1], line.time));
+        line.offset = center_of(at) - line.center;
+        line.from = ball_id;
+      }
+      return (free_lines(to_ball) & free_lines(to_light)) != 0;
+    });
+  }
+
+  /// An emitter as far away as the sky, as a sphere.
   ///
   /// `direction`  unit
-  void add_distant(Vec3d direction, double solid_angle, double radiance) {
+  Moving<kernel::Sphere> distant(Vec3d direction, double solid_angle) const {
     const double distance = kSkyDistance * length(cameras_[0].forward);
     const auto at = [&](const kernel::Camera& camera) {
-      const Vec3d center = camera.origin + direction * distance;
-      return kernel::Sphere{center.x, center.y, center.z, distance * std::sqrt(solid_angle / std::numbers::pi)};
+      return sphere_around(camera.origin + direction * distance, distance * std::sqrt(solid_angle / std::numbers::pi));
     };
-    add(at(cameras_[0]), at(cameras_[1]), radiance);
+    return {at(cameras_[0]), at(cameras_[1])};
   }
 
   /// The sums in all pixels.
@@ -114,6 +289,73 @@ class Coverage {
   }
 
  private:
+  /// Adds images of a light.
+  ///
+  /// `is_visible`  called if they are in the frame, and small
+  template <class IsVisible>
+  void add(const MovingImage& images, double radiance, double opacity, IsVisible is_visible) {
+    if (!is_seen(images)) return;
+    const Rectangle r = rectangle_of(images);
+    const double coverage =
+        opacity * (images[0]->area + images[1]->area) / 2 / ((r.right - r.left) * (r.bottom - r.top));
+    if (!(coverage < kLargestCoverage) || !is_visible()) return;
+    corners_.resize(static_cast<std::size_t>(width_ + 1) * static_cast<std::size_t>(height_ + 1));
+    for (const double x : {r.left, r.right})
+      for (const double y : {r.top, r.bottom})
+        corner(x, y) +=
+            Corner{coverage * radiance, coverage * radiance * radiance} * ((x == r.left) == (y == r.top) ? 1 : -1);
+  }
+
+  /// Lines from points of the lens, and of the film of an orthographic camera, to points of a light.
+  Sightlines sightlines(const Moving<kernel::Sphere>& light, std::uint32_t id) const {
+    Sightlines out;
+    for (std::size_t i = 0; i < out.size(); ++i) {
+      const double time = (static_cast<double>(i) + 0.5) / kSightlines;
+      const auto at_time = [&](Vec3d kernel::Camera::*vector) {
+        return cameras_[0].*vector * (1 - time) + cameras_[1].*vector * time;
+      };
+      const Vec3d center = center_of(mixed(light[0], light[1], time)), right = at_time(&kernel::Camera::right),
+                  down = at_time(&kernel::Camera::down), forward = at_time(&kernel::Camera::forward);
+      Sightline& line = out[i];
+      line.center = at_time(&kernel::Camera::origin);
+      line.offset = at_time(&kernel::Camera::lens_u) * disc_[i][0] + at_time(&kernel::Camera::lens_v) * disc_[i][1];
+      if (scene_.camera.is_orthographic) {
+        const Vec3d to = center - line.center;
+        line.offset = line.offset + to - forward * (dot(to, forward) / dot(forward, forward));
+      }
+      const auto& [x, y] = disc_[(5 * i + 3) % kSightlines];
+      const Vec3d across = normalized(right) * (x * light[0].radius) + normalized(down) * (y * light[0].radius);
+      line.to = center + across - (line.center + line.offset);
+      line.from = kernel::kCamera;
+      line.target = id;
+      line.time = time;
+    }
+    return out;
+  }
+
+  std::uint32_t free_lines(const Sightlines& lines) const {
+    return visibility_.precision == kernel::Precision::kFast ? render::free_lines<float>(visibility_.tracer, lines)
+                                                             : render::free_lines<double>(visibility_.tracer, lines);
+  }
+
+  /// Whole pixels.
+  struct Rectangle {
+    double left = 0, right = 0, top = 0, bottom = 0;
+  };
+  /// The pixels around images; none if one is missing.
+  Rectangle rectangle_of(const MovingImage& images) const {
+    const auto &a = images[0], &b = images[1];
+    if (!a || !b) return {};
+    return {std::floor(std::min(a->x0, b->x0) - margin_), std::floor(std::max(a->x1, b->x1) + margin_) + 1,
+            std::floor(std::min(a->y0, b->y0) - margin_), std::floor(std::max(a->y1, b->y1) + margin_) + 1};
+  }
+
+  /// The point from which a camera sees another one.
+  Vec3d eye(int k, Vec3d at) const {
+    const kernel::Camera& camera = cameras_[k];
+    return camera.is_orthographic ? at - camera.forward * kSkyDistance : camera.origin;
+  }
+
   /// What is added to all pixels to the right and below. Rectangles consist of four, so large ones cost no more.
   struct Corner {
     double light = 0, square = 0;  ///< sums of coverage times radiance, and times its square
@@ -137,6 +379,8 @@ class Coverage {
   }
 
   const kernel::SceneView& scene_;
+  const Visibility& visibility_;
+  const std::array<std::array<double, 2>, kSightlines> disc_ = disc_points();
   int width_, height_;  ///< px
   double margin_;       ///< px, by which the pixel filter extends beyond a pixel
   kernel::Camera cameras_[2] = {scene_.camera, closing_camera(scene_)};
@@ -156,27 +400,130 @@ void add_texels(const kernel::Environment& sky, Coverage& coverage) {
       const double radiance = sky.scale * mean_of({texel[0], texel[1], texel[2]});
       if (!(radiance > threshold)) continue;
       const double longitude = (0.5 + sky.turn - (x + 0.5) / columns) * turn;
-      coverage.add_distant({sine * math::sine(longitude), math::cosine(colatitude), sine * math::cosine(longitude)},
-                           turn / columns * turn / 2 / rows * sine, radiance);
+      const Vec3d direction = {sine * math::sine(longitude), math::cosine(colatitude), sine * math::cosine(longitude)};
+      coverage.add(coverage.distant(direction, turn / columns * turn / 2 / rows * sine), kernel::kNone, radiance);
     }
+  }
+}
+
+Moving<kernel::Sphere> moving_sphere(const kernel::SceneView& scene, std::size_t id) {
+  return {sphere_at(scene, id, 0), sphere_at(scene, id, 1)};
+}
+
+/// The radiance of a sphere or of half of a rod, mean of the channels.
+double radiance_of(const kernel::SceneView& scene, std::size_t id) {
+  return mean_of(math::vector_of(scene.emission[scene.object_materials[id]].radiance));
+}
+
+double opacity_of(const kernel::SceneView& scene, std::size_t id) {
+  return scene.opacity != nullptr ? double{scene.opacity[id]} : 1;
+}
+
+/// Adds the rods that emit.
+void add_rods(const kernel::SceneView& scene, Coverage& coverage) {
+  const auto middle = [](const kernel::Rod& rod) { return (math::vector_of(rod.a) + math::vector_of(rod.b)) / 2; };
+  for (std::size_t i = 0; i < scene.rods.count; ++i)
+    for (const bool at_b : {false, true}) {
+      const std::size_t id = scene.rods.id(i) + (at_b ? 1U : 0U);
+      const double radiance = radiance_of(scene, id);
+      if (!(radiance > 0)) continue;
+      Moving<kernel::Sphere> from, to;
+      for (const std::size_t k : {0U, 1U}) {
+        const kernel::Rod rod = scene.rods.at(i, static_cast<double>(k));
+        from[k] = sphere_around(middle(rod), rod.radius);
+        to[k] = sphere_around(math::vector_of(at_b ? rod.b : rod.a), rod.radius);
+      }
+      coverage.add_half_rod(from, to, static_cast<std::uint32_t>(id), radiance, opacity_of(scene, id));
+    }
+}
+
+/// Reference  schlick1994
+double schlick(double r0, double cosine) {
+  const double x = 1 - cosine, x2 = x * x;
+  return r0 + (1 - r0) * x2 * x2 * x;
+}
+
+/// Whether a material reflects as a mirror does.
+bool is_sharp(const kernel::SceneView& scene, std::uint32_t index) {
+  const kernel::Material& material = scene.materials[index];
+  const bool reflects = kernel::traits_of(material.kind).is_specular || material.kind == kernel::MaterialKind::kPlastic;
+  return reflects && material.fuzz == 0 &&
+         (scene.material_textures == nullptr || scene.material_textures[index].fuzz == kernel::kNone);
+}
+
+/// An emitter, or the sun, and its radiance.
+struct Light {
+  Moving<kernel::Sphere> sphere;
+  std::uint32_t id;  ///< kNone: the sun
+  double radiance;
+};
+
+/// Emitters that are reflected: as many as there may be, those of the greatest power, and the sun.
+std::vector<Light> reflected_lights(const kernel::SceneView& scene, const Coverage& coverage, std::size_t most) {
+  struct Emitter {
+    std::uint32_t id;
+    double power;
+  };
+  std::vector<Emitter> emitters;
+  for (std::uint32_t id = 0; scene.emission != nullptr && id < scene.sphere_count; ++id) {
+    const double radiance = radiance_of(scene, id) * opacity_of(scene, id), radius = scene.spheres[id].radius;
+    if (radiance > 0) emitters.push_back({id, radiance * radius * radius});
+  }
+  if (emitters.size() > most) {
+    std::nth_element(
+        emitters.begin(), emitters.begin() + static_cast<std::ptrdiff_t>(most), emitters.end(),
+        [](const Emitter& a, const Emitter& b) { return a.power != b.power ? a.power > b.power : a.id < b.id; });
+    emitters.resize(most);
+  }
+  std::vector<Light> out;
+  for (const Emitter& from : emitters)
+    out.push_back({moving_sphere(scene, from.id), from.id, radiance_of(scene, from.id) * opacity_of(scene, from.id)});
+  const kernel::Environment* const sky = scene.environment;
+  if (sky != nullptr && sky->has_sun)
+    out.push_back({coverage.distant(sky->sun, 2 * std::numbers::pi * sky->sun_one_minus_cos), kernel::kNone,
+                   mean_of(sky->sun_radiance)});
+  return out;
+}
+
+/// Adds what balls reflect.
+void add_reflections(const kernel::SceneView& scene, Coverage& coverage) {
+  std::size_t balls = 0;
+  for (std::size_t id = 0; id < scene.sphere_count; ++id) balls += is_sharp(scene, scene.object_materials[id]) ? 1 : 0;
+  if (balls == 0) return;
+  const auto lights = reflected_lights(scene, coverage, std::max<std::size_t>(kMostReflections / balls, 1));
+  for (std::uint32_t id = 0; !lights.empty() && id < scene.sphere_count; ++id) {
+    if (!is_sharp(scene, scene.object_materials[id])) continue;
+    const auto ball = moving_sphere(scene, id);
+    if (!coverage.is_seen(coverage.images_of(ball))) continue;
+    const kernel::Material& material = scene.materials[scene.object_materials[id]];
+    const bool is_metal = material.kind == kernel::MaterialKind::kMetal;
+    const auto reflectance = [&](double cosine) {
+      const double albedo = is_metal ? mean_of(math::vector_of(material.albedo)) : schlick(material.r0[0], cosine);
+      return albedo * opacity_of(scene, id);
+    };
+    for (const Light& light : lights)
+      coverage.add_reflection(light.sphere, light.id, light.radiance, ball, id, reflectance);
   }
 }
 
 }  // namespace
 
-std::vector<EmitterCoverage> emitter_coverage(const kernel::SceneView& scene, int width_px, int height_px) {
-  Coverage coverage(scene, width_px, height_px);
-  for (std::size_t id = 0; scene.emission != nullptr && id < scene.sphere_count; ++id) {
-    const double radiance = mean_of(math::vector_of(scene.emission[scene.object_materials[id]].radiance));
-    if (!(radiance > 0)) continue;
-    coverage.add(sphere_at(scene, id, 0), sphere_at(scene, id, 1), radiance,
-                 scene.opacity != nullptr ? double{scene.opacity[id]} : 1);
+std::vector<EmitterCoverage> emitter_coverage(const kernel::SceneView& scene, const Visibility& visibility,
+                                              int width_px, int height_px) {
+  Coverage coverage(scene, visibility, width_px, height_px);
+  if (scene.emission != nullptr) {
+    for (std::uint32_t id = 0; id < scene.sphere_count; ++id)
+      if (const double radiance = radiance_of(scene, id); radiance > 0)
+        coverage.add(moving_sphere(scene, id), id, radiance, opacity_of(scene, id));
+    add_rods(scene, coverage);
   }
+  if (scene.features.lit) add_reflections(scene, coverage);
   const kernel::Environment* const sky = scene.environment;
   if (sky != nullptr && scene.background_visible && !scene.has_backdrop && !scene.camera.is_orthographic) {
     add_texels(*sky, coverage);
     if (sky->has_sun)
-      coverage.add_distant(sky->sun, 2 * std::numbers::pi * sky->sun_one_minus_cos, mean_of(sky->sun_radiance));
+      coverage.add(coverage.distant(sky->sun, 2 * std::numbers::pi * sky->sun_one_minus_cos), kernel::kNone,
+                   mean_of(sky->sun_radiance));
   }
   return coverage.pixels();
 }

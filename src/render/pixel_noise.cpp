@@ -30,7 +30,7 @@ constexpr double kMinError = 1.0 / 64;
 /// trusted.
 constexpr float kPaths = 4, kHits = 4;
 
-/// Samples in each half beyond which no hits are expected, so that emitters of a tiny coverage do not decide alone.
+/// Samples in each half after which a pixel is given up, so that emitters of a tiny coverage do not decide alone.
 constexpr std::uint32_t kSamplesForEmitters = 8192;
 
 /// Light of emitters below this fraction of that around the pixel is ignored.
@@ -117,19 +117,23 @@ float error_of_emitters(const PixelStatistics& s, int x, int y) {
   return share * share * (1 / std::max(s.emitters[s.at(x, y)].coverage, kMinCoverage) - 1) / 4;
 }
 
-/// Whether a pixel expects more hits of emitters than its samples can have had. Up to kSamplesForReliability, emitters
-/// may be hidden; beyond, paths around the pixel must have hit them.
+/// Whether a pixel's samples are too few to expect several hits of its emitters.
+bool lacks_hits(const PixelStatistics& s, int x, int y) {
+  const std::size_t i = s.at(x, y);
+  return share_of_emitters(s, x, y) > 0 && static_cast<float>(s.samples[i]) * s.emitters[i].coverage < kHits;
+}
+
+/// Whether a pixel needs samples for hits of its emitters.
 bool expects_emitters(const PixelStatistics& s, int x, int y) {
-  if (share_of_emitters(s, x, y) == 0) return false;
-  const std::uint32_t n = s.samples[s.at(x, y)];
-  const EmitterCoverage& own = s.emitters[s.at(x, y)];
-  if (n >= kSamplesForEmitters || static_cast<float>(n) * own.coverage >= kHits) return false;
-  bool are_hit = n < kSamplesForReliability;
-  each_neighbour(s, x, y, kWideReach, [&](std::size_t i) {
-    const float largest = s.outlier[i] * 2 * static_cast<float>(s.samples[i]);
-    are_hit |= 2 * largest * own.coverage >= own.light;
-  });
-  return are_hit;
+  return s.samples[s.at(x, y)] < kSamplesForEmitters && lacks_hits(s, x, y);
+}
+
+/// Whether a pixel has been given up, and no sample has hit an emitter as bright as half of the expected radiance.
+bool misses_emitters(const PixelStatistics& s, int x, int y) {
+  const std::size_t i = s.at(x, y);
+  if (s.samples[i] < kSamplesForEmitters || !lacks_hits(s, x, y)) return false;
+  const float largest = s.outlier[i] * 2 * static_cast<float>(s.samples[i]);
+  return 2 * largest * s.emitters[i].coverage < s.emitters[i].light;
 }
 
 /// Whether a pixel's neighbours have found enough light, or can be trusted to be black.
@@ -188,8 +192,12 @@ NoiseEstimate estimate_noise(const PixelStatistics& s, TilePool& pool) {
 UnreliablePixels find_unreliable_pixels(const PixelStatistics& s, TilePool& pool) {
   UnreliablePixels out;
   out.of_pixel.resize(s.samples.size());
-  each_pixel(s, pool, [&](int x, int y) { out.of_pixel[s.at(x, y)] = has_reliable_estimate(s, x, y) ? 0 : 1; });
-  for (const std::uint8_t is_unreliable : out.of_pixel) out.count += is_unreliable;
+  std::vector<std::uint8_t> misses(s.samples.size());
+  each_pixel(s, pool, [&](int x, int y) {
+    out.of_pixel[s.at(x, y)] = has_reliable_estimate(s, x, y) ? 0 : 1;
+    misses[s.at(x, y)] = misses_emitters(s, x, y) ? 1 : 0;
+  });
+  for (std::size_t i = 0; i < misses.size(); ++i) out.count += out.of_pixel[i] | misses[i];
   return out;
 }
 

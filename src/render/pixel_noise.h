@@ -16,7 +16,7 @@ class TilePool;
 struct EmitterCoverage {
   /// Fraction of the pixel; of several, that of a single emitter whose light would have as large a variance.
   float coverage = 0;
-  float light = 0;     ///< radiance that they add to the pixel, mean of the three channels
+  float light = 0;  ///< radiance that they add to the pixel, mean of the three channels
 };
 
 /// Statistics of each pixel from its two independent halves of samples, in row-major order.
@@ -70,7 +70,7 @@ NoiseEstimate estimate_noise(const PixelStatistics& statistics, TilePool& pool);
 /// Pixels without a reliable error estimate: too few paths around them have found light.
 struct UnreliablePixels {
   std::vector<std::uint8_t> of_pixel;  ///< 1: needs more samples regardless of its estimated error
-  std::uint64_t count = 0;
+  std::uint64_t count = 0;             ///< of these, and of pixels that were given up without a hit of their emitter
 };
 
 /// Finds the pixels around which too few paths have found light, and those in which an emitter is expected that too

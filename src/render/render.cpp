@@ -130,9 +130,10 @@ Result render(const compile::CompiledScene& compiled, const accel::Accel& accel,
   ProgressReporter progress(settings, samples_of(compiled, settings) * pixels, state.work);
   TilePool pool(statistics.threads);
   const TileRenderer render_tile(compiled, accel, settings);
-  const bool completed = settings.sampling.is_adaptive()
-                             ? render_adaptively(compiled, settings, render_tile, pool, progress, state, statistics)
-                             : render_progressively(compiled, settings, render_tile, pool, progress, state, statistics);
+  const bool completed =
+      settings.sampling.is_adaptive()
+          ? render_adaptively(compiled, accel, settings, render_tile, pool, progress, state, statistics)
+          : render_progressively(compiled, settings, render_tile, pool, progress, state, statistics);
   state.work = work_so_far(state.work, pool, progress);
   const std::int64_t target = pool.counts().target;
   statistics.isa = target != 0 ? kernel::isa_name(target) : kernel::isa_name();  // 0: there was nothing left to do

@@ -34,12 +34,13 @@ scene::Scene distant_lamp() {
 }
 
 std::vector<EmitterCoverage> find(const compile::CompiledScene& compiled) {
-  return emitter_coverage(compiled.view(), compiled.width, compiled.height);
+  const std::unique_ptr<accel::Accel> accel = build(compiled, 1, {});
+  return emitter_coverage(compiled.view(), {accel->tracer(), compiled.precision}, compiled.width, compiled.height);
 }
 
 /// Compares with the rendered image, in which nothing but the lamp is bright.
 void expect_where_rendered(const scene::Scene& opening, const std::string& name, const scene::Scene* closing = nullptr,
-                           int most_pixels = 36) {
+                           int most_pixels = 36, double radiance = kLampRadiance) {
   const compile::CompiledScene compiled = compile::compile(opening, closing);
   const std::vector<EmitterCoverage> found = find(compiled);
   const std::vector<float> rendered = render(compiled, {}).picture.planes[0].values;
@@ -49,7 +50,7 @@ void expect_where_rendered(const scene::Scene& opening, const std::string& name,
     light += static_cast<double>(found[i].light);
     expected += static_cast<double>(rendered[i]);
     EXPECT_FALSE(rendered[i] > 0 && found[i].light == 0) << name << ", pixel " << i;
-    EXPECT_NEAR(found[i].light, kLampRadiance * static_cast<double>(found[i].coverage), 1e-3) << name;
+    EXPECT_NEAR(found[i].light, radiance * static_cast<double>(found[i].coverage), 2e-5 * radiance) << name;
   }
   EXPECT_GT(expected, 0) << name;
   EXPECT_NEAR(light, expected, 0.1 * expected) << name;
@@ -91,6 +92,79 @@ TEST(RenderEmitterCoverage, AreFoundWhereTheyAreRendered) {
   expect_where_rendered(s, "moving camera", &closing);
 }
 
+TEST(RenderEmitterCoverage, RodsAreFoundWhereTheyAreRendered) {
+  const auto with_rod = [](math::Vec3d from, math::Vec3d to, double radius) {
+    scene::Scene s = distant_lamp();
+    s.spheres.clear();
+    s.rods.push_back({from, to, radius, {0, 0}});
+    return s;
+  };
+  expect_where_rendered(with_rod({-3, 1, 0}, {2, -1.5, 0}, 0.01), "filament", nullptr, 300);
+  expect_where_rendered(with_rod({0.2, 0.1, 0}, {0.2, 0.1, 0}, 0.03), "no length");
+  expect_where_rendered(with_rod({1.21, 1.13, 8}, {2.3, 2.2, -9}, 0.004), "towards the camera", nullptr, 300);
+  scene::Scene s = with_rod({0, -2, 0}, {1, 2, 0}, 0.01);
+  s.materials.push_back({"soot", scene::Lambertian{{0, 0, 0}}});
+  s.rods[0].materials = {0, 1};
+  expect_where_rendered(s, "half", nullptr, 100);
+  scene::Scene closing = s;
+  closing.rods[0].to.x += 0.3;
+  expect_where_rendered(s, "moving", &closing, 200);
+  const std::size_t pixels = find(compile::compile(with_rod({0, 0, 20}, {0.5, 0, -5}, 0.004))).size();
+  EXPECT_GT(pixels, 0u) << "one end is behind the camera";
+}
+
+/// A ball that reflects a lamp in front of the camera, and more to its side.
+scene::Scene reflecting_ball(const scene::MaterialModel& model, math::Vec3d lamp = {6, 4, 14}, double radius = 0.9) {
+  scene::Scene s = distant_lamp();
+  s.render.samples = 1 << 14;
+  s.render.max_depth = 2;
+  s.spheres[0].center = lamp;
+  s.spheres[0].radius = 0.4;
+  test::add_ball(s, {-0.6, 0.3, 0}, radius, model);
+  return s;
+}
+
+TEST(RenderEmitterCoverage, ReflectionsAreFoundWhereTheyAreRendered) {
+  const auto mirror = [](double albedo) { return scene::Metal{{albedo, albedo, albedo}, 0}; };
+  const double half = 0.5 * kLampRadiance;
+  expect_where_rendered(reflecting_ball(mirror(0.5)), "ball", nullptr, 36, half);
+  expect_where_rendered(reflecting_ball(mirror(0.5), {6, 4, 14}, 0.5), "small ball", nullptr, 36, half);
+  expect_where_rendered(reflecting_ball(mirror(0.5), {-0.6, 0.3, 60}), "behind the camera", nullptr, 36, half);
+  expect_where_rendered(reflecting_ball(mirror(0.5), {2.4, 4, 3}), "close lamp", nullptr, 36, half);
+  expect_where_rendered(reflecting_ball(mirror(0.5), {-9, 2, -2}), "beside the ball", nullptr, 36, half);
+  scene::Scene s = reflecting_ball(mirror(0.5));
+  s.camera.projection = scene::Projection::kOrthographic;
+  s.camera.width = 12;
+  expect_where_rendered(s, "orthographic", nullptr, 36, half);
+  s = reflecting_ball(mirror(0.5));
+  scene::Scene closing = s;
+  closing.spheres[1].center.x += 0.5;
+  expect_where_rendered(s, "moving", &closing, 36, half);
+  s = reflecting_ball(mirror(0.5));
+  s.camera.defocus_angle = 4;
+  s.camera.focus_distance = 5;
+  expect_where_rendered(s, "lens", nullptr, 200, half);
+  s = reflecting_ball(mirror(0.5));
+  s.spheres[1].center = {-20, 0.3, 0};
+  EXPECT_TRUE(find(compile::compile(s)).empty()) << "the ball is beside the image";
+  s.spheres[1] = {{0, 0, 10}, 1, 1, ""};
+  EXPECT_TRUE(find(compile::compile(s)).empty()) << "the camera is in the ball";
+  s = reflecting_ball(scene::Metal{{0.5, 0.5, 0.5}, 0.1});
+  EXPECT_TRUE(find(compile::compile(s)).empty()) << "a fuzzy ball";
+}
+
+TEST(RenderEmitterCoverage, GlassAndCoatsReflectLessThanMirrors) {
+  const auto light = [](const scene::MaterialModel& model) {
+    double sum = 0;
+    for (const EmitterCoverage& e : find(compile::compile(reflecting_ball(model)))) sum += static_cast<double>(e.light);
+    return sum;
+  };
+  const double mirror = light(scene::Metal{{1, 1, 1}, 0});
+  EXPECT_NEAR(light(scene::Dielectric{1.5}), 0.04 * mirror, 0.01 * mirror);
+  EXPECT_NEAR(light(scene::Plastic{{0.5, 0.5, 0.5}, 1.5, 0}), 0.04 * mirror, 0.01 * mirror);
+  EXPECT_EQ(light(scene::Lambertian{{1, 1, 1}}), 0);
+}
+
 TEST(RenderEmitterCoverage, LargeEmittersAndThoseOutsideTheImageDoNotCount) {
   scene::Scene s = distant_lamp();
   s.spheres[0].radius = 1.5;
@@ -119,6 +193,31 @@ TEST(RenderEmitterCoverage, DimEmittersDoNotHideBrightOnes) {
     EXPECT_LT(all[i].coverage, 1.2f * alone[i].coverage) << "hits of the dim ones do not count";
   }
   EXPECT_GT(lit, 0);
+}
+
+TEST(RenderEmitterCoverage, HiddenEmittersDoNotCount) {
+  const auto with_screen = [](scene::Scene s, math::Vec3d center, double radius) {
+    test::add_ball(s, center, radius, scene::Lambertian{{0, 0, 0}});
+    return s;
+  };
+  EXPECT_TRUE(find(compile::compile(with_screen(distant_lamp(), {-1.065, 0.705, 5}, 0.1))).empty());
+  EXPECT_FALSE(find(compile::compile(with_screen(distant_lamp(), {-1.065 - 0.1, 0.705, 5}, 0.1))).empty()) << "half";
+  scene::Scene s = distant_lamp();
+  s.camera.defocus_angle = 4;
+  s.camera.focus_distance = 10;
+  EXPECT_FALSE(find(compile::compile(with_screen(s, {-1.065, 0.705, 5}, 0.1))).empty()) << "seen by the lens's rim";
+  s = reflecting_ball(scene::Metal{{0.5, 0.5, 0.5}, 0});
+  EXPECT_TRUE(find(compile::compile(with_screen(s, {5.06, 3.47, 12}, 1))).empty()) << "hidden from the ball";
+  EXPECT_TRUE(find(compile::compile(with_screen(s, {-0.4, 0.2, 5}, 0.8))).empty()) << "the ball is hidden";
+  s = distant_lamp();
+  s.spheres.clear();
+  s.rods.push_back({{-3, 1, 0}, {2, -1.5, 0}, 0.01, {0, 0}});
+  const auto light = [](const scene::Scene& of) {
+    double sum = 0;
+    for (const EmitterCoverage& e : find(compile::compile(of))) sum += static_cast<double>(e.light);
+    return sum;
+  };
+  EXPECT_NEAR(light(with_screen(s, {-1.5, 0.5, 1}, 1.5)) / light(s), 0.5, 0.2) << "half of a rod";
 }
 
 TEST(RenderEmitterCoverage, RectanglesAreClippedToTheImage) {

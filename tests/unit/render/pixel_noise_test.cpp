@@ -241,12 +241,14 @@ TEST(RenderPixelNoise, SmallEmittersNeedSeveralExpectedHits) {
   PixelStatistics tiny = with_emitter(511, 10);
   tiny.emitters[tiny.at(7, 7)].coverage = 1e-5f;
   EXPECT_EQ(needs(tiny), 1);
-  std::fill(tiny.samples.begin(), tiny.samples.end(), kSamplesForReliability);
-  EXPECT_EQ(needs(tiny), 0) << "it may be hidden";
-  tiny.outlier[tiny.at(8, 9)] = 10 / 1e-5f / 1024;
-  EXPECT_EQ(needs(tiny), 1) << "a path beside the pixel has hit it";
+  std::fill(tiny.samples.begin(), tiny.samples.end(), 8191);
+  EXPECT_EQ(needs(tiny), 1);
+  EXPECT_EQ(find_unreliable_pixels(tiny, pool).count, 1u);
   std::fill(tiny.samples.begin(), tiny.samples.end(), 8192);
-  EXPECT_EQ(needs(tiny), 0);
+  EXPECT_EQ(needs(tiny), 0) << "it is given up";
+  EXPECT_EQ(find_unreliable_pixels(tiny, pool).count, 1u) << "and reported";
+  tiny.outlier[tiny.at(7, 7)] = 10 / 1e-5f / 16384;
+  EXPECT_EQ(find_unreliable_pixels(tiny, pool).count, 0u) << "a path has hit it";
 }
 
 TEST(RenderPixelNoise, SmallEmittersDetermineTheErrorOfTheirPixelsAlone) {
