@@ -68,11 +68,13 @@ std::vector<MaterialType> make_material_types() {
           {textured("fuzz", TextureUse::kNumber, &Dielectric::fuzz_texture)}),
       material<Emitter>(
           "emitter", "A light: emits the same radiance in all directions and reflects nothing",
-          {required(vector(
-               "radiance", kLight,
-               {"Emitted radiance: radiant exitance divided by pi, per colour channel; or a [texture](#textures)",
-                "scene-linear"},
-               &Emitter::radiance)),
+          {required(
+               vector("radiance", kLight,
+                      {"Emitted radiance: radiant exitance divided by pi, per colour channel; or a "
+                       "[texture](#textures). Refraction does not change it: an emitter inside glass has no factor of "
+                       "the squared index",
+                       "scene-linear"},
+                      &Emitter::radiance)),
            number("exposure", {-kMaxStops, kMaxStops},
                   {"Multiplies the radiance by 2 to this power. The product is at most 2^34", "stops"},
                   &Emitter::exposure),
