@@ -190,6 +190,7 @@ TEST(RenderEmitterCoverage, DimEmittersDoNotHideBrightOnes) {
     if (alone[i].coverage < 1e-9f) continue;
     ++lit;
     EXPECT_GT(all[i].light, alone[i].light);
+    EXPECT_LT(alone[i].coverage, 0.2f);
     EXPECT_LT(all[i].coverage, 1.2f * alone[i].coverage) << "hits of the dim ones do not count";
   }
   EXPECT_GT(lit, 0);
