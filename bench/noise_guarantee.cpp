@@ -110,7 +110,7 @@ class Subject {
 
   render::Result adaptive(std::uint32_t seed, double noise, int most) {
     render::Settings settings;
-    settings.sampling.noise = noise;
+    settings.noise = noise;
     return run(seed, most, settings);
   }
   render::Result uniform(std::uint32_t seed, int samples) { return run(seed, samples, {}); }

@@ -38,7 +38,7 @@ figure "points of textures, exact and fast" unit_kernel 'KernelTexture.CellsOfCh
 figure "white furnaces" numeric/numeric 'ExtremeScenes.*-*GreySphereNeverHitsItself'
 figure "Embree against the list: ids and distances" unit_accel 'AccelAccel.EmbreeAndListFindTheSameHits'
 figure "scenes scaled by 2^-60 .. 2^48: the same bits" unit_render 'RenderRender.SceneScaleChangesNoBits'
-figure "threads, tiles, shards, lanes, traversals: the same bits" unit_render 'RenderRender.*SameBits:RenderProgressiveSampling.*SameBits*'
+figure "threads, tiles, shards, lanes, traversals: the same bits" unit_render 'RenderRender.*SameBits:RenderPasses.*SameBits*'
 figure "a shell of negative radius is a sphere of the inverse index" unit_render 'RenderRender.NegativeRadius*'
 figure "an albedo wrong by 0.1 % is detected" statistical/statistical 'StatisticalClosedForm.AlbedoError*'
 figure "samplers against their distributions" statistical/statistical 'StatisticalSamplers.*'

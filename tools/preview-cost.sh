@@ -27,7 +27,7 @@ perf report -i "$work/samples" --no-children -g none -s comm,symbol --stdio 2> /
     percent = $1 + 0
     total += percent
     if ($2 == "preview") thread += percent
-    else if (/Partial::mean|Canvas::write|__floattidf/) copies += percent
+    else if (/Sums::mean|Canvas::write|__floattidf/) copies += percent
   }
   END { printf "preview thread %.2f %%, copies %.2f %%, together %.2f %%\n", 100 * thread / total, 100 * copies / total,
                100 * (thread + copies) / total }'

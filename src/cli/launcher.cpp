@@ -20,11 +20,11 @@ namespace {
 
 /// Blocks USR1. While the program's libraries are being loaded, no handler is installed, and a supervisor's USR1 would
 /// end the process. The blocked signal stays pending until prepare_signals unblocks it.
-void block_snapshots() {
-  sigset_t snapshot;
-  sigemptyset(&snapshot);
-  sigaddset(&snapshot, SIGUSR1);
-  sigprocmask(SIG_BLOCK, &snapshot, nullptr);
+void block_checkpoint_requests() {
+  sigset_t usr1;
+  sigemptyset(&usr1);
+  sigaddset(&usr1, SIGUSR1);
+  sigprocmask(SIG_BLOCK, &usr1, nullptr);
 }
 
 /// glibc requests huge pages for its heap. A start without them is half page faults, most in OpenImageIO's table of
@@ -80,7 +80,7 @@ void execute(const char* program, int argc, char** argv) {
 }  // namespace orrery::cli
 
 int main(int argc, char** argv) {
-  orrery::cli::block_snapshots();
+  orrery::cli::block_checkpoint_requests();
   orrery::cli::use_huge_pages();
   if (const char* const missing = orrery::cli::missing_instruction_set()) {
     std::fprintf(stderr, "orrery: error: this processor lacks %s, for which this program was compiled\n", missing);

@@ -433,7 +433,7 @@ void PlotArguments::read(SceneOptions& scene, const job::Job& job) {
            {!annotation.font.empty(), "--font", "annotation.font"},
            {plot.vfov_deg.has_value(), "--perspective", "camera.vfov"}})
     if (is_given) refuse_second(option, plot.overrides, key);
-  plot.has_target = job.sampling.noise || job.sampling.seconds;
+  plot.has_target = job.settings.noise || job.settings.time_budget_s;
   plot.memory_limit =
       job.resources.memory_limit > 0 ? job.resources.memory_limit : base::available_memory().value_or(0);
 }
@@ -442,7 +442,7 @@ void show(const plot::PlotScene& made, std::shared_ptr<const std::string> text, 
   job.scene.text = std::move(text);
   job.scene.has_file = false;
   job.scene.loaded = made.loaded;
-  if (made.noise) job.sampling.noise = *made.noise;
+  if (made.noise) job.settings.noise = *made.noise;
   job.denoise = job.denoise || (made.denoise && job.outputs.deep.empty());
 }
 

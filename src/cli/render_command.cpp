@@ -17,8 +17,8 @@
 #include "cli/render_options.h"
 #include "cli/signals.h"
 #include "display/settings.h"
-#include "film/partial.h"
 #include "film/picture.h"
+#include "film/sums.h"
 #include "job/checkpoint.h"
 #include "job/run_job.h"
 #include "load/read_scene.h"
@@ -53,8 +53,8 @@ void read_shard(const RenderOptions& options, job::Job& job) {
           fmt::format("--sample-range: `{}` is not a range of samples; write A:B, e.g. 0:100 and 100:200 for two "
                       "shards, with A below B and B up to {}",
                       text, kMaxSamples));
-    job.sampling.sample_begin = range->first;
-    job.sampling.sample_end = range->second;
+    job.settings.sample_begin = range->first;
+    job.settings.sample_end = range->second;
   }
   if (options.shard.empty()) return;
   const auto shard = pair_of<int>(options.shard, '/');
@@ -63,7 +63,7 @@ void read_shard(const RenderOptions& options, job::Job& job) {
         fmt::format("--shard: `{}` is not a shard; write I/N, e.g. 1/2 and 2/2 for two shards, with I from 1 to "
                     "N and N up to {}",
                     options.shard, job::kMaxShards));
-  job.sampling.shard = {shard->first - 1, shard->second};
+  job.settings.shard = {shard->first - 1, shard->second};
   job.as_shard = true;
 }
 
@@ -98,7 +98,7 @@ std::unique_ptr<preview::Preview> start_preview(const std::filesystem::path& fil
   auto out = std::make_unique<preview::Preview>(file, std::move(note));
   preview::Preview* const started = out.get();
   hooks.on_start = [started](const display::PictureInfo& picture, const auto&) { started->begin(picture); };
-  hooks.on_pixels = [started](const film::Partial& state, const film::RenderedPixels& rendered) {
+  hooks.on_pixels = [started](const film::Sums& state, const film::RenderedPixels& rendered) {
     started->write(state, rendered);
   };
   hooks.on_denoised = [started](const film::Picture& picture) { started->write(picture); };
@@ -216,7 +216,7 @@ int run_render(RenderOptions& options) {
   read_shard(options, job);
   if (!options.frames.empty()) batch.frames = base::parse_frames(options.frames);
   job.hooks.cancel = &stop_on_signals();
-  job.hooks.snapshot = &snapshot_request();
+  job.hooks.checkpoint_request = &checkpoint_request();
   const std::filesystem::path shown = preview::preview_file(options.preview);
   if (!shown.empty()) batch.others.push_back({shown, "--preview"});
   ProgressPrinter printer(style_of(options), stderr);
@@ -237,14 +237,16 @@ int run_render(RenderOptions& options) {
 }
 
 void add_sampling_options(Command& command, job::Job& job) {
-  command.add_option("--noise", job.sampling.noise, "X", "Target noise (relative display error), e.g. 0.01")
+  command.add_option("--noise", job.settings.noise, "X", "Target noise (relative display error), e.g. 0.01")
       ->details(
           "The root mean square over the pixels of the standard error of the displayed value, relative to that value. "
           "The render ends when an upper estimate of it reaches the target and enough paths have found light "
           "everywhere. Samples go to the pixels where they reduce the noise most. A target that is missed is a "
           "warning, and stated in --stats.")
       ->transform(real_number(1e-6, 1));
-  command.add_option("--time", job.sampling.seconds, "TIME", "Time budget for adaptive sampling, e.g. 90s, 5m or 1.5h")
+  command
+      .add_option("--time", job.settings.time_budget_s, "TIME",
+                  "Time budget for adaptive sampling, e.g. 90s, 5m or 1.5h")
       ->details(
           "At least 0.01s. It includes reading the scene and building the BVH, but not writing files. The first of "
           "--samples, --noise and --time to be reached ends the render. With --noise or --time, the samples of the "

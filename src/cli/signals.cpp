@@ -9,7 +9,7 @@
 namespace orrery::cli {
 namespace {
 
-std::atomic<bool> stop{false}, snapshot{false};
+std::atomic<bool> stop{false}, checkpoint_requested{false};
 static_assert(std::atomic<bool>::is_always_lock_free, "a signal handler must not lock");
 
 void on_signal(int signal) {
@@ -20,7 +20,7 @@ void on_signal(int signal) {
 
 void on_failed_write(int) {}
 
-void on_snapshot(int) { snapshot.store(true, std::memory_order_relaxed); }
+void request_checkpoint(int) { checkpoint_requested.store(true, std::memory_order_relaxed); }
 
 /// Installs a handler, unless the signal was ignored at the start of the process.
 void handle(int signal, void (*handler)(int)) {
@@ -42,7 +42,7 @@ void handle_signals() {
 void prepare_signals() {
   // A handler rather than SIG_IGN, which child processes would inherit.
   for (const int signal : {SIGPIPE, SIGXFSZ}) handle(signal, on_failed_write);
-  handle(SIGUSR1, on_snapshot);
+  handle(SIGUSR1, request_checkpoint);
   sigset_t ours;
   sigemptyset(&ours);
   for (const int signal : {SIGINT, SIGTERM, SIGHUP, SIGUSR1}) sigaddset(&ours, signal);
@@ -59,6 +59,6 @@ void end_on_signals() {
   handle_signals();
 }
 
-std::atomic<bool>& snapshot_request() { return snapshot; }
+std::atomic<bool>& checkpoint_request() { return checkpoint_requested; }
 
 }  // namespace orrery::cli

@@ -6,7 +6,7 @@
 namespace orrery::cli {
 
 /// Sets up signals at the start of the program. Writing to a closed pipe or beyond the file size limit becomes a failed
-/// write. USR1 requests a snapshot; all commands handle it, since a supervisor sends it to whatever is running.
+/// write. USR1 requests a checkpoint; all commands handle it, since a supervisor sends it to whatever is running.
 /// Unblocks signals that the parent blocked. Signals ignored at the start of the process stay ignored.
 void prepare_signals();
 
@@ -20,6 +20,6 @@ const std::atomic<bool>& stop_on_signals();
 void end_on_signals();
 
 /// Set by USR1; the reader clears it.
-std::atomic<bool>& snapshot_request();
+std::atomic<bool>& checkpoint_request();
 
 }  // namespace orrery::cli

@@ -7,10 +7,10 @@ namespace orrery::film {
 struct DeepPicture;
 struct EncodedPicture;
 struct LayerRequest;
-struct Partial;
 struct Picture;
 struct Plane;
 struct RenderedPixels;
 struct RenderWork;
+struct Sums;
 
 }  // namespace orrery::film

@@ -11,7 +11,7 @@
 #include "film/layer_sums.h"
 #include "film/layers.h"
 #include "film/light_cells.h"
-#include "film/partial.h"
+#include "film/sums.h"
 #include "kernel/scene_view.h"
 
 namespace orrery::film {
@@ -76,7 +76,7 @@ double mean_guide(std::int64_t sum, std::int64_t count) {
 /// Collects the planes of an image.
 class PlaneList {
  public:
-  PlaneList(const LayerRequest& request, const kernel::SceneView& view, const Partial& sums)
+  PlaneList(const LayerRequest& request, const kernel::SceneView& view, const Sums& sums)
       : r_(request), view_(view), sums_(sums) {}
 
   std::vector<LayerPlanes> take() { return std::move(out_); }
@@ -240,13 +240,13 @@ class PlaneList {
 
   const LayerRequest& r_;
   const kernel::SceneView& view_;
-  const Partial& sums_;
+  const Sums& sums_;
   std::vector<LayerPlanes> out_;
 };
 
 }  // namespace
 
-std::vector<LayerPlanes> image_planes(const LayerRequest& request, const kernel::SceneView& view, const Partial& sums) {
+std::vector<LayerPlanes> image_planes(const LayerRequest& request, const kernel::SceneView& view, const Sums& sums) {
   PlaneList list(request, view, sums);
   list.add_beauty();
   list.add_layers();
@@ -254,7 +254,7 @@ std::vector<LayerPlanes> image_planes(const LayerRequest& request, const kernel:
 }
 
 std::vector<Plane> planes_of(const LayerRequest& request) {
-  const Partial no_sums(0, 0);
+  const Sums no_sums(0, 0);
   const kernel::SceneView no_scene;
   PlaneList list(request, no_scene, no_sums);
   list.add_layers();
@@ -264,7 +264,7 @@ std::vector<Plane> planes_of(const LayerRequest& request) {
   return planes;
 }
 
-std::vector<DeepSample> deep_samples(const Partial& sums, std::size_t pixel, bool background_visible) {
+std::vector<DeepSample> deep_samples(const Sums& sums, std::size_t pixel, bool background_visible) {
   std::vector<DeepSample> out;
   std::vector<SphereCoverage> shares = sums.layers.shares[pixel];
   std::stable_sort(shares.begin(), shares.end(),

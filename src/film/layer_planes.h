@@ -11,7 +11,7 @@
 namespace orrery::film {
 
 struct LayerRequest;
-struct Partial;
+struct Sums;
 
 /// Planes whose values are computed together.
 struct LayerPlanes {
@@ -23,7 +23,7 @@ struct LayerPlanes {
 /// R, G, B, A, and the requested layers in file order, from the sums of a render.
 ///
 /// Domain     the arguments outlive the result; `sums` has the arrays of the request
-std::vector<LayerPlanes> image_planes(const LayerRequest& request, const kernel::SceneView& view, const Partial& sums);
+std::vector<LayerPlanes> image_planes(const LayerRequest& request, const kernel::SceneView& view, const Sums& sums);
 
 /// The planes of the requested layers in file order, without values.
 std::vector<Plane> planes_of(const LayerRequest& request);
@@ -31,6 +31,6 @@ std::vector<Plane> planes_of(const LayerRequest& request);
 /// The deep samples of a pixel, nearest first, with alphas that composite to each sphere's coverage.
 ///
 /// Domain     LayerRequest::deep
-std::vector<DeepSample> deep_samples(const Partial& sums, std::size_t pixel, bool background_visible);
+std::vector<DeepSample> deep_samples(const Sums& sums, std::size_t pixel, bool background_visible);
 
 }  // namespace orrery::film

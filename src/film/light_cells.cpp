@@ -4,7 +4,7 @@
 #include <algorithm>
 
 #include "film/layers.h"
-#include "film/partial.h"
+#include "film/sums.h"
 #include "math/scalar.h"
 
 namespace orrery::film {

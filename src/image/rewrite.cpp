@@ -20,7 +20,7 @@
 #include "image/format.h"
 #include "image/header.h"
 #include "image/input.h"
-#include "image/partial_file.h"
+#include "image/sums_file.h"
 #include "image/whole_file.h"
 
 namespace orrery::image {
@@ -65,7 +65,7 @@ std::vector<NativePart> read_parts(const std::filesystem::path& file) {
     input.spec = input.in->spec();
     check_spec(file, input.spec);
     for (const OIIO::ParamValue& attribute : input.spec.extra_attribs)
-      if (std::string(attribute.name()).starts_with(kPartialPrefix))
+      if (std::string(attribute.name()).starts_with(kSumsPrefix))
         fail_to_read(file, "it is a shard or a checkpoint; merge the shards first");
     parts.push_back(read_part(file, input));
   }

@@ -33,7 +33,7 @@ void check_shard(const Job& job) {
   if (job.outputs.images.size() > 1 || job.outputs.images.front().format != image::Format::kExr ||
       !job.outputs.deep.empty())
     base::refuse("--sample-range A:B and --shard write one shard, a single EXR; orrery merge makes images from shards");
-  if (job.sampling.is_adaptive())
+  if (job.settings.is_adaptive())
     base::refuse("--noise and --time need the whole image; they cannot be combined with --sample-range A:B or --shard");
 }
 
@@ -68,10 +68,10 @@ void check_layers(const Job& job, const scene::Scene& scene) {
 }
 
 void check_scene(const Job& job, const compile::CompiledScene& compiled) {
-  if (job.sampling.sample_end > static_cast<std::uint32_t>(compiled.samples))
+  if (job.settings.sample_end > static_cast<std::uint32_t>(compiled.samples))
     base::refuse(fmt::format("--sample-range {}:{} exceeds the scene's {} samples; raise them with --samples {}",
-                             job.sampling.sample_begin, job.sampling.sample_end, compiled.samples,
-                             job.sampling.sample_end));
+                             job.settings.sample_begin, job.settings.sample_end, compiled.samples,
+                             job.settings.sample_end));
   for (const ImageFile& output : job.outputs.images) image::check_size(output.path, compiled.width, compiled.height);
 }
 

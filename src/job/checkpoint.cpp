@@ -18,7 +18,7 @@
 #include "compile/compiled_scene.h"
 #include "display/settings.h"
 #include "film/layer_planes.h"
-#include "film/partial.h"
+#include "film/sums.h"
 #include "image/read.h"
 #include "job/picture_header.h"
 #include "job/version.h"
@@ -107,20 +107,20 @@ std::string value_of(const image::Provenance& provenance, const std::string& key
 image::Provenance provenance_of(const Job& job, const load::ReadResult& read, const compile::CompiledScene& compiled,
                                 const SceneHashes& hashes, const Layers& layers) {
   const std::uint32_t end =
-      job.sampling.sample_end > 0 ? job.sampling.sample_end : static_cast<std::uint32_t>(compiled.samples);
+      job.settings.sample_end > 0 ? job.settings.sample_end : static_cast<std::uint32_t>(compiled.samples);
   image::Provenance out;
   out["version"] = program_version();
   out["sceneHash"] = hashes.of_image;
   out["sampleHash"] = hashes.of_samples;
   out["settings"] = settings_lines(read, true);
   const bool depends_on_total =
-      job.sampling.is_adaptive() || layers.request.guides() || compiled.sampler.kind == kernel::SamplerKind::kBlueNoise;
+      job.settings.is_adaptive() || layers.request.guides() || compiled.sampler.kind == kernel::SamplerKind::kBlueNoise;
   out["total"] = depends_on_total ? std::to_string(compiled.samples) : "any";
-  out["samples"] = fmt::format("{}:{}", job.sampling.sample_begin, end);
-  out["shard"] = fmt::format("{}/{}", job.sampling.shard.index + 1, job.sampling.shard.count);
-  out["noise"] = fmt::format("{}", job.sampling.noise);  // shortest text that reads back exactly
-  out["time"] = job.sampling.seconds > 0 ? "yes" : "no";
-  out["limit"] = job.sampling.is_adaptive() && is_limited(job) ? "yes" : "no";
+  out["samples"] = fmt::format("{}:{}", job.settings.sample_begin, end);
+  out["shard"] = fmt::format("{}/{}", job.settings.shard.index + 1, job.settings.shard.count);
+  out["noise"] = fmt::format("{}", job.settings.noise);  // shortest text that reads back exactly
+  out["time"] = job.settings.time_budget_s > 0 ? "yes" : "no";
+  out["limit"] = job.settings.is_adaptive() && is_limited(job) ? "yes" : "no";
   out["layers"] = layers_text(layers);
   out["scene"] = std::filesystem::absolute(job.scene.file).lexically_normal().string();
   std::string& overrides = out["overrides"];
@@ -137,7 +137,7 @@ std::string stamp_of(const Job& job, const image::Provenance& provenance, const 
   std::string all;
   for (const std::string& key : keys_of_files()) all += fmt::format("{} {}\n", key, provenance.at(key));
   all += fmt::format("{:.17g} s, frame {}, {} bits, float {:d}, multipart {:d}, reproducible {:d}, exposure {:.17g}\n",
-                     job.sampling.seconds, job.scene.frame, job.outputs.bits, job.outputs.exr.as_float,
+                     job.settings.time_budget_s, job.scene.frame, job.outputs.bits, job.outputs.exr.as_float,
                      job.outputs.exr.multipart, job.outputs.reproducible, display.exposure.value_or(0));
   if (job.denoise) all += "denoised\n";
   for (const std::string& word : {job.outputs.exr.compression, display.config, choice.config_id, choice.transform_id,
@@ -166,12 +166,11 @@ std::string difference(const image::Provenance& a, const image::Provenance& b, c
   return {};
 }
 
-bool is_finished(const image::PartialFile& shard) {
+bool is_finished(const image::SumsFile& shard) {
   const SampleRange range = sample_range(shard.provenance);
-  const std::vector<bool> owned =
-      render::pixels_of(pixel_shard(shard.provenance), shard.partial.width, shard.partial.height);
+  const std::vector<bool> owned = render::pixels_of(pixel_shard(shard.provenance), shard.sums.width, shard.sums.height);
   for (std::size_t i = 0; i < owned.size(); ++i)
-    if (owned[i] && shard.partial.counts[i] != range.end - range.begin) return false;
+    if (owned[i] && shard.sums.counts[i] != range.end - range.begin) return false;
   return true;
 }
 
@@ -192,8 +191,7 @@ bool is_up_to_date(const Job& job, const compile::CompiledScene& compiled, const
                    const std::string& stamp) {
   if (is_shard(job)) {
     try {
-      const image::PartialFile shard =
-          image::read_partial(job.outputs.images.front().path, compiled.width, compiled.height);
+      const image::SumsFile shard = image::read_sums(job.outputs.images.front().path, compiled.width, compiled.height);
       return difference(shard.provenance, provenance, keys_of_files()).empty() && is_finished(shard);
     } catch (const base::Error&) {
       return false;
@@ -219,7 +217,7 @@ Checkpoint::Checkpoint(const Job& job, image::Provenance provenance, Write write
       provenance_(std::move(provenance)),
       write_(std::move(write)) {}
 
-std::optional<film::Partial> Checkpoint::load(int width_px, int height_px) {
+std::optional<film::Sums> Checkpoint::load(int width_px, int height_px) {
   if (!std::filesystem::exists(file_)) return {};
   if (!settings_.resume) {
     hooks_.warn(base::file_diagnostic(base::Severity::kWarning, file_.string(),
@@ -234,9 +232,9 @@ std::optional<film::Partial> Checkpoint::load(int width_px, int height_px) {
             base::ErrorKind::kBadData,
             fmt::format("{} has {}; delete it, or render without --resume to start again", file_.string(), wrong));
     };
-    image::PartialFile file = image::read_partial(file_, width_px, height_px, check);
+    image::SumsFile file = image::read_sums(file_, width_px, height_px, check);
     is_ours_ = true;
-    return std::move(file.partial);
+    return std::move(file.sums);
   } catch (const base::Error&) {
     // Another process that renders the same image may have finished and removed the checkpoint.
     if (!std::filesystem::exists(file_)) return {};
@@ -245,14 +243,14 @@ std::optional<film::Partial> Checkpoint::load(int width_px, int height_px) {
 }
 
 bool Checkpoint::is_due() const {
-  if (hooks_.snapshot != nullptr && hooks_.snapshot->load(std::memory_order_relaxed)) return true;
+  if (hooks_.checkpoint_request != nullptr && hooks_.checkpoint_request->load(std::memory_order_relaxed)) return true;
   return settings_.interval_s > 0 && since_last_.seconds() >= settings_.interval_s;
 }
 
-void Checkpoint::write_snapshot(const film::Partial& partial) {
-  const bool was_requested = hooks_.snapshot != nullptr && hooks_.snapshot->exchange(false);
+void Checkpoint::try_write(const film::Sums& sums) {
+  const bool was_requested = hooks_.checkpoint_request != nullptr && hooks_.checkpoint_request->exchange(false);
   try {
-    write(partial);
+    write(sums);
     if (was_requested && hooks_.on_note) hooks_.on_note("wrote " + file_.string());
   } catch (const base::Error& error) {
     hooks_.warn(base::file_diagnostic(base::Severity::kWarning, file_.string(),
@@ -261,13 +259,13 @@ void Checkpoint::write_snapshot(const film::Partial& partial) {
   since_last_.lap();
 }
 
-void Checkpoint::write(const film::Partial& partial) {
-  write_(file_, partial);
+void Checkpoint::write(const film::Sums& sums) {
+  write_(file_, sums);
   is_ours_ = true;
 }
 
-void Checkpoint::finish(const film::Partial& partial) {
-  if (settings_.keep) return write_snapshot(partial);
+void Checkpoint::finish(const film::Sums& sums) {
+  if (settings_.keep) return try_write(sums);
   std::error_code ignored;
   if (is_ours_) std::filesystem::remove(file_, ignored);
 }

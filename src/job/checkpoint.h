@@ -13,7 +13,7 @@
 #include "display/forward.h"
 #include "film/forward.h"
 #include "image/header.h"
-#include "image/partial_file.h"
+#include "image/sums_file.h"
 #include "job/job.h"
 #include "job/layers.h"
 #include "job/scene_hash.h"
@@ -45,7 +45,7 @@ std::string value_of(const image::Provenance& provenance, const std::string& key
 std::string difference(const image::Provenance& a, const image::Provenance& b, const std::vector<std::string>& keys);
 
 /// True if every pixel of a shard has all samples of the shard's range.
-bool is_finished(const image::PartialFile& shard);
+bool is_finished(const image::SumsFile& shard);
 
 /// A half-open range of samples per pixel, stored as "0:500".
 struct SampleRange {
@@ -70,8 +70,8 @@ std::filesystem::path checkpoint_file(const std::filesystem::path& first_output)
 /// The checkpoint of one job: decides when it is due, reads, writes and removes it.
 class Checkpoint {
  public:
-  /// Writes a partial film to a file.
-  using Write = std::function<void(const std::filesystem::path& file, const film::Partial& partial)>;
+  /// Writes sums to a file.
+  using Write = std::function<void(const std::filesystem::path& file, const film::Sums& sums)>;
 
   /// Starts the first interval; no file is read or written yet.
   ///
@@ -84,24 +84,24 @@ class Checkpoint {
   /// does not resume, because a checkpoint of this run will replace it.
   ///
   /// Errors     base::Error(kBadData) if it is damaged or from another scene, setting or version
-  std::optional<film::Partial> load(int width_px, int height_px);
+  std::optional<film::Sums> load(int width_px, int height_px);
 
   /// True once per interval, and when a signal requests a checkpoint. Thread-safe.
   bool is_due() const;
 
   /// Writes a checkpoint during rendering. A failure is only a warning, since the render can still succeed.
-  void write_snapshot(const film::Partial& partial);
+  void try_write(const film::Sums& sums);
 
   /// Writes a checkpoint when the render stops.
   ///
   /// Errors     base::Error: kCannotCreate, kIo
-  void write(const film::Partial& partial);
+  void write(const film::Sums& sums);
 
   /// Removes the checkpoint if this job wrote it or resumed from it; writes it instead if the settings keep it. Call
   /// after the images are written.
   ///
-  /// `partial`  the finished sums
-  void finish(const film::Partial& partial);
+  /// `sums`     of all samples
+  void finish(const film::Sums& sums);
 
  private:
   const CheckpointSettings& settings_;

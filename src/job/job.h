@@ -64,13 +64,13 @@ struct Hooks {
   /// Called before rendering starts, with what is drawn over the image, without outlines. Not called for a merge.
   std::function<void(const display::PictureInfo&, const annotation::Drawing&)> on_start;
   /// See render::Settings. Not called for a merge.
-  std::function<void(const film::Partial&, const film::RenderedPixels&)> on_pixels;
+  std::function<void(const film::Sums&, const film::RenderedPixels&)> on_pixels;
   std::function<void(const film::Picture&)> on_denoised;  ///< receives the denoised image
   bool develops_pixels = false;  ///< `on_pixels` applies the display transform, so its names must be checked
   std::function<void(const base::Diagnostic&)> on_warning;
   std::function<void(const std::string&)> on_note;  ///< receives replies to requests that were made by a signal
   const std::atomic<bool>* cancel = nullptr;        ///< true stops the job
-  std::atomic<bool>* snapshot = nullptr;            ///< true requests a checkpoint; the job resets it to false
+  std::atomic<bool>* checkpoint_request = nullptr;  ///< true requests a checkpoint; the job resets it to false
 
   bool is_cancelled() const { return cancel != nullptr && cancel->load(std::memory_order_relaxed); }
   void warn(const base::Diagnostic& diagnostic) const {
@@ -85,7 +85,7 @@ struct Hooks {
 struct Job {
   load::SceneSource scene;
   Outputs outputs;
-  render::SamplingLimits sampling;  ///< `unlimited` is derived from the scene source
+  render::Settings settings;  ///< the job sets threads, traversal, layers, `unlimited` and the callbacks
   Resources resources;
   CheckpointSettings checkpoint;
   MergeSettings merge;
@@ -109,7 +109,7 @@ struct Job {
 inline bool is_limited(const Job& job) { return job.scene.overrides.sets("render.samples"); }
 
 /// True if the output is a shard, not an image.
-inline bool is_shard(const Job& job) { return job.as_shard || job.sampling.is_partial(); }
+inline bool is_shard(const Job& job) { return job.as_shard || job.settings.is_partial(); }
 
 /// Seconds by phase.
 struct Phases {

@@ -83,7 +83,7 @@ void require_resources(const PreparedJob& own) {
   const Job& job = own.job;
   require_disk_space(job, compiled.width, compiled.height, own.layers.request);
   const MemoryEstimate memory =
-      estimate_memory(compiled, own.layers.request, job.sampling.is_adaptive(), own.prepared->has_accelerator());
+      estimate_memory(compiled, own.layers.request, job.settings.is_adaptive(), own.prepared->has_accelerator());
   require_memory(memory, job.resources.memory_limit, memory.held());
 }
 

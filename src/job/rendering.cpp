@@ -3,7 +3,7 @@
 
 #include <string>
 
-#include "film/partial.h"
+#include "film/sums.h"
 #include "image/format.h"
 #include "job/checkpoint.h"
 #include "job/layers.h"

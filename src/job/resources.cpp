@@ -18,7 +18,7 @@
 #include "compile/environment.h"
 #include "film/layer_planes.h"
 #include "film/layers.h"
-#include "film/partial.h"
+#include "film/sums.h"
 #include "image/format.h"
 #include "kernel/isa.h"
 #include "math/pixels.h"
@@ -63,7 +63,7 @@ std::uint64_t film_bytes_per_pixel(const compile::CompiledScene& compiled, const
                                    bool is_adaptive) {
   constexpr std::uint64_t kHeapBytes = 16;
   const double shares = expected_shares(compiled, layers);
-  const std::uint64_t sums = film::Partial(1, 1, layers, is_adaptive).bytes() +
+  const std::uint64_t sums = film::Sums(1, 1, layers, is_adaptive).bytes() +
                              (shares > 0 ? static_cast<std::uint64_t>(shares * kBytesPerShare) + kHeapBytes : 0);
   // The target count; with adaptive sampling, eight numbers for the noise estimate.
   const std::uint64_t rendered = sums + sizeof(std::uint32_t) + (is_adaptive ? 8 * sizeof(float) : 0);

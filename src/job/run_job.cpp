@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "job/run_job.h"
 
+#include <algorithm>
 #include <new>
 #include <optional>
 #include <utility>
@@ -13,9 +14,9 @@
 #include "base/stopwatch.h"
 #include "base/text.h"
 #include "denoise/denoise.h"
-#include "film/partial.h"
+#include "film/sums.h"
 #include "image/library.h"
-#include "image/partial_file.h"
+#include "image/sums_file.h"
 #include "job/check_job.h"
 #include "job/checkpoint.h"
 #include "job/picture_header.h"
@@ -38,15 +39,18 @@ namespace {
 std::string missed_target(const Job& job, const render::Statistics& statistics) {
   std::string out;
   const bool ended_by_time = statistics.ended_by == "time";
-  if (job.sampling.noise > 0 && statistics.noise && *statistics.noise > job.sampling.noise)
-    out = fmt::format("noise {:.3g} instead of {:.3g}: {}", *statistics.noise, job.sampling.noise,
+  if (job.settings.noise > 0 && statistics.noise && *statistics.noise > job.settings.noise)
+    out = fmt::format("noise {:.3g} instead of {:.3g}: {}", *statistics.noise, job.settings.noise,
                       ended_by_time ? "the time budget ended" : "the pixels that need more samples reached the limit");
-  if (job.sampling.noise > 0 && statistics.unreliable_pixels > 0)
+  if (job.settings.noise > 0 && statistics.unreliable_pixels > 0)
     out +=
         fmt::format("{}the noise of {} pixels cannot be estimated: too few paths found light near them; allow more {}",
                     out.empty() ? "" : "; ", statistics.unreliable_pixels, ended_by_time ? "time" : "samples");
   return out;
 }
+
+/// Time budget of a job that has spent its own before the first sample, seconds; 0 would be none.
+constexpr double kShortestBudget = 1e-3;
 
 /// One run of a job: four flows, over steps that are in the order in which they are first called.
 class Run {
@@ -75,7 +79,7 @@ class Run {
   /// Renders, and keeps what is needed to write the image.
   Rendering render_in_memory(const base::FileSet& files) {
     render::Result result = render(nullptr);
-    result.partial.reset();  // the denoiser needs the memory, and no file the sums
+    result.sums.reset();  // the denoiser needs the memory, and no file the sums
     finish(result);
     Rendering out;
     out.job = job_;
@@ -105,9 +109,9 @@ class Run {
     Checkpoint checkpoint = open_checkpoint();
     render::Result result = render(&checkpoint);
     report_result(result);
-    if (job_.outputs.reproducible) result.partial->work.seconds = 0;
-    write_sums(job_.outputs.images.front().path, *result.partial);
-    checkpoint.finish(*result.partial);
+    if (job_.outputs.reproducible) result.sums->work.seconds = 0;
+    write_sums(job_.outputs.images.front().path, *result.sums);
+    checkpoint.finish(*result.sums);
   }
 
   void render_images() {
@@ -117,22 +121,22 @@ class Run {
     try {
       write_images(result);
     } catch (const base::Error& error) {
-      save_samples(error, checkpoint, *result.partial);
+      save_samples(error, checkpoint, *result.sums);
     }
-    checkpoint.finish(*result.partial);
+    checkpoint.finish(*result.sums);
   }
 
   const compile::CompiledScene& compiled() const { return own_.compiled(); }
 
   Checkpoint open_checkpoint() const {
-    return {job_, own_.provenance, [this](const auto& file, const film::Partial& sums) { write_sums(file, sums); }};
+    return {job_, own_.provenance, [this](const auto& file, const film::Sums& sums) { write_sums(file, sums); }};
   }
 
   /// Writes a shard or a checkpoint, with the beauty as a preview.
-  void write_sums(const std::filesystem::path& file, const film::Partial& partial) const {
-    image::write_partial(file, render::finished(compiled(), {}, partial, 1).picture,
-                         picture_header(own_.loaded().read, compiled(), report_, job_.outputs.reproducible),
-                         own_.provenance, partial);
+  void write_sums(const std::filesystem::path& file, const film::Sums& sums) const {
+    image::write_sums(file, render::finished(compiled(), {}, sums, 1).picture,
+                      picture_header(own_.loaded().read, compiled(), report_, job_.outputs.reproducible),
+                      own_.provenance, sums);
   }
 
   /// Renders. Resumes from the checkpoint if there is one, and writes it if stopped; null: no checkpoint.
@@ -140,16 +144,17 @@ class Run {
     if (job_.hooks.on_start)
       job_.hooks.on_start({compiled().width, compiled().height, own_.loaded().display}, own_.drawing);
     render::Settings settings = render_settings();
-    std::optional<film::Partial> from;
+    std::optional<film::Sums> from;
     if (checkpoint != nullptr) {
-      settings.snapshot_is_due = [&] { return checkpoint->is_due(); };
-      settings.on_snapshot = [&](const film::Partial& partial) { checkpoint->write_snapshot(partial); };
+      settings.checkpoint_is_due = [&] { return checkpoint->is_due(); };
+      settings.on_checkpoint = [&](const film::Sums& sums) { checkpoint->try_write(sums); };
       from = checkpoint->load(compiled().width, compiled().height);
       if (from) require_same_render(*from, settings, checkpoint->file());
     }
     report_.was_resumed = from.has_value();
     accel::Accel* const accel = build();
-    settings.sampling.spend(report_.phases.build_s);
+    if (settings.time_budget_s > 0)
+      settings.time_budget_s = std::max(settings.time_budget_s - since_begin_.seconds(), kShortestBudget);
     render::Result result;
     if (accel != nullptr) result = render::render(compiled(), *accel, settings, std::move(from));
     report_.render = result.statistics;
@@ -161,15 +166,13 @@ class Run {
   }
 
   render::Settings render_settings() {
-    render::Settings out;
+    render::Settings out = job_.settings;
     out.threads = threads_;
     const scene::Traversal traversal = own_.scene().render.traversal;
     if (traversal == scene::Traversal::kPacket) out.traversal = accel::Traversal::kPacket;
     if (traversal == scene::Traversal::kSingle) out.traversal = accel::Traversal::kSingle;
     out.layers = own_.layers.request;
-    out.sampling = job_.sampling;
-    out.sampling.spend(since_begin_.seconds());
-    out.sampling.unlimited = !is_limited(job_);
+    out.unlimited = !is_limited(job_);
     out.on_progress = job_.hooks.on_progress;
     out.on_pixels = job_.hooks.on_pixels;
     out.cancel = job_.hooks.cancel;
@@ -177,9 +180,9 @@ class Run {
   }
 
   /// Requires that a render can continue from these sums; they may differ from their header if the file is damaged.
-  void require_same_render(const film::Partial& from, const render::Settings& settings,
+  void require_same_render(const film::Sums& from, const render::Settings& settings,
                            const std::filesystem::path& file) const {
-    const film::Partial fresh(from.width, from.height, settings.layers, settings.sampling.is_adaptive());
+    const film::Sums fresh(from.width, from.height, settings.layers, settings.is_adaptive());
     if (from.is_adaptive() == fresh.is_adaptive() && from.has_arrays_of(fresh) &&
         from.has_known_spheres(compiled().object_materials.size()))
       return;
@@ -211,9 +214,9 @@ class Run {
   [[noreturn]] void stop(const render::Result& result, Checkpoint* checkpoint) {
     if (checkpoint == nullptr) stop_job();
     const std::string file = checkpoint->file().string();
-    if (!result.partial)
+    if (!result.sums)
       stop_job(report_.was_resumed ? fmt::format("; {} still holds the samples of the earlier run", file) : "");
-    checkpoint->write(*result.partial);
+    checkpoint->write(*result.sums);
     report_.checkpoint = checkpoint->file();
     stop_job(fmt::format("; {} holds the samples so far; continue with --resume", file));
   }
@@ -285,10 +288,10 @@ class Run {
   }
 
   /// Ends a job whose image could not be written: writes a checkpoint, so that the samples are not lost.
-  [[noreturn]] void save_samples(const base::Error& error, Checkpoint& checkpoint, const film::Partial& partial) {
+  [[noreturn]] void save_samples(const base::Error& error, Checkpoint& checkpoint, const film::Sums& sums) {
     const std::string file = checkpoint.file().string();
     try {
-      checkpoint.write(partial);
+      checkpoint.write(sums);
     } catch (const base::Error& also) {
       throw base::Error(error.kind(),
                         fmt::format("{}; the checkpoint cannot be written, either: {}", error.what(), also.what()));

@@ -20,8 +20,8 @@
 #include "base/file_set.h"
 #include "base/stop_point.h"
 #include "base/text.h"
-#include "film/partial.h"
-#include "image/partial_file.h"
+#include "film/sums.h"
+#include "image/sums_file.h"
 #include "job/batch.h"
 #include "job/checkpoint.h"
 #include "job/prepare_job.h"
@@ -115,7 +115,7 @@ std::string missing_shards(const std::vector<ShardFile>& shards) {
 }
 
 /// Adds the sums of a job's shards, and reports which samples are missing and which machines rendered the others.
-film::Partial sum_of_shards(const PreparedJob& prepared, JobReport& report) {
+film::Sums sum_of_shards(const PreparedJob& prepared, JobReport& report) {
   const Job& job = prepared.job;
   const compile::CompiledScene& compiled = prepared.compiled();
   const bool allow_missing = job.merge.allow_missing;
@@ -124,22 +124,22 @@ film::Partial sum_of_shards(const PreparedJob& prepared, JobReport& report) {
   std::stable_sort(shards.begin(), shards.end(), [](const ShardFile& a, const ShardFile& b) {
     return sample_range(a.provenance).begin < sample_range(b.provenance).begin;
   });
-  std::optional<film::Partial> sum;
+  std::optional<film::Sums> sum;
   Coverage coverage(math::pixel_count(compiled.width, compiled.height), compiled.width);
   std::vector<base::Diagnostic> diagnostics, left_out;
   std::set<std::string> hosts;
   const base::StopPoint stop;
   for (std::size_t i = 0; i < shards.size(); ++i) {
     stop.check();
-    std::optional<image::PartialFile> file;
+    std::optional<image::SumsFile> file;
     try {
-      file = image::read_partial(shards[i].file, compiled.width, compiled.height);
+      file = image::read_sums(shards[i].file, compiled.width, compiled.height);
     } catch (const base::Error& error) {
       if (error.kind() != ErrorKind::kBadData) throw;
       (allow_missing ? left_out : diagnostics).push_back(error_in(shards[i].file, error.what()));
       continue;
     }
-    film::Partial& shard = file->partial;
+    film::Sums& shard = file->sums;
     const SampleRange range = sample_range(shards[i].provenance);
     const auto wrong = [&](std::string text, std::string remedy = {}) {
       diagnostics.push_back(error_in(shards[i].file, std::move(text), std::move(remedy)));
@@ -188,7 +188,7 @@ void require_same(const PreparedJob& prepared, const std::vector<std::string>& k
 }
 
 /// Requires that the sums have the layers of the image.
-void require_layers(const PreparedJob& prepared, const film::Partial& sum) {
+void require_layers(const PreparedJob& prepared, const film::Sums& sum) {
   const film::LayerRequest& layers = prepared.layers.request;
   const auto fail = [](const std::string& text) { throw base::Error(ErrorKind::kBadData, text); };
   const bool has_guides = !sum.guides[0].empty();
@@ -198,7 +198,7 @@ void require_layers(const PreparedJob& prepared, const film::Partial& sum) {
     if (has_guides && !layers.guides()) fail("the shards were rendered with --denoise; merge them with --denoise");
     require_same(prepared, {"layers"});
   }
-  if (!sum.has_arrays_of(film::Partial(sum.width, sum.height, layers)))
+  if (!sum.has_arrays_of(film::Sums(sum.width, sum.height, layers)))
     fail("the shards were rendered without the requested layers");
 }
 
@@ -259,7 +259,7 @@ void take_scene(const ShardFile& shard, Job& job) {
 
 render::Result merge_shards(const PreparedJob& prepared, int threads, JobReport& report) {
   require_same(prepared, {"version", "sceneHash"});
-  const film::Partial sum = sum_of_shards(prepared, report);
+  const film::Sums sum = sum_of_shards(prepared, report);
   require_layers(prepared, sum);
   render::Result result = render::finished(prepared.compiled(), prepared.layers.request, sum, threads);
   const auto [fewest, most] = std::minmax_element(sum.counts.begin(), sum.counts.end());

@@ -3,8 +3,8 @@
 
 #include <algorithm>
 
-#include "film/partial.h"
 #include "film/picture.h"
+#include "film/sums.h"
 #include "math/pixels.h"
 
 namespace orrery::preview {
@@ -24,7 +24,7 @@ Canvas::Canvas(int width_px, int height_px)
 
 std::size_t Canvas::at(int x, int y) const noexcept { return kChannels * math::pixel_index(x, y, width_); }
 
-void Canvas::write(const film::Partial& state, const film::RenderedPixels& rendered) noexcept {
+void Canvas::write(const film::Sums& state, const film::RenderedPixels& rendered) noexcept {
   for (const kernel::PixelPlace p : rendered.pixels) {
     const std::size_t i = math::pixel_index(rendered.x + p.x, rendered.y + p.y, width_);
     float values[kChannels] = {0, 0, 0, 1};

@@ -31,7 +31,7 @@ class Canvas {
   /// Copies the means of pixels and marks their cells as changed. Called on the rendering threads.
   ///
   /// Domain     concurrent calls have no pixel in common
-  void write(const film::Partial& state, const film::RenderedPixels& rendered) noexcept;
+  void write(const film::Sums& state, const film::RenderedPixels& rendered) noexcept;
 
   /// Copies an image, such as the denoised result.
   ///

@@ -80,7 +80,7 @@ class Preview {
   void begin(const display::PictureInfo& picture);
 
   /// Takes rendered pixels. Called on the rendering threads, between begin() and end(); see Canvas::write.
-  void write(const film::Partial& state, const film::RenderedPixels& rendered) noexcept {
+  void write(const film::Sums& state, const film::RenderedPixels& rendered) noexcept {
     canvas_->write(state, rendered);
   }
 

@@ -112,8 +112,8 @@ Picture render_scene(const SceneData& scene, Prepared& prepared, double noise, d
                      const py::object& on_warning) {
   job::Job job;
   job.scene = scene.source();
-  job.sampling.noise = noise;
-  job.sampling.seconds = seconds;
+  job.settings.noise = noise;
+  job.settings.time_budget_s = seconds;
   job.resources = {threads, memory_limit};
   job.denoise = denoise;
   const auto make_job = [&job] { return std::move(job); };

@@ -50,7 +50,7 @@ view::Subject subject_of(const SceneData& scene, const job::Job& job, const std:
     if (option == "--denoise") {
       out.job.denoise = true;
     } else if (option == "--noise") {
-      out.job.sampling.noise = noise_of(value);
+      out.job.settings.noise = noise_of(value);
     } else {
       for (load::Overrides* const overrides : {&own, &out.job.scene.overrides}) {
         if (option == "--set")

@@ -9,11 +9,11 @@
 
 #include "accel/accel.h"
 #include "compile/compiled_scene.h"
-#include "film/partial.h"
+#include "film/sums.h"
 #include "render/allocation.h"
 #include "render/emitter_coverage.h"
+#include "render/passes.h"
 #include "render/pixel_noise.h"
-#include "render/progressive_sampling.h"
 #include "render/result.h"
 #include "render/settings.h"
 #include "render/tiles.h"
@@ -44,14 +44,13 @@ std::string noise_text(double reached, double wanted) {
 class AdaptiveSampling {
  public:
   AdaptiveSampling(const compile::CompiledScene& compiled, const accel::Accel& accel, const Settings& settings,
-                   const TileRenderer& render_tile, TilePool& pool, ProgressReporter& progress, film::Partial& state)
+                   const TileRenderer& render_tile, TilePool& pool, ProgressReporter& progress, film::Sums& state)
       : settings_(settings),
         passes_(settings, render_tile, pool, progress, state),
         pool_(pool),
         progress_(progress),
         state_(state),
-        max_samples_(settings.sampling.unlimited ? kMaxSamples
-                                                 : std::max(1u, static_cast<std::uint32_t>(compiled.samples) / 2)),
+        max_samples_(settings.unlimited ? kMaxSamples : std::max(1u, static_cast<std::uint32_t>(compiled.samples) / 2)),
         pixels_(compiled.width, compiled.height),
         iteration_begin_(progress.seconds()),
         iteration_begin_samples_(progress.done()) {
@@ -70,7 +69,7 @@ class AdaptiveSampling {
       return false;  // the iteration in which an earlier run was interrupted
     // With a time budget the first iteration is as small as possible: it measures the speed. So it is if somebody
     // looks.
-    const bool begins_small = settings_.sampling.seconds > 0 || settings_.on_pixels;
+    const bool begins_small = settings_.time_budget_s > 0 || settings_.on_pixels;
     std::uint32_t n = *std::min_element(state_.counts.begin(), state_.counts.end());
     for (n = n > 0          ? next_uniform_count(n)
              : begins_small ? 1
@@ -79,27 +78,27 @@ class AdaptiveSampling {
       state_.goals.assign(state_.pixel_count(), n);
       if (!run_iteration()) return false;
     }
-    const double wanted = settings_.sampling.noise * settings_.sampling.noise;
+    const double wanted = settings_.noise * settings_.noise;
     for (;;) {
       noise_ = estimate_noise(pixels_, pool_);
       const double upper = noise_.upper();
       const UnreliablePixels unreliable = find_unreliable_pixels(pixels_, pool_);
       unreliable_count_ = unreliable.count;
-      if (settings_.sampling.noise > 0 && upper <= wanted && unreliable_count_ == 0) return ended("noise");
+      if (settings_.noise > 0 && upper <= wanted && unreliable_count_ == 0) return ended("noise");
       IterationGoal goal;
-      goal.error_ratio = settings_.sampling.noise > 0 ? (upper > wanted ? wanted / upper : 1) : 0.5;
+      goal.error_ratio = settings_.noise > 0 ? (upper > wanted ? wanted / upper : 1) : 0.5;
       goal.max_per_pixel = max_samples_;
       goal.affordable = affordable(kShareOfTime);
       const std::vector<float> errors = errors_of_one_sample(pixels_, pool_);
       PixelSelection selection = choose_pixels(pixels_.samples, errors, unreliable.of_pixel, goal);
-      if (!selection.any && settings_.sampling.seconds > 0) {
+      if (!selection.any && settings_.time_budget_s > 0) {
         goal.affordable = affordable(1);
         selection = choose_pixels(pixels_.samples, errors, unreliable.of_pixel, goal);
         if (!selection.any)
           return ended(selection.limited_by_pixels && goal.affordable > pixels_.samples.size() ? "samples" : "time");
       }
       if (!selection.any) return ended(selection.limited_by_pixels || unreliable_count_ > 0 ? "samples" : "noise");
-      if (settings_.sampling.noise > 0) expect(selection, std::sqrt(upper));
+      if (settings_.noise > 0) expect(selection, std::sqrt(upper));
       state_.goals = state_.counts;
       for (std::size_t i = 0; i < state_.goals.size(); ++i)
         if (selection.chosen[i])
@@ -129,9 +128,9 @@ class AdaptiveSampling {
 
   /// Samples of a half that can be rendered, together with those of the other, in a fraction of the remaining time.
   std::uint64_t affordable(double share) const {
-    if (settings_.sampling.seconds <= 0) return std::numeric_limits<std::uint64_t>::max();
-    const double left = settings_.sampling.seconds - progress_.seconds();
-    if (left < settings_.sampling.seconds * kReservedTime) return 0;
+    if (settings_.time_budget_s <= 0) return std::numeric_limits<std::uint64_t>::max();
+    const double left = settings_.time_budget_s - progress_.seconds();
+    if (left < settings_.time_budget_s * kReservedTime) return 0;
     return static_cast<std::uint64_t>(left * share * samples_per_second_ / 2);
   }
 
@@ -139,7 +138,7 @@ class AdaptiveSampling {
     const double limit = 2.0 * static_cast<double>(pixels_.samples.size()) * max_samples_;
     const double total = static_cast<double>(progress_.done()) + 2 * selection.samples_to_goal;
     if (total < limit) {
-      progress_.expect(static_cast<std::uint64_t>(total), noise_text(noise, settings_.sampling.noise));
+      progress_.expect(static_cast<std::uint64_t>(total), noise_text(noise, settings_.noise));
     } else {
       progress_.expect(static_cast<std::uint64_t>(std::min(limit, 0x1p62)), "samples");
     }
@@ -169,10 +168,10 @@ class AdaptiveSampling {
   }
 
   const Settings& settings_;
-  ProgressiveSampling passes_;
+  PassRenderer passes_;
   TilePool& pool_;
   ProgressReporter& progress_;
-  film::Partial& state_;
+  film::Sums& state_;
   std::uint32_t max_samples_;  ///< samples of a half
   PixelStatistics pixels_;
   NoiseEstimate noise_;
@@ -186,12 +185,11 @@ class AdaptiveSampling {
 }  // namespace
 
 bool render_adaptively(const compile::CompiledScene& compiled, const accel::Accel& accel, const Settings& settings,
-                       const TileRenderer& render_tile, TilePool& pool, ProgressReporter& progress,
-                       film::Partial& state, Statistics& statistics) {
+                       const TileRenderer& render_tile, TilePool& pool, ProgressReporter& progress, film::Sums& state,
+                       Statistics& statistics) {
   AdaptiveSampling rounds(compiled, accel, settings, render_tile, pool, progress, state);
-  progress.expect(
-      settings.sampling.unlimited ? std::uint64_t{1} << 62 : std::uint64_t(compiled.samples) * state.pixel_count(),
-      settings.sampling.noise > 0 ? "noise" : "time");
+  progress.expect(settings.unlimited ? std::uint64_t{1} << 62 : std::uint64_t(compiled.samples) * state.pixel_count(),
+                  settings.noise > 0 ? "noise" : "time");
   if (!rounds.run()) return false;
   rounds.report(statistics);
   return true;

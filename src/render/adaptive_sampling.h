@@ -22,7 +22,7 @@ struct Statistics;
 /// `state`    has halves; rendering continues from it, even within an iteration
 /// Result     false if cancelled by the settings' `cancel`
 bool render_adaptively(const compile::CompiledScene& compiled, const accel::Accel& accel, const Settings& settings,
-                       const TileRenderer& render_tile, TilePool& pool, ProgressReporter& progress,
-                       film::Partial& state, Statistics& statistics);
+                       const TileRenderer& render_tile, TilePool& pool, ProgressReporter& progress, film::Sums& state,
+                       Statistics& statistics);
 
 }  // namespace orrery::render

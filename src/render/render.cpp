@@ -19,10 +19,10 @@
 #include "compile/compiled_scene.h"
 #include "film/layer_planes.h"
 #include "film/layers.h"
-#include "film/partial.h"
+#include "film/sums.h"
 #include "kernel/isa.h"
 #include "render/adaptive_sampling.h"
-#include "render/progressive_sampling.h"
+#include "render/passes.h"
 #include "render/tiles.h"
 
 namespace orrery::render {
@@ -30,9 +30,9 @@ namespace {
 
 int threads_of(const Settings& settings) { return settings.threads > 0 ? settings.threads : available_threads(); }
 
-void count_samples(const compile::CompiledScene& compiled, const Settings& settings, const film::Partial& state,
+void count_samples(const compile::CompiledScene& compiled, const Settings& settings, const film::Sums& state,
                    Statistics& statistics) {
-  const std::vector<bool> owned = pixels_of(settings.sampling.shard, compiled.width, compiled.height);
+  const std::vector<bool> owned = pixels_of(settings.shard, compiled.width, compiled.height);
   const std::uint64_t halves = state.is_adaptive() ? 2 : 1;
   statistics.min_samples = std::numeric_limits<std::uint64_t>::max();
   for (std::size_t i = 0; i < owned.size(); ++i) {
@@ -44,7 +44,7 @@ void count_samples(const compile::CompiledScene& compiled, const Settings& setti
 }
 
 /// Reports the pixels of an earlier run.
-void report_pixels(const Settings& settings, const film::Partial& state) {
+void report_pixels(const Settings& settings, const film::Sums& state) {
   const int width = state.width, height = state.height;
   std::vector<kernel::PixelPlace> row(static_cast<std::size_t>(width));
   for (int x = 0; x < width; ++x) row[static_cast<std::size_t>(x)] = {x, 0};
@@ -83,16 +83,16 @@ std::unique_ptr<accel::Accel> build(const compile::CompiledScene& compiled, int 
 }
 
 std::uint32_t samples_of(const compile::CompiledScene& compiled, const Settings& settings) {
-  return settings.sampling.sample_end > 0 ? settings.sampling.sample_end - settings.sampling.sample_begin
-                                          : static_cast<std::uint32_t>(compiled.samples);
+  return settings.sample_end > 0 ? settings.sample_end - settings.sample_begin
+                                 : static_cast<std::uint32_t>(compiled.samples);
 }
 
-Result finished(const compile::CompiledScene& compiled, const film::LayerRequest& request, const film::Partial& partial,
+Result finished(const compile::CompiledScene& compiled, const film::LayerRequest& request, const film::Sums& sums,
                 int threads) {
   Result result;
   result.completed = true;
-  result.picture.width = partial.width;
-  result.picture.height = partial.height;
+  result.picture.width = sums.width;
+  result.picture.height = sums.height;
   result.picture.x = compiled.window_x;
   result.picture.y = compiled.window_y;
   result.picture.frame_width = compiled.frame_width;
@@ -100,38 +100,37 @@ Result finished(const compile::CompiledScene& compiled, const film::LayerRequest
   result.picture.pixel_aspect = compiled.pixel_aspect;
   result.picture.is_transparent = request.transparent;
   const kernel::SceneView view = compiled.view();
-  const std::size_t pixels = partial.pixel_count();
+  const std::size_t pixels = sums.pixel_count();
   TilePool(threads > 0 ? threads : available_threads()).execute([&] {
-    add_planes(film::image_planes(request, view, partial), pixels, result.picture);
+    add_planes(film::image_planes(request, view, sums), pixels, result.picture);
     if (request.coverage) result.picture.coverage.resize(pixels);
-    for (std::size_t i = 0; i < result.picture.coverage.size(); ++i) result.picture.coverage[i] = partial.coverage(i);
+    for (std::size_t i = 0; i < result.picture.coverage.size(); ++i) result.picture.coverage[i] = sums.coverage(i);
     if (!request.deep) return;
-    result.deep = {partial.width, partial.height, std::vector<std::vector<film::DeepSample>>(pixels)};
+    result.deep = {sums.width, sums.height, std::vector<std::vector<film::DeepSample>>(pixels)};
     tbb::parallel_for(std::size_t{0}, pixels, [&](std::size_t i) {
-      result.deep.pixels[i] = film::deep_samples(partial, i, !request.transparent);
+      result.deep.pixels[i] = film::deep_samples(sums, i, !request.transparent);
     });
   });
   return result;
 }
 
 Result render(const compile::CompiledScene& compiled, const accel::Accel& accel, const Settings& settings,
-              std::optional<film::Partial> from) {
+              std::optional<film::Sums> from) {
   Statistics statistics;
   statistics.threads = threads_of(settings);
   statistics.accelerator = accel.name();
   statistics.traversal = accel.traversal_name(settings.traversal);
 
   if (from && settings.on_pixels) report_pixels(settings, *from);
-  film::Partial state =
-      from ? std::move(*from)
-           : film::Partial(compiled.width, compiled.height, settings.layers, settings.sampling.is_adaptive());
-  const std::vector<bool> owned = pixels_of(settings.sampling.shard, compiled.width, compiled.height);
+  film::Sums state =
+      from ? std::move(*from) : film::Sums(compiled.width, compiled.height, settings.layers, settings.is_adaptive());
+  const std::vector<bool> owned = pixels_of(settings.shard, compiled.width, compiled.height);
   const auto pixels = static_cast<std::uint64_t>(std::count(owned.begin(), owned.end(), true));
   ProgressReporter progress(settings, samples_of(compiled, settings) * pixels, state.work);
   TilePool pool(statistics.threads);
   const TileRenderer render_tile(compiled, accel, settings);
   const bool completed =
-      settings.sampling.is_adaptive()
+      settings.is_adaptive()
           ? render_adaptively(compiled, accel, settings, render_tile, pool, progress, state, statistics)
           : render_progressively(compiled, settings, render_tile, pool, progress, state, statistics);
   state.work = work_so_far(state.work, pool, progress);
@@ -143,13 +142,13 @@ Result render(const compile::CompiledScene& compiled, const accel::Accel& accel,
   const base::Stopwatch since_rendered;
   Result result;
   if (completed) result = finished(compiled, settings.layers, state, statistics.threads);
-  result.partial = std::move(state);
+  result.sums = std::move(state);
   statistics.finish_s = since_rendered.seconds();
   result.statistics = std::move(statistics);
   return result;
 }
 
-Result render(const compile::CompiledScene& compiled, const Settings& settings, std::optional<film::Partial> from) {
+Result render(const compile::CompiledScene& compiled, const Settings& settings, std::optional<film::Sums> from) {
   const base::Stopwatch watch;
   const accel::BuildMonitor monitor = [&settings](double) {
     return settings.cancel == nullptr || !settings.cancel->load(std::memory_order_relaxed);
@@ -162,9 +161,7 @@ Result render(const compile::CompiledScene& compiled, const Settings& settings, 
     return {};
   }
   const double build_s = watch.seconds();
-  Settings after_build = settings;
-  after_build.sampling.spend(build_s);
-  Result result = render(compiled, *accel, after_build, std::move(from));
+  Result result = render(compiled, *accel, settings, std::move(from));
   result.statistics.build_s = build_s;
   return result;
 }

@@ -8,7 +8,7 @@
 
 #include "accel/accel.h"
 #include "compile/forward.h"
-#include "film/partial.h"
+#include "film/sums.h"
 #include "render/result.h"
 #include "render/settings.h"
 
@@ -26,10 +26,10 @@ std::unique_ptr<accel::Accel> build(const compile::CompiledScene& compiled, int 
 
 /// Renders an image with an accelerator that was built for this scene and precision.
 ///
-/// `from`     a partial of the same scene and settings to resume from; empty: none
+/// `from`     sums of the same scene and settings to resume from; empty: none
 /// Result     completed == false if stopped by `cancel`; build_s is 0
 Result render(const compile::CompiledScene& compiled, const accel::Accel& accel, const Settings& settings,
-              std::optional<film::Partial> from = std::nullopt);
+              std::optional<film::Sums> from = std::nullopt);
 
 /// Builds the accelerator and renders an image.
 ///
@@ -38,15 +38,15 @@ Result render(const compile::CompiledScene& compiled, const accel::Accel& accel,
 /// Result     completed == false if stopped by `cancel`
 /// Errors     base::Error(kInternal) if the accelerator cannot be built
 Result render(const compile::CompiledScene& compiled, const Settings& settings,
-              std::optional<film::Partial> from = std::nullopt);
+              std::optional<film::Sums> from = std::nullopt);
 
 /// The number of samples per pixel that the settings request.
 std::uint32_t samples_of(const compile::CompiledScene& compiled, const Settings& settings);
 
-/// Converts a partial to an image; pixels without samples are black.
+/// Converts sums to an image; pixels without samples are black.
 ///
 /// `threads`  0: all available
-Result finished(const compile::CompiledScene& compiled, const film::LayerRequest& layers, const film::Partial& partial,
+Result finished(const compile::CompiledScene& compiled, const film::LayerRequest& layers, const film::Sums& sums,
                 int threads);
 
 /// The version of oneTBB in use.

@@ -5,8 +5,8 @@
 #include <optional>
 #include <string>
 
-#include "film/partial.h"
 #include "film/picture.h"
+#include "film/sums.h"
 
 namespace orrery::render {
 
@@ -44,9 +44,9 @@ struct Result {
   film::DeepPicture deep;  ///< empty unless requested
   Statistics statistics;
   bool completed = false;  ///< false: stopped by `cancel`
-  /// All sums; if stopped while rendering, the state to resume from. Empty if stopped earlier, and in the result of
-  /// finished().
-  std::optional<film::Partial> partial;
+  /// Of all samples; if stopped while rendering, the state to resume from. Empty if stopped earlier, and in the result
+  /// of finished().
+  std::optional<film::Sums> sums;
 };
 
 }  // namespace orrery::render

@@ -13,7 +13,7 @@
 #include <cfenv>
 
 #include "compile/compiled_scene.h"
-#include "film/partial.h"
+#include "film/sums.h"
 #include "math/pixels.h"
 #include "render/settings.h"
 
@@ -40,7 +40,7 @@ class DefaultRounding {
 };
 
 /// Index of a tile's pixel within the image.
-std::size_t index_of(const film::Partial& image, const kernel::Tile& tile, kernel::PixelPlace at) {
+std::size_t index_of(const film::Sums& image, const kernel::Tile& tile, kernel::PixelPlace at) {
   return math::pixel_index(tile.x + at.x, tile.y + at.y, image.width);
 }
 
@@ -111,13 +111,13 @@ TileRenderer::TileRenderer(const compile::CompiledScene& compiled, const accel::
       tracer_(accel.tracer(settings.traversal)),
       request_(settings.layers),
       // Each half of a low-discrepancy sequence is a sequence in its own right.
-      second_half_(settings.sampling.is_adaptive() ? kernel::Sampler::kSecondHalf
-                                                   : std::max(1U, static_cast<std::uint32_t>(compiled.samples) / 2)) {
+      second_half_(settings.is_adaptive() ? kernel::Sampler::kSecondHalf
+                                          : std::max(1U, static_cast<std::uint32_t>(compiled.samples) / 2)) {
   if (request_.transparent) view_.background_visible = false;
   render_ = kernel::render_tile_function(view_.features, compiled.precision, request_.any());
 }
 
-void TileRenderer::operator()(const kernel::Tile& tile, TileWorker& worker, film::Partial& image) const {
+void TileRenderer::operator()(const kernel::Tile& tile, TileWorker& worker, film::Sums& image) const {
   const DefaultRounding rounding;
   if (!worker.stream) worker.stream = std::make_unique<kernel::PathStream>();
   const auto pixels = static_cast<std::uint32_t>(tile.width) * static_cast<std::uint32_t>(tile.height);
@@ -165,7 +165,7 @@ void TileRenderer::attach_buffers(kernel::Tile& tile, TileWorker& worker, bool i
   tile.events = &worker.events;
 }
 
-void TileRenderer::add_sums(const kernel::Tile& tile, film::Partial& image) const {
+void TileRenderer::add_sums(const kernel::Tile& tile, film::Sums& image) const {
   const std::size_t half = image.has_halves() && tile.sample_begin >= second_half_ ? 1 : 0;
   for (int i = 0; i < tile.pixel_count(); ++i) {
     const kernel::PixelPlace at = tile.pixel(i);
@@ -177,7 +177,7 @@ void TileRenderer::add_sums(const kernel::Tile& tile, film::Partial& image) cons
   }
 }
 
-void TileRenderer::add_records(const kernel::Tile& tile, const TileWorker& worker, film::Partial& image) const {
+void TileRenderer::add_records(const kernel::Tile& tile, const TileWorker& worker, film::Sums& image) const {
   const std::uint32_t samples = tile.sample_end - tile.sample_begin;
   for (int i = 0; request_.path_records() && i < tile.pixel_count(); ++i) {
     const kernel::PixelPlace at = tile.pixel(i);

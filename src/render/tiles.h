@@ -80,15 +80,15 @@ class TileRenderer {
   TileRenderer(const compile::CompiledScene& compiled, const accel::Accel& accel, const Settings& settings);
 
   /// Renders the pixels and samples of a tile without buffers, and adds its paths to the image.
-  void operator()(const kernel::Tile& tile, TileWorker& worker, film::Partial& image) const;
+  void operator()(const kernel::Tile& tile, TileWorker& worker, film::Sums& image) const;
 
  private:
   /// Gives a tile empty buffers.
   void attach_buffers(kernel::Tile& tile, TileWorker& worker, bool is_adaptive) const;
   /// Adds the sums of a tile, which belongs to one half of the samples, to the image.
-  void add_sums(const kernel::Tile& tile, film::Partial& image) const;
+  void add_sums(const kernel::Tile& tile, film::Sums& image) const;
   /// Adds the records and light events of a tile to its layers.
-  void add_records(const kernel::Tile& tile, const TileWorker& worker, film::Partial& image) const;
+  void add_records(const kernel::Tile& tile, const TileWorker& worker, film::Sums& image) const;
 
   kernel::SceneView view_;
   kernel::Tracer tracer_;

@@ -43,8 +43,8 @@ render::Result StudyRenderer::render(compile::CompiledScene& scene, double noise
   compile::update_lights(scene);
   render::Settings settings;
   settings.threads = threads_;
-  settings.sampling.noise = noise;
-  settings.sampling.unlimited = noise > 0;
+  settings.noise = noise;
+  settings.unlimited = noise > 0;
   settings.traversal = traversal;
   settings.layers.halves = is_denoised;
   settings.cancel = request_.cancel;

@@ -106,7 +106,7 @@ Commands commands_of(const Submission& submission) {
   for (const Words* words : {&submission.render_arguments, &submission.merge_arguments})
     for (const std::string& word : *words) check_word(word, submission.engine);
   const bool is_split = submission.shards > 1;
-  if (is_split && (job.sampling.is_adaptive() || !job.outputs.deep.empty()))
+  if (is_split && (job.settings.is_adaptive() || !job.outputs.deep.empty()))
     base::refuse("--noise, --time and --deep need whole frames; omit --shards to make each frame one task");
   const load::SceneRequest scene{{scene_file, job.scene.overrides, out.frames.front()}, job.outputs.display};
   load::add_scene_files(scene.source.file, job::PreparedScene().load(scene).read.scene, *jobs.front().files);

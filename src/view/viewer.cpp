@@ -346,7 +346,7 @@ void Viewer::render(const Wish& wish, std::uint64_t number, bool is_sketch) {
     job.scene.overrides.add("annotation.outline=0");
     job.scene.overrides.add("output.layers=[\"N\"]");
     if (shading_ == scene::Shading::kPath) job.scene.overrides.add("render.shading=flat");
-    job.sampling = {};
+    job.settings = {};
     job.denoise = false;
   }
   picker_.close(job.scene, std::exchange(is_new_subject_, false));
@@ -375,7 +375,7 @@ job::Hooks Viewer::hooks_for(Image& image) {
     begin(image, info, drawing);
   };
   if (image.is_sketch) return hooks;
-  hooks.on_pixels = [&image](const film::Partial& state, const film::RenderedPixels& rendered) {
+  hooks.on_pixels = [&image](const film::Sums& state, const film::RenderedPixels& rendered) {
     image.live->canvas.write(state, rendered);
   };
   hooks.on_progress = [this, &image](const render::Progress& progress) {

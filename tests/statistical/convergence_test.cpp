@@ -154,8 +154,8 @@ TEST(Adaptive, MeetsTheTargetNoiseWithoutBias) {
   s.render.seed = 1000;
   const film::Picture truth = render(compile::compile(s), {}).picture;
   Settings settings;
-  settings.sampling.unlimited = true;
-  settings.sampling.noise = 0.02;
+  settings.unlimited = true;
+  settings.noise = 0.02;
   constexpr int kSeeds = 24;
   double total = 0, true_total = 0, squares_of_differences = 0;
   for (int seed = 0; seed < kSeeds; ++seed) {
@@ -207,8 +207,8 @@ TEST(Adaptive, RareLightIsNotBiased) {
   s.render.seed = 1000;
   const double truth = light_of(render(compile::compile(s), {}).picture);
   Settings settings;
-  settings.sampling.unlimited = true;
-  settings.sampling.noise = 0.3;
+  settings.unlimited = true;
+  settings.noise = 0.3;
   constexpr int kSeeds = 40;
   double sum = 0, squares = 0;
   for (int seed = 0; seed < kSeeds; ++seed) {

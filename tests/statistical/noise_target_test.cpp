@@ -97,8 +97,8 @@ TEST(NoiseTarget, IsMetWhereFewPathsFindLight) {
     };
     const Values truth = values_of(rendered(1000, 1 << 15, {}).picture);
     Settings settings;
-    settings.sampling.noise = kNoise;
-    settings.sampling.unlimited = true;
+    settings.noise = kNoise;
+    settings.unlimited = true;
     for (std::uint32_t seed = 1; seed <= kSeeds; ++seed) {
       const Result r = rendered(seed, 1, settings);
       EXPECT_EQ(r.statistics.ended_by, "noise") << name;

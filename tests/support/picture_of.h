@@ -4,14 +4,14 @@
 #include <cstddef>
 
 #include "film/layer_planes.h"
-#include "film/partial.h"
 #include "film/picture.h"
+#include "film/sums.h"
 #include "kernel/scene_view.h"
 
 namespace orrery::test {
 
 /// The image of the sums so far, with the layers of a request.
-inline film::Picture picture_of(const film::Partial& sums, const film::LayerRequest& request = {},
+inline film::Picture picture_of(const film::Sums& sums, const film::LayerRequest& request = {},
                                 const kernel::SceneView& view = {}) {
   film::Picture out{sums.width, sums.height, {}};
   for (film::LayerPlanes& layer : film::image_planes(request, view, sums)) {

@@ -12,7 +12,7 @@ from docstrings import markdown
 # are included by those.
 HEADERS = """
 scene/scene.h scene/number_array.h scene/texture.h scene/validate.h load/load_scene.h compile/compile.h
-compile/compiled_scene.h render/render.h render/settings.h render/result.h film/picture.h film/partial.h denoise/denoise.h
+compile/compiled_scene.h render/render.h render/settings.h render/result.h film/picture.h film/sums.h denoise/denoise.h
 display/develop.h display/settings.h image/write.h image/header.h image/format.h preview/preview.h
 base/error.h
 """.split()

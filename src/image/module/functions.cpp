@@ -6,9 +6,9 @@ namespace orrery::image {
 
 extern "C" const void* orrery_image_functions() {
   static constexpr Functions functions{
-      jpeg_bytes,     set_threads, read,          read_map_header, read_map,      rewrite_exr,     write_exr,
-      write_deep,     write_hdr,   write_encoded, png_bytes,       write_partial, read_provenance, read_partial,
-      verified_stamp, font_file,   draw_text,     font_family,     text_widths,   missing_glyphs,
+      jpeg_bytes,     set_threads, read,          read_map_header, read_map,    rewrite_exr,     write_exr,
+      write_deep,     write_hdr,   write_encoded, png_bytes,       write_sums,  read_provenance, read_sums,
+      verified_stamp, font_file,   draw_text,     font_family,     text_widths, missing_glyphs,
   };
   return &functions;
 }

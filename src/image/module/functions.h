@@ -3,9 +3,9 @@
 
 #include "image/draw_text.h"
 #include "image/library.h"
-#include "image/partial_file.h"
 #include "image/read.h"
 #include "image/rewrite.h"
+#include "image/sums_file.h"
 #include "image/write.h"
 
 namespace orrery::image {
@@ -24,9 +24,9 @@ struct Functions {
   decltype(&image::write_hdr) write_hdr;
   decltype(&image::write_encoded) write_encoded;
   decltype(&image::png_bytes) png_bytes;
-  decltype(&image::write_partial) write_partial;
+  decltype(&image::write_sums) write_sums;
   decltype(&image::read_provenance) read_provenance;
-  decltype(&image::read_partial) read_partial;
+  decltype(&image::read_sums) read_sums;
   decltype(&image::verified_stamp) verified_stamp;
   decltype(&image::font_file) font_file;
   decltype(&image::draw_text) draw_text;

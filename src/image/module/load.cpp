@@ -65,16 +65,16 @@ std::string png_bytes(const film::EncodedPicture& picture, int compression) {
   return module().png_bytes(picture, compression);
 }
 
-void write_partial(const std::filesystem::path& file, const film::Picture& preview, const Header& header,
-                   const Provenance& provenance, const film::Partial& partial) {
-  module().write_partial(file, preview, header, provenance, partial);
+void write_sums(const std::filesystem::path& file, const film::Picture& preview, const Header& header,
+                const Provenance& provenance, const film::Sums& sums) {
+  module().write_sums(file, preview, header, provenance, sums);
 }
 
 Provenance read_provenance(const std::filesystem::path& file) { return module().read_provenance(file); }
 
-PartialFile read_partial(const std::filesystem::path& file, int width_px, int height_px,
-                         const std::function<void(const Provenance&)>& check) {
-  return module().read_partial(file, width_px, height_px, check);
+SumsFile read_sums(const std::filesystem::path& file, int width_px, int height_px,
+                   const std::function<void(const Provenance&)>& check) {
+  return module().read_sums(file, width_px, height_px, check);
 }
 
 std::string verified_stamp(const std::filesystem::path& file) { return module().verified_stamp(file); }

@@ -58,7 +58,7 @@ class FilmLayerPlanes : public testing::Test {
     ++beauty().weight;
   }
   /// The sums of the paths so far, of the layers that are requested when the first is added.
-  Partial& sums() {
+  Sums& sums() {
     if (!sums_) sums_.emplace(1, 1, request_);
     return *sums_;
   }
@@ -81,7 +81,7 @@ class FilmLayerPlanes : public testing::Test {
   kernel::Material materials_[2];
   kernel::SceneView view_;
   LayerRequest request_;
-  std::optional<Partial> sums_;
+  std::optional<Sums> sums_;
   std::vector<DeepSample> deep_;
 };
 
@@ -324,11 +324,11 @@ TEST_F(FilmLayerPlanes, MergedPixelsAddTheirLight) {
   request_.groups = {{"a", true, true}, {"b", true, true}};
   const kernel::PathRecord path = path_to(0, 0.5);
   add(path, {{{0.5, 0.5, 0.5}, 0, 1, kernel::Lobe::kEmission}});
-  const Partial first = sums();
+  const Sums first = sums();
   clear();
   sums().add(first);  // a pixel that this shard does not own
   add(path, {{{0.5, 0.5, 0.5}, 0, 0, kernel::Lobe::kDiffuseDirect}});
-  sums().add(Partial(1, 1, request_));
+  sums().add(Sums(1, 1, request_));
   EXPECT_EQ(value(picture(), "b_emission.R"), 0.25F);
   EXPECT_EQ(value(picture(), "a.G"), 0.25F);
 }
@@ -396,7 +396,7 @@ TEST_F(FilmLayerPlanes, VarianceIsFiniteForTheLargestRadiance) {
 /// All that two halves of the maximum number of samples can add up to fits into the sums.
 TEST_F(FilmLayerPlanes, SumsHoldTheMaximumCountOfTheBrightestPaths) {
   request_.variance = request_.diffuse = true;
-  const auto twice = [&] { sums().add(Partial(sums())); };
+  const auto twice = [&] { sums().add(Sums(sums())); };
   for (int bit = 0; bit < 31; ++bit) {
     twice();
     add(path_to(0, kernel::kLargestSample));
@@ -541,7 +541,7 @@ TEST_F(FilmLayerPlanes, HalvesAreMeansOfTheirOwnPaths) {
 TEST_F(FilmLayerPlanes, MergedHalvesAreSums) {
   request_.halves = true;
   const kernel::Int128 unit = kernel::to_fixed_point(1);
-  Partial of_one_path(1, 1, request_);
+  Sums of_one_path(1, 1, request_);
   of_one_path.light[1][0] = {{unit, unit, unit}, 1};
   of_one_path.guides[1][0] = {unit, 1, {0, 0, 0}, {0, 0, 0}};
   sums().light[1][0] = {{3 * unit, 0, 0}, 1};

@@ -8,8 +8,8 @@
 #include <thread>
 
 #include "base/error.h"
-#include "image/partial_file.h"
 #include "image/read.h"
+#include "image/sums_file.h"
 #include "render/settings.h"
 #include "support/exr_file.h"
 #include "unit/job/job_fixture.h"
@@ -109,9 +109,9 @@ TEST_F(JobCheckpoint, RejectsACheckpointOfAnotherRender) {
   expect_refused("other spheres, materials, lights or images");
   job_.scene.overrides.add("render.samples=200");
   expect_refused("a.checkpoint.exr has samples 0:300, not 0:200");
-  job_.sampling.noise = 0.0008;  // the nearest double is 0.00080000000000000004
+  job_.settings.noise = 0.0008;  // the nearest double is 0.00080000000000000004
   expect_refused("--noise 0, not 0.0008;");
-  job_.sampling.shard = {0, 2};
+  job_.settings.shard = {0, 2};
   expect_refused("--shard 1/1, not 1/2");
   job_.scene.overrides.add("output.layers=[\"N\"]");
   expect_refused("layers none, not N");

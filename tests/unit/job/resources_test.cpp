@@ -269,7 +269,7 @@ TEST_F(JobDiskSpace, TheEstimateIsNearTheFiles) {
     EXPECT_LT(ratio("b.exr"), 1.6) << compression;
   }
   job_.outputs.exr.compression = "zips";
-  job_.sampling.sample_end = 2;
+  job_.settings.sample_end = 2;
   EXPECT_GT(ratio("shard.exr"), 0.8);
   EXPECT_LT(ratio("shard.exr"), 1.6);
 }
@@ -290,7 +290,7 @@ TEST_F(JobDiskSpace, LightGroupsIncreaseTheEstimate) {
   layers.groups = {{"default", false, true}};
   EXPECT_GT(ratio("a.exr", layers), 0.8);
   EXPECT_LT(ratio("a.exr", layers), 3);  // in most pixels most lobes are black
-  job_.sampling.sample_end = 2;
+  job_.settings.sample_end = 2;
   EXPECT_GT(ratio("shard.exr", layers), 0.8);
   EXPECT_LT(ratio("shard.exr", layers), 5);  // there are no other layers
 }

@@ -16,8 +16,8 @@
 #include "base/error.h"
 #include "image/format.h"
 #include "image/header.h"
-#include "image/partial_file.h"
 #include "image/read.h"
+#include "image/sums_file.h"
 #include "job/shards.h"
 #include "render/settings.h"
 #include "support/exr_file.h"
@@ -92,7 +92,7 @@ TEST_F(JobRun, ResumedRendersAndShardsUnderASkyOrAnImageHaveTheSameBytes) {
     for (int shard = 0; shard < 2; ++shard) {
       Job part = job_;
       part.checkpoint.resume = false;
-      part.sampling.shard = {shard, 2};
+      part.settings.shard = {shard, 2};
       part.outputs.images = {shards.emplace_back(folder_ / ("shard" + std::to_string(shard) + ".exr"))};
       run_job(part);
     }
@@ -115,25 +115,25 @@ TEST_F(JobRun, RejectsACheckpointWithOtherSumsThanItsHeaderSays) {
   job_.scene.overrides = {"image.width=200", "image.height=100", "render.samples=300", "output.layers=[\"Z\"]"};
   job_.denoise = true;
   stop_while_rendering();
-  const image::PartialFile right = image::read_partial(checkpoint, 200, 100);
-  const std::vector<std::function<void(film::Partial&)>> changes = {
-      [](film::Partial& sums) { sums.layers = {}; }, [](film::Partial& sums) { sums.guides = {}; },
-      [](film::Partial& sums) { sums.largest.resize(sums.pixel_count()); },
-      [](film::Partial& sums) { sums.layers.hit[5] = 2; }};
-  film::Picture preview = test::picture_of(right.partial);
+  const image::SumsFile right = image::read_sums(checkpoint, 200, 100);
+  const std::vector<std::function<void(film::Sums&)>> changes = {
+      [](film::Sums& sums) { sums.layers = {}; }, [](film::Sums& sums) { sums.guides = {}; },
+      [](film::Sums& sums) { sums.largest.resize(sums.pixel_count()); },
+      [](film::Sums& sums) { sums.layers.hit[5] = 2; }};
+  film::Picture preview = test::picture_of(right.sums);
   preview.frame_width = 200;
   preview.frame_height = 100;
   for (const auto& change : changes) {
-    image::PartialFile wrong = right;
-    change(wrong.partial);
-    image::write_partial(checkpoint, preview, {}, wrong.provenance, wrong.partial);
+    image::SumsFile wrong = right;
+    change(wrong.sums);
+    image::write_sums(checkpoint, preview, {}, wrong.provenance, wrong.sums);
     const base::Error refused = error();
     EXPECT_EQ(refused.kind(), base::ErrorKind::kBadData);
     EXPECT_NE(std::string(refused.what()).find("contains sums that do not match its header; delete it"),
               std::string::npos)
         << refused.what();
   }
-  image::write_partial(checkpoint, preview, {}, right.provenance, right.partial);
+  image::write_sums(checkpoint, preview, {}, right.provenance, right.sums);
   run_job(job_);
   EXPECT_EQ(statistics()["resumed"], true);
 }

@@ -25,7 +25,7 @@ class JobShards : public JobTest {
   /// Renders shard `index` of `count`.
   std::filesystem::path shard(int index, int count) {
     Job job = job_;
-    job.sampling.shard = {index, count};
+    job.settings.shard = {index, count};
     job.as_shard = true;
     const std::filesystem::path file = folder_ / (std::to_string(index) + "of" + std::to_string(count) + ".exr");
     job.outputs.images = {file};

@@ -7,7 +7,7 @@
 #include <set>
 #include <thread>
 
-#include "film/partial.h"
+#include "film/sums.h"
 #include "kernel/pixel_sum.h"
 #include "unit/preview/pictures.h"
 
@@ -24,7 +24,7 @@ std::vector<float> read_all(const Canvas& canvas) {
 }
 
 TEST(PreviewCanvas, HoldsTheMeansOfBothHalves) {
-  film::Partial state = partial(5, 3);
+  film::Sums state = sums(5, 3);
   state.light[1].resize(state.pixel_count());
   for (kernel::PixelSum& sum : state.light[1]) {
     sum.rgb[0] = kernel::to_fixed_point(7);
@@ -43,7 +43,7 @@ TEST(PreviewCanvas, MarksTheCellsOfARectangleOnce) {
   Canvas canvas(100, 70);
   EXPECT_EQ(canvas.cell_count(), 4u * 3u);
   EXPECT_TRUE(canvas.take_changed().empty());
-  const film::Partial state = partial(100, 70);
+  const film::Sums state = sums(100, 70);
   const kernel::PixelPlace corner{0, 0}, end{2, 2};
   canvas.write(state, {30, 62, 19, 4, {&corner, 1}});
   canvas.write(state, {97, 67, 3, 3, {&end, 1}});
@@ -69,7 +69,7 @@ TEST(PreviewCanvas, AReaderOfMarkedCellsHasEveryPixelInTheEnd) {
     writers.emplace_back([&, half] {
       const std::vector<kernel::PixelPlace> rows = all_pixels(kSide, 1);
       for (int pass = 1; pass <= kPasses; ++pass) {
-        const film::Partial state = partial(kSide, kSide, pass);
+        const film::Sums state = sums(kSide, kSide, pass);
         for (int y = half; y < kSide; y += 2) canvas.write(state, {0, y, kSide, 1, rows});
       }
       --writing;
@@ -85,7 +85,7 @@ TEST(PreviewCanvas, AReaderOfMarkedCellsHasEveryPixelInTheEnd) {
   while (writing > 0) copy_changed();
   copy_changed();
   for (std::thread& writer : writers) writer.join();
-  EXPECT_EQ(copy, means(partial(kSide, kSide, kPasses)));
+  EXPECT_EQ(copy, means(sums(kSide, kSide, kPasses)));
 }
 
 }  // namespace

@@ -4,7 +4,7 @@
 #include <cstddef>
 #include <vector>
 
-#include "film/partial.h"
+#include "film/sums.h"
 #include "kernel/pixel_sum.h"
 #include "math/pixels.h"
 #include "preview/canvas.h"
@@ -12,8 +12,8 @@
 namespace orrery::preview {
 
 /// A film in which every pixel has one sample of its own value.
-inline film::Partial partial(int width, int height, double offset = 0) {
-  film::Partial state(width, height);
+inline film::Sums sums(int width, int height, double offset = 0) {
+  film::Sums state(width, height);
   for (std::size_t i = 0; i < state.pixel_count(); ++i) {
     kernel::PixelSum& sum = state.light[0][i];
     for (int c = 0; c < 3; ++c) sum.rgb[c] = kernel::to_fixed_point(offset + 0.001 * static_cast<double>(3 * i) + c);
@@ -31,13 +31,13 @@ inline std::vector<kernel::PixelPlace> all_pixels(int width, int height) {
 }
 
 template <class To>
-void write_all(const film::Partial& state, To& to) {
+void write_all(const film::Sums& state, To& to) {
   const std::vector<kernel::PixelPlace> pixels = all_pixels(state.width, state.height);
   to.write(state, {0, 0, state.width, state.height, pixels});
 }
 
-/// The means of a partial, R, G, B of all pixels.
-inline std::vector<float> means(const film::Partial& state) {
+/// The means of a sums, R, G, B of all pixels.
+inline std::vector<float> means(const film::Sums& state) {
   std::vector<float> out;
   for (int y = 0; y < state.height; ++y)
     for (int x = 0; x < state.width; ++x) {

@@ -14,8 +14,8 @@
 
 #include "base/error.h"
 #include "display/develop.h"
-#include "film/partial.h"
 #include "film/picture.h"
+#include "film/sums.h"
 #include "image/read.h"
 #include "support/picture_of.h"
 #include "support/temp_dir.h"
@@ -99,7 +99,7 @@ display::Settings settings() {
 }
 
 /// What the display transform makes of a whole image.
-std::vector<std::uint8_t> developed(const film::Partial& state) {
+std::vector<std::uint8_t> developed(const film::Sums& state) {
   const std::vector<std::uint16_t> codes = display::develop(test::picture_of(state), settings(), 8).values;
   return {codes.begin(), codes.end()};
 }
@@ -125,7 +125,7 @@ TEST(PreviewPreview, TheFileHoldsTheDevelopedImageInTheEnd) {
   std::string notes;
   Preview preview(folder / "p.png", into(notes));
   for (const double offset : {0.0, 1.5}) {
-    const film::Partial state = partial(70, 40, offset);
+    const film::Sums state = sums(70, 40, offset);
     preview.begin(info(70, 40));
     write_all(state, preview);
     preview.end();
@@ -142,7 +142,7 @@ TEST(PreviewPreview, AFileThatCannotBeWrittenIsOneWarning) {
     Preview preview(folder / "gone/p.png", into(notes));
     for (int i = 0; i < 3; ++i) {
       preview.begin(info(10, 10));
-      write_all(partial(10, 10), preview);
+      write_all(sums(10, 10), preview);
     }
   }
   EXPECT_EQ(notes.find("warning: the preview ended: cannot create "), 0u) << notes;

@@ -11,8 +11,8 @@
 #include "compile/compile.h"
 #include "compile/compiled_scene.h"
 #include "film/display_error.h"
-#include "film/partial.h"
 #include "film/picture.h"
+#include "film/sums.h"
 #include "render/render.h"
 #include "render/result.h"
 #include "render/settings.h"
@@ -31,8 +31,8 @@ compile::CompiledScene world_of(int samples = 100) {
 
 Settings noise(double value) {
   Settings settings;
-  settings.sampling.noise = value;
-  settings.sampling.unlimited = true;
+  settings.noise = value;
+  settings.unlimited = true;
   return settings;
 }
 
@@ -65,7 +65,7 @@ TEST(RenderAdaptiveSampling, LowerTargetNoiseTakesMoreSamples) {
 
 TEST(RenderAdaptiveSampling, RequestedSampleCountIsALimit) {
   Settings settings = noise(0.001);
-  settings.sampling.unlimited = false;
+  settings.unlimited = false;
   const Result r = render(world_of(40), settings);
   EXPECT_TRUE(r.completed);
   EXPECT_EQ(r.statistics.ended_by, "samples");
@@ -111,8 +111,8 @@ TEST(RenderAdaptiveSampling, TimeBudgetIsKept) {
     Settings settings;
     settings.threads = 1;
     settings.clock = [](std::uint64_t samples) { return static_cast<double>(samples) * 1e-5; };
-    settings.sampling.seconds = seconds;
-    settings.sampling.unlimited = true;
+    settings.time_budget_s = seconds;
+    settings.unlimited = true;
     const Result r = render(world, *accel, settings);
     EXPECT_EQ(r.statistics.ended_by, "time");
     EXPECT_NEAR(r.statistics.render_s, seconds, 0.05 * seconds);
@@ -179,7 +179,7 @@ TEST(RenderAdaptiveSampling, PixelsWithTooFewSamplesAreCounted) {
   scene::Scene s = test::room(3.95, 5, 12, 8);
   s.render.samples = 64;
   Settings settings = noise(0.3);
-  settings.sampling.unlimited = false;
+  settings.unlimited = false;
   const Result r = render(compile::compile(s), settings);
   EXPECT_TRUE(r.completed);
   EXPECT_EQ(r.statistics.ended_by, "samples");
@@ -239,13 +239,13 @@ TEST(RenderAdaptiveSampling, ResumedRenderGivesTheSameBits) {
   Settings settings = noise(0.3);
   settings.threads = 2;
   const Result whole = render(compiled, settings);
-  std::optional<film::Partial> from;
+  std::optional<film::Sums> from;
   int stops = 0;
   for (;; ++stops) {
     std::atomic<bool> cancel{false};
     int looks = 0;
     settings.cancel = &cancel;
-    settings.snapshot_is_due = [&] {
+    settings.checkpoint_is_due = [&] {
       static std::mutex mutex;
       const std::lock_guard lock(mutex);
       if (++looks > 5) cancel = true;  // in the middle of an iteration
@@ -257,7 +257,7 @@ TEST(RenderAdaptiveSampling, ResumedRenderGivesTheSameBits) {
       EXPECT_EQ(r.statistics.paths, whole.statistics.paths);
       break;
     }
-    from = std::move(r.partial);
+    from = std::move(r.sums);
   }
   EXPECT_GT(stops, 4);
 }

@@ -274,8 +274,8 @@ TEST(RenderEmitterCoverage, ADistantLampIsNotMissed) {
                           })->light);
   ASSERT_GT(lamp, 3);
   Settings settings;
-  settings.sampling.noise = 0.02;
-  settings.sampling.unlimited = true;
+  settings.noise = 0.02;
+  settings.unlimited = true;
   double sum = 0;
   constexpr int kSeeds = 16;
   for (int seed = 1; seed <= kSeeds; ++seed) {

@@ -651,7 +651,7 @@ TEST(RenderLayers, HalvesAverageToTheBeauty) {
   for (const bool is_adaptive : {false, true}) {
     Settings settings;
     settings.layers = request;
-    if (is_adaptive) settings.sampling.noise = 0.2;
+    if (is_adaptive) settings.noise = 0.2;
     const Result with = render(compiled, settings);
     settings.layers = {};
     EXPECT_EQ(render(compiled, settings).picture.planes[1].values, with.picture.planes[1].values)

@@ -175,8 +175,8 @@ TEST(StudyBias, AnUnbiasedSceneGivesNoFalsePositives) {
     const auto seed = [study](std::uint32_t i) { return 4 * static_cast<std::uint32_t>(study) + i; };
     const auto pair = [&](compile::CompiledScene w, double noise, std::uint32_t first_seed) {
       render::Settings settings;
-      settings.sampling.noise = noise;
-      settings.sampling.unlimited = noise > 0;
+      settings.noise = noise;
+      settings.unlimited = noise > 0;
       Pair out;
       for (std::uint32_t i = 0; i < 2; ++i) {
         w.sampler.seed = seed(first_seed + i);

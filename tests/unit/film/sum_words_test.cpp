@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "film/partial.h"
+#include "film/sums.h"
 
 #include <gtest/gtest.h>
 
@@ -21,11 +21,11 @@ LayerRequest every_layer(std::size_t light_groups = 1) {
   return r;
 }
 
-/// A partial render with a different value in every number.
-Partial full_partial(bool is_adaptive, bool goals, bool layers, bool halves, std::size_t light_groups = 1) {
+/// Sums with a different value in every number.
+Sums full_partial(bool is_adaptive, bool goals, bool layers, bool halves, std::size_t light_groups = 1) {
   LayerRequest request = layers ? every_layer(light_groups) : LayerRequest{};
   request.halves = halves;
-  Partial p(5, 3, request, is_adaptive);
+  Sums p(5, 3, request, is_adaptive);
   std::mt19937_64 random(3);
   const auto number = [&] { return static_cast<std::int64_t>(random()); };
   const auto count = [&] { return static_cast<std::uint32_t>(random()); };
@@ -56,11 +56,11 @@ Partial full_partial(bool is_adaptive, bool goals, bool layers, bool halves, std
   return p;
 }
 
-TEST(FilmPartialWords, RoundTrip) {
+TEST(FilmSumWords, RoundTrip) {
   for (int kind = 0; kind < 16; ++kind) {
-    const Partial p = full_partial((kind & 1) != 0, (kind & 2) != 0, (kind & 4) != 0, (kind & 8) != 0);
+    const Sums p = full_partial((kind & 1) != 0, (kind & 2) != 0, (kind & 4) != 0, (kind & 8) != 0);
     const std::vector<std::uint32_t> words = to_words(p);
-    const Partial q = from_words(words, 5, 3);
+    const Sums q = from_words(words, 5, 3);
     EXPECT_EQ(to_words(q), words) << kind;
     EXPECT_EQ(q.width, 5);
     EXPECT_EQ(q.height, 3);
@@ -88,43 +88,43 @@ TEST(FilmPartialWords, RoundTrip) {
   }
 }
 
-TEST(FilmPartialWords, LightGroupsRoundTrip) {
-  Partial p = full_partial(false, false, true, false, 3);
+TEST(FilmSumWords, LightGroupsRoundTrip) {
+  Sums p = full_partial(false, false, true, false, 3);
   for (std::size_t cell = 0; cell < 24; ++cell) p.layers.light[4 * 24 + cell] = {};  // a pixel of another shard
   const std::vector<std::uint32_t> words = to_words(p);
-  const Partial q = from_words(words, 5, 3);
+  const Sums q = from_words(words, 5, 3);
   EXPECT_EQ(to_words(q), words);
   ASSERT_EQ(q.layers.light.size(), 15 * 24u);
   EXPECT_TRUE(q.layers.light == p.layers.light);
 }
 
-TEST(FilmPartialWords, TruncatedWordsAreRefused) {
+TEST(FilmSumWords, TruncatedWordsAreRefused) {
   const std::vector<std::uint32_t> words = to_words(full_partial(true, true, true, true));
   for (std::size_t length = 0; length < words.size(); length += 7)
     EXPECT_THROW(from_words({words.begin(), words.begin() + static_cast<std::ptrdiff_t>(length)}, 5, 3), base::Error)
         << length;
 }
 
-TEST(FilmPartialWords, TheWrongSizeIsRefused) {
+TEST(FilmSumWords, TheWrongSizeIsRefused) {
   const std::vector<std::uint32_t> words = to_words(full_partial(false, false, false, false));
   EXPECT_THROW(from_words(words, 3, 5), base::Error);
 }
 
-TEST(FilmPartialWords, ConstantPlanesAreStoredAsOneWord) {
-  const Partial empty(500, 400, every_layer());
+TEST(FilmSumWords, ConstantPlanesAreStoredAsOneWord) {
+  const Sums empty(500, 400, every_layer());
   EXPECT_LT(to_words(empty).size(), 1000u);
   EXPECT_EQ(to_words(from_words(to_words(empty), 500, 400)), to_words(empty));
 }
 
-TEST(FilmPartialWords, InvalidLargestSamplesAreRefused) {
+TEST(FilmSumWords, InvalidLargestSamplesAreRefused) {
   for (const float bad : {-1.0f, std::numeric_limits<float>::quiet_NaN(), std::numeric_limits<float>::infinity()}) {
-    Partial p = full_partial(true, false, false, false);
+    Sums p = full_partial(true, false, false, false);
     p.largest[7] = bad;
     EXPECT_THROW(from_words(to_words(p), 5, 3), base::Error) << bad;
   }
 }
 
-TEST(FilmPartialWords, DamagedWordsAreRefusedOrRead) {
+TEST(FilmSumWords, DamagedWordsAreRefusedOrRead) {
   const std::vector<std::uint32_t> words = to_words(full_partial(true, true, true, true));
   std::minstd_rand random(5);
   int refused = 0;

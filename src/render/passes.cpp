@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "render/progressive_sampling.h"
+#include "render/passes.h"
 
 #include <algorithm>
 #include <cmath>
@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "compile/compiled_scene.h"
-#include "film/partial.h"
+#include "film/sums.h"
 #include "kernel/render_tile.h"
 #include "math/pixels.h"
 #include "render/render.h"
@@ -56,8 +56,8 @@ void ProgressReporter::add(std::uint64_t samples) {
   if (!lock.owns_lock()) return;  // another thread is reporting
   const double now = seconds();
   double fraction = static_cast<double>(done) / static_cast<double>(std::max<std::uint64_t>(total_, 1));
-  if (!goal_.empty() && settings_.sampling.seconds > 0)
-    fraction = std::max(fraction, std::min(now / settings_.sampling.seconds, 0.99));
+  if (!goal_.empty() && settings_.time_budget_s > 0)
+    fraction = std::max(fraction, std::min(now / settings_.time_budget_s, 0.99));
   const int percent = static_cast<int>(std::min(fraction, 1.0) * 100);
   if (now - last_ < kInterval && percent == last_percent_ && done < total_) return;
   last_ = now;
@@ -68,11 +68,13 @@ void ProgressReporter::add(std::uint64_t samples) {
   settings_.on_progress({done, std::max(total, done), now, goal_});
 }
 
-bool ProgressiveSampling::run(int side, const OnPixel& on_pixel) {
+bool PassRenderer::run(int side, const OnPixel& on_pixel) {
   const auto cancelled = [&] {
     return settings_.cancel != nullptr && settings_.cancel->load(std::memory_order_relaxed);
   };
-  const auto shall_pause = [&] { return cancelled() || (settings_.snapshot_is_due && settings_.snapshot_is_due()); };
+  const auto shall_pause = [&] {
+    return cancelled() || (settings_.checkpoint_is_due && settings_.checkpoint_is_due());
+  };
   for (;;) {
     const std::vector<kernel::PixelPlace> squares = unfinished_squares(side);
     const auto render = [&](std::size_t i, TileWorker& worker) {
@@ -82,12 +84,12 @@ bool ProgressiveSampling::run(int side, const OnPixel& on_pixel) {
     if (cancelled()) return false;
     const film::RenderWork before = state_.work;
     state_.work = work_so_far(before, pool_, progress_);
-    settings_.on_snapshot(state_);
+    settings_.on_checkpoint(state_);
     state_.work = before;
   }
 }
 
-std::vector<kernel::PixelPlace> ProgressiveSampling::unfinished_squares(int side) const {
+std::vector<kernel::PixelPlace> PassRenderer::unfinished_squares(int side) const {
   const int width = state_.width, height = state_.height;
   const auto lacks_samples = [&](int x, int y) {
     const std::size_t i = math::pixel_index(x, y, width);
@@ -107,7 +109,7 @@ std::vector<kernel::PixelPlace> ProgressiveSampling::unfinished_squares(int side
 }
 
 /// Pixels of a square with equal sample counts and equal goals are rendered together.
-void ProgressiveSampling::render_square(int x0, int y0, int side, const OnPixel& on_pixel, TileWorker& worker) {
+void PassRenderer::render_square(int x0, int y0, int side, const OnPixel& on_pixel, TileWorker& worker) {
   struct Group {
     std::uint32_t have, want;
     std::vector<kernel::PixelPlace> pixels;
@@ -141,7 +143,7 @@ void ProgressiveSampling::render_square(int x0, int y0, int side, const OnPixel&
       render_tile_(tile, worker, state_);
       progress_.add(tile.path_count());
     };
-    render(state_.is_adaptive() ? 0 : settings_.sampling.sample_begin);
+    render(state_.is_adaptive() ? 0 : settings_.sample_begin);
     if (state_.is_adaptive()) render(Sampler::kSecondHalf);
     for (const kernel::PixelPlace p : group.pixels) {
       state_.counts[at(p)] = group.want;
@@ -163,10 +165,10 @@ film::RenderWork work_so_far(const film::RenderWork& before, const TilePool& poo
 
 bool render_progressively(const compile::CompiledScene& compiled, const Settings& settings,
                           const TileRenderer& render_tile, TilePool& pool, ProgressReporter& progress,
-                          film::Partial& state, Statistics& statistics) {
+                          film::Sums& state, Statistics& statistics) {
   const std::uint32_t samples = samples_of(compiled, settings);
-  const std::vector<bool> owned = pixels_of(settings.sampling.shard, compiled.width, compiled.height);
-  ProgressiveSampling passes(settings, render_tile, pool, progress, state);
+  const std::vector<bool> owned = pixels_of(settings.shard, compiled.width, compiled.height);
+  PassRenderer passes(settings, render_tile, pool, progress, state);
   for (std::uint32_t done = 0; done < samples;) {
     const std::uint32_t first = settings.on_pixels ? kFirstSeenPass : kFirstPass;
     const std::uint32_t pass = done == 0 ? first : std::min((kGrowth - 1) * done, kLargestPass);

@@ -23,14 +23,14 @@ struct RenderWork {
   RenderWork& operator+=(const RenderWork& other);
 };
 
-/// An incomplete render: the content of a checkpoint or shard. It has the arrays that a render needs, of one element
-/// for each pixel, row by row; others are empty.
+/// The sums of all samples so far: the state of a render, and the content of a checkpoint or shard. They have the
+/// arrays that a render needs, of one element for each pixel, row by row; others are empty.
 ///
 /// All sums are integers, so that the result does not depend on how a render is split or in which order shards are
 /// merged.
-struct Partial {
-  /// A render without samples.
-  Partial(int width_px, int height_px, const LayerRequest& request = {}, bool is_adaptive = false);
+struct Sums {
+  /// No samples.
+  Sums(int width_px, int height_px, const LayerRequest& request = {}, bool is_adaptive = false);
 
   std::size_t pixel_count() const { return counts.size(); }
   /// The sums are those of adaptive sampling.
@@ -39,14 +39,14 @@ struct Partial {
   bool has_halves() const { return !light[1].empty(); }
 
   /// Returns whether this has the arrays of another one.
-  bool has_arrays_of(const Partial& other) const;
+  bool has_arrays_of(const Sums& other) const;
   /// Size of all arrays.
   std::size_t bytes() const;
 
   /// Adds the samples of another shard with the same arrays.
   ///
   /// Domain     without adaptive sampling
-  void add(const Partial& other);
+  void add(const Sums& other);
 
   /// Returns whether all sphere ids in the layers are below `count`. A damaged file may contain others.
   bool has_known_spheres(std::size_t count) const;
@@ -85,15 +85,15 @@ inline double mean(kernel::Int128 sum, std::int64_t count) {
   return count > 0 ? kernel::from_fixed_point(sum) / static_cast<double>(count) : 0.0;
 }
 
-/// Serializes a partial render to 32-bit words: a header, then a plane over all pixels for each word of each per-pixel
-/// number, or a single value if it is the same for all pixels.
-std::vector<std::uint32_t> to_words(const Partial& partial);
+/// Serializes sums to 32-bit words: a header, then a plane over all pixels for each word of each per-pixel number, or a
+/// single value if it is the same for all pixels.
+std::vector<std::uint32_t> to_words(const Sums& sums);
 
 /// Deserializes the result of to_words(). Words after the end are ignored as padding.
 ///
 /// Domain     any words; sphere indices in layers are not checked against a scene
-/// Errors     base::Error(kBadData) if the words are not a partial render of this size
-Partial from_words(const std::vector<std::uint32_t>& words, int width_px, int height_px);
+/// Errors     base::Error(kBadData) if the words are not sums of this size
+Sums from_words(const std::vector<std::uint32_t>& words, int width_px, int height_px);
 
 /// Pixels that have received samples.
 ///

@@ -58,7 +58,7 @@ class ProgressReporter {
 };
 
 /// Renders pixels up to their target sample counts, on all threads. Can be stopped at any time without losing samples.
-class ProgressiveSampling {
+class PassRenderer {
  public:
   /// Called for every pixel that has received samples, on the thread that rendered them.
   using OnPixel = std::function<void(int x, int y)>;
@@ -66,12 +66,12 @@ class ProgressiveSampling {
   /// Prepares the rendering of `state`; run() starts it.
   ///
   /// Domain     all arguments outlive this
-  ProgressiveSampling(const Settings& settings, const TileRenderer& render_tile, TilePool& pool,
-                      ProgressReporter& progress, film::Partial& state)
+  PassRenderer(const Settings& settings, const TileRenderer& render_tile, TilePool& pool, ProgressReporter& progress,
+               film::Sums& state)
       : settings_(settings), render_tile_(render_tile), pool_(pool), progress_(progress), state_(state) {}
 
-  /// Renders every pixel up to the state's goals, in squares of `side` pixels, in both halves if there are two. Takes
-  /// snapshots if the settings request them.
+  /// Renders every pixel up to the state's goals, in squares of `side` pixels, in both halves if there are two. Reports
+  /// the sums when a checkpoint is due.
   ///
   /// Result     false if cancelled by the settings' `cancel`; each pixel then has its old count or its goal
   bool run(int side, const OnPixel& on_pixel = {});
@@ -85,7 +85,7 @@ class ProgressiveSampling {
   const TileRenderer& render_tile_;
   TilePool& pool_;
   ProgressReporter& progress_;
-  film::Partial& state_;
+  film::Sums& state_;
 };
 
 /// The work of earlier runs plus that of this pool.
@@ -97,6 +97,6 @@ film::RenderWork work_so_far(const film::RenderWork& before, const TilePool& poo
 /// Result     false if cancelled by the settings' `cancel`
 bool render_progressively(const compile::CompiledScene& compiled, const Settings& settings,
                           const TileRenderer& render_tile, TilePool& pool, ProgressReporter& progress,
-                          film::Partial& state, Statistics& statistics);
+                          film::Sums& state, Statistics& statistics);
 
 }  // namespace orrery::render

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "film/partial.h"
+#include "film/sums.h"
 
 #include <algorithm>
 #include <bit>
@@ -119,15 +119,15 @@ class Reader {
   std::size_t at_ = 0;
 };
 
-/// Reads or writes all numbers of a partial render in file order, except sphere coverage, whose count varies by pixel.
+/// Reads or writes all numbers in file order, except sphere coverage, whose count varies by pixel.
 template <class Io, class P>
-void each_number(Io& io, P& partial) {
-  io.number(partial.work.paths);
-  io.number(partial.work.rays);
-  io.number(partial.work.bad_samples);
-  io.number(partial.work.seconds);
-  const std::size_t pixels = partial.pixel_count();
-  const auto arrays = [&](std::size_t most, auto&... sums) {
+void each_number(Io& io, P& sums) {
+  io.number(sums.work.paths);
+  io.number(sums.work.rays);
+  io.number(sums.work.bad_samples);
+  io.number(sums.work.seconds);
+  const std::size_t pixels = sums.pixel_count();
+  const auto arrays = [&](std::size_t most, auto&... all) {
     const auto array = [&](auto& of_pixels) {
       io.extent(of_pixels, pixels, most);
       const std::size_t of_pixel = of_pixels.size() / pixels;
@@ -135,11 +135,11 @@ void each_number(Io& io, P& partial) {
         io.elements(
             pixels, [&](std::size_t i) -> auto& { return of_pixels[i * of_pixel + k]; });
     };
-    (array(sums), ...);
+    (array(all), ...);
   };
-  auto& layers = partial.layers;
-  arrays(1, partial.light[0], partial.light[1], partial.guides[0], partial.guides[1]);
-  arrays(1, partial.largest, partial.counts, partial.goals);
+  auto& layers = sums.layers;
+  arrays(1, sums.light[0], sums.light[1], sums.guides[0], sums.guides[1]);
+  arrays(1, sums.largest, sums.counts, sums.goals);
   arrays(base::kMaxLightGroups * kernel::kLobes, layers.light);
   arrays(1, layers.squares, layers.normal, layers.albedo, layers.covered, layers.hit, layers.depth, layers.z,
          layers.position);
@@ -187,19 +187,19 @@ void read_shares(Reader& in, std::vector<std::vector<SphereCoverage>>& of_pixels
 
 }  // namespace
 
-std::vector<std::uint32_t> to_words(const Partial& partial) {
+std::vector<std::uint32_t> to_words(const Sums& sums) {
   std::vector<std::uint32_t> words;
   Writer out(words);
   for (const std::uint32_t v :
-       {kFormat, static_cast<std::uint32_t>(partial.width), static_cast<std::uint32_t>(partial.height)})
+       {kFormat, static_cast<std::uint32_t>(sums.width), static_cast<std::uint32_t>(sums.height)})
     out.number(v);
-  each_number(out, partial);
-  out.extent(partial.layers.shares, partial.pixel_count(), 1);
-  write_shares(out, partial.layers.shares);
+  each_number(out, sums);
+  out.extent(sums.layers.shares, sums.pixel_count(), 1);
+  write_shares(out, sums.layers.shares);
   return words;
 }
 
-Partial from_words(const std::vector<std::uint32_t>& words, int width_px, int height_px) {
+Sums from_words(const std::vector<std::uint32_t>& words, int width_px, int height_px) {
   Reader in(words);
   std::uint32_t format = 0, width = 0, height = 0;
   for (std::uint32_t* v : {&format, &width, &height}) in.number(*v);
@@ -209,17 +209,17 @@ Partial from_words(const std::vector<std::uint32_t>& words, int width_px, int he
     throw base::Error(base::ErrorKind::kBadData, "it is " + std::to_string(width) + " x " + std::to_string(height) +
                                                      " pixels, not " + std::to_string(width_px) + " x " +
                                                      std::to_string(height_px));
-  Partial partial(width_px, height_px);
-  each_number(in, partial);
+  Sums sums(width_px, height_px);
+  each_number(in, sums);
   const std::size_t pixels = math::pixel_count(width_px, height_px);
-  if (partial.light[0].size() != pixels || partial.counts.size() != pixels)
+  if (sums.light[0].size() != pixels || sums.counts.size() != pixels)
     throw base::Error(base::ErrorKind::kBadData, kInconsistent);
-  in.extent(partial.layers.shares, partial.pixel_count(), 1);
-  read_shares(in, partial.layers.shares);
+  in.extent(sums.layers.shares, sums.pixel_count(), 1);
+  read_shares(in, sums.layers.shares);
   const auto is_valid = [](float v) { return v >= 0 && v <= 3 * static_cast<float>(kernel::kLargestSample); };
-  if (!std::all_of(partial.largest.begin(), partial.largest.end(), is_valid))
+  if (!std::all_of(sums.largest.begin(), sums.largest.end(), is_valid))
     throw base::Error(base::ErrorKind::kBadData, kInconsistent);
-  return partial;
+  return sums;
 }
 
 }  // namespace orrery::film

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "film/partial.h"
+#include "film/sums.h"
 
 #include <gtest/gtest.h>
 
@@ -10,8 +10,8 @@
 namespace orrery::film {
 namespace {
 
-TEST(FilmPartial, ImageIsTheMeanOfTheSamples) {
-  Partial sums(3, 2);
+TEST(FilmSums, ImageIsTheMeanOfTheSamples) {
+  Sums sums(3, 2);
   for (const double v : {0.25, 0.5, 3.0}) {
     sums.light[0][5].rgb[0] += kernel::to_fixed_point(v);
     ++sums.light[0][5].weight;
@@ -23,10 +23,10 @@ TEST(FilmPartial, ImageIsTheMeanOfTheSamples) {
   EXPECT_EQ(picture.find("A")->values, std::vector<float>(6, 1.0F));
 }
 
-TEST(FilmPartial, HasTheArraysOfItsLayers) {
+TEST(FilmSums, HasTheArraysOfItsLayers) {
   LayerRequest z;
   z.z = true;
-  const Partial plain(3, 2), with_z(3, 2, z);
+  const Sums plain(3, 2), with_z(3, 2, z);
   EXPECT_TRUE(with_z.has_arrays_of(plain));
   EXPECT_FALSE(plain.has_arrays_of(with_z));
   EXPECT_EQ(plain.bytes(), 6 * (sizeof(kernel::PixelSum) + sizeof(std::uint32_t)));

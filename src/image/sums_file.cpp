@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "image/partial_file.h"
+#include "image/sums_file.h"
 
 #include <OpenImageIO/imageio.h>
 
@@ -15,7 +15,7 @@
 
 #include "base/error.h"
 #include "base/input_file.h"
-#include "film/partial.h"
+#include "film/sums.h"
 #include "image/exr_spec.h"
 #include "image/header.h"
 #include "image/library.h"
@@ -50,7 +50,7 @@ std::unique_ptr<ImageInput> open(const std::filesystem::path& file) {
 
 Provenance provenance_of(const ImageInput& in) {
   Provenance out;
-  const std::string prefix = kPartialPrefix;
+  const std::string prefix = kSumsPrefix;
   for (const OIIO::ParamValue& value : in.spec().extra_attribs) {
     const std::string name = value.name().string();
     if (name.starts_with(prefix)) out[name.substr(prefix.size())] = value.get_string();
@@ -60,20 +60,20 @@ Provenance provenance_of(const ImageInput& in) {
 
 }  // namespace
 
-void write_partial(const std::filesystem::path& file, const film::Picture& preview, const Header& header,
-                   const Provenance& provenance, const film::Partial& partial) {
+void write_sums(const std::filesystem::path& file, const film::Picture& preview, const Header& header,
+                const Provenance& provenance, const film::Sums& sums) {
   Header own = header;
-  for (const auto& [name, value] : provenance) own.attributes.push_back({kPartialPrefix + name, value});
-  std::vector<std::uint32_t> words = film::to_words(partial);
+  for (const auto& [name, value] : provenance) own.attributes.push_back({kSumsPrefix + name, value});
+  std::vector<std::uint32_t> words = film::to_words(sums);
   const auto row = static_cast<std::size_t>(std::min(preview.width, kMaxWordsInRow));
   words.resize((words.size() + row - 1) / row * row);
-  ImageSpec sums(static_cast<int>(row), static_cast<int>(words.size() / row), 1, TypeDesc::UINT32);
-  sums.channelnames = {"words"};
-  sums.attribute("compression", "rle");  // removes rows of zeros; the other rows are incompressible noise
-  sums.attribute("oiio:subimagename", kSumsName);
-  sums.full_width = preview.frame_width;
-  sums.full_height = preview.frame_height;
-  if (preview.pixel_aspect != 1) sums.attribute("PixelAspectRatio", static_cast<float>(preview.pixel_aspect));
+  ImageSpec stored(static_cast<int>(row), static_cast<int>(words.size() / row), 1, TypeDesc::UINT32);
+  stored.channelnames = {"words"};
+  stored.attribute("compression", "rle");  // removes rows of zeros; the other rows are incompressible noise
+  stored.attribute("oiio:subimagename", kSumsName);
+  stored.full_width = preview.frame_width;
+  stored.full_height = preview.frame_height;
+  if (preview.pixel_aspect != 1) stored.attribute("PixelAspectRatio", static_cast<float>(preview.pixel_aspect));
 
   std::vector<const film::Plane*> planes;
   ImageSpec shown(preview.width, preview.height, 4, TypeDesc::HALF);
@@ -89,7 +89,7 @@ void write_partial(const std::filesystem::path& file, const film::Picture& previ
   shown.attribute("oiio:subimagename", "rgba");
   WriteReport ignored;  // the final image gets its own report
   const std::vector<float> pixels = interleaved(preview, planes, {4, kHalfRange}, ignored);
-  WholePart shown_part{shown, pixels.data()}, sums_part{sums, words.data()};
+  WholePart shown_part{shown, pixels.data()}, sums_part{stored, words.data()};
   sums_part.type = TypeDesc::UINT32;
   write_whole(file, "openexr", TypeDesc::FLOAT, {shown_part, sums_part}, true);
 }
@@ -104,8 +104,8 @@ Provenance read_provenance(const std::filesystem::path& file) {
   return out;
 }
 
-PartialFile read_partial(const std::filesystem::path& file, int width_px, int height_px,
-                         const std::function<void(const Provenance&)>& check) {
+SumsFile read_sums(const std::filesystem::path& file, int width_px, int height_px,
+                   const std::function<void(const Provenance&)>& check) {
   require_digest(file);
   const auto in = open(file);
   Provenance provenance = provenance_of(*in);

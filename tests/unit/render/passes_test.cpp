@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "render/progressive_sampling.h"
+#include "render/passes.h"
 
 #include <gtest/gtest.h>
 
@@ -16,7 +16,7 @@
 #include "compile/compile.h"
 #include "compile/compiled_scene.h"
 #include "film/layers.h"
-#include "film/partial.h"
+#include "film/sums.h"
 #include "kernel/path_stream.h"
 #include "math/pixels.h"
 #include "render/render.h"
@@ -35,7 +35,7 @@ namespace {
 std::vector<float> rendered_in_pieces(const compile::CompiledScene& compiled, int side, int shards,
                                       bool one_lane = false) {
   const std::unique_ptr<accel::Accel> accel = accel::make_embree(compiled.view(), compiled.precision);
-  film::Partial film(compiled.width, compiled.height);
+  film::Sums film(compiled.width, compiled.height);
   std::vector<kernel::Tile> pieces;
   for (int shard = 0; shard < shards; ++shard)
     for (int y = 0; y < compiled.height; y += side)
@@ -67,7 +67,7 @@ compile::CompiledScene world_of_everything() {
   return compile::compile(scene);
 }
 
-/// Requests layers that use every field of a partial.
+/// Requests layers that use every field of film::Sums.
 Settings with_layers(Settings settings = {}) {
   film::LayerRequest& r = settings.layers;
   r.z = r.depth = r.normal = r.position = r.albedo = r.diffuse = r.specular = r.transmission = r.background = true;
@@ -79,8 +79,8 @@ Settings with_layers(Settings settings = {}) {
 }
 
 Settings in_rounds(Settings settings = {}) {
-  settings.sampling.noise = 0.02;
-  settings.sampling.unlimited = true;
+  settings.noise = 0.02;
+  settings.unlimited = true;
   return settings;
 }
 
@@ -100,22 +100,22 @@ void expect_same(const Result& a, const Result& b) {
 
 /// Renders with many interruptions; each start resumes from the serialized state of the last.
 Result interrupted(const compile::CompiledScene& compiled, Settings settings, int* starts) {
-  std::optional<film::Partial> from;
+  std::optional<film::Sums> from;
   std::minstd_rand random(7);
   for (;; ++*starts) {
     std::atomic<bool> cancel{false};
     std::atomic<int> tiles{static_cast<int>(random() % 3) + 2};
     settings.cancel = &cancel;
-    settings.snapshot_is_due = [&] {  // called before each tile
+    settings.checkpoint_is_due = [&] {  // called before each tile
       if (--tiles == 0) cancel = true;
       return false;
     };
     settings.threads = 1 + static_cast<int>(random() % 3);
     Result result = render(compiled, settings, std::move(from));
     if (result.completed) return result;
-    EXPECT_TRUE(result.partial);
-    if (!result.partial) return result;
-    from = film::from_words(film::to_words(*result.partial), compiled.width, compiled.height);
+    EXPECT_TRUE(result.sums);
+    if (!result.sums) return result;
+    from = film::from_words(film::to_words(*result.sums), compiled.width, compiled.height);
   }
 }
 
@@ -125,7 +125,7 @@ struct ReportedPixels {
       : width(compiled.width), rgb(3 * static_cast<std::size_t>(compiled.width * compiled.height)) {}
 
   void attach(Settings& settings) {
-    settings.on_pixels = [this](const film::Partial& state, const film::RenderedPixels& rendered) {
+    settings.on_pixels = [this](const film::Sums& state, const film::RenderedPixels& rendered) {
       for (const kernel::PixelPlace p : rendered.pixels) {
         EXPECT_TRUE(p.x >= 0 && p.x < rendered.width && p.y >= 0 && p.y < rendered.height);
         const int x = rendered.x + p.x, y = rendered.y + p.y;
@@ -144,7 +144,7 @@ struct ReportedPixels {
   std::vector<float> rgb;
 };
 
-TEST(RenderProgressiveSampling, ReportedPixelsAreThoseOfTheImageInTheEnd) {
+TEST(RenderPasses, ReportedPixelsAreThoseOfTheImageInTheEnd) {
   const compile::CompiledScene compiled = world_of_everything();
   for (Settings settings : {Settings(), with_layers(), in_rounds()}) {
     settings.threads = 3;
@@ -157,17 +157,17 @@ TEST(RenderProgressiveSampling, ReportedPixelsAreThoseOfTheImageInTheEnd) {
   }
 }
 
-TEST(RenderProgressiveSampling, AResumedRenderReportsTheEarlierPixels) {
+TEST(RenderPasses, AResumedRenderReportsTheEarlierPixels) {
   const compile::CompiledScene compiled = world_of_everything();
   Settings settings;
   Result finished = render(compiled, settings);  // nothing is left to render
   ReportedPixels reported(compiled);
   reported.attach(settings);
-  const Result result = render(compiled, settings, std::move(finished.partial));
+  const Result result = render(compiled, settings, std::move(finished.sums));
   EXPECT_EQ(reported.rgb, reported.of(result));
 }
 
-TEST(RenderProgressiveSampling, ResumedRendersGiveTheSameBits) {
+TEST(RenderPasses, ResumedRendersGiveTheSameBits) {
   scene::Scene scene = test::everything();
   scene.render.samples = 90;  // three passes
   const compile::CompiledScene compiled = compile::compile(scene);
@@ -178,24 +178,24 @@ TEST(RenderProgressiveSampling, ResumedRendersGiveTheSameBits) {
   }
 }
 
-TEST(RenderProgressiveSampling, SnapshotsAreCompleteAndChangeNoBits) {
+TEST(RenderPasses, CheckpointsAreCompleteAndChangeNoBits) {
   const compile::CompiledScene compiled = world_of_everything();
   for (const Settings& plain : {Settings{}, in_rounds()}) {
     Settings settings = plain;
     std::atomic<int> asked{0};  // called before every tile
     std::uint64_t last = 0;
-    int snapshots = 0;
-    settings.snapshot_is_due = [&] { return ++asked % 4 == 0; };
-    settings.on_snapshot = [&](const film::Partial& partial) {
-      ++snapshots;
+    int checkpoints = 0;
+    settings.checkpoint_is_due = [&] { return ++asked % 4 == 0; };
+    settings.on_checkpoint = [&](const film::Sums& sums) {
+      ++checkpoints;
       std::uint64_t paths = 0;
-      for (const std::uint32_t n : partial.counts) paths += n * (partial.is_adaptive() ? 2u : 1u);
-      EXPECT_EQ(partial.work.paths, paths);
+      for (const std::uint32_t n : sums.counts) paths += n * (sums.is_adaptive() ? 2u : 1u);
+      EXPECT_EQ(sums.work.paths, paths);
       EXPECT_GE(paths, last);
       last = paths;
     };
     expect_same(render(compiled, settings), render(compiled, plain));
-    EXPECT_GT(snapshots, 1);
+    EXPECT_GT(checkpoints, 1);
   }
 }
 
@@ -203,16 +203,16 @@ TEST(RenderPixelShard, ShardsAddUpToTheImageAndItsLayers) {
   const compile::CompiledScene compiled = world_of_everything();
   const Settings whole = with_layers();
   for (const int count : {2, 5}) {
-    film::Partial sum(compiled.width, compiled.height, whole.layers);
+    film::Sums sum(compiled.width, compiled.height, whole.layers);
     for (int i = 0; i < count; ++i) {
       for (const std::uint32_t begin : {0u, 6u}) {
         Settings settings = with_layers();
-        settings.sampling.shard = {i, count};
-        settings.sampling.sample_begin = begin;
-        settings.sampling.sample_end = begin == 0 ? 6 : 19;
+        settings.shard = {i, count};
+        settings.sample_begin = begin;
+        settings.sample_end = begin == 0 ? 6 : 19;
         const Result part = render(compiled, settings);
-        EXPECT_EQ(part.statistics.min_samples, settings.sampling.sample_end - begin);
-        sum.add(*part.partial);
+        EXPECT_EQ(part.statistics.min_samples, settings.sample_end - begin);
+        sum.add(*part.sums);
       }
     }
     const Result expected = render(compiled, whole);
@@ -222,7 +222,7 @@ TEST(RenderPixelShard, ShardsAddUpToTheImageAndItsLayers) {
   }
 }
 
-TEST(RenderProgressiveSampling, AnySplitGivesTheSameBits) {
+TEST(RenderPasses, AnySplitGivesTheSameBits) {
   const compile::CompiledScene compiled = world_of_everything();
   const std::vector<float> whole = test::plane_values(render(compiled, {}).picture);
   for (const int side : {1, 5, 32, 128})
@@ -230,7 +230,7 @@ TEST(RenderProgressiveSampling, AnySplitGivesTheSameBits) {
       EXPECT_EQ(rendered_in_pieces(compiled, side, shards), whole) << side << " pixels, " << shards << " shards";
 }
 
-TEST(RenderProgressiveSampling, OneLaneGivesTheSameBitsAsAll) {
+TEST(RenderPasses, OneLaneGivesTheSameBitsAsAll) {
   const compile::CompiledScene compiled = world_of_everything();
   EXPECT_EQ(rendered_in_pieces(compiled, 32, 1, true), test::plane_values(render(compiled, {}).picture));
 }
