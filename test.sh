@@ -32,8 +32,9 @@ if [ -z "${TMPDIR:-}" ] && [ "$(stat -f -c %T /dev/shm 2>/dev/null)" = tmpfs ] &
   trap 'rm -rf "$TMPDIR"' EXIT
 fi
 log=$root/build/test.log
-# A test that hangs is a failed test with a name. Without ctest's label summary the result is the last line.
-set -- --test-dir "$root/build" --no-tests=error --output-on-failure --no-label-summary --parallel "$(nproc)" \
+# A test that hangs is a failed test with a name. Without ctest's label summary the result is the last line. One test more
+# than there are CPUs, because some wait: for a job scheduler, a browser, or another process.
+set -- --test-dir "$root/build" --no-tests=error --output-on-failure --no-label-summary --parallel $(($(nproc) + 1)) \
   --timeout 900 --output-log "$log" "$@"
 say "Testing ..."
 begin=$SECONDS status=0

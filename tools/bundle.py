@@ -2,8 +2,8 @@
 # SPDX-License-Identifier: Apache-2.0
 """Bundles a build with the libraries that it needs: an archive that runs on any Linux, or a wheel of the Python package.
 
-    bundle.py archive BUILD FILE.tar.xz    tools/portable.sh
-    bundle.py wheel BUILD FOLDER           tools/wheel.sh; prints the file
+    bundle.py archive BUILD FILE.tar.xz [PRESET]    tools/portable.sh; PRESET is that of xz, 0 to 9
+    bundle.py wheel BUILD FOLDER                    tools/wheel.sh; prints the file
 
 The build has the targets orrery, orrery_static and, for the wheel, orrery_python, and stub libraries. Libraries come from
 Debian packages, whose licences are bundled. SOURCE_DATE_EPOCH is the time of all files, so that two builds of a commit
@@ -143,7 +143,7 @@ def add_shared(prefix, files):
     complete_sbom(packages, documents / "orrery.spdx.json")
 
 
-def make_archive(build, archive, work):
+def make_archive(build, archive, work, preset="6"):
     tree = work / archive.name.removesuffix(".tar.xz")
     install(build, tree, "runtime")
     shutil.copy(build / "src/orrery-static", tree / "bin/orrery")
@@ -175,7 +175,7 @@ def make_archive(build, archive, work):
     # The command is last: without it, an archive that was not unpacked completely cannot be started.
     command = tree / "bin/orrery"
     names = [tree, *sorted(path for path in tree.rglob("*") if path != command), command]
-    filters = [{"id": lzma.FILTER_X86}, {"id": lzma.FILTER_LZMA2, "preset": 6}]
+    filters = [{"id": lzma.FILTER_X86}, {"id": lzma.FILTER_LZMA2, "preset": int(preset)}]
     with lzma.open(archive, "wb", filters=filters) as packed, tarfile.open(fileobj=packed, mode="w", format=tarfile.GNU_FORMAT) as tar:
         for path in names:
             tar.add(path, path.relative_to(work), recursive=False, filter=entry)
@@ -281,7 +281,7 @@ def main():
     os.environ["LC_ALL"] = "C.UTF-8"
     (target.parent if kind == "archive" else target).mkdir(parents=True, exist_ok=True)
     with tempfile.TemporaryDirectory() as work:
-        {"archive": make_archive, "wheel": make_wheel}[kind](build, target, pathlib.Path(work))
+        {"archive": make_archive, "wheel": make_wheel}[kind](build, target, pathlib.Path(work), *sys.argv[4:])
 
 
 main()

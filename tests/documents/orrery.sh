@@ -38,6 +38,7 @@ done
 case ${words[0]:-} in
   plot) if ! $has_width; then words+=(--width "$(smaller 1920)" --height "$(smaller 1080)"); fi ;;
   render) if ! $has_width; then words+=(--width 96 --height 54); fi ;;
+  study) if ! $has_width; then words+=(--width 48 --height 27); fi ;;
   view)
     # Until it serves the page; then a signal ends it. INT is ignored in the background.
     address=$(mktemp)
