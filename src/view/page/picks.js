@@ -1,57 +1,55 @@
 // SPDX-License-Identifier: Apache-2.0
 // Particles that have been picked: marks over the picture, distances and angles, and what one does next.
 import { angle, distance, project, shortest } from "./camera.js";
-import { $, element, current, on, own, option, set, setStill, state, view } from "./store.js";
-import { center, setClicks, size } from "./picture.js";
-import { hasRules, equals, isWritable, setRule } from "./rules.js";
+import { $, current, element, on, onUpdate, option, own, set, setStill, state } from "./store.js";
+import { canvas, center, size } from "./picture.js";
+import { GHOST, equals, isWritable, setRule } from "./rules.js";
 import { showObject } from "./scene.js";
 import { toast } from "./toasts.js";
 
-const GHOST = "0.25";
 // Columns that say what a particle belongs to, and what all with the same value are called.
 const SCOPES = [[/^(residue_number|resid|res_id)$/i, "residue"], [/^(residue|resname)$/i, "kind of residue"],
                 [/^(chain|subchain|segment)$/i, "chain"], [/^(mol|molecule|mol_id|molecule-id)$/i, "molecule"],
                 [/^(cluster|cluster_id|grain_id|grain)$/i, "cluster"]];
-const SVG = "http://www.w3.org/2000/svg";
 
 let picks = [];       // up to three
 let isMeasuring = false;
 let scope = 0;
 let serial = 0;       // of requests: only the answer to the last one counts
 
-export const shortened = number => String(Number(number.toPrecision(6)));
+const shortened = number => String(Number(number.toPrecision(6)));
 
+// What is at a place of the picture; null: the background; undefined: it is not known.
 async function pick(event) {
-  const box = $("picture").getBoundingClientRect(), mine = ++serial;
-  const x = (event.clientX - box.left) / box.width, y = (event.clientY - box.top) / box.height;
-  const clamped = value => Math.max(0, Math.min(1, value)).toFixed(6);
-  const answer = await own(`pick?x=${clamped(x)}&y=${clamped(y)}`);
+  const box = canvas.getBoundingClientRect(), mine = ++serial;
+  const share = (place, length) => Math.max(0, Math.min(1, place / length)).toFixed(6);
+  const answer = await own(`pick?x=${share(event.clientX - box.left, box.width)}&y=${share(event.clientY - box.top, box.height)}`);
   if (!answer || mine !== serial) return undefined;
   if (answer.ok) return answer.json();
   toast(await answer.text(), { isError: true });
-  return undefined;
 }
 
-setClicks(async event => {
+on("click", async event => {
   const adds = isMeasuring || event.shiftKey;
   const picked = await pick(event);
   if (picked === undefined) return;
-  isMeasuring = false;
-  if (!picked) picks = adds ? picks : [];
-  else if (!adds) picks = [picked];
-  else if (!picks.some(one => one.title === picked.title)) picks = [...picks, picked].slice(-3);
-  scope = 0;
-  show();
-}, async event => {
-  const picked = await pick(event);
-  if (picked) center(picked.center);
+  const others = adds ? picks.filter(one => one.title !== picked?.title) : [];
+  keep(picked ? [...others, picked].slice(-3) : others);
 });
 
-export function clearPicks() {
-  picks = [];
+canvas.ondblclick = async event => {
+  const picked = await pick(event);
+  if (picked) center(picked.center);
+};
+
+function keep(picked) {
+  picks = picked;
   isMeasuring = false;
+  scope = 0;
   show();
 }
+
+export const clearPicks = () => keep([]);
 
 // ---- What it belongs to -------------------------------------------------------------------------------------------
 
@@ -64,12 +62,10 @@ function scopesOf(picked) {
     if (value !== undefined && isWritable(column, value)) out.push([label, also + equals(column, value), column]);
   };
   if (data.id) add("this one", data.id);
+  const chain = values.get("chain"), ofChain = chain !== undefined && isWritable("chain", chain) ? `${equals("chain", chain)} && ` : "";
   for (const [form, label] of SCOPES) {
     const column = [...values.keys()].find(name => form.test(name));
-    if (!column) continue;
-    const chain = [...values.keys()].find(name => name === "chain");
-    const also = label === "residue" && chain && isWritable(chain, values.get(chain)) ? `${equals(chain, values.get(chain))} && ` : "";
-    add(`${label} ${values.get(column)}`, column, also);
+    if (column) add(`${label} ${values.get(column)}`, column, label === "residue" ? ofChain : "");
   }
   for (const column of new Set([data.element, data.type])) if (column) add(`${column} ${values.get(column)}`, column);
   return out;
@@ -78,14 +74,14 @@ function scopesOf(picked) {
 // ---- Marks --------------------------------------------------------------------------------------------------------
 
 function svg(tag, attributes, text = "") {
-  const out = document.createElementNS(SVG, tag);
+  const out = document.createElementNS("http://www.w3.org/2000/svg", tag);
   for (const [name, value] of Object.entries(attributes)) out.setAttribute(name, value);
   out.textContent = text;
   return out;
 }
 
 // Draws the marks where the camera sees the particles.
-export function drawMarks() {
+function drawMarks() {
   const marks = $("marks"), camera = current(), { width, height } = size();
   if (!camera || picks.length === 0 || !width) return marks.replaceChildren();
   const places = picks.map(picked => project(camera, picked.center, width, height));
@@ -142,48 +138,47 @@ function show() {
   $("picked-values").replaceChildren(...rows(values));
   const scopes = scopesOf(last);
   scope = Math.min(scope, Math.max(scopes.length - 1, 0));
-  const chips = scopes.map(([label, condition], i) => {
-    const input = element("input", { type: "radio", name: "scope", id: `scope-${i}`, checked: i === scope });
-    input.addEventListener("change", () => { scope = i; show(); $(`scope-${i}`).focus(); });
-    return element("label", { className: "chip", title: condition }, input, label);
+  $("scopes").replaceChildren(element("legend", { textContent: "Acts on" }), ...scopes.map(scopeButton));
+  $("scopes").hidden = scopes.length === 0;
+  const measure = action("Measure", "Then click another one; or click it with Shift", () => {
+    isMeasuring = !isMeasuring;
+    show();
   });
-  $("scopes").replaceChildren(...chips);
-  $("scopes").hidden = chips.length === 0;
-  const action = (text, title, f, isPressed) => {
-    const button = element("button", { type: "button", textContent: text, title, "aria-pressed": isPressed });
-    button.addEventListener("click", f);
-    return button;
-  };
-  const [, condition, column] = scopes[scope] ?? [];
-  const select = one => setStill({ "--select": [...option("--select").filter(line => line !== one), one] });
-  const parts = [
-    action("Centre", "Turn about it from now on; double click", () => center(last.center)),
-    action("Measure", "Then click another one; or click it with Shift", () => { isMeasuring = !isMeasuring; show(); }, String(isMeasuring)),
-  ];
-  if (condition) {
-    parts.push(action("Hide", `--select '!(${condition})'; key Delete`, hidePicked),
-               action("Only", `--select '${condition}'`, () => select(condition)),
-               action("Ghost", `--opacity '${condition}: ${GHOST}'`, () => setRule("--opacity", condition, GHOST)),
-               action("Colour by", `--color-by ${column}`, () => set({ "--color-by": column })),
-               action("Label", `--label '${condition}: ...'`, () => {
-                 const value = new Map(last.values).get(column);
-                 set({ "--label": [...option("--label"), `${condition}: ${value}`] });
-               }));
-    if (hasRules("--representation"))
-      parts.push(kinds(condition));
-  }
-  $("picked-actions").replaceChildren(...parts);
+  measure.setAttribute("aria-pressed", String(isMeasuring));
+  $("picked-actions").replaceChildren(action("Centre", "Turn about it from now on; double click", () => center(last.center)), measure,
+                                      ...scopes.length > 0 ? actions(last, scopes[scope]) : []);
   showObject(last);
   drawMarks();
+}
+
+const action = (textContent, title, onclick) => element("button", { type: "button", textContent, title, onclick });
+
+function scopeButton([label, condition], i) {
+  const choose = () => {
+    scope = i;
+    show();
+    $(`scope-${i}`).focus();
+  };
+  const input = element("input", { type: "radio", name: "scope", id: `scope-${i}`, checked: i === scope, onchange: choose });
+  return element("label", { className: "chip", title: condition }, input, label);
+}
+
+// What can be done with the set that a picked particle stands for.
+function actions(picked, [, condition, column]) {
+  const select = one => setStill({ "--select": [...option("--select").filter(line => line !== one), one] });
+  const label = `${condition}: ${new Map(picked.values).get(column)}`;
+  return [action("Hide", `--select '!(${condition})'; key Delete`, hidePicked),
+          action("Only", `--select '${condition}'`, () => select(condition)),
+          action("Ghost", `--opacity '${condition}: ${GHOST}'`, () => setRule("--opacity", condition, GHOST)),
+          action("Colour by", `--color-by ${column}`, () => set({ "--color-by": column })),
+          action("Label", `--label '${label}'`, () => set({ "--label": [...option("--label"), label] })), kinds(condition)];
 }
 
 // Shows the set as another representation.
 function kinds(condition) {
   const names = ["spheres", "ball-and-stick", "sticks", "trace", "points"];
-  const list = element("select", { "aria-label": "Representation of these" }, element("option", { value: "", textContent: "As ..." }),
-                       ...names.map(value => element("option", { value, textContent: value })));
-  list.addEventListener("change", () => setRule("--representation", condition, list.value));
-  return list;
+  return element("select", { "aria-label": "Representation of these", onchange: event => setRule("--representation", condition, event.target.value) },
+    element("option", { value: "", textContent: "As ..." }), ...names.map(value => element("option", { value, textContent: value })));
 }
 
 export function hidePicked() {
@@ -193,13 +188,11 @@ export function hidePicked() {
   setStill({ "--select": [...option("--select"), `!(${condition})`] });
 }
 
-$("picked-close").addEventListener("click", clearPicks);
-let shownFrame = "";
-on("view", () => {
-  const frame = String(view.options["--frame"] ?? "");
-  if (frame !== shownFrame && picks.length > 0) clearPicks();  // they have moved
-  shownFrame = frame;
+$("picked-close").onclick = clearPicks;
+let frame = "";
+onUpdate(() => {
+  if (frame !== option("--frame")) clearPicks();  // they have moved
+  frame = option("--frame");
   drawMarks();
 });
-on("state", drawMarks);
 window.addEventListener("resize", drawMarks);

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // The picture: its place in the window, its images, and what pointer, wheel and keys do to the camera.
 import { alongAxis, centerOn, orbit, pan, roll, zoom } from "./camera.js";
-import { $, current, look, move, on, onImage, option, release, state, view } from "./store.js";
+import { $, current, emit, isPlaying, look, move, onImage, onUpdate, option, release, state, view } from "./store.js";
 
 export const canvas = $("picture");
 const context = canvas.getContext("2d");
@@ -20,23 +20,19 @@ function layout() {
   const stage = $("stage").getBoundingClientRect();
   const width = Number(option("--width")) || state?.width || stage.width;
   const height = Number(option("--height")) || state?.height || stage.height;
-  const scale = view.fills ? 1 : Math.min(stage.width / width, stage.height / height);
+  const scale = Math.min(stage.width / width, stage.height / height);
   const [w, h] = view.fills ? [stage.width, stage.height] : [width * scale, height * scale];
-  const { style } = $("place");
+  const { style, dataset } = $("place");
+  dataset.size = `${width} × ${height}`;
   style.width = `${w}px`;
   style.height = `${h}px`;
   style.left = `${(stage.width - w) / 2}px`;
   style.top = `${(stage.height - h) / 2}px`;
   $("stage").classList.toggle("framed", !view.fills);
 }
-on("view", layout);
-on("state", layout);
+onUpdate(layout);
 
 // ---- Images -------------------------------------------------------------------------------------------------------
-
-// An image that replaces the drawn one while frames are played: see time.js.
-let takes = null;
-export const setTaker = f => { takes = f; };
 
 let fading = 0;
 export function draw(bitmap, fades) {
@@ -60,7 +56,7 @@ export function draw(bitmap, fades) {
 }
 
 onImage(async image => {
-  if (takes?.(image)) return;
+  if (isPlaying) return;
   const bitmap = await createImageBitmap(image.blob);
   // Sketches are small, and have the shape of the finished image but for rounding.
   const height = canvas.width * bitmap.height / bitmap.width;
@@ -77,7 +73,6 @@ onImage(async image => {
 // ---- Pointer and wheel --------------------------------------------------------------------------------------------
 
 const pointers = new Map();
-export const isTouched = () => pointers.size > 0;
 
 function spread() {
   const [a, b] = [...pointers.values()];
@@ -86,11 +81,6 @@ function spread() {
 }
 
 let pressed = null;  // where the last pointer was pressed; null once it has been dragged
-let onClick = () => {}, onDoubleClick = () => {};
-export function setClicks(click, doubleClick) {
-  onClick = click;
-  onDoubleClick = doubleClick;
-}
 
 canvas.addEventListener("pointerdown", event => {
   canvas.setPointerCapture(event.pointerId);
@@ -122,12 +112,11 @@ canvas.addEventListener("pointermove", event => {
 
 function released(event) {
   if (!pointers.delete(event.pointerId) || pointers.size > 0) return;
-  if (pressed && event.type === "pointerup") onClick(event);
+  if (pressed && event.type === "pointerup") emit("click", event);
   else release();
 }
 canvas.addEventListener("pointerup", released);
 canvas.addEventListener("pointercancel", released);
-canvas.addEventListener("dblclick", event => onDoubleClick(event));
 canvas.addEventListener("contextmenu", event => event.preventDefault());
 canvas.addEventListener("wheel", event => {
   event.preventDefault();

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Conditions on columns as text, and the options that hold them: --select, and those of the form CONDITION: VALUE.
-import { command, option, setStill, state } from "./store.js";
+import { option, setStill, state } from "./store.js";
 
 export const nameOf = column => /^[A-Za-z_][A-Za-z0-9_.]*(\[\d+\])*$/.test(column) ? column : `\`${column}\``;
 export const isText = column => state?.data?.columns.find(([name]) => name === column)?.[1] === "text";
@@ -67,6 +67,8 @@ export const setAlone = (column, value) =>
 
 // ---- Rules: CONDITION: VALUE --------------------------------------------------------------------------------------
 
+export const GHOST = "0.25";  // opacity of what is translucent
+
 // The values of an option without a condition, and its rules. A colon within brackets or quotes is none of a rule.
 const isRule = text => /:/.test(text.replace(/"[^"]*"|'[^']*'|`[^`]*`|\[[^\]]*\]/g, ""));
 export const baseOf = name => [option(name)].flat().find(one => !isRule(one)) ?? "";
@@ -81,10 +83,7 @@ export const ruleValue = (name, condition) =>
   rulesOf(name).find(rule => rule.startsWith(`${condition}: `))?.slice(condition.length + 2) ?? "";
 
 // Sets the value under a condition; "": none.
-export function setRule(name, condition, value, moves) {
+export function setRule(name, condition, value) {
   const rest = option(name).filter(rule => !rule.startsWith(`${condition}: `));
-  setStill({ [name]: value === "" ? rest : [...rest, `${condition}: ${value}`] }, moves);
+  setStill({ [name]: value === "" ? rest : [...rest, `${condition}: ${value}`] });
 }
-
-// Whether an option takes values under conditions.
-export const hasRules = name => command(name) && Array.isArray(option(name));

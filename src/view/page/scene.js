@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // The objects of a scene, by name, from the text of the scene: each key is a setting.
-import { element, option, own, set } from "./store.js";
+import { $, command, element, on, onUpdate, option, own, set, state } from "./store.js";
 
 // The keys of an inline table.
 const keysOf = text => [...text.matchAll(/([\w.-]+) = (\[.*?\]|\{.*?\}|"[^"]*"|[^,}]+)/g)].map(([, key, value]) => [key, value.trim()]);
@@ -21,11 +21,12 @@ function tablesOf(text) {
 const settingOf = key => option("--set").find(line => line.startsWith(`${key}=`))?.slice(key.length + 1);
 
 function field(key, value) {
-  const input = element("input", { type: "text", value: settingOf(key) ?? value, spellcheck: false, "aria-label": key, title: `--set ${key}=...` });
-  input.addEventListener("change", () => {
-    const others = option("--set").filter(line => !line.startsWith(`${key}=`)), typed = input.value.trim();
+  const change = event => {
+    const others = option("--set").filter(line => !line.startsWith(`${key}=`)), typed = event.target.value.trim();
     set({ "--set": typed === "" || typed === value ? others : [...others, `${key}=${typed}`] });
-  });
+  };
+  const input = element("input", { type: "text", spellcheck: false, "aria-label": key, title: `--set ${key}=...`, onchange: change });
+  onUpdate(() => { if (document.activeElement !== input) input.value = settingOf(key) ?? value; });
   return input;
 }
 
@@ -34,25 +35,29 @@ function object([name, keys]) {
   const material = keys.find(([key]) => key === "material")?.[1].replaceAll('"', "");
   const out = element("details", { className: "object" }, element("summary", { textContent: [named ?? name, material].filter(Boolean).join(" · ") }));
   out.dataset.name = name;
-  out.addEventListener("toggle", () => {  // a scene may have many
+  out.ontoggle = () => {  // a scene may have many
     if (out.open && out.childElementCount === 1)
       out.append(...keys.map(([key, value]) => element("label", { className: "row" }, element("span", { textContent: key }), field(`${name}.${key}`, value))));
-  });
+  };
   return out;
 }
 
 const GROUPS = [["Materials", /^material\./], ["Light and background", /^(background|light)/], ["Camera and image", /^(camera|image|color|render|annotation|animation)/],
                 ["Layers", /^output/], ["Data", /^(points|rods)/], ["Spheres", /^sphere/], ["Rods", /^rod\[/]];
 
-export async function listObjects(list) {
+let isListed = false;
+async function listObjects() {
+  if (isListed || !state?.served || command("--color-by")) return;
+  isListed = true;
   const answer = await own("scene.toml?brief");
   if (!answer?.ok) return;
   const tables = tablesOf(await answer.text());
   for (const [title, form] of GROUPS) {
     const found = tables.filter(([name]) => form.test(name));
-    if (found.length > 0) list.append(element("h4", { textContent: title }), ...found.map(object));
+    if (found.length > 0) $("objects").append(element("h3", { textContent: title }), ...found.map(object));
   }
 }
+on("state", listObjects);
 
 // Opens a picked object, such as "sphere[3]", and its material.
 export function showObject(picked) {

@@ -18,9 +18,15 @@ export function element(tag, properties = {}, ...children) {
 }
 
 const target = new EventTarget();
-const emit = (name, detail) => target.dispatchEvent(new CustomEvent(name, { detail }));
-// Events: "view", the state of the page has changed; "state", that of the program; "image"; "settled"; "problem".
+export const emit = (name, detail) => target.dispatchEvent(new CustomEvent(name, { detail }));
+// Events: "view", the state of the page has changed; "state", that of the program; "settled"; "problem"; "click", on the picture.
 export const on = (name, f) => target.addEventListener(name, event => f(event.detail));
+// Calls a function now, and when the state of the page or of the program has changed.
+export function onUpdate(f) {
+  on("view", f);
+  on("state", f);
+  f();
+}
 
 export const UNREACHABLE = "orrery has ended, or cannot be reached.";
 const SETTLED_ms = 250;       // after the last step of the wheel or of a key
@@ -123,7 +129,7 @@ function settled() {
 
 // ---- Changes ------------------------------------------------------------------------------------------------------
 
-export const control = name => page.options.find(option => option.name === name);
+export const control = name => page?.options.find(option => option.name === name);
 export const option = name => view.options[name] ?? (control(name)?.repeatable ? [] : "");
 export const command = name => Boolean(control(name));
 
@@ -146,6 +152,7 @@ export function set(changes, moves = false) {
     delete options[name];
     if (!isEmpty(value)) options[name] = value;
     if (FITTED.has(name)) view.camera = null;
+    if (name === "--color-by" && !("--range" in changes)) delete options["--range"];
     if (name === "--quality") for (const other of ["--noise", "--samples", "--denoise"]) delete options[other];
     if ((name === "--noise" || name === "--samples") && !isEmpty(value)) delete options["--quality"];
     lastOption = name;
@@ -161,13 +168,18 @@ export function setStill(changes, moves) {
 }
 
 let settling = 0;
-// Shows another camera; null: that of the data. `isDragging`: release() follows.
-export function move(camera, isDragging) {
-  view = { ...view, camera };
+// Asks for a sketch. `isHeld`: release() follows.
+function sketch(isHeld) {
   clearTimeout(settling);
-  if (!isDragging) settling = setTimeout(() => changed(false), SETTLED_ms);
+  if (!isHeld) settling = setTimeout(() => changed(false), SETTLED_ms);
   emit("view");
   wish(true);
+}
+
+// Shows another camera; null: that of the data.
+export function move(camera, isHeld) {
+  view = { ...view, camera };
+  sketch(isHeld);
 }
 
 export function look(camera) {
@@ -186,6 +198,12 @@ function changed(moves) {
   wish(moves);
 }
 
+// Whether the scene of the last change has been read.
+export const isRead = () => Boolean(state?.camera) && state.asked === lastWish && !isSending && !isMoving && !state.activity && !state.problem;
+
+// Why the last change cannot be shown; "": it can, or was stopped.
+export const problem = () => state && state.problem !== "stopped" ? state.problem : "";
+
 // The camera that a move starts from.
 export const current = () => view.camera ?? state?.camera ?? null;
 
@@ -193,7 +211,7 @@ export const current = () => view.camera ?? state?.camera ?? null;
 
 export function textOf({ options, camera, fills }) {
   const out = new URLSearchParams();
-  for (const [name, value] of Object.entries(options)) {
+  for (const [name, value] of Object.entries(options).sort()) {
     if (fills && (name === "--width" || name === "--height")) continue;
     for (const one of [value].flat()) out.append(name.slice(2), one === true ? "" : one);
   }
@@ -227,26 +245,23 @@ function record() {
 
 export const canStep = by => steps[step + by] !== undefined;
 
-export function undo(by = -1) {
-  if (!canStep(by)) return;
-  step += by;
-  view = viewOf(steps[step]);
-  if (!isFramed) history.replaceState(null, "", `#${steps[step]}`);
-  changed(false);
-}
-
 export function restore(text) {
   view = viewOf(text);
   changed(false);
 }
 
-window.addEventListener("popstate", () => {
+export function undo(by = -1) {
+  if (!canStep(by)) return;
+  step += by;
+  if (!isFramed) history.replaceState(null, "", `#${steps[step]}`);
+  restore(steps[step]);
+}
+
+window.onpopstate = () => {
   const text = location.hash.slice(1), known = steps.lastIndexOf(text);
-  if (text === textOf(view)) return;
   if (known >= 0) step = known;
-  view = viewOf(text);
-  changed(false);
-});
+  if (text !== textOf(view)) restore(text);
+};
 
 // ---- Size ---------------------------------------------------------------------------------------------------------
 
@@ -264,15 +279,11 @@ export function resize(size) {
   set(size ? { "--width": String(size[0]), "--height": String(size[1]) } : windowSize());
 }
 
-let resizing = 0;
 function followWindow() {
-  const size = windowSize();
-  emit("view");
-  if (!view.fills || (size["--width"] === option("--width") && size["--height"] === option("--height"))) return;
+  const size = windowSize(), isOther = view.fills && Object.entries(size).some(([name, value]) => value !== option(name));
+  if (!isOther) return emit("view");
   view = { ...view, options: { ...view.options, ...size } };
-  wish(true);
-  clearTimeout(resizing);
-  resizing = setTimeout(() => wish(false), SETTLED_ms);
+  sketch(false);
 }
 
 // The page may move to a screen with other pixels.
@@ -313,8 +324,7 @@ async function showFrames() {
 const listeners = [];
 // Adds what is done with an image before the next one is asked for.
 export const onImage = f => listeners.push(f);
-let isPlaying = false;
-// While frames are played, the state of each is wanted.
+export let isPlaying = false;  // frames, of which each state is wanted, and whose images time.js shows
 export const setPlaying = value => { isPlaying = value; };
 
 async function showState() {
@@ -328,17 +338,14 @@ async function showState() {
     return;
   }
   const isCurrent = isOwn && told.asked === lastWish && !isSending && !next;
-  if (isCurrent && told.problem) granted = Math.max(granted, told.served);
+  if (isOwn && told.problem) granted = Math.max(granted, told.served);  // its answer may still be under way
   state = told;
   if (isCurrent) {  // the program may have corrected the wish
-    const options = normalized(told.options);
-    if (!isMoving && JSON.stringify(sorted(options)) !== JSON.stringify(sorted(view.options))) view = { ...view, options };
+    if (!isMoving) view = { ...view, options: normalized(told.options) };
     if (told.fitted && !told.activity) view = { ...view, camera: null };
   }
   emit("state", isOwn);
 }
-
-const sorted = options => Object.entries(options).sort(([a], [b]) => a < b ? -1 : 1);
 
 document.addEventListener("visibilitychange", () => {
   if (!document.hidden && state && state.client !== client && !isSettled()) wish(false);

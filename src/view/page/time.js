@@ -1,15 +1,16 @@
 // SPDX-License-Identifier: Apache-2.0
 // The frames of a trajectory: timeline and play. Frames that were rendered are kept, and further ones are rendered ahead
 // of the one that is shown, so that a loop is smooth.
-import { $, current, on, option, set, setPlaying, state, view, wanted, wish } from "./store.js";
+import { $, current, isPlaying, on, onImage, onUpdate, option, problem, set, setPlaying, state, view, wanted, wish } from "./store.js";
 import { frameNumber } from "./data.js";
-import { canvas, draw, setTaker } from "./picture.js";
+import { canvas, draw } from "./picture.js";
+import { toast } from "./toasts.js";
 
 const AHEAD = 60;             // frames
 const MOST_BYTES = 256 << 20;
 const cache = new Map();      // images by frame
 let cached = "", bytes = 0;   // of which state the images are
-let isPlaying = false, shown = 1, asked = 0, timer = 0, held = "";
+let shown = 1, asked = 0, timer = 0, held = "";
 
 const count = () => state?.frames ?? 1;
 const key = () => JSON.stringify({ ...view, camera: current(), options: { ...view.options, "--frame": "", "--frames": "" } });
@@ -46,8 +47,8 @@ function render() {
 
 async function display(frame) {
   shown = frame;
-  const bitmap = await createImageBitmap(cache.get(frame));
-  if (frame === shown) draw(bitmap);
+  const blob = cache.get(frame), bitmap = blob && await createImageBitmap(blob);
+  if (bitmap && frame === shown) draw(bitmap);
   tell();
 }
 
@@ -59,22 +60,28 @@ function tick() {
   if (asked === 0) render();
 }
 
-function takes({ blob, isLast }) {
-  if (!isPlaying) return false;
+onImage(({ blob, isLast }) => {
+  if (!isPlaying) return;
   canvas.dataset.played = asked;
-  if (asked > 0 && isLast) {
-    keep();
-    cache.set(asked, blob);
-    bytes += blob.size;
-    render();
-  }
-  return true;
+  if (asked > 0 && isLast) add(blob);
+});
+
+function add(blob) {
+  keep();
+  cache.set(asked, blob);
+  bytes += blob?.size ?? 0;
+  render();
 }
 
+// A frame that cannot be shown is left out.
+on("state", () => {
+  if (!isPlaying || asked === 0 || !problem()) return;
+  toast(problem(), { isError: true });
+  add(null);
+});
+
 function start() {
-  isPlaying = true;
   setPlaying(true);
-  setTaker(takes);
   shown = frameNumber();
   view.camera = current();
   const { "--range": range } = state.chosen;
@@ -86,9 +93,7 @@ function start() {
 }
 
 function stop() {
-  isPlaying = false;
   setPlaying(false);
-  setTaker(null);
   clearTimeout(timer);
   delete view.options["--frames"];
   show(shown);
@@ -113,24 +118,27 @@ export function step(by) {
 function tell() {
   const isMany = count() > 1, frame = isPlaying ? shown : frameNumber();
   $("time").hidden = !isMany;
-  document.body.classList.toggle("timed", isMany);
   if (!isMany) return;
   $("play").textContent = isPlaying ? "❚❚" : "▶";
   $("play").setAttribute("aria-label", isPlaying ? "Pause" : "Play");
   $("frame").max = count();
   if (document.activeElement !== $("frame") || isPlaying) $("frame").value = frame;
-  const words = [`frame ${frame} / ${count()}`], data = state.data;
-  if (!isPlaying && data?.step !== undefined && state.asked === Number(canvas.dataset.asked)) words.push(`step ${data.step.toLocaleString("en")}`);
-  if (!isPlaying) for (const [name, value] of data?.header ?? []) if (/^time$/i.test(name)) words.push(`time ${Number(value.toPrecision(6))}`);
+  const words = [`frame ${frame} / ${count()}`], data = isPlaying || problem() || state.asked !== Number(canvas.dataset.asked) ? null : state.data;
+  if (data?.step !== undefined) words.push(`step ${data.step.toLocaleString("en")}`);
+  for (const [name, value] of data?.header ?? []) if (/^time$/i.test(name)) words.push(`time ${Number(value.toPrecision(6))}`);
   $("frame-number").value = words.join(" · ");
   const share = cached === key() ? cache.size / count() : 0;
   $("ahead").style.width = `${100 * share}%`;
 }
 
-$("frame").addEventListener("input", () => { if (isPlaying) shown = Number($("frame").value); else show(Number($("frame").value), true); });
-$("frame").addEventListener("change", () => { if (!isPlaying) show(Number($("frame").value)); });
-$("play").addEventListener("click", toggle);
-$("previous").addEventListener("click", () => step(-1));
-$("next").addEventListener("click", () => step(1));
-on("state", tell);
-on("view", tell);
+function slide(moves) {
+  const frame = Number($("frame").value);
+  if (isPlaying) shown = frame;
+  else show(frame, moves);
+}
+$("frame").oninput = () => slide(true);
+$("frame").onchange = () => slide(false);
+$("play").onclick = toggle;
+$("previous").onclick = () => step(-1);
+$("next").onclick = () => step(1);
+onUpdate(tell);

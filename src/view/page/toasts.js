@@ -4,27 +4,21 @@ import { $, element } from "./store.js";
 
 const SHORT_ms = 4000;
 
-// Shows a message once. `action`: [label, function]. Returns a function that removes it.
-export function toast(text, { isError = false, action = null, key = text } = {}) {
-  const box = $(isError ? "errors" : "notices");
-  for (const old of box.children) if (old.dataset.key === key) old.remove();
-  const close = element("button", { type: "button", className: "icon", textContent: "×", "aria-label": "Dismiss" });
-  const out = element("div", { className: "toast" }, element("p", { textContent: text }));
-  out.dataset.key = key;
-  if (action) {
-    const button = element("button", { type: "button", textContent: action[0] });
-    button.addEventListener("click", action[1]);
-    out.append(button);
-  }
-  out.append(close);
-  close.addEventListener("click", () => out.remove());
-  box.append(out);
-  if (!isError) setTimeout(() => out.remove(), SHORT_ms);
-  return () => out.remove();
-}
-
 export function dismiss(key) {
   for (const one of document.querySelectorAll(".toast")) if (one.dataset.key === key) one.remove();
+}
+
+// Shows a message once. `action`: [label, function].
+export function toast(text, { isError = false, action = null, key = text } = {}) {
+  const box = $(isError ? "errors" : "notices");
+  dismiss(key);
+  const remove = () => out.remove();
+  const out = element("div", { className: "toast" }, element("p", { textContent: text }));
+  out.dataset.key = key;
+  if (action) out.append(element("button", { type: "button", textContent: action[0], onclick: action[1] }));
+  out.append(element("button", { type: "button", className: "icon", textContent: "×", "aria-label": "Dismiss", onclick: remove }));
+  box.append(out);
+  if (!isError) setTimeout(remove, SHORT_ms);
 }
 
 export async function copy(text, what) {

@@ -1,75 +1,67 @@
 // SPDX-License-Identifier: Apache-2.0
 // The page: tabs, actions, status, exports, keys.
 import "./legend.js";
+import { makeDataControls } from "./data.js";
 import { fit, cameraKey, canvas, lookAlong } from "./picture.js";
 import { clearPicks, hidePicked } from "./picks.js";
 import { makePanel } from "./panel.js";
-import { $, ask, canStep, command, current, element, isSettled, on, onImage, option, own, page, resize, restore, start,
-         state, textOf, undo, UNREACHABLE, view, wanted } from "./store.js";
+import { $, ask, canStep, command, current, element, isSettled, on, onImage, onUpdate, option, own, page, problem, resize, restore, start, state, textOf,
+         undo, UNREACHABLE, view, wanted } from "./store.js";
 import { copy, dismiss, toast } from "./toasts.js";
 import * as time from "./time.js";
 
-const SIZES = [[640, 360], [1280, 720], [1920, 1080], [3840, 2160], [1080, 1080], [1080, 1920]];
 const TABS = ["data", "look", "camera", "annotate", "export"];
 
 // ---- Tabs ---------------------------------------------------------------------------------------------------------
 
 function openTab(id) {
-  $(`for-${id}`).checked = true;
+  const radio = $(`for-${id}`);
+  if (radio.parentElement.hidden) return;
+  radio.checked = true;
   for (const other of TABS) $(`tab-${other}`).hidden = other !== id;
 }
-for (const id of TABS) $(`for-${id}`).addEventListener("change", () => openTab(id));
+for (const id of TABS) $(`for-${id}`).onchange = () => openTab(id);
 
 // ---- Status -------------------------------------------------------------------------------------------------------
 
-let quality = "";  // of the image that is shown, in words
+// The image that is shown, in words.
+const QUALITY = [[1, "Sketch"], [4, "Refining"], [16, "Refining: good enough to look at"], [64, "Refining: good enough for a talk"], [Infinity, "Refining: good enough for print"]];
+let quality = "";
 onImage(({ samples, noise, isFinished }) => {
-  quality = isFinished ? "Done" : samples <= 1 ? "Sketch" : samples < 4 ? "Refining" : samples < 16 ? "Refining: good enough to look at"
-    : samples < 64 ? "Refining: good enough for a talk" : "Refining: good enough for print";
+  quality = isFinished ? "Done" : QUALITY.find(([most]) => samples <= most)[1];
   $("status").title = `${samples} samples per pixel${noise ? `, noise ${noise}` : ""}`;
   tellStatus();
 });
 
 function tellStatus() {
-  const { activity = "reading", progress = 0, problem = "" } = state ?? {};
-  const isBusy = !isSettled(), isPreparing = isBusy && activity !== "";
-  const words = { reading: `Reading ${page?.title ?? ""}`, "building the BVH": "Preparing the particles" };
-  const text = problem ? (problem === "stopped" ? "Stopped" : "The last change has a problem") : isPreparing ? words[activity] ?? activity : quality || "Starting";
+  const { activity = "reading", progress = 0 } = state ?? {}, isPreparing = !isSettled() && activity !== "";
+  const doing = { reading: `Reading ${page?.title ?? ""}`, "building the BVH": "Preparing the particles" }[activity] ?? activity;
+  const text = problem() ? "The last change has a problem" : state?.problem ? "Stopped" : isPreparing ? doing : quality || "Starting";
   if ($("status").textContent !== text) $("status").textContent = text;
-  $("progress").hidden = !isBusy;
-  $("stop").hidden = !isBusy;
+  $("progress").hidden = $("stop").hidden = isSettled();
   if (isPreparing && progress > 0) $("progress").value = progress;
   else $("progress").removeAttribute("value");
   $("undo").disabled = !canStep(-1);
   $("redo").disabled = !canStep(1);
 }
 on("settled", tellStatus);
-on("state", () => {
-  $("problem").textContent = canvas.dataset.problem = state.problem;
-  if (state.problem && state.problem !== "stopped") {
-    const isSeen = [...document.querySelectorAll(".message")].some(one => !one.hidden && one.offsetParent);
-    if (!isSeen) toast(state.problem, { isError: true, key: "problem" });
-  } else {
-    dismiss("problem");
-  }
+function tellState() {
+  canvas.dataset.problem = state.problem;
+  dismiss("problem");
+  // The section of the option has it as well, but may be out of sight.
+  if (problem() && ![...document.querySelectorAll(".message")].some(one => one.offsetParent)) toast(problem(), { isError: true, key: "problem" });
   $("command").value = state.command;
-  const notes = [...state.warnings, ...state.notes];
-  if ($("notes").dataset.text !== notes.join("\n")) {
-    $("notes").dataset.text = notes.join("\n");
-    $("notes").replaceChildren(...notes.map(note => element("li", { textContent: note })));
-  }
+  $("notes").replaceChildren(...[...state.warnings, ...state.notes].map(note => element("li", { textContent: note })));
+  $("film-kind").options[0].disabled = !(state.frames > 1);
   tellStatus();
-});
-on("busy", told => { if (!isSettled()) $("status").textContent = `Another page is being rendered${told.activity ? `: ${told.activity}` : ""}`; });
+}
+on("busy", ({ activity }) => { if (!isSettled()) $("status").textContent = `Another page is being rendered${activity ? `: ${activity}` : ""}`; });
 on("command", text => { $("command").value = text; });
 on("problem", text => toast(text, { isError: true }));
 on("reachable", isReachable => {
   if (isReachable) dismiss("ended");
   else toast(UNREACHABLE, { isError: true, key: "ended", action: ["Copy command", copyCommand] });
 });
-$("stop").addEventListener("click", () => ask("cancel", {}));
-$("undo").addEventListener("click", () => undo());
-$("redo").addEventListener("click", () => undo(1));
 
 // ---- Exports ------------------------------------------------------------------------------------------------------
 
@@ -88,16 +80,12 @@ async function download(file) {
 }
 
 function makeSizes() {
-  const list = $("size"), name = (w, h) => `${w} × ${h}`;
-  list.append(element("option", { value: "", textContent: "as the window" }), ...SIZES.map(([w, h]) => element("option", { value: `${w} ${h}`, textContent: name(w, h) })));
-  list.addEventListener("change", () => resize(list.value ? list.value.split(" ").map(Number) : null));
-  for (const field of [$("width"), $("height")])
-    field.addEventListener("change", () => resize([$("width").value, $("height").value].map(value => Math.max(1, Math.round(Number(value)) || 1))));
-  on("view", () => {
-    const [w, h] = [option("--width"), option("--height")].map(value => value || "");
-    $("width").value = w || state?.width || "";
-    $("height").value = h || state?.height || "";
-    const value = view.fills ? "" : `${$("width").value} ${$("height").value}`;
+  const list = $("size"), fields = [$("width"), $("height")];
+  list.onchange = () => resize(list.value ? list.value.split(" ").map(Number) : null);
+  for (const field of fields) field.onchange = () => resize(fields.map(({ value }) => Math.max(1, Math.round(Number(value)) || 1)));
+  onUpdate(() => {
+    for (const field of fields) field.value = option(`--${field.id}`) || state?.[field.id] || "";
+    const value = view.fills ? "" : fields.map(field => field.value).join(" ");
     if (![...list.options].some(one => one.value === value)) list.append(element("option", { value, textContent: value.replace(" ", " × ") }));
     list.value = value;
   });
@@ -128,26 +116,26 @@ function filmWish() {
 async function makeFilm() {
   isFilmCancelled = false;
   const answer = await ask(page.saves ? "film/start" : "film/command", filmWish());
-  if (!answer) return;
-  if (!page.saves) return copy(answer.command, "the command that makes this film");
-  followFilm();
+  if (answer && page.saves) followFilm();
+  else if (answer) copy(answer.command, "the command that makes this film");
+}
+
+function cancelFilm() {
+  isFilmCancelled = true;
+  ask("film/cancel", {});
 }
 
 async function followFilm() {
-  $("film-progress").hidden = $("film-cancel").hidden = false;
-  $("film").disabled = true;
   for (;;) {
     const film = await ask("film", undefined, true);
     if (film) {
-      $("film-progress").value = (film.progress?.progress ?? 0) / 100;
-      $("film-state").textContent = film.is_running ? `Film: ${film.progress?.goal ?? "starting"}` : "";
-      if (!film.is_running) {
-        $("film-progress").hidden = $("film-cancel").hidden = true;
-        $("film").disabled = false;
-        const isMade = film.status === 0;
-        return toast(isMade ? `Film saved: ${film.file}` : film.status === 75 || isFilmCancelled ? "The film was stopped; the same command goes on with it."
-          : `No film: ${film.messages.join("\n")}`, { isError: !isMade });
-      }
+      const { is_running: isRunning, progress, status } = film, isMade = status === 0;
+      $("film-progress").hidden = $("film-cancel").hidden = !isRunning;
+      $("film").disabled = isRunning;
+      $("film-progress").value = (progress?.progress ?? 0) / 100;
+      $("film-state").textContent = isRunning ? `Film: ${progress?.goal ?? "starting"}` : "";
+      if (!isRunning) return toast(isMade ? `Film saved: ${film.file}` : status === 75 || isFilmCancelled ? "The film was stopped; the same command goes on with it."
+        : `No film: ${film.messages.join("\n")}`, { isError: !isMade });
     }
     await new Promise(done => setTimeout(done, 300));
   }
@@ -156,31 +144,31 @@ async function followFilm() {
 // ---- Views with a name --------------------------------------------------------------------------------------------
 
 function makeViews() {
-  const place = `views of ${page.title}`, read = () => { try { return JSON.parse(localStorage.getItem(place)) ?? {}; } catch { return {}; } };
-  let kept = read();
-  const list = () => $("view-list").replaceChildren(...Object.entries(kept).map(([name, text]) => {
-    const open = element("button", { type: "button", textContent: name }), remove = element("button", { type: "button", className: "icon", textContent: "×", "aria-label": `Forget ${name}` });
-    open.addEventListener("click", () => restore(text));
-    remove.addEventListener("click", () => { delete kept[name]; save(); });
-    return element("li", {}, open, remove);
-  }));
-  const save = () => { try { localStorage.setItem(place, JSON.stringify(kept)); } catch { /* of this page only */ } list(); };
-  $("keep").addEventListener("click", () => {
-    const name = $("view-name").value.trim() || `View ${Object.keys(kept).length + 1}`;
-    kept = { ...kept, [name]: textOf({ ...view, camera: current() }) };
+  const place = `views of ${page.title}`;
+  let kept = {};
+  try {
+    kept = JSON.parse(localStorage.getItem(place)) ?? {};
+  } catch { /* of this page only */ }
+  const list = () => $("view-list").replaceChildren(...Object.entries(kept).map(([name, text]) => element("li", {},
+    element("button", { type: "button", textContent: name, onclick: () => restore(text) }),
+    element("button", { type: "button", className: "icon", textContent: "×", "aria-label": `Forget ${name}`, onclick: () => keep(name, undefined) }))));
+  const keep = (name, text) => {
+    kept = { ...kept, [name]: text };
+    if (!text) delete kept[name];
+    try {
+      localStorage.setItem(place, JSON.stringify(kept));
+    } catch { /* of this page only */ }
+    list();
+  };
+  $("keep").onclick = () => {
+    keep($("view-name").value.trim() || `View ${Object.keys(kept).length + 1}`, textOf({ ...view, camera: current() }));
     $("view-name").value = "";
-    save();
-  });
+  };
   list();
 }
 
 // ---- Keys ---------------------------------------------------------------------------------------------------------
 
-const KEYS = [["Arrows, or drag", "turn"], ["Shift drag, R", "roll"], ["Right drag, Ctrl drag", "move"], ["Wheel, + and -", "zoom"], ["F", "fit"],
-  ["X, Y, Z", "look along an axis; with Shift from the other side"], ["Click; Shift click", "pick; measure to another one"], ["Double click", "turn about a particle"],
-  ["Delete; Esc", "hide what is picked; forget it"], ["Space; [ and ]", "play; frame before and after"], ["Ctrl+Z; Ctrl+Shift+Z", "undo; redo"],
-  ["C; S", "copy the command; save a PNG"], ["1 to 5", "tabs"], ["?", "this list"]];
-$("keys-list").append(...KEYS.flatMap(([key, what]) => [element("dt", { textContent: key }), element("dd", { textContent: what })]));
 const ACTIONS = { c: copyCommand, s: () => download("picture.png"), " ": time.toggle, "[": () => time.step(-1), "]": () => time.step(1), Escape: clearPicks,
                   Delete: hidePicked, "?": () => $("keys").showModal() };
 
@@ -201,29 +189,36 @@ document.addEventListener("keydown", event => {
 
 // ---- Start --------------------------------------------------------------------------------------------------------
 
-for (const button of document.querySelectorAll("[data-file]")) button.addEventListener("click", () => download(button.dataset.file));
-for (const button of document.querySelectorAll("[data-copy]")) button.addEventListener("click", copyCommand);
-for (const button of document.querySelectorAll("[data-fit]")) button.addEventListener("click", fit);
-for (const button of document.querySelectorAll("[data-axis]"))
-  button.addEventListener("click", event => lookAlong(Number(button.dataset.axis), (event.shiftKey ? -1 : 1) * Number(button.dataset.side)));
-for (const button of document.querySelectorAll("[data-tab]")) button.addEventListener("click", () => openTab(button.dataset.tab));
-$("help").addEventListener("click", () => $("keys").showModal());
-$("film").addEventListener("click", makeFilm);
-$("film-cancel").addEventListener("click", () => { isFilmCancelled = true; ask("film/cancel", {}); });
-$("hide-panel").addEventListener("click", () => {
+const each = (selector, f) => document.querySelectorAll(selector).forEach(button => { button.onclick = event => f(button.dataset, event); });
+each("[data-file]", ({ file }) => download(file));
+each("[data-copy]", copyCommand);
+each("[data-fit]", fit);
+each("[data-axis]", ({ axis, side }, { shiftKey }) => lookAlong(Number(axis), (shiftKey ? -1 : 1) * Number(side)));
+each("[data-tab]", ({ tab }) => openTab(tab));
+each("#stop", () => ask("cancel", {}));
+each("#undo", () => undo());
+each("#redo", () => undo(1));
+each("#help", () => $("keys").showModal());
+each("#film", makeFilm);
+each("#film-cancel", cancelFilm);
+each("#hide-panel", () => {
   const isHidden = document.body.classList.toggle("wide");
   $("hide-panel").setAttribute("aria-expanded", String(!isHidden));
 });
 
 on("page", () => {
+  const isScene = !command("--color-by");
   document.title = `${page.title} - orrery view`;
   $("file").textContent = page.title;
-  makeSizes();
+  $("name-data").textContent = isScene ? "Scene" : "Data";
+  $("for-look").parentElement.hidden = isScene;
+  makeDataControls();
   makePanel();
+  makeSizes();
   makeViews();
   $("film").textContent = page.saves ? "Make the film" : "Copy the command of the film";
-  $("film-bar").hidden = !page.films;
-  on("state", () => { $("film-kind").options[0].disabled = !(state.frames > 1); });
+  $("film-bar").hidden = $("films").hidden = !page.films;
+  on("state", tellState);
   if (page.saves) ask("film", undefined, true).then(film => film?.is_running && followFilm());
 });
 openTab("data");
