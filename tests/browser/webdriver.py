@@ -47,9 +47,23 @@ class Browser:
         except Exception:
             self._kill()
             raise
+        self.renew(width, height, dark)
+
+    def renew(self, width=1400, height=900, dark=False):
+        """Closes all pages, and opens an empty one of this size."""
+        old = self.tabs()
+        new = self.new_tab()
+        for handle in old:
+            self.switch(handle)
+            self._request("DELETE", "/window")
+        self.switch(new)
+        self.errors()  # of the pages before
         # Windows cannot be as narrow as that of a phone.
         self.resize(width, height)
-        scheme = {"name": "prefers-color-scheme", "value": "dark" if dark else "light"}
+        self.dark(dark)
+
+    def dark(self, is_dark):
+        scheme = {"name": "prefers-color-scheme", "value": "dark" if is_dark else "light"}
         self._devtools("Emulation.setEmulatedMedia", features=[scheme])
 
     def _devtools(self, command, **parameters):
@@ -101,19 +115,19 @@ class Browser:
         """Runs JavaScript whose last argument is a function, and returns what that function is called with."""
         return self._request("POST", "/execute/async", {"script": script, "args": list(arguments)})
 
-    def wait(self, script, *arguments, tries=3000, pause=0.1):
+    def wait(self, script, *arguments, tries=3000, pause=None):
         """Runs JavaScript until its result is true, and returns it. The number of tries ends a test that hangs.
 
-        A script may fail while the page is being replaced.
+        Looks again after `pause` seconds, without it soon at first. A script may fail while the page is being replaced.
         """
         failure = ""
-        for _ in range(tries):
+        for number in range(tries):
             try:
                 if result := self.run(script, *arguments):
                     return result
             except urllib.error.HTTPError as error:
                 failure = error.read().decode(errors="replace")
-            time.sleep(pause)
+            time.sleep(min(0.01 * number, 0.1) if pause is None else pause)
         raise AssertionError(f"never true: {script}\n{failure}")
 
     def act(self, *sources):

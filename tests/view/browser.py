@@ -1,11 +1,12 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: Apache-2.0
-"""Uses `orrery view` in a browser as a user would: tests/view/browser.py ORRERY WORK_FOLDER WALK
+"""Uses `orrery view` in a browser as a user would: tests/view/browser.py ORRERY WORK_FOLDER WALK...
 
-WALK is a key of WALKS, below. Exit status 77 if Chromium or its driver is not installed. Screenshots stay in WORK_FOLDER.
-Nothing here depends on time: each step waits until the page shows what it is about.
+WALK is a key of WALKS, below; all walks use one browser. Exit status 77 if Chromium or its driver is not installed.
+Screenshots stay in WORK_FOLDER. Nothing here depends on time: each step waits until the page shows what it is about.
 """
 import atexit
+import contextlib
 import html
 import pathlib
 import random
@@ -14,6 +15,8 @@ import shutil
 import signal
 import subprocess
 import sys
+import time
+import traceback
 
 sys.path.insert(0, str(pathlib.Path(__file__).resolve().parent.parent / "browser"))
 from webdriver import Browser, exit_if_missing
@@ -23,9 +26,11 @@ exit_if_missing()
 shutil.rmtree(work, ignore_errors=True)
 work.mkdir(parents=True)
 
-SHIFT, CONTROL, ESCAPE = "\ue008", "\ue009", "\ue00c"
-SMALL = ["--width", "320", "--height", "240", "--noise", "0.2"]
+SHIFT, CONTROL, ESCAPE, TAB = "\ue008", "\ue009", "\ue00c", "\ue004"
+SMALL = ["--width", "320", "--height", "240"]
+FAST = [*SMALL, "--samples", "2"]
 HOSTILE = "<img src=x onerror=alert(1)>"
+FINAL = pathlib.Path(__file__).resolve().parents[2] / "scenes/book/final.toml"
 frames = []
 for frame in range(3):
     rows = "".join(f"{i + 1} {1 + i % 2} {i % 4} {i // 4 % 4} {i // 16 + 0.2 * frame} {i * (frame + 1)}\n" for i in range(64))
@@ -199,28 +204,35 @@ def look(browser, name, options):
     wait_for_command(browser, command)
 
 
-def view_data(walk, *words, size=(1400, 900)):
-    """Walks through the page of a data file."""
-    program = Program("melt.dump", *words)
-    browser = Browser(*size)
-    try:
-        browser.open(program.url)
-        settle(browser)
-        walk(browser, program)
-        errors = errors_of(browser)
-        expect(not errors, errors)
-    finally:
-        browser.close()
+@contextlib.contextmanager
+def shown(browser, *words, size=(1400, 900)):
+    """A program, and its page in an empty window of this size."""
+    program = Program(*words)
+    browser.renew(*size)
+    browser.open(program.url)
+    settle(browser)
+    yield program
+    errors = errors_of(browser)
+    expect(not errors, errors)
     expect(program.end(signal.SIGINT) == 0, "INT ends the program with status 0")
 
 
-def use_controls(browser, program):
+def use_controls(browser):
+    with shown(browser, "melt.dump", *FAST):
+        click_controls(browser)
+
+
+def click_controls(browser):
     look(browser, "melt", [("columns", "speed"), ("range", "0:100"), ("style", "night"),
                            ("material", "plastic"), ("select", "type == 1"), ("radius-scale", "1.3"),
                            ("opacity", "0.5"), ("outline", "2"), ("ground", "on"), ("frame", "3")])
     browser.run("document.querySelector('input[name=\"--map\"][value=\"magma\"]').click()")
     wait_for_command(browser, "--map magma")
     check_command(browser, "melt-map")
+    for option, value in [("samples", ""), ("style", "flat"), ("noise", "0.3")]:
+        choose(browser, option, value)
+    wait_for_command(browser, "--noise 0.3")
+    check_command(browser, "melt-noise")
     choose(browser, "select", "nothing ==")
     settle(browser, problem="nothing")
     message = browser.run("return [...document.querySelectorAll('.message')].filter(m => !m.hidden).map(m => m.textContent).join()")
@@ -230,9 +242,13 @@ def use_controls(browser, program):
     expect("nothing" not in command_of(browser), "undo takes back what was wrong")
 
 
-def walk_at_random(browser, program):
+def walk_at_random(browser):
     """A random walk through the controls: the picture is that of the command, and undo goes all the way back."""
-    chance = random.Random(1)
+    with shown(browser, "melt.dump", *FAST):
+        walk_and_undo(browser, random.Random(1))
+
+
+def walk_and_undo(browser, chance):
     first = command_of(browser)
     steps = [("columns", ["speed", "none", ""]), ("style", ["flat", "night", "studio"]), ("material", ["metal", "matte"]),
              ("select", ["type == 1", "z > 0\nx < 3", ""]), ("slice", ["z=2", ""]), ("representation", ["ball-and-stick", "spheres"]),
@@ -264,9 +280,16 @@ def walk_at_random(browser, program):
     settle(browser)
 
 
-def do_tasks(browser, program):
+def do_tasks(browser):
     """The five tasks of a new user, with the mouse and without typing, and how many clicks they take."""
-    hand = Hand(browser)
+    (work / "films").mkdir()
+    if shutil.which("ffmpeg"):
+        with shown(browser, "melt.dump", *FAST, "--save-to", "films"):
+            click_tasks(browser, Hand(browser))
+            use_films(browser, Hand(browser))
+
+
+def click_tasks(browser, hand):
 
     def task(name, most, *parts):
         for part in parts:
@@ -280,7 +303,7 @@ def do_tasks(browser, program):
     choose(browser, "columns", "speed")
     hand.clicks += 2
     settle(browser)
-    browser.wait("const h = document.querySelector('.histogram'); return h && !h.hidden")
+    browser.wait("const h = document.getElementById('histogram'); return h && !h.hidden")
     hand.drag(".handle", -80, 0, index=1)
     task("colour", 3, "--color-by speed", "--range 0:")
     choose(browser, "columns", "type")
@@ -313,17 +336,15 @@ def do_tasks(browser, program):
     hand.click("#film")
     browser.wait("return [...document.querySelectorAll('.toast')].some(t => t.textContent.includes('film'))")
     expect(hand.clicks <= 3, hand.clicks)
-    if (work / "films").exists():
-        browser.wait("return [...document.querySelectorAll('.toast')].some(t => t.textContent.includes('Film saved'))")
-        expect((work / "films/film.mp4").stat().st_size > 0, "the film is in the folder of --save-to")
+    browser.wait("return [...document.querySelectorAll('.toast')].some(t => t.textContent.includes('Film saved'))")
+    expect((work / "films/film.mp4").stat().st_size > 0, "the film is in the folder of --save-to")
+    (work / "films/film.mp4").unlink()
 
 
-def use_films(browser, program):
+def use_films(browser, hand):
     """A film that is cancelled leaves no film, and the next one does not replace it."""
-    hand = Hand(browser)
     choose(browser, "samples", "20000")
     browser.wait("return document.getElementById('command').value.includes('--samples 20000')")
-    hand.click("label:has(#for-export)")
     hand.click("#film")
     browser.wait("return !document.getElementById('film-cancel').hidden")
     browser.run("document.getElementById('film-cancel').click()")  # it moves while the words beside it change
@@ -382,9 +403,14 @@ def play(browser):
     browser.wait("return document.getElementById('frame-number').value.includes('step 2,000')")
 
 
-def never_black(browser, program):
+def never_black(browser):
     """Neither while it is dragged nor while the next image is rendered is a pixel darker than the scene."""
-    for option, value in [("style", "flat"), ("columns", "none"), ("samples", "300"), ("size", "1280 720")]:
+    with shown(browser, "melt.dump", *FAST):
+        drag_and_watch(browser)
+
+
+def drag_and_watch(browser):
+    for option, value in [("style", "flat"), ("columns", "none"), ("samples", "64"), ("size", "960 540")]:
         choose(browser, option, value)
         settle(browser)
     watch_for_darkness(browser)
@@ -396,7 +422,12 @@ def never_black(browser, program):
     expect(darkest > 60, f"a pixel had the brightness {darkest}")
 
 
-def use_tabs(browser, program):
+def use_tabs(browser):
+    with shown(browser, "melt.dump", *FAST) as program:
+        walk_through_tabs(browser, program)
+
+
+def walk_through_tabs(browser, program):
     for option, value in [("columns", "speed"), ("frame", "3")]:
         choose(browser, option, value)
         settle(browser)
@@ -430,8 +461,12 @@ def use_tabs(browser, program):
     expect(is_empty(browser, "#errors"), "a frame downloads as well")
 
 
-def fill_window(browser, program):
-    """The picture has the pixels of its place, also when the window changes, and after the end of the program."""
+def fill_window(browser):
+    """The picture has the pixels of its place, also when the window changes; and what the page says after the end of the program."""
+    program = Program("melt.dump", "--samples", "2")
+    browser.renew(1000, 700)
+    browser.open(program.url)
+    settle(browser)
     size = browser.run("const b = document.getElementById('stage').getBoundingClientRect(); return [b.width, b.height]")
     expect(f"--width {round(size[0])}" in command_of(browser) and f"--height {round(size[1])}" in command_of(browser), command_of(browser))
     check_command(browser, "window")
@@ -447,28 +482,73 @@ def fill_window(browser, program):
     expect("Copy command" in browser.run("return document.getElementById('errors').textContent"), "the command is offered")
 
 
-def audit(browser, program):
-    """Everything can be reached with the keyboard and has a name."""
-    browser.run("for (const d of document.querySelectorAll('details')) d.open = true;"
-                "for (const t of document.querySelectorAll('.tab')) t.hidden = false;")
-    nameless = browser.run("""
-        const named = e => e.getAttribute('aria-label') || e.labels?.length && [...e.labels].some(l => l.textContent.trim())
-          || e.title || (e.tagName === 'BUTTON' && e.textContent.trim()) || e.getAttribute('aria-labelledby');
-        return [...document.querySelectorAll('button, input, select, textarea, [role=slider], canvas[tabindex], progress')]
-          .filter(e => !named(e)).map(e => e.outerHTML)""")
-    expect(not nameless, nameless)
-    ids = browser.run("return [...document.querySelectorAll('[id]')].map(e => e.id)")
-    expect(len(ids) == len(set(ids)), sorted(i for i in ids if ids.count(i) > 1))
-    browser.reload()
-    settle(browser)
-    browser.run("document.activeElement.blur()")
+AUDIT = (pathlib.Path(__file__).resolve().parent / "audit.js").read_text()
+
+
+def audit(browser):
+    """People who use a keyboard or a screen reader, or who see little, reach all: light and dark, wide and narrow."""
+    with shown(browser, "melt.dump", *FAST, "--color-by", "type"):
+        audit_states(browser, "data")
+        audit_keyboard(browser)
+        browser.dark(True)
+        browser.resize(420, 800)
+        browser.reload()
+        settle(browser)
+        audit_states(browser, "dark and narrow")
+    with shown(browser, str(FINAL), *FAST):
+        browser.wait("return document.querySelectorAll('.object').length > 100")
+        audit_states(browser, "scene")
+
+
+def audit_states(browser, name):
+    """Looks at each tab with all its folds open, at what is picked, at the range of a column, an error, and the list of keys."""
+    def check(state):
+        findings = browser.run(AUDIT)
+        expect(not findings, f"{name}, {state}:\n" + "\n".join(findings))
+
+    browser.run("for (const d of document.querySelectorAll('details:not(.object ~ .object)')) d.open = true;")
+    for tab in ("export", "annotate", "camera", "look", "data"):
+        browser.run("document.getElementById('for-' + arguments[0]).click()", tab)
+        check(tab)
+    browser.click(*(particles(browser) or [position(browser)])[0])
+    browser.wait("return !document.getElementById('picked').hidden")
+    check("picked")
     browser.keys("?")
     browser.wait("return document.getElementById('keys').open")
+    check("keys")
     browser.keys(ESCAPE)
     browser.wait("return !document.getElementById('keys').open")
+    browser.keys(ESCAPE)
+    if name == "scene":
+        return
+    choose(browser, "columns", "speed")
+    choose(browser, "range", "1:")
+    settle(browser, problem="range")
+    check("histogram and message")
+    choose(browser, "columns", "")
+    settle(browser)
+
+
+def audit_keyboard(browser):
+    """The key Tab visits all that can be used, in the order of the page, and shows where it is."""
+    visible = browser.run("""
+        const radios = new Set();
+        window.stops = [...document.querySelectorAll('button, input, select, textarea, summary, [tabindex="0"]')]
+          .filter(e => !e.disabled && e.checkVisibility() && !(e.type === 'radio' && !e.checked));
+        window.stops[0].focus();
+        return window.stops.length""")
+    order = []
+    for _ in range(visible - 1):
+        browser.keys(TAB)
+        order.append(browser.run("""
+            const e = document.activeElement, styles = [e, e.closest('label') ?? e].map(one => getComputedStyle(one));
+            return [window.stops.indexOf(e), styles.some(style => style.outlineStyle !== 'none')]"""))
+    expect([i for i, _ in order] == list(range(1, visible)), f"Tab visits {order} of {visible}")
+    expect(all(is_marked for _, is_marked in order), f"the focus cannot be seen: {order}")
+    browser.run("document.activeElement.blur()")
     browser.keys("5")
     browser.wait("return !document.getElementById('tab-export').hidden")
-    browser.keys("]")
+    browser.keys("1]")
     wait_for_command(browser, "--frame 2")
     browser.keys("[")
     wait_for_command(browser, "--frame 2", False)
@@ -476,16 +556,12 @@ def audit(browser, program):
     wait_for_command(browser, "camera.look_from")
 
 
-def view_hostile():
+def view_hostile(browser):
     """Names of files, columns and classes are text, whatever is in them."""
     name = f"{HOSTILE}'\"`&.csv".replace("/", "")
     rows = "".join(f"{i},0,0,\"{HOSTILE}{i % 3}\",{'nan' if i == 2 else i}\n" for i in range(9))
     (work / name).write_text(f"x,y,z,\"{HOSTILE}\",value\n{rows}")
-    program = Program(name, *SMALL, "--radius", "0.4", "--color-by", HOSTILE)
-    browser = Browser()
-    try:
-        browser.open(program.url)
-        settle(browser)
+    with shown(browser, name, *FAST, "--radius", "0.4", "--color-by", HOSTILE):
         browser.wait("return document.querySelectorAll('.class').length === 3")
         x, y = position(browser)
         browser.click(x, y)
@@ -496,61 +572,61 @@ def view_hostile():
         check_command(browser, "hostile")
         choose(browser, "columns", "value")
         settle(browser)
-        browser.wait("const h = document.querySelector('.histogram'); return h && !h.hidden")
-        errors = errors_of(browser)
-        expect(not errors, errors)
-    finally:
-        browser.close()
-    program.end()
+        browser.wait("const h = document.getElementById('histogram'); return h && !h.hidden")
 
 
-def view_scene():
-    scene = pathlib.Path(__file__).resolve().parents[2] / "scenes/book/final.toml"
-    program = Program(str(scene), "--width", "192", "--height", "108", "--samples", "4")
-    for width, dark in ((1600, False), (400, True)):
-        browser = Browser(width=width, dark=dark)
-        try:
-            browser.open(program.url)
-            settle(browser)
-            if not dark:
-                look(browser, "final", [("set", "render.seed=7\nbackground.type=constant")])
-                browser.wait("return document.querySelectorAll('.object').length > 100")
-                browser.run("const o = [...document.querySelectorAll('.object')].find(o => o.dataset.name === 'material.ground');"
-                            "o.open = true;")
-                browser.wait("return document.querySelector('[aria-label=\"material.ground.albedo\"]')")
-                browser.run("const f = document.querySelector('[aria-label=\"material.ground.albedo\"]');"
-                            "f.value = '[0.9, 0.1, 0.1]'; f.dispatchEvent(new Event('change'))")
-                wait_for_command(browser, "material.ground.albedo=[0.9, 0.1, 0.1]")
-                check_command(browser, "final-material")
-            browser.screenshot(work / f"final-{width}.screen.png")
-            expect(browser.run("return document.documentElement.scrollWidth <= innerWidth"), f"{width}: too wide")
-        finally:
-            browser.close()
-    expect(program.end() == 0, "TERM ends the program with status 0")
-
-
-def with_films(walk):
-    (work / "films").mkdir()
-    if shutil.which("ffmpeg"):
-        view_data(walk, *SMALL, "--samples", "4", "--save-to", "films")
-
-
-def view_window():
-    program = Program("melt.dump", "--samples", "4")
-    browser = Browser(1000, 700)
-    try:
-        browser.open(program.url)
+def view_damaged(browser):
+    """A frame that cannot be read is a message, and is left out while frames are played; the last of two clicks counts."""
+    (work / "damaged.dump").write_text("".join([frames[0], frames[1].replace("\n5 1 ", "\n5 none "), frames[2]]))
+    with shown(browser, "damaged.dump", *FAST):
+        choose(browser, "frame", "2")
+        settle(browser, problem="none")
+        browser.run("document.getElementById('undo').click()")
         settle(browser)
-        fill_window(browser, program)
-    finally:
-        browser.close()
+        browser.wait("return document.querySelector('#errors .toast') === null")
+        browser.run("document.getElementById('play').click()")
+        browser.wait("return [...document.querySelectorAll('#errors .toast')].some(t => t.textContent.includes('none'))")
+        browser.wait("return document.getElementById('frame').value === '3'", pause=0.001)
+        browser.run("document.getElementById('play').click()")
+        settle(browser)
+        browser.run("for (const value of ['1', '3', '1', '3']) { const f = document.getElementById('frame'); f.value = value; f.dispatchEvent(new Event('change')); }")
+        wait_for_command(browser, "--frame 3")
+        check_command(browser, "last")
+
+
+def view_scene(browser):
+    with shown(browser, str(FINAL), "--width", "192", "--height", "108", "--samples", "4", size=(1600, 900)):
+        look(browser, "final", [("set", "render.seed=7\nbackground.type=constant")])
+        browser.wait("return document.querySelectorAll('.object').length > 100")
+        browser.run("const o = [...document.querySelectorAll('.object')].find(o => o.dataset.name === 'material.ground');"
+                    "o.open = true;")
+        browser.wait("return document.querySelector('[aria-label=\"material.ground.albedo\"]')")
+        browser.run("const f = document.querySelector('[aria-label=\"material.ground.albedo\"]');"
+                    "f.value = '[0.9, 0.1, 0.1]'; f.dispatchEvent(new Event('change'))")
+        wait_for_command(browser, "material.ground.albedo=[0.9, 0.1, 0.1]")
+        check_command(browser, "final-material")
+        browser.run("document.getElementById('undo').click()")
+        wait_for_command(browser, "material.ground.albedo", False)
+        browser.wait("return document.querySelector('[aria-label=\"material.ground.albedo\"]').value !== '[0.9, 0.1, 0.1]'")
+        browser.resize(400, 900)
+        expect(browser.run("return document.documentElement.scrollWidth <= innerWidth"), "too wide")
 
 
 WALKS = {
-    "controls": lambda: view_data(use_controls, *SMALL), "random": lambda: view_data(walk_at_random, *SMALL),
-    "tasks": lambda: with_films(do_tasks), "films": lambda: with_films(use_films),
-    "dark": lambda: view_data(never_black, *SMALL), "tabs": lambda: view_data(use_tabs, *SMALL),
-    "audit": lambda: view_data(audit, *SMALL), "scene": view_scene, "hostile": view_hostile,
-    "window": view_window,
+    "controls": use_controls, "random": walk_at_random, "tasks": do_tasks, "dark": never_black, "tabs": use_tabs, "audit": audit,
+    "scene": view_scene, "hostile": view_hostile, "damaged": view_damaged, "window": fill_window,
 }
-WALKS[sys.argv[3]]()
+browser, failed = Browser(), []
+try:
+    for walk in sys.argv[3:]:
+        begin = time.monotonic()
+        try:
+            WALKS[walk](browser)
+        except Exception:  # the others can tell more
+            traceback.print_exc()
+            browser.screenshot(work / f"{walk}.failed.png")
+            failed.append(walk)
+        print(f"{walk}: {time.monotonic() - begin:.1f} s", flush=True)
+finally:
+    browser.close()
+expect(not failed, f"failed: {failed}")
