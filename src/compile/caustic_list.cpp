@@ -118,7 +118,8 @@ std::vector<Emitter> emitters_of(const SceneView& scene) {
   std::vector<Emitter> out;
   for (std::uint32_t leaf = 0; leaf < scene.lights.count; ++leaf) {
     const std::uint32_t id = scene.lights.spheres[leaf];
-    if (!is_textured(scene, scene.object_materials[id])) out.push_back({id, kernel::light_leaf(scene, id).power, {}});
+    if (!scene.rods.contains(id) && !is_textured(scene, scene.object_materials[id]))
+      out.push_back({id, kernel::light_leaf(scene, id).power, {}});
   }
   const auto by_id = [](const Emitter& a, const Emitter& b) { return a.sphere < b.sphere; };
   if (out.size() > kMaxCausticLights) {

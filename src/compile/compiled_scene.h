@@ -45,7 +45,7 @@ struct CompiledScene : kernel::SceneSettings {
   std::vector<kernel::Material> materials;
   std::vector<kernel::Emission> emission;  ///< one per material; empty if none emits
   TextureStore textures;
-  LightTree light_tree;                   ///< light tree of the emitting spheres; empty if lights are not sampled
+  LightTree light_tree;                   ///< light tree of the emitters; empty if lights are not sampled
   bool samples_caustics = true;           ///< false: `caustics` stays empty
   CausticList caustics;                   ///< of lights that are sampled
   std::vector<std::string> light_groups;  ///< names, indexed by Emission::group; the first is "", the default group

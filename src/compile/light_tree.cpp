@@ -2,6 +2,7 @@
 #include "compile/light_tree.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstddef>
 #include <numeric>
@@ -112,6 +113,38 @@ void index_leaves(LightTree& tree) {
   for (std::uint32_t leaf = 0; leaf < count; ++leaf) tree.leaves[tree.spheres[leaf] - tree.first_sphere] = leaf;
 }
 
+/// Whether a sphere or half of a rod emits.
+bool is_lamp(const kernel::SceneView& scene, std::uint32_t id) {
+  if (scene.opacity != nullptr && scene.opacity[id] == 0) return false;
+  const double* const rgb = scene.emission[scene.object_materials[id]].radiance;
+  return rgb[0] > 0 || rgb[1] > 0 || rgb[2] > 0;
+}
+
+/// Appends the halves of rods that emit. Of coincident rods at rest, rays hit the first only.
+void add_rods(const kernel::SceneView& scene, kernel::Precision precision, std::vector<std::uint32_t>& ids) {
+  const kernel::RodArray& rods = scene.rods;
+  const std::size_t spheres = ids.size();
+  for (std::size_t i = 0; i < rods.count; ++i) {
+    if (is_lamp(scene, rods.id(i))) ids.push_back(rods.id(i));
+    const kernel::Rod rod = rods[i];
+    const bool has_second_half = i < rods.moving_count || !std::equal(rod.a, rod.a + 3, rod.b);
+    if (has_second_half && is_lamp(scene, rods.id(i) + 1)) ids.push_back(rods.id(i) + 1);
+  }
+  if (ids.size() == spheres || rods.moving_count > 0) return;
+  const auto key = [&](std::size_t i) {
+    const kernel::Rod rod = rods[i];
+    std::array<double, 8> out = {rod.a[0], rod.a[1], rod.a[2], rod.b[0], rod.b[1], rod.b[2], rod.radius, 0};
+    if (precision == kernel::Precision::kFast)
+      for (double& x : out) x = math::in_single_precision(x);
+    return out;
+  };
+  const std::vector<base::Duplicate> found = base::find_duplicates<8>(rods.count, key);
+  std::erase_if(ids, [&](std::uint32_t id) {
+    return rods.contains(id) && std::binary_search(found.begin(), found.end(), base::Duplicate{rods.index(id), 0},
+                                                   [](const auto& a, const auto& b) { return a.index < b.index; });
+  });
+}
+
 }  // namespace
 
 Lights LightTree::view() const noexcept {
@@ -151,12 +184,10 @@ std::vector<std::uint32_t> without_coincident(const kernel::SceneView& scene, ke
 LightTree build_light_tree(const kernel::SceneView& scene, kernel::Precision precision) {
   LightTree tree;
   tree.precision = precision;
-  for (std::uint32_t id = 0; id < scene.sphere_count; ++id) {
-    if (scene.opacity != nullptr && scene.opacity[id] == 0) continue;
-    const double* const rgb = scene.emission[scene.object_materials[id]].radiance;
-    if (rgb[0] > 0 || rgb[1] > 0 || rgb[2] > 0) tree.spheres.push_back(id);
-  }
+  for (std::uint32_t id = 0; id < scene.sphere_count; ++id)
+    if (is_lamp(scene, id)) tree.spheres.push_back(id);
   tree.spheres = without_coincident(scene, precision, std::move(tree.spheres));
+  add_rods(scene, precision, tree.spheres);
   if (tree.spheres.empty()) return tree;
   Builder(scene, tree).build();
   index_leaves(tree);

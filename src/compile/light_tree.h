@@ -14,7 +14,7 @@ namespace orrery::compile {
 /// The emitters of a scene, and the tree with which light sampling chooses among them; see kernel::Lights. Ranges of
 /// leaves are split at the median of their longest axis; ties are broken by id.
 struct LightTree {
-  std::vector<std::uint32_t> spheres;    ///< sphere id of each leaf
+  std::vector<std::uint32_t> spheres;    ///< object id of each leaf
   std::vector<kernel::LightNode> nodes;  ///< one per leaf; the first is unused unless there are at most Lights::kFew
   std::vector<std::uint32_t> leaves;     ///< see kernel::Lights
   std::uint32_t first_sphere = 0;

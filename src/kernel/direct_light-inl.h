@@ -20,6 +20,7 @@
 #include "kernel/path_record.h"
 #include "kernel/path_stream.h"
 #include "kernel/record-inl.h"
+#include "kernel/rod_light-inl.h"
 #include "kernel/scatter-inl.h"
 #include "kernel/surface-inl.h"
 #include "kernel/surface_texture-inl.h"
@@ -124,17 +125,18 @@ HWY_NOINLINE Vec3<V> weighted_environment(D d, const SceneView& scene, Vec3<V> d
 /// `at`       where the rays start
 /// `pdf`      density of the direction; infinite for delta materials
 template <class D, class V = hn::Vec<D>>
-HWY_NOINLINE V emitter_weight(D d, const SceneView& scene, const Vertex<D>& at, hn::Vec<IdTag<D>> hits, V pdf) {
+HWY_NOINLINE V emitter_weight(D d, const SceneView& scene, const Vertex<D>& at, Vec3<V> direction,
+                              hn::Vec<IdTag<D>> hits, V pdf) {
   using T = hn::TFromD<D>;
   const V one = set(d, 1);
   if (scene.direct_lighting == DirectLighting::kBsdf || scene.lights.count == 0) return one;
   const auto sphere = load_spheres(d, scene, hits, at.times);
   const auto cone = subtended_cone(to_center(at, sphere.center), sphere.radius);
   const V probability = choice_probability(d, scene, at, hits) * (1 - environment_share(scene));
-  auto can_sample =
-      hn::And(hn::And(cone.distance > sphere.radius, probability > 0), pdf < std::numeric_limits<T>::infinity());
-  if (!scene.rods.empty()) can_sample = hn::AndNot(is_rod(d, scene, hits), can_sample);  // rods are not sampled
-  const V inverse = hn::IfThenElseZero(can_sample, probability / (pdf * solid_angle(cone.one_minus_cos)));
+  V inverse_pdf = hn::IfThenElseZero(cone.distance > sphere.radius, solid_angle(cone.one_minus_cos));
+  if (!scene.rods.empty()) inverse_pdf = with_rods(d, scene, at, direction, hits, inverse_pdf);
+  const auto can_sample = hn::And(hn::And(inverse_pdf > 0, probability > 0), pdf < std::numeric_limits<T>::infinity());
+  const V inverse = hn::IfThenElseZero(can_sample, probability / (pdf * inverse_pdf));
   return bsdf_sample_weight(d, scene.direct_lighting, inverse);
 }
 
@@ -162,22 +164,31 @@ HWY_NOINLINE LightSample<D> sample_emitter(D d, const SceneView& scene, const Ve
   const auto light = load_spheres(d, scene, chosen.spheres, at.times);
   const auto to = to_center(at, light.center);
   const auto cone = subtended_cone(to, light.radius);
-  const auto point = sample_visible_sphere(d, to, cone, random.v[0], random.v[1]);
+  const auto on_sphere = sample_visible_sphere(d, to, cone, random.v[0], random.v[1]);
+  LampPoint<D> point{cone.distance > light.radius,
+                     on_sphere.direction,
+                     mul_add(on_sphere.normal, light.radius, to),
+                     on_sphere.normal,
+                     light.center,
+                     cone.distance,
+                     light.radius,
+                     solid_angle(cone.one_minus_cos)};
+  if (!scene.rods.empty()) point = with_rods(d, scene, at, chosen.spheres, point, random.v[0], random.v[1]);
   auto source = emitted(d, scene, chosen.spheres, hn::FirstN(d, hn::Lanes(d)));
   if (scene.textures != nullptr) {
-    const V width2 = at.cone.width2_at(cone.distance);
+    const V width2 = at.cone.width2_at(point.distance);
     source.radiance = textured_radiance(
         d, scene, chosen.spheres,
-        {light.center, point.normal * light.radius, point.normal, width2 / (light.radius * light.radius)},
+        {point.center, point.normal * point.radius, point.normal, width2 / (point.radius * point.radius)},
         source.radiance);
   }
   // A shadow ray ignores its light, which is visible to rays with a sampled direction with the probability `opacity`.
   if (scene.opacity != nullptr) source.radiance = source.radiance * opacities(d, scene, chosen.spheres);
   return {point.direction,
-          mul_add(point.normal, light.radius, to),
+          point.reach,
           one,
-          solid_angle(cone.one_minus_cos),
-          hn::IfThenElseZero(cone.distance > light.radius, chosen.probability),
+          point.inverse_pdf,
+          hn::IfThenElseZero(point.is_visible, chosen.probability),
           source.radiance,
           chosen.spheres,
           source.group};

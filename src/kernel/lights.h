@@ -28,14 +28,14 @@ struct LightRange {
   std::uint32_t begin, end;
 };
 
-/// The emitting spheres, as leaves of an implicit balanced tree: a range of leaves is split in the middle, down to
-/// single leaves. Up to kFew emitters form a list instead. Non-owning.
+/// The emitters, spheres and halves of rods, as leaves of an implicit balanced tree: a range of leaves is split in the
+/// middle, down to single leaves. Up to kFew emitters form a list instead. Non-owning.
 struct Lights {
   static constexpr std::uint32_t kNoLeaf = 0xffffffffu;
   /// Maximum number of emitters that are sampled from a list (measured: docs/decisions/0022-direct-lighting.md).
   static constexpr std::uint32_t kFew = 64;
 
-  const std::uint32_t* spheres = nullptr;  ///< sphere id of each leaf
+  const std::uint32_t* spheres = nullptr;  ///< object id of each leaf
   /// Nodes of the tree: that of a range of two or more leaves is at its `middle`. For a list, one node per leaf.
   const LightNode* nodes = nullptr;
   /// Leaf of each sphere from `first_sphere` to `end_sphere`, or kNoLeaf. If the emitters' ids are `scattered`: the

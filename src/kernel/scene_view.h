@@ -144,11 +144,38 @@ inline PixelPlace place_of(std::uint64_t name, const SceneView& scene) noexcept 
           static_cast<int>(((name >> 16) - scene.window_y) & 0xffff)};
 }
 
-/// The bounding sphere and power of a single emitter. The bounding sphere encloses its whole motion.
+/// The bounding sphere of half of a rod, which encloses its whole motion, and its power but for the radiance: as that
+/// of a sphere, in proportion to the mean cross-section.
+inline LightNode rod_leaf(const RodArray& rods, std::uint32_t id) noexcept {
+  const std::size_t index = rods.index(id);
+  const bool at_b = (id - rods.first_id) % 2 != 0;
+  math::Vec3d ends[4];  // the middle and the end, when the shutter opens and when it closes
+  double radius = 0, length = 0;
+  for (int time = 0; time < 2; ++time) {
+    const Rod rod = rods.at(index, time);
+    const math::Vec3d a = math::vector_of(rod.a), b = math::vector_of(rod.b);
+    ends[2 * time] = (a + b) / 2;
+    ends[2 * time + 1] = at_b ? b : a;
+    radius = std::fmax(radius, rod.radius);
+    length = std::fmax(length, math::length(b - a) / 2);
+  }
+  const math::Vec3d center = (ends[0] + ends[1] + ends[2] + ends[3]) / 4;
+  double reach = 0;
+  for (const math::Vec3d& end : ends) reach = std::fmax(reach, math::length(end - center));
+  return {{center.x, center.y, center.z}, reach + radius, radius * (length + radius) / 2};
+}
+
+/// The bounding sphere and power of a single emitter, a sphere or half of a rod. The bounding sphere encloses its whole
+/// motion.
 inline LightNode light_leaf(const SceneView& scene, std::uint32_t id) noexcept {
-  const Sphere s = scene.spheres[id];
+  const bool is_rod = scene.rods.contains(id);
+  const Sphere s = is_rod ? Sphere{} : scene.spheres[id];
   const double* const rgb = scene.emission[scene.object_materials[id]].radiance;
   LightNode leaf{{s.x, s.y, s.z}, s.radius, (rgb[0] + rgb[1] + rgb[2]) * (s.radius * s.radius)};
+  if (is_rod) {
+    leaf = rod_leaf(scene.rods, id);
+    leaf.power *= rgb[0] + rgb[1] + rgb[2];
+  }
   if (scene.opacity != nullptr) leaf.power *= static_cast<double>(scene.opacity[id]);
   if (id >= scene.moving_count) return leaf;
   const Sphere& change = scene.motion[id];

@@ -250,7 +250,7 @@ class Shader {
     if (depth_ > 0) {
       const Vertex<D> origin{
           at.ray.origin, at.ray.origin_low, normal_along(at.ray.offset, at.ray.direction), {}, at.times};
-      source.radiance = source.radiance * emitter_weight(d, scene_, origin, at.hits, at.pdf);
+      source.radiance = source.radiance * emitter_weight(d, scene_, origin, at.ray.direction, at.hits, at.pdf);
     }
     add(at, shines, source.radiance * at.throughput, source.group, Lobe::kEmission);
   }

@@ -59,13 +59,11 @@ HWY_INLINE void store_loadable(D, std::size_t count, hn::Vec<IdTag<D>> hits, hn:
   hn::Store(min(hits, static_cast<hn::TFromD<IdTag<D>>>(count - 1)), du, id);
 }
 
-/// Loads the spheres of the hits; lanes without a hit get the last one.
-///
-/// Domain     there are spheres
+/// Loads the spheres of the hits; lanes that hit none get the last one, or any if there are none.
 template <class D>
 HWY_INLINE Spheres<D> load_spheres(D d, const SceneView& scene, hn::Vec<IdTag<D>> hits, const hn::TFromD<D>* times) {
   HWY_ALIGN hn::TFromD<IdTag<D>> id[hn::MaxLanes(D())];
-  store_loadable(d, scene.sphere_count, hits, id);
+  store_loadable(d, std::max<std::size_t>(scene.sphere_count, 1), hits, id);
   return load_spheres(d, scene, id, times);
 }
 

@@ -39,6 +39,13 @@ inline void add_lamp(scene::Scene& s, math::Vec3d center, double radius, math::V
   s.spheres.push_back({center, radius, static_cast<std::uint32_t>(s.materials.size() - 1)});
 }
 
+/// Adds a rod that emits, with a separate material.
+inline void add_rod_lamp(scene::Scene& s, math::Vec3d from, math::Vec3d to, double radius, math::Vec3d radiance) {
+  s.materials.push_back({"lamp" + std::to_string(s.materials.size()), scene::Emitter{radiance}});
+  const auto material = static_cast<std::uint32_t>(s.materials.size() - 1);
+  s.rods.push_back({from, to, radius, {material, material}});
+}
+
 /// Adds a ball next to the diffuse one.
 inline void add_ball(scene::Scene& s, math::Vec3d center, double radius, const scene::MaterialModel& model) {
   s.materials.push_back({"ball" + std::to_string(s.materials.size()), model});
@@ -106,6 +113,18 @@ inline std::vector<NamedScene> lit_scenes(int width_px, int height_px) {
   out.back().closing->spheres[2].center = {2, 2.5, 1.5};
   out.back().closing->spheres[3].center.y = 3;
   out.back().closing->spheres[3].radius = 0.5;
+  scene::Scene& rods = add("rods");
+  add_rod_lamp(rods, {-2, 2, 0.5}, {1.5, 2.6, 1}, 0.05, {20, 15, 10});
+  add_rod_lamp(rods, {1.2, 0.3, 1.2}, {1.2, 0.3, 1.2}, 0.15, {5, 10, 15});  // without length
+  add_rod_lamp(rods, {-1.5, 0.05, 1}, {-1.2, 1.5, 1.2}, 0.05, {5, 10, 5});  // touches the floor
+  rods.rods.back().materials[1] = 1;                                        // one half is dark
+  add_rod_lamp(rods, {0.5, 0.4, 1.5}, {0.5, 40, 1.5}, 0.02, {20, 20, 20});
+  scene::Scene& moving_rods = add("moving rods and a lamp");
+  add_rod_lamp(moving_rods, {-2, 2, 0.5}, {1.5, 2.6, 1}, 0.05, {20, 15, 10});
+  add_lamp(moving_rods, {1, 1.5, 1}, 0.3, {5, 10, 15});
+  out.back().closing = moving_rods;
+  out.back().closing->rods[0].to = {1, 1.5, 2};
+  out.back().closing->rods[0].radius = 0.1;
   scene::Scene& image = add("image sky with a bright texel");
   image.background.type = scene::BackgroundType::kImage;
   image.background.image = bright_texel_map(60);

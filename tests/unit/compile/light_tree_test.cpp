@@ -88,6 +88,44 @@ TEST(CompileLightTree, SpheresThatCoincideWithAnEarlierOneAreOmitted) {
   EXPECT_EQ(spheres, (std::vector<std::uint32_t>{2, 4}));
 }
 
+TEST(CompileLightTree, HalvesOfRodsAreEmitters) {
+  scene::Scene s = test::dark_stage(16, 9);
+  s.rods.push_back({{1, 0, 0}, {1, 2, 0}, 0.1, {0, 0}});        // ids 2 and 3
+  test::add_rod_lamp(s, {0, 2, 0}, {0, 4, 0}, 0.1, {1, 2, 3});  // 4 and 5
+  test::add_rod_lamp(s, {0, 4, 0}, {0, 2, 0}, 0.1, {5, 5, 5});  // coincides with the one before
+  test::add_rod_lamp(s, {3, 3, 3}, {3, 3, 3}, 0.1, {1, 1, 1});  // 8, without a second half
+  test::add_rod_lamp(s, {5, 0, 0}, {5, 6, 0}, 0.5, {1, 1, 1});  // 10 and 11
+  s.rods.back().materials[0] = 0;
+  const CompiledScene compiled = compile(s);
+  std::vector<std::uint32_t> ids = compiled.light_tree.spheres;
+  std::sort(ids.begin(), ids.end());
+  EXPECT_EQ(ids, (std::vector<std::uint32_t>{4, 5, 8, 11}));
+  const kernel::LightNode lamp = kernel::light_leaf(compiled.view(), 11);
+  EXPECT_EQ(math::vector_of(lamp.center), (Vec3d{5, 4.5, 0}));
+  EXPECT_EQ(lamp.radius, 1.5 + 0.5);
+  EXPECT_EQ(lamp.power, 3 * 0.5 * (3 + 0.5) / 2);
+  EXPECT_EQ(kernel::light_leaf(compiled.view(), 8).power, 3 * 0.1 * 0.1 / 2);
+}
+
+TEST(CompileLightTree, LightOfMovingRodsIsBounded) {
+  scene::Scene s = test::dark_stage(16, 9);
+  test::add_rod_lamp(s, {0, 2, 0}, {0, 4, 0}, 0.1, {1, 1, 1});
+  scene::Scene closing = s;
+  closing.rods[0] = {{3, 2, 0}, {9, 9, 1}, 0.3, s.rods[0].materials};
+  const CompiledScene compiled = compile(s, &closing);
+  const kernel::RodArray rods = compiled.view().rods;
+  for (const std::uint32_t half : {0U, 1U}) {
+    const kernel::LightNode lamp = kernel::light_leaf(compiled.view(), rods.id(0) + half);
+    for (const double time : {0.0, 0.5, 1.0}) {
+      const kernel::Rod rod = rods.at(0, time);
+      const Vec3d end = math::vector_of(half == 0 ? rod.a : rod.b),
+                  middle = (math::vector_of(rod.a) + math::vector_of(rod.b)) / 2;
+      for (const Vec3d& at : {end, middle})
+        EXPECT_LE(length(at - math::vector_of(lamp.center)) + rod.radius, lamp.radius * (1 + 1e-14));
+    }
+  }
+}
+
 TEST(CompileLightTree, IsBuiltAgainForAnotherPrecisionOrSampling) {
   scene::Scene s = test::dark_stage(16, 9);
   test::add_lamp(s, {0, 5, 0}, 1, {1, 1, 1});
