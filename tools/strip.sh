@@ -6,7 +6,7 @@
 #   tools/strip.sh
 set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")/../docs"
-tiles=(--pattern constant:color=1,1,1 1778x330 3 -d uint8)  # four of 440 pixels, and 6 between them
+tiles=(--pattern 'constant:color=1,1,1' 1778x330 3 -d uint8)  # four of 440 pixels, and 6 between them
 x=0
 for picture in gallery/capsomer.jpg gallery/virus-open.jpg gallery/pour.jpg final.jpg; do
   # Cut to 4:3 about the middle.

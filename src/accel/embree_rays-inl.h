@@ -151,7 +151,7 @@ HWY_INLINE void intersect_sphere(D d, const EmbreeScene& scene, const Packet& pa
   if constexpr (kPlain) {
     intersect<kPrecision>(d, ray, k::broadcast(d, scene.spheres[id]), ids, lanes, found);
   } else {
-    if (scene.opacity != nullptr) lanes = hn::And(lanes, k::visible_lanes(d, packet, first, id, scene.opacity[id]));
+    if (scene.opacity != nullptr) lanes = hn::And(lanes, k::visible_lanes(d, packet, first, scene.opacity[id]));
     if (!hn::AllFalse(d, lanes))
       intersect<kPrecision>(d, ray, k::sphere_at(d, scene, id, packet, first), ids, lanes, found);
   }
@@ -170,8 +170,7 @@ HWY_INLINE void intersect_rods(D d, const EmbreeScene& scene, const Packet& pack
   const k::IdTag<D> du;
   const auto entry = k::closest_entry<D, kPrecision>(d, ray, rod);
   const auto of_halves = ids + hn::IfThenElseZero(hn::RebindMask(du, entry.second_half), set(du, 1));
-  if (scene.opacity != nullptr)
-    may = hn::And(may, k::visible_rods(d, packet, first, ids, of_halves, may, scene.opacity));
+  if (scene.opacity != nullptr) may = k::visible_objects(d, packet.threshold + first, of_halves, may, scene.opacity);
   found.take(d, {entry.distance, entry.hits}, of_halves, may);
 }
 

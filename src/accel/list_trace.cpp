@@ -7,7 +7,6 @@
 
 #include "accel/list.h"
 #include "kernel/intersect-inl.h"
-#include "kernel/opacity-inl.h"
 #include "kernel/rod-inl.h"
 
 HWY_BEFORE_NAMESPACE();
@@ -27,10 +26,9 @@ void trace_list(const void* self, Packet& packet) {
   if constexpr (Packet::kIsShadow) std::fill_n(packet.occluded, kernel::kPacketSize, Id{0});
   for (int i = 0; i < packet.count; ++i) {
     const auto ray = k::load_rays(d, packet, i);
-    // Of a rod, the half that the ray enters has the opacity, and the id of the first half stands for the rod.
-    const auto is_visible = [&](std::size_t hit, std::size_t object) {
-      return scene.opacity == nullptr ||
-             !hn::AllFalse(d, k::visible_lanes(d, packet, i, static_cast<std::uint32_t>(object), scene.opacity[hit]));
+    // Of a rod, the half that the ray enters has the opacity.
+    const auto is_visible = [&](std::size_t hit) {
+      return scene.opacity == nullptr || packet.threshold[i] < scene.opacity[hit];
     };
     std::size_t id = 0;
     const auto trace_up_to = [&](std::size_t end) {
@@ -43,7 +41,7 @@ void trace_list(const void* self, Packet& packet) {
         if (hn::AllFalse(d, found.mask)) continue;
         const T distance = hn::GetLane(found.value);
         if (distance >= packet.distance[i]) continue;  // ids ascend, so at equal distance the smaller id was first
-        if (!is_visible(id, id)) continue;
+        if (!is_visible(id)) continue;
         if constexpr (Packet::kIsShadow) {
           if (packet.target[i] == id) continue;
           packet.occluded[i] = static_cast<Id>(~Id{0});
@@ -67,7 +65,7 @@ void trace_list(const void* self, Packet& packet) {
       const auto entry = k::closest_entry<D, kPrecision>(d, ray, at);
       if (hn::AllFalse(d, entry.hits) || hn::GetLane(entry.distance) >= packet.distance[i]) continue;
       const std::size_t hit = scene.rods.id(rod) + (hn::AllTrue(d, entry.second_half) ? 1u : 0u);
-      if (!is_visible(hit, scene.rods.id(rod))) continue;
+      if (!is_visible(hit)) continue;
       if constexpr (Packet::kIsShadow) {
         packet.occluded[i] = static_cast<Id>(~Id{0});
         is_occluded = true;

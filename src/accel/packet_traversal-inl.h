@@ -209,8 +209,7 @@ class PacketTraversal {
       if (hitting == 0) continue;
       if (has_opacity) {
         // The halves of a rod may have different opacities: its opacity is known only with the hit.
-        if (!is_rod)
-          hit = hn::And(hit, k::visible_lanes(d_, *query_.packet, query_.first, id, query_.scene->opacity[id]));
+        if (!is_rod) hit = hn::And(hit, k::visible_lanes(d_, *query_.packet, query_.first, query_.scene->opacity[id]));
         hitting &= bits_of(d_, hit);
         if (hitting == 0) continue;
       }

@@ -118,7 +118,7 @@ struct alignas(64) SingleRay {
   float limit;                    ///< distance beyond which nothing is searched
   std::uint32_t left;             ///< the sphere that the ray leaves outwards and so cannot hit; kNone: none
   std::uint32_t target;           ///< shadow rays: a sphere that is never hit
-  std::uint32_t key;              ///< decides which objects are visible; only if the scene has opacities
+  float threshold;                ///< as in kernel::PacketRays; only if the scene has opacities
   std::uint32_t near[3];          ///< per axis: offset in Node::bound of the bounds at which the ray enters boxes
   std::uint32_t subtree;          ///< the node below which everything has been visited once the stack is empty
   unsigned subtree_level;
@@ -289,19 +289,17 @@ HWY_INLINE bool test_spheres(const SphereBvh& bvh, std::uint32_t index, SingleRa
 /// Result     whether any are left
 inline bool keep_visible(const SphereBvh& bvh, std::uint32_t index, const float* opacity, SingleRay& ray) {
   const ChildTag d;
-  const k::KeyTag<ChildTag> d32;
   const SphereBvh::Leaf& leaf = bvh.leaves[index];
   const auto infinite = hn::Set(d, std::numeric_limits<float>::infinity());
   bool any = false;
   for (int v = 0; v < static_cast<int>(SphereBvh::kArity); v += kChildLanes) {
     const auto offset_square = hn::Load(d, ray.offset_square + v);
-    auto hit = offset_square < infinite;
-    alignas(64) float opacities[kChildLanes] = {};
     const unsigned rods = bvh.has_rods_in(index) ? bvh.rods[index].rods >> v : 0;
-    for (const int i : SetBits(bits_of(d, hit))) opacities[i] = (rods >> i & 1u) != 0 ? 1 : opacity[leaf.ids[v + i]];
-    hit = hn::And(hit, k::are_visible(d, hn::Set(d32, ray.key), hn::LoadU(d32, leaf.ids + v), hn::Load(d, opacities)));
-    hn::Store(select(hit, offset_square, infinite), d, ray.offset_square + v);
-    any |= !hn::AllFalse(d, hit);
+    unsigned visible = bits_of(d, offset_square < infinite);
+    for (const int i : SetBits(visible & ~rods))
+      if (!(ray.threshold < opacity[leaf.ids[v + i]])) visible &= ~(1u << i);
+    hn::Store(select(mask_of(d, visible), offset_square, infinite), d, ray.offset_square + v);
+    any |= visible != 0;
   }
   return any;
 }
@@ -565,7 +563,7 @@ HWY_INLINE unsigned start_rays(const SphereBvh& bvh, EmbreeQuery<Packet>& query,
     ray.limit = embree.tfar[i];
     ray.left = static_cast<std::uint32_t>(left[i]);
     if constexpr (Packet::kIsShadow) ray.target = static_cast<std::uint32_t>(packet.target[lane]);
-    if (query.scene->opacity != nullptr) ray.key = packet.key[lane];
+    if (query.scene->opacity != nullptr) ray.threshold = packet.threshold[lane];
     ray.candidates = 0;
     ray.candidate[0] = 0;
     ray.enter[0] = -std::numeric_limits<float>::infinity();  // never beyond the limit

@@ -391,7 +391,7 @@ HWY_NOINLINE void sample_caustics(const SceneView& scene, bool has_events, Paths
     compactor.store3(d, sample.direction, rays.direction, n);
     compactor.store3(d, source.radiance * load3(d, vertices.value, v) * factor, rays.value, n);
     if (times != nullptr) compactor.store(d, hn::Load(d, times), rays.time + n);
-    if (scene.features.opacity) keep(vertices.key, rays.key);
+    if (scene.features.opacity) compactor.store(d, hn::Load(d, vertices.threshold + v), rays.threshold + n);
     keep(vertices.self, rays.self);
     keep(vertices.path, rays.path);
     compactor.store_ids(d, sample.events, rays.events + n);

@@ -132,13 +132,6 @@ HWY_NOINLINE Vec3<V> without_sampled_sun(D d, const SceneView& scene, Vec3<V> ra
   return select(sampled, radiance_of(d, environment, at), radiance);
 }
 
-/// The key of the next ray of a path to a light.
-template <class DU, class V = hn::Vec<DU>>
-HWY_INLINE V next_key(DU du, V key) {
-  const hn::Repartition<std::uint32_t, DU> d32;
-  return hn::BitCast(du, hashed(d32, hn::BitCast(d32, key) + hn::Set(d32, 0x9e3779b9u)));
-}
-
 /// Follows caustic rays.
 template <class D, Precision kPrecision>
 class CausticRayTracer {
@@ -230,7 +223,7 @@ class CausticRayTracer {
     compactor.store_ids(d, hits, rays_.self + to);
     compactor.store_ids(d, hn::ShiftRight<kCausticEventBits>(events), rays_.events + to);
     if (scene_.features.motion) compactor.store(d, hn::LoadU(d, rays_.time + i), rays_.time + to);
-    if (scene_.features.opacity) compactor.store_ids(d, next_key(du, hn::LoadU(du, rays_.key + i)), rays_.key + to);
+    if (scene_.features.opacity) compactor.store(d, hn::LoadU(d, rays_.threshold + i), rays_.threshold + to);
     keep(rays_.ball);
     keep(rays_.inner);
     keep(rays_.light);

@@ -74,18 +74,6 @@ HWY_INLINE Emitted<D> emitted(D d, const SceneView& scene, hn::Vec<IdTag<D>> hit
   return {{rgb[0], rgb[1], rgb[2]}, hn::Load(du, group)};
 }
 
-/// Opacities of spheres, one per lane.
-///
-/// Domain     scene.opacity is not null
-template <class D>
-HWY_NOINLINE hn::Vec<D> opacities(D d, const SceneView& scene, hn::Vec<IdTag<D>> ids) {
-  HWY_ALIGN hn::TFromD<IdTag<D>> id[hn::MaxLanes(D())];
-  HWY_ALIGN hn::TFromD<D> out[hn::MaxLanes(D())];
-  hn::Store(ids, IdTag<D>(), id);
-  for (std::size_t i = 0; i < hn::Lanes(d); ++i) out[i] = hn::TFromD<D>{scene.opacity[id[i]]};
-  return hn::Load(d, out);
-}
-
 /// True if vertices send shadow rays.
 inline bool samples_lights(const SceneView& scene) {
   return scene.direct_lighting != DirectLighting::kBsdf &&
@@ -182,8 +170,6 @@ HWY_NOINLINE LightSample<D> sample_emitter(D d, const SceneView& scene, const Ve
         {point.center, point.normal * point.radius, point.normal, width2 / (point.radius * point.radius)},
         source.radiance);
   }
-  // A shadow ray ignores its light, which is visible to rays with a sampled direction with the probability `opacity`.
-  if (scene.opacity != nullptr) source.radiance = source.radiance * opacities(d, scene, chosen.spheres);
   return {point.direction,
           point.reach,
           one,
@@ -241,7 +227,7 @@ HWY_INLINE void load_waiting_rays(D d, const SceneView& scene, const Waiting& ra
       hn::Store(hn::LoadU(du, rays.target + i), du, packet.target + v);
     }
     if (scene.features.motion) hn::Store(hn::LoadU(d, rays.time + i), d, packet.time + v);
-    if (scene.features.opacity) store_keys(d, hn::LoadU(du, rays.key + i), packet.key + v);
+    if (scene.features.opacity) store_thresholds(d, hn::LoadU(d, rays.threshold + i), packet.threshold + v);
   }
 }
 

@@ -62,7 +62,7 @@ struct alignas(64) WaitingPointsOf {
   T offset[3][kCapacity];  ///< from that centre to the ray's origin
   T value[3][kCapacity];   ///< throughput and weight; of rays times the radiance of the light
   T time[kCapacity];       ///< 0..1 within the shutter; only if the scene moves
-  Id key[kCapacity];       ///< see PacketRays, in the low 32 bits; only if the scene has opacities
+  T threshold[kCapacity];  ///< as in PacketRays; only if the scene has opacities
   Id self[kCapacity];      ///< object that the ray leaves
   Id path[kCapacity];      ///< index within the batch
   Id history[kCapacity];   ///< only if the tile has light events

@@ -33,12 +33,12 @@ struct alignas(64) PacketRays {
   T origin_low[3][kPacketSize];
   T offset[3][kPacketSize];
   T direction[3][kPacketSize];
-  T inverse_square[kPacketSize];   ///< 1 / (direction . direction)
-  Id self[kPacketSize];            ///< object that the ray leaves, or kCamera
-  T distance[kPacketSize];         ///< maximum distance of a hit, as a multiple of the direction's length
-  T time[kPacketSize];             ///< 0..1 within the shutter; only if the scene moves
-  std::uint32_t key[kPacketSize];  ///< decides which objects are visible; only if the scene has opacities
-  int count = 0;                   ///< number of rays in use, from the first
+  T inverse_square[kPacketSize];  ///< 1 / (direction . direction)
+  Id self[kPacketSize];           ///< object that the ray leaves, or kCamera
+  T distance[kPacketSize];        ///< maximum distance of a hit, as a multiple of the direction's length
+  T time[kPacketSize];            ///< 0..1 within the shutter; only if the scene moves
+  float threshold[kPacketSize];   ///< 0..1: objects with a greater opacity are visible; only if the scene has opacities
+  int count = 0;                  ///< number of rays in use, from the first
 };
 
 /// Rays and their closest hits. Directions are unit; `distance` becomes that of the closest hit.

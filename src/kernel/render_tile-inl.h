@@ -174,9 +174,11 @@ class TileLoop {
       for (int v = 0; v < packet.count; v += kLanes) {
         const int i = first + begin + v;
         const auto pixels = hn::Load(du, stream_.pixel + i), samples = hn::Load(du, stream_.sample + i);
-        if (features().motion) hn::Store(time_of_path(d, scene_.sampler, pixels, samples), d, packet.time + v);
-        if (features().opacity)
-          store_keys(d, keys_at_vertex(du, scene_.sampler.seed, pixels, samples, depth_).next, packet.key + v);
+        if (features().motion || features().opacity) {
+          const auto numbers = numbers_of_path(d, scene_.sampler, pixels, samples);
+          if (features().motion) hn::Store(numbers.time, d, packet.time + v);
+          if (features().opacity) store_thresholds(d, numbers.threshold, packet.threshold + v);
+        }
         if (depth_ == 0)
           load_camera_rays(pixels, samples, i, v, packet);
         else

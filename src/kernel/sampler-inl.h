@@ -261,19 +261,26 @@ HWY_INLINE Four<hn::Vec<D>> second_random_at_vertex(D d, const Sampler& sampler,
                             kSobolSecondOrders + vertex, last_two);
 }
 
-/// A path's time, 0..1 within the shutter; the same at all its vertices.
+/// Numbers in 0..1 that are the same at all vertices of a path.
+template <class V>
+struct PathNumbers {
+  V time;       ///< within the shutter
+  V threshold;  ///< objects with a greater opacity are visible to the path
+};
+
+/// The numbers of paths.
 ///
-/// Precision  24 bits, so that a float holds it exactly
+/// Precision  24 bits, so that a float holds them exactly
 template <class D>
-HWY_INLINE hn::Vec<D> time_of_path(D d, const Sampler& sampler, hn::Vec<hn::RebindToUnsigned<D>> pixel,
-                                   hn::Vec<hn::RebindToUnsigned<D>> sample) {
+HWY_INLINE PathNumbers<hn::Vec<D>> numbers_of_path(D d, const Sampler& sampler, hn::Vec<hn::RebindToUnsigned<D>> pixel,
+                                                   hn::Vec<hn::RebindToUnsigned<D>> sample) {
   constexpr std::uint32_t kVertex = 0xfffffffe;  // above all vertices
   const hn::RebindToUnsigned<D> du;
   const auto bits = sampler.kind == SamplerKind::kIndependent
                         ? independent_at_vertex(du, sampler.seed, pixel, sample, kVertex)
                         : sobol_at_vertex(du, sampler, pixel, sample, kVertex, kSobolTimeOrder, false);
-  const auto u = to_unit(d, bits.v[0]);
-  return hn::Floor(u * 0x1p24) * 0x1p-24;
+  const auto number = [&](int i) { return hn::Floor(to_unit(d, bits.v[i]) * 0x1p24) * 0x1p-24; };
+  return {number(0), number(1)};
 }
 
 }  // namespace orrery::kernel::HWY_NAMESPACE

@@ -82,6 +82,7 @@ struct Arrivals {
   Ids hits;                              ///< objects
   V distance;                            ///< of the hits
   const hn::TFromD<D>* times = nullptr;  ///< null: nothing moves
+  const float* thresholds = nullptr;     ///< as in PacketRays
   Ids pixels, samples;
   Vec3<V> throughput;  ///< before the hit
   // Of paths that leave the scene and, with a depth cue, of those that see the background through their first hit.
@@ -162,6 +163,7 @@ class Shader {
     at.ray = load_rays(d, packet, v);
     at.distance = hn::Load(d, packet.distance + v);
     if (features().motion) at.times = packet.time + v;
+    if (features().opacity) at.thresholds = packet.threshold + v;
     at.pixels = hn::Load(du, stream_.pixel + i);
     at.samples = hn::Load(du, stream_.sample + i);
     at.paths = hn::Load(du, stream_.path + i);
@@ -305,20 +307,15 @@ class Shader {
   }
 
   /// Appends chosen hits to those that wait for light.
-  ///
-  /// `key`      of the rays that leave them
   template <class Waiting>
   HWY_INLINE void wait(const Compactor<D>& chosen, const Arrivals<D>& at, const Lookup<D>& look, const Vec3<V>& value,
-                       Ids RayKeys<IdTag<D>>::*key, Waiting& waiting) const {
+                       Waiting& waiting) const {
     const int n = waiting.count;
     chosen.store3(d, look.sphere.center, waiting.base, n);
     chosen.store3(d, look.surface.offset, waiting.offset, n);
     chosen.store3(d, value, waiting.value, n);
     if (features().motion) chosen.store(d, hn::Load(d, at.times), waiting.time + n);
-    if (features().opacity) {
-      const auto keys = keys_at_vertex(du, scene_.sampler.seed, at.pixels, at.samples, depth_ + 1);
-      chosen.store_ids(d, keys.*key, waiting.key + n);
-    }
+    if (features().opacity) chosen.store(d, load_thresholds(d, at.thresholds), waiting.threshold + n);
     chosen.store_ids(d, at.hits, waiting.self + n);
     chosen.store_ids(d, index_of(at), waiting.path + n);
     waiting.count += chosen.count();
@@ -341,7 +338,12 @@ class Shader {
     // Two lobes of plastic have a weight each, and share the shadow ray.
     const V pdf = pdf_bsdf(d, features(), surface, sample.direction);
     const V factor = light_sample_factor(scene_.direct_lighting, pdf * sample.inverse_pdf / sample.probability);
-    const auto may_arrive = hn::And(scatters, sample.probability > 0);
+    auto may_arrive = hn::And(scatters, sample.probability > 0);
+    if (features().opacity) {
+      const auto lamps = hn::RebindMask(d, sample.target != set(du, kNone));
+      const auto visible = visible_objects(d, at.thresholds, sample.target, lamps, scene_.opacity);
+      may_arrive = hn::And(may_arrive, hn::Or(hn::Not(lamps), visible));
+    }
     auto lanes = hn::And(may_arrive, factor > 0);
     Vec3<V> arriving = sample.radiance * tinted * factor, coat = arriving;
     auto in_coat = hn::And(may_arrive, has_coat(surface));
@@ -359,7 +361,7 @@ class Shader {
     auto& shadow = paths_.shadow;
     const int n = shadow.count;
     const Compactor<D> compactor(d, lanes);
-    wait(compactor, at, look, arriving, &RayKeys<IdTag<D>>::shadow, shadow);
+    wait(compactor, at, look, arriving, shadow);
     compactor.store3(d, sample.reach, shadow.direction, n);
     compactor.store(d, sample.distance, shadow.distance + n);
     compactor.store_ids(d, sample.target, shadow.target + n);
@@ -396,7 +398,7 @@ class Shader {
     const int n = waiting.count;
     const V one = set(d, 1);
     const Compactor<D> compactor(d, lanes);
-    wait(compactor, at, look, value * (1 / (chance * chosen.probability)), &RayKeys<IdTag<D>>::caustic, waiting);
+    wait(compactor, at, look, value * (1 / (chance * chosen.probability)), waiting);
     compactor.store(d, random.v[0], waiting.random[0] + n);
     compactor.store(d, random.v[1], waiting.random[1] + n);
     compactor.store(d, chosen.rest, waiting.random[2] + n);

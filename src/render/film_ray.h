@@ -8,7 +8,7 @@
 namespace orrery::render {
 
 /// Sets a lane of a packet to the ray through a point of the image, when the shutter opens and from the centre of the
-/// lens. Its key is 0.
+/// lens. Its threshold is 0.
 ///
 /// `x`, `y`   px from the upper left corner of the rendered window
 template <class T>
@@ -27,7 +27,7 @@ void set_film_ray(const kernel::Camera& camera, double x, double y, kernel::RayP
   for (int axis = 0; axis < 3; ++axis) packet.origin[axis][lane] += packet.offset[axis][lane];
   packet.inverse_square[lane] = 1;
   packet.self[lane] = kernel::kCamera;
-  packet.key[lane] = 0;
+  packet.threshold[lane] = 0;
 }
 
 }  // namespace orrery::render

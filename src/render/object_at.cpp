@@ -10,7 +10,7 @@
 namespace orrery::render {
 namespace {
 
-/// Number of packets with different keys: an opacity of 0.02 is visible to one of the rays with a probability of 99 %.
+/// Number of packets with different thresholds: objects with an opacity of less than 1/256 are not found.
 constexpr int kPackets = 16;
 
 template <class T>
@@ -24,7 +24,7 @@ std::optional<std::uint32_t> seen_along_ray(const compile::CompiledScene& scene,
   for (int i = 0; i < (scene.features.opacity ? kPackets : 1); ++i) {
     kernel::reset_hits(packet);
     for (int lane = 0; lane < packet.count; ++lane)
-      packet.key[lane] = static_cast<std::uint32_t>(i * kernel::kPacketSize + lane) * 0x9e3779b1u;
+      packet.threshold[lane] = static_cast<float>(i * kernel::kPacketSize + lane) / (kPackets * kernel::kPacketSize);
     kernel::trace(accel.tracer(), packet);
     for (int lane = 0; lane < packet.count; ++lane) {
       if (packet.hit[lane] == kernel::kNone) continue;

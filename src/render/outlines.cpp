@@ -9,7 +9,6 @@
 #include <cstddef>
 #include <cstdint>
 #include <limits>
-#include <utility>
 
 #include "compile/compiled_scene.h"
 #include "kernel/ray_packet.h"
@@ -27,8 +26,8 @@ constexpr int kRays = 4;
 constexpr int kTileSide = 64;
 /// Depth of an edge, in radii of the object in front, in general and within a group, and in pixels.
 constexpr double kEdgeRadii = 0.25, kInnerEdgeRadii = 2, kEdgePixels = 3;
-/// Opacity from which an object hides the outlines behind it.
-constexpr float kSolid = 0.5f;
+/// Objects with a greater opacity hide the outlines behind them.
+constexpr float kSolid = 0.4999f;
 /// Of a line of full strength.
 constexpr int kFullInk = 255;
 /// Width and strength of the lines within a group, and the jump from which they are like those between groups, in
@@ -62,8 +61,10 @@ double radius_of(const kernel::SceneView& scene, std::uint64_t id) {
 }
 
 /// Traces the rays of a grid.
+///
+/// `threshold` of the rays
 template <class T>
-void trace_grid(const compile::CompiledScene& scene, const accel::Accel& accel, Grid& grid) {
+void trace_grid(const compile::CompiledScene& scene, const accel::Accel& accel, float threshold, Grid& grid) {
   const kernel::Camera& camera = scene.camera;
   const math::Vec3d forward = normalized(camera.forward);
   const kernel::Tracer tracer = accel.tracer();
@@ -77,6 +78,7 @@ void trace_grid(const compile::CompiledScene& scene, const accel::Accel& accel, 
       const int column = (begin + lane) % grid.width, row = (begin + lane) / grid.width;
       const double x = (grid.x + column + 0.5) / kRays, y = (grid.y + row + 0.5) / kRays;
       set_film_ray(camera, x, y, packet, lane);
+      packet.threshold[lane] = threshold;
     }
     kernel::trace(tracer, packet);
     for (int lane = 0; lane < packet.count; ++lane)
@@ -92,13 +94,13 @@ void trace_grid(const compile::CompiledScene& scene, const accel::Accel& accel, 
 
 class TileOutlines {
  public:
-  /// `strength` of the outlines of each object; null: all have full strength
-  TileOutlines(const compile::CompiledScene& scene, const accel::Accel& accel, const float* strength,
+  /// `threshold` objects with a greater opacity are there
+  TileOutlines(const compile::CompiledScene& scene, const accel::Accel& accel, float threshold,
                const OutlineStyle& style)
       : scene_(scene),
-        strength_(strength),
         view_(scene.view()),
         accel_(accel),
+        threshold_(threshold),
         style_(style),
         reach_(style.width_px / 2 * kRays),
         border_(static_cast<int>(std::ceil(style.width_px / 2)) + 1),
@@ -112,9 +114,9 @@ class TileOutlines {
               (bottom - top + 2 * border_) * kRays,
               {}};
     if (scene_.precision == kernel::Precision::kFast)
-      trace_grid<float>(scene_, accel_, grid);
+      trace_grid<float>(scene_, accel_, threshold_, grid);
     else
-      trace_grid<double>(scene_, accel_, grid);
+      trace_grid<double>(scene_, accel_, threshold_, grid);
     std::vector<std::uint8_t> inked(grid.seen.size());
     for (int row = 0; row < grid.height; ++row)
       for (int column = 0; column < grid.width; ++column) {
@@ -142,7 +144,7 @@ class TileOutlines {
     const double radii = has_groups ? kInnerEdgeRadii : kEdgeRadii;
     const double least = style_.depth > 0 ? style_.depth : radii * radius_of(view_, front.id);
     if (!is_between && !(jump > std::max(least, kEdgePixels * pixel))) return {};
-    const double strength = front.visible * (strength_ == nullptr ? 1 : double{strength_[front.id]});
+    const double strength = front.visible * (view_.opacity == nullptr ? 1 : double{view_.opacity[front.id]});
     if (!has_groups || is_between || jump > kFarBehind * least) return {strength, reach_};
     return {kFineStrength * strength, kFineWidth * reach_};
   }
@@ -177,9 +179,9 @@ class TileOutlines {
   }
 
   const compile::CompiledScene& scene_;
-  const float* strength_;
   kernel::SceneView view_;
   const accel::Accel& accel_;
+  float threshold_;
   const OutlineStyle& style_;
   double reach_;  ///< half of the lines' full width, rays
   int border_;    ///< px around a tile
@@ -202,28 +204,13 @@ void draw_outlines(const TileOutlines& tile_outlines, const compile::CompiledSce
 
 }  // namespace
 
-std::vector<float> outlines(const compile::CompiledScene& scene, accel::Accel& accel, const OutlineStyle& style,
+std::vector<float> outlines(const compile::CompiledScene& scene, const accel::Accel& accel, const OutlineStyle& style,
                             int threads) {
   std::vector<float> coverage(math::pixel_count(scene.width, scene.height));
-  const float* const opacity = scene.view().opacity;
-  if (opacity != nullptr) {
-    // Rays decide at random what is visible. For outlines, first all objects are, then the solid ones. An image after
-    // an error must have the scene's opacities, too.
-    struct Restore {
-      accel::Accel& accel;
-      const float* opacity;
-      ~Restore() { accel.set_opacity(opacity); }
-    };
-    std::vector<float> solid(scene.opacity.size());
-    std::transform(scene.opacity.begin(), scene.opacity.end(), solid.begin(),
-                   [](float value) { return value < kSolid ? 0.0f : 1.0f; });
-    const Restore restore{accel, opacity};
-    for (const float* const visible : {static_cast<const float*>(nullptr), std::as_const(solid).data()}) {
-      accel.set_opacity(visible);
-      draw_outlines({scene, accel, opacity, style}, scene, threads, coverage);
-    }
-  } else {
-    draw_outlines({scene, accel, nullptr, style}, scene, threads, coverage);
+  // Those of all objects, then those of the solid ones, which show through the others.
+  for (const float threshold : {0.0f, kSolid}) {
+    draw_outlines({scene, accel, threshold, style}, scene, threads, coverage);
+    if (!scene.features.opacity) break;
   }
   return coverage;
 }

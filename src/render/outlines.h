@@ -25,12 +25,11 @@ struct OutlineStyle {
 /// as weak as their objects, and objects less than half opaque do not hide the outlines behind them. A depth cue
 /// weakens outlines like their objects.
 ///
-/// `accel`      of the objects of `scene`; has the scene's opacities at the end, and others meanwhile: no query of
-///              another thread may be under way if objects are translucent
+/// `accel`      of the objects of `scene`
 /// Shape        scene.width * scene.height, row by row from the top
 /// Precision    the width of a straight line, over all pixels, within 0.3 px (test RenderOutlines)
 /// Cost         16 rays per pixel, 32 with translucent objects, on `threads` threads
-std::vector<float> outlines(const compile::CompiledScene& scene, accel::Accel& accel, const OutlineStyle& style,
+std::vector<float> outlines(const compile::CompiledScene& scene, const accel::Accel& accel, const OutlineStyle& style,
                             int threads);
 
 }  // namespace orrery::render

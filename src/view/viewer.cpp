@@ -318,7 +318,6 @@ struct Viewer::Image {
   bool is_last = false;  ///< of the wish
   std::vector<std::string> warnings = {};
   std::shared_ptr<job::Rendering> rendering = nullptr;
-  bool has_outlines = false;
   std::shared_ptr<Live> live = nullptr;  ///< null for a sketch
   double build_reported = -1;            ///< fraction of the BVH build that the state tells; negative: none
 };
@@ -379,9 +378,7 @@ job::Hooks Viewer::hooks_for(Image& image) {
     image.live->canvas.write(state, rendered);
   };
   hooks.on_progress = [this, &image](const render::Progress& progress) {
-    // There is no progress before the BVH has been built. Outlines of translucent objects replace the opacities that a
-    // pick would read, see render::outlines(): it is then possible when the image is complete.
-    if (!image.has_outlines || prepared_->compiled().opacity.empty()) picker_.open();
+    picker_.open();  // there is no progress before the BVH has been built
     if (std::exchange(image.build_reported, -1) >= 0) set_activity("");
     const preview::Canvas& canvas = image.live->canvas;
     image.live->samples = static_cast<double>(progress.samples_done) / pixels_of(canvas.width(), canvas.height());
@@ -391,7 +388,6 @@ job::Hooks Viewer::hooks_for(Image& image) {
 
 /// Tells clients about an image whose scene has been read.
 void Viewer::begin(Image& image, const display::PictureInfo& info, const annotation::Drawing& drawing) {
-  image.has_outlines = drawing.outline_px > 0;
   if (!image.is_sketch) {
     image.live = std::make_shared<Live>(info, drawing, sketch_);
     image.live->wish = image.wish;

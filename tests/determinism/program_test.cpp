@@ -207,7 +207,7 @@ INSTANTIATE_TEST_SUITE_P(, DeterminismProgram,
                                          StoredImage{"rods.toml", 0x0c958d917a2553b9u},
                                          StoredImage{"plastic.toml", 0x14ca8554b3ced38bu},
                                          StoredImage{"many.toml", 0xf0ce502a90666d53u},
-                                         StoredImage{"opacity.toml", 0x09e37290acc8eebcu}),
+                                         StoredImage{"opacity.toml", 0x781e3beaa08de889u}),
                          [](const auto& instance) {
                            std::string name = instance.param.scene;
                            std::replace(name.begin(), name.end(), '-', '_');

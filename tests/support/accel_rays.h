@@ -113,7 +113,7 @@ void copy_rays(const From& from, To& to) {
     to.inverse_square[i] = static_cast<T>(from.inverse_square[i]);
     to.self[i] = static_cast<std::remove_reference_t<decltype(to.self[0])>>(from.self[i]);
     to.time[i] = static_cast<T>(from.time[i]);
-    to.key[i] = from.key[i];
+    to.threshold[i] = from.threshold[i];
   }
   to.count = from.count;
 }

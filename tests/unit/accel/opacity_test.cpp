@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Which objects are visible to a ray, in all accelerators and traversals alike.
+// Which objects are visible to a ray, in all accelerators and traversals alike: those whose opacity is greater than its
+// threshold.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -31,13 +32,15 @@ kernel::SceneView view_of(const std::vector<kernel::Sphere>& spheres, const std:
   return view;
 }
 
+float random_threshold(Random& random) { return static_cast<float>(random.uniform(0, 1)); }
+
 kernel::RayPacket<double> random_rays(Random& random, const test::Scene& scene) {
   kernel::RayPacket<double> packet;
   packet.count = kPacketSize;
   kernel::reset_hits(packet);
   for (int lane = 0; lane < kPacketSize; ++lane) {
     test::aim(random, scene, packet, lane);
-    packet.key[lane] = static_cast<std::uint32_t>(random.engine());
+    packet.threshold[lane] = random_threshold(random);
   }
   return packet;
 }
@@ -174,7 +177,7 @@ TEST(AccelOpacity, TheHalfThatARayEntersDecidesAboutARod) {
         kernel::reset_hits(packet);
         for (int lane = 0; lane < kPacketSize; ++lane) {
           test::set_ray(packet, lane, {half_of_lane(lane) == 0 ? -1.0 : 1.0, 0.1, 5}, {0, 0, 0}, {0, 0, -1}, kCamera);
-          packet.key[lane] = lane % 2 == 0 ? static_cast<std::uint32_t>(random.engine()) : packet.key[lane - 1];
+          packet.threshold[lane] = lane % 2 == 0 ? random_threshold(random) : packet.threshold[lane - 1];
         }
         kernel::trace(accel->tracer(way.traversal), packet);
         for (int lane = 0; lane < kPacketSize; lane += 2) {

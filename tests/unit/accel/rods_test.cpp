@@ -175,7 +175,7 @@ void compare_hits(const RodScene& scene, kernel::Precision precision, const test
     for (int lane = 0; lane < kPacketSize; ++lane) {
       aim_at_rod(random, scene, drawn, lane);
       drawn.time[lane] = random.uniform(0, 1);
-      drawn.key[lane] = static_cast<std::uint32_t>(random.engine());
+      drawn.threshold[lane] = static_cast<float>(random.uniform(0, 1));
     }
     kernel::RayPacket<T> a;
     test::copy_rays(drawn, a);
@@ -218,7 +218,7 @@ TEST(AccelRods, EmbreeAndListFindTheSameOcclusion) {
         for (int lane = 0; lane < kPacketSize; ++lane) {
           aim_at_rod(random, scene, aimed, lane);
           aimed.time[lane] = random.uniform(0, 1);
-          aimed.key[lane] = static_cast<std::uint32_t>(random.engine());
+          aimed.threshold[lane] = static_cast<float>(random.uniform(0, 1));
           a.target[lane] = kNone;
         }
         static_cast<kernel::PacketRays<double>&>(a) = aimed;
