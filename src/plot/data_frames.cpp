@@ -126,7 +126,8 @@ LoadedFrame DataFrames::load(int frame, const scene::PointsKeys& keys, points::S
   out.diagnostics = points::load_points(request, out.points);
   for (const scene::SceneDiagnostic& d : out.diagnostics) {
     const bool has_key = d.key.size() > request.key.size() && d.key != request.key + ".file";
-    const std::string key = has_key ? d.key.substr(request.key.size() + 1) + ": " : "";
+    std::string key = has_key ? d.key.substr(request.key.size() + 1) + ": " : "";
+    if (key == "cryptomatte: ") key = "--outline-by: ";  // which alone sets this key of a plot
     const std::string number = numbers_.size() > 1 ? fmt::format("frame {}: ", frame) : "";
     auto& list = d.severity == base::Severity::kError ? errors : out.warnings;
     list.push_back(base::file_diagnostic(d.severity, request.file.string(), number + key + d.text));

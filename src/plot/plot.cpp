@@ -226,6 +226,9 @@ class PlotMaker {
     out_.choices.push_back(fmt::format("{}: {}", what, why));
   }
 
+  /// Data of a file format for molecules, or atoms without a simulation box.
+  bool is_molecule() const { return !info_.z_up || (!info_.roles.element.empty() && !info_.box); }
+
   /// Image width divided by its height.
   double aspect() const { return static_cast<double>(width_) / height_; }
 
@@ -254,8 +257,7 @@ class PlotMaker {
       const double back[3] = {near.back.x, near.back.y, near.back.z};
       look_from_ = {back[axis] < 0 ? '-' : '+', "xyz"[axis]};
     }
-    const bool is_molecule = !info_.z_up || (!info_.roles.element.empty() && !info_.box);
-    if (look_from_.empty() && is_molecule && options_.up.empty() && !options_.ground) look_from_ = kAuto;
+    if (look_from_.empty() && is_molecule() && options_.up.empty() && !options_.ground) look_from_ = kAuto;
     if (look_from_.empty() || look_from_ == kAuto) {
       std::optional<LoadedFrame> other;
       const LoadedFrame& first = first_frame(other);
@@ -305,7 +307,8 @@ class PlotMaker {
   /// In sequences the range is that of all frames, so that colours do not flicker.
   void choose_depth_cue(const ViewExtent& extent, scene::Camera& camera) {
     constexpr double kExactPart = 0.1;
-    const bool is_default = !info_.z_up || options_.style == Style::kIllustration;  // up is y in files of molecules
+    // In a cut object, the light shows the depth, and the cue would only make what is in the shade grey.
+    const bool is_default = (is_molecule() && options_.slices.empty()) || options_.style == Style::kIllustration;
     camera.depth_cue = options_.depth_cue.value_or(is_default ? kDepthCue : 0);
     if (camera.depth_cue == 0 || extent.is_empty()) return;
     if (out_.frames.size() > 1 || is_turntable_) {
@@ -414,7 +417,7 @@ class PlotMaker {
     scene::Annotation out = options_.annotation;
     out.font = from_scene(out.font.string(), options_.scene_file);
     out.outline_objects = !outline_by_.empty();
-    if (out.outline == 0 && (out.outline_objects || options_.style == Style::kIllustration))
+    if (out.outline == 0 && (out.outline_objects || out.outline_depth > 0 || options_.style == Style::kIllustration))
       out.outline = rounded(kOutlineShare * height_);
     if (out.scale_bar == 0) {
       const double most = kLargestShare * camera.width.value_or(1), power = std::pow(10, std::floor(std::log10(most)));

@@ -933,8 +933,20 @@ TEST_F(PlotPlot, MoleculesHaveADepthCue) {
        "ATOM      2  CA  ALA B   2       0.000   0.000   9.000  1.00  0.00           C\n");
   EXPECT_EQ(read().camera.depth_cue, kDepthCue);
   EXPECT_TRUE(chose("depth cue 0.35: for molecules; --depth-cue 0 keeps the colours at the back"));
+  options.slices = {{2, 5}};
+  make();
+  EXPECT_EQ(read().camera.depth_cue, 0) << "it would make the shade inside grey";
+  options.slices.clear();
   options.depth_cue = 0;
   make();
+  EXPECT_EQ(read().camera.depth_cue, 0);
+}
+
+TEST_F(PlotPlot, AtomsWithoutABoxAreMoleculesInAnyFormat) {
+  make("a.xyz", "2\n\nO 0 0 0\nH 0 0 1\n");
+  EXPECT_EQ(read().camera.depth_cue, kDepthCue);
+  EXPECT_NE(choices().find("view auto"), std::string::npos) << choices();
+  make("a.xyz", "2\nLattice=\"5 0 0 0 5 0 0 0 5\"\nO 0 0 0\nH 0 0 1\n");
   EXPECT_EQ(read().camera.depth_cue, 0);
 }
 
@@ -962,8 +974,13 @@ TEST_F(PlotPlot, OutlinesAreDividedByAColumn) {
   options.annotation.outline = 5;
   make();
   EXPECT_EQ(read().annotation.outline, 5);
+  options.annotation.outline = 0;
+  options.outline_by = "";
+  options.annotation.outline_depth = 1;
+  make();
+  EXPECT_NEAR(read().annotation.outline, 1080.0 / 400, 0.01) << "implied";
   options.outline_by = "none";
-  EXPECT_NE(error().find("`none`"), std::string::npos) << error();
+  EXPECT_NE(error().find("--outline-by: the file has no column `none`"), std::string::npos) << error();
 }
 
 TEST_F(PlotPlot, AnIllustrationHasOutlinesBetweenChains) {
