@@ -2,9 +2,12 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
+
+#include "math/vec3.h"
 
 namespace orrery::film {
 
@@ -35,12 +38,13 @@ struct Picture {
   int width = 0;   ///< px
   int height = 0;  ///< px
   std::vector<Plane> planes;
-  std::vector<float> coverage = {};       ///< of each pixel by what is not background; empty: unknown
-  int x = 0, y = 0;                       ///< px, position of the upper left pixel in the frame
-  int frame_width = 0, frame_height = 0;  ///< px; 0: the image is the whole frame
-  std::string color_interop_id = {};      ///< colour space, "lin_rec709_scene"; empty: unknown
-  bool is_transparent = false;            ///< A is coverage, even if it is 1 in all pixels
-  double pixel_aspect = 1;                ///< pixel width / height
+  std::vector<float> coverage = {};          ///< of each pixel by what is not background; empty: unknown
+  std::optional<math::Vec3d> backdrop = {};  ///< radiance of the background, of images from a file that has it
+  int x = 0, y = 0;                          ///< px, position of the upper left pixel in the frame
+  int frame_width = 0, frame_height = 0;     ///< px; 0: the image is the whole frame
+  std::string color_interop_id = {};         ///< colour space, "lin_rec709_scene"; empty: unknown
+  bool is_transparent = false;               ///< A is coverage, even if it is 1 in all pixels
+  double pixel_aspect = 1;                   ///< pixel width / height
 
   const Plane* find(const std::string& name) const {
     for (const Plane& plane : planes)
@@ -52,6 +56,9 @@ struct Picture {
   /// Errors     base::Error(kBadData) if there is none
   const Plane& at(const std::string& name) const;
 };
+
+/// The channel of files that holds Picture::coverage.
+inline constexpr const char* kCoverageChannel = "coverage.A";
 
 /// The largest finite half.
 inline constexpr float kLargestHalf = 65504.0f;

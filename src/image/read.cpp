@@ -10,6 +10,7 @@
 #include <vector>
 
 #include <OpenImageIO/imageio.h>
+#include <OpenImageIO/strutil.h>
 #include <fmt/core.h>
 
 #include "base/error.h"
@@ -111,6 +112,9 @@ film::Picture decode_all(const std::filesystem::path& file, const Input& input, 
   picture.color_interop_id = std::string(spec.get_string_attribute("colorInteropID"));
   picture.is_transparent =
       std::string(spec.get_string_attribute("orrery/settings")).find(kTransparent) != std::string::npos;
+  const std::vector<float> rgb =
+      OIIO::Strutil::extract_from_list_string<float>(spec.get_string_attribute("orrery/backdrop"), 0, 0.0f, " ");
+  if (rgb.size() == 3) picture.backdrop = math::Vec3d{double{rgb[0]}, double{rgb[1]}, double{rgb[2]}};
   for (const std::string& name : spec.channelnames) picture.planes.push_back({name, {}});
   std::vector<float> rows;
   const auto decode = [&](int begin, int end) {
@@ -119,6 +123,7 @@ film::Picture decode_all(const std::filesystem::path& file, const Input& input, 
   };
   each_row(input, static_cast<std::size_t>(spec.width) * static_cast<std::size_t>(spec.nchannels), decode,
            [&](int, const float* row) { append_row(spec, row, picture); });
+  if (const film::Plane* const coverage = picture.find(film::kCoverageChannel)) picture.coverage = coverage->values;
   return picture;
 }
 

@@ -47,6 +47,7 @@ DevelopReport develop_file(const Development& development) {
   display::Settings display = development.display;
   if (display.working_space.empty()) display.working_space = picture.color_interop_id;
   if (display.working_space.empty()) display.working_space = "lin_rec709";
+  display.backdrop = picture.backdrop;
   report.display = display::choose(display);
   for (const char* name : {"R", "G", "B"})  // no other plane is developed
     if (const film::Plane* plane = picture.find(name)) report.bad_values += film::count_bad_values(*plane);

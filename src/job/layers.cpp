@@ -214,7 +214,7 @@ std::filesystem::path manifest_file(const std::string& layer, const std::filesys
 
 }  // namespace
 
-Layers choose_layers(const scene::Scene& scene, const compile::CompiledScene& compiled, bool view_has_looks) {
+Layers choose_layers(const scene::Scene& scene, const compile::CompiledScene& compiled, bool may_have_looks) {
   Layers out;
   film::LayerRequest& r = out.request;
   const std::vector<std::string> names = scene::requested_layers(scene);
@@ -222,7 +222,7 @@ Layers choose_layers(const scene::Scene& scene, const compile::CompiledScene& co
   for (const film::LayerType& layer : film::kLayerTypes) r.*layer.requested = requested(layer.name);
   if (r.light_groups) r.groups = light_groups(scene, compiled);
   r.transparent = scene.background.alpha == 0;
-  r.coverage = r.transparent || (view_has_looks && scene.background.backdrop);
+  r.coverage = r.transparent || (may_have_looks && scene.background.backdrop);
   std::vector<std::uint32_t> authored;
   if (r.material_id || requested("CryptoMaterial")) authored = authored_materials(compiled);
   if (r.material_id)

@@ -35,9 +35,9 @@ struct Layers {
 
 /// Returns the layer request and the mattes for the names in [output]. CryptoGroup is empty for a scene without groups.
 ///
-/// `view_has_looks`  the display transform needs the coverage of objects in front of a backdrop
+/// `may_have_looks`  the display transform may need the coverage of objects in front of a backdrop
 /// Domain     the scene is valid; `compiled` was compiled from it
-Layers choose_layers(const scene::Scene& scene, const compile::CompiledScene& compiled, bool view_has_looks = false);
+Layers choose_layers(const scene::Scene& scene, const compile::CompiledScene& compiled, bool may_have_looks = false);
 
 /// The object of the CryptoObject matte that each sphere and each half of a rod belongs to, as a number.
 ///

@@ -122,6 +122,8 @@ image::Header picture_header(const load::ReadResult& read, const compile::Compil
   for (std::size_t i = 0; i < read.scene.points.size(); ++i)
     if (const std::string text = color_text(read.scene.points[i]); !text.empty())
       header.attributes.push_back({fmt::format("orrery/points[{}].color", i), text});
+  if (const auto& backdrop = compiled.backdrop)
+    header.attributes.push_back({"orrery/backdrop", fmt::format("{} {} {}", backdrop->x, backdrop->y, backdrop->z)});
   if (report.render.noise) header.attributes.push_back({"orrery/noise", static_cast<float>(*report.render.noise)});
   for (const load::Setting& setting : read.settings)
     if (setting.key == "render.precision" || setting.key == "render.shading" || setting.key == "render.sampler")

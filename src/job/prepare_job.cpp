@@ -37,7 +37,9 @@ void load(const PreparedJob& own, base::FileSet& files, JobReport& report) {
 /// The layers that an output of the job holds; others are not computed.
 Layers layers_of(const PreparedJob& own) {
   const Job& job = own.job;
-  Layers out = choose_layers(own.scene(), own.compiled(), own.loaded().choice && own.loaded().choice->has_looks);
+  // The view that will be applied to an EXR file is not known.
+  const bool may_have_looks = job.outputs.has_exr() || (own.loaded().choice && own.loaded().choice->has_looks);
+  Layers out = choose_layers(own.scene(), own.compiled(), may_have_looks);
   out.request.deep = !job.outputs.deep.empty();
   out.request.halves = out.request.halves || job.denoise;
   image::check_lossless(film::planes_of(out.request), job.outputs.exr);

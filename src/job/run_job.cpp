@@ -228,7 +228,10 @@ class Run {
       report_.phases.denoise_s = watch_.lap();
     }
     report_result(result);
-    annotate(result.picture);
+    film::Picture& picture = result.picture;
+    if (job_.outputs.has_exr() && !picture.coverage.empty() && !picture.is_transparent)
+      picture.planes.push_back({film::kCoverageChannel, picture.coverage, film::PlaneKind::kData});
+    annotate(picture);
   }
 
   /// Denoises the image, and removes the halves unless the scene requests them.
@@ -263,7 +266,7 @@ class Run {
     annotation::Drawing& drawing = own_.drawing;
     if (drawing.is_empty()) return;
     if (drawing.outline_px > 0)
-      if (accel::Accel* const accel = build(); accel != nullptr) {
+      if (const accel::Accel* const accel = build(); accel != nullptr) {
         render::OutlineStyle style{drawing.outline_px, drawing.outline_depth, {}};
         if (drawing.outline_objects) style.groups = object_classes(own_.scene(), compiled());
         drawing.lines = render::outlines(compiled(), *accel, style, threads_);

@@ -1,11 +1,31 @@
 // SPDX-License-Identifier: Apache-2.0
-// `orrery denoise` and --denoise: they agree, and whatever the program does to get an image does not matter.
+// The commands that work on image files. `orrery denoise` and --denoise: they agree, and whatever the program does to
+// get an image does not matter.
+#include <algorithm>
+#include <cstdlib>
+
 #include <nlohmann/json.hpp>
 
 #include "cli/program.h"
 
 namespace orrery::test {
 namespace {
+
+class CliDevelop : public ProgramTest {};
+
+/// The look of the view Neutral does not grey the page, and edges are mixtures of page and object.
+TEST_F(CliDevelop, AnExrFileOfAPlotGivesItsImage) {
+  write("a.csv", "x,y,z\n0,0,0\n3,0,0\n");
+  ASSERT_EQ(run("plot a.csv -q --samples 16 --width 64 --height 36 -o a.exr -o a.ppm").status, 0);
+  ASSERT_EQ(run("develop a.exr -q --view Neutral -o b.ppm").status, 0);
+  const std::string a = text_of(folder_ / "a.ppm"), b = text_of(folder_ / "b.ppm");
+  ASSERT_EQ(a.size(), b.size());
+  EXPECT_EQ(b.substr(b.size() - 3), "\xff\xff\xff") << "the page";
+  int most = 0;
+  for (std::size_t i = 0; i < a.size(); ++i)
+    most = std::max(most, std::abs(static_cast<unsigned char>(a[i]) - static_cast<unsigned char>(b[i])));
+  EXPECT_LE(most, 1) << "halves are rounded";
+}
 
 class CliDenoise : public ProgramTest {
  protected:
