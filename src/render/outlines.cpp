@@ -20,7 +20,7 @@
 namespace orrery::render {
 namespace {
 
-/// Rays along each side of a pixel.
+/// Rays along each side of a pixel; even.
 constexpr int kRays = 4;
 /// Side of a tile, px.
 constexpr int kTileSide = 64;
@@ -60,22 +60,23 @@ double radius_of(const kernel::SceneView& scene, std::uint64_t id) {
   return scene.rods[(id - scene.sphere_count) / 2].radius;  // a rod has two ids
 }
 
-/// Traces the rays of a grid.
+/// Traces rays of a grid.
 ///
 /// `threshold` of the rays
+/// `rays`      their indices
 template <class T>
-void trace_grid(const compile::CompiledScene& scene, const accel::Accel& accel, float threshold, Grid& grid) {
+void trace_rays(const compile::CompiledScene& scene, const accel::Accel& accel, float threshold,
+                const std::vector<int>& rays, Grid& grid) {
   const kernel::Camera& camera = scene.camera;
   const math::Vec3d forward = normalized(camera.forward);
   const kernel::Tracer tracer = accel.tracer();
-  const int count = grid.width * grid.height;
-  grid.seen.resize(static_cast<std::size_t>(count));
   kernel::RayPacket<T> packet{};
-  for (int begin = 0; begin < count; begin += kernel::kPacketSize) {
-    packet.count = std::min(kernel::kPacketSize, count - begin);
+  for (std::size_t begin = 0; begin < rays.size(); begin += kernel::kPacketSize) {
+    packet.count = static_cast<int>(std::min<std::size_t>(kernel::kPacketSize, rays.size() - begin));
+    const int* const of_lanes = &rays[begin];
     kernel::reset_hits(packet);
     for (int lane = 0; lane < packet.count; ++lane) {
-      const int column = (begin + lane) % grid.width, row = (begin + lane) / grid.width;
+      const int column = of_lanes[lane] % grid.width, row = of_lanes[lane] / grid.width;
       const double x = (grid.x + column + 0.5) / kRays, y = (grid.y + row + 0.5) / kRays;
       set_film_ray(camera, x, y, packet, lane);
       packet.threshold[lane] = threshold;
@@ -86,10 +87,40 @@ void trace_grid(const compile::CompiledScene& scene, const accel::Accel& accel, 
         const auto along = [&](int axis) { return static_cast<double>(packet.direction[axis][lane]); };
         const auto depth = static_cast<double>(packet.distance[lane]);
         const double cosine = dot({along(0), along(1), along(2)}, forward);
-        grid.seen[static_cast<std::size_t>(begin + lane)] = {packet.hit[lane], depth,
-                                                             1 - scene.depth_cue.share(depth * cosine)};
+        grid.seen[static_cast<std::size_t>(of_lanes[lane])] = {packet.hit[lane], depth,
+                                                               1 - scene.depth_cue.share(depth * cosine)};
       }
   }
+}
+
+/// Traces every second ray of a grid along each side, then those between rays that see different objects. The others
+/// see what the ray beside them sees.
+///
+/// `threshold` of the rays
+template <class T>
+void trace_grid(const compile::CompiledScene& scene, const accel::Accel& accel, float threshold, Grid& grid) {
+  grid.seen.resize(math::pixel_count(grid.width, grid.height));
+  const auto each_second = [&grid](const auto& f) {
+    for (int row = 0; row < grid.height; row += 2)
+      for (int column = 0; column < grid.width; column += 2) f(column, row);
+  };
+  std::vector<int> rays;
+  each_second([&](int column, int row) { rays.push_back(row * grid.width + column); });
+  trace_rays<T>(scene, accel, threshold, rays, grid);
+  rays.clear();
+  each_second([&](int column, int row) {
+    const int right = std::min(column + 2, grid.width - 2), below = std::min(row + 2, grid.height - 2);
+    const Seen seen = grid.at(column, row);
+    const bool is_uniform = grid.at(right, row).id == seen.id && grid.at(column, below).id == seen.id &&
+                            grid.at(right, below).id == seen.id;
+    const int first = row * grid.width + column;
+    for (const int ray : {first + 1, first + grid.width, first + grid.width + 1})
+      if (is_uniform)
+        grid.seen[static_cast<std::size_t>(ray)] = seen;
+      else
+        rays.push_back(ray);
+  });
+  trace_rays<T>(scene, accel, threshold, rays, grid);
 }
 
 class TileOutlines {

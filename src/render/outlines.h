@@ -28,7 +28,7 @@ struct OutlineStyle {
 /// `accel`      of the objects of `scene`
 /// Shape        scene.width * scene.height, row by row from the top
 /// Precision    the width of a straight line, over all pixels, within 0.3 px (test RenderOutlines)
-/// Cost         16 rays per pixel, 32 with translucent objects, on `threads` threads
+/// Cost         4 to 16 rays per pixel, twice as many with translucent objects, on `threads` threads
 std::vector<float> outlines(const compile::CompiledScene& scene, const accel::Accel& accel, const OutlineStyle& style,
                             int threads);
 

@@ -263,7 +263,7 @@ Table annotation_table() {
        number("outline", {0, kWidestOutline},
               {"Width of the outlines of objects, drawn at discontinuities of the depth. 0: none. Drawn as at shutter "
                "open, without a lens",
-               "px", "16 rays per pixel, 32 with translucent objects"},
+               "px", "4 to 16 rays per pixel, twice as many with translucent objects"},
               &Annotation::outline),
        boolean(
            "outline_objects",

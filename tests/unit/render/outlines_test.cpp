@@ -154,18 +154,5 @@ TEST(RenderOutlines, FadeWithTheDepthCue) {
   EXPECT_NEAR(limb(scene, {2, 0, {}}, 25), full * 0.75, 0.02);
 }
 
-/// The image after the outlines has the scene's opacities.
-TEST(RenderOutlines, LeaveTheOpacities) {
-  scene::Scene scene = scene_of({{{0, 0, 0}, 1}}, 20);
-  scene::Lambertian ghost;
-  ghost.opacity = 0.3;
-  scene.materials = {{"ghost", ghost}};
-  const compile::CompiledScene compiled = compile::compile(scene);
-  const auto used = build(compiled, 1), fresh = build(compiled, 1);
-  outlines(compiled, *used, {2, 0, {}}, 1);
-  EXPECT_EQ(test::plane_values(render(compiled, *used, {}).picture),
-            test::plane_values(render(compiled, *fresh, {}).picture));
-}
-
 }  // namespace
 }  // namespace orrery::render
