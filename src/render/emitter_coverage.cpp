@@ -160,7 +160,8 @@ std::uint32_t free_lines(const kernel::Tracer& tracer, const Sightlines& lines) 
     packet.self[i] = line.from;
     packet.target[i] = line.target;
     packet.time[i] = static_cast<T>(line.time);
-    packet.key[i] = static_cast<std::uint32_t>(i) * 0x9e3779b1u;  // sees what is translucent, and what is behind it
+    // Lines see what is translucent, or what is behind it.
+    packet.threshold[i] = static_cast<float>(i * 5 % kSightlines) / kSightlines;
   }
   kernel::occlude(tracer, packet);
   std::uint32_t out = 0;
