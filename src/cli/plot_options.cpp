@@ -210,8 +210,9 @@ void read_bonds(const std::string& text, scene::PointsBonds& bonds) {
 
 void DataArguments::add_to(Command& command, plot::DataOptions& data, const std::string& kind) {
   command
-      .add_option("FILE", data.file, "FILE",
-                  kind + ": LAMMPS, XYZ, PDB, mmCIF, PLY, CSV, NPY, NPZ, LAS, GSD, HDF5, VTK")
+      .add_option(
+          "FILE", data.file, "FILE",
+          kind + ": LAMMPS, XYZ, PDB, mmCIF, CIF, VASP, GRO, XTC, TRR, DCD, PLY, CSV, NPY, NPZ, LAS, GSD, HDF5, VTK")
       ->required();
   const OptionGroup group(command, kDataOptions);
   scene::PointsKeys& points = data.points;
@@ -230,9 +231,13 @@ void DataArguments::add_to(Command& command, plot::DataOptions& data, const std:
   command.add_option("--component", points.component, "N", "HDF5: particle type, N of PartTypeN")
       ->details("Required if the file has particles of several types.")
       ->transform(whole_number(0, 1000));
+  command.add_option("--topology", points.topology, "FILE",
+                     "Trajectories: data file that names the atoms, e.g. top.pdb or conf.gro");
   command.add_option("--assembly", points.assembly, "NAME", "PDB, mmCIF: biological assembly, e.g. 1");
   command.add_option("--replicate", replicate, "A,B,C", "Number of periodic boxes along each box edge, e.g. 2,2,1");
-  command.add_flag("--unwrap", points.unwrap, "Unwrap coordinates with the file's periodic image flags");
+  command.add_flag(
+      "--unwrap", points.unwrap,
+      "Unwrap coordinates with the file's periodic image flags, or else make molecules whole by their bonds");
   command.add_flag("--skip-bad", points.skip_bad, "Skip rows with non-finite coordinates or radii")
       ->details("Otherwise they are an error.");
   const OptionGroup look(command, kLookOptions);

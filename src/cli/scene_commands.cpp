@@ -27,6 +27,7 @@ struct InfoOptions {
   std::filesystem::path file;
   SceneOptions overrides;
   std::optional<int> component;
+  std::filesystem::path topology;
   bool json = false, settings = false;
 };
 
@@ -57,6 +58,7 @@ int data_info(const InfoOptions& options) {
   request.file = options.file;
   request.frame = options.overrides.frame();
   request.component = options.component;
+  request.topology = options.topology;
   const info::DataInfo found = info::data_info(request);
   print_result(options.json ? info::data_info_json(found) : info::data_info_text(found));
   return 0;
@@ -64,7 +66,9 @@ int data_info(const InfoOptions& options) {
 
 int info(const InfoOptions& options) {
   if (!load::is_scene_file(options.file)) return data_info(options);
-  refuse_option(options.component.has_value(), "--component", options, "scene; the option applies to data files");
+  for (const auto& [is_given, option] :
+       {std::pair{options.component.has_value(), "--component"}, std::pair{!options.topology.empty(), "--topology"}})
+    refuse_option(is_given, option, options, "scene; the option applies to data files");
   load::SceneRequest request;
   request.source.file = options.file;
   request.source.overrides = options.overrides.overrides();
@@ -157,6 +161,7 @@ void add_info(Command& program) {
   options->overrides.add_frame_to(command);
   command.add_option("--component", options->component, "N", "HDF5: particle type, N of PartTypeN")
       ->transform(whole_number(0, 1000));
+  command.add_option("--topology", options->topology, "FILE", "Trajectories: data file that names the atoms");
   auto* json = command.add_flag("--json", options->json, "Print JSON, with all settings")
                    ->details("Schema orrery.info/1, for data files orrery.data/1.");
   command.add_flag("--settings", options->settings, "Print every setting, its value and its origin")->excludes(json);

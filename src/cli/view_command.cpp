@@ -79,9 +79,9 @@ std::vector<std::string> gradient_of(const std::string& name) {
 ///
 /// `options`    those that it may set
 /// `allowed`    the files that they may name
-/// `component`  of HDF5 files
+/// `points`     how it opens data files
 view::Controls controls_of(const std::filesystem::path& file, const std::vector<const Option*>& options,
-                           const std::set<std::string>& allowed, const std::optional<int>& component, Films* films) {
+                           const std::set<std::string>& allowed, const scene::PointsKeys& points, Films* films) {
   view::Controls out;
   out.title = file.filename().string();
   const bool is_scene = load::is_scene_file(file);
@@ -109,9 +109,10 @@ view::Controls controls_of(const std::filesystem::path& file, const std::vector<
   }
   if (is_scene) return out;
   for (const std::string& name : points::color_map_names()) out.maps[name] = gradient_of(name);
-  out.column = [=](int frame, const std::string& column, bool is_log) {
+  out.column = [file, component = points.component, topology = points.topology](int frame, const std::string& column,
+                                                                                bool is_log) {
     const std::string name = base::input_at_frame({}, file.string(), frame);
-    return info::column_values_json({name, name == file ? frame : 1, component}, column, is_log);
+    return info::column_values_json({name, name == file ? frame : 1, component, topology}, column, is_log);
   };
   return out;
 }
@@ -169,7 +170,7 @@ int run_view(ViewArguments& arguments, const Command& command) {
   std::optional<Films> films;
   if (!arguments.folder.empty()) films.emplace(arguments.folder);
   view::Controls controls =
-      controls_of(file, options, allowed, arguments.shown.plot.options.points.component, films ? &*films : nullptr);
+      controls_of(file, options, allowed, arguments.shown.plot.options.points, films ? &*films : nullptr);
   view::Wish first = first_wish(options);
   const std::vector<std::string> fixed = command.arguments([&](const Option& option) {
     return !option.name().empty() && !is_in(arguments.own, option) && !is_in(options, option);

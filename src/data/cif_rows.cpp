@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cstddef>
+#include <cstdint>
 #include <gemmi/cif.hpp>
 #include <string_view>
 #include <utility>
@@ -28,7 +29,7 @@ class RowReader {
   RowReader(std::vector<CifTable> tables, Faults& faults, const std::function<void()>& begin_block)
       : tables_(std::move(tables)), faults_(faults), begin_block_(begin_block) {
     for (const CifTable& table : tables_) rows_.emplace_back(table.items.size());
-    has_items_.resize(tables_.size());
+    item_lines_.resize(tables_.size());
   }
 
   void begin_block(std::string_view, std::uint64_t) {
@@ -57,14 +58,12 @@ class RowReader {
   void set_value(std::string_view value, std::uint64_t line) {
     if (!item_.is_wanted) return;
     rows_[item_.table][item_.item] = gemmi::cif::as_string(std::string(value));
-    has_items_[item_.table] = true;
-    last_line_ = line;
+    item_lines_[item_.table] = line;
   }
   /// Ends the tables that are given as single items: each has one row.
   void end_block() {
     for (std::size_t i = 0; i < tables_.size(); ++i)
-      if (has_items_[i]) finish_row(i, last_line_);
-    std::fill(has_items_.begin(), has_items_.end(), false);
+      if (const std::uint64_t line = std::exchange(item_lines_[i], 0); line > 0) finish_row(i, line);
   }
 
  private:
@@ -87,11 +86,10 @@ class RowReader {
   Faults& faults_;
   const std::function<void()>& begin_block_;
   std::vector<std::vector<std::string>> rows_;  ///< the current row of each table
-  std::vector<bool> has_items_;                 ///< the row was given as single items
+  std::vector<std::uint64_t> item_lines_;       ///< the last line of a row that was given as single items; 0: none
   std::vector<Slot> loop_;                      ///< one per column of the current loop
   std::size_t column_ = 0;
   Slot item_;
-  std::uint64_t last_line_ = 0;
 };
 
 /// Calls a method with the text that a rule has matched, and the number of its first line.

@@ -1,6 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "data/columns.h"
 
+#include <tbb/blocked_range.h>
+#include <tbb/parallel_for.h>
+
 #include <algorithm>
 #include <utility>
 
@@ -127,6 +130,30 @@ std::vector<std::string> with_sources(const std::vector<std::string>& names, con
   if (std::erase_if(out, is_computed) == 0) return out;
   for (const std::string& source : sources)
     if (!base::contains(out, source)) out.push_back(source);
+  return out;
+}
+
+std::vector<double> unscaled(const Table& table, const std::array<std::string, 3>& columns, const Box& box,
+                             std::size_t axis) {
+  std::array<const double*, 3> scaled{};
+  for (std::size_t i = 0; i < 3; ++i) scaled[i] = std::get<std::vector<double>>(table.find(columns[i])->values).data();
+  const auto part = [axis](const Vec3d& v) { return axis == 0 ? v.x : axis == 1 ? v.y : v.z; };
+  const double origin = part(box.origin);
+  const double a = part(box.edges[0]);
+  const double b = part(box.edges[1]);
+  const double c = part(box.edges[2]);
+  std::vector<double> out(table.rows);
+  constexpr std::size_t kGrain = std::size_t{1} << 16;
+  tbb::parallel_for(tbb::blocked_range<std::size_t>(0, table.rows, kGrain), [&](const auto& range) {
+    for (std::size_t i = range.begin(); i < range.end(); ++i)
+      out[i] = origin + scaled[0][i] * a + scaled[1][i] * b + scaled[2][i] * c;
+  });
+  return out;
+}
+
+Table copied_columns(const Table& table, const std::vector<std::string>& names) {
+  Table out{table.rows, {}};
+  for (const std::string& name : names) out.columns.push_back(*table.find(name));
   return out;
 }
 

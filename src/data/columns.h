@@ -73,6 +73,13 @@ class UniqueNames {
 std::vector<std::string> with_sources(const std::vector<std::string>& names, const std::array<std::string, 3>& computed,
                                       const std::array<std::string, 3>& sources);
 
+/// Returns a coordinate of the positions that three columns of float64 give in units of the edges of a box.
+std::vector<double> unscaled(const Table& table, const std::array<std::string, 3>& columns, const Box& box,
+                             std::size_t axis);
+
+/// Returns copies of columns of a table.
+Table copied_columns(const Table& table, const std::vector<std::string>& names);
+
 /// Returns columns of a table, in the order of their names.
 Table in_order(Table table, const std::vector<std::string>& names);
 

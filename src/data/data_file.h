@@ -18,6 +18,7 @@ namespace orrery::data {
 
 struct OpenOptions {
   std::optional<int> component = {};  ///< HDF5: particle type, N of /PartTypeN; default: the only one that is not empty
+  std::filesystem::path topology = {};  ///< file that names the particles, see with_topology(); empty: none
   /// Maximum size of decompressed data, bytes. They are kept in memory while they are read.
   std::uint64_t decompressed_limit = std::uint64_t{16} << 30;
 

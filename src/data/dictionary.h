@@ -9,6 +9,8 @@
 #include <utility>
 #include <vector>
 
+#include "data/table.h"
+
 namespace orrery::data {
 
 /// Numbers distinct strings in order of first appearance.
@@ -43,6 +45,17 @@ class Dictionary {
   std::vector<Word> words_;
   std::unordered_map<Word, std::uint32_t, Hash, std::equal_to<>> indices_;
   std::uint32_t last_ = 0;
+};
+
+/// A text column under construction.
+class WordColumn {
+ public:
+  void add(std::string_view word) { index_.push_back(dictionary_.index_of(word)); }
+  Words take() { return {dictionary_.take(), std::move(index_)}; }
+
+ private:
+  Dictionary<> dictionary_;
+  std::vector<std::uint32_t> index_;
 };
 
 }  // namespace orrery::data

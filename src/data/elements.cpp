@@ -60,6 +60,12 @@ constexpr int kCount = static_cast<int>(std::size(kElements));
 
 }  // namespace
 
+bool is_metal(const Element& element) {
+  constexpr std::string_view kOthers[] = {"H",  "He", "B",  "C",  "N",  "O",  "F",  "Ne", "Si", "P",  "S",
+                                          "Cl", "Ar", "As", "Se", "Br", "Kr", "Te", "I",  "Xe", "At", "Rn"};
+  return std::find(std::begin(kOthers), std::end(kOthers), element.symbol) == std::end(kOthers);
+}
+
 const Element* find_element(int number) {
   return number >= 1 && number <= kCount ? &kElements[static_cast<std::size_t>(number) - 1] : nullptr;
 }

@@ -29,6 +29,9 @@ struct Element {
   std::uint32_t color;
 };
 
+/// Whether an element is a metal in its compounds with others; Ge, Sb and Po are.
+bool is_metal(const Element& element);
+
 /// Returns the element with an atomic number; null unless 1 <= number <= 118.
 const Element* find_element(int number);
 

@@ -66,7 +66,7 @@ class TextFrames : public DataFile {
 
  private:
   /// Reads a header.
-  virtual TextFrame header(TextCursor cursor) const = 0;
+  virtual TextFrame header(TextCursor cursor) = 0;
   /// Skips a header, and returns the number of rows.
   virtual std::uint64_t skip_header(TextCursor& cursor) const = 0;
   virtual bool begins_frame(std::string_view line) const = 0;

@@ -1,7 +1,4 @@
 // SPDX-License-Identifier: Apache-2.0
-#include <tbb/blocked_range.h>
-#include <tbb/parallel_for.h>
-
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -204,24 +201,6 @@ void describe_columns(const std::vector<ColumnInfo>& columns, FrameInfo& info) {
   if (is_wrapped && contain(columns, Axes{"ix", "iy", "iz"})) roles.image = {"ix", "iy", "iz"};
 }
 
-/// One coordinate of positions that columns of a table give in units of the box.
-std::vector<double> unscaled(const Table& table, const Axes& columns, const Box& box, std::size_t axis) {
-  std::array<const double*, 3> scaled{};
-  for (std::size_t i = 0; i < 3; ++i) scaled[i] = std::get<std::vector<double>>(table.find(columns[i])->values).data();
-  const auto part = [axis](const Vec3d& v) { return axis == 0 ? v.x : axis == 1 ? v.y : v.z; };
-  const double origin = part(box.origin);
-  const double a = part(box.edges[0]);
-  const double b = part(box.edges[1]);
-  const double c = part(box.edges[2]);
-  std::vector<double> out(table.rows);
-  constexpr std::size_t kGrain = std::size_t{1} << 16;
-  tbb::parallel_for(tbb::blocked_range<std::size_t>(0, table.rows, kGrain), [&](const auto& range) {
-    for (std::size_t i = range.begin(); i < range.end(); ++i)
-      out[i] = origin + scaled[0][i] * a + scaled[1][i] * b + scaled[2][i] * c;
-  });
-  return out;
-}
-
 /// Whether the types of atoms are labels, as with `dump_modify types labels`: the first one is not a number.
 ///
 /// `rows`     at the first row
@@ -252,7 +231,7 @@ class LammpsDump final : public TextFrames {
   }
 
  private:
-  TextFrame header(TextCursor cursor) const override {
+  TextFrame header(TextCursor cursor) override {
     Faults faults(bytes().file());
     TextFrame frame = FrameReader(cursor, faults).read();
     std::vector<ColumnInfo>& columns = frame.layout.columns;

@@ -445,7 +445,6 @@ class MmcifReader final : public DataFile {
       assemblies.add_operator(
           row[0], {{Vec3d{v[0], v[1], v[2]}, Vec3d{v[4], v[5], v[6]}, Vec3d{v[8], v[9], v[10]}}, {v[3], v[7], v[11]}});
     };
-    bool is_small_molecule = false;
     const std::string text = bytes->text(0, static_cast<std::size_t>(bytes->size()));
     std::uint64_t last = 1;
     require_text(text, last, faults_);
@@ -468,15 +467,10 @@ class MmcifReader final : public DataFile {
                {"title"},
                [this](const Row& row, std::uint64_t) {
                  if (!is_past_atoms_) title_ = row[0];
-               }},
-              {"_atom_site_", {"fract_x"}, [&](const Row&, std::uint64_t) { is_small_molecule = true; }}},
+               }}},
              faults_, [this] { is_past_atoms_ = !models_.empty(); });
     faults_.raise_if_any();
-    if (models_.empty())
-      faults_.fail(0,
-                   is_small_molecule ? "CIF with fractional coordinates is not supported"
-                                     : "no atoms: the table _atom_site is missing",
-                   is_small_molecule ? "convert it to XYZ, e.g. with `obabel -icif IN -oxyz`" : "");
+    if (models_.empty()) faults_.fail(0, "no atoms: the table _atom_site is missing");
     assemblies_ = assemblies.finish(faults_);
     atom_ = {};
   }
@@ -602,8 +596,27 @@ bool is_mmcif(const Signature& signature) {
   return second.starts_with('_') || second == "loop_" || second.starts_with("save_");
 }
 
+/// Whether the first table of atoms is that of a small molecule: its names have an underscore where mmCIF has a point.
+/// Texts of a publication may precede it.
+bool is_of_small_molecule(const ByteSource& bytes) {
+  constexpr std::string_view kTable = "_atom_site", kAnisotropic = "_anisotrop.";  // the latter of mmCIF
+  TextCursor cursor(bytes);
+  for (std::string line; cursor.next_filled(line);) {
+    const std::string_view word = trimmed(line);
+    if (!word.starts_with(kTable)) continue;
+    const std::string_view rest = word.substr(kTable.size());
+    if (rest.starts_with('.') || (rest.starts_with('_') && !rest.starts_with(kAnisotropic))) return rest[0] == '_';
+  }
+  return false;
+}
+
+std::unique_ptr<DataFile> open_cif(const Bytes& bytes, const OpenOptions& options) {
+  if (!is_of_small_molecule(*bytes)) return std::make_unique<MmcifReader>(bytes, options);
+  return open_small_cif(bytes, options);
+}
+
 }  // namespace
 
-const FormatReader kMmcif = {"mmCIF", is_mmcif, open_as<MmcifReader>};
+const FormatReader kMmcif = {"mmCIF", is_mmcif, open_cif};
 
 }  // namespace orrery::data

@@ -11,6 +11,7 @@
 #include "base/text.h"
 #include "data/faults.h"
 #include "data/readers.h"
+#include "data/trajectory.h"
 
 namespace orrery::data {
 
@@ -43,7 +44,10 @@ bool is_adios(const std::string& extension) { return extension == ".bp" || exten
 [[noreturn]] void refuse(const ByteSource& bytes, const Signature& signature) {
   std::string text = "unknown file format";
   std::string remedy =
-      "supported: LAMMPS dump and data, XYZ, PDB, mmCIF, PLY, CSV, NPY, NPZ, LAS, GSD, HDF5 (Gadget, SWIFT), VTP, VTU";
+      "supported: LAMMPS dump and data, XYZ, PDB, mmCIF, CIF, VASP, GRO, XTC, TRR, DCD, PLY, CSV, NPY, NPZ, LAS, GSD, "
+      "HDF5 (Gadget, "
+      "SWIFT), VTP, "
+      "VTU";
   if (signature.head.empty()) {
     text = "the file is empty";
     remedy.clear();
@@ -79,10 +83,10 @@ void refuse_encoding(const ByteSource& bytes, std::string_view head) {
               fmt::format("convert it: tr '\\r' '\\n' < {} > NEW", name));
 }
 
-constexpr const FormatReader* kBinary[] = {&kPly, &kHdf5, &kGsd, &kLas, &kNpy, &kNpz, &kVtk};
+constexpr const FormatReader* kBinary[] = {&kPly, &kHdf5, &kGsd, &kLas, &kNpy, &kNpz, &kVtk, &kXtc, &kTrr, &kDcd};
 /// The extension of CSV comes before signatures that are words, which may also be in a table.
 constexpr const FormatReader* kText[] = {
-    &kLammpsDump, &kNamedCsv, &kMmcif, &kPdb, &kXyz, &kLammpsData, &kCsv,
+    &kLammpsDump, &kNamedCsv, &kMmcif, &kPdb, &kXyz, &kVasp, &kGro, &kLammpsData, &kCsv,
 };
 
 /// Returns the first reader that recognises a file; null if there is none.
@@ -107,7 +111,12 @@ std::unique_ptr<DataFile> open(const std::filesystem::path& file, const OpenOpti
   }
   if (reader == nullptr) refuse(*bytes, signature);
   std::unique_ptr<DataFile> out = reader->open(bytes, options);
-  out->format = reader->name;
+  if (*out->format == '\0') out->format = reader->name;  // a reader may know better
+  if (!options.topology.empty()) {
+    OpenOptions names = options;
+    names.topology.clear();
+    out = with_topology(std::move(out), open(options.topology, names), file, options.topology);
+  }
   return settled(std::move(out));
 }
 

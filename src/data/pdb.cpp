@@ -4,7 +4,6 @@
 #include <cmath>
 #include <cstdint>
 #include <functional>
-#include <gemmi/unitcell.hpp>
 #include <optional>
 #include <set>
 #include <string>
@@ -18,6 +17,7 @@
 #include "data/atom_elements.h"
 #include "data/atom_table.h"
 #include "data/bonds.h"
+#include "data/crystal.h"
 #include "data/elements.h"
 #include "data/readers.h"
 #include "data/text_lines.h"
@@ -466,7 +466,7 @@ class PdbReader final : public DataFile {
                          bytes_->memory(), memory_limit_);
     atoms_.reserve(static_cast<std::size_t>(model.atoms));
     if (has_bonds) serials_.reserve(static_cast<std::size_t>(model.atoms));
-    set_box(model.cell, model.first_line);
+    set_box(model.cell);
     Faults faults(bytes_->file());
     std::uint64_t line_number = model.first_line - 1;
     for_each_pdb_line(*bytes_, model.begin, model.end, [&](std::string_view line, std::uint64_t) {
@@ -523,29 +523,16 @@ class PdbReader final : public DataFile {
 
   /// The cell is a simulation box only without crystal symmetry; otherwise, it contains more than the atoms of the
   /// file.
-  void set_box(std::string_view record, std::uint64_t line) {
+  void set_box(std::string_view record) {
     box_.reset();
     const std::string_view group = columns(record, 56, 66);
     if (record.empty() || (group != "P 1" && !group.empty())) return;
-    double edges[6];
+    std::array<double, 6> cell{};
     constexpr std::size_t kFirst[] = {7, 16, 25, 34, 41, 48, 55};
     for (std::size_t i = 0; i < 6; ++i)
-      if (!base::from_text(columns(record, kFirst[i], kFirst[i + 1] - 1), edges[i])) return;
-    gemmi::UnitCell cell;
-    try {
-      cell.set(edges[0], edges[1], edges[2], edges[3], edges[4], edges[5]);
-    } catch (const std::exception& error) {
-      Faults(bytes_->file()).fail(line, error.what());
-    }
+      if (!base::from_text(columns(record, kFirst[i], kFirst[i + 1] - 1), cell[i])) return;
     // Programs write a cell of zeros for structures without one.
-    if (!cell.is_crystal() || !(cell.volume > 0)) return;
-    Box box;
-    for (int i = 0; i < 3; ++i) {
-      const gemmi::Vec3 edge = cell.orth.mat.column_copy(i);
-      box.edges[static_cast<std::size_t>(i)] = {edge.x, edge.y, edge.z};
-      if (!math::is_finite(box.edges[static_cast<std::size_t>(i)])) return;
-    }
-    box_ = box;
+    box_ = cell_box(cell);
   }
 
   Bytes bytes_;

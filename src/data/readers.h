@@ -31,9 +31,12 @@ std::unique_ptr<DataFile> open_as(const Bytes& bytes, const OpenOptions& options
     return std::make_unique<File>(bytes);
 }
 
-extern const FormatReader kLammpsDump, kLammpsData, kXyz, kPly, kCsv;
+extern const FormatReader kLammpsDump, kLammpsData, kXyz, kVasp, kPly, kCsv;
 extern const FormatReader kNpy, kNpz, kLas, kGsd, kHdf5, kVtk;
+extern const FormatReader kGro, kXtc, kTrr, kDcd;
 extern const FormatReader kPdb, kMmcif;
+/// Opens a CIF file with fractional coordinates, which kMmcif recognises.
+std::unique_ptr<DataFile> open_small_cif(const Bytes& bytes, const OpenOptions& options);
 /// CSV, as selected by the extension alone.
 extern const FormatReader kNamedCsv;
 

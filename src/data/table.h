@@ -192,6 +192,7 @@ struct FrameInfo {
   std::string title;                                   ///< comment or title of the file; may be empty
   bool z_up = true;                                    ///< convention of the format
   bool has_components = false;   ///< OpenOptions::component selects one of several sets of particles
+  bool is_unit_cell = false;     ///< the atoms are those of a crystal's unit cell, and the box is this cell
   bool may_be_of_scene = false;  ///< the file may have been made for a scene: a column may number its materials
   bool may_be_hollow = false;    ///< a radius below 0 is a hollow sphere, as in a scene
   std::uint64_t bonds = 0;       ///< estimated number of bonds in the frame

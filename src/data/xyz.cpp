@@ -322,7 +322,7 @@ class Xyz final : public TextFrames {
   }
 
  private:
-  TextFrame header(TextCursor cursor) const override { return XyzHeaderReader(bytes(), std::move(cursor)).read(); }
+  TextFrame header(TextCursor cursor) override { return XyzHeaderReader(bytes(), std::move(cursor)).read(); }
 
   std::uint64_t skip_header(TextCursor& cursor) const override {
     std::string line;

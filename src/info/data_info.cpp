@@ -218,6 +218,7 @@ json json_of(const ColumnSummary& summary) {
 std::unique_ptr<data::DataFile> opened(const DataInfoRequest& request) {
   data::OpenOptions options;
   options.component = request.component;
+  options.topology = request.topology;
   options.limit_memory(base::available_memory().value_or(0));
   std::unique_ptr<data::DataFile> file = data::open(request.file, options);
   if (request.frame < 1 || !file->has_frame(request.frame - 1))

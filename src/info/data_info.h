@@ -15,7 +15,8 @@ namespace orrery::info {
 struct DataInfoRequest {
   std::filesystem::path file;
   int frame = 1;                      ///< frame of the file, from 1
-  std::optional<int> component = {};  ///< see data::OpenOptions
+  std::optional<int> component = {};  ///< see data::OpenOptions, as is this
+  std::filesystem::path topology = {};
   /// Maximum size of the columns that are read together, at least one column, bytes; 0: a quarter of the available
   /// memory.
   std::uint64_t table_bytes = 0;

@@ -36,6 +36,7 @@ points::LoadRequest request_for(const SceneSource& source, const std::filesystem
 points::LoadRequest points_request(const SceneSource& source, const scene::Scene& scene, std::size_t table) {
   points::LoadRequest out = request_for(source, scene.points[table].file, fmt::format("points[{}]", table));
   out.frame = source.frame;
+  if (const auto& topology = scene.points[table].topology; !topology.empty()) out.topology = out.folder / topology;
   out.materials = scene.materials.size();
   out.open = source.open_data;
   out.loaded = source.loaded;
@@ -145,6 +146,7 @@ class SceneLoader {
       } catch (const base::Error&) {  // reported when the file is loaded
       }
       out += fmt::format("{}\n{}\n", version_of(request.file), frame);
+      if (!request.topology.empty()) out += base::file_version(request.topology) + '\n';
       if (points.color.has_map_file()) out += base::file_version(request.folder / points.color.map) + '\n';
     }
     for (std::size_t i = 0; i < scene_.rod_files.size(); ++i)

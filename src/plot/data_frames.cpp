@@ -26,6 +26,7 @@ scene::PointsKeys everything(const scene::PointsKeys& keys) {
   scene::PointsKeys out;
   out.file = keys.file;
   out.component = keys.component;
+  out.topology = keys.topology;
   out.material_column = keys.material_column;
   out.radius.value = 1;
   out.skip_bad = true;
@@ -43,6 +44,7 @@ DataFrames::DataFrames(const DataOptions& options, const std::filesystem::path& 
       numbers_(options.frames) {
   data::OpenOptions open_options;
   open_options.component = options.points.component;
+  open_options.topology = options.points.topology;
   open_options.limit_memory(options.memory_limit);
   const int first = all().front();
   file_ = open_(file_of(first), open_options);
@@ -112,6 +114,7 @@ LoadedFrame DataFrames::load(int frame, const scene::PointsKeys& keys, points::S
                              const std::function<void(double)>& on_value) const {
   points::LoadRequest request;
   request.file = file_of(frame);
+  request.topology = options_.points.topology;
   request.folder = folder_;
   request.key = "points[0]";
   request.frame = frame;

@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 #include <utility>
 
 #include <fmt/core.h>
@@ -68,6 +69,7 @@ Reach reach_of(const data::Table& table, const Rows& rows, const BondSource& sou
   for (const std::string& name : labels.names) {
     const data::Element* const element = data::find_element(name);
     if (element == nullptr) missing.push_back(fmt::format("`{}`", name));
+    out.are_metals.push_back(element != nullptr && data::is_metal(*element));
     out.of_label.push_back(element == nullptr ? 0
                                               : element->covalent * bonds.factor.value_or(scene::kDefaultBondFactor));
   }
@@ -79,6 +81,16 @@ Reach reach_of(const data::Table& table, const Rows& rows, const BondSource& sou
   if (out.of_label.empty()) out.of_label = {0};
   out.labels = std::move(labels.of_rows);
   return out;
+}
+
+void remove_metal_bonds(const Reach& reach, BondSet& bonds) {
+  const auto& metals = reach.are_metals;
+  if (std::find(metals.begin(), metals.end(), false) == metals.end()) return;
+  const auto are_metals = [&](const auto& bond) {
+    return metals[reach.labels[bond.a]] && metals[reach.labels[bond.b]];
+  };
+  std::erase_if(bonds.pairs, are_metals);
+  std::erase_if(bonds.crossing, are_metals);
 }
 
 BondSet bonds_of_rows(const std::vector<data::Bond>& bonds, const Rows& rows, std::size_t row_count,
@@ -101,6 +113,62 @@ BondSet bonds_of_rows(const std::vector<data::Bond>& bonds, const Rows& rows, st
   sort_unique(out.pairs);
   sort_unique(out.crossing);
   return out;
+}
+
+void join_molecules(const BondSet& bonds, const Lattice& lattice, scene::PointArray& centers) {
+  struct Neighbor {
+    std::uint32_t point = 0;
+    Shift shift{};
+  };
+  const std::size_t count = centers.size();
+  // Shifts wrap around: a damaged file may have bonds of any length.
+  const auto moved = [](const Shift& a, const Shift& b, bool forth) {
+    Shift out{};
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+      const auto from = static_cast<std::uint32_t>(a[axis]), by = static_cast<std::uint32_t>(b[axis]);
+      out[axis] = static_cast<std::int32_t>(forth ? from + by : from - by);
+    }
+    return out;
+  };
+  const auto each_end = [&](auto visit) {
+    for (const scene::SphereBond& bond : bonds.pairs) {
+      visit(bond.a, Neighbor{bond.b, {}});
+      visit(bond.b, Neighbor{bond.a, {}});
+    }
+    for (const CrossingBond& bond : bonds.crossing) {
+      visit(bond.a, Neighbor{bond.b, bond.shift});
+      visit(bond.b, Neighbor{bond.a, moved({}, bond.shift, false)});
+    }
+  };
+  std::vector<std::size_t> ends(count + 1);  // of the neighbours of each point
+  each_end([&](std::uint32_t from, const Neighbor&) { ++ends[from + 1]; });
+  std::partial_sum(ends.begin(), ends.end(), ends.begin());
+  std::vector<Neighbor> neighbors(ends.back());
+  std::vector<std::size_t> next(ends.begin(), ends.end() - 1);
+  each_end([&](std::uint32_t from, const Neighbor& to) { neighbors[next[from]++] = to; });
+  std::vector<bool> is_placed(count);
+  std::vector<Shift> shifts(count);
+  std::vector<std::uint32_t> molecule;
+  for (std::uint32_t start = 0; start < count; ++start) {
+    if (is_placed[start]) continue;
+    molecule = {start};
+    is_placed[start] = true;
+    Vec3d sum{0, 0, 0};
+    for (std::size_t i = 0; i < molecule.size(); ++i) {
+      const std::uint32_t from = molecule[i];
+      sum = sum + centers[from] + lattice.translation(shifts[from]);
+      for (std::size_t k = ends[from]; k < ends[from + 1]; ++k) {
+        const std::uint32_t to = neighbors[k].point;
+        if (is_placed[to]) continue;
+        is_placed[to] = true;
+        shifts[to] = moved(shifts[from], neighbors[k].shift, true);
+        molecule.push_back(to);
+      }
+    }
+    const Shift home = lattice.image_of(sum / static_cast<double>(molecule.size()));
+    for (const std::uint32_t i : molecule)
+      centers.set(i, centers[i] + lattice.translation(moved(shifts[i], home, false)));
+  }
 }
 
 void merge(BondSet& bonds, BondSet more) {

@@ -65,6 +65,7 @@ struct Reach {
   std::vector<double> of_label;
   std::vector<std::uint32_t> labels;  ///< one per point; empty: all have the first label
   double smallest = 0;                ///< smallest length of a bond as a fraction of the largest
+  std::vector<bool> are_metals = {};  ///< by label; empty: no labels are elements
 };
 
 /// Finds the bonds of points, including those to periodic images, in parallel.
@@ -91,12 +92,19 @@ inline constexpr std::uint64_t kBondSearchBytes = 100, kFileBondBytes = 64;
 Reach reach_of(const data::Table& table, const Rows& rows, const BondSource& source, const scene::PointsBonds& bonds,
                KeyFaults& faults);
 
+/// Removes the bonds between metals if other elements occur: in a salt or an oxide, cations are close, but not bonded.
+void remove_metal_bonds(const Reach& reach, BondSet& bonds);
+
 /// Returns the bonds of a file between selected rows. Those longer than half of the periodic box are to the closest
 /// image of an atom.
 ///
 /// `rows`     of the spheres, of a table with `row_count` rows
 BondSet bonds_of_rows(const std::vector<data::Bond>& bonds, const Rows& rows, std::size_t row_count,
                       const scene::PointArray& centers, const Lattice& lattice);
+
+/// Moves points by edges of the periodic box, so that those that bonds join are together, and the middle of each
+/// molecule is in the box. Bonds must be found again after it.
+void join_molecules(const BondSet& bonds, const Lattice& lattice, scene::PointArray& centers);
 
 /// Adds the bonds of one set to another, without duplicates.
 void merge(BondSet& bonds, BondSet more);
@@ -111,5 +119,12 @@ double bond_radius(const data::FrameInfo& info, const scene::PointsBonds& bonds,
 /// `copies`   in the order of replicated(); an assembly has no bonds to other images
 void copy_bonds(const BondSet& bonds, const std::vector<Copy>& copies, const Labels& chains, const Lattice& lattice,
                 scene::Points& points);
+
+/// Adds the images of the spheres on a face, an edge or a corner of a unit cell, or of a block of replicas, on all of
+/// them, with the bonds between spheres. The stubs of spheres on faces are removed. Call after make_copies().
+///
+/// `box`      before the transform and the replication
+/// `rows`     row number of each sphere, extended to the images; may be null
+void complete_faces(const data::Box& box, scene::Points& points, std::vector<std::uint32_t>* rows);
 
 }  // namespace orrery::points

@@ -40,6 +40,7 @@ double longest_step(const std::string& name) { return name == "CA" ? 4.6 : name 
 std::shared_ptr<data::DataFile> open(const LoadRequest& request, const scene::PointsKeys& points) {
   data::OpenOptions options;
   options.component = points.component;
+  options.topology = request.topology;
   options.limit_memory(request.memory_limit);
   return request.open && !points.is_sequence ? request.open(request.file, options) : data::open(request.file, options);
 }
@@ -125,9 +126,11 @@ class Loader {
     if (points_.unwrap) plan_unwrap();
     draws_bonds_ =
         points_.bonds.are_drawn || has_rule_for(Representation::kBallAndStick) || has_rule_for(Representation::kSticks);
-    if (draws_bonds_) {
+    if (draws_bonds_ || joins_molecules_) {
       bond_source_ = bond_source(info_, points_.bonds, faults_);
       need(bond_source_.element);
+    }
+    if (draws_bonds_) {
       points_.bonds_from = !bond_source_.is_distance ? "file" : bond_source_.is_file ? "both" : "distance";
     }
     if (!points_.vectors.columns.empty()) plan_arrows();
@@ -193,11 +196,8 @@ class Loader {
   }
 
   void plan_unwrap() {
-    if (info_.roles.image[0].empty() || !info_.box) {
-      faults_.error(".unwrap",
-                    "the file has no box, or no wrapped coordinates with periodic image flags, such as ix, iy and iz");
-      return;
-    }
+    if (!info_.box) return faults_.error(".unwrap", "the file has no box");
+    joins_molecules_ = info_.roles.image[0].empty();
     for (const std::string& column : info_.roles.image) need(column);
   }
 
@@ -237,7 +237,7 @@ class Loader {
     double spheres = static_cast<double>(count) * images;
     double bytes = static_cast<double>(file_->memory() + info_.rows * row_bytes) +
                    images * static_cast<double>(copies_.size() * sizeof(Copy));
-    if (draws_bonds_) {
+    if (draws_bonds_ || joins_molecules_) {
       const std::size_t rods = bonds.pairs.size() + 2 * bonds.crossing.size();  // those to other images are two stubs
       bytes += images * static_cast<double>(copies_.size() * rods * sizeof(scene::SphereBond));
       if (bond_source_.is_file) bytes += static_cast<double>(info_.bonds * kFileBondBytes);
@@ -275,6 +275,8 @@ class Loader {
     if (const data::Column* column = read->table.find(info_.roles.chain); column != nullptr)
       chains = labels_of(*column, rows, read->table.rows);
     const Lattice lattice(points_.assembly.empty() ? info_.box : std::nullopt);
+    if (joins_molecules_)
+      join_molecules(bonds_of(read->table, rows, read->centers, lattice, frame), lattice, read->centers);
     BondSet bonds = draws_bonds_ ? bonds_of_rods(read->table, rows, read->centers, lattice, frame) : BondSet();
     if (!points_.are_traces.empty()) add_traces(read->table, rows, read->centers, bonds);
     if (faults_.has_errors()) return;
@@ -318,7 +320,7 @@ class Loader {
     const std::array<std::string, 3>& position = info_.roles.position;
     scene::PointArray centers =
         are_needed_once(position) ? take_points(table, rows, position) : points_of(table, rows, position);
-    if (points_.unwrap) unwrap(table, rows, info_, centers);
+    if (points_.unwrap && !joins_molecules_) unwrap(table, rows, info_, centers);
     if (faults_.has_errors()) return {};
     // A radius below 0 makes hollow glass, in a scene or in a PLY file that was made for one. In other data it is an
     // error that the image would not show.
@@ -435,6 +437,7 @@ class Loader {
     }
     std::vector<std::uint32_t>* const row_of_sphere = request_.source == nullptr ? nullptr : &request_.source->rows;
     make_copies(copies_, chains, points_, row_of_sphere);
+    if (info_.is_unit_cell && draws_bonds_) complete_faces(*info_.box, points_, row_of_sphere);
     clip(points_, row_of_sphere);
     add_arrows(points_, row_of_sphere, faults_);
     if (!points_.objects.empty())
@@ -463,6 +466,7 @@ class Loader {
                                 kMaxNeighbors, points_.bonds.length ? "length" : "factor"));
       return out;
     }
+    if (info_.is_unit_cell) remove_metal_bonds(reach, *near);
     if (!bond_source_.is_file) return std::move(*near);
     merge(out, std::move(*near));
     return out;
@@ -540,7 +544,8 @@ class Loader {
   std::vector<Rule<Representation>> representations_;
   std::vector<std::optional<Representation>> kinds_;  ///< of the rows; none: as the keys of radius and bonds say
   bool draws_bonds_ = false;
-  double bond_radius_ = 0;  ///< before the transform
+  bool joins_molecules_ = false;  ///< unwraps by bonds
+  double bond_radius_ = 0;        ///< before the transform
   std::vector<Copy> copies_;
   BondSource bond_source_;
   std::vector<std::string> speed_sources_;  ///< columns that `speed` is computed from; empty: it is not needed

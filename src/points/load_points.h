@@ -37,6 +37,7 @@ struct LoadedPoints {
 
 struct LoadRequest {
   std::filesystem::path file;                 ///< the data file
+  std::filesystem::path topology = {};        ///< see data::OpenOptions
   std::filesystem::path folder;               ///< folder of the scene file, for the file of a colour map
   std::string key;                            ///< "points[0]", for diagnostics
   int frame = 1;                              ///< the rendered frame

@@ -19,6 +19,7 @@ struct OpenFile {
   std::string name;     ///< absolute path
   std::string version;  ///< see base::file_version
   std::optional<int> component;
+  std::string topology;  ///< its version; empty: none
   std::shared_ptr<data::DataFile> file;
 };
 
@@ -28,9 +29,10 @@ OpenData open_once() {
   return [open = std::make_shared<std::vector<OpenFile>>()](
              const std::filesystem::path& path, const data::OpenOptions& options) -> std::shared_ptr<data::DataFile> {
     const std::string name = std::filesystem::absolute(path).lexically_normal().string();
-    OpenFile wanted{name, base::file_version(name), options.component, nullptr};
+    const std::string topology = options.topology.empty() ? "" : base::file_version(options.topology.string());
+    OpenFile wanted{name, base::file_version(name), options.component, topology, nullptr};
     const auto found = std::find_if(open->begin(), open->end(), [&](const OpenFile& o) {
-      return o.version == wanted.version && o.component == wanted.component;
+      return o.version == wanted.version && o.component == wanted.component && o.topology == wanted.topology;
     });
     if (found != open->end()) {
       wanted = std::move(*found);

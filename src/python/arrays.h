@@ -50,8 +50,8 @@ pybind11::array_t<T> view_of(const T* values, std::vector<pybind11::ssize_t> sha
 /// Errors     base::Error(kBadData) if one of them is not finite
 void add_to_extent(const data::Table& positions, double radius, plot::ViewExtent& extent);
 
-/// Adds the function `read_points(file, frame, component, columns)`, which returns the columns of a data file as
-/// arrays, and their metadata.
+/// Adds the function `read_points(file, frame, component, columns, topology)`, which returns the columns of a data file
+/// as arrays, and their metadata.
 void bind_read_points(pybind11::module_& m);
 
 }  // namespace orrery::python

@@ -34,9 +34,10 @@ struct ReadPoints {
 ///
 /// `names`    empty: all
 ReadPoints read(const std::filesystem::path& file, int frame, std::optional<int> component,
-                const std::vector<std::string>& names) {
+                const std::vector<std::string>& names, const std::filesystem::path& topology) {
   data::OpenOptions options;
   options.component = component;
+  options.topology = topology;
   options.limit_memory(base::available_memory().value_or(0));
   const std::unique_ptr<data::DataFile> opened = data::open(file, options);
   ReadPoints out;
@@ -85,11 +86,11 @@ py::dict described(const data::FrameInfo& info, int frames) {
 }
 
 py::tuple read_points(const std::filesystem::path& file, int frame, std::optional<int> component,
-                      const std::vector<std::string>& names) {
+                      const std::vector<std::string>& names, const std::filesystem::path& topology) {
   ReadPoints points;
   {
     const py::gil_scoped_release released;
-    points = read(file, frame, component, names);
+    points = read(file, frame, component, names, topology);
   }
   py::dict columns;
   for (data::Column& column : points.table.columns) columns[str_of(column.name)] = array_of(std::move(column.values));

@@ -33,8 +33,9 @@ std::vector<Key<P>> make_keys() {
   std::vector<Key<P>> out;
   const auto add = [&](std::vector<Key<P>> keys) { out.insert(out.end(), keys.begin(), keys.end()); };
   add({required(file("file", kPointsFile,
-                     {"Data file, relative to the scene file: LAMMPS, XYZ, PDB, mmCIF, PLY, CSV, NPY, NPZ, LAS, GSD, "
-                      "HDF5 or VTK; see [Data files](data.md). May contain a frame pattern such as `####`",
+                     {"Data file, relative to the scene file: LAMMPS, XYZ, PDB, mmCIF, CIF, VASP, GRO, XTC, TRR, DCD, "
+                      "PLY, CSV, NPY, NPZ, LAS, GSD, HDF5 or VTK; see [Data files](data.md). May contain a frame "
+                      "pattern such as `####`",
                       "",
                       "Read for each frame. At least 12 bytes of scene data per sphere, excluding the BVH; see "
                       "[Cost](data.md#cost)"},
@@ -42,7 +43,11 @@ std::vector<Key<P>> make_keys() {
        otherwise("the rendered frame, if the file has several",
                  integer("frame", {1, kMaxFrameOfFile}, {"Frame of the file, counted from 1"}, &P::frame)),
        otherwise("the only one",
-                 integer("component", {0, 1000}, {"HDF5: particle type, N of `PartTypeN`"}, &P::component))});
+                 integer("component", {0, 1000}, {"HDF5: particle type, N of `PartTypeN`"}, &P::component)),
+       file("topology", kTopologyFile,
+            {"Data file that names the atoms of a trajectory, relative to the scene file; see [Data "
+             "files](data.md#trajectories)"},
+            &P::topology)});
   add(subtable("radius", {}, &P::radius,
                {otherwise("as in the file",
                           number("", kLength, {"Radius of all spheres. Overrides the radii of the file", "scene units"},
@@ -150,7 +155,10 @@ std::vector<Key<P>> make_keys() {
             &P::select),
        vector("replicate", {1, kMaxCopies},
               {"Number of periodic boxes along each box edge", "", "Each copy adds its spheres"}, &P::replicate),
-       boolean("unwrap", {"Unwraps coordinates with the file's periodic image flags"}, &P::unwrap),
+       boolean(
+           "unwrap",
+           {"Unwraps coordinates with the file's periodic image flags, or else makes molecules whole by their bonds"},
+           &P::unwrap),
        key_of("assembly", ValueType::kName, {},
               {"PDB and mmCIF: name of a biological assembly", "", "Each copy adds its spheres"}, &P::assembly)});
   add(subtable("transform", {}, &P::transform,

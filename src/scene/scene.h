@@ -320,6 +320,7 @@ struct PointsKeys {
   bool is_sequence = false;      ///< the rendered frame selects the file
   std::optional<int> frame;      ///< frame of the file, from 1; default: the rendered frame, if the file has several
   std::optional<int> component;  ///< particle type of an HDF5 snapshot
+  std::filesystem::path topology = {};  ///< file that names the atoms of a trajectory, as `file`; empty: none
   PointsRadius radius;
   PointsColor color;
   PointsBonds bonds;

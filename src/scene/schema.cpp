@@ -315,6 +315,7 @@ Table output_table() {
 }  // namespace
 
 const FileRole kPointsFile{"points file", true};
+const FileRole kTopologyFile{"topology file"};
 const FileRole kRodsFile{"file of rods", true};
 const FileRole kColorMapFile{"colour map", false, is_file_name};
 const FileRole kBackgroundFile{"background image", true};

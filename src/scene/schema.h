@@ -26,7 +26,8 @@ struct FileRole {
   /// Returns whether a value names a file; null: unless it is empty.
   bool (*names_file)(const std::string& value) = nullptr;
 };
-extern const FileRole kPointsFile, kRodsFile, kColorMapFile, kBackgroundFile, kTextureFile, kFontFile, kOcioConfigFile;
+extern const FileRole kPointsFile, kTopologyFile, kRodsFile, kColorMapFile, kBackgroundFile, kTextureFile, kFontFile,
+    kOcioConfigFile;
 
 /// Documentation of a key.
 struct KeyDoc {

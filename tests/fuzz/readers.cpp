@@ -206,7 +206,7 @@ std::string fault_with_all_keys(const std::filesystem::path& file, const data::F
   points.radius.value = 1;
   points.color.column = info.columns.back().name;
   points.skip_bad = frame == 0;
-  points.unwrap = info.box && !info.roles.image[0].empty();
+  points.unwrap = info.box && (frame == 0 || !info.roles.image[0].empty());
   if (info.box) points.replicate = {2, 1, 1};
   if (frame == 0) {
     points.bonds.are_drawn = true;

@@ -265,6 +265,7 @@ class Messages(FolderTest):
             lambda v: orrery.read_points("none.csv", frame=v),
             lambda v: orrery.read_points("none.csv", component=v),
             lambda v: orrery.read_points("none.csv", columns=v),
+            lambda v: orrery.read_points("none.csv", topology=v),
             lambda v: orrery.colormap(v),
             lambda v: orrery.colormap(p[:, 0], v),
             lambda v: orrery.colormap(p[:, 0], range=v),

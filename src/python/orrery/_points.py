@@ -124,14 +124,17 @@ def read_points(
     frame: int = 1,
     component: int | None = None,
     columns: Iterable[str] | None = None,
+    topology: Path | None = None,
 ) -> Points:
-    """Reads a data file: LAMMPS, XYZ, PDB, mmCIF, PLY, CSV, NPY, NPZ, LAS, GSD, HDF5, VTK (docs/data.md).
+    """Reads a data file: LAMMPS, XYZ, PDB, mmCIF, CIF, VASP, GRO, XTC, TRR, DCD and others (docs/data.md).
 
     frame      number of the frame, from 1
     component  HDF5 snapshots: particle type
     columns    names of the columns to read; by default all
+    topology   trajectories: data file that names the atoms
     """
     file, frame = _arguments.path("file", file), _arguments.whole("frame", frame)
     component = None if component is None else _arguments.whole("component", component)
     names = [_arguments.text("a name in columns", name) for name in columns or []]
-    return Points(*_orrery.read_points(file, frame, component, names))
+    topology = "" if topology is None else _arguments.path("topology", topology)
+    return Points(*_orrery.read_points(file, frame, component, names, topology))

@@ -65,7 +65,7 @@ TEST_F(DataOpen, ColumnsAreReadInTheOrderOfTheRequest) {
     } catch (const base::Error&) {  // not a data file, or damaged
     }
   }
-  EXPECT_EQ(formats.size(), 13) << testing::PrintToString(formats);
+  EXPECT_EQ(formats.size(), 19) << testing::PrintToString(formats);
 }
 
 TEST_F(DataOpen, AnAmbiguousFirstWordIsReadAsTheExtensionSays) {

@@ -107,6 +107,16 @@ TEST_F(PointsBonds, UnwrappedMoleculesAreWhole) {
   EXPECT_EQ(bonds(), "0-1");
 }
 
+TEST_F(PointsBonds, WithoutFlagsMoleculesAreMadeWholeByTheirBonds) {
+  points.radius.value = 0.5;
+  points.unwrap = true;
+  EXPECT_EQ(load("a.data", lammps("1 1 3 2\n2 1 1 2\n3 1 4 1\n", 3)), "");
+  EXPECT_EQ(bonds(), "0-1 0-3 1-2");
+  EXPECT_EQ(points.centers, (std::vector<math::Vec3d>{{0.5, 5, 5}, {1.5, 5, 5}, {2.5, 5, 5}, {-0.5, 5, 5}}));
+  EXPECT_EQ(load("b.data", lammps("1 1 4 1\n", 1)), "");
+  EXPECT_EQ(points.centers[3], (math::Vec3d{-0.5, 5, 5})) << "the middle of the molecule is in the box";
+}
+
 TEST_F(PointsBonds, ATiltedBoxHasItsOwnImages) {
   points.radius.value = 0.5;
   EXPECT_EQ(load("a.data",
