@@ -107,6 +107,9 @@ class Appearance {
     std::vector<std::string>& rules = points_.representation;
     if (options_.representation) {
       representation_ = *options_.representation;
+    } else if (shows_cell(options_, info_)) {
+      representation_ = Representation::kBallAndStick;
+      chose("representation ball-and-stick", "the unit cell of a crystal; --representation spheres shows atoms alone");
     } else if (rules.empty() && !options_.bonds && points_.vectors.columns.empty() &&
                data::has_column(info_.columns, "name") && data::has_column(info_.columns, "residue_number") &&
                !info_.roles.chain.empty()) {
@@ -282,6 +285,11 @@ class Appearance {
 };
 
 }  // namespace
+
+bool shows_cell(const PlotOptions& options, const data::FrameInfo& info) {
+  return info.is_unit_cell && !info.roles.element.empty() && !options.representation && !options.bonds &&
+         options.points.representation.empty() && options.points.vectors.columns.empty();
+}
 
 bool set_color(const DataOptions& options, const std::string& color_by, const data::FrameInfo& info,
                scene::PointsColor& color) {

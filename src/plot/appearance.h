@@ -19,6 +19,10 @@ struct PlotOptions;
 std::vector<std::string> choose_appearance(const PlotOptions& options, const DataFrames& data,
                                            scene::PointsKeys& points);
 
+/// Whether a plot shows the unit cell of a crystal in the customary way, since the user has chosen no representation:
+/// as a ball-and-stick model in the edges of the cell, with its axes.
+bool shows_cell(const PlotOptions& options, const data::FrameInfo& info);
+
 /// Sets the colour keys that `color_by` selects, with the names of DataOptions::color_by.
 ///
 /// Result     true if the user chose no colour map, so that this function chose one

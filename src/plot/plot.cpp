@@ -123,16 +123,21 @@ class PlotMaker {
     const std::filesystem::path folder = options.scene_file.parent_path();
     out_.points = options.points;
     out_.points.material_column = "";  // the scene of a plot has one material
-    out_.points.file = folder.empty() ? options.file : std::filesystem::proximate(options.file, folder);
+    const auto from_folder = [&](const std::filesystem::path& file) {
+      return folder.empty() || file.empty() ? file : std::filesystem::proximate(file, folder);
+    };
+    out_.points.file = from_folder(options.file);
+    out_.points.topology = from_folder(options.points.topology);
     if (std::string& map = out_.points.color.map; options_.has_map) map = from_scene(map, options.scene_file);
     if (!outline_by_.empty()) out_.points.cryptomatte = {outline_by_};
     out_.points.frame = data_.fixed_frame();
     out_.frames = data_.numbers();
     out_.up = up_;
     const scene::PointsKeys& points = out_.points;
-    for (const std::string& text : {points.file.string(), options.color_by, points.color.column, points.color.map,
-                                    points.radius.column, points.opacity.column, points.select, points.assembly,
-                                    options.center, options.fit, points.color.carbon, outline_by_})
+    for (const std::string& text :
+         {points.file.string(), points.topology.string(), options.color_by, points.color.column, points.color.map,
+          points.radius.column, points.opacity.column, points.select, points.assembly, options.center, options.fit,
+          points.color.carbon, outline_by_})
       require_utf8(text);
     for (const auto& list :
          {points.opacity.where, points.labels, points.radius.where, points.color.where, points.representation})
@@ -264,7 +269,7 @@ class PlotMaker {
       const scene::PointArray& centers = first.points.centers;
       const std::size_t count = first.points.particle_count();
       if (look_from_ == kAuto) return principal_axes(centers, count, near, aspect() < 1);
-      look_from_ = are_flat(centers, count, up_) ? kFlatView : kDefaultView;
+      look_from_ = are_flat(centers, count, up_) ? kFlatView : shows_cell(options_, info_) ? kCellView : kDefaultView;
     }
     if (options_.up.empty())
       chose("up " + up_name_, info_.z_up ? "customary for simulations and scans" : "customary for molecules");
@@ -593,6 +598,8 @@ class PlotMaker {
     std::vector<std::string> why;
     if (!options_.points.assembly.empty()) why.push_back("assembly " + options_.points.assembly);
     if (!(options_.points.replicate == math::Vec3d{1, 1, 1})) why.emplace_back("--replicate");
+    if (info_.is_unit_cell && out_.points.bonds.are_drawn)
+      why.emplace_back("atoms on faces of the cell at each of them");
     if (const std::string options = selection(); !options.empty()) why.push_back(options);
     if (why.empty()) why.emplace_back(fewest == most ? "--skip-bad" : "the fewest and the most of all frames");
     out_.choices.insert(out_.choices.begin() + 1,
@@ -601,16 +608,17 @@ class PlotMaker {
 
   /// Adds the edges of the simulation box and the axes, and the space that they take.
   void add_guides(ViewExtent& extent) {
-    if (options_.box) {
+    const bool is_cell = shows_cell(options_, info_);
+    if (options_.box || is_cell) {
       if (!info_.box)
         throw base::Error(base::ErrorKind::kBadData,
                           fmt::format("--box: {} has no simulation box", options_.file.string()));
       guides_.add_box(*info_.box, options_.points.replicate, extent);
       if (out_.frames.size() > 1) chose("box", fmt::format("that of frame {}", data_.described_frame()));
     }
-    if (options_.axes && !extent.is_empty()) {
-      guides_.add_axes(extent.radius());
-      chose("axes", "x red, y green, z blue");
+    if ((options_.axes || is_cell) && !extent.is_empty()) {
+      guides_.add_axes(extent, info_.is_unit_cell ? info_.box : std::nullopt);
+      chose("axes", info_.is_unit_cell ? "a red, b green, c blue" : "x red, y green, z blue");
     }
     extent.add(guides_.ends());
   }

@@ -145,10 +145,10 @@ std::optional<Enum> enumerator_of(const std::string& name, const std::vector<std
 }
 
 /// Materials of the rods of Guides, by their names.
-constexpr std::pair<const char*, Vec3d> kGuideColors[] = {{"box", {0.1, 0.1, 0.1}},
-                                                          {"axis_x", {0.7, 0.03, 0.03}},
-                                                          {"axis_y", {0.03, 0.5, 0.03}},
-                                                          {"axis_z", {0.03, 0.1, 0.8}}};
+constexpr std::pair<const char*, Vec3d> kGuideColors[] = {{"box", {0.1, 0.1, 0.1}},      {"axis_x", {0.7, 0.03, 0.03}},
+                                                          {"axis_y", {0.03, 0.5, 0.03}}, {"axis_z", {0.03, 0.1, 0.8}},
+                                                          {"axis_a", {0.7, 0.03, 0.03}}, {"axis_b", {0.03, 0.5, 0.03}},
+                                                          {"axis_c", {0.03, 0.1, 0.8}}};
 
 /// Radius of the edges of the box, and length and radius of the axes, as fractions of the radius of what is shown.
 constexpr double kBoxRadius = 0.004, kAxisLength = 0.15, kAxisRadius = 0.01;
@@ -257,12 +257,13 @@ void Guides::add_box(const data::Box& box, const Vec3d& counts, ViewExtent& exte
       if ((i & edge) == 0) add(corner(i), corner(i | edge), radius, "box");
 }
 
-void Guides::add_axes(double size) {
-  const double length = rounded(kAxisLength * size), radius = rounded(kAxisRadius * size);
-  const Vec3d origin = corner_ - Vec3d{1, 1, 1} * (length + 2 * radius);
-  add(origin, origin + Vec3d{1, 0, 0} * length, radius, "axis_x");
-  add(origin, origin + Vec3d{0, 1, 0} * length, radius, "axis_y");
-  add(origin, origin + Vec3d{0, 0, 1} * length, radius, "axis_z");
+void Guides::add_axes(const ViewExtent& extent, const std::optional<data::Box>& cell) {
+  const double length = rounded(kAxisLength * extent.radius()), radius = rounded(kAxisRadius * extent.radius());
+  const Vec3d origin = cell ? extent.beside(length) : corner_ - Vec3d{1, 1, 1} * (length + 2 * radius);
+  constexpr const char *kNames[] = {"axis_x", "axis_y", "axis_z"}, *kCellNames[] = {"axis_a", "axis_b", "axis_c"};
+  const data::Box axes = cell.value_or(data::Box{});
+  for (std::size_t i = 0; i < 3; ++i)
+    add(origin, origin + math::normalized(axes.edges[i]) * length, radius, (cell ? kCellNames : kNames)[i]);
 }
 
 }  // namespace orrery::plot

@@ -41,10 +41,12 @@ class Guides {
   void surround(const scene::Points& points);
   /// Adds the edges of a periodic box, repeated along each edge, and includes it in `extent`.
   void add_box(const data::Box& box, const Vec3d& counts, ViewExtent& extent);
-  /// Adds a tripod outside the lower corner of what is shown, whose radius is `size`.
-  void add_axes(double size);
+  /// Adds a tripod: the axes x, y and z outside the lower corner of what is shown, or a, b and c of a unit cell, which
+  /// may be far from such a corner, beside it in the image.
+  void add_axes(const ViewExtent& extent, const std::optional<data::Box>& cell);
 
-  /// The rods, named after their materials: "box", "axis_x", "axis_y" and "axis_z". They have no materials yet.
+  /// The rods, named after their materials: "box", "axis_x", "axis_y", "axis_z", "axis_a" and so on. They have no
+  /// materials yet.
   const std::vector<scene::Rod>& rods() const { return rods_; }
   /// The ends of the rods, as spheres.
   const scene::Points& ends() const { return ends_; }

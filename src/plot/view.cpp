@@ -223,6 +223,10 @@ double ViewExtent::radius() const {
   return radius > 0 ? radius : 1;  // a single point has no extent
 }
 
+Vec3d ViewExtent::beside(double gap) const {
+  return axes_.right * (low_[0] - gap) + axes_.up * low_[1] + axes_.back * ((low_[2] + high_[2]) / 2);
+}
+
 scene::Interval ViewExtent::depths(const scene::Camera& camera) const {
   const Vec3d axes[3] = {axes_.right, axes_.up, axes_.back};
   const Vec3d forward = math::normalized(camera.look_at - camera.look_from);

@@ -28,6 +28,9 @@ ViewAxes view_axes(const std::string& look_from, const std::string& up);
 
 /// A view that shows three faces of a box, none of whose corners is in front of another.
 inline constexpr const char* kDefaultView = "30,20";
+
+/// The view of unit cells: a points towards the viewer and somewhat to the left, b to the right, c up.
+inline constexpr const char* kCellView = "115,15";
 /// The same from further above, for flat data.
 inline constexpr const char* kFlatView = "30,40";
 
@@ -83,6 +86,8 @@ class ViewExtent {
   /// Depths along the view axis of a camera that the spheres reach, as distances from it.
   scene::Interval depths(const scene::Camera& camera) const;
 
+  /// Returns the point at a distance to the left of the lower left corner, in the middle of the depth.
+  Vec3d beside(double gap) const;
   Vec3d center() const;   ///< centre of the box along the axes
   double radius() const;  ///< radius of a sphere around center() that contains all spheres, scene units
 

@@ -340,6 +340,39 @@ TEST_F(PlotPlot, BondsBetweenRadiiOfAColumnHaveOneRadiusWhateverIsSelected) {
   }
 }
 
+/// A tetragonal cell with an atom at its corners and one in the middle.
+const std::string kUnitCell =
+    "data_a\n_cell_length_a 4\n_cell_length_b 4\n_cell_length_c 5\n_space_group_IT_number 123\nloop_\n"
+    "_atom_site_label\n_atom_site_fract_x\n_atom_site_fract_y\n_atom_site_fract_z\nCs 0 0 0\nCl .5 .5 .5\n";
+
+TEST_F(PlotPlot, AUnitCellIsABallAndStickModelInItsEdges) {
+  make("a.cif", kUnitCell);
+  EXPECT_TRUE(
+      test::mentions(choices(), {"9 spheres", "faces", "representation ball-and-stick", "a red", "view 115,15"}));
+  const scene::Scene scene = read();
+  EXPECT_TRUE(scene.points[0].bonds.are_drawn);
+  EXPECT_EQ(scene.points[0].centers.size(), 9u) << "an atom at each corner";
+  ASSERT_EQ(scene.rods.size(), 15u);
+  EXPECT_EQ(scene.rods[12].name, "axis_a");
+  EXPECT_EQ(scene.rods[14].name, "axis_c");
+  options.representation = Representation::kSpheres;
+  make();
+  EXPECT_EQ(choices().find("ball-and-stick"), std::string::npos) << choices();
+  EXPECT_TRUE(read().rods.empty());
+  EXPECT_EQ(read().points[0].centers.size(), 2u);
+}
+
+TEST_F(PlotPlot, ATopologyIsNamedRelativeToTheScene) {
+  const std::filesystem::path seeds = ORRERY_ROOT "/tests/fuzz/corpus/data";
+  options.file = seeds / "xtc/water.xtc";
+  options.points.topology = seeds / "gro/water.gro";
+  make();
+  EXPECT_TRUE(test::mentions(choices(), {"XTC", "30 particles", "colour by element"}));
+  const scene::Points points = read().points[0];
+  EXPECT_EQ(points.topology, std::filesystem::proximate(seeds / "gro/water.gro", folder_.path()));
+  EXPECT_EQ(points.centers.size(), 30u);
+}
+
 TEST_F(PlotPlot, TheBoxIsTwelveRodsAndTheAxesAreOutsideIt) {
   options.box = options.axes = true;
   options.points.replicate = {2, 1, 1};
