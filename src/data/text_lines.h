@@ -18,6 +18,9 @@ namespace orrery::data {
 /// Maximum length of a line, bytes; a file with longer lines is not a text table.
 inline constexpr std::size_t kMaxLineBytes = std::size_t{1} << 20;
 
+/// Bytes behind the lines of TextLines that may be read.
+inline constexpr std::size_t kTextPadding = 8;
+
 /// Throws an error for a line that is longer.
 ///
 /// `line`     its number; 0: unknown

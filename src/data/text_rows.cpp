@@ -11,6 +11,7 @@
 #include <algorithm>
 #include <array>
 #include <atomic>
+#include <bit>
 #include <cstring>
 #include <deque>
 #include <functional>
@@ -29,14 +30,15 @@ namespace {
 
 constexpr bool ends_word(char c) { return is_blank(c) || c == '\n'; }
 
-/// The first space or control character. Processes eight characters at a time, as in text_number.h.
+/// The first space or control character.
 const char* word_end(const char* at) {
-  for (;; at += 8) {
+  static_assert(std::endian::native == std::endian::little);
+  for (;; at += kTextPadding) {
     std::uint64_t word = 0;
     std::memcpy(&word, at, sizeof word);
     const std::uint64_t inside = ((word & 0x7f7f7f7f7f7f7f7f) + 0x5f5f5f5f5f5f5f5f) | word;
     const std::uint64_t others = ~inside & 0x8080808080808080;
-    if (others != 0) return at + first_of(others);
+    if (others != 0) return at + std::countr_zero(others) / 8;
   }
 }
 
@@ -103,21 +105,9 @@ class RowParser {
       at = skip_blanks(at);
       const char* const begin = at;
       if (*at == '\n') return fail(fmt::format("has {} values, not {}", c, count));
-      void* const column = (*columns_)[c];
-      if (column == nullptr) {
-        at = word_end(at);
-        if (layout_->surveys) surveys_[c].add({begin, at}, false, line_);
-        continue;
-      }
-      switch (layout_->columns[c].type) {
-        case ColumnType::kFloat64: at = scan_number(at, element<double>(column, row_)); break;
-        case ColumnType::kInt64: at = scan_integer(at, element<std::int64_t>(column, row_)); break;
-        default: at = word_end(at); element<std::uint32_t>(column, row_) = words_[c].index_of({begin, at});
-      }
-      if (at == nullptr || !ends_word(*at)) {
-        at = word_end(begin);
-        if (!store_missing(c, {begin, at})) return fail_value(c, begin, at);
-      }
+      at = word_end(at);
+      const bool is_skipped = (*columns_)[c] == nullptr;
+      if (!store(c, {begin, at}, false) || !(is_skipped || ends_word(*at))) return fail_value(c, begin, at);
     }
     if (layout_->allows_more) return line_end(at);
     at = skip_blanks(at);
@@ -178,10 +168,7 @@ class RowParser {
       text += value[i];
       if (value[i] == '"') ++i;
     }
-    // The scanners of numbers read beyond the value.
-    const std::size_t size = text.size();
-    text.append(kTextPadding, '\n');
-    value = std::string_view(unescaped_.emplace_back(std::move(text))).substr(0, size);
+    value = unescaped_.emplace_back(std::move(text));
     return at + 1;
   }
 
@@ -190,22 +177,19 @@ class RowParser {
     if (layout_->surveys) surveys_[c].add(value, is_quoted, line_);
     void* const column = (*columns_)[c];
     if (column == nullptr) return true;
-    const char* const end = value.data() + value.size();
     switch (layout_->columns[c].type) {
       case ColumnType::kFloat64:
-        return (!value.empty() && scan_number(value.data(), element<double>(column, row_)) == end) ||
-               store_missing(c, value);
-      case ColumnType::kInt64:
-        return !value.empty() && scan_integer(value.data(), element<std::int64_t>(column, row_)) == end;
+        return parse_number(value, element<double>(column, row_)) || store_missing(c, value);
+      case ColumnType::kInt64: return parse_integer(value, element<std::int64_t>(column, row_));
       default: element<std::uint32_t>(column, row_) = words_[c].index_of(value); return true;
     }
   }
 
-  /// Stores NaN for a missing value.
+  /// Stores NaN for a missing value of a column of numbers.
   ///
-  /// Result     false if the value is not missing, or the column cannot store NaN
+  /// Result     false if the value is not missing
   bool store_missing(std::size_t c, std::string_view value) {
-    if (!layout_->allows_missing || layout_->columns[c].type != ColumnType::kFloat64) return false;
+    if (!layout_->allows_missing) return false;
     if (!value.empty() && !is_missing_marker(value)) return false;
     element<double>((*columns_)[c], row_) = std::numeric_limits<double>::quiet_NaN();
     return true;
