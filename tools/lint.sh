@@ -45,6 +45,26 @@ if ! awk -F '[ :]' '
     /^```/ { inside = !inside }
     inside && (index($0, "-o " name ".jpg") || index($0, "-o " name ".gif")) { writes = 1 }
     END { check(); exit bad }' docs/gallery.md >&2; then status=1; fi
+# A source is tested by a file of its name. Those below consist of instances for instruction sets, which the other files
+# of their room test, or are tested through the whole: by plot_test, viewer_test, or the tests of the program.
+declare -A tested_elsewhere=()
+for name in accel/instances accel/list_trace cli/films cli/main cli/plot_options cli/subject cli/submit_command \
+            denoise/instances kernel/tile plot/appearance plot/convert plot/data_frames plot/scene_text view/picker; do
+  tested_elsewhere[$name]=1
+done
+while IFS= read -r source; do
+  name=${source#src/} && name=${name%.cpp}
+  files=("tests/unit/${name}_test.cpp")
+  case $name in cli/* | submit/*) files+=("tests/cli/${name##*/}_test.cpp" "tests/batch/${name##*/}_test.cpp") ;; esac
+  tests=$(git ls-files "${files[@]}")
+  if [ -z "$tests" ] && [ -z "${tested_elsewhere[$name]:-}" ]; then
+    echo "$source: there is no ${files[0]}" >&2
+    status=1
+  elif [ -n "$tests" ] && [ -n "${tested_elsewhere[$name]:-}" ]; then
+    echo "lint.sh: $name has a test, so remove it from the list" >&2
+    status=1
+  fi
+done < <(git ls-files ':(glob)src/*/*.cpp' ':!src/python')
 # Mutants that no longer match the source would be missed until the next release.
 tools/mutants/stale.py || status=1
 exit "$status"

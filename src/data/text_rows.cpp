@@ -178,8 +178,7 @@ class RowParser {
     void* const column = (*columns_)[c];
     if (column == nullptr) return true;
     switch (layout_->columns[c].type) {
-      case ColumnType::kFloat64:
-        return parse_number(value, element<double>(column, row_)) || store_missing(c, value);
+      case ColumnType::kFloat64: return parse_number(value, element<double>(column, row_)) || store_missing(c, value);
       case ColumnType::kInt64: return parse_integer(value, element<std::int64_t>(column, row_));
       default: element<std::uint32_t>(column, row_) = words_[c].index_of(value); return true;
     }

@@ -81,7 +81,7 @@ class ColumnTable {
   /// Returns the amounts along a ray that does not hit the ground; a ray below the horizon is replaced by one towards
   /// the horizon.
   ///
-  /// Precision  1 %; test SkyDaylight.TabulatedColumnsMatchQuadrature
+  /// Precision  1 %; test SkyAtmosphere.TabulatedColumnsMatchQuadrature
   Densities to_space(double altitude, double sine) const;
 
  private:

@@ -12,7 +12,7 @@
 namespace orrery::test {
 namespace {
 
-class BatchShards : public ProgramTest {
+class BatchMerge : public ProgramTest {
  protected:
   void SetUp() override {
     ProgramTest::SetUp();
@@ -49,7 +49,7 @@ class BatchShards : public ProgramTest {
   std::minstd_rand random_{3};
 };
 
-TEST_F(BatchShards, AnySplitMergesToTheSameBytes) {
+TEST_F(BatchMerge, AnySplitMergesToTheSameBytes) {
   for (const int count : {1, 2, 3, 17}) {
     std::vector<std::string> by_samples, by_tiles;
     for (int i = 0; i < count; ++i) {
@@ -70,13 +70,13 @@ TEST_F(BatchShards, AnySplitMergesToTheSameBytes) {
   }
 }
 
-TEST_F(BatchShards, AReproducibleShardHasTheSameBytesInEachRun) {
+TEST_F(BatchMerge, AReproducibleShardHasTheSameBytesInEachRun) {
   render("a.exr", "--shard 1/3");
   render("b.exr", "--shard 1/3");
   EXPECT_EQ(text_of(folder_ / "a.exr"), text_of(folder_ / "b.exr"));
 }
 
-TEST_F(BatchShards, ShardsWithLayersMergeToAnImageWithoutLayers) {
+TEST_F(BatchMerge, ShardsWithLayersMergeToAnImageWithoutLayers) {
   ASSERT_EQ(run("develop whole.exr -o whole.png -q").status, 0);
   render("a.exr", "--shard 1/2");
   render("b.exr", "--shard 2/2");
@@ -85,7 +85,7 @@ TEST_F(BatchShards, ShardsWithLayersMergeToAnImageWithoutLayers) {
   EXPECT_EQ(run("compare merged.png whole.png -q --fail-above max=0.01").status, 0);  // whole.exr is half
 }
 
-TEST_F(BatchShards, SampleShardsAndPixelShardsCombine) {
+TEST_F(BatchMerge, SampleShardsAndPixelShardsCombine) {
   render("a.exr", "--sample-range 0:10 --shard 1/2");
   render("b.exr", "--sample-range 0:10 --shard 2/2");
   render("c.exr", "--sample-range 10:35");
@@ -93,7 +93,7 @@ TEST_F(BatchShards, SampleShardsAndPixelShardsCombine) {
   EXPECT_EQ(text_of(folder_ / "merged.exr"), whole_);
 }
 
-TEST_F(BatchShards, MismatchedShardsAreNamed) {
+TEST_F(BatchMerge, MismatchedShardsAreNamed) {
   render("a.exr", "--sample-range 0:10");
   render("b.exr", "--sample-range 10:35");
   render("b1.exr", "--sample-range 9:35");
@@ -121,7 +121,7 @@ TEST_F(BatchShards, MismatchedShardsAreNamed) {
   EXPECT_EQ(text_of(folder_ / "b.exr"), bytes);
 }
 
-TEST_F(BatchShards, MissingSamplesCanBeAllowed) {
+TEST_F(BatchMerge, MissingSamplesCanBeAllowed) {
   render("a.exr", "--sample-range 0:10");
   render("c.exr", "--sample-range 20:35");
   const Outcome r = merge({"a.exr", "c.exr"}, "--allow-missing -o merged.png --stats m.json");
@@ -133,13 +133,13 @@ TEST_F(BatchShards, MissingSamplesCanBeAllowed) {
   EXPECT_EQ(run("compare merged.exr whole.exr -q --fail-above bias=0.01").status, 0);
 }
 
-TEST_F(BatchShards, FilesThatAreNotShardsAreReportedIfThereAreNoOthers) {
+TEST_F(BatchMerge, FilesThatAreNotShardsAreReportedIfThereAreNoOthers) {
   expect_refused(merge({"missing.exr"}), 66, {"missing.exr"});
   expect_refused(merge({"whole.exr"}), 65, {"whole.exr"});
   expect_refused(merge({"missing.exr"}, "--allow-missing"), 66, {"missing.exr"});
 }
 
-TEST_F(BatchShards, DamagedShardsCanBeTreatedAsMissing) {
+TEST_F(BatchMerge, DamagedShardsCanBeTreatedAsMissing) {
   render("a.exr", "--sample-range 0:10");
   render("b.exr", "--sample-range 10:35");
   const std::string bytes = text_of(folder_ / "b.exr");
@@ -159,7 +159,7 @@ TEST_F(BatchShards, DamagedShardsCanBeTreatedAsMissing) {
   }
 }
 
-TEST_F(BatchShards, UnfinishedShardIsNamed) {
+TEST_F(BatchMerge, UnfinishedShardIsNamed) {
   render("b.exr", "--sample-range 10:35");
   // A render that is stopped at once leaves a checkpoint of its shard.
   {
@@ -179,7 +179,7 @@ TEST_F(BatchShards, UnfinishedShardIsNamed) {
   EXPECT_EQ(run("merge a.checkpoint.exr z.exr -o merged.exr --allow-missing -q").status, 0);
 }
 
-TEST_F(BatchShards, InvalidShardOptionsAreRejected) {
+TEST_F(BatchMerge, InvalidShardOptionsAreRejected) {
   const auto refused = [&](const std::string& words) {
     const Outcome r = run("render good.toml " + words);
     EXPECT_EQ(r.status, 2) << words << "\n" << r.err;
@@ -197,7 +197,7 @@ TEST_F(BatchShards, InvalidShardOptionsAreRejected) {
   refused("-o a.exr --sample-range 0:5");  // the scene has four
 }
 
-TEST_F(BatchShards, SceneOptionFindsAMovedScene) {
+TEST_F(BatchMerge, SceneOptionFindsAMovedScene) {
   render("a.exr", "");
   render("b.exr", "--sample-range 0:35");
   std::filesystem::rename(folder_ / "good.toml", folder_ / "moved.toml");

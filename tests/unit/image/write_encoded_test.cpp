@@ -115,49 +115,6 @@ TEST_F(ImageWriteEncoded, FilesHoldNoDate) {
   }
 }
 
-TEST_F(ImageWriteEncoded, JpegBytesMatchOpenImageIo) {
-  const film::EncodedPicture picture = test_encoded(67, 43, 8);
-  const std::string ours = bytes("a.jpg", picture);
-  OIIO::ImageSpec spec(67, 43, 3, OIIO::TypeDesc::UINT8);
-  spec.attribute("Software", "orrery test");
-  spec.attribute("ImageDescription", "orrery/stamp 0123");
-  spec.attribute("compression", "jpeg:95");
-  spec.attribute("jpeg:subsampling", "4:4:4");
-  for (const bool is_srgb : {false, true}) {
-    film::EncodedPicture shown = picture;
-    shown.is_srgb = is_srgb;
-    write_encoded(folder_ / "ours.jpg", shown, "orrery test", "0123");
-    if (is_srgb) spec.attribute("oiio:ColorSpace", "sRGB");
-    const auto out = OIIO::ImageOutput::create("jpeg");
-    ASSERT_TRUE(out->open((folder_ / "theirs.jpg").string(), spec));
-    const std::vector<std::uint8_t> codes(picture.values.begin(), picture.values.end());
-    ASSERT_TRUE(out->write_image(OIIO::TypeDesc::UINT8, codes.data()) && out->close());
-    EXPECT_TRUE(support::file_bytes(folder_ / "ours.jpg") == support::file_bytes(folder_ / "theirs.jpg")) << is_srgb;
-  }
-}
-
-TEST_F(ImageWriteEncoded, LibjpegErrorsAreReturnedWithoutExit) {
-  // libjpeg rejects this size with an error handler that must not return, as for lack of memory.
-  support::write_bytes(folder_ / "a", "");
-  CheckedFile file(folder_ / "a");
-  const OIIO::ImageSpec spec(65501, 1, 3, OIIO::TypeDesc::UINT8);
-  const std::vector<std::uint8_t> pixels(65501 * 3);
-  EXPECT_NE(encode_jpeg(spec, pixels.data(), file).find("65500"), std::string::npos);
-}
-
-TEST_F(ImageWriteEncoded, AFullDiskFailsTheJpegFile) {
-  CheckedFile full("/dev/full");
-  const OIIO::ImageSpec spec(600, 400, 3, OIIO::TypeDesc::UINT8);
-  std::vector<std::uint8_t> pixels(600 * 400 * 3);
-  encode_jpeg(spec, pixels.data(), full);
-  EXPECT_EQ(full.finish(), ENOSPC) << "all in one buffer";
-  std::uint32_t state = 1;
-  for (std::uint8_t& code : pixels) code = static_cast<std::uint8_t>((state = state * 1664525 + 1013904223) >> 24);
-  CheckedFile again("/dev/full");
-  EXPECT_NE(encode_jpeg(spec, pixels.data(), again), "") << "noise fills several buffers";
-  EXPECT_EQ(again.finish(), ENOSPC);
-}
-
 TEST_F(ImageWriteEncoded, PngAndTiffHoldStraightAlpha) {
   for (const int bits : {8, 16}) {
     film::EncodedPicture picture = test_encoded(5, 4, bits);

@@ -13,6 +13,7 @@
 
 #include "scene/texture.h"
 #include "support/mentions.h"
+#include "unit/scene/other_value.h"
 
 namespace orrery::scene {
 namespace {
@@ -28,27 +29,6 @@ bool has_range(ValueType type) {
   return type == ValueType::kInteger || type == ValueType::kNumber || type == ValueType::kVector;
 }
 
-/// A value of the key's type, inside its range, that is no key's default.
-template <class Target>
-Value other_value(const Key<Target>& key) {
-  switch (key.type) {
-    case ValueType::kInteger: return std::int64_t{7};
-    case ValueType::kNumber: return 0.375;
-    case ValueType::kVector: return Vec3d{0.125, 0.375, 0.625};
-    case ValueType::kText:
-    case ValueType::kName: return std::string("other");
-    case ValueType::kInterval: return Interval{0.25, 0.75};
-    case ValueType::kChoice: return key.choices.back();
-    case ValueType::kWindow: return Window{1, 2, 3, 4};
-    case ValueType::kBoolean: return false;
-    case ValueType::kChoices: return std::vector<std::string>{key.choices.back(), key.choices.front()};
-    case ValueType::kTexts: return std::vector<std::string>{"x > 0: 0.375"};
-    case ValueType::kNumbersByType: return NumbersByType{{"1", 0.375}};
-    case ValueType::kColorsByType: return ColorsByType{{"1", {0.125, 0.375, 0.625}}};
-  }
-  return {};
-}
-
 // Catches two keys that share a member by mistake, and setters that set nothing.
 TEST(SceneSchema, EachKeySetsItsOwnMemberAndNoOther) {
   for (const Table& table : tables()) {
@@ -61,67 +41,6 @@ TEST(SceneSchema, EachKeySetsItsOwnMemberAndNoOther) {
         for (const auto& other : other_table.keys)
           EXPECT_EQ(other.text(scene) == other.text(defaults), &other != &key)
               << table.name << "." << key.name << " and " << other_table.name << "." << other.name;
-    }
-  }
-}
-
-TEST(SceneSchema, EachPointsKeySetsItsOwnMemberAndNoOther) {
-  const PointsKeys defaults;
-  for (const auto& key : points_keys()) {
-    PointsKeys points;
-    key.set(points, key.type == ValueType::kBoolean ? Value(true) : other_value(key));
-    for (const auto& other : points_keys())
-      EXPECT_EQ(other.text(points) == other.text(defaults), &other != &key) << key.name << " and " << other.name;
-  }
-}
-
-TEST(SceneSchema, EachMaterialKeySetsItsOwnMember) {
-  for (const MaterialType& type : material_types()) {
-    for (const auto& key : type.keys) {
-      MaterialModel model = type.model;
-      key.set(model, other_value(key));
-      for (const auto& other : type.keys)
-        EXPECT_EQ(other.text(model) == other.text(type.model), &other != &key) << type.name << "." << key.name;
-    }
-  }
-}
-
-TEST(SceneSchema, MaterialTypesAreInVariantOrder) {
-  ASSERT_EQ(material_types().size(), std::variant_size_v<MaterialModel>);
-  for (std::size_t i = 0; i < material_types().size(); ++i) EXPECT_EQ(material_types()[i].model.index(), i);
-}
-
-TEST(SceneSchema, TextureTypesAreInTheOrderOfTheirEnumeration) {
-  for (const TextureUse use : {TextureUse::kReflectance, TextureUse::kRadiance, TextureUse::kNumber}) {
-    const auto& types = texture_types(use);
-    ASSERT_EQ(types.size(), 5u);
-    for (std::size_t i = 0; i < types.size(); ++i) EXPECT_EQ(static_cast<std::size_t>(types[i].type), i);
-  }
-}
-
-TEST(SceneSchema, EachTextureKeySetsItsOwnMember) {
-  for (const TextureUse use : {TextureUse::kReflectance, TextureUse::kRadiance, TextureUse::kNumber}) {
-    for (const TextureTypeKeys& type : texture_types(use)) {
-      for (const auto& key : type.keys) {
-        Texture texture;
-        key.set(texture, other_value(key));
-        for (const auto& other : type.keys)
-          EXPECT_EQ(other.text(texture) == other.text(Texture{}), &other != &key) << type.name << "." << key.name;
-      }
-    }
-  }
-}
-
-TEST(SceneSchema, TexturedKeysAreKeysOfTheirType) {
-  for (const MaterialType& type : material_types()) {
-    for (const TexturedKey& textured : type.textured) {
-      const auto is_it = [&](const auto& key) { return key.name == textured.name; };
-      EXPECT_TRUE(std::any_of(type.keys.begin(), type.keys.end(), is_it)) << type.name << "." << textured.name;
-      MaterialModel model = type.model;
-      EXPECT_EQ(textured.get(model), nullptr);
-      textured.at(model) = std::make_shared<const Texture>();
-      for (const TexturedKey& other : type.textured)
-        EXPECT_EQ(other.get(model) != nullptr, &other == &textured) << type.name << "." << textured.name;
     }
   }
 }
