@@ -6,6 +6,7 @@
 
 #include "data/data_file.h"
 #include "support/data_tables.h"
+#include "support/mentions.h"
 #include "support/shared_data.h"
 
 namespace orrery::data {
@@ -213,9 +214,7 @@ TEST_F(DataLas, CompressedPointsAreRefusedWithTheConversion) {
   Las las;
   las.format = 0x80 | 3;
   las.record_bytes = 34;
-  EXPECT_EQ(faults(las),
-            "the points are compressed (LAZ), which is not supported; decompress it: `laszip -i a.las -o a.las`, or "
-            "`pdal translate a.las a.las`\n");
+  EXPECT_TRUE(test::mentions(faults(las), {"LAZ", "`laszip -i a.las -o a.las`", "`pdal translate a.las a.las`"}));
   las.format = 0x40;
   EXPECT_NE(faults(las).find("LAZ"), std::string::npos);
   las.format = 3;
@@ -238,25 +237,24 @@ TEST_F(DataLas, WrongHeadersAreRefused) {
   ASSERT_EQ(faults(good), "");
   Las las = good;
   las.points.pop_back();
-  EXPECT_EQ(faults(las),
-            "the header declares 2 points of 20 bytes from byte 227, but the file has 266 bytes; the file is "
-            "truncated, or the header is wrong\n");
+  EXPECT_TRUE(
+      test::mentions(faults(las), {"header", "2", "20", "bytes", "227", "266", "bytes", "truncated", "header"}));
   las = good;
   las.count = 4294967295u;
   EXPECT_NE(faults(las), "");
   las = good;
   las.record_bytes = 19;
-  EXPECT_EQ(faults(las), "point records of 19 bytes; point format 0 needs 20\n");
+  EXPECT_TRUE(test::mentions(faults(las), {"19", "bytes", "format", "0", "20"}));
   las = good;
   las.format = 11;
   las.record_bytes = 90;
-  EXPECT_EQ(faults(las), "point format 11; supported: 0 to 10\n");
+  EXPECT_TRUE(test::mentions(faults(las), {"format", "11", "0", "10"}));
   las = good;
   las.minor = 5;
-  EXPECT_EQ(faults(las), "version 1.5 of LAS; supported: 1.0 to 1.4\n");
+  EXPECT_TRUE(test::mentions(faults(las), {"version", "1.5", "LAS", "1.0", "1.4"}));
   las = good;
   las.scale[1] = 0;
-  EXPECT_EQ(faults(las), "the header's scale or offset of the coordinates is zero or not finite\n");
+  EXPECT_TRUE(test::mentions(faults(las), {"coordinates", "finite"}));
   las.scale[1] = std::numeric_limits<double>::quiet_NaN();
   EXPECT_NE(faults(las), "");
   las = good;

@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include "support/mentions.h"
 #include "support/scene_files.h"
 
 namespace orrery::load {
@@ -19,41 +20,45 @@ std::string text_of(const std::string& scene) {
 }
 
 TEST(LoadReadKeys, WrongTypesAreNamed) {
-  EXPECT_EQ(text_of("camera.vfov = \"20\""), "camera.vfov must be a number, not a string");
-  EXPECT_EQ(text_of("camera.vfov = true"), "camera.vfov must be a number, not a boolean");
-  EXPECT_EQ(text_of("camera.vfov = [20]"), "camera.vfov must be a number, not a list");
-  EXPECT_EQ(text_of("camera.vfov = 2024-01-01"), "camera.vfov must be a number, not a date");
-  EXPECT_EQ(text_of("camera.vfov = {}"), "camera.vfov must be a number, not a table");
-  EXPECT_EQ(text_of("camera.up = 1"), "camera.up must be three numbers like [0, 1, 0], not an integer");
-  EXPECT_EQ(text_of("camera.up = [0, \"1\", 0]"), "camera.up[1] must be a number, not a string");
-  EXPECT_EQ(text_of("color.space = 1"), "color.space must be a string, not an integer");
-  EXPECT_EQ(text_of("render.shading = 1"), "render.shading must be one of path, normal, flat, not an integer");
+  EXPECT_TRUE(test::mentions(text_of("camera.vfov = \"20\""), {"camera.vfov", "number", "string"}));
+  EXPECT_TRUE(test::mentions(text_of("camera.vfov = true"), {"camera.vfov", "number", "boolean"}));
+  EXPECT_TRUE(test::mentions(text_of("camera.vfov = [20]"), {"camera.vfov", "number", "list"}));
+  EXPECT_TRUE(test::mentions(text_of("camera.vfov = 2024-01-01"), {"camera.vfov", "number", "date"}));
+  EXPECT_TRUE(test::mentions(text_of("camera.vfov = {}"), {"camera.vfov", "number", "table"}));
+  EXPECT_TRUE(test::mentions(text_of("camera.up = 1"), {"camera.up", "numbers", "[0", "1", "0]", "integer"}));
+  EXPECT_TRUE(test::mentions(text_of("camera.up = [0, \"1\", 0]"), {"camera.up[1]", "number", "string"}));
+  EXPECT_TRUE(test::mentions(text_of("color.space = 1"), {"color.space", "string", "integer"}));
+  EXPECT_TRUE(test::mentions(text_of("render.shading = 1"), {"render.shading", "integer"}));
 }
 
 TEST(LoadReadKeys, BooleansAreTrueOrFalse) {
   SceneFiles files;
   EXPECT_TRUE(files.read("").scene.background.visible);
   EXPECT_FALSE(files.read("background.visible = false").scene.background.visible);
-  EXPECT_EQ(text_of("background.visible = 0"), "background.visible must be true or false, not an integer");
-  EXPECT_EQ(text_of("background.visible = \"no\""), "background.visible must be true or false, not a string");
+  EXPECT_TRUE(test::mentions(text_of("background.visible = 0"), {"background.visible", "true", "false", "integer"}));
+  EXPECT_TRUE(
+      test::mentions(text_of("background.visible = \"no\""), {"background.visible", "true", "false", "string"}));
 }
 
 TEST(LoadReadKeys, AnIntegerIsANumberButNotViceVersa) {
   SceneFiles files;
   EXPECT_EQ(files.read("camera.vfov = 20").scene.camera.vfov, 20);
-  EXPECT_EQ(text_of("render.samples = 10.0"), "render.samples must be an integer, not a floating-point number");
+  EXPECT_TRUE(
+      test::mentions(text_of("render.samples = 10.0"), {"render.samples", "integer", "floating-point", "number"}));
 }
 
 TEST(LoadReadKeys, RangesAreClosedOrOpen) {
-  EXPECT_EQ(text_of("camera.vfov = 0"), "camera.vfov is 0; must be above 0 and below 180");
-  EXPECT_EQ(text_of("camera.vfov = 180"), "camera.vfov is 180; must be above 0 and below 180");
-  EXPECT_EQ(text_of("camera.defocus_angle = 180"), "camera.defocus_angle is 180; must be at least 0 and below 180");
+  EXPECT_TRUE(test::mentions(text_of("camera.vfov = 0"), {"camera.vfov", "0", "180"}));
+  EXPECT_TRUE(test::mentions(text_of("camera.vfov = 180"), {"camera.vfov", "180", "0", "180"}));
+  EXPECT_TRUE(test::mentions(text_of("camera.defocus_angle = 180"), {"camera.defocus_angle", "180", "0", "180"}));
   EXPECT_EQ(text_of("camera.defocus_angle = 0"), "");
-  EXPECT_EQ(text_of("render.max_depth = 10001"), "render.max_depth is 10001; must be in 1..10000");
+  EXPECT_TRUE(test::mentions(text_of("render.max_depth = 10001"), {"render.max_depth", "10001", "1..10000"}));
   EXPECT_EQ(text_of("render.max_depth = 10000"), "");
-  EXPECT_EQ(text_of("render.seed = -1"), "render.seed is -1; must be in 0..4294967295");
-  EXPECT_EQ(text_of("image.width = 9223372036854775807"), "image.width is 9223372036854775807; must be in 1..65536");
-  EXPECT_EQ(text_of("background.top = [0, -0.5, 0]"), "background.top[1] is -0.5; must be in 0..17179869184");
+  EXPECT_TRUE(test::mentions(text_of("render.seed = -1"), {"render.seed", "-1", "0..4294967295"}));
+  EXPECT_TRUE(
+      test::mentions(text_of("image.width = 9223372036854775807"), {"image.width", "9223372036854775807", "1..65536"}));
+  EXPECT_TRUE(
+      test::mentions(text_of("background.top = [0, -0.5, 0]"), {"background.top[1]", "-0.5", "0..17179869184"}));
 }
 
 TEST(LoadReadKeys, TheSunMayBeWrittenInCandelaPerSquareMetre) {
@@ -65,9 +70,9 @@ TEST(LoadReadKeys, TheSunMayBeWrittenInCandelaPerSquareMetre) {
 }
 
 TEST(LoadReadKeys, NaNAndInfinityAreInNoRange) {
-  EXPECT_EQ(text_of("camera.vfov = nan"), "camera.vfov is nan; must be above 0 and below 180");
-  EXPECT_EQ(text_of("camera.look_at = [0, 0, -inf]"), "camera.look_at[2] is -inf; must be in -1e+18..1e+18");
-  EXPECT_EQ(text_of("camera.focus_distance = inf"), "camera.focus_distance is inf; must be in 1e-30..1e+18");
+  EXPECT_TRUE(test::mentions(text_of("camera.vfov = nan"), {"camera.vfov", "0", "180"}));
+  EXPECT_TRUE(test::mentions(text_of("camera.look_at = [0, 0, -inf]"), {"camera.look_at[2]", "-1e+18..1e+18"}));
+  EXPECT_TRUE(test::mentions(text_of("camera.focus_distance = inf"), {"camera.focus_distance", "1e-30..1e+18"}));
 }
 
 TEST(LoadReadKeys, EachInvalidComponentIsReported) {
@@ -83,28 +88,26 @@ TEST(LoadReadKeys, EachInvalidComponentIsReported) {
 
 TEST(LoadReadKeys, ReadsListsOfWords) {
   EXPECT_EQ(text_of("output.layers = []"), "");
-  EXPECT_EQ(text_of("output.layers = \"Z\""), "output.layers must be a list like [\"Z\"], not a string");
+  EXPECT_TRUE(test::mentions(text_of("output.layers = \"Z\""), {"output.layers", "list", "string"}));
   EXPECT_NE(text_of("render.filter = 'mitchell'").find("removed; use \"blackman-harris\""), std::string::npos);
   EXPECT_EQ(text_of("output.layers = [1]").substr(0, 31), "output.layers[0] must be one of");
-  EXPECT_EQ(text_of("output.layers = [\"Z\", \"Z\"]"), "output.layers[1] is a duplicate; remove it");
+  EXPECT_TRUE(test::mentions(text_of("output.layers = [\"Z\", \"Z\"]"), {"output.layers[1]", "duplicate"}));
   const std::string near = text_of("output.layers = [\"albdo\"]");
   EXPECT_EQ(near.substr(near.find("; did")), "; did you mean `albedo`?");
 }
 
 TEST(LoadReadKeys, ParsesCropWindow) {
   EXPECT_EQ(text_of("image.crop = [0, 0, 8, 8]"), "");
-  EXPECT_EQ(text_of("image.crop = [0, 0, 8]"),
-            "image.crop must be x, y, width and height like [0, 0, 640, 360], not a list of 3");
-  EXPECT_EQ(text_of("image.crop = 8"),
-            "image.crop must be x, y, width and height like [0, 0, 640, 360], not an integer");
-  EXPECT_EQ(text_of("image.crop = [0, 0, 8, 1.5]"), "image.crop[3] must be an integer, not a floating-point number");
-  EXPECT_EQ(text_of("image.crop = [-1, 0, 8, 8]"), "image.crop[0] is -1; must be in 0..65536");
+  EXPECT_TRUE(test::mentions(text_of("image.crop = [0, 0, 8]"), {"image.crop", "[0", "0", "640", "360]", "list", "3"}));
+  EXPECT_TRUE(test::mentions(text_of("image.crop = 8"), {"image.crop", "[0", "0", "640", "360]", "integer"}));
+  EXPECT_TRUE(
+      test::mentions(text_of("image.crop = [0, 0, 8, 1.5]"), {"image.crop[3]", "integer", "floating-point", "number"}));
+  EXPECT_TRUE(test::mentions(text_of("image.crop = [-1, 0, 8, 8]"), {"image.crop[0]", "-1", "0..65536"}));
 }
 
 TEST(LoadReadKeys, UnknownKeysWithoutASuggestionListTheKnownKeys) {
-  EXPECT_EQ(text_of("color.gamma = 2.2"),
-            "unknown key `gamma` in color; known keys are space, working, config, display, view, look, exposure");
-  EXPECT_EQ(text_of("image.Width = 2"), "unknown key `Width` in image; did you mean `width`?");
+  EXPECT_TRUE(test::mentions(text_of("color.gamma = 2.2"), {"`gamma`", "exposure"}));
+  EXPECT_TRUE(test::mentions(text_of("image.Width = 2"), {"`Width`", "image", "`width`"}));
 }
 
 }  // namespace
