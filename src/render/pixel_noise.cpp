@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <limits>
 
 #include "film/display_error.h"
 #include "render/tiles.h"
@@ -14,6 +15,10 @@ namespace {
 /// Half-widths of windows, px: around a pixel whose light is compared with that of its neighbours, and of the search
 /// for light.
 constexpr int kReach = 2, kWideReach = 3;
+constexpr int kNeighbours = (2 * kReach + 1) * (2 * kReach + 1) - 1;  ///< of a pixel within kReach
+
+/// Pixels whose neighbours are sorted together: several vectors of any instruction set.
+constexpr int kRun = 64;
 
 /// Number of largest samples without which a pixel's own light counts.
 constexpr float kTrimmed = 3;
@@ -80,7 +85,7 @@ float relative(float variance, float light) {
 
 /// The light that three quarters of the pixels around a pixel exceed, each without its largest sample.
 float light_around(const PixelStatistics& s, int x, int y) {
-  std::array<float, (2 * kReach + 1) * (2 * kReach + 1)> light{};
+  std::array<float, kNeighbours> light{};
   int count = 0;
   each_neighbour(s, x, y, kReach,
                  [&](std::size_t i) { light[static_cast<std::size_t>(count++)] = s.light[i] - s.outlier[i]; });
@@ -89,10 +94,48 @@ float light_around(const PixelStatistics& s, int x, int y) {
   return *quartile;
 }
 
-float error_of(const PixelStatistics& s, int x, int y) {
-  const std::size_t i = s.at(x, y);
-  const float seen_around = s.variance[i] > 0 ? std::min(s.light[i], light_around(s, x, y)) : 0;
-  return relative(s.variance[i], std::max(s.light[i] - kTrimmed * s.outlier[i], seen_around));
+/// light_around() of kRun pixels from (x, y) on, all of which have all neighbours: a sorting network in vectors, which
+/// takes a tenth of the time.
+void lights_around(const PixelStatistics& s, int x, int y, float* out) {
+  std::array<std::array<float, kRun>, kNeighbours / 4> least;  // of each pixel's neighbours, ascending
+  for (auto& rank : least) rank.fill(std::numeric_limits<float>::infinity());
+  for (int dy = -kReach; dy <= kReach; ++dy) {
+    for (int dx = -kReach; dx <= kReach; ++dx) {
+      if (dx == 0 && dy == 0) continue;
+      const std::size_t first = s.at(x + dx, y + dy);
+      std::array<float, kRun> light;
+      for (std::size_t i = 0; i < kRun; ++i) light[i] = s.light[first + i] - s.outlier[first + i];
+      for (auto& rank : least) {
+        for (std::size_t i = 0; i < kRun; ++i) {
+          const float lower = std::min(rank[i], light[i]);
+          light[i] = std::max(rank[i], light[i]);
+          rank[i] = lower;
+        }
+      }
+    }
+  }
+  std::copy(least.back().begin(), least.back().end(), out);
+}
+
+/// The errors of a row of pixels.
+std::vector<float> errors_of_row(const PixelStatistics& s, int y) {
+  std::vector<float> around(static_cast<std::size_t>(s.width));
+  const bool has_runs = y >= kReach && y + kReach < s.height && s.width >= kRun + 2 * kReach;
+  const int end = has_runs ? s.width - kReach : 0;
+  for (int x = kReach; x < end; x += kRun) {
+    const int first = std::min(x, end - kRun);
+    lights_around(s, first, y, &around[static_cast<std::size_t>(first)]);
+  }
+  for (int x = 0; x < s.width; ++x) {
+    const std::size_t i = s.at(x, y);
+    float& light = around[static_cast<std::size_t>(x)];
+    if (s.variance[i] <= 0)
+      light = 0;
+    else if (x < kReach || x >= end)
+      light = light_around(s, x, y);
+    light = relative(s.variance[i], std::max(s.light[i] - kTrimmed * s.outlier[i], std::min(s.light[i], light)));
+  }
+  return around;
 }
 
 /// The fraction of a pixel's light that comes from emitters if the rest is as bright as the pixels around it;
@@ -174,12 +217,14 @@ NoiseEstimate estimate_noise(const PixelStatistics& s, TilePool& pool) {
     double sum = 0, squares = 0;
   };
   std::vector<Sums> rows(static_cast<std::size_t>(s.height));
-  each_pixel(s, pool, [&](int x, int y) {
-    const auto e = static_cast<double>(error_of(s, x, y));
-    Sums& row = rows[static_cast<std::size_t>(y)];
-    row.sum += e;
-    row.squares += e * e;
-  });
+  const auto add_row = [&](std::size_t y, TileWorker&) {
+    for (const float error : errors_of_row(s, static_cast<int>(y))) {
+      const auto e = static_cast<double>(error);
+      rows[y].sum += e;
+      rows[y].squares += e * e;
+    }
+  };
+  pool.run(rows.size(), add_row, [] { return false; });
   Sums all;
   for (const Sums& row : rows) {
     all.sum += row.sum;

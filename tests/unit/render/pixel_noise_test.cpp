@@ -134,6 +134,23 @@ TEST(RenderPixelNoise, ThreeQuartersOfTheNeighboursMustBeAsBright) {
   EXPECT_NEAR(total_error(s), 0.01 / 4 / (0.25 * 0.25), 1e-5) << "their largest samples do not count";
 }
 
+/// Rows of wide images are processed many pixels at a time.
+TEST(RenderPixelNoise, IsTheSameForATransposedImage) {
+  const auto random = [](int, int, double u) { return u < 0.2 ? 3.0f : static_cast<float>(u); };
+  const PixelStatistics wide = test::statistics_of(150, 20, 8, 3, random);
+  PixelStatistics tall(20, 150);
+  for (int y = 0; y < 20; ++y) {
+    for (int x = 0; x < 150; ++x) {
+      const std::size_t from = wide.at(x, y), to = tall.at(y, x);
+      tall.samples[to] = wide.samples[from];
+      tall.light[to] = wide.light[from];
+      tall.variance[to] = wide.variance[from];
+      tall.outlier[to] = wide.outlier[from];
+    }
+  }
+  EXPECT_NEAR(total_error(wide) / total_error(tall), 1, 1e-12);
+}
+
 TEST(RenderPixelNoise, ChoiceOfAPixelIgnoresItsOwnValues) {
   TilePool pool(1);
   const auto random = [](int, int, double u) { return u < 0.2 ? 3.0f : static_cast<float>(u); };
