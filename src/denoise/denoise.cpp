@@ -36,15 +36,33 @@ constexpr int kNoiseStep = 2;
 /// Minimum variance of filtered halves, as a fraction of the unfiltered variance: halves can be equal by chance.
 constexpr float kMinVariance = 0.06F;
 
+/// Whether planes are constant in all pixels that the filter of a tile reads: it would not change them.
+bool are_constant(const std::vector<const PaddedPlane*>& planes, Frame frame, int x, int y) {
+  constexpr int kReach = PaddedPlane::kBorder;
+  const int left = std::max(x - kReach, 0), right = std::min(x + kTileWidth + kReach, frame.width);
+  const int top = std::max(y - kReach, 0), bottom = std::min(y + kTileHeight + kReach, frame.height);
+  return std::all_of(planes.begin(), planes.end(), [&](const PaddedPlane* plane) {
+    const float first = *plane->at(x, y);
+    for (int row = top; row < bottom; ++row)
+      if (std::any_of(plane->at(left, row), plane->at(right, row), [first](float v) { return v != first; }))
+        return false;
+    return true;
+  });
+}
+
 /// Filters planes with the same weights.
 std::vector<Values> filtered(const WeightSource& source, const std::vector<const PaddedPlane*>& planes, Frame frame,
                              Tiles& tiles) {
   std::vector<Values> out(planes.size());
   tbb::parallel_for(std::size_t{0}, out.size(), [&](std::size_t i) { out[i].resize(frame.pixels()); });
   tiles.each([&](Worker& worker, int x, int y) {
-    compute_weights(source, x, y, worker.scratch, worker.weights);
+    const bool is_constant = are_constant(planes, frame, x, y);
+    if (!is_constant) compute_weights(source, x, y, worker.scratch, worker.weights);
     for (std::size_t i = 0; i < planes.size(); ++i) {
-      apply_weights(worker.weights, source.radius, *planes[i], x, y, worker.pixels);
+      if (is_constant)
+        worker.pixels.fill(*planes[i]->at(x, y));
+      else
+        apply_weights(worker.weights, source.radius, *planes[i], x, y, worker.pixels);
       tiles.each_pixel(x, y, [&](std::size_t in_tile, int column, int row) {
         out[i][frame.at(column, row)] = worker.pixels[in_tile];
       });
@@ -124,12 +142,12 @@ FilteredHalves filtered_halves(SourcePlanes& planes, const std::vector<PaddedPla
 }
 
 /// The weights' source for the beauty.
-WeightSource beauty_source(const SourcePlanes& planes, const FilteredHalves& halves,
-                           const std::vector<PaddedPlane>& guides) {
+WeightSource beauty_source(const SourcePlanes& planes, const std::array<PaddedPlane, 3>& beauty,
+                           const FilteredHalves& halves, const std::vector<PaddedPlane>& guides) {
   WeightSource source;
   source.tolerance = kTolerance;
   source.valid = &planes.valid;
-  source.target = {&planes.beauty[0], &planes.beauty[1], &planes.beauty[2]};
+  source.target = {&beauty[0], &beauty[1], &beauty[2]};
   source.variance = &halves.variance;
   for (std::size_t c = 0; c < 3; ++c) source.compared.push_back({&halves.a[c], &halves.b[c]});
   for (const PaddedPlane& guide : guides) source.guides.push_back(&guide);
@@ -147,10 +165,10 @@ struct ChannelLight {
 /// Restores the light of a filtered channel, rounds its cells so that they add up to the beauty, and adds up its
 /// layers.
 ///
-/// `before`   the beauty before filtering
-void finish_channel(film::Picture& picture, const SourcePlanes& planes, std::size_t c, const LightChannel& channel,
-                    const std::vector<PaddedPlane>& noisy_cells, ChannelLight light) {
-  const PaddedPlane &before = planes.beauty[c], &valid = planes.valid;
+/// `before`   the beauty before filtering, without outliers
+void finish_channel(film::Picture& picture, const SourcePlanes& planes, const PaddedPlane& before, std::size_t c,
+                    const LightChannel& channel, const std::vector<PaddedPlane>& noisy_cells, ChannelLight light) {
+  const PaddedPlane& valid = planes.valid;
   const Frame frame{picture.width, picture.height};
   std::vector<float>& beauty = picture.planes[channel.beauty].values;
   std::vector<RemovedLight> removed;
@@ -211,20 +229,27 @@ Report filter(film::Picture& picture, SourcePlanes planes) {
   const Frame frame{width, height};
   const std::vector<PaddedPlane> guides = filtered_guides(planes, frame, tiles);
   const FilteredHalves halves = filtered_halves(planes, guides, frame, tiles);
-  const WeightSource source = beauty_source(planes, halves, guides);
-  std::vector<std::vector<PaddedPlane>> cells;
+  std::array<PaddedPlane, 3> beauty;
+  std::array<std::vector<PaddedPlane>, 3> cells;
   for (std::size_t c = 0; c < 3; ++c) {
-    cells.emplace_back();
-    for (const std::size_t cell : lights.channels[c].cells) {
-      cells.back().push_back(padded(picture.planes[cell].values, frame));
-      for (const Outlier& outlier : planes.outliers.pixels)
-        scale_pixel(cells.back().back(), frame, outlier.pixel, outlier.factors[c]);
-    }
+    const auto without_outliers = [&](std::size_t plane) {
+      PaddedPlane out = padded(picture.planes[plane].values, frame);
+      for (const Outlier& outlier : planes.outliers.pixels) scale_pixel(out, frame, outlier.pixel, outlier.factors[c]);
+      return out;
+    };
+    beauty[c] = without_outliers(lights.channels[c].beauty);
+    for (const std::size_t cell : lights.channels[c].cells) cells[c].push_back(without_outliers(cell));
   }
+  const WeightSource source = beauty_source(planes, beauty, halves, guides);
   // Colours are premultiplied, so alpha must be filtered with the same weights.
   const std::optional<std::size_t> alpha = partial_alpha(picture);
   const PaddedPlane noisy_alpha = alpha ? padded(picture.planes[*alpha].values, frame) : PaddedPlane();
+  std::vector<const PaddedPlane*> all(source.target.begin(), source.target.end());
+  for (const std::vector<PaddedPlane>& of_channel : cells)
+    for (const PaddedPlane& cell : of_channel) all.push_back(&cell);
+  if (alpha) all.push_back(&noisy_alpha);
   tiles.each([&](Worker& worker, int x, int y) {
+    if (are_constant(all, frame, x, y)) return;
     compute_weights(source, x, y, worker.scratch, worker.weights);
     const auto filter_plane = [&](const PaddedPlane& from, std::size_t to) {
       apply_weights(worker.weights, source.radius, from, x, y, worker.pixels);
@@ -235,7 +260,7 @@ Report filter(film::Picture& picture, SourcePlanes planes) {
     };
     for (std::size_t c = 0; c < 3; ++c) {
       const LightChannel& channel = lights.channels[c];
-      filter_plane(planes.beauty[c], channel.beauty);
+      filter_plane(beauty[c], channel.beauty);
       for (std::size_t i = 0; i < channel.cells.size(); ++i) filter_plane(cells[c][i], channel.cells[i]);
     }
     if (alpha) filter_plane(noisy_alpha, *alpha);
@@ -244,7 +269,7 @@ Report filter(film::Picture& picture, SourcePlanes planes) {
   if (alpha)
     for (float& a : picture.planes[*alpha].values) a = std::clamp(a, 0.0F, 1.0F);
   for (std::size_t c = 0; c < 3; ++c)
-    finish_channel(picture, planes, c, lights.channels[c], cells[c], {is_positive[c], is_complete});
+    finish_channel(picture, planes, beauty[c], c, lights.channels[c], cells[c], {is_positive[c], is_complete});
   for (int y = 0; y < height; ++y)
     for (int x = 0; x < width; ++x) report.bad_pixels += *planes.valid.at(x, y) == 0 ? 1 : 0;
   return report;

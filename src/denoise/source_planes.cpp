@@ -119,11 +119,10 @@ void add_guides(SourcePlanes& out, HalfPlanes& planes, Frame frame) {
   out.guide_variance = padded(window_means(squared_errors, frame, kGuideNoiseRadius), frame);
 }
 
-/// Reduces an outlier to the light that both halves contain.
+/// Reduces an outlier of the halves to the light that both contain.
 void reduce(SourcePlanes& planes, Frame frame, const Outlier& outlier) {
   const int x = frame.x(outlier.pixel), y = frame.y(outlier.pixel);
   for (std::size_t c = 0; c < 3; ++c) {
-    scale_pixel(planes.beauty[c], frame, outlier.pixel, outlier.factors[c]);
     PaddedPlane &of_bright = outlier.is_in_a ? planes.a[c] : planes.b[c],
                 &of_dark = outlier.is_in_a ? planes.b[c] : planes.a[c];
     const float bright = *of_bright.at(x, y), dark = *of_dark.at(x, y);
@@ -168,7 +167,6 @@ std::optional<SourcePlanes> source_planes(film::Picture& picture, bool keeps_hal
     out.b[c] = padded(*halves[c].b, frame);
     half_planes.release(std::string(".") + "RGB"[c]);
   }
-  for (std::size_t c = 0; c < 3; ++c) out.beauty[c] = padded(picture.at(std::string(1, "RGB"[c])).values, frame);
   for (const Outlier& outlier : out.outliers.pixels) reduce(out, frame, outlier);
   add_guides(out, half_planes, frame);
   return out;

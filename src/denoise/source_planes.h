@@ -14,12 +14,12 @@ namespace orrery::denoise {
 
 /// The planes of an image that guide its filter.
 struct SourcePlanes {
-  std::array<PaddedPlane, 3> beauty, a, b;  ///< the beauty, and that of two halves of the samples
-  Outliers outliers;                        ///< already reduced in `beauty`, `a` and `b`
-  PaddedPlane variance;                     ///< variance of the beauty, summed over the channels
-  std::vector<PaddedPlane> guides;          ///< kGuides
-  PaddedPlane guide_variance;               ///< sum over the guides
-  PaddedPlane valid;                        ///< 1; 0 outside the image and where the beauty is not finite
+  std::array<PaddedPlane, 3> a, b;  ///< the beauty of two halves of the samples
+  Outliers outliers;                ///< already reduced in `a` and `b`
+  PaddedPlane variance;             ///< variance of the beauty, summed over the channels
+  std::vector<PaddedPlane> guides;  ///< kGuides
+  PaddedPlane guide_variance;       ///< sum over the guides
+  PaddedPlane valid;                ///< 1; 0 outside the image and where the beauty is not finite
 };
 
 /// Prepares the planes of an image with a beauty R, G, B and the layer `halves`. Values that are not finite are

@@ -89,7 +89,7 @@ HWY_INLINE void similarities(const WeightSource& source, int x0, int y0, int dx,
       const int x = x0 + column, y = y0 + row;
       float* const at = sums.data() + row * kTileWidth + column;
       V weight = bump(hn::Load(d, at) * scale);
-      if (!source.guides.empty()) {
+      if (!source.guides.empty() && !hn::AllFalse(d, weight > 0)) {
         const V here = hn::LoadU(d, source.guide_variance->at(x, y));
         const V there = hn::LoadU(d, source.guide_variance->at(x + dx, y + dy));
         V guide_distance = -(here + min(here, there));
@@ -173,6 +173,7 @@ HWY_INLINE void regress(const WeightSource& source, int x, int y, std::size_t at
   for (V& v : m) v = hn::Zero(d);
   each_offset(source.radius, [&](std::size_t i, int dx, int dy) {
     const V similarity = hn::Load(d, weights[i].data() + at);
+    if (hn::AllFalse(d, similarity > 0)) return;  // saves time, no bits
     V guides[kGuides];
     for (std::size_t g = 0; g < kGuides; ++g) guides[g] = relative(g, dx, dy);
     m[0] = m[0] + similarity;
@@ -197,9 +198,10 @@ HWY_INLINE void regress(const WeightSource& source, int x, int y, std::size_t at
   HWY_ALIGN float means[kOffsets][kMaxLanes];
   each_offset(source.radius, [&](std::size_t i, int dx, int dy) {
     float* const weight = weights[i].data() + at;
+    const V similarity = hn::Load(d, weight);
+    if (hn::AllFalse(d, similarity > 0)) return hn::Store(similarity, d, means[i]);
     V factor = z[0];
     for (std::size_t g = 0; g < kGuides; ++g) factor = factor + z[g + 1] * relative(g, dx, dy);
-    const V similarity = hn::Load(d, weight);
     const V of_fit = similarity * factor, of_mean = similarity * of_total;
     hn::Store(of_fit, d, weight);
     hn::Store(of_mean, d, means[i]);
