@@ -191,9 +191,9 @@ class PlaneList {
 
   /// Means of a guide over both halves.
   void add_guide(const char* layer, const char* channels, PlaneKind kind, std::int64_t (kernel::GuideSum::*guide)[3]) {
-    add(layer, channels, kind, [&halves = sums_.guides, guide](std::size_t i, float* v) {
-      kernel::GuideSum both = halves[0][i];
-      both += halves[1][i];
+    add(layer, channels, kind, [&sums = sums_, guide](std::size_t i, float* v) {
+      kernel::GuideSum both = sums.guides_of(0, i);
+      both += sums.guides_of(1, i);
       for (int k = 0; k < 3; ++k) v[k] = static_cast<float>(mean_guide((both.*guide)[k], both.weight));
     });
   }
@@ -209,8 +209,8 @@ class PlaneList {
       append(planes, name + ".normal", "XYZ", PlaneKind::kData);
       append(planes, name + ".inverse_depth", "X", PlaneKind::kData);
       out_.push_back({std::move(planes), [&sums = sums_, half](std::size_t i, float* v) {
-                        const kernel::PixelSum& light = sums.light[half][i];
-                        const kernel::GuideSum& guides = sums.guides[half][i];
+                        const kernel::PixelSum light = sums.light_of(half, i);
+                        const kernel::GuideSum guides = sums.guides_of(half, i);
                         const bool has_mean = light.weight > 0 && guides.weight > 0;
                         const auto put = [&](double value) { *v++ = static_cast<float>(has_mean ? value : kNoMean); };
                         for (const auto& sum : light.rgb) put(mean(sum, light.weight));

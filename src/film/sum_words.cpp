@@ -119,6 +119,12 @@ class Reader {
   std::size_t at_ = 0;
 };
 
+// The sums of a pixel, and where to read them: a file has no Sums::empty.
+kernel::PixelSum light_of(const Sums& p, std::size_t half, std::size_t i) { return p.light_of(half, i); }
+kernel::PixelSum& light_of(Sums& p, std::size_t half, std::size_t i) { return p.light[half][i]; }
+kernel::GuideSum guides_of(const Sums& p, std::size_t half, std::size_t i) { return p.guides_of(half, i); }
+kernel::GuideSum& guides_of(Sums& p, std::size_t half, std::size_t i) { return p.guides[half][i]; }
+
 /// Reads or writes all numbers in file order, except sphere coverage, whose count varies by pixel.
 template <class Io, class P>
 void each_number(Io& io, P& sums) {
@@ -138,7 +144,14 @@ void each_number(Io& io, P& sums) {
     (array(all), ...);
   };
   auto& layers = sums.layers;
-  arrays(1, sums.light[0], sums.light[1], sums.guides[0], sums.guides[1]);
+  for (const std::size_t half : {0, 1}) {
+    io.extent(sums.light[half], pixels, 1);
+    io.elements(sums.light[half].size(), [&](std::size_t i) -> decltype(auto) { return light_of(sums, half, i); });
+  }
+  for (const std::size_t half : {0, 1}) {
+    io.extent(sums.guides[half], pixels, 1);
+    io.elements(sums.guides[half].size(), [&](std::size_t i) -> decltype(auto) { return guides_of(sums, half, i); });
+  }
   arrays(1, sums.largest, sums.counts, sums.goals);
   arrays(base::kMaxLightGroups * kernel::kLobes, layers.light);
   arrays(1, layers.squares, layers.normal, layers.albedo, layers.covered, layers.hit, layers.depth, layers.z,

@@ -19,6 +19,20 @@ std::vector<std::size_t> sizes_of(const Sums& p) {
   return out;
 }
 
+void add_times(kernel::PixelSum& to, const kernel::PixelSum& sum, std::int64_t times) {
+  for (int c = 0; c < 3; ++c) to.rgb[c] += sum.rgb[c] * times;
+  to.weight += sum.weight * static_cast<std::uint32_t>(times);
+}
+
+void add_times(kernel::GuideSum& to, const kernel::GuideSum& sum, std::int64_t times) {
+  to.inverse_depth += sum.inverse_depth * times;
+  to.weight += sum.weight * times;
+  for (int k = 0; k < 3; ++k) {
+    to.albedo[k] += sum.albedo[k] * times;
+    to.normal[k] += sum.normal[k] * times;
+  }
+}
+
 }  // namespace
 
 RenderWork& RenderWork::operator+=(const RenderWork& other) {
@@ -37,6 +51,58 @@ Sums::Sums(int width_px, int height_px, const LayerRequest& request, bool is_ada
     for (auto& half : guides) half.resize(pixel_count());
   if (is_adaptive) largest.resize(pixel_count());
   layers = LayerSums(request, pixel_count());
+}
+
+std::uint32_t Sums::paths_of(std::size_t half, std::size_t pixel) const {
+  const std::uint32_t all = counts[pixel];
+  if (is_adaptive() || !has_halves()) return all;
+  const std::uint32_t in_first = std::min(all, empty.first_half);
+  return half == 0 ? in_first : all - in_first;
+}
+
+kernel::PixelSum Sums::light_of(std::size_t half, std::size_t pixel) const {
+  kernel::PixelSum out = light[half][pixel];
+  if (empty.is_known()) add_times(out, empty.light, paths_of(half, pixel));
+  return out;
+}
+
+kernel::GuideSum Sums::guides_of(std::size_t half, std::size_t pixel) const {
+  kernel::GuideSum out = guides[half][pixel];
+  if (empty.is_known()) add_times(out, empty.guides, paths_of(half, pixel));
+  return out;
+}
+
+kernel::PixelSum Sums::sum(std::size_t pixel) const {
+  kernel::PixelSum out = light_of(0, pixel);
+  if (has_halves()) out += light_of(1, pixel);
+  return out;
+}
+
+void Sums::add_light(std::size_t half, std::size_t pixel, kernel::PixelSum sum, std::uint32_t paths) {
+  if (empty.is_known()) add_times(sum, empty.light, -std::int64_t{paths});
+  light[half][pixel] += sum;
+}
+
+void Sums::add_guides(std::size_t half, std::size_t pixel, kernel::GuideSum sum, std::uint32_t paths) {
+  if (empty.is_known()) add_times(sum, empty.guides, -std::int64_t{paths});
+  guides[half][pixel] += sum;
+}
+
+void Sums::add_empty(std::size_t half, std::size_t pixel, const EmptyPath& path, std::uint32_t paths) {
+  if (paths == 0) return;
+  if (is_adaptive()) largest[pixel] = std::max(largest[pixel], path.largest);
+  if (empty.is_known()) return;
+  add_times(light[half][pixel], path.light, paths);
+  if (!guides[half].empty()) add_times(guides[half][pixel], path.guides, paths);
+}
+
+void Sums::add_empty_to_sums() {
+  for (std::size_t half = 0; half < 2; ++half)
+    for (std::size_t i = 0; i < pixel_count() && empty.is_known(); ++i) {
+      if (!light[half].empty()) light[half][i] = light_of(half, i);
+      if (!guides[half].empty()) guides[half][i] = guides_of(half, i);
+    }
+  empty = {};
 }
 
 bool Sums::has_arrays_of(const Sums& other) const {

@@ -23,6 +23,17 @@ struct RenderWork {
   RenderWork& operator+=(const RenderWork& other);
 };
 
+/// What a path that sees nothing but a plain background adds to its pixel. Sums are stored less this for each of their
+/// paths, so that pixels without objects remain zero and take no memory. Zero: sums are stored as they are.
+struct EmptyPath {
+  kernel::PixelSum light;
+  kernel::GuideSum guides;
+  float largest = 0;             ///< see Sums::largest
+  std::uint32_t first_half = 0;  ///< samples in the first half, without adaptive sampling
+
+  bool is_known() const { return light.weight > 0; }
+};
+
 /// The sums of all samples so far: the state of a render, and the content of a checkpoint or shard. They have the
 /// arrays that a render needs, of one element for each pixel, row by row; others are empty.
 ///
@@ -45,18 +56,17 @@ struct Sums {
 
   /// Adds the samples of another shard with the same arrays.
   ///
-  /// Domain     without adaptive sampling
+  /// Domain     without adaptive sampling and `empty`
   void add(const Sums& other);
 
   /// Returns whether all sphere ids in the layers are below `count`. A damaged file may contain others.
   bool has_known_spheres(std::size_t count) const;
 
+  /// The sums of a pixel's samples in a half.
+  kernel::PixelSum light_of(std::size_t half, std::size_t pixel) const;
+  kernel::GuideSum guides_of(std::size_t half, std::size_t pixel) const;
   /// The sum of a pixel's samples.
-  kernel::PixelSum sum(std::size_t pixel) const {
-    kernel::PixelSum out = light[0][pixel];
-    if (has_halves()) out += light[1][pixel];
-    return out;
-  }
+  kernel::PixelSum sum(std::size_t pixel) const;
   /// Number of a pixel's paths, including those with bad samples.
   std::uint64_t paths(std::size_t pixel) const { return std::uint64_t{counts[pixel]} * (is_adaptive() ? 2 : 1); }
 
@@ -68,16 +78,33 @@ struct Sums {
   /// Domain     with LayerRequest::coverage
   float coverage(std::size_t pixel) const;
 
+  /// Adds sums to those of a pixel in a half.
+  ///
+  /// `paths`    number of their paths
+  void add_light(std::size_t half, std::size_t pixel, kernel::PixelSum sum, std::uint32_t paths);
+  void add_guides(std::size_t half, std::size_t pixel, kernel::GuideSum sum, std::uint32_t paths);
+  /// Adds paths of a pixel without objects as far as `empty` does not account for them.
+  void add_empty(std::size_t half, std::size_t pixel, const EmptyPath& path, std::uint32_t paths);
+
+  /// Clears `empty` and stores the sums as they are.
+  void add_empty_to_sums();
+
   int width, height;  ///< px
-  /// Samples of both halves; without halves, all are in the first.
+  EmptyPath empty;    ///< already subtracted from `light` and `guides`
+  /// Samples of both halves, less `empty` for each; without halves, all are in the first.
   std::array<base::ZeroVector<kernel::PixelSum>, 2> light;
-  std::array<base::ZeroVector<kernel::GuideSum>, 2> guides;  ///< of both halves; only with LayerRequest::guides()
+  /// Of both halves, less `empty` for each sample; only with LayerRequest::guides().
+  std::array<base::ZeroVector<kernel::GuideSum>, 2> guides;
   base::ZeroVector<float> largest;         ///< largest sample, sum of the channels; only for adaptive sampling
   base::ZeroVector<std::uint32_t> counts;  ///< samples; in adaptive sampling, samples of each half
   /// Target sample count in the current pass; empty if it is the same for all.
   base::ZeroVector<std::uint32_t> goals;
   LayerSums layers;
   RenderWork work;
+
+ private:
+  /// Number of a pixel's paths in a half.
+  std::uint32_t paths_of(std::size_t half, std::size_t pixel) const;
 };
 
 /// The mean of fixed-point values from their sum and number; 0 without values.
@@ -85,8 +112,8 @@ inline double mean(kernel::Int128 sum, std::int64_t count) {
   return count > 0 ? kernel::from_fixed_point(sum) / static_cast<double>(count) : 0.0;
 }
 
-/// Serializes sums to 32-bit words: a header, then a plane over all pixels for each word of each per-pixel number, or a
-/// single value if it is the same for all pixels.
+/// Serializes sums, without `empty`, to 32-bit words: a header, then a plane over all pixels for each word of each
+/// per-pixel number, or a single value if it is the same for all pixels.
 std::vector<std::uint32_t> to_words(const Sums& sums);
 
 /// Deserializes the result of to_words(). Words after the end are ignored as padding.

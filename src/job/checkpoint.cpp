@@ -264,8 +264,8 @@ void Checkpoint::write(const film::Sums& sums) {
   is_ours_ = true;
 }
 
-void Checkpoint::finish(const film::Sums& sums) {
-  if (settings_.keep) return try_write(sums);
+void Checkpoint::finish(const std::optional<film::Sums>& sums) {
+  if (settings_.keep) return try_write(*sums);
   std::error_code ignored;
   if (is_ours_) std::filesystem::remove(file_, ignored);
 }

@@ -101,7 +101,8 @@ class Checkpoint {
   /// after the images are written.
   ///
   /// `sums`     of all samples
-  void finish(const film::Sums& sums);
+  /// Domain     with sums if the settings keep the checkpoint
+  void finish(const std::optional<film::Sums>& sums);
 
  private:
   const CheckpointSettings& settings_;

@@ -79,7 +79,6 @@ class Run {
   /// Renders, and keeps what is needed to write the image.
   Rendering render_in_memory(const base::FileSet& files) {
     render::Result result = render(nullptr);
-    result.sums.reset();  // the denoiser needs the memory, and no file the sums
     finish(result);
     Rendering out;
     out.job = job_;
@@ -111,7 +110,7 @@ class Run {
     report_result(result);
     if (job_.outputs.reproducible) result.sums->work.seconds = 0;
     write_sums(job_.outputs.images.front().path, *result.sums);
-    checkpoint.finish(*result.sums);
+    checkpoint.finish(result.sums);
   }
 
   void render_images() {
@@ -121,9 +120,10 @@ class Run {
     try {
       write_images(result);
     } catch (const base::Error& error) {
+      if (!result.sums) throw;
       save_samples(error, checkpoint, *result.sums);
     }
-    checkpoint.finish(*result.sums);
+    checkpoint.finish(result.sums);
   }
 
   const compile::CompiledScene& compiled() const { return own_.compiled(); }
@@ -173,6 +173,10 @@ class Run {
     if (traversal == scene::Traversal::kSingle) out.traversal = accel::Traversal::kSingle;
     out.layers = own_.layers.request;
     out.unlimited = !is_limited(job_);
+    // The denoiser needs the memory of the sums, which only a checkpoint or a shard would store.
+    const CheckpointSettings& kept = job_.checkpoint;
+    out.keeps_sums =
+        is_shard(job_) || (!job_.is_in_memory() && (!job_.denoise || kept.resume || kept.keep || kept.interval_s > 0));
     out.on_progress = job_.hooks.on_progress;
     out.on_pixels = job_.hooks.on_pixels;
     out.cancel = job_.hooks.cancel;

@@ -46,6 +46,7 @@ class AdaptiveSampling {
   AdaptiveSampling(const compile::CompiledScene& compiled, const accel::Accel& accel, const Settings& settings,
                    const TileRenderer& render_tile, TilePool& pool, ProgressReporter& progress, film::Sums& state)
       : settings_(settings),
+        render_tile_(render_tile),
         passes_(settings, render_tile, pool, progress, state),
         pool_(pool),
         progress_(progress),
@@ -54,7 +55,8 @@ class AdaptiveSampling {
         pixels_(compiled.width, compiled.height),
         iteration_begin_(progress.seconds()),
         iteration_begin_samples_(progress.done()) {
-    if (settings.layers.transparent) pixels_.known_black.resize(pixels_.samples.size());
+    if (settings.layers.transparent || render_tile.has_empty_pixels())
+      pixels_.known_black.resize(pixels_.samples.size());
     kernel::SceneView view = compiled.view();
     if (settings.layers.transparent) view.background_visible = false;
     pixels_.emitters = emitter_coverage(view, {accel.tracer(), compiled.precision}, compiled.width, compiled.height);
@@ -162,12 +164,15 @@ class AdaptiveSampling {
 
   void update(int x, int y) {
     const std::size_t i = pixels_.at(x, y);
-    pixels_.set(i, state_.counts[i], state_.light[0][i], state_.light[1][i], state_.largest[i]);
+    pixels_.set(i, state_.counts[i], state_.light_of(0, i), state_.light_of(1, i), state_.largest[i]);
     // With a transparent background, pixels in which no path hits a sphere are black.
-    if (settings_.layers.transparent) pixels_.known_black[i] = state_.layers.covered[i] == 0 ? 1 : 0;
+    if (!pixels_.known_black.empty())
+      pixels_.known_black[i] =
+          render_tile_.is_empty(i) || (settings_.layers.transparent && state_.layers.covered[i] == 0) ? 1 : 0;
   }
 
   const Settings& settings_;
+  const TileRenderer& render_tile_;
   PassRenderer passes_;
   TilePool& pool_;
   ProgressReporter& progress_;

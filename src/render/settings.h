@@ -49,7 +49,8 @@ struct Settings {
   bool unlimited = false;    ///< with noise or a time budget: more samples per pixel than the scene's are allowed
   /// Range of each pixel's samples. The sums of disjoint ranges add up to those of one render. end 0: all samples.
   std::uint32_t sample_begin = 0, sample_end = 0;
-  PixelShard shard;  ///< only these pixels
+  PixelShard shard;        ///< only these pixels
+  bool keeps_sums = true;  ///< false: a completed image has no Result::sums, whose memory is freed as it is finished
   /// Called from one thread at a time: at each whole percent, and at most ten times a second in between.
   std::function<void(const Progress&)> on_progress;
   /// Replaces the clock: seconds as a function of rendered samples, so that tests do not depend on the machine's speed.

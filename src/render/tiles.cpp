@@ -15,6 +15,7 @@
 #include "compile/compiled_scene.h"
 #include "film/sums.h"
 #include "math/pixels.h"
+#include "render/empty_pixels.h"
 #include "render/settings.h"
 
 namespace orrery::render {
@@ -106,7 +107,8 @@ kernel::TileCounts TilePool::counts() const {
   return sum;
 }
 
-TileRenderer::TileRenderer(const compile::CompiledScene& compiled, const accel::Accel& accel, const Settings& settings)
+TileRenderer::TileRenderer(const compile::CompiledScene& compiled, const accel::Accel& accel, const Settings& settings,
+                           TilePool& pool)
     : view_(compiled.view()),
       tracer_(accel.tracer(settings.traversal)),
       request_(settings.layers),
@@ -115,15 +117,66 @@ TileRenderer::TileRenderer(const compile::CompiledScene& compiled, const accel::
                                           : std::max(1U, static_cast<std::uint32_t>(compiled.samples) / 2)) {
   if (request_.transparent) view_.background_visible = false;
   render_ = kernel::render_tile_function(view_.features, compiled.precision, request_.any());
+  if (request_.records() || settings.sample_end > 0) return;  // the sums of layers do not know empty paths
+  empty_pixels_ = find_empty_pixels(view_, compiled.width, compiled.height, pool);
+  if (!empty_pixels_.empty()) empty_path_ = path_of_empty_pixel(compiled.width, settings.is_adaptive());
+  if (!empty_path_.is_known()) empty_pixels_.clear();
+}
+
+film::EmptyPath TileRenderer::path_of_empty_pixel(int width, bool is_adaptive) const {
+  const DefaultRounding rounding;
+  const auto pixel =
+      static_cast<int>(std::find(empty_pixels_.begin(), empty_pixels_.end(), true) - empty_pixels_.begin());
+  TileWorker worker;
+  worker.stream = std::make_unique<kernel::PathStream>();
+  kernel::Tile tile;
+  tile.x = pixel % width;
+  tile.y = pixel / width;
+  tile.width = tile.height = 1;
+  tile.sample_end = 1;
+  attach_buffers(tile, worker, is_adaptive);
+  render_(view_, tracer_, tile, *worker.stream);
+  film::EmptyPath out;
+  out.light = worker.light[0];
+  if (request_.guides()) out.guides = worker.guides[0];
+  if (is_adaptive) out.largest = worker.largest[0];
+  out.first_half = second_half_;
+  return out;
 }
 
 void TileRenderer::operator()(const kernel::Tile& tile, TileWorker& worker, film::Sums& image) const {
+  if (empty_pixels_.empty()) return render(tile, worker, image);
+  const kernel::Tile others = add_empty_pixels(tile, worker, image);
+  if (others.chosen_count > 0) render(others, worker, image);
+}
+
+kernel::Tile TileRenderer::add_empty_pixels(const kernel::Tile& tile, TileWorker& worker, film::Sums& image) const {
+  const std::uint32_t middle = middle_of(tile, image);
+  worker.chosen.clear();
+  for (int i = 0; i < tile.pixel_count(); ++i) {
+    const kernel::PixelPlace at = tile.pixel(i);
+    const std::size_t pixel = index_of(image, tile, at);
+    if (empty_pixels_[pixel]) {
+      image.add_empty(0, pixel, empty_path_, middle - tile.sample_begin);
+      image.add_empty(1, pixel, empty_path_, tile.sample_end - middle);
+    } else {
+      worker.chosen.push_back(at);
+    }
+  }
+  // Counted as if they were traced, so that statistics do not depend on the layers.
+  worker.counts.rays += tile.path_count() - worker.chosen.size() * (tile.sample_end - tile.sample_begin);
+  kernel::Tile others = tile;
+  others.chosen_count = static_cast<int>(worker.chosen.size());
+  others.chosen = others.chosen_count < tile.pixel_count() ? worker.chosen.data() : tile.chosen;
+  return others;
+}
+
+void TileRenderer::render(const kernel::Tile& tile, TileWorker& worker, film::Sums& image) const {
   const DefaultRounding rounding;
   if (!worker.stream) worker.stream = std::make_unique<kernel::PathStream>();
   const auto pixels = static_cast<std::uint32_t>(tile.width) * static_cast<std::uint32_t>(tile.height);
   const std::uint32_t most = request_.records() ? std::max(1u, kMaxRecords / pixels) : ~0u;
-  const std::uint32_t middle =
-      image.has_halves() ? std::clamp(second_half_, tile.sample_begin, tile.sample_end) : tile.sample_end;
+  const std::uint32_t middle = middle_of(tile, image);
   kernel::Tile part = tile;
   for (std::uint32_t begin = tile.sample_begin; begin < tile.sample_end; begin = part.sample_end) {
     part.sample_begin = begin;
@@ -136,6 +189,10 @@ void TileRenderer::operator()(const kernel::Tile& tile, TileWorker& worker, film
     add_sums(part, image);
     if (request_.records()) add_records(part, worker, image);
   }
+}
+
+std::uint32_t TileRenderer::middle_of(const kernel::Tile& tile, const film::Sums& image) const {
+  return image.has_halves() ? std::clamp(second_half_, tile.sample_begin, tile.sample_end) : tile.sample_end;
 }
 
 void TileRenderer::attach_buffers(kernel::Tile& tile, TileWorker& worker, bool is_adaptive) const {
@@ -167,11 +224,12 @@ void TileRenderer::attach_buffers(kernel::Tile& tile, TileWorker& worker, bool i
 
 void TileRenderer::add_sums(const kernel::Tile& tile, film::Sums& image) const {
   const std::size_t half = image.has_halves() && tile.sample_begin >= second_half_ ? 1 : 0;
+  const std::uint32_t samples = tile.sample_end - tile.sample_begin;
   for (int i = 0; i < tile.pixel_count(); ++i) {
     const kernel::PixelPlace at = tile.pixel(i);
     const std::size_t within = math::pixel_index(at.x, at.y, tile.width), pixel = index_of(image, tile, at);
-    image.light[half][pixel] += tile.sums[within];
-    if (tile.guides != nullptr) image.guides[half][pixel] += tile.guides[within];
+    image.add_light(half, pixel, tile.sums[within], samples);
+    if (tile.guides != nullptr) image.add_guides(half, pixel, tile.guides[within], samples);
     if (tile.covered != nullptr) image.layers.covered[pixel] += tile.covered[within];
     if (tile.largest != nullptr) image.largest[pixel] = std::max(image.largest[pixel], tile.largest[within]);
   }

@@ -10,7 +10,7 @@
 
 #include "accel/accel.h"
 #include "compile/forward.h"
-#include "film/forward.h"
+#include "film/sums.h"
 #include "kernel/path_record.h"
 #include "kernel/path_stream.h"
 #include "kernel/pixel_sum.h"
@@ -43,6 +43,7 @@ struct TileWorker {
   std::vector<std::int64_t> covered;
   std::vector<float> largest;
   std::vector<kernel::GuideSum> guides;
+  std::vector<kernel::PixelPlace> chosen;
   LightEventBuffer events;
   kernel::TileCounts counts;
 };
@@ -77,12 +78,28 @@ class TileRenderer {
   /// second half.
   ///
   /// Domain     all arguments outlive this
-  TileRenderer(const compile::CompiledScene& compiled, const accel::Accel& accel, const Settings& settings);
+  TileRenderer(const compile::CompiledScene& compiled, const accel::Accel& accel, const Settings& settings,
+               TilePool& pool);
 
-  /// Renders the pixels and samples of a tile without buffers, and adds its paths to the image.
+  /// Renders the pixels and samples of a tile without buffers, and adds its paths to the image. The paths of empty
+  /// pixels are known.
   void operator()(const kernel::Tile& tile, TileWorker& worker, film::Sums& image) const;
 
+  /// True if a pixel is in the bounds of no object.
+  bool is_empty(std::size_t pixel) const { return !empty_pixels_.empty() && empty_pixels_[pixel]; }
+  bool has_empty_pixels() const { return !empty_pixels_.empty(); }
+  /// A path of an empty pixel; zero if there are none.
+  const film::EmptyPath& empty_path() const { return empty_path_; }
+
  private:
+  film::EmptyPath path_of_empty_pixel(int width, bool is_adaptive) const;
+  void render(const kernel::Tile& tile, TileWorker& worker, film::Sums& image) const;
+  /// Adds the paths of the tile's empty pixels to the image.
+  ///
+  /// Result     the tile with its other pixels
+  kernel::Tile add_empty_pixels(const kernel::Tile& tile, TileWorker& worker, film::Sums& image) const;
+  /// The first of the tile's samples that belongs to the second half.
+  std::uint32_t middle_of(const kernel::Tile& tile, const film::Sums& image) const;
   /// Gives a tile empty buffers.
   void attach_buffers(kernel::Tile& tile, TileWorker& worker, bool is_adaptive) const;
   /// Adds the sums of a tile, which belongs to one half of the samples, to the image.
@@ -95,6 +112,8 @@ class TileRenderer {
   const film::LayerRequest& request_;
   std::uint32_t second_half_;  ///< first sample of the second half
   kernel::RenderTile render_ = nullptr;
+  std::vector<bool> empty_pixels_;  ///< empty: there are none
+  film::EmptyPath empty_path_;
 };
 
 }  // namespace orrery::render

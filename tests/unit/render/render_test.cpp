@@ -105,6 +105,20 @@ TEST(RenderRender, AnyNumberOfThreadsGivesTheSameBits) {
   }
 }
 
+TEST(RenderRender, SumsThatAreNotKeptAreFreedAfterTheirLastUse) {
+  scene::Scene s = everything();
+  s.image = {320, 180};  // large enough for pages to be returned to the system
+  s.render.samples = 2;
+  const compile::CompiledScene compiled = compile::compile(s);
+  Settings settings;
+  settings.layers.halves = true;
+  const Result kept = render(compiled, settings);
+  settings.keeps_sums = false;
+  const Result freed = render(compiled, settings);
+  EXPECT_TRUE(kept.sums && !freed.sums);
+  EXPECT_EQ(test::plane_values(freed.picture), test::plane_values(kept.picture));
+}
+
 TEST(RenderRender, AnotherSeedGivesAnotherImage) {
   scene::Scene s = everything();
   const auto first = pixels(s);
