@@ -52,6 +52,15 @@ constexpr const char* kVideo =
 /// A GIF counts in hundredths of a second, and players show one of them as ten.
 constexpr int kMostGifRate = 50;
 
+/// Whether a program is in one of the folders of PATH. Not by system(), which ignores INT meanwhile.
+bool has_program(const std::string& name) {
+  const char* const path = std::getenv("PATH");
+  std::istringstream folders(path != nullptr ? path : "");
+  for (std::string folder; std::getline(folders, folder, ':');)
+    if (::access((fs::path(folder) / name).c_str(), X_OK) == 0) return true;
+  return false;
+}
+
 /// The program ffmpeg, which encodes the images that it is sent. It ends with this object, or if this process is
 /// killed.
 class Encoder {
@@ -208,7 +217,7 @@ Film::Film(fs::path file, double fps, bool keeps_frames)
     : file_(std::move(file)), folder_(file_.string() + ".frames"), fps_(fps), keeps_frames_(keeps_frames) {
   if (fps > kMostGifRate && base::extension(file_) == ".gif")
     base::refuse(fmt::format("{}: a GIF has at most {} frames per second; write an MP4", file_.string(), kMostGifRate));
-  if (std::system("command -v ffmpeg > /dev/null 2>&1") != 0)
+  if (!has_program("ffmpeg"))
     throw base::Error(base::ErrorKind::kCannotCreate,
                       fmt::format("{} cannot be created: the program ffmpeg was not found; install the package ffmpeg, "
                                   "or write an image for each frame, e.g. -o out.####.png",
