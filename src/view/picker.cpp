@@ -67,9 +67,7 @@ std::optional<Picked> Picker::pick(double x, double y) {
   return rods.contains(*id) ? describe_rod(rods.index(*id)) : describe_sphere(*id);
 }
 
-std::optional<std::array<math::Vec3d, 2>> Picker::bounds() {
-  const std::shared_lock lock(looks_);
-  if (!is_open_) return {};
+std::optional<std::array<math::Vec3d, 2>> Picker::bounds() const {
   const compile::SphereStore& spheres = prepared_.compiled().spheres;
   std::optional<std::array<math::Vec3d, 2>> out;
   // Lamps and grounds are not data.

@@ -42,10 +42,12 @@ class Picker {
   std::optional<Picked> pick(double x, double y);
 
   /// Opposite corners of the box around the centres of the particles, or in a scene without data of all spheres; empty:
-  /// there are none, or until open().
-  std::optional<std::array<math::Vec3d, 2>> bounds();
+  /// there are none.
+  ///
+  /// Domain     after open()
+  std::optional<std::array<math::Vec3d, 2>> bounds() const;
 
-  /// Waits until no call of pick() or bounds() looks at the scene, so that it can change.
+  /// Waits until no call of pick() looks at the scene, so that it can change.
   ///
   /// `source`   of the next scene
   /// `is_new`   its data files may be others

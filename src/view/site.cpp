@@ -41,10 +41,13 @@ http::Response text(int status, const std::string& message) {
   return {status, "text/plain; charset=utf-8", std::make_shared<const std::string>(message + "\n")};
 }
 
+http::Response json_text(std::string text) {
+  return {200, "application/json", std::make_shared<const std::string>(std::move(text))};
+}
+
 http::Response json(const Json& value) {
   // Messages may quote bytes of a file that are not UTF-8.
-  return {200, "application/json",
-          std::make_shared<const std::string>(value.dump(-1, ' ', false, Json::error_handler_t::replace))};
+  return json_text(value.dump(-1, ' ', false, Json::error_handler_t::replace));
 }
 
 /// A file for the client to save. `name` consists of characters that need no quotes.
@@ -112,10 +115,8 @@ bool is_equal(std::string_view a, std::string_view b) {
 
 /// The type of a file of the page.
 std::string type_of(const std::string& name) {
-  return std::string(name.ends_with(".js")    ? "text/javascript"
-                     : name.ends_with(".css") ? "text/css"
-                                              : "text/html") +
-         "; charset=utf-8";
+  const std::string type = name.ends_with(".js") ? "javascript" : name.substr(name.rfind('.') + 1);
+  return "text/" + type + "; charset=utf-8";
 }
 
 const std::set<std::string> kPosts = {"/wish", "/cancel", "/film/start", "/film/command", "/film/cancel"};
@@ -186,7 +187,11 @@ http::Response Site::answer(const http::Request& request) {
     out.fields.emplace_back("Allow", is_post ? "POST" : "GET");
   } else {
     last_request_ = Clock::now();
-    out = answer_client(request);
+    try {
+      out = answer_client(request);
+    } catch (const base::Error& error) {
+      out = text(error.kind() == base::ErrorKind::kUsage ? 400 : 500, text_of(error));
+    }
   }
   out.fields.emplace_back("Cache-Control", "no-store");
   out.fields.emplace_back("X-Content-Type-Options", "nosniff");
@@ -204,30 +209,23 @@ http::Response Site::answer_client(const http::Request& request) {
   if (path == "/state") return state();
   if (path == "/frame") return frame(request);
   if (path == "/column" && controls_.column) return column(request);
-  if (path == "/film" && controls_.film)
-    return {200, "application/json", std::make_shared<const std::string>(controls_.film_state())};
-  if (path == "/film/start" && controls_.film) return film(request, true);
-  if (path == "/film/command" && controls_.film_command) return film(request, false);
-  if (path == "/film/cancel" && controls_.film) {
-    controls_.film_cancel();
-    return json(true);
-  }
   if (path == "/wish") return change(request);
-  if (path == "/cancel") {
-    viewer_.cancel();
-    return json(true);
+  if (path == "/film/command" && controls_.film_command)
+    return json({{"command", controls_.film_command(viewer_.words(wish_of(request)))}});
+  if (path == "/cancel") viewer_.cancel();
+  if (controls_.film) {
+    if (path == "/film") return json_text(controls_.film_state());
+    if (path == "/film/start") controls_.film(viewer_.words(wish_of(request)));
+    if (path == "/film/cancel") controls_.film_cancel();
   }
+  if (path == "/cancel" || (controls_.film && kPosts.count(path) > 0)) return json(true);
   const bool is_image = path == "/picture.png" || path == "/picture.exr";
-  if (!is_image && path != "/pick" && path != "/bounds" && path != "/scene.toml") return text(404, "not found");
+  if (!is_image && path != "/pick" && path != "/scene.toml") return text(404, "not found");
   const auto client = request.query.find("client");
   if (client != request.query.end() && client->second != viewer_.state().wish.client)
     return text(409, "another page has asked since");
-  if ((path == "/pick" || path == "/bounds") && !viewer_.can_pick()) return text(409, "the scene is being read");
-  if (path == "/pick") return pick(request);
   if (path == "/scene.toml") return scene(request.query.count("brief") > 0);
-  if (is_image) return picture(path.substr(path.rfind('.')));
-  const auto bounds = viewer_.bounds();
-  return json(bounds ? Json{vector_of((*bounds)[0]), vector_of((*bounds)[1])} : Json());
+  return is_image ? picture(path.substr(path.rfind('.'))) : pick(request);
 }
 
 /// What the page offers, which does not change.
@@ -274,12 +272,8 @@ http::Response Site::pick(const http::Request& request) {
   const auto x = number_of<double>(request, "x"), y = number_of<double>(request, "y");
   const auto is_fraction = [](const std::optional<double>& v) { return v && *v >= 0 && *v <= 1; };
   if (!is_fraction(x) || !is_fraction(y)) return text(400, "`x` and `y` must be numbers from 0 to 1");
-  std::optional<Picked> picked;
-  try {
-    picked = viewer_.pick(*x, *y);
-  } catch (const base::Error& error) {
-    return text(500, text_of(error));
-  }
+  if (!viewer_.can_pick()) return text(409, "the scene is being read");
+  const std::optional<Picked> picked = viewer_.pick(*x, *y);
   if (!picked) return json(nullptr);
   return json({{"title", picked->title},
                {"center", vector_of(picked->center)},
@@ -309,6 +303,7 @@ http::Response Site::state() const {
               {"up", vector_of(subject.up.value_or(math::Vec3d{0, 1, 0}))},
               {"command", controls_.command(state.words)}};
   out["camera"] = state.camera ? json_of(*state.camera) : Json();
+  if (state.bounds) out["bounds"] = {vector_of((*state.bounds)[0]), vector_of((*state.bounds)[1])};
   out["data"] = subject.data ? json_of(*subject.data) : Json();
   return json(out);
 }
@@ -318,9 +313,7 @@ http::Response Site::column(const http::Request& request) const {
   const auto name = request.query.find("name");
   if (!frame || name == request.query.end()) return text(400, "`frame` must be a number, and `name` a column");
   try {
-    return {
-        200, "application/json",
-        std::make_shared<const std::string>(controls_.column(*frame, name->second, request.query.count("log") > 0))};
+    return json_text(controls_.column(*frame, name->second, request.query.count("log") > 0));
   } catch (const base::Error&) {  // the page has reported it
     return json(nullptr);
   }
@@ -338,24 +331,9 @@ Wish Site::wish_of(const http::Request& request) const {
 }
 
 http::Response Site::change(const http::Request& request) {
-  try {
-    Wish wish = wish_of(request);
-    const std::string command = controls_.command(viewer_.words(wish));
-    return json({{"wish", viewer_.ask(std::move(wish))}, {"command", command}});
-  } catch (const base::Error& error) {
-    return text(400, error.what());
-  }
-}
-
-/// The command that makes a film, or its start.
-http::Response Site::film(const http::Request& request, bool starts) const {
-  try {
-    const std::vector<std::string> words = viewer_.words(wish_of(request));
-    if (starts) controls_.film(words);
-    return json({{"command", controls_.film_command(words)}});
-  } catch (const base::Error& error) {
-    return text(400, text_of(error));
-  }
+  Wish wish = wish_of(request);
+  const std::string command = controls_.command(viewer_.words(wish));
+  return json({{"wish", viewer_.ask(std::move(wish))}, {"command", command}});
 }
 
 http::Response Site::picture(const std::string& extension) const {

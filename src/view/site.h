@@ -69,7 +69,6 @@ class Site {
   http::Response column(const http::Request& request) const;
   http::Response pick(const http::Request& request);
   http::Response change(const http::Request& request);
-  http::Response film(const http::Request& request, bool starts) const;
   Wish wish_of(const http::Request& request) const;
   http::Response picture(const std::string& extension) const;
   http::Response scene(bool is_brief) const;

@@ -114,8 +114,7 @@ struct Viewer::Live {
   std::vector<std::uint8_t> codes;
   Clock::time_point next = Clock::now();
   std::atomic<double> samples{0};  ///< per pixel
-  std::uint64_t wish = 0;
-  std::string client;
+  Frame frame;                     ///< what is known of its images
 };
 
 Viewer::Viewer(MakeSubject make, std::vector<std::string> fixed, Wish first)
@@ -224,19 +223,17 @@ void Viewer::refresh(Live& live) {
       if (live.overlay) annotation::blend(*live.overlay, cell.x, y, codes);
     }
   }
-  Frame frame;
-  frame.width = live.canvas.width();
-  frame.height = live.canvas.height();
-  frame.samples = live.samples;
-  frame.type = "image/jpeg";
-  frame.bytes =
-      std::make_shared<const std::string>(image::jpeg_bytes(frame.width, frame.height, live.codes.data(), kQuality));
+  live.frame.samples = live.samples;
+  live.frame.bytes = std::make_shared<const std::string>(
+      image::jpeg_bytes(live.canvas.width(), live.canvas.height(), live.codes.data(), kQuality));
   live.next = Clock::now() + kRefresh;
   const std::lock_guard own(mutex_);
-  if (live_.get() != &live) return;  // finished meanwhile
+  if (live_.get() == &live) publish(live.frame);  // otherwise it has been finished meanwhile
+}
+
+/// Domain: mutex_ is locked
+void Viewer::publish(Frame frame) {
   frame.number = frame_.number + 1;
-  frame.wish = live.wish;
-  frame.client = live.client;
   frame_ = std::move(frame);
   changed_.notify_all();
 }
@@ -312,10 +309,10 @@ void Viewer::make_subject(Wish& wish, std::uint64_t number) {
 
 /// An image that is made for a wish.
 struct Viewer::Image {
-  std::uint64_t wish = 0;  ///< its number
-  std::string client;
+  Frame frame;  ///< its wish and client
   bool is_sketch = false;
   bool is_last = false;  ///< of the wish
+  bool is_new = false;   ///< the first one of its subject
   std::vector<std::string> warnings = {};
   std::shared_ptr<job::Rendering> rendering = nullptr;
   std::shared_ptr<Live> live = nullptr;  ///< null for a sketch
@@ -332,7 +329,7 @@ void Viewer::render(const Wish& wish, std::uint64_t number, bool is_sketch) {
   job::Job job = state_.subject->job;  // the subject and its size are written by this thread only
   if (wish.camera)
     for (const std::string& setting : camera_settings(*wish.camera)) job.scene.overrides.add(setting);
-  Image image{number, wish.client, is_sketch, is_sketch == wish.moves};
+  Image image{{0, number, wish.client}, is_sketch, is_sketch == wish.moves, is_new_subject_};
   if (is_sketch) {
     const int width = state_.width, height = state_.height;
     const double pixels = std::max(pixels_per_second_ * kSketchTime_s, 1.0);
@@ -390,8 +387,8 @@ job::Hooks Viewer::hooks_for(Image& image) {
 void Viewer::begin(Image& image, const display::PictureInfo& info, const annotation::Drawing& drawing) {
   if (!image.is_sketch) {
     image.live = std::make_shared<Live>(info, drawing, sketch_);
-    image.live->wish = image.wish;
-    image.live->client = image.client;
+    image.live->frame = image.frame;
+    image.live->frame.type = "image/jpeg";
   }
   const scene::Scene& scene = prepared_->loaded().read.scene;
   const std::lock_guard lock(mutex_);
@@ -399,7 +396,7 @@ void Viewer::begin(Image& image, const display::PictureInfo& info, const annotat
   is_cancellable_ = true;
   state_.warnings = image.warnings;
   state_.camera = scene.camera;
-  if (!image.is_sketch && state_.asked != image.wish) cancel_ = true;
+  if (!image.is_sketch && state_.asked != image.frame.wish) cancel_ = true;
   state_.activity.clear();
   state_.problem.clear();  // that of a wish before
   announce();
@@ -413,12 +410,8 @@ void Viewer::finish(Image& image) {
   film::EncodedPicture picture =
       job::develop_annotated(rendering.picture, rendering.drawing, rendering.display, 8, display::Alpha::kOverBlack);
   const render::Statistics& statistics = rendering.report.render;
-  Frame frame;
-  frame.width = picture.width;
-  frame.height = picture.height;
+  Frame& frame = image.frame;
   frame.samples = static_cast<double>(statistics.paths) / pixels_of(picture.width, picture.height);
-  frame.wish = image.wish;
-  frame.client = image.client;
   frame.is_finished = !image.is_sketch;
   frame.noise = statistics.noise;
   frame.type = image.is_sketch ? "image/jpeg" : "image/png";
@@ -430,14 +423,14 @@ void Viewer::finish(Image& image) {
   } else {
     frame.bytes = std::make_shared<const std::string>(image::png_bytes(picture, image::kUncompressed));
   }
+  const auto bounds = image.is_new ? picker_.bounds() : std::nullopt;
   const std::lock_guard lock(mutex_);
   live_ = nullptr;
-  if (!image.is_sketch && state_.asked == image.wish) finished_ = image.rendering;
-  frame.number = frame_.number + 1;
-  frame_ = std::move(frame);
-  changed_.notify_all();
+  if (image.is_new) state_.bounds = bounds;
+  if (!image.is_sketch && state_.asked == frame.wish) finished_ = image.rendering;
+  publish(frame);
   state_.warnings = std::move(image.warnings);  // more may have come while it was rendered
-  if (image.is_last) set_served(image.wish, "");
+  if (image.is_last) set_served(frame.wish, "");
 }
 
 }  // namespace orrery::view

@@ -60,8 +60,7 @@ struct Frame {
   std::uint64_t wish = 0;    ///< number of the wish that it grants
   std::string client = {};   ///< of that wish
   std::shared_ptr<const std::string> bytes = nullptr;
-  std::string type = {};  ///< "image/jpeg"; "image/png" if it is finished
-  int width = 0, height = 0;
+  std::string type = {};             ///< "image/jpeg"; "image/png" if it is finished
   double samples = 0;                ///< mean over the pixels
   std::optional<double> noise = {};  ///< of a finished image with a target noise
   bool is_finished = false;
@@ -73,14 +72,15 @@ struct State {
   Wish wish;
   std::uint64_t asked = 1;                                                     ///< number of the wish
   std::shared_ptr<const Subject> subject = std::make_shared<const Subject>();  ///< of the last wish that was read
-  std::vector<std::string> words;       ///< of the command that makes this picture, without outputs
-  std::optional<scene::Camera> camera;  ///< of the scene that is shown
-  int width = 0, height = 0;            ///< of the finished image
-  std::uint64_t served = 0;             ///< number of the last wish that was granted, or refused as `problem` says
-  std::string activity;                 ///< "reading", "building the BVH"; empty: rendering or finished
-  double progress = 0;                  ///< of the activity, 0 to 1; 0: unknown
-  std::string problem;                  ///< why the last wish was not granted
-  std::vector<std::string> warnings;    ///< about the image that is shown
+  std::vector<std::string> words;                    ///< of the command that makes this picture, without outputs
+  std::optional<scene::Camera> camera;               ///< of the scene that is shown
+  std::optional<std::array<math::Vec3d, 2>> bounds;  ///< of the scene that is shown: see Picker
+  int width = 0, height = 0;                         ///< of the finished image
+  std::uint64_t served = 0;           ///< number of the last wish that was granted, or refused as `problem` says
+  std::string activity;               ///< "reading", "building the BVH"; empty: rendering or finished
+  double progress = 0;                ///< of the activity, 0 to 1; 0: unknown
+  std::string problem;                ///< why the last wish was not granted
+  std::vector<std::string> warnings;  ///< about the image that is shown
 };
 
 /// Renders what clients want to see, on one thread, with one prepared scene.
@@ -112,7 +112,6 @@ class Viewer {
   /// See Picker.
   bool can_pick() const { return picker_.is_open(); }
   std::optional<Picked> pick(double x, double y) { return picker_.pick(x, y); }
-  std::optional<std::array<math::Vec3d, 2>> bounds() { return picker_.bounds(); }
   State state() const;
 
   /// The finished image; null while it is rendered.
@@ -136,6 +135,7 @@ class Viewer {
   void set_activity(const std::string& activity, double progress = 0);
   void set_served(std::uint64_t wish, const std::string& problem);
   void refresh(Live& live);
+  void publish(Frame frame);
 
   const MakeSubject make_;
   const std::vector<std::string> fixed_;

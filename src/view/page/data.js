@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // The controls that know the data: columns with kind, range and histogram, colour maps, slices.
 import { facing, project } from "./camera.js";
-import { $, ask, command, current, element, isRead, isSettled, on, onUpdate, option, own, page, set, setStill, state } from "./store.js";
+import { $, ask, command, current, element, isRead, isSettled, on, onUpdate, option, page, set, setStill, state } from "./store.js";
 import { choices } from "./panel.js";
 import { size } from "./picture.js";
 
@@ -180,12 +180,11 @@ function plane() {
   return axis ? { axis: AXES.indexOf(axis), at: Number(at) } : null;
 }
 
-async function findBounds() {
+function findBounds() {
   const key = JSON.stringify(["--select", "--frame", "--assembly", "--replicate"].map(option)), cut = plane();
-  if (bounds?.key === key && (bounds.isWhole || cut)) return;
-  const known = await (await own("bounds"))?.json();
-  if (!known) return;
-  bounds = { key, isWhole: !cut, low: known[0], high: known[1] };
+  if (!isRead() || !state.bounds || (cut && bounds?.key === key)) return;
+  const [low, high] = state.bounds.map(corner => [...corner]);
+  bounds = { key, low, high };
   if (!cut) return;
   const reach = span(cut.axis);  // the other side is not known
   bounds.low[cut.axis] -= reach;
@@ -200,9 +199,8 @@ function setPlane(axis, at, moves) {
 }
 
 // Cuts in the middle along x, y, z or the axis that points at the camera; "off": removes the plane.
-async function cut(name) {
+function cut(name) {
   if (name === "off") return setStill({ "--slice": option("--slice").slice(1) });
-  await findBounds();
   const axis = name !== "view" ? AXES.indexOf(name) : current() ? facing(current()).axis : 2;
   setPlane(axis, bounds ? middle()[axis] : 0, false);
 }
@@ -233,8 +231,8 @@ function makeCut() {
     setPlane(axis, at + unit * ((event.clientX - x) * dx + (event.clientY - y) * dy) / Math.max(dx ** 2 + dy ** 2, 0.01), moves);
   };
   draggable(handle, { grab, drag, step: by => setPlane(plane().axis, plane().at + by * span(plane().axis) / 50, false) });
-  onUpdate(async () => {
-    if (isRead() && (plane() || option("--slice").length === 0)) await findBounds();
+  onUpdate(() => {
+    findBounds();
     const now = plane(), { width, height } = size(), at = now && bounds && current() && width > 0 && place(now.axis, now.at);
     slider.parentElement.hidden = !now || !bounds;
     handle.hidden = !at;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // The legend on the picture: classes that a click hides, shows alone, makes translucent or colours.
-import { $, element, isSettled, on, onUpdate, option, state } from "./store.js";
+import { $, element, isRead, isSettled, on, onUpdate, option, state } from "./store.js";
 import { colourColumn, summary } from "./data.js";
 import { GHOST, equals, isAlone, isShown, isWritable, ruleValue, setAlone, setRule, setShown } from "./rules.js";
 
@@ -38,8 +38,10 @@ function colourBar({ bar, range: [low, high], log }) {
 }
 
 let shown = "", serial = 0;
+let column = "";  // of the legend
 async function show() {
-  const legend = state?.legend, column = colourColumn(), box = $("legend"), mine = ++serial;
+  if (isRead()) column = colourColumn();
+  const legend = state?.legend, box = $("legend"), mine = ++serial;
   const isBar = Boolean(legend?.bar.length && legend.range), hasClasses = Boolean(legend?.labels.length);
   const known = hasClasses && column ? await summary(column) : null;
   if (mine !== serial) return;

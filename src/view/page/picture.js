@@ -38,21 +38,14 @@ let fading = 0;
 export function draw(bitmap, fades) {
   cancelAnimationFrame(fading);
   context.imageSmoothingQuality = "high";
-  const paint = () => context.drawImage(bitmap, 0, 0, canvas.width, canvas.height);
-  if (!fades || stillness.matches) {
-    paint();
-    return bitmap.close();
-  }
-  const begin = performance.now();
+  const end = performance.now() + (fades && !stillness.matches ? FADE_ms : 0);
   const step = now => {
-    const share = Math.min((now - begin) / FADE_ms, 1);
-    context.globalAlpha = share === 1 ? 1 : share / 2;
-    paint();
-    context.globalAlpha = 1;
-    if (share < 1) fading = requestAnimationFrame(step);
+    context.globalAlpha = now < end ? 0.3 : 1;
+    context.drawImage(bitmap, 0, 0, canvas.width, canvas.height);
+    if (now < end) fading = requestAnimationFrame(step);
     else bitmap.close();
   };
-  step(begin + FADE_ms / 3);
+  step(performance.now());
 }
 
 onImage(async image => {

@@ -170,7 +170,7 @@ TEST_F(ViewSite, StateNamesTheCommandAndTheControls) {
 
 TEST_F(ViewSite, APageIsAnsweredAboutItsOwnImageOnly) {
   EXPECT_EQ(post(R"({"client": "a"})").status, 200);
-  for (const char* path : {"/pick", "/bounds", "/picture.png", "/scene.toml"}) {
+  for (const char* path : {"/pick", "/picture.png", "/scene.toml"}) {
     http::Request one = request("GET", path);
     one.query = {{"client", "b"}, {"x", "0.5"}, {"y", "0.5"}};
     EXPECT_EQ(site_.answer(one).status, 409) << path;

@@ -260,7 +260,7 @@ TEST(ViewViewer, AWishIsStoppedOnRequest) {
 TEST(ViewViewer, TheBoundsAreThoseOfTheCenters) {
   Viewer viewer(subject_of, {}, {{{"--set", {"sphere[0].center=[1, 2, 3]"}}}});
   finished(viewer);
-  const auto bounds = viewer.bounds();
+  const auto bounds = viewer.state().bounds;
   ASSERT_TRUE(bounds);
   EXPECT_EQ((*bounds)[0], (math::Vec3d{1, 2, 3}));
   EXPECT_EQ((*bounds)[1], (math::Vec3d{1, 2, 3}));
