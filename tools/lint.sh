@@ -48,7 +48,7 @@ if ! awk -F '[ :]' '
 # A source is tested by a file of its name. Those below consist of instances for instruction sets, which the other files
 # of their room test, or are tested through the whole: by plot_test, viewer_test, or the tests of the program.
 declare -A tested_elsewhere=()
-for name in accel/instances accel/list_trace cli/films cli/main cli/plot_options cli/subject cli/submit_command \
+for name in accel/instances cli/films cli/main cli/subject \
             denoise/instances kernel/tile plot/appearance plot/convert plot/data_frames plot/scene_text view/picker; do
   tested_elsewhere[$name]=1
 done

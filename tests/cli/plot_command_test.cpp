@@ -4,35 +4,12 @@
 #include <sstream>
 
 #include <nlohmann/json.hpp>
-#include "cli/program.h"
+#include "cli/plot.h"
 
 namespace orrery::test {
 namespace {
 
-/// A frame of particles with the columns id type x y z radius vx.
-std::string frame(const std::vector<std::string>& rows) {
-  std::string out = "ITEM: TIMESTEP\n0\nITEM: NUMBER OF ATOMS\n" + std::to_string(rows.size()) +
-                    "\nITEM: BOX BOUNDS pp pp pp\n0 10\n0 10\n0 10\nITEM: ATOMS id type x y z radius vx\n";
-  for (const std::string& row : rows) out += row + "\n";
-  return out;
-}
-
-class CliPlot : public ProgramTest {
- protected:
-  void SetUp() override {
-    ProgramTest::SetUp();
-    write("a.dump", frame({"1 1 0 0 0 1 0", "2 2 3 0 0 1 1"}) + frame({"1 1 0 0 1 1 2", "2 2 3 0 0 1 3"}));
-    write("c.csv", "x,y,z,radius,q\n0,0,0,1,0\n3,0,0,1,1\n");
-  }
-
-  /// Runs `orrery plot ARGUMENTS` for a small image.
-  Outcome plot(const std::string& arguments) { return run("plot " + arguments + " --width 16 --height 9 --samples 1"); }
-  void expect_error(const std::string& arguments, int status, const std::string& part) {
-    const Outcome r = run(arguments);
-    EXPECT_EQ(r.status, status) << arguments << ": " << r.err;
-    EXPECT_TRUE(contains(r.err, part)) << arguments << ": " << r.err;
-  }
-};
+using CliPlot = PlotTest;
 
 /// The display transform of the image applies to the legend.
 TEST_F(CliPlot, LegendsHaveTheSettingsOfTheImage) {
@@ -58,19 +35,6 @@ TEST_F(CliPlot, LegendsAsImagesHaveText) {
   const Outcome r = plot("many.csv -o a.ppm -q --color-by q --map tab10 --legend l.ppm");
   EXPECT_EQ(r.status, 2);
   EXPECT_TRUE(contains(r.err, "up to 500 values; name an .svg file")) << r.err;
-}
-
-TEST_F(CliPlot, FramesMayBeCountedFromTheEnd) {
-  ASSERT_EQ(plot("a.dump -o a.ppm -q --color-by vx --range 0:3 --frame 2").status, 0);
-  for (const char* frame : {"last", "-1"}) {
-    ASSERT_EQ(plot("a.dump -o b.ppm -q --color-by vx --range 0:3 --frame " + std::string(frame)).status, 0);
-    EXPECT_EQ(text_of(folder_ / "b.ppm"), text_of(folder_ / "a.ppm")) << frame;
-  }
-  expect_error("plot a.dump -o a.ppm --frame -3", 65, "there is no frame -3; a.dump has 2 frames");
-  for (const std::string frame : {"0", "first", "1.5"})
-    expect_error("plot a.dump -o a.ppm --frame " + frame, 2, "--frame: `" + frame + "` is not a frame");
-  ASSERT_EQ(run("convert a.dump -o b.csv --frame last").status, 0);
-  EXPECT_TRUE(contains(text_of(folder_ / "b.csv"), ",3\n")) << "vx of the last frame";
 }
 
 TEST_F(CliPlot, TitlesHaveNumbersOfTheHeader) {
@@ -126,21 +90,6 @@ TEST_F(CliPlot, RequestsAreCheckedBeforeFramesAreRead) {
   expect_error(plot + "-o a.png --set render.samples=0", 65, "render.samples");
 }
 
-/// Exit status, and the number of spheres that the plot reports.
-TEST_F(CliPlot, RepeatedSelectionsAndSlicesCombine) {
-  write("d.csv", "x,y,z,radius\n0,0,0,1\n3,0,0,1\n0,3,0,1\n3,3,0,1\n");
-  for (const std::string options : {"--select 'x > 1' --select 'y > 1'", "--slice x=1 --slice y=1 --look-from 0,20",
-                                    "--select 'x > 1 || x < 1' --select 'y > 1 && x > 1'"}) {
-    const Outcome r = plot("d.csv -o a.ppm " + options);
-    EXPECT_EQ(r.status, 0) << r.err;
-    EXPECT_TRUE(contains(r.err, "\nplot: 1 sphere: --s")) << options << r.err;
-  }
-  ASSERT_EQ(run("convert d.csv -o e.csv -q --select 'x > 1' --select 'y > 1'").status, 0);
-  const std::string converted = text_of(folder_ / "e.csv");
-  EXPECT_TRUE(contains(converted, "\n3,3,0")) << converted;
-  EXPECT_EQ(std::count(converted.begin(), converted.end(), '\n'), 2) << converted;
-}
-
 TEST_F(CliPlot, ASelectionThatMatchesNothingIsAnError) {
   Outcome r = plot("c.csv -o none.ppm --select 'q > 5'");
   EXPECT_EQ(r.status, 65) << r.err;
@@ -171,14 +120,6 @@ TEST_F(CliPlot, PerspectiveAndTurntableAreFitted) {
   EXPECT_TRUE(contains(scene("--set animation.turntable=4"), "turntable = 4")) << text_of(folder_ / "s.toml");
 }
 
-TEST_F(CliPlot, OptionsWithoutEffectAreRefused) {
-  expect_error("plot c.csv -o a.png --map viridis", 2, "--map has nothing to map");
-  expect_error("plot c.csv -o a.png --range 0:1", 2, "--range has nothing to map");
-  expect_error("plot c.csv -o a.png --component 1", 2, "only HDF5 files have components");
-  expect_error("convert c.csv -o a.ply --component 1", 2, "only HDF5 files have components");
-  expect_error("convert c.csv -o a.ply --color-by none --map viridis", 2, "--map has nothing to map");
-}
-
 TEST_F(CliPlot, BondsAreDrawnAndSaved) {
   write("m.xyz", "3\n\nC 0 0 0\nC 1.5 0 0\nO 2.2 1.2 0\n");
   const Outcome balls = plot("m.xyz -o a.png --representation ball-and-stick --save-scene m.toml");
@@ -194,34 +135,6 @@ TEST_F(CliPlot, BondsAreDrawnAndSaved) {
   EXPECT_TRUE(contains(text_of(folder_ / "f.toml"), "bonds = { factor = 1.1 }\n"));
 }
 
-TEST_F(CliPlot, RulesByConditionAreSaved) {
-  write("m.xyz", "3\n\nC 0 0 0\nC 1.5 0 0\nO 2.2 1.2 0\n");
-  const Outcome made = plot(
-      "m.xyz -o a.png --representation sticks --representation 'element O: spheres' --color 'element O: #f00' --radius "
-      "'element O: 0.7' --save-scene m.toml");
-  ASSERT_EQ(made.status, 0) << made.err;
-  const std::string text = text_of(folder_ / "m.toml");
-  for (const char* part : {R"(["sticks", "element O: spheres"])", R"(["element O: #f00"])", R"(["element O: 0.7"])"})
-    EXPECT_TRUE(contains(text, part)) << part << text;
-  ASSERT_EQ(run("render m.toml -o b.png -q --samples 1").status, 0);
-  EXPECT_EQ(run("compare a.png b.png --fail-above max=0").status, 0);
-  EXPECT_TRUE(contains(run("info m.toml").out, "3 spheres, 1 rod")) << "not to the sphere";
-  expect_error("plot m.xyz -o a.png --representation 'element O: cartoon'", 2, "--representation: `cartoon`");
-  expect_error("plot m.xyz -o a.png --color 'element O: reddish'", 2, "`reddish` is not a colour");
-  expect_error("plot m.xyz -o a.png --radius 'element O: 0'", 2, "--radius: `0` is not a radius");
-  expect_error("plot m.xyz -o a.png --fit 'element H'", 65, "--fit `element H` matches none");
-}
-
-TEST_F(CliPlot, TheSizeInPrintIsThatInPixels) {
-  const Outcome made = run("plot c.csv -o a.png --samples 1 --dpi 100 --print-width 2.54cm");
-  ASSERT_EQ(made.status, 0) << made.err;
-  EXPECT_TRUE(contains(made.err, "wrote a.png: 100 x 56")) << made.err;
-  expect_error("plot c.csv -o a.png --print-width 8cm", 2, "add --dpi");
-  expect_error("plot c.csv -o a.png --print-width 8 --dpi 300", 2, "`8` is not a length");
-  expect_error("plot c.csv -o a.png --print-width 8cm --dpi 300 --width 9", 2, "--print-width and --width");
-  expect_error("plot c.csv -o a.png --print-width 8000in --dpi 300", 2, "it must be 1 to");
-}
-
 TEST_F(CliPlot, BondsThatCannotBeDrawnAreErrors) {
   for (const std::string bonds : {"no", "length=", "length=0", "-1", "length=1e30", "nan"})
     expect_error("plot a.dump -o a.ppm --bonds=" + bonds, 2,
@@ -235,12 +148,6 @@ TEST_F(CliPlot, BondsThatCannotBeDrawnAreErrors) {
   expect_error("plot a.dump -o a.ppm --vectors x,y,z --material glass", 2, "arrows of glass are not supported");
   expect_error("plot c.csv -o a.ppm --box", 65, "--box: c.csv has no simulation box");
   expect_error("plot a.dump -o a.ppm --representation stick", 2, "did you mean `sticks`");
-}
-
-TEST_F(CliPlot, RangesAreFinite) {
-  expect_error("plot c.csv -o a.png --color-by q --range=-1e308:1e308 --legend a.svg", 2,
-               "--range: the numbers must be from -1e+300 to 1e+300");
-  EXPECT_EQ(plot("c.csv -o a.ppm -q --color-by q --range=-1e300:1e300 --legend a.svg").status, 0);
 }
 
 TEST_F(CliPlot, ScenesAndDataFilesAreDistinguished) {

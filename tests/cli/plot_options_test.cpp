@@ -1,0 +1,85 @@
+// SPDX-License-Identifier: Apache-2.0
+// The options of plot for data, view and look.
+#include <algorithm>
+#include <sstream>
+
+#include <nlohmann/json.hpp>
+#include "cli/plot.h"
+
+namespace orrery::test {
+namespace {
+
+using CliPlotOptions = PlotTest;
+
+TEST_F(CliPlotOptions, FramesMayBeCountedFromTheEnd) {
+  ASSERT_EQ(plot("a.dump -o a.ppm -q --color-by vx --range 0:3 --frame 2").status, 0);
+  for (const char* frame : {"last", "-1"}) {
+    ASSERT_EQ(plot("a.dump -o b.ppm -q --color-by vx --range 0:3 --frame " + std::string(frame)).status, 0);
+    EXPECT_EQ(text_of(folder_ / "b.ppm"), text_of(folder_ / "a.ppm")) << frame;
+  }
+  expect_error("plot a.dump -o a.ppm --frame -3", 65, "there is no frame -3; a.dump has 2 frames");
+  for (const std::string frame : {"0", "first", "1.5"})
+    expect_error("plot a.dump -o a.ppm --frame " + frame, 2, "--frame: `" + frame + "` is not a frame");
+  ASSERT_EQ(run("convert a.dump -o b.csv --frame last").status, 0);
+  EXPECT_TRUE(contains(text_of(folder_ / "b.csv"), ",3\n")) << "vx of the last frame";
+}
+
+/// Exit status, and the number of spheres that the plot reports.
+TEST_F(CliPlotOptions, RepeatedSelectionsAndSlicesCombine) {
+  write("d.csv", "x,y,z,radius\n0,0,0,1\n3,0,0,1\n0,3,0,1\n3,3,0,1\n");
+  for (const std::string options : {"--select 'x > 1' --select 'y > 1'", "--slice x=1 --slice y=1 --look-from 0,20",
+                                    "--select 'x > 1 || x < 1' --select 'y > 1 && x > 1'"}) {
+    const Outcome r = plot("d.csv -o a.ppm " + options);
+    EXPECT_EQ(r.status, 0) << r.err;
+    EXPECT_TRUE(contains(r.err, "\nplot: 1 sphere: --s")) << options << r.err;
+  }
+  ASSERT_EQ(run("convert d.csv -o e.csv -q --select 'x > 1' --select 'y > 1'").status, 0);
+  const std::string converted = text_of(folder_ / "e.csv");
+  EXPECT_TRUE(contains(converted, "\n3,3,0")) << converted;
+  EXPECT_EQ(std::count(converted.begin(), converted.end(), '\n'), 2) << converted;
+}
+
+TEST_F(CliPlotOptions, OptionsWithoutEffectAreRefused) {
+  expect_error("plot c.csv -o a.png --map viridis", 2, "--map has nothing to map");
+  expect_error("plot c.csv -o a.png --range 0:1", 2, "--range has nothing to map");
+  expect_error("plot c.csv -o a.png --component 1", 2, "only HDF5 files have components");
+  expect_error("convert c.csv -o a.ply --component 1", 2, "only HDF5 files have components");
+  expect_error("convert c.csv -o a.ply --color-by none --map viridis", 2, "--map has nothing to map");
+}
+
+TEST_F(CliPlotOptions, RulesByConditionAreSaved) {
+  write("m.xyz", "3\n\nC 0 0 0\nC 1.5 0 0\nO 2.2 1.2 0\n");
+  const Outcome made = plot(
+      "m.xyz -o a.png --representation sticks --representation 'element O: spheres' --color 'element O: #f00' --radius "
+      "'element O: 0.7' --save-scene m.toml");
+  ASSERT_EQ(made.status, 0) << made.err;
+  const std::string text = text_of(folder_ / "m.toml");
+  for (const char* part : {R"(["sticks", "element O: spheres"])", R"(["element O: #f00"])", R"(["element O: 0.7"])"})
+    EXPECT_TRUE(contains(text, part)) << part << text;
+  ASSERT_EQ(run("render m.toml -o b.png -q --samples 1").status, 0);
+  EXPECT_EQ(run("compare a.png b.png --fail-above max=0").status, 0);
+  EXPECT_TRUE(contains(run("info m.toml").out, "3 spheres, 1 rod")) << "not to the sphere";
+  expect_error("plot m.xyz -o a.png --representation 'element O: cartoon'", 2, "--representation: `cartoon`");
+  expect_error("plot m.xyz -o a.png --color 'element O: reddish'", 2, "`reddish` is not a colour");
+  expect_error("plot m.xyz -o a.png --radius 'element O: 0'", 2, "--radius: `0` is not a radius");
+  expect_error("plot m.xyz -o a.png --fit 'element H'", 65, "--fit `element H` matches none");
+}
+
+TEST_F(CliPlotOptions, TheSizeInPrintIsThatInPixels) {
+  const Outcome made = run("plot c.csv -o a.png --samples 1 --dpi 100 --print-width 2.54cm");
+  ASSERT_EQ(made.status, 0) << made.err;
+  EXPECT_TRUE(contains(made.err, "wrote a.png: 100 x 56")) << made.err;
+  expect_error("plot c.csv -o a.png --print-width 8cm", 2, "add --dpi");
+  expect_error("plot c.csv -o a.png --print-width 8 --dpi 300", 2, "`8` is not a length");
+  expect_error("plot c.csv -o a.png --print-width 8cm --dpi 300 --width 9", 2, "--print-width and --width");
+  expect_error("plot c.csv -o a.png --print-width 8000in --dpi 300", 2, "it must be 1 to");
+}
+
+TEST_F(CliPlotOptions, RangesAreFinite) {
+  expect_error("plot c.csv -o a.png --color-by q --range=-1e308:1e308 --legend a.svg", 2,
+               "--range: the numbers must be from -1e+300 to 1e+300");
+  EXPECT_EQ(plot("c.csv -o a.ppm -q --color-by q --range=-1e300:1e300 --legend a.svg").status, 0);
+}
+
+}  // namespace
+}  // namespace orrery::test
