@@ -19,7 +19,7 @@ std::string other_type_with(const std::string& key) {
   for (const scene::MaterialType& type : scene::material_types())
     for (const auto& known : type.keys)
       if (known.name == key) owners.push_back(type.name);
-  if (key == "opacity") return "a path must leave the medium that it has entered; use another type of material";
+  if (key == "opacity") return "glass is transparent already; use another type of material";
   return owners.empty() ? "" : fmt::format("`{}` belongs to {}", key, base::joined(owners));
 }
 

@@ -338,7 +338,7 @@ void check_opacity(std::size_t number, const Scene& scene, KeyFaults& diagnostic
       continue;
     return diagnostics.error(
         fmt::format("points[{}].opacity", number),
-        fmt::format("{} has opacity {} and the dielectric {}, but a path must leave the medium that it has entered; "
+        fmt::format("{} has opacity {} and the dielectric {}, but glass is transparent already; "
                     "use another type of material",
                     sphere_name(scene, number, i), number_text(opacity), string_text(scene.materials[material].name)));
   }

@@ -81,7 +81,7 @@ const Broken kBroken[] = {
     {"AnOpacityOfPointsOfGlass",
      "[material.glass]\ntype = \"dielectric\"\n"
      "[[points]]\nfile = \"atoms.csv\"\nmaterial = \"glass\"\nradius = 1\nopacity = 0.5\n",
-     "", 65, "has opacity 0.5 and the dielectric \"glass\", but a path must leave the medium that it has entered"},
+     "", 65, "has opacity 0.5 and the dielectric \"glass\", but glass is transparent already"},
     {"AnOpacityWithoutCondition",
      "[[points]]\nfile = \"atoms.csv\"\nmaterial = \"grey\"\nradius = 1\nopacity = { where = [\"x > 0\"] }\n", "", 65,
      "points[0].opacity.where[0]: `x > 0` is not an opacity; write a number in 0..1"},

@@ -13,9 +13,7 @@
 #include "compile/compile.h"
 #include "compile/compiled_scene.h"
 #include "render/render.h"
-#include "render/settings.h"
 #include "scene/scene.h"
-#include "support/plane_values.h"
 
 namespace orrery::render {
 namespace {
