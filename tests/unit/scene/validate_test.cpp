@@ -9,6 +9,7 @@
 #include "scene/diagnostic.h"
 #include "scene/scene.h"
 #include "scene/texture.h"
+#include "support/mentions.h"
 
 namespace orrery::scene {
 namespace {
@@ -36,6 +37,13 @@ std::vector<std::string> told(const Scene& scene) {
 }
 using Told = std::vector<std::string>;
 
+/// Whether there is one diagnostic, with these facts.
+testing::AssertionResult tells(const Scene& scene, std::initializer_list<std::string_view> facts) {
+  const Told all = told(scene);
+  if (all.size() != 1) return testing::AssertionFailure() << all.size() << " diagnostics";
+  return test::mentions(all[0], facts);
+}
+
 TEST(SceneValidate, AnEmptySceneIsValid) { EXPECT_EQ(told({}), Told{}); }
 
 TEST(SceneValidate, AScaleBarFitsTheImage) {
@@ -46,7 +54,7 @@ TEST(SceneValidate, AScaleBarFitsTheImage) {
   scene.annotation.scale_bar = 9;
   EXPECT_EQ(told(scene), Told{});
   scene.annotation.scale_bar = 11;
-  EXPECT_EQ(told(scene), Told{"(annotation.scale_bar: 11 cannot be seen as a length in an image that is 10 wide)"});
+  EXPECT_TRUE(tells(scene, {"(annotation.scale_bar", "11", "image", "10"}));
   scene.annotation.scale_bar = 0.04;
   EXPECT_EQ(told(scene).size(), 1u) << "less than a pixel";
 }
@@ -57,8 +65,7 @@ TEST(SceneValidate, AColorBarExplainsColors) {
   scene.annotation.color_bar = true;
   scene.points.resize(1);
   scene.points[0].color.rgb = true;
-  EXPECT_EQ(told(scene), Told{"(annotation.color_bar: has no effect: no points table is coloured by a column, by types "
-                              "or by elements)"});
+  EXPECT_TRUE(tells(scene, {"(annotation.color_bar", "table", "column"}));
   scene.points[0].color.rgb = false;
   scene.points[0].color.element = "jmol";
   EXPECT_EQ(told(scene), Told{});
@@ -85,11 +92,9 @@ TEST(SceneValidate, Rods) {
   EXPECT_EQ(told(scene).size(), 1u);
   rod = {};
   rod.materials = {0, 1};
-  EXPECT_EQ(told(scene),
-            Told{"rod[0].material: \"glass\" is a dielectric, but rods transmit no light: a ray hits them from "
-                 "outside only; use another type of material, or spheres"});
+  EXPECT_TRUE(tells(scene, {"rod[0].material", "dielectric"}));
   rod.materials = {2, 2};
-  EXPECT_EQ(told(scene), Told{"rod[0].material: there is no material with index 2; the scene has 2, counted from 0"});
+  EXPECT_TRUE(tells(scene, {"rod[0].material", "2", "0"}));
 }
 
 TEST(SceneValidate, CropMustBeInsideTheFrame) {
@@ -102,11 +107,11 @@ TEST(SceneValidate, CropMustBeInsideTheFrame) {
   for (const Window& bad :
        {Window{0, 0, 101, 50}, {1, 0, 100, 50}, {0, 0, 0, 5}, {0, 50, 1, 1}, {65536, 0, 65536, 1}}) {
     scene.image.crop = bad;
-    EXPECT_EQ(told(scene), Told{"image.crop: must be a non-empty [x, y, width, height] inside the 100 x 50 frame"});
+    EXPECT_TRUE(tells(scene, {"image.crop", "100", "50", "frame"}));
   }
   scene.image.crop = Window{0, 0, 10, 10};
   scene.image.overscan = 1;
-  EXPECT_EQ(told(scene), Told{"image.overscan: cannot be combined with crop; remove one of them"});
+  EXPECT_TRUE(tells(scene, {"image.overscan", "combined"}));
 }
 
 TEST(SceneValidate, FramePlusOverscanIsLimited) {
@@ -114,13 +119,13 @@ TEST(SceneValidate, FramePlusOverscanIsLimited) {
   scene.image = {65536, 10};
   EXPECT_EQ(told(scene), Told{});
   scene.image.overscan = 1;
-  EXPECT_EQ(told(scene), Told{"image.overscan: frame plus overscan exceeds the limit of 65536 pixels per side"});
+  EXPECT_TRUE(tells(scene, {"image.overscan", "frame", "65536"}));
 }
 
 TEST(SceneValidate, AnImageBackgroundNeedsAFile) {
   Scene scene;
   scene.background.type = BackgroundType::kImage;
-  EXPECT_EQ(told(scene), Told{"background.file: type \"image\" needs an EXR or HDR file"});
+  EXPECT_TRUE(tells(scene, {"background.file", "EXR", "HDR"}));
   scene.background.file = "sky.exr";
   scene.background.color_space = "acescg";
   scene.background.rotation = 30;
@@ -163,9 +168,7 @@ TEST(SceneValidate, RadianceWithExposureIsLimited) {
   scene.materials = {{"lamp", lamp}};
   EXPECT_EQ(told(scene), Told{}) << "2^34 is allowed";
   std::get<Emitter>(scene.materials[0].model).exposure = 15;
-  EXPECT_EQ(told(scene),
-            Told{"material.lamp.exposure: the radiance with exposure would be 34359738368; the maximum is "
-                 "17179869184; divide the light of the whole scene by one factor, and raise color.exposure"});
+  EXPECT_TRUE(tells(scene, {"material.lamp.exposure", "34359738368", "17179869184", "color.exposure"}));
   const auto texture = std::make_shared<Texture>();
   texture->high = {0, 0x1p19, 0};
   std::get<Emitter>(scene.materials[0].model).radiance_texture = texture;
@@ -177,12 +180,10 @@ TEST(SceneValidate, RadianceWithExposureIsLimited) {
 TEST(SceneValidate, CameraMustHaveADirection) {
   Scene scene;
   scene.camera.look_at = scene.camera.look_from;
-  EXPECT_EQ(told(scene),
-            Told{"camera.look_at: look_at is the same point as look_from, so the camera has no direction"});
+  EXPECT_TRUE(tells(scene, {"camera.look_at", "look_at", "look_from"}));
   // The length, or its square, would be 0: in both cases the direction would be NaN.
   scene.camera.look_at = scene.camera.look_from + Vec3d{0, 0, 1e-200};
-  EXPECT_EQ(told(scene),
-            Told{"camera.look_at: look_at is closer to look_from than 1e-30, so the camera has no direction"});
+  EXPECT_TRUE(tells(scene, {"camera.look_at", "look_at", "look_from", "1e-30"}));
   scene.camera.look_at = {0, 0, 1e-29};
   EXPECT_EQ(told(scene), Told{});
 }
@@ -212,10 +213,9 @@ TEST(SceneValidate, KeysOfTheOtherProjectionHaveNoEffect) {
 TEST(SceneValidate, UpMustNotBeZeroTinyOrParallel) {
   Scene scene;
   scene.camera.up = {0, 0, 0};
-  EXPECT_EQ(told(scene), Told{"camera.up: up is zero; use any direction that is not parallel to the view"});
+  EXPECT_TRUE(tells(scene, {"camera.up", "direction"}));
   scene.camera.up = {0, 1e-200, 0};
-  EXPECT_EQ(told(scene),
-            Told{"camera.up: up is shorter than 1e-30; use any direction that is not parallel to the view"});
+  EXPECT_TRUE(tells(scene, {"camera.up", "1e-30", "direction"}));
   const Told parallel{"camera.up: up is parallel to the view; choose another direction"};
   scene.camera.up = {0, 0, -5};
   EXPECT_EQ(told(scene), parallel);
@@ -261,8 +261,7 @@ TEST(SceneValidate, RadiusMustBeInTheDomain) {
   EXPECT_EQ(told(with_sphere({}, -1e18)), Told{});
   Scene fast = with_sphere({}, 1e-19);
   fast.render.precision = Precision::kFast;
-  EXPECT_EQ(told(fast), Told{"sphere[0].radius: radius is 1e-19, too small for precision `fast`, which needs 1e-18 at "
-                             "least; use `exact`"});
+  EXPECT_TRUE(tells(fast, {"sphere[0].radius", "1e-19", "`fast`", "1e-18", "`exact`"}));
   fast.spheres[0].radius = 1e-18;
   EXPECT_EQ(told(fast), Told{});
 }
@@ -278,8 +277,7 @@ TEST(SceneValidate, CenterMustBeInTheDomain) {
 TEST(SceneValidate, MaterialMustExist) {
   Scene scene = with_sphere({}, 1);
   scene.spheres[0].material = 1;
-  EXPECT_EQ(told(scene),
-            Told{"sphere[0].material: there is no material with index 1; the scene has 1, counted from 0"});
+  EXPECT_TRUE(tells(scene, {"sphere[0].material", "1", "0"}));
   scene = with_sphere({}, 1);
   scene.points.resize(2);
   scene.points[0].material = 9;
@@ -299,8 +297,7 @@ TEST(SceneValidate, MissingMaterialOfAPointsFileIsReportedOnce) {
   scene.points.resize(1);
   scene.points[0].centers = {{5, 0, 0}, {6, 0, 0}};
   scene.points[0].radii = {1, 1};
-  EXPECT_EQ(told(scene),
-            Told{"points[0].material: there is no material with index 0; the scene has 0, counted from 0"});
+  EXPECT_TRUE(tells(scene, {"points[0].material", "material", "0"}));
 }
 
 TEST(SceneValidate, EveryInvalidSphereTableIsReported) {
@@ -330,14 +327,13 @@ TEST(SceneValidate, ArraysOfDifferentLengthsAreNotIndexed) {
   scene.points.resize(1);
   scene.points[0].centers.resize(3);  // all equal: indexing them would warn of coincident spheres
   scene.points[0].radii = {1, 1};
-  EXPECT_EQ(told(scene), Told{"points[0]: has 3 centres, 2 radii and 0 materials"});
+  EXPECT_TRUE(tells(scene, {"points[0]", "3", "2", "0"}));
 }
 
 TEST(SceneValidate, CoincidentSpheresAreAWarningThatNamesBoth) {
   Scene scene = with_sphere({1, 2, 3}, 2);
   scene.spheres.push_back({{1, 2, 3}, -2, 0, ""});
-  EXPECT_EQ(told(scene),
-            Told{"(sphere[1]: has exactly the same centre and radius as sphere[0]; only the first is rendered)"});
+  EXPECT_TRUE(tells(scene, {"(sphere[1]", "sphere[0]", "rendered"}));
 }
 
 TEST(SceneValidate, OfCoincidentSpheresThreeAreReported) {
