@@ -10,6 +10,7 @@
 #include <optional>
 #include <vector>
 
+#include "film/display_error.h"
 #include "kernel/material.h"
 #include "kernel/ray_packet.h"
 #include "kernel/scene_view.h"
@@ -28,7 +29,10 @@ constexpr double kLargestCoverage = 0.5;
 constexpr double kBrightTexel = 8;
 
 /// Maximum number of reflections that are projected: with more balls, those of the strongest lights.
-constexpr std::size_t kMostReflections = std::size_t{1} << 20;
+constexpr std::size_t kMostReflections = std::size_t{1} << 18;
+
+/// Emitters that add less radiance to a pixel are not projected: a 32nd of what is negligible in the dark.
+constexpr double kLeastLight = film::kDarkestLight / 256;
 
 /// The distance of the sky, in distances to the focus plane. The result does not depend on it as long as it is large.
 constexpr double kSkyDistance = 0x1p40;
@@ -84,6 +88,9 @@ std::optional<Image> between(const std::optional<Image>& a, const std::optional<
                    part * (a->area + b->area) / 2};
 }
 
+/// Steps of the search for a reflection in a ball of a pixel, whose radius is halved eight times, and at most.
+constexpr int kLeastSteps = 8, kMostSteps = 24;
+
 /// How a light is seen in a ball.
 struct Reflection {
   kernel::Sphere image;  ///< where the light seems to be, as large as it seems
@@ -92,8 +99,9 @@ struct Reflection {
 };
 
 /// The reflection of a light in a ball. Empty if there is none, or if eye or light are within the ball.
-std::optional<Reflection> reflection_of(const kernel::Sphere& light, const kernel::Sphere& ball, Vec3d eye) {
-  constexpr int kSteps = 24;  // to 1e-7 radii
+///
+/// `steps`     accuracy of the place: 2^-steps radii of the ball
+std::optional<Reflection> reflection_of(const kernel::Sphere& light, const kernel::Sphere& ball, Vec3d eye, int steps) {
   constexpr double kParallel = 1e-3;
   const Vec3d center = center_of(ball), to_eye = (eye - center) / ball.radius,
               to_light = (center_of(light) - center) / ball.radius;
@@ -104,7 +112,7 @@ std::optional<Reflection> reflection_of(const kernel::Sphere& light, const kerne
   Vec3d nearer = to_eye / p, farther = to_light / d, point;
   const double sine = length(cross(nearer, farther));
   double cosine = 0;
-  for (int i = 0; i < kSteps; ++i) {
+  for (int i = 0; i < steps; ++i) {
     point = normalized(nearer + farther);
     cosine = dot(point, normalized(to_eye - point));
     (cosine > dot(point, normalized(to_light - point)) ? nearer : farther) = point;
@@ -233,15 +241,21 @@ class Coverage {
 
   /// Adds the reflection of a light.
   ///
+  /// `ball_area`    of the ball's image, square pixels
   /// `reflectance`  of the ball, as a function of the cosine of the angle of incidence
   template <class Reflectance>
   void add_reflection(const Moving<kernel::Sphere>& light, std::uint32_t id, double radiance,
-                      const Moving<kernel::Sphere>& ball, std::uint32_t ball_id, Reflectance reflectance) {
+                      const Moving<kernel::Sphere>& ball, double ball_area, std::uint32_t ball_id,
+                      Reflectance reflectance) {
+    // Seen from afar, the reflection is as large as the light from the ball, on a sphere of half the ball's radius.
+    const double sine = light[0].radius / (length(center_of(light[0]) - center_of(ball[0])) - ball[0].radius);
+    if (radiance * ball_area / 4 * sine * sine < kLeastLight) return;
+    const int steps = std::clamp(kLeastSteps + std::ilogb(ball_area) / 2, kLeastSteps, kMostSteps);
     MovingImage images;
     Moving<kernel::Sphere> points;
     double reflected = 0;
     for (int k = 0; k < 2; ++k) {
-      const auto seen = reflection_of(light[k], ball[k], eye(k, center_of(ball[k])));
+      const auto seen = reflection_of(light[k], ball[k], eye(k, center_of(ball[k])), steps);
       if (!seen) return;
       images[k] = image_of(cameras_[k], seen->image);
       points[k] = sphere_around(center_of(ball[k]) + seen->point, 0);
@@ -299,7 +313,7 @@ class Coverage {
     const Rectangle r = rectangle_of(images);
     const double coverage =
         opacity * (images[0]->area + images[1]->area) / 2 / ((r.right - r.left) * (r.bottom - r.top));
-    if (!(coverage < kLargestCoverage) || !is_visible()) return;
+    if (!(coverage < kLargestCoverage && coverage * radiance >= kLeastLight) || !is_visible()) return;
     corners_.resize(static_cast<std::size_t>(width_ + 1) * static_cast<std::size_t>(height_ + 1));
     for (const double x : {r.left, r.right})
       for (const double y : {r.top, r.bottom})
@@ -495,7 +509,9 @@ void add_reflections(const kernel::SceneView& scene, Coverage& coverage) {
   for (std::uint32_t id = 0; !lights.empty() && id < scene.sphere_count; ++id) {
     if (!is_sharp(scene, scene.object_materials[id])) continue;
     const auto ball = moving_sphere(scene, id);
-    if (!coverage.is_seen(coverage.images_of(ball))) continue;
+    const MovingImage images = coverage.images_of(ball);
+    if (!coverage.is_seen(images)) continue;
+    const double area = std::max(images[0]->area, images[1]->area);
     const kernel::Material& material = scene.materials[scene.object_materials[id]];
     const bool is_metal = material.kind == kernel::MaterialKind::kMetal;
     const auto reflectance = [&](double cosine) {
@@ -503,7 +519,7 @@ void add_reflections(const kernel::SceneView& scene, Coverage& coverage) {
       return albedo * opacity_of(scene, id);
     };
     for (const Light& light : lights)
-      coverage.add_reflection(light.sphere, light.id, light.radiance, ball, id, reflectance);
+      coverage.add_reflection(light.sphere, light.id, light.radiance, ball, area, id, reflectance);
   }
 }
 

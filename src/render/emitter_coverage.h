@@ -27,7 +27,7 @@ struct Visibility {
 ///
 /// Result     one per pixel, row by row; empty if there are none
 /// Cost       one pass over spheres and rods if something emits, and over the texels of the background; a packet of
-///            rays for each emitter in the frame, and each part of a rod of a pixel. Reflections of up to 2^20 pairs of
+///            rays for each emitter in the frame, and each part of a rod of a pixel. Reflections of up to 2^18 pairs of
 ///            balls and lights: with more, those of the strongest lights; at least one light for each ball
 std::vector<EmitterCoverage> emitter_coverage(const kernel::SceneView& scene, const Visibility& visibility,
                                               int width_px, int height_px);
