@@ -160,28 +160,23 @@ float error_of_emitters(const PixelStatistics& s, int x, int y) {
   return share * share * (1 / std::max(s.emitters[s.at(x, y)].coverage, kMinCoverage) - 1) / 4;
 }
 
-/// Whether a pixel's samples are too few to expect several hits of its emitters.
-bool lacks_hits(const PixelStatistics& s, int x, int y) {
+/// The squared relative display error of a pixel without the light of its emitters, if its samples are too few to
+/// expect several hits of them; 0 if they suffice.
+float error_without_emitters(const PixelStatistics& s, int x, int y) {
   const std::size_t i = s.at(x, y);
-  return share_of_emitters(s, x, y) > 0 && static_cast<float>(s.samples[i]) * s.emitters[i].coverage < kHits;
+  const float share = share_of_emitters(s, x, y);
+  if (share == 0 || static_cast<float>(s.samples[i]) * s.emitters[i].coverage >= kHits) return 0;
+  return share * share / 4;
 }
 
-/// Whether a pixel needs samples for hits of its emitters.
-bool expects_emitters(const PixelStatistics& s, int x, int y) {
-  return s.samples[s.at(x, y)] < kSamplesForEmitters && lacks_hits(s, x, y);
-}
-
-/// Whether a pixel has been given up, and no sample has hit an emitter as bright as half of the expected radiance.
-bool misses_emitters(const PixelStatistics& s, int x, int y) {
-  const std::size_t i = s.at(x, y);
-  if (s.samples[i] < kSamplesForEmitters || !lacks_hits(s, x, y)) return false;
+/// Whether a sample has hit an emitter at least half as bright as expected.
+bool has_hit_emitters(const PixelStatistics& s, std::size_t i) {
   const float largest = s.outlier[i] * 2 * static_cast<float>(s.samples[i]);
-  return 2 * largest * s.emitters[i].coverage < s.emitters[i].light;
+  return 2 * largest * s.emitters[i].coverage >= s.emitters[i].light;
 }
 
 /// Whether a pixel's neighbours have found enough light, or can be trusted to be black.
 bool has_reliable_estimate(const PixelStatistics& s, int x, int y) {
-  if (expects_emitters(s, x, y)) return false;
   if (s.samples[s.at(x, y)] >= kSamplesForReliability) return true;
   int count = 0, dark = 0;
   each_neighbour(s, x, y, kReach, [&](std::size_t i) {
@@ -234,15 +229,24 @@ NoiseEstimate estimate_noise(const PixelStatistics& s, TilePool& pool) {
   return {all.sum / pixels, std::sqrt(all.squares) / pixels};
 }
 
-UnreliablePixels find_unreliable_pixels(const PixelStatistics& s, TilePool& pool) {
+UnreliablePixels find_unreliable_pixels(const PixelStatistics& s, TilePool& pool, double tolerated) {
   UnreliablePixels out;
   out.of_pixel.resize(s.samples.size());
-  std::vector<std::uint8_t> misses(s.samples.size());
+  std::vector<float> without_emitters(s.samples.size());
   each_pixel(s, pool, [&](int x, int y) {
-    out.of_pixel[s.at(x, y)] = has_reliable_estimate(s, x, y) ? 0 : 1;
-    misses[s.at(x, y)] = misses_emitters(s, x, y) ? 1 : 0;
+    const std::size_t i = s.at(x, y);
+    out.of_pixel[i] = has_reliable_estimate(s, x, y) ? 0 : 1;
+    const float error = error_without_emitters(s, x, y);
+    if (error > 0 && (s.samples[i] < kSamplesForEmitters || !has_hit_emitters(s, i))) without_emitters[i] = error;
   });
-  for (std::size_t i = 0; i < misses.size(); ++i) out.count += out.of_pixel[i] | misses[i];
+  double sum = 0;
+  for (const float error : without_emitters) sum += static_cast<double>(error);
+  const bool may_be_missed = sum <= tolerated * static_cast<double>(without_emitters.size());
+  for (std::size_t i = 0; i < without_emitters.size(); ++i) {
+    const bool lacks_hits = !may_be_missed && without_emitters[i] > 0;
+    out.count += out.of_pixel[i] != 0 || lacks_hits ? 1 : 0;
+    if (lacks_hits && s.samples[i] < kSamplesForEmitters) out.of_pixel[i] = 1;
+  }
   return out;
 }
 

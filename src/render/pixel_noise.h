@@ -74,12 +74,14 @@ struct UnreliablePixels {
 };
 
 /// Finds the pixels around which too few paths have found light, and those in which an emitter is expected that too
-/// few paths can have hit.
+/// few paths can have hit, unless the image may lack the light of all these emitters.
+///
+/// `tolerated` squared error of the image that this may cause
 ///
 /// A window without light may be black, or its light may be rare. It is assumed to be black after 2 *
 /// kSamplesForReliability samples per pixel. From then on, error estimates of windows in which few paths found light
 /// are trusted as well.
-UnreliablePixels find_unreliable_pixels(const PixelStatistics& statistics, TilePool& pool);
+UnreliablePixels find_unreliable_pixels(const PixelStatistics& statistics, TilePool& pool, double tolerated = 0);
 
 /// The squared relative display error of a single sample of each pixel, estimated from the pixels around it. The
 /// pixel's own samples have no influence, so that selecting pixels by the result does not favour pixels whose samples

@@ -268,6 +268,15 @@ TEST(RenderPixelNoise, SmallEmittersNeedSeveralExpectedHits) {
   EXPECT_EQ(find_unreliable_pixels(tiny, pool).count, 0u) << "a path has hit it";
 }
 
+TEST(RenderPixelNoise, SmallEmittersMayBeMissedWhereTheTargetAllowsIt) {
+  TilePool pool(1);
+  const PixelStatistics s = with_emitter(8, 10);
+  // Without it, the display error of the pixel would be 10 / 11 / 2, and that of the image a fifteenth.
+  const double square = 10.0 / 11 * 10.0 / 11 / 4 / (15 * 15);
+  EXPECT_EQ(find_unreliable_pixels(s, pool, 0.99 * square).count, 1u);
+  EXPECT_EQ(find_unreliable_pixels(s, pool, 1.01 * square).count, 0u);
+}
+
 TEST(RenderPixelNoise, SmallEmittersDetermineTheErrorOfTheirPixelsAlone) {
   TilePool pool(1);
   PixelStatistics s = with_emitter(256, 10);
