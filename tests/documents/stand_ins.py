@@ -134,6 +134,8 @@ def main():
     snapshot = (CORPUS / "hdf5/plain.hdf5").read_bytes().replace(b"PartType1", b"PartType4")
     for name, data in {"scan.las": scan, "autzen_trim.las": scan, "snapshot.hdf5": snapshot}.items():
         (folder / name).write_bytes(data)
+    for name, seed in {"quartz.cif": "cif/quartz.cif", "md.xtc": "xtc/water.xtc", "conf.gro": "gro/water.gro"}.items():
+        (folder / name).write_bytes((CORPUS / seed).read_bytes())
 
 
 main()

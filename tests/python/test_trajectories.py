@@ -5,6 +5,7 @@
 import importlib.util
 import itertools
 import os
+import shutil
 import unittest
 import warnings
 from fractions import Fraction
@@ -54,12 +55,9 @@ class Trajectories(FolderTest):
         import MDAnalysis
 
         for name in ("gro/water.gro", "gro/dodecahedron.gro", "xtc/water.xtc", "trr/water.trr"):
-            file = os.path.join(SEEDS, name)
-            universe = MDAnalysis.Universe.empty(30)
-            if name.endswith(".gro"):
-                universe = MDAnalysis.Universe(file)
-            else:
-                universe.load_new(file, refresh_offsets=True)
+            file = shutil.copy(os.path.join(SEEDS, name), ".")  # MDAnalysis writes a file beside it
+            is_text = name.endswith(".gro")
+            universe = MDAnalysis.Universe(file) if is_text else MDAnalysis.Universe.empty(30).load_new(file)
             self.assert_same(file, universe)
 
     @quietly
@@ -83,7 +81,7 @@ class Trajectories(FolderTest):
 
 def cell_of(number):
     """Edges and angles that a space group may have, on hexagonal axes where there is a choice."""
-    a, b, c = 7.1, 8.3, 9.2
+    a, b, c = 10.7, 12.5, 13.8
     for last, cell in (
         (2, [a, b, c, 83, 97, 105]),
         (15, [a, b, c, 90, 97, 90]),
@@ -111,7 +109,7 @@ def triplet(rotation, translation):
 class Crystals(FolderTest):
     """A general position and special ones in all space groups, by operators, by symbols and by numbers."""
 
-    SITES = {"Si": (0.05, 0.31, 0.39), "O": (0, 0, 0), "C": (0.5, 0.5, 0.5), "N": (0.3, 0.3, 0.3), "F": (0.2, 0, 0)}
+    SITES = {"Si": (0.44, 0.16, 0.22), "O": (0, 0, 0), "C": (0.5, 0.5, 0.5), "N": (0.3, 0.3, 0.3), "F": (0.17, 0, 0)}
 
     @quietly
     def test_all_space_groups(self):
@@ -122,7 +120,7 @@ class Crystals(FolderTest):
                 group = Spacegroup(number, setting)
             except Exception:  # ASE's own; the group has one setting
                 continue
-            cell = cell_of(number) if group.lattice != "R" or setting == 1 else [8.3] * 3 + [70] * 3
+            cell = cell_of(number) if group.lattice != "R" or setting == 1 else [12.5] * 3 + [70] * 3
             with self.subTest(number=number, setting=setting):
                 for symmetry in self.symmetries(group):
                     self.assert_same(group, cell, symmetry)
@@ -146,7 +144,7 @@ class Crystals(FolderTest):
         ours = array(points, [f"fract_{axis}" for axis in POSITION])
         for element, site in self.SITES.items():
             theirs, _ = group.equivalent_sites([site])
-            found = ours[points["element"] == element]
+            found = ours[np.array(list(points["element"])) == element]
             self.assertEqual(len(found), len(theirs), (element, symmetry))
             distance = found[:, None] - theirs[None]
             distance = np.abs(distance - np.round(distance)).max(axis=2)
@@ -178,19 +176,6 @@ class Crystals(FolderTest):
             np.testing.assert_allclose(points.box[1], expected.cell, atol=1e-6, err_msg=file)
             ours, theirs = (np.linalg.solve(expected.cell.T, p.T).T for p in (array(points), expected.positions))
             np.testing.assert_allclose(ours - np.round(ours - theirs), theirs, atol=2e-5, err_msg=file)
-
-    @quietly
-    def test_seeds(self):
-        import ase.io
-
-        for name in ("cif/quartz.cif", "vasp/POSCAR", "vasp/cartesian", "vasp/XDATCAR"):
-            file = os.path.join(SEEDS, name)
-            kind = "cif" if name.endswith("cif") else "vasp-xdatcar" if "XDAT" in name else "vasp"
-            expected = ase.io.read(file, format=kind, index=0)
-            points = orrery.read_points(file)
-            ours, theirs = sorted(points["element"]), sorted(expected.get_chemical_symbols())
-            self.assertEqual(ours, theirs, name)
-            np.testing.assert_allclose(points.box[1], expected.cell, atol=1e-6, err_msg=name)
 
 
 if __name__ == "__main__":
