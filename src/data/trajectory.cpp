@@ -104,7 +104,7 @@ class NamedTrajectory final : public DataFile {
                   const std::filesystem::path& trajectory_name, const std::filesystem::path& topology_name)
       : trajectory_(std::move(trajectory)),
         topology_(std::move(topology)),
-        faults_(trajectory_name),
+        trajectory_name_(trajectory_name),
         topology_name_(topology_name.string()),
         names_(topology_->describe(0)) {
     format = trajectory_->format;
@@ -127,12 +127,14 @@ class NamedTrajectory final : public DataFile {
   FrameInfo describe(int frame) override {
     FrameInfo out = trajectory_->describe(frame);
     if (!out.roles.element.empty() || !out.roles.id.empty())
-      faults_.fail(0, "the file names its particles, so that it needs no topology", "omit the topology");
+      Faults(trajectory_name_)
+          .fail(0, "the file names its particles, so that it needs no topology", "omit the topology");
     if (out.rows != names_.rows)
-      faults_.fail(0,
-                   fmt::format("frame {} has {}, but the topology {} has {}", frame + 1,
-                               base::counted(out.rows, "atom"), topology_name_, names_.rows),
-                   "use the topology of the same atoms, for example without those that the trajectory leaves out");
+      Faults(trajectory_name_)
+          .fail(0,
+                fmt::format("frame {} has {}, but the topology {} has {}", frame + 1, base::counted(out.rows, "atom"),
+                            topology_name_, names_.rows),
+                "use the topology of the same atoms, for example without those that the trajectory leaves out");
     std::erase_if(names_.columns, [&](const ColumnInfo& c) { return has_column(out.columns, c.name); });
     out.columns.insert(out.columns.end(), names_.columns.begin(), names_.columns.end());
     const std::array<std::string, 3> position = out.roles.position;
@@ -164,7 +166,7 @@ class NamedTrajectory final : public DataFile {
 
  private:
   std::unique_ptr<DataFile> trajectory_, topology_;
-  Faults faults_;
+  std::filesystem::path trajectory_name_;
   std::string topology_name_;
   FrameInfo names_;  ///< of the topology, with the columns that are used
 };

@@ -152,6 +152,8 @@ constexpr std::pair<const char*, Vec3d> kGuideColors[] = {{"box", {0.1, 0.1, 0.1
 
 /// Radius of the edges of the box, and length and radius of the axes, as fractions of the radius of what is shown.
 constexpr double kBoxRadius = 0.004, kAxisLength = 0.15, kAxisRadius = 0.01;
+/// Distance of the origin of the axes of a unit cell from the cell, in lengths of an axis, which have letters.
+constexpr double kBesideCell = 1.6;
 
 }  // namespace
 
@@ -259,7 +261,7 @@ void Guides::add_box(const data::Box& box, const Vec3d& counts, ViewExtent& exte
 
 void Guides::add_axes(const ViewExtent& extent, const std::optional<data::Box>& cell) {
   const double length = rounded(kAxisLength * extent.radius()), radius = rounded(kAxisRadius * extent.radius());
-  const Vec3d origin = cell ? extent.beside(length) : corner_ - Vec3d{1, 1, 1} * (length + 2 * radius);
+  const Vec3d origin = cell ? extent.beside(kBesideCell * length) : corner_ - Vec3d{1, 1, 1} * (length + 2 * radius);
   constexpr const char *kNames[] = {"axis_x", "axis_y", "axis_z"}, *kCellNames[] = {"axis_a", "axis_b", "axis_c"};
   const data::Box axes = cell.value_or(data::Box{});
   for (std::size_t i = 0; i < 3; ++i)

@@ -150,6 +150,18 @@ TEST_F(CliPlot, BondsThatCannotBeDrawnAreErrors) {
   expect_error("plot a.dump -o a.ppm --representation stick", 2, "did you mean `sticks`");
 }
 
+TEST_F(CliPlot, ATopologyFitsTheTrajectory) {
+  const std::string seeds = ORRERY_ROOT "/tests/fuzz/corpus/data/";
+  const Outcome r = plot(seeds + "xtc/water.xtc -o a.ppm --frame 2 --title '{step} {time:.1f}' --unwrap --topology " +
+                         seeds + "gro/water.gro --bonds auto");
+  EXPECT_EQ(r.status, 0) << r.err;
+  EXPECT_TRUE(contains(r.err, "20 bonds")) << r.err;
+  expect_error("plot " + seeds + "xtc/few.xtc -o a.ppm --topology " + seeds + "gro/water.gro", 65, "5 atoms");
+  expect_error("plot " + seeds + "xtc/few.xtc -o a.ppm --topology none.pdb", 66, "none.pdb");
+  expect_error("info a.dump --topology c.csv", 65, "needs no topology");
+  EXPECT_EQ(run("info " + seeds + "dcd/water.dcd --topology " + seeds + "gro/water.gro").status, 0);
+}
+
 TEST_F(CliPlot, ScenesAndDataFilesAreDistinguished) {
   write("b.mmcif", "data_b\nloop_\n_atom_site.cartn_x\n_atom_site.cartn_y\n_atom_site.cartn_z\n1 2 3\n");
   write("c.csv.gz", "\x1f\x8b\x08");
