@@ -109,7 +109,8 @@ function placeCard(place) {
   if (card.hidden || !place || matchMedia("(max-width: 700px)").matches) return;
   const x = frame.left - stage.left + place.x, y = frame.top - stage.top + place.y;
   const { offsetWidth: w, offsetHeight: h } = card;
-  card.style.left = `${x + 26 + w < stage.width ? Math.max(8, x + 26) : Math.max(8, x - 26 - w)}px`;
+  const gap = picks.length > 1 ? 48 : 26;  // the numbers of the marks stay in sight
+  card.style.left = `${Math.max(8, x + gap + w < stage.width ? x + gap : x - 26 - w)}px`;
   card.style.top = `${Math.max(58, Math.min(y - 30, stage.height - h - 8))}px`;
 }
 
