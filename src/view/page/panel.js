@@ -40,7 +40,7 @@ export function choices(group, values, { name, chosen, choose, show = (span, val
 // ---- Kinds of controls --------------------------------------------------------------------------------------------
 
 function bindText(field, name) {
-  const { repeatable } = control(name);
+  const { repeatable } = control(name), hint = field.placeholder;
   field.spellcheck = false;
   field.onchange = () => {
     const lines = field.value.split("\n").map(line => line.trim()).filter(Boolean);
@@ -49,7 +49,7 @@ function bindText(field, name) {
   onUpdate(() => {
     if (document.activeElement === field) return;
     field.value = [option(name)].flat().join("\n");
-    if (state?.chosen[name]) field.placeholder = state.chosen[name];
+    field.placeholder = state?.chosen[name] || hint || "";
     if (repeatable) field.rows = Math.min(6, Math.max(1, option(name).length));
   });
 }
