@@ -48,15 +48,15 @@ class Covered {
     Span x{HUGE_VAL, -HUGE_VAL}, y = x;
     for (const Sphere& s : hull) {
       const Vec3d center{s.x, s.y, s.z}, to = center - camera_.origin;
-      const double radius = s.radius + kRelativeSlack * (length(to) + length(center) + length(camera_.origin));
+      const double radius = s.radius + kRelativeSlack * (length(center) + origin_);
       const double z = dot(to, camera_.forward) / focus_;
       is_behind = is_behind && z + radius < 0;
       if (!camera_.is_orthographic && !(z - radius > 0)) {
         x = y = {-HUGE_VAL, HUGE_VAL};  // the camera may be inside
         continue;
       }
-      include(x, to, z, radius, camera_.right, camera_.half_width);
-      include(y, to, z, radius, camera_.down, camera_.half_height);
+      include(x, to, z, radius, columns_);
+      include(y, to, z, radius, rows_);
     }
     if (is_behind) return;
     const int left = first(x, width_), right = end(x, width_), top = first(y, height_), bottom = end(y, height_);
@@ -87,25 +87,29 @@ class Covered {
   }
 
  private:
-  /// Adds the interval of a sphere along the rows or columns.
+  /// A direction in the image.
+  struct Axis {
+    Vec3d pixel;    ///< of one pixel on the focus plane
+    double middle;  ///< coordinate of the view axis, px
+    double width = length(pixel);
+  };
+
+  /// Adds the interval of a sphere.
   ///
   /// `to`, `z`  its centre relative to the camera, and its depth
-  /// `pixel`    vector of a pixel on the focus plane
-  /// `middle`   coordinate of the view axis, px
-  void include(Span& all, Vec3d to, double z, double radius, Vec3d pixel, double middle) const {
-    const double width = length(pixel), across = dot(to, pixel) / width;
+  void include(Span& all, Vec3d to, double z, double radius, const Axis& axis) const {
+    const double across = dot(to, axis.pixel) / axis.width;
     double low = across - radius, high = across + radius;
     if (!camera_.is_orthographic) {
       // The tangents through the centre of the lens. Its rim displaces them by a linear function of 1 / depth.
       const double squares = z * z - radius * radius;
       const double root = radius * std::sqrt(std::fmax(across * across + squares, 0));
-      const double blur =
-          length(camera_.lens_u) * std::fmax(std::abs(1 - focus_ / (z - radius)), std::abs(1 - focus_ / (z + radius)));
+      const double blur = lens_ * std::fmax(std::abs(1 - focus_ / (z - radius)), std::abs(1 - focus_ / (z + radius)));
       low = (across * z - root) * (focus_ / squares) - blur;
       high = (across * z + root) * (focus_ / squares) + blur;
     }
-    all.low = std::fmin(all.low, low / width + middle - margin_);
-    all.high = std::fmax(all.high, high / width + middle + margin_);
+    all.low = std::fmin(all.low, low / axis.width + axis.middle - margin_);
+    all.high = std::fmax(all.high, high / axis.width + axis.middle + margin_);
   }
   static int clamped(double at, int most) {
     return static_cast<int>(std::floor(std::clamp(at, 0.0, static_cast<double>(most))));
@@ -119,7 +123,8 @@ class Covered {
   const kernel::Camera& camera_;
   int width_, height_;  ///< px
   double margin_;       ///< px
-  double focus_ = length(camera_.forward);
+  double focus_ = length(camera_.forward), lens_ = length(camera_.lens_u), origin_ = length(camera_.origin);
+  Axis columns_{camera_.right, camera_.half_width}, rows_{camera_.down, camera_.half_height};
   std::vector<std::int32_t> corners_;
   std::atomic<bool> is_full_ = false;
 };
