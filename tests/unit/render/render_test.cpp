@@ -107,7 +107,7 @@ TEST(RenderRender, AnyNumberOfThreadsGivesTheSameBits) {
 
 TEST(RenderRender, SumsThatAreNotKeptAreFreedAfterTheirLastUse) {
   scene::Scene s = everything();
-  s.image = {320, 180};  // large enough for pages to be returned to the system
+  s.image = {640, 420};  // several steps, after which pages are returned to the system
   s.render.samples = 2;
   const compile::CompiledScene compiled = compile::compile(s);
   Settings settings;
