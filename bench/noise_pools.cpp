@@ -174,7 +174,8 @@ Run simulate(const Pool& pool, double noise, unsigned seed, double most) {
     }
     out.samples = samples / static_cast<double>(goals.size());
     const double upper = render::estimate_noise(s, threads).upper();
-    const render::UnreliablePixels unreliable = render::find_unreliable_pixels(s, threads);
+    const render::UnreliablePixels unreliable =
+        render::find_unreliable_pixels(s, threads, render::tolerated_error(upper, noise * noise));
     out.reached = upper <= noise * noise && unreliable.count == 0;
     if (out.reached || out.samples > most) break;
     render::IterationGoal goal;

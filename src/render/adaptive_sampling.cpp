@@ -35,10 +35,6 @@ constexpr double kShareOfTime = 0.5;
 /// With less than this fraction of the time budget left, no further iteration starts.
 constexpr double kReservedTime = 0.01;
 
-/// The fraction of the squared target that the error of missed emitters may be. Others, such as lamps in two mirrors,
-/// may be missed as well.
-constexpr double kMissed = 0.25;
-
 std::string noise_text(double reached, double wanted) {
   char text[64];
   std::snprintf(text, sizeof(text), "noise %.3g of %.3g", reached, wanted);
@@ -88,8 +84,7 @@ class AdaptiveSampling {
     for (;;) {
       noise_ = estimate_noise(pixels_, pool_);
       const double upper = noise_.upper();
-      const double tolerated = std::min(upper <= wanted ? wanted - upper : wanted, wanted * kMissed);
-      const UnreliablePixels unreliable = find_unreliable_pixels(pixels_, pool_, tolerated);
+      const UnreliablePixels unreliable = find_unreliable_pixels(pixels_, pool_, tolerated_error(upper, wanted));
       unreliable_count_ = unreliable.count;
       if (settings_.noise > 0 && upper <= wanted && unreliable_count_ == 0) return ended("noise");
       IterationGoal goal;

@@ -35,6 +35,10 @@ constexpr double kMinError = 1.0 / 64;
 /// trusted.
 constexpr float kPaths = 4, kHits = 4;
 
+/// The fraction of the squared target that the error of missed emitters may be. Others, such as lamps in two mirrors,
+/// may be missed as well.
+constexpr double kMissed = 0.25;
+
 /// Samples in each half after which a pixel is given up, so that emitters of a tiny coverage do not decide alone.
 constexpr std::uint32_t kSamplesForEmitters = 8192;
 
@@ -227,6 +231,10 @@ NoiseEstimate estimate_noise(const PixelStatistics& s, TilePool& pool) {
   }
   const auto pixels = static_cast<double>(s.samples.size());
   return {all.sum / pixels, std::sqrt(all.squares) / pixels};
+}
+
+double tolerated_error(double upper, double wanted) {
+  return std::min(upper <= wanted ? wanted - upper : wanted, wanted * kMissed);
 }
 
 UnreliablePixels find_unreliable_pixels(const PixelStatistics& s, TilePool& pool, double tolerated) {

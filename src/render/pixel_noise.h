@@ -73,10 +73,14 @@ struct UnreliablePixels {
   std::uint64_t count = 0;             ///< of these, and of pixels that were given up without a hit of their emitter
 };
 
+/// The squared error of an image that emitters without hits may cause, if `upper` is that of its noise and `wanted`
+/// that of the target.
+double tolerated_error(double upper, double wanted);
+
 /// Finds the pixels around which too few paths have found light, and those in which an emitter is expected that too
 /// few paths can have hit, unless the image may lack the light of all these emitters.
 ///
-/// `tolerated` squared error of the image that this may cause
+/// `tolerated` see tolerated_error
 ///
 /// A window without light may be black, or its light may be rare. It is assumed to be black after 2 *
 /// kSamplesForReliability samples per pixel. From then on, error estimates of windows in which few paths found light

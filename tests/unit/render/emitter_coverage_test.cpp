@@ -33,7 +33,7 @@ scene::Scene distant_lamp() {
   return s;
 }
 
-std::vector<EmitterCoverage> find(const compile::CompiledScene& compiled) {
+std::vector<EmitterCoverage> coverage_of(const compile::CompiledScene& compiled) {
   const std::unique_ptr<accel::Accel> accel = build(compiled, 1, {});
   return emitter_coverage(compiled.view(), {accel->tracer(), compiled.precision}, compiled.width, compiled.height);
 }
@@ -42,7 +42,7 @@ std::vector<EmitterCoverage> find(const compile::CompiledScene& compiled) {
 void expect_where_rendered(const scene::Scene& opening, const std::string& name, const scene::Scene* closing = nullptr,
                            int most_pixels = 36, double radiance = kLampRadiance) {
   const compile::CompiledScene compiled = compile::compile(opening, closing);
-  const std::vector<EmitterCoverage> found = find(compiled);
+  const std::vector<EmitterCoverage> found = coverage_of(compiled);
   const std::vector<float> rendered = render(compiled, {}).picture.planes[0].values;
   ASSERT_EQ(found.size(), rendered.size()) << name;
   double light = 0, expected = 0;
@@ -109,7 +109,7 @@ TEST(RenderEmitterCoverage, RodsAreFoundWhereTheyAreRendered) {
   scene::Scene closing = s;
   closing.rods[0].to.x += 0.3;
   expect_where_rendered(s, "moving", &closing, 200);
-  const std::size_t pixels = find(compile::compile(with_rod({0, 0, 20}, {0.5, 0, -5}, 0.004))).size();
+  const std::size_t pixels = coverage_of(compile::compile(with_rod({0, 0, 20}, {0.5, 0, -5}, 0.004))).size();
   EXPECT_GT(pixels, 0u) << "one end is behind the camera";
 }
 
@@ -146,17 +146,18 @@ TEST(RenderEmitterCoverage, ReflectionsAreFoundWhereTheyAreRendered) {
   expect_where_rendered(s, "lens", nullptr, 200, half);
   s = reflecting_ball(mirror(0.5));
   s.spheres[1].center = {-20, 0.3, 0};
-  EXPECT_TRUE(find(compile::compile(s)).empty()) << "the ball is beside the image";
+  EXPECT_TRUE(coverage_of(compile::compile(s)).empty()) << "the ball is beside the image";
   s.spheres[1] = {{0, 0, 10}, 1, 1, ""};
-  EXPECT_TRUE(find(compile::compile(s)).empty()) << "the camera is in the ball";
+  EXPECT_TRUE(coverage_of(compile::compile(s)).empty()) << "the camera is in the ball";
   s = reflecting_ball(scene::Metal{{0.5, 0.5, 0.5}, 0.1});
-  EXPECT_TRUE(find(compile::compile(s)).empty()) << "a fuzzy ball";
+  EXPECT_TRUE(coverage_of(compile::compile(s)).empty()) << "a fuzzy ball";
 }
 
 TEST(RenderEmitterCoverage, GlassAndCoatsReflectLessThanMirrors) {
   const auto light = [](const scene::MaterialModel& model) {
     double sum = 0;
-    for (const EmitterCoverage& e : find(compile::compile(reflecting_ball(model)))) sum += static_cast<double>(e.light);
+    for (const EmitterCoverage& e : coverage_of(compile::compile(reflecting_ball(model))))
+      sum += static_cast<double>(e.light);
     return sum;
   };
   const double mirror = light(scene::Metal{{1, 1, 1}, 0});
@@ -168,23 +169,23 @@ TEST(RenderEmitterCoverage, GlassAndCoatsReflectLessThanMirrors) {
 TEST(RenderEmitterCoverage, LargeEmittersAndThoseOutsideTheImageDoNotCount) {
   scene::Scene s = distant_lamp();
   s.spheres[0].radius = 1.5;
-  EXPECT_TRUE(find(compile::compile(s)).empty());
+  EXPECT_TRUE(coverage_of(compile::compile(s)).empty());
   s = distant_lamp();
   s.spheres[0].center.z = 20;
-  EXPECT_TRUE(find(compile::compile(s)).empty()) << "behind the camera";
+  EXPECT_TRUE(coverage_of(compile::compile(s)).empty()) << "behind the camera";
   s = distant_lamp();
   s.spheres[0].center.x = -9;
-  EXPECT_TRUE(find(compile::compile(s)).empty()) << "beside the image";
+  EXPECT_TRUE(coverage_of(compile::compile(s)).empty()) << "beside the image";
   s = distant_lamp();
   s.materials[0].model = scene::Lambertian{{0.5, 0.5, 0.5}};
-  EXPECT_TRUE(find(compile::compile(s)).empty()) << "no emitter";
+  EXPECT_TRUE(coverage_of(compile::compile(s)).empty()) << "no emitter";
 }
 
 TEST(RenderEmitterCoverage, DimEmittersDoNotHideBrightOnes) {
   scene::Scene s = distant_lamp();
-  const std::vector<EmitterCoverage> alone = find(compile::compile(s));
+  const std::vector<EmitterCoverage> alone = coverage_of(compile::compile(s));
   for (int i = 1; i <= 6; ++i) test::add_lamp(s, {-2.13, 1.41, -0.2 * i}, 0.1, {2, 2, 2});
-  const std::vector<EmitterCoverage> all = find(compile::compile(s));
+  const std::vector<EmitterCoverage> all = coverage_of(compile::compile(s));
   int lit = 0;
   for (std::size_t i = 0; i < all.size(); ++i) {
     if (alone[i].coverage < 1e-9f) continue;
@@ -201,21 +202,23 @@ TEST(RenderEmitterCoverage, HiddenEmittersDoNotCount) {
     test::add_ball(s, center, radius, scene::Lambertian{{0, 0, 0}});
     return s;
   };
-  EXPECT_TRUE(find(compile::compile(with_screen(distant_lamp(), {-1.065, 0.705, 5}, 0.1))).empty());
-  EXPECT_FALSE(find(compile::compile(with_screen(distant_lamp(), {-1.065 - 0.1, 0.705, 5}, 0.1))).empty()) << "half";
+  EXPECT_TRUE(coverage_of(compile::compile(with_screen(distant_lamp(), {-1.065, 0.705, 5}, 0.1))).empty());
+  EXPECT_FALSE(coverage_of(compile::compile(with_screen(distant_lamp(), {-1.065 - 0.1, 0.705, 5}, 0.1))).empty())
+      << "half";
   scene::Scene s = distant_lamp();
   s.camera.defocus_angle = 4;
   s.camera.focus_distance = 10;
-  EXPECT_FALSE(find(compile::compile(with_screen(s, {-1.065, 0.705, 5}, 0.1))).empty()) << "seen by the lens's rim";
+  EXPECT_FALSE(coverage_of(compile::compile(with_screen(s, {-1.065, 0.705, 5}, 0.1))).empty())
+      << "seen by the lens's rim";
   s = reflecting_ball(scene::Metal{{0.5, 0.5, 0.5}, 0});
-  EXPECT_TRUE(find(compile::compile(with_screen(s, {5.06, 3.47, 12}, 1))).empty()) << "hidden from the ball";
-  EXPECT_TRUE(find(compile::compile(with_screen(s, {-0.4, 0.2, 5}, 0.8))).empty()) << "the ball is hidden";
+  EXPECT_TRUE(coverage_of(compile::compile(with_screen(s, {5.06, 3.47, 12}, 1))).empty()) << "hidden from the ball";
+  EXPECT_TRUE(coverage_of(compile::compile(with_screen(s, {-0.4, 0.2, 5}, 0.8))).empty()) << "the ball is hidden";
   s = distant_lamp();
   s.spheres.clear();
   s.rods.push_back({{-3, 1, 0}, {2, -1.5, 0}, 0.01, {0, 0}});
   const auto light = [](const scene::Scene& of) {
     double sum = 0;
-    for (const EmitterCoverage& e : find(compile::compile(of))) sum += static_cast<double>(e.light);
+    for (const EmitterCoverage& e : coverage_of(compile::compile(of))) sum += static_cast<double>(e.light);
     return sum;
   };
   EXPECT_NEAR(light(with_screen(s, {-1.5, 0.5, 1}, 1.5)) / light(s), 0.5, 0.2) << "half of a rod";
@@ -226,7 +229,7 @@ TEST(RenderEmitterCoverage, RectanglesAreClippedToTheImage) {
   scene::Scene s = distant_lamp();
   s.camera.defocus_angle = 120;
   s.camera.focus_distance = 1;
-  const std::vector<EmitterCoverage> found = find(compile::compile(s));
+  const std::vector<EmitterCoverage> found = coverage_of(compile::compile(s));
   ASSERT_FALSE(found.empty());
   for (const EmitterCoverage& e : found) EXPECT_NEAR(e.coverage, found[0].coverage, 1e-6f * found[0].coverage);
 }
@@ -243,7 +246,7 @@ TEST(RenderEmitterCoverage, BrightTexelsAreEmitters) {
   s.background.image = map;
   expect_where_rendered(s, "texel");
   for (int y = 0; y < map->height(); ++y) std::fill_n(map->row(y), 3 * map->width(), 1.0f);
-  EXPECT_TRUE(find(compile::compile(s)).empty()) << "no texel is brighter than the others";
+  EXPECT_TRUE(coverage_of(compile::compile(s)).empty()) << "no texel is brighter than the others";
 }
 
 TEST(RenderEmitterCoverage, TheSunOfASkyIsASmallEmitter) {
@@ -258,7 +261,7 @@ TEST(RenderEmitterCoverage, TheSunOfASkyIsASmallEmitter) {
   s.background.image = map;
   expect_where_rendered(s, "sun");
   s.background.visible = false;
-  EXPECT_TRUE(find(compile::compile(s)).empty());
+  EXPECT_TRUE(coverage_of(compile::compile(s)).empty());
 }
 
 /// A lamp of a hundredth of a pixel before a bright sky: nothing but the lamp has noise, and 16 samples rarely hit it.
@@ -266,7 +269,7 @@ TEST(RenderEmitterCoverage, ADistantLampIsNotMissed) {
   scene::Scene s = distant_lamp();
   s.background.color = {1, 1, 1};
   s.spheres[0].radius = 0.012;
-  const std::vector<EmitterCoverage> found = find(compile::compile(s));
+  const std::vector<EmitterCoverage> found = coverage_of(compile::compile(s));
   ASSERT_FALSE(found.empty());
   const double lamp =
       static_cast<double>(std::max_element(found.begin(), found.end(), [](const auto& a, const auto& b) {
