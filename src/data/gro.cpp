@@ -22,6 +22,8 @@
 
 // Structures and trajectories of GROMACS as text, with fixed columns: residue number, residue, name and number of the
 // atom, five each; position and velocity, as wide as the distance of two decimal points.
+//
+// Reference  gromacs-formats
 namespace orrery::data {
 namespace {
 

@@ -25,6 +25,8 @@
 #include "data/readers.h"
 
 // CIF files of small molecules and minerals: the asymmetric unit of a crystal.
+//
+// Reference  core-cif
 namespace orrery::data {
 namespace {
 

@@ -16,6 +16,8 @@
 #include "data/trajectory.h"
 
 // Trajectories of GROMACS: XTC, compressed, and TRR. Both are XDR: big-endian, in units of 4 bytes.
+//
+// Reference  gromacs-formats
 namespace orrery::data {
 namespace {
 
