@@ -18,7 +18,7 @@ using support::texts;
 using Numbers = std::vector<double>;
 using Texts = std::vector<std::string>;
 
-const std::string kWater =
+const std::string kWaterFile =
     "water t=   2.50000 step= 500\n    3\n"
     "    1SOL     OW    1   0.230   0.628   0.113  0.1000  0.2000 -0.5000\n"
     "    1SOL    HW1    2   0.137   0.626   0.150  0.0000  0.0000  0.0000\n"
@@ -31,7 +31,7 @@ class DataGro : public support::DataFileTest {
 };
 
 TEST_F(DataGro, FixedColumnsAreReadInAngstrom) {
-  const auto file = open(kWater);
+  const auto file = open(kWaterFile);
   EXPECT_STREQ(file->format, "GRO");
   const FrameInfo info = file->describe(0);
   EXPECT_EQ(info.step, 500);
@@ -54,7 +54,7 @@ TEST_F(DataGro, ColumnsAreAsWideAsTheDecimalPointsSay) {
 }
 
 TEST_F(DataGro, FramesFollowEachOther) {
-  const auto file = open(kWater + kWater);
+  const auto file = open(kWaterFile + kWaterFile);
   ASSERT_EQ(file->frame_count(), 2);
   EXPECT_EQ(file->read(1, {"x"}).rows, 3u);
   EXPECT_EQ(file->describe(0).rows, 3u);
@@ -64,13 +64,13 @@ TEST_F(DataGro, FaultsAreNamedWithTheirLine) {
   const auto error = [&](std::string text, const std::string& what, const std::string& by) {
     return error_of(text.replace(text.find(what), what.size(), by));
   };
-  EXPECT_NE(error(kWater, "0.626", "0.x26").text.find("malformed"), std::string::npos);
-  EXPECT_EQ(error(kWater, "0.626", "0.x26").line, 4u);
-  EXPECT_NE(error_of(kWater.substr(0, kWater.find("99999"))).text.find("after 2 of 3 atoms"), std::string::npos);
-  EXPECT_NE(error_of(kWater.substr(0, kWater.find("   2.00000"))).text.find("box"), std::string::npos);
-  EXPECT_NE(error(kWater, "    3\n", "    2\n").text.find("box"), std::string::npos);
-  EXPECT_NE(error(kWater, "    3\n", "90000000\n").text.find("truncated"), std::string::npos);
-  EXPECT_NE(error(kWater, "   3.00000", "       nan").text.find("box"), std::string::npos);
+  EXPECT_NE(error(kWaterFile, "0.626", "0.x26").text.find("malformed"), std::string::npos);
+  EXPECT_EQ(error(kWaterFile, "0.626", "0.x26").line, 4u);
+  EXPECT_NE(error_of(kWaterFile.substr(0, kWaterFile.find("99999"))).text.find("after 2 of 3 atoms"), std::string::npos);
+  EXPECT_NE(error_of(kWaterFile.substr(0, kWaterFile.find("   2.00000"))).text.find("box"), std::string::npos);
+  EXPECT_NE(error(kWaterFile, "    3\n", "    2\n").text.find("box"), std::string::npos);
+  EXPECT_NE(error(kWaterFile, "    3\n", "90000000\n").text.find("truncated"), std::string::npos);
+  EXPECT_NE(error(kWaterFile, "   3.00000", "       nan").text.find("box"), std::string::npos);
 }
 
 }  // namespace

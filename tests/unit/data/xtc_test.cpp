@@ -22,19 +22,19 @@ using support::numbers;
 
 /// Files that `gmx` has written, both from one simulation of ten molecules of water, and MDAnalysis. The Python tests
 /// compare more of them with MDAnalysis.
-std::filesystem::path seed(const std::string& name) {
+std::filesystem::path corpus(const std::string& name) {
   return std::filesystem::path(ORRERY_ROOT) / "tests/fuzz/corpus/data" / name;
 }
 
 std::string bytes_of(const std::string& name) {
   std::ostringstream out;
-  out << std::ifstream(seed(name), std::ios::binary).rdbuf();
+  out << std::ifstream(corpus(name), std::ios::binary).rdbuf();
   return out.str();
 }
 
 /// Compares the compressed positions of a file with those of another one, which are not.
 void expect_rounded(const std::string& compressed, const std::string& full, double precision) {
-  const auto xtc = data::open(seed(compressed)), trr = data::open(seed(full));
+  const auto xtc = data::open(corpus(compressed)), trr = data::open(corpus(full));
   ASSERT_EQ(xtc->frame_count(), trr->frame_count());
   for (int frame = 0; frame < xtc->frame_count(); ++frame) {
     const Table a = xtc->read(frame, {"x", "y", "z"}), b = trr->read(frame, {"x", "y", "z"});
@@ -60,7 +60,7 @@ TEST_F(DataXtc, PositionsAreRoundedToThePrecision) {
 }
 
 TEST_F(DataXtc, FramesHaveTimeStepAndBox) {
-  const auto file = data::open(seed("xtc/water.xtc"));
+  const auto file = data::open(corpus("xtc/water.xtc"));
   EXPECT_STREQ(file->format, "XTC");
   ASSERT_EQ(file->frame_count(), 3);
   const FrameInfo info = file->describe(2);
@@ -75,7 +75,7 @@ TEST_F(DataXtc, FramesHaveTimeStepAndBox) {
 }
 
 TEST_F(DataXtc, FewAtomsAreNotCompressed) {
-  const auto file = data::open(seed("xtc/few.xtc"));
+  const auto file = data::open(corpus("xtc/few.xtc"));
   const Table table = support::read_table(*file);
   ASSERT_EQ(table.rows, 5u);
   for (const double x : numbers(table, "y")) EXPECT_TRUE(std::abs(x) > 0 && std::abs(x) < 20) << x;
@@ -111,14 +111,14 @@ TEST_F(DataXtc, DamageIsNamedWithTheFrame) {
 }
 
 TEST_F(DataXtc, TheFullPrecisionFormatHasVelocities) {
-  const auto file = data::open(seed("trr/water.trr"));
+  const auto file = data::open(corpus("trr/water.trr"));
   EXPECT_STREQ(file->format, "TRR");
   ASSERT_EQ(file->frame_count(), 3);
   EXPECT_EQ(file->describe(1).step, 100);
   EXPECT_EQ(support::columns_text(file->describe(0)),
             "x:float32 y:float32 z:float32 velocity[1]:float32 velocity[2]:float32 velocity[3]:float32");
   // As written by gmx, in nm / ps.
-  const auto text = data::open(seed("gro/water.gro"));
+  const auto text = data::open(corpus("gro/water.gro"));
   const std::vector<double> last = numbers(file->read(2, {"velocity[2]"}), "velocity[2]");
   const std::vector<double> rounded = numbers(text->read(0, {"velocity[2]"}), "velocity[2]");
   for (std::size_t i = 0; i < last.size(); ++i) EXPECT_NEAR(last[i], rounded[i], 0.0006);
@@ -129,9 +129,9 @@ TEST_F(DataXtc, ArraysOfTheFullPrecisionFormatFitTheNumberOfAtoms) {
   const auto changed = [&](std::size_t at, std::int32_t number) {
     return error_of(std::string(good).replace(at, 4, number_bytes(number, true))).text;
   };
-  constexpr std::size_t kPositions = 24 + 4 * 7, kAtoms = 24 + 4 * 10;
-  EXPECT_NE(changed(kPositions, 0).find("no positions"), std::string::npos);
-  EXPECT_NE(changed(kPositions, 356).find("356 bytes"), std::string::npos);
+  constexpr std::size_t kPositionBytes = 24 + 4 * 7, kAtoms = 24 + 4 * 10;
+  EXPECT_NE(changed(kPositionBytes, 0).find("no positions"), std::string::npos);
+  EXPECT_NE(changed(kPositionBytes, 356).find("356 bytes"), std::string::npos);
   EXPECT_NE(changed(kAtoms, 31).find("31 atoms"), std::string::npos);
   EXPECT_NE(error_of(good.substr(0, 60)).text.find("header"), std::string::npos);
   EXPECT_NE(error_of(good.substr(0, 300)).text.find("truncated"), std::string::npos);
