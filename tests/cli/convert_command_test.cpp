@@ -11,7 +11,7 @@
 namespace orrery::test {
 namespace {
 
-std::string frame(int step, const std::string& columns, const std::vector<std::string>& rows) {
+std::string dump_frame(int step, const std::string& columns, const std::vector<std::string>& rows) {
   std::string out = "ITEM: TIMESTEP\n" + std::to_string(step) + "\nITEM: NUMBER OF ATOMS\n" +
                     std::to_string(rows.size()) + "\nITEM: BOX BOUNDS pp pp pp\n0 10\n0 10\n0 10\nITEM: ATOMS " +
                     columns + "\n";
@@ -25,10 +25,10 @@ class CliConvert : public ProgramTest {
  protected:
   void SetUp() override {
     ProgramTest::SetUp();
-    write("a.dump", frame(0, kColumns,
-                          {"4 1 C 0.5 1.5 2 3 1 0 0", "2 2 Ar 0.7 4.25 2 7 3 0 0", "1 1 C 0.3 6 8.125 1 -2 0 0",
-                           "3 1 C 1.1 0.1 5 5 0.5 0 0"}) +
-                        frame(10, kColumns, {}) + frame(20, kColumns, {"1 1 C 1 1 2 3 6 0 0"}));
+    write("a.dump", dump_frame(0, kColumns,
+                               {"4 1 C 0.5 1.5 2 3 1 0 0", "2 2 Ar 0.7 4.25 2 7 3 0 0", "1 1 C 0.3 6 8.125 1 -2 0 0",
+                                "3 1 C 1.1 0.1 5 5 0.5 0 0"}) +
+                        dump_frame(10, kColumns, {}) + dump_frame(20, kColumns, {"1 1 C 1 1 2 3 6 0 0"}));
   }
 
   std::string converted(const std::string& arguments, const std::string& output = "out.csv") {
@@ -390,7 +390,7 @@ TEST_F(CliDataInfo, ErrorsAreThoseOfTheKindOfFile) {
   expect_error("info a.dump --frame 4", 2, "--frame 4: a.dump has 3 frames");
   std::filesystem::rename(folder_ / "a.dump", folder_ / "a.toml");
   expect_error("info a.toml", 65, "a.toml:1:");
-  write("cut.dump", frame(0, kColumns, {"1 1 C 0.5 1 2 3 0 0 0", "2 1 C"}));
+  write("cut.dump", dump_frame(0, kColumns, {"1 1 C 0.5 1 2 3 0 0 0", "2 1 C"}));
   expect_error("info cut.dump", 65, "cut.dump:11");
 }
 

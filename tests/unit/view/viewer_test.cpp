@@ -127,20 +127,24 @@ TEST(ViewViewer, AMovingImageIsShownBeforeTheNextWish) {
   EXPECT_FALSE(viewer.finished()) << "there is no finished image of a scene that moves";
 }
 
-/// The darkest value in the upper left `width` x `height` pixels of an image.
-float darkest(const Frame& frame, int width, int height) {
-  const support::TempDir folder;
-  const std::filesystem::path file = folder / (frame.type == "image/png" ? "frame.png" : "frame.jpg");
-  support::write_bytes(file, *frame.bytes);
-  float out = 1;
-  image::read_map(
-      file,
-      [&](int row, const float* rgb) {
-        if (row < height) out = std::min(out, *std::min_element(rgb, rgb + 3 * width));
-      },
-      image::MapFormats::kAll);
-  return out;
-}
+/// The width of an image, px, and the darkest value in its upper left `width` x `height` pixels.
+struct Darkest {
+  int width;
+  float value = 1;
+
+  explicit Darkest(const Frame& frame, int part_width = 1 << 20, int part_height = 1 << 20) {
+    const support::TempDir folder;
+    const std::filesystem::path file = folder / (frame.type == "image/png" ? "frame.png" : "frame.jpg");
+    support::write_bytes(file, *frame.bytes);
+    width = image::read_map_header(file, image::MapFormats::kAll).width;
+    image::read_map(
+        file,
+        [&](int row, const float* rgb) {
+          if (row < part_height) value = std::min(value, *std::min_element(rgb, rgb + 3 * std::min(width, part_width)));
+        },
+        image::MapFormats::kAll);
+  }
+};
 
 TEST(ViewViewer, NothingIsBlackBetweenTwoImages) {
   const Wish large{{{"--set", {"image.width=1600", "image.height=1200"}}, {"--samples", {"100000000"}}}};
@@ -154,8 +158,9 @@ TEST(ViewViewer, NothingIsBlackBetweenTwoImages) {
   const std::uint64_t number = viewer.ask(moved);
   for (int live = 0; live < 4 || frame.wish != number;) {
     frame = viewer.frame(frame.number, 60s);
-    ASSERT_GT(darkest(frame, frame.width, frame.height), 0.1f) << frame.samples << " samples";
-    if (frame.wish == number && frame.width == 1600) ++live;
+    const Darkest darkest(frame);
+    ASSERT_GT(darkest.value, 0.1f) << frame.samples << " samples";
+    if (frame.wish == number && darkest.width == 1600) ++live;
   }
 }
 
@@ -382,7 +387,7 @@ TEST(ViewViewer, ARenderThatIsNotWantedAnyMoreStops) {
 }
 
 /// The darkest value at the upper left of an image, where only the sky is, and the title.
-float darkest_at_title(const Frame& frame) { return darkest(frame, 24, 12); }
+float darkest_at_title(const Frame& frame) { return Darkest(frame, 24, 12).value; }
 
 TEST(ViewViewer, TextIsDrawnOverEveryImage) {
   const Wish plain{{{"--samples", {"100000000"}}}};
