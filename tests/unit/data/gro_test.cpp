@@ -66,7 +66,8 @@ TEST_F(DataGro, FaultsAreNamedWithTheirLine) {
   };
   EXPECT_NE(error(kWaterFile, "0.626", "0.x26").text.find("malformed"), std::string::npos);
   EXPECT_EQ(error(kWaterFile, "0.626", "0.x26").line, 4u);
-  EXPECT_NE(error_of(kWaterFile.substr(0, kWaterFile.find("99999"))).text.find("after 2 of 3 atoms"), std::string::npos);
+  EXPECT_NE(error_of(kWaterFile.substr(0, kWaterFile.find("99999"))).text.find("after 2 of 3 atoms"),
+            std::string::npos);
   EXPECT_NE(error_of(kWaterFile.substr(0, kWaterFile.find("   2.00000"))).text.find("box"), std::string::npos);
   EXPECT_NE(error(kWaterFile, "    3\n", "    2\n").text.find("box"), std::string::npos);
   EXPECT_NE(error(kWaterFile, "    3\n", "90000000\n").text.find("truncated"), std::string::npos);

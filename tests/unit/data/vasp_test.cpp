@@ -87,7 +87,8 @@ TEST_F(DataVasp, FaultsAreNamedWithARemedy) {
   EXPECT_NE(text_of("a\n1\n" + kVectors + "Si\n1\nSpherical\n0 0 0\n").find("Direct"), std::string::npos);
   EXPECT_NE(text_of("a\n1\n" + kVectors + "Si\n2\nDirect\n0 0 0\n").find("1 of 2"), std::string::npos);
   EXPECT_NE(text_of("a\n1\n" + kVectors + "Si\n1\nDirect\n0 b 0\n").find("'b'"), std::string::npos);
-  EXPECT_NE(text_of("a\n1\n" + kVectors + "Si\n9223372036854775807\nDirect\n0 0 0\n").find("too many"), std::string::npos);
+  EXPECT_NE(text_of("a\n1\n" + kVectors + "Si\n9223372036854775807\nDirect\n0 0 0\n").find("too many"),
+            std::string::npos);
   const std::string frames = "t\n1\n" + kVectors + "Si\n1\nDirect configuration= 1\n0 0 0\n";
   EXPECT_NE(text_of(frames + "0 0 1\nDirect configuration= 2\n0 0 0\n").find("more rows"), std::string::npos);
 }
