@@ -67,6 +67,7 @@ void trace_list(const void* self, Packet& packet) {
       const std::size_t hit = scene.rods.id(rod) + (hn::AllTrue(d, entry.second_half) ? 1u : 0u);
       if (!is_visible(hit)) continue;
       if constexpr (Packet::kIsShadow) {
+        if (packet.target[i] == hit) continue;
         packet.occluded[i] = static_cast<Id>(~Id{0});
         is_occluded = true;
       } else {
