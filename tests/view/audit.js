@@ -79,11 +79,18 @@ for (const e of new Set([...texts, ...shown("input, select, textarea")])) {
 }
 
 // ---- Targets: 24 pixels, or as much room around the middle
+const middle = box => [(box.left + box.right) / 2, (box.top + box.bottom) / 2];
+const isScrolledAway = (e, box) => {
+  for (let around = e.parentElement; around; around = around.parentElement) {
+    const { top, bottom } = around.getBoundingClientRect();
+    if (getComputedStyle(around).overflowY !== "visible" && (middle(box)[1] < top || middle(box)[1] > bottom)) return true;
+  }
+  return false;
+};
 const boxes = shown(TARGETS).map(e => {
   const isCovered = getComputedStyle(e).opacity === "0";  // its label is what one sees
   return { e, box: (isCovered ? e.closest("label") : e).getBoundingClientRect() };
-}).filter(({ e, box }) => box.width > 0 && !e.matches("canvas"));  // which is under them
-const middle = box => [(box.left + box.right) / 2, (box.top + box.bottom) / 2];
+}).filter(({ e, box }) => box.width > 0 && !e.matches("canvas") && !isScrolledAway(e, box));  // a canvas is under them
 for (const { e, box } of boxes) {
   if (Math.min(box.width, box.height) >= 24 || e.matches("input[type=range], input[type=checkbox], input[type=radio]:not(.segments *)")) continue;
   const [x, y] = middle(box);
