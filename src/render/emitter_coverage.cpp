@@ -168,7 +168,7 @@ std::uint32_t free_lines(const kernel::Tracer& tracer, const Sightlines& lines) 
     packet.self[i] = line.from;
     packet.target[i] = line.target;
     packet.time[i] = static_cast<T>(line.time);
-    // Lines see what is translucent, or what is behind it.
+    // Thresholds differ, so that some lines pass translucent objects.
     packet.threshold[i] = static_cast<float>(i * 5 % kSightlines) / kSightlines;
   }
   kernel::occlude(tracer, packet);

@@ -176,7 +176,7 @@ struct Emitter {
 
 using MaterialModel = std::variant<Lambertian, Hemisphere, Metal, Dielectric, Emitter, Plastic>;
 
-/// The opacity of a material. Dielectrics have none, since a path must leave the medium that it has entered.
+/// The opacity of a material. Dielectrics have none, which counts as 1.
 inline double opacity_of(const MaterialModel& model) {
   return std::visit(
       [](const auto& m) {

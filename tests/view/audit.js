@@ -61,7 +61,7 @@ const ratio = (a, b) => {
   const [light, dark] = [luminance(a), luminance(b)].sort((x, y) => y - x);
   return (light + 0.05) / (dark + 0.05);
 };
-// What is behind an element: behind the picture's chips it may be anything, black or white at the extremes.
+// The background of an element: for chips on the picture it may be anything, black or white at the extremes.
 function backgrounds(e) {
   const { rgb, a } = parse(getComputedStyle(e).backgroundColor);
   if (a === 1) return [rgb];
