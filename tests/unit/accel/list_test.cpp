@@ -16,8 +16,10 @@ namespace {
 std::pair<std::uint64_t, double> hit_of(const Accel& accel, std::uint64_t self = kernel::kCamera) {
   kernel::RayPacket<double> packet;
   packet.count = 1;
-  for (int lane = 0; lane < kernel::kPacketSize; ++lane)
+  for (int lane = 0; lane < kernel::kPacketSize; ++lane) {
     test::set_ray(packet, lane, {0, 0, 0}, {0, 0, 0}, {0, 0, -1}, self);
+    packet.threshold[lane] = 0.5F;
+  }
   reset_hits(packet);
   kernel::trace(accel.tracer(), packet);
   return {packet.hit[0], packet.distance[0]};
