@@ -26,6 +26,7 @@
 #include "load/read_scene.h"
 #include "load/write_scene.h"
 #include "plot/plot.h"
+#include "plot/settings.h"
 #include "preview/preview.h"
 
 namespace orrery::cli {
@@ -230,8 +231,8 @@ void add_plot(Command& program) {
       "printed: the radius is that of the file, else by chemical element, else half the median distance to the nearest "
       "neighbour in the first frame; the colour is that of the file, else by chain for an assembly, for many atoms and "
       "for atoms of one element, else by element, else by type, else light grey; an orthographic camera is fitted to "
-      "the spheres of all frames; the view transform is Un-tone-mapped, or the "
-      "default view if the OpenColorIO config has none of this name; --quality is good, unless --noise, --time "
+      "the spheres of all frames; the view transform is Neutral, with exact colours Un-tone-mapped, or the "
+      "default view if the OpenColorIO config has none of these names; --quality is good, unless --noise, --time "
       "or --samples is given. docs/data.md describes data files.");
   command.footer(
       "Settings without an option are chosen from the data and printed.\n"

@@ -14,6 +14,7 @@
 #include "cli/run.h"
 #include "load/read_scene.h"
 #include "plot/plot.h"
+#include "plot/settings.h"
 #include "view/wish.h"
 
 namespace orrery::cli {

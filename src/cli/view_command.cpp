@@ -32,6 +32,7 @@
 #include "http/server.h"
 #include "info/data_info.h"
 #include "load/read_scene.h"
+#include "plot/named_columns.h"
 #include "plot/plot.h"
 #include "points/color_map.h"
 #include "view/site.h"

@@ -11,15 +11,13 @@
 
 #include "annotation/annotate.h"
 #include "base/error.h"
-#include "base/image_limits.h"
 #include "base/text.h"
-#include "display/settings.h"
-#include "load/load_images.h"
-#include "load/write_scene.h"
 #include "plot/appearance.h"
 #include "plot/data_frames.h"
+#include "plot/named_columns.h"
 #include "plot/range.h"
 #include "plot/scene_text.h"
+#include "plot/settings.h"
 #include "plot/view.h"
 #include "points/rows.h"
 #include "scene/limits.h"
@@ -35,68 +33,11 @@ using scene::number_text;
 constexpr int kDraftSamples = 8;
 constexpr double kGoodNoise = 0.1, kFinalNoise = 0.02;
 
-/// A side of the image, which the camera must know. An invalid one is reported when the scene is read.
-int side_of(const load::Overrides& overrides, const char* key, int otherwise) {
-  return static_cast<int>(std::clamp<std::int64_t>(overrides.integer(key).value_or(otherwise), 1, base::kLargestSide));
-}
-
-/// The vertical field of view of a perspective camera, which overrides can also select, by a field of view alone. An
-/// invalid one is reported when the scene is read.
-std::optional<double> vfov_of(const PlotOptions& options) {
-  const load::Overrides& overrides = options.overrides;
-  const std::optional<std::string> projection = overrides.string("camera.projection");
-  const std::optional<double> vfov = overrides.number("camera.vfov");
-  if (projection != "perspective" && (projection || !vfov)) return projection ? std::nullopt : options.vfov_deg;
-  return vfov && *vfov > 0 && *vfov < 180 ? *vfov : scene::Camera().vfov;
-}
-
 /// A colour map or a font: the name of a file in the user's folder becomes relative to the scene's; other names stay.
 std::string from_scene(const std::string& name, const std::filesystem::path& scene_file) {
   if (!scene::is_file_name(name)) return name;
   const std::filesystem::path folder = scene_file.parent_path();
   return std::filesystem::proximate(name, folder.empty() ? "." : folder).string();
-}
-
-/// The column that divides the outlines; empty: none does.
-std::string outline_column(const PlotOptions& options, const data::FrameInfo& info) {
-  const auto is_chain = [](const data::ColumnInfo& column) { return column.name == "chain"; };
-  const bool has_chains = std::any_of(info.columns.begin(), info.columns.end(), is_chain);
-  if (options.outline_by.empty() && options.style == Style::kIllustration && has_chains) return "chain";
-  return options.outline_by;
-}
-
-/// The columns of a frame that a plot may read: those with a role, and those that an option names. One too many costs
-/// memory, one too few another pass over the file.
-std::vector<std::string> expected_columns(const PlotOptions& options, data::FrameInfo info) {
-  points::add_derived_columns(info);
-  const data::Roles& roles = info.roles;
-  const scene::PointsKeys& points = options.points;
-  std::vector<std::string> texts = {
-      options.color_by,      points.color.carbon,          options.center, points.select, points.radius.column,
-      points.opacity.column, outline_column(options, info)};
-  for (const auto& list : {points.labels, points.opacity.where, points.radius.where, points.color.where,
-                           points.representation, points.cryptomatte, points.vectors.columns})
-    texts.insert(texts.end(), list.begin(), list.end());
-  const auto is_named = [&](const std::string& column) {
-    return std::any_of(texts.begin(), texts.end(),
-                       [&](const std::string& text) { return text.find(column) != std::string::npos; });
-  };
-  std::vector<std::string> wanted = {roles.id, roles.element, roles.type, roles.radius, roles.chain};
-  const auto mentions_residues = [](const std::string& text) {
-    return text.find("res") != std::string::npos || text.find("trace") != std::string::npos;
-  };
-  if (std::any_of(texts.begin(), texts.end(), mentions_residues))
-    wanted.insert(wanted.end(), {"name", "chain", "segment", "residue", "residue_number"});
-  for (const auto& triple : {roles.position, roles.rgb, points.unwrap ? roles.image : std::array<std::string, 3>()})
-    wanted.insert(wanted.end(), triple.begin(), triple.end());
-  for (const data::ColumnInfo& column : info.columns)
-    if (column.is_derived && is_named(column.name))
-      for (const std::string& source : points::sources_of(info, column.name)) wanted.push_back(source);
-  std::vector<std::string> out;
-  for (const data::ColumnInfo& column : info.columns)
-    if (!column.is_derived && (base::contains(wanted, column.name) || is_named(column.name)))
-      out.push_back(column.name);
-  return out;
 }
 
 /// "3 to 5 bonds"
@@ -134,16 +75,10 @@ class PlotMaker {
     out_.frames = data_.numbers();
     out_.up = up_;
     const scene::PointsKeys& points = out_.points;
-    for (const std::string& text :
-         {points.file.string(), points.topology.string(), options.color_by, points.color.column, points.color.map,
-          points.radius.column, points.opacity.column, points.select, points.assembly, options.center, options.fit,
-          points.color.carbon, outline_by_})
-      require_utf8(text);
-    for (const auto& list :
-         {points.opacity.where, points.labels, points.radius.where, points.color.where, points.representation})
-      for (const std::string& text : list) require_utf8(text);
-    require_utf8(options.annotation.title);
-    require_utf8(options.annotation.unit);
+    std::vector<std::string> texts = texts_with_columns(options, info_);
+    texts.insert(texts.end(), {points.file.string(), points.topology.string(), points.color.map, points.assembly,
+                               options.annotation.title, options.annotation.unit});
+    for (const std::string& text : texts) require_utf8(text);
   }
 
   /// Checks the request, see make_plot(). An error that the first two frames cause is that of all frames.
@@ -653,69 +588,10 @@ class PlotMaker {
 
 }  // namespace
 
-void require_utf8(const std::string& text) {
-  for (std::size_t at = 0, length = 1; at < text.size(); at += std::max<std::size_t>(length, 1)) {
-    length = base::printable_length(text, at);
-    if (length == 0 && static_cast<unsigned char>(text[at]) >= 0x80)
-      base::refuse(fmt::format("`{}` is not valid UTF-8, and a scene cannot name it; rename the file or the column",
-                               base::printable(text)));
-  }
-}
-
 PlotScene make_plot(const PlotOptions& options, const std::function<void(const std::vector<int>& frames)>& check) {
   PlotMaker maker(options);
   if (check) maker.check(check);
   return maker.run();
-}
-
-display::Settings display_of(const PlotOptions& options) {
-  const load::Overrides& overrides = options.overrides;
-  display::Settings out;
-  scene::Color color;
-  color.config = overrides.string("color.config").value_or("");
-  out.config = load::config_of(options.scene_file, color);
-  out.display = overrides.string("color.display").value_or("");
-  out.view = overrides.string("color.view").value_or("");
-  out.look = overrides.string("color.look").value_or("");
-  return out;
-}
-
-load::LoadedScene settings_scene(const PlotOptions& options, bool develops) {
-  load::SceneRequest request;
-  request.develops = develops;
-  request.source.file = options.scene_file;
-  request.source.text = std::make_shared<const std::string>();
-  request.source.typed_lines = 0;
-  request.source.has_file = false;
-  for (const load::Override& override : options.overrides) {
-    const std::string table = override.values.empty() ? "" : override.values.front().key;  // all keys are of one table
-    const std::string name = table.substr(0, table.find('.'));
-    if (override.fault || name == "color" || name == "image" || name == "output" || name == "render")
-      request.source.overrides.add(override);
-  }
-  return load::load_scene(request);
-}
-
-display::Settings legend_display(const PlotOptions& options, const PlotScene& made) {
-  display::Settings out = settings_scene(options, true).display;
-  out.view = made.view;
-  return out;
-}
-
-std::string saved_text(const PlotOptions& options, const PlotScene& made) {
-  load::Overrides settings;
-  for (const load::Override& override : options.overrides) {
-    const auto is_of_plot = [](const load::KeyValue& set) {  // make_plot() handles these two
-      return set.key == "image.width" || set.key == "image.height";
-    };
-    if (!std::all_of(override.values.begin(), override.values.end(), is_of_plot)) settings.add(override);
-  }
-  if (settings.empty()) return made.text;
-  const load::SceneSource source{
-      .file = "plot", .overrides = settings, .text = std::make_shared<const std::string>(made.text)};
-  load::SceneReader reader(source, load::Pose::kAuthored);
-  if (reader.has_errors()) return made.text;  // reported when the scene is rendered
-  return load::scene_text(reader.scene(), made.text.substr(2, made.text.find('\n') - 2));
 }
 
 }  // namespace orrery::plot

@@ -8,8 +8,7 @@
 #include <vector>
 
 #include "annotation/legend.h"
-#include "display/settings.h"
-#include "load/load_scene.h"
+#include "load/overrides.h"
 #include "plot/data_frames.h"
 #include "points/rules.h"
 
@@ -106,24 +105,5 @@ struct PlotScene {
 /// for
 ///            PlotOptions::center
 PlotScene make_plot(const PlotOptions& options, const std::function<void(const std::vector<int>& frames)>& check = {});
-
-/// Refuses the name of a file or a column that is not UTF-8: scenes are TOML, which is.
-void require_utf8(const std::string& text);
-
-/// The display transform that the user has set.
-display::Settings display_of(const PlotOptions& options);
-
-/// A provisional scene with only the overrides of tables that every scene has, validated.
-///
-/// `develops` see load::SceneRequest
-load::LoadedScene settings_scene(const PlotOptions& options, bool develops);
-
-/// The display transform of a plot's legend.
-///
-/// Errors     those of settings_scene()
-display::Settings legend_display(const PlotOptions& options, const PlotScene& made);
-
-/// The scene with the overrides applied, so that rendering it does not need them again.
-std::string saved_text(const PlotOptions& options, const PlotScene& made);
 
 }  // namespace orrery::plot
