@@ -45,13 +45,8 @@ if ! awk -F '[ :]' '
     /^```/ { inside = !inside }
     inside && (index($0, "-o " name ".jpg") || index($0, "-o " name ".gif")) { writes = 1 }
     END { check(); exit bad }' docs/gallery.md >&2; then status=1; fi
-# A source is tested by a file of its name. Those below consist of instances for instruction sets, which the other files
-# of their room test, or are tested through the whole: by plot_test, viewer_test, or the tests of the program.
-declare -A tested_elsewhere=()
-for name in accel/instances cli/films cli/main cli/subject \
-            denoise/instances kernel/tile plot/appearance plot/convert plot/data_frames plot/scene_text view/picker; do
-  tested_elsewhere[$name]=1
-done
+# A source is tested by a file of its name. Those below are tested through the whole: by viewer_test.
+declare -A tested_elsewhere=([view/picker]=1)
 while IFS= read -r source; do
   name=${source#src/} && name=${name%.cpp}
   files=("tests/unit/${name}_test.cpp")
