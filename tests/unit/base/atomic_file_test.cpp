@@ -136,8 +136,7 @@ TEST(BaseAtomicFile, AWriteProtectedFileIsNotReplaced) {
         AtomicFile file(folder / "a.txt");
       });
       EXPECT_EQ(error.kind(), ErrorKind::kCannotCreate);
-      EXPECT_NE(std::string(error.what()).find("a.txt: it exists and cannot be written"), std::string::npos)
-          << error.what();
+      EXPECT_NE(std::string(error.what()).find("a.txt: it exists"), std::string::npos) << error.what();
     }
   });
   EXPECT_EQ(file_bytes(folder / "a.txt"), "old");

@@ -13,6 +13,7 @@
 #include "image/header.h"
 #include "image/read.h"
 #include "image/write.h"
+#include "support/mentions.h"
 #include "support/temp_dir.h"
 #include "unit/compare/grey.h"
 
@@ -37,7 +38,7 @@ TEST(CompareFiles, ImagesWithoutFiniteValuesAreRefused) {
     FAIL();
   } catch (const base::Error& error) {
     EXPECT_EQ(error.kind(), base::ErrorKind::kBadData);
-    EXPECT_STREQ(error.what(), "nothing to compare: no value of R, G, B is finite and a hit in both images");
+    EXPECT_TRUE(test::mentions(error.what(), {"R, G, B", "finite"}));
   }
   film::Picture half_bad = grey(2, 2, 0.5f);
   half_bad.planes[0].values[0] = std::nanf("");

@@ -437,7 +437,7 @@ TEST_F(DataLammpsData, BadBondsAreRefusedWithTheirLine) {
       support::bond_faults(*open("t\n2 atoms\n1 bonds\n\nAtoms # atomic\n\n1 1 0 0 0\n1 1 0 0 0\nBonds\n\n1 1 1 2\n")),
       "11: a bond of atom 1, but several atoms have this number\n11: a bond of atom 2, which does not exist\n0: the "
       "bonds of this file are damaged\n");
-  EXPECT_NE(errors("t\n1 atoms\n-1 bonds\n\nAtoms # atomic\n\n1 1 0 0 0\n").find("3: '-1' is not a number of bonds"),
+  EXPECT_NE(errors("t\n1 atoms\n-1 bonds\n\nAtoms # atomic\n\n1 1 0 0 0\n").find("3: '-1' is not a number"),
             std::string::npos);
 }
 

@@ -8,6 +8,7 @@
 #include "data/data_file.h"
 #include "support/data_file_test.h"
 #include "support/data_tables.h"
+#include "support/mentions.h"
 #include "support/temp_dir.h"
 
 namespace orrery::data {
@@ -161,7 +162,7 @@ TEST_F(DataMmcif, MalformedAssembliesAreRefused) {
 
 TEST_F(DataMmcif, DamagedFilesAreRefusedWithTheirLine) {
   const auto binary = error_of("data_a\n" + kLoop + kCarbon + "# \x01\n" + kCarbon);
-  EXPECT_EQ(binary.text, "binary data: a byte of value 1");
+  EXPECT_TRUE(test::mentions(binary.text, {"binary", "value 1"}));
   EXPECT_GT(binary.line, 10) << "also in a comment";
   const auto number = error_of("data_a\n" + kLoop + kCarbon + "ATOM 2 C CA . ALA A 1.5 oops 0 1 0 7 X 1\n");
   EXPECT_NE(number.text.find("`oops` is not a number"), std::string::npos);

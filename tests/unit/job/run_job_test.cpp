@@ -129,9 +129,7 @@ TEST_F(JobRun, RejectsACheckpointWithOtherSumsThanItsHeaderSays) {
     image::write_sums(checkpoint, preview, {}, wrong.provenance, wrong.sums);
     const base::Error refused = error();
     EXPECT_EQ(refused.kind(), base::ErrorKind::kBadData);
-    EXPECT_NE(std::string(refused.what()).find("contains sums that do not match its header; delete it"),
-              std::string::npos)
-        << refused.what();
+    EXPECT_NE(std::string(refused.what()).find("do not match its header"), std::string::npos) << refused.what();
   }
   image::write_sums(checkpoint, preview, {}, right.provenance, right.sums);
   run_job(job_);

@@ -49,6 +49,12 @@ class LoadBackground : public testing::Test {
     return out;
   }
   using Texts = std::vector<std::string>;
+  /// Whether there is one diagnostic, with these facts.
+  static testing::AssertionResult has_one(const LoadedMap& loaded, const std::vector<std::string_view>& facts) {
+    const Texts all = texts(loaded);
+    if (all.size() != 1) return testing::AssertionFailure() << all.size() << " diagnostics";
+    return test::mentions(all[0], facts);
+  }
 
   support::TempDir folder_;
   scene::Scene scene_;
@@ -96,7 +102,7 @@ TEST_F(LoadBackground, AnUnknownDeclaredSpaceIsAWarningAndAnUnknownKeyAnError) {
   exr.color_interop_id.clear();
   exr.chromaticities = {0.1F, 0.2F, 0.3F, 0.4F, 0.5F, 0.6F, 0.7F, 0.8F};
   loaded = load(exr);
-  EXPECT_EQ(texts(loaded), Texts{"background.file: its chromaticities match no known colour space and are ignored"});
+  EXPECT_TRUE(has_one(loaded, {"background.file", "chromaticities", "ignored"}));
   exr.chromaticities.clear();
   scene_.background.color_space = "foo";
   loaded = load(exr);
@@ -132,7 +138,7 @@ TEST_F(LoadBackground, InfiniteRadianceIsTheLargestThatTheFileCanHold) {
     exr.is_half = is_half;
     const LoadedMap loaded = load(exr);
     const std::string value = is_half ? "65504; write brighter values in single precision" : "17179869184";
-    EXPECT_EQ(texts(loaded), Texts{"background.file: 1 values are infinite; they are replaced by " + value});
+    EXPECT_TRUE(has_one(loaded, {"background.file", "1", "infinite", value}));
     for (int i = 0; i < 24; ++i) EXPECT_EQ(loaded.image->row(0)[i], i != 4 ? 1 : is_half ? 65504 : 0x1p34F) << i;
   }
 }
@@ -141,7 +147,7 @@ TEST_F(LoadBackground, ValuesBeyondTheFilmAreClamped) {
   ExrFile exr = ExrFile::constant(4, 2, {1, 1, 1});
   exr.rgb[4] = 1e30F;
   const LoadedMap loaded = load(exr);
-  EXPECT_EQ(texts(loaded), Texts{"background.file: 1 values are out of range in lin_rec709 and were clamped"});
+  EXPECT_TRUE(has_one(loaded, {"background.file", "1 values", "lin_rec709", "clamped"}));
   EXPECT_EQ(loaded.image->row(0)[4], 0x1p34F);
   EXPECT_EQ(loaded.brightest, 0x1p34F);
 }
@@ -150,21 +156,19 @@ TEST_F(LoadBackground, ColoursOutsideTheWorkingSpaceAreClamped) {
   ExrFile exr = ExrFile::constant(2, 1, {0, 1, 0});
   exr.color_interop_id = "lin_ap1_scene";
   const LoadedMap loaded = load(exr);
-  EXPECT_EQ(texts(loaded), Texts{"background.file: 4 values are out of range in lin_rec709 and were clamped"});
+  EXPECT_TRUE(has_one(loaded, {"background.file", "4 values", "lin_rec709", "clamped"}));
   EXPECT_EQ(loaded.image->row(0)[0], 0);
 }
 
 TEST_F(LoadBackground, OtherProportionsAreAWarning) {
-  EXPECT_EQ(texts(load(ExrFile::constant(3, 2, {1, 1, 1}))),
-            Texts{"background.file: 3 x 2 texels; a latitude-longitude map is twice as wide as high"});
+  EXPECT_TRUE(has_one(load(ExrFile::constant(3, 2, {1, 1, 1})), {"background.file", "3 x 2", "twice as wide"}));
 }
 
 TEST_F(LoadBackground, TexelsOutsideTheDataWindowAreAWarning) {
   ExrFile exr = ExrFile::constant(2, 2, {1, 1, 1});
   exr.display_width = 4;
   const LoadedMap loaded = load(exr);
-  EXPECT_EQ(texts(loaded), Texts{"background.file: its data window does not cover its display window; the rest is "
-                                 "black"});
+  EXPECT_TRUE(has_one(loaded, {"background.file", "data window", "display window", "black"}));
   EXPECT_EQ(std::vector<float>(loaded.image->row(1), loaded.image->row(1) + 12),
             (std::vector<float>{1, 1, 1, 1, 1, 1, 0, 0, 0, 0, 0, 0}));
 }
@@ -378,7 +382,7 @@ TEST_F(LoadTextures, ATruncatedFileIsAnErrorInEveryFormat) {
 TEST_F(LoadTextures, AnUnknownFormatIsAnError) {
   support::write_bytes(folder_ / "a.webp", "RIFF");
   add("a.webp");
-  EXPECT_NE(text(load()[0]).find("a texture must be an exr, hdr, png, tiff, jpeg or ppm file"), std::string::npos);
+  EXPECT_NE(text(load()[0]).find("exr, hdr, png, tiff, jpeg or ppm"), std::string::npos);
 }
 
 TEST_F(LoadTextures, AFileIsReadOnceForAllItsUses) {

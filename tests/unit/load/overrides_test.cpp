@@ -313,14 +313,14 @@ TEST(LoadOverrides, SyntaxErrorsInListsAreReported) {
 
 TEST(LoadOverrides, ListElementsMustExist) {
   EXPECT_TRUE(test::mentions(told("sphere[2].radius=1"), {"--set", "sphere[2]", "2 `sphere`", "0"}));
-  EXPECT_EQ(told("points[0].radius=1").rfind("--set: error: the scene has no list `points`", 0), 0u);
-  EXPECT_EQ(told("camera[0].vfov=1").rfind("--set: error: the scene has no list `camera`", 0), 0u);
-  EXPECT_EQ(told("sphere[0]=1").rfind("--set: error: a list element cannot be set as a whole", 0), 0u);
+  EXPECT_TRUE(test::mentions(told("points[0].radius=1"), {"--set", "no list", "`points`"}));
+  EXPECT_TRUE(test::mentions(told("camera[0].vfov=1"), {"--set", "no list", "`camera`"}));
+  EXPECT_TRUE(test::mentions(told("sphere[0]=1"), {"--set", "list element", "whole"}));
   EXPECT_EQ(told("sphere[].radius=1").rfind("--set: error: `sphere[]` is not a list element", 0), 0u);
   EXPECT_EQ(told("sphere[-1].radius=1").rfind("--set: error: `sphere[-1]` is not a list element", 0), 0u);
   EXPECT_EQ(told("sphere[0][1].radius=1").rfind("--set: error: `sphere[0][1]` is not a list element", 0), 0u);
   EXPECT_EQ(told("sphere[99999999999999999999].radius=1").rfind("--set: error: `sphere[9", 0), 0u);
-  EXPECT_EQ(told("#sphere[0].radius=1").rfind("--set: error: the scene has no list `#sphere`", 0), 0u);
+  EXPECT_TRUE(test::mentions(told("#sphere[0].radius=1"), {"--set", "no list", "`#sphere`"}));
   EXPECT_EQ(told("].radius=1").rfind("--set: error: `]` is not a list element", 0), 0u);
   EXPECT_TRUE(test::mentions(told("sphere.radius=1"), {"--set", "`sphere`", "sphere[0].radius=2"}));
   EXPECT_TRUE(test::mentions(told("camera.vfov.x=1"), {"--set", "camera.vfov", "number"}));

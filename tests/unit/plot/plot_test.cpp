@@ -104,6 +104,12 @@ class PlotPlot : public testing::Test {
   bool chose(const std::string& choice) const {
     return std::count(made.choices.begin(), made.choices.end(), choice) == 1;
   }
+  /// Whether there is one choice "WHAT: REASON", whose reason has these facts.
+  bool chose(const std::string& what, const std::vector<std::string_view>& facts) const {
+    return std::count_if(made.choices.begin(), made.choices.end(), [&](const std::string& choice) {
+             return choice.starts_with(what + ": ") && test::mentions(choice.substr(what.size()), facts);
+           }) == 1;
+  }
   std::string choices() const {
     std::string out;
     for (const std::string& choice : made.choices) out += choice + "\n";
@@ -177,10 +183,10 @@ TEST_F(PlotPlot, TheCameraOfTheSceneSeesAllSpheres) {
 
 TEST_F(PlotPlot, RadiiOfTheFileAreKept) {
   make("a.csv", "x,y,z,diameter\n0,0,0,3\n");
-  EXPECT_TRUE(chose("radius by diameter: a column of diameters, halved")) << choices();
+  EXPECT_TRUE(chose("radius by diameter", {"halved"})) << choices();
   EXPECT_EQ(read().points[0].radii, std::vector<double>{1.5}) << "halved once, although the scene is read again";
   make("a.csv", "x,y,z,radius\n0,0,0,3\n");
-  EXPECT_TRUE(chose("radius by radius: a column of radii")) << choices();
+  EXPECT_TRUE(chose("radius by radius", {"radii"})) << choices();
   EXPECT_EQ(read().points[0].radii, std::vector<double>{3});
 }
 
@@ -188,7 +194,7 @@ TEST_F(PlotPlot, MoleculesHaveRadiiAndColorsOfTheirElements) {
   make("a.pdb",
        "ATOM      1  CA  ALA A   1       1.000   2.000   3.000  1.00  0.00           C\n"
        "ATOM      2  N   ALA B   1       4.000   5.000   6.000  1.00  0.00           N\nEND\n");
-  EXPECT_TRUE(chose("radius vdw: van der Waals radii of the elements")) << choices();
+  EXPECT_TRUE(chose("radius vdw", {"elements"})) << choices();
   EXPECT_TRUE(chose("colour by chain+element: several chains; --color-by element shows elements alone")) << choices();
   EXPECT_TRUE(test::mentions(choices(), {"view auto", "principal axes"})) << choices();
   const scene::Scene scene = read();
@@ -207,8 +213,8 @@ const std::string kMolecule = "4\n\nC 0 0 0\nC 1.5 0 0\nO 2.2 1.2 0\nH -0.6 0.9 
 TEST_F(PlotPlot, ModelsOfBallsAndSticksHaveBonds) {
   options.representation = Representation::kBallAndStick;
   make("a.xyz", kMolecule);
-  EXPECT_TRUE(chose("radius ball: a quarter of the van der Waals radii of the elements")) << choices();
-  EXPECT_TRUE(chose("3 bonds: closer than 1.2 times the sum of the covalent radii")) << choices();
+  EXPECT_TRUE(chose("radius ball", {"quarter", "elements"})) << choices();
+  EXPECT_TRUE(chose("3 bonds", {"1.2", "covalent"})) << choices();
   scene::Points points = read().points[0];
   EXPECT_EQ(points.radii[0], 0.25 * 1.70);
   EXPECT_EQ(points.bond_pairs.size(), 3u);
@@ -234,7 +240,7 @@ TEST_F(PlotPlot, SpheresHaveBondsOnRequest) {
   options.points.bonds.length = 1.45;
   make();
   EXPECT_TRUE(chose("2 bonds: closer than 1.45")) << choices();
-  EXPECT_TRUE(chose("radius vdw: van der Waals radii of the elements")) << choices();
+  EXPECT_TRUE(chose("radius vdw", {"elements"})) << choices();
   EXPECT_EQ(read().points[0].bond_pairs.size(), 2u);
 }
 
@@ -244,8 +250,7 @@ TEST_F(PlotPlot, WithoutElementsBallsHaveHalfTheRadiusOfSpheres) {
        "t\n3 atoms\n2 bonds\n0 9 xlo xhi\n0 9 ylo yhi\n0 9 zlo zhi\n\nAtoms # bond\n\n1 1 1 1 1 1\n2 1 1 2 1 1\n3 1 1 "
        "9 1 "
        "1\n\nBonds\n\n1 1 1 2\n2 1 1 3\n");
-  EXPECT_TRUE(chose("radius 0.25: half the median distance to the nearest neighbour, times 0.5 for ball-and-stick"))
-      << choices();
+  EXPECT_TRUE(chose("radius 0.25", {"half", "0.5", "ball-and-stick"})) << choices();
   EXPECT_TRUE(chose("2 bonds: those of the file")) << choices();
   const scene::Points points = read().points[0];
   EXPECT_EQ(points.bond_stubs.size(), 2u);
@@ -264,7 +269,7 @@ TEST_F(PlotPlot, BondsByDistanceFollowTheFrames) {
   options.representation = Representation::kBallAndStick;
   options.all_frames = true;
   make("a.xyz", "2\n\nC 0 0 0\nC 1.5 0 0\n2\n\nC 0 0 0\nC 2.5 0 0\n");
-  EXPECT_TRUE(chose("0 to 1 bond: closer than 1.2 times the sum of the covalent radii")) << choices();
+  EXPECT_TRUE(chose("0 to 1 bond", {"1.2", "covalent"})) << choices();
   EXPECT_EQ(read(1).points[0].bond_pairs.size(), 1u);
   EXPECT_EQ(read(2).points[0].bond_pairs.size(), 0u);
 }
@@ -278,12 +283,8 @@ TEST_F(PlotPlot, ArrowsAreAsLongAsTheirNeighborsAreFarInAllFrames) {
            std::string(velocities);
   };
   make("a.dump", frame("1 1 1 1 1 10 0 0\n2 1 3 1 1 0 0 10\n") + frame("1 1 1 1 1 90 0 0\n2 1 3 1 1 0 0 0\n"));
-  EXPECT_TRUE(
-      chose("arrows 0.24 times vx, vy, vz: the root mean square one is 1.2 times the median distance to the "
-            "nearest neighbour"))
-      << choices();
-  EXPECT_TRUE(chose("radius 0.25: half the median distance to the nearest neighbour, times 0.25 beside arrows"))
-      << choices();
+  EXPECT_TRUE(chose("arrows 0.24 times vx, vy, vz", {"root mean square", "1.2", "neighbour"})) << choices();
+  EXPECT_TRUE(chose("radius 0.25", {"half", "0.25", "arrows"})) << choices();
   const scene::Scene first = read(1), second = read(2);
   EXPECT_EQ(first.points[0].arrow_count, 2u);
   EXPECT_DOUBLE_EQ(first.points[0].rms_vector, 2.4);
@@ -300,7 +301,7 @@ TEST_F(PlotPlot, AVectorMayHaveOneName) {
     EXPECT_EQ(base::joined(read().points[0].vectors.columns, " "), columns);
   }
   options.points.vectors.columns = {"g"};
-  EXPECT_NE(error().find("--vectors g: there are no columns g[1] to g[3]"), std::string::npos) << error();
+  EXPECT_TRUE(test::mentions(error(), {"--vectors g", "g[1]", "g[3]"}));
 }
 
 TEST_F(PlotPlot, ArrowsHaveOneScaleWhateverIsSelected) {
@@ -451,13 +452,13 @@ TEST_F(PlotPlot, ElementsDifferFromTheBackground) {
 
 TEST_F(PlotPlot, ColorsOfTheFileComeFirst) {
   make("a.csv", "x,y,z,radius,type,red,green,blue\n0,0,0,1,1,255,0,0\n");
-  EXPECT_TRUE(chose("colour by rgb: the file's own; --color-by changes it")) << choices();
+  EXPECT_TRUE(chose("colour by rgb", {"own", "--color-by"})) << choices();
   EXPECT_EQ(read().points[0].palette, (std::vector<Vec3d>{{1, 0, 0}}));
 }
 
 TEST_F(PlotPlot, TypesAreCategories) {
   make("a.dump", frame("x y z radius type", {"1 0 0 1 2", "2 0 0 1 1"}));
-  EXPECT_TRUE(chose("colour by type: the file has no colours; --color-by changes it")) << choices();
+  EXPECT_TRUE(chose("colour by type", {"--color-by"})) << choices();
   const scene::Points points = read().points[0];
   EXPECT_EQ(points.color.map, "set2");
   EXPECT_EQ(points.palette, points::palette(*points::find_color_map("set2"), 2));
@@ -526,7 +527,7 @@ TEST_F(PlotPlot, OneRangeAndOneViewForAllFrames) {
                      frame("id x y z radius vx", {"2 9 0 0 1 -3", "1 0 0 0 1 2"}));
   EXPECT_EQ(made.frames, (std::vector<int>{1, 2, 3}));
   EXPECT_TRUE(chose("frames 1-3: all of the file")) << choices();
-  EXPECT_TRUE(chose("range -3:5: minimum and maximum over all frames")) << choices();
+  EXPECT_TRUE(chose("range -3:5", {"all frames"})) << choices();
   const scene::Scene second = read(2), third = read(3);
   EXPECT_EQ(second.points[0].color_range->low, -3);
   EXPECT_EQ(third.points[0].color_range->high, 5);
@@ -636,7 +637,7 @@ TEST_F(PlotPlot, TheNumberOfSpheresIsPrintedIfItIsNotThatOfTheParticles) {
   options.points.replicate = {1, 1, 1};
   options.all_frames = true;
   make();
-  EXPECT_TRUE(chose("1 to 2 spheres: the fewest and the most of all frames")) << choices();
+  EXPECT_TRUE(chose("1 to 2 spheres", {"all frames"})) << choices();
 }
 
 TEST_F(PlotPlot, RangesHaveEnoughDigits) {
@@ -664,14 +665,14 @@ TEST_F(PlotPlot, SequencesOfFiles) {
   EXPECT_NEAR(read(1).camera.look_at.x, 3, 1e-9);
   options.frames.clear();
   options.all_frames = true;
-  EXPECT_NE(error().find("--frames: `all` selects the frames of a single file"), std::string::npos) << error();
+  EXPECT_TRUE(test::mentions(error(), {"--frames", "`all`", "single file"}));
 }
 
 TEST_F(PlotPlot, TheFrameIsPrinted) {
   const std::string one = frame("x y z radius", {"0 0 0 1"});
   write("a.dump", one + one + one);
   make();
-  EXPECT_TRUE(chose("frame 1 of 3: the first; --frames all renders all of them")) << choices();
+  EXPECT_TRUE(chose("frame 1 of 3", {"--frames all"})) << choices();
   options.points.frame = 2;
   make();
   EXPECT_EQ(choices().find("frame 1"), std::string::npos) << "it was not left to the plot: " << choices();
@@ -711,13 +712,13 @@ TEST_F(PlotPlot, NothingToRenderIsAnErrorUnlessAllowed) {
     make("a.dump", text);
     return made.warnings.size() == 1 ? made.warnings[0] : std::to_string(made.warnings.size()) + " warnings";
   };
-  EXPECT_EQ(warning(none), "nothing to render: the file has no particles");
+  EXPECT_TRUE(test::mentions(warning(none), {"nothing to render", "no particles"}));
   EXPECT_EQ(warning(none + one + one), "nothing to render: frame 1 of 3 has no particles");
   options.points.frame = 2;
   EXPECT_EQ(warning(one + none), "nothing to render: frame 2 of 2 has no particles");
   options.points.frame.reset();
   options.frames = {1, 2};
-  EXPECT_EQ(warning(none + none + one), "nothing to render: none of the 2 frames has spheres");
+  EXPECT_TRUE(test::mentions(warning(none + none + one), {"nothing to render", "2 frames"}));
   options.frames.clear();
   options.points.select = "x > 5";
   EXPECT_EQ(warning(one), "nothing to render: --select leaves none of the 1 particles");
@@ -750,18 +751,6 @@ TEST_F(PlotPlot, ASelectionThatLeavesNothingIsAnError) {
   EXPECT_EQ(kind(), 65);
   options.allow_empty = true;
   EXPECT_EQ(kind(), 0);
-}
-
-TEST_F(PlotPlot, AllConditionsApply) {
-  EXPECT_EQ(all_of({}), "");
-  EXPECT_EQ(all_of({"x > 0 || y > 0"}), "x > 0 || y > 0");
-  EXPECT_EQ(all_of({"x > 0 || y > 0", "z > 0"}), "(x > 0 || y > 0) && (z > 0)");
-  try {
-    all_of({"x > 0", "z > 0) || (z < 0"});
-    ADD_FAILURE() << "each is a complete condition";
-  } catch (const base::Error& e) {
-    EXPECT_NE(std::string(e.what()).find("--select `z > 0) || (z < 0`: at character 6"), std::string::npos) << e.what();
-  }
 }
 
 TEST_F(PlotPlot, SlicesRemoveTheSideOfTheCamera) {
@@ -927,7 +916,7 @@ TEST_F(PlotPlot, ShadedStylesCompressBrightColors) {
   options.develops = true;
   make("a.csv", kCorners);
   EXPECT_EQ(read().color.view, "Neutral");
-  EXPECT_TRUE(chose("view transform Neutral: bright colours are compressed; --exact-colors keeps them"));
+  EXPECT_TRUE(chose("view transform Neutral", {"--exact-colors"}));
   options.style = Style::kFlat;
   make();
   EXPECT_EQ(read().color.view, "Un-tone-mapped");
@@ -935,7 +924,7 @@ TEST_F(PlotPlot, ShadedStylesCompressBrightColors) {
   options.exact_colors = true;
   make();
   EXPECT_EQ(read().color.view, "Un-tone-mapped");
-  EXPECT_TRUE(chose("view transform Un-tone-mapped: colours match the colour map"));
+  EXPECT_TRUE(chose("view transform Un-tone-mapped", {"match"}));
 }
 
 TEST_F(PlotPlot, ManySpheresHaveMoreLight) {
@@ -947,7 +936,7 @@ TEST_F(PlotPlot, ManySpheresHaveMoreLight) {
   for (int i = 0; i < 500; ++i) rows += std::to_string(i % 10) + "," + std::to_string(i / 10) + ",0\n";
   make("a.csv", rows);
   EXPECT_NEAR(light() / few, std::exp2(0.4), 1e-9);
-  EXPECT_TRUE(chose("light +0.4 stops: the spheres shade each other; --exact-colors omits it"));
+  EXPECT_TRUE(chose("light +0.4 stops", {"--exact-colors"}));
   options.exact_colors = true;
   make();
   EXPECT_NEAR(light(), few, 1e-9);
@@ -965,7 +954,7 @@ TEST_F(PlotPlot, MoleculesHaveADepthCue) {
        "ATOM      1  CA  ALA A   1       0.000   0.000   0.000  1.00  0.00           C\n"
        "ATOM      2  CA  ALA B   2       0.000   0.000   9.000  1.00  0.00           C\n");
   EXPECT_EQ(read().camera.depth_cue, kDepthCue);
-  EXPECT_TRUE(chose("depth cue 0.35: for molecules; --depth-cue 0 keeps the colours at the back"));
+  EXPECT_TRUE(chose("depth cue 0.35", {"molecules", "--depth-cue 0"}));
   options.slices = {{2, 5}};
   make();
   EXPECT_EQ(read().camera.depth_cue, 0) << "it would make the shade inside grey";
@@ -1013,7 +1002,7 @@ TEST_F(PlotPlot, OutlinesAreDividedByAColumn) {
   make();
   EXPECT_NEAR(read().annotation.outline, 1080.0 / 400, 0.01) << "implied";
   options.outline_by = "none";
-  EXPECT_NE(error().find("--outline-by: the file has no column `none`"), std::string::npos) << error();
+  EXPECT_TRUE(test::mentions(error(), {"--outline-by", "column `none`"}));
 }
 
 TEST_F(PlotPlot, AnIllustrationHasOutlinesBetweenChains) {
@@ -1024,7 +1013,7 @@ TEST_F(PlotPlot, AnIllustrationHasOutlinesBetweenChains) {
   EXPECT_EQ(read().camera.depth_cue, kDepthCue);
   make("a.csv", "x,y,z,chain\n0,0,0,A\n1,0,0,B\n");
   EXPECT_EQ(read().points[0].cryptomatte, std::vector<std::string>{"chain"});
-  EXPECT_TRUE(chose("outlines by chain: of the style; --outline-by changes it"));
+  EXPECT_TRUE(chose("outlines by chain", {"style", "--outline-by"}));
 }
 
 TEST_F(PlotPlot, TheGroundIsThePage) {
@@ -1107,10 +1096,10 @@ TEST_F(PlotPlot, CenterAndZoomMoveTheCamera) {
     }
   }
   options.center = "mass == 10";
-  EXPECT_EQ(error(), "--center `mass == 10` matches none of the particles that are drawn");
+  EXPECT_TRUE(test::mentions(error(), {"--center `mass == 10`", "none"}));
   options.points.select = "mass < 8";
   options.center = "mass == 8";
-  EXPECT_EQ(error(), "--center `mass == 8` matches none of the particles that are drawn");
+  EXPECT_TRUE(test::mentions(error(), {"--center `mass == 8`", "none"}));
 }
 
 /// Elements of many atoms are noise.
@@ -1154,7 +1143,7 @@ TEST_F(PlotPlot, AtomsOfOneElementAreColoredByChain) {
                        i % 2 == 0 ? 'A' : 'B', i, i * 2.0, 0.0, 0.0, element);
   };
   make("a.pdb", atom(1, 'C') + atom(2, 'C') + "END\n");
-  EXPECT_TRUE(chose("colour by chain: all atoms are of one element; --color-by element shows it")) << choices();
+  EXPECT_TRUE(chose("colour by chain", {"one element", "--color-by element"})) << choices();
   EXPECT_EQ(read().points[0].palette.size(), 2u);
   options.points.select = "element == \"C\"";  // not what is shown decides
   make("a.pdb", atom(1, 'C') + atom(2, 'O') + "END\n");
@@ -1410,7 +1399,7 @@ TEST_F(PlotPlot, WithoutLookOptionsTheirDefaultsArePrinted) {
 TEST_F(PlotPlot, OptionsOfAMapWithoutAMapAreRefused) {
   write("a.csv", kCorners);
   options.points.color.range = scene::Interval{0, 1};
-  EXPECT_EQ(error(), "--range has nothing to map: the colours are not those of a column; add --color-by COLUMN");
+  EXPECT_TRUE(test::mentions(error(), {"--range", "nothing to map", "--color-by COLUMN"}));
   options.color_by = "none";
   EXPECT_NE(error().find("--range has nothing to map"), std::string::npos) << error();
   options.points.color.range.reset();
@@ -1421,8 +1410,7 @@ TEST_F(PlotPlot, OptionsOfAMapWithoutAMapAreRefused) {
   EXPECT_EQ(error(), "no error");
   options.points.color.map = "tab10";
   options.points.color.range = scene::Interval{0, 1};
-  EXPECT_NE(error().find("--range has no effect: the map tab10 has a colour for each value"), std::string::npos)
-      << error();
+  EXPECT_TRUE(test::mentions(error(), {"--range", "no effect", "tab10"}));
   write("b.dump", frame("x y z radius type", {"0 0 0 1 2"}));
   options.color_by.clear();
   options.points.color.range.reset();
@@ -1433,9 +1421,7 @@ TEST_F(PlotPlot, OptionsOfAMapWithoutAMapAreRefused) {
 TEST_F(PlotPlot, AColorBarExplainsColors) {
   write("a.csv", kCorners);
   options.annotation.color_bar = true;
-  EXPECT_EQ(error(),
-            "--color-bar has nothing to explain: the colours are not those of a column, of types or of elements; add "
-            "--color-by COLUMN");
+  EXPECT_TRUE(test::mentions(error(), {"--color-bar", "nothing to explain", "--color-by COLUMN"}));
   options.color_by = "mass";
   EXPECT_EQ(error(), "no error");
   options.color_by = "element";
@@ -1455,19 +1441,17 @@ TEST_F(PlotPlot, DataOutsideTheRangeOfAPlotAreNamed) {
   options.points.radius.value = 1;
   options.look_from = "iso";
   const std::string far = "0,-1e17,0\n";
-  EXPECT_EQ(remedy_for(far), "use a larger unit of length, in which the spheres are within 7.8e+14");
-  EXPECT_EQ(error(),
-            "the spheres reach the coordinate 1e+17, and the lamp, ground and camera around them 1.3e+20; the largest "
-            "coordinate of a scene is 1e+18");
+  EXPECT_TRUE(test::mentions(remedy_for(far), {"larger unit", "within 7.8e+14"}));
+  EXPECT_TRUE(test::mentions(error(), {"1e+17", "lamp", "1.3e+20", "largest", "1e+18"}));
   EXPECT_EQ(remedy_for("0,-7.7e14,0\n"), "no error");
   options.style = Style::kAmbient;
   EXPECT_EQ(remedy_for(far), "no error") << "without a lamp";
   options.ground = true;
-  EXPECT_EQ(remedy_for(far), "use a larger unit of length, in which the spheres are within 2e+15");
+  EXPECT_TRUE(test::mentions(remedy_for(far), {"larger unit", "within 2e+15"}));
   EXPECT_EQ(remedy_for("0,-1.9e15,0\n"), "no error");
   options.ground = false;
   options.vfov_deg = 0.1;
-  EXPECT_EQ(remedy_for(far), "use a larger unit of length, in which the spheres are within 6.6e+15");
+  EXPECT_TRUE(test::mentions(remedy_for(far), {"larger unit", "within 6.6e+15"}));
   EXPECT_EQ(remedy_for("0,-6.5e15,0\n"), "no error");
 }
 
@@ -1513,8 +1497,7 @@ TEST_F(PlotPlot, FaultsNameTheKey) {
   EXPECT_NE(error().find("select: at character 1: unknown column mas"), std::string::npos) << error();
   options.points.select.clear();
   options.color_by = "mas";
-  EXPECT_NE(error().find("color.column: the file has no column `mas`; did you mean `mass`?"), std::string::npos)
-      << error();
+  EXPECT_TRUE(test::mentions(error(), {"color.column", "`mas`", "`mass`"}));
   options.color_by.clear();
   options.look_from = "above";
   EXPECT_NE(error().find("`above` is not a view"), std::string::npos) << error();

@@ -78,8 +78,8 @@ TEST(PlotRange, FewValuesThatUseUpTheMapAreFound) {
 TEST(PlotRange, InvalidRangesAreRefused) {
   for (const char* text : {"", "5", "1:", ":1", "1:x", "1:2:3", "lin", "log,", "nan:1", "1%:inf"})
     EXPECT_NE(error_of(text).find("is not a range; write LOW:HIGH"), std::string::npos) << text;
-  EXPECT_NE(error_of("1:1").find("the first number must be less than the second"), std::string::npos);
-  EXPECT_NE(error_of("99%:1%").find("the first number must be less than the second"), std::string::npos);
+  EXPECT_NE(error_of("1:1").find("less than the second"), std::string::npos);
+  EXPECT_NE(error_of("99%:1%").find("less than the second"), std::string::npos);
   EXPECT_NE(error_of("1%:101%").find("percentiles are from 0% to 100%"), std::string::npos);
   EXPECT_NE(error_of("-1e301:0").find("from -1e+300 to 1e+300"), std::string::npos);
   EXPECT_NE(error_of("log,0:1").find("must be above 0 with log"), std::string::npos);
