@@ -1,9 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "render/outlines.h"
 
-#include <tbb/parallel_for.h>
-#include <tbb/task_arena.h>
-
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
@@ -15,15 +12,17 @@
 #include "kernel/scene_view.h"
 #include "math/pixels.h"
 #include "math/vec3.h"
+#include "render/empty_pixels.h"
 #include "render/film_ray.h"
+#include "render/tiles.h"
 
 namespace orrery::render {
 namespace {
 
 /// Rays along each side of a pixel; even.
 constexpr int kRays = 4;
-/// Side of a tile, px.
-constexpr int kTileSide = 64;
+/// Side of a tile, px, and of the squares in which its rays are traced, rays: a packet has every second one.
+constexpr int kTileSide = 64, kSquare = 8;
 /// Depth of an edge, in radii of the object in front, in general and within a group, and in pixels.
 constexpr double kEdgeRadii = 0.25, kInnerEdgeRadii = 2, kEdgePixels = 3;
 /// Objects with a greater opacity hide the outlines behind them.
@@ -51,6 +50,7 @@ struct Edge {
 struct Grid {
   int x, y, width, height;  ///< rays; the first is at the upper left
   std::vector<Seen> seen;
+  std::vector<int> mixed;  ///< first rays of the squares of 2 x 2 rays at which there may be edges
 
   const Seen& at(int column, int row) const { return seen[math::pixel_index(column, row, width)]; }
 };
@@ -97,15 +97,27 @@ void trace_rays(const compile::CompiledScene& scene, const accel::Accel& accel, 
 /// see what the ray beside them sees.
 ///
 /// `threshold` of the rays
+/// `empty`     see find_empty_pixels()
 template <class T>
-void trace_grid(const compile::CompiledScene& scene, const accel::Accel& accel, float threshold, Grid& grid) {
-  grid.seen.resize(math::pixel_count(grid.width, grid.height));
-  const auto each_second = [&grid](const auto& f) {
-    for (int row = 0; row < grid.height; row += 2)
-      for (int column = 0; column < grid.width; column += 2) f(column, row);
+void trace_grid(const compile::CompiledScene& scene, const accel::Accel& accel, float threshold,
+                const std::vector<bool>& empty, Grid& grid) {
+  const auto each_second = [&grid](const auto& f) {  // in squares, so that the rays of a packet are close
+    for (int top = 0; top < grid.height; top += kSquare)
+      for (int left = 0; left < grid.width; left += kSquare)
+        for (int row = top; row < std::min(top + kSquare, grid.height); row += 2)
+          for (int column = left; column < std::min(left + kSquare, grid.width); column += 2) f(column, row);
+  };
+  const auto may_hit = [&](int column, int row) {
+    const int x = grid.x / kRays + column / kRays, y = grid.y / kRays + row / kRays;
+    const bool is_known = !empty.empty() && x >= 0 && y >= 0 && x < scene.width && y < scene.height;
+    return !is_known || !empty[math::pixel_index(x, y, scene.width)];
   };
   std::vector<int> rays;
-  each_second([&](int column, int row) { rays.push_back(row * grid.width + column); });
+  each_second([&](int column, int row) {
+    if (may_hit(column, row)) rays.push_back(row * grid.width + column);
+  });
+  if (rays.empty()) return;
+  grid.seen.resize(math::pixel_count(grid.width, grid.height));
   trace_rays<T>(scene, accel, threshold, rays, grid);
   rays.clear();
   each_second([&](int column, int row) {
@@ -114,6 +126,7 @@ void trace_grid(const compile::CompiledScene& scene, const accel::Accel& accel, 
     const bool is_uniform = grid.at(right, row).id == seen.id && grid.at(column, below).id == seen.id &&
                             grid.at(right, below).id == seen.id;
     const int first = row * grid.width + column;
+    if (!is_uniform) grid.mixed.push_back(first);
     for (const int ray : {first + 1, first + grid.width, first + grid.width + 1})
       if (is_uniform)
         grid.seen[static_cast<std::size_t>(ray)] = seen;
@@ -126,13 +139,15 @@ void trace_grid(const compile::CompiledScene& scene, const accel::Accel& accel, 
 class TileOutlines {
  public:
   /// `threshold` objects with a greater opacity are there
+  /// `empty`     see find_empty_pixels()
   TileOutlines(const compile::CompiledScene& scene, const accel::Accel& accel, float threshold,
-               const OutlineStyle& style)
+               const OutlineStyle& style, const std::vector<bool>& empty)
       : scene_(scene),
         view_(scene.view()),
         accel_(accel),
         threshold_(threshold),
         style_(style),
+        empty_(empty),
         reach_(style.width_px / 2 * kRays),
         border_(static_cast<int>(std::ceil(style.width_px / 2)) + 1),
         pixel_(length(scene.camera.right)) {}
@@ -143,19 +158,22 @@ class TileOutlines {
               (top - border_) * kRays,
               (right - left + 2 * border_) * kRays,
               (bottom - top + 2 * border_) * kRays,
+              {},
               {}};
     if (scene_.precision == kernel::Precision::kFast)
-      trace_grid<float>(scene_, accel_, threshold_, grid);
+      trace_grid<float>(scene_, accel_, threshold_, empty_, grid);
     else
-      trace_grid<double>(scene_, accel_, threshold_, grid);
+      trace_grid<double>(scene_, accel_, threshold_, empty_, grid);
+    if (grid.mixed.empty()) return;
     std::vector<std::uint8_t> inked(grid.seen.size());
-    for (int row = 0; row < grid.height; ++row)
-      for (int column = 0; column < grid.width; ++column) {
-        if (column + 1 < grid.width)
-          ink(grid, column + 0.5, row, edge(grid.at(column, row), grid.at(column + 1, row)), inked);
-        if (row + 1 < grid.height)
-          ink(grid, column, row + 0.5, edge(grid.at(column, row), grid.at(column, row + 1)), inked);
-      }
+    for (const int first : grid.mixed)
+      for (int row = std::max(first / grid.width - 1, 0); row <= first / grid.width + 1; ++row)
+        for (int column = std::max(first % grid.width - 1, 0); column <= first % grid.width + 1; ++column) {
+          if (column + 1 < grid.width)
+            ink(grid, column + 0.5, row, edge(grid.at(column, row), grid.at(column + 1, row)), inked);
+          if (row + 1 < grid.height)
+            ink(grid, column, row + 0.5, edge(grid.at(column, row), grid.at(column, row + 1)), inked);
+        }
     for (int y = top; y < bottom; ++y)
       for (int x = left; x < right; ++x) {
         float& pixel = coverage[math::pixel_index(x, y, scene_.width)];
@@ -214,33 +232,29 @@ class TileOutlines {
   const accel::Accel& accel_;
   float threshold_;
   const OutlineStyle& style_;
+  const std::vector<bool>& empty_;
   double reach_;  ///< half of the lines' full width, rays
   int border_;    ///< px around a tile
   double pixel_;  ///< width of a pixel, scene units; of a perspective image, at distance 1
 };
-
-/// Draws the outlines of the objects that the accelerator has over those that `coverage` has.
-void draw_outlines(const TileOutlines& tile_outlines, const compile::CompiledScene& scene, int threads,
-                   std::vector<float>& coverage) {
-  const int columns = (scene.width + kTileSide - 1) / kTileSide, rows = (scene.height + kTileSide - 1) / kTileSide;
-  tbb::task_arena arena(threads);
-  arena.execute([&] {
-    tbb::parallel_for(0, rows * columns, [&](int tile) {
-      const int left = tile % columns * kTileSide, top = tile / columns * kTileSide;
-      tile_outlines.draw(left, top, std::min(scene.width, left + kTileSide), std::min(scene.height, top + kTileSide),
-                         coverage);
-    });
-  });
-}
 
 }  // namespace
 
 std::vector<float> outlines(const compile::CompiledScene& scene, const accel::Accel& accel, const OutlineStyle& style,
                             int threads) {
   std::vector<float> coverage(math::pixel_count(scene.width, scene.height));
+  TilePool pool(threads);
+  const std::vector<bool> empty = find_empty_pixels(scene.view(), scene.width, scene.height, pool);
+  const int columns = (scene.width + kTileSide - 1) / kTileSide, rows = (scene.height + kTileSide - 1) / kTileSide;
   // Those of all objects, then those of the solid ones, which show through the others.
   for (const float threshold : {0.0f, kSolid}) {
-    draw_outlines({scene, accel, threshold, style}, scene, threads, coverage);
+    const TileOutlines tile_outlines(scene, accel, threshold, style, empty);
+    const auto draw = [&](std::size_t tile, TileWorker&) {
+      const int left = static_cast<int>(tile) % columns * kTileSide, top = static_cast<int>(tile) / columns * kTileSide;
+      tile_outlines.draw(left, top, std::min(scene.width, left + kTileSide), std::min(scene.height, top + kTileSide),
+                         coverage);
+    };
+    pool.run(static_cast<std::size_t>(rows * columns), draw, [] { return false; });
     if (!scene.features.opacity) break;
   }
   return coverage;
