@@ -43,7 +43,7 @@ constexpr double kNetworkCoordination = 2.5;
 constexpr double kBallFraction = 0.5, kStickFraction = 0.3, kStickRadius = 0.2;
 
 /// Radius of a trace that is all there is, angstrom.
-constexpr double kTraceRadius = 0.9;
+constexpr double kTraceRadius = 1.2;
 
 /// Length of arrows and radius of their shafts, in distances to the nearest neighbour; radius of spheres with arrows,
 /// as a fraction of that without.
