@@ -7,7 +7,7 @@
 #include <utility>
 
 #include <fcntl.h>
-#include <spawn.h>
+#include <sys/prctl.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
@@ -44,14 +44,15 @@ Films::Films(std::filesystem::path folder) : folder_(std::move(folder)) {
 
 Films::~Films() {
   cancel();
-  if (reader_.joinable()) reader_.join();
+  if (runner_.joinable()) runner_.join();
 }
 
 void Films::start(const std::string& command, const std::filesystem::path& file, const std::vector<std::string>& words,
                   const std::string& name) {
   const std::lock_guard lock(mutex_);
-  if (process_ != 0) base::refuse("a film is being made; cancel it, or wait until it is complete");
-  if (reader_.joinable()) reader_.join();  // it has ended
+  if (is_running_) base::refuse("a film is being made; cancel it, or wait until it is complete");
+  if (runner_.joinable()) runner_.join();  // it has ended
+  is_cancelled_ = false;
   file_ = unused(folder_, name);
   progress_ = "null";
   messages_.clear();
@@ -63,33 +64,38 @@ void Films::start(const std::string& command, const std::filesystem::path& file,
   all.insert(all.end(), {command, file.string()});
   all.insert(all.end(), words.begin(), words.end());
   all.insert(all.end(), {"-o", file_.string(), "--progress", "json"});
-  std::vector<char*> arguments;
-  for (std::string& word : all) arguments.push_back(word.data());
-  arguments.push_back(nullptr);
-  int ends[2];
-  if (pipe2(ends, O_CLOEXEC) != 0) throw base::Error(base::ErrorKind::kInternal, "no pipe for a film");
-  posix_spawn_file_actions_t actions;
-  posix_spawn_file_actions_init(&actions);
-  posix_spawn_file_actions_addopen(&actions, STDIN_FILENO, "/dev/null", O_RDONLY, 0);
-  posix_spawn_file_actions_adddup2(&actions, ends[1], STDOUT_FILENO);
-  posix_spawn_file_actions_adddup2(&actions, ends[1], STDERR_FILENO);
-  const int failure = posix_spawn(&process_, self.c_str(), &actions, nullptr, arguments.data(), environ);
-  posix_spawn_file_actions_destroy(&actions);
-  close(ends[1]);
-  if (failure != 0) {
-    close(ends[0]);
-    process_ = 0;
-    throw base::Error(base::ErrorKind::kInternal, "the command of a film cannot be started");
-  }
-  reader_ = std::thread([this, output = ends[0]] { follow(output); });
+  is_running_ = true;
+  runner_ = std::thread([this, self, all] { run(self, all); });
 }
 
-/// Reads what the command prints until it ends.
-void Films::follow(int output) {
-  std::FILE* const lines = fdopen(output, "r");
+/// Runs a command, and reads what it prints until it ends.
+void Films::run(const std::filesystem::path& program, std::vector<std::string> words) {
+  std::vector<char*> arguments;
+  for (std::string& word : words) arguments.push_back(word.data());
+  arguments.push_back(nullptr);
+  const pid_t parent = getpid();
+  int ends[2] = {-1, -1};
+  const pid_t child = pipe2(ends, O_CLOEXEC) == 0 ? fork() : -1;
+  if (child == 0) {
+    // A server that is killed cancels nothing. The signal follows the end of this thread, which waits for the command.
+    prctl(PR_SET_PDEATHSIG, SIGINT);
+    if (getppid() != parent) _exit(75);
+    dup2(open("/dev/null", O_RDONLY | O_CLOEXEC), STDIN_FILENO);
+    dup2(ends[1], STDOUT_FILENO);
+    dup2(ends[1], STDERR_FILENO);
+    execv(program.c_str(), arguments.data());
+    _exit(127);
+  }
+  close(ends[1]);
+  {
+    const std::lock_guard lock(mutex_);
+    process_ = child;
+    if (child > 0 && is_cancelled_) kill(child, SIGINT);
+  }
+  std::FILE* const lines = fdopen(ends[0], "r");
   char* line = nullptr;
   std::size_t size = 0;
-  while (lines != nullptr && getline(&line, &size, lines) > 0) {
+  while (child > 0 && lines != nullptr && getline(&line, &size, lines) > 0) {
     const nlohmann::json value = nlohmann::json::parse(line, nullptr, false);
     const std::lock_guard lock(mutex_);
     if (value.is_object() && value.contains("progress"))
@@ -101,22 +107,25 @@ void Films::follow(int output) {
   std::free(line);
   if (lines != nullptr) std::fclose(lines);
   siginfo_t ended;
-  waitid(P_PID, static_cast<id_t>(process_), &ended, WEXITED | WNOWAIT);
+  if (child > 0) waitid(P_PID, static_cast<id_t>(child), &ended, WEXITED | WNOWAIT);
   const std::lock_guard lock(mutex_);  // from here on the number may be that of another process
   int status = 0;
-  waitpid(process_, &status, 0);
+  if (child > 0) waitpid(child, &status, 0);
   process_ = 0;
-  status_ = WIFEXITED(status) ? WEXITSTATUS(status) : 128 + WTERMSIG(status);
+  is_running_ = false;
+  status_ = child <= 0 ? 1 : WIFEXITED(status) ? WEXITSTATUS(status) : 128 + WTERMSIG(status);
+  if (child <= 0 || status_ == 127) messages_.push_back("the command of a film cannot be started");
 }
 
 void Films::cancel() {
   const std::lock_guard lock(mutex_);
-  if (process_ != 0) kill(process_, SIGINT);
+  is_cancelled_ = true;
+  if (process_ > 0) kill(process_, SIGINT);
 }
 
 std::string Films::state() const {
   const std::lock_guard lock(mutex_);
-  nlohmann::json out = {{"file", file_.string()}, {"is_running", process_ != 0}, {"status", status_}};
+  nlohmann::json out = {{"file", file_.string()}, {"is_running", is_running_}, {"status", status_}};
   out["progress"] = nlohmann::json::parse(progress_, nullptr, false);
   out["messages"] = messages_;
   return out.dump(-1, ' ', false, nlohmann::json::error_handler_t::replace);

@@ -24,7 +24,7 @@ class Films {
   /// Starts `orrery COMMAND FILE WORDS... -o NAME`, where a number is inserted into the name if the folder has such a
   /// file already: no file is replaced.
   ///
-  /// Errors     base::Error: kUsage while a film is made; kInternal if no process can be started
+  /// Errors     base::Error(kUsage) while a film is made
   void start(const std::string& command, const std::filesystem::path& file, const std::vector<std::string>& words,
              const std::string& name);
   void cancel();
@@ -33,16 +33,17 @@ class Films {
   std::string state() const;
 
  private:
-  void follow(int output);
+  void run(const std::filesystem::path& program, std::vector<std::string> words);
 
   const std::filesystem::path folder_;
   mutable std::mutex mutex_;  // guards what follows
   std::filesystem::path file_;
+  bool is_running_ = false, is_cancelled_ = false;
   pid_t process_ = 0;  ///< 0: none
   int status_ = 0;
   std::string progress_ = "null";
   std::vector<std::string> messages_;
-  std::thread reader_;
+  std::thread runner_;
 };
 
 }  // namespace orrery::cli

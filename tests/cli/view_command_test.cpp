@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <fcntl.h>
 #include <signal.h>
+#include <sys/prctl.h>
 #include <unistd.h>
 
 #include <cstdlib>
@@ -337,6 +338,22 @@ TEST_F(CliView, AFilmMayNotNameFilesAndReplacesNone) {
     EXPECT_TRUE(std::filesystem::exists(folder_ / "films" / file)) << file;
   }
   EXPECT_EQ(run("view good.toml --save-to nowhere").status, 66);
+}
+
+TEST_F(CliView, AFilmStopsWithAServerThatIsKilled) {
+  std::filesystem::create_directory(folder_ / "films");
+  prctl(PR_SET_CHILD_SUBREAPER, 1);  // whose children become those of this process
+  Served view(folder_, {"good.toml", "--save-to", "films"});
+  const Json wanted = {{"options", {{"--frames", "1-2"}, {"--samples", "100000000"}}}};
+  ASSERT_EQ(view.post("/film/start", wanted).status, 200);
+  while (Json::parse(view.get("/film").body)["progress"].is_null()) {
+  }
+  EXPECT_EQ(view.end(SIGKILL), 128 + SIGKILL);
+  int status = 0;
+  waitpid(-1, &status, 0);
+  prctl(PR_SET_CHILD_SUBREAPER, 0);
+  ASSERT_TRUE(WIFEXITED(status));
+  EXPECT_EQ(WEXITSTATUS(status), 75);
 }
 
 TEST_F(CliView, TheHistogramIsThatOfTheFrame) {
