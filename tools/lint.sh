@@ -45,14 +45,13 @@ if ! awk -F '[ :]' '
     /^```/ { inside = !inside }
     inside && (index($0, "-o " name ".jpg") || index($0, "-o " name ".gif")) { writes = 1 }
     END { check(); exit bad }' docs/gallery.md >&2; then status=1; fi
-# A source is tested by a file of its name. Those below are tested through the whole: by viewer_test.
-declare -A tested_elsewhere=([view/picker]=1)
+# A source is tested by a file of its name.
 while IFS= read -r source; do
   name=${source#src/} && name=${name%.cpp}
   files=("tests/unit/${name}_test.cpp")
   case $name in cli/* | submit/*) files+=("tests/cli/${name##*/}_test.cpp" "tests/batch/${name##*/}_test.cpp") ;; esac
   tests=$(git ls-files "${files[@]}")
-  if [ -z "$tests" ] && [ -z "${tested_elsewhere[$name]:-}" ]; then
+  if [ -z "$tests" ]; then
     echo "$source: there is no ${files[0]}" >&2
     status=1
   elif [ -n "$tests" ] && [ -n "${tested_elsewhere[$name]:-}" ]; then

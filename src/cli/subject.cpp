@@ -13,6 +13,7 @@
 #include "cli/render_options.h"
 #include "cli/run.h"
 #include "load/read_scene.h"
+#include "plot/appearance.h"
 #include "plot/plot.h"
 #include "plot/settings.h"
 #include "view/wish.h"
@@ -56,8 +57,10 @@ view::Subject data_subject(ShownOptions& shown, const FilmSettings* film) {
   out.chosen["--map"] = color.map;
   if (color.range)
     out.chosen["--range"] = fmt::format("{}{}:{}", color.log ? "log," : "", color.range->low, color.range->high);
-  out.chosen["--representation"] = plot::representation_names()[static_cast<std::size_t>(
-      plot.representation.value_or(plot::Representation::kSpheres))];
+  out.chosen["--representation"] = plot::representation_names()[static_cast<std::size_t>(plot.representation.value_or(
+      plot::shows_cell(plot, made.data)                     ? plot::Representation::kBallAndStick
+      : base::contains(made.points.representation, "trace") ? plot::Representation::kTrace
+                                                            : plot::Representation::kSpheres))];
   out.chosen["--bonds"] = made.points.bonds.are_drawn ? "auto" : "none";
   out.chosen["--style"] = plot::style_names()[static_cast<std::size_t>(plot.style.value_or(plot::Style::kStudio))];
   out.chosen["--material"] = made.material;

@@ -299,7 +299,7 @@ http::Response Site::state() const {
               {"activity", state.activity},
               {"progress", state.progress},
               {"problem", state.problem},
-              {"fitted", !state.wish.camera},
+              {"fitted", state.wish.camera.empty()},
               {"up", vector_of(subject.up.value_or(math::Vec3d{0, 1, 0}))},
               {"command", controls_.command(state.words)}};
   out["camera"] = state.camera ? json_of(*state.camera) : Json();

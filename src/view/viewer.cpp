@@ -252,8 +252,9 @@ void Viewer::run() {
     std::string problem;
     try {
       if (made_options_ != wish.options) make_subject(wish, number);
-      if (wish.camera && wish.camera->projection != projection_) {  // its settings would fit another camera
-        wish.camera.reset();
+      const auto is_of_other = [other = other_size_](const std::string& setting) { return setting.starts_with(other); };
+      if (std::any_of(wish.camera.begin(), wish.camera.end(), is_of_other)) {
+        wish.camera.clear();
         correct(wish, number);
       }
       const std::vector<std::string> words = words_of(fixed_, wish);
@@ -299,7 +300,7 @@ void Viewer::make_subject(Wish& wish, std::uint64_t number) {
   if (scene.annotation.color_bar) subject.legend = {};  // it is in the image
   made_options_ = wish.options;
   is_new_subject_ = true;
-  projection_ = scene.camera.projection;
+  other_size_ = scene.camera.projection == scene::Projection::kPerspective ? "camera.width=" : "camera.vfov=";
   shading_ = scene.render.shading;
   const std::lock_guard lock(mutex_);
   state_.width = scene.image.width;
@@ -327,8 +328,7 @@ void Viewer::render(const Wish& wish, std::uint64_t number, bool is_sketch) {
     finished_ = nullptr;
   }
   job::Job job = state_.subject->job;  // the subject and its size are written by this thread only
-  if (wish.camera)
-    for (const std::string& setting : camera_settings(*wish.camera)) job.scene.overrides.add(setting);
+  for (const std::string& setting : wish.camera) job.scene.overrides.add(setting);
   Image image{{0, number, wish.client}, is_sketch, is_sketch == wish.moves, is_new_subject_};
   if (is_sketch) {
     const int width = state_.width, height = state_.height;

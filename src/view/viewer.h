@@ -156,7 +156,7 @@ class Viewer {
   // Of the rendering thread.
   bool is_new_subject_ = false;                          ///< it has not been rendered yet
   std::optional<decltype(Wish::options)> made_options_;  ///< of the subject
-  scene::Projection projection_ = {};                    ///< of the subject's own camera
+  const char* other_size_ = "";                          ///< a setting that fits another camera than the subject's
   scene::Shading shading_ = {};                          ///< of the subject
   std::shared_ptr<job::PreparedScene> prepared_;
   Picker picker_;

@@ -1,18 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "view/wish.h"
 
-#include <array>
-#include <cmath>
 #include <cstddef>
 #include <variant>
 
 #include <nlohmann/json.hpp>
 
 #include "base/error.h"
-#include "scene/limits.h"
 #include "scene/schema.h"
 #include "scene/texture.h"
-#include "scene/value_text.h"
 
 namespace orrery::view {
 namespace {
@@ -27,34 +23,6 @@ void read_option(const nlohmann::json& value, std::vector<std::string>& out) {
       base::refuse("values of `options` must be short strings, lists of them, or true");
     out.push_back(one.get<std::string>());
   }
-}
-
-std::optional<math::Vec3d> read_vector(const nlohmann::json& value) {
-  if (!value.is_array() || value.size() != 3) return {};
-  std::array<double, 3> v{};
-  for (std::size_t i = 0; i < 3; ++i) {
-    if (!value[i].is_number()) return {};
-    v[i] = value[i].get<double>();
-    if (!std::isfinite(v[i]) || std::abs(v[i]) > scene::kLargestValue) return {};
-  }
-  return math::Vec3d{v[0], v[1], v[2]};
-}
-
-std::optional<scene::Camera> read_camera(const nlohmann::json& value) {
-  if (!value.is_object()) return {};
-  const auto at = [&](const char* key) { return value.contains(key) ? value[key] : nlohmann::json(); };
-  const auto from = read_vector(at("look_from")), to = read_vector(at("look_at")), up = read_vector(at("up"));
-  const nlohmann::json perspective = at("perspective"), size = at("size");
-  if (!from || !to || !up || !perspective.is_boolean() || !size.is_number()) return {};
-  const double number = size.get<double>();
-  if (!std::isfinite(number) || number <= 0) return {};
-  scene::Camera out;
-  out.look_from = *from;
-  out.look_at = *to;
-  out.up = *up;
-  out.projection = perspective.get<bool>() ? scene::Projection::kPerspective : scene::Projection::kOrthographic;
-  (perspective.get<bool>() ? out.vfov : out.width.emplace()) = number;
-  return out;
 }
 
 std::string last_part(const std::string& key) { return key.substr(key.rfind('.') + 1); }
@@ -84,11 +52,10 @@ Wish read_wish(const std::string& json, const std::function<bool(const std::stri
   for (const auto& [key, member] : value.items()) {
     if (key == "moves" && member.is_boolean()) {
       out.moves = member.get<bool>();
-    } else if (key == "camera" && member.is_null()) {
-      continue;
-    } else if (key == "camera") {
-      out.camera = read_camera(member);
-      if (!out.camera) base::refuse("`camera` must have finite numbers");
+    } else if (key == "camera" && member.is_array()) {
+      read_option(member, out.camera);
+      for (const std::string& setting : out.camera)
+        if (!setting.starts_with("camera.")) base::refuse("`camera` must be settings of the camera");
     } else if (key == "options" && member.is_object()) {
       for (const auto& [option, setting] : member.items()) {
         if (!is_control(option)) base::refuse("`options` must be those of the page");
@@ -117,27 +84,13 @@ std::set<std::string> named_files(const load::Overrides& overrides) {
   return out;
 }
 
-std::vector<std::string> camera_settings(const scene::Camera& camera) {
-  std::vector<std::string> out = {
-      "camera.look_from=" + scene::vector_text(camera.look_from),
-      "camera.look_at=" + scene::vector_text(camera.look_at),
-      "camera.up=" + scene::vector_text(camera.up),
-  };
-  if (camera.projection == scene::Projection::kPerspective)
-    out.push_back("camera.vfov=" + scene::number_text(camera.vfov));
-  else if (camera.width)
-    out.push_back("camera.width=" + scene::number_text(*camera.width));
-  return out;
-}
-
 std::vector<std::string> words_of(const std::vector<std::string>& fixed, const Wish& wish) {
   std::vector<std::string> out = fixed;
   for (const auto& [option, values] : wish.options) {
     if (values.empty()) out.push_back(option);
     for (const std::string& value : values) out.insert(out.end(), {option, value});
   }
-  if (wish.camera)
-    for (const std::string& setting : camera_settings(*wish.camera)) out.insert(out.end(), {"--set", setting});
+  for (const std::string& setting : wish.camera) out.insert(out.end(), {"--set", setting});
   return out;
 }
 

@@ -3,13 +3,11 @@
 
 #include <functional>
 #include <map>
-#include <optional>
 #include <set>
 #include <string>
 #include <vector>
 
 #include "load/overrides.h"
-#include "scene/scene.h"
 
 namespace orrery::view {
 
@@ -17,13 +15,13 @@ namespace orrery::view {
 struct Wish {
   /// Values of controls, by option: "--color-by"; several of one that is repeated, none of a flag.
   std::map<std::string, std::vector<std::string>> options = {};
-  std::optional<scene::Camera> camera = {};  ///< empty: that of the subject
-  bool moves = false;                        ///< soon followed by another one: speed counts, not quality
-  std::string client = {};                   ///< the page that asks: each shows its own images
+  std::vector<std::string> camera = {};  ///< settings, KEY=VALUE; empty: the camera of the subject
+  bool moves = false;                    ///< soon followed by another one: speed counts, not quality
+  std::string client = {};               ///< the page that asks: each shows its own images
 };
 
 /// Reads a wish: a JSON object with `options`, `camera`, `moves` and `client`, each optional. The value of an option is
-/// a string, a list of strings, or `true` for a flag; an empty string is no value.
+/// a string, a list of strings, or `true` for a flag; an empty string is no value. `camera` is a list of strings.
 ///
 /// `is_control`  whether clients may set an option
 /// Errors        base::Error(kUsage), for anything else
@@ -31,9 +29,6 @@ Wish read_wish(const std::string& json, const std::function<bool(const std::stri
 
 /// The files that settings may name. A page may set only those that were given on the command line.
 std::set<std::string> named_files(const load::Overrides& overrides);
-
-/// The settings, KEY=VALUE, that give a scene this camera.
-std::vector<std::string> camera_settings(const scene::Camera& camera);
 
 /// The words of a command: the fixed ones, the controls, and the camera.
 std::vector<std::string> words_of(const std::vector<std::string>& fixed, const Wish& wish);

@@ -308,10 +308,8 @@ std::string fault_with_wish(const std::filesystem::path&, const std::string& byt
     words += values.empty() ? 1 : 2 * values.size();
   }
   if (view::words_of({}, {wish.options}).size() != words) return "a value without an option";
-  if (!wish.camera) return "";
-  load::Overrides overrides;
-  for (const std::string& setting : view::camera_settings(*wish.camera)) overrides.add(setting);
-  return overrides.values().size() == 4 ? "" : "a camera of other keys";
+  const auto is_of_camera = [](const std::string& setting) { return setting.starts_with("camera."); };
+  return std::all_of(wish.camera.begin(), wish.camera.end(), is_of_camera) ? "" : "a camera of other keys";
 }
 
 std::string fault_with_color_map(const std::filesystem::path& folder, const std::string& bytes) {

@@ -27,7 +27,7 @@ class Page:
 
     def wish(self, options=None, camera=None):
         """Requests an image, waits until it is complete, and returns the state of the page."""
-        number = json.loads(self.get("wish", {"options": options or {}, "camera": camera}))["wish"]
+        number = json.loads(self.get("wish", {"options": options or {}, "camera": camera or []}))["wish"]
         while True:
             state = json.loads(self.get("state"))
             if state["served"] >= number:
@@ -46,11 +46,10 @@ class View(FolderTest):
         scene = points_scene()
         with scene.view(48, 36, samples=2) as view:
             page = Page(view)
-            camera = page.wish()["camera"]
-            camera["look_from"][0] += 1
+            x, y, z = page.wish()["camera"]["look_from"]
             state = page.wish({
                 "--width": "48", "--height": "36", "--samples": "3",
-                "--set": ["background.color=[0.5, 0.6, 0.7]", "background.type=constant"]}, camera)
+                "--set": ["background.color=[0.5, 0.6, 0.7]", "background.type=constant"]}, [f"camera.look_from=[{x + 1}, {y}, {z}]"])
             self.assertEqual(state["problem"], "")
             pathlib.Path("page.exr").write_bytes(page.get("picture.exr"))
             settings = view.settings()

@@ -242,6 +242,28 @@ def click_controls(browser):
     expect("nothing" not in command_of(browser), "undo takes back what was wrong")
 
 
+def keep_legend(browser):
+    """The classes of the legend are those of its title, also while another column is read and its range is faulty."""
+    with shown(browser, "melt.dump", *FAST, "--color-by", "type"):
+        expect(browser.run("return document.getElementById('range-all').disabled"), "there is no range to leave")
+        browser.wait("return document.querySelectorAll('.class').length === 2")
+        browser.run("""
+            window.legends = new Set();
+            const legend = document.getElementById('legend');
+            new MutationObserver(() => window.legends.add(`${legend.querySelector('h2').textContent} ${legend.querySelectorAll('.class').length}`))
+              .observe(legend, { childList: true });
+            for (const [id, value] of [['columns', 'id'], ['range', '1:']]) {
+              document.getElementById(id).value = value;
+              document.getElementById(id).dispatchEvent(new Event('change'));
+            }""")
+        settle(browser, problem="range")
+        browser.run("document.getElementById('range-all').click()")
+        wait_for_command(browser, "--color-by id")
+        browser.wait("return document.querySelector('#legend h2').textContent === 'id'")
+        wrong = [one for one in browser.run("return [...window.legends]") if one.startswith("type") and one != "type 2"]
+        expect(not wrong, f"the legend has shown {wrong}")
+
+
 def walk_at_random(browser):
     """A random walk through the controls: the picture is that of the command, and undo goes all the way back."""
     with shown(browser, "melt.dump", *FAST):
@@ -613,7 +635,7 @@ def view_scene(browser):
 
 
 WALKS = {
-    "controls": use_controls, "random": walk_at_random, "tasks": do_tasks, "dark": never_black, "tabs": use_tabs, "audit": audit,
+    "controls": use_controls, "legend": keep_legend, "random": walk_at_random, "tasks": do_tasks, "dark": never_black, "tabs": use_tabs, "audit": audit,
     "scene": view_scene, "hostile": view_hostile, "damaged": view_damaged, "window": fill_window,
 }
 browser, failed = Browser(), []

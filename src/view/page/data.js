@@ -67,7 +67,7 @@ function listColumns() {
       ...columns().filter(([name]) => !["element", "type"].includes(name)).map(([name, type]) => entry(name, `${name}   ${kindOf(type)}`)), entry("*", "expression ..."));
   }
   const value = option("--color-by"), title = state?.legend.title;
-  list.options[0].textContent = title && !value ? `${title}, chosen from the data` : "chosen from the data";
+  list.options[0].textContent = title && !value ? `automatic: ${title}` : "automatic";
   if (document.activeElement === field) return;
   field.hidden = [...list.options].some(one => one.value === value);
   list.value = field.hidden ? value : "*";
@@ -125,9 +125,12 @@ function makeHistogram() {
     draggable(handle, { drag, step: by => to(share(ends[i]) + 0.02 * by, false) });
   });
   log.onchange = () => set({ "--range": log.checked ? "log" : "" });
+  $("range-all").onclick = () => set({ "--range": isLog() ? "log" : "" });
   const show = () => {
     const { range, bar } = state?.legend ?? {};
     log.checked = isLog();
+    $("range-all").disabled = !option("--range") || option("--range") === "log";
+    log.closest(".row").hidden = !state?.chosen["--range"] && !option("--range");
     box.hidden = !known?.bins || !range || !(known.high > known.low) || (isLog() && !(known.low > 0));
     if (box.hidden) return;
     const typed = option("--range").match(/^(?:log,)?(-?[\d.e+-]+):(-?[\d.e+-]+)$/);

@@ -47,7 +47,7 @@ const GROUPS = [["Materials", /^material\./], ["Light and background", /^(backgr
 
 let isListed = false;
 async function listObjects() {
-  if (isListed || !state?.served || command("--color-by")) return;
+  if (isListed || !state?.camera || command("--color-by")) return;
   isListed = true;
   const answer = await own("scene.toml?brief");
   if (!answer?.ok) return;

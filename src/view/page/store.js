@@ -96,6 +96,16 @@ export async function own(path) {
 // What is asked for, without what the page keeps for itself.
 export const wanted = () => ({ options: view.options, camera: view.camera });
 
+// The settings that give a scene this camera.
+function settingsOf(camera) {
+  if (!camera) return [];
+  const vectors = ["look_from", "look_at", "up"].map(key => `camera.${key}=[${camera[key].join(", ")}]`);
+  return [...vectors, `camera.${camera.perspective ? "vfov" : "width"}=${camera.size}`];
+}
+
+// A wish as the program reads it.
+export const asked = ({ camera, ...rest }) => ({ ...rest, camera: settingsOf(camera) });
+
 // Sends what the client wants to see. While a wish is under way, only the last one waits. Returns its number.
 export async function wish(moves, changes = {}) {
   next = { ...wanted(), ...changes, moves, client };
@@ -106,7 +116,7 @@ export async function wish(moves, changes = {}) {
   while (next) {
     const body = next;
     next = null;
-    const answer = await ask("wish", body);
+    const answer = await ask("wish", asked(body));
     if (answer) {
       lastWish = answer.wish;
       if (!next) emit("command", answer.command);
@@ -172,8 +182,8 @@ let settling = 0;
 function sketch(isHeld) {
   clearTimeout(settling);
   if (!isHeld) settling = setTimeout(() => changed(false), SETTLED_ms);
+  wish(true);  // first: what the program knows is not about the new view
   emit("view");
-  wish(true);
 }
 
 // Shows another camera; null: that of the data.
@@ -194,8 +204,8 @@ export function release() {
 function changed(moves) {
   clearTimeout(settling);
   if (!moves) record();
-  emit("view");
   wish(moves);
+  emit("view");
 }
 
 // Whether the scene of the last change has been read.

@@ -5,7 +5,7 @@ import { makeDataControls } from "./data.js";
 import { fit, cameraKey, canvas, lookAlong } from "./picture.js";
 import { clearPicks, hidePicked } from "./picks.js";
 import { makePanel } from "./panel.js";
-import { $, ask, canStep, command, current, element, isSettled, on, onImage, onUpdate, option, own, page, problem, resize, restore, start, state, textOf,
+import { $, ask, asked, canStep, command, current, element, isSettled, on, onImage, onUpdate, option, own, page, problem, resize, restore, start, state, textOf,
          undo, UNREACHABLE, view, wanted } from "./store.js";
 import { copy, dismiss, toast } from "./toasts.js";
 import * as time from "./time.js";
@@ -115,7 +115,7 @@ function filmWish() {
 
 async function makeFilm() {
   isFilmCancelled = false;
-  const answer = await ask(page.saves ? "film/start" : "film/command", filmWish());
+  const answer = await ask(page.saves ? "film/start" : "film/command", asked(filmWish()));
   if (answer && page.saves) followFilm();
   else if (answer) copy(answer.command, "the command that makes this film");
 }

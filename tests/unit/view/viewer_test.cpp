@@ -5,23 +5,17 @@
 #include <malloc.h>
 
 #include <algorithm>
-#include <atomic>
 #include <chrono>
 #include <filesystem>
-#include <fstream>
-#include <optional>
-#include <stdexcept>
 #include <string>
-#include <thread>
-#include <utility>
 #include <vector>
 
-#include "base/error.h"
 #include "base/stop_point.h"
 #include "film/picture.h"
 #include "image/read.h"
 #include "job/run_job.h"
 #include "support/peak_memory.h"
+#include "support/small_view.h"
 #include "support/temp_dir.h"
 
 namespace orrery::view {
@@ -29,56 +23,8 @@ namespace {
 
 using namespace std::chrono_literals;
 
-constexpr const char* kScene = R"(
-[image]
-width = 64
-height = 48
-[render]
-samples = 4
-[camera]
-look_from = [0, 0, 3]
-look_at = [0, 0, 0]
-[material.grey]
-type = "lambertian"
-albedo = [0.5, 0.5, 0.5]
-[[sphere]]
-center = [0, 0, 0]
-radius = 1
-material = "grey"
-)";
-
-/// The words are --set KEY=VALUE and --samples N.
-Subject subject_of(const std::vector<std::string>& words) {
-  Subject out;
-  out.job.scene.file = "scene.toml";
-  out.job.scene.text = std::make_shared<const std::string>(kScene);
-  out.job.scene.has_file = false;
-  for (std::size_t i = 0; i + 1 < words.size(); i += 2) {
-    if (words[i] == "--set")
-      out.job.scene.overrides.add(words[i + 1]);
-    else if (words[i] == "--samples")
-      out.job.scene.overrides.add_option("--samples", "render.samples", words[i + 1]);
-    else
-      base::refuse("unknown option " + words[i]);
-  }
-  return out;
-}
-
-scene::Camera camera_at(double x) {
-  scene::Camera out;
-  out.look_from = {x, 0, 3};
-  out.look_at = {0, 0, 0};
-  return out;
-}
-
-/// Waits for the finished image of the last wish, which differs from that of number `after`.
-Frame finished(Viewer& viewer, std::uint64_t after = 0) {
-  for (;;) {
-    Frame frame = viewer.frame(after, 60s);
-    if (frame.number <= after) throw std::runtime_error("no image within a minute; " + viewer.state().problem);
-    if (frame.is_finished) return frame;
-    after = frame.number;
-  }
+std::vector<std::string> camera_at(double x) {
+  return {"camera.look_from=[" + std::to_string(x) + ", 0, 3]", "camera.look_at=[0, 0, 0]"};
 }
 
 film::Picture rendered(const std::vector<std::string>& words) {
@@ -168,13 +114,12 @@ TEST(ViewViewer, ACameraOfAnotherKindThanTheScenesIsIgnored) {
   Viewer viewer(subject_of, {}, {});
   Wish wish;
   wish.camera = camera_at(1);
-  wish.camera->projection = scene::Projection::kOrthographic;
-  wish.camera->width = 5;
+  wish.camera.push_back("camera.width=5");
   const std::uint64_t number = viewer.ask(wish);
   while (viewer.state().served < number) viewer.frame(1000000, 10ms);
-  EXPECT_FALSE(viewer.state().wish.camera);
+  EXPECT_TRUE(viewer.state().wish.camera.empty());
   EXPECT_EQ(viewer.state().words, std::vector<std::string>());
-  EXPECT_EQ(viewer.state().camera->look_from, scene::Camera(camera_at(0)).look_from);
+  EXPECT_EQ(viewer.state().camera->look_from, (math::Vec3d{0, 0, 3}));
 }
 
 TEST(ViewViewer, AReadThatIsNotWantedAnyMoreStops) {
@@ -262,119 +207,6 @@ TEST(ViewViewer, AWishIsStoppedOnRequest) {
   EXPECT_EQ(viewer.state().problem, "");
 }
 
-TEST(ViewViewer, TheBoundsAreThoseOfTheCenters) {
-  Viewer viewer(subject_of, {}, {{{"--set", {"sphere[0].center=[1, 2, 3]"}}}});
-  finished(viewer);
-  const auto bounds = viewer.state().bounds;
-  ASSERT_TRUE(bounds);
-  EXPECT_EQ((*bounds)[0], (math::Vec3d{1, 2, 3}));
-  EXPECT_EQ((*bounds)[1], (math::Vec3d{1, 2, 3}));
-}
-
-TEST(ViewViewer, ASphereIsPicked) {
-  Viewer viewer(subject_of, {}, {});
-  finished(viewer);
-  const std::optional<Picked> picked = viewer.pick(0.5, 0.5);
-  ASSERT_TRUE(picked);
-  EXPECT_EQ(picked->title, "sphere[0]");
-  EXPECT_EQ(picked->center, (math::Vec3d{0, 0, 0}));
-  EXPECT_EQ(picked->radius, 1);
-  EXPECT_EQ(picked->values, (std::vector<std::pair<std::string, std::string>>{{"material", "grey"}}));
-  EXPECT_FALSE(viewer.pick(0, 0)) << "the background";
-}
-
-TEST(ViewViewer, PicksMayComeAtAnyTime) {
-  Viewer viewer(subject_of, {}, {});
-  std::atomic<bool> ends{false};
-  std::thread client([&] {
-    while (!ends) {
-      const std::optional<Picked> picked = viewer.pick(0.5, 0.5);
-      EXPECT_EQ(picked ? picked->title : "sphere[0]", "sphere[0]");
-    }
-  });
-  for (int i = 0; i < 30; ++i) {  // other spheres, thus another BVH
-    Wish wish;
-    wish.options["--set"] = {"sphere[0].radius=" + std::to_string(1 + 0.01 * i)};
-    const std::uint64_t number = viewer.ask(wish);
-    while (viewer.state().served < number) viewer.frame(1000000, 1ms);
-    EXPECT_EQ(viewer.state().problem, "");
-  }
-  ends = true;
-  client.join();
-}
-
-TEST(ViewViewer, ARodIsPicked) {
-  const auto make = [](const std::vector<std::string>& words) {
-    Subject out = subject_of(words);
-    out.job.scene.text = std::make_shared<const std::string>(
-        std::string(kScene) +
-        "[[rod]]\nfrom = [-1, 0, 1.5]\nto = [1, 1, 1.5]\nradius = 0.3\nmaterial = \"grey\"\nname = \"bond\"\n");
-    return out;
-  };
-  Viewer viewer(make, {}, {});
-  finished(viewer);
-  ASSERT_EQ(viewer.state().problem, "");
-  const std::optional<Picked> picked = viewer.pick(0.5, 0.4);
-  ASSERT_TRUE(picked);
-  EXPECT_EQ(picked->title, "rod[0]");
-  EXPECT_EQ(picked->center, (math::Vec3d{0, 0.5, 1.5}));
-  EXPECT_EQ(picked->radius, 0.3);
-  const std::vector<std::pair<std::string, std::string>> values = {{"name", "bond"},
-                                                                   {"ends", "[-1, 0, 1.5], [1, 1, 1.5]"}};
-  EXPECT_EQ(picked->values, values);
-}
-
-TEST(ViewViewer, APickedBondTellsItsTwoParticles) {
-  const std::filesystem::path file = testing::TempDir() + "view_bonds.xyz";
-  std::ofstream(file) << "4\n\nHe 9 9 0\nC -2 0 0\nC 2 0 0\nO 2 3 0\n";
-  const auto make = [&](const std::vector<std::string>& words) {
-    Subject out = subject_of(words);
-    out.job.scene.file = file.parent_path() / "scene.toml";
-    out.job.scene.text = std::make_shared<const std::string>(
-        std::string(kScene).substr(0, std::string(kScene).find("[[sphere]]")) +
-        "[[rod]]\nfrom = [9, 9, 9]\nto = [9, 9, 9]\nradius = 1\nmaterial = \"grey\"\n[[points]]\nfile = \"" +
-        file.filename().string() +
-        "\"\nmaterial = \"grey\"\nradius = 0.5\nbonds = { length = 4.5, radius = 0.3 }\nselect = \"element != "
-        "'He'\"\n");
-    return out;
-  };
-  Viewer viewer(make, {}, {});
-  finished(viewer);
-  const std::optional<Picked> picked = viewer.pick(0.5, 0.5);
-  ASSERT_TRUE(picked) << viewer.state().problem;
-  EXPECT_EQ(picked->title, "bond of rows 2 and 3 of view_bonds.xyz");
-  EXPECT_EQ(picked->radius, 0.3);
-  ASSERT_GE(picked->values.size(), 2u);
-  EXPECT_EQ(picked->values[0], (std::pair<std::string, std::string>{"element", "C, C"}));
-  EXPECT_EQ(picked->values[1], (std::pair<std::string, std::string>{"x", "-2, 2"}));
-}
-
-TEST(ViewViewer, APickedParticleHasTheColumnsOfItsRow) {
-  const std::filesystem::path file = testing::TempDir() + "view_particles.xyz";
-  std::ofstream(file) << "3\nProperties=species:S:1:pos:R:3:charge:R:1\n"
-                         "He -2 0 0 0.1\nNe 0 0 0 -0.25\nAr 2 0 0 0.3\n";
-  const auto make = [&](const std::vector<std::string>& words) {
-    Subject out = subject_of(words);
-    out.job.scene.file = file.parent_path() / "scene.toml";
-    out.job.scene.text = std::make_shared<const std::string>(
-        std::string(kScene).substr(0, std::string(kScene).find("[[sphere]]")) + "[[points]]\nfile = \"" +
-        file.filename().string() + "\"\nmaterial = \"grey\"\nradius = 0.5\nselect = \"species != 'He'\"\n");
-    return out;
-  };
-  Viewer viewer(make, {}, {});
-  finished(viewer);
-  const std::optional<Picked> picked = viewer.pick(0.5, 0.5);
-  ASSERT_TRUE(picked) << viewer.state().problem;
-  EXPECT_EQ(picked->title, "row 2 of view_particles.xyz");
-  EXPECT_EQ(picked->center, (math::Vec3d{0, 0, 0}));
-  const std::vector<std::pair<std::string, std::string>> values = {
-      {"species", "Ne"}, {"x", "0"}, {"y", "0"}, {"z", "0"}, {"charge", "-0.25"}};
-  EXPECT_EQ(picked->values, values);
-  // The file is not needed again while nothing but the camera changes.
-  std::filesystem::remove(file);
-  EXPECT_TRUE(viewer.pick(0.5, 0.5));
-}
-
 TEST(ViewViewer, ARenderThatIsNotWantedAnyMoreStops) {
   Viewer viewer(subject_of, {}, Wish{{{"--samples", {"100000000"}}}});
   const Frame live = viewer.frame(0, 60s);
@@ -421,15 +253,20 @@ TEST(ViewViewerMemory, DoesNotGrowWithMoves) {
       if (i % 10 == 0) frame = viewer.frame(frame.number, 60s);
     }
   };
-  // The allocator keeps freed memory, on a busy machine of more threads.
   const auto used = [] {
     malloc_trim(0);
     return support::resident_memory();
   };
   move(1000);
-  const std::uint64_t before = used();
-  move(10000);
-  EXPECT_LT(used(), before + (8u << 20));
+  // The allocator keeps freed memory for each thread, of which a busy machine has more. That ends; a leak does not.
+  constexpr int kRounds = 8;
+  std::vector<std::uint64_t> sizes = {used()};
+  for (int round = 0; round < kRounds; ++round) {
+    move(10000);
+    sizes.push_back(used());
+    if (sizes[sizes.size() - 1] < sizes[sizes.size() - 2] + (1u << 20)) return;
+  }
+  ADD_FAILURE() << "it grows in each of " << kRounds << " rounds, to " << testing::PrintToString(sizes) << " bytes";
 }
 
 }  // namespace
