@@ -202,40 +202,6 @@ void set_opacity(const scene::Scene& scene, CompiledScene& compiled) {
   compiled.features.opacity = !compiled.opacity.empty();
 }
 
-/// Sets the motion of [[sphere]] tables from shutter open to shutter close.
-void set_sphere_motion(const scene::Scene& opening, const scene::Scene* closing, CompiledScene& compiled) {
-  compiled.motion.clear();
-  if (closing == nullptr) return;
-  for (std::size_t i = opening.spheres.size(); i-- > 0;) {
-    const scene::Sphere &from = opening.spheres[i], &to = closing->spheres[i];
-    const Vec3d displacement = to.center - from.center;
-    const kernel::Sphere change{displacement.x, displacement.y, displacement.z,
-                                std::abs(to.radius) - std::abs(from.radius)};
-    const bool rests = change.x == 0 && change.y == 0 && change.z == 0 && change.radius == 0;
-    if (compiled.motion.empty() && !rests) compiled.motion.resize(i + 1, kernel::Sphere{0, 0, 0, 0});
-    if (!rests) compiled.motion[i] = change;
-  }
-}
-
-/// Sets the motion of rods from shutter open to shutter close. The ends are ordered as they are when it opens.
-void set_rod_motion(const scene::Scene& opening, const scene::Scene* closing, CompiledScene& compiled) {
-  compiled.rod_motion.clear();
-  if (closing == nullptr) return;
-  for (std::size_t i = opening.rods.size(); i-- > 0;) {
-    const scene::Rod &from = opening.rods[i], &to = closing->rods[i];
-    const Vec3d of_from = to.from - from.from, of_to = to.to - from.to;
-    const bool reversed = is_reversed(from.from, from.to);
-    kernel::Rod change;
-    set(change.a, reversed ? of_to : of_from);
-    set(change.b, reversed ? of_from : of_to);
-    change.radius = to.radius - from.radius;
-    const bool rests = of_from == Vec3d{0, 0, 0} && of_to == Vec3d{0, 0, 0} && change.radius == 0;
-    if (compiled.rod_motion.empty() && !rests)
-      compiled.rod_motion.resize(i + 1, kernel::Rod{{0, 0, 0}, 0, {0, 0, 0}, 0});
-    if (!rests) compiled.rod_motion[i] = change;
-  }
-}
-
 /// Sets the camera, and its motion from shutter open to shutter close.
 void set_camera(const scene::Scene& opening, const scene::Scene* closing, CompiledScene& compiled) {
   kernel::Features& features = compiled.features;
@@ -379,8 +345,12 @@ void update_parts(const scene::Scene& scene, const scene::Scene* closing, scene:
     compiled.accelerator = compiled.precision == Precision::kBook ? Accelerator::kList : scene.render.accelerator;
     set_rods(scene, compiled);
     set_spheres(scene, on_copied, compiled);
-    set_sphere_motion(scene, closing, compiled);
-    set_rod_motion(scene, closing, compiled);
+    compiled.motion.clear();
+    compiled.rod_motion.clear();
+    if (closing != nullptr) {
+      compiled.motion = sphere_motion(scene, *closing);
+      compiled.rod_motion = rod_motion(scene, *closing);
+    }
     compiled.features.rods = compiled.rod_count() > 0;
   }
   if (changed.geometry || changed.assignment) {
@@ -401,6 +371,37 @@ void update_parts(const scene::Scene& scene, const scene::Scene* closing, scene:
 }
 
 }  // namespace
+
+std::vector<kernel::Sphere> sphere_motion(const scene::Scene& scene, const scene::Scene& other) {
+  std::vector<kernel::Sphere> out;
+  for (std::size_t i = scene.spheres.size(); i-- > 0;) {
+    const scene::Sphere &from = scene.spheres[i], &to = other.spheres[i];
+    const Vec3d displacement = to.center - from.center;
+    const kernel::Sphere change{displacement.x, displacement.y, displacement.z,
+                                std::abs(to.radius) - std::abs(from.radius)};
+    const bool rests = change.x == 0 && change.y == 0 && change.z == 0 && change.radius == 0;
+    if (out.empty() && !rests) out.resize(i + 1, kernel::Sphere{0, 0, 0, 0});
+    if (!rests) out[i] = change;
+  }
+  return out;
+}
+
+std::vector<kernel::Rod> rod_motion(const scene::Scene& scene, const scene::Scene& other) {
+  std::vector<kernel::Rod> out;
+  for (std::size_t i = scene.rods.size(); i-- > 0;) {
+    const scene::Rod &from = scene.rods[i], &to = other.rods[i];
+    const Vec3d of_from = to.from - from.from, of_to = to.to - from.to;
+    const bool reversed = is_reversed(from.from, from.to);
+    kernel::Rod change;
+    set(change.a, reversed ? of_to : of_from);
+    set(change.b, reversed ? of_from : of_to);
+    change.radius = to.radius - from.radius;
+    const bool rests = of_from == Vec3d{0, 0, 0} && of_to == Vec3d{0, 0, 0} && change.radius == 0;
+    if (out.empty() && !rests) out.resize(i + 1, kernel::Rod{{0, 0, 0}, 0, {0, 0, 0}, 0});
+    if (!rests) out[i] = change;
+  }
+  return out;
+}
 
 kernel::SceneView CompiledScene::view() const noexcept {
   kernel::SceneView v;

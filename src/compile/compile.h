@@ -1,7 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <vector>
+
 #include "compile/forward.h"
+#include "kernel/rod.h"
+#include "kernel/sphere.h"
 #include "scene/changed_parts.h"
 #include "scene/scene.h"
 
@@ -29,6 +33,14 @@ void update(const scene::Scene& scene, const scene::Scene* closing, scene::Parts
 /// them. Those of `scene` are indeterminate from then on.
 void update_and_release(scene::Scene& scene, const scene::Scene* closing, scene::Parts changed,
                         CompiledScene& compiled);
+
+/// The change of the spheres of [[sphere]] tables, up to the last that moves.
+///
+/// `other`    the scene at another time
+std::vector<kernel::Sphere> sphere_motion(const scene::Scene& scene, const scene::Scene& other);
+
+/// The same of the rods of [[rod]] tables, with ends in the order of those of `scene`.
+std::vector<kernel::Rod> rod_motion(const scene::Scene& scene, const scene::Scene& other);
 
 /// Builds the light tree and the list of caustics, if the scene samples its lights. Needed after a change of
 /// `precision`, since other spheres may coincide in another number type, of `direct_lighting` and `samples_caustics`.

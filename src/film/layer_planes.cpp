@@ -122,6 +122,10 @@ class PlaneList {
     };
     if (r_.object_id) nearest("object_id", "X", object, 0);
     if (r_.material_id) nearest("material_id", "X", material, 0);
+    if (r_.vector)
+      add("Vector", "XYZW", kData, [&r = r_, &view = view_, &sums = sums_](std::size_t i, float* v) {
+        write_motion_vector(r.neighbors, view, sums, i, v);
+      });
     if (r_.guide_albedo) add_guide("denoise.albedo", "RGB", kLight, &kernel::GuideSum::albedo);
     if (r_.guide_normal) add_guide("denoise.normal", "XYZ", kVector, &kernel::GuideSum::normal);
     if (r_.halves) add_halves();

@@ -146,7 +146,7 @@ LayerSums::LayerSums(const LayerRequest& request, std::size_t pixels)
       hit(request.nearest() ? pixels : 0),
       depth(hit.size()),
       z(request.z ? pixels : 0),
-      position(request.position ? pixels : 0),
+      position(request.position || request.vector ? pixels : 0),
       shares(request.deep || !request.mattes.empty() ? pixels : 0) {}
 
 void LayerSums::add(const LayerRequest& request, const kernel::SceneView& scene, std::size_t pixel,
@@ -183,7 +183,7 @@ void LayerSums::add(const LayerRequest& request, const kernel::SceneView& scene,
   hit[pixel] = path.object + 1;
   depth[pixel] = at.distance;
   if (request.z) z[pixel] = static_cast<float>(at.z);
-  if (!request.position) return;
+  if (position.empty()) return;
   const Vec3d p = base_of(scene, path.object, path.time) + path.offset;
   position[pixel] = {static_cast<float>(p.x), static_cast<float>(p.y), static_cast<float>(p.z)};
 }

@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "base/huge_pages.h"
+#include "film/motion_vectors.h"
 #include "kernel/path_record.h"
 
 namespace orrery::film {
@@ -52,7 +53,7 @@ struct LayerRequest {
   bool z = false, depth = false, normal = false, position = false, albedo = false;
   bool diffuse = false, specular = false, transmission = false, background = false, emission = false;
   bool light_groups = false;
-  bool variance = false, samples = false, object_id = false, material_id = false;
+  bool variance = false, samples = false, object_id = false, material_id = false, vector = false;
   bool guide_albedo = false, guide_normal = false;
   bool halves = false;       ///< beauty and guides of two halves of the samples, for denoising
   bool coverage = false;     ///< the fraction of the pixel that is not background, for display or as A
@@ -63,6 +64,7 @@ struct LayerRequest {
   std::vector<LightGroup> groups;               ///< light groups of the scene, indexed by kernel::LightEvent::group
   std::vector<Matte> mattes;
   std::shared_ptr<const MatteClasses> matte_classes;  ///< null without mattes
+  NeighborFrames neighbors;                           ///< for `vector`
 
   /// The id of a sphere in a matte of this request.
   std::uint32_t matte_id(const Matte& matte, std::uint32_t sphere) const {
@@ -127,6 +129,7 @@ inline constexpr LayerType kLayerTypes[] = {
     {"samples", &LayerRequest::samples, LayerSource::kPaths},
     {"object_id", &LayerRequest::object_id, LayerSource::kNearest},
     {"material_id", &LayerRequest::material_id, LayerSource::kNearest},
+    {"Vector", &LayerRequest::vector, LayerSource::kNearest},
     {"denoise.albedo", &LayerRequest::guide_albedo, LayerSource::kGuide},
     {"denoise.normal", &LayerRequest::guide_normal, LayerSource::kGuide},
     {"halves", &LayerRequest::halves, LayerSource::kHalves},

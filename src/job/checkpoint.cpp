@@ -28,6 +28,14 @@
 namespace orrery::job {
 namespace {
 
+/// The hash of what has moved in the frames before and after.
+std::string text_of(const film::NeighborFrames& neighbors) {
+  base::Hash hash;
+  for (const auto& frame : neighbors)
+    if (frame != nullptr) add_motion(hash, frame->sphere_motion, frame->rod_motion, frame->camera);
+  return hash.text();
+}
+
 /// Channels of all layers, and everything that they depend on in addition to the scene hash.
 std::string layers_text(const Layers& layers) {
   std::string out;
@@ -37,6 +45,7 @@ std::string layers_text(const Layers& layers) {
   if (layers.request.halves) out += out.empty() ? "halves, as for --denoise" : " halves, as for --denoise";
   if (layers.request.coverage) out += " coverage";
   if (layers.request.deep) out += " deep";
+  if (layers.request.vector) out += " " + text_of(layers.request.neighbors);
   for (const MatteNames& matte : layers.mattes)
     for (const auto& [name, id] : matte.things) out += fmt::format(" {:08x}", id);
   // A hash replaces the rest of a long list, such as that of a matte with ten thousand names.

@@ -10,7 +10,10 @@
 #include "base/atomic_file.h"
 #include "base/error.h"
 #include "base/text.h"
+#include "compile/camera_basis.h"
+#include "compile/compile.h"
 #include "film/layer_planes.h"
+#include "film/motion_vectors.h"
 #include "job/check_job.h"
 #include "job/checkpoint.h"
 #include "job/resources.h"
@@ -34,6 +37,19 @@ void load(const PreparedJob& own, base::FileSet& files, JobReport& report) {
   load::add_scene_files(job.scene.file, own.scene(), files);
 }
 
+/// What has moved in the frames before and after.
+film::NeighborFrames neighbors_of(const load::ReadResult& read) {
+  film::NeighborFrames out;
+  for (std::size_t i = 0; i < out.size(); ++i) {
+    if (!read.neighbors[i]) continue;
+    const scene::Scene& other = *read.neighbors[i];
+    out[i] = std::make_shared<const film::NeighborFrame>(
+        film::NeighborFrame{compile::compile_camera(other.camera, read.scene.image, compile::view_scale(other.camera)),
+                            compile::sphere_motion(read.scene, other), compile::rod_motion(read.scene, other)});
+  }
+  return out;
+}
+
 /// The layers that an output of the job holds; others are not computed.
 Layers layers_of(const PreparedJob& own) {
   const Job& job = own.job;
@@ -42,6 +58,7 @@ Layers layers_of(const PreparedJob& own) {
   Layers out = choose_layers(own.scene(), own.compiled(), may_have_looks);
   out.request.deep = !job.outputs.deep.empty();
   out.request.halves = out.request.halves || job.denoise;
+  if (out.request.vector) out.request.neighbors = neighbors_of(own.loaded().read);
   image::check_lossless(film::planes_of(out.request), job.outputs.exr);
   check_layers(job, own.scene());
   if (job.outputs.has_exr() || job.is_in_memory()) return out;
@@ -57,12 +74,9 @@ Layers layers_of(const PreparedJob& own) {
 annotation::View annotated_view(const PreparedJob& own) {
   const compile::CompiledScene& compiled = own.compiled();
   const auto project = [&camera = compiled.camera](const math::Vec3d& at) -> std::optional<std::pair<double, double>> {
-    const auto along = [from = at - camera.origin](const math::Vec3d& axis) {
-      return dot(from, axis) / dot(axis, axis);
-    };
-    const double depth = along(camera.forward), scale = camera.is_orthographic ? 1 : depth;
-    if (!(depth > 0)) return {};
-    return std::pair{along(camera.right) / scale + camera.half_width, along(camera.down) / scale + camera.half_height};
+    const std::optional<film::FilmPlace> place = film::film_place(camera, at - camera.origin);
+    if (!place) return {};
+    return std::pair{place->x + camera.half_width, place->y + camera.half_height};
   };
   return {compiled.width, compiled.height, own.job.scene.frame, own.job.scene.file.parent_path(), project};
 }

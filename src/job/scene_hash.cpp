@@ -78,6 +78,18 @@ void add_textures(Hash& hash, const compile::TextureStore& store) {
 
 }  // namespace
 
+void add_motion(Hash& hash, const std::vector<kernel::Sphere>& spheres, const std::vector<kernel::Rod>& rods,
+                const kernel::Camera& camera) {
+  for (const kernel::Sphere& s : spheres)
+    for (const double v : {s.x, s.y, s.z, s.radius}) hash.add(v);
+  for (const kernel::Rod& r : rods) {
+    add_all(hash, r.a);
+    add_all(hash, r.b);
+    hash.add(r.radius);
+  }
+  for (const auto vector : kernel::kCameraVectors) add_all(hash, camera.*vector);
+}
+
 Hash hash_of_spheres(const compile::CompiledScene& compiled) {
   Hash hash;
   hash.add_bits(compiled.spheres.size());
@@ -113,14 +125,7 @@ SceneHashes scene_hashes(const compile::CompiledScene& compiled, Hash hash) {
   if (c.is_orthographic) hash.add_bits(1);  // others keep the hash that they had before there was a choice
   for (const auto vector : kernel::kCameraVectors) add_all(hash, c.*vector);
   if (compiled.features.motion) {
-    for (const kernel::Sphere& s : compiled.motion)
-      for (const double v : {s.x, s.y, s.z, s.radius}) hash.add(v);
-    for (const kernel::Rod& r : compiled.rod_motion) {
-      add_all(hash, r.a);
-      add_all(hash, r.b);
-      hash.add(r.radius);
-    }
-    for (const auto vector : kernel::kCameraVectors) add_all(hash, compiled.camera_motion.*vector);
+    add_motion(hash, compiled.motion, compiled.rod_motion, compiled.camera_motion);
   }
   add_all(hash, compiled.background.bottom);
   add_all(hash, compiled.background.top);

@@ -2,9 +2,13 @@
 #pragma once
 
 #include <string>
+#include <vector>
 
 #include "base/hash.h"
 #include "compile/forward.h"
+#include "kernel/camera.h"
+#include "kernel/rod.h"
+#include "kernel/sphere.h"
 
 namespace orrery::job {
 
@@ -17,6 +21,10 @@ struct SceneHashes {
 
 /// The part of the hashes that depends on the spheres and on which material each has; it takes longest.
 base::Hash hash_of_spheres(const compile::CompiledScene& compiled);
+
+/// Adds changes of objects, and the vectors of a camera or their changes.
+void add_motion(base::Hash& hash, const std::vector<kernel::Sphere>& spheres, const std::vector<kernel::Rod>& rods,
+                const kernel::Camera& camera);
 
 /// Completes hash_of_spheres().
 SceneHashes scene_hashes(const compile::CompiledScene& compiled, base::Hash spheres);

@@ -24,6 +24,7 @@
 #include "load/load_images.h"
 #include "load/read_keys.h"
 #include "scene/animation.h"
+#include "scene/layers.h"
 #include "scene/limits.h"
 #include "scene/validate.h"
 
@@ -225,7 +226,8 @@ void choose_files(const std::filesystem::path& folder, int frame, scene::Scene& 
   });
 }
 
-/// Poses the scene at the frame; with motion blur, at shutter open and at shutter close.
+/// Poses the scene at the frame; with motion blur, at shutter open and at shutter close. With motion vectors, also in
+/// the frames before and after.
 void pose_scene(ReadState& state, const toml::table& root, const std::string& file, int frame, ReadResult& result) {
   scene::Scene& scene = result.scene;
   const scene::Camera& shutter = scene.camera;
@@ -236,6 +238,8 @@ void pose_scene(ReadState& state, const toml::table& root, const std::string& fi
     if (is_open) check_tracks(state, *root.get("key")->as_array(), scene, closes);
   }
   if (is_open) result.closing = scene::posed(scene, closes);
+  if (base::contains(scene::requested_layers(scene), scene::kVectorLayer))
+    result.neighbors = {scene::posed(scene, opens - 1), scene::posed(scene, opens + 1)};
   scene = scene::posed(scene, opens);
   if (!is_open) return;
   for (const scene::SceneDiagnostic& diagnostic : errors_at_close(scene, *result.closing))

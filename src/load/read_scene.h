@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <filesystem>
 #include <functional>
@@ -33,6 +34,8 @@ struct ReadResult {
   std::vector<Setting> settings;  ///< all keys that a scene has at most once, in documentation order
   /// The scene at shutter close, without points; `scene` is then the scene at shutter open. Empty without motion blur.
   std::optional<scene::Scene> closing = {};
+  /// The scenes a frame before and after, like `closing`; empty without motion vectors.
+  std::array<std::optional<scene::Scene>, 2> neighbors = {};
 };
 
 /// The frame that is read by default.

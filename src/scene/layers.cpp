@@ -42,6 +42,8 @@ bool has_groups(const Scene& scene) {
   return any_has(scene.spheres) || any_has(scene.points) || any_has(scene.rods) || any_has(scene.rod_files);
 }
 
+bool is_animated(const Scene& scene) { return !scene.tracks.empty() || scene.animation.turntable != 0; }
+
 /// A layer, and which scenes can have it.
 struct LayerRule {
   const char* name;
@@ -65,6 +67,7 @@ constexpr LayerRule kLayerRules[] = {{"Z"},
                                      {"samples"},
                                      {"object_id"},
                                      {"material_id"},
+                                     {kVectorLayer, false, is_animated},
                                      {"denoise.albedo"},
                                      {"denoise.normal"},
                                      {kHalvesLayer},

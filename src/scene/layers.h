@@ -14,6 +14,9 @@ inline constexpr const char* kAllLayers = "all";
 /// Name in [output] of the layer for denoising, which kAllLayers does not include.
 inline constexpr const char* kHalvesLayer = "halves";
 
+/// Name in [output] of the layer of motion vectors.
+inline constexpr const char* kVectorLayer = "Vector";
+
 /// Returns the names of all layers, in the order of the documentation.
 const std::vector<std::string>& layer_names();
 

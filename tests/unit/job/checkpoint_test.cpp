@@ -137,5 +137,25 @@ TEST_F(JobCheckpoint, WritesCheckpointsAtTheInterval) {
   EXPECT_FALSE(std::filesystem::exists(folder_ / "a.checkpoint.exr"));
 }
 
+/// The samples of a frame do not depend on the next one, but its motion vectors do.
+TEST_F(JobCheckpoint, AnImageWithMotionVectorsDependsOnTheNextFrame) {
+  const auto write_scene = [&](const char* next) {
+    support::write_bytes(folder_ / "scene.toml", std::string(kSmallScene) +
+                                                     "[[key]]\ntarget = \"sphere[0].radius\"\nframes = [1, 2]\n"
+                                                     "values = [0.5, " +
+                                                     next + "]\n");
+  };
+  job_.outputs.images = {folder_ / "a.exr"};
+  job_.skip_existing = true;
+  for (const char* layers : {"output.layers=[\"Z\"]", "output.layers=[\"Vector\"]"}) {
+    job_.scene.overrides = {layers};
+    write_scene("0.6");
+    EXPECT_FALSE(run_job(job_).was_skipped);
+    EXPECT_TRUE(run_job(job_).was_skipped);
+    write_scene("0.7");
+    EXPECT_EQ(run_job(job_).was_skipped, std::string(layers).find("Vector") == std::string::npos) << layers;
+  }
+}
+
 }  // namespace
 }  // namespace orrery::job

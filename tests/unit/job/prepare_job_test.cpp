@@ -3,6 +3,8 @@
 
 #include <gtest/gtest.h>
 
+#include <array>
+#include <cmath>
 #include <cstdlib>
 #include <string>
 
@@ -82,6 +84,133 @@ TEST_F(JobPrepareJob, AnHdrDisplayHasSixteenBits) {
   EXPECT_TRUE(between);
   job_.outputs.images = {folder_ / "a.jpg"};
   EXPECT_EQ(error().kind(), base::ErrorKind::kUsage);
+}
+
+/// A scene in which everything moves, and where a point of each object is in its own coordinates.
+constexpr const char* kMovingScene = R"(
+[image]
+width = 160
+height = 120
+[camera]
+vfov = 40
+look_at = [0, 0, 0]
+[render]
+samples = 32
+shading = "flat"
+[material.grey]
+type = "lambertian"
+albedo = [0.5, 0.5, 0.5]
+[[sphere]]
+center = [0, -101, 0]
+radius = 100
+material = "grey"
+[[sphere]]
+name = "ball"
+center = [0, 0, 0]
+radius = 1
+material = "grey"
+[[rod]]
+name = "bar"
+from = [0, 0, 0]
+to = [0, 1, 0]
+radius = 0.4
+material = "grey"
+[[key]]
+target = "camera.look_from"
+frames = [1, 9]
+values = [[0, 1, 8], [2, 1.6, 7]]
+[[key]]
+target = "sphere.ball.center"
+frames = [1, 9]
+values = [[-1.5, 0, 0], [0, 1, 1]]
+[[key]]
+target = "sphere.ball.radius"
+frames = [1, 9]
+values = [0.8, 1.2]
+[[key]]
+target = "rod.bar.from"
+frames = [1, 9]
+values = [[1, -0.5, 0], [0.5, 0, -1]]
+[[key]]
+target = "rod.bar.to"
+frames = [1, 9]
+values = [[2, 1, 0.5], [1.5, 1.5, -0.5]]
+)";
+
+/// Frames of kMovingScene, with the points that are visible in them.
+class MovingFrame {
+ public:
+  MovingFrame(Job job, int frame) : share_((frame - 1) / 8.0) {
+    job.scene.frame = frame;
+    job.scene.overrides.add("output.layers=[\"P\", \"object_id\", \"Vector\"]");
+    picture_ = render_in_memory(job).picture;
+  }
+
+  int width() const { return picture_.width; }
+  int height() const { return picture_.height; }
+  float value(const char* plane, int x, int y) const {
+    return picture_.find(plane)->values[static_cast<std::size_t>(y * width() + x)];
+  }
+  int object(int x, int y) const { return static_cast<int>(value("object_id.X", x, y)); }
+  /// The nearest hit of a pixel, relative to its object.
+  math::Vec3d local(int x, int y) const {
+    const math::Vec3d p{value("P.X", x, y), value("P.Y", x, y), value("P.Z", x, y)};
+    const double t = share_;
+    switch (object(x, y)) {
+      case 2: return (p - math::Vec3d{-1.5 + 1.5 * t, t, t}) / (0.8 + 0.4 * t);
+      case 3: return p - math::Vec3d{1 - 0.5 * t, -0.5 + 0.5 * t, -t};
+      default: return p;
+    }
+  }
+
+ private:
+  double share_;
+  film::Picture picture_;
+};
+
+/// The mean distance, px, between the points of a frame and the places in another to which vectors lead.
+///
+/// `x_plane`, `y_plane`  the vectors to the other frame, times `sign`
+double mean_error(const MovingFrame& from, const MovingFrame& to, const char* x_plane, const char* y_plane,
+                  double sign) {
+  double sum = 0;
+  int count = 0;
+  std::array<int, 4> of_objects{};
+  for (int y = 0; y < from.height(); ++y)
+    for (int x = 0; x < from.width(); ++x) {
+      const double at_x = x + sign * static_cast<double>(from.value(x_plane, x, y)),
+                   at_y = y - sign * static_cast<double>(from.value(y_plane, x, y));
+      const int u = static_cast<int>(std::floor(at_x)), v = static_cast<int>(std::floor(at_y));
+      const int object = from.object(x, y);
+      if (object == 0 || u < 0 || v < 0 || u + 1 >= to.width() || v + 1 >= to.height()) continue;
+      if (to.object(u, v) != object || to.object(u + 1, v) != object || to.object(u, v + 1) != object ||
+          to.object(u + 1, v + 1) != object)
+        continue;
+      // The point at the place in the other frame, and how it changes from pixel to pixel.
+      const math::Vec3d corner = to.local(u, v), right = to.local(u + 1, v) - corner,
+                        down = to.local(u, v + 1) - corner;
+      const math::Vec3d miss = from.local(x, y) - corner - right * (at_x - u) - down * (at_y - v);
+      const double a = dot(right, right), b = dot(right, down), c = dot(down, down), det = a * c - b * b;
+      if (!(det > 0.01 * a * c)) continue;  // grazing
+      const double along = dot(miss, right), across = dot(miss, down);
+      sum += std::hypot((c * along - b * across) / det, (a * across - b * along) / det);
+      ++count;
+      ++of_objects[static_cast<std::size_t>(object)];
+    }
+  for (std::size_t object = 1; object < of_objects.size(); ++object) EXPECT_GT(of_objects[object], 200) << object;
+  return sum / count;
+}
+
+TEST_F(JobPrepareJob, MotionVectorsLeadToTheSamePointsOfTheNeighbouringFrames) {
+  support::write_bytes(folder_ / "scene.toml", kMovingScene);
+  job_.outputs = {};
+  const MovingFrame before(job_, 4), frame(job_, 5), after(job_, 6);
+  EXPECT_LT(mean_error(frame, after, "Vector.Z", "Vector.W", -1), 0.5);
+  EXPECT_LT(mean_error(frame, before, "Vector.X", "Vector.Y", 1), 0.5);
+  EXPECT_GT(mean_error(frame, after, "Vector.X", "Vector.Y", 1), 1) << "the motion is larger than the error";
+  const MovingFrame first(job_, 1), last(job_, 9);
+  for (const char* plane : {"Vector.X", "Vector.Y"}) EXPECT_EQ(first.value(plane, 80, 100), 0);
+  for (const char* plane : {"Vector.Z", "Vector.W"}) EXPECT_EQ(last.value(plane, 80, 100), 0);
 }
 
 }  // namespace

@@ -263,7 +263,7 @@ TEST(LoadOverrides, MessagesNameTheShortOption) {
             "                      ^\n"
             "--layers: error: output.layers[1] is \"Q\"; must be one of Z, depth, N, P, albedo, diffuse, specular, "
             "transmission, background, emission, light_groups, variance, samples, object_id, material_id, "
-            "denoise.albedo, denoise.normal, halves, "
+            "Vector, denoise.albedo, denoise.normal, halves, "
             "CryptoObject, CryptoMaterial, CryptoGroup, all\n"
             "    --layers Z,Q,N\n"
             "               ^\n");

@@ -66,6 +66,12 @@ TEST(SceneLayers, AllSelectsEveryAvailableLayer) {
   expect_group(&Scene::points);
   expect_group(&Scene::rods);
   expect_group(&Scene::rod_files);
+  Scene moving;
+  moving.animation.turntable = 24;
+  EXPECT_TRUE(contains(available_layers(moving), "Vector"));
+  moving.animation.turntable = 0;
+  moving.tracks.resize(1);
+  EXPECT_TRUE(contains(available_layers(moving), "Vector"));
   s.render.shading = Shading::kFlat;
   EXPECT_FALSE(contains(requested_layers(s), "diffuse"));
   EXPECT_EQ(problem_of(s), "") << "layers that the scene cannot have are left out";
