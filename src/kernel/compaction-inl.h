@@ -45,12 +45,16 @@ alignas(64) inline constexpr auto kCompaction = make_compaction_table<Index, kLa
 /// Stores selected lanes of vectors contiguously. May overwrite a whole vector's length from the destination.
 ///
 /// The permutation is looked up once for all vectors. Highway's CompressStore looks it up each time, for which GCC
-/// copies the table to the stack; that took a quarter of the time.
+/// copies the table to the stack; that took a quarter of the time. AVX-512 has an instruction for it, which some
+/// processors execute in ten times the time if its destination is memory. Highway uses it in registers for 32-bit lanes
+/// only, so that 64-bit lanes are compressed as pairs of them.
 template <class D>
 class Compactor {
  public:
-  HWY_INLINE Compactor(D d, hn::Mask<D> mask) : mask_(mask), count_(static_cast<int>(hn::CountTrue(d, mask))) {
-    if constexpr (kUsesTable) {
+  HWY_INLINE Compactor(D d, hn::Mask<D> mask) : count_(static_cast<int>(hn::CountTrue(d, mask))) {
+    if constexpr (kUsesInstruction) {
+      words_ = hn::MaskFromVec(hn::BitCast(Words(), hn::VecFromMask(d, mask)));
+    } else if constexpr (kUsesTable) {
       std::uint8_t bits[8] = {};
       hn::StoreMaskBits(d, mask, bits);
       order_ = hn::Load(IdTag<D>(), kCompaction<hn::TFromD<IdTag<D>>, hn::MaxLanes(D())>[bits[0]].data());
@@ -59,15 +63,11 @@ class Compactor {
   HWY_INLINE int count() const { return count_; }
 
   HWY_INLINE void store(D d, hn::Vec<D> v, hn::TFromD<D>* to) const {
-    if constexpr (hn::MaxLanes(D()) == 1) {
-      hn::StoreU(v, d, to);
-    } else if constexpr (kUsesTable) {
-      hn::StoreU(hn::TableLookupLanes(v, hn::IndicesFromVec(d, order_)), d, to);
-    } else if constexpr (sizeof(hn::TFromD<D>) == 4) {
-      hn::StoreU(hn::Compress(v, mask_), d, to);  // some processors take ten times as long to compress into memory
-    } else {
-      hn::CompressStore(v, mask_, d, to);  // Highway 1.0 compresses 64-bit lanes in registers by a table, which is slow
-    }
+    if constexpr (kUsesInstruction)
+      v = hn::BitCast(d, hn::Compress(hn::BitCast(Words(), v), words_));
+    else if constexpr (kUsesTable)
+      v = hn::TableLookupLanes(v, hn::IndicesFromVec(d, order_));
+    hn::StoreU(v, d, to);
   }
   HWY_INLINE void store_ids(D d, hn::Vec<IdTag<D>> v, hn::TFromD<IdTag<D>>* to) const {
     store(d, hn::BitCast(d, v), reinterpret_cast<hn::TFromD<D>*>(to));
@@ -80,9 +80,11 @@ class Compactor {
   }
 
  private:
-  // AVX-512 has an instruction for it.
-  static constexpr bool kUsesTable = hn::MaxLanes(D()) > 1 && HWY_TARGET > HWY_AVX3;
-  hn::Mask<D> mask_;
+  using Words = hn::Repartition<std::uint32_t, D>;
+
+  static constexpr bool kUsesInstruction = hn::MaxLanes(D()) > 1 && HWY_TARGET <= HWY_AVX3;
+  static constexpr bool kUsesTable = hn::MaxLanes(D()) > 1 && !kUsesInstruction;
+  hn::Mask<Words> words_{};
   int count_;
   hn::Vec<IdTag<D>> order_{};
 };
