@@ -26,6 +26,7 @@
 #include "load/load_scene.h"
 #include "load/read_scene.h"
 #include "math/vec3.h"
+#include "render/render.h"
 #include "scene/layers.h"
 #include "scene/schema.h"
 #include "scene/texture.h"
@@ -299,7 +300,10 @@ SceneInfo scene_info(const load::SceneRequest& request, job::PreparedScene& prep
   info.traversal = compiled.accelerator == compile::Accelerator::kList || info.spheres + info.rods == 0
                        ? "list"
                        : accel::name_of(accel::fastest_traversals(compiled.view(), is_in_bvh));
-  info.memory = job::estimate_memory(compiled, layers);
+  job::MemoryUse use;
+  // A background that has not been read may differ from pixel to pixel.
+  if (!loaded.background) use.share_with_objects = render::share_with_objects(compiled, layers, job::default_threads());
+  info.memory = job::estimate_memory(compiled, layers, use);
   if (loaded.background) {
     info.memory.background = loaded.background->bytes;
     if (!loaded.background->image) info.scene_hash.clear();  // it depends on the pixels, which were not read

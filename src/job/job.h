@@ -111,6 +111,13 @@ inline bool is_limited(const Job& job) { return job.scene.overrides.sets("render
 /// True if the output is a shard, not an image.
 inline bool is_shard(const Job& job) { return job.as_shard || job.settings.is_partial(); }
 
+/// True if the sums are needed when the image is finished: for a checkpoint, or to save them if it cannot be written.
+/// The denoiser needs their memory.
+inline bool keeps_sums(const Job& job) {
+  const CheckpointSettings& kept = job.checkpoint;
+  return is_shard(job) || (!job.is_in_memory() && (!job.denoise || kept.resume || kept.keep || kept.interval_s > 0));
+}
+
 /// Seconds by phase.
 struct Phases {
   double prepare_s = 0;  ///< Job::prepare_s: before the job, once for all jobs of a batch

@@ -98,9 +98,11 @@ void require_resources(const PreparedJob& own) {
   const compile::CompiledScene& compiled = own.compiled();
   const Job& job = own.job;
   require_disk_space(job, compiled.width, compiled.height, own.layers.request);
-  const MemoryEstimate memory =
-      estimate_memory(compiled, own.layers.request, job.settings.is_adaptive(), own.prepared->has_accelerator());
-  require_memory(memory, job.resources.memory_limit, memory.held());
+  require_memory(compiled, own.layers.request,
+                 {.is_adaptive = job.settings.is_adaptive(),
+                  .has_accelerator = own.prepared->has_accelerator(),
+                  .keeps_sums = keeps_sums(job)},
+                 job.resources.memory_limit, thread_count(job.resources.threads));
 }
 
 void stop_if_cancelled(const Job& job) {

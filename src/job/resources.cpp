@@ -58,21 +58,32 @@ double expected_shares(const compile::CompiledScene& compiled, const film::Layer
   return std::min({things + (layers.deep ? 1 : 0), static_cast<double>(compiled.samples), seen});
 }
 
-/// Bytes of a pixel's sums while it is rendered, or of its sums and values when the image is finished.
-std::uint64_t film_bytes_per_pixel(const compile::CompiledScene& compiled, const film::LayerRequest& layers,
-                                   bool is_adaptive) {
-  constexpr std::uint64_t kHeapBytes = 16;
+/// Bytes of a pixel's sums while it is rendered, or of its sums and values when the image is finished; the mean of all
+/// pixels.
+double film_bytes_per_pixel(const compile::CompiledScene& compiled, const film::LayerRequest& layers,
+                            const MemoryUse& use) {
+  constexpr double kHeapBytes = 16;
+  const film::Sums pixel(1, 1, layers, use.is_adaptive);
   const double shares = expected_shares(compiled, layers);
-  const std::uint64_t sums = film::Sums(1, 1, layers, is_adaptive).bytes() +
-                             (shares > 0 ? static_cast<std::uint64_t>(shares * kBytesPerShare) + kHeapBytes : 0);
+  double light = 0;  // sums that take no memory in empty pixels, and none when they are finished unless they are kept
+  for (const auto& half : pixel.light) light += static_cast<double>(half.size() * sizeof(half[0]));
+  for (const auto& half : pixel.guides) light += static_cast<double>(half.size() * sizeof(half[0]));
+  const double others =
+      static_cast<double>(pixel.bytes()) - light + (shares > 0 ? shares * kBytesPerShare + kHeapBytes : 0);
+  light *= use.share_with_objects;
   // The target count; with adaptive sampling, eight numbers for the noise estimate.
-  const std::uint64_t rendered = sums + sizeof(std::uint32_t) + (is_adaptive ? 8 * sizeof(float) : 0);
-  return std::max(rendered, sums + 4 * sizeof(float) + film::planes_of(layers).size() * kBytesPerLayerPlane);
+  const double rendered = others + light + sizeof(std::uint32_t) + (use.is_adaptive ? 8 * sizeof(float) : 0);
+  const double planes = static_cast<double>(4 * sizeof(float) + film::planes_of(layers).size() * kBytesPerLayerPlane);
+  return std::max(rendered, others + planes + (use.keeps_sums ? light : 0));
+}
+
+std::uint64_t allowed_memory(std::uint64_t needed, std::uint64_t limit, std::uint64_t held) {
+  return limit > 0 ? limit : base::available_memory().value_or(needed) + held;
 }
 
 /// Throws an error that begins with `text` if there is not enough memory.
 void require(std::uint64_t needed, const std::string& text, std::uint64_t limit, std::uint64_t held) {
-  const std::uint64_t allowed = limit > 0 ? limit : base::available_memory().value_or(needed) + held;
+  const std::uint64_t allowed = allowed_memory(needed, limit, held);
   if (needed <= allowed) return;
   const std::string rest = limit > 0 ? fmt::format("--memory-limit allows {}; raise the limit", bytes_text(allowed))
                                      : bytes_text(allowed) + " is free; free some, or override with --memory-limit";
@@ -132,9 +143,10 @@ void choose_isa() {
 }
 
 MemoryEstimate estimate_memory(const compile::CompiledScene& compiled, const film::LayerRequest& layers,
-                               bool is_adaptive, bool has_accelerator) {
+                               const MemoryUse& use) {
   MemoryEstimate m;
-  m.film = math::pixel_count(compiled.width, compiled.height) * film_bytes_per_pixel(compiled, layers, is_adaptive);
+  m.film = static_cast<std::uint64_t>(static_cast<double>(math::pixel_count(compiled.width, compiled.height)) *
+                                      film_bytes_per_pixel(compiled, layers, use));
   m.spheres = compiled.spheres.bytes() + compiled.rods.size() * sizeof(kernel::Rod) +
               compiled.bonds.size() * sizeof(kernel::Bond) + compiled.object_materials.bytes() +
               compiled.opacity.size() * sizeof(compiled.opacity[0]) +
@@ -142,7 +154,7 @@ MemoryEstimate estimate_memory(const compile::CompiledScene& compiled, const fil
   if (compiled.environment) m.background = compiled.environment->bytes();
   m.textures = compiled.textures.bytes();
   m.lights = compiled.light_tree.bytes_of_build() + compiled.caustics.bytes();
-  if (compiled.accelerator == compile::Accelerator::kEmbree && !has_accelerator) {
+  if (compiled.accelerator == compile::Accelerator::kEmbree && !use.has_accelerator) {
     const accel::ObjectCounts in_bvh = accel::objects_in_bvh(compiled.view());
     const std::uint64_t outside = compiled.spheres.size() + compiled.rod_count() - in_bvh.all();
     m.accelerator =
@@ -163,6 +175,16 @@ std::string text_of(const MemoryEstimate& m) {
 void require_memory(const MemoryEstimate& needed, std::uint64_t limit, std::uint64_t held) {
   require(needed.total(), fmt::format("the render needs about {} ({})", bytes_text(needed.total()), text_of(needed)),
           limit, held);
+}
+
+void require_memory(const compile::CompiledScene& compiled, const film::LayerRequest& layers, MemoryUse use,
+                    std::uint64_t limit, int threads) {
+  MemoryEstimate needed = estimate_memory(compiled, layers, use);
+  if (needed.total() > allowed_memory(needed.total(), limit, needed.held())) {
+    use.share_with_objects = render::share_with_objects(compiled, layers, threads);
+    needed = estimate_memory(compiled, layers, use);
+  }
+  require_memory(needed, limit, needed.held());
 }
 
 void require_memory_to_compile(const scene::Scene& scene, std::uint64_t limit) {

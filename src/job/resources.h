@@ -37,12 +37,17 @@ struct MemoryEstimate {
   std::uint64_t held() const { return spheres + background + textures; }
 };
 
+/// What a render's memory depends on besides the scene and the layers.
+struct MemoryUse {
+  bool is_adaptive = false;       ///< with --noise or --time
+  bool has_accelerator = false;   ///< there is one already, so that none is built
+  bool keeps_sums = true;         ///< render::Settings::keeps_sums
+  double share_with_objects = 1;  ///< see render::share_with_objects
+};
+
 /// Estimates the memory of a render for `info`, `study` and the check before a render.
-///
-/// `is_adaptive`      with --noise or --time
-/// `has_accelerator`  there is one already, so that none is built
 MemoryEstimate estimate_memory(const compile::CompiledScene& compiled, const film::LayerRequest& layers,
-                               bool is_adaptive = false, bool has_accelerator = false);
+                               const MemoryUse& use = {});
 
 /// Formats the parts of an estimate: "film 1 MiB, spheres 2 MiB, accelerator 3 MiB".
 std::string text_of(const MemoryEstimate& estimate);
@@ -53,6 +58,10 @@ std::string text_of(const MemoryEstimate& estimate);
 /// `held`     bytes of `needed` that are already allocated, and therefore no longer available
 /// Errors     base::Error(kNoMemory) with the needed and the allowed size
 void require_memory(const MemoryEstimate& needed, std::uint64_t limit, std::uint64_t held = 0);
+
+/// The same for a scene that has been compiled. Empty pixels are only counted if it would not fit with none.
+void require_memory(const compile::CompiledScene& compiled, const film::LayerRequest& layers, MemoryUse use,
+                    std::uint64_t limit, int threads);
 
 /// Checks that the spheres of data files fit into memory twice, as loaded and compiled.
 ///

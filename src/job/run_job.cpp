@@ -173,10 +173,7 @@ class Run {
     if (traversal == scene::Traversal::kSingle) out.traversal = accel::Traversal::kSingle;
     out.layers = own_.layers.request;
     out.unlimited = !is_limited(job_);
-    // The denoiser needs the memory of the sums, which only a checkpoint or a shard would store.
-    const CheckpointSettings& kept = job_.checkpoint;
-    out.keeps_sums =
-        is_shard(job_) || (!job_.is_in_memory() && (!job_.denoise || kept.resume || kept.keep || kept.interval_s > 0));
+    out.keeps_sums = keeps_sums(job_);
     out.on_progress = job_.hooks.on_progress;
     out.on_pixels = job_.hooks.on_pixels;
     out.cancel = job_.hooks.cancel;

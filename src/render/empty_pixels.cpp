@@ -8,6 +8,8 @@
 #include <cstdint>
 #include <span>
 
+#include "compile/compiled_scene.h"
+#include "film/layers.h"
 #include "kernel/scene_view.h"
 #include "math/pixels.h"
 #include "math/vec3.h"
@@ -136,12 +138,15 @@ bool moves(const kernel::Camera& change) {
 
 }  // namespace
 
-std::vector<bool> find_empty_pixels(const kernel::SceneView& scene, int width_px, int height_px, TilePool& pool) {
+std::vector<bool> find_empty_pixels(const compile::CompiledScene& compiled, const film::LayerRequest& layers,
+                                    TilePool& pool) {
+  kernel::SceneView scene = compiled.view();
+  if (layers.transparent) scene.background_visible = false;
   const bool is_plain =
       !scene.background_visible || scene.has_backdrop || (scene.environment == nullptr && !scene.features.gradient);
   const bool is_bounded = !scene.camera.is_orthographic || !scene.features.lens;
-  if (!is_plain || !is_bounded || (scene.features.motion && moves(scene.camera_motion))) return {};
-  Covered covered(scene, width_px, height_px);
+  if (layers.records() || !is_plain || !is_bounded || (scene.features.motion && moves(scene.camera_motion))) return {};
+  Covered covered(scene, compiled.width, compiled.height);
   const auto add = [&](std::size_t i) {
     if (i < scene.sphere_count) {
       const Sphere hull[] = {sphere_at(scene, i, 0), sphere_at(scene, i, 1)};

@@ -3,7 +3,8 @@
 
 #include <vector>
 
-#include "kernel/forward.h"
+#include "compile/forward.h"
+#include "film/forward.h"
 
 namespace orrery::render {
 
@@ -12,8 +13,10 @@ class TilePool;
 /// Finds pixels whose camera rays hit nothing, by the bounds of all objects in the image. If the background is the same
 /// in all directions, all paths of these pixels are alike.
 ///
-/// Result     a mask in row-major order; empty if no pixel can be excluded, or the background depends on the direction
+/// Result     a mask in row-major order; empty if no pixel can be excluded, the background depends on the direction, or
+///            the layers need records of paths
 /// Cost       about 50 ns per object
-std::vector<bool> find_empty_pixels(const kernel::SceneView& scene, int width_px, int height_px, TilePool& pool);
+std::vector<bool> find_empty_pixels(const compile::CompiledScene& compiled, const film::LayerRequest& layers,
+                                    TilePool& pool);
 
 }  // namespace orrery::render

@@ -25,6 +25,7 @@
 #include "film/sums.h"
 #include "kernel/isa.h"
 #include "render/adaptive_sampling.h"
+#include "render/empty_pixels.h"
 #include "render/passes.h"
 #include "render/tiles.h"
 
@@ -157,6 +158,13 @@ std::unique_ptr<accel::Accel> build(const compile::CompiledScene& compiled, int 
 std::uint32_t samples_of(const compile::CompiledScene& compiled, const Settings& settings) {
   return settings.sample_end > 0 ? settings.sample_end - settings.sample_begin
                                  : static_cast<std::uint32_t>(compiled.samples);
+}
+
+double share_with_objects(const compile::CompiledScene& compiled, const film::LayerRequest& layers, int threads) {
+  TilePool pool(threads > 0 ? threads : available_threads());
+  const std::vector<bool> empty = find_empty_pixels(compiled, layers, pool);
+  if (empty.empty()) return 1;
+  return static_cast<double>(std::count(empty.begin(), empty.end(), false)) / static_cast<double>(empty.size());
 }
 
 Result finished(const compile::CompiledScene& compiled, const film::LayerRequest& request, const film::Sums& sums,

@@ -43,6 +43,12 @@ Result render(const compile::CompiledScene& compiled, const Settings& settings,
 /// The number of samples per pixel that the settings request.
 std::uint32_t samples_of(const compile::CompiledScene& compiled, const Settings& settings);
 
+/// The fraction of the pixels whose sums take memory: paths of the others, which are in the bounds of no object, are
+/// known.
+///
+/// Cost       about 50 ns per object
+double share_with_objects(const compile::CompiledScene& compiled, const film::LayerRequest& layers, int threads);
+
 /// Converts sums to an image; pixels without samples are black.
 ///
 /// `threads`  0: all available

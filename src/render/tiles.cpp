@@ -117,8 +117,8 @@ TileRenderer::TileRenderer(const compile::CompiledScene& compiled, const accel::
                                           : std::max(1U, static_cast<std::uint32_t>(compiled.samples) / 2)) {
   if (request_.transparent) view_.background_visible = false;
   render_ = kernel::render_tile_function(view_.features, compiled.precision, request_.any());
-  if (request_.records() || settings.sample_end > 0) return;  // the sums of layers do not know empty paths
-  empty_pixels_ = find_empty_pixels(view_, compiled.width, compiled.height, pool);
+  if (settings.sample_end > 0) return;
+  empty_pixels_ = find_empty_pixels(compiled, request_, pool);
   if (!empty_pixels_.empty()) empty_path_ = path_of_empty_pixel(compiled.width, settings.is_adaptive());
   if (!empty_path_.is_known()) empty_pixels_.clear();
 }

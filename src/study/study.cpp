@@ -140,9 +140,9 @@ class Runner {
     full_ = compile::compile(scene, read_.closing ? &*read_.closing : nullptr);
     film::LayerRequest layers = job::choose_layers(scene, full_).request;
     memory_ = job::estimate_memory(full_, layers);
-    adaptive_memory_ = job::estimate_memory(full_, layers, true);
+    adaptive_memory_ = job::estimate_memory(full_, layers, {.is_adaptive = true});
     layers.halves = true;
-    denoised_memory_ = job::estimate_memory(full_, layers);
+    denoised_memory_ = job::estimate_memory(full_, layers, {.keeps_sums = false});
     scene.spheres = {};
     scene.points = {};
     scene.rods = {};

@@ -9,13 +9,17 @@
 #include "base/error.h"
 #include "compile/compile.h"
 #include "compile/compiled_scene.h"
+#include "denoise/denoise.h"
 #include "film/layer_sums.h"
 #include "film/layers.h"
 #include "generate/generate.h"
 #include "job/layers.h"
 #include "job/run_job.h"
 #include "render/render.h"
+#include "render/result.h"
+#include "render/settings.h"
 #include "scene/scene.h"
+#include "support/peak_memory.h"
 #include "support/temp_dir.h"
 
 namespace orrery::job {
@@ -77,7 +81,7 @@ TEST(JobMemoryEstimate, GrowsWithPixelsAndSpheres) {
   constexpr auto kEmbree = scene::Accelerator::kEmbree, kList = scene::Accelerator::kList;
   const auto estimate = [](int width, int spheres, scene::Accelerator accelerator,
                            const film::LayerRequest& layers = {}, bool is_adaptive = false) {
-    return estimate_memory(spheres_at(width, spheres, accelerator), layers, is_adaptive);
+    return estimate_memory(spheres_at(width, spheres, accelerator), layers, {.is_adaptive = is_adaptive});
   };
   film::LayerRequest normals;
   normals.normal = true;
@@ -88,7 +92,8 @@ TEST(JobMemoryEstimate, GrowsWithPixelsAndSpheres) {
   EXPECT_EQ(estimate(1, 100, kList).accelerator, 0u);
   EXPECT_EQ(estimate(1, 100, kEmbree).accelerator, 100 * estimate(1, 1, kEmbree).accelerator);
   EXPECT_EQ(estimate(1, 101, kEmbree).spheres, estimate(1, 1, kEmbree).spheres + 100 * sizeof(kernel::Sphere));
-  EXPECT_EQ(estimate_memory(spheres_at(1, 100, kEmbree), {}, false, true).accelerator, 0u) << "there is one";
+  EXPECT_EQ(estimate_memory(spheres_at(1, 100, kEmbree), {}, {.has_accelerator = true}).accelerator, 0u)
+      << "there is one";
 }
 
 /// Many static spheres of similar size take less each; moving ones and giants do not.
@@ -164,6 +169,44 @@ TEST(JobMemoryEstimate, CountsTheHalvesOnlyWhereTheyAreNeeded) {
   request.halves = true;
   constexpr std::uint64_t kPlanes = 20 * 8;
   EXPECT_EQ(film() - beauty, 1000 * (sizeof(kernel::PixelSum) + 2 * sizeof(kernel::GuideSum) + kPlanes));
+}
+
+/// A denoised figure on a page: sums of pixels without objects take no memory, and others none in the finished image.
+TEST(JobMemoryEstimate, IsNearThePeakOfAFigureOnAnEmptyPage) {
+  if (!support::kMeasuresMemory) GTEST_SKIP() << "sanitizers take memory of their own";
+  scene::Scene scene;
+  scene.image = {1200, 900};
+  scene.background.type = scene::BackgroundType::kConstant;
+  scene.materials = {{"a", scene::Lambertian{}}};
+  scene.spheres = {{{0, 0, -10}, 3, 0, ""}};
+  scene.camera.look_from = {0, 0, 0};
+  scene.camera.look_at = {0, 0, -1};
+  scene.render.samples = 2;
+  const compile::CompiledScene compiled = compile::compile(scene);
+  render::Settings settings;
+  settings.threads = 1;
+  settings.keeps_sums = false;
+  settings.layers.halves = true;
+  const auto render = [&] {
+    render::Result result = render::render(compiled, settings);
+    denoise::denoise(result.picture, 1, false);
+  };
+  const auto peak = static_cast<double>(support::peak_memory(render) - support::peak_memory([] {}));
+  const double share = render::share_with_objects(compiled, settings.layers, 1);
+  EXPECT_GT(share, 0.02);
+  EXPECT_LT(share, 0.2);
+  const auto estimate = [&](const MemoryUse& use) {
+    return static_cast<double>(estimate_memory(compiled, settings.layers, use).total());
+  };
+  const double estimated = estimate({.keeps_sums = false, .share_with_objects = share});
+  EXPECT_GT(estimated, 0.9 * peak);
+  EXPECT_LT(estimated, 1.5 * peak);
+  EXPECT_GT(estimate({.share_with_objects = share}), estimated);
+  EXPECT_GT(estimate({.keeps_sums = true}), 2 * peak);
+  // Pixels are counted before a render is refused.
+  const auto limit = static_cast<std::uint64_t>(estimated);
+  EXPECT_NO_THROW(require_memory(compiled, settings.layers, {.keeps_sums = false}, limit, 1));
+  EXPECT_THROW(require_memory(compiled, settings.layers, {.keeps_sums = false}, limit / 2, 1), base::Error);
 }
 
 TEST(JobMemoryEstimate, CountsTheLightTreeAndItsBuild) {

@@ -51,7 +51,7 @@ scene::Scene figure() {
 
 std::vector<bool> find(const compile::CompiledScene& compiled) {
   TilePool pool(2);
-  return find_empty_pixels(compiled.view(), compiled.width, compiled.height, pool);
+  return find_empty_pixels(compiled, {}, pool);
 }
 
 /// The pixels in which a path hits an object. With layers of hits, empty pixels are rendered like all others.
