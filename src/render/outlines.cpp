@@ -8,6 +8,7 @@
 #include <limits>
 
 #include "compile/compiled_scene.h"
+#include "film/layers.h"
 #include "kernel/ray_packet.h"
 #include "kernel/scene_view.h"
 #include "math/pixels.h"
@@ -244,7 +245,7 @@ std::vector<float> outlines(const compile::CompiledScene& scene, const accel::Ac
                             int threads) {
   std::vector<float> coverage(math::pixel_count(scene.width, scene.height));
   TilePool pool(threads);
-  const std::vector<bool> empty = find_empty_pixels(scene.view(), scene.width, scene.height, pool);
+  const std::vector<bool> empty = find_empty_pixels(scene, {}, pool);
   const int columns = (scene.width + kTileSide - 1) / kTileSide, rows = (scene.height + kTileSide - 1) / kTileSide;
   // Those of all objects, then those of the solid ones, which show through the others.
   for (const float threshold : {0.0f, kSolid}) {
