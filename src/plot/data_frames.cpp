@@ -9,6 +9,7 @@
 
 #include "base/error.h"
 #include "base/frames.h"
+#include "base/text.h"
 #include "points/rows.h"
 #include "points/sources.h"
 #include "points/spacing.h"
@@ -127,13 +128,17 @@ LoadedFrame DataFrames::load(int frame, const scene::PointsKeys& keys, points::S
   if (keys.file.empty()) out.points.file = request.file;
   std::vector<base::Diagnostic> errors;
   out.diagnostics = points::load_points(request, out.points);
+  const bool has_names = !request.topology.empty() || !base::contains({"XTC", "TRR", "DCD"}, format());
+  const std::string remedy = has_names ? "" : "a topology names the atoms of a trajectory: --topology FILE";
   for (const scene::SceneDiagnostic& d : out.diagnostics) {
     const bool has_key = d.key.size() > request.key.size() && d.key != request.key + ".file";
     std::string key = has_key ? d.key.substr(request.key.size() + 1) + ": " : "";
     if (key == "cryptomatte: ") key = "--outline-by: ";  // which alone sets this key of a plot
     const std::string number = numbers_.size() > 1 ? fmt::format("frame {}: ", frame) : "";
-    auto& list = d.severity == base::Severity::kError ? errors : out.warnings;
-    list.push_back(base::file_diagnostic(d.severity, request.file.string(), number + key + d.text));
+    const bool is_error = d.severity == base::Severity::kError;
+    (is_error ? errors : out.warnings)
+        .push_back(
+            base::file_diagnostic(d.severity, request.file.string(), number + key + d.text, is_error ? remedy : ""));
   }
   if (!errors.empty())
     throw base::Error(base::ErrorKind::kBadData, "cannot use " + request.file.string(), std::move(errors));

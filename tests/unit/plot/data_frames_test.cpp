@@ -109,6 +109,18 @@ TEST_F(PlotDataFrames, FaultsNameTheFrameAndTheOption) {
   }
 }
 
+TEST_F(PlotDataFrames, ATrajectoryWithoutNamesNeedsATopology) {
+  options_.file = ORRERY_ROOT "/tests/fuzz/corpus/data/xtc/water.xtc";
+  scene::PointsKeys keys;
+  keys.radius.element = "vdw";
+  try {
+    DataFrames(options_, folder_.path()).load(1, keys);
+    ADD_FAILURE() << "no error";
+  } catch (const base::Error& error) {
+    EXPECT_TRUE(test::mentions(error.diagnostics().at(0).remedy, {"--topology"}));
+  }
+}
+
 TEST_F(PlotDataFrames, AllConditionsApply) {
   EXPECT_EQ(all_of({}), "");
   EXPECT_EQ(all_of({"x > 0 || y > 0"}), "x > 0 || y > 0");
