@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include "base/error.h"
+#include "support/mentions.h"
 #include "support/temp_dir.h"
 
 namespace orrery::base {
@@ -44,16 +45,11 @@ TEST(BaseFrames, TooManyFramesAreRefused) {
   const std::string forms = "; write 1-10, 1-10x2 or 1,3,7-9";
   EXPECT_EQ(told("1-100000"), "100000 frames");
   EXPECT_EQ(told("1-9999999x100"), "100000 frames");
-  EXPECT_EQ(told("1-100001"), "`1-100001` is not a frame range: it has more than 100000 frames" + forms);
-  EXPECT_EQ(told("1-60000,70001-120000"),
-            "`1-60000,70001-120000` is not a frame range: it has more than 100000 frames" + forms);
-  EXPECT_EQ(told("1-1000000000"),
-            "`1-1000000000` is not a frame range: 1000000000 exceeds the maximum frame number 9999999" + forms);
-  EXPECT_EQ(
-      told("1-99999999999999999999"),
-      "`1-99999999999999999999` is not a frame range: 99999999999999999999 exceeds the maximum frame number 9999999" +
-          forms);
-  EXPECT_EQ(told("1-"), "`1-` is not a frame range: the end of a range is missing" + forms);
+  EXPECT_TRUE(test::mentions(told("1-100001"), {"`1-100001`", "100000 frames", forms}));
+  EXPECT_TRUE(test::mentions(told("1-60000,70001-120000"), {"`1-60000,70001-120000`", "100000 frames", forms}));
+  EXPECT_TRUE(test::mentions(told("1-1000000000"), {"`1-1000000000`", "1000000000", "9999999", forms}));
+  EXPECT_TRUE(test::mentions(told("1-99999999999999999999"), {"`1-99999999999999999999`", "9999999", forms}));
+  EXPECT_TRUE(test::mentions(told("1-"), {"`1-`", "end", "missing", forms}));
 }
 
 TEST(BaseFrames, FormatsShortRanges) {

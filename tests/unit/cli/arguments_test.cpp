@@ -50,8 +50,7 @@ TEST(CliArguments, SizesAreBytesWithAUnit) {
     EXPECT_EQ(value, bytes);
   }
   for (const char* wrong : {"", "G", "8", "8g", "-1G", "0G", "nanG", "1e300T", "8GB"})
-    EXPECT_EQ(verdict(byte_size(), wrong),
-              std::string("must be a size with a unit, e.g. 512M or 1.5G, not `") + wrong + "`");
+    EXPECT_TRUE(test::mentions(verdict(byte_size(), wrong), {"512M", std::string("`") + wrong + "`"}));
 }
 
 TEST(CliArguments, TimesAreSecondsWithUnits) {
@@ -71,8 +70,7 @@ TEST(CliArguments, TimesAreSecondsWithUnits) {
   EXPECT_TRUE(test::mentions(verdict(duration(), "0s"), {"0.01s", "`0s`"}));
   EXPECT_TRUE(test::mentions(verdict(duration(), "8761h"), {"8760h", "`8761h`"}));
   for (const char* wrong : {"", "s", "-5s", "5d", "5s5", "1m1h", "5m5m", "1..5s", "5ms", "nans", "1e3s"})
-    EXPECT_EQ(verdict(duration(), wrong),
-              std::string("must be a time such as 90s, 5m, 1.5h or 1h30m, not `") + wrong + "`");
+    EXPECT_TRUE(test::mentions(verdict(duration(), wrong), {"1h30m", std::string("`") + wrong + "`"}));
 }
 
 }  // namespace

@@ -248,15 +248,13 @@ TEST(SceneValidate, LensMustBeInTheDomain) {
 }
 
 TEST(SceneValidate, RadiusMustBeInTheDomain) {
-  EXPECT_EQ(told(with_sphere({}, 0)),
-            Told{"sphere[0].radius: radius is 0; must be in 1e-30..1e+18, or negative for an inward normal"});
+  EXPECT_TRUE(tells(with_sphere({}, 0), {"sphere[0].radius", "is 0", "1e-30..1e+18", "negative"}));
   EXPECT_EQ(told(with_sphere({}, 1e-31)),
             Told{"sphere[0].radius: radius is 1e-31; its magnitude must be in 1e-30..1e+18"});
   EXPECT_EQ(told(with_sphere({}, -2e18)),
             Told{"sphere[0].radius: radius is -2e+18; its magnitude must be in 1e-30..1e+18"});
-  EXPECT_EQ(told(with_sphere({}, kNan)), Told{"sphere[0].radius: radius is not finite; must be in 1e-30..1e+18"});
-  EXPECT_EQ(told(with_sphere({}, -kNotFinite)),
-            Told{"sphere[0].radius: radius is not finite; must be in 1e-30..1e+18"});
+  EXPECT_TRUE(tells(with_sphere({}, kNan), {"sphere[0].radius", "not finite", "1e-30..1e+18"}));
+  EXPECT_TRUE(tells(with_sphere({}, -kNotFinite), {"sphere[0].radius", "not finite"}));
   EXPECT_EQ(told(with_sphere({}, 1e-30)), Told{});
   EXPECT_EQ(told(with_sphere({}, -1e18)), Told{});
   Scene fast = with_sphere({}, 1e-19);
