@@ -22,6 +22,7 @@
 #include "base/stop_point.h"
 #include "base/text.h"
 #include "data/faults.h"
+#include "data/read_progress.h"
 
 namespace orrery::data {
 
@@ -52,10 +53,12 @@ class PlainFile final : public ByteSource {
       if (got == 0) throw base::Error(base::ErrorKind::kIo, file().string() + " was truncated while it was being read");
       done += static_cast<std::size_t>(got);
     }
+    if (progress_) *progress_ = static_cast<double>(offset + count) / static_cast<double>(size());
   }
 
  private:
   int descriptor_;
+  const std::shared_ptr<ReadProgress> progress_ = ReadProgressScope::current();
 };
 
 class BytesInMemory final : public ByteSource {

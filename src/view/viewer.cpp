@@ -38,6 +38,8 @@ constexpr int kNarrowestSketch = 160;  // px
 constexpr std::chrono::milliseconds kRefresh{150};
 /// Samples per pixel with which an image has replaced its sketch: single samples may be black.
 constexpr double kFadeSamples = 8;
+constexpr const char* kReading = "reading";
+constexpr double kProgressStep = 0.01;
 constexpr int kSketchQuality = 75, kQuality = 85;  // of JPEG
 
 double pixels_of(int width, int height) { return static_cast<double>(width) * static_cast<double>(height); }
@@ -171,6 +173,10 @@ Frame Viewer::frame(std::uint64_t after, std::chrono::milliseconds patience, std
   std::unique_lock lock(mutex_);
   while (!stops_ && frame_.number <= after && state.value_or(state_.number) == state_.number && Clock::now() < end) {
     changed_.wait_until(lock, std::min(end, Clock::now() + kRefresh));
+    if (state_.activity == kReading && std::abs(*reading_ - state_.progress) >= kProgressStep) {
+      state_.progress = *reading_;
+      announce();
+    }
     if (frame_.number > after || !live_) continue;
     const std::shared_ptr<Live> live = live_;
     lock.unlock();
@@ -239,6 +245,7 @@ void Viewer::publish(Frame frame) {
 }
 
 void Viewer::run() {
+  const data::ReadProgressScope scope(reading_);
   std::unique_lock lock(mutex_);
   for (;;) {
     changed_.wait(lock, [this] { return stops_ || state_.asked != served_; });
@@ -283,7 +290,8 @@ void Viewer::correct(const Wish& wish, std::uint64_t number) {
 }
 
 void Viewer::make_subject(Wish& wish, std::uint64_t number) {
-  set_activity("reading");
+  *reading_ = 0;
+  set_activity(kReading);
   const base::StopScope scope(&cancel_);
   if (wish.options.erase(kAllFrames) > 0) {
     Wish film{wish.options};

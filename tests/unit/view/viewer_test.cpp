@@ -5,12 +5,14 @@
 #include <malloc.h>
 
 #include <algorithm>
+#include <atomic>
 #include <chrono>
 #include <filesystem>
 #include <string>
 #include <vector>
 
 #include "base/stop_point.h"
+#include "data/byte_source.h"
 #include "film/picture.h"
 #include "image/read.h"
 #include "job/run_job.h"
@@ -134,6 +136,24 @@ TEST(ViewViewer, AReadThatIsNotWantedAnyMoreStops) {
     const std::uint64_t number = viewer.ask({});
     while (viewer.state().served < number) viewer.frame(1000000, 1ms, viewer.state().number);
   }
+}
+
+TEST(ViewViewer, TheProgressOfAReadIsTheFractionOfTheFile) {
+  const support::TempDir folder;
+  support::write_bytes(folder / "file.txt", std::string(100, ' '));
+  std::atomic<bool> goes_on{false};
+  const auto make = [&](const std::vector<std::string>& words) {
+    data::ByteSource::open(folder / "file.txt", 1000)->text(0, 25);
+    goes_on.wait(false);
+    return subject_of(words);
+  };
+  Viewer viewer(make, {}, {});
+  while (viewer.state().progress == 0) viewer.frame(1000000, 60s, viewer.state().number);
+  EXPECT_EQ(viewer.state().activity, "reading");
+  EXPECT_EQ(viewer.state().progress, 0.25);
+  goes_on = true;
+  goes_on.notify_all();
+  finished(viewer);
 }
 
 TEST(ViewViewer, TheRangeOfAllFramesReplacesTheControl) {
