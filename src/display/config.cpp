@@ -70,11 +70,15 @@ std::string version_note(const std::string& file, const std::string& message) {
                                  : ", and configs for later versions may not load");
 }
 
+/// Parsed once: that takes several milliseconds, of the 45 that an image has while the camera moves.
+ocio::ConstConfigRcPtr builtin_config() {
+  std::istringstream text(kBuiltinConfig);
+  static const ocio::ConstConfigRcPtr config = ocio::Config::CreateFromStream(text);
+  return config;
+}
+
 ocio::ConstConfigRcPtr load(const std::string& file) {
-  if (file.empty()) {
-    std::istringstream text(kBuiltinConfig);
-    return ocio::Config::CreateFromStream(text);
-  }
+  if (file.empty()) return builtin_config();
   if (!is_library_config(file)) base::require_readable(file);
   try {
     ocio::ConstConfigRcPtr config = ocio::Config::CreateFromFile(file.c_str());
