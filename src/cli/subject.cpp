@@ -12,11 +12,11 @@
 #include "cli/film.h"
 #include "cli/render_options.h"
 #include "cli/run.h"
+#include "load/file_settings.h"
 #include "load/read_scene.h"
 #include "plot/appearance.h"
 #include "plot/plot.h"
 #include "plot/settings.h"
-#include "view/wish.h"
 
 namespace orrery::cli {
 namespace {
@@ -103,7 +103,7 @@ void ShownOptions::add_to(Command& parsed) {
 }
 
 std::set<std::string> files_of(const ShownOptions& shown) {
-  std::set<std::string> out = view::named_files(shown.scene.overrides());
+  std::set<std::string> out = load::named_files(shown.scene.overrides());
   if (shown.plot.options.points.color.has_map_file()) out.insert(shown.plot.options.points.color.map);
   return out;
 }

@@ -14,11 +14,11 @@
 #include "base/error.h"
 #include "base/text.h"
 #include "http/server.h"
+#include "load/file_settings.h"
 #include "python/render.h"
 #include "python/scene_data.h"
 #include "view/site.h"
 #include "view/viewer.h"
-#include "view/wish.h"
 
 namespace py = pybind11;
 
@@ -60,7 +60,7 @@ view::Subject subject_of(const SceneData& scene, const job::Job& job, const std:
       }
     }
   });
-  if (!view::named_files(own).empty()) base::refuse("set files in Python: scene.set(...)");
+  if (!load::named_files(own).empty()) base::refuse("set files in Python: scene.set(...)");
   return out;
 }
 

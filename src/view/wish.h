@@ -3,11 +3,8 @@
 
 #include <functional>
 #include <map>
-#include <set>
 #include <string>
 #include <vector>
-
-#include "load/overrides.h"
 
 namespace orrery::view {
 
@@ -26,9 +23,6 @@ struct Wish {
 /// `is_control`  whether clients may set an option
 /// Errors        base::Error(kUsage), for anything else
 Wish read_wish(const std::string& json, const std::function<bool(const std::string& option)>& is_control);
-
-/// The files that settings may name. A page may set only those that were given on the command line.
-std::set<std::string> named_files(const load::Overrides& overrides);
 
 /// The words of a command: the fixed ones, the controls, and the camera.
 std::vector<std::string> words_of(const std::vector<std::string>& fixed, const Wish& wish);
