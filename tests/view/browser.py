@@ -569,7 +569,7 @@ def audit_keyboard(browser):
     expect(all(is_marked for _, is_marked in order), f"the focus cannot be seen: {order}")
     browser.run("document.activeElement.blur()")
     browser.keys("5")
-    browser.wait("return !document.getElementById('tab-export').hidden")
+    browser.wait("return document.getElementById('tab-export').checkVisibility()")
     browser.keys("1]")
     wait_for_command(browser, "--frame 2")
     browser.keys("[")

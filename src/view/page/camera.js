@@ -45,18 +45,16 @@ export function roll(camera, angle) {
   return { ...camera, up: rotated(axes(camera).up, axes(camera).back, angle) };
 }
 
+const shifted = (camera, by) => ({ ...camera, look_from: add(camera.look_from, by), look_at: add(camera.look_at, by) });
+
 // Moves the scene with the pointer, in pixels of an image of this size.
 export function pan(camera, dx, dy, width, height) {
   const unit = unitsPerPixel(camera, width, height), { right, up } = axes(camera);
-  const shift = add(scale(right, -dx * unit), scale(up, dy * unit));
-  return { ...camera, look_from: add(camera.look_from, shift), look_at: add(camera.look_at, shift) };
+  return shifted(camera, add(scale(right, -dx * unit), scale(up, dy * unit)));
 }
 
 // Moves the camera so that it turns about a point.
-export function centerOn(camera, point) {
-  const shift = subtract(point, camera.look_at);
-  return { ...camera, look_from: add(camera.look_from, shift), look_at: point };
-}
+export const centerOn = (camera, point) => shifted(camera, subtract(point, camera.look_at));
 
 // Shows `factor` times as much of the scene.
 export function zoom(camera, factor) {

@@ -189,7 +189,6 @@ export function hidePicked() {
   setStill({ "--select": [...option("--select"), `!(${condition})`] });
 }
 
-$("picked-close").onclick = clearPicks;
 let frame = "";
 onUpdate(() => {
   if (frame !== option("--frame")) clearPicks();  // they have moved

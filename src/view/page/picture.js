@@ -136,7 +136,6 @@ export function cameraKey(event) {
   else if (key === "r" || key === "R") move(roll(from, key === "r" ? angle : -angle), false);
   else if (key === "+" || key === "=") move(zoom(from, 0.9), false);
   else if (key === "-") move(zoom(from, 1 / 0.9), false);
-  else if (key === "f" || key === "F") fit();
   else if (axis >= 0 && key.length === 1) lookAlong(axis, event.shiftKey ? -1 : 1);
   else return false;
   return true;

@@ -138,7 +138,4 @@ function slide(moves) {
 }
 $("frame").oninput = () => slide(true);
 $("frame").onchange = () => slide(false);
-$("play").onclick = toggle;
-$("previous").onclick = () => step(-1);
-$("next").onclick = () => step(1);
 onUpdate(tell);

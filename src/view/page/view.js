@@ -12,16 +12,6 @@ import * as time from "./time.js";
 
 const TABS = ["data", "look", "camera", "annotate", "export"];
 
-// ---- Tabs ---------------------------------------------------------------------------------------------------------
-
-function openTab(id) {
-  const radio = $(`for-${id}`);
-  if (radio.parentElement.hidden) return;
-  radio.checked = true;
-  for (const other of TABS) $(`tab-${other}`).hidden = other !== id;
-}
-for (const id of TABS) $(`for-${id}`).onchange = () => openTab(id);
-
 // ---- Status -------------------------------------------------------------------------------------------------------
 
 // The image that is shown, in words.
@@ -169,8 +159,10 @@ function makeViews() {
 
 // ---- Keys ---------------------------------------------------------------------------------------------------------
 
-const ACTIONS = { c: copyCommand, s: () => download("picture.png"), " ": time.toggle, "[": () => time.step(-1), "]": () => time.step(1), Escape: clearPicks,
-                  Delete: hidePicked, "?": () => $("keys").showModal() };
+// What a key does, and a button that has the key in `data-key`.
+const ACTIONS = { c: copyCommand, s: () => download("picture.png"), " ": time.toggle, "[": () => time.step(-1), "]": () => time.step(1), f: fit,
+                  Escape: clearPicks, Delete: hidePicked, "?": () => $("keys").showModal() };
+TABS.forEach((id, i) => { ACTIONS[i + 1] = () => $(`for-${id}`).click(); });
 
 document.addEventListener("keydown", event => {
   const key = event.key.length === 1 ? event.key.toLowerCase() : event.key, at = event.target;
@@ -182,7 +174,6 @@ document.addEventListener("keydown", event => {
   } else if (isTyping || event.altKey || (at !== canvas && at !== document.body && (key === " " || /^(Arrow|Esc)/.test(key)))) {
     return;
   } else if (ACTIONS[key]) ACTIONS[key]();
-  else if ("12345".includes(key)) openTab(TABS[Number(key) - 1]);
   else if (!cameraKey(event)) return;
   event.preventDefault();
 });
@@ -190,15 +181,12 @@ document.addEventListener("keydown", event => {
 // ---- Start --------------------------------------------------------------------------------------------------------
 
 const each = (selector, f) => document.querySelectorAll(selector).forEach(button => { button.onclick = event => f(button.dataset, event); });
+each("[data-key]", ({ key }) => ACTIONS[key]());
 each("[data-file]", ({ file }) => download(file));
-each("[data-copy]", copyCommand);
-each("[data-fit]", fit);
 each("[data-axis]", ({ axis, side }, { shiftKey }) => lookAlong(Number(axis), (shiftKey ? -1 : 1) * Number(side)));
-each("[data-tab]", ({ tab }) => openTab(tab));
 each("#stop", () => ask("cancel", {}));
 each("#undo", () => undo());
 each("#redo", () => undo(1));
-each("#help", () => $("keys").showModal());
 each("#film", makeFilm);
 each("#film-cancel", cancelFilm);
 each("#hide-panel", () => {
@@ -211,7 +199,7 @@ on("page", () => {
   document.title = `${page.title} - orrery view`;
   $("file").textContent = page.title;
   $("name-data").textContent = isScene ? "Scene" : "Data";
-  $("for-look").parentElement.hidden = isScene;
+  $("for-look").disabled = $("for-look").parentElement.hidden = isScene;
   makeDataControls();
   makePanel();
   makeSizes();
@@ -221,5 +209,4 @@ on("page", () => {
   on("state", tellState);
   if (page.saves) ask("film", undefined, true).then(film => film?.is_running && followFilm());
 });
-openTab("data");
 start();
