@@ -19,7 +19,6 @@
 #include "job/report_text.h"
 #include "job/resources.h"
 #include "job/scene_hash.h"
-#include "kernel/render_tile.h"
 #include "kernel/scene_view.h"
 #include "load/read_scene.h"
 #include "render/render.h"
@@ -76,7 +75,6 @@ void measure_round(std::vector<Item>& items, int round, Measure measure) {
 
 struct Case {
   std::string name;
-  kernel::Features features;
   Accelerator accelerator = Accelerator::kEmbree;
   Precision precision = Precision::kExact;
   std::optional<accel::Traversal> traversal = {};
@@ -84,13 +82,6 @@ struct Case {
   int samples = 1;
   std::vector<double> paths_per_s = {};
 };
-
-constexpr std::pair<const char*, bool kernel::Features::*> kFeatures[] = {
-    {"thin lens", &kernel::Features::lens},
-    {"hemisphere", &kernel::Features::hemisphere},
-    {"gradient sky", &kernel::Features::gradient},
-    {"lights", &kernel::Features::lit},
-    {"textures", &kernel::Features::rich_materials}};
 
 /// The compiled scene at the reduced image size.
 compile::CompiledScene reduced_scene(const BenchRequest& request) {
@@ -105,14 +96,9 @@ compile::CompiledScene reduced_scene(const BenchRequest& request) {
 class Subject {
  public:
   explicit Subject(const BenchRequest& request)
-      : request_(request),
-        compiled_(reduced_scene(request)),
-        required_(compiled_.features),
-        direct_lighting_(compiled_.direct_lighting) {}
+      : request_(request), compiled_(reduced_scene(request)), direct_lighting_(compiled_.direct_lighting) {}
 
   const compile::CompiledScene& compiled() const { return compiled_; }
-  /// The features that the scene requires; compiled() has those of the last case.
-  const kernel::Features& required() const { return required_; }
 
   /// Renders a case once.
   render::Statistics run(const Case& c) {
@@ -131,7 +117,6 @@ class Subject {
   void prepare(const Case& c) {
     compiled_.accelerator = c.accelerator;
     compiled_.precision = c.precision;
-    compiled_.features = c.features;
     compiled_.direct_lighting = c.samples_lights ? direct_lighting_ : kernel::DirectLighting::kBsdf;
     compile::update_lights(compiled_);
   }
@@ -144,7 +129,6 @@ class Subject {
 
   const BenchRequest& request_;
   compile::CompiledScene compiled_;
-  kernel::Features required_;
   kernel::DirectLighting direct_lighting_;
   std::map<std::pair<Accelerator, Precision>, std::unique_ptr<accel::Accel>> accels_;
 };
@@ -158,7 +142,7 @@ bool lists_are_affordable(const compile::CompiledScene& compiled) {
 std::vector<Case> cases_of(const compile::CompiledScene& compiled, Benchmark& out) {
   std::vector<Case> cases;
   const auto add = [&](const std::string& name, Accelerator accelerator, Precision precision) -> Case& {
-    return cases.emplace_back(Case{name, compiled.features, accelerator, precision});
+    return cases.emplace_back(Case{name, accelerator, precision});
   };
   add("embree exact", Accelerator::kEmbree, Precision::kExact);
   add("embree fast", Accelerator::kEmbree, Precision::kFast);
@@ -174,17 +158,6 @@ std::vector<Case> cases_of(const compile::CompiledScene& compiled, Benchmark& ou
   add("list exact", Accelerator::kList, Precision::kExact);
   add("list fast", Accelerator::kList, Precision::kFast);
   add("list book", Accelerator::kList, Precision::kBook);
-  return cases;
-}
-
-std::vector<Case> feature_cases_of(const compile::CompiledScene& compiled) {
-  std::vector<Case> cases;
-  if (compiled.shading != kernel::Shading::kPath) return cases;
-  for (const auto& [name, feature] : kFeatures) {
-    if (compiled.features.*feature) continue;
-    cases.push_back({name, compiled.features});
-    cases.back().features.*feature = true;
-  }
   return cases;
 }
 
@@ -207,32 +180,6 @@ render::Statistics measure(Subject& subject, Case& c) {
 }
 
 }  // namespace
-
-std::vector<FeatureCost> bench_features(const BenchRequest& request) {
-  job::choose_isa();
-  Subject subject(request);
-  const compile::CompiledScene& compiled = subject.compiled();
-  std::vector<Case> cases = {{"embree exact", compiled.features}};
-  for (Case& c : feature_cases_of(compiled)) cases.push_back(std::move(c));
-  for (Case& c : cases) calibrate(subject, c, request.seconds);
-  for (int round = 0; round < request.rounds; ++round)
-    measure_round(cases, round, [&](Case& c) { measure(subject, c); });
-  std::vector<FeatureCost> out;
-  for (const auto& [name, feature] : kFeatures) {
-    FeatureCost& cost = out.emplace_back(FeatureCost{name, subject.required().*feature, 0});
-    for (const Case& c : cases) {
-      if (c.name != name) continue;
-      std::vector<double> saves;
-      for (std::size_t i = 0; i < c.paths_per_s.size(); ++i)
-        saves.push_back(1 - c.paths_per_s[i] / cases[0].paths_per_s[i]);
-      std::sort(saves.begin(), saves.end());
-      cost.saves = quantile(saves, 0.5);
-      cost.least = saves.front();
-      cost.greatest = saves.back();
-    }
-  }
-  return out;
-}
 
 Benchmark bench_scene(const BenchRequest& request) {
   const base::StopScope scope(request.cancel);

@@ -54,22 +54,4 @@ std::string benchmark_text(const Benchmark& benchmark);
 /// A benchmark as JSON, schema "orrery.bench/1".
 std::string benchmark_json(const Benchmark& benchmark);
 
-/// The cost of an optional kernel feature.
-struct FeatureCost {
-  std::string name;       ///< "thin lens"
-  bool required = false;  ///< the scene needs it
-  /// If not required: fraction of the time with the feature that omitting it saves, median of the rounds, and the least
-  /// and greatest. Of five rounds, they include the true median with a probability of 94 %.
-  double saves = 0, least = 0, greatest = 0;
-
-  /// Whether the rounds agree that omitting it saves time.
-  bool is_measurable() const { return least > 0; }
-};
-
-/// Measures the cost of each kernel feature that the scene lacks, in embree exact at a reduced size.
-///
-/// Result     all features; those that the scene requires are not measured
-/// Errors     those of bench_scene
-std::vector<FeatureCost> bench_features(const BenchRequest& request);
-
 }  // namespace orrery::study

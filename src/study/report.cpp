@@ -39,19 +39,7 @@ NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(FilePoint, name, flags, bytes, write_s, error
 NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(Slope, name, slope)
 NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(Recommendation, words, command, noise, bias, samples, seconds, baseline_seconds)
 
-static void to_json(json& out, const FeatureCost& f) {
-  out = {{"name", f.name}, {"required", f.required}, {"saves", json()}};
-  if (!f.required) out.update({{"saves", f.saves}, {"least", f.least}, {"greatest", f.greatest}});
-}
-
 namespace {
-
-std::string text_of(const FeatureCost& f) {
-  if (f.required) return "required by this scene";
-  const std::string range = fmt::format("{:.1f} .. {:.1f} %", f.least * 100, f.greatest * 100);
-  if (!f.is_measurable()) return fmt::format("not required, no measurable cost ({} of the time)", range);
-  return fmt::format("not required, omitting it saves {:.1f} % of the time ({})", f.saves * 100, range);
-}
 
 /// Maximum width of the images on the page, px; keeps a page with twenty images within a few megabytes.
 constexpr int kShownWidth = 480;
@@ -76,7 +64,6 @@ json study_object(const Study& s) {
           {"slopes", s.slopes},
           {"left_out", s.left_out},
           {"warnings", s.warnings},
-          {"features", s.features},
           {"recommendation", s.recommendation}};
 }
 
@@ -154,7 +141,6 @@ std::string study_text(const Study& s) {
   for (const FilePoint& f : s.files)
     out += fmt::format("{:14} {:>12} {:9.3f} {:9.4f}\n", f.name, base::bytes_text(f.bytes), f.write_s, f.error * 100);
   out += '\n';
-  for (const FeatureCost& f : s.features) job::add_row(out, "feature", "{}: {}", f.name, text_of(f));
   for (const std::string& text : s.left_out) job::add_row(out, "left out", "{}", text);
   for (const std::string& text : s.warnings) job::add_row(out, "warning", "{}", text);
   return out + fmt::format("\n{}\n  {}\n", s.recommendation.words, s.recommendation.command);

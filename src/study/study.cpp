@@ -35,7 +35,6 @@
 #include "render/result.h"
 #include "render/settings.h"
 #include "study/axes.h"
-#include "study/bench.h"
 #include "study/biases.h"
 #include "study/recommendation.h"
 #include "study/study_renderer.h"
@@ -48,7 +47,6 @@ using compile::CompiledScene;
 /// Fractions of the budget.
 constexpr double kReferenceShare = 0.3;
 constexpr double kPilotShare = 0.2;  ///< testing the recommendation at full resolution
-constexpr double kFeatureShare = 0.05;
 
 /// Samples per pixel that the budget should allow for the reference and all points together. The study's image is
 /// reduced until it does.
@@ -106,7 +104,6 @@ class Runner {
     test_bias(out_.points);
     report_progress("files");
     out_.files = measure_file_axis(out_.reference);
-    measure_features();
     out_.slopes = slopes_of(out_.points);
     mark_front(out_.points);
     report_progress("testing the recommendation");
@@ -149,7 +146,6 @@ class Runner {
     scene.rod_files = {};
     if (read_.closing) read_.closing->spheres = {};
     if (read_.closing) read_.closing->rods = {};
-    read_s_ = elapsed();
     out_.scene_hash = job::scene_hash(full_);
     out_.scene_width = full_.width;
     out_.scene_height = full_.height;
@@ -223,7 +219,7 @@ class Runner {
     for (std::size_t i = 0; i < plan_.choices.size(); ++i) {
       const Choice& choice = plan_.choices[i];
       // Choices are ordered by importance. Those that exceed the budget are listed.
-      const double reserve = request_.budget_s * (kPilotShare + kFeatureShare);
+      const double reserve = request_.budget_s * kPilotShare;
       if (i >= kMinChoices && expected_seconds(choice) > left() - reserve) {
         std::string& names = too_expensive[choice.axis];
         names += (names.empty() ? "" : "; ") + choice.name;
@@ -295,21 +291,6 @@ class Runner {
     out_.points.push_back(std::move(point));
   }
 
-  void measure_features() {
-    // bench_features reads the scene and builds its accelerator once more.
-    if (read_s_ + renderer_.build_s() + 2 * request_.budget_s * kFeatureShare > left()) {
-      out_.left_out.push_back("features: exceeds the budget");
-      return;
-    }
-    report_progress("features");
-    study::BenchRequest bench;
-    bench.scene = request_.scene;
-    bench.rounds = 5;
-    bench.seconds = std::clamp(request_.budget_s * kFeatureShare / 5 / 6, 0.02, 0.25);
-    bench.cancel = request_.cancel;
-    out_.features = study::bench_features(bench);
-  }
-
   const Request& request_;
   StudyRenderer renderer_;
   load::ReadResult read_;         ///< without spheres
@@ -317,7 +298,6 @@ class Runner {
   job::MemoryEstimate memory_, adaptive_memory_, denoised_memory_;  ///< with the scene's settings, --noise, --denoise
   Pair reference_;
   AxisPlan plan_;
-  double read_s_ = 0;  ///< time to load the scene
   double paths_per_s_ = 0;
   Study out_;
 };

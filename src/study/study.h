@@ -10,7 +10,6 @@
 
 #include "film/picture.h"
 #include "load/load_scene.h"
-#include "study/bench.h"
 
 namespace orrery::study {
 
@@ -94,7 +93,6 @@ struct Study {
   std::vector<Slope> slopes;
   std::vector<std::string> left_out;  ///< axes without effect on this scene, and choices that exceed the budget
   std::vector<std::string> warnings;  ///< why times may be wrong
-  std::vector<FeatureCost> features;
   Recommendation recommendation;
 };
 

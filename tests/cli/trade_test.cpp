@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Target noise, time budgets, studies, and feature costs.
+// Target noise, time budgets, and studies.
 #include <nlohmann/json.hpp>
 
 #include "cli/program.h"

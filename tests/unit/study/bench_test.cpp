@@ -64,15 +64,6 @@ TEST_F(StudyBenchScene, MeasuresEveryPrecisionWithEmbreeAndLists) {
   EXPECT_TRUE(b.left_out.empty());
 }
 
-TEST_F(StudyBenchScene, FeatureCostsHaveAnInterval) {
-  for (const FeatureCost& cost : bench_features(request())) {
-    EXPECT_EQ(cost.required, cost.name == "gradient sky");
-    EXPECT_EQ(cost.least == cost.greatest, cost.required) << cost.name;
-    EXPECT_LE(cost.least, cost.saves);
-    EXPECT_LE(cost.saves, cost.greatest);
-  }
-}
-
 /// What sampling lights costs is the speed of "embree exact" relative to that of the same scene without.
 TEST_F(StudyBenchScene, ALitSceneIsMeasuredWithoutLightSampling) {
   BenchRequest r = request();

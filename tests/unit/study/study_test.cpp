@@ -130,7 +130,6 @@ TEST_F(StudyRun, JsonAndPageHoldAllPoints) {
   const auto json = nlohmann::json::parse(study_json(*study));
   EXPECT_EQ(json["schema"], "orrery.study/1");
   EXPECT_EQ(json["points"].size(), study->points.size());
-  EXPECT_EQ(json["features"].size(), 5u);
   const std::string page = study_html(*study);
   EXPECT_EQ(page.find("{{DATA}}"), std::string::npos);
   EXPECT_NE(page.find("data:image/jpeg;base64,"), std::string::npos);
