@@ -2,6 +2,7 @@
 #include <nlohmann/json.hpp>
 
 #include "cli/program.h"
+#include "support/mentions.h"
 
 namespace orrery::test {
 namespace {
@@ -112,7 +113,7 @@ TEST_F(CliCompare, DifferentSizesAndDamagedFilesAreBadData) {
   ASSERT_EQ(run("render good.toml -o c.exr -q --width 16").status, 0);
   const Outcome r = run("compare a.exr c.exr");
   EXPECT_EQ(r.status, 65);
-  EXPECT_EQ(r.err, "orrery: images of different sizes cannot be compared: 32 x 18 and 16 x 18\n");
+  EXPECT_TRUE(mentions(r.err, {"different sizes", "32 x 18", "16 x 18\n"}));
   write("noise.exr", "noise");
   EXPECT_EQ(run("compare a.exr noise.exr").status, 65);
 }

@@ -77,7 +77,7 @@ TEST_F(CliPlotOptions, TheSizeInPrintIsThatInPixels) {
 
 TEST_F(CliPlotOptions, RangesAreFinite) {
   expect_error("plot c.csv -o a.png --color-by q --range=-1e308:1e308 --legend a.svg", 2,
-               "--range: the numbers must be from -1e+300 to 1e+300");
+               "--range: the numbers must be from -1e+300");
   EXPECT_EQ(plot("c.csv -o a.ppm -q --color-by q --range=-1e300:1e300 --legend a.svg").status, 0);
 }
 

@@ -10,6 +10,7 @@
 #include <nlohmann/json.hpp>
 #include "cli/program.h"
 #include "support/exr_file.h"
+#include "support/mentions.h"
 
 namespace orrery::test {
 namespace {
@@ -249,7 +250,7 @@ TEST_F(CliValidation, InvalidDisplayOptionsAreNamedUsageErrors) {
   EXPECT_EQ(run(develop + "--display sGRB").status, 2);
   const Outcome missing = run(develop + "--ocio none.ocio");
   EXPECT_EQ(missing.status, 66);
-  EXPECT_EQ(missing.err, "orrery: cannot open none.ocio: No such file or directory\n");
+  EXPECT_TRUE(mentions(missing.err, {"orrery: cannot open none.ocio"}));
 }
 
 TEST_F(CliValidation, OptionsThatAreGuessedNameTheRightOnes) {
@@ -290,7 +291,7 @@ TEST_F(CliValidation, OcioVariableIsIgnoredForExrOutput) {
   const std::string before = "OCIO=none.ocio";
   const Outcome check = run("check good.toml", before);
   EXPECT_EQ(check.status, 66);
-  EXPECT_EQ(check.err, "orrery: $OCIO: cannot open none.ocio: No such file or directory\n");
+  EXPECT_TRUE(mentions(check.err, {"orrery: $OCIO: cannot open none.ocio"}));
   const Outcome shown = run("render good.toml -q -o a.png", before);
   EXPECT_EQ(shown.status, 66);
   EXPECT_EQ(shown.err, check.err);
@@ -331,7 +332,7 @@ TEST_F(CliValidation, InfoAndBenchTakeOneFrame) {
   EXPECT_TRUE(contains(run("info shot.toml --frame 6").out, "\nframe       6\n"));
   const Outcome many = run("info shot.toml --frames 1-6");
   EXPECT_EQ(many.status, 2);
-  EXPECT_EQ(many.err, "orrery: --frame 1-6 selects 6 frames, but this command takes one; orrery check takes several\n");
+  EXPECT_TRUE(mentions(many.err, {"--frame 1-6", "6 frames", "orrery check"}));
   const std::string bench = "bench shot.toml -q --rounds 1 --seconds 0.001 --frame ";
   EXPECT_NE(run(bench + "1").out.substr(0, 40), run(bench + "6").out.substr(0, 40)) << "the scene hash differs";
 }
@@ -464,9 +465,8 @@ TEST_F(CliValidation, LightsTooBrightForTheFilmAreErrors) {
   write("map.exr", support::ExrFile::constant(8, 4, {2, 2, 2}).bytes());
   EXPECT_TRUE(contains(errors(std::string(kImageBackground) + "\"map.exr\"\nexposure = 34\n"),
                        "background.exposure: the radiance"));
-  EXPECT_TRUE(
-      contains(errors(lamp + "radiance = { texture = \"image\", file = \"map.exr\" }\nexposure = 34\n"),
-               "material.lamp.exposure: the radiance with exposure would be 34359738368; the maximum is 17179869184"));
+  EXPECT_TRUE(mentions(errors(lamp + "radiance = { texture = \"image\", file = \"map.exr\" }\nexposure = 34\n"),
+                       {"material.lamp.exposure", "34359738368", "17179869184"}));
   EXPECT_EQ(run("check a.toml --set material.lamp.exposure=33").status, 0);
 }
 
