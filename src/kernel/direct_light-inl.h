@@ -262,7 +262,7 @@ HWY_INLINE void add_unoccluded(D d, const SceneView& scene, const Tile& tile, co
     gain(d, lanes, light, paths, to.batch);
     if (!tile.has_events()) continue;
     auto record = recorder_of(d, scene, tile, to.batch, lanes, shadow.path + i);
-    const auto unscattered = Lobe::kEmission;  // never used: a surface has scattered the light
+    const auto unscattered = Lobe::kEmission;
     const auto history = hn::LoadU(du, shadow.history + i), group = hn::LoadU(du, shadow.group + i);
     const auto in_coat = hn::And(lanes, hn::RebindMask(d, hn::And(history, set(du, kCoatBit)) != 0));
     if (hn::AllFalse(d, in_coat)) {

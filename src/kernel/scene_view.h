@@ -13,6 +13,7 @@
 #include "kernel/pixel_sum.h"
 #include "kernel/precision.h"
 #include "kernel/rod.h"
+#include "kernel/seen_emitters.h"
 #include "kernel/sphere.h"
 #include "math/vec3.h"
 
@@ -107,6 +108,7 @@ struct SceneView : SceneSettings {
   double cone_width = 0;
   Lights lights;      ///< the emitters that light sampling chooses from
   Caustics caustics;  ///< empty unless features.caustics
+  SeenEmitters seen_emitters;
   /// Change in centre and radius of each of the first `moving_count` spheres, from shutter open to shutter close; null:
   /// none.
   const Sphere* motion = nullptr;

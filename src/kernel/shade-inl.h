@@ -23,6 +23,7 @@
 #include "kernel/record-inl.h"
 #include "kernel/render_tile.h"
 #include "kernel/scatter-inl.h"
+#include "kernel/seen_emitters-inl.h"
 #include "kernel/surface-inl.h"
 #include "kernel/surface_texture-inl.h"
 
@@ -246,6 +247,8 @@ class Shader {
     if (hn::AllFalse(d, shines)) return;
     if (features().caustics)
       shines = hn::AndNot(is_sampled_caustic(d, scene_, shines, caustic_state_of(at), at.ray.self, at.hits), shines);
+    if (depth_ == 0 && scene_.seen_emitters.begins != nullptr)
+      shines = hn::AndNot(are_sampled(d, scene_, shines, at.pixels, at.hits), shines);
     if (features().rich_materials && scene_.textures != nullptr)
       source.radiance = textured_radiance<D, kLoop.precision>(d, scene_, at.ray, at.hits, shines, at.distance,
                                                               at.cone.width2, at.times, source.radiance);

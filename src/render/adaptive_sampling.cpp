@@ -57,9 +57,8 @@ class AdaptiveSampling {
         iteration_begin_samples_(progress.done()) {
     if (settings.layers.transparent || render_tile.has_empty_pixels())
       pixels_.known_black.resize(pixels_.samples.size());
-    kernel::SceneView view = compiled.view();
-    if (settings.layers.transparent) view.background_visible = false;
-    pixels_.emitters = emitter_coverage(view, {accel.tracer(), compiled.precision}, compiled.width, compiled.height);
+    pixels_.emitters =
+        emitter_coverage(render_tile.view(), {accel.tracer(), compiled.precision}, compiled.width, compiled.height);
     const auto update_row = [&](std::size_t y, TileWorker&) {
       for (int x = 0; x < compiled.width; ++x) update(x, static_cast<int>(y));
     };

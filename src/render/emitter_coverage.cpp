@@ -530,7 +530,7 @@ std::vector<EmitterCoverage> emitter_coverage(const kernel::SceneView& scene, co
   Coverage coverage(scene, visibility, width_px, height_px);
   if (scene.emission != nullptr) {
     for (std::uint32_t id = 0; id < scene.sphere_count; ++id)
-      if (const double radiance = radiance_of(scene, id); radiance > 0)
+      if (const double radiance = radiance_of(scene, id); radiance > 0 && !scene.seen_emitters.has(id))
         coverage.add(moving_sphere(scene, id), id, radiance, opacity_of(scene, id));
     add_rods(scene, coverage);
   }

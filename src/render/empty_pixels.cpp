@@ -13,6 +13,7 @@
 #include "kernel/scene_view.h"
 #include "math/pixels.h"
 #include "math/vec3.h"
+#include "render/seen_emitters.h"
 #include "render/tiles.h"
 
 namespace orrery::render {
@@ -131,11 +132,6 @@ class Covered {
   std::atomic<bool> is_full_ = false;
 };
 
-bool moves(const kernel::Camera& change) {
-  return std::any_of(std::begin(kernel::kCameraVectors), std::end(kernel::kCameraVectors),
-                     [&](auto vector) { return change.*vector != Vec3d{}; });
-}
-
 }  // namespace
 
 std::vector<bool> find_empty_pixels(const compile::CompiledScene& compiled, const film::LayerRequest& layers,
@@ -145,7 +141,7 @@ std::vector<bool> find_empty_pixels(const compile::CompiledScene& compiled, cons
   const bool is_plain =
       !scene.background_visible || scene.has_backdrop || (scene.environment == nullptr && !scene.features.gradient);
   const bool is_bounded = !scene.camera.is_orthographic || !scene.features.lens;
-  if (layers.records() || !is_plain || !is_bounded || (scene.features.motion && moves(scene.camera_motion))) return {};
+  if (layers.records() || !is_plain || !is_bounded || camera_moves(scene)) return {};
   Covered covered(scene, compiled.width, compiled.height);
   const auto add = [&](std::size_t i) {
     if (i < scene.sphere_count) {

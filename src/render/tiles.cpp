@@ -109,12 +109,14 @@ kernel::TileCounts TilePool::counts() const {
 
 TileRenderer::TileRenderer(const compile::CompiledScene& compiled, const accel::Accel& accel, const Settings& settings,
                            TilePool& pool)
-    : view_(compiled.view()),
+    : seen_emitters_(compiled.view(), compiled.precision, compiled.width, compiled.height),
+      view_(compiled.view()),
       tracer_(accel.tracer(settings.traversal)),
       request_(settings.layers),
       // Each half of a low-discrepancy sequence is a sequence in its own right.
       second_half_(settings.is_adaptive() ? kernel::Sampler::kSecondHalf
                                           : std::max(1U, static_cast<std::uint32_t>(compiled.samples) / 2)) {
+  view_.seen_emitters = seen_emitters_.view();
   if (request_.transparent) view_.background_visible = false;
   render_ = kernel::render_tile_function(view_.features, compiled.precision, request_.any());
   if (settings.sample_end > 0) return;

@@ -17,6 +17,7 @@
 #include "kernel/ray_packet.h"
 #include "kernel/render_tile.h"
 #include "kernel/scene_view.h"
+#include "render/seen_emitters.h"
 
 namespace orrery::render {
 
@@ -90,6 +91,8 @@ class TileRenderer {
   bool has_empty_pixels() const { return !empty_pixels_.empty(); }
   /// A path of an empty pixel; zero if there are none.
   const film::EmptyPath& empty_path() const { return empty_path_; }
+  /// The scene as it is rendered.
+  const kernel::SceneView& view() const { return view_; }
 
  private:
   film::EmptyPath path_of_empty_pixel(int width, bool is_adaptive) const;
@@ -107,6 +110,7 @@ class TileRenderer {
   /// Adds the records and light events of a tile to its layers.
   void add_records(const kernel::Tile& tile, const TileWorker& worker, film::Sums& image) const;
 
+  SeenEmitterList seen_emitters_;
   kernel::SceneView view_;
   kernel::Tracer tracer_;
   const film::LayerRequest& request_;

@@ -201,7 +201,7 @@ TEST_P(DeterminismProgram, OptionsThatMatterChangeTheImage) {
 INSTANTIATE_TEST_SUITE_P(, DeterminismProgram,
                          testing::Values(StoredImage{"everything.toml", 0x3fa6a00f7e524967u},
                                          StoredImage{"lights.toml", 0x5e1133e0e9b006bfu},
-                                         StoredImage{"sky-and-lights.toml", 0x429d4cc86b6695a2u},
+                                         StoredImage{"sky-and-lights.toml", 0x448b4360c0706064u},
                                          StoredImage{"textures.toml", 0xf986224e4a21d9f2u},
                                          StoredImage{"image-textures.toml", 0xfcae157c25f25d31u},
                                          StoredImage{"rods.toml", 0x0be67bfe1ade8f56u},
