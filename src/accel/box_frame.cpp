@@ -23,19 +23,14 @@ constexpr double kFarthestStart = 1.5;
 
 }  // namespace
 
-BoxFrame::BoxFrame(const BoundedSpheres& spheres, const std::vector<std::uint32_t>& ids, const kernel::Sphere* motion,
-                   std::size_t moving_count, const BoundedRods& rods) {
-  const auto at_closing = [&](std::uint32_t id) {
-    const kernel::Sphere s = spheres[id], change = motion[id];
-    return kernel::Sphere{s.x + change.x, s.y + change.y, s.z + change.z, s.radius + change.radius};
-  };
+BoxFrame::BoxFrame(const BoundedSpheres& spheres, const std::vector<std::uint32_t>& ids, const BoundedRods& rods) {
   // Includes the spheres, the ends of rods, and where they move, in a value.
   const auto accumulated = [&](const auto& start, auto add, auto join) {
     auto out = base::accumulate_parallel(
         ids.size(), start,
         [&](auto& value, std::size_t i) {
           add(value, spheres[ids[i]]);
-          if (ids[i] < moving_count) add(value, at_closing(ids[i]));
+          if (ids[i] < spheres.moving_count) add(value, spheres.at(ids[i], 1));
         },
         join);
     const auto of_rods = base::accumulate_parallel(
@@ -51,7 +46,7 @@ BoxFrame::BoxFrame(const BoundedSpheres& spheres, const std::vector<std::uint32_
     join(out, of_rods);
     return out;
   };
-  const bool moves = moving_count > 0 || rods.rods.moving_count > 0;
+  const bool moves = spheres.moving_count > 0 || rods.rods.moving_count > 0;
   using math::kInfinity;
   struct Corners {
     double lower[3], upper[3];

@@ -15,10 +15,13 @@ namespace orrery::accel {
 struct BoundedSpheres {
   kernel::SphereArray spheres;
   bool in_single = false;  ///< rounded as in `fast`; far from the origin, the rounding exceeds the padding of boxes
+  const kernel::Sphere* motion = nullptr;  ///< as in kernel::SceneView
+  std::size_t moving_count = 0;
 
   BoundedSpheres() = default;
-  BoundedSpheres(const kernel::SphereArray& all, bool rounded = false)  // NOLINT(google-explicit-constructor)
-      : spheres(all), in_single(rounded) {}
+  BoundedSpheres(const kernel::SphereArray& all, bool rounded = false,  // NOLINT(google-explicit-constructor)
+                 const kernel::Sphere* changes = nullptr, std::size_t moving = 0)
+      : spheres(all), in_single(rounded), motion(changes), moving_count(moving) {}
   BoundedSpheres(const kernel::Sphere* all) : spheres(all) {}  // NOLINT(google-explicit-constructor)
 
   kernel::Sphere operator[](std::size_t id) const noexcept {
@@ -29,7 +32,15 @@ struct BoundedSpheres {
             in_single_precision(s.radius)};
   }
 
-  /// See kernel::SphereArray.
+  /// A sphere when the shutter opens (0) or closes (1).
+  kernel::Sphere at(std::size_t id, int step) const noexcept {
+    const kernel::Sphere s = (*this)[id];
+    if (step == 0 || id >= moving_count) return s;
+    const kernel::Sphere& change = motion[id];
+    return {s.x + change.x, s.y + change.y, s.z + change.z, s.radius + change.radius};
+  }
+
+  /// When the shutter opens. See kernel::SphereArray.
   double coordinate(std::size_t id, int axis) const noexcept {
     const double x = spheres.coordinate(id, axis);
     return in_single ? math::in_single_precision(x) : x;
@@ -75,12 +86,10 @@ class BoxFrame {
  public:
   BoxFrame() = default;
 
-  /// The frame of the spheres with these ids, and of all rods.
+  /// The frame of the spheres with these ids, and of all rods. It encloses their whole motion.
   ///
-  /// `motion`   motion of the first moving_count spheres; the frame then encloses their whole motion
   /// Domain     there are ids or rods
-  BoxFrame(const BoundedSpheres& spheres, const std::vector<std::uint32_t>& ids, const kernel::Sphere* motion = nullptr,
-           std::size_t moving_count = 0, const BoundedRods& rods = {});
+  BoxFrame(const BoundedSpheres& spheres, const std::vector<std::uint32_t>& ids, const BoundedRods& rods = {});
 
   /// A padded bounding box.
   struct Box {

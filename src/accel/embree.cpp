@@ -33,14 +33,6 @@ BuildMonitor part_of(const BuildMonitor& whole, double begin, double end) {
   return [&whole, begin, end](double fraction) { return whole(begin + (end - begin) * fraction); };
 }
 
-/// A sphere at Embree's time step 0 or 1.
-kernel::Sphere sphere_at_step(const EmbreeScene& scene, std::uint32_t id, unsigned step) {
-  const kernel::Sphere s = scene.bounded[id];
-  if (step == 0 || id >= scene.moving_count) return s;
-  const kernel::Sphere& change = scene.motion[id];
-  return {s.x + change.x, s.y + change.y, s.z + change.z, s.radius + change.radius};
-}
-
 /// Most primitives of a rod, and the extent of one across its longest axis in radii, above which it is divided. The box
 /// of a long diagonal is nearly empty; those of bonds, and of rods parallel to an axis, are not
 /// (measured: docs/decisions/0034-rods.md).
@@ -85,7 +77,7 @@ void sphere_bounds(const RTCBoundsFunctionArguments* arguments) {
     out.upper_x = out.upper_y = out.upper_z = -std::numeric_limits<float>::infinity();
     return;
   }
-  set_bounds(scene.frame.box(sphere_at_step(scene, id, arguments->timeStep)), state, out);
+  set_bounds(scene.frame.box(scene.bounded.at(id, static_cast<int>(arguments->timeStep))), state, out);
 }
 
 void rod_bounds(const RTCBoundsFunctionArguments* arguments) {
@@ -116,7 +108,7 @@ class Embree final : public Accel {
       return static_cast<double>(count) / static_cast<double>(all);
     };
     const BoundedRods rods{view.rods, precision == kernel::Precision::kFast};
-    scene_.frame = BoxFrame(scene_.bounded, ids, view.motion, view.moving_count, rods);
+    scene_.frame = BoxFrame(scene_.bounded, ids, rods);
     ids = take_for_bvh(view, std::move(ids), bvh_threshold);
     for (std::uint32_t i = 0; i < view.rods.count; ++i)
       if (!is_short(view.rods, i, largest_in_bvh_)) add_pieces(view.rods[i], i, scene_.rod_pieces);
@@ -150,7 +142,7 @@ class Embree final : public Accel {
   static EmbreeScene make_scene(const kernel::SceneView& view, kernel::Precision precision) {
     EmbreeScene scene;
     scene.spheres = view.spheres;
-    scene.bounded = {view.spheres, precision == kernel::Precision::kFast};
+    scene.bounded = {view.spheres, precision == kernel::Precision::kFast, view.motion, view.moving_count};
     scene.motion = view.motion;
     scene.moving_count = view.moving_count;
     scene.opacity = view.opacity;
@@ -163,13 +155,12 @@ class Embree final : public Accel {
     return scene;
   }
 
-  /// Selects the static spheres and rods of similar size for a BVH, if there are enough of them.
+  /// Selects the spheres and static rods of similar size for a BVH, if there are enough of them.
   ///
   /// `ids`      ascending ids of all spheres that are neither outliers nor duplicates
   /// Result     empty: each sphere and rod is a primitive
   std::vector<std::uint32_t> take_for_bvh(const kernel::SceneView& view, std::vector<std::uint32_t> ids,
                                           std::size_t threshold) {
-    ids.erase(ids.begin(), std::lower_bound(ids.begin(), ids.end(), view.moving_count));
     const std::size_t static_rods = view.rods.count - view.rods.moving_count;
     if (ids.size() + static_rods < threshold || ids.size() + static_rods > SphereBvh::kMaxSpheres) return {};
     const double limit = giant_radius(view);
@@ -177,12 +168,14 @@ class Embree final : public Accel {
     const base::StopPoint stop;
     for (const std::uint32_t id : ids) {
       stop.check(id);
-      if (view.spheres[id].radius > limit) giants.push_back(id);
+      if (enclosing_radius(view, id) > limit) giants.push_back(id);
     }
     const std::size_t rods = short_rods(view.rods, limit);
     if (ids.size() - giants.size() + rods < threshold) return {};
-    std::erase_if(ids, [&](std::uint32_t id) { return view.spheres[id].radius > limit; });
+    std::erase_if(ids, [&](std::uint32_t id) { return enclosing_radius(view, id) > limit; });
     if (threshold > 1 && ids.size() <= kMaxInSmallLayer && is_layer(view)) return {};
+    scene_.moving_primitives =
+        static_cast<std::uint32_t>(std::lower_bound(giants.begin(), giants.end(), view.moving_count) - giants.begin());
     scene_.singles = std::move(giants);
     scene_.bvh = &bvh_;
     largest_in_bvh_ = limit;
@@ -196,7 +189,7 @@ class Embree final : public Accel {
     BuildState moving{&scene_, 0}, still{&scene_, scene_.moving_primitives > 0 ? 1u : 0u};
     if (scene_.moving_primitives > 0)
       add_geometry(functions_.spheres, sphere_bounds, scene_.moving_primitives, 2, &moving);
-    const std::size_t rest = bvh_.empty() ? primitives - scene_.moving_primitives : scene_.singles.size();
+    const std::size_t rest = (bvh_.empty() ? primitives : scene_.singles.size()) - scene_.moving_primitives;
     if (rest > 0) add_geometry(functions_.spheres, sphere_bounds, rest, 1, &still);
     if (!bvh_.empty()) add_geometry(functions_.bvh, bvh_bounds, 1, 1, &bvh_);
     scene_.is_bvh_alone =

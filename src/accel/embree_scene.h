@@ -40,7 +40,7 @@ struct EmbreeScene {
   /// ray tests them first, so that their hits limit the traversal.
   std::vector<std::uint32_t> outliers;
   std::vector<std::uint32_t> duplicates;  ///< ascending ids of spheres that are never hit: their boxes are empty
-  /// If there is a SphereBvh: ascending ids of the static spheres outside it, one primitive each.
+  /// If there is a SphereBvh: ascending ids of the spheres outside it, one primitive each.
   std::vector<std::uint32_t> singles;
   /// The traversal is that of this BVH; Embree receives packets. Null: there is none.
   const SphereBvh* bvh = nullptr;
@@ -60,8 +60,8 @@ struct EmbreeScene {
 
   /// The sphere of a primitive: ids count all spheres, primitives only those that are not outliers.
   std::uint32_t sphere_id(std::uint32_t geometry, std::uint32_t primitive) const noexcept {
-    if (!singles.empty() && (geometry > 0 || moving_primitives == 0)) return singles[primitive];
     primitive += geometry * moving_primitives;
+    if (!singles.empty()) return singles[primitive];
     for (const std::uint32_t id : outliers) primitive += primitive >= id ? 1u : 0u;
     return primitive;
   }

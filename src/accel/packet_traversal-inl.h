@@ -239,7 +239,8 @@ class PacketTraversal {
       const auto ids = hn::Set(du, static_cast<typename Packet::Id>(candidate.what));
       const kernel::RodArray& rods = query_.scene->rods;
       const bool is_rod = rods.contains(candidate.what);
-      const auto sphere = k::broadcast(d, query_.scene->spheres[is_rod ? 0 : candidate.what]);
+      const bool moves = candidate.what < query_.scene->moving_count;
+      const auto at_opening = k::broadcast(d, query_.scene->spheres[is_rod ? 0 : candidate.what]);
       for (int v = 0; v < kWidth; v += kStep) {
         const unsigned part = lanes >> v & ((1u << kStep) - 1u);
         if (part == 0) continue;
@@ -250,6 +251,7 @@ class PacketTraversal {
           const auto rod = k::broadcast(d, rods[rods.index(candidate.what)]);
           intersect_rods<kPrecision>(d, *query_.scene, packet, first, ray, rod, ids, mask_of(d, part), found);
         } else {
+          const auto sphere = moves ? k::sphere_at(d, *query_.scene, candidate.what, packet, first) : at_opening;
           intersect<kPrecision>(d, ray, sphere, ids, mask_of(d, part), found);
         }
         if (hn::AllFalse(d, found.is_new)) continue;

@@ -427,7 +427,14 @@ HWY_INLINE void intersect_candidates(const EmbreeQuery<Packet>& query, unsigned 
         k::gather_spheres(
             d, scene.spheres,
             [&](std::size_t i) { return ids[i] == kernel::kNone || rods.contains(ids[i]) ? other : ids[i]; }, row);
-        const k::Spheres<D> sphere{{row[0], row[1], row[2]}, row[3]};
+        k::Spheres<D> sphere{{row[0], row[1], row[2]}, row[3]};
+        if (scene.moving_count > 0) {
+          static constexpr kernel::Sphere kResting{0, 0, 0, 0};
+          k::gather4(
+              d, [&](std::size_t i) { return &(ids[i] < scene.moving_count ? scene.motion[ids[i]] : kResting).x; },
+              row);
+          sphere = k::moved<D>(sphere, {{row[0], row[1], row[2]}, row[3]}, hn::Load(d, packet.time + first));
+        }
         intersect<kPrecision>(d, ray, sphere, found_ids, at_spheres, found);
       }
       // Shorten the rays to their hits; shadow rays end there.

@@ -117,13 +117,10 @@ struct RadiusBounds {
 };
 HWY_INLINE RadiusBounds radii_of(const SphereBvh& bvh, std::uint32_t leaf, int first) {
   const ChildTag d;
-  if (bvh.radii.empty()) {
-    const auto radius = hn::Set(d, bvh.radius);
-    return {radius, radius};
-  }
+  if (bvh.radii.empty()) return {hn::Set(d, bvh.radius), hn::Set(d, bvh.radius - bvh.spread)};
   const SphereBvh::LeafRadii& own = bvh.radii[leaf];
-  const auto step = hn::Set(d, own.step), most = from_bytes(own.radius + first) * step;
-  return {most, most - step};
+  const auto most = from_bytes(own.radius + first) * own.step;
+  return {most, most - hn::Set(d, own.step + bvh.spread)};
 }
 
 /// How rays pass spheres, a pair per lane.

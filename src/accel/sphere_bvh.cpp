@@ -41,7 +41,7 @@ constexpr double kSpherePadding = 0x1.4p-17, kBoxPadding = 0x1p-18;
 /// most 2.5 reaches. The half axis is at most sqrt(3) x 127 steps long.
 constexpr double kAxisSlack = 0x1p-18 * 1.7321 * kLargestHalfCode;
 
-/// The spheres of a scene, and the spheres that enclose its rods, by id.
+/// The spheres that enclose the spheres and rods of a scene, by id.
 struct EnclosingSpheres {
   BoundedSpheres spheres;
   BoundedRods rods;
@@ -49,12 +49,12 @@ struct EnclosingSpheres {
 
   /// World space.
   kernel::Sphere operator[](std::uint32_t id) const noexcept {
-    return rods.rods.contains(id) ? enclosing_sphere(rods.at(rods.rods.index(id), 0)) : spheres[id];
+    return rods.rods.contains(id) ? enclosing_sphere(rods.at(rods.rods.index(id), 0)) : enclosing_sphere(spheres, id);
   }
   /// One coordinate of a centre, box space.
   float coordinate(std::uint32_t id, int axis) const noexcept {
     const auto x = [&] {
-      if (!rods.rods.contains(id)) return spheres.coordinate(id, axis);
+      if (!rods.rods.contains(id) && id >= spheres.moving_count) return spheres.coordinate(id, axis);
       const kernel::Sphere s = (*this)[id];
       return axis == 0 ? s.x : axis == 1 ? s.y : s.z;
     };
@@ -433,28 +433,38 @@ class Builder {
   /// Determines the radii, and whether there are rods.
   void measure() {
     struct Radii {
-      double least = std::numeric_limits<double>::infinity(), largest = 0, sum = 0;
+      double least = std::numeric_limits<double>::infinity(), largest = 0, sum = 0, spread = 0;
       bool has_rods = false;
     };
     const Radii radii = base::accumulate_parallel(
         ids_.size(), Radii(),
         [&](Radii& all, std::size_t i) {
-          const double r = spheres_[ids_[i]].radius;
-          all.has_rods = all.has_rods || spheres_.rods.rods.contains(ids_[i]);
+          const std::uint32_t id = ids_[i];
+          const double r = spheres_[id].radius;
+          all.has_rods = all.has_rods || spheres_.rods.rods.contains(id);
+          if (id < spheres_.spheres.moving_count) all.spread = std::max(all.spread, spread_of(id));
           all.least = std::min(all.least, r);
           all.largest = std::max(all.largest, r);
           all.sum += r;
         },
         [](Radii& a, const Radii& b) {
-          a = {std::min(a.least, b.least), std::max(a.largest, b.largest), a.sum + b.sum, a.has_rods || b.has_rods};
+          a = {std::min(a.least, b.least), std::max(a.largest, b.largest), a.sum + b.sum, std::max(a.spread, b.spread),
+               a.has_rods || b.has_rods};
         });
     has_rods_ = radii.has_rods;
     own_radii_ = radii.least < radii.largest || has_rods_;
     mean_radius_ = radii.sum / static_cast<double>(ids_.size()) * spheres_.frame.scale;
     bvh_.radius = rounded_up(radii.largest * spheres_.frame.scale);
+    bvh_.spread = rounded_up(radii.spread * spheres_.frame.scale);
     bvh_.padding = rounded_up(kSpherePadding * spheres_.frame.reach);
     bvh_.axis_slack = rounded_up(kAxisSlack * spheres_.frame.reach);
     box_padding_ = rounded_up(kBoxPadding * spheres_.frame.reach);
+  }
+
+  /// See SphereBvh::spread.
+  double spread_of(std::uint32_t id) const {
+    const kernel::Sphere from = spheres_.spheres[id], to = spheres_.spheres.at(id, 1);
+    return 2 * (spheres_[id].radius - std::min(from.radius, to.radius));
   }
 
   /// Reserves memory, which is touched when it is needed.
@@ -533,6 +543,12 @@ class Builder {
         const RodExtent rod(spheres_.rods.at(rods.index(id), 0), frame);
         for (int axis = 0; axis < 3; ++axis) reach[axis] = rounded_up(std::abs(rod.half[axis]) + rod.radius);
       }
+      if (id < spheres_.spheres.moving_count) {
+        const kernel::Sphere from = spheres_.spheres[id], to = spheres_.spheres.at(id, 1), all = spheres_[id];
+        const double half[3] = {(to.x - from.x) / 2, (to.y - from.y) / 2, (to.z - from.z) / 2};
+        const double own = all.radius - std::hypot(half[0], half[1], half[2]);
+        for (int axis = 0; axis < 3; ++axis) reach[axis] = rounded_up((own + std::abs(half[axis])) * frame.scale);
+      }
       for (int axis = 0; axis < 3; ++axis) {
         lower[axis] = center[axis] - (reach[axis] + box_padding_);
         upper[axis] = center[axis] + (reach[axis] + box_padding_);
@@ -594,6 +610,17 @@ kernel::Sphere enclosing_sphere(const kernel::Rod& rod) noexcept {
   const double half[3] = {(rod.b[0] - rod.a[0]) / 2, (rod.b[1] - rod.a[1]) / 2, (rod.b[2] - rod.a[2]) / 2};
   return {rod.a[0] + half[0], rod.a[1] + half[1], rod.a[2] + half[2],
           std::hypot(half[0], half[1], half[2]) + rod.radius};
+}
+
+kernel::Sphere enclosing_sphere(const BoundedSpheres& spheres, std::size_t id) noexcept {
+  const kernel::Sphere from = spheres[id];
+  if (id >= spheres.moving_count) return from;
+  const kernel::Sphere to = spheres.at(id, 1);
+  kernel::Sphere out =
+      enclosing_sphere({{from.x, from.y, from.z}, std::max(from.radius, to.radius), {to.x, to.y, to.z}, 0});
+  // The kernel rounds the interpolated sphere, whose numbers are each the sum of two rounded ones.
+  if (spheres.in_single) out.radius += 0x1p-22 * (std::abs(out.x) + std::abs(out.y) + std::abs(out.z) + out.radius);
+  return out;
 }
 
 SphereBvh::SphereBvh(const BoundedSpheres& spheres, std::vector<std::uint32_t> ids, const BoxFrame& frame,

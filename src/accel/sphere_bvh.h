@@ -15,8 +15,10 @@
 
 namespace orrery::accel {
 
-/// A BVH over many static spheres and rods, for one Embree primitive: 16 children per node, 16 spheres per leaf, bounds
+/// A BVH over many spheres and static rods, for one Embree primitive: 16 children per node, 16 spheres per leaf, bounds
 /// in 8 bits relative to the parent. It takes 10 to 12 bytes per sphere, and one more if radii differ.
+///
+/// A moving sphere is in the tree as the sphere that encloses it while the shutter is open.
 ///
 /// A rod is in the tree as the sphere around its middle that encloses it. Leaves then also hold the axes of their rods,
 /// which takes 4 bytes more per sphere and rod.
@@ -86,7 +88,7 @@ class SphereBvh {
 
   SphereBvh() = default;
 
-  /// `ids`            of spheres and of the first halves of rods, which do not move
+  /// `ids`            of spheres and of the first halves of rods; the rods do not move
   /// `monitor`        receives the progress, 0..1, on any thread; returns false to cancel
   /// `size_of_parts`  a power of kArity, at least its square; 0: part_size(); the result does not depend on it
   /// Domain           1 <= ids.size() <= kMaxSpheres; all spheres and rods lie in the frame
@@ -130,6 +132,8 @@ class SphereBvh {
   std::array<std::uint32_t, kMaxDepth> level_begin{};  ///< index of the first node of each level
   std::uint32_t last_leaf = 0;                         ///< the only one that may have fewer than kArity spheres
   float radius = 0;                                    ///< box space, rounded up
+  /// A sphere whose radius is less by this, around the same centre, is inside the moving one at all times; box space.
+  float spread = 0;
   /// Covers the rounding of the distance between a ray and the axis of a rod, times LeafRods::step.
   float axis_slack = 0;
   float padding = 0;    ///< added to a sphere's radius to cover rounding errors of a ray's distance from it, box space
@@ -138,5 +142,7 @@ class SphereBvh {
 
 /// The sphere around a rod's middle that encloses the rod.
 kernel::Sphere enclosing_sphere(const kernel::Rod& rod) noexcept;
+/// The sphere that encloses a sphere while the shutter is open.
+kernel::Sphere enclosing_sphere(const BoundedSpheres& spheres, std::size_t id) noexcept;
 
 }  // namespace orrery::accel

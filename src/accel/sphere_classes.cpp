@@ -41,6 +41,11 @@ constexpr std::size_t kSampleSize = 4096;
 
 }  // namespace
 
+double enclosing_radius(const kernel::SceneView& scene, std::size_t id) {
+  if (id >= scene.moving_count) return scene.spheres[id].radius;
+  return enclosing_sphere(BoundedSpheres(scene.spheres, false, scene.motion, scene.moving_count), id).radius;
+}
+
 std::vector<std::uint32_t> duplicates(const kernel::SceneView& scene, kernel::Precision precision) {
   if (kernel::is_distinct(scene, precision)) return {};
   const auto place = [&](std::size_t id) { return kernel::coincidence_key<4>(scene, id, precision); };
@@ -100,7 +105,7 @@ std::vector<std::uint32_t> find_outliers(const kernel::SceneView& scene, const s
     std::sort(outliers.begin(), outliers.end());
     std::vector<std::uint32_t> without;
     std::set_union(outliers.begin(), outliers.end(), duplicates.begin(), duplicates.end(), std::back_inserter(without));
-    const BoxFrame frame(scene.spheres, complement_of(without, scene.sphere_count), nullptr, 0, {scene.rods});
+    const BoxFrame frame(scene.spheres, complement_of(without, scene.sphere_count), {scene.rods});
     if (largest[n - 1].radius * frame.scale > kOutlierRatio * frame.reach) return outliers;
   }
   return {};
@@ -108,11 +113,10 @@ std::vector<std::uint32_t> find_outliers(const kernel::SceneView& scene, const s
 
 double giant_radius(const kernel::SceneView& scene) {
   const kernel::RodArray& rods = scene.rods;
-  const std::size_t spheres = scene.sphere_count - scene.moving_count;
-  const std::size_t all = spheres + rods.count - rods.moving_count;
+  const std::size_t spheres = scene.sphere_count, all = spheres + rods.count - rods.moving_count;
   std::vector<double> radii;
   for (std::size_t i = 0; i < all; i += all / kSampleSize + 1)
-    radii.push_back(i < spheres ? scene.spheres[scene.moving_count + i].radius
+    radii.push_back(i < spheres ? enclosing_radius(scene, i)
                                 : enclosing_sphere(rods[rods.moving_count + i - spheres]).radius);
   const auto middle = radii.begin() + static_cast<std::ptrdiff_t>(radii.size() / 2);
   std::nth_element(radii.begin(), middle, radii.end());
@@ -161,13 +165,13 @@ std::size_t bvh_threshold() {
 
 ObjectCounts objects_in_bvh(const kernel::SceneView& scene) {
   const std::size_t least = bvh_threshold();
-  if (scene.sphere_count - scene.moving_count + scene.rods.count - scene.rods.moving_count < least) return {};
+  if (scene.sphere_count + scene.rods.count - scene.rods.moving_count < least) return {};
   const double limit = giant_radius(scene);
   const std::size_t rods = short_rods(scene.rods, limit);
   std::size_t count = 0;
   double smallest = limit, largest = 0;
-  for (std::size_t id = scene.moving_count; id < scene.sphere_count; ++id) {
-    const double radius = scene.spheres[id].radius;
+  for (std::size_t id = 0; id < scene.sphere_count; ++id) {
+    const double radius = enclosing_radius(scene, id);
     if (radius > limit) continue;
     ++count;
     smallest = std::min(smallest, radius);

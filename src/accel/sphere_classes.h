@@ -30,10 +30,13 @@ std::vector<std::uint32_t> complement_of(const std::vector<std::uint32_t>& witho
 /// rods, such as a ground. Duplicates are ignored.
 std::vector<std::uint32_t> find_outliers(const kernel::SceneView& scene, const std::vector<std::uint32_t>& duplicates);
 
-/// The radius above which a static sphere, or the sphere around a static rod, is kept out of a SphereBvh, derived from
+/// The radius of the sphere that encloses a sphere while the shutter is open.
+double enclosing_radius(const kernel::SceneView& scene, std::size_t id);
+
+/// The radius above which the sphere that encloses a sphere or a static rod is kept out of a SphereBvh, derived from
 /// the median radius of a sample.
 ///
-/// Domain     at least one static sphere or rod
+/// Domain     at least one sphere or static rod
 double giant_radius(const kernel::SceneView& scene);
 
 /// Whether a rod belongs into a SphereBvh: it is static, and the sphere around it is neither larger than `largest` nor

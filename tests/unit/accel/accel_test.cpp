@@ -50,12 +50,15 @@ struct Differences {
   long rays = 0, hits = 0, lost = 0, different = 0;
 };
 
-Differences differences(const Scene& scene, const Way& way, long ray_count) {
+/// `motion`   of the first spheres
+Differences differences(const Scene& scene, const Way& way, long ray_count, const std::vector<Sphere>& motion = {}) {
   const std::vector<std::uint32_t> materials(scene.spheres.size(), 0);
   kernel::SceneView view;
   view.spheres = scene.spheres.data();
   view.object_materials = materials.data();
   view.sphere_count = scene.spheres.size();
+  view.motion = motion.data();
+  view.moving_count = motion.size();
   const auto list = make_list(view, kernel::Precision::kExact), other = way.make(view, kernel::Precision::kExact);
   Random random;
   Differences found;
@@ -67,6 +70,9 @@ Differences differences(const Scene& scene, const Way& way, long ray_count) {
         aim(random, scene, a[p], lane);
         // Distant and near origins in one packet are advanced by different lengths.
         if (random.uniform(0, 1) < 0.05) step_back(random, scene, a[p], lane);
+        if (motion.empty()) continue;
+        a[p].time[lane] = random.uniform(0, 1);
+        if (a[p].self[lane] < motion.size()) a[p].self[lane] = kCamera;  // it starts where the sphere was
       }
       reset_hits(a[p]);
       b[p] = a[p];
@@ -112,6 +118,29 @@ TEST(AccelAccel, EmbreeAndListFindTheSameHits) {
       }
   }
   kernel::limit_isa("");
+}
+
+/// Most spheres move by up to twice their radius, a few across the scene; some grow, and some rest.
+TEST(AccelAccel, EmbreeAndListFindTheSameMovingSpheres) {
+  const std::vector<Scene> all = scenes();
+  for (const std::size_t index : {std::size_t{1}, std::size_t{8}, std::size_t{9}}) {
+    const Scene& scene = all[index];
+    Random random;
+    for (const bool is_uniform : {false, true}) {
+      std::vector<Sphere> motion;
+      for (std::size_t i = 0; i < scene.spheres.size() * 3 / 4; ++i) {
+        const double most = is_uniform ? 0.3 : scene.spheres[i].radius * (i % 50 == 7 ? 40 : 2);
+        motion.push_back({random.uniform(-most, most), random.uniform(-most, most), random.uniform(-most, most),
+                          is_uniform ? 0 : scene.spheres[i].radius * random.uniform(-0.5, 0.5)});
+        if (is_uniform) motion.back() = {most, most / 2, -most, 0};
+      }
+      for (const Way& way : kWaysBesideTheList) {
+        const Differences found = differences(scene, way, 4000, motion);
+        EXPECT_EQ(found.different, 0) << scene.name << ", " << way.name << ": " << found.lost << " lost";
+        EXPECT_GT(found.hits, found.rays / 10) << scene.name;
+      }
+    }
+  }
 }
 
 /// Spheres in single precision, as compile::SphereStore keeps them, with individual radii or radii from a palette.

@@ -41,7 +41,7 @@ struct Tree {
         rods(std::move(and_rods)),
         bounded{{rods.data(), rods.size(), nullptr, 0, spheres.size()}},
         objects(spheres),
-        frame(spheres.data(), all_of(spheres), nullptr, 0, bounded) {
+        frame(spheres.data(), all_of(spheres), bounded) {
     std::vector<std::uint32_t> ids = all_of(spheres);
     for (std::size_t i = 0; i < rods.size(); ++i) {
       ids.push_back(bounded.rods.id(i));
