@@ -54,7 +54,7 @@ view::Subject data_subject(ShownOptions& shown, const FilmSettings* film) {
   out.frames = made.frames;
   out.up = made.up;
   const scene::PointsColor& color = made.points.color;
-  out.chosen["--map"] = color.map;
+  if (!color.column.empty() || !color.carbon.empty()) out.chosen["--map"] = color.map;
   if (color.range)
     out.chosen["--range"] = fmt::format("{}{}:{}", color.log ? "log," : "", color.range->low, color.range->high);
   out.chosen["--representation"] = plot::representation_names()[static_cast<std::size_t>(plot.representation.value_or(

@@ -64,7 +64,7 @@ function listColumns() {
   if (key !== listed) {
     listed = key;
     list.replaceChildren(entry("", ""), entry("none", "one colour"), entry("element", "element"), entry("type", "type"), entry("rgb", "colours of the file"),
-      ...columns().filter(([name]) => !["element", "type"].includes(name)).map(([name, type]) => entry(name, `${name}   ${kindOf(type)}`)), entry("*", "expression ..."));
+      ...columns().filter(([name]) => !["element", "type"].includes(name)).map(([name, type]) => entry(name, `${name} (${kindOf(type)})`)), entry("*", "expression ..."));
   }
   const value = option("--color-by"), title = state?.legend.title;
   list.options[0].textContent = title && !value ? `automatic: ${title}` : "automatic";
@@ -79,7 +79,7 @@ async function describe(column) {
   const [, type] = columns().find(([name]) => name === column) ?? [];
   const isNumber = known?.low !== undefined, hasClasses = known?.distinct !== undefined;
   const range = isNumber ? `, ${shortened(known.low)} … ${shortened(known.high)}` : hasClasses ? `, ${known.distinct.toLocaleString("en")} different` : "";
-  if (one && type) one.textContent = `${column}   ${kindOf(type)}${range}`;
+  if (one && type) one.textContent = `${column} (${kindOf(type)}${range})`;
 }
 
 let isDescribing = false;
@@ -169,7 +169,10 @@ function makeMaps() {
   const show = (span, name) => { span.style.background = `linear-gradient(90deg, ${page.maps[name].join(", ")})`; };
   choices($("maps"), Object.keys(page.maps), { name: "--map", chosen, choose, show });
   reversed.onchange = () => choose(chosen());
-  onUpdate(() => { reversed.checked = map().endsWith("_r"); });
+  onUpdate(() => {
+    reversed.checked = map().endsWith("_r");
+    reversed.closest("section").hidden = !map();
+  });
 }
 
 // ---- Slices -------------------------------------------------------------------------------------------------------
