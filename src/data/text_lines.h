@@ -19,7 +19,7 @@ namespace orrery::data {
 inline constexpr std::size_t kMaxLineBytes = std::size_t{1} << 20;
 
 /// Bytes behind the lines of TextLines that may be read.
-inline constexpr std::size_t kTextPadding = 8;
+inline constexpr std::size_t kTextPadding = kDecimalBytes;
 
 /// Throws an error for a line that is longer.
 ///

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 #include <string_view>
 
@@ -11,6 +12,16 @@ namespace orrery::data {
 ///
 /// Result     false unless the whole word is a number
 bool parse_number(std::string_view word, double& value);
+
+/// Bytes from the start of a word that scan_decimal() may read.
+inline constexpr std::size_t kDecimalBytes = 18;
+
+/// Scans a decimal number of up to 15 digits, with a point behind at most seven of them: most numbers of text files, in
+/// half the time of parse_number(), correctly rounded.
+///
+/// Domain     kDecimalBytes may be read
+/// Result     the character after the number, which may belong to its word; null for other words
+const char* scan_decimal(const char* at, double& value);
 
 /// Parses a word as an integer.
 ///

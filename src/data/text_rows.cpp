@@ -33,7 +33,7 @@ constexpr bool ends_word(char c) { return is_blank(c) || c == '\n'; }
 /// The first space or control character.
 const char* word_end(const char* at) {
   static_assert(std::endian::native == std::endian::little);
-  for (;; at += kTextPadding) {
+  for (;; at += sizeof(std::uint64_t)) {
     std::uint64_t word = 0;
     std::memcpy(&word, at, sizeof word);
     const std::uint64_t inside = ((word & 0x7f7f7f7f7f7f7f7f) + 0x5f5f5f5f5f5f5f5f) | word;
@@ -105,6 +105,10 @@ class RowParser {
       at = skip_blanks(at);
       const char* const begin = at;
       if (*at == '\n') return fail(fmt::format("has {} values, not {}", c, count));
+      if (const char* const end = store_decimal(c, at); end != nullptr && ends_word(*end)) {
+        at = end;
+        continue;
+      }
       at = word_end(at);
       const bool is_skipped = (*columns_)[c] == nullptr;
       if (!store(c, {begin, at}, false) || !(is_skipped || ends_word(*at))) return fail_value(c, begin, at);
@@ -129,6 +133,10 @@ class RowParser {
         ++at;
       }
       at = skip(at);
+      if (const char* const end = store_decimal(c, at); end != nullptr && (*end == separator || *end == '\n')) {
+        at = end;
+        continue;
+      }
       std::string_view value;
       const char* const begin = at;
       const bool is_quoted = *at == '"';
@@ -170,6 +178,15 @@ class RowParser {
     }
     value = unescaped_.emplace_back(std::move(text));
     return at + 1;
+  }
+
+  /// Stores a decimal number, the usual value of a column of float64.
+  ///
+  /// Result     as for scan_decimal()
+  const char* store_decimal(std::size_t c, const char* at) {
+    void* const column = (*columns_)[c];
+    if (column == nullptr || layout_->surveys || layout_->columns[c].type != ColumnType::kFloat64) return nullptr;
+    return scan_decimal(at, element<double>(column, row_));
   }
 
   /// Result     false if the value is not of the column's type

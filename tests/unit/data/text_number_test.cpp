@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <bit>
+#include <charconv>
 #include <cmath>
 #include <cstdint>
 #include <cstdio>
@@ -19,8 +20,11 @@ namespace {
 void expect_number(const std::string& word) {
   double value = -1;
   ASSERT_TRUE(parse_number(word, value)) << word;
-  EXPECT_EQ(std::bit_cast<std::uint64_t>(value), std::bit_cast<std::uint64_t>(std::strtod(word.c_str(), nullptr)))
-      << word << " " << value;
+  const auto expected = std::bit_cast<std::uint64_t>(std::strtod(word.c_str(), nullptr));
+  EXPECT_EQ(std::bit_cast<std::uint64_t>(value), expected) << word << " " << value;
+  const std::string padded = word + std::string(kDecimalBytes, '\n');
+  if (scan_decimal(padded.data(), value) != padded.data() + word.size()) return;
+  EXPECT_EQ(std::bit_cast<std::uint64_t>(value), expected) << word << " " << value;
 }
 
 TEST(DataTextNumber, AreCorrectlyRounded) {
@@ -93,6 +97,41 @@ TEST(DataTextNumber, AreCorrectlyRoundedAtRandom) {
         word, sizeof word, "%.*f", static_cast<int>(random() % 12),
         std::ldexp(static_cast<double>(static_cast<std::int64_t>(random())), -40 - static_cast<int>(random() % 30)));
     expect_number(word);
+  }
+}
+
+/// The number of characters that scan_decimal() takes.
+std::size_t scanned(const std::string& text, double& value) {
+  const std::string padded = text + std::string(kDecimalBytes, '\n');
+  const char* const end = scan_decimal(padded.data(), value);
+  return end == nullptr ? 0 : static_cast<std::size_t>(end - padded.data());
+}
+
+TEST(DataTextNumber, DecimalNumbersAreScanned) {
+  double value = -1;
+  for (const char* const word : {"0.5", "-.5", "7.", "-0.0", "1234567.8", "1234567.12345678", "-0.00000000000001"}) {
+    EXPECT_EQ(scanned(word, value), std::string_view(word).size()) << word;
+    EXPECT_EQ(std::bit_cast<std::uint64_t>(value), std::bit_cast<std::uint64_t>(std::strtod(word, nullptr))) << word;
+  }
+  for (const char* const word :
+       {"", ".", "-", "-.", "+1.5", "12", "12345678.5", "e.5", "--1.5", "nan", ",1.5", "\xFF.5"})
+    EXPECT_EQ(scanned(word, value), 0u) << word;
+  EXPECT_EQ(scanned("1.5e3", value), 3u);
+  EXPECT_EQ(scanned("1.5.2", value), 3u);
+  EXPECT_EQ(scanned("0.1234567890123456", value), 16u) << "there are more digits than it takes";
+}
+
+TEST(DataTextNumber, DecimalNumbersAreCorrectlyRounded) {
+  std::mt19937_64 random(12);
+  for (int i = 0; i < 2000000; ++i) {
+    std::string word = random() % 2 == 0 ? "" : "-";
+    for (std::uint64_t left = random() % 8; left > 0; --left) word += static_cast<char>('0' + random() % 10);
+    word += '.';
+    for (std::uint64_t left = random() % 8 + 1; left > 0; --left) word += static_cast<char>('0' + random() % 10);
+    double value = -1, expected = 0;
+    ASSERT_EQ(scanned(word, value), word.size()) << word;
+    std::from_chars(word.data(), word.data() + word.size(), expected);
+    ASSERT_EQ(std::bit_cast<std::uint64_t>(value), std::bit_cast<std::uint64_t>(expected)) << word;
   }
 }
 
