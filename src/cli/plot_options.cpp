@@ -212,7 +212,8 @@ void DataArguments::add_to(Command& command, plot::DataOptions& data, const std:
   command
       .add_option(
           "FILE", data.file, "FILE",
-          kind + ": LAMMPS, XYZ, PDB, mmCIF, CIF, VASP, GRO, XTC, TRR, DCD, PLY, CSV, NPY, NPZ, LAS, GSD, HDF5, VTK")
+          kind +
+              ": LAMMPS, XYZ, PDB, mmCIF, CIF, VASP, GRO, XTC, TRR, DCD, PLY, CSV, NPY, NPZ, LAS, LAZ, GSD, HDF5, VTK")
       ->required();
   const OptionGroup group(command, kDataOptions);
   scene::PointsKeys& points = data.points;

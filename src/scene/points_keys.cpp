@@ -34,7 +34,7 @@ std::vector<Key<P>> make_keys() {
   const auto add = [&](std::vector<Key<P>> keys) { out.insert(out.end(), keys.begin(), keys.end()); };
   add({required(file("file", kPointsFile,
                      {"Data file, relative to the scene file: LAMMPS, XYZ, PDB, mmCIF, CIF, VASP, GRO, XTC, TRR, DCD, "
-                      "PLY, CSV, NPY, NPZ, LAS, GSD, HDF5 or VTK; see [Data files](data.md). May contain a frame "
+                      "PLY, CSV, NPY, NPZ, LAS, LAZ, GSD, HDF5 or VTK; see [Data files](data.md). May contain a frame "
                       "pattern such as `####`",
                       "",
                       "Read for each frame. At least 12 bytes of scene data per sphere, excluding the BVH; see "
