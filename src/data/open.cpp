@@ -44,10 +44,8 @@ bool is_adios(const std::string& extension) { return extension == ".bp" || exten
 [[noreturn]] void refuse(const ByteSource& bytes, const Signature& signature) {
   std::string text = "unknown file format";
   std::string remedy =
-      "supported: LAMMPS dump and data, XYZ, PDB, mmCIF, CIF, VASP, GRO, XTC, TRR, DCD, PLY, CSV, NPY, NPZ, LAS, GSD, "
-      "HDF5 (Gadget, "
-      "SWIFT), VTP, "
-      "VTU";
+      "supported: LAMMPS dump and data, XYZ, PDB, mmCIF, CIF, VASP, GRO, XTC, TRR, DCD, PSF, PLY, CSV, NPY, NPZ, LAS, "
+      "LAZ, GSD, HDF5 (Gadget, SWIFT), VTP, VTU";
   if (signature.head.empty()) {
     text = "the file is empty";
     remedy.clear();
@@ -86,7 +84,7 @@ void refuse_encoding(const ByteSource& bytes, std::string_view head) {
 constexpr const FormatReader* kBinary[] = {&kPly, &kHdf5, &kGsd, &kLas, &kNpy, &kNpz, &kVtk, &kXtc, &kTrr, &kDcd};
 /// The extension of CSV comes before signatures that are words, which may also be in a table.
 constexpr const FormatReader* kText[] = {
-    &kLammpsDump, &kNamedCsv, &kMmcif, &kPdb, &kXyz, &kVasp, &kGro, &kLammpsData, &kCsv,
+    &kLammpsDump, &kNamedCsv, &kMmcif, &kPdb, &kXyz, &kVasp, &kGro, &kPsf, &kLammpsData, &kCsv,
 };
 
 /// Returns the first reader that recognises a file; null if there is none.
@@ -96,9 +94,8 @@ const FormatReader* find(std::span<const FormatReader* const> readers, const Sig
   return at == readers.end() ? nullptr : *at;
 }
 
-}  // namespace
-
-std::unique_ptr<DataFile> open(const std::filesystem::path& file, const OpenOptions& options) {
+/// Opens a file with the reader of its format.
+std::unique_ptr<DataFile> opened(const std::filesystem::path& file, const OpenOptions& options) {
   std::error_code ignored;
   // These are folders, which cannot be read as files.
   if (is_adios(extension_of(file)) && std::filesystem::is_directory(file, ignored)) refuse_adios(file);
@@ -112,11 +109,19 @@ std::unique_ptr<DataFile> open(const std::filesystem::path& file, const OpenOpti
   if (reader == nullptr) refuse(*bytes, signature);
   std::unique_ptr<DataFile> out = reader->open(bytes, options);
   if (*out->format == '\0') out->format = reader->name;  // a reader may know better
-  if (!options.topology.empty()) {
-    OpenOptions names = options;
-    names.topology.clear();
-    out = with_topology(std::move(out), open(options.topology, names), file, options.topology);
-  }
+  return out;
+}
+
+}  // namespace
+
+std::unique_ptr<DataFile> open(const std::filesystem::path& file, const OpenOptions& options) {
+  std::unique_ptr<DataFile> out = opened(file, options);
+  if (out->format == kPsf.name)
+    Faults(file).fail(
+        0, "a PSF file names atoms, but has no positions",
+        fmt::format("open a trajectory of them with --topology {}", base::shell_quoted(file.filename().string())));
+  if (!options.topology.empty())
+    out = with_topology(std::move(out), settled(opened(options.topology, options)), file, options.topology);
   return settled(std::move(out));
 }
 

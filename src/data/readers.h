@@ -33,7 +33,7 @@ std::unique_ptr<DataFile> open_as(const Bytes& bytes, const OpenOptions& options
 
 extern const FormatReader kLammpsDump, kLammpsData, kXyz, kVasp, kPly, kCsv;
 extern const FormatReader kNpy, kNpz, kLas, kGsd, kHdf5, kVtk;
-extern const FormatReader kGro, kXtc, kTrr, kDcd;
+extern const FormatReader kGro, kXtc, kTrr, kDcd, kPsf;
 extern const FormatReader kPdb, kMmcif;
 /// Opens a CIF file with fractional coordinates, which kMmcif recognises.
 std::unique_ptr<DataFile> open_small_cif(const Bytes& bytes, const OpenOptions& options);

@@ -157,6 +157,8 @@ TEST_F(CliPlot, ATopologyFitsTheTrajectory) {
   EXPECT_TRUE(contains(r.err, "20 bonds")) << r.err;
   expect_error("plot " + seeds + "xtc/few.xtc -o a.ppm --topology " + seeds + "gro/water.gro", 65, "5 atoms");
   expect_error("plot " + seeds + "xtc/few.xtc -o a.ppm --topology none.pdb", 66, "none.pdb");
+  expect_error("plot " + seeds + "xtc/few.xtc -o a.ppm --color-by element", 65, "--topology FILE");
+  expect_error("plot " + seeds + "psf/water.psf -o a.ppm", 65, "no positions");
   expect_error("info a.dump --topology c.csv", 65, "needs no topology");
   EXPECT_EQ(run("info " + seeds + "dcd/water.dcd --topology " + seeds + "gro/water.gro").status, 0);
 }

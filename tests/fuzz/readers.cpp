@@ -180,11 +180,19 @@ std::string fault_with_bonds(const data::FrameInfo& info, const std::vector<data
   return {};
 }
 
-/// Opens a data file; without success under the names of formats that are recognised by their names.
+/// Opens a data file; without success under the names of formats that are recognised by their names. A PSF file is the
+/// topology of four particles.
 std::unique_ptr<data::DataFile> open_data(const std::filesystem::path& folder, const std::string& bytes,
                                           std::filesystem::path& file) {
   data::OpenOptions options;
   options.decompressed_limit = std::uint64_t{1} << 24;
+  if (bytes.starts_with("PSF")) {
+    file = folder / "data.csv";
+    options.topology = folder / "data.psf";
+    write(file, "x,y,z\n0,0,0\n1,0,0\n0,1,0\n2,2,2\n");
+    write(options.topology, bytes);
+    return data::open(file, options);
+  }
   for (const char* name : {"data", "data.xyz", "data.csv"}) {
     file = folder / name;
     write(file, bytes);
