@@ -74,6 +74,7 @@ FrameInfo TrajectoryFile::describe(int number) {
   info.step = found.step;
   if (found.time_ps) info.header.emplace_back("time", *found.time_ps);
   info.box = found.box;
+  info.warnings.push_back("the file does not name its atoms; --topology FILE names a file that does");
   return info;
 }
 

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <numeric>
 
 #include <fmt/core.h>
@@ -140,8 +141,10 @@ LoadedFrame DataFrames::load(int frame, const scene::PointsKeys& keys, points::S
         .push_back(
             base::file_diagnostic(d.severity, request.file.string(), number + key + d.text, is_error ? remedy : ""));
   }
-  if (!errors.empty())
+  if (!errors.empty()) {
+    std::move(out.warnings.begin(), out.warnings.end(), std::back_inserter(errors));  // they may say why
     throw base::Error(base::ErrorKind::kBadData, "cannot use " + request.file.string(), std::move(errors));
+  }
   return out;
 }
 

@@ -52,6 +52,10 @@ TEST(DataTrajectory, ATopologyNamesTheParticles) {
   EXPECT_EQ(texts(table, "element").at(1), "H");
   EXPECT_EQ(numbers(table, "x"), numbers(bare, "x"));
   EXPECT_EQ(file->read(2, {"element", "z"}).columns[1].name, "z");
+  EXPECT_TRUE(info.warnings.empty());
+  const std::vector<std::string> warnings = data::open(seed("xtc/water.xtc"))->describe(0).warnings;
+  ASSERT_EQ(warnings.size(), 1u);
+  EXPECT_NE(warnings[0].find("--topology FILE"), std::string::npos);
 }
 
 TEST(DataTrajectory, BondsAreThoseOfTheTopology) {
