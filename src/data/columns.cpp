@@ -160,9 +160,7 @@ Table copied_columns(const Table& table, const std::vector<std::string>& names) 
 Table in_order(Table table, const std::vector<std::string>& names) {
   Table out;
   out.rows = table.rows;
-  for (const std::string& name : names)
-    out.columns.push_back(std::move(*std::find_if(table.columns.begin(), table.columns.end(),
-                                                  [&](const Column& column) { return column.name == name; })));
+  for (const std::string& name : names) out.columns.push_back(std::move(*table.find(name)));
   return out;
 }
 

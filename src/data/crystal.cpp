@@ -46,12 +46,12 @@ bool read_coordinate(std::string_view text, Vec3d& row, double& shift) {
     if (has_number && take('/') && !take_number(divisor)) return false;
     if (has_number) take('*');
     text = trimmed(text);
-    const std::size_t axis = text.empty() ? 3 : std::string_view("xyzXYZ").find(text[0]) % 3;
-    const bool has_axis = !text.empty() && std::string_view("xyzXYZ").find(text[0]) != std::string_view::npos;
+    const std::size_t axis = text.empty() ? std::string_view::npos : std::string_view("xyzXYZ").find(text[0]);
+    const bool has_axis = axis != std::string_view::npos;
     if (has_axis) text.remove_prefix(1);
     if (has_axis && take('/') && !take_number(divisor)) return false;
     if ((!has_axis && !has_number) || divisor == 0) return false;
-    double& to = !has_axis ? shift : axis == 0 ? row.x : axis == 1 ? row.y : row.z;
+    double& to = !has_axis ? shift : axis % 3 == 0 ? row.x : axis % 3 == 1 ? row.y : row.z;
     to += (is_negative ? -factor : factor) / divisor;
   }
   return !is_first;
