@@ -10,7 +10,6 @@
 
 #include "base/error.h"
 #include "base/frames.h"
-#include "base/text.h"
 #include "points/rows.h"
 #include "points/sources.h"
 #include "points/spacing.h"
@@ -129,17 +128,13 @@ LoadedFrame DataFrames::load(int frame, const scene::PointsKeys& keys, points::S
   if (keys.file.empty()) out.points.file = request.file;
   std::vector<base::Diagnostic> errors;
   out.diagnostics = points::load_points(request, out.points);
-  const bool has_names = !request.topology.empty() || !base::contains({"XTC", "TRR", "DCD"}, format());
-  const std::string remedy = has_names ? "" : "a topology names the atoms of a trajectory: --topology FILE";
   for (const scene::SceneDiagnostic& d : out.diagnostics) {
     const bool has_key = d.key.size() > request.key.size() && d.key != request.key + ".file";
     std::string key = has_key ? d.key.substr(request.key.size() + 1) + ": " : "";
     if (key == "cryptomatte: ") key = "--outline-by: ";  // which alone sets this key of a plot
     const std::string number = numbers_.size() > 1 ? fmt::format("frame {}: ", frame) : "";
-    const bool is_error = d.severity == base::Severity::kError;
-    (is_error ? errors : out.warnings)
-        .push_back(
-            base::file_diagnostic(d.severity, request.file.string(), number + key + d.text, is_error ? remedy : ""));
+    auto& list = d.severity == base::Severity::kError ? errors : out.warnings;
+    list.push_back(base::file_diagnostic(d.severity, request.file.string(), number + key + d.text));
   }
   if (!errors.empty()) {
     std::move(out.warnings.begin(), out.warnings.end(), std::back_inserter(errors));  // they may say why

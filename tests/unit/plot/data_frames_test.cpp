@@ -117,7 +117,9 @@ TEST_F(PlotDataFrames, ATrajectoryWithoutNamesNeedsATopology) {
     DataFrames(options_, folder_.path()).load(1, keys);
     ADD_FAILURE() << "no error";
   } catch (const base::Error& error) {
-    EXPECT_TRUE(test::mentions(error.diagnostics().at(0).remedy, {"--topology"}));
+    std::string all;
+    for (const base::Diagnostic& d : error.diagnostics()) all += d.text + "\n";
+    EXPECT_TRUE(test::mentions(all, {"radius.element", "--topology"}));
   }
 }
 
