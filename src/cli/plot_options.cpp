@@ -361,7 +361,7 @@ void PlotArguments::add_look_to(Command& command) {
       ->check(real_number(0, 1));
   command
       .add_option("--quality", look_.quality, "NAME",
-                  "draft (--samples 8 --denoise), good (--noise 0.1 --denoise) or final (--noise 0.02); default: good")
+                  "draft (--samples 4 --denoise), good (--noise 0.15 --denoise) or final (--noise 0.02); default: good")
       ->choices(plot::quality_names());
   command
       .add_option("--material", options.material, "MATERIAL",

@@ -29,9 +29,9 @@ namespace {
 using scene::number_text;
 
 /// Samples per pixel of a draft, and noise of the other qualities, unless the user limits samples, noise or time.
-/// Drafts and good images are denoised: of a million atoms at 1920 x 1080, noise cannot be seen with 16 samples.
-constexpr int kDraftSamples = 8;
-constexpr double kGoodNoise = 0.1, kFinalNoise = 0.02;
+/// Drafts and good images are denoised: of a million atoms at 1920 x 1080, noise cannot be seen with 8 samples.
+constexpr int kDraftSamples = 4;
+constexpr double kGoodNoise = 0.15, kFinalNoise = 0.02;
 
 /// A colour map or a font: the name of a file in the user's folder becomes relative to the scene's; other names stay.
 std::string from_scene(const std::string& name, const std::filesystem::path& scene_file) {

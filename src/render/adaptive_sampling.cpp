@@ -26,6 +26,8 @@ constexpr int kSide = 16;
 
 /// Minimum samples of a half before errors are estimated: with fewer, rare light in a pixel would be missed for good.
 constexpr std::uint32_t kFirstSamples = 8;
+/// The same for an image with halves, which will be denoised: with fewer, figures look worse.
+constexpr std::uint32_t kFirstDenoisedSamples = 4;
 
 /// Maximum samples of a half: the second half's sample numbers begin where the first's end.
 constexpr std::uint32_t kMaxSamples = kernel::Sampler::kSecondHalf - 1;
@@ -51,6 +53,7 @@ class AdaptiveSampling {
         pool_(pool),
         progress_(progress),
         state_(state),
+        first_samples_(settings.layers.halves ? kFirstDenoisedSamples : kFirstSamples),
         max_samples_(settings.unlimited ? kMaxSamples : std::max(1u, static_cast<std::uint32_t>(compiled.samples) / 2)),
         pixels_(compiled.width, compiled.height),
         iteration_begin_(progress.seconds()),
@@ -74,7 +77,7 @@ class AdaptiveSampling {
     std::uint32_t n = *std::min_element(state_.counts.begin(), state_.counts.end());
     for (n = n > 0          ? next_uniform_count(n)
              : begins_small ? 1
-                            : std::min(kFirstSamples, max_samples_);
+                            : std::min(first_samples_, max_samples_);
          n > 0; n = next_uniform_count(n)) {
       state_.goals.assign(state_.pixel_count(), n);
       if (!run_iteration()) return false;
@@ -123,7 +126,7 @@ class AdaptiveSampling {
 
   /// The next uniform sample count of a half; 0: the initial, uniform iterations are over.
   std::uint32_t next_uniform_count(std::uint32_t n) const {
-    const std::uint32_t next = std::min({2 * n, kFirstSamples, max_samples_});
+    const std::uint32_t next = std::min({2 * n, first_samples_, max_samples_});
     return next > n && affordable(kShareOfTime) >= std::uint64_t{next - n} * pixels_.samples.size() ? next : 0;
   }
 
@@ -176,7 +179,7 @@ class AdaptiveSampling {
   TilePool& pool_;
   ProgressReporter& progress_;
   film::Sums& state_;
-  std::uint32_t max_samples_;  ///< samples of a half
+  std::uint32_t first_samples_, max_samples_;  ///< of a half
   PixelStatistics pixels_;
   NoiseEstimate noise_;
   std::uint64_t unreliable_count_ = 0;  ///< pixels

@@ -48,8 +48,8 @@ TEST_F(CliPlot, ChoicesOfTheRenderArePrinted) {
   Outcome r = run("plot a.dump -o a.ppm --width 16 --height 9");
   EXPECT_TRUE(contains(r.err, "\nplot: frame 1 of 2: ")) << r.err;
   EXPECT_TRUE(contains(r.err, "\nplot: view transform Neutral: ")) << r.err;
-  EXPECT_TRUE(
-      contains(r.err, "\nplot: quality good: noise 0.1, denoised; --quality, --noise, --time or --samples change it\n"))
+  EXPECT_TRUE(contains(
+      r.err, "\nplot: quality good: noise 0.15, denoised; --quality, --noise, --time or --samples change it\n"))
       << r.err;
   EXPECT_TRUE(contains(r.err, "\nplot: prepared in ")) << r.err;
   EXPECT_FALSE(contains(r.err, "\nplot: size")) << r.err;

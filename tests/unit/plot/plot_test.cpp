@@ -146,7 +146,7 @@ TEST_F(PlotPlot, DefaultsWithoutRadiusAndColor) {
             "view 30,20, 19.02 wide: fitted to the spheres\n"
             "style studio: a key light from the upper left, and white light from all directions\n"
             "size 1920 x 1080: --width and --height change it\n"
-            "quality good: noise 0.1, denoised; --quality, --noise, --time or --samples change it\n");
+            "quality good: noise 0.15, denoised; --quality, --noise, --time or --samples change it\n");
   const scene::Scene scene = read();
   ASSERT_EQ(scene.points.size(), 1u);
   EXPECT_EQ(scene.points[0].file, "a.csv") << "relative to the scene file";

@@ -63,6 +63,14 @@ TEST(RenderAdaptiveSampling, LowerTargetNoiseTakesMoreSamples) {
   EXPECT_GT(fine.statistics.paths, 4 * rough.statistics.paths);
 }
 
+/// Below a target that is easily reached, the first estimate decides.
+TEST(RenderAdaptiveSampling, AnImageThatWillBeDenoisedTakesHalfOfTheSamples) {
+  Settings settings = noise(10);
+  EXPECT_EQ(render(world_of(), settings).statistics.min_samples, 16u);
+  settings.layers.halves = true;
+  EXPECT_EQ(render(world_of(), settings).statistics.min_samples, 8u);
+}
+
 TEST(RenderAdaptiveSampling, RequestedSampleCountIsALimit) {
   Settings settings = noise(0.001);
   settings.unlimited = false;
