@@ -16,6 +16,7 @@
 #include "kernel/scene_view.h"
 #include "math/scalar.h"
 #include "math/vec3.h"
+#include "render/sphere_images.h"
 
 namespace orrery::render {
 namespace {
@@ -37,9 +38,6 @@ constexpr double kLeastLight = film::kDarkestLight / 256;
 /// The distance of the sky, in distances to the focus plane. The result does not depend on it as long as it is large.
 constexpr double kSkyDistance = 0x1p40;
 
-Vec3d center_of(const kernel::Sphere& sphere) { return {sphere.x, sphere.y, sphere.z}; }
-kernel::Sphere sphere_around(Vec3d center, double radius) { return {center.x, center.y, center.z, radius}; }
-
 /// The sphere at a share of the way from one to another of the same radius.
 kernel::Sphere mixed(const kernel::Sphere& from, const kernel::Sphere& to, double share) {
   return sphere_around(center_of(from) * (1 - share) + center_of(to) * share, from.radius);
@@ -53,88 +51,13 @@ kernel::Camera closing_camera(const kernel::SceneView& scene) {
   return out;
 }
 
-/// The image of a sphere, or of a part of a rod: a rectangle around it, and its area without the blur of the lens.
-struct Image {
-  double x0, x1, y0, y1;  ///< px, relative to the rendered window
-  double area;            ///< square pixels
-};
-
-/// Projects a sphere. Empty if the sphere is behind the camera or contains it.
-std::optional<Image> image_of(const kernel::Camera& camera, const kernel::Sphere& sphere) {
-  const Vec3d &forward = camera.forward, &right = camera.right, &down = camera.down;
-  const Vec3d to = center_of(sphere) - camera.origin, across = cross(right, down);
-  const double determinant = dot(forward, across), radius = sphere.radius;
-  const double depth = dot(to, across) / determinant;  // 1 at the focus plane
-  if (!(depth * length(forward) > radius)) return std::nullopt;
-  const double scale = camera.is_orthographic ? 1 : depth;
-  const double x = dot(to, cross(down, forward)) / (determinant * scale) + camera.half_width;
-  const double y = dot(to, cross(forward, right)) / (determinant * scale) + camera.half_height;
-  const double pixel_width = scale * length(right), pixel_height = scale * length(down);  // at the sphere
-  const double blurred = radius + length(camera.lens_u) * std::abs(1 - depth);
-  return Image{x - blurred / pixel_width, x + blurred / pixel_width, y - blurred / pixel_height,
-               y + blurred / pixel_height, std::numbers::pi * radius * radius / (pixel_width * pixel_height)};
-}
-
-/// The distance between the centres of two images, px.
-double distance(const Image& a, const Image& b) {
-  return std::hypot((a.x0 + a.x1 - b.x0 - b.x1) / 2, (a.y0 + a.y1 - b.y0 - b.y1) / 2);
-}
-
-/// The image of a cylinder between two spheres, and of a part of the spheres. Empty if one of them has none.
-std::optional<Image> between(const std::optional<Image>& a, const std::optional<Image>& b, double part) {
-  if (!a || !b) return std::nullopt;
-  return Image{std::min(a->x0, b->x0), std::max(a->x1, b->x1), std::min(a->y0, b->y0), std::max(a->y1, b->y1),
-               distance(*a, *b) * (std::sqrt(a->area) + std::sqrt(b->area)) / std::sqrt(std::numbers::pi) +
-                   part * (a->area + b->area) / 2};
-}
-
 /// Steps of the search for a reflection in a ball of a pixel, whose radius is halved eight times, and at most.
 constexpr int kLeastSteps = 8, kMostSteps = 24;
-
-/// How a light is seen in a ball.
-struct Reflection {
-  kernel::Sphere image;  ///< where the light seems to be, as large as it seems
-  Vec3d point;           ///< that reflects it, from the ball's centre
-  double cosine;         ///< of the angle of incidence
-};
-
-/// The reflection of a light in a ball. Empty if there is none, or if eye or light are within the ball.
-///
-/// `steps`     accuracy of the place: 2^-steps radii of the ball
-std::optional<Reflection> reflection_of(const kernel::Sphere& light, const kernel::Sphere& ball, Vec3d eye, int steps) {
-  constexpr double kParallel = 1e-3;
-  const Vec3d center = center_of(ball), to_eye = (eye - center) / ball.radius,
-              to_light = (center_of(light) - center) / ball.radius;
-  const double p = length(to_eye), d = length(to_light), radius = light.radius / ball.radius;
-  if (!(p > 1 && d > 1 + radius)) return std::nullopt;
-
-  // The point on the arc between both at which both have the same angle to the normal.
-  Vec3d nearer = to_eye / p, farther = to_light / d, point;
-  const double sine = length(cross(nearer, farther));
-  double cosine = 0;
-  for (int i = 0; i < steps; ++i) {
-    point = normalized(nearer + farther);
-    cosine = dot(point, normalized(to_eye - point));
-    (cosine > dot(point, normalized(to_light - point)) ? nearer : farther) = point;
-  }
-  if (!(cosine > 0)) return std::nullopt;  // behind the ball
-
-  // A ray of the impact parameter s = sin i turns around the centre by an angle Theta(i) whose derivative is h(i). The
-  // directions in which the light is seen are those of s ds, and those in which the ball sees it of sin Theta dTheta.
-  const double s2 = 1 - cosine * cosine, from_eye = std::sqrt(p * p - s2), from_light = std::sqrt(d * d - s2);
-  const double h = 2 - cosine / from_eye - cosine / from_light;
-  const double ratio = sine > kParallel ? std::sqrt(s2) / sine : 1 / h;
-  const double square = radius * radius / (d * from_light) * ratio * cosine / h / (p * from_eye);  // of half its angle
-  const Vec3d along = normalized(point - to_eye);
-  const double away = length(point - to_eye) + cosine / 2;  // a small mirror's focal length, as it makes images blur
-  const Vec3d seen = center + (to_eye + along * away) * ball.radius;
-  return Reflection{sphere_around(seen, away * std::sqrt(square) * ball.radius), point * ball.radius, cosine};
-}
 
 /// An object when the shutter opens and closes.
 template <class T>
 using Moving = std::array<T, 2>;
-using MovingImage = Moving<std::optional<Image>>;
+using MovingImage = Moving<std::optional<SphereImage>>;
 
 /// A line of sight from the camera, or from a sphere. It may touch what it starts from and what it leads to.
 struct Sightline {
@@ -198,7 +121,7 @@ class Coverage {
         margin_(scene.filter.places != nullptr ? scene.filter.places[kernel::PixelFilter::kSteps] - 0.5 : 0) {}
 
   MovingImage images_of(const Moving<kernel::Sphere>& sphere) const {
-    return {image_of(cameras_[0], sphere[0]), image_of(cameras_[1], sphere[1])};
+    return {sphere_image(cameras_[0], sphere[0]), sphere_image(cameras_[1], sphere[1])};
   }
 
   /// Whether images touch a pixel.
@@ -257,7 +180,7 @@ class Coverage {
     for (int k = 0; k < 2; ++k) {
       const auto seen = reflection_of(light[k], ball[k], eye(k, center_of(ball[k])), steps);
       if (!seen) return;
-      images[k] = image_of(cameras_[k], seen->image);
+      images[k] = sphere_image(cameras_[k], seen->image);
       points[k] = sphere_around(center_of(ball[k]) + seen->point, 0);
       reflected += radiance * reflectance(seen->cosine) / 2;
     }

@@ -12,6 +12,7 @@
 #include "compile/compile.h"
 #include "compile/compiled_scene.h"
 #include "render/render.h"
+#include "support/front_view.h"
 #include "support/lit_scenes.h"
 
 namespace orrery::render {
@@ -21,13 +22,7 @@ constexpr double kLampRadiance = 1000;
 
 /// A lamp of a tenth of a pixel, 10 units in front of the camera, in the left upper part of the image.
 scene::Scene distant_lamp() {
-  scene::Scene s;
-  s.image = {48, 32};
-  s.camera.look_from = {0, 0, 10};
-  s.camera.look_at = {0, 0, 0};
-  s.camera.vfov = 40;
-  s.background.type = scene::BackgroundType::kConstant;
-  s.background.color = {0, 0, 0};
+  scene::Scene s = test::front_view(48, 32);
   s.render.samples = 2048;
   test::add_lamp(s, {-2.13, 1.41, 0}, 0.04, {kLampRadiance, kLampRadiance, kLampRadiance});
   return s;
@@ -65,8 +60,7 @@ TEST(RenderEmitterCoverage, AreFoundWhereTheyAreRendered) {
   s.image.crop = scene::Window{4, 3, 20, 20};
   expect_where_rendered(s, "crop");
   s = distant_lamp();
-  s.camera.projection = scene::Projection::kOrthographic;
-  s.camera.width = 12;
+  test::make_orthographic(s);
   expect_where_rendered(s, "orthographic");
   s = distant_lamp();
   s.render.filter = scene::Filter::kGaussian;
@@ -133,8 +127,7 @@ TEST(RenderEmitterCoverage, ReflectionsAreFoundWhereTheyAreRendered) {
   expect_where_rendered(reflecting_ball(mirror(0.5), {2.4, 4, 3}), "close lamp", nullptr, 36, half);
   expect_where_rendered(reflecting_ball(mirror(0.5), {-9, 2, -2}), "beside the ball", nullptr, 36, half);
   scene::Scene s = reflecting_ball(mirror(0.5));
-  s.camera.projection = scene::Projection::kOrthographic;
-  s.camera.width = 12;
+  test::make_orthographic(s);
   expect_where_rendered(s, "orthographic", nullptr, 36, half);
   s = reflecting_ball(mirror(0.5));
   scene::Scene closing = s;
@@ -269,6 +262,7 @@ TEST(RenderEmitterCoverage, ADistantLampIsNotMissed) {
   scene::Scene s = distant_lamp();
   s.background.color = {1, 1, 1};
   s.spheres[0].radius = 0.012;
+  s.render.direct_lighting = scene::DirectLighting::kBsdf;  // otherwise the lamp is sampled
   const std::vector<EmitterCoverage> found = coverage_of(compile::compile(s));
   ASSERT_FALSE(found.empty());
   const double lamp =

@@ -17,6 +17,7 @@
 #include "render/result.h"
 #include "render/settings.h"
 #include "render/tiles.h"
+#include "support/front_view.h"
 #include "support/plane_values.h"
 
 namespace orrery::render {
@@ -24,13 +25,9 @@ namespace {
 
 /// Small spheres and rods in front of a white background.
 scene::Scene figure() {
-  scene::Scene s;
-  s.image = {70, 50};
+  scene::Scene s = test::front_view(70, 50, {1, 0.75, 0.5});
   s.camera.look_from = {0.5, 0.7, 9};
-  s.camera.look_at = {0.2, 0, 0};
-  s.camera.vfov = 40;
-  s.background.type = scene::BackgroundType::kConstant;
-  s.background.color = {1, 0.75, 0.5};
+  s.camera.look_at.x = 0.2;
   s.render.samples = 64;
   s.materials = {{"grey", scene::Lambertian{{0.5, 0.5, 0.5}}}};
   std::mt19937 random(4);
@@ -71,11 +68,7 @@ TEST(RenderEmptyPixels, NoPathHitsAnObjectThere) {
       {"lens", [](scene::Scene& s, scene::Scene&) { s.camera.defocus_angle = 3; }},
       {"lens, near focus",
        [](scene::Scene& s, scene::Scene&) { s.camera.defocus_angle = 2, s.camera.focus_distance = 2; }},
-      {"orthographic",
-       [](scene::Scene& s, scene::Scene&) {
-         s.camera.projection = scene::Projection::kOrthographic;
-         s.camera.width = 12;
-       }},
+      {"orthographic", [](scene::Scene& s, scene::Scene&) { test::make_orthographic(s); }},
       {"wide",
        [](scene::Scene& s, scene::Scene&) {
          s.camera.vfov = 120;

@@ -16,6 +16,7 @@
 #include "render/render.h"
 #include "render/result.h"
 #include "render/settings.h"
+#include "support/front_view.h"
 #include "support/lit_scenes.h"
 #include "support/plane_values.h"
 
@@ -24,15 +25,9 @@ namespace {
 
 /// A small lamp, and a blurred one in front of it, before a dim sky.
 scene::Scene small_lamps() {
-  scene::Scene s;
-  s.image = {48, 32};
-  s.camera.look_from = {0, 0, 10};
-  s.camera.look_at = {0, 0, 0};
-  s.camera.vfov = 40;
+  scene::Scene s = test::front_view(48, 32, {0.1, 0.2, 0.3});
   s.camera.defocus_angle = 8;
   s.camera.focus_distance = 10;
-  s.background.type = scene::BackgroundType::kConstant;
-  s.background.color = {0.1, 0.2, 0.3};
   s.render.samples = 1024;
   test::add_lamp(s, {-2.13, 1.41, 0}, 0.06, {1000, 700, 400}, "far");
   test::add_lamp(s, {0.61, -0.33, 4}, 0.04, {3000, 3000, 3000}, "near");
@@ -81,11 +76,7 @@ TEST(RenderSeenEmitters, OthersAreLeftToCameraRays) {
        [](scene::Scene& s) {
          for (scene::Material& m : s.materials) std::get<scene::Emitter>(m.model).opacity = 0.5;
        }},
-      {"orthographic",
-       [](scene::Scene& s) {
-         s.camera.projection = scene::Projection::kOrthographic;
-         s.camera.width = 12;
-       }},
+      {"orthographic", [](scene::Scene& s) { test::make_orthographic(s); }},
   };
   for (const auto& [name, change] : changes) {
     scene::Scene s = small_lamps();

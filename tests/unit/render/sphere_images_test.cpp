@@ -1,0 +1,84 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "render/sphere_images.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <numbers>
+#include <random>
+
+namespace orrery::render {
+namespace {
+
+using math::Vec3d;
+
+/// Looks along -z; a pixel is 0.1 units at the focus plane, 10 units away.
+kernel::Camera image_camera() {
+  kernel::Camera c;
+  c.forward = {0, 0, -10};
+  c.right = {0.1, 0, 0};
+  c.down = {0, -0.1, 0};
+  c.half_width = 20;
+  c.half_height = 15;
+  return c;
+}
+
+TEST(RenderSphereImages, DistantSpheresAreWhereTheyAreProjected) {
+  kernel::Camera camera = image_camera();
+  const auto image = sphere_image(camera, {2, 1, -20, 0.4});
+  ASSERT_TRUE(image);
+  EXPECT_NEAR((image->x0 + image->x1) / 2, 30, 1e-9);
+  EXPECT_NEAR((image->y0 + image->y1) / 2, 10, 1e-9);
+  EXPECT_NEAR(image->x1 - image->x0, 4, 1e-9);
+  EXPECT_NEAR(image->area, 4 * std::numbers::pi, 1e-9);
+  camera.lens_u = {0.3, 0, 0};
+  const auto blurred = sphere_image(camera, {2, 1, -20, 0.4});
+  EXPECT_NEAR(blurred->x1 - blurred->x0, 4 + 2 * 0.3 / 0.2, 1e-9);
+  EXPECT_EQ(blurred->area, image->area);
+  EXPECT_FALSE(sphere_image(camera, {0, 0, 5, 1})) << "behind the camera";
+  EXPECT_FALSE(sphere_image(camera, {0, 0, -1, 2})) << "around the camera";
+}
+
+TEST(RenderSphereImages, CylindersHaveTheAreaBetweenTheirEnds) {
+  const kernel::Camera camera = image_camera();
+  const auto a = sphere_image(camera, {-1, 0, -10, 0.1}), b = sphere_image(camera, {1, 0, -10, 0.1});
+  EXPECT_NEAR(distance(*a, *b), 20, 1e-9);
+  const auto all = between(a, b, 1);
+  EXPECT_NEAR(all->area, 20 * 2 + std::numbers::pi, 1e-9);
+  EXPECT_NEAR(all->x1 - all->x0, 22, 1e-9);
+  EXPECT_FALSE(between(a, std::nullopt, 1));
+}
+
+TEST(RenderSphereImages, ReflectionsObeyTheLawOfReflection) {
+  std::mt19937 random(3);
+  const auto number = [&] { return static_cast<double>(random()) * 0x1p-31 - 1; };
+  int found = 0;
+  for (int i = 0; i < 300; ++i) {
+    const kernel::Sphere ball{number(), number(), number(), 0.5}, light{8 * number(), 8 * number(), 8 * number(), 0.1};
+    const Vec3d eye{5 * number(), 5 * number(), 5 * number()};
+    const auto seen = reflection_of(light, ball, eye, 30);
+    if (!seen) continue;
+    ++found;
+    EXPECT_NEAR(length(seen->point), ball.radius, 1e-9);
+    const Vec3d at = center_of(ball) + seen->point, normal = normalized(seen->point), to_eye = normalized(eye - at),
+                to_light = normalized(center_of(light) - at);
+    EXPECT_NEAR(length(to_eye + to_light - normal * (2 * dot(normal, to_eye))), 0, 1e-6);
+    EXPECT_NEAR(seen->cosine, dot(normal, to_eye), 1e-6);
+    EXPECT_NEAR(length(normalized(center_of(seen->image) - eye) + to_eye), 0, 1e-6) << "it is seen at this point";
+  }
+  EXPECT_GT(found, 100);
+}
+
+/// A small mirror images distant lights at half its radius.
+TEST(RenderSphereImages, DistantLightsAreAtTheFocus) {
+  const kernel::Sphere ball{0, 0, 0, 1}, light{0, 0, 1000, 10};
+  const auto seen = reflection_of(light, ball, {0, 0, 500}, 20);
+  ASSERT_TRUE(seen);
+  EXPECT_NEAR(seen->image.z, 0.5, 0.01);
+  EXPECT_NEAR(seen->image.radius, 0.005, 0.0001);
+  EXPECT_FALSE(reflection_of(light, ball, {0, 0, 0.5}, 20)) << "the eye is in the ball";
+  EXPECT_FALSE(reflection_of({0, 0, 1, 0.5}, ball, {0, 0, 5}, 20)) << "the light touches the ball";
+}
+
+}  // namespace
+}  // namespace orrery::render
