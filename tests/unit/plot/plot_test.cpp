@@ -1058,7 +1058,7 @@ TEST_F(PlotPlot, TheBackgroundIsAColorOrTransparent) {
 
 TEST_F(PlotPlot, QualitiesAreNoiseOrSamples) {
   make("a.csv", kCorners);
-  EXPECT_EQ(made.noise, 0.1);
+  EXPECT_EQ(made.noise, 0.15);
   EXPECT_TRUE(made.denoise);
   options.quality = Quality::kFinal;
   make();
@@ -1068,7 +1068,7 @@ TEST_F(PlotPlot, QualitiesAreNoiseOrSamples) {
   make();
   EXPECT_FALSE(made.noise);
   EXPECT_TRUE(made.denoise);
-  EXPECT_EQ(read().render.samples, 8);
+  EXPECT_EQ(read().render.samples, 4);
   options.has_target = true;
   EXPECT_EQ(error(), "--quality excludes --noise, --time and --samples: it sets them");
 }
