@@ -19,10 +19,10 @@
 
 #include "base/error.h"
 #include "base/input_file.h"
+#include "base/read_progress.h"
 #include "base/stop_point.h"
 #include "base/text.h"
 #include "data/faults.h"
-#include "data/read_progress.h"
 
 namespace orrery::data {
 
@@ -58,7 +58,7 @@ class PlainFile final : public ByteSource {
 
  private:
   int descriptor_;
-  const std::shared_ptr<ReadProgress> progress_ = ReadProgressScope::current();
+  const std::shared_ptr<base::ReadProgress> progress_ = base::ReadProgressScope::current();
 };
 
 class BytesInMemory final : public ByteSource {

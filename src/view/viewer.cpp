@@ -249,7 +249,7 @@ void Viewer::publish(Frame frame) {
 }
 
 void Viewer::run() {
-  const data::ReadProgressScope scope(reading_);
+  const base::ReadProgressScope scope(reading_);
   std::unique_lock lock(mutex_);
   for (;;) {
     changed_.wait(lock, [this] { return stops_ || state_.asked != served_; });

@@ -17,7 +17,7 @@
 
 #include "annotation/legend.h"
 #include "base/error.h"
-#include "data/read_progress.h"
+#include "base/read_progress.h"
 #include "data/table.h"
 #include "film/picture.h"
 #include "job/job.h"
@@ -154,7 +154,7 @@ class Viewer {
   std::shared_ptr<const job::Rendering> finished_;
 
   std::atomic<bool> cancel_{false};
-  const std::shared_ptr<data::ReadProgress> reading_ = std::make_shared<data::ReadProgress>(0);
+  const std::shared_ptr<base::ReadProgress> reading_ = std::make_shared<base::ReadProgress>(0);
   // Of the rendering thread.
   bool is_new_subject_ = false;                          ///< it has not been rendered yet
   std::optional<decltype(Wish::options)> made_options_;  ///< of the subject

@@ -8,9 +8,11 @@
 
 #include <algorithm>
 #include <cstdint>
+#include <memory>
 #include <string>
 
 #include "base/error.h"
+#include "base/read_progress.h"
 #include "support/peak_memory.h"
 #include "support/temp_dir.h"
 
@@ -109,6 +111,23 @@ TEST_F(DataByteSource, AByteOrderMarkIsSkipped) {
     EXPECT_EQ(source->text(0, 10), "ITEM") << name;
     EXPECT_EQ(source->text(1, 2), "TE") << name;
   }
+}
+
+TEST_F(DataByteSource, ReportsThePlaceInTheFileThatWasReadLast) {
+  const support::TempDir folder;
+  support::write_bytes(folder / "file.txt", std::string(100, ' '));
+  const auto progress = std::make_shared<base::ReadProgress>(0);
+  Bytes bytes;
+  {
+    const base::ReadProgressScope scope(progress);
+    bytes = ByteSource::open(folder / "file.txt", 1000);
+  }
+  bytes->text(50, 25);
+  EXPECT_EQ(*progress, 0.75);
+  bytes->text(0, 10);
+  EXPECT_EQ(*progress, 0.1);
+  ByteSource::open(folder / "file.txt", 1000)->text(0, 100);
+  EXPECT_EQ(*progress, 0.1) << "a file that was opened outside reports nothing";
 }
 
 }  // namespace

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "data/read_progress.h"
+#include "base/read_progress.h"
 
 #include <utility>
 
-namespace orrery::data {
+namespace orrery::base {
 namespace {
 
 thread_local std::shared_ptr<ReadProgress> progress_of_thread;
@@ -16,4 +16,4 @@ ReadProgressScope::~ReadProgressScope() { progress_of_thread = before_; }
 
 std::shared_ptr<ReadProgress> ReadProgressScope::current() { return progress_of_thread; }
 
-}  // namespace orrery::data
+}  // namespace orrery::base

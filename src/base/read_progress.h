@@ -4,7 +4,7 @@
 #include <atomic>
 #include <memory>
 
-namespace orrery::data {
+namespace orrery::base {
 
 /// The end of what was read last from a file, as a fraction of its size; 0: not known. Thread-safe.
 using ReadProgress = std::atomic<double>;
@@ -25,4 +25,4 @@ class ReadProgressScope {
   const std::shared_ptr<ReadProgress> before_;
 };
 
-}  // namespace orrery::data
+}  // namespace orrery::base
