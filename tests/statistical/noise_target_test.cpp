@@ -29,6 +29,7 @@ scene::Scene lamps(int count, double distance, double radius, double radiance) {
   s.camera.vfov = 40;
   s.background.type = scene::BackgroundType::kConstant;
   s.background.color = {0.02, 0.02, 0.02};
+  s.render.direct_lighting = scene::DirectLighting::kBsdf;  // otherwise most lamps are sampled
   std::mt19937 random(7);
   const auto place = [&] { return (static_cast<double>(random()) * 0x1p-32 - 0.5) * distance; };
   for (int i = 0; i < count; ++i) {
