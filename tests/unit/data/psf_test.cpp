@@ -16,8 +16,9 @@ namespace {
 
 using support::numbers;
 using support::texts;
+using Texts = std::vector<std::string>;
 
-constexpr const char* kWater =
+constexpr const char* kPsfWater =
     "PSF EXT XPLOR\n\n         2 !NTITLE\n* water\n* and an ion\n\n         4 !NATOM\n"
     "         1 WT1      1        TIP3     OH2      OT      -0.834000       15.9994           0   0.00000     -0.3\n"
     "         2 WT1      1        TIP3     H1       HT       0.417000       1.00800           0\n"
@@ -56,7 +57,7 @@ class DataPsf : public testing::Test {
 };
 
 TEST_F(DataPsf, NamesAtomsAndBonds) {
-  const auto file = open(kWater);
+  const auto file = open(kPsfWater);
   const FrameInfo info = file->describe(0);
   EXPECT_EQ(support::columns_text(info),
             "x:float64 y:float64 z:float64 id:int64 segment:text residue_number:int64 residue:text name:text type:text "
@@ -65,7 +66,6 @@ TEST_F(DataPsf, NamesAtomsAndBonds) {
   EXPECT_EQ(info.roles.chain, "segment");
   EXPECT_TRUE(info.has_bonds);
   const Table table = support::read_table(*file);
-  using Texts = std::vector<std::string>;
   EXPECT_EQ(texts(table, "element"), (Texts{"O", "H", "H", "Na"}));
   EXPECT_EQ(texts(table, "segment"), (Texts{"WT1", "WT1", "WT1", "IONS"}));
   EXPECT_EQ(texts(table, "type"), (Texts{"OT", "HT", "HT", "SOD"}));
@@ -75,12 +75,12 @@ TEST_F(DataPsf, NamesAtomsAndBonds) {
 }
 
 TEST_F(DataPsf, HasNoPositions) {
-  support::write_bytes(folder_ / "a.psf", kWater);
+  support::write_bytes(folder_ / "a.psf", kPsfWater);
   EXPECT_TRUE(test::mentions(support::read_faults(folder_ / "a.psf"), {"no positions", "--topology a.psf"}));
 }
 
 TEST_F(DataPsf, DamagedFilesAreRefused) {
-  const std::string good = kWater;
+  const std::string good = kPsfWater;
   ASSERT_EQ(error_of(good), "");
   const auto with = [&](const char* from, const char* to) { return base::replaced(good, from, to); };
   EXPECT_TRUE(test::mentions(error_of(good, 5), {"5 atoms", "4"}));
