@@ -168,11 +168,11 @@ class Embree final : public Accel {
     const base::StopPoint stop;
     for (const std::uint32_t id : ids) {
       stop.check(id);
-      if (enclosing_radius(view, id) > limit) giants.push_back(id);
+      if (!is_compact(view, id, limit)) giants.push_back(id);
     }
     const std::size_t rods = short_rods(view.rods, limit);
     if (ids.size() - giants.size() + rods < threshold) return {};
-    std::erase_if(ids, [&](std::uint32_t id) { return enclosing_radius(view, id) > limit; });
+    std::erase_if(ids, [&](std::uint32_t id) { return !is_compact(view, id, limit); });
     if (threshold > 1 && ids.size() <= kMaxInSmallLayer && is_layer(view)) return {};
     scene_.moving_primitives =
         static_cast<std::uint32_t>(std::lower_bound(giants.begin(), giants.end(), view.moving_count) - giants.begin());

@@ -33,6 +33,10 @@ std::vector<std::uint32_t> find_outliers(const kernel::SceneView& scene, const s
 /// The radius of the sphere that encloses a sphere while the shutter is open.
 double enclosing_radius(const kernel::SceneView& scene, std::size_t id);
 
+/// Whether a sphere belongs into a SphereBvh: the sphere that encloses it while the shutter is open is neither larger
+/// than `largest` nor nearly empty.
+bool is_compact(const kernel::SceneView& scene, std::size_t id, double largest);
+
 /// The radius above which the sphere that encloses a sphere or a static rod is kept out of a SphereBvh, derived from
 /// the median radius of a sample.
 ///

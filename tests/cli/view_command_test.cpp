@@ -362,7 +362,8 @@ TEST_F(CliView, AFilmStopsWithAServerThatIsKilled) {
   waitpid(-1, &status, 0);
   prctl(PR_SET_CHILD_SUBREAPER, 0);
   ASSERT_TRUE(WIFEXITED(status));
-  EXPECT_EQ(WEXITSTATUS(status), 75);
+  // While the threads of the server end one by one, the film may receive the signal twice, and then does not wait.
+  EXPECT_TRUE(WEXITSTATUS(status) == 75 || WEXITSTATUS(status) == 128 + SIGINT) << WEXITSTATUS(status);
 }
 
 TEST_F(CliView, TheHistogramIsThatOfTheFrame) {

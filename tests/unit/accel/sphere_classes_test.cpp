@@ -47,15 +47,15 @@ TEST(AccelSphereClasses, AGroundIsAnOutlier) {
 TEST(AccelSphereClasses, MovingSpheresAreInTheBvhUnlessTheyMoveFar) {
   Random random;
   const std::vector<Sphere> spheres = scattered(random, 200'000, 100, 0.1, 0);
-  std::vector<Sphere> motion(150'000, Sphere{0.05, 0, 0, 0.01});
-  motion[7] = {50, 0, 0, 0};
+  std::vector<Sphere> motion(150'000, Sphere{0.004, 0, 0, 0.001});
+  motion[7] = {1, 0, 0, 0};
   kernel::SceneView view;
   view.spheres = spheres.data();
   view.sphere_count = spheres.size();
   view.motion = motion.data();
   view.moving_count = motion.size();
   EXPECT_EQ(objects_in_bvh(view).spheres, spheres.size() - 1);
-  EXPECT_NEAR(enclosing_radius(view, 3), spheres[3].radius + 0.01 + 0.025, 1e-12);
+  EXPECT_NEAR(enclosing_radius(view, 3), spheres[3].radius + 0.001 + 0.002, 1e-12);
   EXPECT_EQ(enclosing_radius(view, motion.size()), spheres[motion.size()].radius);
 }
 

@@ -655,8 +655,10 @@ TEST(RenderLayers, HalvesAverageToTheBeauty) {
     if (is_adaptive) settings.noise = 0.2;
     const Result with = render(compiled, settings);
     settings.layers = {};
-    EXPECT_EQ(render(compiled, settings).picture.planes[1].values, with.picture.planes[1].values)
-        << "the layer does not change the beauty";
+    if (!is_adaptive) {  // with a target, an image without halves has more samples
+      EXPECT_EQ(render(compiled, settings).picture.planes[1].values, with.picture.planes[1].values)
+          << "the layer does not change the beauty";
+    }
     int different = 0;
     for (std::size_t i = 0; i < with.picture.planes[0].values.size(); ++i) {
       const float a = plane(with, "half_a.G")[i], b = plane(with, "half_b.G")[i];
