@@ -44,9 +44,11 @@ else
   # Passed tests are not logged. The closing lines follow the times below.
   ctest "$@" | sed -u -E '/^ *[0-9]+\/[0-9]+ Test +#.* Passed |^ +Start +[0-9]+: /d; /^[0-9]+% tests passed/,$d' || status=$?
   printf 'Built in %s s, tested in %s s. The slowest tests:\n' "$build_seconds" $((SECONDS - begin))
-  # Columns: name, number of runs, mean seconds.
-  sed '/^---/,$d' "$root/build/Testing/Temporary/CTestCostData.txt" | sort -k3,3nr |
-    awk '$2 > 0 && ++n <= 10 { printf "%8.1f s  %s\n", $3, $1 }'
+  # Columns: name, number of runs, mean seconds. There is none if no test ran, as with -N.
+  costs="$root/build/Testing/Temporary/CTestCostData.txt"
+  if [ -f "$costs" ]; then
+    sed '/^---/,$d' "$costs" | sort -k3,3nr | awk '$2 > 0 && ++n <= 10 { printf "%8.1f s  %s\n", $3, $1 }'
+  fi
   sed -n '/^[0-9]*% tests passed/,$p' "$log"
 fi
 exit "$status"
