@@ -82,7 +82,7 @@ if [ -z "$work" ]; then
 fi
 rm -rf "$work/tree"  # a kept tree may contain deleted files
 mkdir -p "$work/tree"
-(cd "$root" && tar -cf - --exclude=./.git --exclude=./build --exclude=./out .) | tar -xf - -C "$work/tree"
+(cd "$root" && tar -cf - --exclude=./.git --exclude='./build*' --exclude=./out .) | tar -xf - -C "$work/tree"
 # A kept build may contain a mutant of the last run, newer than the original file: rebuild these files.
 (cd "$work/tree" && touch "${files[@]}")
 # Only one instruction set is compiled, in a third of the time, if the processor has it. Mutants of code for another one
@@ -105,6 +105,7 @@ failure_in() {
   local output status=0
   if ! cmake --build "$work/build" --target "$1" -j "${ORRERY_MUTANTS_JOBS:-2}" >"$work/build.log" 2>&1; then
     echo "DOES NOT COMPILE"
+    grep -m 5 -E 'error|FAILED' "$work/build.log" >&2 || tail -n 5 "$work/build.log" >&2
     return
   fi
   output=$(timeout "$hung_after_s" "$(path_of "$1")" --gtest_fail_fast --gtest_filter="$2" 2>&1) || status=$?

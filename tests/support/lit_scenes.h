@@ -119,6 +119,7 @@ inline std::vector<NamedScene> lit_scenes(int width_px, int height_px) {
   add_rod_lamp(rods, {-1.5, 0.05, 1}, {-1.2, 1.5, 1.2}, 0.05, {5, 10, 5});  // touches the floor
   rods.rods.back().materials[1] = 1;                                        // one half is dark
   add_rod_lamp(rods, {0.5, 0.4, 1.5}, {0.5, 40, 1.5}, 0.02, {20, 20, 20});
+  add_rod_lamp(rods, {-0.4, 1.4, 1}, {0.2, 1.4, 1}, 0.3, {5, 10, 15});  // its caps are as large as its body
   scene::Scene& moving_rods = add("moving rods and a lamp");
   add_rod_lamp(moving_rods, {-2, 2, 0.5}, {1.5, 2.6, 1}, 0.05, {20, 15, 10});
   add_lamp(moving_rods, {1, 1.5, 1}, 0.3, {5, 10, 15});
