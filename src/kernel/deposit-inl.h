@@ -54,13 +54,34 @@ HWY_INLINE void store_fixed_point(D, hn::Vec<D> value, std::int64_t* to) {
   }
 }
 
+/// The paths of a batch that belong to the same sum: those of a pixel and a half, whose samples follow each other.
+template <class T>
+class PathRun {
+ public:
+  HWY_INLINE explicit PathRun(const BatchOf<T>& batch) : samples_(batch.sample), offset_(samples_[0]) {}
+
+  /// Whether the run ends before a path. If so, that path begins the next run.
+  HWY_INLINE bool ends_before(int i) {
+    const auto offset = static_cast<IdOf<T>>(samples_[i] - static_cast<IdOf<T>>(i));
+    if (offset == offset_) return false;
+    offset_ = offset;
+    return true;
+  }
+
+ private:
+  const IdOf<T>* samples_;
+  IdOf<T> offset_;  ///< of the samples from the paths' indices
+};
+
 /// Adds what the paths of a batch have gained to the sums of their pixels. Bad samples are counted and excluded.
 template <class D, class T = hn::TFromD<D>>
 HWY_INLINE void deposit(D d, const BatchOf<T>& batch, int count, const SceneView& scene, const Tile& tile,
                         TileCounts& counts) {
-  IdOf<T> pixel = batch.pixel[0];
+  PathRun<T> run(batch);
   PixelSum sum;
-  const auto add_sum = [&] { tile.sums[tile.index(place_of(pixel, scene))] += sum; };
+  const auto add_sum = [&](int last) {
+    tile.sums[tile.index(place_of(batch.pixel[last], scene), batch.sample[last])] += sum;
+  };
   constexpr bool kConvertsVectors = HWY_TARGET <= HWY_AVX3;  // others have no instruction for it
   HWY_ALIGN std::int64_t units[3][hn::MaxLanes(D())];
   for (int v = 0; v < count; v += static_cast<int>(hn::Lanes(d))) {
@@ -76,9 +97,8 @@ HWY_INLINE void deposit(D d, const BatchOf<T>& batch, int count, const SceneView
     }
     for (int lane = 0; lane < static_cast<int>(hn::Lanes(d)) && v + lane < count; ++lane) {
       const int i = v + lane;
-      if (batch.pixel[i] != pixel) {
-        add_sum();
-        pixel = batch.pixel[i];
+      if (run.ends_before(i)) {
+        add_sum(i - 1);
         sum = {};
       }
       if (are_small) {
@@ -100,7 +120,7 @@ HWY_INLINE void deposit(D d, const BatchOf<T>& batch, int count, const SceneView
       }
     }
   }
-  add_sum();
+  add_sum(count - 1);
 }
 
 /// Adds the coverage of a batch's paths to the sums of their pixels. On a transparent page, what a path lacks of the
@@ -125,15 +145,31 @@ HWY_INLINE void add_coverage(BatchOf<T>& batch, int count, const SceneView& scen
 }
 
 /// Raises the largest samples of pixels. Bad samples do not count.
-template <class T>
-HWY_INLINE void raise_largest(const BatchOf<T>& batch, int count, const SceneView& scene, const Tile& tile) {
+template <class D, class T = hn::TFromD<D>>
+HWY_INLINE void raise_largest(D d, const BatchOf<T>& batch, int count, const SceneView& scene, const Tile& tile) {
   if (tile.largest == nullptr) return;
-  for (int i = 0; i < count; ++i) {
-    const T r = batch.radiance[0][i], g = batch.radiance[1][i], b = batch.radiance[2][i];
-    if (!is_valid_sample(static_cast<double>(r), static_cast<double>(g), static_cast<double>(b))) continue;
-    float& largest = tile.largest[tile.index(place_of(batch.pixel[i], scene))];
-    largest = std::max(largest, static_cast<float>(r + g + b));
+  PathRun<T> run(batch);
+  T most = 0;
+  const auto raise = [&](int last) {
+    float& largest = tile.largest[tile.index(place_of(batch.pixel[last], scene))];
+    largest = std::max(largest, static_cast<float>(most));
+  };
+  HWY_ALIGN T sums[hn::MaxLanes(D())];
+  for (int v = 0; v < count; v += static_cast<int>(hn::Lanes(d))) {
+    const auto light = load3(d, batch.radiance, v);
+    const auto is_valid = [&](hn::Vec<D> value) { return hn::Abs(value) <= set(d, kLargestSample); };
+    const auto are_valid = hn::And(hn::And(is_valid(light.x), is_valid(light.y)), is_valid(light.z));
+    hn::Store(hn::IfThenElseZero(are_valid, light.x + light.y + light.z), d, sums);
+    const int lanes = std::min(static_cast<int>(hn::Lanes(d)), count - v);
+    for (int lane = 0; lane < lanes; ++lane) {
+      if (run.ends_before(v + lane)) {
+        raise(v + lane - 1);
+        most = 0;
+      }
+      most = std::max(most, sums[lane]);
+    }
   }
+  raise(count - 1);
 }
 
 /// Stores what the paths of a batch have gained in their records.

@@ -181,17 +181,20 @@ class Recorder {
   }
   /// The sum that all lanes belong to; null if they belong to several.
   HWY_INLINE GuideSum* common_sum(D d, hn::Mask<D> lanes) const {
-    const Id first = hn::GetLane(pixels_);
-    const auto same = hn::RebindMask(d, pixels_ == hn::Set(IdTag<D>(), first));
-    return hn::AllTrue(d, hn::Or(hn::Not(lanes), same)) ? &sum_of(first) : nullptr;
+    const IdTag<D> du;
+    const Id pixel = hn::GetLane(pixels_), sample = hn::GetLane(samples_);
+    const auto half = [&](Ids samples) { return hn::And(samples, set(du, Sampler::kSecondHalf)); };
+    const auto same = hn::And(pixels_ == hn::Set(du, pixel), half(samples_) == half(hn::Set(du, sample)));
+    return hn::AllTrue(d, hn::Or(hn::Not(lanes), hn::RebindMask(d, same))) ? &sum_of(pixel, sample) : nullptr;
   }
-  HWY_INLINE GuideSum& sum_of(Id pixel) const { return tile_.guides[tile_.index(place_of(pixel, scene_))]; }
+  HWY_INLINE GuideSum& sum_of(Id pixel, Id sample) const {
+    return tile_.guides[tile_.index(place_of(pixel, scene_), sample)];
+  }
   /// Calls `add(sum, lane)` for each lane.
   template <class Add>
   HWY_INLINE void each_sum(D d, hn::Mask<D> lanes, Add add) const {
-    HWY_ALIGN Id pixel[kMax];
-    hn::Store(pixels_, IdTag<D>(), pixel);
-    each_lane(d, lanes, [&](int i) { add(sum_of(pixel[i]), i); });
+    const Names names(*this);
+    each_lane(d, lanes, [&](int i) { add(sum_of(names.pixel[i], names.sample[i]), i); });
   }
   /// The index of a lane's record within the tile.
   HWY_INLINE std::int64_t index(const Names& names, int lane) const {

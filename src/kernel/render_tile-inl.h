@@ -59,18 +59,24 @@ namespace orrery::kernel::HWY_NAMESPACE {
 class PathCounter {
  public:
   PathCounter(const Tile& tile, const SceneView& scene)
-      : tile_(tile), scene_(scene), sample_(tile.sample_begin), id_(id_of(tile.pixel(0))) {}
+      : tile_(tile), scene_(scene), sample_(tile.sample_begin), end_(tile.sample_end), id_(id_of(tile.pixel(0))) {}
 
   template <class Id>
   void take(Id& pixel, Id& sample) {
     pixel = Id{id_};
     sample = Id{sample_};
-    if (++sample_ < tile_.sample_end) return;
-    sample_ = tile_.sample_begin;
-    if (++pixel_ < tile_.pixel_count()) id_ = id_of(tile_.pixel(pixel_));
+    if (++sample_ == end_) start_run();
   }
 
  private:
+  /// The second half of a pixel, or the next pixel.
+  void start_run() {
+    const bool is_second = tile_.has_both_halves && end_ == tile_.sample_end;
+    const std::uint32_t first = is_second ? Sampler::kSecondHalf : 0;
+    sample_ = first + tile_.sample_begin;
+    end_ = first + tile_.sample_end;
+    if (!is_second && ++pixel_ < tile_.pixel_count()) id_ = id_of(tile_.pixel(pixel_));
+  }
   std::uint32_t id_of(PixelPlace place) const {
     const std::uint32_t x = static_cast<std::uint32_t>(tile_.x + place.x) + scene_.window_x;
     const std::uint32_t y = static_cast<std::uint32_t>(tile_.y + place.y) + scene_.window_y;
@@ -79,7 +85,7 @@ class PathCounter {
 
   const Tile& tile_;
   const SceneView& scene_;
-  std::uint32_t sample_;
+  std::uint32_t sample_, end_;  ///< of a run
   int pixel_ = 0;
   std::uint32_t id_;  ///< of the pixel
 };
@@ -110,7 +116,7 @@ class TileLoop {
       for (depth_ = 0; alive > 0; ++depth_) alive = advance(alive);
       if (kLoop.full && tile_.covered != nullptr) add_coverage(paths_.batch, batch, scene_, tile_);
       deposit(d, paths_.batch, batch, scene_, tile_, counts_);
-      raise_largest(paths_.batch, batch, scene_, tile_);
+      raise_largest(d, paths_.batch, batch, scene_, tile_);
       if (kLoop.full) record_light(paths_.batch, batch, scene_, tile_);
     }
     return counts_;
@@ -128,8 +134,11 @@ class TileLoop {
     const std::uint32_t weight = tile_.sample_end - tile_.sample_begin;
     for (int i = 0; i < tile_.pixel_count(); ++i) {
       const PixelPlace at = tile_.pixel(i);
-      tile_.sums[at.y * tile_.row_stride + at.x].weight += weight;
-      if (kLoop.full && tile_.guides != nullptr) tile_.guides[at.y * tile_.row_stride + at.x].weight += weight;
+      for (int half = 0; half < (tile_.has_both_halves ? 2 : 1); ++half) {
+        const std::int64_t to = at.y * tile_.row_stride + at.x + half * tile_.half_stride;
+        tile_.sums[to].weight += weight;
+        if (kLoop.full && tile_.guides != nullptr) tile_.guides[to].weight += weight;
+      }
     }
   }
 

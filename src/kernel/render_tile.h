@@ -3,6 +3,7 @@
 
 #include <cstdint>
 
+#include "kernel/camera.h"
 #include "kernel/forward.h"
 #include "kernel/pixel_sum.h"
 #include "kernel/precision.h"
@@ -14,10 +15,13 @@ struct Tile {
   int x = 0, y = 0;  ///< px, upper left corner, within the rendered window
   int width = 0, height = 0;
   std::uint32_t sample_begin = 0, sample_end = 0;
+  /// Also renders the same samples of the second half, from Sampler::kSecondHalf on. Only without records.
+  bool has_both_halves = false;
   PixelSum* sums = nullptr;  ///< sum of the upper left pixel
   /// The pixels' largest samples (sum of the channels), laid out like the sums; null: not needed.
   float* largest = nullptr;
   std::int64_t row_stride = 0;         ///< distance from a pixel's sum to that of the pixel below, elements
+  std::int64_t half_stride = 0;        ///< from a pixel's sum or guides to those of its second half, if it has both
   const PixelPlace* chosen = nullptr;  ///< the pixels to render, relative to the upper left one; null: all
   int chosen_count = 0;
   /// One record per path: the samples of a pixel, then the next pixel of the row. Null: not needed.
@@ -37,15 +41,19 @@ struct Tile {
   int pixel_count() const noexcept { return chosen != nullptr ? chosen_count : width * height; }
   /// The i-th pixel to render, relative to the upper left one.
   PixelPlace pixel(int i) const noexcept { return chosen != nullptr ? chosen[i] : PixelPlace{i % width, i / width}; }
-  /// The index of a pixel of the window among the sums.
+  /// The index of a pixel of the window among the largest samples, and among the sums of the first half.
   std::int64_t index(PixelPlace at) const noexcept { return (at.y - y) * row_stride + (at.x - x); }
+  /// The index of the sum that a sample of a pixel belongs to.
+  std::int64_t index(PixelPlace at, std::uint64_t sample) const noexcept {
+    return index(at) + (has_both_halves && sample >= Sampler::kSecondHalf ? half_stride : 0);
+  }
   /// The index of the record of a path.
   std::int64_t record_index(PixelPlace at, std::uint64_t sample) const noexcept {
     const auto count = static_cast<std::int64_t>(sample_end - sample_begin);
     return (std::int64_t{at.y - y} * width + (at.x - x)) * count + static_cast<std::int64_t>(sample - sample_begin);
   }
   std::uint64_t path_count() const noexcept {
-    return static_cast<std::uint64_t>(pixel_count()) * (sample_end - sample_begin);
+    return static_cast<std::uint64_t>(pixel_count()) * (sample_end - sample_begin) * (has_both_halves ? 2 : 1);
   }
 };
 

@@ -21,9 +21,6 @@
 namespace orrery::render {
 namespace {
 
-/// Side of the squares that are rendered as one tile, px.
-constexpr int kSide = 16;
-
 /// Minimum samples of a half before errors are estimated: with fewer, rare light in a pixel would be missed for good.
 constexpr std::uint32_t kFirstSamples = 8;
 /// The same for an image with halves, which will be denoised: with fewer, figures look worse.
@@ -63,7 +60,8 @@ class AdaptiveSampling {
     pixels_.emitters =
         emitter_coverage(render_tile.view(), {accel.tracer(), compiled.precision}, compiled.width, compiled.height);
     const auto update_row = [&](std::size_t y, TileWorker&) {
-      for (int x = 0; x < compiled.width; ++x) update(x, static_cast<int>(y));
+      for (int x = 0; x < compiled.width; ++x)
+        if (state.counts[pixels_.at(x, static_cast<int>(y))] > 0) update(x, static_cast<int>(y));
     };
     pool.run(static_cast<std::size_t>(compiled.height), update_row, [] { return false; });
   }
@@ -150,7 +148,7 @@ class AdaptiveSampling {
 
   /// Renders all pixels up to their goals.
   bool run_iteration() {
-    if (!passes_.run(kSide, [this](int x, int y) { update(x, y); })) return false;
+    if (!passes_.run([this](int x, int y) { update(x, y); })) return false;
     state_.goals = base::ZeroVector<std::uint32_t>();
     // The last iteration counts most, since the pixels that continue are unlike the others. Its time includes choosing
     // them.

@@ -17,8 +17,6 @@
 namespace orrery::render {
 namespace {
 
-using kernel::Sampler;
-
 /// Maximum side of a square, px: neighbouring pixels see the same spheres.
 constexpr int kLargestSquare = 32;
 constexpr int kSmallestSquare = 4;
@@ -30,7 +28,7 @@ constexpr double kPathsPerSquare = 65536;
 /// and maximum of a pass: a square of the smallest side must finish soon enough for an interactive stop.
 constexpr std::uint32_t kFirstPass = 16, kFirstSeenPass = 1, kGrowth = 4, kLargestPass = 4096;
 
-int side_for(std::uint32_t samples) {
+int side_for(double samples) {
   return std::clamp(static_cast<int>(std::sqrt(kPathsPerSquare / samples)), kSmallestSquare, kLargestSquare);
 }
 
@@ -68,13 +66,17 @@ void ProgressReporter::add(std::uint64_t samples) {
   settings_.on_progress({done, std::max(total, done), now, goal_});
 }
 
-bool PassRenderer::run(int side, const OnPixel& on_pixel) {
+bool PassRenderer::run(const OnPixel& on_pixel) {
   const auto cancelled = [&] {
     return settings_.cancel != nullptr && settings_.cancel->load(std::memory_order_relaxed);
   };
   const auto shall_pause = [&] {
     return cancelled() || (settings_.checkpoint_is_due && settings_.checkpoint_is_due());
   };
+  std::uint32_t most = 1;  // samples of a pixel
+  for (std::size_t i = 0; i < state_.goals.size(); ++i)
+    if (state_.goals[i] > state_.counts[i]) most = std::max(most, state_.goals[i] - state_.counts[i]);
+  const int side = side_for(state_.is_adaptive() ? 2.0 * most : most);
   for (;;) {
     const std::vector<kernel::PixelPlace> squares = unfinished_squares(side);
     const auto render = [&](std::size_t i, TileWorker& worker) {
@@ -137,14 +139,12 @@ void PassRenderer::render_square(int x0, int y0, int side, const OnPixel& on_pix
     const bool are_all = count == tile.width * tile.height;
     tile.chosen = are_all ? nullptr : group.pixels.data();
     tile.chosen_count = count;
-    const auto render = [&](std::uint32_t first) {
-      tile.sample_begin = first + group.have;
-      tile.sample_end = first + group.want;
-      render_tile_(tile, worker, state_);
-      progress_.add(tile.path_count());
-    };
-    render(state_.is_adaptive() ? 0 : settings_.sample_begin);
-    if (state_.is_adaptive()) render(Sampler::kSecondHalf);
+    tile.has_both_halves = state_.is_adaptive();
+    const std::uint32_t first = state_.is_adaptive() ? 0 : settings_.sample_begin;
+    tile.sample_begin = first + group.have;
+    tile.sample_end = first + group.want;
+    render_tile_(tile, worker, state_);
+    progress_.add(tile.path_count());
     for (const kernel::PixelPlace p : group.pixels) {
       state_.counts[at(p)] = group.want;
       if (on_pixel) on_pixel(x0 + p.x, y0 + p.y);
@@ -175,7 +175,7 @@ bool render_progressively(const compile::CompiledScene& compiled, const Settings
     const std::uint32_t goal = done + std::min(pass, samples - done);
     state.goals.resize(state.pixel_count());
     for (std::size_t i = 0; i < state.goals.size(); ++i) state.goals[i] = owned[i] ? goal : 0;
-    const bool completed = passes.run(side_for(goal - done));
+    const bool completed = passes.run();
     state.goals = base::ZeroVector<std::uint32_t>();  // not needed to resume; frees its memory
     if (!completed) return false;
     done = goal;

@@ -70,11 +70,11 @@ class PassRenderer {
                film::Sums& state)
       : settings_(settings), render_tile_(render_tile), pool_(pool), progress_(progress), state_(state) {}
 
-  /// Renders every pixel up to the state's goals, in squares of `side` pixels, in both halves if there are two. Reports
-  /// the sums when a checkpoint is due.
+  /// Renders every pixel up to the state's goals, in both halves if there are two. Reports the sums when a checkpoint
+  /// is due.
   ///
   /// Result     false if cancelled by the settings' `cancel`; each pixel then has its old count or its goal
-  bool run(int side, const OnPixel& on_pixel = {});
+  bool run(const OnPixel& on_pixel = {});
 
  private:
   /// Upper left corners of the squares with pixels below their goals.

@@ -17,8 +17,10 @@ namespace {
 constexpr int kReach = 2, kWideReach = 3;
 constexpr int kNeighbours = (2 * kReach + 1) * (2 * kReach + 1) - 1;  ///< of a pixel within kReach
 
-/// Pixels whose neighbours are sorted together: several vectors of any instruction set.
+/// Pixels that are compared with their neighbours together: several vectors of any instruction set.
 constexpr int kRun = 64;
+template <class T>
+using Run = std::array<T, kRun>;
 
 /// Number of largest samples without which a pixel's own light counts.
 constexpr float kTrimmed = 3;
@@ -52,18 +54,24 @@ constexpr float kLargestError = 0x1p50f;
 
 constexpr float kDarkest = static_cast<float>(film::kDarkestLight);
 
+/// Calls `use(y)` for all rows, in any order and on all threads.
+template <class Use>
+void each_row(const PixelStatistics& s, TilePool& pool, Use use) {
+  const auto row = [&](std::size_t y, TileWorker&) { use(static_cast<int>(y)); };
+  pool.run(static_cast<std::size_t>(s.height), row, [] { return false; });
+}
+
 /// Calls `use(x, y)` for all pixels: rows in any order and on all threads, the pixels of a row in their order.
 template <class Use>
 void each_pixel(const PixelStatistics& s, TilePool& pool, Use use) {
-  const auto row = [&](std::size_t y, TileWorker&) {
-    for (int x = 0; x < s.width; ++x) use(x, static_cast<int>(y));
-  };
-  pool.run(static_cast<std::size_t>(s.height), row, [] { return false; });
+  each_row(s, pool, [&](int y) {
+    for (int x = 0; x < s.width; ++x) use(x, y);
+  });
 }
 
 /// Calls `use(begin, end)` for the indices of each row of the pixels within `reach`.
 template <class Use>
-void each_row(const PixelStatistics& s, int x, int y, int reach, Use use) {
+void each_row_within(const PixelStatistics& s, int x, int y, int reach, Use use) {
   const int left = std::max(x - reach, 0), right = std::min(x + reach, s.width - 1);
   for (int v = std::max(y - reach, 0); v <= std::min(y + reach, s.height - 1); ++v)
     use(s.at(left, v), s.at(right, v) + 1);
@@ -76,10 +84,30 @@ std::size_t excluded(const PixelStatistics& s, int x, int y) { return s.samples.
 template <class Use>
 void each_neighbour(const PixelStatistics& s, int x, int y, int reach, Use use) {
   const std::size_t self = excluded(s, x, y);
-  each_row(s, x, y, reach, [&](std::size_t begin, std::size_t end) {
+  each_row_within(s, x, y, reach, [&](std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i)
       if (i != self) use(i);
   });
+}
+
+/// Calls `use_run(x)` for runs that contain all pixels of a row with all neighbours within `reach`, and `use(x)` for
+/// its other pixels.
+template <class UseRun, class Use>
+void each_run(const PixelStatistics& s, int y, int reach, UseRun use_run, Use use) {
+  const bool has_runs = y >= reach && y + reach < s.height && s.width >= kRun + 2 * reach;
+  const int end = has_runs ? s.width - reach : 0;
+  for (int x = reach; x < end; x += kRun) use_run(std::min(x, end - kRun));
+  for (int x = 0; x < s.width; ++x)
+    if (x < reach || x >= end) use(x);
+}
+
+/// Calls `use(first)` for each neighbour of the pixels of a run from (x, y) on, in the order of each_neighbour: first +
+/// i is that of the i-th pixel.
+template <class Use>
+void each_neighbour_of_run(const PixelStatistics& s, int x, int y, int reach, Use use) {
+  for (int dy = -reach; dy <= reach; ++dy)
+    for (int dx = -reach; dx <= reach; ++dx)
+      if (dx != 0 || dy != 0) use(s.at(x + dx, y + dy));
 }
 
 float relative(float variance, float light) {
@@ -98,48 +126,36 @@ float light_around(const PixelStatistics& s, int x, int y) {
   return *quartile;
 }
 
-/// light_around() of kRun pixels from (x, y) on, all of which have all neighbours: a sorting network in vectors, which
-/// takes a tenth of the time.
+/// light_around() of a run from (x, y) on: a sorting network in vectors, which takes a tenth of the time.
 void lights_around(const PixelStatistics& s, int x, int y, float* out) {
-  std::array<std::array<float, kRun>, kNeighbours / 4> least;  // of each pixel's neighbours, ascending
+  std::array<Run<float>, kNeighbours / 4> least;  // of each pixel's neighbours, ascending
   for (auto& rank : least) rank.fill(std::numeric_limits<float>::infinity());
-  for (int dy = -kReach; dy <= kReach; ++dy) {
-    for (int dx = -kReach; dx <= kReach; ++dx) {
-      if (dx == 0 && dy == 0) continue;
-      const std::size_t first = s.at(x + dx, y + dy);
-      std::array<float, kRun> light;
-      for (std::size_t i = 0; i < kRun; ++i) light[i] = s.light[first + i] - s.outlier[first + i];
-      for (auto& rank : least) {
-        for (std::size_t i = 0; i < kRun; ++i) {
-          const float lower = std::min(rank[i], light[i]);
-          light[i] = std::max(rank[i], light[i]);
-          rank[i] = lower;
-        }
+  each_neighbour_of_run(s, x, y, kReach, [&](std::size_t first) {
+    Run<float> light;
+    for (std::size_t i = 0; i < kRun; ++i) light[i] = s.light[first + i] - s.outlier[first + i];
+    for (auto& rank : least) {
+      for (std::size_t i = 0; i < kRun; ++i) {
+        const float lower = std::min(rank[i], light[i]);
+        light[i] = std::max(rank[i], light[i]);
+        rank[i] = lower;
       }
     }
-  }
+  });
   std::copy(least.back().begin(), least.back().end(), out);
 }
 
 /// The errors of a row of pixels.
 std::vector<float> errors_of_row(const PixelStatistics& s, int y) {
-  std::vector<float> around(static_cast<std::size_t>(s.width));
-  const bool has_runs = y >= kReach && y + kReach < s.height && s.width >= kRun + 2 * kReach;
-  const int end = has_runs ? s.width - kReach : 0;
-  for (int x = kReach; x < end; x += kRun) {
-    const int first = std::min(x, end - kRun);
-    lights_around(s, first, y, &around[static_cast<std::size_t>(first)]);
-  }
+  std::vector<float> out(static_cast<std::size_t>(s.width));
+  each_run(
+      s, y, kReach, [&](int x) { lights_around(s, x, y, &out[static_cast<std::size_t>(x)]); },
+      [&](int x) { out[static_cast<std::size_t>(x)] = light_around(s, x, y); });
   for (int x = 0; x < s.width; ++x) {
     const std::size_t i = s.at(x, y);
-    float& light = around[static_cast<std::size_t>(x)];
-    if (s.variance[i] <= 0)
-      light = 0;
-    else if (x < kReach || x >= end)
-      light = light_around(s, x, y);
-    light = relative(s.variance[i], std::max(s.light[i] - kTrimmed * s.outlier[i], std::min(s.light[i], light)));
+    float& value = out[static_cast<std::size_t>(x)];
+    value = relative(s.variance[i], std::max(s.light[i] - kTrimmed * s.outlier[i], std::min(s.light[i], value)));
   }
-  return around;
+  return out;
 }
 
 /// The fraction of a pixel's light that comes from emitters if the rest is as bright as the pixels around it;
@@ -179,23 +195,64 @@ bool has_hit_emitters(const PixelStatistics& s, std::size_t i) {
   return 2 * largest * s.emitters[i].coverage >= s.emitters[i].light;
 }
 
-/// Whether a pixel's neighbours have found enough light, or can be trusted to be black.
-bool has_reliable_estimate(const PixelStatistics& s, int x, int y) {
-  if (s.samples[s.at(x, y)] >= kSamplesForReliability) return true;
-  int count = 0, dark = 0;
-  each_neighbour(s, x, y, kReach, [&](std::size_t i) {
-    ++count;
-    dark += s.light[i] > 0 || (!s.known_black.empty() && s.known_black[i] != 0) ? 0 : 1;
-  });
-  if (2 * dark >= count) return false;  // light next to a dark area gives no information about the area
-  float light = 0, largest = 0;         // sums over the samples
-  each_neighbour(s, x, y, kWideReach, [&](std::size_t i) {
-    const float n = 2 * static_cast<float>(s.samples[i]);
-    light += n * s.light[i];
-    largest = std::max(largest, n * s.outlier[i]);
-  });
-  return light >= kPaths * largest;
-}
+/// What the neighbours of pixels have found.
+class FoundLight {
+ public:
+  FoundLight(const PixelStatistics& s, TilePool& pool)
+      : s_(s), light_(s.samples.size()), largest_(light_.size()), is_dark_(light_.size()) {
+    each_pixel(s, pool, [&](int x, int y) {
+      const std::size_t i = s.at(x, y);
+      const float n = 2 * static_cast<float>(s.samples[i]);
+      light_[i] = n * s.light[i];
+      largest_[i] = n * s.outlier[i];
+      is_dark_[i] = s.light[i] > 0 || (!s.known_black.empty() && s.known_black[i] != 0) ? 0 : 1;
+    });
+  }
+
+  /// Sets `is_unreliable` of a row of pixels.
+  void find_unreliable(int y, std::vector<std::uint8_t>& is_unreliable) const {
+    const auto use_run = [&](int x) {
+      Run<float> light{}, largest{}, dark{};
+      each_neighbour_of_run(s_, x, y, kReach, [&](std::size_t first) {
+        for (std::size_t i = 0; i < kRun; ++i) dark[i] += is_dark_[first + i];
+      });
+      each_neighbour_of_run(s_, x, y, kWideReach, [&](std::size_t first) {
+        for (std::size_t i = 0; i < kRun; ++i) light[i] += light_[first + i];
+        for (std::size_t i = 0; i < kRun; ++i) {
+          const float before = largest[i], other = largest_[first + i];  // values: references would be branches
+          largest[i] = before < other ? other : before;
+        }
+      });
+      for (std::size_t i = 0; i < kRun; ++i) {
+        const std::size_t own = s_.at(x, y) + i;
+        is_unreliable[own] = is_reliable(own, kNeighbours, dark[i], light[i], largest[i]) ? 0 : 1;
+      }
+    };
+    const auto use = [&](int x) {
+      float count = 0, dark = 0, light = 0, largest = 0;
+      each_neighbour(s_, x, y, kReach, [&](std::size_t k) {
+        ++count;
+        dark += is_dark_[k];
+      });
+      each_neighbour(s_, x, y, kWideReach, [&](std::size_t k) {
+        light += light_[k];
+        largest = std::max(largest, largest_[k]);
+      });
+      is_unreliable[s_.at(x, y)] = is_reliable(s_.at(x, y), count, dark, light, largest) ? 0 : 1;
+    };
+    each_run(s_, y, kWideReach, use_run, use);
+  }
+
+ private:
+  /// Whether a pixel's neighbours have found enough light, or can be trusted to be black. Light next to a dark area
+  /// gives no information about the area.
+  bool is_reliable(std::size_t own, float count, float dark, float light, float largest) const {
+    return s_.samples[own] >= kSamplesForReliability || (2 * dark < count && light >= kPaths * largest);
+  }
+
+  const PixelStatistics& s_;
+  std::vector<float> light_, largest_, is_dark_;  ///< of the samples: sum, largest; 1: none has found light
+};
 
 }  // namespace
 
@@ -216,14 +273,14 @@ NoiseEstimate estimate_noise(const PixelStatistics& s, TilePool& pool) {
     double sum = 0, squares = 0;
   };
   std::vector<Sums> rows(static_cast<std::size_t>(s.height));
-  const auto add_row = [&](std::size_t y, TileWorker&) {
-    for (const float error : errors_of_row(s, static_cast<int>(y))) {
+  each_row(s, pool, [&](int y) {
+    Sums& row = rows[static_cast<std::size_t>(y)];
+    for (const float error : errors_of_row(s, y)) {
       const auto e = static_cast<double>(error);
-      rows[y].sum += e;
-      rows[y].squares += e * e;
+      row.sum += e;
+      row.squares += e * e;
     }
-  };
-  pool.run(rows.size(), add_row, [] { return false; });
+  });
   Sums all;
   for (const Sums& row : rows) {
     all.sum += row.sum;
@@ -241,9 +298,10 @@ UnreliablePixels find_unreliable_pixels(const PixelStatistics& s, TilePool& pool
   UnreliablePixels out;
   out.of_pixel.resize(s.samples.size());
   std::vector<float> without_emitters(s.samples.size());
+  const FoundLight found(s, pool);
+  each_row(s, pool, [&](int y) { found.find_unreliable(y, out.of_pixel); });
   each_pixel(s, pool, [&](int x, int y) {
     const std::size_t i = s.at(x, y);
-    out.of_pixel[i] = has_reliable_estimate(s, x, y) ? 0 : 1;
     const float error = error_without_emitters(s, x, y);
     if (error > 0 && (s.samples[i] < kSamplesForEmitters || !has_hit_emitters(s, i))) without_emitters[i] = error;
   });
@@ -272,12 +330,13 @@ std::vector<float> errors_of_one_sample(const PixelStatistics& s, TilePool& pool
   std::vector<std::uint32_t> noisy_before(own.size() + 1);
   for (std::size_t i = 0; i < own.size(); ++i) noisy_before[i + 1] = noisy_before[i] + (own[i] > 0 ? 1 : 0);
 
+  const auto suffices = [](double sum, double squares) { return sum > 0 && sum * sum >= kMinEffectiveCount * squares; };
   const auto around = [&](int x, int y) {
     const std::size_t self = excluded(s, x, y);
     for (int reach = 1;; reach *= 2) {
       double sum = 0, squares = 0;
       std::size_t count = 0;
-      each_row(s, x, y, reach, [&](std::size_t begin, std::size_t end) {
+      each_row_within(s, x, y, reach, [&](std::size_t begin, std::size_t end) {
         count += end - begin;
         if (noisy_before[begin] == noisy_before[end]) return;
         for (std::size_t i = begin; i < end; ++i) {
@@ -288,14 +347,32 @@ std::vector<float> errors_of_one_sample(const PixelStatistics& s, TilePool& pool
         }
       });
       const auto others = static_cast<double>(self < own.size() ? count - 1 : count);
-      if (sum > 0 && sum * sum >= kMinEffectiveCount * squares) return sum / others;
+      if (suffices(sum, squares)) return sum / others;
       if (reach == kLargestReach) return sum > 0 ? mean : 0;  // any pixel may be another one of a few noisy ones
     }
   };
-  each_pixel(s, pool, [&](int x, int y) {
+  const auto set = [&](int x, int y, double error) {
     const std::size_t i = s.at(x, y);
-    out[i] = static_cast<float>(std::max(around(x, y), static_cast<double>(of_emitters[i])) + kMinError * mean);
-  });
+    out[i] = static_cast<float>(std::max(error, static_cast<double>(of_emitters[i])) + kMinError * mean);
+  };
+  const auto set_row = [&](int y) {
+    const auto set_run = [&](int x) {
+      Run<double> sum{}, squares{};
+      each_neighbour_of_run(s, x, y, 1, [&](std::size_t first) {
+        for (std::size_t i = 0; i < kRun; ++i) {
+          const auto e = static_cast<double>(own[first + i]);
+          sum[i] += e;
+          squares[i] += e * e;
+        }
+      });
+      for (std::size_t i = 0; i < kRun; ++i) {
+        const int at = x + static_cast<int>(i);
+        set(at, y, suffices(sum[i], squares[i]) ? sum[i] / 8 : around(at, y));
+      }
+    };
+    each_run(s, y, 1, set_run, [&](int x) { set(x, y, around(x, y)); });
+  };
+  each_row(s, pool, set_row);
   return out;
 }
 

@@ -153,20 +153,21 @@ void TileRenderer::operator()(const kernel::Tile& tile, TileWorker& worker, film
 }
 
 kernel::Tile TileRenderer::add_empty_pixels(const kernel::Tile& tile, TileWorker& worker, film::Sums& image) const {
-  const std::uint32_t middle = middle_of(tile, image);
+  const std::uint32_t middle = middle_of(tile, image), first = middle - tile.sample_begin,
+                      second = tile.has_both_halves ? first : tile.sample_end - middle;
   worker.chosen.clear();
   for (int i = 0; i < tile.pixel_count(); ++i) {
     const kernel::PixelPlace at = tile.pixel(i);
     const std::size_t pixel = index_of(image, tile, at);
     if (empty_pixels_[pixel]) {
-      image.add_empty(0, pixel, empty_path_, middle - tile.sample_begin);
-      image.add_empty(1, pixel, empty_path_, tile.sample_end - middle);
+      image.add_empty(0, pixel, empty_path_, first);
+      image.add_empty(1, pixel, empty_path_, second);
     } else {
       worker.chosen.push_back(at);
     }
   }
   // Counted as if they were traced, so that statistics do not depend on the layers.
-  worker.counts.rays += tile.path_count() - worker.chosen.size() * (tile.sample_end - tile.sample_begin);
+  worker.counts.rays += tile.path_count() - worker.chosen.size() * (first + second);
   kernel::Tile others = tile;
   others.chosen_count = static_cast<int>(worker.chosen.size());
   others.chosen = others.chosen_count < tile.pixel_count() ? worker.chosen.data() : tile.chosen;
@@ -174,6 +175,14 @@ kernel::Tile TileRenderer::add_empty_pixels(const kernel::Tile& tile, TileWorker
 }
 
 void TileRenderer::render(const kernel::Tile& tile, TileWorker& worker, film::Sums& image) const {
+  if (tile.has_both_halves && request_.records()) {  // a path's record is found by its sample
+    kernel::Tile half = tile;
+    half.has_both_halves = false;
+    render(half, worker, image);
+    half.sample_begin += kernel::Sampler::kSecondHalf;
+    half.sample_end += kernel::Sampler::kSecondHalf;
+    return render(half, worker, image);
+  }
   const DefaultRounding rounding;
   if (!worker.stream) worker.stream = std::make_unique<kernel::PathStream>();
   const auto pixels = static_cast<std::uint32_t>(tile.width) * static_cast<std::uint32_t>(tile.height);
@@ -200,20 +209,19 @@ std::uint32_t TileRenderer::middle_of(const kernel::Tile& tile, const film::Sums
 void TileRenderer::attach_buffers(kernel::Tile& tile, TileWorker& worker, bool is_adaptive) const {
   const std::size_t pixels = math::pixel_count(tile.width, tile.height);
   tile.row_stride = tile.width;
-  worker.light.assign(pixels, {});
-  tile.sums = worker.light.data();
-  if (is_adaptive) {
-    worker.largest.assign(pixels, 0);
-    tile.largest = worker.largest.data();
-  }
-  if (request_.guides()) {
-    worker.guides.assign(pixels, {});
-    tile.guides = worker.guides.data();
-  }
-  if (request_.coverage) {
-    worker.covered.assign(pixels, 0);
-    tile.covered = worker.covered.data();
-  }
+  tile.half_stride = static_cast<std::int64_t>(pixels);
+  const auto clear = [&](auto& buffer, bool has_halves) {
+    const std::size_t halves = has_halves && tile.has_both_halves ? 2 : 1;
+    if (buffer.size() < halves * pixels) buffer.resize(halves * pixels);
+    for (int i = 0; i < tile.pixel_count(); ++i)  // often few of those of the rectangle
+      for (std::size_t half = 0; half < halves; ++half)
+        buffer[half * pixels + math::pixel_index(tile.pixel(i).x, tile.pixel(i).y, tile.width)] = {};
+    return buffer.data();
+  };
+  tile.sums = clear(worker.light, true);
+  if (is_adaptive) tile.largest = clear(worker.largest, false);
+  if (request_.guides()) tile.guides = clear(worker.guides, true);
+  if (request_.coverage) tile.covered = clear(worker.covered, false);
   if (!request_.records()) return;
   worker.records.resize(pixels * (tile.sample_end - tile.sample_begin));
   tile.records = worker.records.data();
@@ -225,13 +233,17 @@ void TileRenderer::attach_buffers(kernel::Tile& tile, TileWorker& worker, bool i
 }
 
 void TileRenderer::add_sums(const kernel::Tile& tile, film::Sums& image) const {
-  const std::size_t half = image.has_halves() && tile.sample_begin >= second_half_ ? 1 : 0;
+  const std::size_t first = image.has_halves() && tile.sample_begin >= second_half_ ? 1 : 0,
+                    end = tile.has_both_halves ? 2 : first + 1;
   const std::uint32_t samples = tile.sample_end - tile.sample_begin;
   for (int i = 0; i < tile.pixel_count(); ++i) {
     const kernel::PixelPlace at = tile.pixel(i);
     const std::size_t within = math::pixel_index(at.x, at.y, tile.width), pixel = index_of(image, tile, at);
-    image.add_light(half, pixel, tile.sums[within], samples);
-    if (tile.guides != nullptr) image.add_guides(half, pixel, tile.guides[within], samples);
+    for (std::size_t half = first; half < end; ++half) {
+      const std::size_t from = within + (half - first) * static_cast<std::size_t>(tile.half_stride);
+      image.add_light(half, pixel, tile.sums[from], samples);
+      if (tile.guides != nullptr) image.add_guides(half, pixel, tile.guides[from], samples);
+    }
     if (tile.covered != nullptr) image.layers.covered[pixel] += tile.covered[within];
     if (tile.largest != nullptr) image.largest[pixel] = std::max(image.largest[pixel], tile.largest[within]);
   }

@@ -105,7 +105,7 @@ class TileRenderer {
   std::uint32_t middle_of(const kernel::Tile& tile, const film::Sums& image) const;
   /// Gives a tile empty buffers.
   void attach_buffers(kernel::Tile& tile, TileWorker& worker, bool is_adaptive) const;
-  /// Adds the sums of a tile, which belongs to one half of the samples, to the image.
+  /// Adds the sums of a tile, which belongs to one half of the samples or to both, to the image.
   void add_sums(const kernel::Tile& tile, film::Sums& image) const;
   /// Adds the records and light events of a tile to its layers.
   void add_records(const kernel::Tile& tile, const TileWorker& worker, film::Sums& image) const;

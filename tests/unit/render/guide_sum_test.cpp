@@ -29,23 +29,29 @@ struct Sums {
   std::vector<GuideSum> guides;
 };
 
-/// Renders samples of the whole image as tiles of `step` samples, with guides and without records.
-Sums rendered(const compile::CompiledScene& compiled, std::uint32_t step) {
+/// Renders samples of the whole image as tiles of `step` samples, with guides and without records; also those of the
+/// second half, whose sums follow those of the first.
+Sums rendered(const compile::CompiledScene& compiled, std::uint32_t step, bool halves_together = true) {
   const auto accel = accel::make_embree(compiled.view(), compiled.precision);
   const kernel::SceneView view = compiled.view();
   const auto pixels = static_cast<std::size_t>(compiled.width * compiled.height);
-  Sums out{std::vector<PixelSum>(pixels), std::vector<GuideSum>(pixels)};
+  Sums out{std::vector<PixelSum>(2 * pixels), std::vector<GuideSum>(2 * pixels)};
   kernel::Tile tile;
   tile.width = compiled.width;
   tile.height = compiled.height;
   tile.row_stride = compiled.width;
-  tile.sums = out.light.data();
-  tile.guides = out.guides.data();
-  for (std::uint32_t begin = 0; begin < static_cast<std::uint32_t>(compiled.samples); begin += step) {
-    tile.sample_begin = begin;
-    tile.sample_end = begin + step;
-    kernel::render_tile_function(view.features, compiled.precision, true)(view, accel->tracer(), tile,
-                                                                          *std::make_unique<kernel::PathStream>());
+  tile.half_stride = static_cast<std::int64_t>(pixels);
+  tile.has_both_halves = halves_together;
+  const auto memory = std::make_unique<kernel::PathStream>();
+  for (const std::size_t half : {0U, 1U}) {
+    if (halves_together && half == 1) break;
+    tile.sums = &out.light[half * pixels];
+    tile.guides = &out.guides[half * pixels];
+    for (std::uint32_t begin = 0; begin < static_cast<std::uint32_t>(compiled.samples); begin += step) {
+      tile.sample_begin = (half == 0 ? 0 : kernel::Sampler::kSecondHalf) + begin;
+      tile.sample_end = tile.sample_begin + step;
+      kernel::render_tile_function(view.features, compiled.precision, true)(view, accel->tracer(), tile, *memory);
+    }
   }
   return out;
 }
@@ -76,6 +82,7 @@ TEST(RenderGuideSum, DoesNotDependOnWhichPathsAreTracedTogether) {
         const Sums together = rendered(compiled, 16);
         EXPECT_EQ(differences(together, rendered(compiled, 1)), 0) << isa;
         EXPECT_EQ(differences(together, rendered(compiled, 4)), 0) << isa;
+        EXPECT_EQ(differences(together, rendered(compiled, 16, false)), 0) << isa;
         std::int64_t lit = 0;
         for (const GuideSum& sum : together.guides) lit += sum.albedo[0] > 0 && sum.inverse_depth > 0 ? 1 : 0;
         EXPECT_GT(lit, 1000);
