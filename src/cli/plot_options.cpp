@@ -29,19 +29,24 @@
 namespace orrery::cli {
 namespace {
 
-/// Adds a rule "CONDITION: VALUE" of an option to those before it.
+/// The value of "CONDITION: VALUE" or "VALUE" of an option, which errors name.
 ///
 /// `parse`    value of a text; throws base::Error
-/// Result     false if the text has no condition
-template <class T>
-bool add_rule(const char* option, const std::string& text, T (*parse)(const std::string&),
-              std::vector<std::string>& rules) {
-  if (points::end_of_expression(text) == std::string::npos) return false;
+auto value_of(const char* option, const std::string& text, const auto& parse) {
   try {
-    parse(points::split_rule(text).second);
+    return parse(points::split_rule(text).second);
   } catch (const base::Error& error) {
     base::refuse(fmt::format("{}: {}", option, error.what()));
   }
+}
+
+/// Adds a rule "CONDITION: VALUE" of an option to those before it.
+///
+/// `parse`    see value_of()
+/// Result     false if the text has no condition
+bool add_rule(const char* option, const std::string& text, const auto& parse, std::vector<std::string>& rules) {
+  if (points::end_of_expression(text) == std::string::npos) return false;
+  static_cast<void>(value_of(option, text, parse));
   rules.push_back(text);
   return true;
 }
@@ -79,7 +84,17 @@ void read_representation(const std::string& text, plot::PlotOptions& plot) {
   std::vector<std::string>& rules = plot.points.representation;
   if (add_rule("--representation", text, points::parse_representation, rules)) return;
   rules.clear();
-  plot.representation = points::parse_representation(text);
+  plot.representation = value_of("--representation", text, points::parse_representation);
+}
+
+/// Adds a --material to those before it, as read_representation().
+void read_material(const std::string& text, plot::PlotOptions& plot) {
+  const auto parse = [](const std::string& name) {
+    return points::index_of_name(name, plot::material_names(), "a material");
+  };
+  if (add_rule("--material", text, parse, plot.points.material_where)) return;
+  plot.points.material_where.clear();
+  plot.material = plot::material_names()[value_of("--material", text, parse)];
 }
 
 /// The number of a frame, from 1; below 0 it is counted from the end.
@@ -364,10 +379,14 @@ void PlotArguments::add_look_to(Command& command) {
                   "draft (--samples 4 --denoise), good (--noise 0.15 --denoise) or final (--noise 0.02); default: good")
       ->choices(plot::quality_names());
   command
-      .add_option("--material", options.material, "MATERIAL",
-                  "Material of the spheres: matte, plastic, metal or glass; default: plastic with rods, else matte")
-      ->details("plastic: matte with a soft highlight. metal: brushed. glass: clear, without colours.")
-      ->choices(plot::material_names());
+      .add_option("--material", look_.material, "MATERIAL|CONDITION:MATERIAL",
+                  "Material of all, or of those that match, e.g. 'residue HEM: metal': matte, plastic, metal or glass; "
+                  "default: plastic with rods, else matte; can be repeated")
+      ->details(
+          "plastic: matte with a soft highlight. metal: brushed. glass: clear, without colours; not for bonds. The "
+          "last "
+          "that matches a particle decides. Bonds have the materials of their ends.")
+      ->repeatable();
   command.add_flag("--allow-empty", options.allow_empty,
                    "Render the background alone if no particle is left; default: an error");
   command.add_flag("--ground", options.ground, "Add a ground that receives shadows");
@@ -418,6 +437,7 @@ void PlotArguments::read(SceneOptions& scene, const job::Job& job) {
   plot.quality = plot::quality_of(look_.quality);
   if (!look_.background.empty()) plot.background = points::parse_color(look_.background);
   for (const std::string& text : look_.representation) read_representation(text, plot);
+  for (const std::string& text : look_.material) read_material(text, plot);
   std::istringstream columns(look_.vectors);
   for (std::string column; std::getline(columns, column, ',');) plot.points.vectors.columns.push_back(column);
   read_scale_bar(look_.scale_bar, plot.annotation);

@@ -52,7 +52,7 @@ class PlotArguments {
   /// Arguments that need further parsing; empty: not set.
   struct {
     std::string style, quality, bonds, vectors, background, scale_bar, print_width;
-    std::vector<std::string> representation;
+    std::vector<std::string> representation, material;
   } look_;
 };
 

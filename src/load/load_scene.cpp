@@ -37,7 +37,7 @@ points::LoadRequest points_request(const SceneSource& source, const scene::Scene
   points::LoadRequest out = request_for(source, scene.points[table].file, fmt::format("points[{}]", table));
   out.frame = source.frame;
   if (const auto& topology = scene.points[table].topology; !topology.empty()) out.topology = out.folder / topology;
-  out.materials = scene.materials.size();
+  out.materials = &scene.materials;
   out.open = source.open_data;
   out.loaded = source.loaded;
   return out;

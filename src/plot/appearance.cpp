@@ -234,7 +234,7 @@ class Appearance {
     std::string by = options_.color_by.empty() && !color.carbon.empty() ? "element" : options_.color_by;
     std::string why;
     std::vector<std::string> out;
-    const bool is_glass = options_.material == "glass";
+    const bool is_glass = options_.material == "glass" && points_.material_where.empty();
     if (is_glass && !by.empty() && by != "none")
       base::refuse(fmt::format("--color-by {} has no effect: glass has no colour; use another --material", by));
     if (by.empty()) {

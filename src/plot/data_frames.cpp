@@ -10,6 +10,7 @@
 
 #include "base/error.h"
 #include "base/frames.h"
+#include "plot/scene_text.h"
 #include "points/rows.h"
 #include "points/sources.h"
 #include "points/spacing.h"
@@ -122,6 +123,7 @@ LoadedFrame DataFrames::load(int frame, const scene::PointsKeys& keys, points::S
   request.memory_limit = options_.memory_limit;
   request.source = source;
   request.on_value = on_value;
+  request.materials = &sphere_materials();
   request.open = open_;
   LoadedFrame out{{keys, {}, {}}, {}, {}};
   out.points.is_sequence = is_sequence_;

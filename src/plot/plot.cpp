@@ -63,7 +63,7 @@ class PlotMaker {
         guides_(up_) {
     const std::filesystem::path folder = options.scene_file.parent_path();
     out_.points = options.points;
-    out_.points.material_column = "";  // the scene of a plot has one material
+    out_.points.material_column = "";  // the scene of a plot has the materials of the options
     const auto from_folder = [&](const std::filesystem::path& file) {
       return folder.empty() || file.empty() ? file : std::filesystem::proximate(file, folder);
     };
@@ -100,6 +100,8 @@ class PlotMaker {
     for (std::string& choice : choose_appearance(options_, data_, out_.points))
       out_.choices.push_back(std::move(choice));
     out_.material = material_of_points();
+    if (!options_.points.material_where.empty())  // the scene has all of them, in their order
+      out_.points.material = points::index_of_name(out_.material, material_names(), "a material");
     const ViewAxes axes = choose_view();
     for (const auto& plane : options_.slices) slice(plane, axes, out_.points);
     // A camera that looks along the up axis orbits around the vertical of its image.

@@ -51,7 +51,8 @@ struct PlotOptions : DataOptions {
   std::optional<double> depth_cue;        ///< 0..1; default: see kDepthCue
   /// Column whose values divide the outlines, see scene::Annotation::outline_objects; empty: they are not divided.
   std::string outline_by;
-  std::string material;  ///< one of material_names(); empty: plastic with rods, else matte
+  /// Of all particles, one of material_names(); empty: plastic with rods, else matte. Those of some are in `points`.
+  std::string material;
   /// Of all particles; none: spheres, or a trace if all atoms are C-alpha or phosphorus atoms. Those of some particles
   /// are in `points`.
   std::optional<Representation> representation;

@@ -128,15 +128,6 @@ void require_room(const scene::Scene& scene, double reach, const std::filesystem
                       rounded_down(scene::kLargestLength * (reach / farthest))))});
 }
 
-/// Materials of the spheres. Colours replace the albedo.
-const std::vector<scene::Material>& sphere_materials() {
-  static const std::vector<scene::Material> all = {{"matte", scene::Lambertian{{0.8, 0.8, 0.8}}},
-                                                   {"plastic", scene::Plastic{{0.8, 0.8, 0.8}}},
-                                                   {"metal", scene::Metal{{0.8, 0.8, 0.8}, 0.3}},
-                                                   {"glass", scene::Dielectric{}}};
-  return all;
-}
-
 /// The enumerator with a name; none for an empty name.
 template <class Enum>
 std::optional<Enum> enumerator_of(const std::string& name, const std::vector<std::string>& names) {
@@ -171,6 +162,14 @@ std::optional<Style> style_of(const std::string& name) { return enumerator_of<St
 
 std::optional<Quality> quality_of(const std::string& name) { return enumerator_of<Quality>(name, quality_names()); }
 
+const std::vector<scene::Material>& sphere_materials() {
+  static const std::vector<scene::Material> all = {{"matte", scene::Lambertian{{0.8, 0.8, 0.8}}},
+                                                   {"plastic", scene::Plastic{{0.8, 0.8, 0.8}}},
+                                                   {"metal", scene::Metal{{0.8, 0.8, 0.8}, 0.3}},
+                                                   {"glass", scene::Dielectric{}}};
+  return all;
+}
+
 const std::vector<std::string>& material_names() {
   static const std::vector<std::string> names = [] {
     std::vector<std::string> out;
@@ -198,8 +197,8 @@ std::string scene_text(const PlotOptions& options, const Stage& stage, scene::Sc
     return static_cast<std::uint32_t>(scene.materials.size() - 1);
   };
   for (const scene::Material& of_spheres : sphere_materials())
-    if (of_spheres.name == stage.material)
-      scene.points[0].material = material(stage.material.c_str(), of_spheres.model);
+    if (of_spheres.name == stage.material || !options.points.material_where.empty())
+      material(of_spheres.name.c_str(), of_spheres.model);
   if (stage.ground) {
     const Vec3d albedo =
         light.ground.value_or(page_albedo(stage, light, scene.background.backdrop.value_or(light.above)));

@@ -26,9 +26,12 @@ struct Stage {
   double gain = 1;               ///< of the light
 };
 
+/// Materials of the spheres. Colours replace the albedo.
+const std::vector<scene::Material>& sphere_materials();
+
 /// Returns the text of the scene file of a plot.
 ///
-/// `scene`    camera, points and annotation; its rods are those of Guides, without materials
+/// `scene`    camera, points with their material and annotation; its rods are those of Guides, without materials
 /// Errors     base::Error(kBadData) if a scene has no room for the lamp, the ground or the camera around the spheres
 std::string scene_text(const PlotOptions& options, const Stage& stage, scene::Scene scene);
 

@@ -117,7 +117,8 @@ class Loader {
       if (require_column(info_, column, false, ".cryptomatte", faults_)) need(column);
     labels_ = rules_of(info_, points_.labels, ".labels", parse_label, faults_, Colon::kFirst);
     representations_ = rules_of(info_, points_.representation, ".representation", parse_representation, faults_);
-    need_columns_of(radius_.rules, color_.rules, opacity_.rules, labels_, representations_);
+    plan_materials();
+    need_columns_of(radius_.rules, color_.rules, opacity_.rules, labels_, representations_, materials_);
     plan_traces();
     plan_selection();
     copies_ = copies_of(info_, points_, faults_);
@@ -134,8 +135,6 @@ class Loader {
       points_.bonds_from = !bond_source_.is_distance ? "file" : bond_source_.is_file ? "both" : "distance";
     }
     if (!points_.vectors.columns.empty()) plan_arrows();
-    if (info_.may_be_of_scene && data::has_column(info_.columns, points_.material_column))
-      need(material_ = points_.material_column);
     if (request_.source != nullptr) {  // all, in the order of the file
       columns_.clear();
       for (const data::ColumnInfo& column : info_.columns)
@@ -159,6 +158,16 @@ class Loader {
   bool has_rule_for(Representation kind) const {
     return std::any_of(representations_.begin(), representations_.end(),
                        [&](const auto& rule) { return rule.value == kind; });
+  }
+
+  void plan_materials() {
+    if (info_.may_be_of_scene && data::has_column(info_.columns, points_.material_column))
+      need(material_ = points_.material_column);
+    std::vector<std::string> names;
+    if (!points_.material_where.empty() && request_.materials != nullptr)
+      for (const scene::Material& material : *request_.materials) names.push_back(material.name);
+    const auto parse = [&](const std::string& name) { return index_of_name(name, names, "a material"); };
+    materials_ = rules_of(info_, points_.material_where, ".material_where", parse, faults_);
   }
 
   void plan_traces() {
@@ -227,7 +236,7 @@ class Loader {
     for (const std::string& column : columns_)
       if (!is_replaced_by_centers(column)) row_bytes += data::bytes_per_value(type_of(info_, column));
     std::uint64_t sphere_bytes = bytes_per_sphere(info_, points_, radius_, are_rounded);
-    if (!material_.empty()) sphere_bytes += sizeof(std::uint32_t);
+    if (has_materials()) sphere_bytes += sizeof(std::uint32_t);
     if (color_.is_set()) sphere_bytes += sizeof(std::uint16_t);
     if (opacity_.is_set()) sphere_bytes += sizeof(float);
     if (!points_.cryptomatte.empty()) sphere_bytes += sizeof(std::uint32_t);
@@ -297,6 +306,9 @@ class Loader {
     request_.source->info = std::move(info_);
     request_.source->table = std::move(read->table);
   }
+
+  /// Whether spheres have materials of their own.
+  bool has_materials() const { return !material_.empty() || !materials_.empty(); }
 
   bool is_replicated() const { return !(points_.replicate == Vec3d{1, 1, 1}); }
 
@@ -422,7 +434,7 @@ class Loader {
     if (opacity_.is_set()) points_.opacities = opacities_of(table, rows, opacity_, points_, faults_);
     if (!points_.cryptomatte.empty()) divide_into_objects(table, rows);
     points_.placed_labels = placed_labels(table, rows, centers, labels_, copies_.front(), points_, faults_);
-    if (!material_.empty()) set_materials(table, rows);
+    if (has_materials()) set_materials(table, rows);
     if (const std::vector<std::string>& columns = points_.vectors.columns; !columns.empty())
       points_.sphere_vectors = points_of(table, rows, {columns[0], columns[1], columns[2]}, points_.vectors.scale);
   }
@@ -515,16 +527,24 @@ class Loader {
     }
   }
 
-  /// Sets the material of each sphere from the file's column of indices into the scene's materials.
+  /// Sets the material of each sphere: that of the last rule that matches, else that in the file's column of indices
+  /// into the scene's materials, else that of the table.
   void set_materials(const data::Table& table, const Rows& rows) {
+    points_.materials.assign(rows.size(), points_.material);
+    if (!material_.empty()) read_materials(table, rows);
+    apply_rules(table, rows, materials_, points_.material_where, ".material_where", faults_,
+                [&](std::size_t i, std::uint32_t material) { points_.materials[i] = material; });
+  }
+
+  void read_materials(const data::Table& table, const Rows& rows) {
+    const std::size_t count = request_.materials == nullptr ? 0 : request_.materials->size();
     std::size_t bad = 0;
-    points_.materials.resize(rows.size());
     for_each_number(*table.find(material_), rows, [&](std::size_t i, double v) {
-      const bool exists = v >= 0 && v < static_cast<double>(request_.materials) && v == std::floor(v);
+      const bool exists = v >= 0 && v < static_cast<double>(count) && v == std::floor(v);
       points_.materials[i] = exists ? static_cast<std::uint32_t>(v) : 0;
       if (!exists && ++bad <= scene::kMaxReported)
         faults_.error(".file", fmt::format("{} has material {}; the scene has {}, counted from 0",
-                                           row_name(points_, rows[i]), scene::number_text(v), request_.materials));
+                                           row_name(points_, rows[i]), scene::number_text(v), count));
     });
     faults_.error_if_any(".file", scene::rest_text(bad));
   }
@@ -550,6 +570,7 @@ class Loader {
   BondSource bond_source_;
   std::vector<std::string> speed_sources_;  ///< columns that `speed` is computed from; empty: it is not needed
   std::string material_;                    ///< column of material indices; empty: none
+  std::vector<Rule<std::uint32_t>> materials_;
 };
 
 }  // namespace

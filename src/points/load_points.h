@@ -36,13 +36,13 @@ struct LoadedPoints {
 };
 
 struct LoadRequest {
-  std::filesystem::path file;                 ///< the data file
-  std::filesystem::path topology = {};        ///< see data::OpenOptions
-  std::filesystem::path folder;               ///< folder of the scene file, for the file of a colour map
-  std::string key;                            ///< "points[0]", for diagnostics
-  int frame = 1;                              ///< the rendered frame
-  std::size_t materials = 0;                  ///< number of materials of the scene
-  SourceRows* source = nullptr;               ///< if not null, receives the rows of the spheres
+  std::filesystem::path file;                               ///< the data file
+  std::filesystem::path topology = {};                      ///< see data::OpenOptions
+  std::filesystem::path folder;                             ///< folder of the scene file, for the file of a colour map
+  std::string key;                                          ///< "points[0]", for diagnostics
+  int frame = 1;                                            ///< the rendered frame
+  const std::vector<scene::Material>* materials = nullptr;  ///< of the scene; null: none
+  SourceRows* source = nullptr;                             ///< if not null, receives the rows of the spheres
   std::function<void(double)> on_value;       ///< receives the values that a continuous colour map shows; may be empty
   std::uint64_t memory_limit = 0;             ///< maximum memory of the spheres, bytes; 0: no limit
   OpenData open = {};                         ///< replaces data::open(), except in a sequence of files

@@ -50,21 +50,22 @@ double parse_radius(const std::string& text) {
   return out;
 }
 
+std::uint32_t index_of_name(const std::string& name, const std::vector<std::string>& names, const char* kind) {
+  const auto found = std::find(names.begin(), names.end(), name);
+  if (found != names.end()) return static_cast<std::uint32_t>(found - names.begin());
+  constexpr std::size_t kMaxNamed = 12;
+  std::string remedy = base::did_you_mean(name, names);
+  if (remedy.empty() && !names.empty() && names.size() <= kMaxNamed) remedy = "write one of " + base::joined(names);
+  base::refuse(fmt::format("`{}` is not {}{}{}", name, kind, remedy.empty() ? "" : "; ", remedy));
+}
+
 const std::vector<std::string>& representation_names() {
   static const std::vector<std::string> names = {"spheres", "ball-and-stick", "sticks", "trace", "points"};
   return names;
 }
 
 Representation parse_representation(const std::string& name) {
-  const std::vector<std::string>& names = representation_names();
-  const auto found = std::find(names.begin(), names.end(), name);
-  if (found == names.end()) {
-    const std::string suggestion = base::did_you_mean(name, names);
-    base::refuse(
-        fmt::format("`{}` is not a representation; {}", name,
-                    suggestion.empty() ? "write " + base::joined(names) + ", e.g. 'residue HEM: sticks'" : suggestion));
-  }
-  return static_cast<Representation>(found - names.begin());
+  return static_cast<Representation>(index_of_name(name, representation_names(), "a representation"));
 }
 
 }  // namespace orrery::points

@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <string>
 #include <string_view>
+#include <type_traits>
 #include <utility>
 #include <vector>
 
@@ -49,6 +50,12 @@ enum class Representation : std::uint8_t {
   kPoints,        ///< spheres as small as bonds
 };
 
+/// The index of a name in a list.
+///
+/// `kind`     what the names are, "a material"
+/// Errors     base::Error(kUsage)
+std::uint32_t index_of_name(const std::string& name, const std::vector<std::string>& names, const char* kind);
+
 /// Names of the representations, in the order of the enumerators.
 const std::vector<std::string>& representation_names();
 
@@ -72,9 +79,9 @@ inline std::string rule_key(const char* key, std::size_t index) { return key + (
 /// `key`      of the list, ".opacity.where"
 /// `parse`    value of a text; throws base::Error
 /// `which`    kFirst: values may have colons, and conditions are needed
-template <class T>
+template <class Parse, class T = std::invoke_result_t<Parse, const std::string&>>
 std::vector<Rule<T>> rules_of(const data::FrameInfo& info, const std::vector<std::string>& texts, const char* key,
-                              T (*parse)(const std::string&), KeyFaults& faults, Colon which = Colon::kLast) {
+                              const Parse& parse, KeyFaults& faults, Colon which = Colon::kLast) {
   std::vector<Rule<T>> out;
   for (std::size_t i = 0; i < texts.size(); ++i) {
     try {

@@ -11,6 +11,15 @@ using P = PointsKeys;
 constexpr Range kAnyValue{-kLargestValue, kLargestValue};
 constexpr int kMaxFrameOfFile = std::numeric_limits<int>::max();
 
+/// `radius = 1`, or with conditions `radius = { value = 1, where = [...] }`.
+Key<PointsRadius> key_of_radius(const char* name, bool has_conditions, KeyDoc doc) {
+  Key<PointsRadius> key = otherwise("as in the file", number(name, kLength, std::move(doc), &PointsRadius::value));
+  key.get = [=](const PointsRadius& radius) -> std::optional<Value> {
+    return radius.value && radius.where.empty() != has_conditions ? std::optional<Value>(*radius.value) : std::nullopt;
+  };
+  return key;
+}
+
 /// `bonds = true` draws bonds by default keys; with other keys, `bonds` is a table of them.
 Key<PointsBonds> key_of_bonds() {
   Key<PointsBonds> key = boolean("",
@@ -49,9 +58,8 @@ std::vector<Key<P>> make_keys() {
              "files](data.md#trajectories)"},
             &P::topology)});
   add(subtable("radius", {}, &P::radius,
-               {otherwise("as in the file",
-                          number("", kLength, {"Radius of all spheres. Overrides the radii of the file", "scene units"},
-                                 &PointsRadius::value)),
+               {key_of_radius("", false, {"Radius of all spheres. Overrides the radii of the file", "scene units"}),
+                key_of_radius("value", true, {"With `where`: radius of the others", "scene units"}),
                 text("column", {"Column of the file that holds the radii"}, &PointsRadius::column),
                 choice("element", {"vdw", "covalent", "ball"},
                        {"Radii by chemical element, in ångström. `vdw`: van der Waals radii. `covalent`: "
@@ -169,7 +177,14 @@ std::vector<Key<P>> make_keys() {
                        &PointsTransform::rotate),
                 vector("translate", kAnyLength, {"Translation, applied after the rotation", "scene units"},
                        &PointsTransform::translate)}));
-  add({clip("clip.x", 0,
+  add({changes(Part::kAssignment,
+               key_of("material_where", ValueType::kTexts, {},
+                      {"Materials of the spheres that match a [condition](data.md#selections), e.g. `[\"residue HEM: "
+                       "glass\"]`. The last that matches decides, with precedence over `material` and "
+                       "`material_column`",
+                       "", "4 bytes per sphere"},
+                      &P::material_where)),
+       clip("clip.x", 0,
             {"Keeps spheres with centres in this interval, after replication and transform", "scene units"}),
        clip("clip.y", 1, {"As `clip.x`", "scene units"}), clip("clip.z", 2, {"As `clip.x`", "scene units"}),
        changes(Part::kAssignment, text("material_column",

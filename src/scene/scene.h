@@ -327,6 +327,7 @@ struct PointsKeys {
   PointsVectors vectors;
   PointsOpacity opacity;
   std::vector<std::string> representation;  ///< "CONDITION: KIND" or "KIND"; the last that matches decides
+  std::vector<std::string> material_where;  ///< "CONDITION: MATERIAL"; the last that matches decides
   std::string select;                       ///< condition on columns; empty: all
   Vec3d replicate{1, 1, 1};                 ///< number of periodic boxes along each box edge
   bool unwrap = false;                      ///< unwrap coordinates with the periodic image flags of the file

@@ -297,7 +297,7 @@ void check_rods(const Scene& scene, KeyFaults& diagnostics) {
 
 /// Checks the rods of bonds and arrows.
 void check_bonds(const Points& points, const std::string& key, const Scene& scene, KeyFaults& diagnostics) {
-  const bool are_bonds = points.bonds.are_drawn;
+  const bool are_bonds = points.bonds.are_drawn || points.bond_count() > points.arrow_count;
   if (!are_bonds && points.vectors.columns.empty()) return;
   const std::string part = key + (are_bonds ? ".bonds" : ".vectors");
   if (points.bonds.material) {
@@ -307,14 +307,19 @@ void check_bonds(const Points& points, const std::string& key, const Scene& scen
     const auto use = [&](std::uint32_t material) {
       if (material < is_used.size()) is_used[material] = true;
     };
-    if (points.materials.empty()) use(points.material);
-    for (const std::uint32_t material : points.materials) use(material);
+    if (points.materials.empty() && points.material_where.empty()) use(points.material);
+    if (points.materials.size() == points.centers.size()) {
+      for (const SphereBond& bond : points.bond_pairs)
+        for (const std::uint32_t end : {bond.a, bond.b}) use(points.materials[end]);
+      for (const BondStub& stub : points.bond_stubs) use(points.materials[stub.sphere]);
+    }
     for (std::size_t m = 0; m < is_used.size(); ++m)
       if (is_used[m] && std::holds_alternative<Dielectric>(scene.materials[m].model))
-        diagnostics.error(part, fmt::format("{} are opaque, but have the material of their spheres, {}, which is a "
-                                            "dielectric; {}",
-                                            are_bonds ? "bonds" : "arrows", string_text(scene.materials[m].name),
-                                            are_bonds ? "set `bonds.material`" : "use another material"));
+        diagnostics.error(
+            part, fmt::format("{} are opaque, but have the material of their spheres, {}, which is a "
+                              "dielectric; {}",
+                              are_bonds ? "bonds" : "arrows", string_text(scene.materials[m].name),
+                              are_bonds ? "set `bonds.material`, or use another material" : "use another material"));
   }
   if (points.bond_count() == 0) return;
   diagnostics.error_if_any(part + ".radius", rod_radius_fault(points.bond_radius, scene.render.precision));

@@ -52,6 +52,10 @@ TEST_F(CliPlotOptions, RulesByConditionAreSaved) {
   const Outcome made = plot(
       "m.xyz -o a.png --representation sticks --representation 'element O: spheres' --color 'element O: #f00' --radius "
       "'element O: 0.7' --save-scene m.toml");
+  ASSERT_EQ(plot("m.xyz -o b.png --radius 0.5 --radius 'element O: 0.7' --save-scene n.toml").status, 0);
+  EXPECT_TRUE(contains(text_of(folder_ / "n.toml"), R"(radius = { value = 0.5, where = ["element O: 0.7"] })"));
+  ASSERT_EQ(run("render n.toml -o c.png -q --samples 1").status, 0);
+  EXPECT_EQ(run("compare b.png c.png --fail-above max=0").status, 0);
   ASSERT_EQ(made.status, 0) << made.err;
   const std::string text = text_of(folder_ / "m.toml");
   for (const char* part : {R"(["sticks", "element O: spheres"])", R"(["element O: #f00"])", R"(["element O: 0.7"])"})
@@ -63,6 +67,22 @@ TEST_F(CliPlotOptions, RulesByConditionAreSaved) {
   expect_error("plot m.xyz -o a.png --color 'element O: reddish'", 2, "`reddish` is not a colour");
   expect_error("plot m.xyz -o a.png --radius 'element O: 0'", 2, "--radius: `0` is not a radius");
   expect_error("plot m.xyz -o a.png --fit 'element H'", 65, "--fit `element H` matches none");
+}
+
+TEST_F(CliPlotOptions, MaterialsByConditionAreSaved) {
+  write("m.xyz", "3\n\nC 0 0 0\nC 1.5 0 0\nO 9 0 0\n");
+  const std::string options = "m.xyz --representation sticks --material matte --material 'element C: metal'";
+  const Outcome made = plot(options + " --material 'element O: glass' -o a.png --save-scene m.toml");
+  ASSERT_EQ(made.status, 0) << made.err;
+  EXPECT_TRUE(contains(text_of(folder_ / "m.toml"), R"(["element C: metal", "element O: glass"])"));
+  ASSERT_EQ(run("render m.toml -o b.png -q --samples 1").status, 0);
+  EXPECT_EQ(run("compare a.png b.png --fail-above max=0").status, 0);
+  EXPECT_TRUE(contains(run("info m.toml").out, "2 metal, 1 dielectric")) << "coloured, and not";
+  ASSERT_EQ(plot(options + " --material plastic -o c.png --save-scene p.toml").status, 0);
+  EXPECT_FALSE(contains(text_of(folder_ / "p.toml"), "material_where")) << "plastic replaces them";
+  expect_error("plot " + options + " --material 'element C: glass' -o a.png", 65, "bonds are opaque");
+  expect_error("plot m.xyz -o a.png --material 'element C: steel'", 2, "--material: `steel` is not a material");
+  expect_error("plot m.xyz -o a.png --material glas", 2, "did you mean `glass`");
 }
 
 TEST_F(CliPlotOptions, TheSizeInPrintIsThatInPixels) {

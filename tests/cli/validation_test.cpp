@@ -114,6 +114,10 @@ const Broken kBroken[] = {
      "[material.glass]\ntype = \"dielectric\"\n"
      "[[points]]\nfile = \"good.ply\"\nmaterial = \"glass\"\nbonds = { length = 3 }\n",
      "", 65, ":19:9: error: points[0].bonds: bonds are opaque, but have the material of their spheres, \"glass\""},
+    {"BondsOfGlassByCondition",
+     "[material.glass]\ntype = \"dielectric\"\n"
+     "[[points]]\nfile = \"good.ply\"\nmaterial = \"grey\"\nbonds.length = 3\nmaterial_where = [\"x > -9: glass\"]\n",
+     "", 65, "points[0].bonds: bonds are opaque, but have the material of their spheres, \"glass\""},
     {"ArrowsOfGlass",
      "[material.glass]\ntype = \"dielectric\"\n"
      "[[points]]\nfile = \"good.ply\"\nmaterial = \"glass\"\nvectors.columns = [\"x\", \"y\", \"z\"]\n",

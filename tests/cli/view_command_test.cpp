@@ -156,7 +156,7 @@ TEST_F(CliView, RandomWalksThroughTheControlsMakeThePictureOfTheCommand) {
       {"--map", {"", "magma", "fast"}},
       {"--range", {"", "0:10", "5:1"}},
       {"--style", {"", "night", "flat"}},
-      {"--material", {"", "plastic", "metal", "glass"}},
+      {"--material", {"", "plastic", "metal", "glass", Json::array({"matte", "type == 1: metal"})}},
       {"--bonds", {"", "length=1.5", "none", "file"}},
       {"--representation", {"", "spheres", "sticks"}},
       {"--select", {"", "type == 1", Json::array({"type != 2", "!(id in [1, 2])"}), "z > 0 && \"x\" < 2", "type =="}},

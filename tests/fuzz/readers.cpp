@@ -126,7 +126,7 @@ std::string fault_with_spheres(const points::LoadRequest& request, scene::Points
     const auto diagnostics = points::load_points(request, points);
     const auto is_error = [](const auto& d) { return d.severity == base::Severity::kError; };
     is_loaded = std::none_of(diagnostics.begin(), diagnostics.end(), is_error);
-    return !is_loaded || fits(points, request.materials) ? "" : "accepted, but not renderable";
+    return !is_loaded || fits(points, request.materials->size()) ? "" : "accepted, but not renderable";
   });
   const bool has_points = !points.centers.empty() || !points.radii.empty() || !points.materials.empty();
   return fault.empty() && !is_loaded && has_points ? "points remain after an error" : fault;
@@ -225,7 +225,8 @@ std::string fault_with_all_keys(const std::filesystem::path& file, const data::F
   points::LoadRequest request;
   request.file = file;
   request.key = "points[0]";
-  request.materials = 3;
+  const std::vector<scene::Material> materials(3);
+  request.materials = &materials;
   return fault_with_spheres(request, points);
 }
 
@@ -254,7 +255,8 @@ std::string fault_with_ply(const std::filesystem::path& folder, const std::strin
   points::LoadRequest request;
   request.file = folder / points.file;
   request.key = "points[0]";
-  request.materials = 3;
+  const std::vector<scene::Material> materials(3);
+  request.materials = &materials;
   std::string fault = fault_with_spheres(request, points);
   if (!std::all_of(points.centers.begin(), points.centers.end(), math::is_finite)) return "a centre is not finite";
   return fault;

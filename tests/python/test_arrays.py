@@ -258,12 +258,20 @@ class BadInput(FolderTest):
         with self.assertRaisesRegex(orrery.SceneError, "row 1 of positions-1 has opacity 2"):
             small_scene(p, opacity=np.full(60, 2)).check()
 
+    def test_materials_by_condition(self):
+        p = positions()
+        scene = small_scene(p, material_where=["x > 0: gold"])
+        scene.add_material("gold", orrery.Metal((0.8, 0.6, 0.2)))
+        self.assertNotEqual(beauty(scene), beauty(small_scene(p)))
+
     def test_unknown_names(self):
         p = positions()
         with self.assertRaisesRegex(orrery.SceneError, 'there is no colour map "viridi".*did you mean `viridis`'):
             orrery.colormap(p[:, 0], "viridi")
         with self.assertRaisesRegex(orrery.SceneError, 'material is "gold", which is not defined'):
             small_scene(p, material="gold").check()
+        with self.assertRaisesRegex(orrery.SceneError, "`gold` is not a material"):
+            small_scene(p, material_where=["x > 0: gold"]).check()
         with self.assertRaisesRegex(orrery.SceneError, "has no column `speed`"):
             small_scene(p, color={"column": "speed"})
         with self.assertRaisesRegex(orrery.SceneError, "unknown key.*`selct`"):

@@ -182,7 +182,8 @@ class Scene:
         name = self._new_name()
         # Cryptomatte names spheres after their file, which is another one in a scene that was saved.
         text = _keys.table_text("points", {"file": name, "name": name, **keys})
-        _keys.check_table("add_points()", text, material, file=name, columns=table)
+        by_rule = [str(rule).rpartition(":")[2].strip() for rule in keys.get("material_where") or ()]
+        _keys.check_table("add_points()", text, material, *by_rule, file=name, columns=table)
         self._tables.append(text)
         self._arrays[name] = table
         value = keys.get("radius")

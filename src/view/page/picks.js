@@ -172,14 +172,15 @@ function actions(picked, [, condition, column]) {
           action("Only", `--select '${condition}'`, () => select(condition)),
           action("Ghost", `--opacity '${condition}: ${GHOST}'`, () => setRule("--opacity", condition, GHOST)),
           action("Colour by", `--color-by ${column}`, () => set({ "--color-by": column })),
-          action("Label", `--label '${label}'`, () => set({ "--label": [...option("--label"), label] })), kinds(condition)];
+          action("Label", `--label '${label}'`, () => set({ "--label": [...option("--label"), label] })), 
+          kinds(condition, "Representation of these", "--representation", "As ..."), kinds(condition, "Material of these", "--material", "Of ...")];
 }
 
-// Shows the set as another representation.
-function kinds(condition) {
-  const names = ["spheres", "ball-and-stick", "sticks", "trace", "points"];
-  return element("select", { "aria-label": "Representation of these", onchange: event => setRule("--representation", condition, event.target.value) },
-    element("option", { value: "", textContent: "As ..." }), ...names.map(value => element("option", { value, textContent: value })));
+// Gives the set one of the values of an option.
+function kinds(condition, label, name, hint) {
+  const names = document.querySelector(`[data-option="${name}"][data-values]`).dataset.values.split(" ");
+  return element("select", { "aria-label": label, onchange: event => setRule(name, condition, event.target.value) },
+    element("option", { value: "", textContent: hint }), ...names.map(value => element("option", { value, textContent: value })));
 }
 
 export function hidePicked() {

@@ -28,7 +28,8 @@ scene::Points read_back(const std::filesystem::path& file) {
   points::LoadRequest request;
   request.file = file;
   request.key = "points[0]";
-  request.materials = 5;
+  const std::vector<scene::Material> materials(5);
+  request.materials = &materials;
   for (const scene::SceneDiagnostic& diagnostic : points::load_points(request, points))
     EXPECT_EQ(diagnostic.severity, base::Severity::kWarning) << diagnostic.text;
   return points;

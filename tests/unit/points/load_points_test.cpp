@@ -371,7 +371,8 @@ TEST_F(PointsLoadPoints, MaterialsOfAPly) {
            "property float radius\nproperty " +
            type + " material\nend_header\n0 0 0 1 " + row + "\n";
   };
-  request.materials = 2;
+  const std::vector<scene::Material> materials(2);
+  request.materials = &materials;
   EXPECT_EQ(load("a.ply", ply("uchar", "1")), "");
   EXPECT_EQ(points.materials, std::vector<std::uint32_t>{1});
   const std::string expected = "error points[0].file: row 1 of a.ply has material ";

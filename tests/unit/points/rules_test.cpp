@@ -80,6 +80,17 @@ TEST_F(PointsRulesOfAFile, ColorsPrecedeThoseOfAMap) {
   EXPECT_EQ(points.color_names, (std::vector<std::string>{"1", "2", "3", ""}));
 }
 
+TEST_F(PointsRulesOfAFile, MaterialsPrecedeThatOfTheTable) {
+  const std::vector<scene::Material> materials = {{"matte", {}}, {"plastic", {}}, {"glass", {}}};
+  request.materials = &materials;
+  points.material = 1;
+  points.material_where = {"type == 2: matte", "x > 1: glass", "q == 9: matte"};
+  EXPECT_TRUE(test::mentions(load(), {"warning", "material_where[2]", "q == 9: matte"}));
+  EXPECT_EQ(points.materials, (std::vector<std::uint32_t>{1, 0, 2, 2}));
+  points.material_where = {"x > 1: steel"};
+  EXPECT_TRUE(test::mentions(load(), {"error points[0].material_where[0]", "steel", "one of matte, plastic, glass"}));
+}
+
 TEST_F(PointsRulesOfAFile, ThatMatchNothingAreWarningsAndInvalidOnesErrors) {
   points.color.where = {"type == 9: red"};
   EXPECT_TRUE(test::mentions(load(), {"warning", "color.where[0]", "type == 9: red"}));
