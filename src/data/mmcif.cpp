@@ -356,31 +356,11 @@ class CifBonds {
   std::vector<Connection> connections_;
 };
 
-/// Items of _atom_site., in the order of AtomItem.
-const std::vector<std::string> kAtomItems = {
+/// Items of _atom_site.
+constexpr std::string_view kAtomItems[] = {
     "group_pdb",    "type_symbol",   "label_atom_id", "auth_atom_id", "label_alt_id",   "label_comp_id",
     "auth_comp_id", "label_asym_id", "auth_asym_id",  "auth_seq_id",  "label_seq_id",   "pdbx_pdb_ins_code",
     "cartn_x",      "cartn_y",       "cartn_z",       "occupancy",    "b_iso_or_equiv", "pdbx_pdb_model_num"};
-enum AtomItem {
-  kGroup,
-  kSymbol,
-  kLabelAtom,
-  kAuthAtom,
-  kAltloc,
-  kLabelComp,
-  kAuthComp,
-  kLabelAsym,
-  kAuthAsym,
-  kAuthSeq,
-  kLabelSeq,
-  kInsertion,
-  kX,
-  kY,
-  kZ,
-  kOccupancy,
-  kBFactor,
-  kModel
-};
 
 const std::vector<std::string> kOperatorItems = {
     "id",           "matrix[1][1]", "matrix[1][2]", "matrix[1][3]", "vector[1]",    "matrix[2][1]", "matrix[2][2]",
@@ -388,28 +368,27 @@ const std::vector<std::string> kOperatorItems = {
 
 constexpr std::string_view kCifBlanks = " \t\r\n";
 
-/// Items of _struct_conn. of each of the two atoms, in the order of PartnerItem; {} is 1 or 2.
-constexpr const char* kPartnerItems[] = {"ptnr{}_auth_asym_id",  "ptnr{}_label_asym_id",     "ptnr{}_auth_seq_id",
-                                         "ptnr{}_label_seq_id",  "pdbx_ptnr{}_pdb_ins_code", "ptnr{}_auth_comp_id",
-                                         "ptnr{}_label_comp_id", "ptnr{}_label_atom_id",     "ptnr{}_symmetry"};
-enum PartnerItem {
-  kPartnerAuthAsym,
-  kPartnerLabelAsym,
-  kPartnerAuthSeq,
-  kPartnerLabelSeq,
-  kPartnerInsertion,
-  kPartnerAuthComp,
-  kPartnerLabelComp,
-  kPartnerAtom,
-  kPartnerSymmetry,
-  kPartnerItemCount
-};
+/// Items of _struct_conn. of each of the two atoms; {} is 1 or 2.
+constexpr std::string_view kPartnerItems[] = {"ptnr{}_auth_asym_id",  "ptnr{}_label_asym_id",     "ptnr{}_auth_seq_id",
+                                              "ptnr{}_label_seq_id",  "pdbx_ptnr{}_pdb_ins_code", "ptnr{}_auth_comp_id",
+                                              "ptnr{}_label_comp_id", "ptnr{}_label_atom_id",     "ptnr{}_symmetry"};
+
+/// The place of an item in a row; does not compile if there is no such item.
+template <std::size_t kCount>
+consteval std::size_t place_in(const std::string_view (&items)[kCount], std::string_view item) {
+  std::size_t i = 0;
+  while (items[i] != item) ++i;
+  return i;
+}
+consteval std::size_t of_atom(std::string_view item) { return place_in(kAtomItems, item); }
+consteval std::size_t of_partner(std::string_view item) { return place_in(kPartnerItems, item); }
 
 /// Items of _struct_conn.: the type, then those of both atoms.
 std::vector<std::string> connection_items() {
   std::vector<std::string> out = {"conn_type_id"};
   for (const char* const partner : {"1", "2"})
-    for (const std::string item : kPartnerItems) out.push_back(std::string(item).replace(item.find("{}"), 2, partner));
+    for (const std::string_view item : kPartnerItems)
+      out.push_back(std::string(item).replace(item.find("{}"), 2, partner));
   return out;
 }
 
@@ -449,7 +428,9 @@ class MmcifReader final : public DataFile {
     std::uint64_t last = 1;
     require_text(text, last, faults_);
     read_cif(text,
-             {{"_atom_site.", kAtomItems, [this](const Row& row, std::uint64_t line) { take_atom(row, line); }},
+             {{"_atom_site.",
+               {std::begin(kAtomItems), std::end(kAtomItems)},
+               [this](const Row& row, std::uint64_t line) { take_atom(row, line); }},
               {"_pdbx_struct_oper_list.", kOperatorItems, take_operator},
               {"_pdbx_struct_assembly_gen.",
                {"assembly_id", "oper_expression", "asym_id_list"},
@@ -516,23 +497,25 @@ class MmcifReader final : public DataFile {
 
   void take_atom(const Row& row, std::uint64_t line) {
     if (is_past_atoms_) return void(++other_atoms_);
-    atom_.position = {number(row[kX], line), number(row[kY], line), number(row[kZ], line)};
-    atom_.occupancy = row[kOccupancy].empty() ? 1 : number(row[kOccupancy], line);
-    atom_.b_factor = number(row[kBFactor], line);
-    atom_.has_residue_number = !preferred(row, kAuthSeq, kLabelSeq).empty();
-    atom_.residue_number = residue_number(preferred(row, kAuthSeq, kLabelSeq));
-    atom_.insertion = row[kInsertion];
-    atom_.element = gemmi::Element(row[kSymbol]).name();
-    atom_.chain = preferred(row, kAuthAsym, kLabelAsym);
-    atom_.subchain = row[kLabelAsym].empty() ? row[kAuthAsym] : row[kLabelAsym];
-    atom_.name = preferred(row, kAuthAtom, kLabelAtom);
-    atom_.residue = preferred(row, kAuthComp, kLabelComp);
-    atom_.altloc = row[kAltloc];
-    atom_.record = row[kGroup].empty() ? std::string_view("ATOM") : row[kGroup];
+    atom_.position = {number(row[of_atom("cartn_x")], line), number(row[of_atom("cartn_y")], line),
+                      number(row[of_atom("cartn_z")], line)};
+    atom_.occupancy = row[of_atom("occupancy")].empty() ? 1 : number(row[of_atom("occupancy")], line);
+    atom_.b_factor = number(row[of_atom("b_iso_or_equiv")], line);
+    atom_.has_residue_number = !preferred(row, of_atom("auth_seq_id"), of_atom("label_seq_id")).empty();
+    atom_.residue_number = residue_number(preferred(row, of_atom("auth_seq_id"), of_atom("label_seq_id")));
+    atom_.insertion = row[of_atom("pdbx_pdb_ins_code")];
+    atom_.element = gemmi::Element(row[of_atom("type_symbol")]).name();
+    atom_.chain = preferred(row, of_atom("auth_asym_id"), of_atom("label_asym_id"));
+    atom_.subchain =
+        row[of_atom("label_asym_id")].empty() ? row[of_atom("auth_asym_id")] : row[of_atom("label_asym_id")];
+    atom_.name = preferred(row, of_atom("auth_atom_id"), of_atom("label_atom_id"));
+    atom_.residue = preferred(row, of_atom("auth_comp_id"), of_atom("label_comp_id"));
+    atom_.altloc = row[of_atom("label_alt_id")];
+    atom_.record = row[of_atom("group_pdb")].empty() ? std::string_view("ATOM") : row[of_atom("group_pdb")];
     // Models are contiguous in nearly all files.
-    if (models_.empty() || models_[model_].number != row[kModel]) {
-      const auto [it, is_new] = model_of_.try_emplace(row[kModel], models_.size());
-      if (is_new) models_.push_back({row[kModel], {}});
+    if (models_.empty() || models_[model_].number != row[of_atom("pdbx_pdb_model_num")]) {
+      const auto [it, is_new] = model_of_.try_emplace(row[of_atom("pdbx_pdb_model_num")], models_.size());
+      if (is_new) models_.push_back({row[of_atom("pdbx_pdb_model_num")], {}});
       model_ = it->second;
     }
     Model& model = models_[model_];
@@ -544,14 +527,16 @@ class MmcifReader final : public DataFile {
   void take_connection(const Row& row, std::uint64_t line) {
     const std::string type = base::lower(row[0]);
     if (!type.starts_with("covale") && type != "disulf") return;
-    constexpr std::size_t kFirst = 1, kSecond = kFirst + kPartnerItemCount;
+    constexpr std::size_t kFirst = 1, kSecond = kFirst + std::size(kPartnerItems);
     // Neither symmetry copies of the atoms nor bonds to them are in the file.
-    if (row[kFirst + kPartnerSymmetry] != row[kSecond + kPartnerSymmetry]) return;
+    if (row[kFirst + of_partner("ptnr{}_symmetry")] != row[kSecond + of_partner("ptnr{}_symmetry")]) return;
     const auto atom = [&](std::size_t at) {
-      return CifAtomName{preferred(row, at + kPartnerAuthAsym, at + kPartnerLabelAsym),
-                         residue_number(preferred(row, at + kPartnerAuthSeq, at + kPartnerLabelSeq)),
-                         row[at + kPartnerInsertion], preferred(row, at + kPartnerAuthComp, at + kPartnerLabelComp),
-                         row[at + kPartnerAtom]};
+      return CifAtomName{
+          preferred(row, at + of_partner("ptnr{}_auth_asym_id"), at + of_partner("ptnr{}_label_asym_id")),
+          residue_number(preferred(row, at + of_partner("ptnr{}_auth_seq_id"), at + of_partner("ptnr{}_label_seq_id"))),
+          row[at + of_partner("pdbx_ptnr{}_pdb_ins_code")],
+          preferred(row, at + of_partner("ptnr{}_auth_comp_id"), at + of_partner("ptnr{}_label_comp_id")),
+          row[at + of_partner("ptnr{}_label_atom_id")]};
     };
     bonds_.add_connection(atom(kFirst), atom(kSecond), line);
   }

@@ -2,12 +2,12 @@
 #include "data/npy_array.h"
 
 #include <algorithm>
-#include <charconv>
 #include <cstddef>
 #include <limits>
 #include <utility>
 
 #include <fmt/core.h>
+#include <nlohmann/json.hpp>
 
 #include "base/text.h"
 #include "data/columns.h"
@@ -17,129 +17,76 @@ namespace orrery::data {
 
 namespace {
 
-/// A value of Python's syntax, as NumPy writes it in the header of an array.
-struct PythonLiteral {
-  enum class Kind { kText, kInteger, kBool, kSequence, kDict };
-
-  Kind kind = Kind::kText;
-  std::string text;
-  std::uint64_t integer = 0;         ///< for a kBool, 0 or 1
-  std::vector<PythonLiteral> items;  ///< elements of a list or tuple; keys and values of a dict alternate
-
-  bool is(Kind k) const { return kind == k; }
-  /// Returns the value of a key of a dict; null if there is none.
-  const PythonLiteral* find(std::string_view key) const;
-};
+using nlohmann::json;
 
 /// What is wrong with a header.
 struct NpyFault {
   std::string text;
 };
 
-constexpr int kMaxDepth = 16;
-
-using Kind = PythonLiteral::Kind;
-
-/// Errors     NpyFault, after the words "the header is malformed"
-class Parser {
- public:
-  explicit Parser(std::string_view source) : source_(source) {}
-
-  PythonLiteral whole() {
-    PythonLiteral out = value(0);
-    skip_blanks();
-    if (!at_end()) fail("unexpected characters after its end");
-    return out;
+/// Appends a character in UTF-8; false if the code point is invalid.
+bool append_utf8(std::string& out, std::uint32_t c) {
+  const auto add = [&out](std::uint32_t byte) { out += static_cast<char>(byte); };
+  if (c < 0x80) {
+    add(c);
+  } else if (c < 0x800) {
+    add(0xC0 | c >> 6);
+    add(0x80 | (c & 0x3F));
+  } else if (c < 0x10000) {
+    if (c >= 0xD800 && c < 0xE000) return false;  // half of a surrogate pair
+    add(0xE0 | c >> 12);
+    add(0x80 | (c >> 6 & 0x3F));
+    add(0x80 | (c & 0x3F));
+  } else if (c < 0x110000) {
+    add(0xF0 | c >> 18);
+    add(0x80 | (c >> 12 & 0x3F));
+    add(0x80 | (c >> 6 & 0x3F));
+    add(0x80 | (c & 0x3F));
+  } else {
+    return false;
   }
-
- private:
-  [[noreturn]] static void fail(const std::string& text) { throw NpyFault{"the header is malformed: " + text}; }
-
-  bool at_end() const { return at_ == source_.size(); }
-
-  void skip_blanks() {
-    while (!at_end() && std::string_view(" \t\r\n").find(source_[at_]) != std::string_view::npos) ++at_;
-  }
-
-  bool take(char c) {
-    skip_blanks();
-    if (at_end() || source_[at_] != c) return false;
-    ++at_;
-    return true;
-  }
-
-  PythonLiteral value(int depth) {
-    skip_blanks();
-    if (depth > kMaxDepth) fail("it is nested too deeply");
-    if (at_end()) fail("it ends too early");
-    switch (source_[at_]) {
-      case '\'':
-      case '"': return text();
-      case '(': return sequence(Kind::kSequence, ')', depth);
-      case '[': return sequence(Kind::kSequence, ']', depth);
-      case '{': return sequence(Kind::kDict, '}', depth);
-      default: return word();
-    }
-  }
-
-  PythonLiteral sequence(Kind kind, char closing, int depth) {
-    PythonLiteral out{kind, {}, 0, {}};
-    ++at_;
-    while (!take(closing)) {
-      out.items.push_back(value(depth + 1));
-      if (kind == Kind::kDict) {
-        if (!take(':')) fail("`:` is missing after a key");
-        out.items.push_back(value(depth + 1));
-      }
-      if (take(',')) continue;
-      if (!take(closing)) fail(fmt::format("`{}` is missing", closing));
-      break;
-    }
-    return out;
-  }
-
-  PythonLiteral text() {
-    PythonLiteral out;
-    const char quote = source_[at_++];
-    while (!at_end() && source_[at_] != quote) {
-      char c = source_[at_++];
-      if (c == '\\') {
-        if (at_end() || (source_[at_] != '\\' && source_[at_] != '\'' && source_[at_] != '"'))
-          fail("a string contains an escape sequence that is not supported");
-        c = source_[at_++];
-      }
-      out.text += c;
-    }
-    if (at_end()) fail("a string has no end");
-    ++at_;
-    return out;
-  }
-
-  PythonLiteral word() {
-    const std::string_view rest = source_.substr(at_);
-    for (const std::string_view name : {"True", "False"})
-      if (rest.starts_with(name)) {
-        at_ += name.size();
-        return {Kind::kBool, {}, name == "True" ? std::uint64_t{1} : 0, {}};
-      }
-    PythonLiteral out{Kind::kInteger, {}, 0, {}};
-    const auto [end, error] = std::from_chars(rest.data(), rest.data() + rest.size(), out.integer);
-    if (error == std::errc::result_out_of_range) fail("an integer is too large");
-    if (error != std::errc()) fail(fmt::format("unexpected `{}`", std::string(1, rest.front())));
-    at_ += static_cast<std::size_t>(end - rest.data());
-    if (!at_end() && source_[at_] == 'L') ++at_;  // Python 2
-    return out;
-  }
-
-  std::string_view source_;
-  std::size_t at_ = 0;
-};
-
-const PythonLiteral* PythonLiteral::find(std::string_view key) const {
-  for (std::size_t i = 0; kind == Kind::kDict && i + 1 < items.size(); i += 2)
-    if (items[i].is(Kind::kText) && items[i].text == key) return &items[i + 1];
-  return nullptr;
+  return true;
 }
+
+/// Translates a header to JSON, from which Python's literals differ in quotes, tuples, the names of Booleans, and
+/// commas after the last element.
+///
+/// `is_latin1`  it is encoded in Latin-1 instead of UTF-8
+/// Errors       NpyFault
+std::string json_text_of(std::string_view python, bool is_latin1) {
+  std::string out;
+  char quote = '\0';  // of the string
+  for (std::size_t i = 0; i < python.size(); ++i) {
+    const std::string_view rest = python.substr(i);
+    const char c = rest.front();
+    const bool is_in_string = quote != '\0';
+    if (is_in_string && c == '\\') {
+      const std::string_view escape = rest.substr(0, 2);
+      if (escape != "\\\\" && escape != "\\'" && escape != "\\\"")
+        throw NpyFault{"the header is malformed: a string contains an escape sequence that is not supported"};
+      out += escape[1] == '\'' ? "'" : escape;
+      ++i;
+    } else if (is_in_string ? c == quote : c == '\'' || c == '"') {
+      quote = is_in_string ? '\0' : c;
+      out += '"';
+    } else if (is_in_string) {
+      if (c == '"') out += '\\';
+      is_latin1 ? void(append_utf8(out, static_cast<unsigned char>(c))) : out.push_back(c);
+    } else if (rest.starts_with("True") || rest.starts_with("False")) {
+      out += c == 'T' ? "true" : "false";
+      i += c == 'T' ? 3 : 4;
+    } else if (c == ',') {
+      const std::size_t next = rest.find_first_not_of(" \t\r\n", 1);
+      if (next == std::string_view::npos || std::string_view(")]}").find(rest[next]) == std::string_view::npos)
+        out += c;
+    } else if (c != 'L') {  // of long integers of Python 2
+      out += c == '(' ? '[' : c == ')' ? ']' : c;
+    }
+  }
+  return out;
+}
+
+const std::string& text_of(const json& value) { return value.get_ref<const std::string&>(); }
 
 using namespace std::string_view_literals;
 
@@ -189,24 +136,22 @@ NpyField parse_type(const std::string& code, const std::string& where = {}) {
 }
 
 /// Parses one field of a record: (name, type) or (name, type, shape); a name may be (title, name).
-void parse_field(const PythonLiteral& source, NpyHeader& header) {
-  if (!source.is(Kind::kSequence) || source.items.size() < 2 || source.items.size() > 3)
+void parse_field(const json& source, NpyHeader& header) {
+  if (!source.is_array() || source.size() < 2 || source.size() > 3)
     throw NpyFault{"a field is not (name, type) or (name, type, shape)"};
-  const PythonLiteral& first = source.items[0];
-  const PythonLiteral& name = first.is(Kind::kSequence) && first.items.size() == 2 ? first.items[1] : first;
-  if (!name.is(Kind::kText)) throw NpyFault{"the name of a field is not a string"};
-  const std::string shown = quoted_word(name.text);
-  if (!source.items[1].is(Kind::kText))
-    throw NpyFault{fmt::format("field {} is a record; save its fields separately", shown)};
-  NpyField field = parse_type(source.items[1].text, fmt::format("field {}: ", shown));
-  field.name = name.text;
+  const json& name = source[0].is_array() && source[0].size() == 2 ? source[0][1] : source[0];
+  if (!name.is_string()) throw NpyFault{"the name of a field is not a string"};
+  const std::string shown = quoted_word(text_of(name));
+  if (!source[1].is_string()) throw NpyFault{fmt::format("field {} is a record; save its fields separately", shown)};
+  NpyField field = parse_type(text_of(source[1]), fmt::format("field {}: ", shown));
+  field.name = text_of(name);
   std::uint64_t count = 1;
-  if (source.items.size() == 3) {
-    if (!source.items[2].is(Kind::kSequence))
-      throw NpyFault{fmt::format("the shape of field {} is not a tuple", shown)};
-    for (const PythonLiteral& length : source.items[2].items) {
-      if (!length.is(Kind::kInteger)) throw NpyFault{fmt::format("the shape of field {} is not integers", shown)};
-      if (length.integer > kMaxColumns || (count *= length.integer) > kMaxColumns)
+  if (source.size() == 3) {
+    if (!source[2].is_array()) throw NpyFault{fmt::format("the shape of field {} is not a tuple", shown)};
+    for (const json& length : source[2]) {
+      if (!length.is_number_unsigned()) throw NpyFault{fmt::format("the shape of field {} is not integers", shown)};
+      const std::uint64_t number = length;
+      if (number > kMaxColumns || (count *= number) > kMaxColumns)
         throw NpyFault{fmt::format("field {} has more than {} components", shown, kMaxColumns)};
     }
   }
@@ -216,22 +161,22 @@ void parse_field(const PythonLiteral& source, NpyHeader& header) {
   if (field.components > 0) header.fields.push_back(std::move(field));
 }
 
-void parse_description(const PythonLiteral& source, NpyHeader& header) {
-  if (source.is(Kind::kText)) {
-    header.fields.push_back(parse_type(source.text));
+void parse_description(const json& source, NpyHeader& header) {
+  if (source.is_string()) {
+    header.fields.push_back(parse_type(text_of(source)));
     if (header.fields[0].components == 0)
       throw NpyFault{header.fields[0].kind == NpyField::Kind::kBytes
                          ? "its items are raw bytes (dtype void)"
                          : fmt::format("the type {} is not supported; convert the array to numbers, e.g. with "
                                        "`astype('f8')`",
-                                       quoted_word(source.text))};
+                                       quoted_word(text_of(source)))};
     header.item_size = header.fields[0].size;
     return;
   }
-  if (!source.is(Kind::kSequence)) throw NpyFault{"`descr` is neither a type nor a list of fields"};
+  if (!source.is_array()) throw NpyFault{"`descr` is neither a type nor a list of fields"};
   header.is_structured = true;
   std::uint64_t columns = 0;
-  for (const PythonLiteral& field : source.items) {
+  for (const json& field : source) {
     const std::size_t fields = header.fields.size();
     parse_field(field, header);
     if (header.fields.size() > fields) columns += header.fields.back().components;
@@ -239,41 +184,16 @@ void parse_description(const PythonLiteral& source, NpyHeader& header) {
   }
 }
 
-void parse_shape(const PythonLiteral& source, NpyHeader& header) {
-  if (!source.is(Kind::kSequence)) throw NpyFault{"`shape` is not a tuple"};
-  if (source.items.size() > kMaxDimensions)
-    throw NpyFault{fmt::format("it has more than {} dimensions", kMaxDimensions)};
-  for (const PythonLiteral& length : source.items) {
-    if (!length.is(Kind::kInteger)) throw NpyFault{"`shape` is not a tuple of integers"};
-    header.shape.push_back(length.integer);
+void parse_shape(const json& source, NpyHeader& header) {
+  if (!source.is_array()) throw NpyFault{"`shape` is not a tuple"};
+  if (source.size() > kMaxDimensions) throw NpyFault{fmt::format("it has more than {} dimensions", kMaxDimensions)};
+  for (const json& length : source) {
+    if (!length.is_number_unsigned()) throw NpyFault{"`shape` is not a tuple of integers"};
+    header.shape.push_back(length);
   }
 }
 
 std::uint64_t length_bytes(std::string_view head) { return head[kNpySignature.size()] == 1 ? 2 : 4; }
-
-/// Appends a character in UTF-8; false if the code point is invalid.
-bool append_utf8(std::string& out, std::uint32_t c) {
-  const auto add = [&out](std::uint32_t byte) { out += static_cast<char>(byte); };
-  if (c < 0x80) {
-    add(c);
-  } else if (c < 0x800) {
-    add(0xC0 | c >> 6);
-    add(0x80 | (c & 0x3F));
-  } else if (c < 0x10000) {
-    if (c >= 0xD800 && c < 0xE000) return false;  // half of a surrogate pair
-    add(0xE0 | c >> 12);
-    add(0x80 | (c >> 6 & 0x3F));
-    add(0x80 | (c & 0x3F));
-  } else if (c < 0x110000) {
-    add(0xF0 | c >> 18);
-    add(0x80 | (c >> 12 & 0x3F));
-    add(0x80 | (c >> 6 & 0x3F));
-    add(0x80 | (c & 0x3F));
-  } else {
-    return false;
-  }
-  return true;
-}
 
 /// Decodes a zero-padded string; false if a character is invalid.
 bool decode_text(const NpyField& field, const char* from, std::string& out) {
@@ -336,15 +256,16 @@ std::string parse_npy_header(std::string_view head, NpyHeader& header) {
   if (header.begin > head.size()) return "the file ends within the header";
   const std::size_t text = 8 + length_bytes(head);
   try {
-    const PythonLiteral source = Parser(head.substr(text, static_cast<std::size_t>(header.begin) - text)).whole();
-    const PythonLiteral* const description = source.find("descr");
-    const PythonLiteral* const order = source.find("fortran_order");
-    const PythonLiteral* const shape = source.find("shape");
-    if (description == nullptr || order == nullptr || shape == nullptr || !order->is(Kind::kBool))
+    const json source = json::parse(
+        json_text_of(head.substr(text, static_cast<std::size_t>(header.begin) - text), version < 3), nullptr, false);
+    if (source.is_discarded()) return "the header is malformed";
+    const auto member = [&](const char* key) { return source.is_object() ? source.value(key, json()) : json(); };
+    const json order = member("fortran_order");
+    if (member("descr").is_null() || member("shape").is_null() || !order.is_boolean())
       return "the header needs `descr`, `fortran_order` and `shape`";
-    header.is_fortran_order = order->integer == 1;
-    parse_shape(*shape, header);
-    parse_description(*description, header);
+    header.is_fortran_order = order;
+    parse_shape(member("shape"), header);
+    parse_description(member("descr"), header);
   } catch (const NpyFault& fault) {
     return fault.text;
   }

@@ -86,16 +86,14 @@ void color_by_label(const Labels& labels, const data::Column& column, const Colo
   }
 }
 
-/// Gives integers the colours that categories_of() gives them, named "1, 11, ...", if there are too many for a name
-/// each.
+/// Gives integers, of which there are too many for a name each, the colours that categories_of() gives them, named "1,
+/// 11, ...".
 ///
-/// Result     false for columns of other values, and of fewer ones
+/// Result     false for columns of other values
 bool color_by_remainder(const data::Column& column, const Rows& rows, const ColorMap& map, scene::Points& points) {
   const std::size_t count = map.knots.size();
-  if (rows.size() <= kMaxLabels || column.type() == data::ColumnType::kText ||
-      !labels_of(column, rows, kMaxLabels).of_rows.empty())
-    return false;
-  bool are_integers = true;
+  bool are_integers = column.type() != data::ColumnType::kText;
+  if (!are_integers) return false;
   std::vector<std::uint16_t> colors(rows.size());
   for_each_number(column, rows, [&](std::size_t i, double v) {
     are_integers = are_integers && v == std::floor(v);
@@ -153,9 +151,10 @@ void color_by_map(const data::Table& table, const Rows& rows, const ColorSource&
   const data::Column& column = *table.find(name);
   if (!source.map->is_categorical && column.type() != data::ColumnType::kText)
     return color_by_number(column, rows, *source.map, points, faults);
-  if (source.map->is_categorical && color_by_remainder(column, rows, *source.map, points)) return;
-  if (const auto labels = labels_or_fault(table, rows, name, ".color.column", faults))
-    color_by_label(*labels, column, *source.map, points);
+  const Labels labels = labels_of(column, rows, kMaxLabels);
+  if (labels.of_rows.size() == rows.size()) return color_by_label(labels, column, *source.map, points);
+  if (!source.map->is_categorical || !color_by_remainder(column, rows, *source.map, points))
+    labels_or_fault(table, rows, name, ".color.column", faults);  // reports that there are too many
 }
 
 /// Gives carbon atoms the colours of another column, after those of the elements.

@@ -5,10 +5,12 @@
 #include <tbb/parallel_for.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <map>
 #include <numeric>
 #include <span>
+#include <utility>
 
 #include <fmt/core.h>
 
@@ -165,18 +167,28 @@ bool fit_single(const std::array<Numbers*, 3>& columns) {
 Labels labels_of(const data::Column& column, const Rows& rows, std::size_t limit) {
   if (const auto* words = std::get_if<data::Words>(&column.values)) return labels_of_words(*words, rows, limit);
   std::map<double, std::uint32_t> labels;
+  // Most labels are small integers, which a table finds faster than the map.
+  std::array<std::uint32_t, 256> table{};
+  const auto in_table = [&](double v) -> std::uint32_t* {
+    if (!(v >= 0 && v < static_cast<double>(table.size()))) return nullptr;
+    const auto n = static_cast<std::size_t>(v);
+    return static_cast<double>(n) == v ? &table[n] : nullptr;
+  };
   bool is_full = false;
   double last = std::nan("");
   for_each_number(column, rows, [&](std::size_t, double v) {
     if (v == last || is_full) return;
     last = v;
-    if (!std::isnan(v)) labels.emplace(v, 0);
+    std::uint32_t* const known = in_table(v);
+    if (known != nullptr ? std::exchange(*known, 1) == 1 : std::isnan(v)) return;
+    labels.emplace(v, 0);
     is_full = labels.size() > limit;
   });
   if (is_full) return {};
   Labels out;
   for (auto& [value, label] : labels) {
     label = static_cast<std::uint32_t>(out.names.size());
+    if (std::uint32_t* const known = in_table(value)) *known = label;
     out.names.push_back(label_text(value));
     out.values.push_back(value);
   }
@@ -189,7 +201,8 @@ Labels labels_of(const data::Column& column, const Rows& rows, std::size_t limit
   for_each_number(column, rows, [&](std::size_t i, double v) {
     if (v != last) {
       last = v;
-      last_label = std::isnan(v) ? none : labels.find(v)->second;
+      const std::uint32_t* const known = in_table(v);
+      last_label = known != nullptr ? *known : std::isnan(v) ? none : labels.find(v)->second;
     }
     has_nan = has_nan || last_label == none;
     out.of_rows[i] = last_label;

@@ -51,6 +51,15 @@ TEST(DataNpyArray, ColumnsFollowTheOrderOfTheArray) {
   }
 }
 
+TEST(DataNpyArray, NamesMayHaveQuotesBracketsAndOtherCharacters) {
+  const NpyHeader header = header_of("[('it\\'s \"(1, True,)\"', '<f8'), ('d\xE9', '<f8')]", "(5,)");
+  ASSERT_EQ(header.fields.size(), 2u);
+  EXPECT_EQ(header.fields[0].name, "it's \"(1, True,)\"");
+  EXPECT_EQ(header.fields[1].name, "d\u00e9") << "version 1 is encoded in Latin-1";
+  const NpyHeader same = header_of("[(\"a\\\\'b\", '<f8')]", "(5,)");
+  EXPECT_EQ(same.fields.at(0).name, "a\\'b");
+}
+
 TEST(DataNpyArray, ShortOrForeignHeadsAreRecognised) {
   EXPECT_FALSE(has_npy_signature("NUMPY"));
   EXPECT_EQ(npy_header_end("\x93NUMPY\x01"), 0u);

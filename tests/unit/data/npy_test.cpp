@@ -224,19 +224,18 @@ TEST_F(DataNpy, MalformedHeadersAreRefused) {
   const std::string good = "{'descr': '<f8', 'fortran_order': False, 'shape': (1, 3)}";
   ASSERT_EQ(faults(with(good)), "");
   EXPECT_EQ(faults(with("{'shape': (1L, 3L,), \"descr\": \"<f8\",'fortran_order':False, } \n")), "") << "older writers";
-  EXPECT_TRUE(test::mentions(faults(with(good + "x")), {"header", "characters", "end"}));
   EXPECT_TRUE(test::mentions(faults(with("{'descr': '<f8', 'shape': (1, 3)}")),
                              {"header", "`descr`", "`fortran_order`", "`shape`"}));
   EXPECT_TRUE(test::mentions(faults(with("{'descr': '<f8', 'fortran_order': 0, 'shape': (1, 3)}")),
                              {"header", "`descr`", "`fortran_order`", "`shape`"}));
-  EXPECT_TRUE(test::mentions(faults(with("{'descr': __import__('os')}")), {"header", "`_`"}));
   EXPECT_TRUE(test::mentions(faults(with("{'descr': '\\x41'}")), {"header", "string", "escape"}));
-  EXPECT_TRUE(test::mentions(faults(with("{'descr': '<f8}")), {"header", "string", "end"}));
-  EXPECT_TRUE(test::mentions(faults(with("{'descr' '<f8'}")), {"header", "`:`", "missing"}));
-  EXPECT_TRUE(test::mentions(faults(with("{'descr': ('<f8' 1)}")), {"header", "`)`", "missing"}));
-  EXPECT_TRUE(test::mentions(faults(with(std::string(60000, '['))), {"header", "malformed"}));
-  EXPECT_TRUE(
-      test::mentions(faults(with("{'descr': '<f8', 'fortran_order': False, 'shape': (-1, 3)}")), {"header", "`-`"}));
+  for (const std::string& literal :
+       {good + "x", std::string("{'descr': __import__('os')}"), std::string("{'descr': '<f8}"),
+        std::string("{'descr' '<f8'}"), std::string("{'descr': ('<f8' 1)}"), std::string(60000, '['),
+        std::string(30000, '[') + std::string(30000, ')')})
+    EXPECT_TRUE(test::mentions(faults(with(literal)), {"header"})) << literal.substr(0, 40);
+  EXPECT_TRUE(test::mentions(faults(with("{'descr': '<f8', 'fortran_order': False, 'shape': (-1, 3)}")),
+                             {"`shape`", "integers"}));
   for (const char* shape : {"3", "(1, 'a')", "{}", "((1,), 3)"})
     EXPECT_NE(faults(with("{'descr': '<f8', 'fortran_order': False, 'shape': " + std::string(shape) + "}")), "")
         << shape;
