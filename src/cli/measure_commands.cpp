@@ -127,7 +127,7 @@ void add_study(Command& program) {
   options->add_output_to(command, "Schema orrery.study/1.");
   command.details(
       "Renders a reference, then varies the settings that affect this scene (samples, sampler, --noise, precision, "
-      "Russian roulette, depth, Fresnel model, accelerator, file options), and recommends a command, which it has "
+      "Russian roulette, depth, Fresnel model, accelerator), and recommends a command, which it has "
       "tried at the scene's full size. docs/trade.md explains the table.");
   command.footer(
       "Examples:\n"

@@ -35,7 +35,6 @@ static void to_json(json& out, const Point& p) {
          {"on_front", p.on_front}};
 }
 
-NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(FilePoint, name, flags, bytes, write_s, error)
 NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(Slope, name, slope)
 NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(Recommendation, words, command, noise, bias, samples, seconds, baseline_seconds)
 
@@ -60,7 +59,6 @@ json study_object(const Study& s) {
           {"budget_s", s.budget_s},
           {"reference", {{"noise", s.reference_noise}, {"samples", s.reference_samples}, {"seconds", s.reference_s}}},
           {"points", s.points},
-          {"files", s.files},
           {"slopes", s.slopes},
           {"left_out", s.left_out},
           {"warnings", s.warnings},
@@ -137,9 +135,6 @@ std::string study_text(const Study& s) {
   out += "* Pareto front: no other choice is both faster and more accurate\n\n";
   for (const Slope& l : s.slopes)
     out += fmt::format("error of {} is proportional to samples^{:.2f}\n", l.name, l.slope);
-  out += fmt::format("\n{:14} {:>12} {:>9} {:>9}\n", "file", "size", "write s", "error %");
-  for (const FilePoint& f : s.files)
-    out += fmt::format("{:14} {:>12} {:9.3f} {:9.4f}\n", f.name, base::bytes_text(f.bytes), f.write_s, f.error * 100);
   out += '\n';
   for (const std::string& text : s.left_out) job::add_row(out, "left out", "{}", text);
   for (const std::string& text : s.warnings) job::add_row(out, "warning", "{}", text);

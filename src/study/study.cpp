@@ -4,7 +4,6 @@
 #include <algorithm>
 #include <bit>
 #include <cmath>
-#include <filesystem>
 #include <limits>
 #include <map>
 #include <optional>
@@ -12,19 +11,13 @@
 
 #include <fmt/core.h>
 
-#include "base/atomic_file.h"
 #include "base/error.h"
 #include "base/file_set.h"
 #include "base/stop_point.h"
 #include "base/stopwatch.h"
-#include "compare/errors.h"
 #include "compile/compile.h"
 #include "compile/compiled_scene.h"
 #include "compile/environment.h"
-#include "image/format.h"
-#include "image/header.h"
-#include "image/read.h"
-#include "image/write.h"
 #include "job/layers.h"
 #include "job/resources.h"
 #include "job/scene_hash.h"
@@ -59,33 +52,6 @@ constexpr double kMinReferenceSamples = 64, kMaxReferenceSamples = 1 << 20;
 /// Number of choices that are measured regardless of the budget; a comparison needs two points.
 constexpr std::size_t kMinChoices = 2;
 
-/// Measures size, write time and error of an image as EXR, in half and float with each compression.
-///
-/// Errors     base::Error: kCannotCreate, kIo
-std::vector<FilePoint> measure_file_axis(const film::Picture& picture) {
-  const base::TempDir scratch;
-  const std::filesystem::path file = scratch.path() / "picture.exr";
-  std::vector<FilePoint> out;
-  for (const bool as_float : {false, true}) {
-    for (const char* compression : {"none", "rle", "zips", "zip", "piz", "dwaa", "dwab"}) {
-      image::ExrOptions options;
-      options.as_float = as_float;
-      options.compression = compression;
-      FilePoint point;
-      point.name = std::string(as_float ? "float " : "half ") + compression;
-      point.flags = fmt::format("--type {} --compression {}", as_float ? "float" : "half", compression);
-      const base::Stopwatch watch;
-      image::write_exr(file, picture, {}, options);
-      point.write_s = watch.seconds();
-      point.bytes = std::filesystem::file_size(file);
-      const film::Picture back = image::read(file);
-      point.error = compare::pixel_errors(compare::color_of(back), compare::color_of(picture)).display;
-      out.push_back(std::move(point));
-    }
-  }
-  return out;
-}
-
 class Runner {
  public:
   explicit Runner(const Request& request) : request_(request), renderer_(request, job::thread_count(request.threads)) {
@@ -102,8 +68,6 @@ class Runner {
     render_reference();
     measure_axes();
     test_bias(out_.points);
-    report_progress("files");
-    out_.files = measure_file_axis(out_.reference);
     out_.slopes = slopes_of(out_.points);
     mark_front(out_.points);
     report_progress("testing the recommendation");

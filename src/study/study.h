@@ -52,15 +52,6 @@ struct Point {
   film::Picture picture;     ///< planes R, G, B
 };
 
-/// File size, write time and storage error of one combination of EXR pixel type and compression.
-struct FilePoint {
-  std::string name;  ///< "half zips"
-  std::string flags;
-  std::uint64_t bytes = 0;
-  double write_s = 0;
-  double error = 0;  ///< display error caused by storage
-};
-
 /// Convergence rate of a sampler.
 struct Slope {
   std::string name;
@@ -89,7 +80,6 @@ struct Study {
   double reference_noise = 0, reference_samples = 0, reference_s = 0;
   film::Picture reference;
   std::vector<Point> points;
-  std::vector<FilePoint> files;
   std::vector<Slope> slopes;
   std::vector<std::string> left_out;  ///< axes without effect on this scene, and choices that exceed the budget
   std::vector<std::string> warnings;  ///< why times may be wrong

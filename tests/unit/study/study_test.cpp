@@ -101,21 +101,6 @@ TEST_F(StudyRun, TheFrontIsParetoOptimal) {
   }
 }
 
-TEST_F(StudyRun, FileErrorsMatchTheCompression) {
-  for (const FilePoint& f : study->files) {
-    if (f.name == "float zip") {
-      EXPECT_EQ(f.error, 0);
-    }
-    if (f.name == "half zip") {
-      EXPECT_LT(f.error, 5e-4);
-    }
-    if (f.name == "half dwaa") {
-      EXPECT_GT(f.error, 5e-4);
-    }
-    EXPECT_GT(f.bytes, 0u);
-  }
-}
-
 TEST_F(StudyRun, RecommendsACommand) {
   const Recommendation& r = study->recommendation;
   // The 16 samples that --noise takes at least are more than this scene needs.
