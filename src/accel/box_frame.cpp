@@ -36,7 +36,7 @@ BoxFrame::BoxFrame(const BoundedSpheres& spheres, const std::vector<std::uint32_
     const auto of_rods = base::accumulate_parallel(
         rods.rods.count, start,
         [&](auto& value, std::size_t i) {
-          for (int step = 0; step < (i < rods.rods.moving_count ? 2 : 1); ++step) {
+          for (int step = 0; step < (rods.rods.moves(i) ? 2 : 1); ++step) {
             const kernel::Rod rod = rods.at(i, step);
             add(value, kernel::Sphere{rod.a[0], rod.a[1], rod.a[2], rod.radius});
             add(value, kernel::Sphere{rod.b[0], rod.b[1], rod.b[2], rod.radius});
@@ -46,7 +46,7 @@ BoxFrame::BoxFrame(const BoundedSpheres& spheres, const std::vector<std::uint32_
     join(out, of_rods);
     return out;
   };
-  const bool moves = spheres.moving_count > 0 || rods.rods.moving_count > 0;
+  const bool moves = spheres.moving_count > 0 || rods.rods.any_moves();
   using math::kInfinity;
   struct Corners {
     double lower[3], upper[3];

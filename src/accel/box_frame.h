@@ -55,8 +55,8 @@ struct BoundedRods {
   /// A rod when the shutter opens (0) or closes (1).
   kernel::Rod at(std::size_t rod, int step) const noexcept {
     kernel::Rod out = in_single ? rounded(rods[rod]) : rods[rod];
-    if (step == 0 || rod >= rods.moving_count) return out;
-    const kernel::Rod change = in_single ? rounded(rods.motion[rod]) : rods.motion[rod];
+    if (step == 0 || !rods.moves(rod)) return out;
+    const kernel::Rod change = in_single ? rounded(rods.change(rod)) : rods.change(rod);
     for (int k = 0; k < 3; ++k) {
       out.a[k] += change.a[k];
       out.b[k] += change.b[k];

@@ -179,7 +179,7 @@ class Embree final : public Accel {
     scene_.singles = std::move(giants);
     scene_.bvh = &bvh_;
     largest_in_bvh_ = limit;
-    for (std::size_t i = view.rods.moving_count; i < view.rods.count; ++i)
+    for (std::size_t i = 0; i < view.rods.count; ++i)
       if (is_short(view.rods, i, limit)) ids.push_back(view.rods.id(i));
     return ids;
   }
@@ -195,7 +195,7 @@ class Embree final : public Accel {
     scene_.is_bvh_alone =
         !bvh_.empty() && scene_.moving_primitives == 0 && scene_.singles.empty() && scene_.rod_pieces.empty();
     if (!scene_.rod_pieces.empty())
-      add_geometry(functions_.rods, rod_bounds, scene_.rod_pieces.size(), scene_.rods.moving_count > 0 ? 2 : 1, &still);
+      add_geometry(functions_.rods, rod_bounds, scene_.rod_pieces.size(), scene_.rods.any_moves() ? 2 : 1, &still);
     if (monitor)
       rtcSetSceneProgressMonitorFunction(
           embree_.get(),

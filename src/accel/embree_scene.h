@@ -54,7 +54,7 @@ struct EmbreeScene {
     return has_packets && (bvh != nullptr || traversal == Traversal::kPacket);
   }
 
-  bool moves() const noexcept { return moving_count > 0 || rods.moving_count > 0; }
+  bool moves() const noexcept { return moving_count > 0 || rods.any_moves(); }
   /// Whether no sphere moves or may be invisible: the tests of spheres are then instances without these branches.
   bool is_plain() const noexcept { return moving_count == 0 && opacity == nullptr; }
 

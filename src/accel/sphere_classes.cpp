@@ -134,13 +134,12 @@ double giant_radius(const kernel::SceneView& scene) {
 }
 
 bool is_short(const kernel::RodArray& rods, std::size_t rod, double largest) {
-  return rod >= rods.moving_count &&
-         enclosing_sphere(rods[rod]).radius <= std::min(largest, kLongRatio * rods[rod].radius);
+  return !rods.moves(rod) && enclosing_sphere(rods[rod]).radius <= std::min(largest, kLongRatio * rods[rod].radius);
 }
 
 std::size_t short_rods(const kernel::RodArray& rods, double largest) {
   std::size_t count = 0;
-  for (std::size_t i = rods.moving_count; i < rods.count; ++i) count += is_short(rods, i, largest) ? 1 : 0;
+  for (std::size_t i = 0; i < rods.count; ++i) count += is_short(rods, i, largest) ? 1 : 0;
   return count;
 }
 

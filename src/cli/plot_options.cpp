@@ -351,6 +351,17 @@ void PlotArguments::add_look_to(Command& command) {
                   "Draw arrows from three columns, e.g. vx,vy,vz, or from a vector, e.g. forces")
       ->details("Their length is chosen from the data; --set 'points[0].vectors.scale=2' sets it.");
   command
+      .add_option("--shutter", options.shutter, "X",
+                  "Motion blur: time that the shutter is open in frames, e.g. 0.5; particles move to the next frame")
+      ->details("From the frame on, to the nearest periodic image. By velocities with --frame-time.")
+      ->check(real_number(1e-6, scene::kLongestShutter));
+  command
+      .add_option("--frame-time", options.points.motion.frame_time, "T",
+                  "Particles move by the velocities of the file: time between frames, in the unit of the velocities")
+      ->check(real_number(scene::kSmallestRadius, scene::kLargestLength));
+  command.add_option("--velocity", look_.velocity, "X,Y,Z",
+                     "With --frame-time: columns of the velocity, e.g. ux,uy,uz; default: those of the file");
+  command
       .add_option("--opacity", data.opacity, "X|COLUMN|CONDITION:X",
                   "Opacity, 0 to 1: of all, from a column, or of those that match, e.g. 'type == 2: 0.3'; can be "
                   "repeated")
@@ -438,8 +449,11 @@ void PlotArguments::read(SceneOptions& scene, const job::Job& job) {
   if (!look_.background.empty()) plot.background = points::parse_color(look_.background);
   for (const std::string& text : look_.representation) read_representation(text, plot);
   for (const std::string& text : look_.material) read_material(text, plot);
-  std::istringstream columns(look_.vectors);
-  for (std::string column; std::getline(columns, column, ',');) plot.points.vectors.columns.push_back(column);
+  for (const auto& [text, list] : {std::pair{&look_.vectors, &plot.points.vectors.columns},
+                                   std::pair{&look_.velocity, &plot.points.motion.columns}}) {
+    std::istringstream columns(*text);
+    for (std::string column; std::getline(columns, column, ',');) list->push_back(column);
+  }
   read_scale_bar(look_.scale_bar, plot.annotation);
   if (const std::string& bonds = look_.bonds; !bonds.empty()) {
     plot.bonds = bonds != "none";
@@ -456,6 +470,7 @@ void PlotArguments::read(SceneOptions& scene, const job::Job& job) {
            {annotation.outline != 0, "--outline", "annotation.outline"},
            {annotation.outline_depth != 0, "--outline-depth", "annotation.outline_depth"},
            {plot.depth_cue.has_value(), "--depth-cue", "camera.depth_cue"},
+           {plot.shutter > 0, "--shutter", "camera.shutter_close"},
            {!annotation.font.empty(), "--font", "annotation.font"},
            {plot.vfov_deg.has_value(), "--perspective", "camera.vfov"}})
     if (is_given) refuse_second(option, plot.overrides, key);

@@ -51,7 +51,7 @@ class PlotArguments {
  private:
   /// Arguments that need further parsing; empty: not set.
   struct {
-    std::string style, quality, bonds, vectors, background, scale_bar, print_width;
+    std::string style, quality, bonds, vectors, velocity, background, scale_bar, print_width;
     std::vector<std::string> representation, material;
   } look_;
 };

@@ -344,13 +344,15 @@ void update_parts(const scene::Scene& scene, const scene::Scene* closing, scene:
     // The book's own method. It has no BVH, and the kernel has no vector loop for its precision.
     compiled.accelerator = compiled.precision == Precision::kBook ? Accelerator::kList : scene.render.accelerator;
     set_rods(scene, compiled);
-    set_spheres(scene, on_copied, compiled);
     compiled.motion.clear();
     compiled.rod_motion.clear();
     if (closing != nullptr) {
-      compiled.motion = sphere_motion(scene, *closing);
-      compiled.rod_motion = rod_motion(scene, *closing);
+      const double frames = scene.camera.shutter_close - scene.camera.shutter_open;
+      compiled.motion = sphere_motion(scene, *closing, frames);
+      compiled.rod_motion = rod_motion(scene, *closing, frames);
     }
+    compiled.bonds_move = compiled.motion.size() > scene.spheres.size() && !compiled.bonds.empty();
+    set_spheres(scene, on_copied, compiled);
     compiled.features.rods = compiled.rod_count() > 0;
   }
   if (changed.geometry || changed.assignment) {
@@ -372,33 +374,51 @@ void update_parts(const scene::Scene& scene, const scene::Scene* closing, scene:
 
 }  // namespace
 
-std::vector<kernel::Sphere> sphere_motion(const scene::Scene& scene, const scene::Scene& other) {
+std::vector<kernel::Sphere> sphere_motion(const scene::Scene& scene, const scene::Scene& other, double frames) {
   std::vector<kernel::Sphere> out;
+  std::size_t id = scene.sphere_count();
+  const auto add = [&](Vec3d displacement, double growth) {
+    --id;
+    const kernel::Sphere change{displacement.x, displacement.y, displacement.z, growth};
+    const bool rests = change.x == 0 && change.y == 0 && change.z == 0 && change.radius == 0;
+    if (out.empty() && !rests) out.resize(id + 1, kernel::Sphere{0, 0, 0, 0});
+    if (!rests) out[id] = change;
+  };
+  for (auto points = scene.points.rbegin(); points != scene.points.rend(); ++points) {
+    if (points->to_next.empty()) id -= points->centers.size();
+    for (std::size_t i = points->to_next.size(); i-- > 0;) add(points->displacement(i, frames), 0);
+  }
   for (std::size_t i = scene.spheres.size(); i-- > 0;) {
     const scene::Sphere &from = scene.spheres[i], &to = other.spheres[i];
-    const Vec3d displacement = to.center - from.center;
-    const kernel::Sphere change{displacement.x, displacement.y, displacement.z,
-                                std::abs(to.radius) - std::abs(from.radius)};
-    const bool rests = change.x == 0 && change.y == 0 && change.z == 0 && change.radius == 0;
-    if (out.empty() && !rests) out.resize(i + 1, kernel::Sphere{0, 0, 0, 0});
-    if (!rests) out[i] = change;
+    add(to.center - from.center, std::abs(to.radius) - std::abs(from.radius));
   }
   return out;
 }
 
-std::vector<kernel::Rod> rod_motion(const scene::Scene& scene, const scene::Scene& other) {
+std::vector<kernel::Rod> rod_motion(const scene::Scene& scene, const scene::Scene& other, double frames) {
   std::vector<kernel::Rod> out;
+  std::size_t rod = scene.rod_count();
+  for (const scene::Points& points : scene.points) rod -= points.bond_pairs.size();
+  const auto add = [&](bool reversed, Vec3d of_from, Vec3d of_to, double growth) {
+    --rod;
+    const bool rests = of_from == Vec3d{0, 0, 0} && of_to == Vec3d{0, 0, 0} && growth == 0;
+    if (out.empty() && !rests) out.resize(rod + 1, kernel::Rod{{0, 0, 0}, 0, {0, 0, 0}, 0});
+    if (rests) return;
+    set(out[rod].a, reversed ? of_to : of_from);
+    set(out[rod].b, reversed ? of_from : of_to);
+    out[rod].radius = growth;
+  };
+  for (auto points = scene.points.rbegin(); points != scene.points.rend(); ++points)
+    for (auto stub = points->bond_stubs.rbegin(); stub != points->bond_stubs.rend(); ++stub) {
+      const bool moves = !points->to_next.empty();
+      const Vec3d from = moves ? points->displacement(stub->sphere, frames) : Vec3d{},
+                  partner = moves ? points->displacement(stub->partner, frames) : Vec3d{};
+      add(is_reversed(points->centers[stub->sphere], stub->end), from, (from + partner) / 2, 0);
+    }
+  for (const scene::RodFile& file : scene.rod_files) rod -= file.from.size();
   for (std::size_t i = scene.rods.size(); i-- > 0;) {
     const scene::Rod &from = scene.rods[i], &to = other.rods[i];
-    const Vec3d of_from = to.from - from.from, of_to = to.to - from.to;
-    const bool reversed = is_reversed(from.from, from.to);
-    kernel::Rod change;
-    set(change.a, reversed ? of_to : of_from);
-    set(change.b, reversed ? of_from : of_to);
-    change.radius = to.radius - from.radius;
-    const bool rests = of_from == Vec3d{0, 0, 0} && of_to == Vec3d{0, 0, 0} && change.radius == 0;
-    if (out.empty() && !rests) out.resize(i + 1, kernel::Rod{{0, 0, 0}, 0, {0, 0, 0}, 0});
-    if (!rests) out[i] = change;
+    add(is_reversed(from.from, from.to), to.from - from.from, to.to - from.to, to.radius - from.radius);
   }
   return out;
 }
@@ -417,6 +437,8 @@ kernel::SceneView CompiledScene::view() const noexcept {
   v.rods.bond_count = bonds.size();
   v.rods.bond_radii = bond_radii.data();
   v.rods.spheres = v.spheres;
+  v.rods.sphere_motion = motion.data();
+  v.rods.moving_spheres = bonds_move ? motion.size() : 0;
   v.opacity = opacity.empty() ? nullptr : opacity.data();
   v.emission = emission.empty() ? nullptr : emission.data();
   if (!textures.textures().empty()) {

@@ -18,7 +18,7 @@ namespace orrery::compile {
 ///
 /// A sky that is not yet baked is baked in linear Rec.709; load::load_scene bakes it for other working spaces.
 ///
-/// `closing`  the scene at shutter close, without points; null: no motion blur. Static objects cost nothing.
+/// `closing`  the scene at shutter close, without data; null: no motion blur. Static objects cost nothing.
 /// Domain     scenes in which scene::validate finds no error
 CompiledScene compile(const scene::Scene& scene, const scene::Scene* closing = nullptr);
 
@@ -34,13 +34,15 @@ void update(const scene::Scene& scene, const scene::Scene* closing, scene::Parts
 void update_and_release(scene::Scene& scene, const scene::Scene* closing, scene::Parts changed,
                         CompiledScene& compiled);
 
-/// The change of the spheres of [[sphere]] tables, up to the last that moves.
+/// The change of the spheres, up to the last that moves.
 ///
-/// `other`    the scene at another time
-std::vector<kernel::Sphere> sphere_motion(const scene::Scene& scene, const scene::Scene& other);
+/// `other`    the scene at another time, without data
+/// `frames`   the time between the two, frames
+/// Domain     the centres of `scene` are not released
+std::vector<kernel::Sphere> sphere_motion(const scene::Scene& scene, const scene::Scene& other, double frames);
 
-/// The same of the rods of [[rod]] tables, with ends in the order of those of `scene`.
-std::vector<kernel::Rod> rod_motion(const scene::Scene& scene, const scene::Scene& other);
+/// The same of the rods, except bonds that are not stubs, with ends in the order of those of `scene`.
+std::vector<kernel::Rod> rod_motion(const scene::Scene& scene, const scene::Scene& other, double frames);
 
 /// Builds the light tree and the list of caustics, if the scene samples its lights. Needed after a change of
 /// `precision`, since other spheres may coincide in another number type, of `direct_lighting` and `samples_caustics`.

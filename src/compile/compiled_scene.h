@@ -51,7 +51,8 @@ struct CompiledScene : kernel::SceneSettings {
   std::vector<std::string> light_groups;  ///< names, indexed by Emission::group; the first is "", the default group
   std::vector<kernel::Sphere>
       motion;  ///< motion of the first motion.size() spheres, see kernel::SceneView; empty: none moves
-  std::vector<kernel::Rod> rod_motion;                ///< the same of the rods
+  std::vector<kernel::Rod> rod_motion;                ///< the same of `rods`
+  bool bonds_move = false;                            ///< with their spheres
   std::optional<math::Vec3d> backdrop;                ///< see scene::Background
   std::uint32_t page = kernel::kNone;                 ///< sphere that is a part of the backdrop; kNone: there is none
   std::shared_ptr<const EnvironmentMap> environment;  ///< an image background; null: none

@@ -127,10 +127,10 @@ void add_rods(const kernel::SceneView& scene, kernel::Precision precision, std::
   for (std::size_t i = 0; i < rods.count; ++i) {
     if (is_lamp(scene, rods.id(i))) ids.push_back(rods.id(i));
     const kernel::Rod rod = rods[i];
-    const bool has_second_half = i < rods.moving_count || !std::equal(rod.a, rod.a + 3, rod.b);
+    const bool has_second_half = rods.moves(i) || !std::equal(rod.a, rod.a + 3, rod.b);
     if (has_second_half && is_lamp(scene, rods.id(i) + 1)) ids.push_back(rods.id(i) + 1);
   }
-  if (ids.size() == spheres || rods.moving_count > 0) return;
+  if (ids.size() == spheres || rods.any_moves()) return;
   const auto key = [&](std::size_t i) {
     const kernel::Rod rod = rods[i];
     std::array<double, 8> out = {rod.a[0], rod.a[1], rod.a[2], rod.b[0], rod.b[1], rod.b[2], rod.radius, 0};

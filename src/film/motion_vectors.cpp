@@ -39,9 +39,11 @@ Vec3d displacement(const SceneView& view, const NeighborFrame& neighbor, std::ui
   there.moving_count = neighbor.sphere_motion.size();
   there.rods.motion = neighbor.rod_motion.data();
   there.rods.moving_count = neighbor.rod_motion.size();
+  there.rods.sphere_motion = there.motion;
+  there.rods.moving_spheres = there.moving_count;
   if (view.rods.contains(id)) {
     const std::size_t rod = view.rods.index(id);
-    return rod < there.rods.moving_count ? displacement(view.rods[rod], there.rods.at(rod, 1), at) : Vec3d{};
+    return there.rods.moves(rod) ? displacement(view.rods[rod], there.rods.at(rod, 1), at) : Vec3d{};
   }
   if (id >= there.moving_count) return {};
   const kernel::Sphere from = view.spheres[id], to = sphere_at(there, id, 1);

@@ -11,7 +11,6 @@
 #include "base/error.h"
 #include "base/text.h"
 #include "compile/camera_basis.h"
-#include "compile/compile.h"
 #include "film/layer_planes.h"
 #include "film/motion_vectors.h"
 #include "job/check_job.h"
@@ -37,19 +36,6 @@ void load(const PreparedJob& own, base::FileSet& files, JobReport& report) {
   load::add_scene_files(job.scene.file, own.scene(), files);
 }
 
-/// What has moved in the frames before and after.
-film::NeighborFrames neighbors_of(const load::ReadResult& read) {
-  film::NeighborFrames out;
-  for (std::size_t i = 0; i < out.size(); ++i) {
-    if (!read.neighbors[i]) continue;
-    const scene::Scene& other = *read.neighbors[i];
-    out[i] = std::make_shared<const film::NeighborFrame>(
-        film::NeighborFrame{compile::compile_camera(other.camera, read.scene.image, compile::view_scale(other.camera)),
-                            compile::sphere_motion(read.scene, other), compile::rod_motion(read.scene, other)});
-  }
-  return out;
-}
-
 /// The layers that an output of the job holds; others are not computed.
 Layers layers_of(const PreparedJob& own) {
   const Job& job = own.job;
@@ -58,7 +44,7 @@ Layers layers_of(const PreparedJob& own) {
   Layers out = choose_layers(own.scene(), own.compiled(), may_have_looks);
   out.request.deep = !job.outputs.deep.empty();
   out.request.halves = out.request.halves || job.denoise;
-  if (out.request.vector) out.request.neighbors = neighbors_of(own.loaded().read);
+  if (out.request.vector) out.request.neighbors = own.prepared->neighbors();
   image::check_lossless(film::planes_of(out.request), job.outputs.exr);
   check_layers(job, own.scene());
   if (job.outputs.has_exr() || job.is_in_memory()) return out;

@@ -5,6 +5,7 @@
 
 #include "annotation/annotate.h"
 #include "base/available_memory.h"
+#include "compile/camera_basis.h"
 #include "compile/compile.h"
 #include "job/resources.h"
 #include "job/scene_hash.h"
@@ -13,6 +14,23 @@
 #include "render/render.h"
 
 namespace orrery::job {
+namespace {
+
+/// What has moved in the frames before and after.
+film::NeighborFrames neighbors_of(const load::ReadResult& read) {
+  film::NeighborFrames out;
+  for (std::size_t i = 0; i < out.size(); ++i) {
+    if (!read.neighbors[i]) continue;
+    const scene::Scene& other = *read.neighbors[i];
+    const double frames = i == 0 ? -1 : 1;
+    out[i] = std::make_shared<const film::NeighborFrame>(film::NeighborFrame{
+        compile::compile_camera(other.camera, read.scene.image, compile::view_scale(other.camera)),
+        compile::sphere_motion(read.scene, other, frames), compile::rod_motion(read.scene, other, frames)});
+  }
+  return out;
+}
+
+}  // namespace
 
 PreparedScene::PreparedScene(bool keeps_files) {
   if (keeps_files) open_data_ = points::open_once();
@@ -49,6 +67,7 @@ const compile::CompiledScene& PreparedScene::compile(std::uint64_t memory_limit)
     compiled_ = {};
     require_memory_to_compile(read.scene, memory_limit);
   }
+  neighbors_ = neighbors_of(read);
   compile::update_and_release(read.scene, read.closing ? &*read.closing : nullptr, changed, compiled_);
   if (changed.geometry || changed.assignment) {
     sphere_hash_ = hash_of_spheres(compiled_);

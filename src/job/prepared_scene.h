@@ -8,6 +8,7 @@
 
 #include "accel/accel.h"
 #include "compile/compiled_scene.h"
+#include "film/motion_vectors.h"
 #include "job/scene_hash.h"
 #include "load/load_scene.h"
 #include "points/load_points.h"
@@ -49,6 +50,9 @@ class PreparedScene {
   const load::LoadedScene& loaded() const { return *loaded_; }
   const compile::CompiledScene& compiled() const { return compiled_; }
 
+  /// What has moved in the frames before and after; for motion vectors.
+  const film::NeighborFrames& neighbors() const { return neighbors_; }
+
   bool has_accelerator() const { return accel_ != nullptr; }
   /// The result of the last accelerator().
   const accel::Accel& built() const { return *accel_; }
@@ -61,6 +65,7 @@ class PreparedScene {
 
   std::optional<load::LoadedScene> loaded_;
   compile::CompiledScene compiled_;
+  film::NeighborFrames neighbors_;
   std::unique_ptr<accel::Accel> accel_;  ///< of the spheres of compiled_
   std::string isa_;                      ///< instruction set that accel_ was built for
   base::Hash sphere_hash_;

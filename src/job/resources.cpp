@@ -147,7 +147,8 @@ MemoryEstimate estimate_memory(const compile::CompiledScene& compiled, const fil
   MemoryEstimate m;
   m.film = static_cast<std::uint64_t>(static_cast<double>(math::pixel_count(compiled.width, compiled.height)) *
                                       film_bytes_per_pixel(compiled, layers, use));
-  m.spheres = compiled.spheres.bytes() + compiled.rods.size() * sizeof(kernel::Rod) +
+  m.spheres = compiled.spheres.bytes() + compiled.motion.size() * sizeof(kernel::Sphere) +
+              (compiled.rods.size() + compiled.rod_motion.size()) * sizeof(kernel::Rod) +
               compiled.bonds.size() * sizeof(kernel::Bond) + compiled.object_materials.bytes() +
               compiled.opacity.size() * sizeof(compiled.opacity[0]) +
               (layers.matte_classes ? layers.matte_classes->of_sphere.bytes() : 0);

@@ -88,8 +88,8 @@ HWY_INLINE Rods<D> moved(const Rods<D>& at_opening, const Rods<D>& change, hn::V
 template <class D, class Packet>
 HWY_INLINE Rods<D> rod_at(D d, const RodArray& rods, std::size_t index, const Packet& packet, int first) {
   const auto at_opening = broadcast(d, rods[index]);
-  if (index >= rods.moving_count) return at_opening;
-  return moved<D>(at_opening, broadcast(d, rods.motion[index]), hn::Load(d, packet.time + first));
+  if (!rods.moves(index)) return at_opening;
+  return moved<D>(at_opening, broadcast(d, rods.change(index)), hn::Load(d, packet.time + first));
 }
 
 template <class V>

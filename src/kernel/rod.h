@@ -19,7 +19,7 @@ struct alignas(64) Rod {
   double unused = 0;        ///< a row is gathered as twice four doubles
 };
 
-/// A rod between the centres of two spheres, which do not move.
+/// A rod between the centres of two spheres, with which its ends move.
 struct Bond {
   std::uint32_t a = 0, b = 0;  ///< spheres whose centres are the ends, which are in order as those of a Rod
   std::uint32_t radius = 0;    ///< index into RodArray::bond_radii
@@ -33,13 +33,16 @@ struct Bond {
 struct RodArray {
   const Rod* plain = nullptr;
   std::size_t count = 0;        ///< with bonds
-  const Rod* motion = nullptr;  ///< change of the first `moving_count` rods until the shutter closes
+  const Rod* motion = nullptr;  ///< change of the first `moving_count` rods in `plain` until the shutter closes
   std::size_t moving_count = 0;
   std::size_t first_id = 0;  ///< the number of spheres
   const Bond* bonds = nullptr;
   std::size_t bond_count = 0;
   const double* bond_radii = nullptr;
   SphereArray spheres = {};  ///< those that bonds refer to
+  /// Motion of the first `moving_spheres` of them, as in SceneView, if bonds move.
+  const Sphere* sphere_motion = nullptr;
+  std::size_t moving_spheres = 0;
 
   std::size_t plain_count() const noexcept { return count - bond_count; }
   const Bond& bond(std::size_t rod) const noexcept { return bonds[rod - plain_count()]; }
@@ -50,6 +53,23 @@ struct RodArray {
     const Bond& of = bond(rod);
     const Sphere a = spheres[of.a], b = spheres[of.b];
     return {{a.x, a.y, a.z}, bond_radii[of.radius], {b.x, b.y, b.z}, 0};
+  }
+
+  bool any_moves() const noexcept { return moving_count > 0 || moving_spheres > 0; }
+  bool moves(std::size_t rod) const noexcept {
+    if (rod < plain_count()) return rod < moving_count;
+    return moving_spheres > 0 && (bond(rod).a < moving_spheres || bond(rod).b < moving_spheres);
+  }
+  /// The change of a rod until the shutter closes.
+  Rod change(std::size_t rod) const noexcept {
+    constexpr Rod kAtRest{{0, 0, 0}, 0, {0, 0, 0}, 0};
+    if (!moves(rod)) return kAtRest;
+    if (rod < plain_count()) return motion[rod];
+    constexpr Sphere kResting{0, 0, 0, 0};
+    const Bond& of = bond(rod);
+    const Sphere &a = of.a < moving_spheres ? sphere_motion[of.a] : kResting,
+                 &b = of.b < moving_spheres ? sphere_motion[of.b] : kResting;
+    return {{a.x, a.y, a.z}, 0, {b.x, b.y, b.z}, 0};
   }
 
   /// The address of a rod's data, for prefetching.
@@ -69,13 +89,13 @@ struct RodArray {
   /// A rod at a time between 0 (shutter opens) and 1 (shutter closes), computed like in the kernel's loops.
   Rod at(std::size_t rod, double time) const noexcept {
     Rod out = (*this)[rod];
-    if (rod >= moving_count) return out;
-    const Rod& change = motion[rod];
+    if (!moves(rod)) return out;
+    const Rod by = change(rod);
     for (int k = 0; k < 3; ++k) {
-      out.a[k] = std::fma(change.a[k], time, out.a[k]);
-      out.b[k] = std::fma(change.b[k], time, out.b[k]);
+      out.a[k] = std::fma(by.a[k], time, out.a[k]);
+      out.b[k] = std::fma(by.b[k], time, out.b[k]);
     }
-    out.radius = std::fma(change.radius, time, out.radius);
+    out.radius = std::fma(by.radius, time, out.radius);
     return out;
   }
 };

@@ -86,11 +86,10 @@ HWY_INLINE Rods<D> load_rods(D d, const SceneView& scene, hn::Vec<IdTag<D>> hits
   const auto ids = hits - set(du, rods.first_id);
   hn::Store(hn::IfThenElseZero(hn::RebindMask(du, is_rod(d, scene, hits)), hn::template ShiftRight<1>(ids)), du, index);
   const auto at_opening = gather_rods(d, rods, [&](std::size_t i) { return index[i]; });
-  if (times == nullptr || rods.moving_count == 0) return at_opening;
-  static constexpr Rod kRodAtRest{{0, 0, 0}, 0, {0, 0, 0}, 0};
-  const auto change = gather_plain_rods(d, [&](std::size_t i) -> const Rod& {
-    return index[i] < rods.moving_count ? rods.motion[index[i]] : kRodAtRest;
-  });
+  if (times == nullptr || !rods.any_moves()) return at_opening;
+  Rod changes[hn::MaxLanes(D())];
+  for (std::size_t i = 0; i < hn::Lanes(d); ++i) changes[i] = rods.change(index[i]);
+  const auto change = gather_plain_rods(d, [&](std::size_t i) -> const Rod& { return changes[i]; });
   return moved<D>(at_opening, change, hn::Load(d, times));
 }
 

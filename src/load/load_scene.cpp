@@ -10,8 +10,10 @@
 #include "base/available_memory.h"
 #include "base/error.h"
 #include "base/input_file.h"
+#include "base/text.h"
 #include "display/settings.h"
 #include "load/load_images.h"
+#include "scene/layers.h"
 #include "scene/validate.h"
 
 namespace orrery::load {
@@ -122,16 +124,29 @@ class SceneLoader {
     if (!previous_ || reader_.has_errors()) return;
     out_.changed = scene::changed_parts(*previous_->authored, pointer_to(previous_->authored_closing), scene_,
                                         pointer_to(reader_.closing()));
-    if (out_.data_version != previous_->data_version) out_.changed.add(scene::Part::kGeometry);
+    // Displacements are released with the spheres.
+    const auto moves = [](const scene::Points& points) { return points.motion.is_set(); };
+    const bool needs_displacements = has_vectors() && std::any_of(scene_.points.begin(), scene_.points.end(), moves);
+    if (out_.data_version != previous_->data_version || needs_displacements) out_.changed.add(scene::Part::kGeometry);
     if (request_.on_change && out_.changed.any()) request_.on_change(out_.changed);
   }
 
   bool has_new_data() const { return out_.changed.geometry || out_.changed.assignment; }
 
-  points::LoadRequest data_request(std::size_t index) const { return points_request(request_.source, scene_, index); }
+  points::LoadRequest data_request(std::size_t index) {
+    points::LoadRequest out = points_request(request_.source, scene_, index);
+    out.has_previous = has_vectors();
+    if (reader_.closing())
+      out.moves_from = scene_.camera.shutter_open;
+    else if (out.has_previous)
+      out.moves_from = 0;
+    return out;
+  }
+
+  bool has_vectors() const { return base::contains(scene::requested_layers(scene_), scene::kVectorLayer); }
 
   /// Identifies the data files, their contents, and the frames that are read from them.
-  std::string data_version() const {
+  std::string data_version() {
     const auto version_of = [&](const std::filesystem::path& file) {
       return request_.source.data_version ? request_.source.data_version(file) : base::file_version(file);
     };
@@ -146,6 +161,8 @@ class SceneLoader {
       } catch (const base::Error&) {  // reported when the file is loaded
       }
       out += fmt::format("{}\n{}\n", version_of(request.file), frame);
+      if (points.motion.is_set() && request.moves_from)
+        out += fmt::format("{} {}\n", *request.moves_from, scene_.camera.shutter_close);
       if (!request.topology.empty()) out += base::file_version(request.topology) + '\n';
       if (points.color.has_map_file()) out += base::file_version(request.folder / points.color.map) + '\n';
     }

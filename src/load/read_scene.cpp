@@ -191,7 +191,7 @@ void read_points(ReadState& state, const toml::table& root, const std::filesyste
       points.bonds.are_drawn = true;
     if (const toml::node* const node = node_at(table, "bonds.material"); node != nullptr)
       points.bonds.material = materials.at(*node, name + ".bonds.material");
-    points.is_sequence = base::is_sequence(folder / points.file);
+    if (base::is_sequence(folder / points.file)) points.sequence = points.file.string();
   });
 }
 
@@ -333,13 +333,11 @@ SceneReader::SceneReader(const SceneSource& source, Pose pose) : state_(std::mak
   if (const toml::array* keys = tables_under(state, root, "key")) read_tracks(state, *keys, scene);
   warn_of_animated_overrides(state, source.overrides, scene);
   const std::filesystem::path folder = source.file.parent_path();
-  if (pose == Pose::kAtFrame) {
-    choose_files(folder, source.frame, scene);
-    if (!state.diagnostics.has_errors()) pose_scene(state, root, state.file, source.frame, state.result);
-  }
   read_points(state, root, folder, materials, scene);
   read_rod_files(state, root, materials, scene);
-  if (pose == Pose::kAtFrame) choose_files(folder, source.frame, scene);
+  if (pose == Pose::kAuthored) return;
+  choose_files(folder, source.frame, scene);
+  if (!state.diagnostics.has_errors()) pose_scene(state, root, state.file, source.frame, state.result);
 }
 
 SceneReader::~SceneReader() = default;

@@ -32,7 +32,7 @@ struct ReadResult {
   scene::Scene scene;
   std::vector<base::Diagnostic> warnings;
   std::vector<Setting> settings;  ///< all keys that a scene has at most once, in documentation order
-  /// The scene at shutter close, without points; `scene` is then the scene at shutter open. Empty without motion blur.
+  /// The scene at shutter close, without data; `scene` is then the scene at shutter open. Empty without motion blur.
   std::optional<scene::Scene> closing = {};
   /// The scenes a frame before and after, like `closing`; empty without motion vectors.
   std::array<std::optional<scene::Scene>, 2> neighbors = {};

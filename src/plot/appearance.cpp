@@ -14,9 +14,11 @@
 #include "data/columns.h"
 #include "plot/plot.h"
 #include "plot/range.h"
+#include "plot/settings.h"
 #include "points/bonds.h"
 #include "points/color_map.h"
 #include "points/sources.h"
+#include "scene/layers.h"
 #include "scene/value_text.h"
 
 namespace orrery::plot {
@@ -66,7 +68,9 @@ class Appearance {
   std::vector<std::string> run() {
     // Determining the radius from the spacing requires reading the file, so the colour options are checked first.
     const std::vector<std::string> color_choices = choose_color();
-    name_components();
+    name_components("--vectors", points_.vectors.columns);
+    name_components("--velocity", points_.motion.columns);
+    choose_motion();
     choose_representation();
     if (!points_.vectors.columns.empty() && options_.material == "glass")
       base::refuse("--vectors: arrows of glass are not supported; use another --material");
@@ -86,8 +90,7 @@ class Appearance {
   }
 
   /// Replaces the one name of a vector by its components: `forces` by forces[1] to forces[3], `v` by vx, vy and vz.
-  void name_components() {
-    std::vector<std::string>& columns = points_.vectors.columns;
+  void name_components(const char* option, std::vector<std::string>& columns) {
     if (columns.size() != 1) return;
     const std::string name = columns.front();
     using Three = std::array<std::string, 3>;
@@ -97,7 +100,30 @@ class Appearance {
         if (data::find_named(info_.columns, name + end) != nullptr) columns.push_back(name + end);
       if (columns.size() == 3) return;
     }
-    base::refuse(fmt::format("--vectors {0}: there are no columns {0}[1] to {0}[3]; name three, e.g. vx,vy,vz", name));
+    base::refuse(
+        fmt::format("{0} {1}: there are no columns {1}[1] to {1}[3]; name three, e.g. vx,vy,vz", option, name));
+  }
+
+  /// Particles move if the shutter is open, or motion vectors are requested: to the next frame, unless the user names
+  /// velocities or the time between frames.
+  void choose_motion() {
+    scene::PointsMotion& motion = points_.motion;
+    const bool is_open = options_.shutter > 0 || options_.overrides.sets("camera.shutter_close");
+    const bool has_vectors =
+        options_.overrides.sets("output.layers") &&
+        base::contains(settings_scene(options_, false).read.scene.output.layers, scene::kVectorLayer);
+    if (motion.is_set() && !is_open && !has_vectors)
+      base::refuse("--velocity and --frame-time have no effect without --shutter X or --layers Vector");
+    if (motion.is_set() && !motion.frame_time)
+      base::refuse("--velocity: how far particles move depends on the time between frames; add --frame-time T");
+    if (motion.is_set() || !(options_.shutter > 0 || has_vectors)) return;
+    motion.next_frame = data_.has_several();
+    if (motion.next_frame)
+      chose("motion to the next frame", "the nearest periodic image; --frame-time T takes velocities instead");
+    else if (options_.shutter > 0)
+      base::refuse(
+          "--shutter: the file has one frame; add --frame-time T, the time between frames, to move particles by their "
+          "velocities");
   }
 
   void chose(const std::string& what, const std::string& why) { choices_.push_back(fmt::format("{}: {}", what, why)); }

@@ -125,8 +125,9 @@ LoadedFrame DataFrames::load(int frame, const scene::PointsKeys& keys, points::S
   request.on_value = on_value;
   request.materials = &sphere_materials();
   request.open = open_;
+  if (numbers_.empty()) request.moves_from = 0;  // a still image, for which the spheres may be kept
   LoadedFrame out{{keys, {}, {}}, {}, {}};
-  out.points.is_sequence = is_sequence_;
+  if (is_sequence_) out.points.sequence = (keys.file.empty() ? options_.file : keys.file).string();
   if (keys.file.empty()) out.points.file = request.file;
   std::vector<base::Diagnostic> errors;
   out.diagnostics = points::load_points(request, out.points);

@@ -67,6 +67,8 @@ class DataFrames {
   /// Number of that frame in the file, from 1.
   int described_frame() const { return described_; }
   bool is_sequence() const { return is_sequence_; }
+  /// Whether there is more than one frame.
+  bool has_several() const { return is_sequence_ || file_->has_frame(1); }
   /// DataOptions::points.frame, counted from the first.
   const std::optional<int>& fixed_frame() const { return fixed_frame_; }
   /// The number of frames of the file; 1 for a sequence of files. Empty if unknown: the file is large and would have to

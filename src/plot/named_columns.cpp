@@ -25,7 +25,8 @@ std::vector<std::string> texts_with_columns(const PlotOptions& options, const da
                                   points.select,        points.color.column,   points.color.carbon,
                                   points.radius.column, points.opacity.column, outline_column(options, info)};
   for (const auto& list : {points.labels, points.opacity.where, points.radius.where, points.color.where,
-                           points.representation, points.material_where, points.cryptomatte, points.vectors.columns})
+                           points.representation, points.material_where, points.cryptomatte, points.vectors.columns,
+                           points.motion.columns})
     out.insert(out.end(), list.begin(), list.end());
   return out;
 }
@@ -47,6 +48,8 @@ std::vector<std::string> expected_columns(const PlotOptions& options, data::Fram
   for (const auto& triple :
        {roles.position, roles.rgb, options.points.unwrap ? roles.image : std::array<std::string, 3>()})
     wanted.insert(wanted.end(), triple.begin(), triple.end());
+  if (options.points.motion.frame_time)
+    for (const std::string& column : points::velocity_of(info)) wanted.push_back(column);
   for (const data::ColumnInfo& column : info.columns)
     if (column.is_derived && is_named(column.name))
       for (const std::string& source : points::sources_of(info, column.name)) wanted.push_back(source);

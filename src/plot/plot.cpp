@@ -119,6 +119,7 @@ class PlotMaker {
     if (is_turntable_ && !extent.is_empty()) extent = orbit(axes, target, pole);
     scene::Camera camera = fitted_to(fit && !is_turntable_ ? *fit : extent);
     camera.up = pole;
+    camera.shutter_close = options_.shutter;
     if (middle) look_at(target, axes, camera);
     // Parallel rays begin in front of all spheres, not only of those that the camera is fitted to.
     if (fit && !vfov_)

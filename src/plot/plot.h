@@ -49,6 +49,7 @@ struct PlotOptions : DataOptions {
   bool transparent = false;               ///< the background is transparent
   bool exact_colors = false;              ///< no tone mapping
   std::optional<double> depth_cue;        ///< 0..1; default: see kDepthCue
+  double shutter = 0;                     ///< time that the shutter is open, frames; 0: no motion blur
   /// Column whose values divide the outlines, see scene::Annotation::outline_objects; empty: they are not divided.
   std::string outline_by;
   /// Of all particles, one of material_names(); empty: plastic with rods, else matte. Those of some are in `points`.

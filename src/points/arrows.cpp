@@ -66,9 +66,10 @@ void add_arrows(scene::Points& points, std::vector<std::uint32_t>* rows, KeyFaul
     }
     const auto repeat = [i](auto& values) {
       const auto value = values[i];
-      values.insert(values.end(), kHeadSpheres, value);
+      for (std::size_t sphere = 0; sphere < kHeadSpheres; ++sphere) values.push_back(value);
     };
     points.each_sphere_value(repeat);
+    points.each_vector(repeat);
     // Arrows of faint particles are not faint: they have the opacity of the material.
     if (!points.opacities.empty()) std::fill_n(points.opacities.rbegin(), kHeadSpheres, -1.0F);
     if (rows != nullptr) repeat(*rows);

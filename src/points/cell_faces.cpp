@@ -79,12 +79,13 @@ void complete_faces(const data::Box& box, scene::Points& points, std::vector<std
   for (const Image& image : images) {
     points.centers.push_back(points.centers[image.of] + lattice.translation(image.shift));
     points.radii.push_back(points.radii[image.of]);
-    if (!points.sphere_vectors.empty()) points.sphere_vectors.push_back(points.sphere_vectors[image.of]);
     if (rows != nullptr) rows->push_back((*rows)[image.of]);
   }
-  points.each_sphere_value([&](auto& values) {
-    for (std::size_t i = 0; i < images.size() && !values.empty(); ++i) values.push_back(values[images[i].of]);
-  });
+  const auto repeat = [&](auto& values) {
+    for (const Image& image : images) values.push_back(values[image.of]);
+  };
+  points.each_sphere_value(repeat);
+  points.each_vector(repeat);
 
   // The bonds of an atom, as differences to its neighbours, are those of its images.
   std::vector<std::vector<Vec3d>> bonds(first);

@@ -231,7 +231,7 @@ void clip(scene::Points& points, std::vector<std::uint32_t>* rows) {
   keep(points.centers, kept);
   keep(points.radii, kept);
   points.each_sphere_value([&](auto& values) { keep(values, kept); });
-  if (!points.sphere_vectors.empty()) keep(points.sphere_vectors, kept);
+  points.each_vector([&](auto& vectors) { keep(vectors, kept); });
   if (rows != nullptr) keep(*rows, kept);
   if (points.bond_count() == 0) return;
   std::vector<std::uint32_t> new_index(count, CopiedSpheres::kNone);
@@ -253,8 +253,9 @@ void make_copies(const std::vector<Copy>& copies, const Labels& chains, scene::P
     if (!is_placed) return;
     for (std::size_t i = 0; i < points.centers.size(); ++i)
       points.centers.set(i, applied(placement, points.centers[i]));
-    for (std::size_t i = 0; i < points.sphere_vectors.size(); ++i)
-      points.sphere_vectors.set(i, turned(placement, points.sphere_vectors[i]));
+    points.each_vector([&](auto& vectors) {
+      for (std::size_t i = 0; i < vectors.size(); ++i) vectors.set(i, turned(placement, vectors[i]));
+    });
     scale(points.radii, points.transform.scale);
     return;
   }
@@ -267,8 +268,10 @@ void make_copies(const std::vector<Copy>& copies, const Labels& chains, scene::P
   });
   spheres.repeat(points.radii);
   points.each_sphere_value([&](auto& values) { spheres.repeat(values); });
-  spheres.repeat(points.sphere_vectors, [&](Vec3d vector, std::size_t copy) {
-    return turned(placement, turned(copies[copy].transform, vector));
+  points.each_vector([&](auto& vectors) {
+    spheres.repeat(vectors, [&](Vec3d vector, std::size_t copy) {
+      return turned(placement, turned(copies[copy].transform, vector));
+    });
   });
   if (rows != nullptr) spheres.repeat(*rows);
   if (is_placed) scale(points.radii, points.transform.scale);

@@ -11,6 +11,7 @@
 #include <fmt/core.h>
 
 #include "base/error.h"
+#include "base/frames.h"
 #include "base/text.h"
 #include "data/columns.h"
 #include "data/data_file.h"
@@ -42,12 +43,13 @@ std::shared_ptr<data::DataFile> open(const LoadRequest& request, const scene::Po
   options.component = points.component;
   options.topology = request.topology;
   options.limit_memory(request.memory_limit);
-  return request.open && !points.is_sequence ? request.open(request.file, options) : data::open(request.file, options);
+  return request.open && points.sequence.empty() ? request.open(request.file, options)
+                                                 : data::open(request.file, options);
 }
 
 /// The requested frame, from 1; before the file is opened.
 int requested_frame(const LoadRequest& request, const scene::PointsKeys& points) {
-  return points.frame ? *points.frame : points.is_sequence ? 1 : request.frame;
+  return points.frame ? *points.frame : !points.sequence.empty() ? 1 : request.frame;
 }
 
 /// The frame to read, from 1. A file of a single frame is the same in all rendered frames.
@@ -135,6 +137,8 @@ class Loader {
       points_.bonds_from = !bond_source_.is_distance ? "file" : bond_source_.is_file ? "both" : "distance";
     }
     if (!points_.vectors.columns.empty()) plan_arrows();
+    if (moves()) velocity_ = velocity_columns(info_, points_.motion, faults_);
+    for (const std::string& column : velocity_) need(column);
     if (request_.source != nullptr) {  // all, in the order of the file
       columns_.clear();
       for (const data::ColumnInfo& column : info_.columns)
@@ -192,6 +196,8 @@ class Loader {
     for (const std::string& column : selection_.columns) need(column);
   }
 
+  bool moves() const { return request_.moves_from && points_.motion.is_set(); }
+
   void plan_arrows() {
     const std::vector<std::string>& columns = points_.vectors.columns;
     if (columns.size() != 3)
@@ -240,6 +246,8 @@ class Loader {
     if (color_.is_set()) sphere_bytes += sizeof(std::uint16_t);
     if (opacity_.is_set()) sphere_bytes += sizeof(float);
     if (!points_.cryptomatte.empty()) sphere_bytes += sizeof(std::uint32_t);
+    if (moves()) sphere_bytes += (request_.has_previous ? 2 : 1) * sizeof(Vec3d);
+    if (moves() && velocity_.empty()) row_bytes += sizeof(Vec3d) + sizeof(std::uint64_t);  // of the frame beside it
     if (request_.source != nullptr) sphere_bytes += sizeof(std::uint32_t) + row_bytes;
     const Vec3d n = points_.replicate;
     const double images = n.x * n.y * n.z;
@@ -293,6 +301,7 @@ class Loader {
     require_memory(copied_count(copies_, chains, rows.size()), are_rounded(ends, points_, read->centers, read->radii),
                    bonds);
     set_attributes(read->table, rows, read->centers);
+    if (moves()) set_motion(*read, frame);
     points_.header = info_.header;
     if (info_.step) points_.header.emplace(points_.header.begin(), "step", *info_.step);
     points_.centers = std::move(read->centers);
@@ -439,6 +448,48 @@ class Loader {
       points_.sphere_vectors = points_of(table, rows, {columns[0], columns[1], columns[2]}, points_.vectors.scale);
   }
 
+  /// Sets the displacements of the spheres.
+  void set_motion(const Particles& read, int frame) {
+    const auto set = [&](scene::PointArray& to, const scene::PointArray& from, double factor) {
+      to = valid_displacements(points_, read.rows, from, factor, faults_);
+    };
+    if (!velocity_.empty()) {
+      const std::array<std::string, 3> columns{velocity_[0], velocity_[1], velocity_[2]};
+      return set(points_.to_next, points_of(read.table, read.rows, columns), *points_.motion.frame_time);
+    }
+    const std::optional<scene::PointArray> next = displacements_to(read, frame, 1);
+    std::optional<scene::PointArray> previous;
+    if (!next || request_.has_previous) previous = displacements_to(read, frame, -1);
+    if (next)
+      set(points_.to_next, *next, 1);
+    else if (previous)  // the last frame goes on as before
+      set(points_.to_next, *previous, -1);
+    else
+      faults_.error(".motion.next_frame",
+                    "the file has one frame; set `motion.frame_time` to move particles by their velocities");
+    if (next && previous) set(points_.to_previous, *previous, 1);
+  }
+
+  /// The displacements of the spheres to another frame; nothing if there is none.
+  ///
+  /// `step`     1 or -1
+  std::optional<scene::PointArray> displacements_to(const Particles& read, int frame, int step) {
+    std::shared_ptr<data::DataFile> file = file_;
+    if (points_.sequence.empty()) {
+      frame += step;
+      if (frame < 0 || !file->has_frame(frame)) return {};
+    } else {
+      LoadRequest other = request_;
+      other.file = request_.folder / base::with_frame(points_.sequence, request_.frame + step);
+      if (!std::filesystem::exists(other.file)) return {};
+      file = open(other, points_);
+    }
+    const data::Roles roles = file->describe(frame).roles;
+    std::vector<std::string> columns(roles.position.begin(), roles.position.end());
+    if (!roles.id.empty()) columns.push_back(roles.id);
+    return displacements(read.table, read.rows, read.centers, info_, file->read(frame, columns), roles, faults_);
+  }
+
   /// Makes the images of all spheres in periodic boxes and assemblies, with their bonds and arrows, and clips them.
   void make_images(const Labels& chains, const BondSet& bonds, const Lattice& lattice) {
     if (is_replicated()) copies_ = replicated(copies_, *info_.box, points_.replicate);
@@ -452,6 +503,7 @@ class Loader {
     if (info_.is_unit_cell && draws_bonds_) complete_faces(*info_.box, points_, row_of_sphere);
     clip(points_, row_of_sphere);
     add_arrows(points_, row_of_sphere, faults_);
+    advance(points_, request_.moves_from.value_or(0));
     if (!points_.objects.empty())
       for (const scene::BondStub& stub : points_.bond_stubs) points_.objects.push_back(points_.objects[stub.sphere]);
   }
@@ -569,6 +621,7 @@ class Loader {
   std::vector<Copy> copies_;
   BondSource bond_source_;
   std::vector<std::string> speed_sources_;  ///< columns that `speed` is computed from; empty: it is not needed
+  std::vector<std::string> velocity_;       ///< columns; empty: spheres rest, or move to the next frame
   std::string material_;                    ///< column of material indices; empty: none
   std::vector<Rule<std::uint32_t>> materials_;
 };
@@ -579,7 +632,9 @@ std::vector<scene::SceneDiagnostic> load_points(const LoadRequest& request, scen
   if (request.loaded) {
     LoadedPoints loaded = std::exchange(*request.loaded, {});
     const scene::PointsKeys &theirs = loaded.points, &ours = points;
-    if (loaded.frame == request.frame && theirs == ours && request.source == nullptr && !request.on_value) {
+    const bool has_motion = !ours.motion.is_set() || (request.moves_from.value_or(0) == 0 && !request.has_previous);
+    if (loaded.frame == request.frame && theirs == ours && has_motion && request.source == nullptr &&
+        !request.on_value) {
       points = std::move(loaded.points);
       return std::move(loaded.diagnostics);
     }

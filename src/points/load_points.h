@@ -6,6 +6,7 @@
 #include <filesystem>
 #include <functional>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -47,6 +48,10 @@ struct LoadRequest {
   std::uint64_t memory_limit = 0;             ///< maximum memory of the spheres, bytes; 0: no limit
   OpenData open = {};                         ///< replaces data::open(), except in a sequence of files
   std::shared_ptr<LoadedPoints> loaded = {};  ///< spheres that were read before; may be null
+  /// If spheres move, see scene::PointsKeys::motion: the time of their centres, frames relative to the frame. None:
+  /// they rest.
+  std::optional<double> moves_from = {};
+  bool has_previous = false;  ///< they also need PointsSpheres::to_previous
 };
 
 /// Reads the spheres of a data file into `points` according to its keys: selects rows, determines radii and colours,

@@ -111,17 +111,6 @@ std::size_t count_repeated(const Ids& ids, const std::vector<std::uint32_t>& row
 
 constexpr const char* kSpeed = "speed";
 
-/// The file's names of the three components of the velocity; empty if it has none.
-std::vector<std::string> velocity_of(const data::FrameInfo& info) {
-  const std::array<std::string, 3> names =
-      data::number_columns(info.columns, {{"vx", "vy", "vz"},
-                                          {"velocity[1]", "velocity[2]", "velocity[3]"},
-                                          {"velocities[1]", "velocities[2]", "velocities[3]"},
-                                          {"vel[1]", "vel[2]", "vel[3]"},
-                                          {"velo[1]", "velo[2]", "velo[3]"}});
-  return names[0].empty() ? std::vector<std::string>() : std::vector<std::string>(names.begin(), names.end());
-}
-
 /// The numbers of three columns; null unless all have this type.
 template <class Numbers>
 std::array<Numbers*, 3> columns_of(data::Table& table, const std::array<std::string, 3>& names) {
@@ -295,6 +284,16 @@ Rows rows_by_id(const data::Column& ids, std::vector<std::uint32_t> selected, st
       },
       ids.values);
   return selected.empty() ? Rows(count) : Rows(std::move(selected));
+}
+
+std::vector<std::string> velocity_of(const data::FrameInfo& info) {
+  const std::array<std::string, 3> names =
+      data::number_columns(info.columns, {{"vx", "vy", "vz"},
+                                          {"velocity[1]", "velocity[2]", "velocity[3]"},
+                                          {"velocities[1]", "velocities[2]", "velocities[3]"},
+                                          {"vel[1]", "vel[2]", "vel[3]"},
+                                          {"velo[1]", "velo[2]", "velo[3]"}});
+  return names[0].empty() ? std::vector<std::string>() : std::vector<std::string>(names.begin(), names.end());
 }
 
 void add_derived_columns(data::FrameInfo& info) {

@@ -120,6 +120,9 @@ Rows rows_by_id(const data::Column& ids, std::vector<std::uint32_t> selected, st
 /// or from the components of velocity, velocities, vel or velo.
 void add_derived_columns(data::FrameInfo& info);
 
+/// The file's names of the three components of the velocity; empty if it has none.
+std::vector<std::string> velocity_of(const data::FrameInfo& info);
+
 /// Returns the columns of the file that a column is computed from; empty if the file contains it.
 std::vector<std::string> sources_of(const data::FrameInfo& info, const std::string& column);
 

@@ -113,6 +113,31 @@ std::vector<scene::Label> placed_labels(const data::Table& table, const Rows& ro
                                         const std::vector<Rule<std::string>>& rules, const Copy& first,
                                         const scene::PointsKeys& points, KeyFaults& faults);
 
+/// The columns of the velocities by which spheres move; empty: they move to the next frame. Reports keys that exclude
+/// or need each other, and unknown columns.
+///
+/// Domain     `motion` is set
+std::vector<std::string> velocity_columns(const data::FrameInfo& info, const scene::PointsMotion& motion,
+                                          KeyFaults& faults);
+
+/// The differences between the places of particles in another frame and in this one, to the nearest images in the
+/// periodic box. Particles are found by their ids, or, without ids, by their order. Reports those that are not found,
+/// which rest, and those that move so far that another image may be the right one.
+///
+/// `rows`     ascending by id, of `table`, with their `centers`; its frame is described by `info`
+/// `roles`    of the other frame, whose table has the columns of positions and ids
+scene::PointArray displacements(const data::Table& table, const Rows& rows, const scene::PointArray& centers,
+                                const data::FrameInfo& info, const data::Table& other, const data::Roles& roles,
+                                KeyFaults& faults);
+
+/// Returns the displacements of the rows in a frame, times a factor, in single precision. Reports those that are not
+/// finite or too large, as errors unless `points.skip_bad`.
+scene::PointArray valid_displacements(const scene::PointsKeys& points, const Rows& rows,
+                                      const scene::PointArray& displacements, double factor, KeyFaults& faults);
+
+/// Moves the spheres, with their bonds, by their displacement in a time.
+void advance(scene::Points& points, double frames);
+
 /// Returns the type of a column of a frame.
 data::ColumnType type_of(const data::FrameInfo& info, const std::string& column);
 

@@ -68,15 +68,16 @@ std::vector<SceneDiagnostic> warn_of_coincident(const Scene& scene, const Scene*
   };
   const auto path_of = [&](std::size_t id) {
     const std::array<double, 4> p = place_of(id);
-    std::array<double, 8> path = {p[0], p[1], p[2], p[3], 0, 0, 0, 0};
-    if (id >= scene.spheres.size()) return path;  // points files do not move
-    const Sphere &from = scene.spheres[id], &to = closing->spheres[id];
-    const Vec3d displacement = to.center - from.center;
-    path[4] = displacement.x;
-    path[5] = displacement.y;
-    path[6] = displacement.z;
-    path[7] = std::abs(to.radius) - std::abs(from.radius);
-    return rounded(path);
+    Vec3d displacement;
+    double growth = 0;
+    if (const Place at = spheres.at(id); at.is_table) {
+      const Sphere &from = scene.spheres[id], &to = closing->spheres[id];
+      displacement = to.center - from.center;
+      growth = std::abs(to.radius) - std::abs(from.radius);
+    } else if (const Points& points = scene.points[at.points]; !points.to_next.empty()) {
+      displacement = points.to_next[at.index];
+    }
+    return rounded(std::array{p[0], p[1], p[2], p[3], displacement.x, displacement.y, displacement.z, growth});
   };
   const std::vector<base::Duplicate> found = closing != nullptr ? base::find_duplicates<8>(spheres.count(), path_of)
                                                                 : base::find_duplicates<4>(spheres.count(), place_of);

@@ -42,7 +42,10 @@ bool has_groups(const Scene& scene) {
   return any_has(scene.spheres) || any_has(scene.points) || any_has(scene.rods) || any_has(scene.rod_files);
 }
 
-bool is_animated(const Scene& scene) { return !scene.tracks.empty() || scene.animation.turntable != 0; }
+bool is_animated(const Scene& scene) {
+  return !scene.tracks.empty() || scene.animation.turntable != 0 ||
+         std::any_of(scene.points.begin(), scene.points.end(), [](const Points& p) { return p.motion.is_set(); });
+}
 
 /// A layer, and which scenes can have it.
 struct LayerRule {

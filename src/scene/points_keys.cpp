@@ -140,6 +140,20 @@ std::vector<Key<P>> make_keys() {
                         {"Radius of the shafts. Vectors no longer than twice this have no arrow", "unit of the file"},
                         &PointsVectors::radius))}));
   add(subtable(
+      "motion", {}, &P::motion,
+      {boolean("next_frame",
+               {"While the shutter is open, spheres move towards their places in the next frame of the file; see "
+                "[Motion](data.md#motion)",
+                "", "Reads the next frame. 44 to 56 bytes per sphere"},
+               &PointsMotion::next_frame),
+       key_of("columns", ValueType::kTexts, {},
+              {"Spheres move by velocities: columns of the x, y and z component, e.g. `[\"vx\", \"vy\", \"vz\"]`. "
+               "Default: the velocities of the file, if `frame_time` is set"},
+              &PointsMotion::columns),
+       otherwise("none", number("frame_time", {0, kLargestLength, true, false},
+                                {"Time between two frames, which multiplies the velocities", "time of the file"},
+                                &PointsMotion::frame_time))}));
+  add(subtable(
       "opacity", Part::kAssignment, &P::opacity,
       {otherwise("those of the materials",
                  number("", kUnit,

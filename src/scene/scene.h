@@ -291,6 +291,16 @@ struct PointsVectors {
   bool operator==(const PointsVectors&) const = default;
 };
 
+/// Motion of the spheres of a points file, in a frame: from their places to those in the next frame, or by velocities.
+struct PointsMotion {
+  bool next_frame = false;           ///< excludes the others
+  std::vector<std::string> columns;  ///< of the x, y and z component of the velocity; empty: those of the file
+  std::optional<double> frame_time;  ///< time between two frames, in the unit of the velocities
+
+  bool is_set() const { return next_frame || frame_time || !columns.empty(); }
+  bool operator==(const PointsMotion&) const = default;
+};
+
 /// Opacities of the spheres of a points file, 0..1, in place of those of their materials: `value`, or that of the last
 /// of `where` that matches, else one of `column` and `types`, if one is set and has a value for the sphere.
 struct PointsOpacity {
@@ -317,7 +327,7 @@ struct PointsKeys {
   std::uint32_t material = 0;    ///< index into Scene::materials; used if the file has no materials
   std::string name = {};         ///< optional, for mattes: all spheres share it; default: the file name
   std::string group = {};        ///< optional, for mattes
-  bool is_sequence = false;      ///< the rendered frame selects the file
+  std::string sequence = {};     ///< `file` before the rendered frame replaced its frame pattern; empty: it has none
   std::optional<int> frame;      ///< frame of the file, from 1; default: the rendered frame, if the file has several
   std::optional<int> component;  ///< particle type of an HDF5 snapshot
   std::filesystem::path topology = {};  ///< file that names the atoms of a trajectory, as `file`; empty: none
@@ -325,6 +335,7 @@ struct PointsKeys {
   PointsColor color;
   PointsBonds bonds;
   PointsVectors vectors;
+  PointsMotion motion;
   PointsOpacity opacity;
   std::vector<std::string> representation;  ///< "CONDITION: KIND" or "KIND"; the last that matches decides
   std::vector<std::string> material_where;  ///< "CONDITION: MATERIAL"; the last that matches decides
@@ -353,12 +364,15 @@ struct PointsSpheres {
   std::vector<SphereBond> bond_pairs = {};
   std::vector<BondStub> bond_stubs = {};
   PointArray sphere_vectors = {};  ///< one per centre, while arrows are to be added
+  PointArray to_next = {};         ///< one per centre, its displacement in a frame; empty: all rest
+  PointArray to_previous = {};     ///< one per centre, its displacement to the frame before; empty: the opposite
 
   /// Bytes of the spheres and bonds.
   std::size_t bytes() const {
     return centers.bytes() + radii.bytes() + materials.size() * sizeof(materials[0]) +
            colors.size() * sizeof(colors[0]) + are_traces.size() + bond_pairs.size() * sizeof(bond_pairs[0]) +
-           bond_stubs.size() * sizeof(bond_stubs[0]) + opacities.size() * sizeof(opacities[0]);
+           bond_stubs.size() * sizeof(bond_stubs[0]) + opacities.size() * sizeof(opacities[0]) + to_next.bytes() +
+           to_previous.bytes();
   }
 };
 
@@ -391,11 +405,17 @@ struct PointsFindings {
 struct Points : PointsKeys, PointsSpheres, PointsFindings {
   /// Number of spheres without those of arrows.
   std::size_t particle_count() const { return centers.size() - arrow_spheres; }
-  /// Number of rods of the bonds and arrows.
+  /// The displacement of a sphere in a time, frames: a part of that to the next frame, or of that to the previous one.
+  ///
+  /// Domain     the spheres move
+  Vec3d displacement(std::size_t sphere, double frames) const {
+    return frames < 0 && !to_previous.empty() ? to_previous[sphere] * -frames : to_next[sphere] * frames;
+  }
   /// Radius of the bonds of a sphere.
   double bond_radius_of(std::size_t sphere) const {
     return !are_traces.empty() && are_traces[sphere] != 0 ? trace_radius : bond_radius;
   }
+  /// Number of rods of the bonds and arrows.
   std::size_t bond_count() const { return bond_pairs.size() + bond_stubs.size(); }
   std::size_t bytes() const { return PointsSpheres::bytes() + objects.size() * sizeof(objects[0]); }
   /// Calls `f` with each array that has a value of each sphere and is not empty, except centres, radii and vectors.
@@ -411,6 +431,12 @@ struct Points : PointsKeys, PointsSpheres, PointsFindings {
     visit(opacities);
     visit(objects);
     visit(are_traces);
+  }
+  /// Calls `f` with each array that has a vector of each sphere and is not empty.
+  template <class F>
+  void each_vector(F f) {
+    for (PointArray* const array : {&sphere_vectors, &to_next, &to_previous})
+      if (!array->empty()) f(*array);
   }
   /// Frees the memory of the spheres and bonds.
   void release_spheres() { static_cast<PointsSpheres&>(*this) = {}; }

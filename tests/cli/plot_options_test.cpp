@@ -47,6 +47,26 @@ TEST_F(CliPlotOptions, OptionsWithoutEffectAreRefused) {
   expect_error("convert c.csv -o a.ply --color-by none --map viridis", 2, "--map has nothing to map");
 }
 
+TEST_F(CliPlotOptions, AShutterBlursTheMotionOfParticles) {
+  ASSERT_EQ(plot("a.dump -o rest.ppm -q").status, 0);
+  const Outcome made = plot("a.dump -o next.ppm --shutter 0.5 --save-scene s.toml");
+  ASSERT_EQ(made.status, 0) << made.err;
+  EXPECT_TRUE(contains(made.err, "motion to the next frame")) << made.err;
+  EXPECT_NE(text_of(folder_ / "next.ppm"), text_of(folder_ / "rest.ppm"));
+  EXPECT_TRUE(contains(text_of(folder_ / "s.toml"), "motion = { next_frame = true }")) << text_of(folder_ / "s.toml");
+  ASSERT_EQ(run("render s.toml -o again.ppm -q --width 16 --height 9 --samples 1").status, 0);
+  EXPECT_EQ(text_of(folder_ / "again.ppm"), text_of(folder_ / "next.ppm"));
+  ASSERT_EQ(plot("a.dump -o film.##.ppm -q --shutter 0.5 --frames all").status, 0);
+  EXPECT_TRUE(std::filesystem::exists(folder_ / "film.02.ppm"));
+  write("v.csv", "x,y,z,radius,v_x,v_y,v_z\n0,0,0,1,0,1,0\n3,0,0,1,1,0,0\n");
+  ASSERT_EQ(plot("v.csv -o v.ppm -q --shutter 0.5 --frame-time 2 --velocity v").status, 0);
+  expect_error("plot v.csv -o v.ppm --shutter 0.5", 2, "add --frame-time T");
+  expect_error("plot v.csv -o v.ppm --shutter 0.5 --velocity v", 2, "add --frame-time T");
+  expect_error("plot v.csv -o v.ppm --frame-time 2 --velocity v", 2, "no effect without --shutter");
+  expect_error("plot v.csv -o v.ppm --shutter 0.5 --frame-time 2", 65, "the file has no velocities");
+  expect_error("plot v.csv -o v.ppm --shutter 0.5 --set camera.shutter_close=1", 2, "--shutter");
+}
+
 TEST_F(CliPlotOptions, RulesByConditionAreSaved) {
   write("m.xyz", "3\n\nC 0 0 0\nC 1.5 0 0\nO 2.2 1.2 0\n");
   const Outcome made = plot(

@@ -8,6 +8,8 @@
 #include <cstdlib>
 #include <string>
 
+#include <fmt/core.h>
+
 #include "base/error.h"
 #include "image/format.h"
 #include "image/read.h"
@@ -140,6 +142,7 @@ values = [[2, 1, 0.5], [1.5, 1.5, -0.5]]
 /// Frames of kMovingScene, with the points that are visible in them.
 class MovingFrame {
  public:
+  virtual ~MovingFrame() = default;
   MovingFrame(Job job, int frame) : share_((frame - 1) / 8.0) {
     job.scene.frame = frame;
     job.scene.overrides.add("output.layers=[\"P\", \"object_id\", \"Vector\"]");
@@ -153,7 +156,7 @@ class MovingFrame {
   }
   int object(int x, int y) const { return static_cast<int>(value("object_id.X", x, y)); }
   /// The nearest hit of a pixel, relative to its object.
-  math::Vec3d local(int x, int y) const {
+  virtual math::Vec3d local(int x, int y) const {
     const math::Vec3d p{value("P.X", x, y), value("P.Y", x, y), value("P.Z", x, y)};
     const double t = share_;
     switch (object(x, y)) {
@@ -211,6 +214,50 @@ TEST_F(JobPrepareJob, MotionVectorsLeadToTheSamePointsOfTheNeighbouringFrames) {
   const MovingFrame first(job_, 1), last(job_, 9);
   for (const char* plane : {"Vector.X", "Vector.Y"}) EXPECT_EQ(first.value(plane, 80, 100), 0);
   for (const char* plane : {"Vector.Z", "Vector.W"}) EXPECT_EQ(last.value(plane, 80, 100), 0);
+}
+
+/// Particles of a trajectory in frames 1 to 3.
+class TrajectoryFrame : public MovingFrame {
+ public:
+  TrajectoryFrame(const Job& job, int frame) : MovingFrame(job, frame), frame_(frame) {}
+
+  static math::Vec3d place(int particle, int frame) {
+    const double t = frame - 2;
+    return particle == 0   ? math::Vec3d{-1.5 + 0.3 * t, 0.2 * t * t, 0}
+           : particle == 1 ? math::Vec3d{1, 0.5 - 0.2 * t, 0.3 * t}
+                           : math::Vec3d{0.2 * t, -1.2, 0.1 * t * t};
+  }
+  math::Vec3d local(int x, int y) const override {
+    const math::Vec3d p{value("P.X", x, y), value("P.Y", x, y), value("P.Z", x, y)};
+    return p - place(object(x, y) - 1, frame_);
+  }
+
+ private:
+  int frame_;
+};
+
+TEST_F(JobPrepareJob, MotionVectorsOfDataLeadToTheirPlacesInTheFramesOfTheFile) {
+  std::string text;
+  for (int frame = 1; frame <= 3; ++frame) {
+    text += "3\nProperties=id:I:1:pos:R:3\n";
+    for (int i = 0; i < 3; ++i) {
+      const int particle = (i + frame) % 3;  // in another order in each frame
+      const math::Vec3d p = TrajectoryFrame::place(particle, frame);
+      text += fmt::format("{} {} {} {}\n", particle + 1, p.x, p.y, p.z);
+    }
+  }
+  support::write_bytes(folder_ / "three.xyz", text);
+  support::write_bytes(
+      folder_ / "scene.toml",
+      "[image]\nwidth = 160\nheight = 120\n[camera]\nvfov = 40\nlook_from = [0, 0, 7]\n"
+      "look_at = [0, 0, 0]\n[render]\nsamples = 32\nshading = \"flat\"\n[material.grey]\n"
+      "type = \"lambertian\"\nalbedo = [0.5, 0.5, 0.5]\n[[points]]\nfile = \"three.xyz\"\nradius = 0.7\nmaterial = "
+      "\"grey\"\nmotion.next_frame = true\n");
+  job_.outputs = {};
+  const TrajectoryFrame before(job_, 1), frame(job_, 2), after(job_, 3);
+  EXPECT_LT(mean_error(frame, after, "Vector.Z", "Vector.W", -1), 0.5);
+  EXPECT_LT(mean_error(frame, before, "Vector.X", "Vector.Y", 1), 0.5);
+  EXPECT_GT(mean_error(frame, after, "Vector.X", "Vector.Y", 1), 1) << "the motion is not uniform";
 }
 
 }  // namespace

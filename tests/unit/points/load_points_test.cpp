@@ -255,7 +255,7 @@ TEST_F(PointsLoadPoints, AFileOfOneFrameIsTheSameInAllFrames) {
 
 TEST_F(PointsLoadPoints, ASequenceHasOneFramePerFile) {
   request.frame = 48;
-  points.is_sequence = true;
+  points.sequence = "a.####.dump";
   EXPECT_EQ(load("a.0048.dump", frame("x y z radius", {"1 0 0 1"}) + frame("x y z radius", {"2 0 0 1"})), "");
   EXPECT_EQ(x(), Numbers{1});
 }

@@ -79,6 +79,53 @@ TEST(RenderMotion, FastLosesNoHitsFarFromTheOrigin) {
   EXPECT_EQ(test::plane_values(render(compiled, {}).picture), expected);
 }
 
+/// The spheres of data files and their bonds move as those of tables do.
+TEST(RenderMotion, DataMoveLikeSpheresAndRodsOfTheScene) {
+  scene::Scene data;
+  data.image = {96, 54};
+  data.render.samples = 8;
+  data.materials.push_back({"grey", scene::Lambertian{{0.5, 0.5, 0.5}}});
+  data.camera.look_from = {0, 0, 12};
+  data.camera.look_at = {0, 0, 0};
+  data.camera.vfov = 40;
+  data.camera.shutter_open = 0.25;
+  data.camera.shutter_close = 0.75;
+  scene::Scene tables = data, closing;
+  scene::Points& points = data.points.emplace_back();
+  std::minstd_rand random(3);
+  std::uniform_int_distribution<int> across(-24, 24);
+  for (int i = 0; i < 40; ++i) {
+    points.centers.push_back({across(random) / 8.0, across(random) / 8.0, across(random) / 8.0});
+    points.to_next.push_back({across(random) / 16.0, across(random) / 16.0, 0});
+    if (i % 4 == 0) points.bond_pairs.push_back({static_cast<std::uint32_t>(i), static_cast<std::uint32_t>(i + 1)});
+  }
+  points.radii.assign(40, 0.375);
+  points.bond_radius = 0.125;
+  points.bond_stubs = {{3, 2, {0.5, 0.5, 3}}};
+  for (std::size_t i = 0; i < 40; ++i) tables.spheres.push_back({points.centers[i], 0.375, 0, ""});
+  tables.rods.push_back({points.centers[3], points.bond_stubs[0].end, 0.125});
+  for (const auto& [a, b] : points.bond_pairs) tables.rods.push_back({points.centers[a], points.centers[b], 0.125});
+  closing = tables;
+  for (std::size_t i = 0; i < 40; ++i) closing.spheres[i].center = tables.spheres[i].center + points.to_next[i] * 0.5;
+  closing.rods[0].from = closing.spheres[3].center;
+  closing.rods[0].to = tables.rods[0].to + (points.to_next[3] + points.to_next[2]) * 0.25;
+  for (std::size_t i = 0; i < points.bond_pairs.size(); ++i) {
+    closing.rods[i + 1].from = closing.spheres[points.bond_pairs[i].a].center;
+    closing.rods[i + 1].to = closing.spheres[points.bond_pairs[i].b].center;
+  }
+  for (const auto precision : {scene::Precision::kExact, scene::Precision::kFast, scene::Precision::kBook}) {
+    data.render.precision = tables.render.precision = precision;
+    for (const auto accelerator : {scene::Accelerator::kEmbree, scene::Accelerator::kList}) {
+      data.render.accelerator = tables.render.accelerator = accelerator;
+      const compile::CompiledScene moving = compile::compile(data, &data);
+      EXPECT_TRUE(moving.features.motion && !moving.bonds.empty());
+      const std::vector<float> found = test::plane_values(render(moving, with_data_layers()).picture);
+      EXPECT_EQ(found, test::plane_values(render(compile::compile(tables, &closing), with_data_layers()).picture));
+      EXPECT_NE(found, test::plane_values(render(compile::compile(tables, &tables), with_data_layers()).picture));
+    }
+  }
+}
+
 TEST(RenderMotion, StaticSceneRendersAsWithoutMotion) {
   const scene::Scene scene = test::everything();
   const compile::CompiledScene compiled = compile::compile(scene, &scene);
