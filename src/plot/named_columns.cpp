@@ -24,9 +24,9 @@ std::vector<std::string> texts_with_columns(const PlotOptions& options, const da
   std::vector<std::string> out = {options.color_by,     options.center,        options.fit,
                                   points.select,        points.color.column,   points.color.carbon,
                                   points.radius.column, points.opacity.column, outline_column(options, info)};
-  for (const auto& list : {points.labels, points.opacity.where, points.radius.where, points.color.where,
-                           points.representation, points.material_where, points.cryptomatte, points.vectors.columns,
-                           points.motion.columns})
+  for (const auto& list :
+       {points.labels, points.opacity.where, points.radius.where, points.color.where, points.representation,
+        points.material_where, points.cryptomatte, points.vectors.columns, points.motion.columns})
     out.insert(out.end(), list.begin(), list.end());
   return out;
 }
