@@ -1,12 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "data/text_number.h"
 
+#include <locale.h>
+
 #include <algorithm>
 #include <bit>
 #include <cctype>
 #include <charconv>
+#include <cstdlib>
 #include <cstring>
-#include <limits>
 #include <string>
 #include <system_error>
 
@@ -45,24 +47,6 @@ std::uint64_t number_of(std::uint64_t block, std::size_t count) {
          32;
 }
 
-/// The magnitude of a number that is too large or too small for a double. Its exponent may be too large for an integer.
-double out_of_range(std::string_view word) {
-  const std::size_t letter = std::min(word.find('e'), word.size());
-  const std::string_view mantissa = word.substr(0, letter);
-  const std::size_t point = std::min(mantissa.find('.'), mantissa.size());
-  const auto digit = static_cast<std::int64_t>(mantissa.find_first_of("123456789"));
-  // Power of ten of the first significant digit.
-  std::int64_t power = static_cast<std::int64_t>(point) - digit;
-  if (letter < word.size()) {
-    const std::string_view exponent = word.substr(letter + 1 + (word[letter + 1] == '+' ? 1 : 0));
-    std::int64_t value = 0;
-    constexpr std::int64_t kFar = std::int64_t{1} << 62;  // no mantissa has so many digits
-    if (!base::from_text(exponent, value)) value = exponent.front() == '-' ? -kFar : kFar;
-    power += std::clamp(value, -kFar, kFar);
-  }
-  return power > 0 ? std::numeric_limits<double>::infinity() : 0.0;
-}
-
 /// Parses a magnitude that from_chars() does not accept: with a Fortran exponent, or out of range.
 bool parse_unusual(std::string word, double& value) {
   if (std::isalpha(static_cast<unsigned char>(word[0])) != 0) return false;
@@ -70,7 +54,9 @@ bool parse_unusual(std::string word, double& value) {
     if (c == 'E' || c == 'd' || c == 'D') c = 'e';
   const char* const end = word.data() + word.size();
   const auto [stop, error] = std::from_chars(word.data(), end, value);
-  if (error == std::errc::result_out_of_range) value = out_of_range(word);
+  // The host program may have set a locale with a decimal comma.
+  static const locale_t c_locale = ::newlocale(LC_ALL_MASK, "C", nullptr);
+  if (error == std::errc::result_out_of_range) value = ::strtod_l(word.c_str(), nullptr, c_locale);
   return stop == end;
 }
 
