@@ -132,6 +132,11 @@ struct DirectItems {
     hn::StoreU(hn::LoadU(kFour, a->center), kFour, b->center);
     hn::StoreU(moved, kFour, a->center);
   }
+  /// As std::nth_element.
+  void select(Item* begin, Item* middle, Item* end, int axis) const {
+    std::nth_element(begin, middle, end,
+                     [axis](const Item& a, const Item& b) { return a.center[axis] < b.center[axis]; });
+  }
 };
 
 /// The same of ids, whose spheres are elsewhere.
@@ -144,12 +149,23 @@ struct IndirectItems {
   hn::Vec<Four> center(Item id) const { return DirectItems().center(spheres.item(id)); }
   /// Fetches the sphere of an item that is needed soon.
   void prefetch(const Item* item, const Item* last) const {
-    constexpr std::ptrdiff_t kAhead = 16;
+    constexpr std::ptrdiff_t kAhead = 64;
     if (last - item <= kAhead) return;
     if (const Item id = item[kAhead]; !spheres.rods.rods.contains(id))
       hwy::Prefetch(spheres.spheres.spheres.address(id));
   }
   static void swap(Item* a, Item* b) { std::swap(*a, *b); }
+  /// As std::nth_element, but each sphere is fetched once.
+  void select(Item* begin, Item* middle, Item* end, int axis) const {
+    std::vector<std::pair<float, Item>> keys(static_cast<std::size_t>(end - begin));
+    for (std::size_t i = 0; i < keys.size(); ++i) {
+      prefetch(begin + i, end);
+      keys[i] = {coordinate(begin[i], axis), begin[i]};
+    }
+    std::nth_element(keys.begin(), keys.begin() + (middle - begin), keys.end(),
+                     [](const auto& a, const auto& b) { return a.first < b.first; });
+    for (const auto& key : keys) *begin++ = key.second;
+  }
 };
 
 /// Moves the items before a plane to the front, in any order. Branchless, because a branch would be mispredicted for
@@ -187,9 +203,7 @@ float divide_at(const Items& items, std::span<typename Items::Item> range, const
     auto* const before = partition(items, first, cut, split.axis, split.at - split.spread);
     (before > middle ? end : begin) = before;
   }
-  std::nth_element(begin, middle, end, [&](const auto& a, const auto& b) {
-    return items.coordinate(a, split.axis) < items.coordinate(b, split.axis);
-  });
+  items.select(begin, middle, end, split.axis);
   return items.coordinate(*middle, split.axis);
 }
 
@@ -493,7 +507,10 @@ class Builder {
     const base::StopPoint stop;
     tbb::parallel_for(Range(0, part.count, 4096), [&](const Range& range) {
       stop.check();
-      for (std::size_t i = range.begin(); i < range.end(); ++i) items[i] = spheres_.item(ids[i]);
+      for (std::size_t i = range.begin(); i < range.end(); ++i) {
+        IndirectItems{spheres_}.prefetch(&ids[i], ids.data() + ids.size());
+        items[i] = spheres_.item(ids[i]);
+      }
     });
     base::release_memory(ids);
     return items;

@@ -67,9 +67,12 @@ SphereBvh::Leaf make_leaf(std::span<const SphereItem> items) {
   std::fill_n(leaf.ids, kArity, kernel::kNone);
   for (std::size_t i = 0; i < items.size(); ++i) {
     leaf.ids[i] = items[i].id;
-    for (int axis = 0; axis < 3; ++axis)
-      leaf.center[axis][i] = static_cast<std::uint8_t>(
-          std::clamp(std::lround((items[i].center[axis] - leaf.origin[axis]) / leaf.step), 0L, 255L));
+    for (int axis = 0; axis < 3; ++axis) {
+      const float steps = (items[i].center[axis] - leaf.origin[axis]) / leaf.step;
+      // As std::lround, which is a call: the sum is exact.
+      leaf.center[axis][i] =
+          static_cast<std::uint8_t>(std::min(static_cast<int>(static_cast<double>(steps) + 0.5), 255));
+    }
   }
   return leaf;
 }
