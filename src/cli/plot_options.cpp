@@ -395,8 +395,7 @@ void PlotArguments::add_look_to(Command& command) {
                   "default: plastic with rods, else matte; can be repeated")
       ->details(
           "plastic: matte with a soft highlight. metal: brushed. glass: clear, without colours; not for bonds. The "
-          "last "
-          "that matches a particle decides. Bonds have the materials of their ends.")
+          "last that matches a particle decides. Bonds have the materials of their ends.")
       ->repeatable();
   command.add_flag("--allow-empty", options.allow_empty,
                    "Render the background alone if no particle is left; default: an error");
