@@ -15,8 +15,8 @@
 
 #include "kernel/caustic_geometry-inl.h"
 #include "kernel/caustics.h"
-#include "kernel/compaction-inl.h"
 #include "kernel/direct_light-inl.h"
+#include "kernel/gather-inl.h"
 #include "kernel/light-inl.h"
 #include "kernel/path_stream.h"
 #include "kernel/scatter-inl.h"

@@ -14,9 +14,9 @@
 
 #include "kernel/caustic_sampling-inl.h"
 #include "kernel/caustics.h"
-#include "kernel/compaction-inl.h"
 #include "kernel/deposit-inl.h"
 #include "kernel/environment-inl.h"
+#include "kernel/gather-inl.h"
 #include "kernel/path_stream.h"
 #include "kernel/record-inl.h"
 #include "kernel/scatter-inl.h"

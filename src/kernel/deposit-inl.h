@@ -12,7 +12,7 @@
 #include <algorithm>
 #include <cstdint>
 
-#include "kernel/compaction-inl.h"
+#include "kernel/gather-inl.h"
 #include "kernel/path_record.h"
 #include "kernel/path_stream.h"
 #include "kernel/pixel_sum.h"

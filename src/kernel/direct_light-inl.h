@@ -12,9 +12,9 @@
 #include <algorithm>
 #include <limits>
 
-#include "kernel/compaction-inl.h"
 #include "kernel/deposit-inl.h"
 #include "kernel/environment-inl.h"
+#include "kernel/gather-inl.h"
 #include "kernel/light-inl.h"
 #include "kernel/opacity-inl.h"
 #include "kernel/path_record.h"

@@ -12,7 +12,7 @@
 #include <algorithm>
 #include <type_traits>
 
-#include "kernel/compaction-inl.h"
+#include "kernel/gather-inl.h"
 #include "kernel/path_record.h"
 #include "kernel/pixel_sum.h"
 #include "kernel/render_tile.h"

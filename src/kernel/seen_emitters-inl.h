@@ -12,8 +12,8 @@
 #include <algorithm>
 
 #include "kernel/camera-inl.h"
-#include "kernel/compaction-inl.h"
 #include "kernel/direct_light-inl.h"
+#include "kernel/gather-inl.h"
 #include "kernel/path_stream.h"
 #include "kernel/sampler-inl.h"
 #include "kernel/scene_view.h"

@@ -14,10 +14,10 @@
 
 #include "kernel/caustic_sampling-inl.h"
 #include "kernel/caustic_transport-inl.h"
-#include "kernel/compaction-inl.h"
 #include "kernel/cone-inl.h"
 #include "kernel/deposit-inl.h"
 #include "kernel/direct_light-inl.h"
+#include "kernel/gather-inl.h"
 #include "kernel/opacity-inl.h"
 #include "kernel/path_stream.h"
 #include "kernel/record-inl.h"
