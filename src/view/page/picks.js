@@ -172,7 +172,7 @@ function actions(picked, [, condition, column]) {
           action("Only", `--select '${condition}'`, () => select(condition)),
           action("Ghost", `--opacity '${condition}: ${GHOST}'`, () => setRule("--opacity", condition, GHOST)),
           action("Colour by", `--color-by ${column}`, () => set({ "--color-by": column })),
-          action("Label", `--label '${label}'`, () => set({ "--label": [...option("--label"), label] })), 
+          action("Label", `--label '${label}'`, () => set({ "--label": [...option("--label"), label] })),
           kinds(condition, "Representation of these", "--representation", "As ..."), kinds(condition, "Material of these", "--material", "Of ...")];
 }
 
