@@ -143,8 +143,8 @@ void Sums::mean(std::size_t pixel, float* rgb) const {
 
 float Sums::coverage(std::size_t pixel) const {
   if (paths(pixel) == 0) return 0;
-  return static_cast<float>(static_cast<double>(layers.covered[pixel]) * kernel::kGuideUnit /
-                            static_cast<double>(paths(pixel)));
+  const auto sum = static_cast<double>(std::max<std::int64_t>(layers.covered[pixel], 0));  // see add_coverage()
+  return static_cast<float>(sum * kernel::kGuideUnit / static_cast<double>(paths(pixel)));
 }
 
 }  // namespace orrery::film

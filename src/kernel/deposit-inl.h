@@ -11,6 +11,7 @@
 
 #include <algorithm>
 #include <cstdint>
+#include <utility>
 
 #include "kernel/gather-inl.h"
 #include "kernel/path_record.h"
@@ -123,19 +124,21 @@ HWY_INLINE void deposit(D d, const BatchOf<T>& batch, int count, const SceneView
   add_sum(count - 1);
 }
 
-/// Adds the coverage of a batch's paths to the sums of their pixels. On a transparent page, what a path lacks of the
-/// radiance of the backdrop becomes coverage, in black.
+/// Adds the coverage of a batch's paths to the sums of their pixels. On a transparent page, what paths lack of their
+/// share of the radiance of the backdrop becomes coverage, in black: brighter paths count below 0, so that noise is no
+/// shadow.
 template <class T>
 HWY_INLINE void add_coverage(BatchOf<T>& batch, int count, const SceneView& scene, const Tile& tile) {
   const math::Vec3d& backdrop = scene.backdrop;
+  constexpr T kBrightest = 16;  // of a path, in radiances of the backdrop
   const auto whole = static_cast<T>(scene.has_backdrop ? backdrop.x + backdrop.y + backdrop.z : 3);
   for (int i = 0; i < count; ++i) {
     T coverage = batch.coverage[i];
-    if (coverage == T{kOnPage}) {
-      coverage = 0;
+    if (coverage < 0) {
+      const T share = -std::exchange(coverage, T{0});
       if (!scene.background_visible && whole > 0) {
         const T seen = batch.radiance[0][i] + batch.radiance[1][i] + batch.radiance[2][i];
-        coverage = std::max(T{0}, 1 - std::max(T{0}, seen / whole));
+        coverage = share - std::min(std::max(T{0}, seen / whole), kBrightest);
         for (auto& channel : batch.radiance) channel[i] = 0;
       }
     }

@@ -19,9 +19,6 @@ static_assert(kStreamSize < 1 << kPathBits);
 /// Capacity of arrays with an element for each path of a batch. Whole vectors and packets are stored at their ends.
 inline constexpr int kPathCapacity = kStreamSize + kPacketSize;
 
-/// Coverage of a path whose first hit is SceneView::page, until its radiance is known.
-inline constexpr int kOnPage = -1;
-
 /// What a batch's paths keep from start to end, by index within the batch: all samples of a pixel, then those of the
 /// next pixel.
 ///
@@ -30,7 +27,7 @@ inline constexpr int kOnPage = -1;
 template <class T>
 struct alignas(64) BatchOf {
   T radiance[3][kPathCapacity];  ///< that the camera has received so far
-  T coverage[kPathCapacity];     ///< 1 less the share of the background; kOnPage: see SceneView::page
+  T coverage[kPathCapacity];     ///< 1 less the share of the background; below 0 on SceneView::page, see add_coverage()
   IdOf<T> pixel[kPathCapacity];  ///< y << 16 | x
   IdOf<T> sample[kPathCapacity];
 };

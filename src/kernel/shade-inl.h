@@ -195,7 +195,7 @@ class Shader {
   /// `i`        position in the stream, which is the index within the batch at first hits
   HWY_INLINE void cover(const Arrivals<D>& at, int i) const {
     V coverage = hn::IfThenElseZero(at.hit, at.throughput.x);  // 1 less what the depth cue takes
-    if (scene_.page != kNone) coverage = select(on_page(at), set(d, kOnPage), coverage);
+    if (scene_.page != kNone) coverage = select(on_page(at), -coverage, coverage);
     hn::Store(coverage, d, paths_.batch.coverage + i);
   }
 

@@ -479,6 +479,10 @@ TEST(RenderLayers, APageIsTheBackdropExceptForShadows) {
   EXPECT_NEAR(plane(transparent, "A")[at(2, 2)], 0, 5e-3);
   EXPECT_NEAR(plane(transparent, "A")[at(-1.5, 0)], 1, 0.02);
   EXPECT_EQ(plane(transparent, "R")[at(-1.5, 0)], 0);
+  s.camera.projection = scene::Projection::kPerspective;
+  s.camera.look_from = {0, 3, 30};
+  s.camera.vfov = 8;
+  EXPECT_NEAR(plane(render_with(s, request), "A")[30], 0, 5e-3) << "far behind the ball";
 }
 
 TEST(RenderLayers, DeepSamplesFlattenToTheBeautyWithEveryFilter) {
