@@ -55,30 +55,37 @@ HWY_INLINE void store_fixed_point(D, hn::Vec<D> value, std::int64_t* to) {
   }
 }
 
-/// The paths of a batch that belong to the same sum: those of a pixel and a half, whose samples follow each other.
+/// The paths of a batch that belong to the same sum: consecutive samples of a pixel in a half.
 template <class T>
 class PathRun {
  public:
-  HWY_INLINE explicit PathRun(const BatchOf<T>& batch) : samples_(batch.sample), offset_(samples_[0]) {}
+  HWY_INLINE PathRun(const BatchOf<T>& batch, const Tile& tile)
+      : samples_(batch.sample), sample_end_(tile.sample_end), end_(end_of(0)) {}
 
   /// Whether the run ends before a path. If so, that path begins the next run.
   HWY_INLINE bool ends_before(int i) {
-    const auto offset = static_cast<IdOf<T>>(samples_[i] - static_cast<IdOf<T>>(i));
-    if (offset == offset_) return false;
-    offset_ = offset;
+    if (i != end_) return false;
+    end_ = end_of(i);
     return true;
   }
 
  private:
+  /// The end of the run that begins with a path; beyond the batch if the run goes on in the next.
+  HWY_INLINE int end_of(int i) const {
+    const std::uint32_t left = (sample_end_ - static_cast<std::uint32_t>(samples_[i])) % Sampler::kSecondHalf;
+    return i + static_cast<int>(std::min<std::uint32_t>(left, kStreamSize));
+  }
+
   const IdOf<T>* samples_;
-  IdOf<T> offset_;  ///< of the samples from the paths' indices
+  std::uint32_t sample_end_;
+  int end_;
 };
 
 /// Adds what the paths of a batch have gained to the sums of their pixels. Bad samples are counted and excluded.
 template <class D, class T = hn::TFromD<D>>
 HWY_INLINE void deposit(D d, const BatchOf<T>& batch, int count, const SceneView& scene, const Tile& tile,
                         TileCounts& counts) {
-  PathRun<T> run(batch);
+  PathRun<T> run(batch, tile);
   PixelSum sum;
   const auto add_sum = [&](int last) {
     tile.sums[tile.index(place_of(batch.pixel[last], scene), batch.sample[last])] += sum;
@@ -147,11 +154,10 @@ HWY_INLINE void add_coverage(BatchOf<T>& batch, int count, const SceneView& scen
   }
 }
 
-/// Raises the largest samples of pixels. Bad samples do not count.
+/// Raises the largest samples of pixels. Bad samples do not count. Not inlined.
 template <class D, class T = hn::TFromD<D>>
-HWY_INLINE void raise_largest(D d, const BatchOf<T>& batch, int count, const SceneView& scene, const Tile& tile) {
-  if (tile.largest == nullptr) return;
-  PathRun<T> run(batch);
+HWY_NOINLINE void raise_largest(D d, const BatchOf<T>& batch, int count, const SceneView& scene, const Tile& tile) {
+  PathRun<T> run(batch, tile);
   T most = 0;
   const auto raise = [&](int last) {
     float& largest = tile.largest[tile.index(place_of(batch.pixel[last], scene))];

@@ -69,8 +69,8 @@ class PathCounter {
   }
 
  private:
-  /// The second half of a pixel, or the next pixel.
-  void start_run() {
+  /// The second half of a pixel, or the next pixel. Not inlined.
+  HWY_NOINLINE void start_run() {
     const bool is_second = tile_.has_both_halves && end_ == tile_.sample_end;
     const std::uint32_t first = is_second ? Sampler::kSecondHalf : 0;
     sample_ = first + tile_.sample_begin;
@@ -116,7 +116,7 @@ class TileLoop {
       for (depth_ = 0; alive > 0; ++depth_) alive = advance(alive);
       if (kLoop.full && tile_.covered != nullptr) add_coverage(paths_.batch, batch, scene_, tile_);
       deposit(d, paths_.batch, batch, scene_, tile_, counts_);
-      raise_largest(d, paths_.batch, batch, scene_, tile_);
+      if (tile_.largest != nullptr) raise_largest(d, paths_.batch, batch, scene_, tile_);
       if (kLoop.full) record_light(paths_.batch, batch, scene_, tile_);
     }
     return counts_;
@@ -132,13 +132,15 @@ class TileLoop {
   /// Adds the tile's paths to the weights of their pixels.
   HWY_INLINE void count_paths() {
     const std::uint32_t weight = tile_.sample_end - tile_.sample_begin;
+    const auto add = [&](std::int64_t to) {
+      tile_.sums[to].weight += weight;
+      if (kLoop.full && tile_.guides != nullptr) tile_.guides[to].weight += weight;
+    };
     for (int i = 0; i < tile_.pixel_count(); ++i) {
       const PixelPlace at = tile_.pixel(i);
-      for (int half = 0; half < (tile_.has_both_halves ? 2 : 1); ++half) {
-        const std::int64_t to = at.y * tile_.row_stride + at.x + half * tile_.half_stride;
-        tile_.sums[to].weight += weight;
-        if (kLoop.full && tile_.guides != nullptr) tile_.guides[to].weight += weight;
-      }
+      const std::int64_t to = at.y * tile_.row_stride + at.x;
+      add(to);
+      if (tile_.has_both_halves) add(to + tile_.half_stride);
     }
   }
 

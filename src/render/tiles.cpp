@@ -211,11 +211,14 @@ void TileRenderer::attach_buffers(kernel::Tile& tile, TileWorker& worker, bool i
   tile.row_stride = tile.width;
   tile.half_stride = static_cast<std::int64_t>(pixels);
   const auto clear = [&](auto& buffer, bool has_halves) {
-    const std::size_t halves = has_halves && tile.has_both_halves ? 2 : 1;
-    if (buffer.size() < halves * pixels) buffer.resize(halves * pixels);
-    for (int i = 0; i < tile.pixel_count(); ++i)  // often few of those of the rectangle
-      for (std::size_t half = 0; half < halves; ++half)
-        buffer[half * pixels + math::pixel_index(tile.pixel(i).x, tile.pixel(i).y, tile.width)] = {};
+    const std::size_t size = (has_halves && tile.has_both_halves ? 2 : 1) * pixels;
+    if (tile.chosen == nullptr || buffer.size() < size) {
+      buffer.assign(size, {});
+      return buffer.data();
+    }
+    for (int i = 0; i < tile.chosen_count; ++i)  // often few
+      for (std::size_t k = math::pixel_index(tile.chosen[i].x, tile.chosen[i].y, tile.width); k < size; k += pixels)
+        buffer[k] = {};
     return buffer.data();
   };
   tile.sums = clear(worker.light, true);
