@@ -120,29 +120,39 @@ bool is_lamp(const kernel::SceneView& scene, std::uint32_t id) {
   return rgb[0] > 0 || rgb[1] > 0 || rgb[2] > 0;
 }
 
-/// Appends the halves of rods that emit. Of coincident rods at rest, rays hit the first only.
-void add_rods(const kernel::SceneView& scene, kernel::Precision precision, std::vector<std::uint32_t>& ids) {
+/// Appends the halves of rods that emit.
+void add_rods(const kernel::SceneView& scene, std::vector<std::uint32_t>& ids) {
   const kernel::RodArray& rods = scene.rods;
-  const std::size_t spheres = ids.size();
   for (std::size_t i = 0; i < rods.count; ++i) {
     if (is_lamp(scene, rods.id(i))) ids.push_back(rods.id(i));
     const kernel::Rod rod = rods[i];
     const bool has_second_half = rods.moves(i) || !std::equal(rod.a, rod.a + 3, rod.b);
     if (has_second_half && is_lamp(scene, rods.id(i) + 1)) ids.push_back(rods.id(i) + 1);
   }
-  if (ids.size() == spheres || rods.any_moves()) return;
+}
+
+/// Finds rods that coincide with an earlier one while the shutter is open.
+std::vector<base::Duplicate> coincident_rods(const kernel::SceneView& scene, kernel::Precision precision) {
   const auto key = [&](std::size_t i) {
-    const kernel::Rod rod = rods[i];
-    std::array<double, 8> out = {rod.a[0], rod.a[1], rod.a[2], rod.b[0], rod.b[1], rod.b[2], rod.radius, 0};
+    std::array<double, 14> out;
+    for (const std::size_t time : {0U, 1U}) {
+      const kernel::Rod rod = scene.rods.at(i, static_cast<double>(time));
+      const double numbers[] = {rod.a[0], rod.a[1], rod.a[2], rod.b[0], rod.b[1], rod.b[2], rod.radius};
+      std::copy(std::begin(numbers), std::end(numbers), out.begin() + (time == 0 ? 0 : 7));
+    }
     if (precision == kernel::Precision::kFast)
       for (double& x : out) x = math::in_single_precision(x);
     return out;
   };
-  const std::vector<base::Duplicate> found = base::find_duplicates<8>(rods.count, key);
-  std::erase_if(ids, [&](std::uint32_t id) {
-    return rods.contains(id) && std::binary_search(found.begin(), found.end(), base::Duplicate{rods.index(id), 0},
-                                                   [](const auto& a, const auto& b) { return a.index < b.index; });
-  });
+  return base::find_duplicates<14>(scene.rods.count, key);
+}
+
+/// Finds spheres up to `count` that coincide with an earlier one while the shutter is open.
+std::vector<base::Duplicate> coincident_spheres(const kernel::SceneView& scene, kernel::Precision precision,
+                                                std::size_t count) {
+  const auto place = [&](std::size_t id) { return kernel::coincidence_key<4>(scene, id, precision); };
+  const auto path = [&](std::size_t id) { return kernel::coincidence_key<8>(scene, id, precision); };
+  return scene.moving_count > 0 ? base::find_duplicates<8>(count, path) : base::find_duplicates<4>(count, place);
 }
 
 }  // namespace
@@ -167,17 +177,22 @@ std::size_t LightTree::bytes_of_build() const noexcept { return bytes() + sphere
 
 std::vector<std::uint32_t> without_coincident(const kernel::SceneView& scene, kernel::Precision precision,
                                               std::vector<std::uint32_t> ids) {
-  if (ids.empty() || kernel::is_distinct(scene, precision)) return ids;
-  const std::size_t count = std::size_t{ids.back()} + 1;
-  const auto place = [&](std::size_t id) { return kernel::coincidence_key<4>(scene, id, precision); };
-  const auto path = [&](std::size_t id) { return kernel::coincidence_key<8>(scene, id, precision); };
-  const std::vector<base::Duplicate> found =
-      scene.moving_count > 0 ? base::find_duplicates<8>(count, path) : base::find_duplicates<4>(count, place);
-  auto next = found.begin();
-  std::erase_if(ids, [&](std::uint32_t id) {
-    while (next != found.end() && next->index < id) ++next;
-    return next != found.end() && next->index == id;
-  });
+  const auto remove = [&](const std::vector<base::Duplicate>& found, auto begin, auto end, auto index_of) {
+    ids.erase(std::remove_if(begin, end,
+                             [&](std::uint32_t id) {
+                               return std::ranges::binary_search(found, index_of(id), {}, &base::Duplicate::index);
+                             }),
+              end);
+  };
+  const auto first_rod = std::ranges::lower_bound(ids, scene.sphere_count);
+  const auto spheres = first_rod - ids.begin();
+  if (first_rod != ids.end())
+    remove(coincident_rods(scene, precision), first_rod, ids.end(),
+           [&](std::uint32_t id) { return std::size_t{scene.rods.index(id)}; });
+  if (spheres == 0 || kernel::is_distinct(scene, precision)) return ids;
+  const auto end = ids.begin() + spheres;
+  remove(coincident_spheres(scene, precision, std::size_t{end[-1]} + 1), ids.begin(), end,
+         [](std::uint32_t id) { return std::size_t{id}; });
   return ids;
 }
 
@@ -186,8 +201,8 @@ LightTree build_light_tree(const kernel::SceneView& scene, kernel::Precision pre
   tree.precision = precision;
   for (std::uint32_t id = 0; id < scene.sphere_count; ++id)
     if (is_lamp(scene, id)) tree.spheres.push_back(id);
+  add_rods(scene, tree.spheres);
   tree.spheres = without_coincident(scene, precision, std::move(tree.spheres));
-  add_rods(scene, precision, tree.spheres);
   if (tree.spheres.empty()) return tree;
   Builder(scene, tree).build();
   index_leaves(tree);

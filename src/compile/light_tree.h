@@ -31,13 +31,14 @@ struct LightTree {
   std::size_t bytes_of_build() const noexcept;
 };
 
-/// Removes spheres that coincide with an earlier sphere of the scene, whether that emits or not. The accelerators skip
-/// them (see accel::duplicates), so they emit no light.
+/// Removes spheres, and halves of rods, that coincide with an earlier one of the scene, whether that emits or not. Rays
+/// hit the first, so the others emit no light.
 ///
 /// `ids`      ascending
 /// Result     ascending
-/// Cost       none if there are no ids, or if the scene is known to have no coincident spheres; else see
-///            base::find_duplicates, for the spheres up to the last id
+/// Cost       see base::find_duplicates: for the spheres up to the last id, unless they are known to be distinct, and
+/// for
+///            the rods, if there are any among the ids
 std::vector<std::uint32_t> without_coincident(const kernel::SceneView& scene, kernel::Precision precision,
                                               std::vector<std::uint32_t> ids);
 

@@ -23,6 +23,7 @@
 #include "kernel/isa.h"
 #include "math/pixels.h"
 #include "render/render.h"
+#include "render/seen_emitters.h"
 #include "scene/scene.h"
 
 namespace orrery::job {
@@ -154,7 +155,9 @@ MemoryEstimate estimate_memory(const compile::CompiledScene& compiled, const fil
               (layers.matte_classes ? layers.matte_classes->of_sphere.bytes() : 0);
   if (compiled.environment) m.background = compiled.environment->bytes();
   m.textures = compiled.textures.bytes();
-  m.lights = compiled.light_tree.bytes_of_build() + compiled.caustics.bytes();
+  m.lights =
+      compiled.light_tree.bytes_of_build() + compiled.caustics.bytes() +
+      render::SeenEmitterList::bytes_of_build(compiled.view(), compiled.precision, compiled.width, compiled.height);
   if (compiled.accelerator == compile::Accelerator::kEmbree && !use.has_accelerator) {
     const accel::ObjectCounts in_bvh = accel::objects_in_bvh(compiled.view());
     const std::uint64_t outside = compiled.spheres.size() + compiled.rod_count() - in_bvh.all();

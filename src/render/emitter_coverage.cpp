@@ -8,8 +8,10 @@
 #include <cstdint>
 #include <numbers>
 #include <optional>
+#include <utility>
 #include <vector>
 
+#include "compile/light_tree.h"
 #include "film/display_error.h"
 #include "kernel/material.h"
 #include "kernel/ray_packet.h"
@@ -357,22 +359,31 @@ double opacity_of(const kernel::SceneView& scene, std::size_t id) {
   return scene.opacity != nullptr ? double{scene.opacity[id]} : 1;
 }
 
-/// Adds the rods that emit.
-void add_rods(const kernel::SceneView& scene, Coverage& coverage) {
-  const auto middle = [](const kernel::Rod& rod) { return (math::vector_of(rod.a) + math::vector_of(rod.b)) / 2; };
-  for (std::size_t i = 0; i < scene.rods.count; ++i)
-    for (const bool at_b : {false, true}) {
-      const std::size_t id = scene.rods.id(i) + (at_b ? 1U : 0U);
-      const double radiance = radiance_of(scene, id);
-      if (!(radiance > 0)) continue;
-      Moving<kernel::Sphere> from, to;
-      for (const std::size_t k : {0U, 1U}) {
-        const kernel::Rod rod = scene.rods.at(i, static_cast<double>(k));
-        from[k] = sphere_around(middle(rod), rod.radius);
-        to[k] = sphere_around(math::vector_of(at_b ? rod.b : rod.a), rod.radius);
-      }
-      coverage.add_half_rod(from, to, static_cast<std::uint32_t>(id), radiance, opacity_of(scene, id));
-    }
+/// Adds half of a rod that emits.
+void add_half_rod(const kernel::SceneView& scene, std::uint32_t id, double radiance, Coverage& coverage) {
+  const std::size_t i = scene.rods.index(id);
+  Moving<kernel::Sphere> from, to;
+  for (const std::size_t k : {0U, 1U}) {
+    const kernel::Rod rod = scene.rods.at(i, static_cast<double>(k));
+    from[k] = sphere_around((math::vector_of(rod.a) + math::vector_of(rod.b)) / 2, rod.radius);
+    to[k] = sphere_around(math::vector_of(id == scene.rods.id(i) ? rod.a : rod.b), rod.radius);
+  }
+  coverage.add_half_rod(from, to, id, radiance, opacity_of(scene, id));
+}
+
+/// Adds spheres and rods that emit, except those that are sampled.
+void add_emitters(const kernel::SceneView& scene, kernel::Precision precision, Coverage& coverage) {
+  std::vector<std::uint32_t> ids;
+  const auto end = static_cast<std::uint32_t>(scene.sphere_count + 2 * scene.rods.count);
+  for (std::uint32_t id = 0; id < end; ++id)
+    if (radiance_of(scene, id) > 0 && !scene.seen_emitters.has(id)) ids.push_back(id);
+  for (const std::uint32_t id : compile::without_coincident(scene, precision, std::move(ids))) {
+    const double radiance = radiance_of(scene, id);
+    if (scene.rods.contains(id))
+      add_half_rod(scene, id, radiance, coverage);
+    else
+      coverage.add(moving_sphere(scene, id), id, radiance, opacity_of(scene, id));
+  }
 }
 
 /// Reference  schlick1994
@@ -451,12 +462,7 @@ void add_reflections(const kernel::SceneView& scene, Coverage& coverage) {
 std::vector<EmitterCoverage> emitter_coverage(const kernel::SceneView& scene, const Visibility& visibility,
                                               int width_px, int height_px) {
   Coverage coverage(scene, visibility, width_px, height_px);
-  if (scene.emission != nullptr) {
-    for (std::uint32_t id = 0; id < scene.sphere_count; ++id)
-      if (const double radiance = radiance_of(scene, id); radiance > 0 && !scene.seen_emitters.has(id))
-        coverage.add(moving_sphere(scene, id), id, radiance, opacity_of(scene, id));
-    add_rods(scene, coverage);
-  }
+  if (scene.emission != nullptr) add_emitters(scene, visibility.precision, coverage);
   if (scene.features.lit) add_reflections(scene, coverage);
   const kernel::Environment* const sky = scene.environment;
   if (sky != nullptr && scene.background_visible && !scene.has_backdrop && !scene.camera.is_orthographic) {

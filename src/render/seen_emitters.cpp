@@ -8,7 +8,9 @@
 #include <iterator>
 #include <numbers>
 #include <optional>
+#include <utility>
 
+#include "compile/light_tree.h"
 #include "kernel/seen_emitter_sample.h"
 #include "math/pixels.h"
 #include "math/vec3.h"
@@ -92,6 +94,34 @@ bool can_sample(const kernel::SceneView& scene, kernel::Precision precision) {
          scene.page == kernel::kNone && precision != kernel::Precision::kBook && !camera_moves(scene);
 }
 
+/// Number of pixels that an image may touch.
+double pixels_of(const Spot& spot) { return std::numbers::pi * spot.reach * spot.reach; }
+
+/// The images of the emitters that are sampled, by ascending id.
+std::vector<Spot> find_spots(const kernel::SceneView& scene, kernel::Precision precision) {
+  std::vector<Spot> spots;
+  if (!can_sample(scene, precision)) return spots;
+  const double filter_margin =
+      scene.filter.places != nullptr ? scene.filter.places[kernel::PixelFilter::kSteps] - 0.5 : 0;
+  std::vector<std::uint32_t> ids;
+  for (std::uint32_t id = 0; id < scene.sphere_count; ++id)
+    if (const auto spot = spot_of(scene, id, filter_margin)) {
+      spots.push_back(*spot);
+      ids.push_back(id);
+    }
+  ids = compile::without_coincident(scene, precision, std::move(ids));
+  std::erase_if(spots, [&](const Spot& spot) { return !std::ranges::binary_search(ids, spot.id); });
+  double sum = 0;
+  for (const Spot& spot : spots) sum += pixels_of(spot);
+  if (sum > kMostPairs) {
+    std::ranges::stable_sort(spots, std::greater(), &Spot::radiance);
+    sum = 0;
+    std::erase_if(spots, [&](const Spot& spot) { return (sum += pixels_of(spot)) > kMostPairs; });
+    std::ranges::sort(spots, {}, &Spot::id);
+  }
+  return spots;
+}
+
 }  // namespace
 
 bool camera_moves(const kernel::SceneView& scene) {
@@ -99,25 +129,20 @@ bool camera_moves(const kernel::SceneView& scene) {
                                               [&](auto vector) { return scene.camera_motion.*vector != Vec3d{}; });
 }
 
+std::uint64_t SeenEmitterList::bytes_of_build(const kernel::SceneView& scene, kernel::Precision precision, int width_px,
+                                              int height_px) {
+  const std::vector<Spot> spots = find_spots(scene, precision);
+  if (spots.empty()) return 0;
+  double pairs = 0;
+  for (const Spot& spot : spots) pairs += pixels_of(spot);
+  return static_cast<std::uint64_t>(pairs * sizeof(kernel::SeenEmitter)) + spots.size() * sizeof(Spot) +
+         math::pixel_count(width_px, height_px) * 2 * sizeof(std::uint32_t);
+}
+
 SeenEmitterList::SeenEmitterList(const kernel::SceneView& scene, kernel::Precision precision, int width_px,
                                  int height_px) {
-  if (!can_sample(scene, precision)) return;
-  const double filter_margin =
-      scene.filter.places != nullptr ? scene.filter.places[kernel::PixelFilter::kSteps] - 0.5 : 0;
-  std::vector<Spot> spots;
-  for (std::uint32_t id = 0; id < scene.sphere_count; ++id)
-    if (const auto spot = spot_of(scene, id, filter_margin)) spots.push_back(*spot);
+  const std::vector<Spot> spots = find_spots(scene, precision);
   if (spots.empty()) return;
-
-  const auto pairs = [&](const Spot& spot) { return std::numbers::pi * spot.reach * spot.reach; };
-  double sum = 0;
-  for (const Spot& spot : spots) sum += pairs(spot);
-  if (sum > kMostPairs) {
-    std::ranges::stable_sort(spots, std::greater(), &Spot::radiance);
-    sum = 0;
-    std::erase_if(spots, [&](const Spot& spot) { return (sum += pairs(spot)) > kMostPairs; });
-    std::ranges::sort(spots, {}, &Spot::id);
-  }
 
   for (const Spot& spot : spots) ids_.push_back(spot.id);
   begins_.assign(math::pixel_count(width_px, height_px) + 1, 0);

@@ -22,6 +22,10 @@ class SeenEmitterList {
   /// Cost       one pass over the spheres if something emits, and one over the pixels of those that are sampled
   SeenEmitterList(const kernel::SceneView& scene, kernel::Precision precision, int width_px, int height_px);
 
+  /// Memory that the constructor needs at most, for emitters within the window.
+  static std::uint64_t bytes_of_build(const kernel::SceneView& scene, kernel::Precision precision, int width_px,
+                                      int height_px);
+
   kernel::SeenEmitters view() const {
     if (emitters_.empty()) return {};
     return {begins_.data(), emitters_.data(), width_, ids_};

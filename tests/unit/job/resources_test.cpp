@@ -224,6 +224,21 @@ TEST(JobMemoryEstimate, CountsTheLightTreeAndItsBuild) {
   EXPECT_NE(text_of(lit).find(", lights 93.8 KiB"), std::string::npos) << text_of(lit);
 }
 
+TEST(JobMemoryEstimate, CountsTheListsOfLampsThatTheCameraSees) {
+  const auto lights = [](double radius) {
+    scene::Scene scene;
+    scene.image = {100, 50};
+    scene.camera.look_from = {0, 0, 10};
+    scene.camera.look_at = {0, 0, 0};
+    scene.materials = {{"lamp", scene::Emitter{{1, 1, 1}, 0, ""}}};
+    for (int i = 0; i < 100; ++i) scene.spheres.push_back({{0.01 * i, 0, 0}, radius, 0, ""});
+    return estimate_memory(compile::compile(scene), {}).lights;
+  };
+  const std::uint64_t of_pixels = 100 * 50 * 8, of_small_lamps = lights(0.001) - lights(1);
+  EXPECT_GT(of_small_lamps, of_pixels + 100 * 12);
+  EXPECT_LT(of_small_lamps, of_pixels + 100 * 300);
+}
+
 TEST(JobMemoryEstimate, CountsTheBackgroundOnce) {
   MemoryEstimate estimate;
   estimate.background = 1000 * kMega;

@@ -10,6 +10,7 @@
 #include "film/picture.h"
 #include "render/render.h"
 #include "render/result.h"
+#include "render/seen_emitters.h"
 #include "render/settings.h"
 #include "support/everything.h"
 #include "support/lit_scenes.h"
@@ -203,6 +204,17 @@ TEST(RenderCoincident, OfMovingEmittersOnlyTheFirstIsALight) {
   expect_equal_light(one, two, "moving lamps", &one_closing, &two_closing);
   two_closing.spheres[3].center.x = 0.5;
   EXPECT_FALSE(outcome(one, &one_closing, {}) == outcome(two, &two_closing, {})) << "lamps that separate are two";
+}
+
+TEST(RenderCoincident, OfSmallLampsThatTheCameraSeesOnlyTheFirstIsSampled) {
+  scene::Scene one = dark_stage();
+  test::add_lamp(one, {0.5, 1, 1}, 0.02, {2000, 1500, 1000});
+  scene::Scene two = one;
+  test::add_lamp(two, {0.5, 1, 1}, 0.02, {1000, 2000, 3000}, "other");
+  const compile::CompiledScene compiled = compile::compile(two);
+  ASSERT_NE(SeenEmitterList(compiled.view(), compiled.precision, compiled.width, compiled.height).view().begins,
+            nullptr);
+  expect_equal_light(one, two, "small lamps");
 }
 
 /// The two lamps coincide in single precision but not in double.

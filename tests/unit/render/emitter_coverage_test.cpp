@@ -86,6 +86,12 @@ TEST(RenderEmitterCoverage, AreFoundWhereTheyAreRendered) {
   expect_where_rendered(s, "moving camera", &closing);
 }
 
+TEST(RenderEmitterCoverage, OfCoincidentSpheresOneIsExpected) {
+  scene::Scene s = distant_lamp();
+  s.spheres.push_back(s.spheres[0]);
+  expect_where_rendered(s, "coincident");
+}
+
 TEST(RenderEmitterCoverage, RodsAreFoundWhereTheyAreRendered) {
   const auto with_rod = [](math::Vec3d from, math::Vec3d to, double radius) {
     scene::Scene s = distant_lamp();
