@@ -65,12 +65,13 @@ std::unique_ptr<Accel> make_embree(const kernel::SceneView& scene, kernel::Preci
 struct ObjectCounts {
   std::size_t spheres = 0, rods = 0;
   bool have_one_radius = false;  ///< all spheres have the same radius, and there are no rods
+  bool move = false;             ///< spheres do
 
   std::size_t all() const { return spheres + rods; }
 };
 
 /// Approximate numbers of spheres and rods that make_embree puts into its BVH of many spheres, where each takes 10 to
-/// 13 bytes, and 4 more if there are rods, instead of Embree's hundred.
+/// 13 bytes, and 4 more if there are rods or spheres move, instead of Embree's hundred.
 ObjectCounts objects_in_bvh(const kernel::SceneView& scene);
 
 /// Embree's version, for example "3.13.5".

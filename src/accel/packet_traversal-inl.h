@@ -46,7 +46,11 @@ class PacketTraversal {
       hn::Store(inverse, d_, inverse_[k]);
       hn::Store(-(hn::LoadU(d_, origin_[k]) * inverse), d_, shift_[k]);
     }
-    for (int i = 0; i < kWidth; ++i) lanes_ |= valid[i] != 0 ? 1u << i : 0u;
+    for (int i = 0; i < kWidth; ++i) {
+      lanes_ |= valid[i] != 0 ? 1u << i : 0u;
+      if (bvh.moves)
+        path_place_[i] = valid[i] != 0 ? static_cast<float>(2 * query.packet->time[query.first + i] - 1) : 0;
+    }
     const auto active = mask_of(d_, lanes_);
     const auto infinite = hn::Set(d_, std::numeric_limits<float>::infinity());
     const auto least = [&](auto v) { return hn::GetLane(hn::MinOfLanes(d_, select(active, v, infinite))); };
@@ -151,7 +155,8 @@ class PacketTraversal {
     alignas(64) float center[3][SphereBvh::kArity], outer[SphereBvh::kArity], inner[SphereBvh::kArity];
     alignas(64) float bound[2][3][SphereBvh::kArity];
     const ChildTag dc;
-    const auto margin = hn::Set(dc, margin_of(bvh_, leaf));
+    const float leaf_margin = moving_margin_of(bvh_, index);
+    const auto margin = hn::Set(dc, leaf_margin);
     for (int v = 0; v < static_cast<int>(SphereBvh::kArity); v += kChildLanes) {
       const auto radii = radii_of(bvh_, index, v);
       const auto most = radii.most + margin;
@@ -168,35 +173,38 @@ class PacketTraversal {
       return k::Vec3<hn::Vec<Wide>>{hn::LoadU(d_, x[0]), hn::LoadU(d_, x[1]), hn::LoadU(d_, x[2])};
     };
     const auto direction = load(direction_), origin = load(origin_);
-    const auto wide_margin = hn::Set(d_, margin_of(bvh_, leaf));
+    const auto wide_margin = hn::Set(d_, leaf_margin);
     const auto infinite = hn::Set(d_, std::numeric_limits<float>::infinity());
     const SphereBvh::LeafRods* const rods = bvh_.has_rods_in(index) ? &bvh_.rods[index] : nullptr;
     alignas(64) float half[3][SphereBvh::kArity];
-    float rod_margin = 0;
-    if (rods != nullptr) {
-      rod_margin = margin_of(bvh_, leaf, *rods);
+    const float rod_margin = rods != nullptr ? margin_of(bvh_, leaf, *rods) : 0;
+    if (rods != nullptr || bvh_.moves)
       for (int v = 0; v < static_cast<int>(SphereBvh::kArity); v += kChildLanes) {
-        const auto axes = half_axes(*rods, v);
-        hn::Store(axes.x, dc, half[0] + v);
-        hn::Store(axes.y, dc, half[1] + v);
-        hn::Store(axes.z, dc, half[2] + v);
+        const auto axes = half_axes(bvh_.rods[index], v);
+        const hn::Vec<ChildTag> halves[3] = {axes.x, axes.y, axes.z};
+        for (int k = 0; k < 3; ++k) {
+          hn::Store(halves[k], dc, half[k] + v);
+          if (!bvh_.moves) continue;
+          hn::Store(hn::Load(dc, bound[0][k] + v) - hn::Abs(halves[k]), dc, bound[0][k] + v);
+          hn::Store(hn::Load(dc, bound[1][k] + v) + hn::Abs(halves[k]), dc, bound[1][k] + v);
+        }
       }
-    }
     // Test each sphere or rod whose box some ray may enter with all rays.
     const bool has_opacity = query_.scene->opacity != nullptr;
     auto limit = hn::Load(d_, limit_);
     for (const int i : SetBits(entered_by_any(bound, bvh_.count_in(index)))) {
       const std::uint32_t id = leaf.ids[i];
-      const k::Vec3<hn::Vec<Wide>> at = {hn::Set(d_, center[0][i]), hn::Set(d_, center[1][i]),
-                                         hn::Set(d_, center[2][i])};
+      const bool is_rod = rods != nullptr && (rods->rods >> i & 1u) != 0;
+      const auto vector_at = [&](const float(&from)[3][SphereBvh::kArity]) {
+        return k::Vec3<hn::Vec<Wide>>{hn::Set(d_, from[0][i]), hn::Set(d_, from[1][i]), hn::Set(d_, from[2][i])};
+      };
+      auto at = vector_at(center);
+      if (bvh_.moves && !is_rod) at = mul_add(vector_at(half), hn::Load(d_, path_place_), at);
       const auto passed = passing(at - origin, direction);
       const auto radius = hn::Set(d_, outer[i]);
       auto hit = may_hit(passed, radius, limit);
-      const bool is_rod = rods != nullptr && (rods->rods >> i & 1u) != 0;
       const auto at_rod = [&] {
-        return AtRod<hn::Vec<Wide>>{
-            bvh_,        *rods,     rod_margin,
-            at - origin, direction, {hn::Set(d_, half[0][i]), hn::Set(d_, half[1][i]), hn::Set(d_, half[2][i])}};
+        return AtRod<hn::Vec<Wide>>{bvh_, *rods, rod_margin, at - origin, direction, vector_at(half)};
       };
       if (is_rod) hit = hn::And(hit, at_rod().may_hit(passed.along, limit));
       unsigned hitting = bits_of(d_, hit) & lanes;
@@ -268,6 +276,7 @@ class PacketTraversal {
   Prefetcher prefetcher_;
   const float *direction_[3], *origin_[3];
   alignas(64) float limit_[kWidth];
+  alignas(64) float path_place_[kWidth];  ///< as SingleRay::path_place, if spheres move
   alignas(64) float inverse_[3][kWidth];
   alignas(64) float shift_[3][kWidth];  ///< box space to distance: bound * inverse + shift
   // Bounds of the rays' origins, at the nearer and the farther side of boxes, and of their inverse directions.

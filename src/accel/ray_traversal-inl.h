@@ -119,8 +119,9 @@ struct alignas(64) SingleRay {
   std::uint32_t left;             ///< the sphere that the ray leaves outwards and so cannot hit; kNone: none
   std::uint32_t target;           ///< shadow rays: a sphere that is never hit
   float threshold;                ///< as in kernel::PacketRays; only if the scene has opacities
-  std::uint32_t near[3];          ///< per axis: offset in Node::bound of the bounds at which the ray enters boxes
-  std::uint32_t subtree;          ///< the node below which everything has been visited once the stack is empty
+  float path_place;       ///< where moving spheres are at the time of the ray: -1..1 from the middle of their paths
+  std::uint32_t near[3];  ///< per axis: offset in Node::bound of the bounds at which the ray enters boxes
+  std::uint32_t subtree;  ///< the node below which everything has been visited once the stack is empty
   unsigned subtree_level;
   std::size_t waiting;        ///< number of entries in `enter` and `what`: the end marker, then nodes, nearest last
   int candidates;             ///< number of entries in `at` and `candidate`: spheres that the ray may hit
@@ -254,7 +255,8 @@ HWY_INLINE bool test_spheres(const SphereBvh& bvh, std::uint32_t index, SingleRa
   const auto set3 = [&](float x, float y, float z) {
     return k::Vec3<hn::Vec<ChildTag>>{hn::Set(d, x), hn::Set(d, y), hn::Set(d, z)};
   };
-  const auto step = hn::Set(d, leaf.step), margin = hn::Set(d, margin_of(bvh, leaf)), limit = hn::Set(d, ray.limit);
+  const auto step = hn::Set(d, leaf.step), margin = hn::Set(d, moving_margin_of(bvh, index)),
+             limit = hn::Set(d, ray.limit);
   const auto infinite = hn::Set(d, std::numeric_limits<float>::infinity());
   const auto direction = set3(ray.direction[0], ray.direction[1], ray.direction[2]);
   const auto origin =
@@ -266,7 +268,14 @@ HWY_INLINE bool test_spheres(const SphereBvh& bvh, std::uint32_t index, SingleRa
   for (int v = 0; v < static_cast<int>(SphereBvh::kArity); v += kChildLanes) {
     const k::Vec3<hn::Vec<ChildTag>> codes = {from_bytes(leaf.center[0] + v), from_bytes(leaf.center[1] + v),
                                               from_bytes(leaf.center[2] + v)};
-    const auto passed = passing(mul_add(codes, step, origin), direction);
+    auto to_center = mul_add(codes, step, origin);
+    if (bvh.moves) {
+      const auto still = mask_of(d, bvh.rods[index].rods >> v);
+      const auto half = half_axes(bvh.rods[index], v);
+      const auto place = select(still, hn::Zero(d), hn::Set(d, ray.path_place));
+      to_center = mul_add(half, place, to_center);
+    }
+    const auto passed = passing(to_center, direction);
     auto hit = may_hit(passed, radii_of(bvh, index, v).most + margin, limit);
     const auto rods = has_rods ? hn::And(hit, mask_of(d, bvh.rods[index].rods >> v)) : hn::FirstN(d, 0);
     if (has_rods && !hn::AllFalse(d, rods))
@@ -310,7 +319,7 @@ HWY_INLINE void add_candidates(const SphereBvh& bvh, std::uint32_t index, bool h
   const ChildTag d;
   const hn::RebindToUnsigned<ChildTag> du;
   const SphereBvh::Leaf& leaf = bvh.leaves[index];
-  const auto margin = hn::Set(d, margin_of(bvh, leaf));
+  const auto margin = hn::Set(d, moving_margin_of(bvh, index));
   const auto infinite = hn::Set(d, std::numeric_limits<float>::infinity());
   const bool has_rods = bvh.has_rods_in(index);
   int count = ray.candidates;
@@ -571,6 +580,7 @@ HWY_INLINE unsigned start_rays(const SphereBvh& bvh, EmbreeQuery<Packet>& query,
     ray.left = static_cast<std::uint32_t>(left[i]);
     if constexpr (Packet::kIsShadow) ray.target = static_cast<std::uint32_t>(packet.target[lane]);
     if (query.scene->opacity != nullptr) ray.threshold = packet.threshold[lane];
+    if (bvh.moves) ray.path_place = static_cast<float>(2 * packet.time[lane] - 1);
     ray.candidates = 0;
     ray.candidate[0] = 0;
     ray.enter[0] = -std::numeric_limits<float>::infinity();  // never beyond the limit

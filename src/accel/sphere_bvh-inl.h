@@ -60,7 +60,11 @@ static_assert(SphereBvh::kLeafBit == std::uint32_t{kLeaf} << kIndexWidth);
 class Prefetcher {
  public:
   Prefetcher(const SphereBvh& bvh, const EmbreeScene& scene)
-      : rods_(scene.rods), has_radii_(!bvh.radii.empty()), has_rods_(!bvh.rods.empty()) {
+      : rods_(scene.rods),
+        motion_(scene.motion),
+        moving_count_(scene.moving_count),
+        has_radii_(!bvh.radii.empty()),
+        has_rods_(!bvh.rods.empty()) {
     const kernel::SphereArray& spheres = scene.spheres;
     // The less frequent kind of sphere is not prefetched.
     const bool plain = spheres.all_plain();
@@ -89,10 +93,13 @@ class Prefetcher {
     const auto* const at = reinterpret_cast<const std::uint8_t*>(spheres_ + id * sphere_stride_);
     hwy::Prefetch(has_rods_ && rods_.contains(id) ? static_cast<const std::uint8_t*>(rods_.address(rods_.index(id)))
                                                   : at);
+    if (id < moving_count_) hwy::Prefetch(motion_ + id);
   }
 
  private:
   const kernel::RodArray& rods_;
+  const kernel::Sphere* motion_;
+  std::size_t moving_count_;
   std::uintptr_t spheres_;
   std::size_t sphere_stride_;
   const std::uint8_t *first_[kKinds], *radii_[kKinds], *leaf_rods_;
@@ -146,7 +153,7 @@ HWY_INLINE auto may_hit(const Passing<V>& p, V outer, V limit) {
   return hn::And(hn::And(p.offset_square <= outer * outer * kGrowth, p.along + outer >= 0), p.along - outer <= limit);
 }
 
-/// The half axes of a leaf's rods from `first` on; 0 for spheres.
+/// The half axes of a leaf's rods from `first` on, and the half paths of its spheres.
 HWY_INLINE k::Vec3<hn::Vec<ChildTag>> half_axes(const SphereBvh::LeafRods& leaf, int first) {
   const ChildTag d;
   const hn::Rebind<std::int32_t, ChildTag> di;
@@ -160,6 +167,11 @@ HWY_INLINE k::Vec3<hn::Vec<ChildTag>> half_axes(const SphereBvh::LeafRods& leaf,
 /// Maximum quantization error of the points of a rod's axis plus rounding error of a ray's position.
 HWY_INLINE float margin_of(const SphereBvh& bvh, const SphereBvh::Leaf& leaf, const SphereBvh::LeafRods& rods) {
   return margin_of(bvh, leaf) + 0.875F * rods.step;
+}
+
+/// margin_of() a leaf whose spheres may move. The factor also covers the rounding of their places at the times of rays.
+HWY_INLINE float moving_margin_of(const SphereBvh& bvh, std::uint32_t leaf) {
+  return margin_of(bvh, bvh.leaves[leaf]) + (bvh.moves ? 0.876F * bvh.rods[leaf].step : 0);
 }
 
 /// Rays and rods, a pair per lane.

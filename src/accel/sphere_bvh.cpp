@@ -51,12 +51,17 @@ struct EnclosingSpheres {
   kernel::Sphere operator[](std::uint32_t id) const noexcept {
     return rods.rods.contains(id) ? enclosing_sphere(rods.at(rods.rods.index(id), 0)) : enclosing_sphere(spheres, id);
   }
+  /// The largest radius of a sphere while the shutter is open, or that of the sphere around a rod.
+  double radius(std::uint32_t id) const noexcept {
+    return id < spheres.moving_count ? path_of(spheres, id).radius : (*this)[id].radius;
+  }
   /// One coordinate of a centre, box space.
   float coordinate(std::uint32_t id, int axis) const noexcept {
+    const auto along = [axis](const kernel::Sphere& s) { return axis == 0 ? s.x : axis == 1 ? s.y : s.z; };
     const auto x = [&] {
-      if (!rods.rods.contains(id) && id >= spheres.moving_count) return spheres.coordinate(id, axis);
-      const kernel::Sphere s = (*this)[id];
-      return axis == 0 ? s.x : axis == 1 ? s.y : s.z;
+      if (rods.rods.contains(id)) return along((*this)[id]);
+      const double from = spheres.coordinate(id, axis);
+      return id < spheres.moving_count ? from + (from + along(spheres.motion[id]) - from) / 2 : from;
     };
     return static_cast<float>((x() - frame.middle[axis]) * frame.scale);
   }
@@ -431,7 +436,7 @@ class Builder {
   void run(const SphereSort::Monitor& monitor, std::size_t part_size) {
     measure();
     reserve();
-    SphereSort sort(bvh_.count, part_size, static_cast<float>(mean_radius_), bvh_.radius + 2 * box_padding_, monitor);
+    SphereSort sort(bvh_.count, part_size, static_cast<float>(mean_radius_), reach_ + 2 * box_padding_, monitor);
     for (const SphereSort::Part& part : sort.divide(spheres_, ids_)) {
       const std::span<SphereItem> items = take_items(part);
       sort.sort(part, items);
@@ -447,28 +452,40 @@ class Builder {
   /// Determines the radii, and whether there are rods.
   void measure() {
     struct Radii {
-      double least = std::numeric_limits<double>::infinity(), largest = 0, sum = 0, spread = 0;
-      bool has_rods = false;
+      double least = std::numeric_limits<double>::infinity(), largest = 0, sum = 0, spread = 0, reach = 0;
+      bool has_rods = false, moves = false;
     };
     const Radii radii = base::accumulate_parallel(
         ids_.size(), Radii(),
         [&](Radii& all, std::size_t i) {
           const std::uint32_t id = ids_[i];
-          const double r = spheres_[id].radius;
+          const double r = spheres_.radius(id);
           all.has_rods = all.has_rods || spheres_.rods.rods.contains(id);
-          if (id < spheres_.spheres.moving_count) all.spread = std::max(all.spread, spread_of(id));
+          all.reach = std::max(all.reach, r);
+          if (id < spheres_.spheres.moving_count) {
+            all.moves = true;
+            all.spread = std::max(all.spread, spread_of(id));
+            all.reach = std::max(all.reach, spheres_[id].radius);
+          }
           all.least = std::min(all.least, r);
           all.largest = std::max(all.largest, r);
           all.sum += r;
         },
         [](Radii& a, const Radii& b) {
-          a = {std::min(a.least, b.least), std::max(a.largest, b.largest), a.sum + b.sum, std::max(a.spread, b.spread),
-               a.has_rods || b.has_rods};
+          a = {std::min(a.least, b.least),
+               std::max(a.largest, b.largest),
+               a.sum + b.sum,
+               std::max(a.spread, b.spread),
+               std::max(a.reach, b.reach),
+               a.has_rods || b.has_rods,
+               a.moves || b.moves};
         });
     has_rods_ = radii.has_rods;
     own_radii_ = radii.least < radii.largest || has_rods_;
     mean_radius_ = radii.sum / static_cast<double>(ids_.size()) * spheres_.frame.scale;
+    bvh_.moves = radii.moves;
     bvh_.radius = rounded_up(radii.largest * spheres_.frame.scale);
+    reach_ = rounded_up(radii.reach * spheres_.frame.scale);
     bvh_.spread = rounded_up(radii.spread * spheres_.frame.scale);
     bvh_.padding = rounded_up(kSpherePadding * spheres_.frame.reach);
     bvh_.axis_slack = rounded_up(kAxisSlack * spheres_.frame.reach);
@@ -478,7 +495,7 @@ class Builder {
   /// See SphereBvh::spread.
   double spread_of(std::uint32_t id) const {
     const kernel::Sphere from = spheres_.spheres[id], to = spheres_.spheres.at(id, 1);
-    return 2 * (spheres_[id].radius - std::min(from.radius, to.radius));
+    return 2 * (spheres_.radius(id) - std::min(from.radius, to.radius));
   }
 
   /// Reserves memory, which is touched when it is needed.
@@ -488,7 +505,7 @@ class Builder {
     for (std::size_t level = leaves; level > 1 || nodes == 0; nodes += level) level = parents_of(level);
     bvh_.leaves.reserve(leaves);
     if (own_radii_) bvh_.radii.reserve(leaves);
-    if (has_rods_) bvh_.rods.reserve(leaves);
+    if (has_rods_ || bvh_.moves) bvh_.rods.reserve(leaves);
     bvh_.nodes.reserve(nodes);
     bvh_.cells.reserve(nodes);
     above_leaves_.reserve(parents_of(leaves));
@@ -521,7 +538,7 @@ class Builder {
     const std::size_t first = bvh_.leaves.size(), count = parents_of(part.count), first_node = bvh_.nodes.size();
     bvh_.leaves.resize(first + count);
     if (own_radii_) bvh_.radii.resize(first + count);
-    if (has_rods_) bvh_.rods.resize(first + count);
+    if (has_rods_ || bvh_.moves) bvh_.rods.resize(first + count);
     bvh_.nodes.resize(first_node + parents_of(count));
     above_leaves_.resize(bvh_.nodes.size());
     const base::StopPoint stop;
@@ -553,7 +570,7 @@ class Builder {
       const auto& [center, id] = items[i];
       if (bvh_.start_nodes.size() > 0)
         bvh_.start_nodes.set(rods.object(id), static_cast<std::uint32_t>(index / kArity));
-      r[i] = own_radii_ ? rounded_up(spheres_[id].radius * frame.scale) : bvh_.radius;
+      r[i] = own_radii_ ? rounded_up(spheres_.radius(id) * frame.scale) : bvh_.radius;
       most = std::max(most, r[i]);
       float reach[3] = {r[i], r[i], r[i]}, lower[3], upper[3];
       if (rods.contains(id)) {
@@ -561,10 +578,8 @@ class Builder {
         for (int axis = 0; axis < 3; ++axis) reach[axis] = rounded_up(std::abs(rod.half[axis]) + rod.radius);
       }
       if (id < spheres_.spheres.moving_count) {
-        const kernel::Sphere from = spheres_.spheres[id], to = spheres_.spheres.at(id, 1), all = spheres_[id];
-        const double half[3] = {(to.x - from.x) / 2, (to.y - from.y) / 2, (to.z - from.z) / 2};
-        const double own = all.radius - std::hypot(half[0], half[1], half[2]);
-        for (int axis = 0; axis < 3; ++axis) reach[axis] = rounded_up((own + std::abs(half[axis])) * frame.scale);
+        const RodExtent path(path_of(spheres_.spheres, id), frame);
+        for (int axis = 0; axis < 3; ++axis) reach[axis] = rounded_up(std::abs(path.half[axis]) + path.radius);
       }
       for (int axis = 0; axis < 3; ++axis) {
         lower[axis] = center[axis] - (reach[axis] + box_padding_);
@@ -572,11 +587,12 @@ class Builder {
       }
       bounds.add(lower, upper);
     }
+    if (has_rods_ || bvh_.moves)
+      bvh_.rods[index] = make_leaf_rods(bvh_.leaves[index], items.size(), spheres_.spheres, spheres_.rods, frame);
     if (!own_radii_) return bounds;
     bvh_.radii[index] = {{}, step_between(0, most)};
     for (std::size_t i = 0; i < items.size(); ++i)
       bvh_.radii[index].radius[i] = code_above(r[i], 0, bvh_.radii[index].step);
-    if (has_rods_) bvh_.rods[index] = make_leaf_rods(bvh_.leaves[index], items.size(), spheres_.rods, frame);
     return bounds;
   }
 
@@ -617,6 +633,7 @@ class Builder {
   base::HugeVector<SphereItem> items_;  ///< of the part that is being built
   std::vector<Bounds> above_leaves_;    ///< of the nodes above the leaves
   double mean_radius_ = 0;              ///< box space
+  float reach_ = 0;  ///< largest distance of a surface from the centre of the enclosing sphere, box space
   float box_padding_ = 0;
   bool has_rods_ = false, own_radii_ = false;
 };
@@ -629,15 +646,19 @@ kernel::Sphere enclosing_sphere(const kernel::Rod& rod) noexcept {
           std::hypot(half[0], half[1], half[2]) + rod.radius};
 }
 
-kernel::Sphere enclosing_sphere(const BoundedSpheres& spheres, std::size_t id) noexcept {
-  const kernel::Sphere from = spheres[id];
-  if (id >= spheres.moving_count) return from;
-  const kernel::Sphere to = spheres.at(id, 1);
-  kernel::Sphere out =
-      enclosing_sphere({{from.x, from.y, from.z}, std::max(from.radius, to.radius), {to.x, to.y, to.z}, 0});
+kernel::Rod path_of(const BoundedSpheres& spheres, std::size_t id) noexcept {
+  const kernel::Sphere from = spheres[id], to = spheres.at(id, 1);
+  kernel::Rod out{{from.x, from.y, from.z}, std::max(from.radius, to.radius), {to.x, to.y, to.z}, 0};
   // The kernel rounds the interpolated sphere, whose numbers are each the sum of two rounded ones.
-  if (spheres.in_single) out.radius += 0x1p-22 * (std::abs(out.x) + std::abs(out.y) + std::abs(out.z) + out.radius);
+  if (spheres.in_single) {
+    const kernel::Sphere all = enclosing_sphere(out);
+    out.radius += 0x1p-22 * (std::abs(all.x) + std::abs(all.y) + std::abs(all.z) + all.radius);
+  }
   return out;
+}
+
+kernel::Sphere enclosing_sphere(const BoundedSpheres& spheres, std::size_t id) noexcept {
+  return id >= spheres.moving_count ? spheres[id] : enclosing_sphere(path_of(spheres, id));
 }
 
 SphereBvh::SphereBvh(const BoundedSpheres& spheres, std::vector<std::uint32_t> ids, const BoxFrame& frame,
@@ -652,7 +673,7 @@ std::uint64_t SphereBvh::bytes_of_build(const ObjectCounts& objects) noexcept {
   const std::uint64_t count = objects.all(), leaf_count = count / kArity + 1,
                       node_count = leaf_count / (kArity - 1) + 1;
   return leaf_count * (sizeof(Leaf) + (objects.have_one_radius ? 0 : sizeof(LeafRadii)) +
-                       (objects.rods > 0 ? sizeof(LeafRods) : 0)) +
+                       (objects.rods > 0 || objects.move ? sizeof(LeafRods) : 0)) +
          node_count * (sizeof(Node) + sizeof(Cell)) + (count > kMostStartNodes ? 0 : 3 * count) +
          std::min<std::uint64_t>(count, part_size(count)) * sizeof(SphereItem);
 }

@@ -18,7 +18,8 @@ namespace orrery::accel {
 /// A BVH over many spheres and static rods, for one Embree primitive: 16 children per node, 16 spheres per leaf, bounds
 /// in 8 bits relative to the parent. It takes 10 to 12 bytes per sphere, and one more if radii differ.
 ///
-/// A moving sphere is in the tree as the sphere that encloses it while the shutter is open.
+/// A moving sphere is in the tree as the sphere that encloses it while the shutter is open. Leaves then also hold the
+/// paths of their spheres, so that rays test them where they are at the time of the ray.
 ///
 /// A rod is in the tree as the sphere around its middle that encloses it. Leaves then also hold the axes of their rods,
 /// which takes 4 bytes more per sphere and rod.
@@ -38,15 +39,16 @@ class SphereBvh {
     std::uint32_t ids[kArity];  ///< of spheres and of the first halves of rods; kNone beyond the last one
   };
 
-  /// Radii of a leaf's spheres, if they differ between spheres: at most step * radius, box space.
+  /// Radii of a leaf's spheres, the largest while the shutter is open, if they differ between spheres: at most step *
+  /// radius, box space.
   struct LeafRadii {
     std::uint8_t radius[kArity];
     float step;
   };
 
-  /// The rods of a leaf, in box space.
+  /// The rods of a leaf, and the paths of its spheres, in box space.
   struct alignas(64) LeafRods {
-    /// From the middle to an end: step * half, at most step / 2 off on each axis; 0 for spheres.
+    /// From the middle to the end of a rod, or of a sphere's path: step * half, at most step / 2 off on each axis.
     std::int8_t half[3][kArity];
     float step;
     float radius, least_radius;  ///< the largest and the smallest, rounded outwards
@@ -126,12 +128,13 @@ class SphereBvh {
   std::uint32_t no_start_node = 0;  ///< stands for spheres that are not in the tree
   base::HugeVector<Leaf> leaves;
   base::HugeVector<LeafRadii> radii;                   ///< one per leaf; empty if all spheres have `radius`
-  base::HugeVector<LeafRods> rods;                     ///< one per leaf; empty if there are no rods
+  base::HugeVector<LeafRods> rods;                     ///< one per leaf; empty if there are no rods and nothing moves
   base::HugeVector<Node> nodes;                        ///< level by level, those above the leaves first
   base::HugeVector<Cell> cells;                        ///< one per node
   std::array<std::uint32_t, kMaxDepth> level_begin{};  ///< index of the first node of each level
   std::uint32_t last_leaf = 0;                         ///< the only one that may have fewer than kArity spheres
-  float radius = 0;                                    ///< box space, rounded up
+  float radius = 0;                                    ///< box space, the largest while the shutter is open, rounded up
+  bool moves = false;                                  ///< spheres do
   /// A sphere whose radius is less by this, around the same centre, is inside the moving one at all times; box space.
   float spread = 0;
   /// Covers the rounding of the distance between a ray and the axis of a rod, times LeafRods::step.
@@ -142,6 +145,8 @@ class SphereBvh {
 
 /// The sphere around a rod's middle that encloses the rod.
 kernel::Sphere enclosing_sphere(const kernel::Rod& rod) noexcept;
+/// The rod that a moving sphere passes through while the shutter is open.
+kernel::Rod path_of(const BoundedSpheres& spheres, std::size_t id) noexcept;
 /// The sphere that encloses a sphere while the shutter is open.
 kernel::Sphere enclosing_sphere(const BoundedSpheres& spheres, std::size_t id) noexcept;
 

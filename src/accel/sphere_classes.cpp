@@ -188,7 +188,7 @@ ObjectCounts objects_in_bvh(const kernel::SceneView& scene) {
   }
   const bool fits = count + rods >= least && count + rods <= SphereBvh::kMaxSpheres;
   if (!fits || (count <= kMaxInSmallLayer && is_layer(scene))) return {};
-  return {count, rods, rods == 0 && smallest == largest};
+  return {count, rods, rods == 0 && smallest == largest, scene.moving_count > 0};
 }
 
 }  // namespace orrery::accel

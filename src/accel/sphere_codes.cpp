@@ -77,25 +77,31 @@ SphereBvh::Leaf make_leaf(std::span<const SphereItem> items) {
   return leaf;
 }
 
-SphereBvh::LeafRods make_leaf_rods(const SphereBvh::Leaf& leaf, std::size_t count, const BoundedRods& rods,
-                                   const BoxFrame& frame) {
+SphereBvh::LeafRods make_leaf_rods(const SphereBvh::Leaf& leaf, std::size_t count, const BoundedSpheres& spheres,
+                                   const BoundedRods& rods, const BoxFrame& frame) {
   SphereBvh::LeafRods out{};
   const auto each = [&](auto f) {
-    for (std::size_t i = 0; i < count; ++i)
-      if (rods.rods.contains(leaf.ids[i])) f(i, RodExtent(rods.at(rods.rods.index(leaf.ids[i]), 0), frame));
+    for (std::size_t i = 0; i < count; ++i) {
+      const std::uint32_t id = leaf.ids[i];
+      if (rods.rods.contains(id))
+        f(i, RodExtent(rods.at(rods.rods.index(id), 0), frame), true);
+      else if (id < spheres.moving_count)
+        f(i, RodExtent(path_of(spheres, id), frame), false);
+    }
   };
   double most = 0, thickest = 0, thinnest = std::numeric_limits<double>::infinity();
-  each([&](std::size_t i, const RodExtent& rod) {
-    out.rods |= 1u << i;
+  each([&](std::size_t i, const RodExtent& rod, bool is_rod) {
     for (const double x : rod.half) most = std::max(most, std::abs(x));
+    if (!is_rod) return;
+    out.rods |= 1u << i;
     thickest = std::max(thickest, rod.radius);
     thinnest = std::min(thinnest, rod.radius);
   });
-  if (out.rods == 0) return out;
+  if (out.rods == 0 && most == 0) return out;
   out.step = std::max(rounded_up(most / kLargestHalfCode), std::numeric_limits<float>::min());
   out.radius = rounded_up(thickest);
   out.least_radius = math::rounded_down(thinnest);
-  each([&](std::size_t i, const RodExtent& rod) {
+  each([&](std::size_t i, const RodExtent& rod, bool) {
     for (int axis = 0; axis < 3; ++axis)
       out.half[axis][i] = static_cast<std::int8_t>(std::lround(rod.half[axis] / out.step));
   });

@@ -63,7 +63,7 @@ SphereBvh::Node make_node(std::span<const Bounds> children, std::uint32_t first)
 SphereBvh::Leaf make_leaf(std::span<const SphereItem> items);
 
 /// `count`    number of items of the leaf
-SphereBvh::LeafRods make_leaf_rods(const SphereBvh::Leaf& leaf, std::size_t count, const BoundedRods& rods,
-                                   const BoxFrame& frame);
+SphereBvh::LeafRods make_leaf_rods(const SphereBvh::Leaf& leaf, std::size_t count, const BoundedSpheres& spheres,
+                                   const BoundedRods& rods, const BoxFrame& frame);
 
 }  // namespace orrery::accel
