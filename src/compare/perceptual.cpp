@@ -315,7 +315,7 @@ Map hdr_flip(const Maps& picture, const Maps& reference, int threads) {
     const std::lock_guard lock(merging);
     for (std::size_t p = 0; p < out.values.size(); ++p) out.values[p] = std::max(out.values[p], map.values[p]);
   };
-  render::TilePool(threads).run(exposures.size(), merge, [] { return false; });
+  render::TilePool(threads).run(exposures.size(), merge);
   return out;
 }
 

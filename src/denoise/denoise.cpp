@@ -166,10 +166,10 @@ struct ChannelLight {
 /// layers.
 ///
 /// `before`   the beauty before filtering, without outliers
-void finish_channel(film::Picture& picture, const SourcePlanes& planes, const PaddedPlane& before, std::size_t c,
-                    const LightChannel& channel, const std::vector<PaddedPlane>& noisy_cells, ChannelLight light) {
+void finish_channel(film::Picture& picture, Frame frame, const SourcePlanes& planes, const PaddedPlane& before,
+                    std::size_t c, const LightChannel& channel, const std::vector<PaddedPlane>& noisy_cells,
+                    ChannelLight light) {
   const PaddedPlane& valid = planes.valid;
-  const Frame frame{picture.width, picture.height};
   std::vector<float>& beauty = picture.planes[channel.beauty].values;
   std::vector<RemovedLight> removed;
   for (const Outlier& outlier : planes.outliers.pixels) {
@@ -178,7 +178,7 @@ void finish_channel(film::Picture& picture, const SourcePlanes& planes, const Pa
     removed.push_back({outlier.pixel, std::max(value * (1 / static_cast<double>(outlier.factors[c]) - 1), 0.0)});
   }
   const LightBalance balance(before, beauty, valid, frame, removed);
-  tbb::parallel_for(0, frame.height, [&](int y) {
+  frame.each_row([&](int y) {
     std::vector<double> cells(channel.cells.size());
     auto outlier = planes.outliers.lower_bound(frame.at(0, y));
     for (int x = 0; x < frame.width; ++x) {
@@ -216,7 +216,8 @@ std::optional<std::size_t> partial_alpha(const film::Picture& picture) {
 }
 
 Report filter(film::Picture& picture, SourcePlanes planes) {
-  const int width = picture.width, height = picture.height;
+  const base::StopPoint stop;
+  const Frame frame{picture.width, picture.height, &stop};
   const LightLayers lights = find_light_layers(picture);
   const bool is_complete = are_complete(picture, lights);
   Report report{lights.names, true, 0};
@@ -225,8 +226,7 @@ Report filter(film::Picture& picture, SourcePlanes planes) {
     const std::vector<float>& beauty = picture.planes[lights.channels[c].beauty].values;
     is_positive[c] = std::none_of(beauty.begin(), beauty.end(), [](float v) { return v < 0; });
   }
-  Tiles tiles(width, height);
-  const Frame frame{width, height};
+  Tiles tiles(frame);
   const std::vector<PaddedPlane> guides = filtered_guides(planes, frame, tiles);
   const FilteredHalves halves = filtered_halves(planes, guides, frame, tiles);
   std::array<PaddedPlane, 3> beauty;
@@ -269,9 +269,9 @@ Report filter(film::Picture& picture, SourcePlanes planes) {
   if (alpha)
     for (float& a : picture.planes[*alpha].values) a = std::clamp(a, 0.0F, 1.0F);
   for (std::size_t c = 0; c < 3; ++c)
-    finish_channel(picture, planes, beauty[c], c, lights.channels[c], cells[c], {is_positive[c], is_complete});
-  for (int y = 0; y < height; ++y)
-    for (int x = 0; x < width; ++x) report.bad_pixels += *planes.valid.at(x, y) == 0 ? 1 : 0;
+    finish_channel(picture, frame, planes, beauty[c], c, lights.channels[c], cells[c], {is_positive[c], is_complete});
+  for (int y = 0; y < frame.height; ++y)
+    for (int x = 0; x < frame.width; ++x) report.bad_pixels += *planes.valid.at(x, y) == 0 ? 1 : 0;
   return report;
 }
 

@@ -32,7 +32,7 @@ struct Report {
 /// `threads`       number of threads; 0: all that the process may use
 /// `keeps_halves`  false: removes the layer `halves` early, which saves memory
 /// Result     the same bits on any number of threads and with any instruction set
-/// Errors     base::Error(kBadData) if the image lacks R, G, B or the layer `halves`
+/// Errors     base::Error: kBadData if the image lacks R, G, B or the layer `halves`; kStopped in a base::StopScope
 /// Reference  rousselle2012, bitterli2016
 Report denoise(film::Picture& picture, int threads = 0, bool keeps_halves = true);
 

@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "denoise/outliers.h"
 
-#include <tbb/parallel_for.h>
-
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -123,7 +121,7 @@ Outliers find_outliers(const std::vector<HalfPair>& halves, Frame frame) {
     double light = 0;             ///< that is left
   };
   std::vector<Row> rows(static_cast<std::size_t>(frame.height));
-  tbb::parallel_for(0, frame.height, [&](int y) {
+  frame.each_row([&](int y) {
     Row& row = rows[static_cast<std::size_t>(y)];
     for (std::size_t i = frame.at(0, y); i < frame.at(0, y) + static_cast<std::size_t>(frame.width); ++i) {
       const float limit = std::max(out.limits[i], kOfDarkerHalf * darker_halves[i]);

@@ -9,7 +9,7 @@ Values window_means(const Values& in, Frame frame, int radius_px) {
   Values out(frame.pixels());
   const auto width = static_cast<std::size_t>(frame.width), radius = static_cast<std::size_t>(radius_px);
   const auto side = static_cast<float>(2 * radius_px + 1);
-  tbb::parallel_for(0, frame.height, [&](int y) {
+  frame.each_row([&](int y) {
     Values sums(width + 2 * radius);  // of the window's columns
     for (int i = -radius_px; i <= radius_px; ++i) {
       const float* const row = in.data() + frame.at(0, y + i);
@@ -59,6 +59,7 @@ void scale_pixel(PaddedPlane& plane, Frame frame, std::size_t pixel, float facto
 }
 
 PaddedPlane padded(const Values& values, Frame frame, float scale) {
+  frame.check();
   PaddedPlane out(frame.width, frame.height);
   constexpr int kBorder = PaddedPlane::kBorder;
   tbb::parallel_for(-kBorder, frame.height + kBorder, [&](int y) {

@@ -9,6 +9,7 @@
 
 #include <tbb/parallel_for.h>
 
+#include "base/stop_point.h"
 #include "math/pixels.h"
 
 namespace orrery::denoise {
@@ -65,6 +66,7 @@ inline float usable(float v) { return is_usable(v) ? v : 0; }
 /// Size of an image, and the indices of its pixels row by row.
 struct Frame {
   int width, height;
+  const base::StopPoint* stop = nullptr;  ///< of the loops over rows; null: none
 
   std::size_t pixels() const { return math::pixel_count(width, height); }
   /// Index of the pixel nearest to (x, y), which may be outside the image.
@@ -74,11 +76,23 @@ struct Frame {
   }
   int x(std::size_t pixel) const { return static_cast<int>(pixel % static_cast<std::size_t>(width)); }
   int y(std::size_t pixel) const { return static_cast<int>(pixel / static_cast<std::size_t>(width)); }
+  /// Errors     base::Error(kStopped)
+  void check() const {
+    if (stop != nullptr) stop->check();
+  }
+  /// Calls f(y) for each row, on all threads.
+  template <class F>
+  void each_row(F f) const {
+    tbb::parallel_for(0, height, [&](int y) {
+      check();
+      f(y);
+    });
+  }
   /// Returns the plane of the values f(x, y).
   template <class F>
   Values each(F f) const {
     Values out(pixels());
-    tbb::parallel_for(0, height, [&](int y) {
+    each_row([&](int y) {
       for (int x = 0; x < width; ++x) out[at(x, y)] = f(x, y);
     });
     return out;
@@ -87,7 +101,7 @@ struct Frame {
   template <class F>
   Values each_index(F f) const {
     Values out(pixels());
-    tbb::parallel_for(0, height, [&](int y) {
+    each_row([&](int y) {
       for (std::size_t i = at(0, y); i < at(0, y) + static_cast<std::size_t>(width); ++i) out[i] = f(i);
     });
     return out;

@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "denoise/source_planes.h"
 
-#include <tbb/parallel_for.h>
-
 #include <cmath>
 #include <cstddef>
 #include <deque>
@@ -10,6 +8,7 @@
 #include <string>
 
 #include "base/error.h"
+#include "base/stop_point.h"
 #include "film/layer_planes.h"
 #include "film/layers.h"
 
@@ -133,7 +132,7 @@ void reduce(SourcePlanes& planes, Frame frame, const Outlier& outlier) {
 /// The pixels to filter: 1, or 0 where the beauty is not finite or no half has samples.
 PaddedPlane valid_pixels(const film::Picture& picture, HalfCounts counts, Frame frame) {
   PaddedPlane valid(frame.width, frame.height);
-  tbb::parallel_for(0, frame.height, [&](int y) {
+  frame.each_row([&](int y) {
     for (int x = 0; x < frame.width; ++x) *valid.at(x, y) = 1;
     for (const char* name : {"R", "G", "B"}) {
       const float* const row = picture.at(name).values.data() + frame.at(0, y);
@@ -154,7 +153,8 @@ PaddedPlane valid_pixels(const film::Picture& picture, HalfCounts counts, Frame 
 std::optional<SourcePlanes> source_planes(film::Picture& picture, bool keeps_halves) {
   require_halves(picture);
   SourcePlanes out;
-  const Frame frame{picture.width, picture.height};
+  const base::StopPoint stop;
+  const Frame frame{picture.width, picture.height, &stop};
   const HalfCounts counts = count_halves(picture, frame);
   if (static_cast<double>(counts.with_one) > kMaxLonePixels * static_cast<double>(frame.pixels())) return {};
   out.valid = valid_pixels(picture, counts, frame);

@@ -27,7 +27,7 @@ struct SourcePlanes {
 ///
 /// `keeps_halves`  false: the layer `halves` is removed, each plane as soon as it is not needed
 /// Result     empty if more than a sixteenth of the pixels have samples in one half only: the noise cannot be measured
-/// Errors     base::Error(kBadData) if the image lacks the layer `halves`
+/// Errors     base::Error: kBadData if the image lacks the layer `halves`; kStopped in a base::StopScope
 std::optional<SourcePlanes> source_planes(film::Picture& picture, bool keeps_halves);
 
 }  // namespace orrery::denoise

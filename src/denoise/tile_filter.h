@@ -75,13 +75,15 @@ struct Worker {
 /// The tiles of an image.
 class Tiles {
  public:
-  Tiles(int width, int height) : width_(width), height_(height) {}
+  explicit Tiles(Frame frame) : frame_(frame) {}
 
   /// Calls `f(worker, x, y)` with the upper left pixel of each tile, on all threads.
   template <class F>
   void each(F f) {
-    const int columns = (width_ + kTileWidth - 1) / kTileWidth, rows = (height_ + kTileHeight - 1) / kTileHeight;
+    const int columns = (frame_.width + kTileWidth - 1) / kTileWidth;
+    const int rows = (frame_.height + kTileHeight - 1) / kTileHeight;
     tbb::parallel_for(0, columns * rows, [&](int tile) {
+      frame_.check();
       f(workers_.local(), tile % columns * kTileWidth, tile / columns * kTileHeight);
     });
   }
@@ -89,13 +91,13 @@ class Tiles {
   /// Calls `f(index in the tile, x, y)` for the pixels of a tile that are within the image.
   template <class F>
   void each_pixel(int x0, int y0, F f) const {
-    for (int y = y0; y < std::min(y0 + kTileHeight, height_); ++y)
-      for (int x = x0; x < std::min(x0 + kTileWidth, width_); ++x)
+    for (int y = y0; y < std::min(y0 + kTileHeight, frame_.height); ++y)
+      for (int x = x0; x < std::min(x0 + kTileWidth, frame_.width); ++x)
         f(static_cast<std::size_t>((y - y0) * kTileWidth + x - x0), x, y);
   }
 
  private:
-  int width_, height_;
+  Frame frame_;
   tbb::enumerable_thread_specific<Worker> workers_;
 };
 

@@ -9,6 +9,7 @@
 #include <fmt/core.h>
 
 #include "base/error.h"
+#include "base/stop_point.h"
 #include "display/settings.h"
 #include "display/view.h"
 #include "film/picture.h"
@@ -98,7 +99,9 @@ film::EncodedPicture develop(const film::Picture& picture, const Settings& setti
   const float gain = gain_of(settings);
   const bool over_page = covered == nullptr && !picture.coverage.empty();
   std::vector<float> rgb(std::min(pixels, kPixelsAtATime) * 3);
+  const base::StopPoint stop;
   for (std::size_t begin = 0; begin < pixels; begin += kPixelsAtATime) {
+    stop.check();
     const std::size_t count = std::min(kPixelsAtATime, pixels - begin);
     for (std::size_t i = 0; i < count; ++i)
       for (std::size_t c = 0; c < 3; ++c) {

@@ -100,6 +100,7 @@ class Run {
   void merge() {
     render::Result result = merge_shards(own_, threads_, report_);
     report_.phases.finish_s = watch_.lap();
+    const base::StopScope scope(nullptr);
     finish(result);
     write_images(result);
   }
@@ -116,6 +117,7 @@ class Run {
   void render_images() {
     Checkpoint checkpoint = open_checkpoint();
     render::Result result = render(&checkpoint);
+    const base::StopScope scope(nullptr);  // an image whose samples are complete is finished
     finish(result);
     try {
       write_images(result);
@@ -155,6 +157,7 @@ class Run {
     accel::Accel* const accel = build();
     if (settings.time_budget_s > 0)
       settings.time_budget_s = std::max(settings.time_budget_s - since_begin_.seconds(), kShortestBudget);
+    const base::StopScope scope(checkpoint == nullptr ? job_.hooks.cancel : nullptr);  // a checkpoint needs the samples
     render::Result result;
     if (accel != nullptr) result = render::render(compiled(), *accel, settings, std::move(from));
     report_.render = result.statistics;

@@ -30,8 +30,8 @@ void Canvas::write(const film::Sums& state, const film::RenderedPixels& rendered
     float values[kChannels] = {0, 0, 0, 1};
     state.mean(i, values);
     if (!state.layers.covered.empty()) values[3] = state.coverage(i);
-    std::atomic<float>* const pixel = &values_[at(rendered.x + p.x, rendered.y + p.y)];
-    for (std::size_t c = 0; c < kChannels; ++c) pixel[c].store(values[c], std::memory_order_relaxed);
+    const std::size_t pixel = at(rendered.x + p.x, rendered.y + p.y);
+    for (std::size_t c = 0; c < kChannels; ++c) value(pixel + c).store(values[c], std::memory_order_relaxed);
   }
   const int right = (rendered.x + rendered.width - 1) / kSide, bottom = (rendered.y + rendered.height - 1) / kSide;
   // A read-modify-write, unlike a store, keeps the pixels of an earlier writer visible to whoever resets the mark.
@@ -45,12 +45,11 @@ void Canvas::write(const film::Picture& picture) noexcept {
   std::size_t c = 0;
   for (const char* name : {"R", "G", "B"}) {
     const std::vector<float>& plane = picture.find(name)->values;
-    for (std::size_t i = 0; i < plane.size(); ++i)
-      values_[kChannels * i + c].store(plane[i], std::memory_order_relaxed);
+    for (std::size_t i = 0; i < plane.size(); ++i) value(kChannels * i + c).store(plane[i], std::memory_order_relaxed);
     ++c;
   }
   for (std::size_t i = 0; i < picture.coverage.size(); ++i)
-    values_[kChannels * i + c].store(picture.coverage[i], std::memory_order_relaxed);
+    value(kChannels * i + c).store(picture.coverage[i], std::memory_order_relaxed);
   for (std::atomic<std::uint8_t>& changed : changed_) changed.fetch_or(1, std::memory_order_release);
 }
 
@@ -68,10 +67,10 @@ Cell Canvas::cell(std::size_t index) const noexcept {
 }
 
 void Canvas::read(int x, int y, int count, float* rgb, float* coverage) const noexcept {
-  const std::atomic<float>* from = &values_[at(x, y)];
+  std::size_t from = at(x, y);
   for (int i = 0; i < count; ++i) {
-    for (int c = 0; c < 3; ++c) *rgb++ = (from++)->load(std::memory_order_relaxed);
-    *coverage++ = (from++)->load(std::memory_order_relaxed);
+    for (int c = 0; c < 3; ++c) *rgb++ = value(from++).load(std::memory_order_relaxed);
+    *coverage++ = value(from++).load(std::memory_order_relaxed);
   }
 }
 

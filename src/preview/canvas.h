@@ -6,6 +6,7 @@
 #include <cstdint>
 #include <vector>
 
+#include "base/zero_pages.h"
 #include "film/forward.h"
 
 namespace orrery::preview {
@@ -54,10 +55,12 @@ class Canvas {
   static constexpr std::size_t kChannels = 4;
 
   std::size_t at(int x, int y) const noexcept;
+  std::atomic_ref<float> value(std::size_t i) const noexcept { return std::atomic_ref(values_[i]); }
 
   int width_, height_;
   std::size_t cells_per_row_;
-  std::vector<std::atomic<float>> values_;          ///< R, G, B and coverage of all pixels
+  /// R, G, B and coverage of all pixels. Its pages are cleared by the threads that first write them.
+  mutable base::ZeroVector<float> values_;
   std::vector<std::atomic<std::uint8_t>> changed_;  ///< 1: the cell has changed
 };
 

@@ -59,11 +59,13 @@ class AdaptiveSampling {
       pixels_.known_black.resize(pixels_.samples.size());
     pixels_.emitters =
         emitter_coverage(render_tile.view(), {accel.tracer(), compiled.precision}, compiled.width, compiled.height);
+    if (std::all_of(state.counts.begin(), state.counts.end(), [](std::uint32_t n) { return n == 0; }))
+      return;  // the first iteration sets all pixels
     const auto update_row = [&](std::size_t y, TileWorker&) {
       for (int x = 0; x < compiled.width; ++x)
         if (state.counts[pixels_.at(x, static_cast<int>(y))] > 0) update(x, static_cast<int>(y));
     };
-    pool.run(static_cast<std::size_t>(compiled.height), update_row, [] { return false; });
+    pool.run(static_cast<std::size_t>(compiled.height), update_row);
   }
 
   bool run() {

@@ -7,6 +7,8 @@
 #include <cstddef>
 #include <memory>
 
+#include "base/stop_point.h"
+
 namespace orrery::render {
 namespace {
 
@@ -46,7 +48,7 @@ class Ranking {
 };
 
 /// Adds the pixels without a reliable error estimate if all of them are affordable.
-void add_unreliable_pixels(const std::vector<std::uint32_t>& samples, const std::vector<std::uint8_t>& is_unreliable,
+void add_unreliable_pixels(std::span<const std::uint32_t> samples, const std::vector<std::uint8_t>& is_unreliable,
                            const IterationGoal& goal, PixelSelection& selection) {
   const auto price_of = [&](std::size_t i) {
     return std::uint64_t{std::min(samples[i], goal.max_per_pixel - samples[i])};
@@ -68,14 +70,16 @@ void add_unreliable_pixels(const std::vector<std::uint32_t>& samples, const std:
 
 }  // namespace
 
-PixelSelection choose_pixels(const std::vector<std::uint32_t>& samples, const std::vector<float>& error_of_one_sample,
+PixelSelection choose_pixels(std::span<const std::uint32_t> samples, const std::vector<float>& error_of_one_sample,
                              const std::vector<std::uint8_t>& is_unreliable, const IterationGoal& goal) {
   PixelSelection selection;
   auto ranking = std::make_unique<Ranking>();
   std::vector<std::int16_t> bin_of(samples.size(), -1);
   double error = 0;  // sum of the squared errors of all pixels
   double all = 0;    // samples
+  const base::StopPoint stop;
   for (std::size_t i = 0; i < bin_of.size(); ++i) {
+    stop.check(i);
     const auto n = static_cast<double>(samples[i]);
     const auto s = static_cast<double>(error_of_one_sample[i]);
     error += s / n;

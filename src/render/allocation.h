@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <span>
 #include <vector>
 
 namespace orrery::render {
@@ -29,9 +30,10 @@ struct PixelSelection {
 ///
 /// `samples`              of each pixel, above 0
 /// `error_of_one_sample`  squared error of each pixel with one sample
-/// `is_unreliable`       1: the pixel has no reliable error estimate
+/// `is_unreliable`        1: the pixel has no reliable error estimate
+/// Errors                 base::Error(kStopped) in a base::StopScope
 /// Reference              neyman1934
-PixelSelection choose_pixels(const std::vector<std::uint32_t>& samples, const std::vector<float>& error_of_one_sample,
+PixelSelection choose_pixels(std::span<const std::uint32_t> samples, const std::vector<float>& error_of_one_sample,
                              const std::vector<std::uint8_t>& is_unreliable, const IterationGoal& goal);
 
 }  // namespace orrery::render

@@ -11,11 +11,14 @@
 #include <utility>
 #include <vector>
 
+#include "base/stop_point.h"
+#include "base/zero_pages.h"
 #include "compile/light_tree.h"
 #include "film/display_error.h"
 #include "kernel/material.h"
 #include "kernel/ray_packet.h"
 #include "kernel/scene_view.h"
+#include "math/pixels.h"
 #include "math/scalar.h"
 #include "math/vec3.h"
 #include "render/sphere_images.h"
@@ -216,8 +219,11 @@ class Coverage {
   std::vector<EmitterCoverage> pixels() {
     std::vector<EmitterCoverage> out;
     if (corners_.empty()) return out;
+    out.reserve(math::pixel_count(width_, height_));
     std::vector<Corner> above(static_cast<std::size_t>(width_));
+    const base::StopPoint stop;
     for (int y = 0; y < height_; ++y) {
+      stop.check();
       Corner row;
       for (int x = 0; x < width_; ++x) {
         row += corner(x, y);
@@ -324,7 +330,7 @@ class Coverage {
   int width_, height_;  ///< px
   double margin_;       ///< px, by which the pixel filter extends beyond a pixel
   kernel::Camera cameras_[2] = {scene_.camera, closing_camera(scene_)};
-  std::vector<Corner> corners_;
+  base::ZeroVector<Corner> corners_;
 };
 
 double mean_of(Vec3d rgb) { return (rgb.x + rgb.y + rgb.z) / 3; }

@@ -8,6 +8,8 @@
 #include <cstdint>
 #include <span>
 
+#include "base/stop_point.h"
+#include "base/zero_pages.h"
 #include "compile/compiled_scene.h"
 #include "film/layers.h"
 #include "kernel/scene_view.h"
@@ -78,7 +80,9 @@ class Covered {
   std::vector<bool> others() {
     std::vector<bool> out(math::pixel_count(width_, height_));
     std::vector<std::int32_t> above(static_cast<std::size_t>(width_));
+    const base::StopPoint stop;
     for (int y = 0; y < height_; ++y) {
+      stop.check();
       std::int32_t row = 0;
       for (int x = 0; x < width_; ++x) {
         row += corner(x, y);
@@ -128,7 +132,7 @@ class Covered {
   double margin_;       ///< px
   double focus_ = length(camera_.forward), lens_ = length(camera_.lens_u), origin_ = length(camera_.origin);
   Axis columns_{camera_.right, camera_.half_width}, rows_{camera_.down, camera_.half_height};
-  std::vector<std::int32_t> corners_;
+  base::ZeroVector<std::int32_t> corners_;
   std::atomic<bool> is_full_ = false;
 };
 

@@ -255,7 +255,7 @@ std::vector<float> outlines(const compile::CompiledScene& scene, const accel::Ac
       tile_outlines.draw(left, top, std::min(scene.width, left + kTileSide), std::min(scene.height, top + kTileSide),
                          coverage);
     };
-    pool.run(static_cast<std::size_t>(rows * columns), draw, [] { return false; });
+    pool.run(static_cast<std::size_t>(rows * columns), draw);
     if (!scene.features.opacity) break;
   }
   return coverage;

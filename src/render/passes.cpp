@@ -6,6 +6,7 @@
 #include <utility>
 #include <vector>
 
+#include "base/stop_point.h"
 #include "compile/compiled_scene.h"
 #include "film/sums.h"
 #include "kernel/render_tile.h"
@@ -104,9 +105,12 @@ std::vector<kernel::PixelPlace> PassRenderer::unfinished_squares(int side) const
     return false;
   };
   std::vector<kernel::PixelPlace> out;
-  for (int y = 0; y < height; y += side)
+  const base::StopPoint stop;
+  for (int y = 0; y < height; y += side) {
+    stop.check();
     for (int x = 0; x < width; x += side)
       if (is_unfinished(x, y)) out.push_back({x, y});
+  }
   return out;
 }
 

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <limits>
 
+#include "base/stop_point.h"
 #include "film/display_error.h"
 #include "render/tiles.h"
 
@@ -58,7 +59,7 @@ constexpr float kDarkest = static_cast<float>(film::kDarkestLight);
 template <class Use>
 void each_row(const PixelStatistics& s, TilePool& pool, Use use) {
   const auto row = [&](std::size_t y, TileWorker&) { use(static_cast<int>(y)); };
-  pool.run(static_cast<std::size_t>(s.height), row, [] { return false; });
+  pool.run(static_cast<std::size_t>(s.height), row);
 }
 
 /// Calls `use(x, y)` for all pixels: rows in any order and on all threads, the pixels of a row in their order.
@@ -325,7 +326,11 @@ std::vector<float> errors_of_one_sample(const PixelStatistics& s, TilePool& pool
     own[i] = of_emitters[i] > 0 ? 0 : relative(s.variance[i] * static_cast<float>(s.samples[i]), s.light[i]);
   });
   double mean = 0;
-  for (const float e : own) mean += static_cast<double>(e) / static_cast<double>(own.size());
+  const base::StopPoint stop;
+  for (std::size_t i = 0; i < own.size(); ++i) {
+    stop.check(i);
+    mean += static_cast<double>(own[i]) / static_cast<double>(own.size());
+  }
   // For each pixel, how many before it have an error: in large parts of an image, such as a background, none has.
   std::vector<std::uint32_t> noisy_before(own.size() + 1);
   for (std::size_t i = 0; i < own.size(); ++i) noisy_before[i + 1] = noisy_before[i] + (own[i] > 0 ? 1 : 0);

@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <vector>
 
+#include "base/zero_pages.h"
 #include "kernel/pixel_sum.h"
 #include "math/pixels.h"
 
@@ -36,15 +37,15 @@ struct PixelStatistics {
 
   std::size_t at(int x, int y) const { return math::pixel_index(x, y, width); }
 
-  int width, height;                   ///< px
-  std::vector<std::uint32_t> samples;  ///< samples in each half, above 0
-  std::vector<float> light;            ///< mean over both halves and the three channels, at least 0
+  int width, height;                        ///< px
+  base::ZeroVector<std::uint32_t> samples;  ///< samples in each half, above 0
+  base::ZeroVector<float> light;            ///< mean over both halves and the three channels, at least 0
   /// Squared error of `light`, mean of the three channels: as the halves show it, but at least as if only the largest
   /// sample caused it.
-  std::vector<float> variance;
-  std::vector<float> outlier;  ///< by how much the largest sample raises `light`, at least 0
+  base::ZeroVector<float> variance;
+  base::ZeroVector<float> outlier;  ///< by how much the largest sample raises `light`, at least 0
   /// 1: no path reached anything that could emit, so the pixel is black; empty: not known for any pixel.
-  std::vector<std::uint8_t> known_black;
+  base::ZeroVector<std::uint8_t> known_black;
   std::vector<EmitterCoverage> emitters;  ///< empty: there are none
 };
 

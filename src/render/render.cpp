@@ -18,6 +18,7 @@
 #include <vector>
 
 #include "base/error.h"
+#include "base/stop_point.h"
 #include "base/stopwatch.h"
 #include "compile/compiled_scene.h"
 #include "film/layer_planes.h"
@@ -114,7 +115,7 @@ void release(base::ZeroVector<T>& sums, std::size_t begin, std::size_t end) {
 ///
 /// `on_done`  see add_planes()
 Result finish(const compile::CompiledScene& compiled, const film::LayerRequest& request, const film::Sums& sums,
-              int threads, const std::function<void(std::size_t begin, std::size_t end)>& on_done) {
+              TilePool& pool, const std::function<void(std::size_t begin, std::size_t end)>& on_done) {
   Result result;
   result.completed = true;
   result.picture.width = sums.width;
@@ -127,8 +128,13 @@ Result finish(const compile::CompiledScene& compiled, const film::LayerRequest& 
   result.picture.is_transparent = request.transparent;
   const kernel::SceneView view = compiled.view();
   const std::size_t pixels = sums.pixel_count();
-  TilePool(threads > 0 ? threads : available_threads()).execute([&] {
-    add_planes(film::image_planes(request, view, sums), pixels, result.picture, on_done);
+  const base::StopPoint stop;
+  pool.execute([&] {
+    add_planes(film::image_planes(request, view, sums), pixels, result.picture,
+               [&](std::size_t begin, std::size_t end) {
+                 stop.check();
+                 on_done(begin, end);
+               });
     if (request.coverage) result.picture.coverage.resize(pixels);
     for (std::size_t i = 0; i < result.picture.coverage.size(); ++i) result.picture.coverage[i] = sums.coverage(i);
     if (!request.deep) return;
@@ -169,7 +175,8 @@ double share_with_objects(const compile::CompiledScene& compiled, const film::La
 
 Result finished(const compile::CompiledScene& compiled, const film::LayerRequest& request, const film::Sums& sums,
                 int threads) {
-  return finish(compiled, request, sums, threads, [](std::size_t, std::size_t) {});
+  TilePool pool(threads > 0 ? threads : available_threads());
+  return finish(compiled, request, sums, pool, [](std::size_t, std::size_t) {});
 }
 
 Result render(const compile::CompiledScene& compiled, const accel::Accel& accel, const Settings& settings,
@@ -191,6 +198,7 @@ Result render(const compile::CompiledScene& compiled, const accel::Accel& accel,
       settings.is_adaptive()
           ? render_adaptively(compiled, accel, settings, render_tile, pool, progress, state, statistics)
           : render_progressively(compiled, settings, render_tile, pool, progress, state, statistics);
+  base::StopPoint().check();  // before passes over all pixels
   state.work = work_so_far(state.work, pool, progress);
   const std::int64_t target = pool.counts().target;
   statistics.isa = target != 0 ? kernel::isa_name(target) : kernel::isa_name();  // 0: there was nothing left to do
@@ -200,7 +208,7 @@ Result render(const compile::CompiledScene& compiled, const accel::Accel& accel,
   const base::Stopwatch since_rendered;
   Result result;
   if (completed)
-    result = finish(compiled, settings.layers, state, statistics.threads, [&](std::size_t begin, std::size_t end) {
+    result = finish(compiled, settings.layers, state, pool, [&](std::size_t begin, std::size_t end) {
       if (settings.keeps_sums) return;
       for (auto& half : state.light) release(half, begin, end);
       for (auto& half : state.guides) release(half, begin, end);

@@ -28,6 +28,7 @@ std::unique_ptr<accel::Accel> build(const compile::CompiledScene& compiled, int 
 ///
 /// `from`     sums of the same scene and settings to resume from; empty: none
 /// Result     completed == false if stopped by `cancel`; build_s is 0
+/// Errors     base::Error(kStopped) in a base::StopScope, without the samples so far
 Result render(const compile::CompiledScene& compiled, const accel::Accel& accel, const Settings& settings,
               std::optional<film::Sums> from = std::nullopt);
 

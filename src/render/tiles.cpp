@@ -12,6 +12,7 @@
 #include <atomic>
 #include <cfenv>
 
+#include "base/stop_point.h"
 #include "compile/compiled_scene.h"
 #include "film/sums.h"
 #include "math/pixels.h"
@@ -68,6 +69,7 @@ struct TilePool::Impl {
   std::optional<tbb::global_control> limit;
   tbb::task_arena arena;
   tbb::enumerable_thread_specific<TileWorker> workers;
+  base::StopPoint stop;
 
   explicit Impl(int threads) : arena(threads) {
     if (threads > tbb::info::default_concurrency())
@@ -93,6 +95,13 @@ bool TilePool::run(std::size_t count, const std::function<void(std::size_t, Tile
         tbb::simple_partitioner());
   });
   return left == 0;
+}
+
+void TilePool::run(std::size_t count, const std::function<void(std::size_t, TileWorker&)>& work) {
+  run(count, work, [this] {
+    impl_->stop.check();
+    return false;
+  });
 }
 
 void TilePool::execute(const std::function<void()>& work) { impl_->arena.execute(work); }

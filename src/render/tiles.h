@@ -52,6 +52,7 @@ struct TileWorker {
 /// A thread pool for tiles, with buffers that each thread keeps from tile to tile.
 class TilePool {
  public:
+  /// A base::StopScope of the calling thread can stop run().
   explicit TilePool(int threads);
   ~TilePool();
 
@@ -60,6 +61,10 @@ class TilePool {
   /// Result     false if some calls were skipped
   bool run(std::size_t count, const std::function<void(std::size_t i, TileWorker& worker)>& work,
            const std::function<bool()>& shall_stop);
+  /// The same for all of them.
+  ///
+  /// Errors     base::Error(kStopped) in a base::StopScope
+  void run(std::size_t count, const std::function<void(std::size_t i, TileWorker& worker)>& work);
 
   /// Runs `work` within the pool, so that its parallel loops use these threads.
   void execute(const std::function<void()>& work);

@@ -29,7 +29,7 @@ std::vector<float> filtered(const PaddedPlane& plane, float variance, const Padd
   source.valid = &valid;
   source.radius = 2;
   source.target = {&plane, &plane, &plane};
-  Tiles tiles(kSide, kSide);
+  Tiles tiles(Frame{kSide, kSide});
   std::vector<float> out(kSide * kSide);
   tiles.each([&](Worker& worker, int x0, int y0) {
     compute_weights(source, x0, y0, worker.scratch, worker.weights);

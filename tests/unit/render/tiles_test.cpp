@@ -3,10 +3,14 @@
 
 #include <gtest/gtest.h>
 
+#include <atomic>
 #include <mutex>
 #include <new>
 #include <set>
 #include <thread>
+
+#include "base/error.h"
+#include "base/stop_point.h"
 
 namespace orrery::render {
 namespace {
@@ -17,6 +21,19 @@ TEST(RenderTiles, AllocationFailureInAnyThreadReachesTheCaller) {
     if (i == 77) throw std::bad_alloc();
   };
   EXPECT_THROW(pool.run(100, fail, [] { return false; }), std::bad_alloc);
+}
+
+TEST(RenderTiles, AStopScopeStopsTheWorkOfItsPools) {
+  std::atomic<bool> flag{false};
+  const base::StopScope scope(&flag);
+  TilePool pool(2);
+  std::atomic<int> calls{0};
+  const auto work = [&](std::size_t, TileWorker&) {
+    ++calls;
+    flag = true;
+  };
+  EXPECT_THROW(pool.run(1000, work), base::Error);
+  EXPECT_LE(calls, 2) << "one for each thread";
 }
 
 TEST(RenderTiles, UsesAtMostTheGivenNumberOfThreads) {
