@@ -7,7 +7,6 @@
 #include <new>
 #include <optional>
 #include <span>
-#include <string_view>
 #include <utility>
 
 #include <fmt/core.h>
@@ -36,10 +35,11 @@ using Clock = std::chrono::steady_clock;
 constexpr double kSketchTime_s = 0.045;
 constexpr int kNarrowestSketch = 160;  // px
 constexpr std::chrono::milliseconds kRefresh{150};
-/// Samples per pixel with which an image has replaced its sketch: single samples may be black.
-constexpr double kFadeSamples = 8;
+/// Samples per pixel with which all pixels have some: those of the first pass of each half, or more than those of the
+/// first of all.
+constexpr double kShownSamples = 2;
 constexpr const char* kReading = "reading";
-constexpr double kProgressStep = 0.01;
+constexpr double kProgressStep = 0.01, kBuildStep = 0.05;
 constexpr int kSketchQuality = 75, kQuality = 85;  // of JPEG
 
 double pixels_of(int width, int height) { return static_cast<double>(width) * static_cast<double>(height); }
@@ -62,38 +62,6 @@ void light(film::Picture& picture, const scene::Camera& camera) {
   }
 }
 
-/// Interpolates an image linearly to another size, row by row: an image of 16 million pixels must not keep the next
-/// wish waiting. Result: R, G, B codes
-std::vector<std::uint8_t> resized(const film::EncodedPicture& from, int width, int height) {
-  struct Place {
-    std::size_t low, high;
-    float share;  ///< of `high`
-  };
-  const auto place = [](int i, int count, int from_count) -> Place {
-    const float at =
-        std::clamp((static_cast<float>(i) + 0.5f) * static_cast<float>(from_count) / static_cast<float>(count) - 0.5f,
-                   0.0f, static_cast<float>(from_count - 1));
-    const int low = static_cast<int>(at), high = std::min(low + 1, from_count - 1);
-    return {3 * static_cast<std::size_t>(low), 3 * static_cast<std::size_t>(high), at - static_cast<float>(low)};
-  };
-  std::vector<Place> columns;
-  for (int x = 0; x < width; ++x) columns.push_back(place(x, width, from.width));
-  std::vector<float> row(3 * static_cast<std::size_t>(from.width));
-  std::vector<std::uint8_t> out(3 * math::pixel_count(width, height));
-  std::size_t next = 0;
-  for (int y = 0; y < height; ++y) {
-    const Place v = place(y, height, from.height);
-    for (std::size_t i = 0; i < row.size(); ++i) {
-      const float above = from.values[v.low / 3 * row.size() + i], below = from.values[v.high / 3 * row.size() + i];
-      row[i] = above + (below - above) * v.share;
-    }
-    for (const Place& u : columns)
-      for (std::size_t c = 0; c < 3; ++c)
-        out[next++] = static_cast<std::uint8_t>(row[u.low + c] + (row[u.high + c] - row[u.low + c]) * u.share + 0.5f);
-  }
-  return out;
-}
-
 }  // namespace
 
 std::string text_of(const base::Error& error) {
@@ -104,23 +72,20 @@ std::string text_of(const base::Error& error) {
 
 /// An image that is being rendered, and its development so far.
 struct Viewer::Live {
-  Live(const display::PictureInfo& info, const annotation::Drawing& drawing, const film::EncodedPicture& sketch)
-      : canvas(info.width, info.height),
-        develop(info.display),
-        base(resized(sketch, info.width, info.height)),
-        codes(base) {
-    if (!drawing.is_empty()) overlay = annotation::draw(drawing, annotation::shown_by(info.display));
-  }
+  Live(display::PictureInfo shown, annotation::Drawing over, Frame known)
+      : info(std::move(shown)), drawing(std::move(over)), frame(std::move(known)) {}
 
-  preview::Canvas canvas;
-  display::PixelDeveloper develop;
-  std::optional<annotation::Overlay> overlay;  ///< without outlines, which are found when the image is complete
-  const std::vector<std::uint8_t> base;        ///< codes of the sketch
-  std::mutex mutex;                            // guards what follows
-  std::vector<std::uint8_t> codes;
+  const display::PictureInfo info;
+  const annotation::Drawing drawing;  ///< without outlines, which are found when the image is complete
+  Frame frame;                        ///< what is known of its images
+  preview::Canvas canvas{info.width, info.height};
+  std::atomic<double> samples{0};    ///< per pixel
+  std::atomic<bool> is_over{false};  ///< it is finished, or not wanted any more
+  std::mutex mutex;                  // guards what follows
   Clock::time_point next = Clock::now();
-  std::atomic<double> samples{0};  ///< per pixel
-  Frame frame;                     ///< what is known of its images
+  std::optional<display::PixelDeveloper> develop;  ///< empty: nothing has been shown
+  annotation::Overlay overlay;
+  std::vector<std::uint8_t> codes;
 };
 
 Viewer::Viewer(MakeSubject make, std::vector<std::string> fixed, Wish first)
@@ -145,11 +110,15 @@ void Viewer::stop() {
 }
 
 std::uint64_t Viewer::ask(Wish wish) {
+  std::shared_ptr<const job::Rendering> before;  // freed after the lock
   const std::lock_guard lock(mutex_);
   const bool keeps_moving = moves_ && wish.options == state_.wish.options;
-  if (is_cancellable_ && !keeps_moving) cancel_ = true;  // images of a drag are completed, or none would be seen
+  if (is_cancellable_ && !keeps_moving) {  // images of a drag are completed, or none would be seen
+    cancel_ = true;
+    drop_live();
+  }
   state_.wish = std::move(wish);
-  finished_ = nullptr;
+  before.swap(finished_);
   ++state_.asked;
   announce();
   return state_.asked;
@@ -177,8 +146,10 @@ Frame Viewer::frame(std::uint64_t after, std::chrono::milliseconds patience, std
   std::unique_lock lock(mutex_);
   while (!stops_ && frame_.number <= after && state.value_or(state_.number) == state_.number && Clock::now() < end) {
     changed_.wait_until(lock, std::min(end, Clock::now() + kRefresh));
-    if (state_.activity == kReading && std::abs(*reading_ - state_.progress) >= kProgressStep) {
-      state_.progress = *reading_;
+    const double read = *reading_;
+    if (state_.activity == kReading &&
+        (std::abs(read - state_.progress) >= kProgressStep || (read == 1) != (state_.progress == 1))) {
+      state_.progress = read;
       announce();
     }
     if (frame_.number > after || !live_) continue;
@@ -211,34 +182,42 @@ void Viewer::set_served(std::uint64_t wish, const std::string& problem) {
   announce();
 }
 
-/// Publishes the image that is being rendered, if it has changed.
+/// Ends the publication of the image that is being rendered. Domain: mutex_ is locked
+void Viewer::drop_live() {
+  if (live_) live_->is_over = true;
+  live_ = nullptr;
+}
+
+/// Publishes the image that is being rendered, if it has changed and all of its pixels have samples.
 void Viewer::refresh(Live& live) {
   const std::lock_guard lock(live.mutex);
-  if (Clock::now() < live.next) return;
+  if (live.samples < kShownSamples || Clock::now() < live.next) return;
   const std::vector<std::size_t> cells = live.canvas.take_changed();
   if (cells.empty()) return;
-  // Samples at the end of the pass, so that all parts that it has rendered fade in alike.
-  const double samples = std::exp2(2 * std::ceil(std::log2(std::max(live.samples.load(), 1.0)) / 2));
-  const double fade = std::min(samples / kFadeSamples, 1.0);
+  if (!live.develop) {
+    live.develop.emplace(live.info.display);
+    live.codes.resize(3 * math::pixel_count(live.info.width, live.info.height));
+    if (!live.drawing.is_empty())
+      live.overlay = annotation::draw(live.drawing, annotation::shown_by(live.info.display));
+  }
   std::vector<float> coverage(preview::Canvas::kSide), rgb(3 * coverage.size());
   for (const std::size_t index : cells) {
+    if (live.is_over) return;
     const preview::Cell cell = live.canvas.cell(index);
     for (int y = cell.y; y < cell.y + cell.height; ++y) {
-      const std::size_t begin = 3 * math::pixel_index(cell.x, y, live.canvas.width());
+      const std::size_t begin = 3 * math::pixel_index(cell.x, y, live.info.width);
       const std::span codes(&live.codes[begin], 3 * static_cast<std::size_t>(cell.width));
       live.canvas.read(cell.x, y, cell.width, rgb.data(), coverage.data());
-      live.develop(rgb.data(), coverage.data(), static_cast<std::size_t>(cell.width), codes.data());
-      for (std::size_t i = 0; i < codes.size(); ++i)
-        codes[i] = static_cast<std::uint8_t>(std::lerp(live.base[begin + i], codes[i], fade) + 0.5);
-      if (live.overlay) annotation::blend(*live.overlay, cell.x, y, codes);
+      (*live.develop)(rgb.data(), coverage.data(), static_cast<std::size_t>(cell.width), codes.data());
+      if (!live.drawing.is_empty()) annotation::blend(live.overlay, cell.x, y, codes);
     }
   }
   live.frame.samples = live.samples;
   live.frame.bytes = std::make_shared<const std::string>(
-      image::jpeg_bytes(live.canvas.width(), live.canvas.height(), live.codes.data(), kQuality));
+      image::jpeg_bytes(live.info.width, live.info.height, live.codes.data(), kQuality));
   live.next = Clock::now() + kRefresh;
   const std::lock_guard own(mutex_);
-  if (live_.get() == &live) publish(live.frame);  // otherwise it has been finished meanwhile
+  if (!live.is_over) publish(live.frame);
 }
 
 /// Domain: mutex_ is locked
@@ -250,6 +229,7 @@ void Viewer::publish(Frame frame) {
 
 void Viewer::run() {
   const base::ReadProgressScope scope(reading_);
+  const base::StopScope stop(&cancel_);
   std::unique_lock lock(mutex_);
   for (;;) {
     changed_.wait(lock, [this] { return stops_ || state_.asked != served_; });
@@ -268,9 +248,9 @@ void Viewer::run() {
         wish.camera.clear();
         correct(wish, number);
       }
-      const std::vector<std::string> words = words_of(fixed_, wish);
-      if (wish.moves || sketched_words_ != words) render(wish, number, true);
-      sketched_words_ = words;
+      const std::pair of_sketch(words_of(fixed_, wish), wish.client);
+      if (wish.moves || sketched_ != of_sketch) render(wish, number, true);
+      sketched_ = of_sketch;
       if (!wish.moves) render(wish, number, false);
     } catch (const base::Error& error) {
       problem = error.kind() == base::ErrorKind::kStopped ? "stopped" : text_of(error);
@@ -280,7 +260,7 @@ void Viewer::run() {
       problem = std::string("internal error: ") + error.what();
     }
     lock.lock();
-    live_ = nullptr;
+    drop_live();
     moves_ = false;
     served_ = number;
     if (!problem.empty() && (problem != "stopped" || state_.asked == number)) set_served(number, problem);
@@ -296,7 +276,6 @@ void Viewer::correct(const Wish& wish, std::uint64_t number) {
 void Viewer::make_subject(Wish& wish, std::uint64_t number) {
   *reading_ = 0;
   set_activity(kReading);
-  const base::StopScope scope(&cancel_);
   if (wish.options.erase(kAllFrames) > 0) {
     Wish film{wish.options};
     film.options.erase("--frame");
@@ -329,7 +308,7 @@ struct Viewer::Image {
   std::vector<std::string> warnings = {};
   std::shared_ptr<job::Rendering> rendering = nullptr;
   std::shared_ptr<Live> live = nullptr;  ///< null for a sketch
-  double build_reported = -1;            ///< fraction of the BVH build that the state tells; negative: none
+  double progress = 0;                   ///< of a preparation that the state tells
 };
 
 void Viewer::render(const Wish& wish, std::uint64_t number, bool is_sketch) {
@@ -366,7 +345,8 @@ void Viewer::render(const Wish& wish, std::uint64_t number, bool is_sketch) {
   finish(image);
   const job::Phases& phases = image.rendering->report.phases;
   const double seconds = watch.seconds() - phases.read_s - phases.compile_s - phases.build_s;
-  if (is_sketch) pixels_per_second_ = pixels_of(sketch_.width, sketch_.height) / std::max(seconds, 1e-3);
+  const film::Picture& picture = image.rendering->picture;
+  if (is_sketch) pixels_per_second_ = pixels_of(picture.width, picture.height) / std::max(seconds, 1e-3);
 }
 
 job::Hooks Viewer::hooks_for(Image& image) {
@@ -375,9 +355,9 @@ job::Hooks Viewer::hooks_for(Image& image) {
   hooks.develops_pixels = true;
   hooks.on_warning = [&image](const base::Diagnostic& warning) { image.warnings.push_back(base::formatted(warning)); };
   hooks.on_preparation = [this, &image](const char* phase, double fraction) {
-    if (std::string_view(phase) != "building" || fraction - image.build_reported < 0.05) return;
-    image.build_reported = fraction;
-    set_activity("building the BVH", fraction);
+    if (!image.is_new || (fraction > 0 && fraction - image.progress < kBuildStep)) return;
+    image.progress = fraction;
+    set_activity(phase, fraction);
   };
   hooks.on_start = [this, &image](const display::PictureInfo& info, const annotation::Drawing& drawing) {
     begin(image, info, drawing);
@@ -388,9 +368,8 @@ job::Hooks Viewer::hooks_for(Image& image) {
   };
   hooks.on_progress = [this, &image](const render::Progress& progress) {
     picker_.open();  // there is no progress before the BVH has been built
-    if (std::exchange(image.build_reported, -1) >= 0) set_activity("");
-    const preview::Canvas& canvas = image.live->canvas;
-    image.live->samples = static_cast<double>(progress.samples_done) / pixels_of(canvas.width(), canvas.height());
+    const display::PictureInfo& info = image.live->info;
+    image.live->samples = static_cast<double>(progress.samples_done) / pixels_of(info.width, info.height);
   };
   return hooks;
 }
@@ -398,8 +377,7 @@ job::Hooks Viewer::hooks_for(Image& image) {
 /// Tells clients about an image whose scene has been read.
 void Viewer::begin(Image& image, const display::PictureInfo& info, const annotation::Drawing& drawing) {
   if (!image.is_sketch) {
-    image.live = std::make_shared<Live>(info, drawing, sketch_);
-    image.live->frame = image.frame;
+    image.live = std::make_shared<Live>(info, drawing, image.frame);
     image.live->frame.type = "image/jpeg";
   }
   const scene::Scene& scene = prepared_->loaded().read.scene;
@@ -419,11 +397,12 @@ void Viewer::finish(Image& image) {
   const job::Rendering& rendering = *image.rendering;
   if (image.is_sketch && shading_ == scene::Shading::kPath)
     light(image.rendering->picture, prepared_->loaded().read.scene.camera);
-  film::EncodedPicture picture =
+  const film::EncodedPicture picture =
       job::develop_annotated(rendering.picture, rendering.drawing, rendering.display, 8, display::Alpha::kOverBlack);
   const render::Statistics& statistics = rendering.report.render;
   Frame& frame = image.frame;
-  frame.samples = static_cast<double>(statistics.paths) / pixels_of(picture.width, picture.height);
+  frame.samples =
+      image.is_sketch ? 0 : static_cast<double>(statistics.paths) / pixels_of(picture.width, picture.height);
   frame.is_finished = !image.is_sketch;
   frame.noise = statistics.noise;
   frame.type = image.is_sketch ? "image/jpeg" : "image/png";
@@ -431,13 +410,12 @@ void Viewer::finish(Image& image) {
     const std::vector<std::uint8_t> codes(picture.values.begin(), picture.values.end());
     frame.bytes = std::make_shared<const std::string>(
         image::jpeg_bytes(picture.width, picture.height, codes.data(), kSketchQuality));
-    sketch_ = std::move(picture);
   } else {
     frame.bytes = std::make_shared<const std::string>(image::png_bytes(picture, image::kUncompressed));
   }
   const auto bounds = image.is_new ? picker_.bounds() : std::nullopt;
   const std::lock_guard lock(mutex_);
-  live_ = nullptr;
+  drop_live();
   if (image.is_new) state_.bounds = bounds;
   if (!image.is_sketch && state_.asked == frame.wish) finished_ = image.rendering;
   publish(frame);

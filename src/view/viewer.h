@@ -13,13 +13,13 @@
 #include <optional>
 #include <string>
 #include <thread>
+#include <utility>
 #include <vector>
 
 #include "annotation/legend.h"
 #include "base/error.h"
 #include "base/read_progress.h"
 #include "data/table.h"
-#include "film/picture.h"
 #include "job/job.h"
 #include "job/prepared_scene.h"
 #include "job/rendering.h"
@@ -62,7 +62,7 @@ struct Frame {
   std::string client = {};   ///< of that wish
   std::shared_ptr<const std::string> bytes = nullptr;
   std::string type = {};             ///< "image/jpeg"; "image/png" if it is finished
-  double samples = 0;                ///< mean over the pixels
+  double samples = 0;                ///< mean over the pixels; 0: a sketch
   std::optional<double> noise = {};  ///< of a finished image with a target noise
   bool is_finished = false;
 };
@@ -78,8 +78,8 @@ struct State {
   std::optional<std::array<math::Vec3d, 2>> bounds;  ///< of the scene that is shown: see Picker
   int width = 0, height = 0;                         ///< of the finished image
   std::uint64_t served = 0;           ///< number of the last wish that was granted, or refused as `problem` says
-  std::string activity;               ///< "reading", "building the BVH"; empty: rendering or finished
-  double progress = 0;                ///< of the activity, 0 to 1; 0: unknown
+  std::string activity;               ///< "reading" or a phase of job::Hooks; empty: rendering or finished
+  double progress = 0;                ///< of the activity, 0 to 1; 0: unknown; 1: what follows a read is under way
   std::string problem;                ///< why the last wish was not granted
   std::vector<std::string> warnings;  ///< about the image that is shown
 };
@@ -87,16 +87,14 @@ struct State {
 /// Renders what clients want to see, on one thread, with one prepared scene.
 ///
 /// The first image of a wish is a sketch: without lighting, one sample per pixel, as large as can be rendered in 45 ms.
-/// A wish that does not move is then rendered completely; meanwhile, frame() returns the sketch with what is rendered
-/// so far over it.
+/// A wish that does not move is then rendered completely; meanwhile, frame() returns what is rendered so far, once all
+/// pixels have samples. The page draws it over the sketch.
 class Viewer {
  public:
   /// `fixed`    words of the command line that no control sets
   Viewer(MakeSubject make, std::vector<std::string> fixed, Wish first);
   /// Stops rendering.
   ~Viewer();
-  Viewer(const Viewer&) = delete;
-  Viewer& operator=(const Viewer&) = delete;
 
   /// Returns the number of the wish.
   std::uint64_t ask(Wish wish);
@@ -135,6 +133,7 @@ class Viewer {
   void announce();
   void set_activity(const std::string& activity, double progress = 0);
   void set_served(std::uint64_t wish, const std::string& problem);
+  void drop_live();
   void refresh(Live& live);
   void publish(Frame frame);
 
@@ -162,9 +161,8 @@ class Viewer {
   scene::Shading shading_ = {};                          ///< of the subject
   std::shared_ptr<job::PreparedScene> prepared_;
   Picker picker_;
-  double pixels_per_second_ = 4e6;                          ///< of sketches
-  film::EncodedPicture sketch_;                             ///< the last one
-  std::optional<std::vector<std::string>> sketched_words_;  ///< what it shows
+  double pixels_per_second_ = 4e6;                                            ///< of sketches
+  std::optional<std::pair<std::vector<std::string>, std::string>> sketched_;  ///< words and client of the last one
   std::thread thread_;
 };
 

@@ -7,7 +7,8 @@ const subtract = (a, b) => a.map((x, i) => x - b[i]);
 const scale = (a, s) => a.map(x => x * s);
 const dot = (a, b) => a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
 const cross = (a, b) => [a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]];
-const normalized = a => scale(a, 1 / Math.hypot(...a));
+export const distance = v => Math.hypot(...v);
+const normalized = a => scale(a, 1 / distance(a));
 
 // Rotates v about a unit vector.
 function rotated(v, axis, angle) {
@@ -21,12 +22,11 @@ function axes(camera) {
   return { back, right, up: cross(back, right) };
 }
 
-// Scene units per pixel at the distance of look_at, in an image of this size.
-function unitsPerPixel(camera, width, height) {
-  if (!camera.perspective) return camera.size / width;
-  const distance = Math.hypot(...subtract(camera.look_from, camera.look_at));
-  return 2 * distance * Math.tan(camera.size * Math.PI / 360) / height;
-}
+// Scene units per pixel at a distance, in an image of this size.
+const unitsPerPixel = (camera, depth, width, height) =>
+  camera.perspective ? 2 * depth * Math.tan(camera.size * Math.PI / 360) / height : camera.size / width;
+
+const reach = camera => distance(subtract(camera.look_from, camera.look_at));
 
 // Orbits about look_at: about `vertical` by `turn`, towards it by `tilt`, in radians. The horizon stays level; that of a
 // camera that was rolled keeps its angle.
@@ -49,7 +49,7 @@ const shifted = (camera, by) => ({ ...camera, look_from: add(camera.look_from, b
 
 // Moves the scene with the pointer, in pixels of an image of this size.
 export function pan(camera, dx, dy, width, height) {
-  const unit = unitsPerPixel(camera, width, height), { right, up } = axes(camera);
+  const unit = unitsPerPixel(camera, reach(camera), width, height), { right, up } = axes(camera);
   return shifted(camera, add(scale(right, -dx * unit), scale(up, dy * unit)));
 }
 
@@ -65,20 +65,18 @@ export function zoom(camera, factor) {
 
 // Looks along an axis, 0 to 2, from its positive or its negative side; along `vertical`, as `plot --look-from` does.
 export function alongAxis(camera, axis, side, vertical) {
-  const distance = Math.hypot(...subtract(camera.look_from, camera.look_at));
-  const direction = [0, 0, 0];
-  direction[axis] = side;
+  const direction = [0, 1, 2].map(i => i === axis ? side : 0);
   const isAlongUp = Math.abs(dot(normalized(vertical), direction)) > 0.99;
   const above = [[0, 0, side], [0, 0, -side], [0, side, 0]][axis];
-  return { ...camera, look_from: add(camera.look_at, scale(direction, distance)), up: isAlongUp ? above : vertical };
+  return { ...camera, look_from: add(camera.look_at, scale(direction, reach(camera))), up: isAlongUp ? above : vertical };
 }
 
 // Where a point is in an image of this size: x and y in pixels, and pixels per scene unit there; null: behind the camera.
 export function project(camera, point, width, height) {
   const { back, right, up } = axes(camera), offset = subtract(point, camera.look_from);
-  const distance = -dot(offset, back);
-  if (camera.perspective && distance <= 0) return null;
-  const scaled = camera.perspective ? height / (2 * distance * Math.tan(camera.size * Math.PI / 360)) : width / camera.size;
+  const depth = -dot(offset, back);
+  if (camera.perspective && depth <= 0) return null;
+  const scaled = 1 / unitsPerPixel(camera, depth, width, height);
   return { x: width / 2 + scaled * dot(offset, right), y: height / 2 - scaled * dot(offset, up), scale: scaled };
 }
 
@@ -97,16 +95,14 @@ export function shortest(a, b, box) {
   if (!volume) return direct;
   const shares = [cross(v, w), cross(w, u), cross(u, v)].map(normal => dot(direct, normal) / volume);
   const near = shares.map((share, i) => box.periodic[i] ? -Math.round(share) : 0);
-  const range = [0, 1, 2].map(i => box.periodic[i] ? [-1, 0, 1] : [0]);
   let best = direct;
-  for (const i of range[0]) for (const j of range[1]) for (const k of range[2]) {
-    const steps = [near[0] + i, near[1] + j, near[2] + k];
-    const candidate = box.edges.reduce((sum, edge, n) => add(sum, scale(edge, steps[n])), direct);
-    if (Math.hypot(...candidate) < Math.hypot(...best)) best = candidate;
+  for (let n = 0; n < 27; ++n) {
+    const around = [n % 3 - 1, Math.floor(n / 3) % 3 - 1, Math.floor(n / 9) - 1];
+    const image = box.edges.reduce((sum, edge, i) => add(sum, scale(edge, box.periodic[i] ? near[i] + around[i] : 0)), direct);
+    if (distance(image) < distance(best)) best = image;
   }
   return best;
 }
 
-export const distance = v => Math.hypot(...v);
 // The angle between two vectors in degrees.
 export const angle = (a, b) => Math.acos(Math.max(-1, Math.min(1, dot(normalized(a), normalized(b))))) * 180 / Math.PI;

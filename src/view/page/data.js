@@ -1,26 +1,22 @@
 // SPDX-License-Identifier: Apache-2.0
 // The controls that know the data: columns with kind, range and histogram, colour maps, slices.
 import { facing, project } from "./camera.js";
-import { $, ask, command, current, element, isRead, isSettled, on, onUpdate, option, page, set, setStill, state } from "./store.js";
+import { $, ask, command, current, element, isRead, onUpdate, option, page, set, setStill, state } from "./store.js";
 import { choices } from "./panel.js";
 import { size } from "./picture.js";
 
 const shortened = number => String(Number(number.toPrecision(4)));
 const limited = share => Math.max(0, Math.min(1, share));
-const FEW_ROWS = 300000;  // of files whose columns are all read while nothing else is to be done
+const FEW_ROWS = 300000, MOST_COLUMNS = 24;  // of files whose columns are read to list their ranges
 
 // Lets a pointer drag an element, `drag(event, moves)`, and arrow keys move it: `step(1)` or `step(-1)`.
 function draggable(handle, { grab = () => {}, drag, step }) {
-  let isHeld = false;
   handle.onpointerdown = event => {
     handle.setPointerCapture(event.pointerId);
-    isHeld = true;
     grab(event);
   };
-  handle.onpointermove = event => { if (isHeld) drag(event, true); };
-  handle.onpointerup = event => {
-    isHeld = false;
-    drag(event, false);
+  handle.onpointermove = handle.onpointerup = event => {
+    if (handle.hasPointerCapture(event.pointerId)) drag(event, event.type === "pointermove");
   };
   handle.onkeydown = event => {
     const by = { ArrowLeft: -1, ArrowDown: -1, ArrowRight: 1, ArrowUp: 1 }[event.key];
@@ -53,8 +49,7 @@ const kindOf = type => type === "text" ? "words" : /int/.test(type) ? "whole num
 // The column of the colours; "": there is none.
 export function colourColumn() {
   const name = option("--color-by") || state?.legend.title || "";
-  const known = columns().some(([column]) => column === name);
-  return known ? name : state?.data?.[name] || "";
+  return columns().some(([column]) => column === name) ? name : state?.data?.[name] || "";
 }
 
 const entry = (value, textContent) => element("option", { value, textContent });
@@ -77,16 +72,9 @@ function listColumns() {
 async function describe(column) {
   const known = await summary(column), one = [...$("columns").options].find(({ value }) => value === column);
   const [, type] = columns().find(([name]) => name === column) ?? [];
-  const isNumber = known?.low !== undefined, hasClasses = known?.distinct !== undefined;
-  const range = isNumber ? `, ${shortened(known.low)} … ${shortened(known.high)}` : hasClasses ? `, ${known.distinct.toLocaleString("en")} different` : "";
+  const range = known?.low !== undefined ? `, ${shortened(known.low)} … ${shortened(known.high)}`
+    : known?.distinct !== undefined ? `, ${known.distinct.toLocaleString("en")} different` : "";
   if (one && type) one.textContent = `${column} (${kindOf(type)}${range})`;
-}
-
-let isDescribing = false;
-async function describeAll() {
-  if (isDescribing || !state?.data || !isSettled() || state.data.rows > FEW_ROWS) return;
-  isDescribing = true;
-  for (const [name] of columns().slice(0, 24)) await describe(name);
 }
 
 function makeColumns() {
@@ -96,11 +84,13 @@ function makeColumns() {
     if (value === "*") $("color-by").focus();
     else set({ "--color-by": value });
   };
+  $("columns").onfocus = () => {
+    if (state?.data?.rows <= FEW_ROWS) columns().slice(0, MOST_COLUMNS).forEach(([name]) => describe(name));
+  };
   onUpdate(() => {
     listColumns();
     if (colourColumn()) describe(colourColumn());
   });
-  on("settled", describeAll);
 }
 
 // ---- Histogram and range ------------------------------------------------------------------------------------------

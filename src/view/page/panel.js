@@ -21,8 +21,7 @@ function head(section, names) {
     const set = names.map(typed).filter(text => text !== "").join(" ");
     code.textContent = set || names[0];
     code.className = set ? "on" : "";
-    message.hidden = !problem() || !names.includes(lastOption);
-    message.textContent = message.hidden ? "" : problem();
+    message.textContent = names.includes(lastOption) ? problem() : "";
   });
 }
 
@@ -85,11 +84,7 @@ function bindButton(button, name) {
   onUpdate(() => button.setAttribute("aria-pressed", String(option(name) === button.value)));
 }
 
-function bindColour(field, name) {
-  field.onchange = () => set({ [name]: field.value });
-}
-
-const BINDS = { checkbox: bindBox, range: bindSlider, button: bindButton, color: bindColour };
+const BINDS = { checkbox: bindBox, range: bindSlider, button: bindButton };
 function bind(field) {
   const name = field.dataset.option;
   field.title ||= control(name).help;

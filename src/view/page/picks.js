@@ -73,13 +73,6 @@ function scopesOf(picked) {
 
 // ---- Marks --------------------------------------------------------------------------------------------------------
 
-function svg(tag, attributes, text = "") {
-  const out = document.createElementNS("http://www.w3.org/2000/svg", tag);
-  for (const [name, value] of Object.entries(attributes)) out.setAttribute(name, value);
-  out.textContent = text;
-  return out;
-}
-
 // Draws the marks where the camera sees the particles.
 function drawMarks() {
   const marks = $("marks"), camera = current(), { width, height } = size();
@@ -89,15 +82,15 @@ function drawMarks() {
   for (let i = 1; i < picks.length; ++i) {
     const [a, b] = [places[i - 1], places[i]];
     if (!a || !b) continue;
-    parts.push(svg("line", { x1: a.x, y1: a.y, x2: b.x, y2: b.y }));
+    parts.push(element("line", { x1: a.x, y1: a.y, x2: b.x, y2: b.y }));
     const length = shortened(distance(shortest(picks[i - 1].center, picks[i].center, state.data?.box)));
-    parts.push(svg("text", { x: (a.x + b.x) / 2, y: (a.y + b.y) / 2 - 8 }, length));
+    parts.push(element("text", { x: (a.x + b.x) / 2, y: (a.y + b.y) / 2 - 8 }, length));
   }
   places.forEach((place, i) => {
     if (!place) return;
     const r = Math.max(7, Math.min(picks[i].radius * place.scale + 3, 60));
-    parts.push(svg("circle", { cx: place.x, cy: place.y, r, class: "halo" }), svg("circle", { cx: place.x, cy: place.y, r }));
-    if (picks.length > 1) parts.push(svg("text", { x: place.x + r + 8, y: place.y + 4 }, String(i + 1)));
+    parts.push(element("circle", { cx: place.x, cy: place.y, r, class: "halo" }), element("circle", { cx: place.x, cy: place.y, r }));
+    if (picks.length > 1) parts.push(element("text", { x: place.x + r + 8, y: place.y + 4 }, String(i + 1)));
   });
   marks.replaceChildren(...parts);
   placeCard(places.filter(Boolean).sort((a, b) => a.x - b.x).at(-1));

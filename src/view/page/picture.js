@@ -9,41 +9,41 @@ const CLICK_px = 5;  // a click moves the pointer less
 
 const stillness = matchMedia("(prefers-reduced-motion: reduce)");
 const FADE_ms = 160;
+const FULL_SAMPLES = 8;  // per pixel, with which an image has replaced its sketch: single samples may be black
 
 // ---- Place --------------------------------------------------------------------------------------------------------
 
 // The size of the picture in the window; its corner is that of #place.
 export const size = () => ({ width: canvas.clientWidth, height: canvas.clientHeight });
 
-// The picture has the shape of the image, and is as large as the window allows.
+// The picture has the shape of the image. The style sheet makes it as large as the window allows.
 function layout() {
-  const stage = $("stage").getBoundingClientRect();
-  const width = Number(option("--width")) || state?.width || stage.width;
-  const height = Number(option("--height")) || state?.height || stage.height;
-  const scale = Math.min(stage.width / width, stage.height / height);
-  const [w, h] = view.fills ? [stage.width, stage.height] : [width * scale, height * scale];
-  const { style, dataset } = $("place");
-  dataset.size = `${width} × ${height}`;
-  style.width = `${w}px`;
-  style.height = `${h}px`;
-  style.left = `${(stage.width - w) / 2}px`;
-  style.top = `${(stage.height - h) / 2}px`;
+  const [width, height] = ["width", "height"].map(name => Number(option(`--${name}`)) || state?.[name] || 1);
+  $("place").dataset.size = `${width} × ${height}`;
+  $("place").style.setProperty("--shape", width / height);
   $("stage").classList.toggle("framed", !view.fills);
 }
 onUpdate(layout);
 
 // ---- Images -------------------------------------------------------------------------------------------------------
 
-let fading = 0;
-export function draw(bitmap, fades) {
+let fading = 0, sketch = null;
+
+function paint(bitmap, opacity) {
+  context.globalAlpha = opacity;
+  context.drawImage(bitmap, 0, 0, canvas.width, canvas.height);
+}
+
+// Draws an image; `share`: how much of it covers the last sketch.
+export function draw(bitmap, { fades = false, share = 1 } = {}) {
   cancelAnimationFrame(fading);
   context.imageSmoothingQuality = "high";
   const end = performance.now() + (fades && !stillness.matches ? FADE_ms : 0);
   const step = now => {
-    context.globalAlpha = now < end ? 0.3 : 1;
-    context.drawImage(bitmap, 0, 0, canvas.width, canvas.height);
+    if (share < 1 && sketch) paint(sketch, 1);
+    paint(bitmap, now < end ? 0.3 : sketch ? share : 1);
     if (now < end) fading = requestAnimationFrame(step);
-    else bitmap.close();
+    else if (bitmap !== sketch) bitmap.close();
   };
   step(performance.now());
 }
@@ -60,7 +60,10 @@ onImage(async image => {
   dataset.frame = image.frame;
   dataset.shown = image.number;
   dataset.size = `${bitmap.width} x ${bitmap.height}`;
-  draw(bitmap, image.isFinished && hadSize);
+  const isSketch = image.samples === 0;
+  if (isSketch) sketch?.close();
+  if (isSketch) sketch = bitmap;
+  draw(bitmap, { fades: image.isFinished && hadSize, share: image.isFinished || isSketch ? 1 : Math.min(1, image.samples / FULL_SAMPLES) });
 });
 
 // ---- Pointer and wheel --------------------------------------------------------------------------------------------
@@ -121,23 +124,17 @@ canvas.addEventListener("wheel", event => {
 
 export const fit = () => look(null);
 export const center = point => current() && look(centerOn(current(), point));
+export const lookAlong = (axis, side) => current() && look(alongAxis(current(), axis, side, state.up));
 
-export function lookAlong(axis, side) {
-  if (current()) look(alongAxis(current(), axis, side, state.up));
-}
-
-// What a key does to the camera; false: nothing.
+const STEP = Math.PI / 36;  // of a key
+// Moves the camera by a key; false: it is none that does.
 export function cameraKey(event) {
-  const from = current(), key = event.key, angle = Math.PI / 36;
-  if (!from) return false;
-  const turns = { ArrowLeft: [-angle, 0], ArrowRight: [angle, 0], ArrowUp: [0, angle], ArrowDown: [0, -angle] };
-  const axis = "xyz".indexOf(key.toLowerCase());
-  if (turns[key]) move(orbit(from, ...turns[key], state.up), false);
-  else if (key === "r" || key === "R") move(roll(from, key === "r" ? angle : -angle), false);
-  else if (key === "+" || key === "=") move(zoom(from, 0.9), false);
-  else if (key === "-") move(zoom(from, 1 / 0.9), false);
-  else if (axis >= 0 && key.length === 1) lookAlong(axis, event.shiftKey ? -1 : 1);
-  else return false;
-  return true;
+  const from = current(), axis = ["x", "y", "z"].indexOf(event.key.toLowerCase());
+  const turn = (right, up) => () => orbit(from, right * STEP, up * STEP, state.up);
+  const moves = { ArrowLeft: turn(-1, 0), ArrowRight: turn(1, 0), ArrowUp: turn(0, 1), ArrowDown: turn(0, -1),
+                  r: () => roll(from, STEP), R: () => roll(from, -STEP), "+": () => zoom(from, 0.9), "=": () => zoom(from, 0.9), "-": () => zoom(from, 1 / 0.9) };
+  if (axis >= 0) lookAlong(axis, event.shiftKey ? -1 : 1);
+  else if (from && moves[event.key]) move(moves[event.key](), false);
+  return axis >= 0 || event.key in moves;
 }
 

@@ -22,14 +22,11 @@ const valuesIn = text => (text.match(/"[^"]*"|'[^']*'|[^,\s]+/g) ?? []).map(one 
 // The line of --select that lists classes of a column: its index, whether it hides them, and their values.
 function classLine(column) {
   const name = escaped(nameOf(column));
-  const forms = [[`^${name} != (.+)$`, true], [`^!\\(${name} in \\[(.*)\\]\\)$`, true],
-                 [`^${name} == (.+)$`, false], [`^${name} in \\[(.*)\\]$`, false]];
-  const lines = option("--select");
-  for (let index = 0; index < lines.length; ++index)
-    for (const [form, hides] of forms) {
-      const found = lines[index].match(new RegExp(form));
-      if (found && !/ (&&|\|\||and|or) /.test(found[1])) return { index, hides, values: valuesIn(found[1]) };
-    }
+  const form = new RegExp(`^(?:${name} (==|!=) (.+)|${name} (in) \\[(.*)\\]|(!)\\(${name} in \\[(.*)\\]\\))$`);
+  for (const [index, line] of option("--select").entries()) {
+    const [sign, list] = (line.match(form) ?? []).slice(1).filter(part => part !== undefined);
+    if (sign && !/ (&&|\|\||and|or) /.test(list)) return { index, hides: sign.startsWith("!"), values: valuesIn(list) };
+  }
   return null;
 }
 

@@ -31,9 +31,8 @@ function field(key, value) {
 }
 
 function object([name, keys]) {
-  const named = keys.find(([key]) => key === "name")?.[1].replaceAll('"', "");
-  const material = keys.find(([key]) => key === "material")?.[1].replaceAll('"', "");
-  const out = element("details", { className: "object" }, element("summary", { textContent: [named ?? name, material].filter(Boolean).join(" · ") }));
+  const textOf = sought => keys.find(([key]) => key === sought)?.[1].replaceAll('"', "");
+  const out = element("details", { className: "object" }, element("summary", { textContent: [textOf("name") ?? name, textOf("material")].filter(Boolean).join(" · ") }));
   out.dataset.name = name;
   out.ontoggle = () => {  // a scene may have many
     if (out.open && out.childElementCount === 1)

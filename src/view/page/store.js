@@ -5,16 +5,26 @@
 
 export const $ = id => document.getElementById(id);
 
-// Makes an element. Properties with a dash are attributes.
+const SHAPES = ["circle", "line", "text"];
+// Makes an element of a page, or a shape of SVG. Properties with a dash, and all of shapes, are attributes.
 export function element(tag, properties = {}, ...children) {
-  const out = document.createElement(tag);
+  const isShape = SHAPES.includes(tag), out = document.createElementNS(`http://www.w3.org/${isShape ? "2000/svg" : "1999/xhtml"}`, tag);
   for (const [name, value] of Object.entries(properties)) {
     if (value === undefined) continue;
-    if (name.includes("-") || name === "role" || name === "list") out.setAttribute(name, value);
+    if (isShape || name.includes("-") || name === "role" || name === "list") out.setAttribute(name, value);
     else out[name] = value;
   }
   out.append(...children);
   return out;
+}
+
+// The result of a function; null if it throws, as that of storage that the browser refuses to a frame.
+export function attempt(f) {
+  try {
+    return f();
+  } catch {
+    return null;
+  }
 }
 
 const target = new EventTarget();
@@ -60,14 +70,9 @@ if (!isFramed) {
 export async function request(path, body) {
   const headers = { Authorization: `Bearer ${secret}` };
   const sent = body === undefined ? { headers } : { method: "POST", headers, body: JSON.stringify(body) };
-  try {
-    const answer = await fetch(path, sent);
-    if (!isReachable) emit("reachable", isReachable = true);
-    return answer;
-  } catch {
-    if (isReachable) emit("reachable", isReachable = false);
-    return null;
-  }
+  const answer = await fetch(path, sent).catch(() => null);
+  if (isReachable !== Boolean(answer)) emit("reachable", isReachable = Boolean(answer));
+  return answer;
 }
 
 // The JSON of an answer; null, with a message if there is one, if it is an error.
@@ -145,12 +150,8 @@ export const command = name => Boolean(control(name));
 
 // Options as the program sends them: all values are in lists.
 function normalized(options) {
-  const out = {};
-  for (const [name, value] of Object.entries(options)) {
-    if (value === true || control(name)?.repeatable) out[name] = value;
-    else if (value.length > 0) out[name] = value[0];
-  }
-  return out;
+  const one = ([name, value]) => [name, value === true || control(name)?.repeatable ? value : value[0]];
+  return Object.fromEntries(Object.entries(options).map(one));
 }
 
 const isEmpty = value => value === "" || value === false || value == null || value.length === 0;
@@ -192,14 +193,14 @@ export function move(camera, isHeld) {
   sketch(isHeld);
 }
 
-export function look(camera) {
-  view = { ...view, camera };
+function show(changes) {
+  view = { ...view, ...changes };
   changed(false);
 }
 
-export function release() {
-  if (isMoving) changed(false);
-}
+export const look = camera => show({ camera });
+
+export const release = () => isMoving && changed(false);
 
 function changed(moves) {
   clearTimeout(settling);
@@ -235,7 +236,7 @@ function viewOf(text) {
   for (const [key, value] of new URLSearchParams(text)) {
     const known = control(`--${key}`);
     if (key === ".window") out.fills = true;
-    else if (key === ".camera") try { out.camera = JSON.parse(value); } catch { /* the camera of the data */ }
+    else if (key === ".camera") out.camera = attempt(() => JSON.parse(value));
     else if (!known) emit("problem", `The address names --${key}, an option that this page does not have.`);
     else if (known.repeatable) (out.options[known.name] ??= []).push(value);
     else out.options[known.name] = known.type === "" ? true : value;
@@ -250,15 +251,12 @@ function record() {
   steps.splice(step + 1, Infinity, text);
   if (steps.length > MOST_STEPS) steps.shift();
   step = steps.length - 1;
-  if (!isFramed) try { history.pushState(null, "", `#${text}`); } catch { /* too many in a short time */ }
+  if (!isFramed) attempt(() => history.pushState(null, "", `#${text}`));  // refused after too many in a short time
 }
 
 export const canStep = by => steps[step + by] !== undefined;
 
-export function restore(text) {
-  view = viewOf(text);
-  changed(false);
-}
+export const restore = text => show(viewOf(text));
 
 export function undo(by = -1) {
   if (!canStep(by)) return;
@@ -357,9 +355,7 @@ async function showState() {
   emit("state", isOwn);
 }
 
-document.addEventListener("visibilitychange", () => {
-  if (!document.hidden && state && state.client !== client && !isSettled()) wish(false);
-});
+document.addEventListener("visibilitychange", showState);
 
 export async function start() {
   page = await ask("page");

@@ -12,13 +12,12 @@ export function dismiss(key) {
 export function toast(text, { isError = false, action = null, key = text } = {}) {
   const box = $(isError ? "errors" : "notices");
   dismiss(key);
-  const remove = () => out.remove();
   const out = element("div", { className: "toast" }, element("p", { textContent: text }));
   out.dataset.key = key;
   if (action) out.append(element("button", { type: "button", textContent: action[0], onclick: action[1] }));
-  out.append(element("button", { type: "button", className: "icon", textContent: "×", "aria-label": "Dismiss", onclick: remove }));
+  out.append(element("button", { type: "button", className: "icon", textContent: "×", "aria-label": "Dismiss", onclick: () => out.remove() }));
   box.append(out);
-  if (!isError) setTimeout(remove, SHORT_ms);
+  if (!isError) setTimeout(() => out.remove(), SHORT_ms);
 }
 
 export async function copy(text, what) {

@@ -5,7 +5,7 @@ import { makeDataControls } from "./data.js";
 import { fit, cameraKey, canvas, lookAlong } from "./picture.js";
 import { clearPicks, hidePicked } from "./picks.js";
 import { makePanel } from "./panel.js";
-import { $, ask, asked, canStep, command, current, element, isSettled, on, onImage, onUpdate, option, own, page, problem, resize, restore, start, state, textOf,
+import { $, ask, asked, attempt, canStep, command, current, element, isSettled, on, onImage, onUpdate, option, own, page, problem, resize, restore, start, state, textOf,
          undo, UNREACHABLE, view, wanted } from "./store.js";
 import { copy, dismiss, toast } from "./toasts.js";
 import * as time from "./time.js";
@@ -25,11 +25,12 @@ onImage(({ samples, noise, isFinished }) => {
 
 function tellStatus() {
   const { activity = "reading", progress = 0 } = state ?? {}, isPreparing = !isSettled() && activity !== "";
-  const doing = { reading: `Reading ${page?.title ?? ""}`, "building the BVH": "Preparing the particles" }[activity] ?? activity;
+  const doing = { reading: progress < 1 ? `Reading ${page?.title ?? ""}` : "Choosing sizes, colours and a view",
+                  compiling: "Preparing the particles", building: "Building the search tree" }[activity];
   const text = problem() ? "The last change has a problem" : state?.problem ? "Stopped" : isPreparing ? doing : quality || "Starting";
   if ($("status").textContent !== text) $("status").textContent = text;
   $("progress").hidden = $("stop").hidden = isSettled();
-  if (isPreparing && progress > 0) $("progress").value = progress;
+  if (isPreparing && progress > 0 && progress < 1) $("progress").value = progress;
   else $("progress").removeAttribute("value");
   $("undo").disabled = !canStep(-1);
   $("redo").disabled = !canStep(1);
@@ -135,33 +136,27 @@ async function followFilm() {
 
 function makeViews() {
   const place = `views of ${page.title}`;
-  let kept = {};
-  try {
-    kept = JSON.parse(localStorage.getItem(place)) ?? {};
-  } catch { /* of this page only */ }
-  const list = () => $("view-list").replaceChildren(...Object.entries(kept).map(([name, text]) => element("li", {},
-    element("button", { type: "button", textContent: name, onclick: () => restore(text) }),
-    element("button", { type: "button", className: "icon", textContent: "×", "aria-label": `Forget ${name}`, onclick: () => keep(name, undefined) }))));
-  const keep = (name, text) => {
-    kept = { ...kept, [name]: text };
-    if (!text) delete kept[name];
-    try {
-      localStorage.setItem(place, JSON.stringify(kept));
-    } catch { /* of this page only */ }
-    list();
+  const keep = views => {
+    attempt(() => localStorage.setItem(place, JSON.stringify(views)));
+    $("view-list").replaceChildren(...Object.entries(views).map(([name, text]) => element("li", {},
+      element("button", { type: "button", textContent: name, onclick: () => restore(text) }),
+      element("button", { type: "button", className: "icon", textContent: "×", "aria-label": `Forget ${name}`,
+                          onclick: () => keep(Object.fromEntries(Object.entries(views).filter(([other]) => other !== name))) }))));
+    $("keep").onclick = () => {
+      keep({ ...views, [$("view-name").value.trim() || `View ${Object.keys(views).length + 1}`]: textOf({ ...view, camera: current() }) });
+      $("view-name").value = "";
+    };
   };
-  $("keep").onclick = () => {
-    keep($("view-name").value.trim() || `View ${Object.keys(kept).length + 1}`, textOf({ ...view, camera: current() }));
-    $("view-name").value = "";
-  };
-  list();
+  keep(attempt(() => JSON.parse(localStorage.getItem(place))) ?? {});
 }
 
 // ---- Keys ---------------------------------------------------------------------------------------------------------
 
-// What a key does, and a button that has the key in `data-key`.
+// What a key does, and a button that has the key, or another name, in `data-key`.
 const ACTIONS = { c: copyCommand, s: () => download("picture.png"), " ": time.toggle, "[": () => time.step(-1), "]": () => time.step(1), f: fit,
-                  Escape: clearPicks, Delete: hidePicked, "?": () => $("keys").showModal() };
+                  Escape: clearPicks, Delete: hidePicked, "?": () => $("keys").showModal(),
+                  undo: () => undo(), redo: () => undo(1), stop: () => ask("cancel", {}), film: makeFilm, "cancel film": cancelFilm,
+                  panel: () => $("hide-panel").setAttribute("aria-expanded", String(!document.body.classList.toggle("wide"))) };
 TABS.forEach((id, i) => { ACTIONS[i + 1] = () => $(`for-${id}`).click(); });
 
 document.addEventListener("keydown", event => {
@@ -184,15 +179,6 @@ const each = (selector, f) => document.querySelectorAll(selector).forEach(button
 each("[data-key]", ({ key }) => ACTIONS[key]());
 each("[data-file]", ({ file }) => download(file));
 each("[data-axis]", ({ axis, side }, { shiftKey }) => lookAlong(Number(axis), (shiftKey ? -1 : 1) * Number(side)));
-each("#stop", () => ask("cancel", {}));
-each("#undo", () => undo());
-each("#redo", () => undo(1));
-each("#film", makeFilm);
-each("#film-cancel", cancelFilm);
-each("#hide-panel", () => {
-  const isHidden = document.body.classList.toggle("wide");
-  $("hide-panel").setAttribute("aria-expanded", String(!isHidden));
-});
 
 on("page", () => {
   const isScene = !command("--color-by");
