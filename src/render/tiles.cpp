@@ -11,6 +11,7 @@
 #include <algorithm>
 #include <atomic>
 #include <cfenv>
+#include <mutex>
 
 #include "base/stop_point.h"
 #include "compile/compiled_scene.h"
@@ -77,8 +78,43 @@ struct TilePool::Impl {
   }
 };
 
-TilePool::TilePool(int threads) : impl_(std::make_unique<Impl>(threads)) {}
-TilePool::~TilePool() = default;
+namespace {
+
+/// Pools that are not in use. oneTBB frees the memory of an arena late or never, so that thousands of them, as of the
+/// images of a view, would take ever more.
+struct IdlePools {
+  static constexpr std::size_t kMost = 4;
+  std::mutex mutex;
+  std::vector<std::unique_ptr<TilePool::Impl>> pools;
+};
+
+IdlePools& idle_pools() {
+  static IdlePools& pools = *new IdlePools;  // never destroyed: threads may outlive main()
+  return pools;
+}
+
+}  // namespace
+
+TilePool::TilePool(int threads) {
+  IdlePools& idle = idle_pools();
+  const std::lock_guard lock(idle.mutex);
+  const auto found = std::find_if(idle.pools.begin(), idle.pools.end(),
+                                  [threads](const auto& pool) { return pool->arena.max_concurrency() == threads; });
+  if (found == idle.pools.end()) {
+    impl_ = std::make_unique<Impl>(threads);
+    return;
+  }
+  impl_ = std::move(*found);
+  idle.pools.erase(found);
+  impl_->stop = base::StopPoint();
+}
+
+TilePool::~TilePool() {
+  impl_->workers.clear();
+  IdlePools& idle = idle_pools();
+  const std::lock_guard lock(idle.mutex);
+  if (!impl_->limit && idle.pools.size() < IdlePools::kMost) idle.pools.push_back(std::move(impl_));
+}
 
 bool TilePool::run(std::size_t count, const std::function<void(std::size_t, TileWorker&)>& work,
                    const std::function<bool()>& shall_stop) {

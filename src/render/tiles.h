@@ -72,8 +72,9 @@ class TilePool {
   /// Counts of all tiles so far.
   kernel::TileCounts counts() const;
 
- private:
   struct Impl;
+
+ private:
   std::unique_ptr<Impl> impl_;
 };
 
