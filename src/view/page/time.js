@@ -127,8 +127,7 @@ function tell() {
   if (data?.step !== undefined) words.push(`step ${data.step.toLocaleString("en")}`);
   for (const [name, value] of data?.header ?? []) if (/^time$/i.test(name)) words.push(`time ${Number(value.toPrecision(6))}`);
   $("frame-number").value = words.join(" · ");
-  const share = cached === key() ? cache.size / count() : 0;
-  $("ahead").style.width = `${100 * share}%`;
+  $("ahead").style.width = `${cached === key() ? 100 * cache.size / count() : 0}%`;
 }
 
 function slide(moves) {
