@@ -69,7 +69,7 @@ def pick_two(page):
     page.browser.click(x - 60, y + 30)
     page.browser.wait("return !document.getElementById('picked').hidden")
     yield
-    for dx in range(-100, -220, -8):  # until there is a particle
+    for dx in range(-170, -290, -8):  # until there is a particle
         page.browser.drag((x + dx, y + 60), (x + dx, y + 60), steps=1, key="\ue008")
         try:
             page.browser.wait("return document.getElementById('measures').textContent.includes('distance')", tries=20)
