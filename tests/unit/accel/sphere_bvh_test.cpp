@@ -111,6 +111,39 @@ TEST(AccelSphereBvh, LeavesHoldTheAxesOfRods) {
   EXPECT_EQ(rods, 1540);
 }
 
+/// At any time, a sphere is where its leaf says, with the margin that rays use.
+TEST(AccelSphereBvh, LeavesHoldThePathsOfMovingSpheres) {
+  Random random;
+  const std::vector<Sphere> spheres = test::scattered(random, 500, 1, 0.05, 0);
+  std::vector<Sphere> motion = test::scattered(random, 500, 0.05, 0, 0);
+  for (Sphere& change : motion) change.radius = 0;
+  const BoundedSpheres moving(spheres.data(), false, motion.data(), motion.size());
+  const BoxFrame frame(moving, all_of(spheres));
+  const SphereBvh bvh(moving, all_of(spheres), frame);
+  ASSERT_TRUE(bvh.moves);
+  ASSERT_EQ(bvh.rods.size(), bvh.leaves.size());
+  for (std::uint32_t l = 0; l < bvh.leaves.size(); ++l)
+    for (unsigned i = 0; i < bvh.count_in(l); ++i)
+      for (const double time : {0.0, 0.3, 1.0}) {
+        const SphereBvh::Leaf& leaf = bvh.leaves[l];
+        const Sphere& s = spheres[leaf.ids[i]];
+        const Sphere& change = motion[leaf.ids[i]];
+        const double at[3] = {s.x + change.x * time, s.y + change.y * time, s.z + change.z * time};
+        double square = 0;
+        for (int axis = 0; axis < 3; ++axis)
+          square += std::pow((at[axis] - frame.middle[axis]) * frame.scale - double{leaf.origin[axis]} -
+                                 double{leaf.step} * leaf.center[axis][i] -
+                                 double{bvh.rods[l].step} * bvh.rods[l].half[axis][i] * (2 * time - 1),
+                             2);
+        EXPECT_LE(std::sqrt(square), 0.875 * leaf.step + 0.876 * bvh.rods[l].step);
+        const bool is_one = bvh.radii.empty();
+        const float step = is_one ? 0 : bvh.radii[l].step;
+        const float most = is_one ? bvh.radius : step * static_cast<float>(bvh.radii[l].radius[i]);
+        EXPECT_GE(most, s.radius * frame.scale);
+        EXPECT_LE(most, s.radius * frame.scale * 1.0001 + double{step}) << "not larger";
+      }
+}
+
 TEST(AccelSphereBvh, EverySphereIsInOneLeafAndBelowItsStartNode) {
   for (const Tree& tree : trees()) {
     std::vector<int> seen(tree.objects.size(), 0);
