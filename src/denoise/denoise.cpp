@@ -20,17 +20,16 @@ namespace {
 
 /// Squared differences of patches, in units of the variance, at which their similarity becomes 0: of the filtered
 /// halves, of the guides, and of the noisy halves.
-constexpr float kTolerance = 12, kGuideTolerance = 4, kVarianceTolerance = 5;
+constexpr float kTolerance = 32, kGuideTolerance = 4, kVarianceTolerance = 3;
 
-/// Radius of the windows, px. Guides are less noisy than the beauty. A larger window for the halves would blur shadows
-/// before the final weights can distinguish them.
-constexpr int kGuideRadius = 2, kRadius = 1;
+/// Radius of the windows of the guides and of the halves, px. Guides are less noisy than the beauty. A larger window
+/// for the halves would blur shadows before the final weights can distinguish them.
+constexpr int kRadius = 1;
 
-/// Radius of the windows over which the variance of the filtered halves is averaged, px: they differ over larger areas
-/// than the noisy ones.
-constexpr int kNoiseRadius = 3;
-/// Distance of the windows among which the smallest variance is taken, px. At an edge between noisy and clean light,
-/// that window is on the pixel's side or on the cleaner one.
+/// Radius of the windows over which the variance of the filtered halves is averaged, px.
+constexpr int kNoiseRadius = 2;
+/// Distance of the windows among which the smallest variance is taken, px: at least their radius, so that at an edge
+/// between noisy and clean light one of them is on the pixel's side or on the cleaner one.
 constexpr int kNoiseStep = 2;
 
 /// Minimum variance of filtered halves, as a fraction of the unfiltered variance: halves can be equal by chance.
@@ -78,7 +77,7 @@ std::vector<Values> filtered(const WeightSource& source, const std::vector<const
 /// Result     kGuides planes
 std::vector<PaddedPlane> filtered_guides(SourcePlanes& planes, Frame frame, Tiles& tiles) {
   WeightSource source;
-  source.radius = kGuideRadius;
+  source.radius = kRadius;
   source.tolerance = kGuideTolerance;
   source.valid = &planes.valid;
   source.variance = &planes.guide_variance;

@@ -10,7 +10,7 @@ namespace orrery::denoise {
 namespace {
 
 /// Noise thresholds of outliers, as multiples of the mean light and of the mean noise of the window. A pixel that is
-/// averaged over the window changes it by 1 / kOffsets of the pixel's light: by at most 1 / 60 of the window's light if
+/// averaged over its neighbours changes them by 1 / 61 of its light: by at most 1 / 30 of the window's light if
 /// there is little noise, and by less than the rest of the noise if there is much.
 constexpr float kOfLight = 2, kOfNoise = 12;
 /// The same as a multiple of the pixel's darker half, the light that both halves contain.

@@ -15,13 +15,12 @@
 namespace orrery::denoise {
 
 /// Maximum distance of a pixel's neighbours in x and in y, px.
-inline constexpr int kWindowRadius = 5;
-inline constexpr int kOffsets = (2 * kWindowRadius + 1) * (2 * kWindowRadius + 1);
+inline constexpr int kWindowRadius = 4;
 /// Radius of the patches that are compared, px.
 inline constexpr int kPatchRadius = 1;
 
-/// Size of the tiles that are filtered at a time, px. The weights of a tile, kOffsets floats per pixel, stay in the L2
-/// cache.
+/// Size of the tiles that are filtered at a time, px. The weights of a tile, one float per pixel and neighbour, stay in
+/// the L2 cache.
 inline constexpr int kTileWidth = 64, kTileHeight = 16;
 
 /// Maximum number of float lanes of an instruction set: rows of a tile are read and written in whole vectors.

@@ -19,7 +19,7 @@ namespace {
 constexpr int kBeautyNoiseRadius = 2, kGuideNoiseRadius = 1;
 
 // Scale of the guides: the similarity of pixels whose guides differ by 1 in total is 0.
-constexpr float kAlbedoScale = 2, kNormalScale = 1, kDepthScale = 0.5F;
+constexpr float kAlbedoScale = 1.4F, kNormalScale = 0.7F, kDepthScale = 0.35F;
 
 /// Suffix of a guide's channel in each half, and its scale.
 struct GuideName {

@@ -109,7 +109,7 @@ inline constexpr std::size_t kEntries = kUnknowns * (kUnknowns + 1) / 2;
 
 /// Added to the mean squares of albedo, normal and inverse depth in the regression: guides that vary less than this are
 /// ignored.
-inline constexpr float kRidges[kGuides] = {1e-2F, 1e-2F, 1e-2F, 2e-2F, 2e-2F, 2e-2F, 3e-4F};
+inline constexpr float kRidges[kGuides] = {5e-3F, 5e-3F, 5e-3F, 1e-2F, 1e-2F, 1e-2F, 1.5e-4F};
 /// Lower bound of divisors, so that pixels without valid neighbours do not divide by 0.
 inline constexpr float kTiny = 1e-12F;
 
@@ -118,7 +118,8 @@ template <class F>
 HWY_INLINE void each_offset(int radius, F f) {
   std::size_t i = 0;
   for (int dy = -radius; dy <= radius; ++dy)
-    for (int dx = -radius; dx <= radius; ++dx) f(i++, dx, dy);
+    for (int dx = -radius; dx <= radius; ++dx)
+      if (is_neighbor(radius, dx, dy)) f(i++, dx, dy);
 }
 
 /// Solves M z = (1, 0, ..., 0) for a symmetric positive definite M by Cholesky factorisation.
@@ -195,7 +196,7 @@ HWY_INLINE void regress(const WeightSource& source, int x, int y, std::size_t at
   const V of_total = 1 / total;
   V fit[3], mean[3];
   for (std::size_t c = 0; c < 3; ++c) fit[c] = mean[c] = hn::Zero(d);
-  HWY_ALIGN float means[kOffsets][kMaxLanes];
+  HWY_ALIGN float means[neighbors(kWindowRadius)][kMaxLanes];
   each_offset(source.radius, [&](std::size_t i, int dx, int dy) {
     float* const weight = weights[i].data() + at;
     const V similarity = hn::Load(d, weight);
@@ -227,7 +228,7 @@ HWY_INLINE void regress(const WeightSource& source, int x, int y, std::size_t at
 }  // namespace
 
 void compute_weights(const WeightSource& source, int x, int y, TileScratch& scratch, TileWeights& out) {
-  out.resize(static_cast<std::size_t>((2 * source.radius + 1) * (2 * source.radius + 1)));
+  out.resize(neighbors(source.radius));
   scratch.distances.resize(kDistanceStride * kHaloHeight);
   scratch.columns.resize(kDistanceStride);
   const bool has_halves = source.compared.front().a != source.compared.front().b;

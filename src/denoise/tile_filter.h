@@ -16,6 +16,16 @@ namespace orrery::denoise {
 /// Number of guides: albedo, normal, inverse depth.
 inline constexpr std::size_t kGuides = 7;
 
+/// Whether a pixel at an offset is a neighbour: windows are round.
+constexpr bool is_neighbor(int radius, int dx, int dy) { return dx * dx + dy * dy <= radius * radius + 2; }
+/// Number of neighbours of a pixel, with itself.
+constexpr std::size_t neighbors(int radius) {
+  std::size_t count = 0;
+  for (int dy = -radius; dy <= radius; ++dy)
+    for (int dx = -radius; dx <= radius; ++dx) count += is_neighbor(radius, dx, dy) ? 1 : 0;
+  return count;
+}
+
 /// Two independent estimates of a channel by which patches are compared. Without independent estimates, `a` and `b` are
 /// the same plane.
 struct ComparedChannel {
