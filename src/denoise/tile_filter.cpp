@@ -109,7 +109,7 @@ inline constexpr std::size_t kEntries = kUnknowns * (kUnknowns + 1) / 2;
 
 /// Added to the mean squares of albedo, normal and inverse depth in the regression: guides that vary less than this are
 /// ignored.
-inline constexpr float kRidges[kGuides] = {5e-3F, 5e-3F, 5e-3F, 1e-2F, 1e-2F, 1e-2F, 1.5e-4F};
+inline constexpr float kRidges[kGuides] = {2.5e-3F, 2.5e-3F, 2.5e-3F, 5e-3F, 5e-3F, 5e-3F, 0.75e-4F};
 /// Lower bound of divisors, so that pixels without valid neighbours do not divide by 0.
 inline constexpr float kTiny = 1e-12F;
 
