@@ -20,7 +20,7 @@ awk -v src="$2" '
 
   BEGIN {
     FS = "|"
-    split("dirent.h dlfcn.h fcntl.h malloc.h netdb.h poll.h pthread.h signal.h spawn.h termios.h time.h unistd.h", p, " ")
+    split("dirent.h dlfcn.h fcntl.h locale.h malloc.h netdb.h poll.h pthread.h signal.h spawn.h termios.h time.h unistd.h", p, " ")
     for (i in p) posix[p[i]] = 1
   }
   /^#/ { next }
