@@ -24,13 +24,11 @@ void run(benchmark::State& state, Precision precision, kernel::RenderTile render
   const auto stream = std::make_unique<kernel::PathStream>();
   const kernel::Tracer tracer = work.embree->tracer();
   const kernel::SceneView view = work.compiled.view();
+  kernel::Tile tile{.width = kRecordedWidth, .height = kRecordedHeight, .sample_end = kRecordedSamples};
+  tile.sums = sums.data();
+  tile.row_stride = kRecordedWidth;
   std::uint64_t rays = 0;
-  for (auto _ : state) {
-    rays += render(view, tracer,
-                   {0, 0, kRecordedWidth, kRecordedHeight, 0, kRecordedSamples, sums.data(), nullptr, kRecordedWidth},
-                   *stream)
-                .rays;
-  }
+  for (auto _ : state) rays += render(view, tracer, tile, *stream).rays;
   const std::int64_t paths = state.iterations() * kRecordedWidth * kRecordedHeight * kRecordedSamples;
   state.SetItemsProcessed(paths);
   state.counters["rays_per_path"] = static_cast<double>(rays) / static_cast<double>(paths);
