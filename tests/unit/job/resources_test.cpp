@@ -96,8 +96,8 @@ TEST(JobMemoryEstimate, GrowsWithPixelsAndSpheres) {
       << "there is one";
 }
 
-/// Many spheres of similar size take less each, also if they move a little, with 4 bytes each for their paths; fast ones
-/// and giants do not.
+/// Many spheres of similar size take less each, also if they move a little, then 4 bytes more for their paths; fast
+/// ones and giants do not.
 TEST(JobMemoryEstimate, CountsTheSpheresInTheBvh) {
   scene::Scene scene;
   scene.materials = {{"a", scene::Lambertian{}}};
