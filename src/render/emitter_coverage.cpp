@@ -8,12 +8,10 @@
 #include <cstdint>
 #include <numbers>
 #include <optional>
-#include <utility>
 #include <vector>
 
 #include "base/stop_point.h"
 #include "base/zero_pages.h"
-#include "compile/light_tree.h"
 #include "film/display_error.h"
 #include "kernel/material.h"
 #include "kernel/ray_packet.h"
@@ -377,14 +375,12 @@ void add_half_rod(const kernel::SceneView& scene, std::uint32_t id, double radia
   coverage.add_half_rod(from, to, id, radiance, opacity_of(scene, id));
 }
 
-/// Adds spheres and rods that emit, except those that are sampled.
-void add_emitters(const kernel::SceneView& scene, kernel::Precision precision, Coverage& coverage) {
-  std::vector<std::uint32_t> ids;
+/// Adds spheres and rods that emit, except those that are sampled. Of spheres that coincide, only the first is visible.
+void add_emitters(const kernel::SceneView& scene, Coverage& coverage) {
   const auto end = static_cast<std::uint32_t>(scene.sphere_count + 2 * scene.rods.count);
-  for (std::uint32_t id = 0; id < end; ++id)
-    if (radiance_of(scene, id) > 0 && !scene.seen_emitters.has(id)) ids.push_back(id);
-  for (const std::uint32_t id : compile::without_coincident(scene, precision, std::move(ids))) {
+  for (std::uint32_t id = 0; id < end; ++id) {
     const double radiance = radiance_of(scene, id);
+    if (!(radiance > 0) || scene.seen_emitters.has(id)) continue;
     if (scene.rods.contains(id))
       add_half_rod(scene, id, radiance, coverage);
     else
@@ -468,7 +464,7 @@ void add_reflections(const kernel::SceneView& scene, Coverage& coverage) {
 std::vector<EmitterCoverage> emitter_coverage(const kernel::SceneView& scene, const Visibility& visibility,
                                               int width_px, int height_px) {
   Coverage coverage(scene, visibility, width_px, height_px);
-  if (scene.emission != nullptr) add_emitters(scene, visibility.precision, coverage);
+  if (scene.emission != nullptr) add_emitters(scene, coverage);
   if (scene.features.lit) add_reflections(scene, coverage);
   const kernel::Environment* const sky = scene.environment;
   if (sky != nullptr && scene.background_visible && !scene.has_backdrop && !scene.camera.is_orthographic) {

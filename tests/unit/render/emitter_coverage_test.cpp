@@ -90,6 +90,9 @@ TEST(RenderEmitterCoverage, OfCoincidentSpheresOneIsExpected) {
   scene::Scene s = distant_lamp();
   s.spheres.push_back(s.spheres[0]);
   expect_where_rendered(s, "coincident");
+  scene::Scene closing = s;
+  for (scene::Sphere& lamp : closing.spheres) lamp.center.x += 0.02;
+  expect_where_rendered(s, "moving", &closing);
 }
 
 TEST(RenderEmitterCoverage, RodsAreFoundWhereTheyAreRendered) {
