@@ -91,6 +91,9 @@ int main(int argc, char** argv) {
   }
   for (const char* program : {ORRERY_INSTALLED_PROGRAM, ORRERY_BUILT_PROGRAM})
     orrery::cli::execute(program, argc, argv);
-  std::perror("orrery: cannot start the program, which is installed as " ORRERY_INSTALLED_PROGRAM);
+  const char* const why = std::strerror(errno);
+  const bool has_proc = access("/proc/self/exe", F_OK) == 0;
+  std::fprintf(stderr, "orrery: cannot start the program, which is installed as %s: %s%s\n", ORRERY_INSTALLED_PROGRAM,
+               why, has_proc ? "" : "; it is found through /proc, which is not mounted");
   return 70;  // base::ErrorKind::kInternal; the launcher links no library of the project
 }
