@@ -36,9 +36,8 @@ struct LightTree {
 ///
 /// `ids`      ascending
 /// Result     ascending
-/// Cost       see base::find_duplicates: for the spheres up to the last id, unless they are known to be distinct, and
-/// for
-///            the rods, if there are any among the ids
+/// Cost       see base::find_duplicates: for the spheres up to the last id, unless they are known to be distinct,
+///            and for the rods, if there are any among the ids
 std::vector<std::uint32_t> without_coincident(const kernel::SceneView& scene, kernel::Precision precision,
                                               std::vector<std::uint32_t> ids);
 
