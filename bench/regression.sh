@@ -5,7 +5,7 @@
 # depends on neither the machine's speed nor its load. A ratio fails only if its whole interval is below the limit in
 # three runs.
 #
-# The first limits are 0.6 of the figures for AVX2 in docs/benchmarks.md. They detect unused SIMD lanes, packet traversal
+# The first limits are 0.6 of the figures of a Zen 3 with AVX2, and 0.4 of those of docs/benchmarks.md. They detect unused SIMD lanes, packet traversal
 # replaced by single rays where packets pay, or a kernel that is no longer inlined. They do not detect a loss of a tenth;
 # for that, bench/instructions.py counts the instructions of two builds.
 #

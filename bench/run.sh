@@ -4,7 +4,7 @@
 # bench/results/<machine>/<room>.json.
 #
 #   bench/run.sh MACHINE [GOOGLE BENCHMARK OPTION...]
-#   bench/run.sh amd-zen3-2cores
+#   bench/run.sh amd-zen5-2cores
 #   bench/run.sh mine --benchmark_filter=final
 #
 # MACHINE names the folder by processor and core count, not by host. Takes a quarter of an hour. Refuses to run on a
@@ -19,7 +19,7 @@ fail() { printf 'bench/run.sh: error: %s\n' "$1" >&2; exit "${2:-1}"; }
 machine=${1:-}
 case $machine in
   "" | -* | *[!a-z0-9-]*)
-    fail "name the machine first, in lower-case letters, digits and dashes: bench/run.sh amd-zen3-2cores" 2
+    fail "name the machine first, in lower-case letters, digits and dashes: bench/run.sh amd-zen5-2cores" 2
     ;;
 esac
 shift
