@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cstdio>
 #include <exception>
+#include <filesystem>
 #include <memory>
 #include <new>
 #include <sstream>
@@ -20,6 +21,7 @@
 #include "base/text.h"
 #include "cli/commands.h"
 #include "cli/messages.h"
+#include "cli/options.h"
 #include "cli/signals.h"
 #include "job/version.h"
 
@@ -118,6 +120,8 @@ std::string unknown_command(const std::string& word, const CLI::App& command) {
 }
 
 std::string unexpected(const std::string& word, const CLI::App& command) {
+  if (word.starts_with('-') && std::filesystem::exists(word))
+    return fmt::format("`{0}` is read as an option; for the file of this name, write ./{0}", word);
   if (word.size() > 1 && word[0] == '-') return unknown_flag(word.substr(0, word.find('=')), command);
   if (!command_names(command).empty()) return unknown_command(word, command);
   return fmt::format("unexpected argument `{}`{}", word,
@@ -167,6 +171,28 @@ class HelpFormatter : public CLI::Formatter {
   std::string make_option_opts(const CLI::Option* option) const override {
     if (!option->get_positional()) return Formatter::make_option_opts(option);
     return option->get_items_expected_max() > 1 ? " ..." : "";
+  }
+
+  std::string make_help(const CLI::App* app, std::string name, CLI::AppFormatMode mode) const override {
+    return make_description(app) + make_usage(app, std::move(name)) + make_positionals(app) + options_text(app) +
+           make_subcommands(app, mode) + "\n" + make_footer(app);
+  }
+
+ private:
+  /// What to write comes first, since it is required, and options without a heading come last.
+  std::string options_text(const CLI::App* app) const {
+    std::vector<std::string> groups = app->get_groups();
+    const auto place = [](const std::string& group) { return group == kImageOptions ? 0 : group == "Options" ? 2 : 1; };
+    std::stable_sort(groups.begin(), groups.end(),
+                     [&](const std::string& a, const std::string& b) { return place(a) < place(b); });
+    std::string out;
+    for (const std::string& group : groups) {
+      const auto options = app->get_options([&](const CLI::Option* option) {
+        return !group.empty() && option->get_group() == group && option->nonpositional();
+      });
+      if (!options.empty()) out += make_group(group, false, options);
+    }
+    return out;
   }
 };
 

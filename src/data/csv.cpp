@@ -267,8 +267,8 @@ class CsvFile final : public SingleFrame {
   }
 
  private:
-  /// One word must not turn coordinates, radii or colours into strings, which would be replaced by defaults. In a
-  /// column of coordinates it is an error; the others remain numbers, so that it is one when they are read.
+  /// A word in a column of coordinates is an error. It must not turn radii or colours into strings either, which would
+  /// be replaced by defaults: these columns remain numbers, so that it is an error when they are read.
   void require_numbers(const std::vector<ColumnSurvey>& surveys, Faults& faults) {
     std::vector<ColumnInfo> as_numbers = shape_.columns;
     for (ColumnInfo& column : as_numbers) column.type = ColumnType::kFloat64;
@@ -280,12 +280,13 @@ class CsvFile final : public SingleFrame {
       const ColumnSurvey& survey = surveys[i];
       const std::string& name = shape_.columns[i].name;
       const bool has_comma = has_decimal_comma(survey.first_word);
-      if (survey.first_word_line == 0 || !(survey.has_numbers || has_comma)) continue;
+      if (survey.first_word_line == 0) continue;
       if (base::contains(coordinates, name))
         faults.add(survey.first_word_line, fmt::format("column {}: '{}' is not a number", name, survey.first_word),
                    has_comma ? kDecimalPoints : "correct it, or leave it empty");
-      if (name == roles.radius || std::find(roles.rgb.begin(), roles.rgb.end(), name) != roles.rgb.end())
-        shape_.columns[i].type = ColumnType::kFloat64;
+      const bool is_look =
+          name == roles.radius || std::find(roles.rgb.begin(), roles.rgb.end(), name) != roles.rgb.end();
+      if (is_look && (survey.has_numbers || has_comma)) shape_.columns[i].type = ColumnType::kFloat64;
     }
     faults.raise_if_any();
   }

@@ -104,7 +104,7 @@ class RowParser {
     for (std::size_t c = 0; c < count; ++c) {
       at = skip_blanks(at);
       const char* const begin = at;
-      if (*at == '\n') return fail(fmt::format("has {} values, not {}", c, count));
+      if (*at == '\n') return fail(fmt::format("the row has {} values, not {}", c, count));
       if (const char* const end = store_decimal(c, at); end != nullptr && ends_word(*end)) {
         at = end;
         continue;
@@ -117,7 +117,7 @@ class RowParser {
     at = skip_blanks(at);
     if (*at == '\n') return at;
     if (*at == layout_->comment && *at != '\0') return line_end(at);
-    return fail(fmt::format("has more than {} values", count));
+    return fail(fmt::format("the row has more than {} values", count));
   }
 
   const char* parse_separated(const char* at) {
@@ -129,7 +129,7 @@ class RowParser {
     const std::size_t count = layout_->columns.size();
     for (std::size_t c = 0; c < count; ++c) {
       if (c > 0) {
-        if (*at != separator) return fail(fmt::format("has {} values, not {}", c, count));
+        if (*at != separator) return fail(fmt::format("the row has {} values, not {}", c, count));
         ++at;
       }
       at = skip(at);
@@ -155,7 +155,7 @@ class RowParser {
       }
     }
     if (*at == '\n' || layout_->allows_more) return line_end(at);
-    return fail(fmt::format("has more than {} values", count));
+    return fail(fmt::format("the row has more than {} values", count));
   }
 
   /// Result     position after the closing quote; null if there is none

@@ -319,7 +319,7 @@ SceneReader::SceneReader(const SceneSource& source, Pose pose) : state_(std::mak
   state.root = parse_tree(state.file, text, source.overrides, state);
   const toml::table& root = state.root;
   if (root.empty() && state.diagnostics.has_errors()) {
-    refuse_data_file(source.file, text);
+    if (!source.text) refuse_data_file(source.file, text);  // else the text is a scene for the file
     state.diagnostics.raise_errors(state.file);
   }
   state.source.set_typed_lines(source.typed_lines);

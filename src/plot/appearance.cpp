@@ -182,8 +182,8 @@ class Appearance {
         radius.column = info_.roles.radius;
         radius.scale *= info_.roles.radius_scale * fraction;
       }
-      chose("radius by " + info_.roles.radius,
-            (info_.roles.radius_scale == 1 ? "a column of radii" : "a column of diameters, halved") + why);
+      chose("radius of the file",
+            (info_.roles.radius_scale == 1 ? "the column " : "half of the column ") + info_.roles.radius + why);
     } else if (has_elements) {
       const bool is_full = is_spheres && !has_arrows;
       if (is_full && data_.mean_coordination(points_) > kNetworkCoordination) return choose_network_radius();
@@ -290,10 +290,15 @@ class Appearance {
       }
       out.push_back(fmt::format("{}: {}", by == "none" ? "no colour" : "colour by " + by, why));
     }
-    if (set_color(options_, by, info_, color))
-      out.push_back(fmt::format(
-          "map {}: {}", color.map,
-          points::find_color_map(color.map)->is_categorical ? "colours for categories" : "the default for numbers"));
+    if (set_color(options_, by, info_, color)) {
+      const std::string& mapped = color.element.empty() ? color.column : color.carbon;
+      const bool is_text = points::type_of(info_, mapped) == data::ColumnType::kText;
+      const bool is_categorical = points::find_color_map(color.map)->is_categorical;
+      out.push_back(fmt::format("map {}: {}", color.map,
+                                is_text          ? fmt::format("colours for categories: {} is text", mapped)
+                                : is_categorical ? "colours for categories"
+                                                 : "the default for numbers"));
+    }
     if (options_.annotation.color_bar && !color.has_legend())
       base::refuse(
           "--color-bar has nothing to explain: the colours are not those of a column, of types or of elements; add "

@@ -252,8 +252,10 @@ Vec3d parse_color(const std::string& text) {
   if (code.size() == 4) code = {code[0], code[1], code[1], code[2], code[2], code[3], code[3]};  // #rgb
   const std::optional<Vec3d> srgb = parse_hex(code);
   if (!srgb)
-    base::refuse(
-        fmt::format("`{}` is not a colour; write white, grey, navy or the like, or #rrggbb, e.g. '#202030'", text));
+    base::refuse(fmt::format(
+        "`{}` is not a colour; write white, grey, navy or the like, or #rrggbb, e.g. '#202030'; for the values of a "
+        "column: --color-by COLUMN",
+        text));
   return linear_from_srgb(*srgb / 255);
 }
 

@@ -61,8 +61,9 @@ void check_annotation(const Scene& scene, KeyFaults& diagnostics) {
     const double share = *scene.annotation.scale_bar / *scene.camera.width;
     if (share > kLargestScaleBar || share * scene.image.width < 1)
       diagnostics.warning("annotation.scale_bar",
-                          fmt::format("{} cannot be seen as a length in an image that is {} wide",
-                                      number_text(*scene.annotation.scale_bar), number_text(*scene.camera.width)));
+                          fmt::format("a bar of {} is too {} for an image that is {:.4g} wide",
+                                      number_text(*scene.annotation.scale_bar),
+                                      share > kLargestScaleBar ? "long" : "short", *scene.camera.width));
   }
   if (scene.annotation.color_bar &&
       std::none_of(scene.points.begin(), scene.points.end(), [](const Points& p) { return p.color.has_legend(); }))

@@ -105,6 +105,25 @@ TEST_F(CliPlotOptions, MaterialsByConditionAreSaved) {
   expect_error("plot m.xyz -o a.png --material glas", 2, "did you mean `glass`");
 }
 
+TEST_F(CliPlotOptions, LikelyMistakesNameTheRemedy) {
+  expect_error("plot c.csv -o a.png --color q", 2, "--color-by COLUMN");
+  expect_error("plot c.csv -o a.png --set camera", 65, "not of the form KEY=VALUE");
+  write("-c.csv", "x,y,z\n1,2,3\n");
+  expect_error("plot -c.csv -o a.png", 2, "write ./-c.csv");
+}
+
+TEST_F(CliPlotOptions, ATextAmongTheNumbersOfAColumnIsExplained) {
+  write("t.csv", "x,y,z,q\n0,0,0,1\n1,1,1,fast\n");
+  EXPECT_TRUE(contains(plot("t.csv -o a.png --color-by q").err, "map set2: colours for categories: q is text"));
+}
+
+/// Readers look first for what they must write.
+TEST_F(CliPlotOptions, HelpBeginsWithTheFileToWrite) {
+  const std::string help = run("plot --help").out;
+  EXPECT_LT(help.find("--output"), help.find("--select"));
+  EXPECT_LT(help.find("--font"), help.find("--help"));
+}
+
 TEST_F(CliPlotOptions, TheSizeInPrintIsThatInPixels) {
   const Outcome made = run("plot c.csv -o a.png --samples 1 --dpi 100 --print-width 2.54cm");
   ASSERT_EQ(made.status, 0) << made.err;

@@ -107,7 +107,7 @@ const Broken kBroken[] = {
     {"PointsOfAnUnknownVersion", "[[points]]\nfile = \"two.ply\"\nmaterial = \"grey\"\n", "", 65,
      "two.ply:2: error: unsupported format version `2.0`"},
     {"AnIncompletePointsLine", "[[points]]\nfile = \"lines.ply\"\nmaterial = \"grey\"\n", "", 65,
-     "lines.ply:9: error: has 3 values, not 4"},
+     "lines.ply:9: error: the row has 3 values, not 4"},
     {"MorePointsThanDeclared", "[[points]]\nfile = \"more.ply\"\nmaterial = \"grey\"\n", "", 65,
      "more.ply:3: error: the header declares 2 rows of `vertex`, but there are 3"},
     {"BondsOfGlass",

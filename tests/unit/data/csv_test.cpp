@@ -142,8 +142,9 @@ TEST_F(DataCsv, ATextInAColumnOfNumbersIsAnErrorWithItsLine) {
   for (int i = 0; i < 1500; ++i) text += "1,2,3\n";
   EXPECT_EQ(faults(text), "");
   EXPECT_TRUE(test::mentions(faults(text + "1,two,3\n1,three,3\n"), {"1503", "column", "two", "number", "empty"}));
-  EXPECT_EQ(faults(text + "1,2\n"), "1503: has 2 values, not 3\n");
+  EXPECT_EQ(faults(text + "1,2\n"), "1503: the row has 2 values, not 3\n");
   EXPECT_TRUE(test::mentions(faults(text + "1,2,3,4\n"), {"1503", "3"}));
+  EXPECT_TRUE(test::mentions(faults("x,y,z\n1%,2,3\n"), {"2", "column", "x", "1%", "number"})) << "no number at all";
   EXPECT_EQ(columns("x,y,z,q\n1,2,3,4\n1,2,3,none\n"), "x:float64 y:float64 z:float64 q:text");
 }
 

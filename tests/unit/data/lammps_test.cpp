@@ -391,7 +391,7 @@ TEST_F(DataLammpsData, StyleIsNotGuessed) {
 
 TEST_F(DataLammpsData, ErrorsHaveLines) {
   const std::string atoms = "Atoms # atomic\n\n";
-  EXPECT_EQ(errors(kHead + atoms + "1 1 0 0 0\n2 1 0 0\n"), "18: has 4 values, not 5\n");
+  EXPECT_EQ(errors(kHead + atoms + "1 1 0 0 0\n2 1 0 0\n"), "18: the row has 4 values, not 5\n");
   EXPECT_TRUE(test::mentions(errors(kHead + atoms + "1 1 0 0 0\n"), {"18", "ends", "1", "2", "rows"}));
   EXPECT_TRUE(test::mentions(errors(kHead + atoms + "1 1 0 0 0\n2 1 0 0 0\n3 1 0 0 0\n"), {"19", "rows", "2"}));
   EXPECT_EQ(errors(kHead), "0: no section \"Atoms\"\n");

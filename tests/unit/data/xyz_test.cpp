@@ -190,7 +190,7 @@ TEST_F(DataXyz, ErrorsHaveLines) {
   EXPECT_TRUE(test::mentions(errors("2\n\nH 1 2 3\n"), {"4", "ends", "1", "2", "rows"}));
   EXPECT_TRUE(test::mentions(errors("1\n\nH 1 2 3\nH 1 2 3\n"), {"4", "number", "H 1 2 3"}));
   EXPECT_TRUE(test::mentions(errors("1\n\nH 1 2 b\n"), {"3", "column", "4", "b", "number"}));
-  EXPECT_EQ(errors("2\n\nH 1 2 3\nH 1 2\n"), "4: has 3 values, not 4\n");
+  EXPECT_EQ(errors("2\n\nH 1 2 3\nH 1 2\n"), "4: the row has 3 values, not 4\n");
   EXPECT_TRUE(test::mentions(errors("1\nProperties=species:S:1:pos:R:3\nH 1 2 3 4\n"), {"3", "4"}));
   EXPECT_TRUE(test::mentions(errors("1\nProperties=species:S:1\nH\n"), {"2", "positions"}));
   EXPECT_TRUE(test::mentions(errors("1\nProperties=pos:R:2\n1 2\n"), {"2", "3"}));

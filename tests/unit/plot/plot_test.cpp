@@ -183,10 +183,10 @@ TEST_F(PlotPlot, TheCameraOfTheSceneSeesAllSpheres) {
 
 TEST_F(PlotPlot, RadiiOfTheFileAreKept) {
   make("a.csv", "x,y,z,diameter\n0,0,0,3\n");
-  EXPECT_TRUE(chose("radius by diameter", {"halved"})) << choices();
+  EXPECT_TRUE(chose("radius of the file", {"half", "diameter"})) << choices();
   EXPECT_EQ(read().points[0].radii, std::vector<double>{1.5}) << "halved once, although the scene is read again";
   make("a.csv", "x,y,z,radius\n0,0,0,3\n");
-  EXPECT_TRUE(chose("radius by radius", {"radii"})) << choices();
+  EXPECT_TRUE(chose("radius of the file", {"radius"})) << choices();
   EXPECT_EQ(read().points[0].radii, std::vector<double>{3});
 }
 
