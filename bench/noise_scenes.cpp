@@ -339,7 +339,7 @@ std::vector<NoiseCase> scenes_of(const std::string& set) {
   std::vector<std::filesystem::path> names;
   for (const char* kind : {"book", "extremes", "light", "molecules", "next-week", "trade"})
     for (const auto& entry : std::filesystem::directory_iterator(folder / kind))
-      names.push_back(std::filesystem::path(kind) / entry.path().filename());
+      if (entry.path().extension() == ".toml") names.push_back(std::filesystem::path(kind) / entry.path().filename());
   std::sort(names.begin(), names.end());
   return files(names);
 }
