@@ -56,7 +56,7 @@ def polymer():
 
 
 def pdb():
-    """Six chains of 80 residues, each a helix of backbones, and an assembly of two copies."""
+    """Six chains of 80 residues, each a helix of backbones, an atom of haem, and an assembly of two copies."""
     out = ["REMARK 350 BIOMOLECULE: 1\nREMARK 350 APPLY THE FOLLOWING TO CHAINS: A, B, C, D, E, F\n"]
     for copy, sign in ((1, 1), (2, -1)):
         for axis in range(3):
@@ -71,7 +71,8 @@ def pdb():
                 x, y = 15 * number + 5 + 2.3 * math.cos(angle), 10 + 2.3 * math.sin(angle)
                 z = 1.5 * (residue + turn - 40)
                 out.append(f"ATOM  {serial:5d}  {atom:<3} GLY {chain}{residue:4d}    {x:8.3f}{y:8.3f}{z:8.3f}  1.00  0.00          {element:>2}\n")
-    return "".join(out) + "END\n"
+    haem = "HETATM 1441 FE   HEM A 201       9.000  10.000   0.000  1.00  0.00          FE\n"
+    return "".join(out) + haem + "END\n"
 
 
 def scene():
@@ -120,9 +121,8 @@ def main():
         "polymer.data": polymer(),
         "chains.data": polymer(),
         "1M4X.pdb": pdb(),
-        "1M4X.pdb": pdb(),
         "3J6R.pdb": pdb(),
-        "3J6R.pdb": pdb(),
+        "4HHB.pdb": pdb(),
         "caffeine.xyz": "3\nwater\nO 0 0 0\nH 0.96 0 0\nH -0.24 0.93 0\n",
         "scene.toml": scene(),
         "shot.toml": scene(),
