@@ -204,7 +204,11 @@ void configure(CLI::App& program) {
   program.get_formatter()->column_width(34);
   // Command::run() refuses options that are given twice, with a better message. Flags may be repeated.
   program.option_defaults()->multi_option_policy(CLI::MultiOptionPolicy::TakeLast);
-  program.footer("orrery COMMAND --help lists the options of a command, with examples.");
+  program.footer(
+      "Examples:\n"
+      "  orrery plot melt.dump -o melt.png\n"
+      "  orrery render scene.toml -o image.png\n\n"
+      "orrery COMMAND --help lists the options of a command, with examples.");
 }
 
 void add_commands(Command& program) {

@@ -44,14 +44,17 @@ bool is_adios(const std::string& extension) { return extension == ".bp" || exten
 [[noreturn]] void refuse(const ByteSource& bytes, const Signature& signature) {
   std::string text = "unknown file format";
   std::string remedy =
-      "supported: LAMMPS dump and data, XYZ, PDB, mmCIF, CIF, VASP, GRO, XTC, TRR, DCD, PSF, PLY, CSV, NPY, NPZ, LAS, "
-      "LAZ, GSD, HDF5 (Gadget, SWIFT), VTP, VTU";
+      "supported: LAMMPS dump and data, XYZ, PDB, mmCIF, CIF, VASP, GRO, XTC, TRR, DCD, PSF, PLY, CSV (columns x, y, "
+      "z), NPY, NPZ, LAS, LAZ, GSD, HDF5 (Gadget, SWIFT), VTP, VTU";
   if (signature.head.empty()) {
     text = "the file is empty";
     remedy.clear();
   } else if (is_image(signature.head)) {
     text = "an image, not a scene or data file";
     remedy = "`oiiotool --info -v` shows its layers and attributes";
+  } else if (signature.extension == ".xyz") {
+    text = "not an XYZ file: the first line is not the number of atoms";
+    remedy = "begin with this number and a comment line";
   } else if (signature.extension == ".pqr") {
     text = "PQR files are not supported";
     remedy = fmt::format(

@@ -22,7 +22,8 @@ bool has_scene_pattern(const std::string& name) { return name.find(kScenePattern
 void check_name(const Batch& batch, const std::string& name) {
   const bool has_pattern = base::has_frame_pattern(name);
   if (batch.frames.size() > 1 && !has_pattern)
-    base::refuse_one_name(name, batch.frames.size(), "shot.####.exr or shot.%04d.exr");
+    base::refuse_one_name(name, batch.frames.size(),
+                          fs::path(name).replace_extension(".####" + fs::path(name).extension().string()).string());
   if (batch.frames.empty() && has_pattern)
     base::refuse(name + " has a frame pattern; select frames with --frames, e.g. --frames 1-48");
   if (batch.scenes.size() > 1 && !has_scene_pattern(name))

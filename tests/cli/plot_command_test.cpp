@@ -80,7 +80,8 @@ TEST_F(CliPlot, RequestsAreCheckedBeforeFramesAreRead) {
   expect_error(plot + "-o a.ppm", 65, "'zero' is not a number");
   expect_error(plot + "-o none/a.png", 73, "none");
   write("worse.dump", frame({"1 1 0 0 0 1 0"}) + frame({"1 1 0 0 zero 1 0"}) + frame({"1 1 0 0 0 1 0"}));
-  expect_error("plot worse.dump -o a.png --frames all", 2, "a.png is one name for 3 frames");
+  expect_error("plot worse.dump -o a.png --frames all", 2,
+               "a.png is one name for 3 frames; add a frame pattern, e.g. a.####.png");
   expect_error(plot + "-o a.##.png", 2, "a.##.png has a frame pattern");
   expect_error(plot + "-o a.png --layers Z", 2, "the requested layers");
   expect_error(plot + "-o a.png --bits 32", 2, "bits");

@@ -112,6 +112,10 @@ TEST_F(DataOpen, OneLineWithoutItsEndIsNoOtherEncoding) {
     EXPECT_NE(errors_of("a.txt", text).find("unknown file format"), std::string::npos) << errors_of("a.txt", text);
 }
 
+TEST_F(DataOpen, AnXyzFileWithoutItsFirstLinesNamesThem) {
+  EXPECT_NE(errors_of("a.xyz", "C 0 0 0\nC 1.5 0 0\n").find("the number of atoms"), std::string::npos);
+}
+
 TEST_F(DataOpen, DataFilesAreRecognisedByContentOrName) {
   EXPECT_TRUE(is_data_file("a.dump", kDump));
   EXPECT_TRUE(is_data_file("a", kCif));
