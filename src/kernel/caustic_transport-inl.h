@@ -118,20 +118,6 @@ HWY_INLINE hn::Mask<D> is_sampled_caustic(D d, const SceneView& scene, hn::Mask<
   return are_paired(d, scene.caustics, completed, balls, lights);
 }
 
-/// Removes the sun from the environment's radiance in lanes whose paths have completed a sampled chain to it.
-template <class D, class V = hn::Vec<D>>
-HWY_NOINLINE Vec3<V> without_sampled_sun(D d, const SceneView& scene, Vec3<V> radiance, Vec3<V> direction,
-                                         hn::Mask<D> missed, hn::Vec<IdTag<D>> state, hn::Vec<IdTag<D>> balls) {
-  const Environment& environment = *scene.environment;
-  if (!environment.has_sun) return radiance;
-  const auto in_sun = hn::And(missed, is_in_sun(d, environment, direction));
-  const auto sampled = is_sampled_caustic(d, scene, in_sun, state, balls, set(IdTag<D>(), kSun));
-  if (hn::AllFalse(d, sampled)) return radiance;
-  auto at = environment_footprint(d, environment, direction);
-  at.is_in_sun = hn::AndNot(sampled, at.is_in_sun);
-  return select(sampled, radiance_of(d, environment, at), radiance);
-}
-
 /// Follows caustic rays.
 template <class D, Precision kPrecision>
 class CausticRayTracer {
@@ -207,8 +193,13 @@ class CausticRayTracer {
     const auto reflects = hn::RebindMask(d, hn::And(events, set(du, kReflect)) != 0);
     const auto glass = refraction(d, surface);
     const V reflected_part = select(glass.is_total, 1, glass.reflectance);
-    const V part = select(reflects, reflected_part, 1 - reflected_part);
-    const auto is_glass = has_trait<&MaterialTraits::transmits>(d, surface);
+    V part = select(reflects, reflected_part, 1 - reflected_part);
+    auto is_glass = has_trait<&MaterialTraits::transmits>(d, surface);
+    if (scene_.features.rich_materials) {
+      const auto is_coat = is_kind(d, surface.kind, MaterialKind::kPlastic);
+      part = select(is_coat, coat_share(surface), part);
+      is_glass = hn::Or(is_glass, is_coat);
+    }
     auto value = loadu3(d, rays_.value, i);
     value = select(is_glass, value * part, value * look.albedo);
     const auto direction = select(reflects, reflected(surface), glass.direction);

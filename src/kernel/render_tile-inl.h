@@ -25,11 +25,11 @@
 //
 //     for each pixel and sample of the tile
 //       ray = camera ray, throughput = 1
-//       radiance = light of an emitter of the pixel, unless a shadow ray is occluded
+//       radiance = light of an emitter of the pixel, seen directly or in a ball, unless something is in front
 //       for depth = 0, 1 .. max_depth - 1
 //         hit = closest hit of the ray
 //         if there is none: radiance += throughput background, end
-//         radiance += throughput emission(hit), unless it is an emitter of the pixel and depth = 0
+//         radiance += throughput emission(hit), unless it has been sampled before
 //         surface = point, normal and material of the hit
 //         radiance += throughput albedo light(sampled point of a light), unless a shadow ray is occluded
 //         radiance += throughput albedo light(sampled direction to a light by way of a ball)
@@ -47,9 +47,8 @@
 //   Hence the stream needs no second copy. A compacted store overwrites a whole vector's length from its destination,
 //   which ends before the next vector that is read.
 // * A path's radiance is summed in the order of its vertices: the pixel's emitters, then at each vertex found light,
-// then
-//   light samples, then those by way of balls. Neither of them waits for the next depth. The order does not depend on
-//   what else is in the batch, so that a pixel's bits depend neither on the tile nor on the number of lanes.
+//   then light samples, then those by way of balls. Neither of them waits for the next depth. The order does not depend
+//   on what else is in the batch, so that a pixel's bits depend neither on the tile nor on the number of lanes.
 // * The radiance of a path is added to its pixel as integers, once, when the batch has ended.
 
 HWY_BEFORE_NAMESPACE();
@@ -111,7 +110,7 @@ class TileLoop {
       left -= static_cast<std::uint64_t>(batch);
       begin(batch, counter);
       if (kLoop.full && scene_.seen_emitters.begins != nullptr)
-        add_seen_emitters(d, scene_, tracer_, tile_, paths_, batch, counts_);
+        SeenEmitterSampler<D, kLoop.precision>(scene_, tracer_, tile_, paths_, counts_).sample(batch);
       int alive = batch;
       for (depth_ = 0; alive > 0; ++depth_) alive = advance(alive);
       if (kLoop.full && tile_.covered != nullptr) add_coverage(paths_.batch, batch, scene_, tile_);

@@ -140,12 +140,15 @@ FilmDisc film_disc(const Camera& camera, const Sphere& sphere) noexcept {
           (sharp + blur) / std::sqrt(std::fmin(width2, height2)) * (1 + 1e-9)};
 }
 
-SeenEmitterSample sample_seen_emitter(const SceneView& scene, std::span<const SeenEmitter> emitters,
-                                      const double (&pixel)[2], const SeenEmitterNumbers& numbers) noexcept {
+SeenEmitterChoice choose_seen_emitter(std::span<const SeenEmitter> emitters, double choice) noexcept {
   const auto share_end = [](const SeenEmitter& e) { return double{e.share_end}; };
-  const auto chosen = std::min(std::ranges::upper_bound(emitters, numbers.choice, {}, share_end), emitters.end() - 1);
-  const double probability = share_end(*chosen) - (chosen == emitters.begin() ? 0 : share_end(chosen[-1]));
-  const Sphere sphere = scene.spheres[chosen->id];
+  const auto chosen = std::min(std::ranges::upper_bound(emitters, choice, {}, share_end), emitters.end() - 1);
+  return {*chosen, share_end(*chosen) - (chosen == emitters.begin() ? 0 : share_end(chosen[-1]))};
+}
+
+SeenEmitterSample sample_seen_emitter(const SceneView& scene, const SeenEmitter& emitter, const double (&pixel)[2],
+                                      const SeenEmitterNumbers& numbers) noexcept {
+  const Sphere sphere = scene.spheres[emitter.id];
   const Camera& camera = scene.camera;
   const FilterAxis filter(scene.filter);
   const Vec3d center = Vec3d{sphere.x, sphere.y, sphere.z} - camera.origin;
@@ -153,7 +156,7 @@ SeenEmitterSample sample_seen_emitter(const SceneView& scene, std::span<const Se
   const auto on_lens = [&](double u, double v) { return camera.lens_u * u + camera.lens_v * v; };
   Vec3d lens, film;
   double weight;
-  if (chosen->by_lens) {
+  if (emitter.by_lens) {
     // A point of the part of the pixel that the blurred image may touch: of the filter within bounds of this part.
     const FilmDisc disc = film_disc(camera, sphere);
     const Ellipse image{disc.x - pixel[0], disc.y - pixel[1], 1, 0, 1, disc.radius * disc.radius};
@@ -187,7 +190,19 @@ SeenEmitterSample sample_seen_emitter(const SceneView& scene, std::span<const Se
   const double along = dot(to, direction);
   const Vec3d aside = to - direction * along;
   const double inside = std::sqrt(std::fmax(sphere.radius * sphere.radius - dot(aside, aside), 0));
-  return {lens, direction * (along - inside), weight / probability, chosen->id};
+  return {lens, direction * (along - inside), weight};
+}
+
+double camera_ray_density(const SceneView& scene, const double (&pixel)[2], Vec3d offset, Vec3d direction) noexcept {
+  const Camera& camera = scene.camera;
+  const Vec3d normal = cross(camera.right, camera.down);  // as long as a pixel is large
+  const double along = dot(direction, normal), reach = dot(camera.forward - offset, normal) / along;
+  if (!(reach > 0)) return 0;
+  const FilterAxis filter(scene.filter);
+  const Vec3d film = offset + direction * reach - camera.forward;
+  const double x = dot(film, camera.right) / dot(camera.right, camera.right),
+               y = dot(film, camera.down) / dot(camera.down, camera.down);
+  return filter.density(x - pixel[0]) * filter.density(y - pixel[1]) * reach * reach / std::abs(along);
 }
 
 }  // namespace orrery::kernel

@@ -22,25 +22,41 @@ FilmDisc film_disc(const Camera& camera, const Sphere& sphere) noexcept;
 
 /// Random numbers of a path.
 struct SeenEmitterNumbers {
-  double film[2], lens[2];           ///< of its camera ray: before the pixel filter, and on the unit disc
-  double other[2], disc[2], choice;  ///< uniform in the unit square, on the unit disc, and in 0..1
+  double film[2], lens[2];   ///< of its camera ray: before the pixel filter, and on the unit disc
+  double other[2], disc[2];  ///< uniform in the unit square, and on the unit disc
 };
+
+/// An emitter of a pixel that was chosen for a path.
+struct SeenEmitterChoice {
+  SeenEmitter emitter;
+  double probability;
+};
+
+/// Domain     `emitters` is not empty
+SeenEmitterChoice choose_seen_emitter(std::span<const SeenEmitter> emitters, double choice) noexcept;
 
 /// A camera ray to an emitter.
 struct SeenEmitterSample {
   math::Vec3d offset;  ///< from the camera's origin to the lens
   math::Vec3d reach;   ///< from there to the emitter
   double weight = 0;   ///< of the emitter's radiance in the pixel; 0: there is no ray
-  std::uint32_t id = 0;
 };
 
-/// Chooses an emitter of a pixel, and samples a point of the lens from which a point of the film sees it, or a point of
-/// the film in which a point of the lens sees it. Both are in an ellipse, the section of a cone with a plane.
+/// Samples a point of the lens from which a point of the film sees an emitter, or a point of the film in which a point
+/// of the lens sees it. Both are in an ellipse, the section of a cone with a plane.
 ///
 /// `pixel`    its centre, px from the centre of the frame
-/// Domain     `emitters` is not empty; camera and emitters do not move
+/// Domain     the emitter is seen directly; camera and emitter do not move
 /// Reference  docs/decisions/0046
-SeenEmitterSample sample_seen_emitter(const SceneView& scene, std::span<const SeenEmitter> emitters,
-                                      const double (&pixel)[2], const SeenEmitterNumbers& numbers) noexcept;
+SeenEmitterSample sample_seen_emitter(const SceneView& scene, const SeenEmitter& emitter, const double (&pixel)[2],
+                                      const SeenEmitterNumbers& numbers) noexcept;
+
+/// The density of a pixel's camera rays from a point of the lens, per steradian.
+///
+/// `pixel`      as above
+/// `direction`  unit
+/// Domain       a perspective camera that does not move
+double camera_ray_density(const SceneView& scene, const double (&pixel)[2], math::Vec3d offset,
+                          math::Vec3d direction) noexcept;
 
 }  // namespace orrery::kernel

@@ -222,9 +222,8 @@ class Shader {
     } else if (features().lit && scene_.environment != nullptr) {
       radiance = depth_ == 0 ? environment_radiance(d, *scene_.environment, at.ray.direction)
                              : weighted_environment(d, scene_, at.ray.direction, at.pdf);
-      if (features().caustics)
-        radiance = without_sampled_sun(d, scene_, radiance, at.ray.direction, at.see_background, caustic_state_of(at),
-                                       at.ray.self);
+      if (samples_images())
+        radiance = without_sampled_sun(d, scene_, radiance, at.ray.direction, at.see_background, arrival_of(at));
       groups = set(du, scene_.environment->light_group);
     } else {
       radiance = background(d, scene_.background, features(), at.ray.direction);
@@ -238,6 +237,16 @@ class Shader {
     }
   }
 
+  /// Whether images of lights in balls, or emitters that the camera sees, are sampled, so that paths that find them
+  /// gain nothing.
+  HWY_INLINE bool samples_images() const { return features().caustics || scene_.seen_emitters.begins != nullptr; }
+
+  HWY_INLINE Arrival<D> arrival_of(const Arrivals<D>& at) const {
+    const auto all = hn::FirstN(d, hn::Lanes(d));
+    const auto straight = depth_ == 0 ? all : depth_ == 1 ? hn::IsInf(at.pdf) : hn::Not(all);
+    return {features().caustics ? caustic_state_of(at) : hn::Zero(du), at.ray.self, at.pixels, straight};
+  }
+
   /// Adds the radiance that the objects at the hits emit.
   HWY_INLINE void emit(const Arrivals<D>& at) {
     if (scene_.emission == nullptr || scene_.shading != Shading::kPath) return;
@@ -245,10 +254,7 @@ class Shader {
     const auto dark = hn::And(hn::And(source.radiance.x == 0, source.radiance.y == 0), source.radiance.z == 0);
     auto shines = hn::AndNot(dark, at.hit);
     if (hn::AllFalse(d, shines)) return;
-    if (features().caustics)
-      shines = hn::AndNot(is_sampled_caustic(d, scene_, shines, caustic_state_of(at), at.ray.self, at.hits), shines);
-    if (depth_ == 0 && scene_.seen_emitters.begins != nullptr)
-      shines = hn::AndNot(are_sampled(d, scene_, shines, at.pixels, at.hits), shines);
+    if (samples_images()) shines = hn::AndNot(are_sampled(d, scene_, shines, arrival_of(at), at.hits), shines);
     if (features().rich_materials && scene_.textures != nullptr)
       source.radiance = textured_radiance<D, kLoop.precision>(d, scene_, at.ray, at.hits, shines, at.distance,
                                                               at.cone.width2, at.times, source.radiance);

@@ -12,13 +12,12 @@
 
 #include "base/stop_point.h"
 #include "base/zero_pages.h"
-#include "film/display_error.h"
-#include "kernel/material.h"
 #include "kernel/ray_packet.h"
 #include "kernel/scene_view.h"
 #include "math/pixels.h"
 #include "math/scalar.h"
 #include "math/vec3.h"
+#include "render/reflections.h"
 #include "render/sphere_images.h"
 
 namespace orrery::render {
@@ -31,15 +30,6 @@ constexpr double kLargestCoverage = 0.5;
 
 /// Texels of a map count as emitters if they are brighter than its mean by this factor.
 constexpr double kBrightTexel = 8;
-
-/// Maximum number of reflections that are projected: with more balls, those of the strongest lights.
-constexpr std::size_t kMostReflections = std::size_t{1} << 18;
-
-/// Emitters that add less radiance to a pixel are not projected: a 32nd of what is negligible in the dark.
-constexpr double kLeastLight = film::kDarkestLight / 256;
-
-/// The distance of the sky, in distances to the focus plane. The result does not depend on it as long as it is large.
-constexpr double kSkyDistance = 0x1p40;
 
 /// The sphere at a share of the way from one to another of the same radius.
 kernel::Sphere mixed(const kernel::Sphere& from, const kernel::Sphere& to, double share) {
@@ -54,12 +44,6 @@ kernel::Camera closing_camera(const kernel::SceneView& scene) {
   return out;
 }
 
-/// Steps of the search for a reflection in a ball of a pixel, whose radius is halved eight times, and at most.
-constexpr int kLeastSteps = 8, kMostSteps = 24;
-
-/// An object when the shutter opens and closes.
-template <class T>
-using Moving = std::array<T, 2>;
 using MovingImage = Moving<std::optional<SphereImage>>;
 
 /// A line of sight from the camera, or from a sphere. It may touch what it starts from and what it leads to.
@@ -168,15 +152,11 @@ class Coverage {
   /// Adds the reflection of a light.
   ///
   /// `ball_area`    of the ball's image, square pixels
-  /// `reflectance`  of the ball, as a function of the cosine of the angle of incidence
-  template <class Reflectance>
-  void add_reflection(const Moving<kernel::Sphere>& light, std::uint32_t id, double radiance,
-                      const Moving<kernel::Sphere>& ball, double ball_area, std::uint32_t ball_id,
-                      Reflectance reflectance) {
-    // Seen from afar, the reflection is as large as the light from the ball, on a sphere of half the ball's radius.
-    const double sine = light[0].radius / (length(center_of(light[0]) - center_of(ball[0])) - ball[0].radius);
-    if (radiance * ball_area / 4 * sine * sine < kLeastLight) return;
-    const int steps = std::clamp(kLeastSteps + std::ilogb(ball_area) / 2, kLeastSteps, kMostSteps);
+  void add_reflection(const ReflectedLight& from, const Moving<kernel::Sphere>& ball, double ball_area,
+                      std::uint32_t ball_id) {
+    const Moving<kernel::Sphere>& light = from.sphere;
+    if (brightest_reflection(from, ball[0], ball_area) < kLeastLight) return;
+    const int steps = reflection_steps(ball_area);
     MovingImage images;
     Moving<kernel::Sphere> points;
     double reflected = 0;
@@ -185,11 +165,11 @@ class Coverage {
       if (!seen) return;
       images[k] = sphere_image(cameras_[k], seen->image);
       points[k] = sphere_around(center_of(ball[k]) + seen->point, 0);
-      reflected += radiance * reflectance(seen->cosine) / 2;
+      reflected += from.radiance * sharp_reflectance(scene_, ball_id, seen->cosine) / 2;
     }
     add(images, reflected, 1, [&] {
       const Sightlines to_ball = sightlines(points, ball_id);
-      Sightlines to_light = sightlines(light, id);
+      Sightlines to_light = sightlines(light, from.id);
       for (std::size_t i = 0; i < to_light.size(); ++i) {
         Sightline& line = to_light[i];
         const kernel::Sphere at = mixed(points[0], points[1], line.time);
@@ -206,11 +186,7 @@ class Coverage {
   ///
   /// `direction`  unit
   Moving<kernel::Sphere> distant(Vec3d direction, double solid_angle) const {
-    const double distance = kSkyDistance * length(cameras_[0].forward);
-    const auto at = [&](const kernel::Camera& camera) {
-      return sphere_around(camera.origin + direction * distance, distance * std::sqrt(solid_angle / std::numbers::pi));
-    };
-    return {at(cameras_[0]), at(cameras_[1])};
+    return {distant_sphere(cameras_[0], direction, solid_angle), distant_sphere(cameras_[1], direction, solid_angle)};
   }
 
   /// The sums in all pixels.
@@ -331,8 +307,6 @@ class Coverage {
   base::ZeroVector<Corner> corners_;
 };
 
-double mean_of(Vec3d rgb) { return (rgb.x + rgb.y + rgb.z) / 3; }
-
 /// Adds the bright texels of a map.
 void add_texels(const kernel::Environment& sky, Coverage& coverage) {
   const double columns = sky.width, rows = sky.height, turn = 2 * std::numbers::pi;
@@ -348,19 +322,6 @@ void add_texels(const kernel::Environment& sky, Coverage& coverage) {
       coverage.add(coverage.distant(direction, turn / columns * turn / 2 / rows * sine), kernel::kNone, radiance);
     }
   }
-}
-
-Moving<kernel::Sphere> moving_sphere(const kernel::SceneView& scene, std::size_t id) {
-  return {sphere_at(scene, id, 0), sphere_at(scene, id, 1)};
-}
-
-/// The radiance of a sphere or of half of a rod, mean of the channels.
-double radiance_of(const kernel::SceneView& scene, std::size_t id) {
-  return mean_of(math::vector_of(scene.emission[scene.object_materials[id]].radiance));
-}
-
-double opacity_of(const kernel::SceneView& scene, std::size_t id) {
-  return scene.opacity != nullptr ? double{scene.opacity[id]} : 1;
 }
 
 /// Adds half of a rod that emits.
@@ -380,7 +341,7 @@ void add_emitters(const kernel::SceneView& scene, Coverage& coverage) {
   const auto end = static_cast<std::uint32_t>(scene.sphere_count + 2 * scene.rods.count);
   for (std::uint32_t id = 0; id < end; ++id) {
     const double radiance = radiance_of(scene, id);
-    if (!(radiance > 0) || scene.seen_emitters.has(id)) continue;
+    if (!(radiance > 0) || scene.seen_emitters.has({kernel::kCamera, id})) continue;
     if (scene.rods.contains(id))
       add_half_rod(scene, id, radiance, coverage);
     else
@@ -388,74 +349,17 @@ void add_emitters(const kernel::SceneView& scene, Coverage& coverage) {
   }
 }
 
-/// Reference  schlick1994
-double schlick(double r0, double cosine) {
-  const double x = 1 - cosine, x2 = x * x;
-  return r0 + (1 - r0) * x2 * x2 * x;
-}
-
-/// Whether a material reflects as a mirror does.
-bool is_sharp(const kernel::SceneView& scene, std::uint32_t index) {
-  const kernel::Material& material = scene.materials[index];
-  const bool reflects = kernel::traits_of(material.kind).is_specular || material.kind == kernel::MaterialKind::kPlastic;
-  return reflects && material.fuzz == 0 &&
-         (scene.material_textures == nullptr || scene.material_textures[index].fuzz == kernel::kNone);
-}
-
-/// An emitter, or the sun, and its radiance.
-struct Light {
-  Moving<kernel::Sphere> sphere;
-  std::uint32_t id;  ///< kNone: the sun
-  double radiance;
-};
-
-/// Emitters that are reflected: as many as there may be, those of the greatest power, and the sun.
-std::vector<Light> reflected_lights(const kernel::SceneView& scene, const Coverage& coverage, std::size_t most) {
-  struct Emitter {
-    std::uint32_t id;
-    double power;
-  };
-  std::vector<Emitter> emitters;
-  for (std::uint32_t id = 0; scene.emission != nullptr && id < scene.sphere_count; ++id) {
-    const double radiance = radiance_of(scene, id) * opacity_of(scene, id), radius = scene.spheres[id].radius;
-    if (radiance > 0) emitters.push_back({id, radiance * radius * radius});
-  }
-  if (emitters.size() > most) {
-    std::nth_element(
-        emitters.begin(), emitters.begin() + static_cast<std::ptrdiff_t>(most), emitters.end(),
-        [](const Emitter& a, const Emitter& b) { return a.power != b.power ? a.power > b.power : a.id < b.id; });
-    emitters.resize(most);
-  }
-  std::vector<Light> out;
-  for (const Emitter& from : emitters)
-    out.push_back({moving_sphere(scene, from.id), from.id, radiance_of(scene, from.id) * opacity_of(scene, from.id)});
-  const kernel::Environment* const sky = scene.environment;
-  if (sky != nullptr && sky->has_sun)
-    out.push_back({coverage.distant(sky->sun, 2 * std::numbers::pi * sky->sun_one_minus_cos), kernel::kNone,
-                   mean_of(sky->sun_radiance)});
-  return out;
-}
-
-/// Adds what balls reflect.
+/// Adds what balls reflect, except what is sampled.
 void add_reflections(const kernel::SceneView& scene, Coverage& coverage) {
-  std::size_t balls = 0;
-  for (std::size_t id = 0; id < scene.sphere_count; ++id) balls += is_sharp(scene, scene.object_materials[id]) ? 1 : 0;
-  if (balls == 0) return;
-  const auto lights = reflected_lights(scene, coverage, std::max<std::size_t>(kMostReflections / balls, 1));
+  const auto lights = reflected_lights(scene, count_sharp_balls(scene));
   for (std::uint32_t id = 0; !lights.empty() && id < scene.sphere_count; ++id) {
-    if (!is_sharp(scene, scene.object_materials[id])) continue;
+    if (!is_sharp(scene, id)) continue;
     const auto ball = moving_sphere(scene, id);
     const MovingImage images = coverage.images_of(ball);
     if (!coverage.is_seen(images)) continue;
     const double area = std::max(images[0]->area, images[1]->area);
-    const kernel::Material& material = scene.materials[scene.object_materials[id]];
-    const bool is_metal = material.kind == kernel::MaterialKind::kMetal;
-    const auto reflectance = [&](double cosine) {
-      const double albedo = is_metal ? mean_of(math::vector_of(material.albedo)) : schlick(material.r0[0], cosine);
-      return albedo * opacity_of(scene, id);
-    };
-    for (const Light& light : lights)
-      coverage.add_reflection(light.sphere, light.id, light.radiance, ball, area, id, reflectance);
+    for (const ReflectedLight& light : lights)
+      if (!scene.seen_emitters.has({id, light.id})) coverage.add_reflection(light, ball, area, id);
   }
 }
 

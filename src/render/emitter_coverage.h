@@ -23,8 +23,8 @@ struct Visibility {
 /// may see no sign of them. Their positions in the image follow from camera and scene without any samples, so selecting
 /// pixels by them causes no bias. Emitters that no line of sight reaches do not count.
 ///
-/// Not projected: emitters that are sampled (SceneView::seen_emitters); reflections in rods, of texels, of rods, of
-/// reflections, and what is seen through glass.
+/// Not projected: what is sampled (SceneView::seen_emitters); reflections in rods, of texels, of rods, of reflections,
+/// and what is seen through glass.
 ///
 /// Result     one per pixel, row by row; empty if there are none
 /// Cost       one pass over spheres and rods if something emits, and over the texels of the background; a packet of

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <array>
 #include <optional>
 
 #include "kernel/camera.h"
@@ -13,6 +14,18 @@ inline math::Vec3d center_of(const kernel::Sphere& sphere) { return {sphere.x, s
 inline kernel::Sphere sphere_around(math::Vec3d center, double radius) {
   return {center.x, center.y, center.z, radius};
 }
+
+/// An object when the shutter opens and closes.
+template <class T>
+using Moving = std::array<T, 2>;
+
+/// The distance of the sky, in distances to the focus plane. The result does not depend on it as long as it is large.
+inline constexpr double kSkyDistance = 0x1p40;
+
+/// An emitter as far away as the sky.
+///
+/// `direction`  unit
+kernel::Sphere distant_sphere(const kernel::Camera& camera, math::Vec3d direction, double solid_angle);
 
 /// The image of a sphere, or of a part of a rod: a rectangle around it, and its area without the blur of the lens.
 struct SphereImage {
@@ -29,18 +42,5 @@ double distance(const SphereImage& a, const SphereImage& b);
 /// The image of a cylinder between two spheres, and of a part of the spheres. Empty if one of them has none.
 std::optional<SphereImage> between(const std::optional<SphereImage>& a, const std::optional<SphereImage>& b,
                                    double part);
-
-/// How a light is seen in a ball.
-struct Reflection {
-  kernel::Sphere image;  ///< where the light seems to be, as large as it seems
-  math::Vec3d point;     ///< that reflects it, from the ball's centre
-  double cosine;         ///< of the angle of incidence
-};
-
-/// The reflection of a light in a ball. Empty if there is none, or if eye or light are within the ball.
-///
-/// `steps`     accuracy of the place: 2^-steps radii of the ball
-std::optional<Reflection> reflection_of(const kernel::Sphere& light, const kernel::Sphere& ball, math::Vec3d eye,
-                                        int steps);
 
 }  // namespace orrery::render

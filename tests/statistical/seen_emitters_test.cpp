@@ -14,6 +14,7 @@
 #include "compile/compile.h"
 #include "compile/compiled_scene.h"
 #include "kernel/scene_view.h"
+#include "kernel/seen_emitters.h"
 #include "render/render.h"
 #include "render/result.h"
 #include "render/seen_emitters.h"
@@ -59,6 +60,55 @@ scene::Scene random_stars(unsigned seed) {
   return s;
 }
 
+/// Sharp balls with images of lamps and the sun that are smaller than a pixel.
+scene::Scene random_glints(unsigned seed) {
+  std::mt19937 random(seed);
+  const auto number = [&](double low, double high) {
+    return low + (high - low) * (static_cast<double>(random()) * 0x1p-32);
+  };
+  scene::Scene s;
+  s.image = {24, 16};
+  s.camera.look_from = {0, 0, 10};
+  s.camera.look_at = {number(-1, 1), number(-1, 1), 0};
+  s.camera.vfov = number(20, 50);
+  if (seed % 4 == 0) {
+    s.camera.defocus_angle = number(0.05, 0.5);
+    s.camera.focus_distance = number(8, 12);
+  }
+  if (seed % 3 == 0) s.render.filter = scene::Filter::kGaussian;
+  s.render.sampler = scene::Sampler::kIndependent;
+  s.render.max_depth = 2 + static_cast<int>(seed % 3);
+  s.background.type = scene::BackgroundType::kConstant;
+  s.background.color = {0.02, 0.02, 0.02};
+  if (seed % 5 == 0) {
+    const auto map = bright_texel_map(0.1f);
+    map->sun.direction = math::normalized(math::Vec3d{number(-1, 1), number(-1, 1), number(-0.5, 1)});
+    map->sun.one_minus_cos = number(1e-5, 1e-3);
+    map->sun.radiance = {200, 200, 200};
+    s.background.type = scene::BackgroundType::kImage;
+    s.background.image = map;
+  }
+  const int lamps = 1 + static_cast<int>(number(0, 4));
+  for (int i = 0; i < lamps; ++i) {
+    const double light = std::exp(number(4, 6));
+    add_lamp(s, {number(-9, 9), number(-9, 9), number(-4, 18)}, number(0.3, 1), {light, light, light});
+  }
+  const int balls = 1 + static_cast<int>(number(0, 6));
+  for (int i = 0; i < balls; ++i) {
+    const math::Vec3d center{number(-3, 3), number(-2, 2), number(-2, 3)};
+    const double radius = number(0.3, 0.9);
+    switch (static_cast<int>(number(0, 4))) {
+      case 0: add_ball(s, center, radius, scene::Dielectric{number(1.5, 2), scene::Fresnel::kExact}); break;
+      case 1: add_ball(s, center, radius, scene::Plastic{{0.3, 0.3, 0.3}, number(1.3, 2.5), 0}); break;
+      default: add_ball(s, center, radius, scene::Metal{{0.9, 0.9, 0.9}, 0});
+    }
+  }
+  scene::Lambertian screen{{0.5, 0.5, 0.5}};
+  screen.opacity = 0.6;
+  add_ball(s, {number(-4, 4), number(-4, 4), number(2, 9)}, number(0.1, 0.6), screen);
+  return s;
+}
+
 /// The mean of an image, and its squared standard error.
 struct ImageMean {
   double mean = 0, error2 = 0;
@@ -83,19 +133,22 @@ ImageMean image_mean(const compile::CompiledScene& compiled) {
 
 /// Differences in standard errors have the distribution of a normal variable. ORRERY_SEEN_SCENES and
 /// ORRERY_SEEN_SAMPLES set the number of scenes and of samples per pixel.
-TEST(StatisticalSeenEmitters, SampledOnesAreAsBrightAsFoundOnes) {
+void expect_same_light(scene::Scene (*scene_of)(unsigned), bool in_balls) {
   const auto setting = [](const char* name, int otherwise) {
     const char* const value = std::getenv(name);
     return value != nullptr ? std::atoi(value) : otherwise;
   };
   const int scenes = setting("ORRERY_SEEN_SCENES", 60), samples = setting("ORRERY_SEEN_SAMPLES", 1024);
-  double squares = 0, largest = 0;
+  double squares = 0, largest = 0, gain = 0;
   int tested = 0;
   for (int i = 1; i <= scenes; ++i) {
-    scene::Scene s = random_stars(static_cast<unsigned>(i));
+    scene::Scene s = scene_of(static_cast<unsigned>(i));
     s.render.samples = samples;
     const compile::CompiledScene on = compile::compile(s);
-    if (render::SeenEmitterList(on.view(), on.precision, on.width, on.height).view().begins == nullptr) continue;
+    const render::SeenEmitterList list(on.view(), on.precision, on.width, on.height);
+    const auto& sights = list.view().sights;
+    if (std::ranges::none_of(sights, [&](kernel::Sight at) { return (at.ball != kernel::kCamera) == in_balls; }))
+      continue;
     s.render.direct_lighting = scene::DirectLighting::kBsdf;
     s.render.seed = 77;
     s.render.samples = 4 * samples;
@@ -104,13 +157,19 @@ TEST(StatisticalSeenEmitters, SampledOnesAreAsBrightAsFoundOnes) {
     EXPECT_LT(std::abs(z), 4) << "scene " << i << ": " << sampled.mean << " against " << found.mean;
     squares += z * z;
     largest = std::max(largest, std::abs(z));
+    gain += std::log(4 * found.error2 / sampled.error2);
     ++tested;
   }
   ASSERT_GT(tested, scenes / 2);
   const double rms = std::sqrt(squares / tested), error = std::sqrt(0.5 / tested);
-  std::printf("%d scenes: rms of z %.3f, largest %.2f\n", tested, rms, largest);
+  std::printf("%d scenes: rms of z %.3f, largest %.2f, variance of hits by chance %.3g times\n", tested, rms, largest,
+              std::exp(gain / tested));
   EXPECT_NEAR(rms, 1, 3 * error);
 }
+
+TEST(StatisticalSeenEmitters, SampledOnesAreAsBrightAsFoundOnes) { expect_same_light(random_stars, false); }
+
+TEST(StatisticalSeenEmitters, SampledGlintsAreAsBrightAsFoundOnes) { expect_same_light(random_glints, true); }
 
 }  // namespace
 }  // namespace orrery::test

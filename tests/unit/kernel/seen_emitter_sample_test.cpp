@@ -68,7 +68,6 @@ class SeenLampMaker {
     for (double& u : out.other) u = number(0, 1);
     disc(out.lens);
     disc(out.disc);
-    out.choice = number(0, 1);
     return out;
   }
 
@@ -107,7 +106,7 @@ TEST(KernelSeenEmitterSample, WeightsAreUnbiased) {
     double sum[2] = {}, square[2] = {};
     for (int k = 0; k < kSamples; ++k) {
       const SeenEmitterNumbers n = make.numbers();
-      const double values[2] = {sample_seen_emitter(c.scene, {&lamp, 1}, c.pixel, n).weight, hit(c, n)};
+      const double values[2] = {sample_seen_emitter(c.scene, lamp, c.pixel, n).weight, hit(c, n)};
       for (int j = 0; j < 2; ++j) {
         sum[j] += values[j] / kSamples;
         square[j] += values[j] * values[j] / kSamples;
@@ -134,7 +133,7 @@ TEST(KernelSeenEmitterSample, RaysReachTheEmitter) {
     SeenLamp c;
     make.make(c, i % 2 == 0);
     const SeenEmitter lamp{0, 1, i % 2 == 0};
-    const SeenEmitterSample s = sample_seen_emitter(c.scene, {&lamp, 1}, c.pixel, make.numbers());
+    const SeenEmitterSample s = sample_seen_emitter(c.scene, lamp, c.pixel, make.numbers());
     if (!(s.weight > 0)) continue;
     ++rays;
     const Vec3d end = c.scene.camera.origin + s.offset + s.reach;
@@ -160,26 +159,42 @@ TEST(KernelSeenEmitterSample, BlurredLampsHaveHardlyAnyNoise) {
   const SeenEmitter lamp{0, 1, true};
   const double pixel[2] = {0.5, 0.5};
   for (int i = 0; i < 1000; ++i) {
-    const double weight = sample_seen_emitter(c.scene, {&lamp, 1}, pixel, make.numbers()).weight;
+    const double weight = sample_seen_emitter(c.scene, lamp, pixel, make.numbers()).weight;
     EXPECT_NEAR(weight, 0.2 * 0.2 / (0.8 * 0.8), 0.02 * weight);  // the blur has four times the lens's radius
   }
 }
 
 TEST(KernelSeenEmitterSample, EmittersAreChosenByTheirShares) {
+  const SeenEmitter pair[2] = {{3, 0.25f, false}, {4, 1, false}};
+  for (const double choice : {0.0, 0.2, 0.3, 1.0}) {
+    const SeenEmitterChoice chosen = choose_seen_emitter(pair, choice);
+    EXPECT_EQ(chosen.emitter.id, choice < 0.25 ? 3u : 4u);
+    EXPECT_EQ(chosen.probability, choice < 0.25 ? 0.25 : 0.75);
+  }
+}
+
+/// Over all directions from a point of the lens, the density of camera rays is 1.
+TEST(KernelSeenEmitterSample, CameraRaysHaveADensity) {
   SeenLampMaker make;
-  const Sphere lamps[2] = {{0, 0, -10, 0.02}, {0, 0, -10, 0.02}};
-  SceneView scene;
-  scene.camera.forward = {0, 0, -10};
-  scene.camera.right = {0.1, 0, 0};
-  scene.camera.down = {0, -0.1, 0};
-  scene.spheres = SphereArray(lamps);
-  const SeenEmitter pair[2] = {{0, 0.25f, false}, {1, 1, false}};
-  const double pixel[2] = {0, 0}, area = std::numbers::pi * 0.04;
-  for (int i = 0; i < 100; ++i) {
-    const SeenEmitterNumbers n = make.numbers();
-    const SeenEmitterSample s = sample_seen_emitter(scene, pair, pixel, n);
-    EXPECT_EQ(s.id, n.choice < 0.25 ? 0u : 1u);
-    EXPECT_NEAR(s.weight, area / (s.id == 0 ? 0.25 : 0.75), 1e-4 * s.weight);
+  for (int i = 0; i < 8; ++i) {
+    SeenLamp c;
+    make.make(c, i % 2 == 0);
+    const Camera& camera = c.scene.camera;
+    const Vec3d lens = camera.lens_u * 0.6 - camera.lens_v * 0.3;
+    const Vec3d axis = normalized(camera.forward + camera.right * c.pixel[0] + camera.down * c.pixel[1] - lens);
+    const Vec3d across = normalized(cross(axis, {0, 1, 0})), up = cross(across, axis);
+    // A square of the plane that touches the unit sphere.
+    constexpr int kSteps = 400;
+    constexpr double kSide = 0.08, kCell = kSide / kSteps;
+    double sum = 0;
+    for (int y = 0; y < kSteps; ++y)
+      for (int x = 0; x < kSteps; ++x) {
+        const Vec3d to = axis + across * ((x + 0.5) * kCell - kSide / 2) + up * ((y + 0.5) * kCell - kSide / 2);
+        const double away = length(to);
+        sum += camera_ray_density(c.scene, c.pixel, lens, to / away) * kCell * kCell / (away * away * away);
+      }
+    EXPECT_NEAR(sum, 1, 0.02) << i;
+    EXPECT_EQ(camera_ray_density(c.scene, c.pixel, lens, -axis), 0) << i;
   }
 }
 

@@ -18,9 +18,9 @@ namespace orrery::render {
 namespace {
 
 /// A scene with moving, growing and static spheres, one a ground outside the BVH, and a moving camera.
-struct Moving {
+struct MovingScene {
   scene::Scene opening = test::everything(), closing;
-  explicit Moving(bool camera = true) {
+  explicit MovingScene(bool camera = true) {
     closing = opening;
     closing.spheres[0].center.y = -1000.25;
     closing.spheres[1].center = {-1.5, 0.9, 0.3};
@@ -42,7 +42,7 @@ Settings with_data_layers() {
 
 TEST(RenderMotion, EveryAcceleratorThreadCountAndTraversalGivesTheSameBits) {
   for (const auto precision : {scene::Precision::kExact, scene::Precision::kFast, scene::Precision::kBook}) {
-    Moving moving;
+    MovingScene moving;
     moving.opening.render.precision = precision;
     const std::vector<float> expected = test::plane_values(render(moving.compiled(), with_data_layers()).picture);
     for (const accel::Traversal traversal : {accel::Traversal::kPacket, accel::Traversal::kSingle}) {
@@ -146,7 +146,7 @@ TEST(RenderMotion, MotionArrayEndsAtTheLastMovingSphere) {
 }
 
 /// Expects the motion-blurred image to be the mean of images at many times.
-void expect_mean_of_moments(const Moving& moving) {
+void expect_mean_of_moments(const MovingScene& moving) {
   scene::Scene scene = moving.opening;
   scene.render.samples = 4096;
   scene.render.seed = 9;
@@ -184,10 +184,10 @@ void expect_mean_of_moments(const Moving& moving) {
   EXPECT_LT(worst, 0.08);
 }
 
-TEST(RenderMotion, MovingSpheresAreAveragedOverTheShutter) { expect_mean_of_moments(Moving(false)); }
+TEST(RenderMotion, MovingSpheresAreAveragedOverTheShutter) { expect_mean_of_moments(MovingScene(false)); }
 
 TEST(RenderMotion, MovingCameraIsAveragedOverTheShutter) {
-  Moving moving;
+  MovingScene moving;
   moving.closing.spheres = moving.opening.spheres;
   expect_mean_of_moments(moving);
 }
