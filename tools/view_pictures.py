@@ -96,7 +96,7 @@ def film(page):
     handle = page.place(".handle", 1)
     page.drag(handle, (handle[0] - 110, handle[1]))
     page.shoot(2)
-    page.browser.run("document.querySelector('input[value=\"inferno\"]').click()")
+    page.browser.run("document.querySelector('input[value=\"coolwarm\"]').click()")
     page.settle()
     page.shoot(2)
     page.click("label:has(> input[name=cut][value=z])")
