@@ -42,8 +42,6 @@ class Canvas {
   /// The cells that have changed since the last call, as indices in row-major order. Called on one thread.
   std::vector<std::size_t> take_changed();
 
-  std::size_t cell_count() const noexcept { return changed_.size(); }
-  std::size_t cells_per_row() const noexcept { return cells_per_row_; }
   Cell cell(std::size_t index) const noexcept;
 
   /// Copies a row of scene-linear R, G, B values, and the coverage, which is 1 if the render does not determine it.

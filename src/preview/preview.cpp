@@ -5,7 +5,6 @@
 #include <chrono>
 #include <cstddef>
 #include <exception>
-#include <utility>
 #include <vector>
 
 #include <fmt/core.h>
@@ -16,15 +15,13 @@
 #include "base/error.h"
 #include "base/file_name.h"
 #include "base/frames.h"
+#include "base/stopwatch.h"
 #include "image/write.h"
 #include "math/pixels.h"
 
 namespace orrery::preview {
 
 namespace {
-
-/// Minimum time between updates.
-constexpr double kInterval = 1;  // s
 
 /// Time between two checks whether an update is due.
 constexpr std::chrono::milliseconds kTick{50};
@@ -49,113 +46,71 @@ std::filesystem::path preview_file(const std::string& text) {
   return text;
 }
 
-Preview::Preview(std::filesystem::path file, OnNote on_note)
-    : file_(std::move(file)), on_note_(std::move(on_note)), thread_([this] { run(); }) {}
-
-Preview::~Preview() {
-  end();
-  ask(Request::kQuit);
-  thread_.join();
-}
-
 void Preview::begin(const display::PictureInfo& picture) {
   end();
-  picture_ = picture;
   canvas_ = std::make_unique<Canvas>(picture.width, picture.height);
-  ask(Request::kBegin);
+  is_over_ = false;
+  if (failed_) return;
+  thread_ = std::thread([this, settings = picture.display] {
+    try {
+      show(settings);
+    } catch (const std::exception& error) {
+      failed_ = true;
+      on_note_(base::warning_line(fmt::format("the preview ended: {}", error.what())));
+    }
+  });
 }
 
 void Preview::end() {
-  if (!canvas_) return;
-  ask(Request::kEnd);
-  canvas_.reset();
-}
-
-/// Passes a request to the preview's thread and waits until it is served. Meanwhile, that thread owns all members.
-void Preview::ask(Request request) {
-  std::unique_lock lock(mutex_);
-  request_ = request;
-  wake_.notify_one();
-  served_.wait(lock, [this] { return request_ == Request::kNone; });
-}
-
-void Preview::run() {
-  using Clock = std::chrono::steady_clock;
-  pthread_setname_np(pthread_self(), "preview");  // for profilers
-  Clock::time_point start;
-  double processor_start = 0;
-  std::optional<Pacing> pacing;  // of the current image
-  std::unique_lock lock(mutex_);
-  for (;;) {
-    const Request request = request_;
-    if (request == Request::kBegin) answer();  // the render does not wait for set_up()
-    lock.unlock();
-    const double before = seconds_of(CLOCK_THREAD_CPUTIME_ID);
-    const auto cost = [before] { return seconds_of(CLOCK_THREAD_CPUTIME_ID) - before; };
-    if (request != Request::kNone) {
-      start = Clock::now();
-      processor_start = seconds_of(CLOCK_PROCESS_CPUTIME_ID);
-      if (request == Request::kBegin) attempt([this] { set_up(); });
-      if (request == Request::kEnd) attempt([this] { refresh(); });
-      pacing.reset();
-      if (request == Request::kBegin) pacing.emplace(kInterval);
-      if (pacing) pacing->spend(cost());
-    } else if (!failed_) {
-      const double now = std::chrono::duration<double>(Clock::now() - start).count();
-      if (pacing && pacing->is_due(now, seconds_of(CLOCK_PROCESS_CPUTIME_ID) - processor_start)) {
-        attempt([this] { refresh(); });
-        pacing->updated(now, cost());
-      }
-    }
-    lock.lock();
-    if (request == Request::kEnd || request == Request::kQuit) answer();
-    if (request == Request::kQuit) return;
-    wake_.wait_for(lock, kTick, [this] { return request_ != Request::kNone; });
+  if (!thread_.joinable()) return;
+  {
+    const std::lock_guard lock(mutex_);
+    is_over_ = true;
   }
+  wake_.notify_one();
+  thread_.join();
 }
 
-/// Domain     mutex_ is locked
-void Preview::answer() {
-  request_ = Request::kNone;
-  served_.notify_one();
-}
-
-void Preview::set_up() {
-  develop_.emplace(picture_.display);
-  codes_.width = canvas_->width();
-  codes_.height = canvas_->height();
-  codes_.values.assign(3 * math::pixel_count(codes_.width, codes_.height), 0);
+/// Updates the file until the image is over, and then once more.
+void Preview::show(const display::Settings& settings) {
+  pthread_setname_np(pthread_self(), "preview");  // for profilers
+  const display::PixelDeveloper develop(settings);
+  film::EncodedPicture codes;
+  codes.width = canvas_->width();
+  codes.height = canvas_->height();
+  codes.values.assign(3 * math::pixel_count(codes.width, codes.height), 0);
+  double cost = seconds_of(CLOCK_THREAD_CPUTIME_ID), processor = seconds_of(CLOCK_PROCESS_CPUTIME_ID);
+  base::Stopwatch since_update;
+  std::unique_lock lock(mutex_);
+  while (!wake_.wait_for(lock, kTick, [this] { return is_over_; })) {
+    if (!is_due(since_update.seconds(), seconds_of(CLOCK_PROCESS_CPUTIME_ID) - processor, cost)) continue;
+    const double before = seconds_of(CLOCK_THREAD_CPUTIME_ID);
+    refresh(develop, codes);
+    cost = seconds_of(CLOCK_THREAD_CPUTIME_ID) - before;
+    processor = seconds_of(CLOCK_PROCESS_CPUTIME_ID);
+    since_update.lap();
+  }
+  refresh(develop, codes);
 }
 
 /// Develops the cells that have changed and rewrites the file.
 ///
 /// Errors     base::Error: kCannotCreate, kIo
-void Preview::refresh() {
+void Preview::refresh(const display::PixelDeveloper& develop, film::EncodedPicture& codes) {
   const std::vector<std::size_t> cells = canvas_->take_changed();
   if (cells.empty()) return;
   std::vector<float> coverage(math::pixel_count(Canvas::kSide, Canvas::kSide)), rgb(3 * coverage.size());
-  std::vector<std::uint8_t> codes(rgb.size());
+  std::vector<std::uint8_t> developed(rgb.size());
   for (const std::size_t index : cells) {
     const Cell cell = canvas_->cell(index);
     const auto row = [&](int y) { return 3 * math::pixel_index(0, y, cell.width); };
     for (int y = 0; y < cell.height; ++y)
       canvas_->read(cell.x, cell.y + y, cell.width, &rgb[row(y)], &coverage[row(y) / 3]);
-    (*develop_)(rgb.data(), coverage.data(), math::pixel_count(cell.width, cell.height), codes.data());
+    develop(rgb.data(), coverage.data(), math::pixel_count(cell.width, cell.height), developed.data());
     for (int y = 0; y < cell.height; ++y)
-      std::copy_n(&codes[row(y)], row(1), &codes_.values[3 * math::pixel_index(cell.x, cell.y + y, codes_.width)]);
+      std::copy_n(&developed[row(y)], row(1), &codes.values[3 * math::pixel_index(cell.x, cell.y + y, codes.width)]);
   }
-  base::write_text_file(file_, image::png_bytes(codes_, image::kUncompressed), false);
-}
-
-/// Does something whose failure ends the preview.
-void Preview::attempt(const std::function<void()>& what) {
-  if (failed_) return;
-  try {
-    what();
-  } catch (const std::exception& error) {
-    failed_ = true;
-    on_note_(base::warning_line(fmt::format("the preview ended: {}", error.what())));
-  }
+  base::write_text_file(file_, image::png_bytes(codes, image::kUncompressed), false);
 }
 
 }  // namespace orrery::preview

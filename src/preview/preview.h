@@ -6,9 +6,9 @@
 #include <functional>
 #include <memory>
 #include <mutex>
-#include <optional>
 #include <string>
 #include <thread>
+#include <utility>
 
 #include "display/develop.h"
 #include "display/settings.h"
@@ -21,36 +21,18 @@ namespace orrery::preview {
 /// the copies that rendering threads make, and for the last update, which is not delayed.
 inline constexpr double kShareOfTime = 0.003;
 
-/// Decides when a preview is updated: once per interval, and less often if updates are expensive.
-class Pacing {
- public:
-  /// Starts without any updates.
-  ///
-  /// `interval_s`   minimum time between updates
-  explicit Pacing(double interval_s) : interval_s_(interval_s) {}
+/// Minimum time between updates.
+inline constexpr double kInterval_s = 1;
 
-  /// True if an update is due. It is assumed to cost as much as the last one.
-  ///
-  /// `now_s`        time since the render began
-  /// `processor_s`  processor time of all threads since then
-  bool is_due(double now_s, double processor_s) const noexcept {
-    return now_s >= last_s_ + interval_s_ && spent_s_ + last_cost_s_ <= kShareOfTime * processor_s;
-  }
-
-  /// Records an update, and the processor time that it took.
-  void updated(double now_s, double cost_s) noexcept {
-    last_s_ = now_s;
-    last_cost_s_ = cost_s;
-    spent_s_ += cost_s;
-  }
-
-  /// Records processor time that was spent between updates.
-  void spend(double cost_s) noexcept { spent_s_ += cost_s; }
-
- private:
-  double interval_s_;
-  double last_s_ = 0, last_cost_s_ = 0, spent_s_ = 0;
-};
+/// True if an update is due: when the interval has passed since the last one, and the processor time that it took is at
+/// most kShareOfTime of what has been used since.
+///
+/// `since_s`      time since the last update
+/// `processor_s`  processor time of all threads since then
+/// `cost_s`       processor time of that update
+constexpr bool is_due(double since_s, double processor_s, double cost_s) {
+  return since_s >= kInterval_s && cost_s <= kShareOfTime * processor_s;
+}
 
 /// The file that the value of --preview names: a PNG. Empty if the value is.
 ///
@@ -63,20 +45,18 @@ using OnNote = std::function<void(const std::string& text)>;
 /// Shows the images of consecutive renders while they are rendered: on a separate thread, rewrites a PNG, uncompressed
 /// and through the display transform. Its readers never see an incomplete file.
 ///
-/// The rendering threads only copy their pixels into a Canvas. Everything else happens on the preview's thread, which
+/// The rendering threads only copy their pixels into a Canvas. Everything else happens on the image's own thread, which
 /// uses at most kShareOfTime of the render's processor time.
 class Preview {
  public:
-  /// Starts the preview's thread.
-  ///
   /// `on_note`  may be called until the destructor returns
-  Preview(std::filesystem::path file, OnNote on_note);
+  Preview(std::filesystem::path file, OnNote on_note) : file_(std::move(file)), on_note_(std::move(on_note)) {}
   /// Ends the last image.
-  ~Preview();
+  ~Preview() { end(); }
   Preview(const Preview&) = delete;
   Preview& operator=(const Preview&) = delete;
 
-  /// Begins an image. The previous one has ended.
+  /// Begins an image and its thread. The previous one has ended.
   void begin(const display::PictureInfo& picture);
 
   /// Takes rendered pixels. Called on the rendering threads, between begin() and end(); see Canvas::write.
@@ -91,25 +71,16 @@ class Preview {
   void end();
 
  private:
-  enum class Request { kNone, kBegin, kEnd, kQuit };
-
-  void ask(Request request);
-  void run();
-  void answer();
-  void set_up();
-  void refresh();
-  void attempt(const std::function<void()>& what);
+  void show(const display::Settings& settings);
+  void refresh(const display::PixelDeveloper& develop, film::EncodedPicture& codes);
 
   std::filesystem::path file_;
   OnNote on_note_;
-  display::PictureInfo picture_;
   std::unique_ptr<Canvas> canvas_;
-  std::optional<display::PixelDeveloper> develop_;
-  film::EncodedPicture codes_;  ///< the content of the file
-  bool failed_ = false;         ///< the file could not be written
-  std::mutex mutex_;            // guards request_
-  std::condition_variable wake_, served_;
-  Request request_ = Request::kNone;
+  bool failed_ = false;  ///< the preview has ended
+  std::mutex mutex_;     // guards is_over_
+  std::condition_variable wake_;
+  bool is_over_ = false;  ///< all pixels of the image have been rendered
   std::thread thread_;
 };
 
