@@ -187,7 +187,7 @@ int run_view(ViewArguments& arguments, const Command& command) {
   view::Viewer viewer(make, fixed, first);
   const std::string secret = view::random_secret();
   view::Site site(viewer, controls, arguments.host, secret);
-  const auto server = http::serve(
+  const http::Server server = http::serve(
       arguments.host, arguments.port, [&](const http::Request& request) { return site.admits(request); },
       [&](const http::Request& request) { return site.answer(request); });
   const bool is_everywhere = arguments.host == "0.0.0.0";
@@ -197,7 +197,7 @@ int run_view(ViewArguments& arguments, const Command& command) {
         "who reads the network can read the secret; ssh -L and 127.0.0.1 are safer\n",
         is_everywhere ? "all IPv4 addresses of this machine" : arguments.host));
   const std::string address =
-      fmt::format("http://{}:{}/?token={}", is_everywhere ? "127.0.0.1" : arguments.host, server->port(), secret);
+      fmt::format("http://{}:{}/?token={}", is_everywhere ? "127.0.0.1" : arguments.host, server.port, secret);
   print_result(address + "\n");
   const base::TempDir folder;
   if (arguments.opens) open_in_browser(address, folder.path());

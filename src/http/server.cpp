@@ -75,7 +75,7 @@ MHD_Result send(MHD_Connection* connection, const Response& response, bool is_ad
   return result;
 }
 
-class MicroServer : public Server {
+class MicroServer {
  public:
   MicroServer(const sockaddr_in& address, Admission admits, Handler handler)
       : admits_(std::move(admits)), handler_(std::move(handler)) {
@@ -93,9 +93,11 @@ class MicroServer : public Server {
     const MHD_DaemonInfo* const info = MHD_get_daemon_info(daemon_, MHD_DAEMON_INFO_BIND_PORT);
     port_ = info != nullptr && info->port != 0 ? info->port : ntohs(address.sin_port);
   }
-  ~MicroServer() override { MHD_stop_daemon(daemon_); }
+  ~MicroServer() { MHD_stop_daemon(daemon_); }
+  MicroServer(const MicroServer&) = delete;
+  MicroServer& operator=(const MicroServer&) = delete;
 
-  int port() const override { return port_; }
+  int port() const { return port_; }
 
  private:
   /// Notes that a connection begins or ends. Too many strangers: the one that has waited longest must go.
@@ -168,13 +170,14 @@ class MicroServer : public Server {
 
 }  // namespace
 
-std::unique_ptr<Server> serve(const std::string& address, int port, Admission admits, Handler handler) {
+Server serve(const std::string& address, int port, Admission admits, Handler handler) {
   sockaddr_in at{};
   at.sin_family = AF_INET;
   at.sin_port = htons(static_cast<std::uint16_t>(port));
   if (inet_pton(AF_INET, address.c_str(), &at.sin_addr) != 1)
     base::refuse(fmt::format("--host: `{}` is not an IPv4 address, e.g. 127.0.0.1", address));
-  return std::make_unique<MicroServer>(at, std::move(admits), std::move(handler));
+  const auto server = std::make_shared<const MicroServer>(at, std::move(admits), std::move(handler));
+  return {server->port(), server};
 }
 
 }  // namespace orrery::http

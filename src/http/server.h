@@ -35,15 +35,10 @@ using Admission = std::function<bool(const Request&)>;
 /// Answers a request. Called on the thread of a connection; may wait. What it throws is answered with 500.
 using Handler = std::function<Response(const Request&)>;
 
-/// A running server. The destructor waits until no handler runs.
-class Server {
- public:
-  Server() = default;
-  virtual ~Server() = default;
-  Server(const Server&) = delete;
-  Server& operator=(const Server&) = delete;
-
-  virtual int port() const = 0;
+/// A running server, which ends with the last copy of `daemon`, when no handler runs any more.
+struct Server {
+  int port = 0;
+  std::shared_ptr<const void> daemon;
 };
 
 /// Starts to serve HTTP/1.1 on an IPv4 address. Each connection has a thread. The number and the idle time of
@@ -52,6 +47,6 @@ class Server {
 ///
 /// `port`     0: a free port
 /// Errors     base::Error: kUsage for an address that is not IPv4; kCannotCreate if the port is in use
-std::unique_ptr<Server> serve(const std::string& address, int port, Admission admits, Handler handler);
+Server serve(const std::string& address, int port, Admission admits, Handler handler);
 
 }  // namespace orrery::http

@@ -6,7 +6,7 @@
 
 namespace orrery::http {
 
-std::unique_ptr<Server> serve(const std::string& address, int port, Admission admits, Handler handler) {
+Server serve(const std::string& address, int port, Admission admits, Handler handler) {
   static const Functions& functions = *static_cast<const Functions*>(base::load_module("http"));
   return functions.serve(address, port, std::move(admits), std::move(handler));
 }
