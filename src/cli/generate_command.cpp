@@ -4,6 +4,7 @@
 
 #include "cli/commands.h"
 #include "generate/generate.h"
+#include "scene/limits.h"
 
 namespace orrery::cli {
 namespace {
@@ -39,15 +40,7 @@ void add_final(Command& generate, const std::shared_ptr<GenerateOptions>& option
                   "Grid cells from the centre to the edge, 0 to 1000; default: 11")
       ->details("As in the book. Above 32, the spheres are written to a PLY file.")
       ->transform(whole_number(0, generate::kLargestFinalGrid));
-  command
-      .add_flag(
-          "--moving", options->final_scene.moving,
-          "Generate the variant in The Next Week: checkered ground, small spheres that move while the shutter is open")
-      ->details("The grid is then at most 32.");
-  command.footer(
-      "Examples:\n"
-      "  orrery generate final -o final.toml --seed 7\n"
-      "  orrery generate final --moving -o bouncing.toml");
+  command.footer("Example:\n  orrery generate final -o final.toml --seed 7");
   command.act([options] { generate::generate_final(options->final_scene, options->output, options->force); });
 }
 
@@ -61,7 +54,7 @@ void add_cloud(Command& generate, const std::shared_ptr<GenerateOptions>& option
   command
       .add_option("--radius", options->cloud.radius, "R",
                   "Radius of all spheres, in scene units; default: random, with a mean that depends on --count")
-      ->check(real_number(0, generate::kLargestCloudRadius));
+      ->check(real_number(scene::kSmallestRadius, generate::kLargestCloudRadius));
   command.details("An existing PLY file is replaced only if orrery wrote it; otherwise the exit status is 73.");
   command.footer("Example:\n  orrery generate cloud -o cloud.toml --count 1000000");
   command.act([options] { generate::generate_cloud(options->cloud, options->output, options->force); });

@@ -21,8 +21,6 @@ inline constexpr std::uint32_t kFinalPaletteSize = 1024;
 struct FinalScene {
   std::uint64_t seed = 1;
   int grid = 11;  ///< cells from the centre to the edge: (2 grid)^2 small spheres, minus those near the large metal one
-  /// As in *The Next Week*: the ground is a checker, and the small diffuse spheres rise while the shutter is open.
-  bool moving = false;
 };
 
 /// Returns the scene: three large spheres among many small ones on a huge ground sphere. Of the small spheres, 80 % are
@@ -30,7 +28,7 @@ struct FinalScene {
 ///
 /// Result     `spheres`: the ground, the small ones, the three large ones; the small ones are in `points[0]` instead if
 ///            `grid` exceeds kLargestWrittenGrid
-/// Errors     base::Error(kUsage) for a grid outside 0..kLargestFinalGrid, or above kLargestWrittenGrid if `moving`
+/// Domain     a grid in 0..kLargestFinalGrid
 /// Reference  shirley2024, "A Final Render"
 scene::Scene make_final_scene(const FinalScene& options, const std::filesystem::path& points_file = "final.ply");
 
@@ -52,8 +50,7 @@ struct Cloud {
 /// spheres: a few form a heap of balls, millions a mist, and about as much sky shows through.
 ///
 /// Result     `points[0]` holds exactly `count` spheres of four materials; there are no others
-/// Errors     base::Error(kUsage) for a count outside 1..kLargestCloud, or a radius outside
-///            scene::kSmallestRadius..kLargestCloudRadius
+/// Domain     a count in 1..kLargestCloud, and a radius in scene::kSmallestRadius..kLargestCloudRadius
 /// Cost       36 bytes per sphere
 scene::Scene make_cloud(const Cloud& options, const std::filesystem::path& points_file = "cloud.ply");
 

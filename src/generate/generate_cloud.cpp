@@ -4,13 +4,8 @@
 #include <cmath>
 #include <numbers>
 
-#include <fmt/core.h>
-
-#include "base/error.h"
 #include "generate/generate.h"
 #include "generate/generate_random.h"
-#include "scene/limits.h"
-#include "scene/schema.h"
 
 namespace orrery::generate {
 namespace {
@@ -69,19 +64,9 @@ class PuffChoice {
 /// Returns a material index, in the order of the scene's materials: mostly white, some tinted, few metal.
 std::uint32_t pick_material(double u) { return u < 0.75 ? 0 : u < 0.87 ? 1 : u < 0.95 ? 2 : 3; }
 
-void check(const Cloud& options) {
-  if (options.count < 1 || options.count > kLargestCloud)
-    base::refuse(fmt::format("count is {}; must be in 1..{}", options.count, kLargestCloud));
-  // Negated, so that NaN is refused too.
-  if (options.radius && !(*options.radius >= scene::kSmallestRadius && *options.radius <= kLargestCloudRadius))
-    base::refuse(fmt::format("radius is {}; must be in {}..{}", scene::number_text(*options.radius),
-                             scene::number_text(scene::kSmallestRadius), scene::number_text(kLargestCloudRadius)));
-}
-
 }  // namespace
 
 scene::Scene make_cloud(const Cloud& options, const std::filesystem::path& points_file) {
-  check(options);
   scene::Scene scene;
   scene.camera.look_from = {0.3, 0.1, 9};
   scene.camera.look_at = {0.15, 0.3, 0};

@@ -1,17 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <cmath>
 #include <cstdio>
-#include <memory>
 #include <string>
-#include <variant>
 #include <vector>
 
-#include <fmt/core.h>
-
-#include "base/error.h"
 #include "generate/generate.h"
 #include "generate/generate_random.h"
-#include "scene/texture.h"
 
 namespace orrery::generate {
 namespace {
@@ -101,31 +95,6 @@ void add_points(int grid, GenerateRandom& random, SmallMaterials& materials, con
   scene.points.push_back(std::move(points));
 }
 
-/// Makes the diffuse spheres among the small ones rise by up to half a unit while the shutter is open.
-void add_motion(std::uint64_t seed, scene::Scene& scene) {
-  GenerateRandom random(seed ^ 0x6d6f74696f6eULL /* other numbers than those of the scene */);
-  scene.camera.shutter_close = 1;
-  for (std::size_t i = 0; i < scene.spheres.size(); ++i) {
-    const scene::Sphere& sphere = scene.spheres[i];
-    if (sphere.radius != kSmallRadius) continue;
-    if (!std::holds_alternative<scene::Lambertian>(scene.materials[sphere.material].model)) continue;
-    const Vec3d end = sphere.center + Vec3d{0, rounded(random.between(0, 0.5)), 0};
-    scene.tracks.push_back(
-        {fmt::format("sphere[{}].center", i), scene::Interpolation::kLinear, {1, 2}, {sphere.center, rounded(end)}});
-  }
-}
-
-/// The book's ground of *The Next Week*.
-scene::Lambertian checkered_ground() {
-  scene::Texture checker;
-  checker.scale = 0.32;
-  checker.low = {0.2, 0.3, 0.1};
-  checker.high = {0.9, 0.9, 0.9};
-  scene::Lambertian out;
-  out.albedo_texture = std::make_shared<const scene::Texture>(checker);
-  return out;
-}
-
 void set_view(scene::Scene& scene) {
   scene.image = {1200, 675};
   scene.camera.look_from = {13, 2, 3};
@@ -140,15 +109,9 @@ void set_view(scene::Scene& scene) {
 }  // namespace
 
 scene::Scene make_final_scene(const FinalScene& options, const std::filesystem::path& points_file) {
-  if (options.grid < 0 || options.grid > kLargestFinalGrid)
-    base::refuse(fmt::format("grid is {}; must be in 0..{}", options.grid, kLargestFinalGrid));
-  if (options.moving && options.grid > kLargestWrittenGrid)
-    base::refuse(fmt::format("grid is {}; moving spheres are written as tables, so it must be in 0..{}", options.grid,
-                             kLargestWrittenGrid));
   scene::Scene scene;
   set_view(scene);
-  const std::uint32_t ground =
-      add_material(scene, "ground", options.moving ? checkered_ground() : scene::Lambertian{{0.5, 0.5, 0.5}});
+  const std::uint32_t ground = add_material(scene, "ground", scene::Lambertian{{0.5, 0.5, 0.5}});
   const std::uint32_t glass = add_material(scene, "glass", scene::Dielectric{1.5, scene::Fresnel::kSchlick});
   const std::uint32_t brown = add_material(scene, "brown", scene::Lambertian{{0.4, 0.2, 0.1}});
   const std::uint32_t mirror = add_material(scene, "mirror", scene::Metal{{0.7, 0.6, 0.5}, 0});
@@ -164,7 +127,6 @@ scene::Scene make_final_scene(const FinalScene& options, const std::filesystem::
   scene.spheres.push_back({{0, 1, 0}, 1, glass, "large-glass"});
   scene.spheres.push_back({{-4, 1, 0}, 1, brown, "large-brown"});
   scene.spheres.push_back({{4, 1, 0}, 1, mirror, "large-mirror"});
-  if (options.moving) add_motion(options.seed, scene);
   return scene;
 }
 

@@ -69,7 +69,7 @@ TEST_F(CliDocuments, BashCompletesCommandsOptionsAndValues) {
   EXPECT_EQ(completed("generate ''"), "final cloud\n");
   EXPECT_EQ(completed("render a.toml --sampl"), "--samples --sample-range\n");
   EXPECT_EQ(completed("plot a.xyz --progress ''"), "auto bar alf openjd arnold json none\n");
-  EXPECT_EQ(completed("generate final --mo"), "--moving\n");
+  EXPECT_EQ(completed("generate final --gr"), "--grid\n");
   EXPECT_EQ(completed("render sc"), "\n") << "a file";
 }
 

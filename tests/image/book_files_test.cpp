@@ -85,17 +85,6 @@ TEST(ImageBookFiles, FinalSceneMatchesGenerate) {
   fs::remove_all(folder);
 }
 
-TEST(ImageBookFiles, BouncingSpheresMatchGenerate) {
-  const fs::path folder = fs::path(testing::TempDir()) / "orrery-next-week-files", name = "01-bouncing-spheres.toml";
-  fs::create_directories(folder);
-  generate::FinalScene options;
-  options.moving = true;
-  generate::generate_final(options, folder / name, true);
-  EXPECT_TRUE(text_of(folder / name) == text_of(kScenes / "next-week" / name))
-      << "regenerate it: orrery generate final --moving -o scenes/next-week/01-bouncing-spheres.toml";
-  fs::remove_all(folder);
-}
-
 TEST(ImageBookFiles, EverySceneOfTheNextWeekIsInTheReadme) {
   const std::string readme = text_of(kScenes / "README.md");
   for (const fs::path& file : scene_files(kScenes / "next-week"))

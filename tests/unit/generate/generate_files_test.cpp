@@ -110,12 +110,6 @@ TEST_F(GenerateFiles, MissingFolderIsCannotCreate) {
   }
 }
 
-TEST_F(GenerateFiles, InvalidOptionsLeaveNoFiles) {
-  EXPECT_THROW(generate_final({1, -1}, folder_ / "a.toml"), base::Error);
-  EXPECT_THROW(generate_cloud({1, 0}, folder_ / "c.toml"), base::Error);
-  EXPECT_EQ(files(), 0u);
-}
-
 TEST_F(GenerateFiles, AForeignPointsFileIsNotReplaced) {
   std::ofstream(folder_ / "c.ply") << "ply\nformat ascii 1.0\nmy own data\n";
   const std::string mine = bytes_of(folder_ / "c.ply");

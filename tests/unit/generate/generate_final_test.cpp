@@ -5,11 +5,9 @@
 
 #include <array>
 #include <cmath>
-#include <limits>
 #include <set>
 #include <variant>
 
-#include "base/error.h"
 #include "load/write_scene.h"
 #include "scene/validate.h"
 #include "unit/generate/expectations.h"
@@ -134,11 +132,6 @@ TEST(GenerateFinal, LargeGridsUsePointsWithTheSameProbabilities) {
 }
 
 TEST(GenerateFinal, GridZeroHasOnlyTheLargeSpheres) { EXPECT_EQ(make_final_scene({1, 0}).spheres.size(), 4u); }
-
-TEST(GenerateFinal, GridOutOfRangeIsAUsageError) {
-  for (const int grid : {-1, kLargestFinalGrid + 1, std::numeric_limits<int>::max()})
-    EXPECT_EQ(kind_of_error([&] { make_final_scene({1, grid}); }), base::ErrorKind::kUsage) << grid;
-}
 
 }  // namespace
 }  // namespace orrery::generate
