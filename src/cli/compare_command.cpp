@@ -105,8 +105,6 @@ void add_compare(Command& program) {
       ->details(
           "Pixels without a hit (1e30 in Z and depth) in one of the images are excluded and counted. The coverage of a "
           "Cryptomatte, e.g. CryptoObject, is the fraction of each pixel that belongs to different objects.");
-  command.add_option("--difference", options->pictures.difference, "FILE", "Write A - B as an image")
-      ->details("An EXR holds the values; a display format, half of them added to mid-grey.");
   command.add_option("--heat", options->pictures.heat, "FILE", "Write the display error as a heat map")
       ->details("From 0 to 0.1; an EXR holds the values.");
   command.add_option("--flip", options->pictures.flip, "FILE", "Write the FLIP error map")

@@ -45,6 +45,8 @@ std::vector<std::string> command_names(const CLI::App& command) {
 /// Commands and options that were removed, and what to write instead.
 constexpr std::pair<const char*, const char*> kRemoved[] = {
     {"orrery bake", "ociobakelut, as docs/output.md shows"},
+    {"orrery compare --difference", "oiiotool A B --sub -o FILE"},
+    {"orrery generate final --moving", "scenes/next-week/01-bouncing-spheres.toml"},
     {"orrery info --measure", "orrery study, which measures the cost of unused features"},
     {"orrery generate env", "scenes/light/studio.exr, or background.type = \"sky\" in the scene"},
     {"orrery generate planet", "scenes/next-week/planet.jpg"},
@@ -69,7 +71,7 @@ constexpr Guess kGuesses[] = {
     {"--cmap", "--map", "--map MAP"},
     {"--alpha", "--opacity", "--opacity X"},
     {"--movie --film", "--turntable", "-o FILE.mp4 with --frames or --turntable"},
-    {"--diff", "--difference", "--difference FILE, or --heat FILE for the error of each pixel"},
+    {"--diff", "--heat", "--heat FILE for the error of each pixel"},
     {"--ocio", "--set", "--set color.config=FILE, relative to the scene file"},
     {"--display", "--set", "--set color.display=NAME"},
     {"--view", "--set", "--set color.view=NAME"},
@@ -82,12 +84,6 @@ constexpr Guess kGuesses[] = {
     {"--isa", "--set", "the environment variable ORRERY_ISA=NAME"},
     {"--log", "--set", "2>> FILE, after the command"},
     {"--fail-fast", "--set", "one command for each frame or scene"}};
-
-/// The name of a command as it is typed: "orrery generate final".
-std::string full_name(const CLI::App& command) {
-  const CLI::App* const outer = command.get_parent();
-  return (outer != nullptr ? full_name(*outer) + " " : "") + command.get_name();
-}
 
 /// The message for a word that the command had; empty if it never had it.
 std::string removed_message(const std::string& word, const CLI::App& command) {

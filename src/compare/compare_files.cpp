@@ -48,42 +48,14 @@ void count_differing(const film::Picture& picture, const film::Picture& referenc
     if (picture.find(plane.name) == nullptr) out.only_in_reference.push_back(plane.name);
 }
 
-film::Picture difference_picture(const ComparedChannels& c, bool for_display) {
-  film::Picture out;
-  out.width = c.picture.width;
-  out.height = c.picture.height;
-  const char* const names[3] = {"R", "G", "B"};
-  for (int k = 0; k < 3; ++k) {
-    film::Plane plane{names[k], std::vector<float>(c.picture.pixels())};
-    for (std::size_t i = 0; i < plane.values.size(); ++i) {
-      const bool is_excluded = !c.excluded.empty() && c.excluded[i];
-      const float d = is_excluded ? 0 : c.picture.channel[k][i] - c.reference.channel[k][i];
-      plane.values[i] = for_display ? 0.5f + d / 2 : d;
-    }
-    plane.kind = film::PlaneKind::kVector;  // negative values are valid
-    out.planes.push_back(std::move(plane));
-  }
-  return out;
-}
-
-void write_codes(const std::filesystem::path& file, const film::Picture& codes) {
-  image::write_encoded(file, encoded(codes), job::program_version());
-}
-
-void write_numbers(const std::filesystem::path& file, const film::Picture& numbers) {
-  if (image::format_of(file) == image::Format::kHdr)
-    base::refuse(file.string() + " cannot hold negative values; use EXR");
-  image::ExrOptions options;
-  options.as_float = true;
-  image::write_exr(file, numbers, {}, options);
-}
-
 void write_map(const std::filesystem::path& file, const Map& map, double full) {
   if (file.empty()) return;
   if (image::is_display_format(image::format_of(file))) {
-    write_codes(file, false_color(map, full));
+    image::write_encoded(file, encoded(false_color(map, full)), job::program_version());
   } else {
-    write_numbers(file, grey(map));
+    image::ExrOptions options;
+    options.as_float = true;
+    image::write_exr(file, grey(map), {}, options);
   }
 }
 
@@ -93,11 +65,10 @@ void check_files(const std::filesystem::path& picture, const std::filesystem::pa
   base::FileSet files;
   files.add_input(picture, "image");
   files.add_input(reference, "image");
-  const std::pair<const std::filesystem::path&, const char*> outputs[] = {
-      {pictures.difference, "--difference"}, {pictures.heat, "--heat"}, {pictures.flip, "--flip"}};
-  for (const auto& [file, role] : outputs) {
+  for (const auto& [file, role] : {std::pair{pictures.heat, "--heat"}, std::pair{pictures.flip, "--flip"}}) {
     if (file.empty()) continue;
-    image::format_of(file);
+    if (image::format_of(file) == image::Format::kHdr)
+      base::refuse(file.string() + ": Radiance stores colours, not error maps; use EXR, or a display format");
     files.add_output(file, role);
   }
 }
@@ -174,17 +145,9 @@ Comparison compare_files(const std::filesystem::path& picture, const std::filesy
     return image::read(file, image::Parts::kAll, base::available_memory().value_or(0));
   };
   const film::Picture a = read(picture), b = read(reference);
-  for (const auto& file : {pictures.difference, pictures.heat, pictures.flip})
+  for (const auto& file : {pictures.heat, pictures.flip})
     if (!file.empty()) image::check_size(file, a.width, a.height);
   Comparison out = compare(a, b, developed ? Encoding::kDisplay : Encoding::kLight, layer, threads);
-  if (!pictures.difference.empty()) {
-    const ComparedChannels channels = compared_channels(a, b, layer);
-    if (image::is_display_format(image::format_of(pictures.difference))) {
-      write_codes(pictures.difference, difference_picture(channels, true));
-    } else {
-      write_numbers(pictures.difference, difference_picture(channels, false));
-    }
-  }
   write_map(pictures.heat, out.display_map, kFalseColorMax);
   write_map(pictures.flip, out.flip_map, 1);
   return out;

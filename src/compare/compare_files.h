@@ -82,16 +82,13 @@ const std::vector<std::string>& limitable_metrics();
 Comparison compare(const film::Picture& picture, const film::Picture& reference, Encoding encoding,
                    const std::string& layer = {}, int threads = 0);
 
-/// Paths of the difference images to write. An empty path writes no image.
+/// Paths of the error maps to write. An empty path writes none.
 struct ComparisonPictures {
-  std::filesystem::path difference, heat, flip;
+  std::filesystem::path heat, flip;
 };
 
-/// Compares two image files, and writes difference images.
-///
-/// Scene-linear formats store the difference itself; display formats store mid-grey plus half the difference. The heat
-/// map shows the display error in false colours up to kFalseColorMax, the FLIP map up to 1; scene-linear
-/// formats hold the values.
+/// Compares two image files, and writes error maps: EXR files hold the values, display formats show the display error
+/// up to kFalseColorMax and FLIP up to 1 in false colours.
 ///
 /// Errors     those of compare, image::read and image::write; base::Error(kUsage) if one file is scene-linear and the
 ///            other display-encoded
