@@ -78,7 +78,6 @@ struct Case {
   Accelerator accelerator = Accelerator::kEmbree;
   Precision precision = Precision::kExact;
   std::optional<accel::Traversal> traversal = {};
-  bool samples_lights = true;  ///< false: direct_lighting = "bsdf"
   int samples = 1;
   std::vector<double> paths_per_s = {};
 };
@@ -95,15 +94,16 @@ compile::CompiledScene reduced_scene(const BenchRequest& request) {
 /// The scene under test with its accelerators.
 class Subject {
  public:
-  explicit Subject(const BenchRequest& request)
-      : request_(request), compiled_(reduced_scene(request)), direct_lighting_(compiled_.direct_lighting) {}
+  explicit Subject(const BenchRequest& request) : request_(request), compiled_(reduced_scene(request)) {}
 
   const compile::CompiledScene& compiled() const { return compiled_; }
 
   /// Renders a case once.
   render::Statistics run(const Case& c) {
-    prepare(c);
+    compiled_.accelerator = c.accelerator;
+    compiled_.precision = c.precision;
     compiled_.samples = c.samples;
+    compile::update_lights(compiled_);
     render::Settings settings;
     settings.threads = request_.threads;
     settings.traversal = c.traversal;
@@ -114,13 +114,6 @@ class Subject {
   }
 
  private:
-  void prepare(const Case& c) {
-    compiled_.accelerator = c.accelerator;
-    compiled_.precision = c.precision;
-    compiled_.direct_lighting = c.samples_lights ? direct_lighting_ : kernel::DirectLighting::kBsdf;
-    compile::update_lights(compiled_);
-  }
-
   const accel::Accel& accel(const Case& c) {
     auto& built = accels_[{c.accelerator, c.precision}];
     if (!built) built = render::build(compiled_, render::available_threads());
@@ -129,7 +122,6 @@ class Subject {
 
   const BenchRequest& request_;
   compile::CompiledScene compiled_;
-  kernel::DirectLighting direct_lighting_;
   std::map<std::pair<Accelerator, Precision>, std::unique_ptr<accel::Accel>> accels_;
 };
 
@@ -148,8 +140,6 @@ std::vector<Case> cases_of(const compile::CompiledScene& compiled, Benchmark& ou
   add("embree fast", Accelerator::kEmbree, Precision::kFast);
   add("exact packet", Accelerator::kEmbree, Precision::kExact).traversal = accel::Traversal::kPacket;
   add("exact single", Accelerator::kEmbree, Precision::kExact).traversal = accel::Traversal::kSingle;
-  if (compiled.features.lit && compiled.direct_lighting != kernel::DirectLighting::kBsdf)
-    add("exact bsdf", Accelerator::kEmbree, Precision::kExact).samples_lights = false;
   if (!lists_are_affordable(compiled)) {
     out.left_out.push_back(fmt::format("lists: with this many spheres one sample per pixel would take more than {} s",
                                        static_cast<int>(kLongestListSeconds)));

@@ -64,23 +64,6 @@ TEST_F(StudyBenchScene, MeasuresEveryPrecisionWithEmbreeAndLists) {
   EXPECT_TRUE(b.left_out.empty());
 }
 
-/// What sampling lights costs is the speed of "embree exact" relative to that of the same scene without.
-TEST_F(StudyBenchScene, ALitSceneIsMeasuredWithoutLightSampling) {
-  BenchRequest r = request();
-  std::ofstream(r.scene.file, std::ios::app)
-      << "material.lamp = { type = \"emitter\", radiance = [1, 1, 1] }\nbackground.type = \"constant\"\n";
-  r.scene.overrides = {"camera.vfov=20"};
-  const auto has_row = [&] {
-    const auto all = names(bench_scene(r).cases);
-    return std::count(all.begin(), all.end(), "exact bsdf") == 1;
-  };
-  EXPECT_FALSE(has_row());
-  r.scene.overrides = {"sphere[0].material=lamp"};
-  EXPECT_TRUE(has_row());
-  r.scene.overrides.add("render.direct_lighting=bsdf");
-  EXPECT_FALSE(has_row());
-}
-
 /// Shadow rays are rays of "embree exact" only.
 TEST_F(StudyBenchScene, RaysPerPathAreThoseOfTheScene) {
   BenchRequest r = request();
