@@ -19,7 +19,7 @@
 namespace orrery::job {
 namespace {
 
-/// All files that a job writes, except Cryptomatte manifests, which only some scenes have.
+/// All files that a job writes.
 std::vector<NamedOutput> outputs_of(const Job& job) {
   std::vector<NamedOutput> out;
   each_named(job.outputs, [&](const std::filesystem::path& file, const char* role) { out.push_back({file, role}); });
@@ -44,9 +44,6 @@ void add_job_files(const Job& job, base::FileSet& files, const std::string& owne
   for (const ShardFile& shard : job.merge.shards) files.add_input(shard.file, "shard");
   load::add_ocio_configs(job.outputs.display.config, files);
   for (const NamedOutput& output : outputs_of(job)) files.reserve(output.path, output.role + owner);
-  if (is_shard(job)) return;
-  for (const std::filesystem::path& manifest : possible_manifest_files(job.outputs))
-    files.reserve(manifest, "Cryptomatte manifest" + owner);
 }
 
 void check_request(const Job& job) {

@@ -10,8 +10,7 @@
 
 namespace orrery::job {
 
-/// Adds the files that a job reads and writes according to its command line. The names of Cryptomatte manifests are
-/// reserved for every EXR image, because the scene has not been read yet.
+/// Adds the files that a job reads and writes according to its command line.
 ///
 /// `owner`    appended to roles in messages about several scenes: " of shot.toml"
 /// Errors     base::Error(kUsage) for an output that is an input or another output

@@ -12,11 +12,8 @@
 #include <fmt/core.h>
 #include <nlohmann/json.hpp>
 
-#include "base/atomic_file.h"
-#include "base/file_name.h"
 #include "compile/compiled_scene.h"
 #include "film/cryptomatte.h"
-#include "image/format.h"
 #include "scene/layers.h"
 
 namespace orrery::job {
@@ -206,12 +203,6 @@ std::string manifest(const MatteNames& matte) {
   return out + '}';
 }
 
-bool is_large(const MatteNames& matte) { return matte.things.size() > kMaxNamesInHeader; }
-
-std::filesystem::path manifest_file(const std::string& layer, const std::filesystem::path& picture) {
-  return picture.parent_path() / base::companion_name(picture.stem().string(), fmt::format(".{}.json", layer));
-}
-
 }  // namespace
 
 Layers choose_layers(const scene::Scene& scene, const compile::CompiledScene& compiled, bool may_have_looks) {
@@ -243,8 +234,7 @@ base::PackedArray object_classes(const scene::Scene& scene, const compile::Compi
   return classes.take().of_sphere;
 }
 
-std::vector<image::Attribute> matte_attributes(const std::vector<MatteNames>& mattes,
-                                               const std::filesystem::path& picture) {
+std::vector<image::Attribute> matte_attributes(const std::vector<MatteNames>& mattes) {
   std::vector<image::Attribute> out;
   for (const MatteNames& matte : mattes) {
     const std::string key =
@@ -252,34 +242,9 @@ std::vector<image::Attribute> matte_attributes(const std::vector<MatteNames>& ma
     out.push_back({key + "name", matte.layer});
     out.push_back({key + "hash", std::string("MurmurHash3_32")});
     out.push_back({key + "conversion", std::string("uint32_to_float32")});
-    if (is_large(matte)) {
-      out.push_back({key + "manif_file", manifest_file(matte.layer, picture).filename().string()});
-    } else {
-      out.push_back({key + "manifest", manifest(matte)});
-    }
+    out.push_back({key + "manifest", manifest(matte)});
   }
   return out;
-}
-
-std::vector<std::filesystem::path> manifest_files(const std::vector<MatteNames>& mattes, const Outputs& outputs) {
-  std::vector<std::filesystem::path> files;
-  for (const auto& [picture, format] : outputs.images)
-    for (const MatteNames& matte : mattes)
-      if (is_large(matte) && format == image::Format::kExr) files.push_back(manifest_file(matte.layer, picture));
-  return files;
-}
-
-std::vector<std::filesystem::path> possible_manifest_files(const Outputs& outputs) {
-  std::vector<std::filesystem::path> files;
-  for (const auto& [picture, format] : outputs.images)
-    if (format == image::Format::kExr)
-      for (const char* layer : kMatteLayers) files.push_back(manifest_file(layer, picture));
-  return files;
-}
-
-void write_manifests(const std::vector<MatteNames>& mattes, const std::filesystem::path& picture) {
-  for (const MatteNames& matte : mattes)
-    if (is_large(matte)) base::write_text_file(manifest_file(matte.layer, picture), manifest(matte));
 }
 
 }  // namespace orrery::job

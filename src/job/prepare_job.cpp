@@ -7,7 +7,6 @@
 #include <fmt/core.h>
 
 #include "annotation/annotate.h"
-#include "base/atomic_file.h"
 #include "base/error.h"
 #include "base/text.h"
 #include "compile/camera_basis.h"
@@ -113,7 +112,6 @@ PreparedJob prepare_job(const Job& job, base::FileSet& files, JobReport& report,
   const compile::CompiledScene& compiled = out.prepared->compile(job.resources.memory_limit);
   check_scene(job, compiled);
   out.layers = layers_of(out);
-  for (const auto& manifest : manifest_files(out.layers.mattes, job.outputs)) base::check_creatable(manifest);
   out.provenance = provenance_of(job, out.loaded().read, compiled, out.prepared->hashes(), out.layers);
   out.drawing = drawing_of(out);
   out.stamp = annotation::stamped(stamp_of(job, out.provenance, out.loaded().display, report.display), out.drawing);

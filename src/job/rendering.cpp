@@ -6,7 +6,6 @@
 #include "film/sums.h"
 #include "image/format.h"
 #include "job/checkpoint.h"
-#include "job/layers.h"
 #include "job/write_outputs.h"
 #include "load/read_scene.h"
 
@@ -23,8 +22,6 @@ void check_outputs(const Rendering& rendering, const Outputs& outputs) {
     files.add_output(output.path, "-o");
     image::check_size(output.path, rendering.picture.width, rendering.picture.height);
   }
-  for (const std::filesystem::path& manifest : manifest_files(rendering.mattes, outputs))
-    files.add_output(manifest, "Cryptomatte manifest");
   if (outputs.has_exr()) image::check_lossless(rendering.picture.planes, outputs.exr);
 }
 
@@ -49,7 +46,7 @@ image::WriteReport write_rendering(const Rendering& rendering, const Outputs& ou
   job.outputs = outputs;
   header.stamp = annotation::stamped(stamp_of(job, rendering.provenance, display, choice), rendering.drawing);
   if (!rendering.report.target_missed.empty()) header.stamp = stamp_of_missed(header.stamp);
-  return write_outputs(outputs, display, choice, {rendering.picture, header, rendering.mattes, rendering.drawing});
+  return write_outputs(outputs, display, choice, rendering.picture, header, rendering.drawing);
 }
 
 }  // namespace orrery::job

@@ -1,15 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include <vector>
-
 #include "annotation/drawing.h"
 #include "base/file_set.h"
 #include "display/settings.h"
 #include "film/picture.h"
 #include "image/header.h"
 #include "job/job.h"
-#include "job/layers.h"
 
 namespace orrery::job {
 
@@ -18,7 +15,6 @@ struct Rendering {
   Job job;                ///< the request, without hooks and data in memory
   film::Picture picture;  ///< R, G, B, A, then the layers of the scene
   image::Header header, reproducible_header;
-  std::vector<MatteNames> mattes;
   annotation::Drawing drawing;   ///< over the image
   display::Settings display;     ///< from the request and the scene
   image::Provenance provenance;  ///< everything that the image depends on

@@ -87,7 +87,6 @@ class Run {
     out.picture = std::move(result.picture);
     out.header = header(false);
     out.reproducible_header = header(true);
-    out.mattes = own_.layers.mattes;
     out.drawing = own_.drawing;
     out.display = own_.loaded().display;
     out.provenance = own_.provenance;
@@ -282,14 +281,15 @@ class Run {
   void write_images(const render::Result& result) {
     image::Header own = header(job_.outputs.reproducible);
     own.stamp = report_.target_missed.empty() ? own_.stamp : stamp_of_missed(own_.stamp);
-    report_.written = write_outputs(job_.outputs, own_.loaded().display, report_.display,
-                                    {result.picture, own, own_.layers.mattes, own_.drawing});
+    report_.written =
+        write_outputs(job_.outputs, own_.loaded().display, report_.display, result.picture, own, own_.drawing);
     if (!job_.outputs.deep.empty()) image::write_deep(job_.outputs.deep, result.deep, result.picture, own);
   }
 
   /// The header of the finished image.
   image::Header header(bool reproducible) const {
     image::Header out = picture_header(own_.loaded().read, compiled(), report_, reproducible);
+    out.matte_attributes = matte_attributes(own_.layers.mattes);
     if (job_.denoise) out.attributes.push_back({denoise::kAttribute, "orrery " + program_version()});
     return out;
   }

@@ -46,30 +46,22 @@ void DisplayWriter::write_svg(const std::filesystem::path& file, display::Alpha 
 }
 
 image::WriteReport write_outputs(const Outputs& outputs, const display::Settings& display,
-                                 const display::Choice& choice, const FinishedPicture& finished) {
-  const auto& [picture, header, mattes, drawing] = finished;
+                                 const display::Choice& choice, const film::Picture& picture,
+                                 const image::Header& header, const annotation::Drawing& drawing) {
   DisplayWriter developed(picture, display, outputs.bits != 0 ? outputs.bits : choice.default_bits(), drawing);
   image::WriteReport report;
   const auto add = [&](const image::WriteReport& one) {
     report.clamped += one.clamped;
     report.not_finite += one.not_finite;
   };
-  const auto write = [&](const std::filesystem::path& output, image::Format format) {
-    if (image::is_display_format(format)) {
-      developed.write(output, header.software, header.stamp, header.dpi);
-    } else if (format == image::Format::kHdr) {
-      add(image::write_hdr(output, picture));
-    } else {
-      image::Header own = header;
-      own.matte_attributes = matte_attributes(mattes, output);
-      write_manifests(mattes, output);  // first, so that no image refers to a missing file
-      add(image::write_exr(output, picture, own, outputs.exr));
-    }
-  };
   std::vector<base::Error> errors;
   for (const auto& [output, format] : outputs.images) {
     try {
-      write(output, format);
+      if (image::is_display_format(format))
+        developed.write(output, header.software, header.stamp, header.dpi);
+      else
+        add(format == image::Format::kHdr ? image::write_hdr(output, picture)
+                                          : image::write_exr(output, picture, header, outputs.exr));
     } catch (const base::Error& error) {
       errors.push_back(error);
     }

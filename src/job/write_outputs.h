@@ -4,32 +4,24 @@
 #include <filesystem>
 #include <optional>
 #include <string>
-#include <vector>
 
 #include "annotation/drawing.h"
 #include "display/develop.h"
 #include "display/forward.h"
 #include "film/picture.h"
 #include "image/write.h"
-#include "job/layers.h"
 #include "job/outputs.h"
 
 namespace orrery::job {
 
-/// An image and what its files hold besides it.
-struct FinishedPicture {
-  const film::Picture& picture;
-  const image::Header& header;
-  const std::vector<MatteNames>& mattes;
-  const annotation::Drawing& drawing;  ///< over the image; that of EXR files is a layer of `picture`
-};
-
-/// Writes the files of an image, and the manifests of its mattes.
+/// Writes the files of an image.
 ///
 /// `choice`   the resolved `display`; only its bits per channel are used, for display formats
+/// `drawing`  over the image; that of EXR files is a layer of `picture`
 /// Errors     base::Error: kCannotCreate, kIo; those of display::develop
 image::WriteReport write_outputs(const Outputs& outputs, const display::Settings& display,
-                                 const display::Choice& choice, const FinishedPicture& finished);
+                                 const display::Choice& choice, const film::Picture& picture,
+                                 const image::Header& header, const annotation::Drawing& drawing);
 
 /// Applies the display transform, then draws the annotation.
 ///
