@@ -23,37 +23,21 @@ constexpr double kLongestTime = 365.0 * 24 * 3600;
 /// Minimum time limit, seconds; 0 would mean no limit.
 constexpr double kShortestTime = 0.01;
 
-/// The message for a number without a unit; `next_unit` is the index of the largest unit that may follow.
-std::string missing_unit(const std::string& text, std::size_t next_unit) {
-  if (next_unit == 0) return fmt::format("`{0}` has no unit; write {0}s, {0}m or {0}h", text);
-  if (next_unit == 1) return fmt::format("`{0}` has no final unit; write {0}m or {0}s", text);
-  return fmt::format("`{0}` has no final unit; write {0}s", text);
-}
-
-/// Parses times such as "1h30m": numbers with units, each unit at most once, in descending order.
+/// Parses times such as "1h30m": numbers with units, in descending order.
 ///
-/// Result     an error message, or an empty string
-std::string parse_duration(const std::string& text, double& seconds) {
-  constexpr std::string_view kUnits = "hms";
-  constexpr double kSeconds[] = {3600, 60, 1};
-  const std::string wrong = fmt::format("must be a time such as 90s, 5m, 1.5h or 1h30m, not `{}`", text);
-  seconds = 0;
-  std::size_t next_unit = 0;
-  for (std::size_t begin = 0; begin < text.size();) {
-    const std::size_t end = text.find_first_not_of("0123456789.", begin);
-    const auto value = base::number_of<double>(text.substr(begin, end - begin));
-    if (!value) return wrong;
-    if (end == std::string::npos) return next_unit < kUnits.size() ? missing_unit(text, next_unit) : wrong;
-    const std::size_t unit = kUnits.find(text[end], next_unit);
-    if (unit == std::string_view::npos) return wrong;
-    seconds += *value * kSeconds[unit];
-    next_unit = unit + 1;
-    begin = end + 1;
+/// Result     seconds; empty for any other text
+std::optional<double> seconds_of(std::string_view text) {
+  if (text.empty() || text.find_first_not_of("0123456789.hms") != std::string_view::npos) return {};
+  double seconds = 0;
+  for (const auto& [unit, factor] : {std::pair{'h', 3600.0}, std::pair{'m', 60.0}, std::pair{'s', 1.0}}) {
+    const std::size_t end = text.find(unit);
+    if (end == std::string_view::npos) continue;
+    const auto number = base::number_of<double>(text.substr(0, end));
+    if (!number) return {};
+    seconds += *number * factor;
+    text.remove_prefix(end + 1);
   }
-  if (text.empty()) return wrong;
-  if (seconds < kShortestTime) return fmt::format("must be at least {:g}s, not `{}`", kShortestTime, text);
-  if (!(seconds <= kLongestTime)) return fmt::format("must be at most {:g}h, not `{}`", kLongestTime / 3600, text);
-  return {};
+  return text.empty() ? std::optional(seconds) : std::nullopt;
 }
 
 /// Adds no text to the help, where the option's description suffices.
@@ -108,11 +92,18 @@ Check byte_size() {
 
 Check duration() {
   return [](std::string& text) -> std::string {
-    double seconds = 0;
-    if (std::string wrong = parse_duration(text, seconds); !wrong.empty()) return wrong;
-    text = fmt::format("{:.17g}", seconds);
+    const std::optional<double> seconds = seconds_of(text);
+    if (!seconds) return fmt::format("must be a time such as 90s, 5m, 1.5h or 1h30m, not `{}`", text);
+    if (!(*seconds >= kShortestTime && *seconds <= kLongestTime))
+      return fmt::format("must be from {:g}s to {:g}h, not `{}`", kShortestTime, kLongestTime / 3600, text);
+    text = fmt::format("{:.17g}", *seconds);
     return {};
   };
+}
+
+std::string full_name(const CLI::App& command) {
+  const CLI::App* const outer = command.get_parent();
+  return (outer != nullptr ? full_name(*outer) + " " : "") + command.get_name();
 }
 
 Option* Option::required() {
@@ -143,18 +134,8 @@ Option* Option::transform(Check check) {
   return this;
 }
 
-Option* Option::excludes(const Option* other) {
-  option_->excludes(other->option_);
-  return this;
-}
-
 Option* Option::may_be_empty() {
   option_->get_validator(0)->active(false);  // see Command::added()
-  return this;
-}
-
-Option* Option::take_all() {
-  option_->take_all();
   return this;
 }
 
@@ -224,11 +205,6 @@ Command* Command::add_subcommand(const std::string& name, const std::string& des
 void Command::require_subcommand() { app_->require_subcommand(1); }
 
 void Command::hide() { app_->group(""); }
-
-std::string Command::full_name() const {
-  const CLI::App* const parent = app_->get_parent();
-  return (parent == nullptr ? "" : Command(*app_->get_parent()).full_name() + " ") + app_->get_name();
-}
 
 std::string Command::name() const { return app_->get_name(); }
 

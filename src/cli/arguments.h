@@ -43,6 +43,9 @@ Check byte_size();
 /// Accepts a time from 0.01 seconds to a year, such as 90s, 5m, 1.5h or 1h30m, and converts it to seconds.
 Check duration();
 
+/// The name of a command as it is typed: "orrery generate final".
+std::string full_name(const CLI::App& command);
+
 /// An option or a positional argument, as help, manual and completions show it.
 struct OptionText {
   std::vector<std::string> names;  ///< "-o", "--output"; "SCENE" for a positional argument
@@ -69,11 +72,8 @@ class Option {
   Option* check(Check check);
   /// Rejects values that fail `check`, and replaces the others with its output.
   Option* transform(Check check);
-  Option* excludes(const Option* other);
   /// Accepts an empty value, which is otherwise an error.
   Option* may_be_empty();
-  /// Makes the option take all values up to the next option.
-  Option* take_all();
   /// Allows the option to be given several times, with one value each.
   Option* repeatable();
   /// Number of times that the option was given.
@@ -112,8 +112,7 @@ class Command {
   void require_subcommand();
   /// Hides the command in the help and in the manual.
   void hide();
-  /// "orrery generate final".
-  std::string full_name() const;
+  std::string full_name() const { return cli::full_name(*app_); }
   std::string name() const;
   std::string description() const;
   bool is_hidden() const;

@@ -65,6 +65,7 @@ int data_info(const InfoOptions& options) {
 }
 
 int info(const InfoOptions& options) {
+  if (options.json && options.settings) base::refuse("--json excludes --settings; it prints them, too");
   if (!load::is_scene_file(options.file)) return data_info(options);
   for (const auto& [is_given, option] :
        {std::pair{options.component.has_value(), "--component"}, std::pair{!options.topology.empty(), "--topology"}})
@@ -162,9 +163,9 @@ void add_info(Command& program) {
   command.add_option("--component", options->component, "N", "HDF5: particle type, N of PartTypeN")
       ->transform(whole_number(0, 1000));
   command.add_option("--topology", options->topology, "FILE", "Trajectories: data file that names the atoms");
-  auto* json = command.add_flag("--json", options->json, "Print JSON, with all settings")
-                   ->details("Schema orrery.info/1, for data files orrery.data/1.");
-  command.add_flag("--settings", options->settings, "Print every setting, its value and its origin")->excludes(json);
+  command.add_flag("--json", options->json, "Print JSON, with all settings")
+      ->details("Schema orrery.info/1, for data files orrery.data/1.");
+  command.add_flag("--settings", options->settings, "Print every setting, its value and its origin");
   command.details(
       "Of a scene: its contents, memory estimate, required and unused features, emitters and how they and the "
       "background are sampled, available layers, unused columns of data files, and a warning if the chosen precision "
@@ -182,7 +183,7 @@ void add_info(Command& program) {
 void add_check(Command& program) {
   const auto options = std::make_shared<CheckOptions>();
   Command& command = *program.add_subcommand("check", "Read and validate scenes without rendering");
-  command.add_option("SCENE", options->scenes, "FILE", "Scene files")->required()->take_all();
+  command.add_option("SCENE", options->scenes, "FILE", "Scene files")->required();
   options->overrides.add_to(command);
   command.add_option("--frames", options->frames, "RANGE", "Frames to check, e.g. 1-48, 1-48x2 or 1,3,7-9; default: 1")
       ->details(

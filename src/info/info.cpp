@@ -185,20 +185,10 @@ std::vector<TextureInfo> texture_infos(const scene::Scene& scene, const std::vec
   return out;
 }
 
-/// Whether the properties include colours under the names used by scanners and point cloud tools.
-bool has_colors(const std::vector<std::string>& properties) {
-  static const std::vector<std::vector<std::string>> known = {
-      {"red", "green", "blue"}, {"r", "g", "b"}, {"diffuse_red", "diffuse_green", "diffuse_blue"}};
-  return std::any_of(known.begin(), known.end(), [&](const std::vector<std::string>& names) {
-    return std::all_of(names.begin(), names.end(), [&](const auto& name) { return base::contains(properties, name); });
-  });
-}
-
 std::string text_of(const PointsInfo& p) {
   std::string out = fmt::format("{}: {}", p.file, base::counted(p.spheres, "sphere"));
   if (p.bonds > 0) out += fmt::format(", {} rods of bonds", p.bonds);
   if (!p.unused.empty()) out += "; unused: " + base::joined(p.unused);
-  if (has_colors(p.unused)) out += "; point colours are ignored, materials set the colours";
   return out;
 }
 
@@ -229,11 +219,7 @@ std::vector<std::pair<std::string, std::uint64_t>> count_materials(const compile
 // Called by the JSON library.
 
 static void to_json(json& out, const PointsInfo& p) {
-  out = {{"file", p.file},
-         {"spheres", p.spheres},
-         {"bonds", p.bonds},
-         {"unused", p.unused},
-         {"unused_colors", has_colors(p.unused)}};
+  out = {{"file", p.file}, {"spheres", p.spheres}, {"bonds", p.bonds}, {"unused", p.unused}};
 }
 
 static void to_json(json& out, const TextureInfo& t) {

@@ -9,10 +9,10 @@
 
 namespace orrery::job {
 
-void check_bits(const std::vector<ImageFile>& images, int bits) {
+void check_bits(const std::vector<ImageFile>& images, int bits, const std::string& why) {
   for (const ImageFile& image : images)
     if (image::is_display_format(image.format) && bits > image::max_bits(image.format))
-      base::refuse(image.path.string() + " holds 8 bits per channel; use PNG or TIFF for 16");
+      base::refuse(fmt::format("{} holds 8 bits per channel{}; PNG and TIFF hold 16", image.path.string(), why));
 }
 
 bool Outputs::has_exr() const {
@@ -24,11 +24,7 @@ bool Outputs::has_display_format() const {
 }
 
 void require_bits(const display::Choice& display, const Outputs& outputs) {
-  for (const ImageFile& output : outputs.images) {
-    if (display.is_hdr && image::is_display_format(output.format) && image::max_bits(output.format) < 16)
-      base::refuse(fmt::format("{} holds 8 bits per channel, too few for display {}; PNG and TIFF hold 16",
-                               output.path.string(), display.display));
-  }
+  check_bits(outputs.images, display.default_bits(), ", too few for display " + display.display);
 }
 
 }  // namespace orrery::job

@@ -32,8 +32,9 @@ struct NamedOutput {
 
 /// Checks that every display format among these supports `bits` per channel; 0 always passes.
 ///
+/// `why`      added to the message
 /// Errors     base::Error(kUsage)
-void check_bits(const std::vector<ImageFile>& images, int bits);
+void check_bits(const std::vector<ImageFile>& images, int bits, const std::string& why = {});
 
 /// The files that a job writes, and how.
 struct Outputs {

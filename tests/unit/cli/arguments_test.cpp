@@ -65,11 +65,9 @@ TEST(CliArguments, TimesAreSecondsWithUnits) {
     EXPECT_EQ(duration()(value), "") << text;
     EXPECT_EQ(value, seconds) << text;
   }
-  EXPECT_TRUE(test::mentions(verdict(duration(), "3"), {"`3`", "3s", "3m", "3h"}));
-  EXPECT_TRUE(test::mentions(verdict(duration(), "1h30"), {"`1h30`", "1h30m", "1h30s"}));
   EXPECT_TRUE(test::mentions(verdict(duration(), "0s"), {"0.01s", "`0s`"}));
   EXPECT_TRUE(test::mentions(verdict(duration(), "8761h"), {"8760h", "`8761h`"}));
-  for (const char* wrong : {"", "s", "-5s", "5d", "5s5", "1m1h", "5m5m", "1..5s", "5ms", "nans", "1e3s"})
+  for (const char* wrong : {"", "3", "1h30", "s", "-5s", "5d", "5s5", "1m1h", "5m5m", "1..5s", "5ms", "nans", "1e3s"})
     EXPECT_TRUE(test::mentions(verdict(duration(), wrong), {"1h30m", std::string("`") + wrong + "`"}));
 }
 
