@@ -2,6 +2,7 @@
 #include <cstdio>
 #include <memory>
 #include <string_view>
+#include <utility>
 
 #include <fmt/core.h>
 
@@ -19,12 +20,6 @@ namespace {
 /// As diff(1): the comparison succeeded, and the images differ. Listed in docs/orrery.1.in.
 constexpr int kDiffer = 1;
 
-/// The maximum of a metric.
-struct Limit {
-  std::string metric;
-  double value = 0;
-};
-
 struct CompareOptions {
   std::filesystem::path picture, reference;
   std::vector<std::string> limits;
@@ -34,7 +29,8 @@ struct CompareOptions {
   bool json = false, quiet = false;
 };
 
-Limit limit_of(const std::string& text) {
+/// The metric and its maximum.
+std::pair<std::string, double> limit_of(const std::string& text) {
   const auto refuse = [&](const std::string& reason) {
     base::refuse(fmt::format("--fail-above {}: {}", text, reason));
   };
@@ -56,7 +52,8 @@ void warn_of_layers(const CompareOptions& options, const compare::Comparison& fo
   if (options.quiet) return;
   const auto warn = [](const std::vector<std::string>& channels, const std::filesystem::path& file) {
     if (!channels.empty())
-      print_message(base::warning_line(fmt::format("only in {}: {}", file.string(), compare::channels_text(channels))));
+      print_message(
+          base::warning_line(fmt::format("only in {}: {}", file.string(), base::joined(compare::layers_of(channels)))));
   };
   warn(found.only_in_picture, options.picture);
   warn(found.only_in_reference, options.reference);
@@ -64,17 +61,17 @@ void warn_of_layers(const CompareOptions& options, const compare::Comparison& fo
 
 int compare(const CompareOptions& options) {
   end_on_signals();
-  std::vector<Limit> limits;
+  std::vector<std::pair<std::string, double>> limits;
   for (const std::string& text : options.limits) limits.push_back(limit_of(text));
   const compare::Comparison found =
       compare::compare_files(options.picture, options.reference, options.layer, options.pictures, options.threads);
   if (!found.only_in_picture.empty() || !found.only_in_reference.empty()) warn_of_layers(options, found);
   if (!options.quiet) print_result(options.json ? compare::comparison_json(found) : compare::comparison_text(found));
   int status = 0;
-  for (const Limit& limit : limits) {
-    const double value = found.metric(limit.metric);
-    if (value <= limit.value) continue;
-    std::fprintf(stderr, "orrery: %s is %g, above the limit of %g\n", limit.metric.c_str(), value, limit.value);
+  for (const auto& [metric, limit] : limits) {
+    const double value = found.metric(metric);
+    if (value <= limit) continue;
+    std::fprintf(stderr, "orrery: %s is %g, above the limit of %g\n", metric.c_str(), value, limit);
     status = kDiffer;
   }
   if (!limits.empty() && found.errors.not_finite > 0) {

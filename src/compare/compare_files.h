@@ -38,8 +38,8 @@ bool is_of_layer(const film::Plane& channel, const std::string& layer);
 ComparedChannels compared_channels(const film::Picture& picture, const film::Picture& reference,
                                    const std::string& layer);
 
-/// Summarizes channels by layer with their counts: "Z, N (3), CryptoObject (12) and 2 more layers".
-std::string channels_text(const std::vector<std::string>& channels);
+/// The layers of channels, in the order of their first ones. A channel without a layer counts as one.
+std::vector<std::string> layers_of(const std::vector<std::string>& channels);
 
 /// Whether an image is scene-linear or display-encoded.
 enum class Encoding : std::uint8_t { kLight, kDisplay };

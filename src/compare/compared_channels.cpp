@@ -15,9 +15,6 @@
 namespace orrery::compare {
 namespace {
 
-/// Maximum number of layers that channels_text() lists by name.
-constexpr std::size_t kMaxNamed = 8;
-
 /// The layer of a channel, or the channel's name if it has none. Cryptomatte layers lose their two digits.
 std::string layer_name(const std::string& channel) {
   std::string name = film::Plane{channel, {}}.layer();
@@ -27,21 +24,6 @@ std::string layer_name(const std::string& channel) {
       std::isdigit(static_cast<unsigned char>(name[n - 2])) != 0)
     name.resize(n - 2);
   return name;
-}
-
-/// The layers in the order of their first channels, with their channel counts.
-std::vector<std::pair<std::string, int>> layers_of(const std::vector<std::string>& channels) {
-  std::vector<std::pair<std::string, int>> out;
-  for (const std::string& channel : channels) {
-    const std::string name = layer_name(channel);
-    const auto known = std::find_if(out.begin(), out.end(), [&](const auto& layer) { return layer.first == name; });
-    if (known == out.end()) {
-      out.emplace_back(name, 1);
-    } else {
-      ++known->second;
-    }
-  }
-  return out;
 }
 
 /// The planes of a Cryptomatte rank.
@@ -139,11 +121,10 @@ ComparedChannels compared_channels(const film::Picture& picture, const film::Pic
   if (out.names.empty() && layer.empty())
     throw base::Error(base::ErrorKind::kBadData, "the images have no channel in common");
   if (out.names.empty()) {
-    std::vector<std::string> channels, names;
+    std::vector<std::string> channels;
     for (const film::Plane& plane : picture.planes) channels.push_back(plane.name);
-    for (const auto& known : layers_of(channels)) names.push_back(known.first);
-    throw base::Error(base::ErrorKind::kBadData,
-                      fmt::format("layer {} is not in both images; the first has {}", layer, base::joined(names)));
+    throw base::Error(base::ErrorKind::kBadData, fmt::format("layer {} is not in both images; the first has {}", layer,
+                                                             base::joined(layers_of(channels))));
   }
   for (std::size_t c = out.names.size(); c < 3; ++c) {
     out.picture.channel[c] = out.picture.channel[c - 1];
@@ -153,15 +134,10 @@ ComparedChannels compared_channels(const film::Picture& picture, const film::Pic
   return out;
 }
 
-std::string channels_text(const std::vector<std::string>& channels) {
-  const auto layers = layers_of(channels);
-  std::string out;
-  for (std::size_t i = 0; i < layers.size() && i < kMaxNamed; ++i) {
-    out += (i == 0 ? "" : ", ") + layers[i].first;
-    if (layers[i].second > 1) out += fmt::format(" ({})", layers[i].second);
-  }
-  if (layers.size() == kMaxNamed + 1) out += " and 1 more layer";
-  if (layers.size() > kMaxNamed + 1) out += fmt::format(" and {} more layers", layers.size() - kMaxNamed);
+std::vector<std::string> layers_of(const std::vector<std::string>& channels) {
+  std::vector<std::string> out;
+  for (const std::string& channel : channels)
+    if (const std::string name = layer_name(channel); !base::contains(out, name)) out.push_back(name);
   return out;
 }
 

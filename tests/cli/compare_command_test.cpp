@@ -64,7 +64,7 @@ TEST_F(CliCompare, UnmatchedLayersAreNamedAndTheRestIsCompared) {
   ASSERT_EQ(run("render good.toml -o z.exr -q --layers Z,variance").status, 0);
   const Outcome r = run("compare z.exr a.exr");
   EXPECT_EQ(r.status, 0);
-  EXPECT_EQ(r.err, "warning: only in z.exr: Z, variance (3)\n");
+  EXPECT_EQ(r.err, "warning: only in z.exr: Z, variance\n");
   EXPECT_NE(r.out.find("z-test      no difference but noise"), std::string::npos) << r.out;
   const Outcome z = run("compare z.exr a.exr --layer Z");
   EXPECT_EQ(z.status, 65);
