@@ -67,21 +67,10 @@ class Encoder {
  public:
   /// Errors     base::Error(kIo) if no process can be started
   explicit Encoder(std::vector<std::string> words) : messages_(::memfd_create("ffmpeg", MFD_CLOEXEC)) {
-    std::vector<char*> arguments;
-    for (std::string& word : words) arguments.push_back(word.data());
-    arguments.push_back(nullptr);
     // A socket rather than a pipe: its other end can tell whether everything was read.
     std::array<int, 2> ends{-1, -1};
-    const pid_t self = ::getpid();
-    if (messages_ >= 0 && ::socketpair(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC, 0, ends.data()) == 0) child_ = ::fork();
-    if (child_ == 0) {
-      ::prctl(PR_SET_PDEATHSIG, SIGKILL);
-      ::dup2(ends[1], STDIN_FILENO);
-      ::dup2(::open("/dev/null", O_WRONLY | O_CLOEXEC), STDOUT_FILENO);
-      ::dup2(messages_, STDERR_FILENO);
-      if (::getppid() == self) ::execvp(arguments.front(), arguments.data());
-      ::_exit(127);
-    }
+    if (messages_ >= 0 && ::socketpair(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC, 0, ends.data()) == 0)
+      child_ = start_program("ffmpeg", std::move(words), {ends[1], -1, messages_}, SIGKILL);
     const int error = errno;
     input_ = ends[0];
     if (ends[1] >= 0) ::close(ends[1]);
@@ -197,6 +186,21 @@ std::string encoded(const std::vector<fs::path>& images, const fs::path& film, c
 }
 
 }  // namespace
+
+pid_t start_program(const fs::path& program, std::vector<std::string> words, const std::array<int, 3>& streams,
+                    int signal) {
+  std::vector<char*> arguments;
+  for (std::string& word : words) arguments.push_back(word.data());
+  arguments.push_back(nullptr);
+  const pid_t self = ::getpid(), child = ::fork();
+  if (child != 0) return child;
+  ::prctl(PR_SET_PDEATHSIG, signal);
+  const int null = ::open("/dev/null", O_RDWR | O_CLOEXEC);
+  int to = STDIN_FILENO;
+  for (const int from : streams) ::dup2(from >= 0 ? from : null, to++);
+  if (::getppid() == self) ::execvp(program.c_str(), arguments.data());
+  ::_exit(127);
+}
 
 void FilmSettings::apply(SceneOptions& scene, plot::PlotOptions& plot) const {
   const load::Overrides overrides = scene.overrides();

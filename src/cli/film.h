@@ -1,7 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <sys/types.h>
+
+#include <array>
 #include <filesystem>
+#include <string>
 #include <vector>
 
 #include "plot/plot.h"
@@ -9,6 +13,13 @@
 namespace orrery::cli {
 
 class SceneOptions;
+
+/// Starts a program that gets a signal when the thread that started it ends: a command that is killed cancels nothing.
+///
+/// `streams`  descriptors of its standard input, output and error; -1: /dev/null
+/// Result     its process; -1 if it cannot be started, 127 is its status if there is no such program
+pid_t start_program(const std::filesystem::path& program, std::vector<std::string> words,
+                    const std::array<int, 3>& streams, int signal);
 
 /// Speed of a film, and the orbit of its camera.
 struct FilmSettings {

@@ -7,7 +7,6 @@
 #include <utility>
 
 #include <fcntl.h>
-#include <sys/prctl.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
@@ -16,6 +15,7 @@
 
 #include "base/error.h"
 #include "base/frames.h"
+#include "cli/film.h"
 
 namespace orrery::cli {
 namespace {
@@ -70,22 +70,9 @@ void Films::start(const std::string& command, const std::filesystem::path& file,
 
 /// Runs a command, and reads what it prints until it ends.
 void Films::run(const std::filesystem::path& program, std::vector<std::string> words) {
-  std::vector<char*> arguments;
-  for (std::string& word : words) arguments.push_back(word.data());
-  arguments.push_back(nullptr);
-  const pid_t parent = getpid();
   int ends[2] = {-1, -1};
-  const pid_t child = pipe2(ends, O_CLOEXEC) == 0 ? fork() : -1;
-  if (child == 0) {
-    // A server that is killed cancels nothing. The signal follows the end of this thread, which waits for the command.
-    prctl(PR_SET_PDEATHSIG, SIGINT);
-    if (getppid() != parent) _exit(75);
-    dup2(open("/dev/null", O_RDONLY | O_CLOEXEC), STDIN_FILENO);
-    dup2(ends[1], STDOUT_FILENO);
-    dup2(ends[1], STDERR_FILENO);
-    execv(program.c_str(), arguments.data());
-    _exit(127);
-  }
+  const pid_t child =
+      pipe2(ends, O_CLOEXEC) == 0 ? start_program(program, std::move(words), {-1, ends[1], ends[1]}, SIGINT) : -1;
   close(ends[1]);
   {
     const std::lock_guard lock(mutex_);
