@@ -67,27 +67,6 @@ void read_shard(const RenderOptions& options, job::Job& job) {
   job.as_shard = true;
 }
 
-/// Progress of a batch as one render: the samples of all jobs, as if each had the same number.
-class BatchProgress {
- public:
-  explicit BatchProgress(ProgressPrinter& printer) : printer_(printer) {}
-
-  void begin(std::size_t index, std::size_t count) {
-    index_ = index;
-    count_ = count;
-  }
-  void update(const render::Progress& p) {
-    if (count_ <= 1) return printer_.update({p.samples_done, p.samples_total, p.seconds, p.goal});
-    printer_.update({index_ * p.samples_total + p.samples_done, count_ * p.samples_total, watch_.seconds(),
-                     fmt::format("{} of {}", index_ + 1, count_)});
-  }
-
- private:
-  ProgressPrinter& printer_;
-  std::size_t index_ = 0, count_ = 1;
-  base::Stopwatch watch_;
-};
-
 /// Starts a preview and connects the hooks of jobs with it; null and no hooks without one.
 ///
 /// `note`     prints whole lines from any thread
@@ -155,10 +134,11 @@ void add_summary(std::string& out, const job::Job& job, const job::JobReport& re
 
 /// Runs the jobs one after another. If one of several fails, prints the error and continues.
 ///
+/// `index`    receives the index of the job that runs
 /// Result     the exit status: that of the first failure, or 0
 /// Errors     kStopped if a job was stopped; that of a single job
 int run_jobs(const std::vector<job::Job>& jobs, const RenderOptions& options, ProgressPrinter& printer,
-             BatchProgress& progress) {
+             std::size_t& index) {
   const bool is_many = jobs.size() > 1;
   const auto name_of = [&](const job::Job& job) {
     const std::string scene = job.scene.file.string();
@@ -167,10 +147,10 @@ int run_jobs(const std::vector<job::Job>& jobs, const RenderOptions& options, Pr
   std::size_t rendered = 0, skipped = 0;
   int status = 0;
   std::string failures;
-  for (std::size_t i = 0; i < jobs.size(); ++i) {
-    progress.begin(i, jobs.size());
+  for (index = 0; index < jobs.size(); ++index) {
+    const job::Job& job = jobs[index];
     try {
-      const job::JobReport report = job::run_job(jobs[i]);
+      const job::JobReport report = job::run_job(job);
       ++(report.was_skipped ? skipped : rendered);
       if (!is_many) printer.finish();
       const bool misses = report.exit_status != 0;
@@ -179,13 +159,13 @@ int run_jobs(const std::vector<job::Job>& jobs, const RenderOptions& options, Pr
         if (status == 0) status = report.exit_status;
       }
       if (options.quiet) continue;
-      printer.note(report.was_skipped ? fmt::format("skipped {}: its files are up to date\n", name_of(jobs[i]))
-                                      : report_text(jobs[i], report, {options.verbose, is_many}));
+      printer.note(report.was_skipped ? fmt::format("skipped {}: its files are up to date\n", name_of(job))
+                                      : report_text(job, report, {options.verbose, is_many}));
       if (!report.target_missed.empty() && !misses) printer.note(base::warning_line(report.target_missed));
     } catch (const base::Error& error) {
       if (!is_many || error.kind() == base::ErrorKind::kStopped) throw;
       printer.note(error_text(error));
-      failures += fmt::format("failed: {}: {}\n", name_of(jobs[i]), error.what());
+      failures += fmt::format("failed: {}: {}\n", name_of(job), error.what());
       if (status == 0) status = base::exit_status(error.kind());
     }
   }
@@ -220,8 +200,15 @@ int run_render(RenderOptions& options) {
   const std::filesystem::path shown = preview::preview_file(options.preview);
   if (!shown.empty()) batch.others.push_back({shown, "--preview"});
   ProgressPrinter printer(style_of(options), stderr);
-  BatchProgress progress(printer);
-  job.hooks.on_progress = [&](const render::Progress& p) { progress.update(p); };
+  std::vector<job::Job> jobs;
+  std::size_t index = 0;
+  const base::Stopwatch watch;
+  job.hooks.on_progress = [&](const render::Progress& p) {
+    if (jobs.size() <= 1) return printer.update({p.samples_done, p.samples_total, p.seconds, p.goal});
+    // A batch is shown as one render, as if all jobs had the same number of samples.
+    printer.update({index * p.samples_total + p.samples_done, jobs.size() * p.samples_total, watch.seconds(),
+                    fmt::format("{} of {}", index + 1, jobs.size())});
+  };
   job.hooks.on_preparation = [&](const char* phase, double fraction) { printer.prepare(phase, fraction); };
   const auto note = [&](const std::string& text) {
     if (!options.quiet) printer.note(text);
@@ -230,10 +217,10 @@ int run_render(RenderOptions& options) {
   if (const std::string unused = options.picture.unused_options(job); !unused.empty()) note(unused);
   job.hooks.on_note = [&](const std::string& text) { note(text + "\n"); };
   const auto preview = start_preview(shown, note, job.hooks);
-  const std::vector<job::Job> jobs = job::jobs_of(batch);
+  jobs = job::jobs_of(batch);
   // Only now is it known that no output is an input.
   if (options.before_files) options.before_files();
-  return run_jobs(jobs, options, printer, progress);
+  return run_jobs(jobs, options, printer, index);
 }
 
 void add_sampling_options(Command& command, job::Job& job) {
