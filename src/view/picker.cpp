@@ -15,7 +15,7 @@
 namespace orrery::view {
 namespace {
 
-constexpr std::uint64_t kKeptSource = std::uint64_t{256} << 20;  ///< columns of picked particles, bytes
+constexpr std::uint64_t kKeptData = std::uint64_t{256} << 20;  ///< columns of picked particles, bytes
 
 /// A value of a data file, as short as it can be without loss.
 std::string text_of(const data::Column& column, std::size_t row) {
@@ -51,7 +51,7 @@ std::string row_of(std::size_t row, const std::filesystem::path& file) {
 }  // namespace
 
 /// The data of a points table from which particles were picked last.
-struct Picker::Source {
+struct Picker::Data {
   std::size_t table = 0;
   points::SourceRows rows;
 };
@@ -103,11 +103,11 @@ Picked Picker::describe_sphere(std::size_t index) {
   index -= scene().spheres.size();
   const std::size_t table = table_of(compiled.points_sizes, index);
   const std::filesystem::path& file = scene().points[table].file;
-  const std::shared_ptr<const Source> source = source_of(table);
-  if (index >= source->rows.rows.size()) throw base::Error(base::ErrorKind::kBadData, file.string() + " has changed");
-  const std::uint32_t row = source->rows.rows[index];
+  const std::shared_ptr<const Data> kept = data_of(table);
+  if (index >= kept->rows.rows.size()) throw base::Error(base::ErrorKind::kBadData, file.string() + " has changed");
+  const std::uint32_t row = kept->rows.rows[index];
   out.title = row_of(row, file);
-  for (const data::Column& column : source->rows.table.columns)
+  for (const data::Column& column : kept->rows.table.columns)
     out.values.emplace_back(column.name, text_of(column, row));
   return out;
 }
@@ -139,8 +139,8 @@ Picked Picker::describe_rod(std::size_t index) {
 }
 
 void Picker::add_bond(std::size_t table, bool is_stub, std::size_t index, Picked& out) {
-  const std::shared_ptr<const Source> source = source_of(table);
-  const points::SourceRows& read = source->rows;
+  const std::shared_ptr<const Data> kept = data_of(table);
+  const points::SourceRows& read = kept->rows;
   const std::string file = scene().points[table].file.filename().string();
   if (index >= (is_stub ? read.bond_stubs.size() : read.bond_pairs.size()))
     throw base::Error(base::ErrorKind::kBadData, file + " has changed");
@@ -156,18 +156,18 @@ void Picker::add_bond(std::size_t table, bool is_stub, std::size_t index, Picked
                             is_arrow ? text_of(column, a) : text_of(column, a) + ", " + text_of(column, b));
 }
 
-std::shared_ptr<const Picker::Source> Picker::source_of(std::size_t table) {
+std::shared_ptr<const Picker::Data> Picker::data_of(std::size_t table) {
   const std::lock_guard lock(reading_);
   if (read_ && read_->table == table) return read_;
   read_ = nullptr;
-  const auto source = std::make_shared<Source>();
-  source->table = table;
-  source->rows = load::read_source_rows(source_, scene(), table);
-  std::uint64_t bytes = source->rows.bond_pairs.size() * sizeof(scene::SphereBond);
-  for (const data::Column& column : source->rows.table.columns)
-    bytes += source->rows.table.rows * data::bytes_per_value(column.type());
-  if (bytes <= kKeptSource) read_ = source;
-  return source;
+  const auto kept = std::make_shared<Data>();
+  kept->table = table;
+  kept->rows = load::read_source_rows(source_, scene(), table);
+  std::uint64_t bytes = kept->rows.bond_pairs.size() * sizeof(scene::SphereBond);
+  for (const data::Column& column : kept->rows.table.columns)
+    bytes += kept->rows.table.rows * data::bytes_per_value(column.type());
+  if (bytes <= kKeptData) read_ = kept;
+  return kept;
 }
 
 }  // namespace orrery::view

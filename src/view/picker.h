@@ -57,13 +57,13 @@ class Picker {
   bool is_open() const { return is_open_; }
 
  private:
-  struct Source;
+  struct Data;
 
   Picked describe_sphere(std::size_t index);
   Picked describe_rod(std::size_t index);
   /// Describes the two particles of a bond of a points table, or of a stub of one.
   void add_bond(std::size_t table, bool is_stub, std::size_t index, Picked& out);
-  std::shared_ptr<const Source> source_of(std::size_t table);
+  std::shared_ptr<const Data> data_of(std::size_t table);
   const scene::Scene& scene() const { return prepared_.loaded().read.scene; }
 
   const job::PreparedScene& prepared_;
@@ -71,7 +71,7 @@ class Picker {
   std::atomic<bool> is_open_{false};
   load::SceneSource source_;
   std::mutex reading_;  ///< guards read_
-  std::shared_ptr<const Source> read_;
+  std::shared_ptr<const Data> read_;
 };
 
 }  // namespace orrery::view
