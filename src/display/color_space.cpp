@@ -49,7 +49,7 @@ ocio::ConstCPUProcessorRcPtr processor_of(const Config& source, const std::strin
     return source.config->getProcessor(from.c_str(), to.c_str())->getOptimizedCPUProcessor(ocio::OPTIMIZATION_LOSSLESS);
   } catch (const ocio::Exception& error) {
     throw base::Error(base::ErrorKind::kBadData,
-                      fmt::format("the OCIO config {} cannot be used: {}", source.source, error.what()));
+                      fmt::format("the OCIO config {} cannot be used: {}", source.name, error.what()));
   }
 }
 
@@ -75,7 +75,7 @@ std::string find_scene_linear(const Config& config, const std::string& name) {
   if (space->isData() || (!encoding.empty() && encoding != "scene-linear"))
     base::refuse(fmt::format(
         "colour space `{}` of the OCIO config ({}) is not scene-linear; rendering needs a scene-linear space", name,
-        config.source));
+        config.name));
   return found;
 }
 

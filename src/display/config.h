@@ -14,7 +14,7 @@ namespace orrery::display {
 /// An OCIO config and where it came from.
 struct Config {
   OCIO_NAMESPACE::ConstConfigRcPtr config;
-  std::string source;                 ///< "built-in", or the config file
+  std::string name;                   ///< "built-in", or the config file
   std::vector<std::string> warnings;  ///< OCIO's log messages while loading
 };
 
@@ -50,7 +50,7 @@ Names names(int count, Get get) {
 [[noreturn]] inline void unknown(const Config& config, const std::string& what, const std::string& name,
                                  const Names& known, const std::string& tried = {}) {
   const std::string near = base::did_you_mean(name, known);
-  base::refuse("the OCIO config (" + config.source + ") has no " + what + " `" + name + "`" + tried + "; " +
+  base::refuse("the OCIO config (" + config.name + ") has no " + what + " `" + name + "`" + tried + "; " +
                (near.empty() ? "" : near + " ") + (known.empty() ? "it has none" : "it has " + base::joined(known)));
 }
 

@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "load/diagnostics.h"
 
-#include <algorithm>
-
 #include <fmt/core.h>
 
 #include "base/text.h"
@@ -41,23 +39,6 @@ void SourceText::set_file(const std::string& name, std::string_view text) {
   text_ = text;
 }
 
-/// Points into an override as it was typed, on one line.
-void SourceText::point_into(const Override& override, const Place& place, base::Diagnostic& diagnostic) {
-  std::string shown = override.option + ' ' + override.typed;
-  std::replace_if(
-      shown.begin(), shown.end(), [](char c) { return c == '\n' || c == '\r'; }, ' ');
-  const auto shown_byte = [&](int column) {
-    const std::size_t at = byte_of_character(override.toml, static_cast<std::size_t>(column) - 1);
-    const auto inserted = std::lower_bound(override.inserted.begin(), override.inserted.end(), at);
-    const std::size_t typed = at - static_cast<std::size_t>(inserted - override.inserted.begin());
-    return std::min(override.option.size() + 1 + typed, shown.size());
-  };
-  const std::size_t first = shown_byte(place.column);
-  diagnostic.column = static_cast<int>(first) + 1;
-  diagnostic.width = std::max(1, static_cast<int>(shown_byte(place.column + place.width) - first));
-  if (shown.size() <= kLongestShown) diagnostic.source_line = shown;
-}
-
 base::Diagnostic SourceText::diagnostic(base::Severity severity, const Place& place, std::string text,
                                         std::string remedy) const {
   base::Diagnostic out = base::file_diagnostic(severity, place.text_name, std::move(text), std::move(remedy));
@@ -65,7 +46,10 @@ base::Diagnostic SourceText::diagnostic(base::Severity severity, const Place& pl
       static_cast<std::size_t>(place.line) <= overrides_->size()) {
     const Override& override = (*overrides_)[static_cast<std::size_t>(place.line) - 1];
     out.file = override.option;
-    if (place.column >= 1) point_into(override, place, out);
+    if (override.typed.size() > kLongestShown) return out;
+    out.source_line = fmt::format("{} {}", override.option, override.typed);
+    out.column = static_cast<int>(override.option.size()) + 2;
+    out.width = static_cast<int>(override.typed.size());
     return out;
   }
   out.line = place.line;

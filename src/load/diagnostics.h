@@ -47,13 +47,11 @@ class SourceText {
   /// Returns the option of a line of kOverrideName: "--set", "--samples".
   const std::string& option_at(int line) const { return (*overrides_)[static_cast<std::size_t>(line) - 1].option; }
 
-  /// Returns a diagnostic with location and source line; for an override, that is the command line: "--samples 0".
+  /// Returns a diagnostic with location and source line; for an override, that is the option: "--samples 0".
   base::Diagnostic diagnostic(base::Severity severity, const Place& place, std::string text,
                               std::string remedy = {}) const;
 
  private:
-  static void point_into(const Override& override, const Place& place, base::Diagnostic& diagnostic);
-
   std::string name_, text_;
   std::optional<int> typed_lines_;
   const Overrides* overrides_ = nullptr;

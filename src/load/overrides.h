@@ -30,14 +30,7 @@ struct Override {
   /// An error of an override by itself.
   struct Fault {
     std::string text, remedy;
-    int column = 0;  ///< 1-based character of `toml`; 0: the override as a whole
   };
-  /// The list element that "sphere[2].radius" names.
-  struct Element {
-    std::string list;
-    std::size_t index;
-  };
-
   /// True if the override sets this key, or a table or list that contains it.
   bool sets(std::string_view key) const;
 
@@ -45,11 +38,9 @@ struct Override {
   std::string typed;             ///< the option's value, as the user typed it
   std::vector<KeyValue> values;  ///< tables are flattened; empty if there is a fault
   std::optional<Fault> fault;
-  std::optional<Element> element;
-  /// The override as TOML: words are quoted, and what precedes the key within `element` is blank.
-  std::string toml;
-  std::vector<std::size_t> inserted;  ///< ascending indices of the bytes of `toml` that the user did not type
-  bool replaces = false;              ///< tables replace those of the scene instead of being merged into them
+  std::string element;    ///< the list element that contains the key: "sphere[2]"; empty: none
+  std::string toml;       ///< the override as TOML: the key within `element`, and the value, whose words are quoted
+  bool replaces = false;  ///< tables replace those of the scene instead of being merged into them
 };
 
 /// The overrides of a scene, in the order in which they apply: the last one of a key wins.

@@ -20,23 +20,15 @@ std::string type_name(const toml::node& node) {
 }
 
 void wrong_type(ReadState& state, const toml::node& node, const std::string& name, const std::string& wanted) {
-  state.error(place_of(node), fmt::format("{} must be {}, not {}", name, wanted, type_name(node)));
-}
-
-/// As above for a number. An override such as `064` is a string, because TOML has no numbers with leading zeros.
-void not_a_number(ReadState& state, const toml::node& node, const std::string& name, const std::string& wanted) {
-  const std::string text = node.is_string() ? node.as_string()->get() : "";
-  if (text.size() < 2 || text[0] != '0' || text.find_first_not_of("0123456789") != std::string::npos)
-    return wrong_type(state, node, name, wanted);
-  const std::size_t begin = std::min(text.find_first_not_of('0'), text.size() - 1);
-  state.error(place_of(node), fmt::format("{} is `{}`; must be {}", name, text, wanted),
-              fmt::format("write {}, without leading zeros", text.substr(begin)));
+  // An override such as 064 is a string, because TOML has no numbers with leading zeros.
+  const std::string found = node.is_string() ? scene::string_text(node.as_string()->get()) : type_name(node);
+  state.error(place_of(node), fmt::format("{} must be {}, not {}", name, wanted, found));
 }
 
 std::optional<double> read_number(ReadState& state, const toml::node& node, const std::string& name,
                                   const scene::Range& range) {
   if (!node.is_number()) {
-    not_a_number(state, node, name, "a number");
+    wrong_type(state, node, name, "a number");
     return {};
   }
   const double x = node.is_integer() ? static_cast<double>(node.as_integer()->get()) : node.as_floating_point()->get();
@@ -82,7 +74,7 @@ std::optional<Value> read_vector(ReadState& state, const toml::node& node, const
 std::optional<Value> read_integer(ReadState& state, const toml::node& node, const std::string& name,
                                   const scene::Range& range) {
   if (!node.is_integer()) {
-    not_a_number(state, node, name, "an integer");
+    wrong_type(state, node, name, "an integer");
     return {};
   }
   const std::int64_t x = node.as_integer()->get();
@@ -216,14 +208,6 @@ std::optional<Value> read_value(ReadState& state, const toml::node& node, const 
     case ValueType::kColorsByType: return read_types<math::Vec3d>(state, node, name, ValueType::kVector, range);
   }
   return {};
-}
-
-const toml::node* node_at(const toml::table& table, const std::string& dotted_name) {
-  const std::size_t dot = dotted_name.find('.');
-  const toml::node* const node = table.get(dotted_name.substr(0, dot));
-  if (dot == std::string::npos || node == nullptr) return node;
-  const toml::table* const inner = node->as_table();
-  return inner != nullptr ? node_at(*inner, dotted_name.substr(dot + 1)) : nullptr;
 }
 
 bool has_subkeys(const std::vector<std::string>& known, const std::string& name) {

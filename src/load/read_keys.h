@@ -19,9 +19,6 @@ std::optional<scene::Value> read_value(ReadState& state, const toml::node& node,
                                        scene::ValueType type, const scene::Range& range,
                                        const std::vector<std::string>& choices);
 
-/// Returns the node that a dotted name leads to; null if there is none.
-const toml::node* node_at(const toml::table& table, const std::string& dotted_name);
-
 /// Reports the keys of a table and its subtables that are not known; `known` are dotted names.
 void report_unknown_keys(ReadState& state, const toml::table& table, const std::string& table_name,
                          const std::vector<std::string>& known);
@@ -41,7 +38,7 @@ void read_keys(ReadState& state, const toml::table& table, const std::string& ta
   for (const auto& key : keys) known.push_back(key.name);
   report_unknown_keys(state, table, table_name, known);
   for (const auto& key : keys) {
-    const toml::node* node = node_at(table, key.name);
+    const toml::node* const node = toml::at_path(table, key.name).node();
     // `radius` may be a number or a table, whose keys are `radius.column` and so on.
     if (node != nullptr && node->is_table() && has_subkeys(known, key.name)) continue;
     const std::string full_name = table_name + "." + key.name;

@@ -4,10 +4,8 @@
 #include <algorithm>
 #include <array>
 #include <cerrno>
-#include <cstdio>
-#include <cstdlib>
 #include <cstring>
-#include <system_error>
+#include <fstream>
 #include <tuple>
 #include <unordered_map>
 #include <utility>
@@ -154,24 +152,13 @@ void read_rods(ReadState& state, const toml::table& root, MaterialNames& materia
 }
 
 /// Returns the node that a diagnostic's key names, or the closest enclosing table; null if there is none.
-const toml::node* node_of(const toml::table& root, const std::string& key) {
-  const toml::node* at = &root;
-  std::size_t i = 0;
-  while (i < key.size()) {
-    const std::size_t end = std::min(key.find_first_of(".[", i + (key[i] == '[' ? 1u : 0u)), key.size());
-    const std::string step = key.substr(i, end - i);
-    const toml::node* next = nullptr;
-    if (step[0] == '[') {
-      if (const toml::array* array = at->as_array())
-        next = array->get(static_cast<std::size_t>(std::strtoull(step.c_str() + 1, nullptr, 10)));
-    } else if (const toml::table* table = at->as_table()) {
-      next = table->get(step);
-    }
-    if (next == nullptr) break;
-    at = next;
-    i = end < key.size() && key[end] == '.' ? end + 1 : end;
+const toml::node* node_of(const toml::table& root, std::string key) {
+  while (!key.empty()) {
+    if (const auto found = toml::at_path(root, key)) return found.node();
+    const std::size_t last = key.find_last_of(".[");
+    key.resize(last != std::string::npos ? last : 0);
   }
-  return at == &root ? nullptr : at;
+  return nullptr;
 }
 
 /// Adds a diagnostic at the location of its key, or of the file if the key is not set.
@@ -189,8 +176,8 @@ void read_points(ReadState& state, const toml::table& root, const std::filesyste
     points.material = materials.of(table, name);
     if (const toml::node* const bonds = table.get("bonds"); bonds != nullptr && bonds->is_table())
       points.bonds.are_drawn = true;
-    if (const toml::node* const node = node_at(table, "bonds.material"); node != nullptr)
-      points.bonds.material = materials.at(*node, name + ".bonds.material");
+    if (const auto node = toml::at_path(table, "bonds.material"))
+      points.bonds.material = materials.at(*node.node(), name + ".bonds.material");
     if (base::is_sequence(folder / points.file)) points.sequence = points.file.string();
   });
 }
@@ -405,11 +392,7 @@ void add_scene_files(const std::filesystem::path& scene_file, const scene::Scene
 }
 
 void add_ocio_configs(const std::string& config, base::FileSet& files) {
-  for (const std::filesystem::path& file : display::config_files(config)) {
-    if (!files.add_input(file, "OCIO config")) continue;
-    for (const std::filesystem::path& table : display::table_files(file))
-      files.add_input(table, "table of the OCIO config");
-  }
+  for (const std::filesystem::path& file : display::config_files(config)) files.add_input(file, "OCIO config");
 }
 
 bool is_scene_file(const std::filesystem::path& file) { return base::extension(file) == ".toml"; }
@@ -422,28 +405,20 @@ void refuse_data_file(const std::filesystem::path& file, std::string_view text) 
 
 std::string read_file(const std::filesystem::path& file, std::uint64_t largest_bytes) {
   base::require_readable(file);
-  const std::unique_ptr<std::FILE, int (*)(std::FILE*)> in(std::fopen(file.c_str(), "rb"), &std::fclose);
+  std::ifstream in(file, std::ios::binary);
   if (!in)
     throw base::FileError(base::ErrorKind::kMissingInput,
                           fmt::format("cannot open {}: {}", file.string(), std::strerror(errno)), file, errno);
-  char more[65536];
-  const auto too_large = [&](std::string_view head) {
-    refuse_data_file(file, head);
-    return base::Error(base::ErrorKind::kBadData,
-                       fmt::format("{} exceeds the limit of {} MiB", file.string(), largest_bytes >> 20));
-  };
-  std::error_code error;
-  const auto size = std::filesystem::file_size(file, error);
-  if (!error && size > largest_bytes) throw too_large({more, std::fread(more, 1, sizeof(more), in.get())});
   std::string bytes;
-  bytes.reserve(error ? 0 : static_cast<std::size_t>(size));
-  // A file may grow meanwhile, and files in /proc report a size of 0: read to the end.
-  while (const std::size_t got = std::fread(more, 1, sizeof(more), in.get())) {
-    bytes.append(more, got);
-    if (bytes.size() > largest_bytes) throw too_large(bytes);
+  std::array<char, 65536> block{};
+  while (in.read(block.data(), block.size()) || in.gcount() > 0) {
+    bytes.append(block.data(), static_cast<std::size_t>(in.gcount()));
+    if (bytes.size() <= largest_bytes) continue;
+    refuse_data_file(file, bytes);
+    throw base::Error(base::ErrorKind::kBadData,
+                      fmt::format("{} exceeds the limit of {} MiB", file.string(), largest_bytes >> 20));
   }
-  if (std::ferror(in.get()) != 0)
-    throw base::Error(base::ErrorKind::kIo, fmt::format("reading {} failed", file.string()));
+  if (in.bad()) throw base::Error(base::ErrorKind::kIo, fmt::format("reading {} failed", file.string()));
   return bytes;
 }
 

@@ -117,10 +117,9 @@ void add_named_files(const SceneSource& scene, const std::vector<int>& frames, b
 void add_scene_files(const std::filesystem::path& scene_file, const scene::Scene& scene, base::FileSet& files,
                      const std::vector<int>& frames = {});
 
-/// Adds an OCIO config, from --ocio or a scene, and the config in $OCIO, if they are files, and their LUT files.
+/// Adds an OCIO config, from --ocio or a scene, and the config in $OCIO, if they are files.
 ///
 /// Errors     those of add_scene_files
-/// Cost       loads a config that is not in the set
 void add_ocio_configs(const std::string& config, base::FileSet& files);
 
 /// Maximum size of a scene file, bytes: a million [[sphere]] tables. Larger scenes use points files.

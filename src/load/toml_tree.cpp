@@ -29,19 +29,14 @@ Place place_of_region(const toml::source_region& region) {
 using Fault = Override::Fault;
 
 /// Returns the table that an override changes.
-toml::table& target_of(toml::table& root, const std::optional<Override::Element>& element) {
-  if (!element) return root;
-  toml::node* const node = root.get(element->list);
-  toml::array* const array = node == nullptr ? nullptr : node->as_array();
-  if (array == nullptr) throw Fault{fmt::format("the scene has no list `{}`", element->list), kOverrideExample};
-  const std::string name = fmt::format("{}[{}]", element->list, element->index);
-  if (element->index >= array->size())
-    throw Fault{fmt::format("{} does not exist; the scene has {} `{}` tables, counted from 0", name, array->size(),
-                            element->list),
-                ""};
-  toml::table* const table = array->get(element->index)->as_table();
-  if (table == nullptr) throw Fault{name + " is not a table", kOverrideExample};
-  return *table;
+toml::table& target_of(toml::table& root, const std::string& element) {
+  if (element.empty()) return root;
+  if (toml::table* const table = toml::at_path(root, element).as_table()) return *table;
+  const std::string name = element.substr(0, element.find('['));
+  const toml::array* const list = root[name].as_array();
+  if (list == nullptr) throw Fault{fmt::format("the scene has no list `{}`", name), kOverrideExample};
+  throw Fault{
+      fmt::format("{} does not exist; the scene has {} `{}` tables, counted from 0", element, list->size(), name), ""};
 }
 
 /// Moves `from` into `to`, merging tables.
@@ -79,33 +74,9 @@ void apply_overrides(toml::table& root, const Overrides& overrides, ReadState& s
     try {
       apply_override(root, override, line);
     } catch (const Fault& fault) {
-      Place place{kOverrideName, line, std::max(fault.column, 1), 1};
-      if (fault.column == 0) place.width = static_cast<int>(override.toml.size());
-      state.error(place, fault.text, fault.remedy);
+      state.error({kOverrideName, line, 1, 1}, fault.text, fault.remedy);
     }
   }
-}
-
-/// Returns the end of the TOML string, of any of the four kinds, that begins at an offset. An unclosed string ends at
-/// the end of the line or of the text.
-std::size_t string_end(std::string_view text, std::size_t at) {
-  const char quote = text[at];
-  const bool escapes = quote == '"';
-  const std::string_view triple = escapes ? "\"\"\"" : "'''";
-  const bool is_long = text.substr(at).starts_with(triple);
-  for (at += is_long ? 3 : 1; at < text.size(); ++at) {
-    if (escapes && text[at] == '\\') {
-      ++at;
-    } else if (is_long && text.substr(at).starts_with(triple)) {
-      at += 3;
-      // Up to two more quotes belong to the string.
-      for (int i = 0; i < 2 && at < text.size() && text[at] == quote; ++i) ++at;
-      return at;
-    } else if (!is_long && (text[at] == quote || text[at] == '\n')) {
-      return at + 1;
-    }
-  }
-  return text.size();
 }
 
 /// Removes the keys of the file that only other types have, if an override has replaced the type.
@@ -187,7 +158,7 @@ std::string toml_text(const toml::node& node) {
 }
 
 Override::Fault fault_of(const toml::parse_error& error) {
-  Override::Fault out{std::string(error.description()), {}, static_cast<int>(error.source().begin.column)};
+  Override::Fault out{std::string(error.description()), {}};
   constexpr std::string_view kPreface = "Error while parsing ";
   if (out.text.starts_with(kPreface)) out.text.erase(0, kPreface.size());
   if (const std::size_t at = out.text.find("cannot redefine existing"); at != std::string::npos) {
@@ -199,23 +170,14 @@ Override::Fault fault_of(const toml::parse_error& error) {
 
 Place too_deep_key(std::string_view text) {
   int parts = 1;
-  for (std::size_t at = 0; at < text.size();) {
-    if (text[at] == '#') {
-      at = std::min(text.find('\n', at), text.size());
-    } else if (text[at] == '"' || text[at] == '\'') {
-      at = string_end(text, at);
-    } else if (text[at] != '.') {
-      if (std::string_view("=,[]{}\n").find(text[at]) != std::string_view::npos) parts = 1;  // delimits keys
-      ++at;
-    } else if (++parts <= kDeepestKey) {  // decimal points count, too, which does no harm
-      ++at;
-    } else {
-      const std::string_view before = text.substr(0, at), line = before.substr(before.rfind('\n') + 1);
-      const auto lines = std::count(before.begin(), before.end(), '\n');
-      const auto characters =
-          std::count_if(line.begin(), line.end(), [](char c) { return !base::continues_character(c); });
-      return {"", static_cast<int>(lines) + 1, static_cast<int>(characters) + 1, 1};
-    }
+  for (std::size_t at = 0; at < text.size(); ++at) {
+    if (std::string_view("=,[]{}\n").find(text[at]) != std::string_view::npos) parts = 1;  // delimits keys
+    if (text[at] != '.' || ++parts <= kDeepestKey) continue;
+    const std::string_view before = text.substr(0, at), line = before.substr(before.rfind('\n') + 1);
+    const auto lines = std::count(before.begin(), before.end(), '\n');
+    const auto characters =
+        std::count_if(line.begin(), line.end(), [](char c) { return !base::continues_character(c); });
+    return {"", static_cast<int>(lines) + 1, static_cast<int>(characters) + 1, 1};
   }
   return {};
 }

@@ -33,13 +33,13 @@ std::string toml_text(const toml::node& node);
 /// Returns a parse error of the TOML library in our words.
 Override::Fault fault_of(const toml::parse_error& error);
 
-/// Maximum number of parts in a dotted key; scenes need three. The TOML library creates a table per part and destroys
-/// tables recursively, so that a key of ten thousand parts would overflow the stack.
-inline constexpr int kDeepestKey = 8;
+/// Maximum number of dots in a row without a delimiter of keys; scenes need two, and texts have fewer than this. The
+/// TOML library creates a table for each part of a dotted key and destroys tables recursively, so that a key of ten
+/// thousand parts would overflow the stack.
+inline constexpr int kDeepestKey = 1000;
 
 /// Finds the first key with more than kDeepestKey parts in a TOML text.
 ///
-/// Domain     any bytes; after invalid TOML, where parsing stops, the result is meaningless
 /// Result     location of the first excess dot; line 0 if there is no such key; text_name is not set
 Place too_deep_key(std::string_view text);
 

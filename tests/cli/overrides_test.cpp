@@ -98,8 +98,7 @@ TEST_F(CliOverrides, AnEmptyValueOfLayersSelectsNone) {
 TEST_F(CliOverrides, NumbersHaveNoLeadingZeros) {
   const Outcome r = run("check good.toml --samples 064");
   EXPECT_EQ(r.status, 65);
-  EXPECT_EQ(r.err.substr(0, r.err.find('\n')),
-            "--samples: error: render.samples is `064`; must be an integer; write 64, without leading zeros");
+  EXPECT_TRUE(contains(r.err, "--samples: error: render.samples must be an integer, not \"064\"")) << r.err;
 }
 
 }  // namespace

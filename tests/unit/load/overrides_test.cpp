@@ -235,17 +235,17 @@ TEST(LoadOverrides, ErrorsAreLocatedInTheOverride) {
                                        "sphere[0].center=[0, 1]"}),
             "--set: error: camera.vfov is 300; must be above 0 and below 180\n"
             "    --set camera.vfov=300\n"
-            "                      ^~~\n"
+            "          ^~~~~~~~~~~~~~~\n"
             "--set: error: unknown key `vfow` in camera; did you mean `vfov`?\n"
             "    --set camera.vfow=3\n"
-            "                 ^~~~\n"
+            "          ^~~~~~~~~~~~~\n"
             "--set: error: sphere[1].radius: radius is 0; must be in 1e-30..1e+18, or negative for an inward "
             "normal\n"
             "    --set sphere[1].radius=0\n"
-            "                           ^\n"
+            "          ^~~~~~~~~~~~~~~~~~\n"
             "--set: error: sphere[0].center must be three numbers like [0, 1, 0], not a list of 2\n"
             "    --set sphere[0].center=[0, 1]\n"
-            "                           ^~~~~~\n");
+            "          ^~~~~~~~~~~~~~~~~~~~~~~\n");
 }
 
 TEST(LoadOverrides, MessagesNameTheShortOption) {
@@ -260,13 +260,13 @@ TEST(LoadOverrides, MessagesNameTheShortOption) {
             "              ^\n"
             "--set: error: camera.vfov is 0; must be above 0 and below 180\n"
             "    --set camera.vfov=0\n"
-            "                      ^\n"
+            "          ^~~~~~~~~~~~~\n"
             "--layers: error: output.layers[1] is \"Q\"; must be one of Z, depth, N, P, albedo, diffuse, specular, "
             "transmission, background, emission, light_groups, variance, samples, object_id, material_id, "
             "Vector, denoise.albedo, denoise.normal, halves, "
             "CryptoObject, CryptoMaterial, CryptoGroup, all\n"
             "    --layers Z,Q,N\n"
-            "               ^\n");
+            "             ^~~~~\n");
 }
 
 TEST(LoadOverrides, ListsOfWordsNeedNoQuotes) {
@@ -286,6 +286,7 @@ TEST(LoadOverrides, ListsOfWordsNeedNoQuotes) {
 TEST(LoadOverrides, AreCheckedLikeTheFile) {
   EXPECT_TRUE(test::mentions(told("material.gold.ior=1.5"), {"--set", "`ior`", "material.gold", "`ior`"}));
   EXPECT_TRUE(test::mentions(told("sphere[0].material=glod"), {"--set", "sphere[0].material", "\"glod\"", "`gold`"}));
+  EXPECT_TRUE(test::mentions(told("render.samples=064"), {"--set", "render.samples", "integer", "\"064\""}));
   EXPECT_TRUE(test::mentions(told("render.samples=1.5"), {"--set", "render.samples", "integer"}));
   EXPECT_TRUE(test::mentions(told("camera=3"), {"--set", "`camera`", "[camera]"}));
   EXPECT_TRUE(test::mentions(told("material.new.fuzz=0.5"), {"--set", "material.new", "`type`"}));
@@ -303,7 +304,7 @@ TEST(LoadOverrides, InvalidOverridesAreReported) {
             "--set: error: the key begins with a byte order mark" + example);
   EXPECT_TRUE(test::mentions(told("camera.vfov="), {"--set", "after", "KEY=VALUE"}));
   EXPECT_TRUE(test::mentions(told("camera.vfov=1\nimage.width=0"), {"--set", "override", "line", "KEY=VALUE"}));
-  EXPECT_TRUE(test::mentions(told("a.b.c.d.e.f.g.h.i=1"), {"--set", "8", "parts", "KEY=VALUE"}));
+  EXPECT_TRUE(test::mentions(told(std::string(2000, '.') + "=1"), {"--set", "1000", "parts", "KEY=VALUE"}));
 }
 
 TEST(LoadOverrides, SyntaxErrorsInListsAreReported) {
@@ -316,12 +317,10 @@ TEST(LoadOverrides, ListElementsMustExist) {
   EXPECT_TRUE(test::mentions(told("points[0].radius=1"), {"--set", "no list", "`points`"}));
   EXPECT_TRUE(test::mentions(told("camera[0].vfov=1"), {"--set", "no list", "`camera`"}));
   EXPECT_TRUE(test::mentions(told("sphere[0]=1"), {"--set", "list element", "whole"}));
-  EXPECT_EQ(told("sphere[].radius=1").rfind("--set: error: `sphere[]` is not a list element", 0), 0u);
-  EXPECT_EQ(told("sphere[-1].radius=1").rfind("--set: error: `sphere[-1]` is not a list element", 0), 0u);
-  EXPECT_EQ(told("sphere[0][1].radius=1").rfind("--set: error: `sphere[0][1]` is not a list element", 0), 0u);
-  EXPECT_EQ(told("sphere[99999999999999999999].radius=1").rfind("--set: error: `sphere[9", 0), 0u);
+  for (const std::string element : {"sphere[]", "sphere[-1]", "sphere[0][1]", "sphere[99999999999999999999]"})
+    EXPECT_TRUE(test::mentions(told(element + ".radius=1"), {"--set", element, "does not exist"})) << element;
   EXPECT_TRUE(test::mentions(told("#sphere[0].radius=1"), {"--set", "no list", "`#sphere`"}));
-  EXPECT_EQ(told("].radius=1").rfind("--set: error: `]` is not a list element", 0), 0u);
+  EXPECT_TRUE(test::mentions(told("].radius=1"), {"--set", "no list", "`]`"}));
   EXPECT_TRUE(test::mentions(told("sphere.radius=1"), {"--set", "`sphere`", "sphere[0].radius=2"}));
   EXPECT_TRUE(test::mentions(told("camera.vfov.x=1"), {"--set", "camera.vfov", "number"}));
 }

@@ -20,13 +20,13 @@ std::string text_of(const std::string& scene) {
 }
 
 TEST(LoadReadKeys, WrongTypesAreNamed) {
-  EXPECT_TRUE(test::mentions(text_of("camera.vfov = \"20\""), {"camera.vfov", "number", "string"}));
+  EXPECT_TRUE(test::mentions(text_of("camera.vfov = \"20\""), {"camera.vfov", "number", "\"20\""}));
   EXPECT_TRUE(test::mentions(text_of("camera.vfov = true"), {"camera.vfov", "number", "boolean"}));
   EXPECT_TRUE(test::mentions(text_of("camera.vfov = [20]"), {"camera.vfov", "number", "list"}));
   EXPECT_TRUE(test::mentions(text_of("camera.vfov = 2024-01-01"), {"camera.vfov", "number", "date"}));
   EXPECT_TRUE(test::mentions(text_of("camera.vfov = {}"), {"camera.vfov", "number", "table"}));
   EXPECT_TRUE(test::mentions(text_of("camera.up = 1"), {"camera.up", "numbers", "[0", "1", "0]", "integer"}));
-  EXPECT_TRUE(test::mentions(text_of("camera.up = [0, \"1\", 0]"), {"camera.up[1]", "number", "string"}));
+  EXPECT_TRUE(test::mentions(text_of("camera.up = [0, \"1\", 0]"), {"camera.up[1]", "number", "\"1\""}));
   EXPECT_TRUE(test::mentions(text_of("color.space = 1"), {"color.space", "string", "integer"}));
   EXPECT_TRUE(test::mentions(text_of("render.shading = 1"), {"render.shading", "integer"}));
 }
@@ -37,7 +37,7 @@ TEST(LoadReadKeys, BooleansAreTrueOrFalse) {
   EXPECT_FALSE(files.read("background.visible = false").scene.background.visible);
   EXPECT_TRUE(test::mentions(text_of("background.visible = 0"), {"background.visible", "true", "false", "integer"}));
   EXPECT_TRUE(
-      test::mentions(text_of("background.visible = \"no\""), {"background.visible", "true", "false", "string"}));
+      test::mentions(text_of("background.visible = \"no\""), {"background.visible", "true", "false", "\"no\""}));
 }
 
 TEST(LoadReadKeys, AnIntegerIsANumberButNotViceVersa) {
@@ -88,7 +88,7 @@ TEST(LoadReadKeys, EachInvalidComponentIsReported) {
 
 TEST(LoadReadKeys, ReadsListsOfWords) {
   EXPECT_EQ(text_of("output.layers = []"), "");
-  EXPECT_TRUE(test::mentions(text_of("output.layers = \"Z\""), {"output.layers", "list", "string"}));
+  EXPECT_TRUE(test::mentions(text_of("output.layers = \"Z\""), {"output.layers", "list", "\"Z\""}));
   EXPECT_NE(text_of("render.filter = 'mitchell'").find("removed; use \"blackman-harris\""), std::string::npos);
   EXPECT_EQ(text_of("output.layers = [1]").substr(0, 31), "output.layers[0] must be one of");
   EXPECT_TRUE(test::mentions(text_of("output.layers = [\"Z\", \"Z\"]"), {"output.layers[1]", "duplicate"}));
