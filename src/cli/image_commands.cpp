@@ -72,7 +72,7 @@ void add_develop(Command& program) {
       .add_option("-o,--output", development.outputs, "FILE", "File to write: PNG, TIFF, JPEG or PPM; can be repeated")
       ->required()
       ->repeatable();
-  add_display_options(command, development.display, false);
+  add_display_options(command, development.display);
   add_bits_option(command, development.bits);
   command
       .add_option("--space", development.display.working_space, "NAME",

@@ -15,6 +15,7 @@ namespace {
 
 struct MergeOptions {
   job::Job job;
+  SceneOptions scene;
   PictureOptions picture;
   std::vector<std::filesystem::path> shards;
   bool quiet = false, verbose = false;
@@ -30,6 +31,7 @@ int merge(MergeOptions& options) {
   const base::StopScope scope(job.hooks.cancel);
   job.merge.shards = job::read_shards(options.shards, job.merge.allow_missing ? job.hooks.on_warning : nullptr);
   job::take_scene(job.merge.shards.front(), job);
+  for (const load::Override& setting : options.scene.overrides()) job.scene.overrides.add(setting);
   const job::JobReport report = job::run_job(job);
   if (!options.quiet) print_message(report_text(job, report, {options.verbose}));
   return 0;
@@ -45,7 +47,7 @@ void add_merge(Command& program) {
                   "EXR files rendered with --sample-range A:B or --shard I/N, in any order")
       ->required();
   options->picture.add_to(command, options->job);
-  add_display_options(command, options->job.outputs.display, true);
+  options->scene.add_to(command, SceneOptions::Short::kNone);
   command.add_option("--scene", options->job.scene.file, "FILE",
                      "Scene file; default: the file that the shards were rendered from");
   command
@@ -60,7 +62,8 @@ void add_merge(Command& program) {
   command.add_flag("-q,--quiet", options->quiet, "Print only errors");
   command.add_flag("-v,--verbose", options->verbose, "Also print the time of each phase");
   command.details(
-      "Writes the files that a single render would have written. Lists every shard that is missing, damaged, "
+      "Writes the files that a single render would have written; --set can choose another display transform. Lists "
+      "every shard that is missing, damaged, "
       "unfinished, overlapping, or of another scene or setting, and the samples that no shard has. --denoise needs "
       "shards that were rendered with --denoise.");
   command.footer(

@@ -24,6 +24,7 @@ void SceneOptions::add_to(Command& command, Short forms) {
           "sphere[0].radius=2, color.view=Raw. Tables are merged into those of the scene: render={samples=20} and "
           "render.samples=20 are the same. A key that both --set and a short form set is an error.")
       ->repeatable();
+  if (forms == Short::kNone) return;
   const auto add = [&](const char* flag, const char* key, const char* type, const char* what) {
     ShortForm& option = short_forms_.emplace_back(ShortForm{flag, key, {}, nullptr, false});
     option.flag = command.add_option(flag, option.value, type, fmt::format("{} ({})", what, key));
@@ -71,25 +72,21 @@ int SceneOptions::frame() const {
   return frames.front();
 }
 
-void add_display_options(Command& command, display::Settings& settings, bool has_scene) {
-  const std::string scene = has_scene ? "the scene's, or " : "";
+void add_display_options(Command& command, display::Settings& settings) {
   const OptionGroup group(command, kDisplayOptions);
-  command
-      .add_option(
-          "--ocio", settings.config, "FILE",
-          fmt::format("OCIO config; default: {}$OCIO, or the built-in config", has_scene ? "the scene's, " : ""))
+  command.add_option("--ocio", settings.config, "FILE", "OCIO config; default: $OCIO, or the built-in config")
       ->details("It is used for PNG, TIFF, JPEG and PPM; EXR and HDR files do not depend on it.");
   command
       .add_option("--display", settings.display, "NAME",
-                  "Display of the OCIO config, e.g. \"sRGB\"; default: " + scene + "the config's")
+                  "Display of the OCIO config, e.g. \"sRGB\"; default: the config's")
       ->details(
           "The built-in config has the displays sRGB, Rec.1886 Rec.709, Display P3, P3-D65 Cinema, Rec.2100-PQ and "
           "Gamma 2.0 Rec.709, which is the square root of Ray Tracing in One Weekend, and the views Un-tone-mapped and "
           "Raw; the first three also have ACES 1.0 SDR Video, and Rec.2100-PQ has ACES 1.1 HDR Video (1000 nits).");
   command.add_option("--view", settings.view, "NAME",
-                     "View of the display, e.g. \"Un-tone-mapped\"; default: " + scene + "the display's");
+                     "View of the display, e.g. \"Un-tone-mapped\"; default: the display's");
   command.add_option("--look", settings.look, "NAME", "Look of the OCIO config, applied before the view");
-  command.add_option("--exposure", settings.exposure, "STOPS", "Exposure in stops; default: " + scene + "0")
+  command.add_option("--exposure", settings.exposure, "STOPS", "Exposure in stops; default: 0")
       ->check(real_number(-scene::kMaxStops, scene::kMaxStops));
 }
 

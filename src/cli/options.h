@@ -33,7 +33,7 @@ void refuse_second(const std::string& option, const load::Overrides& overrides, 
 class SceneOptions {
  public:
   /// Which short forms a command has: those that have an effect.
-  enum class Short { kAll, kSize };
+  enum class Short { kAll, kSize, kNone };
 
   /// Adds the options to a command.
   ///
@@ -67,10 +67,8 @@ class SceneOptions {
   std::deque<ShortForm> short_forms_;  ///< a deque: the parser keeps pointers to the values
 };
 
-/// Adds the options of the display transform, for commands that have no --set.
-///
-/// `has_scene`  the defaults are those of a scene
-void add_display_options(Command& command, display::Settings& settings, bool has_scene);
+/// Adds the options of the display transform, for commands that have no scene.
+void add_display_options(Command& command, display::Settings& settings);
 
 /// Adds --bits.
 void add_bits_option(Command& command, int& bits);

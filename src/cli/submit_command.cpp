@@ -39,9 +39,10 @@ void pass_arguments_on(const SubmitOptions& options, submit::Submission& submiss
         (option.heading() == kImageOptions && option.name() != "--denoise") || option.name() == "--stats";
     return is_passed_on(option) && !(is_split && is_of_images);
   });
-  if (is_split)
-    submission.merge_arguments = options.command->arguments(
-        [&](const Option& option) { return is_passed_on(option) && has_option(*options.merge, option.name()); });
+  if (is_split)  // the shards carry what --set sets
+    submission.merge_arguments = options.command->arguments([&](const Option& option) {
+      return is_passed_on(option) && option.name() != "--set" && has_option(*options.merge, option.name());
+    });
 }
 
 int submit(SubmitOptions& options) {

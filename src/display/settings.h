@@ -49,12 +49,9 @@ struct Choice {
 ///            names), and for an exposure that is not finite
 Choice choose(const Settings& settings);
 
-/// The settings that refer to the OCIO config by name.
-enum class Name { kConfig, kSpace, kWorkingSpace, kDisplay, kView, kLook };
-
 /// A setting that could not be resolved, and why.
 struct NameFault {
-  Name name;
+  std::string name;  ///< "config", "space", "working", "display", "view" or "look"
   base::Error error;
 };
 
@@ -78,12 +75,6 @@ std::string view_or_default(const Settings& settings, const std::string& preferr
 
 /// The files that load_config() may open: the given config and the one in $OCIO, if they are files.
 std::vector<std::filesystem::path> config_files(const std::string& config);
-
-/// The LUT files that any transform of a config refers to.
-///
-/// Result     files that exist; empty if the config cannot be loaded, which load_config() reports
-/// Cost       loads the config, but not the LUTs
-std::vector<std::filesystem::path> table_files(const std::filesystem::path& config);
 
 /// Properties of an image that is about to be rendered.
 struct PictureInfo {

@@ -93,7 +93,7 @@ void check_look(const Config& config, const Settings& settings) {
 
 /// Runs `find`; stores its error as a fault and returns false if it throws.
 template <class Find>
-bool found(LookUp& out, Name name, Find find) {
+bool found(LookUp& out, const char* name, Find find) {
   try {
     find();
     return true;
@@ -111,7 +111,7 @@ View find_view(const Config& source, const Settings& settings) {
   if (!std::isfinite(settings.stops())) base::refuse("the exposure must be a finite number of stops");
   View out;
   try {
-    out.choice.config = source.source;
+    out.choice.config = source.name;
     out.choice.config_id = source.config->getCacheID();
     out.choice.warnings = source.warnings;
     choose_display(source, settings, out.choice);
@@ -135,10 +135,10 @@ View find_view(const Config& source, const Settings& settings) {
     out.choice.is_hdr = is_hdr(*source.config, space);
   } catch (const ocio::ExceptionMissingFile& error) {
     throw base::Error(base::ErrorKind::kMissingInput,
-                      fmt::format("the OCIO config {} refers to a missing file: {}", source.source, error.what()));
+                      fmt::format("the OCIO config {} refers to a missing file: {}", source.name, error.what()));
   } catch (const ocio::Exception& error) {
     throw base::Error(base::ErrorKind::kBadData,
-                      fmt::format("the OCIO config {} cannot be used: {}", source.source, error.what()));
+                      fmt::format("the OCIO config {} cannot be used: {}", source.name, error.what()));
   }
   return out;
 }
@@ -154,17 +154,17 @@ void Settings::complete(const Settings& others) {
 LookUp look_up(const Settings& settings, const std::string& space) {
   LookUp out;
   Config config;
-  if (!found(out, Name::kConfig, [&] { config = load_config(settings.config); })) return out;
-  found(out, Name::kSpace, [&] { find_scene_linear(config, space); });
+  if (!found(out, "config", [&] { config = load_config(settings.config); })) return out;
+  found(out, "space", [&] { find_scene_linear(config, space); });
   if (settings.working_space != space)
-    found(out, Name::kWorkingSpace, [&] { find_scene_linear(config, settings.working_space); });
+    found(out, "working", [&] { find_scene_linear(config, settings.working_space); });
   Choice choice;
-  if (found(out, Name::kDisplay, [&] { choose_display(config, settings, choice); }))
-    found(out, Name::kView, [&] { choose_view(config, settings, choice); });
-  found(out, Name::kLook, [&] { check_look(config, settings); });
+  if (found(out, "display", [&] { choose_display(config, settings, choice); }))
+    found(out, "view", [&] { choose_view(config, settings, choice); });
+  found(out, "look", [&] { check_look(config, settings); });
   if (!out.faults.empty()) return out;
   View view;  // building the transform fails if a LUT file is missing
-  if (found(out, Name::kConfig, [&] { view = find_view(config, settings); })) out.choice = std::move(view.choice);
+  if (found(out, "config", [&] { view = find_view(config, settings); })) out.choice = std::move(view.choice);
   return out;
 }
 

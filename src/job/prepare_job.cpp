@@ -24,7 +24,7 @@ namespace {
 void load(const PreparedJob& own, base::FileSet& files, JobReport& report) {
   const Job& job = own.job;
   const bool writes_display_format = job.outputs.has_display_format();
-  load::SceneRequest request{job.scene, job.outputs.display, writes_display_format || job.hooks.develops_pixels};
+  load::SceneRequest request{job.scene, writes_display_format || job.hooks.develops_pixels};
   request.memory_limit = job.resources.memory_limit;
   own.prepared->load(std::move(request));
   for (const base::Diagnostic& warning : own.loaded().warnings) job.hooks.warn(warning);

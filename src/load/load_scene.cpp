@@ -19,11 +19,9 @@
 namespace orrery::load {
 namespace {
 
-display::Settings settings_of(const SceneRequest& request, const scene::Color& color) {
-  display::Settings out = request.display;
-  out.complete({config_of(request.source.file, color), color.working_space(), color.display, color.view, color.look,
-                color.exposure});
-  return out;
+/// The display transform of a scene's images.
+display::Settings settings_of(const SceneSource& source, const scene::Color& color) {
+  return {config_of(source.file, color), color.working_space(), color.display, color.view, color.look, color.exposure};
 }
 
 /// What to read for a table of the scene that names a data file.
@@ -49,26 +47,6 @@ bool names_anything(const display::Settings& settings, const scene::Color& color
   const scene::Color defaults;
   return color.space != defaults.space || settings.working_space != color.space || !settings.config.empty() ||
          !settings.display.empty() || !settings.view.empty() || !settings.look.empty();
-}
-
-/// Where a name comes from: an option, a key of the scene, or neither.
-struct Origin {
-  std::string option, key;
-};
-
-Origin origin_of(display::Name name, const display::Settings& options, const scene::Color& color) {
-  const auto origin = [](const std::string& value, const char* option, bool is_in_scene, const char* key) {
-    return !value.empty() ? Origin{option, {}} : is_in_scene ? Origin{{}, key} : Origin{};
-  };
-  switch (name) {
-    case display::Name::kConfig: return origin(options.config, "--ocio", !color.config.empty(), "color.config");
-    case display::Name::kSpace: return {{}, "color.space"};
-    case display::Name::kWorkingSpace: return {{}, "color.working"};
-    case display::Name::kDisplay: return origin(options.display, "--display", !color.display.empty(), "color.display");
-    case display::Name::kView: return origin(options.view, "--view", !color.view.empty(), "color.view");
-    case display::Name::kLook: return origin(options.look, "--look", !color.look.empty(), "color.look");
-  }
-  return {};
 }
 
 /// Errors where a light whose brightness depends on an image or a sky is too bright for its exposure.
@@ -229,21 +207,18 @@ class SceneLoader {
     reader_.add(out_.coincident);
   }
 
-  /// Looks up the colour names of the scene and of the command line. Returns errors in those of the scene.
+  /// Looks up the colour names of the scene. Returns the errors in them.
   std::vector<scene::SceneDiagnostic> look_up_colors() {
     const scene::Color& color = scene_.color;
-    const display::Settings settings = settings_of(request_, color);
+    const display::Settings settings = settings_of(request_.source, color);
     if (!request_.develops && !names_anything(settings, color)) return {};
     scene::KeyFaults faults;
     display::LookUp found = display::look_up(settings, color.space);
     for (const display::NameFault& fault : found.faults) {
-      const Origin origin = origin_of(fault.name, request_.display, color);
-      if (!origin.key.empty()) {
-        faults.error(origin.key, fault.error);
-      } else if (!name_error_) {
-        const std::string begin = origin.option.empty() ? "" : origin.option + ": ";
-        name_error_.emplace(fault.error.kind(), begin + fault.error.what());
-      }
+      if (fault.name != "config" || !color.config.empty())
+        faults.error("color." + fault.name, fault.error);
+      else
+        name_error_.emplace(fault.error);
     }
     out_.choice = std::move(found.choice);
     return faults.take();
@@ -256,7 +231,7 @@ class SceneLoader {
       diagnostics.insert(diagnostics.end(), more.begin(), more.end());
     };
     if (diagnostics.empty()) {
-      const ImageRequest images{request_.source.file.parent_path(), settings_of(request_, scene_.color).config,
+      const ImageRequest images{request_.source.file.parent_path(), settings_of(request_.source, scene_.color).config,
                                 request_.memory_limit, request_.skips_large_background};
       load_textures(images);
       for (const LoadedTexture& texture : out_.textures) add(texture.map.diagnostics);
@@ -303,7 +278,7 @@ class SceneLoader {
       for (const scene::Points& points : scene.points) out_.palettes.push_back(points.palette);
     if (out_.background) scene.background.image = out_.background->image;
     set_textures(out_.textures, scene);
-    out_.display = settings_of(request_, scene.color);
+    out_.display = settings_of(request_.source, scene.color);
     out_.warnings = std::move(out_.read.warnings);
     if (out_.choice)
       for (const std::string& text : out_.choice->warnings)
@@ -319,8 +294,7 @@ class SceneLoader {
   std::optional<LoadedScene> previous_;
   SceneReader reader_;
   scene::Scene& scene_;
-  /// Of a wrong name of a colour that is not the scene's; thrown if the scene has no errors.
-  std::optional<base::Error> name_error_;
+  std::optional<base::Error> name_error_;  ///< of the config in $OCIO; thrown if the scene has no errors
   LoadedScene out_;
 };
 

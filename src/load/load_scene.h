@@ -17,10 +17,9 @@
 
 namespace orrery::load {
 
-/// A scene to load, and the display transform of its images.
+/// A scene to load.
 struct SceneRequest {
   SceneSource source;
-  display::Settings display;            ///< from the command line; the scene's [color] replaces empty values
   bool develops = false;                ///< true if display formats will be written
   std::uint64_t memory_limit = 0;       ///< bytes that an image may take; 0: the free memory
   bool skips_large_background = false;  ///< see ImageRequest::skips_large; also applies to textures
@@ -32,7 +31,7 @@ struct SceneRequest {
 /// A scene that is ready to be compiled, and what was determined while loading it.
 struct LoadedScene {
   ReadResult read;                        ///< colours are in the working space
-  display::Settings display;              ///< from the command line and the scene
+  display::Settings display;              ///< of the images
   std::optional<display::Choice> choice;  ///< if `develops`, or if a colour name is set
   std::optional<LoadedMap> background;    ///< image background or sky; the scene refers to its image
   std::vector<LoadedTexture> textures;    ///< image textures; the scene refers to their images
@@ -54,9 +53,8 @@ struct LoadedScene {
 /// `previous`  an earlier load with keeps_authored, after which only what has changed is read: the result is the same,
 ///             except that points tables have no spheres unless `changed` contains geometry or assignment. Its images
 ///             move to the result
-/// Errors     those of SceneReader, with unknown names in [color] among its diagnostics; base::Error: kUsage
-///            for an unknown name from the command line, kMissingInput and kBadData for a config from there or from
-///            $OCIO
+/// Errors     those of SceneReader, with unknown names in [color] among its diagnostics; base::Error: kMissingInput and
+///            kBadData for the config in $OCIO
 LoadedScene load_scene(const SceneRequest& request, std::optional<LoadedScene> previous = {});
 
 /// Reads a scene file and its data files, but no images; colours are as in the file.

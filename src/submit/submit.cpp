@@ -108,7 +108,7 @@ Commands commands_of(const Submission& submission) {
   const bool is_split = submission.shards > 1;
   if (is_split && (job.settings.is_adaptive() || !job.outputs.deep.empty()))
     base::refuse("--noise, --time and --deep need whole frames; omit --shards to make each frame one task");
-  const load::SceneRequest scene{{scene_file, job.scene.overrides, out.frames.front()}, job.outputs.display};
+  const load::SceneRequest scene{{scene_file, job.scene.overrides, out.frames.front()}};
   load::add_scene_files(scene.source.file, job::PreparedScene().load(scene).read.scene, *jobs.front().files);
 
   const auto append = [](Words& words, const Words& more) { words.insert(words.end(), more.begin(), more.end()); };

@@ -126,7 +126,7 @@ TEST_F(CliProgram, OverridesAreValidatedLikeTheFile) {
   EXPECT_TRUE(contains(r.err,
                        "--set: error: unknown key `sampels` in render; did you mean `samples`?\n"
                        "    --set render.sampels=3\n"
-                       "                 ^~~~~~~\n"))
+                       "          ^~~~~~~~~~~~~~~~\n"))
       << r.err;
   EXPECT_TRUE(contains(r.err, "did you mean `samples`?")) << r.err;
   EXPECT_EQ(run("render good.toml -o a.png -q --set 'sphere[0].radius=0.25' --set render.precision=fast").status, 0);

@@ -305,31 +305,6 @@ TEST_F(DisplayView, TheBuiltInDisplaysMatchTheDocumentation) {
   }
 }
 
-TEST_F(DisplayView, TheTablesOfAConfigAreThoseOfAllItsTransforms) {
-  const auto table = [](const char* name) { return std::string("!<FileTransform> {src: ") + name + "}"; };
-  std::filesystem::create_directory(folder_ / "tables");
-  for (const char* name : {"space.cube", "grouped.cube", "look.cube", "view.cube", "named.cube", "unused.cube"})
-    file(std::string("tables/") + name, "LUT_1D_SIZE 2\n0 0 0\n1 1 1\n");
-  std::string text = config_text(
-      "d", "  - !<ColorSpace> {name: in, to_reference: " + table("space.cube") +
-               "}\n  - !<ColorSpace>\n    name: group\n    to_reference: "
-               "!<GroupTransform>\n      children:\n        - " +
-               table("grouped.cube") + "\n        - " + table("missing.cube") +
-               "\nlooks:\n  - !<Look> {name: l, process_space: lin_rec709, transform: " + table("look.cube") +
-               "}\nview_transforms:\n  - !<ViewTransform> {name: v, " + "from_scene_reference: " + table("view.cube") +
-               "}\nnamed_transforms:\n  - !<NamedTransform> {name: n, transform: " + table("named.cube") + "}\n");
-  const std::string config = file("a.ocio", text);
-  std::vector<std::string> names;
-  for (const std::filesystem::path& found : table_files(config)) {
-    EXPECT_TRUE(std::filesystem::exists(found)) << found;
-    names.push_back(found.filename());
-  }
-  std::sort(names.begin(), names.end());
-  EXPECT_EQ(names, (std::vector<std::string>{"grouped.cube", "look.cube", "named.cube", "space.cube", "view.cube"}));
-  EXPECT_TRUE(table_files(file("b.ocio", "not a config")).empty());
-  EXPECT_TRUE(table_files(folder_ / "none.ocio").empty());
-}
-
 TEST_F(DisplayView, AViewThatTheDisplayLacksIsReplacedByTheDefault) {
   Settings settings;
   EXPECT_EQ(view_or_default(settings, "Raw"), "Raw");

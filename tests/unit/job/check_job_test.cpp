@@ -26,9 +26,8 @@ TEST_F(JobCheckJob, RejectsInvalidRequestsBeforeRendering) {
   ::setenv("ORRERY_ISA", "mmx", 1);
   EXPECT_EQ(kind_of_error("a.exr"), base::ErrorKind::kUsage);
   ::unsetenv("ORRERY_ISA");
-  job_.outputs.display.view = "none such";
-  EXPECT_EQ(kind_of_error("a.png"), base::ErrorKind::kUsage);
-  job_.outputs.display.view.clear();
+  job_.scene.overrides = {"color.view=none such"};
+  EXPECT_EQ(kind_of_error("a.png"), base::ErrorKind::kBadData);
   job_.scene.overrides = {"render.samples=0"};
   EXPECT_EQ(kind_of_error("a.png"), base::ErrorKind::kBadData);
   job_.scene.file = folder_ / "missing.toml";

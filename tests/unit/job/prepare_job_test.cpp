@@ -27,7 +27,7 @@ TEST_F(JobPrepareJob, LooksUpADisplayOnlyForDisplayFormats) {
   const JobReport report = run_job(job_);
   ::unsetenv("OCIO");
   EXPECT_EQ(report.display.display, "");
-  job_.outputs.display.config = folder_ / "nowhere.ocio";
+  job_.scene.overrides = {"color.config=nowhere.ocio"};
   EXPECT_EQ(error().kind(), base::ErrorKind::kMissingInput) << "named explicitly";
 }
 
@@ -53,16 +53,16 @@ TEST_F(JobPrepareJob, SpheresThatDoNotFitTwiceAreNotCompiled) {
       << refused.what();
 }
 
-TEST_F(JobPrepareJob, OptionsOverrideTheDisplayOfTheScene) {
+TEST_F(JobPrepareJob, OverridesReplaceTheDisplayOfTheScene) {
   support::write_bytes(folder_ / "scene.toml",
                        std::string(kSmallScene) + "[color]\ndisplay = \"Gamma 2.0 Rec.709\"\nexposure = -2\n");
   job_.outputs.images = {folder_ / "a.png"};
   EXPECT_EQ(run_job(job_).display.display, "Gamma 2.0 Rec.709");
   const float dark = image::read(folder_ / "a.png").planes[0].values[0];
-  job_.outputs.display.exposure = 0;
+  job_.scene.overrides = {"color.exposure=0"};
   run_job(job_);
   EXPECT_NEAR(image::read(folder_ / "a.png").planes[0].values[0], 2 * dark, 0.01);
-  job_.outputs.display.display = "sRGB";
+  job_.scene.overrides.add("color.display=sRGB");
   EXPECT_EQ(run_job(job_).display.display, "sRGB");
 }
 
@@ -77,7 +77,7 @@ TEST_F(JobPrepareJob, AConfigPathIsRelativeToTheScene) {
 }
 
 TEST_F(JobPrepareJob, AnHdrDisplayHasSixteenBits) {
-  job_.outputs.display.display = "Rec.2100-PQ";
+  job_.scene.overrides = {"color.display=Rec.2100-PQ"};
   job_.outputs.images = {folder_ / "a.png"};
   run_job(job_);
   bool between = false;  // two 8-bit levels
