@@ -51,6 +51,8 @@ constexpr double kTraceRadius = 1.2;
 /// as a fraction of that without.
 constexpr double kArrowLength = 1.2, kShaftRadius = 0.07, kArrowSphereFraction = 0.25;
 
+constexpr const char* kRadiusRemedy = "; --radius changes it";
+
 /// Whether a column numbers groups of particles, so that close numbers mean nothing, by its name.
 bool is_group(const std::string& column, const data::Roles& roles) {
   const std::string name = base::lower(column);
@@ -176,20 +178,20 @@ class Appearance {
                                               representation_names()[static_cast<std::size_t>(representation_)]);
     if (is_sticks && has_elements) {
       radius.value = rounded(kStickRadius * radius.scale);
-      chose("radius " + number_text(*radius.value), "that of sticks");
+      chose("radius " + number_text(*radius.value), std::string("that of sticks") + kRadiusRemedy);
     } else if (!info_.roles.radius.empty()) {
       if (fraction != 1) {
         radius.column = info_.roles.radius;
         radius.scale *= info_.roles.radius_scale * fraction;
       }
-      chose("radius of the file",
-            (info_.roles.radius_scale == 1 ? "the column " : "half of the column ") + info_.roles.radius + why);
+      chose("radius of the file", (info_.roles.radius_scale == 1 ? "the column " : "half of the column ") +
+                                      info_.roles.radius + why + kRadiusRemedy);
     } else if (has_elements) {
       const bool is_full = is_spheres && !has_arrows;
       if (is_full && data_.mean_coordination(points_) > kNetworkCoordination) return choose_network_radius();
       radius.element = is_full ? "vdw" : "ball";
       chose("radius " + radius.element,
-            is_full ? "van der Waals radii of the elements" : "a quarter of the van der Waals radii of the elements");
+            fmt::format("{}van der Waals radii of the elements{}", is_full ? "" : "a quarter of the ", kRadiusRemedy));
     } else {
       radius.value = 1;
       const double distance = measured(false).spacing;
@@ -198,7 +200,7 @@ class Appearance {
       chose("radius " + number_text(*radius.value),
             std::string(distance > 0 ? "half the median distance to the nearest neighbour"
                                      : "no particle has a neighbour") +
-                why + (radius.scale == 1 ? "" : "; scaled by " + number_text(radius.scale)));
+                why + (radius.scale == 1 ? "" : "; scaled by " + number_text(radius.scale)) + kRadiusRemedy);
     }
   }
 
@@ -206,7 +208,7 @@ class Appearance {
   void choose_network_radius() {
     scene::PointsRadius& radius = points_.radius;
     const double distance = measured(false).spacing;
-    const std::string why = "a metal, a salt or another network, which van der Waals radii would bury";
+    const std::string why = "a metal, a salt or another network; --element-radii vdw shows full radii";
     if (distance > 0 && data_.distinct_values(points_, info_.roles.element).size() == 1) {
       radius.value = rounded(distance / 2 * radius.scale);
       chose("radius " + number_text(*radius.value), "half the median distance to the nearest neighbour; " + why);
@@ -294,7 +296,7 @@ class Appearance {
       const std::string& mapped = color.element.empty() ? color.column : color.carbon;
       const bool is_text = points::type_of(info_, mapped) == data::ColumnType::kText;
       const bool is_categorical = points::find_color_map(color.map)->is_categorical;
-      out.push_back(fmt::format("map {}: {}", color.map,
+      out.push_back(fmt::format("map {}: {}; --map changes it", color.map,
                                 is_text          ? fmt::format("colours for categories: {} is text", mapped)
                                 : is_categorical ? "colours for categories"
                                                  : "the default for numbers"));

@@ -149,7 +149,8 @@ class PlotMaker {
                       guides_.reach(),
                       choose_ground(extent, camera),
                       light_gain()};
-    if (!options_.style) chose("style studio", "a key light from the upper left, and white light from all directions");
+    if (!options_.style)
+      chose("style studio", "a key light from the upper left, and white light from all directions; --style changes it");
     if (!options_.overrides.sets("image.width") && !options_.overrides.sets("image.height"))
       chose(fmt::format("size {} x {}", width_, height_), "--width and --height change it");
     choose_samples(scene.render.samples);
@@ -186,7 +187,7 @@ class PlotMaker {
     if (!options_.material.empty()) return options_.material;
     const scene::PointsKeys& points = out_.points;
     const bool has_rods = points.bonds.are_drawn || !points.representation.empty() || !points.vectors.columns.empty();
-    if (has_rods) chose("material plastic", "highlights show the form of rods");
+    if (has_rods) chose("material plastic", "highlights show the form of rods; --material changes it");
     return has_rods ? "plastic" : "matte";
   }
 
@@ -210,7 +211,8 @@ class PlotMaker {
       look_from_ = are_flat(centers, count, up_) ? kFlatView : shows_cell(options_, info_) ? kCellView : kDefaultView;
     }
     if (options_.up.empty())
-      chose("up " + up_name_, info_.z_up ? "customary for simulations and scans" : "customary for molecules");
+      chose("up " + up_name_, info_.z_up ? "customary for simulations and scans; --up changes it"
+                                         : "customary for molecules; --up changes it");
     return view_axes(look_from_, up_name_);
   }
 
@@ -241,7 +243,8 @@ class PlotMaker {
     chose(fmt::format("view {}, {}", look_from_,
                       vfov_ ? fmt::format("vertical field of view {}", number_text(rounded(camera.vfov)))
                             : number_text(rounded(*camera.width)) + " wide"),
-          fmt::format("{}fitted to {}{}{}{}", look_from_ == kAuto ? "along the principal axes of what is shown; " : "",
+          fmt::format("{}fitted to {}{}{}{}; --look-from and --zoom change it",
+                      look_from_ == kAuto ? "along the principal axes of what is shown; " : "",
                       options_.fit.empty() ? "the spheres" : "those of --fit",
                       out_.frames.size() > 1 ? " of all frames" : "", is_turntable_ ? " and the whole orbit" : "",
                       options_.zoom == 1 ? "" : ", times " + number_text(options_.zoom)));
@@ -414,7 +417,7 @@ class PlotMaker {
       return;
     }
     if (options_.style == Style::kFlat && !options_.quality)
-      return chose("samples 100", "without shading there is hardly any noise");
+      return chose("samples 100", "without shading there is hardly any noise; --samples changes it");
     const Quality quality = options_.quality.value_or(Quality::kGood);
     out_.denoise = quality != Quality::kFinal && options_.style != Style::kFlat;
     std::string what;
@@ -527,7 +530,8 @@ class PlotMaker {
               choice.is_log ? ", logarithmic" : "",
               crowded
                   ? fmt::format("; 99 % of the values are within {}, which --range 1%:99% shows", range_text(*crowded))
-                  : ""));
+              : is_default ? "; --range changes it"
+                           : ""));
   }
 
   /// Prints how many spheres are drawn, next to the number of particles, where they differ.

@@ -140,11 +140,11 @@ TEST_F(PlotPlot, DefaultsWithoutRadiusAndColor) {
   make("a.csv", kCorners);
   EXPECT_EQ(choices(),
             "CSV: 9 particles\n"
-            "radius 2: half the median distance to the nearest neighbour\n"
+            "radius 2: half the median distance to the nearest neighbour; --radius changes it\n"
             "no colour: light grey; --color-by COLUMN shows values\n"
-            "up z: customary for simulations and scans\n"
-            "view 30,20, 19.02 wide: fitted to the spheres\n"
-            "style studio: a key light from the upper left, and white light from all directions\n"
+            "up z: customary for simulations and scans; --up changes it\n"
+            "view 30,20, 19.02 wide: fitted to the spheres; --look-from and --zoom change it\n"
+            "style studio: a key light from the upper left, and white light from all directions; --style changes it\n"
             "size 1920 x 1080: --width and --height change it\n"
             "quality good: noise 0.15, denoised; --quality, --noise, --time or --samples change it\n");
   const scene::Scene scene = read();
@@ -221,7 +221,7 @@ TEST_F(PlotPlot, ModelsOfBallsAndSticksHaveBonds) {
   EXPECT_EQ(points.bond_radius, 0.15);
   options.representation = Representation::kSticks;
   make();
-  EXPECT_TRUE(chose("radius 0.2: that of sticks")) << choices();
+  EXPECT_TRUE(chose("radius 0.2", {"sticks", "--radius"})) << choices();
   points = read().points[0];
   EXPECT_EQ(points.bond_radius, 0.2);
   EXPECT_EQ(points.radii[0], 0.2);
@@ -490,7 +490,7 @@ TEST_F(PlotPlot, FewValuesThatUseUpTheMapAreReported) {
 TEST_F(PlotPlot, ColorByAColumn) {
   options.color_by = "mass";
   make("a.csv", kCorners);
-  EXPECT_TRUE(chose("range 1:9: minimum and maximum")) << choices();
+  EXPECT_TRUE(chose("range 1:9", {"minimum and maximum", "--range"})) << choices();
   const scene::Points points = read().points[0];
   EXPECT_EQ(points.color.column, "mass");
   ASSERT_TRUE(points.color.range);
@@ -517,7 +517,7 @@ TEST_F(PlotPlot, AConstantColumnHasNoRangeInTheScene) {
   options.color_by = "mass";
   make("a.csv", "x,y,z,mass\n0,0,0,5\n1,0,0,5\n");
   EXPECT_FALSE(read().points[0].color.range) << "its ends must differ";
-  EXPECT_TRUE(chose("range 5:5: minimum and maximum")) << choices();
+  EXPECT_TRUE(chose("range 5:5", {"minimum and maximum"})) << choices();
 }
 
 TEST_F(PlotPlot, OneRangeAndOneViewForAllFrames) {
@@ -592,7 +592,7 @@ TEST_F(PlotPlot, RadiusOfTheFirstFrameWithNeighbours) {
   EXPECT_EQ(read().points[0].radius.value, 1.5) << "of the file, whatever is shown: " << choices();
   options.points.frame.reset();
   make("b.dump", frame("x y z", {"0 0 0"}) + frame("x y z", {"1 0 0"}));
-  EXPECT_TRUE(chose("radius 1: no particle has a neighbour")) << choices();
+  EXPECT_TRUE(chose("radius 1", {"no particle has a neighbour"})) << choices();
 }
 
 /// Panels of one figure show a particle in one size.
