@@ -147,12 +147,9 @@ std::string title_of(const scene::Scene& scene, int frame) {
 
 LegendColors legend_of(const scene::Scene& scene, const std::string& ocio) {
   for (const scene::Points& points : scene.points) {
-    std::vector<std::array<double, 3>> values;
-    for (const Vec3d& color : points.palette) values.push_back({color.x, color.y, color.z});
-    if (scene.color.working_space() != kLegendSpace)
-      display::convert_colors(ocio, scene.color.working_space(), kLegendSpace, values);
+    const auto conversion = display::pixel_conversion(ocio, scene.color.working_space(), kLegendSpace);
     std::vector<Vec3d> palette;
-    for (const auto& [r, g, b] : values) palette.push_back({r, g, b});
+    for (const Vec3d& color : points.palette) palette.push_back(display::converted(conversion, color));
     LegendColors out;
     out.add(points, palette);
     out.range = points.color_range;

@@ -79,17 +79,6 @@ std::string find_scene_linear(const Config& config, const std::string& name) {
   return found;
 }
 
-void convert_colors(const std::string& config_file, const std::string& from, const std::string& to,
-                    std::vector<std::array<double, 3>>& colors) {
-  const Config source = load_config(config_file);
-  const auto processor = processor_of(source, find_scene_linear(source, from), find_scene_linear(source, to));
-  for (std::array<double, 3>& color : colors) {
-    float rgb[3] = {static_cast<float>(color[0]), static_cast<float>(color[1]), static_cast<float>(color[2])};
-    processor->applyRGB(rgb);
-    for (std::size_t k = 0; k < 3; ++k) color[k] = static_cast<double>(rgb[k]);
-  }
-}
-
 PixelConversion pixel_conversion(const std::string& config_file, const std::string& from, const std::string& to) {
   if (from == to || (known_space(from) != nullptr && known_space(from) == known_space(to))) return {};
   const Config source = load_config(config_file);
@@ -98,6 +87,13 @@ PixelConversion pixel_conversion(const std::string& config_file, const std::stri
     ocio::PackedImageDesc image(rgb, static_cast<long>(pixels), 1, 3);
     processor->apply(image);
   };
+}
+
+math::Vec3d converted(const PixelConversion& convert, math::Vec3d color) {
+  if (!convert) return color;
+  float rgb[3] = {static_cast<float>(color.x), static_cast<float>(color.y), static_cast<float>(color.z)};
+  convert(rgb, 1);
+  return {static_cast<double>(rgb[0]), static_cast<double>(rgb[1]), static_cast<double>(rgb[2])};
 }
 
 const KnownSpace* known_space(const std::array<float, 8>& chromaticities) {

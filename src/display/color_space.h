@@ -5,16 +5,10 @@
 #include <cstddef>
 #include <functional>
 #include <string>
-#include <vector>
+
+#include "math/vec3.h"
 
 namespace orrery::display {
-
-/// Converts colours from one scene-linear space to another, in place.
-///
-/// Domain     `config_file` as Settings::config
-/// Errors     those of choose; base::Error(kUsage) for a space that is not scene-linear
-void convert_colors(const std::string& config_file, const std::string& from, const std::string& to,
-                    std::vector<std::array<double, 3>>& colors);
 
 /// Converts RGB pixels in place. Thread-safe.
 using PixelConversion = std::function<void(float* rgb, std::size_t pixels)>;
@@ -23,8 +17,11 @@ using PixelConversion = std::function<void(float* rgb, std::size_t pixels)>;
 /// are the same, in which case no config is loaded.
 ///
 /// Domain     `config_file` as Settings::config
-/// Errors     as convert_colors
+/// Errors     those of choose; base::Error(kUsage) if the space to convert to is not scene-linear
 PixelConversion pixel_conversion(const std::string& config_file, const std::string& from, const std::string& to);
+
+/// Converts a colour; an empty conversion leaves it as it is.
+math::Vec3d converted(const PixelConversion& convert, math::Vec3d color);
 
 /// Primaries and white point of a scene-linear space with a Color Interop Forum id.
 struct KnownSpace {

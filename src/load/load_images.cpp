@@ -221,15 +221,6 @@ LoadedMap load_map(const MapRequest& request) {
   return out;
 }
 
-/// Converts a colour, and replaces negative components by 0.
-math::Vec3d converted(const display::PixelConversion& convert, math::Vec3d color) {
-  if (!convert) return color;
-  float rgb[3] = {static_cast<float>(color.x), static_cast<float>(color.y), static_cast<float>(color.z)};
-  convert(rgb, 1);
-  const auto component = [](float v) { return static_cast<double>(std::max(v, 0.0F)); };
-  return {component(rgb[0]), component(rgb[1]), component(rgb[2])};
-}
-
 /// The texture with this version; null if there is none.
 const LoadedTexture* find(const std::vector<LoadedTexture>& textures, const std::string& version) {
   for (const LoadedTexture& texture : textures)
@@ -265,8 +256,8 @@ LoadedMap load_sky(const std::string& ocio_config, const scene::Scene& scene) {
     return out;
   }
   scene::Background background = scene.background;
-  const math::Vec3d albedo = converted(to_sky, background.ground_albedo);
-  background.ground_albedo = {std::min(albedo.x, 1.0), std::min(albedo.y, 1.0), std::min(albedo.z, 1.0)};
+  const math::Vec3d albedo = display::converted(to_sky, background.ground_albedo);
+  background.ground_albedo = math::least(math::greatest(albedo, {}), math::Vec3d{1, 1, 1});
   const auto image = std::make_shared<scene::LatLongMap>(sky::bake_sky(background));
   if (to_working) {
     const auto width = static_cast<std::size_t>(image->width());
@@ -275,7 +266,7 @@ LoadedMap load_sky(const std::string& ocio_config, const scene::Scene& scene) {
       to_working(row, width);
       for (std::size_t i = 0; i < 3 * width; ++i) row[i] = std::max(row[i], 0.0F);
     }
-    image->sun.radiance = converted(to_working, image->sun.radiance);
+    image->sun.radiance = math::greatest(display::converted(to_working, image->sun.radiance), {});
   }
   const math::Vec3d sun = image->sun.radiance;
   out.brightest = static_cast<float>(std::max({sun.x, sun.y, sun.z}));

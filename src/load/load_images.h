@@ -84,7 +84,7 @@ std::string config_of(const std::filesystem::path& scene_file, const scene::Colo
 ///
 /// `ocio`     OCIO config, in the form of display::Settings; not loaded if both spaces are the same
 /// Result     number of clamped colours
-/// Errors     those of display::convert_colors
+/// Errors     those of display::pixel_conversion
 int to_working_space(const std::string& ocio, scene::Scene& scene);
 
 }  // namespace orrery::load

@@ -1,6 +1,4 @@
 // SPDX-License-Identifier: Apache-2.0
-#include <algorithm>
-#include <array>
 #include <limits>
 #include <vector>
 
@@ -39,20 +37,14 @@ std::vector<BoundedColor> colors_of(scene::Scene& scene) {
 /// Converts colours in place. Returns the number of colours that were clamped.
 int convert(const std::string& ocio, const std::string& from, const std::string& to,
             const std::vector<BoundedColor>& colors) {
-  if (from == to || colors.empty()) return 0;
-  std::vector<std::array<double, 3>> values;
-  for (const BoundedColor& c : colors) values.push_back({c.color->x, c.color->y, c.color->z});
-  display::convert_colors(ocio, from, to, values);
+  if (colors.empty()) return 0;
+  const display::PixelConversion conversion = display::pixel_conversion(ocio, from, to);
+  if (!conversion) return 0;
   int clamped = 0;
-  for (std::size_t i = 0; i < colors.size(); ++i) {
-    bool out_of_range = false;
-    for (double& v : values[i]) {
-      const double fit = std::clamp(v, 0.0, colors[i].maximum);
-      out_of_range = out_of_range || v < fit - kMatchTolerance || v > fit + kMatchTolerance;
-      v = fit;
-    }
-    *colors[i].color = {values[i][0], values[i][1], values[i][2]};
-    clamped += out_of_range ? 1 : 0;
+  for (const auto& [color, maximum] : colors) {
+    const math::Vec3d wanted = display::converted(conversion, *color);
+    *color = math::least(math::greatest(wanted, {}), math::Vec3d{maximum, maximum, maximum});
+    clamped += math::length(*color - wanted) > kMatchTolerance ? 1 : 0;
   }
   return clamped;
 }

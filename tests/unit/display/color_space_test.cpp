@@ -23,15 +23,16 @@ TEST(DisplayColorSpace, SpacesAreKnownByNameAliasAndPrimaries) {
 }
 
 TEST(DisplayColorSpace, ColorsKeepWhiteAndChangePrimaries) {
-  std::vector<std::array<double, 3>> colors = {{1, 1, 1}, {1, 0, 0}};
-  convert_colors("", "lin_rec709", "acescg", colors);
-  for (const double v : colors[0]) EXPECT_NEAR(v, 1, 1e-5);
-  EXPECT_NEAR(colors[1][0], 0.6131, 1e-3);  // the red of Rec.709 in ACEScg
-  EXPECT_NEAR(colors[1][1], 0.0702, 1e-3);
-  EXPECT_NEAR(colors[1][2], 0.0206, 1e-3);
-  convert_colors("", "acescg", "lin_rec709", colors);
-  EXPECT_NEAR(colors[1][0], 1, 1e-5);
-  EXPECT_NEAR(colors[1][1], 0, 1e-5);
+  const PixelConversion convert = pixel_conversion("", "lin_rec709", "acescg");
+  const math::Vec3d white = converted(convert, {1, 1, 1}), red = converted(convert, {1, 0, 0});
+  for (const double v : {white.x, white.y, white.z}) EXPECT_NEAR(v, 1, 1e-5);
+  EXPECT_NEAR(red.x, 0.6131, 1e-3);  // the red of Rec.709 in ACEScg
+  EXPECT_NEAR(red.y, 0.0702, 1e-3);
+  EXPECT_NEAR(red.z, 0.0206, 1e-3);
+  const math::Vec3d back = converted(pixel_conversion("", "acescg", "lin_rec709"), red);
+  EXPECT_NEAR(back.x, 1, 1e-5);
+  EXPECT_NEAR(back.y, 0, 1e-5);
+  EXPECT_EQ(converted({}, {0.1, 2, 3}), (math::Vec3d{0.1, 2, 3}));
 }
 
 TEST(DisplayColorSpace, PixelsOfTheSameSpaceNeedNoConversion) {
@@ -46,9 +47,8 @@ TEST(DisplayColorSpace, PixelsOfTheSameSpaceNeedNoConversion) {
 }
 
 TEST(DisplayColorSpace, UnknownSpacesAreUsageErrors) {
-  std::vector<std::array<double, 3>> colors = {{1, 1, 1}};
   try {
-    convert_colors("", "lin_rec709", "none such", colors);
+    pixel_conversion("", "lin_rec709", "none such");
     FAIL() << "no error";
   } catch (const base::Error& error) {
     EXPECT_EQ(error.kind(), base::ErrorKind::kUsage);
