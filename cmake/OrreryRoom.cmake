@@ -151,15 +151,14 @@ elseif(NOT ORRERY_TARGETS)
 endif()
 
 # Tests and benchmarks that include code of the kernel compile it for one instruction set: the best of this machine that
-# the program has. Those that compare instruction sets include support/every_set.h.
+# the program has. Sources of tests that compare instruction sets are compiled for the others too: orrery_other_sets in
+# tests/CMakeLists.txt.
 set(ORRERY_ONE_SET ${ORRERY_SIMD} -DHWY_COMPILE_ONLY_STATIC)
-list(LENGTH ORRERY_TARGETS count)
-if(count GREATER 1)
-  list(APPEND ORRERY_ONE_SET -DORRERY_EVERY_SET)
-endif()
+set(ORRERY_OTHER_SETS ${ORRERY_TARGETS})
 foreach(target IN LISTS ORRERY_TARGETS)
   if(target IN_LIST usable)
     list(APPEND ORRERY_ONE_SET -DHWY_BASELINE_TARGETS=HWY_${target})
+    list(REMOVE_ITEM ORRERY_OTHER_SETS ${target})
     break()
   endif()
 endforeach()

@@ -1,11 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Rays in Embree's layout, and their hits.
-#if defined(ORRERY_ACCEL_EMBREE_RAYS_INL_H_) == defined(HWY_TARGET_TOGGLE)
-#ifdef ORRERY_ACCEL_EMBREE_RAYS_INL_H_
-#undef ORRERY_ACCEL_EMBREE_RAYS_INL_H_
-#else
-#define ORRERY_ACCEL_EMBREE_RAYS_INL_H_
-#endif
+#pragma once
 
 #include <hwy/highway.h>
 
@@ -347,4 +342,3 @@ HWY_INLINE RTCRay one_ray(const EmbreeRay& rays, int lane) {
 
 }  // namespace orrery::accel::HWY_NAMESPACE
 HWY_AFTER_NAMESPACE();
-#endif

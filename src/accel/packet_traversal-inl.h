@@ -1,11 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Traversal of a SphereBvh by the rays of a packet together.
-#if defined(ORRERY_ACCEL_PACKET_TRAVERSAL_INL_H_) == defined(HWY_TARGET_TOGGLE)
-#ifdef ORRERY_ACCEL_PACKET_TRAVERSAL_INL_H_
-#undef ORRERY_ACCEL_PACKET_TRAVERSAL_INL_H_
-#else
-#define ORRERY_ACCEL_PACKET_TRAVERSAL_INL_H_
-#endif
+#pragma once
 
 #include <hwy/cache_control.h>
 #include <hwy/highway.h>
@@ -290,4 +285,3 @@ class PacketTraversal {
 
 }  // namespace orrery::accel::HWY_NAMESPACE
 HWY_AFTER_NAMESPACE();
-#endif

@@ -1,12 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Traversal of a SphereBvh by single rays, those of up to four packets interleaved: the steps of a ray, then rounds of
 // steps of all rays.
-#if defined(ORRERY_ACCEL_RAY_TRAVERSAL_INL_H_) == defined(HWY_TARGET_TOGGLE)
-#ifdef ORRERY_ACCEL_RAY_TRAVERSAL_INL_H_
-#undef ORRERY_ACCEL_RAY_TRAVERSAL_INL_H_
-#else
-#define ORRERY_ACCEL_RAY_TRAVERSAL_INL_H_
-#endif
+#pragma once
 
 #include <hwy/cache_control.h>
 #include <hwy/highway.h>
@@ -621,4 +616,3 @@ HWY_NOINLINE void trace_by_rays(const EmbreeScene& scene, Packet* packets, int c
 
 }  // namespace orrery::accel::HWY_NAMESPACE
 HWY_AFTER_NAMESPACE();
-#endif

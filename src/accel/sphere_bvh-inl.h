@@ -1,11 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // What the traversals of a SphereBvh share: references, prefetching, and the tests of leaves.
-#if defined(ORRERY_ACCEL_SPHERE_BVH_INL_H_) == defined(HWY_TARGET_TOGGLE)
-#ifdef ORRERY_ACCEL_SPHERE_BVH_INL_H_
-#undef ORRERY_ACCEL_SPHERE_BVH_INL_H_
-#else
-#define ORRERY_ACCEL_SPHERE_BVH_INL_H_
-#endif
+#pragma once
 
 #include <hwy/cache_control.h>
 #include <hwy/highway.h>
@@ -239,4 +234,3 @@ HWY_INLINE V certain_limit(const Passing<V>& p, V inner, V begin, V margin, V li
 
 }  // namespace orrery::accel::HWY_NAMESPACE
 HWY_AFTER_NAMESPACE();
-#endif

@@ -1,11 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Camera rays.
-#if defined(ORRERY_KERNEL_CAMERA_INL_H_) == defined(HWY_TARGET_TOGGLE)
-#ifdef ORRERY_KERNEL_CAMERA_INL_H_
-#undef ORRERY_KERNEL_CAMERA_INL_H_
-#else
-#define ORRERY_KERNEL_CAMERA_INL_H_
-#endif
+#pragma once
 
 #include <hwy/highway.h>
 
@@ -101,4 +96,3 @@ HWY_INLINE CameraRay<V> camera_ray(D d, const SceneView& scene, const CameraVect
 
 }  // namespace orrery::kernel::HWY_NAMESPACE
 HWY_AFTER_NAMESPACE();
-#endif

@@ -1,11 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Geometry of caustics: the angle by which a ball turns light, and the rays for which it reaches a light.
-#if defined(ORRERY_KERNEL_CAUSTIC_GEOMETRY_INL_H_) == defined(HWY_TARGET_TOGGLE)
-#ifdef ORRERY_KERNEL_CAUSTIC_GEOMETRY_INL_H_
-#undef ORRERY_KERNEL_CAUSTIC_GEOMETRY_INL_H_
-#else
-#define ORRERY_KERNEL_CAUSTIC_GEOMETRY_INL_H_
-#endif
+#pragma once
 
 #include <hwy/highway.h>
 
@@ -546,4 +541,3 @@ HWY_INLINE SweptAngle<V> inside_swept(D d, const CausticView<D>& at, SinCos<V> a
 
 }  // namespace orrery::kernel::HWY_NAMESPACE
 HWY_AFTER_NAMESPACE();
-#endif

@@ -1,11 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Sampling of caustics: balls, lights, and directions in the images of a light in a ball.
-#if defined(ORRERY_KERNEL_CAUSTIC_SAMPLING_INL_H_) == defined(HWY_TARGET_TOGGLE)
-#ifdef ORRERY_KERNEL_CAUSTIC_SAMPLING_INL_H_
-#undef ORRERY_KERNEL_CAUSTIC_SAMPLING_INL_H_
-#else
-#define ORRERY_KERNEL_CAUSTIC_SAMPLING_INL_H_
-#endif
+#pragma once
 
 #include <hwy/highway.h>
 
@@ -409,4 +404,3 @@ HWY_NOINLINE void sample_caustics(const SceneView& scene, bool has_events, Paths
 
 }  // namespace orrery::kernel::HWY_NAMESPACE
 HWY_AFTER_NAMESPACE();
-#endif

@@ -1,11 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Transport of caustics: rays by way of balls to a light, and paths that find such light themselves.
-#if defined(ORRERY_KERNEL_CAUSTIC_TRANSPORT_INL_H_) == defined(HWY_TARGET_TOGGLE)
-#ifdef ORRERY_KERNEL_CAUSTIC_TRANSPORT_INL_H_
-#undef ORRERY_KERNEL_CAUSTIC_TRANSPORT_INL_H_
-#else
-#define ORRERY_KERNEL_CAUSTIC_TRANSPORT_INL_H_
-#endif
+#pragma once
 
 #include <hwy/highway.h>
 
@@ -243,4 +238,3 @@ HWY_NOINLINE void trace_caustic_rays(const SceneView& scene, const Tracer& trace
 
 }  // namespace orrery::kernel::HWY_NAMESPACE
 HWY_AFTER_NAMESPACE();
-#endif

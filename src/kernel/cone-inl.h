@@ -1,11 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Ray cones for texture filtering.
-#if defined(ORRERY_KERNEL_CONE_INL_H_) == defined(HWY_TARGET_TOGGLE)
-#ifdef ORRERY_KERNEL_CONE_INL_H_
-#undef ORRERY_KERNEL_CONE_INL_H_
-#else
-#define ORRERY_KERNEL_CONE_INL_H_
-#endif
+#pragma once
 
 #include <hwy/highway.h>
 
@@ -99,4 +94,3 @@ HWY_INLINE RayCone<V> scattered_cone(D d, const RayCone<V>& cone, const Surface<
 
 }  // namespace orrery::kernel::HWY_NAMESPACE
 HWY_AFTER_NAMESPACE();
-#endif

@@ -1,11 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Radiance of paths, from their vertices to the sums of their pixels.
-#if defined(ORRERY_KERNEL_DEPOSIT_INL_H_) == defined(HWY_TARGET_TOGGLE)
-#ifdef ORRERY_KERNEL_DEPOSIT_INL_H_
-#undef ORRERY_KERNEL_DEPOSIT_INL_H_
-#else
-#define ORRERY_KERNEL_DEPOSIT_INL_H_
-#endif
+#pragma once
 
 #include <hwy/highway.h>
 
@@ -193,4 +188,3 @@ HWY_INLINE void record_light(const BatchOf<T>& batch, int count, const SceneView
 
 }  // namespace orrery::kernel::HWY_NAMESPACE
 HWY_AFTER_NAMESPACE();
-#endif

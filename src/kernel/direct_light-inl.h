@@ -1,11 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Direct light: next-event estimation with shadow rays, and its weights.
-#if defined(ORRERY_KERNEL_DIRECT_LIGHT_INL_H_) == defined(HWY_TARGET_TOGGLE)
-#ifdef ORRERY_KERNEL_DIRECT_LIGHT_INL_H_
-#undef ORRERY_KERNEL_DIRECT_LIGHT_INL_H_
-#else
-#define ORRERY_KERNEL_DIRECT_LIGHT_INL_H_
-#endif
+#pragma once
 
 #include <hwy/highway.h>
 
@@ -296,4 +291,3 @@ HWY_INLINE void trace_shadow_batch(D d, const SceneView& scene, const Tracer& tr
 
 }  // namespace orrery::kernel::HWY_NAMESPACE
 HWY_AFTER_NAMESPACE();
-#endif

@@ -1,11 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Image backgrounds: radiance, sampling and density.
-#if defined(ORRERY_KERNEL_ENVIRONMENT_INL_H_) == defined(HWY_TARGET_TOGGLE)
-#ifdef ORRERY_KERNEL_ENVIRONMENT_INL_H_
-#undef ORRERY_KERNEL_ENVIRONMENT_INL_H_
-#else
-#define ORRERY_KERNEL_ENVIRONMENT_INL_H_
-#endif
+#pragma once
 
 #include <hwy/highway.h>
 
@@ -280,4 +275,3 @@ HWY_INLINE EnvironmentSample<V> sample_environment(D d, const Environment& env, 
 
 }  // namespace orrery::kernel::HWY_NAMESPACE
 HWY_AFTER_NAMESPACE();
-#endif

@@ -1,11 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Between memory and vectors: gathers of rows and of spheres, and compaction of lanes.
-#if defined(ORRERY_KERNEL_GATHER_INL_H_) == defined(HWY_TARGET_TOGGLE)
-#ifdef ORRERY_KERNEL_GATHER_INL_H_
-#undef ORRERY_KERNEL_GATHER_INL_H_
-#else
-#define ORRERY_KERNEL_GATHER_INL_H_
-#endif
+#pragma once
 
 #include <hwy/highway.h>
 
@@ -20,9 +15,6 @@
 
 HWY_BEFORE_NAMESPACE();
 namespace orrery::kernel::HWY_NAMESPACE {
-
-namespace hn = hwy::HWY_NAMESPACE;
-using namespace math::HWY_NAMESPACE;  // NOLINT(google-build-using-namespace): SIMD vectors of another room
 
 #if HWY_MAX_BYTES >= 32
 
@@ -225,4 +217,3 @@ class Compactor {
 
 }  // namespace orrery::kernel::HWY_NAMESPACE
 HWY_AFTER_NAMESPACE();
-#endif

@@ -1,11 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Ray-sphere intersection.
-#if defined(ORRERY_KERNEL_INTERSECT_INL_H_) == defined(HWY_TARGET_TOGGLE)
-#ifdef ORRERY_KERNEL_INTERSECT_INL_H_
-#undef ORRERY_KERNEL_INTERSECT_INL_H_
-#else
-#define ORRERY_KERNEL_INTERSECT_INL_H_
-#endif
+#pragma once
 
 #include <hwy/highway.h>
 
@@ -264,4 +259,3 @@ HWY_INLINE HitPoint<hn::Vec<D>> hit_point(const Rays<D>& ray, const Spheres<D>& 
 
 }  // namespace orrery::kernel::HWY_NAMESPACE
 HWY_AFTER_NAMESPACE();
-#endif

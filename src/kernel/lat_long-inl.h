@@ -1,11 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Latitude-longitude maps of backgrounds and textures: positions, and interpolation between texels.
-#if defined(ORRERY_KERNEL_LAT_LONG_INL_H_) == defined(HWY_TARGET_TOGGLE)
-#ifdef ORRERY_KERNEL_LAT_LONG_INL_H_
-#undef ORRERY_KERNEL_LAT_LONG_INL_H_
-#else
-#define ORRERY_KERNEL_LAT_LONG_INL_H_
-#endif
+#pragma once
 
 #include <hwy/highway.h>
 
@@ -17,9 +12,6 @@
 
 HWY_BEFORE_NAMESPACE();
 namespace orrery::kernel::HWY_NAMESPACE {
-
-namespace hn = hwy::HWY_NAMESPACE;
-using namespace math::HWY_NAMESPACE;  // NOLINT(google-build-using-namespace): SIMD vectors of another room
 
 /// Returns a + (b - a) s, which is not negative if a and b are not.
 template <class D, class V = hn::Vec<D>>
@@ -114,4 +106,3 @@ HWY_INLINE Vec3<V> interpolated(D d, const TexelQuad<D>& at) {
 
 }  // namespace orrery::kernel::HWY_NAMESPACE
 HWY_AFTER_NAMESPACE();
-#endif

@@ -1,11 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Choice and sampling of emitters.
-#if defined(ORRERY_KERNEL_LIGHT_INL_H_) == defined(HWY_TARGET_TOGGLE)
-#ifdef ORRERY_KERNEL_LIGHT_INL_H_
-#undef ORRERY_KERNEL_LIGHT_INL_H_
-#else
-#define ORRERY_KERNEL_LIGHT_INL_H_
-#endif
+#pragma once
 
 #include <hwy/highway.h>
 
@@ -332,4 +327,3 @@ HWY_INLINE V choice_probability(D d, const SceneView& scene, const Vertex<D>& at
 
 }  // namespace orrery::kernel::HWY_NAMESPACE
 HWY_AFTER_NAMESPACE();
-#endif

@@ -1,11 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Gradient noise.
-#if defined(ORRERY_KERNEL_NOISE_INL_H_) == defined(HWY_TARGET_TOGGLE)
-#ifdef ORRERY_KERNEL_NOISE_INL_H_
-#undef ORRERY_KERNEL_NOISE_INL_H_
-#else
-#define ORRERY_KERNEL_NOISE_INL_H_
-#endif
+#pragma once
 
 #include <hwy/highway.h>
 
@@ -20,9 +15,6 @@
 
 HWY_BEFORE_NAMESPACE();
 namespace orrery::kernel::HWY_NAMESPACE {
-
-namespace hn = hwy::HWY_NAMESPACE;
-using namespace math::HWY_NAMESPACE;  // NOLINT(google-build-using-namespace): SIMD vectors of another room
 
 /// Period of the lattice along each axis, cells.
 inline constexpr std::uint32_t kLatticePeriod = 0x80000000u;
@@ -154,4 +146,3 @@ HWY_INLINE V turbulence(D d, const Texture& texture, LatticePoint<D> at) {
 
 }  // namespace orrery::kernel::HWY_NAMESPACE
 HWY_AFTER_NAMESPACE();
-#endif

@@ -1,11 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Opacity: which objects are visible to a path.
-#if defined(ORRERY_KERNEL_OPACITY_INL_H_) == defined(HWY_TARGET_TOGGLE)
-#ifdef ORRERY_KERNEL_OPACITY_INL_H_
-#undef ORRERY_KERNEL_OPACITY_INL_H_
-#else
-#define ORRERY_KERNEL_OPACITY_INL_H_
-#endif
+#pragma once
 
 #include <hwy/highway.h>
 
@@ -64,4 +59,3 @@ HWY_NOINLINE hn::Mask<D> visible_objects(D d, const float* thresholds, hn::Vec<h
 
 }  // namespace orrery::kernel::HWY_NAMESPACE
 HWY_AFTER_NAMESPACE();
-#endif

@@ -1,11 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Counter-based random numbers.
-#if defined(ORRERY_KERNEL_RANDOM_INL_H_) == defined(HWY_TARGET_TOGGLE)
-#ifdef ORRERY_KERNEL_RANDOM_INL_H_
-#undef ORRERY_KERNEL_RANDOM_INL_H_
-#else
-#define ORRERY_KERNEL_RANDOM_INL_H_
-#endif
+#pragma once
 
 #include <hwy/highway.h>
 
@@ -100,4 +95,3 @@ HWY_INLINE Four<V> independent_at_vertex(DU du, std::uint32_t seed, V pixel, V s
 
 }  // namespace orrery::kernel::HWY_NAMESPACE
 HWY_AFTER_NAMESPACE();
-#endif

@@ -1,11 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Recording of paths, for layers other than the beauty.
-#if defined(ORRERY_KERNEL_RECORD_INL_H_) == defined(HWY_TARGET_TOGGLE)
-#ifdef ORRERY_KERNEL_RECORD_INL_H_
-#undef ORRERY_KERNEL_RECORD_INL_H_
-#else
-#define ORRERY_KERNEL_RECORD_INL_H_
-#endif
+#pragma once
 
 #include <hwy/highway.h>
 
@@ -239,4 +234,3 @@ HWY_INLINE hn::Vec<IdTag<D>> continued(D d, hn::Vec<IdTag<D>> history, const Sur
 
 }  // namespace orrery::kernel::HWY_NAMESPACE
 HWY_AFTER_NAMESPACE();
-#endif

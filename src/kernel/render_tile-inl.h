@@ -1,11 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // The path loop.
-#if defined(ORRERY_KERNEL_RENDER_TILE_INL_H_) == defined(HWY_TARGET_TOGGLE)
-#ifdef ORRERY_KERNEL_RENDER_TILE_INL_H_
-#undef ORRERY_KERNEL_RENDER_TILE_INL_H_
-#else
-#define ORRERY_KERNEL_RENDER_TILE_INL_H_
-#endif
+#pragma once
 
 #include <hwy/highway.h>
 
@@ -260,4 +255,3 @@ RenderTile instance(bool full) {
 
 }  // namespace orrery::kernel::HWY_NAMESPACE
 HWY_AFTER_NAMESPACE();
-#endif

@@ -7,12 +7,7 @@
 // Because a rod is opaque and convex, only the entry counts: a ray that leaves a rod, or another one that touches or
 // overlaps it, needs neither an id nor an epsilon to avoid a hit at its own origin.
 // Reference: docs/decisions/0034
-#if defined(ORRERY_KERNEL_ROD_INL_H_) == defined(HWY_TARGET_TOGGLE)
-#ifdef ORRERY_KERNEL_ROD_INL_H_
-#undef ORRERY_KERNEL_ROD_INL_H_
-#else
-#define ORRERY_KERNEL_ROD_INL_H_
-#endif
+#pragma once
 
 #include <hwy/highway.h>
 
@@ -302,4 +297,3 @@ HWY_INLINE RodPoint<D> rod_point(D d, const Rays<D>& ray, const Rods<D>& rod) {
 
 }  // namespace orrery::kernel::HWY_NAMESPACE
 HWY_AFTER_NAMESPACE();
-#endif

@@ -6,12 +6,7 @@
 // alone: with a fixed phi, the visible part of the body is an interval of directions, and uniform in the sine of the
 // elevation psi over the plane perpendicular to the axis is uniform by solid angle, d omega = d phi d(sin psi). Hence
 // no direction misses, and the density is known exactly. The cap is a part of the sphere at the end.
-#if defined(ORRERY_KERNEL_ROD_LIGHT_INL_H_) == defined(HWY_TARGET_TOGGLE)
-#ifdef ORRERY_KERNEL_ROD_LIGHT_INL_H_
-#undef ORRERY_KERNEL_ROD_LIGHT_INL_H_
-#else
-#define ORRERY_KERNEL_ROD_LIGHT_INL_H_
-#endif
+#pragma once
 
 #include <hwy/highway.h>
 
@@ -169,4 +164,3 @@ HWY_NOINLINE V with_rods(D d, const SceneView& scene, Vertex<D> at, Vec3<V> dire
 
 }  // namespace orrery::kernel::HWY_NAMESPACE
 HWY_AFTER_NAMESPACE();
-#endif

@@ -1,12 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // A path's random numbers: the Sobol sequence with hash-based Owen scrambling, four dimensions per vertex, or
 // independent ones.
-#if defined(ORRERY_KERNEL_SAMPLER_INL_H_) == defined(HWY_TARGET_TOGGLE)
-#ifdef ORRERY_KERNEL_SAMPLER_INL_H_
-#undef ORRERY_KERNEL_SAMPLER_INL_H_
-#else
-#define ORRERY_KERNEL_SAMPLER_INL_H_
-#endif
+#pragma once
 
 #include <hwy/highway.h>
 
@@ -285,4 +280,3 @@ HWY_INLINE PathNumbers<hn::Vec<D>> numbers_of_path(D d, const Sampler& sampler, 
 
 }  // namespace orrery::kernel::HWY_NAMESPACE
 HWY_AFTER_NAMESPACE();
-#endif

@@ -1,11 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // BSDFs: sampling, density and value.
-#if defined(ORRERY_KERNEL_SCATTER_INL_H_) == defined(HWY_TARGET_TOGGLE)
-#ifdef ORRERY_KERNEL_SCATTER_INL_H_
-#undef ORRERY_KERNEL_SCATTER_INL_H_
-#else
-#define ORRERY_KERNEL_SCATTER_INL_H_
-#endif
+#pragma once
 
 #include <hwy/highway.h>
 
@@ -356,4 +351,3 @@ HWY_NOINLINE V pdf_coat(Surface<D> at, Vec3<V> w) {
 
 }  // namespace orrery::kernel::HWY_NAMESPACE
 HWY_AFTER_NAMESPACE();
-#endif

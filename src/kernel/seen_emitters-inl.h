@@ -1,11 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Emitters that the camera sees, also in balls: rays to them, and camera rays that they are taken out of.
-#if defined(ORRERY_KERNEL_SEEN_EMITTERS_INL_H_) == defined(HWY_TARGET_TOGGLE)
-#ifdef ORRERY_KERNEL_SEEN_EMITTERS_INL_H_
-#undef ORRERY_KERNEL_SEEN_EMITTERS_INL_H_
-#else
-#define ORRERY_KERNEL_SEEN_EMITTERS_INL_H_
-#endif
+#pragma once
 
 #include <hwy/highway.h>
 
@@ -254,4 +249,3 @@ class SeenEmitterSampler {
 
 }  // namespace orrery::kernel::HWY_NAMESPACE
 HWY_AFTER_NAMESPACE();
-#endif

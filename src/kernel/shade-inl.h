@@ -1,11 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // What happens to a path at a vertex: the steps of the path loop, in order.
-#if defined(ORRERY_KERNEL_SHADE_INL_H_) == defined(HWY_TARGET_TOGGLE)
-#ifdef ORRERY_KERNEL_SHADE_INL_H_
-#undef ORRERY_KERNEL_SHADE_INL_H_
-#else
-#define ORRERY_KERNEL_SHADE_INL_H_
-#endif
+#pragma once
 
 #include <hwy/highway.h>
 
@@ -525,4 +520,3 @@ class Shader {
 
 }  // namespace orrery::kernel::HWY_NAMESPACE
 HWY_AFTER_NAMESPACE();
-#endif

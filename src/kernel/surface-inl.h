@@ -1,11 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Spheres, rods and materials of hits.
-#if defined(ORRERY_KERNEL_SURFACE_INL_H_) == defined(HWY_TARGET_TOGGLE)
-#ifdef ORRERY_KERNEL_SURFACE_INL_H_
-#undef ORRERY_KERNEL_SURFACE_INL_H_
-#else
-#define ORRERY_KERNEL_SURFACE_INL_H_
-#endif
+#pragma once
 
 #include <hwy/highway.h>
 
@@ -194,4 +189,3 @@ HWY_NOINLINE Lookup<D> reach_surface_or_rod(D d, const SceneView& scene, Rays<D>
 
 }  // namespace orrery::kernel::HWY_NAMESPACE
 HWY_AFTER_NAMESPACE();
-#endif

@@ -1,11 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Textures of materials at hits and at light samples.
-#if defined(ORRERY_KERNEL_SURFACE_TEXTURE_INL_H_) == defined(HWY_TARGET_TOGGLE)
-#ifdef ORRERY_KERNEL_SURFACE_TEXTURE_INL_H_
-#undef ORRERY_KERNEL_SURFACE_TEXTURE_INL_H_
-#else
-#define ORRERY_KERNEL_SURFACE_TEXTURE_INL_H_
-#endif
+#pragma once
 
 #include <hwy/highway.h>
 
@@ -111,4 +106,3 @@ HWY_NOINLINE Vec3<V> textured_radiance(D d, const SceneView& scene, Rays<D> ray,
 
 }  // namespace orrery::kernel::HWY_NAMESPACE
 HWY_AFTER_NAMESPACE();
-#endif

@@ -1,11 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Textures at points of spheres.
-#if defined(ORRERY_KERNEL_TEXTURE_INL_H_) == defined(HWY_TARGET_TOGGLE)
-#ifdef ORRERY_KERNEL_TEXTURE_INL_H_
-#undef ORRERY_KERNEL_TEXTURE_INL_H_
-#else
-#define ORRERY_KERNEL_TEXTURE_INL_H_
-#endif
+#pragma once
 
 #include <hwy/highway.h>
 
@@ -219,4 +214,3 @@ HWY_INLINE Vec3<V> replaced_by_textures(D d, const Texture* textures, const std:
 
 }  // namespace orrery::kernel::HWY_NAMESPACE
 HWY_AFTER_NAMESPACE();
-#endif

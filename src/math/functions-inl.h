@@ -1,11 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Elementary functions that do not use libm, whose results depend on the processor.
-#if defined(ORRERY_MATH_FUNCTIONS_INL_H_) == defined(HWY_TARGET_TOGGLE)
-#ifdef ORRERY_MATH_FUNCTIONS_INL_H_
-#undef ORRERY_MATH_FUNCTIONS_INL_H_
-#else
-#define ORRERY_MATH_FUNCTIONS_INL_H_
-#endif
+#pragma once
 
 #include <hwy/highway.h>
 
@@ -15,8 +10,6 @@
 
 HWY_BEFORE_NAMESPACE();
 namespace orrery::math::HWY_NAMESPACE {
-
-namespace hn = hwy::HWY_NAMESPACE;
 
 /// pi / 2.
 inline constexpr double kHalfPi = 1.57079632679489661923;
@@ -145,4 +138,3 @@ HWY_INLINE hn::Vec<D> to_real(D d, U bits) {
 
 }  // namespace orrery::math::HWY_NAMESPACE
 HWY_AFTER_NAMESPACE();
-#endif

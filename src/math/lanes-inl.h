@@ -1,11 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Arithmetic of vectors with numbers, which stand for vectors of equal lanes.
-#if defined(ORRERY_MATH_LANES_INL_H_) == defined(HWY_TARGET_TOGGLE)
-#ifdef ORRERY_MATH_LANES_INL_H_
-#undef ORRERY_MATH_LANES_INL_H_
-#else
-#define ORRERY_MATH_LANES_INL_H_
-#endif
+#pragma once
 
 #include <hwy/highway.h>
 
@@ -109,4 +104,3 @@ HWY_INLINE auto select(M mask, A yes, B no) {
 
 }  // namespace orrery::math::HWY_NAMESPACE
 HWY_AFTER_NAMESPACE();
-#endif

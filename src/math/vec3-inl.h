@@ -1,11 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Vectors of SIMD lanes.
-#if defined(ORRERY_MATH_VEC3_INL_H_) == defined(HWY_TARGET_TOGGLE)
-#ifdef ORRERY_MATH_VEC3_INL_H_
-#undef ORRERY_MATH_VEC3_INL_H_
-#else
-#define ORRERY_MATH_VEC3_INL_H_
-#endif
+#pragma once
 
 #include <hwy/highway.h>
 
@@ -15,8 +10,6 @@
 
 HWY_BEFORE_NAMESPACE();
 namespace orrery::math::HWY_NAMESPACE {
-
-namespace hn = hwy::HWY_NAMESPACE;
 
 /// Three-component vectors, one per lane of V.
 template <class V>
@@ -143,4 +136,3 @@ HWY_INLINE Frame<V> frame_around(D d, const Vec3<V>& axis) {
 
 }  // namespace orrery::math::HWY_NAMESPACE
 HWY_AFTER_NAMESPACE();
-#endif

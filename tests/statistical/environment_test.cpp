@@ -14,32 +14,25 @@
 #include <string>
 #include <vector>
 
-#include "support/every_set.h"
-
-#undef HWY_TARGET_INCLUDE
-#define HWY_TARGET_INCLUDE "statistical/environment_test.cpp"
-#include <hwy/foreach_target.h>  // IWYU pragma: keep
-// After foreach_target:
 #include <hwy/highway.h>
 
 #include "compile/environment.h"
 #include "kernel/environment-inl.h"
 #include "kernel/isa.h"
 #include "kernel/sampler-inl.h"
+#include "math/dispatch.h"
 #include "scene/lat_long_map.h"
-#include "support/best.h"
 #include "support/chi_square.h"
 
 namespace orrery::test {
-#ifndef ORRERY_STATISTICAL_ENVIRONMENT_TEST_CASE_
-#define ORRERY_STATISTICAL_ENVIRONMENT_TEST_CASE_
+
 /// Directions and what is known of each, in rows whose length is a multiple of 16.
 struct Rows {
   std::vector<double> u, v, x, y, z, r, g, b, inverse, pdf;
   explicit Rows(std::size_t count)
       : u(count), v(count), x(count), y(count), z(count), r(count), g(count), b(count), inverse(count), pdf(count) {}
 };
-#endif
+
 }  // namespace orrery::test
 
 HWY_BEFORE_NAMESPACE();
@@ -108,16 +101,15 @@ void draw_numbers(kernel::SamplerKind kind, std::uint32_t pixel, std::uint32_t f
 }  // namespace orrery::test::HWY_NAMESPACE
 HWY_AFTER_NAMESPACE();
 
-#if HWY_ONCE
+#ifndef ORRERY_OTHER_SET
 namespace orrery::test {
-namespace {
 
-HWY_EXPORT(sample_double);
-HWY_EXPORT(sample_float);
-HWY_EXPORT(sample_one);
-HWY_EXPORT(judge_double);
-HWY_EXPORT(judge_float);
-HWY_EXPORT(draw_numbers);
+using OfRows = void(const kernel::Environment& env, Rows& out);
+ORRERY_DECLARE_INSTANCES(OfRows sample_double, sample_float, sample_one, judge_double, judge_float;
+                         void draw_numbers(kernel::SamplerKind kind, std::uint32_t pixel, std::uint32_t first,
+                                           Rows& out);)
+
+namespace {
 
 using compile::EnvironmentMap;
 using compile::EnvironmentSampling;
@@ -228,7 +220,7 @@ TEST(StatisticalEnvironment, DensityIntegratesToOne) {
       if (!map.view().is_sampled) continue;
       const Rectangles cells(map.view(), 1);
       Rows at = cells.midpoints();
-      ORRERY_BEST(judge_double)(map.view(), at);
+      ORRERY_BEST_INSTANCE(judge_double)(map.view(), at);
       double total = 0;
       for (std::size_t i = 0; i < cells.columns() * cells.rows(); ++i)
         total += at.pdf[i] * cells.solid_angle(i / cells.columns());
@@ -245,7 +237,7 @@ TEST(StatisticalEnvironment, SamplesHaveTheDensity) {
       if (!map.view().is_sampled) continue;
       const Rectangles parts(map.view(), 2);
       Rows at = parts.midpoints();
-      ORRERY_BEST(judge_double)(map.view(), at);
+      ORRERY_BEST_INSTANCE(judge_double)(map.view(), at);
       for (const bool in_double : {true, false}) {
         std::vector<double> expected(parts.columns() * parts.rows());
         std::vector<std::uint64_t> counts(expected.size());
@@ -253,8 +245,8 @@ TEST(StatisticalEnvironment, SamplesHaveTheDensity) {
           expected[i] = at.pdf[i] * parts.solid_angle(i / parts.columns()) * kBatch * kBatches;
         Rows batch(kBatch);
         for (std::uint32_t n = 0; n < kBatches; ++n) {
-          ORRERY_BEST(draw_numbers)(kernel::SamplerKind::kIndependent, n, 0, batch);
-          (in_double ? ORRERY_BEST(sample_double) : ORRERY_BEST(sample_float))(map.view(), batch);
+          ORRERY_BEST_INSTANCE(draw_numbers)(kernel::SamplerKind::kIndependent, n, 0, batch);
+          (in_double ? ORRERY_BEST_INSTANCE(sample_double) : ORRERY_BEST_INSTANCE(sample_float))(map.view(), batch);
           for (std::size_t i = 0; i < kBatch; ++i) ++counts[parts.index(batch.x[i], batch.y[i], batch.z[i])];
         }
         if (expected.size() < 3) continue;
@@ -273,8 +265,8 @@ TEST(StatisticalEnvironment, CompleteSamplingReachesEveryDirection) {
   image->sun = low_sun();
   const EnvironmentMap map = map_of(image, EnvironmentSampling::kComplete);
   Rows batch(1 << 18);
-  ORRERY_BEST(draw_numbers)(kernel::SamplerKind::kSobol, 0, 0, batch);
-  ORRERY_BEST(sample_double)(map.view(), batch);
+  ORRERY_BEST_INSTANCE(draw_numbers)(kernel::SamplerKind::kSobol, 0, 0, batch);
+  ORRERY_BEST_INSTANCE(sample_double)(map.view(), batch);
   double sum = 0;
   for (const double inverse : batch.inverse) sum += inverse;
   EXPECT_NEAR(sum / static_cast<double>(batch.u.size()), 4 * kPi, 0.02);
@@ -291,10 +283,10 @@ TEST(StatisticalEnvironment, TheSunIsSampledByItsShareOfThePower) {
   constexpr int kSide = 16;
   std::vector<std::uint64_t> counts(kSide * kSide);
   Rows batch(1 << 18);
-  ORRERY_BEST(draw_numbers)(kernel::SamplerKind::kIndependent, 0, 0, batch);
-  ORRERY_BEST(sample_double)(env, batch);
+  ORRERY_BEST_INSTANCE(draw_numbers)(kernel::SamplerKind::kIndependent, 0, 0, batch);
+  ORRERY_BEST_INSTANCE(sample_double)(env, batch);
   Rows judged = batch;
-  ORRERY_BEST(judge_double)(env, judged);
+  ORRERY_BEST_INSTANCE(judge_double)(env, judged);
   std::uint64_t inside = 0;
   const auto dot = [&](const math::Vec3d& a, std::size_t i) {
     return a.x * batch.x[i] + a.y * batch.y[i] + a.z * batch.z[i];
@@ -322,8 +314,8 @@ TEST(StatisticalEnvironment, TheSunIsSampledByItsShareOfThePower) {
 TEST(StatisticalEnvironment, RadianceIsAlmostProportionalToTheDensity) {
   const EnvironmentMap map = map_of(hot_image(512, 256, 1e9F), EnvironmentSampling::kCompensated);
   Rows batch(1 << 16);
-  ORRERY_BEST(draw_numbers)(kernel::SamplerKind::kIndependent, 0, 0, batch);
-  ORRERY_BEST(sample_double)(map.view(), batch);
+  ORRERY_BEST_INSTANCE(draw_numbers)(kernel::SamplerKind::kIndependent, 0, 0, batch);
+  ORRERY_BEST_INSTANCE(sample_double)(map.view(), batch);
   double sum = 0, squares = 0;
   for (std::size_t i = 0; i < batch.u.size(); ++i) {
     const double excess = (batch.r[i] - 2) * batch.inverse[i];
@@ -345,9 +337,9 @@ TEST(StatisticalEnvironment, SamplesStayStratified) {
     std::vector<double> means;
     for (std::uint32_t run = 0; run < kRuns; ++run) {
       Rows batch(kSamples);
-      ORRERY_BEST(draw_numbers)
+      ORRERY_BEST_INSTANCE(draw_numbers)
       (kind == 0 ? kernel::SamplerKind::kSobol : kernel::SamplerKind::kIndependent, run, 0, batch);
-      ORRERY_BEST(sample_double)(map.view(), batch);
+      ORRERY_BEST_INSTANCE(sample_double)(map.view(), batch);
       double sum = 0;
       for (std::size_t i = 0; i < kSamples; ++i)
         sum += std::max(batch.y[i], 0.0) * (batch.r[i] + batch.g[i] + batch.b[i]) * batch.inverse[i];
@@ -365,10 +357,10 @@ TEST(StatisticalEnvironment, BitsDoNotDependOnLanesOrInstructionSet) {
   image->sun.radiance = {4e4, 3e4, 2e4};
   const EnvironmentMap map = map_of(image, EnvironmentSampling::kCompensated);
   Rows first(1 << 14);
-  ORRERY_BEST(draw_numbers)(kernel::SamplerKind::kIndependent, 0, 0, first);
+  ORRERY_BEST_INSTANCE(draw_numbers)(kernel::SamplerKind::kIndependent, 0, 0, first);
   Rows one = first;
-  ORRERY_BEST(sample_double)(map.view(), first);
-  ORRERY_BEST(sample_one)(map.view(), one);
+  ORRERY_BEST_INSTANCE(sample_double)(map.view(), first);
+  ORRERY_BEST_INSTANCE(sample_one)(map.view(), one);
   EXPECT_EQ(one.x, first.x);
   EXPECT_EQ(one.r, first.r);
   EXPECT_EQ(one.inverse, first.inverse);
@@ -377,7 +369,7 @@ TEST(StatisticalEnvironment, BitsDoNotDependOnLanesOrInstructionSet) {
       continue;  // without fused operations
     ASSERT_TRUE(kernel::limit_isa(isa));
     Rows other = first;
-    ORRERY_BEST(sample_double)(map.view(), other);
+    ORRERY_BEST_INSTANCE(sample_double)(map.view(), other);
     EXPECT_EQ(other.x, first.x) << isa;
     EXPECT_EQ(other.y, first.y) << isa;
     EXPECT_EQ(other.z, first.z) << isa;
@@ -392,11 +384,11 @@ TEST(StatisticalEnvironment, SinglePrecisionAgreesWithDouble) {
   image->sun = low_sun();
   const EnvironmentMap map = map_of(image, EnvironmentSampling::kCompensated);
   Rows wide(1 << 14);
-  ORRERY_BEST(draw_numbers)(kernel::SamplerKind::kIndependent, 0, 0, wide);
-  ORRERY_BEST(sample_float)(map.view(), wide);  // directions that a float holds
+  ORRERY_BEST_INSTANCE(draw_numbers)(kernel::SamplerKind::kIndependent, 0, 0, wide);
+  ORRERY_BEST_INSTANCE(sample_float)(map.view(), wide);  // directions that a float holds
   Rows narrow = wide;
-  ORRERY_BEST(judge_double)(map.view(), wide);
-  ORRERY_BEST(judge_float)(map.view(), narrow);
+  ORRERY_BEST_INSTANCE(judge_double)(map.view(), wide);
+  ORRERY_BEST_INSTANCE(judge_float)(map.view(), narrow);
   std::size_t on_the_rim = 0;
   for (std::size_t i = 0; i < wide.u.size(); ++i) {
     if (std::abs(narrow.r[i] - wide.r[i]) > 1e4) {  // the rim of the sun

@@ -1,11 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // The result of a kernel function in its first lane. Compiled once per instruction set.
-#if defined(ORRERY_SUPPORT_FIRST_LANE_INL_H_) == defined(HWY_TARGET_TOGGLE)
-#ifdef ORRERY_SUPPORT_FIRST_LANE_INL_H_
-#undef ORRERY_SUPPORT_FIRST_LANE_INL_H_
-#else
-#define ORRERY_SUPPORT_FIRST_LANE_INL_H_
-#endif
+#pragma once
 
 #include <hwy/highway.h>
 
@@ -23,4 +18,3 @@ math::Vec3d first_lane(const math::HWY_NAMESPACE::Vec3<V>& v) {
 
 }  // namespace orrery::test::HWY_NAMESPACE
 HWY_AFTER_NAMESPACE();
-#endif

@@ -1,16 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "support/intersect_batch.h"
 
-#include "support/every_set.h"
-
-#undef HWY_TARGET_INCLUDE
-#define HWY_TARGET_INCLUDE "support/intersect_batch.cpp"
-#include <hwy/foreach_target.h>  // IWYU pragma: keep
-// After foreach_target:
 #include <hwy/highway.h>
 
 #include "kernel/intersect-inl.h"
-#include "support/best.h"
+#include "math/dispatch.h"
 
 HWY_BEFORE_NAMESPACE();
 namespace orrery::test::HWY_NAMESPACE {
@@ -82,30 +76,31 @@ void set_lane(kernel::RayPacket<double>& p, int lane, const double* base, const 
 }  // namespace orrery::test::HWY_NAMESPACE
 HWY_AFTER_NAMESPACE();
 
-#if HWY_ONCE
+#ifndef ORRERY_OTHER_SET
 namespace orrery::test {
 
-HWY_EXPORT(exact_one);
-HWY_EXPORT(exact_all);
-HWY_EXPORT(book_all);
-HWY_EXPORT(set_lane);
+using IntersectSpheres = void(const kernel::RayPacket<double>& packet, const kernel::Sphere* spheres,
+                              const std::uint64_t* ids, Intersections& out);
+ORRERY_DECLARE_INSTANCES(IntersectSpheres exact_one, exact_all, book_all;
+                         void set_lane(kernel::RayPacket<double>& packet, int lane, const double* base,
+                                       const double* offset, const double* direction, std::uint64_t self);)
 
 Intersections intersect_batch(kernel::Precision precision, test::Lanes lanes, const kernel::RayPacket<double>& packet,
                               const kernel::Sphere* spheres, const std::uint64_t* ids) {
   Intersections out;
   if (precision == kernel::Precision::kBook) {
-    ORRERY_BEST(book_all)(packet, spheres, ids, out);
+    ORRERY_BEST_INSTANCE(book_all)(packet, spheres, ids, out);
   } else if (lanes == test::Lanes::kOne) {
-    ORRERY_BEST(exact_one)(packet, spheres, ids, out);
+    ORRERY_BEST_INSTANCE(exact_one)(packet, spheres, ids, out);
   } else {
-    ORRERY_BEST(exact_all)(packet, spheres, ids, out);
+    ORRERY_BEST_INSTANCE(exact_all)(packet, spheres, ids, out);
   }
   return out;
 }
 
 void set_ray(kernel::RayPacket<double>& packet, int lane, const double (&base)[3], const double (&offset)[3],
              const double (&direction)[3], std::uint64_t self) {
-  ORRERY_BEST(set_lane)(packet, lane, base, offset, direction, self);
+  ORRERY_BEST_INSTANCE(set_lane)(packet, lane, base, offset, direction, self);
 }
 
 }  // namespace orrery::test

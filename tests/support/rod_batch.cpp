@@ -1,16 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "support/rod_batch.h"
 
-#include "support/every_set.h"
-
-#undef HWY_TARGET_INCLUDE
-#define HWY_TARGET_INCLUDE "support/rod_batch.cpp"
-#include <hwy/foreach_target.h>  // IWYU pragma: keep
-// After foreach_target:
 #include <hwy/highway.h>
 
 #include "kernel/rod-inl.h"
-#include "support/best.h"
+#include "math/dispatch.h"
 
 HWY_BEFORE_NAMESPACE();
 namespace orrery::test::HWY_NAMESPACE {
@@ -98,20 +92,18 @@ void rods_fast_all(const kernel::RayPacket<double>& p, const kernel::Rod* r, Rod
 }  // namespace orrery::test::HWY_NAMESPACE
 HWY_AFTER_NAMESPACE();
 
-#if HWY_ONCE
+#ifndef ORRERY_OTHER_SET
 namespace orrery::test {
 
-HWY_EXPORT(rods_exact_one);
-HWY_EXPORT(rods_exact_all);
-HWY_EXPORT(rods_fast_one);
-HWY_EXPORT(rods_fast_all);
+using IntersectRods = void(const kernel::RayPacket<double>& packet, const kernel::Rod* rods, RodHits& out);
+ORRERY_DECLARE_INSTANCES(IntersectRods rods_exact_one, rods_exact_all, rods_fast_one, rods_fast_all)
 
 RodHits intersect_rods(test::Lanes lanes, const kernel::RayPacket<double>& packet, const kernel::Rod* rods) {
   RodHits out{};
   if (lanes == test::Lanes::kOne) {
-    ORRERY_BEST(rods_exact_one)(packet, rods, out);
+    ORRERY_BEST_INSTANCE(rods_exact_one)(packet, rods, out);
   } else {
-    ORRERY_BEST(rods_exact_all)(packet, rods, out);
+    ORRERY_BEST_INSTANCE(rods_exact_all)(packet, rods, out);
   }
   return out;
 }
@@ -119,9 +111,9 @@ RodHits intersect_rods(test::Lanes lanes, const kernel::RayPacket<double>& packe
 RodHits intersect_rods_fast(test::Lanes lanes, const kernel::RayPacket<double>& packet, const kernel::Rod* rods) {
   RodHits out{};
   if (lanes == test::Lanes::kOne) {
-    ORRERY_BEST(rods_fast_one)(packet, rods, out);
+    ORRERY_BEST_INSTANCE(rods_fast_one)(packet, rods, out);
   } else {
-    ORRERY_BEST(rods_fast_all)(packet, rods, out);
+    ORRERY_BEST_INSTANCE(rods_fast_all)(packet, rods, out);
   }
   return out;
 }

@@ -11,22 +11,15 @@
 #include <string>
 #include <vector>
 
-#include "support/every_set.h"
-
-#undef HWY_TARGET_INCLUDE
-#define HWY_TARGET_INCLUDE "unit/kernel/texture_test.cpp"
-#include <hwy/foreach_target.h>  // IWYU pragma: keep
-// After foreach_target:
 #include <hwy/highway.h>
 
 #include "kernel/isa.h"
 #include "kernel/texture-inl.h"
-#include "support/best.h"
+#include "math/dispatch.h"
 #include "support/quad_real.h"
 
 namespace orrery::kernel {
-#ifndef ORRERY_UNIT_KERNEL_TEXTURE_TEST_CASE_
-#define ORRERY_UNIT_KERNEL_TEXTURE_TEST_CASE_
+
 /// A ray at a sphere, and the colour of the texture at the hit.
 struct TextureLook {
   double origin[3] = {}, direction[3] = {};
@@ -40,7 +33,7 @@ struct SolidPoint {
   double footprint2 = 0;
   double rgb[3] = {};
 };
-#endif
+
 }  // namespace orrery::kernel
 
 HWY_BEFORE_NAMESPACE();
@@ -101,18 +94,16 @@ void evaluate_one(const Texture& t, std::vector<SolidPoint>& v) { evaluate_all(h
 }  // namespace orrery::kernel::HWY_NAMESPACE
 HWY_AFTER_NAMESPACE();
 
-#if HWY_ONCE
+#ifndef ORRERY_OTHER_SET
 namespace orrery::kernel {
+
+using Look = void(const Texture& texture, std::vector<TextureLook>& looks);
+using Evaluate = void(const Texture& texture, std::vector<SolidPoint>& points);
+ORRERY_DECLARE_INSTANCES(Look look_exact, look_book, look_fast; Evaluate evaluate_double, evaluate_float, evaluate_one)
+
 namespace {
 
 using test::QuadReal;
-
-HWY_EXPORT(look_exact);
-HWY_EXPORT(look_book);
-HWY_EXPORT(look_fast);
-HWY_EXPORT(evaluate_double);
-HWY_EXPORT(evaluate_float);
-HWY_EXPORT(evaluate_one);
 
 Texture checker(double scale) {
   Texture out;
@@ -151,7 +142,7 @@ double value_at(const Texture& texture, double x, double y, double z, double bas
   one[0].rest[0] = x;
   one[0].rest[1] = y;
   one[0].rest[2] = z;
-  ORRERY_BEST(evaluate_double)(texture, one);
+  ORRERY_BEST_INSTANCE(evaluate_double)(texture, one);
   return one[0].rgb[0];
 }
 
@@ -179,7 +170,7 @@ TEST(KernelTexture, CheckersNeedNoIntegers) {
     for (const double x : {-1e18, 1e18}) {
       std::vector<SolidPoint> one(1);
       one[0].base[0] = x;
-      ORRERY_BEST(evaluate_float)(checker(scale), one);
+      ORRERY_BEST_INSTANCE(evaluate_float)(checker(scale), one);
       EXPECT_TRUE(one[0].rgb[0] == 0 || one[0].rgb[0] == 1);
     }
 }
@@ -283,11 +274,11 @@ TEST(KernelTexture, CellsOfCheckersAtAllRadii) {
       for (int i = 0; i < 4000; ++i) looks.push_back(random_look(random, radius, 3 * radius, 10 * radius));
       std::size_t counted = 0;
       const auto of_radius = [&](const TextureLook&) { return radius; };
-      EXPECT_EQ(worst_cell(looks, radius / 20, ORRERY_BEST(look_exact), of_radius, counted), 0) << radius;
+      EXPECT_EQ(worst_cell(looks, radius / 20, ORRERY_BEST_INSTANCE(look_exact), of_radius, counted), 0) << radius;
       EXPECT_GT(counted, 2000U);
-      const double exact = worst_cell(looks, radius * 1e-12, ORRERY_BEST(look_exact), of_radius, counted);
+      const double exact = worst_cell(looks, radius * 1e-12, ORRERY_BEST_INSTANCE(look_exact), of_radius, counted);
       EXPECT_LT(exact, 5e-14) << radius;
-      const double fast = worst_cell(looks, radius * 1e-3, ORRERY_BEST(look_fast), of_radius, counted);
+      const double fast = worst_cell(looks, radius * 1e-3, ORRERY_BEST_INSTANCE(look_fast), of_radius, counted);
       EXPECT_LT(fast, 1e-5) << radius;
       std::printf("%s, radius %g: exact %.1e, fast %.1e radii\n", isa.c_str(), radius, exact, fast);
     }
@@ -313,11 +304,11 @@ TEST(KernelTexture, CellsOfCheckersOnAGroundOfAnyRadius) {
         looks.push_back(look);
       }
       std::size_t counted = 0;
-      EXPECT_EQ(worst_cell(looks, 0.32, ORRERY_BEST(look_exact), reach, counted), 0) << radius;
+      EXPECT_EQ(worst_cell(looks, 0.32, ORRERY_BEST_INSTANCE(look_exact), reach, counted), 0) << radius;
       EXPECT_GT(counted, 1500U);
-      const double exact = worst_cell(looks, 1e-13, ORRERY_BEST(look_exact), reach, counted);
+      const double exact = worst_cell(looks, 1e-13, ORRERY_BEST_INSTANCE(look_exact), reach, counted);
       EXPECT_LT(exact, 1e-15) << radius;
-      const double fast = worst_cell(looks, 1e-3, ORRERY_BEST(look_fast), reach, counted);
+      const double fast = worst_cell(looks, 1e-3, ORRERY_BEST_INSTANCE(look_fast), reach, counted);
       EXPECT_LT(fast, 1e-6) << radius;
       std::printf("%s, ground %g: exact %.1e, fast %.1e of the distance\n", isa.c_str(), radius, exact, fast);
     }
@@ -329,7 +320,7 @@ TEST(KernelTexture, TheBooksPrecisionUsesTheBooksPoint) {
   looks[0].origin[2] = 3;
   looks[0].direction[2] = -1;
   looks[0].sphere = {0, 0, 0, 1};
-  ORRERY_BEST(look_book)(checker(0.75), looks);
+  ORRERY_BEST_INSTANCE(look_book)(checker(0.75), looks);
   EXPECT_EQ(looks[0].rgb[0], 1);  // z = 1 is in cell 1, x = y = 0 in cells 0
 }
 
@@ -350,7 +341,7 @@ TEST(KernelTexture, NoiseIsZeroAtLatticePointsAndBounded) {
   for (int x = -3; x < 3; ++x) EXPECT_EQ(value_at(texture, x / 4.0, 0.25, -0.75), 0.5);
   double lowest = 1, highest = 0, sum = 0;
   std::vector<SolidPoint> points = random_points(1000);
-  ORRERY_BEST(evaluate_double)(texture, points);
+  ORRERY_BEST_INSTANCE(evaluate_double)(texture, points);
   for (const SolidPoint& p : points) {
     lowest = std::min(lowest, p.rgb[0]);
     highest = std::max(highest, p.rgb[0]);
@@ -416,9 +407,9 @@ TEST(KernelTexture, LanesAndPrecisionsAgree) {
        {TextureKind::kChecker, TextureKind::kNoise, TextureKind::kTurbulence, TextureKind::kMarble}) {
     const Texture texture = noise(kind, 4);
     std::vector<SolidPoint> wide = random_points(10), one = wide, narrow = wide;
-    ORRERY_BEST(evaluate_double)(texture, wide);
-    ORRERY_BEST(evaluate_one)(texture, one);
-    ORRERY_BEST(evaluate_float)(texture, narrow);
+    ORRERY_BEST_INSTANCE(evaluate_double)(texture, wide);
+    ORRERY_BEST_INSTANCE(evaluate_one)(texture, one);
+    ORRERY_BEST_INSTANCE(evaluate_float)(texture, narrow);
     double worst = 0;
     for (std::size_t i = 0; i < wide.size(); ++i) {
       ASSERT_EQ(wide[i].rgb[0], one[i].rgb[0]);
@@ -450,7 +441,7 @@ TEST(KernelTexture, ImagesAreSeenFromOutsideAsInTheBook) {
     one[0].outward[0] = x;
     one[0].outward[1] = y;
     one[0].outward[2] = z;
-    ORRERY_BEST(evaluate_double)(texture, one);
+    ORRERY_BEST_INSTANCE(evaluate_double)(texture, one);
     return one[0];
   };
   EXPECT_NEAR(seen(-1, 0, 0).rgb[0], 3.5, 1e-12);  // between the last and the first column

@@ -8,16 +8,10 @@
 #include <random>
 #include <vector>
 
-#include "support/every_set.h"
-
-#undef HWY_TARGET_INCLUDE
-#define HWY_TARGET_INCLUDE "unit/math/functions_test.cpp"
-#include <hwy/foreach_target.h>  // IWYU pragma: keep
-// After foreach_target:
 #include <hwy/highway.h>
 
+#include "math/dispatch.h"
 #include "math/functions-inl.h"
-#include "support/best.h"
 
 HWY_BEFORE_NAMESPACE();
 namespace orrery::math::HWY_NAMESPACE {
@@ -55,16 +49,16 @@ void sin_cos_float(const float* u, float* s, float* c, std::size_t n) { sin_cos_
 }  // namespace orrery::math::HWY_NAMESPACE
 HWY_AFTER_NAMESPACE();
 
-#if HWY_ONCE
+#ifndef ORRERY_OTHER_SET
 namespace orrery::math {
-namespace {
 
-HWY_EXPORT(sin_cos_double);
-HWY_EXPORT(sin_cos_float);
-HWY_EXPORT(angle_double);
-HWY_EXPORT(angle_float);
-HWY_EXPORT(product_errors_double);
-HWY_EXPORT(product_errors_float);
+using OfDoubles = void(const double* a, const double* b, double* out, std::size_t count);
+using OfFloats = void(const float* a, const float* b, float* out, std::size_t count);
+ORRERY_DECLARE_INSTANCES(OfDoubles angle_double, product_errors_double; OfFloats angle_float, product_errors_float;
+                         void sin_cos_double(const double* u, double* sine, double* cosine, std::size_t count);
+                         void sin_cos_float(const float* u, float* sine, float* cosine, std::size_t count);)
+
+namespace {
 
 constexpr std::size_t kCount = 1 << 16;
 constexpr long double kTwoPi = 6.283185307179586476925286766559005768L;
@@ -91,8 +85,8 @@ double worst_turn_error(Function function) {
 }
 
 TEST(MathFunctions, SineAndCosineOfATurn) {
-  EXPECT_LE(worst_turn_error<double>(ORRERY_BEST(sin_cos_double)), 2.3e-16);
-  EXPECT_LE(worst_turn_error<float>(ORRERY_BEST(sin_cos_float)), 1.2e-7);
+  EXPECT_LE(worst_turn_error<double>(ORRERY_BEST_INSTANCE(sin_cos_double)), 2.3e-16);
+  EXPECT_LE(worst_turn_error<float>(ORRERY_BEST_INSTANCE(sin_cos_float)), 1.2e-7);
 }
 
 template <class T, class Function>
@@ -115,8 +109,8 @@ TEST(MathFunctions, ErrorsOfProductsAreExactOnEveryTarget) {
   for (; targets != 0; targets &= targets - 1) {
     const std::int64_t target = targets & -targets;
     target_choice().limit(target);
-    expect_exact_product_errors<double>(ORRERY_BEST(product_errors_double), target);
-    expect_exact_product_errors<float>(ORRERY_BEST(product_errors_float), target);
+    expect_exact_product_errors<double>(ORRERY_BEST_INSTANCE(product_errors_double), target);
+    expect_exact_product_errors<float>(ORRERY_BEST_INSTANCE(product_errors_float), target);
   }
   target_choice().limit(-1);
 }
@@ -149,10 +143,10 @@ WorstErrors worst_angle_errors(Function function) {
 }
 
 TEST(MathFunctions, AngleOfAPoint) {
-  const WorstErrors wide = worst_angle_errors<double>(ORRERY_BEST(angle_double));
+  const WorstErrors wide = worst_angle_errors<double>(ORRERY_BEST_INSTANCE(angle_double));
   EXPECT_LE(wide.absolute, 6e-17);
   EXPECT_LE(wide.relative, 4e-16);
-  const WorstErrors narrow = worst_angle_errors<float>(ORRERY_BEST(angle_float));
+  const WorstErrors narrow = worst_angle_errors<float>(ORRERY_BEST_INSTANCE(angle_float));
   EXPECT_LE(narrow.absolute, 4e-8);
   EXPECT_LE(narrow.relative, 2e-7);
 }
@@ -161,14 +155,14 @@ TEST(MathFunctions, AnglesOfTheAxesAreExact) {
   const double x[16] = {0, 1, 0, -1, 0, 1, -1, -1, 1}, y[16] = {0, 0, 2, 0, -3, 1, 1, -1, -1};
   const double expected[9] = {0, 0, 0.25, 0.5, -0.25, 0.125, 0.375, -0.375, -0.125};
   double turn[16];
-  ORRERY_BEST(angle_double)(x, y, turn, 16);
+  ORRERY_BEST_INSTANCE(angle_double)(x, y, turn, 16);
   for (int i = 0; i < 9; ++i) EXPECT_EQ(turn[i], expected[i]) << x[i] << ", " << y[i];
 }
 
 TEST(MathFunctions, QuarterTurnsAreExact) {
   const double u[8] = {0, 0.25, 0.5, 0.75, 1, 0.125, 0, 0};
   double s[8], c[8];
-  ORRERY_BEST(sin_cos_double)(u, s, c, 8);
+  ORRERY_BEST_INSTANCE(sin_cos_double)(u, s, c, 8);
   const double sine[5] = {0, 1, 0, -1, 0}, cosine[5] = {1, 0, -1, 0, 1};
   for (int i = 0; i < 5; ++i) {
     EXPECT_EQ(s[i], sine[i]) << u[i];
