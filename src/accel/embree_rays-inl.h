@@ -7,7 +7,6 @@
 #include <algorithm>
 #include <cstddef>
 #include <cstdint>
-#include <iterator>
 #include <limits>
 
 #include "accel/embree_scene.h"
@@ -21,6 +20,9 @@ namespace orrery::accel::HWY_NAMESPACE {
 namespace hn = hwy::HWY_NAMESPACE;
 namespace k = kernel::HWY_NAMESPACE;
 using namespace math::HWY_NAMESPACE;  // NOLINT(google-build-using-namespace): SIMD vectors of another room
+using k::bits_of;
+using k::SetBits;
+using k::store_floats;
 
 /// Rays per Embree packet: the number of floats in a register.
 constexpr int kWidth = static_cast<int>(hn::MaxLanes(hn::ScalableTag<float>()));
@@ -177,26 +179,6 @@ HWY_INLINE void intersect_rod(D d, const EmbreeScene& scene, const Packet& packe
                              set(k::IdTag<D>(), scene.rods.id(rod)), lanes, found);
 }
 
-/// Stores lanes as floats.
-template <class D>
-HWY_INLINE void store_float(D d, hn::Vec<D> value, float* to) {
-  const hn::Rebind<float, D> df;
-  if constexpr (sizeof(hn::TFromD<D>) == 8) {
-    hn::StoreU(hn::DemoteTo(df, value), df, to);
-  } else {
-    hn::StoreU(value, df, to);
-  }
-  (void)d;
-}
-
-/// Converts a mask to one bit per lane.
-template <class D>
-HWY_INLINE unsigned bits_of(D d, hn::Mask<D> mask) {
-  std::uint8_t bytes[8] = {};
-  hn::StoreMaskBits(d, mask, bytes);
-  return static_cast<unsigned>(bytes[0]) | static_cast<unsigned>(bytes[1]) << 8;
-}
-
 /// Converts one bit per lane to a mask.
 template <class D>
 HWY_INLINE hn::Mask<D> mask_of(D d, unsigned lanes) {
@@ -205,24 +187,6 @@ HWY_INLINE hn::Mask<D> mask_of(D d, unsigned lanes) {
   const auto bit = hn::Shl(hn::Set(du, U{1}), hn::Iota(du, 0));
   return hn::RebindMask(d, hn::TestBit(hn::Set(du, U{lanes}), bit));
 }
-
-/// The bits that are set in a word, ascending. Compilers inline the body of a loop over them, unlike a lambda.
-class SetBits {
- public:
-  struct Iterator {
-    std::uint64_t rest;
-
-    HWY_INLINE int operator*() const { return static_cast<int>(hwy::Num0BitsBelowLS1Bit_Nonzero64(rest)); }
-    HWY_INLINE void operator++() { rest &= rest - 1; }
-    HWY_INLINE bool operator!=(std::default_sentinel_t) const { return rest != 0; }
-  };
-  HWY_INLINE explicit SetBits(std::uint64_t bits) : bits_(bits) {}
-  HWY_INLINE Iterator begin() const { return {bits_}; }
-  HWY_INLINE std::default_sentinel_t end() const { return {}; }
-
- private:
-  std::uint64_t bits_;
-};
 
 /// Converts Embree's valid flags to a mask.
 template <class D>
@@ -301,14 +265,14 @@ HWY_INLINE void set_rays(EmbreeQuery<Packet>& query, EmbreeRay& rays, int* valid
     }
     const auto box = to_box_space(d, ray, scene.frame);
     const auto limit = far_limits(d, distance, scene.frame.scale, box.start);
-    store_float(d, box.origin.x, rays.org_x + v);
-    store_float(d, box.origin.y, rays.org_y + v);
-    store_float(d, box.origin.z, rays.org_z + v);
-    store_float(d, ray.direction.x, rays.dir_x + v);
-    store_float(d, ray.direction.y, rays.dir_y + v);
-    store_float(d, ray.direction.z, rays.dir_z + v);
-    store_float(d, limit, rays.tfar + v);
-    if (scene.moves()) store_float(d, hn::Load(d, packet.time + first), rays.time + v);
+    store_floats(d, box.origin.x, rays.org_x + v);
+    store_floats(d, box.origin.y, rays.org_y + v);
+    store_floats(d, box.origin.z, rays.org_z + v);
+    store_floats(d, ray.direction.x, rays.dir_x + v);
+    store_floats(d, ray.direction.y, rays.dir_y + v);
+    store_floats(d, ray.direction.z, rays.dir_z + v);
+    store_floats(d, limit, rays.tfar + v);
+    if (scene.moves()) store_floats(d, hn::Load(d, packet.time + first), rays.time + v);
     hn::Store(box.start, d, query.start + v);
     // If a known hit is in front of all boxes, there is nothing to find, and Embree does not accept a negative limit.
     const auto active = hn::FirstN(d, static_cast<std::size_t>(std::max(0, packet.count - first)));

@@ -445,7 +445,7 @@ HWY_INLINE void intersect_candidates(const EmbreeQuery<Packet>& query, unsigned 
       const unsigned hits = bits_of(d, found.is_new);
       if (hits == 0) continue;
       alignas(64) float limits[kWidth];
-      store_float(d, found.limit(d, query, v), limits);
+      store_floats(d, found.limit(d, query, v), limits);
       for (const int i : SetBits(hits)) rays[v + i].limit = limits[i];
       if (Packet::kIsShadow) rest &= ~(hits << v);
     }

@@ -150,28 +150,22 @@ HWY_INLINE void add_coverage(BatchOf<T>& batch, int count, const SceneView& scen
 }
 
 /// Raises the largest samples of pixels. Bad samples do not count. Not inlined.
-template <class D, class T = hn::TFromD<D>>
-HWY_NOINLINE void raise_largest(D d, const BatchOf<T>& batch, int count, const SceneView& scene, const Tile& tile) {
+template <class T>
+HWY_NOINLINE void raise_largest(const BatchOf<T>& batch, int count, const SceneView& scene, const Tile& tile) {
   PathRun<T> run(batch, tile);
   T most = 0;
   const auto raise = [&](int last) {
     float& largest = tile.largest[tile.index(place_of(batch.pixel[last], scene))];
     largest = std::max(largest, static_cast<float>(most));
   };
-  HWY_ALIGN T sums[hn::MaxLanes(D())];
-  for (int v = 0; v < count; v += static_cast<int>(hn::Lanes(d))) {
-    const auto light = load3(d, batch.radiance, v);
-    const auto is_valid = [&](hn::Vec<D> value) { return hn::Abs(value) <= set(d, kLargestSample); };
-    const auto are_valid = hn::And(hn::And(is_valid(light.x), is_valid(light.y)), is_valid(light.z));
-    hn::Store(hn::IfThenElseZero(are_valid, light.x + light.y + light.z), d, sums);
-    const int lanes = std::min(static_cast<int>(hn::Lanes(d)), count - v);
-    for (int lane = 0; lane < lanes; ++lane) {
-      if (run.ends_before(v + lane)) {
-        raise(v + lane - 1);
-        most = 0;
-      }
-      most = std::max(most, sums[lane]);
+  for (int i = 0; i < count; ++i) {
+    if (run.ends_before(i)) {
+      raise(i - 1);
+      most = 0;
     }
+    const T r = batch.radiance[0][i], g = batch.radiance[1][i], b = batch.radiance[2][i];
+    if (is_valid_sample(static_cast<double>(r), static_cast<double>(g), static_cast<double>(b)))
+      most = std::max(most, r + g + b);
   }
   raise(count - 1);
 }

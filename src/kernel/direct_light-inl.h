@@ -222,7 +222,7 @@ HWY_INLINE void load_waiting_rays(D d, const SceneView& scene, const Waiting& ra
       hn::Store(hn::LoadU(du, rays.target + i), du, packet.target + v);
     }
     if (scene.features.motion) hn::Store(hn::LoadU(d, rays.time + i), d, packet.time + v);
-    if (scene.features.opacity) store_thresholds(d, hn::LoadU(d, rays.threshold + i), packet.threshold + v);
+    if (scene.features.opacity) store_floats(d, hn::LoadU(d, rays.threshold + i), packet.threshold + v);
   }
 }
 

@@ -7,6 +7,7 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <iterator>
 #include <type_traits>
 
 #include "kernel/intersect-inl.h"
@@ -144,13 +145,56 @@ HWY_INLINE void gather_spheres(D d, const SphereArray& spheres, IdOfLane id_of_l
       d, [&](std::size_t i) { return &row[i].x; }, out);
 }
 
+/// Loads a float per lane.
+template <class D>
+HWY_INLINE hn::Vec<D> load_floats(D d, const float* from) {
+  const auto narrow = hn::LoadU(hn::Rebind<float, D>(), from);
+  if constexpr (sizeof(hn::TFromD<D>) == 8)
+    return hn::PromoteTo(d, narrow);
+  else
+    return narrow;
+}
+
+/// Stores lanes as floats.
+template <class D>
+HWY_INLINE void store_floats(D, hn::Vec<D> value, float* to) {
+  const hn::Rebind<float, D> narrow;
+  if constexpr (sizeof(hn::TFromD<D>) == 8)
+    hn::StoreU(hn::DemoteTo(narrow, value), narrow, to);
+  else
+    hn::StoreU(value, narrow, to);
+}
+
+/// Converts a mask to one bit per lane.
+template <class D>
+HWY_INLINE unsigned bits_of(D d, hn::Mask<D> mask) {
+  std::uint8_t bytes[8] = {};
+  hn::StoreMaskBits(d, mask, bytes);
+  return static_cast<unsigned>(bytes[0]) | static_cast<unsigned>(bytes[1]) << 8;
+}
+
+/// The bits that are set in a word, ascending. Compilers inline the body of a loop over them, unlike a lambda.
+class SetBits {
+ public:
+  struct Iterator {
+    std::uint64_t rest;
+
+    HWY_INLINE int operator*() const { return static_cast<int>(hwy::Num0BitsBelowLS1Bit_Nonzero64(rest)); }
+    HWY_INLINE void operator++() { rest &= rest - 1; }
+    HWY_INLINE bool operator!=(std::default_sentinel_t) const { return rest != 0; }
+  };
+  HWY_INLINE explicit SetBits(std::uint64_t bits) : bits_(bits) {}
+  HWY_INLINE Iterator begin() const { return {bits_}; }
+  HWY_INLINE std::default_sentinel_t end() const { return {}; }
+
+ private:
+  std::uint64_t bits_;
+};
+
 /// Calls `what(lane)` for each set lane.
 template <class D, class Do>
 HWY_INLINE void each_lane(D d, hn::Mask<D> lanes, Do what) {
-  std::uint8_t bytes[8] = {};
-  hn::StoreMaskBits(d, lanes, bytes);
-  for (unsigned bits = bytes[0] | unsigned{bytes[1]} << 8; bits != 0; bits &= bits - 1)
-    what(static_cast<int>(hwy::Num0BitsBelowLS1Bit_Nonzero32(bits)));
+  for (const int lane : SetBits(bits_of(d, lanes))) what(lane);
 }
 
 /// For each lane mask, the permutation that moves the set lanes to the front. The remaining entries are unspecified.

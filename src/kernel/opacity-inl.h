@@ -6,39 +6,16 @@
 
 #include <cstddef>
 
+#include "kernel/gather-inl.h"
 #include "kernel/ray_packet.h"
-#include "math/lanes-inl.h"
 
 HWY_BEFORE_NAMESPACE();
 namespace orrery::kernel::HWY_NAMESPACE {
 
-namespace hn = hwy::HWY_NAMESPACE;
-using namespace math::HWY_NAMESPACE;  // NOLINT(google-build-using-namespace): SIMD vectors of another room
-
-/// The thresholds of rays, one per lane; see PacketRays::threshold.
-template <class D>
-HWY_INLINE hn::Vec<D> load_thresholds(D d, const float* from) {
-  const auto narrow = hn::LoadU(hn::Rebind<float, D>(), from);
-  if constexpr (sizeof(hn::TFromD<D>) == 8)
-    return hn::PromoteTo(d, narrow);
-  else
-    return narrow;
-}
-
-/// Stores thresholds, which floats hold exactly.
-template <class D>
-HWY_INLINE void store_thresholds(D, hn::Vec<D> thresholds, float* to) {
-  const hn::Rebind<float, D> narrow;
-  if constexpr (sizeof(hn::TFromD<D>) == 8)
-    hn::StoreU(hn::DemoteTo(narrow, thresholds), narrow, to);
-  else
-    hn::StoreU(thresholds, narrow, to);
-}
-
 /// Lanes of the rays of a packet, from `first` on, to which an object is visible.
 template <class D, class Packet>
 HWY_INLINE hn::Mask<D> visible_lanes(D d, const Packet& packet, int first, float opacity) {
-  return load_thresholds(d, packet.threshold + first) < set(d, opacity);
+  return load_floats(d, packet.threshold + first) < set(d, opacity);
 }
 
 /// Those of the lanes in which an object is visible to a ray. Not inlined.
@@ -54,7 +31,7 @@ HWY_NOINLINE hn::Mask<D> visible_objects(D d, const float* thresholds, hn::Vec<h
   HWY_ALIGN hn::TFromD<D> of[hn::MaxLanes(D())];
   hn::Store(hn::IfThenElseZero(hn::RebindMask(du, lanes), ids), du, id);
   for (std::size_t i = 0; i < hn::Lanes(d); ++i) of[i] = hn::TFromD<D>{opacity[id[i]]};
-  return hn::And(lanes, load_thresholds(d, thresholds) < hn::Load(d, of));
+  return hn::And(lanes, load_floats(d, thresholds) < hn::Load(d, of));
 }
 
 }  // namespace orrery::kernel::HWY_NAMESPACE

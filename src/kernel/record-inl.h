@@ -34,10 +34,9 @@ class Recorder {
   HWY_INLINE Recorder(const SceneView& scene, const Tile& tile, Ids pixels, Ids samples)
       : scene_(scene), tile_(tile), pixels_(pixels), samples_(samples) {}
 
-  /// Initializes the members of new records that are read later but not written for every path.
-  HWY_INLINE void begin(D d, hn::Mask<D> active, hn::Mask<D> missed) {
+  /// Records paths without a first hit.
+  HWY_INLINE void no_hit(D d, hn::Mask<D> missed) {
     if (tile_.records == nullptr || !tile_.record_hits) return;
-    if (tile_.record_light) each(d, active, [](PathRecord& r, int) { std::fill_n(r.light, 3, 0.0); });
     each(d, missed, [](PathRecord& r, int) { r.object = kNone; });
   }
 

@@ -110,7 +110,7 @@ class TileLoop {
       for (depth_ = 0; alive > 0; ++depth_) alive = advance(alive);
       if (kLoop.full && tile_.covered != nullptr) add_coverage(paths_.batch, batch, scene_, tile_);
       deposit(d, paths_.batch, batch, scene_, tile_, counts_);
-      if (tile_.largest != nullptr) raise_largest(d, paths_.batch, batch, scene_, tile_);
+      if (tile_.largest != nullptr) raise_largest(paths_.batch, batch, scene_, tile_);
       if (kLoop.full) record_light(paths_.batch, batch, scene_, tile_);
     }
     return counts_;
@@ -187,7 +187,7 @@ class TileLoop {
         if (features().motion || features().opacity) {
           const auto numbers = numbers_of_path(d, scene_.sampler, pixels, samples);
           if (features().motion) hn::Store(numbers.time, d, packet.time + v);
-          if (features().opacity) store_thresholds(d, numbers.threshold, packet.threshold + v);
+          if (features().opacity) store_floats(d, numbers.threshold, packet.threshold + v);
         }
         if (depth_ == 0)
           load_camera_rays(pixels, samples, i, v, packet);

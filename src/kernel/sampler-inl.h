@@ -5,6 +5,11 @@
 
 #include <hwy/highway.h>
 
+#include <algorithm>
+#include <cstddef>
+#include <cstdint>
+#include <type_traits>
+
 #include "kernel/camera.h"
 #include "kernel/random-inl.h"
 #include "kernel/sobol_columns.h"
@@ -15,28 +20,16 @@ namespace orrery::kernel::HWY_NAMESPACE {
 /// Reverses the bits of each 32-bit lane.
 template <class D32, class V = hn::Vec<D32>>
 HWY_INLINE V reversed_bits(D32 d32, V v) {
-  if constexpr (hn::MaxLanes(D32()) * 4 >= 16) {
-    const hn::Repartition<std::uint8_t, D32> d8;
-    alignas(16) static constexpr std::uint8_t kNibble[16] = {0, 8, 4, 12, 2, 10, 6, 14, 1, 9, 5, 13, 3, 11, 7, 15};
-    alignas(16) static constexpr std::uint8_t kBytes[16] = {3, 2, 1, 0, 7, 6, 5, 4, 11, 10, 9, 8, 15, 14, 13, 12};
-    const auto table = hn::LoadDup128(d8, kNibble);
-    const auto low_mask = hn::Set(d8, std::uint8_t{15});
-    const auto bytes = hn::TableLookupBytes(hn::BitCast(d8, v), hn::LoadDup128(d8, kBytes));
-    const auto high = hn::And(hn::BitCast(d8, hn::ShiftRight<4>(hn::BitCast(d32, bytes))), low_mask);
-    const auto low = hn::TableLookupBytes(table, hn::And(bytes, low_mask));
-    return hn::Or(hn::BitCast(d32, hn::TableLookupBytes(table, high)), hn::ShiftLeft<4>(hn::BitCast(d32, low)));
-  } else {
-    const auto swap = [&](V x, auto shift, std::uint32_t mask) {
-      constexpr int kShift = decltype(shift)::value;
-      const V m = hn::Set(d32, mask);
-      return hn::Or(hn::And(hn::ShiftRight<kShift>(x), m), hn::ShiftLeft<kShift>(hn::And(x, m)));
-    };
-    v = swap(v, std::integral_constant<int, 1>(), 0x55555555u);
-    v = swap(v, std::integral_constant<int, 2>(), 0x33333333u);
-    v = swap(v, std::integral_constant<int, 4>(), 0x0f0f0f0fu);
-    v = swap(v, std::integral_constant<int, 8>(), 0x00ff00ffu);
-    return hn::Or(hn::ShiftRight<16>(v), hn::ShiftLeft<16>(v));
-  }
+  const hn::Repartition<std::uint8_t, D32> d8;
+  const hn::FixedTag<std::uint8_t, std::max<std::size_t>(16, hn::MaxLanes(d8))> whole;  // tables have 16 bytes
+  alignas(16) static constexpr std::uint8_t kNibble[16] = {0, 8, 4, 12, 2, 10, 6, 14, 1, 9, 5, 13, 3, 11, 7, 15};
+  alignas(16) static constexpr std::uint8_t kBytes[16] = {3, 2, 1, 0, 7, 6, 5, 4, 11, 10, 9, 8, 15, 14, 13, 12};
+  const auto table = hn::LoadDup128(whole, kNibble);
+  const auto low_mask = hn::Set(d8, std::uint8_t{15});
+  const auto bytes = hn::TableLookupBytes(hn::BitCast(d8, v), hn::LoadDup128(d8, kBytes));
+  const auto high = hn::And(hn::BitCast(d8, hn::ShiftRight<4>(hn::BitCast(d32, bytes))), low_mask);
+  const auto low = hn::TableLookupBytes(table, hn::And(bytes, low_mask));
+  return hn::Or(hn::BitCast(d32, hn::TableLookupBytes(table, high)), hn::ShiftLeft<4>(hn::BitCast(d32, low)));
 }
 
 /// Owen scrambling of bit-reversed numbers: flips every bit by a hash of the seed and the bits below it.

@@ -170,7 +170,7 @@ class Shader {
     if (kLoop.full && tile_.covered != nullptr && depth_ == 0) cover(at, i);
     if (records()) {
       at.history = hn::Load(du, stream_.history + i);
-      if (depth_ == 0) recorder(at).begin(d, active, at.missed);
+      if (depth_ == 0) recorder(at).no_hit(d, at.missed);
     }
     if (features().lit) at.pdf = hn::Load(d, stream_.pdf + i);
     at.cone = {hn::Zero(d), hn::Zero(d), hn::Zero(d)};
@@ -319,7 +319,7 @@ class Shader {
     chosen.store3(d, look.surface.offset, waiting.offset, n);
     chosen.store3(d, value, waiting.value, n);
     if (features().motion) chosen.store(d, hn::Load(d, at.times), waiting.time + n);
-    if (features().opacity) chosen.store(d, load_thresholds(d, at.thresholds), waiting.threshold + n);
+    if (features().opacity) chosen.store(d, load_floats(d, at.thresholds), waiting.threshold + n);
     chosen.store_ids(d, at.hits, waiting.self + n);
     chosen.store_ids(d, index_of(at), waiting.path + n);
     waiting.count += chosen.count();

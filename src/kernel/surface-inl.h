@@ -20,9 +20,8 @@ namespace orrery::kernel::HWY_NAMESPACE {
 template <class D>
 struct Lookup {
   Spheres<D> sphere;
-  Surface<D> surface;  ///< offset, normal and side are set later by reach_surface
+  Surface<D> surface;
   Vec3<hn::Vec<D>> albedo;
-  hn::Vec<D> eta_outside, eta_inside, r0_outside, r0_inside;
 };
 
 /// Loads the spheres with these ids, one per lane.
@@ -119,13 +118,15 @@ HWY_INLINE hn::Mask<D> reach_rods(D d, const SceneView& scene, const Rays<D>& ra
   return lanes;
 }
 
-/// Loads spheres and materials of the hits; lanes without a hit get those of the last sphere, and lanes that hit rods
-/// its sphere.
+/// Loads spheres and materials of the hits, and computes point, normal and side of each, which selects the material's
+/// constants.
 ///
 /// `kHasRods`  false: all hits are spheres
 /// `times`     times of the rays; null: nothing moves
-template <class D, bool kHasRods>
-HWY_INLINE Lookup<D> look_up(D d, const SceneView& scene, hn::Vec<IdTag<D>> hits, const hn::TFromD<D>* times) {
+template <class D, Precision kPrecision, bool kHasRods = false>
+HWY_INLINE Lookup<D> reach_surface(D d, const SceneView& scene, const Rays<D>& ray, hn::Vec<IdTag<D>> hits,
+                                   hn::Vec<D> distance, const hn::TFromD<D>* times) {
+  // Load the materials; lanes without a hit get that of the last object.
   using Id = hn::TFromD<IdTag<D>>;
   constexpr std::size_t kMax = hn::MaxLanes(D());
   const IdTag<D> du;
@@ -142,27 +143,13 @@ HWY_INLINE Lookup<D> look_up(D d, const SceneView& scene, hn::Vec<IdTag<D>> hits
       d, [&](std::size_t i) { return material[i]->albedo; }, color);
   gather4(
       d, [&](std::size_t i) { return material[i]->eta; }, glass);
+  // Load the spheres; lanes that hit none get the last one.
   if (kHasRods) store_loadable(d, std::max<std::size_t>(scene.sphere_count, 1), hits, id);
-  Lookup<D> out;
-  out.sphere = load_spheres(d, scene, id, times);
-  out.albedo = {color[0], color[1], color[2]};
-  out.surface.fuzz = color[3];
-  out.eta_outside = glass[0];
-  out.eta_inside = glass[1];
-  out.r0_outside = glass[2];
-  out.r0_inside = glass[3];
-  out.surface.kind = hn::Load(du, kind);
-  out.surface.fresnel = hn::Load(du, fresnel);
-  return out;
-}
+  Lookup<D> at;
+  at.sphere = load_spheres(d, scene, id, times);
+  at.albedo = {color[0], color[1], color[2]};
 
-/// Computes point, normal and side of every hit, and selects the material's constants for that side.
-///
-/// `kHasRods`  false: all hits are spheres
-template <class D, Precision kPrecision, bool kHasRods = false>
-HWY_INLINE Lookup<D> reach_surface(D d, const SceneView& scene, const Rays<D>& ray, hn::Vec<IdTag<D>> hits,
-                                   hn::Vec<D> distance, const hn::TFromD<D>* times) {
-  Lookup<D> at = look_up<D, kHasRods>(d, scene, hits, times);
+  // Find the points.
   Surface<D>& surface = at.surface;
   const auto is_self = hn::RebindMask(d, hits == ray.self);
   surface.direction = ray.direction;
@@ -175,8 +162,11 @@ HWY_INLINE Lookup<D> reach_surface(D d, const SceneView& scene, const Rays<D>& r
   }
   surface.offset = point.offset;
   surface.normal = select(surface.from_outside, point.outward, negated(point.outward));
-  surface.eta = select(surface.from_outside, at.eta_outside, at.eta_inside);
-  surface.r0 = select(surface.from_outside, at.r0_outside, at.r0_inside);
+  surface.fuzz = color[3];
+  surface.eta = select(surface.from_outside, glass[0], glass[1]);
+  surface.r0 = select(surface.from_outside, glass[2], glass[3]);
+  surface.kind = hn::Load(du, kind);
+  surface.fresnel = hn::Load(du, fresnel);
   return at;
 }
 

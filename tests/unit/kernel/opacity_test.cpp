@@ -20,7 +20,7 @@ void thresholds_in(const Sampler& sampler, std::uint32_t pixel, std::size_t coun
   const hn::RebindToUnsigned<decltype(d)> du;
   for (std::size_t i = 0; i < count; i += hn::Lanes(d)) {
     const auto samples = hn::Iota(du, static_cast<IdOf<T>>(i));
-    store_thresholds(d, numbers_of_path(d, sampler, hn::Set(du, IdOf<T>{pixel}), samples).threshold, out + i);
+    store_floats(d, numbers_of_path(d, sampler, hn::Set(du, IdOf<T>{pixel}), samples).threshold, out + i);
   }
 }
 void thresholds_in_double(const Sampler& sampler, std::uint32_t pixel, std::size_t count, float* out) {
