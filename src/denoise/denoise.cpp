@@ -49,11 +49,10 @@ bool are_constant(const std::vector<const PaddedPlane*>& planes, Frame frame, in
   });
 }
 
-/// Filters planes with the same weights.
-std::vector<Values> filtered(const WeightSource& source, const std::vector<const PaddedPlane*>& planes, Frame frame,
-                             Tiles& tiles) {
-  std::vector<Values> out(planes.size());
-  tbb::parallel_for(std::size_t{0}, out.size(), [&](std::size_t i) { out[i].resize(frame.pixels()); });
+/// Filters planes with the same weights, and calls `use(index of the plane, x, y, value)` for their pixels.
+template <class Use>
+void filter_planes(const WeightSource& source, const std::vector<const PaddedPlane*>& planes, Frame frame, Tiles& tiles,
+                   Use use) {
   tiles.each([&](Worker& worker, int x, int y) {
     const bool is_constant = are_constant(planes, frame, x, y);
     if (!is_constant) compute_weights(source, x, y, worker.scratch, worker.weights);
@@ -62,11 +61,19 @@ std::vector<Values> filtered(const WeightSource& source, const std::vector<const
         worker.pixels.fill(*planes[i]->at(x, y));
       else
         apply_weights(worker.weights, source.radius, *planes[i], x, y, worker.pixels);
-      tiles.each_pixel(x, y, [&](std::size_t in_tile, int column, int row) {
-        out[i][frame.at(column, row)] = worker.pixels[in_tile];
-      });
+      tiles.each_pixel(x, y,
+                       [&](std::size_t in_tile, int column, int row) { use(i, column, row, worker.pixels[in_tile]); });
     }
   });
+}
+
+/// Planes filtered with the same weights.
+std::vector<Values> filtered(const WeightSource& source, const std::vector<const PaddedPlane*>& planes, Frame frame,
+                             Tiles& tiles) {
+  std::vector<Values> out(planes.size());
+  tbb::parallel_for(std::size_t{0}, out.size(), [&](std::size_t i) { out[i].resize(frame.pixels()); });
+  filter_planes(source, planes, frame, tiles,
+                [&](std::size_t i, int x, int y, float value) { out[i][frame.at(x, y)] = value; });
   return out;
 }
 
@@ -243,26 +250,19 @@ Report filter(film::Picture& picture, SourcePlanes planes) {
   // Colours are premultiplied, so alpha must be filtered with the same weights.
   const std::optional<std::size_t> alpha = partial_alpha(picture);
   const PaddedPlane noisy_alpha = alpha ? padded(picture.planes[*alpha].values, frame) : PaddedPlane();
-  std::vector<const PaddedPlane*> all(source.target.begin(), source.target.end());
-  for (const std::vector<PaddedPlane>& of_channel : cells)
-    for (const PaddedPlane& cell : of_channel) all.push_back(&cell);
-  if (alpha) all.push_back(&noisy_alpha);
-  tiles.each([&](Worker& worker, int x, int y) {
-    if (are_constant(all, frame, x, y)) return;
-    compute_weights(source, x, y, worker.scratch, worker.weights);
-    const auto filter_plane = [&](const PaddedPlane& from, std::size_t to) {
-      apply_weights(worker.weights, source.radius, from, x, y, worker.pixels);
-      std::vector<float>& values = picture.planes[to].values;
-      tiles.each_pixel(x, y, [&](std::size_t in_tile, int column, int row) {
-        if (*planes.valid.at(column, row) != 0) values[frame.at(column, row)] = worker.pixels[in_tile];
-      });
-    };
-    for (std::size_t c = 0; c < 3; ++c) {
-      const LightChannel& channel = lights.channels[c];
-      filter_plane(beauty[c], channel.beauty);
-      for (std::size_t i = 0; i < channel.cells.size(); ++i) filter_plane(cells[c][i], channel.cells[i]);
-    }
-    if (alpha) filter_plane(noisy_alpha, *alpha);
+  std::vector<const PaddedPlane*> noisy;
+  std::vector<std::size_t> targets;
+  const auto add = [&](const PaddedPlane& from, std::size_t to) {
+    noisy.push_back(&from);
+    targets.push_back(to);
+  };
+  for (std::size_t c = 0; c < 3; ++c) {
+    add(beauty[c], lights.channels[c].beauty);
+    for (std::size_t i = 0; i < cells[c].size(); ++i) add(cells[c][i], lights.channels[c].cells[i]);
+  }
+  if (alpha) add(noisy_alpha, *alpha);
+  filter_planes(source, noisy, frame, tiles, [&](std::size_t i, int x, int y, float value) {
+    if (*planes.valid.at(x, y) != 0) picture.planes[targets[i]].values[frame.at(x, y)] = value;
   });
   // The regression may overshoot.
   if (alpha)

@@ -99,11 +99,7 @@ struct Frame {
   /// Returns the plane of the values f(index).
   template <class F>
   Values each_index(F f) const {
-    Values out(pixels());
-    each_row([&](int y) {
-      for (std::size_t i = at(0, y); i < at(0, y) + static_cast<std::size_t>(width); ++i) out[i] = f(i);
-    });
-    return out;
+    return each([&](int x, int y) { return f(at(x, y)); });
   }
 };
 
