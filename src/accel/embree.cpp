@@ -2,7 +2,6 @@
 #include <algorithm>
 #include <atomic>
 #include <cmath>
-#include <iterator>
 #include <limits>
 #include <memory>
 #include <utility>
@@ -18,14 +17,6 @@
 
 namespace orrery::accel {
 namespace {
-
-/// Ascending ids of the spheres that are neither outliers nor duplicates.
-std::vector<std::uint32_t> inliers(const EmbreeScene& scene, std::size_t count) {
-  std::vector<std::uint32_t> without;
-  std::set_union(scene.outliers.begin(), scene.outliers.end(), scene.duplicates.begin(), scene.duplicates.end(),
-                 std::back_inserter(without));
-  return complement_of(without, count);
-}
 
 /// Maps the progress of one stage to the range from `begin` to `end` of the whole.
 BuildMonitor part_of(const BuildMonitor& whole, double begin, double end) {
@@ -71,7 +62,7 @@ void sphere_bounds(const RTCBoundsFunctionArguments* arguments) {
   const auto& scene = *state.scene;
   const std::uint32_t id = scene.sphere_id(state.geometry, arguments->primID);
   RTCBounds& out = *arguments->bounds_o;
-  if (std::binary_search(scene.duplicates.begin(), scene.duplicates.end(), id)) {
+  if (scene.view.is_duplicate(id)) {
     // Embree skips primitives with an empty box.
     out.lower_x = out.lower_y = out.lower_z = std::numeric_limits<float>::infinity();
     out.upper_x = out.upper_y = out.upper_z = -std::numeric_limits<float>::infinity();
@@ -84,7 +75,7 @@ void rod_bounds(const RTCBoundsFunctionArguments* arguments) {
   auto& state = *static_cast<BuildState*>(arguments->geometryUserPtr);
   const auto& scene = *state.scene;
   const RodPiece piece = scene.rod_pieces[arguments->primID];
-  const BoundedRods rods{scene.rods, scene.bounded.in_single};
+  const BoundedRods rods{scene.view.rods, scene.bounded.in_single};
   const double count = piece.count;
   set_bounds(scene.frame.box(rods.at(piece.rod, static_cast<int>(arguments->timeStep)), piece.index / count,
                              (piece.index + 1) / count),
@@ -102,7 +93,7 @@ class Embree final : public Accel {
          std::size_t bvh_threshold)
       : functions_(embree_functions(precision)), scene_(make_scene(view, precision)) {
     // Not empty without rods: outliers are defined relative to other objects.
-    std::vector<std::uint32_t> ids = inliers(scene_, view.sphere_count);
+    std::vector<std::uint32_t> ids = ordinary_spheres(view, scene_.outliers);
     const std::size_t primitives = view.sphere_count - scene_.outliers.size();
     const auto share = [all = primitives + view.rods.count](std::size_t count) {
       return static_cast<double>(count) / static_cast<double>(all);
@@ -111,7 +102,8 @@ class Embree final : public Accel {
     scene_.frame = BoxFrame(scene_.bounded, ids, rods);
     ids = take_for_bvh(view, std::move(ids), bvh_threshold);
     for (std::uint32_t i = 0; i < view.rods.count; ++i)
-      if (!is_short(view.rods, i, largest_in_bvh_)) add_pieces(view.rods[i], i, scene_.rod_pieces);
+      if (!is_short(view, i, largest_in_bvh_) && !view.is_duplicate(view.rods.id(i)))
+        add_pieces(view.rods[i], i, scene_.rod_pieces);
     if (!ids.empty()) {
       const double end = share(ids.size());
       bvh_ = SphereBvh(scene_.bounded, std::move(ids), scene_.frame, part_of(monitor, 0, end), rods);
@@ -128,7 +120,7 @@ class Embree final : public Accel {
   std::string traversal_name(std::optional<Traversal> requested) const override {
     return name_of(traced(requested).traversals);
   }
-  void set_opacity(const float* opacity) noexcept override { scene_.opacity = opacity; }
+  void set_opacity(const float* opacity) noexcept override { scene_.view.opacity = opacity; }
   std::string name() const override { return "embree " + embree_.version(); }
   std::size_t bytes() const noexcept override {
     return embree_.bytes() + bvh_.bytes() + scene_.rod_pieces.size() * sizeof(RodPiece);
@@ -141,14 +133,9 @@ class Embree final : public Accel {
 
   static EmbreeScene make_scene(const kernel::SceneView& view, kernel::Precision precision) {
     EmbreeScene scene;
-    scene.spheres = view.spheres;
+    scene.view = view;
     scene.bounded = {view.spheres, precision == kernel::Precision::kFast, view.motion, view.moving_count};
-    scene.motion = view.motion;
-    scene.moving_count = view.moving_count;
-    scene.opacity = view.opacity;
-    scene.rods = view.rods;
-    scene.duplicates = duplicates(view, precision);
-    scene.outliers = find_outliers(view, scene.duplicates);
+    scene.outliers = find_outliers(view);
     const auto moving_outliers = std::lower_bound(scene.outliers.begin(), scene.outliers.end(), view.moving_count);
     scene.moving_primitives = static_cast<std::uint32_t>(view.moving_count) -
                               static_cast<std::uint32_t>(moving_outliers - scene.outliers.begin());
@@ -170,7 +157,7 @@ class Embree final : public Accel {
       stop.check(id);
       if (!is_compact(view, id, limit)) giants.push_back(id);
     }
-    const std::size_t rods = short_rods(view.rods, limit);
+    const std::size_t rods = short_rods(view, limit);
     if (ids.size() - giants.size() + rods < threshold) return {};
     std::erase_if(ids, [&](std::uint32_t id) { return !is_compact(view, id, limit); });
     if (threshold > 1 && ids.size() <= kMaxInSmallLayer && is_layer(view)) return {};
@@ -180,7 +167,7 @@ class Embree final : public Accel {
     scene_.bvh = &bvh_;
     largest_in_bvh_ = limit;
     for (std::size_t i = 0; i < view.rods.count; ++i)
-      if (is_short(view.rods, i, limit)) ids.push_back(view.rods.id(i));
+      if (is_short(view, i, limit)) ids.push_back(view.rods.id(i));
     return ids;
   }
 
@@ -195,7 +182,7 @@ class Embree final : public Accel {
     scene_.is_bvh_alone =
         !bvh_.empty() && scene_.moving_primitives == 0 && scene_.singles.empty() && scene_.rod_pieces.empty();
     if (!scene_.rod_pieces.empty())
-      add_geometry(functions_.rods, rod_bounds, scene_.rod_pieces.size(), scene_.rods.any_moves() ? 2 : 1, &still);
+      add_geometry(functions_.rods, rod_bounds, scene_.rod_pieces.size(), scene_.view.rods.any_moves() ? 2 : 1, &still);
     if (monitor)
       rtcSetSceneProgressMonitorFunction(
           embree_.get(),

@@ -146,11 +146,12 @@ HWY_INLINE void intersect_sphere(D d, const EmbreeScene& scene, const Packet& pa
                                  std::uint32_t id, hn::Mask<D> lanes, Found<D, Packet>& found) {
   const auto ids = hn::Set(k::IdTag<D>(), static_cast<typename Packet::Id>(id));
   if constexpr (kPlain) {
-    intersect<kPrecision>(d, ray, k::broadcast(d, scene.spheres[id]), ids, lanes, found);
+    intersect<kPrecision>(d, ray, k::broadcast(d, scene.view.spheres[id]), ids, lanes, found);
   } else {
-    if (scene.opacity != nullptr) lanes = hn::And(lanes, k::visible_lanes(d, packet, first, scene.opacity[id]));
+    if (scene.view.opacity != nullptr)
+      lanes = hn::And(lanes, k::visible_lanes(d, packet, first, scene.view.opacity[id]));
     if (!hn::AllFalse(d, lanes))
-      intersect<kPrecision>(d, ray, k::sphere_at(d, scene, id, packet, first), ids, lanes, found);
+      intersect<kPrecision>(d, ray, k::sphere_at(d, scene.view, id, packet, first), ids, lanes, found);
   }
 }
 
@@ -167,7 +168,8 @@ HWY_INLINE void intersect_rods(D d, const EmbreeScene& scene, const Packet& pack
   const k::IdTag<D> du;
   const auto entry = k::closest_entry<D, kPrecision>(d, ray, rod);
   const auto of_halves = ids + hn::IfThenElseZero(hn::RebindMask(du, entry.second_half), set(du, 1));
-  if (scene.opacity != nullptr) may = k::visible_objects(d, packet.threshold + first, of_halves, may, scene.opacity);
+  if (scene.view.opacity != nullptr)
+    may = k::visible_objects(d, packet.threshold + first, of_halves, may, scene.view.opacity);
   found.take(d, {entry.distance, entry.hits}, of_halves, may);
 }
 
@@ -175,8 +177,8 @@ HWY_INLINE void intersect_rods(D d, const EmbreeScene& scene, const Packet& pack
 template <kernel::Precision kPrecision, class D, class Packet>
 HWY_INLINE void intersect_rod(D d, const EmbreeScene& scene, const Packet& packet, int first, const k::Rays<D>& ray,
                               std::size_t rod, hn::Mask<D> lanes, Found<D, Packet>& found) {
-  intersect_rods<kPrecision>(d, scene, packet, first, ray, k::rod_at(d, scene.rods, rod, packet, first),
-                             set(k::IdTag<D>(), scene.rods.id(rod)), lanes, found);
+  intersect_rods<kPrecision>(d, scene, packet, first, ray, k::rod_at(d, scene.view.rods, rod, packet, first),
+                             set(k::IdTag<D>(), scene.view.rods.id(rod)), lanes, found);
 }
 
 /// Converts one bit per lane to a mask.
@@ -283,25 +285,6 @@ HWY_INLINE void set_rays(EmbreeQuery<Packet>& query, EmbreeRay& rays, int* valid
     for (int i = 0; i < kWidth; ++i)
       if (packet.occluded[query.first + i] != 0) valid[i] = 0;
   }
-}
-
-/// One lane of Embree's rays.
-template <class EmbreeRay>
-HWY_INLINE RTCRay one_ray(const EmbreeRay& rays, int lane) {
-  RTCRay ray;
-  ray.org_x = rays.org_x[lane];
-  ray.org_y = rays.org_y[lane];
-  ray.org_z = rays.org_z[lane];
-  ray.tnear = 0;
-  ray.dir_x = rays.dir_x[lane];
-  ray.dir_y = rays.dir_y[lane];
-  ray.dir_z = rays.dir_z[lane];
-  ray.time = rays.time[lane];
-  ray.tfar = rays.tfar[lane];
-  ray.mask = ~0u;
-  ray.id = 0;
-  ray.flags = 0;
-  return ray;
 }
 
 }  // namespace orrery::accel::HWY_NAMESPACE

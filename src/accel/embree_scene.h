@@ -9,7 +9,7 @@
 #include "accel/traversal.h"
 #include "kernel/precision.h"
 #include "kernel/ray_packet.h"
-#include "kernel/sphere.h"
+#include "kernel/scene_view.h"
 
 namespace orrery::accel {
 
@@ -24,22 +24,17 @@ struct RodPiece {
 /// The data of a packet query: Embree's scene, and the spheres outside it.
 struct EmbreeScene {
   RTCScene scene = nullptr;  ///< null if every sphere is an outlier
-  kernel::SphereArray spheres;
+  /// Its objects, their motion and opacity; of what else it has, only the duplicates are read, in the build.
+  kernel::SceneView view;
   BoundedSpheres bounded;
-  const kernel::Sphere* motion = nullptr;  ///< as in kernel::SceneView
-  std::size_t moving_count = 0;
   /// Number of moving primitives. If not 0, they are Embree's geometry 0, with two time steps, and the others geometry
   /// 1; otherwise there is only one geometry.
   std::uint32_t moving_primitives = 0;
-  const float* opacity = nullptr;  ///< as in kernel::SceneView
-  kernel::RodArray rods;
   std::vector<RodPiece> rod_pieces;  ///< the primitives of the rods' geometry
-  std::size_t listed_rods = 0;       ///< the first rods, which every ray tests instead
   BoxFrame frame;
   /// Ascending ids of spheres so much larger than the rest that their boxes would enclose everything (a ground). Every
   /// ray tests them first, so that their hits limit the traversal.
   std::vector<std::uint32_t> outliers;
-  std::vector<std::uint32_t> duplicates;  ///< ascending ids of spheres that are never hit: their boxes are empty
   /// If there is a SphereBvh: ascending ids of the spheres outside it, one primitive each.
   std::vector<std::uint32_t> singles;
   /// The traversal is that of this BVH; Embree receives packets. Null: there is none.
@@ -54,9 +49,9 @@ struct EmbreeScene {
     return has_packets && (bvh != nullptr || traversal == Traversal::kPacket);
   }
 
-  bool moves() const noexcept { return moving_count > 0 || rods.any_moves(); }
+  bool moves() const noexcept { return view.moving_count > 0 || view.rods.any_moves(); }
   /// Whether no sphere moves or may be invisible: the tests of spheres are then instances without these branches.
-  bool is_plain() const noexcept { return moving_count == 0 && opacity == nullptr; }
+  bool is_plain() const noexcept { return view.moving_count == 0 && view.opacity == nullptr; }
 
   /// The sphere of a primitive: ids count all spheres, primitives only those that are not outliers.
   std::uint32_t sphere_id(std::uint32_t geometry, std::uint32_t primitive) const noexcept {

@@ -117,7 +117,7 @@ void at_bvh(const Arguments* arguments) {
 
 /// Traces the valid rays of an Embree packet one by one.
 template <class Packet>
-HWY_INLINE void trace_one_by_one(const int* valid, const EmbreePacket<Packet>& rays, EmbreeQuery<Packet>& query) {
+HWY_INLINE void trace_one_by_one(const int* valid, EmbreePacket<Packet>& rays, EmbreeQuery<Packet>& query) {
   const int first = query.first;
   alignas(64) typename Packet::Number start[kWidth];
   std::copy_n(query.start, kWidth, start);
@@ -125,7 +125,7 @@ HWY_INLINE void trace_one_by_one(const int* valid, const EmbreePacket<Packet>& r
   reset_hits(ray);
   for (int i = 0; i < kWidth; ++i) {
     if (valid[i] == 0) continue;
-    rays_of(ray) = one_ray(rays_of(rays), i);
+    rays_of(ray) = rtcGetRayFromRayN(reinterpret_cast<RTCRayN*>(&rays_of(rays)), kWidth, static_cast<unsigned>(i));
     query.first = first + i;
     query.start[0] = start[i];
     accel::query(query.scene->scene, query.context, ray);
@@ -138,35 +138,19 @@ HWY_INLINE Traversal traversal_of(const Traversals& traversals, const Packet& pa
   return from_camera ? traversals.camera : traversals.others;
 }
 
-/// Tests the rays of a packet against objects that are not in Embree's scene.
-///
-/// `test`     called as test(d, first, ray, lanes, found) for the rays from `first` on
-template <class Packet, class Test>
-HWY_INLINE void test_outside(Packet& packet, Test test) {
-  const hn::ScalableTag<typename Packet::Number> d;
-  using D = std::remove_const_t<decltype(d)>;
-  for (int v = 0; v < packet.count; v += static_cast<int>(hn::Lanes(d))) {
-    auto found = Found<D, Packet>::load(d, packet, v);
-    test(d, v, k::load_rays(d, packet, v), hn::FirstN(d, static_cast<std::size_t>(packet.count - v)), found);
-    found.store(d, packet, v);
-  }
-}
-
-template <class Packet, kernel::Precision kPrecision>
-HWY_NOINLINE void test_listed_rods(const EmbreeScene& scene, Packet& packet) {
-  test_outside(packet, [&](auto d, int first, const auto& ray, auto lanes, auto& found) {
-    for (std::size_t rod = 0; rod < scene.listed_rods; ++rod)
-      intersect_rod<kPrecision>(d, scene, packet, first, ray, rod, lanes, found);
-  });
-}
-
+/// Tests the rays of a packet against the outliers.
 template <class Packet, kernel::Precision kPrecision, bool kPlain>
 HWY_INLINE void test_outliers(const EmbreeScene& scene, Packet& packet) {
-  if (scene.outliers.empty()) return;
-  test_outside(packet, [&](auto d, int first, const auto& ray, auto lanes, auto& found) {
+  const hn::ScalableTag<typename Packet::Number> d;
+  using D = std::remove_const_t<decltype(d)>;
+  for (int v = 0; v < packet.count && !scene.outliers.empty(); v += static_cast<int>(hn::Lanes(d))) {
+    auto found = Found<D, Packet>::load(d, packet, v);
+    const auto ray = k::load_rays(d, packet, v);
+    const auto lanes = hn::FirstN(d, static_cast<std::size_t>(packet.count - v));
     for (const std::uint32_t id : scene.outliers)
-      intersect_sphere<kPrecision, kPlain>(d, scene, packet, first, ray, id, lanes, found);
-  });
+      intersect_sphere<kPrecision, kPlain>(d, scene, packet, v, ray, id, lanes, found);
+    found.store(d, packet, v);
+  }
 }
 
 /// Traces a packet through Embree's scene.
@@ -207,7 +191,6 @@ void trace(const void* self, void* memory, int count) {
     if constexpr (Packet::kIsShadow) std::fill_n(packet.occluded, kernel::kPacketSize, 0);
     is_plain ? test_outliers<Packet, kPrecision, true>(scene, packet)
              : test_outliers<Packet, kPrecision, false>(scene, packet);
-    if (scene.listed_rods > 0) test_listed_rods<Packet, kPrecision>(scene, packet);
   }
   if (scene.scene == nullptr) return;
 

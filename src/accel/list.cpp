@@ -5,7 +5,6 @@
 #include <optional>
 
 #include "accel/accel.h"
-#include "accel/sphere_classes.h"
 
 namespace orrery::accel {
 namespace {
@@ -13,7 +12,7 @@ namespace {
 class List final : public Accel {
  public:
   List(const kernel::SceneView& view, kernel::Precision precision)
-      : scene_{view, duplicates(view, precision)}, precision_(precision) {}
+      : scene_{view, {view.duplicates.begin(), view.duplicates.end()}}, precision_(precision) {}
 
   kernel::Tracer tracer(std::optional<Traversal>) const noexcept override {
     kernel::Tracer t = list_tracer(precision_);
@@ -25,7 +24,7 @@ class List final : public Accel {
   std::size_t bytes() const noexcept override { return scene_.duplicates.size() * sizeof(scene_.duplicates[0]); }
 
  private:
-  DistinctSpheres scene_;
+  DistinctObjects scene_;
   kernel::Precision precision_;
 };
 

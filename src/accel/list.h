@@ -10,15 +10,15 @@
 
 namespace orrery::accel {
 
-/// A scene, and the ids of its duplicate spheres, which are never hit.
-struct DistinctSpheres {
+/// A scene, and its duplicates, which are never hit: the view's may be found again while the list is in use.
+struct DistinctObjects {
   kernel::SceneView view;
   std::vector<std::uint32_t> duplicates;
 };
 
 /// The queries of the naive list.
 ///
-/// Result     `self` is to be set to DistinctSpheres
+/// Result     `self` is to be set to DistinctObjects
 kernel::Tracer list_tracer(kernel::Precision precision);
 
 }  // namespace orrery::accel

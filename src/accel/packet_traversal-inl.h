@@ -185,7 +185,7 @@ class PacketTraversal {
         }
       }
     // Test each sphere or rod whose box some ray may enter with all rays.
-    const bool has_opacity = query_.scene->opacity != nullptr;
+    const bool has_opacity = query_.scene->view.opacity != nullptr;
     auto limit = hn::Load(d_, limit_);
     for (const int i : SetBits(entered_by_any(bound, bvh_.count_in(index)))) {
       const std::uint32_t id = leaf.ids[i];
@@ -212,7 +212,8 @@ class PacketTraversal {
       if (hitting == 0) continue;
       if (has_opacity) {
         // The halves of a rod may have different opacities: its opacity is known only with the hit.
-        if (!is_rod) hit = hn::And(hit, k::visible_lanes(d_, *query_.packet, query_.first, query_.scene->opacity[id]));
+        if (!is_rod)
+          hit = hn::And(hit, k::visible_lanes(d_, *query_.packet, query_.first, query_.scene->view.opacity[id]));
         hitting &= bits_of(d_, hit);
         if (hitting == 0) continue;
       }
@@ -240,10 +241,10 @@ class PacketTraversal {
       const unsigned lanes = candidate.lanes & within(candidate.enter);
       if (lanes == 0) continue;
       const auto ids = hn::Set(du, static_cast<typename Packet::Id>(candidate.what));
-      const kernel::RodArray& rods = query_.scene->rods;
+      const kernel::RodArray& rods = query_.scene->view.rods;
       const bool is_rod = rods.contains(candidate.what);
-      const bool moves = candidate.what < query_.scene->moving_count;
-      const auto at_opening = k::broadcast(d, query_.scene->spheres[is_rod ? 0 : candidate.what]);
+      const bool moves = candidate.what < query_.scene->view.moving_count;
+      const auto at_opening = k::broadcast(d, query_.scene->view.spheres[is_rod ? 0 : candidate.what]);
       for (int v = 0; v < kWidth; v += kStep) {
         const unsigned part = lanes >> v & ((1u << kStep) - 1u);
         if (part == 0) continue;
@@ -254,7 +255,7 @@ class PacketTraversal {
           const auto rod = k::broadcast(d, rods[rods.index(candidate.what)]);
           intersect_rods<kPrecision>(d, *query_.scene, packet, first, ray, rod, ids, mask_of(d, part), found);
         } else {
-          const auto sphere = moves ? k::sphere_at(d, *query_.scene, candidate.what, packet, first) : at_opening;
+          const auto sphere = moves ? k::sphere_at(d, query_.scene->view, candidate.what, packet, first) : at_opening;
           intersect<kPrecision>(d, ray, sphere, ids, mask_of(d, part), found);
         }
         if (hn::AllFalse(d, found.is_new)) continue;

@@ -385,7 +385,7 @@ HWY_INLINE void intersect_candidates(const EmbreeQuery<Packet>& query, unsigned 
   constexpr int kStep = static_cast<int>(hn::MaxLanes(D()));
   Packet& packet = *query.packet;
   const EmbreeScene& scene = *query.scene;
-  const kernel::RodArray& rods = scene.rods;
+  const kernel::RodArray& rods = scene.view.rods;
   unsigned waiting = 0;
   for (const int i : SetBits(lanes)) waiting |= order_candidates(rays[i]) ? 1u << i : 0u;
   for (int v = 0; v < kWidth; v += kStep) {
@@ -429,13 +429,16 @@ HWY_INLINE void intersect_candidates(const EmbreeQuery<Packet>& query, unsigned 
         hn::Vec<D> row[4];
         const Id other = rods.contains(any) ? 0 : any;
         k::gather_spheres(
-            d, scene.spheres,
+            d, scene.view.spheres,
             [&](std::size_t i) { return ids[i] == kernel::kNone || rods.contains(ids[i]) ? other : ids[i]; }, row);
         k::Spheres<D> sphere{{row[0], row[1], row[2]}, row[3]};
-        if (scene.moving_count > 0) {
+        if (scene.view.moving_count > 0) {
           static constexpr kernel::Sphere kResting{0, 0, 0, 0};
           k::gather4(
-              d, [&](std::size_t i) { return &(ids[i] < scene.moving_count ? scene.motion[ids[i]] : kResting).x; },
+              d,
+              [&](std::size_t i) {
+                return &(ids[i] < scene.view.moving_count ? scene.view.motion[ids[i]] : kResting).x;
+              },
               row);
           sphere = k::moved<D>(sphere, {{row[0], row[1], row[2]}, row[3]}, hn::Load(d, packet.time + first));
         }
@@ -466,7 +469,7 @@ template <class Packet, kernel::Precision kPrecision>
 HWY_INLINE void trace_rays(const SphereBvh& bvh, const EmbreeQuery<Packet>* queries, std::uint64_t lanes,
                            SingleRay* rays) {
   const EmbreeScene& scene = *queries->scene;
-  const bool has_opacity = scene.opacity != nullptr;
+  const bool has_opacity = scene.view.opacity != nullptr;
   const Prefetcher prefetcher(bvh, scene);
   const auto intersect_all = [&] {
     for (int i = 0; i < kMostRays; i += kWidth) {
@@ -502,7 +505,7 @@ HWY_INLINE void trace_rays(const SphereBvh& bvh, const EmbreeQuery<Packet>* quer
       SingleRay& ray = rays[i];
       const std::uint32_t leaf = ray.what[--ray.waiting] & kIndexMask;
       bool any = test_spheres<Packet::kIsShadow>(bvh, leaf, ray);
-      if (has_opacity) any = any && keep_visible(bvh, leaf, scene.opacity, ray);
+      if (has_opacity) any = any && keep_visible(bvh, leaf, scene.view.opacity, ray);
       found |= std::uint64_t{any} << i;
     }
     for (const int i : SetBits(found)) {
@@ -523,7 +526,7 @@ HWY_INLINE void set_left_spheres(const EmbreeQuery<Packet>& query, typename Pack
   const hn::ScalableTag<typename Packet::Number> d;
   const k::IdTag<std::remove_const_t<decltype(d)>> du;
   const auto none = set(du, kernel::kNone);
-  const kernel::RodArray& rods = query.scene->rods;
+  const kernel::RodArray& rods = query.scene->view.rods;
   for (int v = 0; v < kWidth; v += static_cast<int>(hn::Lanes(d))) {
     const auto ray = k::load_rays(d, *query.packet, query.first + v);
     auto outwards = dot(ray.direction, ray.offset) >= 0;
@@ -574,14 +577,14 @@ HWY_INLINE unsigned start_rays(const SphereBvh& bvh, EmbreeQuery<Packet>& query,
     ray.limit = embree.tfar[i];
     ray.left = static_cast<std::uint32_t>(left[i]);
     if constexpr (Packet::kIsShadow) ray.target = static_cast<std::uint32_t>(packet.target[lane]);
-    if (query.scene->opacity != nullptr) ray.threshold = packet.threshold[lane];
+    if (query.scene->view.opacity != nullptr) ray.threshold = packet.threshold[lane];
     if (bvh.moves) ray.path_place = static_cast<float>(2 * packet.time[lane] - 1);
     ray.candidates = 0;
     ray.candidate[0] = 0;
     ray.enter[0] = -std::numeric_limits<float>::infinity();  // never beyond the limit
     ray.what[0] = kEndOfStack;
     ray.enter[1] = 0;
-    ray.subtree = bvh.start_node(query.scene->rods.object(static_cast<std::uint32_t>(packet.self[lane])));
+    ray.subtree = bvh.start_node(query.scene->view.rods.object(static_cast<std::uint32_t>(packet.self[lane])));
     ray.subtree_level = 0;
     if (ray.subtree == kernel::kNone) ray.subtree = bvh.root();
     ray.what[1] = ray.subtree;
@@ -597,7 +600,7 @@ HWY_NOINLINE void trace_by_rays(const EmbreeScene& scene, Packet* packets, int c
   const std::size_t objects = bvh.start_nodes.size();
   for (int p = 0; p < count; ++p) {
     for (int i = 0; i < packets[p].count; ++i) {
-      const std::size_t self = scene.rods.object(static_cast<std::uint32_t>(packets[p].self[i]));
+      const std::size_t self = scene.view.rods.object(static_cast<std::uint32_t>(packets[p].self[i]));
       hwy::Prefetch(bvh.start_nodes.address(self < objects ? self : 0));
     }
   }

@@ -55,12 +55,12 @@ static_assert(SphereBvh::kLeafBit == std::uint32_t{kLeaf} << kIndexWidth);
 class Prefetcher {
  public:
   Prefetcher(const SphereBvh& bvh, const EmbreeScene& scene)
-      : rods_(scene.rods),
-        motion_(scene.motion),
-        moving_count_(scene.moving_count),
+      : rods_(scene.view.rods),
+        motion_(scene.view.motion),
+        moving_count_(scene.view.moving_count),
         has_radii_(!bvh.radii.empty()),
         has_rods_(!bvh.rods.empty()) {
-    const kernel::SphereArray& spheres = scene.spheres;
+    const kernel::SphereArray& spheres = scene.view.spheres;
     // The less frequent kind of sphere is not prefetched.
     const bool plain = spheres.all_plain();
     sphere_stride_ = plain ? sizeof(kernel::Sphere) : 3 * sizeof(float);

@@ -9,9 +9,7 @@
 #include "accel/accel.h"
 #include "accel/box_frame.h"
 #include "accel/sphere_bvh.h"
-#include "base/duplicates.h"
 #include "base/stop_point.h"
-#include "kernel/coincidence.h"
 #include "kernel/isa.h"
 #include "kernel/scene_view.h"
 
@@ -56,49 +54,31 @@ bool is_compact(const kernel::SceneView& scene, std::size_t id, double largest) 
   return radius <= largest && (id >= scene.moving_count || radius <= kFastRatio * scene.spheres[id].radius);
 }
 
-std::vector<std::uint32_t> duplicates(const kernel::SceneView& scene, kernel::Precision precision) {
-  if (kernel::is_distinct(scene, precision)) return {};
-  const auto place = [&](std::size_t id) { return kernel::coincidence_key<4>(scene, id, precision); };
-  const auto path = [&](std::size_t id) { return kernel::coincidence_key<8>(scene, id, precision); };
-  const std::vector<base::Duplicate> found = scene.moving_count > 0
-                                                 ? base::find_duplicates<8>(scene.sphere_count, path)
-                                                 : base::find_duplicates<4>(scene.sphere_count, place);
-  std::vector<std::uint32_t> ids;
-  ids.reserve(found.size());
-  for (const base::Duplicate& r : found) ids.push_back(static_cast<std::uint32_t>(r.index));
+std::vector<std::uint32_t> ordinary_spheres(const kernel::SceneView& scene,
+                                            const std::vector<std::uint32_t>& outliers) {
+  std::vector<std::uint32_t> without, ids;
+  std::ranges::set_union(outliers, scene.duplicates, std::back_inserter(without));
+  ids.reserve(scene.sphere_count);
+  auto next = without.begin();
+  for (std::uint32_t id = 0; id < scene.sphere_count; ++id)
+    if (next != without.end() && *next == id)
+      ++next;
+    else
+      ids.push_back(id);
   return ids;
 }
 
-std::vector<std::uint32_t> complement_of(const std::vector<std::uint32_t>& without, std::size_t count) {
-  std::vector<std::uint32_t> rest;
-  rest.reserve(count - without.size());
-  auto next = without.begin();
-  for (std::uint32_t id = 0; id < count; ++id) {
-    if (next != without.end() && *next == id) {
-      ++next;
-    } else {
-      rest.push_back(id);
-    }
-  }
-  return rest;
-}
-
-std::vector<std::uint32_t> find_outliers(const kernel::SceneView& scene, const std::vector<std::uint32_t>& duplicates) {
+std::vector<std::uint32_t> find_outliers(const kernel::SceneView& scene) {
   struct OutlierCandidate {
     double radius;
     std::uint32_t id;
   };
   std::vector<OutlierCandidate> largest;  // descending, at most one more than there can be outliers
-  auto duplicate = duplicates.begin();
   const base::StopPoint stop;
   for (std::uint32_t id = 0; id < scene.sphere_count; ++id) {
     stop.check(id);
-    if (duplicate != duplicates.end() && *duplicate == id) {
-      ++duplicate;
-      continue;
-    }
     const double radius = scene.spheres[id].radius;
-    if (largest.size() > kMaxOutliers && !(radius > largest.back().radius)) continue;
+    if ((largest.size() > kMaxOutliers && !(radius > largest.back().radius)) || scene.is_duplicate(id)) continue;
     const auto at =
         std::find_if(largest.begin(), largest.end(), [&](const OutlierCandidate& l) { return l.radius < radius; });
     largest.insert(at, {radius, id});
@@ -113,9 +93,7 @@ std::vector<std::uint32_t> find_outliers(const kernel::SceneView& scene, const s
     std::vector<std::uint32_t> outliers;
     for (std::size_t i = 0; i < n; ++i) outliers.push_back(largest[i].id);
     std::sort(outliers.begin(), outliers.end());
-    std::vector<std::uint32_t> without;
-    std::set_union(outliers.begin(), outliers.end(), duplicates.begin(), duplicates.end(), std::back_inserter(without));
-    const BoxFrame frame(scene.spheres, complement_of(without, scene.sphere_count), {scene.rods});
+    const BoxFrame frame(scene.spheres, ordinary_spheres(scene, outliers), {scene.rods});
     if (largest[n - 1].radius * frame.scale > kOutlierRatio * frame.reach) return outliers;
   }
   return {};
@@ -133,13 +111,15 @@ double giant_radius(const kernel::SceneView& scene) {
   return kGiantRatio * *middle;
 }
 
-bool is_short(const kernel::RodArray& rods, std::size_t rod, double largest) {
-  return !rods.moves(rod) && enclosing_sphere(rods[rod]).radius <= std::min(largest, kLongRatio * rods[rod].radius);
+bool is_short(const kernel::SceneView& scene, std::size_t rod, double largest) {
+  const kernel::RodArray& rods = scene.rods;
+  return !rods.moves(rod) && enclosing_sphere(rods[rod]).radius <= std::min(largest, kLongRatio * rods[rod].radius) &&
+         !scene.is_duplicate(rods.id(rod));
 }
 
-std::size_t short_rods(const kernel::RodArray& rods, double largest) {
+std::size_t short_rods(const kernel::SceneView& scene, double largest) {
   std::size_t count = 0;
-  for (std::size_t i = 0; i < rods.count; ++i) count += is_short(rods, i, largest) ? 1 : 0;
+  for (std::size_t i = 0; i < scene.rods.count; ++i) count += is_short(scene, i, largest) ? 1 : 0;
   return count;
 }
 
@@ -176,7 +156,7 @@ ObjectCounts objects_in_bvh(const kernel::SceneView& scene) {
   const std::size_t least = bvh_threshold();
   if (scene.sphere_count + scene.rods.count - scene.rods.moving_count < least) return {};
   const double limit = giant_radius(scene);
-  const std::size_t rods = short_rods(scene.rods, limit);
+  const std::size_t rods = short_rods(scene, limit);
   std::size_t count = 0;
   double smallest = limit, largest = 0;
   for (std::size_t id = 0; id < scene.sphere_count; ++id) {

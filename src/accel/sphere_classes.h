@@ -6,29 +6,18 @@
 #include <vector>
 
 #include "kernel/forward.h"
-#include "kernel/precision.h"
-#include "kernel/rod.h"
 
-/// Finds the spheres that do not belong into the BVHs: duplicates, and those that are too large.
+/// Finds the objects that do not belong into the BVHs: those that are too large or too long.
 namespace orrery::accel {
 
-/// Ids, ascending, of spheres that coincide with an earlier one: equal centre and radius, in the number type of this
-/// precision, throughout the shutter interval.
+/// Ids, ascending, of the spheres that are neither duplicates nor outliers.
 ///
-/// Accelerators skip them. Root exclusion is by the id of the sphere that a ray leaves, so a coincident second sphere
-/// would be hit again at a distance of a few rounding errors.
-///
-/// Cost       none if the scene is known to have no duplicates; else see base::find_duplicates
-std::vector<std::uint32_t> duplicates(const kernel::SceneView& scene, kernel::Precision precision);
-
-/// Ids of all spheres except those in `without`.
-///
-/// Domain     `without` is ascending
-std::vector<std::uint32_t> complement_of(const std::vector<std::uint32_t>& without, std::size_t count);
+/// `outliers` ascending
+std::vector<std::uint32_t> ordinary_spheres(const kernel::SceneView& scene, const std::vector<std::uint32_t>& outliers);
 
 /// Ids, ascending, of the outliers: a few spheres that are much larger than the bounds of all smaller ones and of the
 /// rods, such as a ground. Duplicates are ignored.
-std::vector<std::uint32_t> find_outliers(const kernel::SceneView& scene, const std::vector<std::uint32_t>& duplicates);
+std::vector<std::uint32_t> find_outliers(const kernel::SceneView& scene);
 
 /// The radius of the sphere that encloses a sphere while the shutter is open.
 double enclosing_radius(const kernel::SceneView& scene, std::size_t id);
@@ -43,12 +32,12 @@ bool is_compact(const kernel::SceneView& scene, std::size_t id, double largest);
 /// Domain     at least one sphere or static rod
 double giant_radius(const kernel::SceneView& scene);
 
-/// Whether a rod belongs into a SphereBvh: it is static, and the sphere around it is neither larger than `largest` nor
-/// nearly empty.
-bool is_short(const kernel::RodArray& rods, std::size_t rod, double largest);
+/// Whether a rod belongs into a SphereBvh: it is static and no duplicate, and the sphere around it is neither larger
+/// than `largest` nor nearly empty.
+bool is_short(const kernel::SceneView& scene, std::size_t rod, double largest);
 
 /// The number of rods for which is_short() holds.
-std::size_t short_rods(const kernel::RodArray& rods, double largest);
+std::size_t short_rods(const kernel::SceneView& scene, double largest);
 
 /// Whether most objects are spheres that lie in a thin layer, judged by a sample of them: packets of rays are coherent
 /// there.

@@ -14,6 +14,7 @@
 #include "base/stop_point.h"
 #include "compile/camera_basis.h"
 #include "compile/caustic_list.h"
+#include "compile/coincident.h"
 #include "compile/compiled_scene.h"
 #include "compile/environment.h"
 #include "compile/light_tree.h"
@@ -134,6 +135,7 @@ void set_spheres(const scene::Scene& scene, const SphereStore::OnCopied& on_copi
   compiled.points_sizes.clear();
   for (const scene::Points& points : scene.points) compiled.points_sizes.push_back(points.centers.size());
   compiled.distinct_in.reset();
+  compiled.compared_in.reset();
   if (scene.distinct_in) compiled.distinct_in = static_cast<Precision>(*scene.distinct_in);
 }
 
@@ -439,6 +441,7 @@ kernel::SceneView CompiledScene::view() const noexcept {
   v.rods.spheres = v.spheres;
   v.rods.sphere_motion = motion.data();
   v.rods.moving_spheres = bonds_move ? motion.size() : 0;
+  v.duplicates = duplicates;
   v.opacity = opacity.empty() ? nullptr : opacity.data();
   v.emission = emission.empty() ? nullptr : emission.data();
   if (!textures.textures().empty()) {
@@ -481,11 +484,15 @@ Bounds bounds_of(const CompiledScene& scene) {
 
 void update_lights(CompiledScene& scene) {
   const auto is_fast = [](Precision precision) { return precision == Precision::kFast; };
-  const std::optional<Precision> built = scene.light_tree.precision;
+  if (!scene.compared_in || is_fast(*scene.compared_in) != is_fast(scene.precision)) {
+    scene.duplicates = coincident_objects(scene);
+    scene.compared_in = scene.precision;
+    scene.light_tree = {};
+  }
   if (scene.emission.empty() || scene.direct_lighting == kernel::DirectLighting::kBsdf) {
     scene.light_tree = {};
-  } else if (!built || (is_fast(*built) != is_fast(scene.precision) && scene.distinct_in != Precision::kFast)) {
-    scene.light_tree = build_light_tree(scene.view(), scene.precision);
+  } else if (scene.light_tree.spheres.empty()) {
+    scene.light_tree = build_light_tree(scene.view());
   }
   scene.caustics = {};
   if (scene.samples_caustics && scene.direct_lighting != kernel::DirectLighting::kBsdf)

@@ -44,10 +44,12 @@ std::vector<kernel::Sphere> sphere_motion(const scene::Scene& scene, const scene
 /// The same of the rods, except bonds that are not stubs, with ends in the order of those of `scene`.
 std::vector<kernel::Rod> rod_motion(const scene::Scene& scene, const scene::Scene& other, double frames);
 
-/// Builds the light tree and the list of caustics, if the scene samples its lights. Needed after a change of
-/// `precision`, since other spheres may coincide in another number type, of `direct_lighting` and `samples_caustics`.
+/// Finds objects that coincide, and builds the light tree and the list of caustics, if the scene samples its lights.
+/// Needed after a change of `precision`, since others may coincide in another number type, of `direct_lighting` and
+/// `samples_caustics`.
 ///
-/// Cost       that of build_light_tree, unless the tree would be the same; that of caustic_list
+/// Cost       those of coincident_objects and build_light_tree, unless the results would be the same; that of
+///            caustic_list
 void update_lights(CompiledScene& scene);
 
 /// Returns the number of index bits that count a pixel's samples when neighbouring pixels share a blue-noise sequence.

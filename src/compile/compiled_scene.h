@@ -45,6 +45,10 @@ struct CompiledScene : kernel::SceneSettings {
   std::vector<kernel::Material> materials;
   std::vector<kernel::Emission> emission;  ///< one per material; empty if none emits
   TextureStore textures;
+  /// No two spheres coincide in the number type of this precision; empty: not known.
+  std::optional<Precision> distinct_in;
+  std::optional<Precision> compared_in;   ///< precision of `duplicates`; empty: they are not known
+  std::vector<std::uint32_t> duplicates;  ///< see kernel::SceneView
   LightTree light_tree;                   ///< light tree of the emitters; empty if lights are not sampled
   bool samples_caustics = true;           ///< false: `caustics` stays empty
   CausticList caustics;                   ///< of lights that are sampled

@@ -15,7 +15,6 @@
 #include "base/text.h"
 #include "compile/compiled_scene.h"
 #include "compile/environment.h"
-#include "compile/light_tree.h"
 #include "film/layer_planes.h"
 #include "job/layers.h"
 #include "job/prepared_scene.h"
@@ -49,20 +48,20 @@ std::string environment_text(const compile::CompiledScene& compiled) {
   return base::joined(chosen, " and ");
 }
 
-/// Returns the number of emitters that are rendered, without those that are black. Of coincident spheres, only the
+/// Returns the number of emitters that are rendered, without those that are black. Of coincident objects, only the
 /// first is rendered.
 std::uint64_t count_emitters(const compile::CompiledScene& compiled) {
   if (compiled.emission.empty()) return 0;
-  std::vector<bool> shines;
-  for (const kernel::Emission& e : compiled.emission)
-    shines.push_back(e.radiance[0] > 0 || e.radiance[1] > 0 || e.radiance[2] > 0);
-  std::vector<std::uint32_t> ids;
-  for (std::size_t i = 0; i < compiled.spheres.size(); ++i)
-    if (shines[compiled.object_materials[i]]) ids.push_back(static_cast<std::uint32_t>(i));
-  std::uint64_t rods = 0;
-  for (std::size_t i = compiled.spheres.size(); i < compiled.object_materials.size(); i += 2)
-    rods += shines[compiled.object_materials[i]] || shines[compiled.object_materials[i + 1]] ? 1 : 0;
-  return rods + compile::without_coincident(compiled.view(), compiled.precision, std::move(ids)).size();
+  const kernel::SceneView view = compiled.view();
+  const auto shines = [&](std::uint32_t id) {
+    const double(&rgb)[3] = compiled.emission[compiled.object_materials[id]].radiance;
+    return (rgb[0] > 0 || rgb[1] > 0 || rgb[2] > 0) && !view.is_duplicate(id);
+  };
+  std::uint64_t count = 0;
+  for (std::uint32_t id = 0; id < view.sphere_count; ++id) count += shines(id) ? 1 : 0;
+  for (std::size_t i = 0; i < view.rods.count; ++i)
+    count += shines(view.rods.id(i)) || shines(view.rods.id(i) + 1) ? 1 : 0;
+  return count;
 }
 
 /// Describes how light is sampled: "40 emitters; light and BSDF sampling; emitters by a light tree of 1.9 KiB". Empty

@@ -317,10 +317,11 @@ HWY_INLINE V choice_probability(D d, const SceneView& scene, const Vertex<D>& at
   HWY_ALIGN Id ids[kMax];
   HWY_ALIGN T goes_left[kMax];
   hn::Store(spheres, IdTag<D>(), ids);
+  std::uint32_t leaf[kMax];
+  for (std::size_t i = 0; i < hn::Lanes(d); ++i) leaf[i] = scene.lights.leaf(static_cast<std::uint32_t>(ids[i]));
   LightRange range[kMax];
   return descend(d, scene, at, range, [&](V, hn::Mask<D>, const auto& ranges, int) {
-    for (std::size_t i = 0; i < hn::Lanes(d); ++i)
-      goes_left[i] = scene.lights.leaf(static_cast<std::uint32_t>(ids[i])) < Lights::middle(ranges[i]) ? T(1) : T(0);
+    for (std::size_t i = 0; i < hn::Lanes(d); ++i) goes_left[i] = leaf[i] < Lights::middle(ranges[i]) ? T(1) : T(0);
     return hn::Load(d, goes_left) != 0;
   });
 }

@@ -38,19 +38,13 @@ struct Lights {
   const std::uint32_t* spheres = nullptr;  ///< object id of each leaf
   /// Nodes of the tree: that of a range of two or more leaves is at its `middle`. For a list, one node per leaf.
   const LightNode* nodes = nullptr;
-  /// Leaf of each sphere from `first_sphere` to `end_sphere`, or kNoLeaf. If the emitters' ids are `scattered`: the
-  /// leaves by ascending sphere id.
-  const std::uint32_t* leaves = nullptr;
-  std::uint32_t first_sphere = 0;
-  std::uint32_t end_sphere = 0;
-  std::uint32_t count = 0;  ///< leaves; 0: no emitter is sampled
-  bool scattered = false;
+  const std::uint32_t* leaves = nullptr;  ///< by ascending object id
+  std::uint32_t count = 0;                ///< leaves; 0: no emitter is sampled
 
   bool few() const noexcept { return count <= kFew; }
   static std::uint32_t middle(LightRange r) noexcept { return r.begin + (r.end - r.begin) / 2; }
-  /// The leaf of a sphere, or kNoLeaf.
+  /// The leaf of an object, or kNoLeaf.
   std::uint32_t leaf(std::uint32_t sphere) const noexcept {
-    if (!scattered) return sphere >= first_sphere && sphere < end_sphere ? leaves[sphere - first_sphere] : kNoLeaf;
     const std::uint32_t* const found = std::lower_bound(
         leaves, leaves + count, sphere, [&](std::uint32_t at, std::uint32_t id) { return spheres[at] < id; });
     return found != leaves + count && spheres[*found] == sphere ? *found : kNoLeaf;

@@ -1,17 +1,17 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <algorithm>
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
-#include <optional>
+#include <span>
 
 #include "kernel/camera.h"
 #include "kernel/caustics.h"
 #include "kernel/lights.h"
 #include "kernel/material.h"
 #include "kernel/pixel_sum.h"
-#include "kernel/precision.h"
 #include "kernel/rod.h"
 #include "kernel/seen_emitters.h"
 #include "kernel/sphere.h"
@@ -85,9 +85,6 @@ struct SceneSettings {
   std::uint32_t max_depth = 50;                ///< maximum rays per path, including the camera ray
   std::uint32_t roulette_depth = kNoRoulette;  ///< scattering events after which Russian roulette begins
   Sampler sampler;
-  /// No two spheres coincide in the number type of this precision; distinct floats are distinct doubles, too. Empty:
-  /// not known.
-  std::optional<Precision> distinct_in;
 };
 
 /// Non-owning view of the compiled scene for the kernel.
@@ -97,6 +94,10 @@ struct SceneView : SceneSettings {
   const Material* materials = nullptr;
   std::size_t sphere_count = 0;
   RodArray rods;  ///< ids follow those of the spheres
+  /// Numbers (RodArray::object) of objects that coincide with an earlier one, ascending. Rays do not hit them:
+  /// exclusion is by the id of what a ray leaves or leads to, and the other one would be hit a few rounding errors
+  /// away.
+  std::span<const std::uint32_t> duplicates;
   /// Probability, 0..1, that each sphere, then each half of each rod, is visible to a ray; null: all are 1.
   const float* opacity = nullptr;
   const Emission* emission = nullptr;  ///< one per material; null if nothing emits
@@ -125,6 +126,11 @@ struct SceneView : SceneSettings {
   /// its radiance is not that of the pixel, but what it lacks compared to the backdrop is coverage. kNone: there is
   /// none.
   std::uint32_t page = kNone;
+
+  /// Whether the object with this id coincides with an earlier one.
+  bool is_duplicate(std::uint32_t id) const noexcept {
+    return std::binary_search(duplicates.begin(), duplicates.end(), rods.object(id));
+  }
 };
 
 /// A sphere at a time between 0 (shutter opens) and 1 (shutter closes), computed like in the kernel's loops.

@@ -10,7 +10,6 @@
 #include <optional>
 #include <utility>
 
-#include "compile/light_tree.h"
 #include "kernel/seen_emitter_sample.h"
 #include "math/pixels.h"
 #include "math/vec3.h"
@@ -163,14 +162,8 @@ std::vector<Spot> find_spots(const kernel::SceneView& scene, kernel::Precision p
   if (!can_sample(scene, precision)) return spots;
   const double filter_margin =
       scene.filter.places != nullptr ? scene.filter.places[kernel::PixelFilter::kSteps] - 0.5 : 0;
-  std::vector<std::uint32_t> ids;
   for (std::uint32_t id = 0; scene.emission != nullptr && id < scene.sphere_count; ++id)
-    if (const auto spot = spot_of(scene, id, filter_margin)) {
-      spots.push_back(*spot);
-      ids.push_back(id);
-    }
-  ids = compile::without_coincident(scene, precision, std::move(ids));
-  std::erase_if(spots, [&](const Spot& spot) { return !std::ranges::binary_search(ids, spot.sight.emitter); });
+    if (const auto spot = spot_of(scene, id, filter_margin); spot && !scene.is_duplicate(id)) spots.push_back(*spot);
   if (precision == kernel::Precision::kExact && scene.max_depth > 1) {
     const std::size_t balls = count_sharp_balls(scene);
     auto lights = reflected_lights(scene, balls <= kMostReflections ? balls : 0);

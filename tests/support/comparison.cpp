@@ -2,6 +2,8 @@
 #include "support/comparison.h"
 
 #include <memory>
+#include <numeric>
+#include <vector>
 
 #include "accel/accel.h"
 #include "accel/embree_scene.h"
@@ -13,28 +15,61 @@
 namespace orrery::accel {
 namespace {
 
-/// Treats every sphere as an outlier, and lists every rod, without a BVH.
+/// Treats every sphere as an outlier, without a BVH. Rods are those of a list.
 class SimdList final : public Accel {
  public:
-  SimdList(const kernel::SceneView& view, kernel::Precision precision) : functions_(embree_functions(precision)) {
-    scene_.spheres = view.spheres;
-    scene_.motion = view.motion;
-    scene_.moving_count = view.moving_count;
-    scene_.rods = view.rods;
-    scene_.listed_rods = view.rods.count;
-    scene_.outliers = complement_of(duplicates(view, precision), view.sphere_count);
-    scene_.opacity = view.opacity;
+  SimdList(const kernel::SceneView& view, kernel::Precision precision)
+      : functions_(embree_functions(precision)), is_fast_(precision == kernel::Precision::kFast) {
+    scene_.view = view;
+    scene_.outliers = ordinary_spheres(view, {});
+    if (view.rods.empty()) return;
+    std::vector<std::uint32_t> not_listed(view.sphere_count);
+    std::iota(not_listed.begin(), not_listed.end(), 0u);
+    for (const std::uint32_t object : view.duplicates)
+      if (object >= view.sphere_count) not_listed.push_back(object);
+    kernel::SceneView rods = view;
+    rods.duplicates = not_listed;
+    rods_ = make_list(rods, precision);
   }
 
-  kernel::Tracer tracer(std::optional<Traversal>) const noexcept override { return functions_.tracer_of(traced_); }
-  void set_opacity(const float* opacity) noexcept override { scene_.opacity = opacity; }
+  kernel::Tracer tracer(std::optional<Traversal>) const noexcept override {
+    kernel::Tracer t = functions_.tracer_of(traced_);
+    if (!rods_) return t;
+    t.trace = is_fast_ ? query<kernel::RayPacket<float>> : query<kernel::RayPacket<double>>;
+    t.occlude = is_fast_ ? query<kernel::ShadowPacket<float>> : query<kernel::ShadowPacket<double>>;
+    t.self = this;
+    return t;
+  }
+  void set_opacity(const float* opacity) noexcept override {
+    scene_.view.opacity = opacity;
+    if (rods_) rods_->set_opacity(opacity);
+  }
   std::string name() const override { return "SIMD list"; }
   std::size_t bytes() const noexcept override { return scene_.outliers.size() * sizeof(scene_.outliers[0]); }
 
  private:
+  /// A query of the spheres, then of the rods.
+  template <class Packet>
+  static void query(const void* self, void* packets, int count) {
+    const auto& list = *static_cast<const SimdList*>(self);
+    const kernel::Tracer spheres = list.functions_.tracer_of(list.traced_), rods = list.rods_->tracer();
+    (Packet::kIsShadow ? spheres.occlude : spheres.trace)(spheres.self, packets, count);
+    for (int i = 0; i < count; ++i) {
+      Packet& packet = static_cast<Packet*>(packets)[i];
+      Packet copy = packet;
+      (Packet::kIsShadow ? rods.occlude : rods.trace)(rods.self, &copy, 1);
+      if constexpr (Packet::kIsShadow)
+        for (int lane = 0; lane < packet.count; ++lane) packet.occluded[lane] |= copy.occluded[lane];
+      else
+        packet = copy;
+    }
+  }
+
   EmbreeFunctions functions_;
   EmbreeScene scene_;
   TracedScene traced_{&scene_, {}};
+  std::unique_ptr<Accel> rods_;  ///< null: there are none
+  bool is_fast_;
 };
 
 /// Minimum hit distance, as a multiple of the direction's length: without root exclusion a ray would hit the sphere

@@ -30,9 +30,11 @@ TEST(AccelList, TheNearestSphereIsHitAndDuplicatesNever) {
   kernel::SceneView view;
   view.spheres = spheres.data();
   view.sphere_count = spheres.size();
+  const std::vector<std::uint32_t> duplicates = {1};
+  view.duplicates = duplicates;
   for (const auto precision : {kernel::Precision::kExact, kernel::Precision::kBook}) {
     const auto list = make_list(view, precision);
-    EXPECT_EQ(hit_of(*list), (std::pair<std::uint64_t, double>{1, 4}));
+    EXPECT_EQ(hit_of(*list), (std::pair<std::uint64_t, double>{2, 4}));
     EXPECT_EQ(list->name(), "list");
     EXPECT_EQ(list->bytes(), sizeof(std::uint32_t)) << "one duplicate";
   }

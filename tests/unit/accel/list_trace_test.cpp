@@ -16,7 +16,7 @@ namespace {
 TEST(AccelListTrace, TheNearestOfAllSpheresIsHit) {
   test::Random random;
   const std::vector<kernel::Sphere> spheres = test::scattered(random, 300, 10, 0.5, 0);
-  DistinctSpheres scene;
+  DistinctObjects scene;
   scene.view.spheres = spheres.data();
   scene.view.sphere_count = spheres.size();
   kernel::Tracer list = list_tracer(kernel::Precision::kExact);

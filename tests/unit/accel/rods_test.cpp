@@ -276,9 +276,9 @@ TEST(AccelRods, SpheresWinTies) {
 TEST(AccelRods, AGroundIsAnOutlier) {
   Random random;
   RodScene scene{"", test::random_rods(random, 100, 0.3, 0.03), {{0, -1001, 0, 1000}}};
-  EXPECT_EQ(find_outliers(scene.view(), {}), (std::vector<std::uint32_t>{0}));
+  EXPECT_EQ(find_outliers(scene.view()), (std::vector<std::uint32_t>{0}));
   scene.spheres[0] = {0, 0, 0, 1};
-  EXPECT_TRUE(find_outliers(scene.view(), {}).empty());
+  EXPECT_TRUE(find_outliers(scene.view()).empty());
 }
 
 TEST(AccelRods, ShortRodsAreStaticAndFillTheirSphere) {
@@ -290,14 +290,14 @@ TEST(AccelRods, ShortRodsAreStaticAndFillTheirSphere) {
     scene.rods.push_back(rod);
   }
   scene.motion.resize(1);  // the first one moves
-  const kernel::RodArray rods = scene.view().rods;
-  EXPECT_FALSE(is_short(rods, 0, 10));
-  EXPECT_TRUE(is_short(rods, 1, 10));
-  EXPECT_FALSE(is_short(rods, 2, 10)) << "larger than the limit";
-  EXPECT_FALSE(is_short(rods, 3, 10)) << "its sphere is nearly empty";
-  EXPECT_EQ(short_rods(rods, 10), 1u);
-  EXPECT_EQ(short_rods(rods, 20), 2u);
-  EXPECT_EQ(short_rods(rods, 0), 0u);
+  const kernel::SceneView view = scene.view();
+  EXPECT_FALSE(is_short(view, 0, 10));
+  EXPECT_TRUE(is_short(view, 1, 10));
+  EXPECT_FALSE(is_short(view, 2, 10)) << "larger than the limit";
+  EXPECT_FALSE(is_short(view, 3, 10)) << "its sphere is nearly empty";
+  EXPECT_EQ(short_rods(view, 10), 1u);
+  EXPECT_EQ(short_rods(view, 20), 2u);
+  EXPECT_EQ(short_rods(view, 0), 0u);
 }
 
 }  // namespace

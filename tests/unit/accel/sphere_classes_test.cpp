@@ -18,18 +18,14 @@ using kernel::Sphere;
 using test::Random;
 using test::scattered;
 
-TEST(AccelSphereClasses, ComplementsSkipTheGivenIds) {
-  EXPECT_EQ(complement_of({}, 3), (std::vector<std::uint32_t>{0, 1, 2}));
-  EXPECT_EQ(complement_of({0, 2}, 4), (std::vector<std::uint32_t>{1, 3}));
-}
-
-TEST(AccelSphereClasses, DuplicatesAreEqualInTheNumberTypeOfThePrecision) {
-  const std::vector<Sphere> spheres = {{1, 0, 0, 1}, {2, 0, 0, 1}, {1, 0, 0, 1}, {1 + 0x1p-40, 0, 0, 1}};
+TEST(AccelSphereClasses, OutliersAndDuplicatesAreNotOrdinary) {
   kernel::SceneView view;
-  view.spheres = spheres.data();
-  view.sphere_count = spheres.size();
-  EXPECT_EQ(duplicates(view, kernel::Precision::kExact), std::vector<std::uint32_t>{2});
-  EXPECT_EQ(duplicates(view, kernel::Precision::kFast), (std::vector<std::uint32_t>{2, 3}));
+  view.sphere_count = 3;
+  EXPECT_EQ(ordinary_spheres(view, {}), (std::vector<std::uint32_t>{0, 1, 2}));
+  view.sphere_count = 6;
+  const std::vector<std::uint32_t> duplicates = {2, 5, 7};  // the last is a rod
+  view.duplicates = duplicates;
+  EXPECT_EQ(ordinary_spheres(view, {0, 2}), (std::vector<std::uint32_t>{1, 3, 4}));
 }
 
 TEST(AccelSphereClasses, AGroundIsAnOutlier) {
@@ -39,9 +35,9 @@ TEST(AccelSphereClasses, AGroundIsAnOutlier) {
   kernel::SceneView view;
   view.spheres = spheres.data();
   view.sphere_count = spheres.size();
-  EXPECT_EQ(find_outliers(view, {}), std::vector<std::uint32_t>{1000});
+  EXPECT_EQ(find_outliers(view), std::vector<std::uint32_t>{1000});
   view.sphere_count = 1000;
-  EXPECT_TRUE(find_outliers(view, {}).empty());
+  EXPECT_TRUE(find_outliers(view).empty());
 }
 
 TEST(AccelSphereClasses, MovingSpheresAreInTheBvhUnlessTheyMoveFar) {

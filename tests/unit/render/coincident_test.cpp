@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
-// Of spheres that coincide, only the first is rendered.
+// Of spheres or rods that coincide, only the first is rendered.
 #include <gtest/gtest.h>
 
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "compile/compile.h"
@@ -215,6 +216,28 @@ TEST(RenderCoincident, OfSmallLampsThatTheCameraSeesOnlyTheFirstIsSampled) {
   ASSERT_NE(SeenEmitterList(compiled.view(), compiled.precision, compiled.width, compiled.height).view().begins,
             nullptr);
   expect_equal_light(one, two, "small lamps");
+}
+
+/// Thin, very long and thick rods; half of the last one is dark.
+TEST(RenderCoincident, OnlyTheFirstRodIsRenderedAndALight) {
+  scene::Scene one = dark_stage();
+  test::add_rod_lamp(one, {-2, 2, 0.5}, {1.5, 2.6, 1}, 0.05, {20, 15, 10});
+  test::add_rod_lamp(one, {0.5, 0.4, 1.5}, {0.5, 40, 1.5}, 0.02, {20, 20, 20});
+  test::add_rod_lamp(one, {-0.4, 1.4, 1}, {0.2, 1.4, 1}, 0.3, {5, 10, 15});
+  one.rods.back().materials[1] = 1;
+  scene::Scene more = one;
+  for (scene::Rod rod : one.rods) {
+    std::swap(rod.from, rod.to);
+    rod.materials = {0, 0};
+    more.rods.insert(more.rods.end(), {rod, rod});
+  }
+  for (const scene::Rod& rod : one.rods) more.rods.push_back(rod);
+  expect_equal_light(one, more, "rods");
+  scene::Scene one_closing = one, more_closing = more;
+  for (scene::Scene* s : {&one_closing, &more_closing})
+    for (scene::Rod& rod : s->rods)
+      for (math::Vec3d* end : {&rod.from, &rod.to}) end->x += 0.5;
+  expect_equal_light(one, more, "moving rods", &one_closing, &more_closing);
 }
 
 /// The two lamps coincide in single precision but not in double.
