@@ -5,6 +5,7 @@
 #include <array>
 #include <cmath>
 #include <limits>
+#include <type_traits>
 
 #include "base/stop_point.h"
 #include "film/display_error.h"
@@ -17,11 +18,11 @@ namespace {
 /// for light.
 constexpr int kReach = 2, kWideReach = 3;
 constexpr int kNeighbours = (2 * kReach + 1) * (2 * kReach + 1) - 1;  ///< of a pixel within kReach
+/// One in so many neighbours is darker than the light around a pixel.
+constexpr std::size_t kDarkerOneIn = 4;
 
 /// Pixels that are compared with their neighbours together: several vectors of any instruction set.
 constexpr int kRun = 64;
-template <class T>
-using Run = std::array<T, kRun>;
 
 /// Number of largest samples without which a pixel's own light counts.
 constexpr float kTrimmed = 3;
@@ -91,24 +92,16 @@ void each_neighbour(const PixelStatistics& s, int x, int y, int reach, Use use) 
   });
 }
 
-/// Calls `use_run(x)` for runs that contain all pixels of a row with all neighbours within `reach`, and `use(x)` for
-/// its other pixels.
-template <class UseRun, class Use>
-void each_run(const PixelStatistics& s, int y, int reach, UseRun use_run, Use use) {
+/// Calls `use(x, count)` for runs of pixels that contain those of a row, with `count` an integral constant: kRun for
+/// runs with all neighbours within `reach`, 1 for other pixels. each_neighbour() of the first pixel has the first
+/// pixels of the neighbouring runs.
+template <class Use>
+void each_run(const PixelStatistics& s, int y, int reach, Use use) {
   const bool has_runs = y >= reach && y + reach < s.height && s.width >= kRun + 2 * reach;
   const int end = has_runs ? s.width - reach : 0;
-  for (int x = reach; x < end; x += kRun) use_run(std::min(x, end - kRun));
+  for (int x = reach; x < end; x += kRun) use(std::min(x, end - kRun), std::integral_constant<std::size_t, kRun>());
   for (int x = 0; x < s.width; ++x)
-    if (x < reach || x >= end) use(x);
-}
-
-/// Calls `use(first)` for each neighbour of the pixels of a run from (x, y) on, in the order of each_neighbour: first +
-/// i is that of the i-th pixel.
-template <class Use>
-void each_neighbour_of_run(const PixelStatistics& s, int x, int y, int reach, Use use) {
-  for (int dy = -reach; dy <= reach; ++dy)
-    for (int dx = -reach; dx <= reach; ++dx)
-      if (dx != 0 || dy != 0) use(s.at(x + dx, y + dy));
+    if (x < reach || x >= end) use(x, std::integral_constant<std::size_t, 1>());
 }
 
 float relative(float variance, float light) {
@@ -116,41 +109,33 @@ float relative(float variance, float light) {
   return std::min(variance / (shown * shown), kLargestError);
 }
 
-/// The light that three quarters of the pixels around a pixel exceed, each without its largest sample.
-float light_around(const PixelStatistics& s, int x, int y) {
-  std::array<float, kNeighbours> light{};
-  int count = 0;
-  each_neighbour(s, x, y, kReach,
-                 [&](std::size_t i) { light[static_cast<std::size_t>(count++)] = s.light[i] - s.outlier[i]; });
-  const auto quartile = light.begin() + (count - 1) / 4;
-  std::nth_element(light.begin(), quartile, light.begin() + count);
-  return *quartile;
-}
-
-/// light_around() of a run from (x, y) on: a sorting network in vectors, which takes a tenth of the time.
+/// The light that three quarters of the pixels around each pixel of a run exceed, each without its largest sample. A
+/// sorting network in vectors takes a tenth of the time of std::nth_element.
+template <std::size_t N>
 void lights_around(const PixelStatistics& s, int x, int y, float* out) {
-  std::array<Run<float>, kNeighbours / 4> least;  // of each pixel's neighbours, ascending
+  std::array<std::array<float, N>, kNeighbours / kDarkerOneIn> least;  // of each pixel's neighbours, ascending
   for (auto& rank : least) rank.fill(std::numeric_limits<float>::infinity());
-  each_neighbour_of_run(s, x, y, kReach, [&](std::size_t first) {
-    Run<float> light;
-    for (std::size_t i = 0; i < kRun; ++i) light[i] = s.light[first + i] - s.outlier[first + i];
+  std::size_t count = 0;
+  each_neighbour(s, x, y, kReach, [&](std::size_t first) {
+    ++count;
+    std::array<float, N> light;
+    for (std::size_t i = 0; i < N; ++i) light[i] = s.light[first + i] - s.outlier[first + i];
     for (auto& rank : least) {
-      for (std::size_t i = 0; i < kRun; ++i) {
+      for (std::size_t i = 0; i < N; ++i) {
         const float lower = std::min(rank[i], light[i]);
         light[i] = std::max(rank[i], light[i]);
         rank[i] = lower;
       }
     }
   });
-  std::copy(least.back().begin(), least.back().end(), out);
+  std::ranges::copy(least[(count - 1) / kDarkerOneIn], out);
 }
 
 /// The errors of a row of pixels.
 std::vector<float> errors_of_row(const PixelStatistics& s, int y) {
   std::vector<float> out(static_cast<std::size_t>(s.width));
-  each_run(
-      s, y, kReach, [&](int x) { lights_around(s, x, y, &out[static_cast<std::size_t>(x)]); },
-      [&](int x) { out[static_cast<std::size_t>(x)] = light_around(s, x, y); });
+  each_run(s, y, kReach,
+           [&](int x, auto count) { lights_around<count()>(s, x, y, &out[static_cast<std::size_t>(x)]); });
   for (int x = 0; x < s.width; ++x) {
     const std::size_t i = s.at(x, y);
     float& value = out[static_cast<std::size_t>(x)];
@@ -212,36 +197,25 @@ class FoundLight {
 
   /// Sets `is_unreliable` of a row of pixels.
   void find_unreliable(int y, std::vector<std::uint8_t>& is_unreliable) const {
-    const auto use_run = [&](int x) {
-      Run<float> light{}, largest{}, dark{};
-      each_neighbour_of_run(s_, x, y, kReach, [&](std::size_t first) {
-        for (std::size_t i = 0; i < kRun; ++i) dark[i] += is_dark_[first + i];
+    each_run(s_, y, kWideReach, [&]<std::size_t N>(int x, std::integral_constant<std::size_t, N>) {
+      std::array<float, N> light{}, largest{}, dark{};
+      float count = 0;
+      each_neighbour(s_, x, y, kReach, [&](std::size_t first) {
+        ++count;
+        for (std::size_t i = 0; i < N; ++i) dark[i] += is_dark_[first + i];
       });
-      each_neighbour_of_run(s_, x, y, kWideReach, [&](std::size_t first) {
-        for (std::size_t i = 0; i < kRun; ++i) light[i] += light_[first + i];
-        for (std::size_t i = 0; i < kRun; ++i) {
+      each_neighbour(s_, x, y, kWideReach, [&](std::size_t first) {
+        for (std::size_t i = 0; i < N; ++i) light[i] += light_[first + i];
+        for (std::size_t i = 0; i < N; ++i) {
           const float before = largest[i], other = largest_[first + i];  // values: references would be branches
           largest[i] = before < other ? other : before;
         }
       });
-      for (std::size_t i = 0; i < kRun; ++i) {
+      for (std::size_t i = 0; i < N; ++i) {
         const std::size_t own = s_.at(x, y) + i;
-        is_unreliable[own] = is_reliable(own, kNeighbours, dark[i], light[i], largest[i]) ? 0 : 1;
+        is_unreliable[own] = is_reliable(own, count, dark[i], light[i], largest[i]) ? 0 : 1;
       }
-    };
-    const auto use = [&](int x) {
-      float count = 0, dark = 0, light = 0, largest = 0;
-      each_neighbour(s_, x, y, kReach, [&](std::size_t k) {
-        ++count;
-        dark += is_dark_[k];
-      });
-      each_neighbour(s_, x, y, kWideReach, [&](std::size_t k) {
-        light += light_[k];
-        largest = std::max(largest, largest_[k]);
-      });
-      is_unreliable[s_.at(x, y)] = is_reliable(s_.at(x, y), count, dark, light, largest) ? 0 : 1;
-    };
-    each_run(s_, y, kWideReach, use_run, use);
+    });
   }
 
  private:
@@ -338,7 +312,7 @@ std::vector<float> errors_of_one_sample(const PixelStatistics& s, TilePool& pool
   const auto suffices = [](double sum, double squares) { return sum > 0 && sum * sum >= kMinEffectiveCount * squares; };
   const auto around = [&](int x, int y) {
     const std::size_t self = excluded(s, x, y);
-    for (int reach = 1;; reach *= 2) {
+    for (int reach = 2;; reach *= 2) {
       double sum = 0, squares = 0;
       std::size_t count = 0;
       each_row_within(s, x, y, reach, [&](std::size_t begin, std::size_t end) {
@@ -361,21 +335,22 @@ std::vector<float> errors_of_one_sample(const PixelStatistics& s, TilePool& pool
     out[i] = static_cast<float>(std::max(error, static_cast<double>(of_emitters[i])) + kMinError * mean);
   };
   const auto set_row = [&](int y) {
-    const auto set_run = [&](int x) {
-      Run<double> sum{}, squares{};
-      each_neighbour_of_run(s, x, y, 1, [&](std::size_t first) {
-        for (std::size_t i = 0; i < kRun; ++i) {
+    each_run(s, y, 1, [&]<std::size_t N>(int x, std::integral_constant<std::size_t, N>) {
+      std::array<double, N> sum{}, squares{};
+      double count = 0;
+      each_neighbour(s, x, y, 1, [&](std::size_t first) {
+        ++count;
+        for (std::size_t i = 0; i < N; ++i) {
           const auto e = static_cast<double>(own[first + i]);
           sum[i] += e;
           squares[i] += e * e;
         }
       });
-      for (std::size_t i = 0; i < kRun; ++i) {
+      for (std::size_t i = 0; i < N; ++i) {
         const int at = x + static_cast<int>(i);
-        set(at, y, suffices(sum[i], squares[i]) ? sum[i] / 8 : around(at, y));
+        set(at, y, suffices(sum[i], squares[i]) ? sum[i] / count : around(at, y));
       }
-    };
-    each_run(s, y, 1, set_run, [&](int x) { set(x, y, around(x, y)); });
+    });
   };
   each_row(s, pool, set_row);
   return out;
