@@ -306,7 +306,8 @@ SceneReader::SceneReader(const SceneSource& source, Pose pose) : state_(std::mak
   state.root = parse_tree(state.file, text, source.overrides, state);
   const toml::table& root = state.root;
   if (root.empty() && state.diagnostics.has_errors()) {
-    if (!source.text) refuse_data_file(source.file, text);  // else the text is a scene for the file
+    // `plot` checks overrides with an empty scene beside the data file.
+    if (!source.text || !text.empty()) refuse_data_file(source.file, text);
     state.diagnostics.raise_errors(state.file);
   }
   state.source.set_typed_lines(source.typed_lines);

@@ -313,6 +313,11 @@ class Messages(FolderTest):
                         self.assertNotRegex(str(error), r"incompatible|_orrery|std::|Invoked with|internal")
         self.assertGreater(raised, len(calls) * len(wrong) // 2)
 
+    def test_a_data_file_is_no_scene(self):
+        write("water.xyz", "1\n\nO 0 0 0\n")
+        with self.assertRaisesRegex(orrery.UsageError, "is a data file, not a scene"):
+            orrery.load("water.xyz")
+
     def test_errors_of_the_system_have_number_and_file(self):
         write("points.toml", SCENE + '[[points]]\nfile = "none.ply"\nmaterial = "red"\n')
         os.mkdir("folder.toml")
