@@ -112,7 +112,7 @@ class ScenePage {
     server_ = http::serve(
         "127.0.0.1", port, [this](const http::Request& request) { return site_->admits(request); },
         [this](const http::Request& request) { return site_->answer(request); });
-    address_ = fmt::format("http://127.0.0.1:{}/?token={}", server_->port(), secret);
+    address_ = fmt::format("http://127.0.0.1:{}/?token={}", server_.port, secret);
   }
 
   /// With the secret. Empty: closed.
@@ -132,7 +132,7 @@ class ScenePage {
   void close() {
     address_.clear();
     if (viewer_) viewer_->stop();
-    server_.reset();
+    server_ = {};
     site_.reset();
     viewer_.reset();
   }
@@ -141,7 +141,7 @@ class ScenePage {
   std::string address_;
   std::unique_ptr<view::Viewer> viewer_;
   std::unique_ptr<view::Site> site_;
-  std::unique_ptr<http::Server> server_;
+  http::Server server_;
 };
 
 }  // namespace
