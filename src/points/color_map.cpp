@@ -18,37 +18,31 @@ namespace orrery::points {
 
 namespace {
 
+/// The maps, each followed by the same one from its last colour to the first: `viridis_r`.
 std::vector<ColorMap> make_maps() {
   std::vector<ColorMap> out;
+  const auto add = [&](ColorMap map) {
+    out.push_back(map);
+    map.name += "_r";
+    std::reverse(map.knots.begin(), map.knots.end());
+    for (ColorMap::Knot& knot : map.knots) knot.t = 1 - knot.t;
+    out.push_back(std::move(map));
+  };
   for (const ContinuousTable& table : kContinuousTables) {
     ColorMap map{table.name, false, {}};
     for (const ColorMapRow& row : table.rows) map.knots.push_back({row.index / 255.0, {row.r, row.g, row.b}});
-    out.push_back(std::move(map));
+    add(std::move(map));
   }
   for (const CategoricalTable& table : kCategoricalTables) {
     ColorMap map{table.name, true, {}};
     for (const std::uint32_t code : table.colors) map.knots.push_back({0, bytes_of(code) / 255});
-    out.push_back(std::move(map));
+    add(std::move(map));
   }
   return out;
 }
 
 const std::vector<ColorMap>& maps() {
   static const std::vector<ColorMap> all = make_maps();
-  return all;
-}
-
-/// The maps from their last colour to the first: `viridis_r`.
-const std::vector<ColorMap>& reversed_maps() {
-  static const std::vector<ColorMap> all = [] {
-    std::vector<ColorMap> out = maps();
-    for (ColorMap& map : out) {
-      map.name += "_r";
-      std::reverse(map.knots.begin(), map.knots.end());
-      for (ColorMap::Knot& knot : map.knots) knot.t = 1 - knot.t;
-    }
-    return out;
-  }();
   return all;
 }
 
@@ -144,9 +138,7 @@ class Reader {
 
 }  // namespace
 
-const ColorMap* find_color_map(std::string_view name) {
-  return data::find_named(name.ends_with("_r") ? reversed_maps() : maps(), name);
-}
+const ColorMap* find_color_map(std::string_view name) { return data::find_named(maps(), name); }
 
 Vec3d bytes_of(std::uint32_t code) {
   return {static_cast<double>(code >> 16 & 255u), static_cast<double>(code >> 8 & 255u),
@@ -162,7 +154,8 @@ std::optional<Vec3d> parse_hex(std::string_view text) {
 const std::vector<std::string>& color_map_names() {
   static const std::vector<std::string> names = [] {
     std::vector<std::string> out;
-    for (const ColorMap& map : maps()) out.push_back(map.name);
+    for (const ColorMap& map : maps())
+      if (!map.name.ends_with("_r")) out.push_back(map.name);
     return out;
   }();
   return names;
