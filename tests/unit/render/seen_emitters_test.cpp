@@ -147,12 +147,12 @@ scene::Window pixels_of_glints(const compile::CompiledScene& compiled) {
   return {left, top, right - left, bottom - top};
 }
 
-/// A sharp ball with the image of a small lamp, of about a tenth of a pixel.
+/// A sharp ball with the image of a small lamp, of about a fifteenth of a pixel.
 scene::Scene glint(const scene::MaterialModel& model) {
   scene::Scene s = test::front_view(48, 32);
   s.render.samples = 1024;
   s.render.max_depth = 3;
-  test::add_lamp(s, {6, 4, 14}, 0.3, {1000, 700, 400}, "lamp");
+  test::add_lamp(s, {6, 4, 14}, 1.1, {1000, 700, 400}, "lamp");
   test::add_ball(s, {-0.6, 0.3, 0}, 0.9, model);
   return s;
 }
@@ -171,7 +171,7 @@ scene::Scene in_the_sun(scene::Scene s) {
   const auto map = std::make_shared<scene::LatLongMap>(32, 16);
   for (int y = 0; y < map->height(); ++y) std::fill_n(map->row(y), 3 * map->width(), 0.01f);
   map->sun.direction = math::normalized(math::Vec3d{6, 4, 14});
-  map->sun.one_minus_cos = 1e-4;
+  map->sun.one_minus_cos = 2e-3;
   map->sun.radiance = {1000, 700, 400};
   s.background.type = scene::BackgroundType::kImage;
   s.background.image = map;
@@ -211,11 +211,11 @@ TEST(RenderSeenEmitters, GlintsAreThoseOfCameraRays) {
                              })},
       {"hidden in part", changed(mirror,
                                  [](scene::Scene& s) {
-                                   test::add_ball(s, {5.2, 3.47, 12}, 0.25, scene::Lambertian{{0, 0, 0}});
+                                   test::add_ball(s, {5.6, 3.47, 12}, 0.8, scene::Lambertian{{0, 0, 0}});
                                  })},
       {"veiled", changed(mirror,
                          [&](scene::Scene& s) {
-                           test::add_ball(s, {5.06, 3.47, 12}, 1, veil);
+                           test::add_ball(s, {5.06, 3.47, 12}, 1.3, veil);
                          })},
       {"ball behind a veil", changed(mirror,
                                      [&](scene::Scene& s) {
@@ -229,7 +229,7 @@ TEST(RenderSeenEmitters, GlintsAreThoseOfCameraRays) {
     const double sampled = light_of(s);
     s.render.direct_lighting = scene::DirectLighting::kBsdf;
     s.render.samples = 1 << 19;
-    EXPECT_NEAR(sampled / light_of(s), 1, 0.05) << name;  // four standard errors of camera rays
+    EXPECT_NEAR(sampled / light_of(s), 1, 0.05) << name;  // of glass, 1,500 hits of camera rays
   }
 }
 
