@@ -23,7 +23,7 @@ namespace orrery::kernel::HWY_NAMESPACE {
 
 /// How paths have reached a light.
 template <class D>
-struct Arrival {
+struct WayToLight {
   hn::Vec<IdTag<D>> state;  ///< CausticState; only if features.caustics
   hn::Vec<IdTag<D>> self;   ///< what the rays have left
   hn::Vec<IdTag<D>> pixels;
@@ -35,15 +35,14 @@ struct Arrival {
 ///
 /// `lights`   ids of emitters, or kSun
 template <class D>
-HWY_NOINLINE hn::Mask<D> are_sampled(D d, const SceneView& scene, hn::Mask<D> lanes, Arrival<D> at,
+HWY_NOINLINE hn::Mask<D> are_sampled(D d, const SceneView& scene, hn::Mask<D> lanes, WayToLight<D> at,
                                      hn::Vec<IdTag<D>> lights) {
   auto out = hn::FirstN(d, 0);
   if (scene.features.caustics) out = is_sampled_caustic(d, scene, lanes, at.state, at.self, lights);
   if (scene.seen_emitters.begins == nullptr) return out;
-  HWY_ALIGN hn::TFromD<IdTag<D>> pixel[hn::MaxLanes(D())];
-  hn::Store(at.pixels, IdTag<D>(), pixel);
-  HWY_ALIGN hn::TFromD<IdTag<D>> ball[hn::MaxLanes(D())], emitter[hn::MaxLanes(D())];
+  HWY_ALIGN hn::TFromD<IdTag<D>> pixel[hn::MaxLanes(D())], ball[hn::MaxLanes(D())], emitter[hn::MaxLanes(D())];
   HWY_ALIGN hn::TFromD<D> found[hn::MaxLanes(D())] = {};
+  hn::Store(at.pixels, IdTag<D>(), pixel);
   hn::Store(at.self, IdTag<D>(), ball);
   hn::Store(lights, IdTag<D>(), emitter);
   each_lane(d, hn::And(lanes, at.is_straight), [&](int i) {
@@ -56,7 +55,7 @@ HWY_NOINLINE hn::Mask<D> are_sampled(D d, const SceneView& scene, hn::Mask<D> la
 /// Removes the sun from the environment's radiance in lanes in which it was sampled. Not inlined.
 template <class D, class V = hn::Vec<D>>
 HWY_NOINLINE Vec3<V> without_sampled_sun(D d, const SceneView& scene, Vec3<V> radiance, Vec3<V> direction,
-                                         hn::Mask<D> missed, Arrival<D> from) {
+                                         hn::Mask<D> missed, WayToLight<D> from) {
   const Environment& environment = *scene.environment;
   if (!environment.has_sun) return radiance;
   const auto in_sun = hn::And(missed, is_in_sun(d, environment, direction));

@@ -218,7 +218,7 @@ class Shader {
       radiance = depth_ == 0 ? environment_radiance(d, *scene_.environment, at.ray.direction)
                              : weighted_environment(d, scene_, at.ray.direction, at.pdf);
       if (samples_images())
-        radiance = without_sampled_sun(d, scene_, radiance, at.ray.direction, at.see_background, arrival_of(at));
+        radiance = without_sampled_sun(d, scene_, radiance, at.ray.direction, at.see_background, way_of(at));
       groups = set(du, scene_.environment->light_group);
     } else {
       radiance = background(d, scene_.background, features(), at.ray.direction);
@@ -236,7 +236,7 @@ class Shader {
   /// gain nothing.
   HWY_INLINE bool samples_images() const { return features().caustics || scene_.seen_emitters.begins != nullptr; }
 
-  HWY_INLINE Arrival<D> arrival_of(const Arrivals<D>& at) const {
+  HWY_INLINE WayToLight<D> way_of(const Arrivals<D>& at) const {
     const auto all = hn::FirstN(d, hn::Lanes(d));
     const auto straight = depth_ == 0 ? all : depth_ == 1 ? hn::IsInf(at.pdf) : hn::Not(all);
     return {features().caustics ? caustic_state_of(at) : hn::Zero(du), at.ray.self, at.pixels, straight};
@@ -249,7 +249,7 @@ class Shader {
     const auto dark = hn::And(hn::And(source.radiance.x == 0, source.radiance.y == 0), source.radiance.z == 0);
     auto shines = hn::AndNot(dark, at.hit);
     if (hn::AllFalse(d, shines)) return;
-    if (samples_images()) shines = hn::AndNot(are_sampled(d, scene_, shines, arrival_of(at), at.hits), shines);
+    if (samples_images()) shines = hn::AndNot(are_sampled(d, scene_, shines, way_of(at), at.hits), shines);
     if (features().rich_materials && scene_.textures != nullptr)
       source.radiance = textured_radiance<D, kLoop.precision>(d, scene_, at.ray, at.hits, shines, at.distance,
                                                               at.cone.width2, at.times, source.radiance);
