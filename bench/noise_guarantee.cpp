@@ -3,13 +3,14 @@
 // sampling, and the bias. docs/trade.md describes it.
 //
 //   bench_noise_guarantee [--seeds 20] [--noise 0.3,0.1,0.03] [--width 64] [--most 4000] [--cache FOLDER]
-//                         [--set ordinary|committed|hard|held-out] [--scene NAME] [--sampler NAME]
+//                         [--set ordinary|committed|hard|held-out] [--scene NAME] [--sampler NAME] [--halves]
 //   bench_noise_guarantee --bias [--seeds 1000] [--noise 0.1] [--width 96] [--scene NAME] [--sampler NAME]
 //
 // --set, --scene and --sampler can be repeated. Each target is rendered with every seed, and with a few seeds by
 // uniform sampling with the same mean sample count. The reference is the mean of two uniform images, whose samples are
 // doubled until their error is a fifth of the smallest target, or the limit is reached; their remaining error is
 // subtracted.
+// --halves renders images as for --denoise, which take fewer samples before the first estimate.
 // --cache keeps the references for the next run. Runs that need more than --most samples per pixel, or report pixels
 // whose noise cannot be estimated, are counted as "not reached". Exit status 1 if fewer than 98 % of the other true
 // errors are within 1.1 times the target, if one exceeds 1.3 times the target, or if a bias is at least three standard
@@ -42,7 +43,7 @@ namespace orrery::bench {
 namespace {
 
 struct Options {
-  bool bias = false;
+  bool bias = false, halves = false;
   int seeds = 0, width = 0, most = 4000;
   std::vector<double> noise;
   std::vector<std::string> sets, scenes, samplers;
@@ -55,6 +56,10 @@ Options parse(int argc, char** argv) {
     const std::string word = argv[i];
     if (word == "--bias") {
       o.bias = true;
+      continue;
+    }
+    if (word == "--halves") {
+      o.halves = true;
       continue;
     }
     if (i + 1 == argc) throw std::runtime_error("unknown option, or its value is missing: " + word);
@@ -93,7 +98,7 @@ Options parse(int argc, char** argv) {
 /// A compiled scene with its BVH, to be rendered with different seeds.
 class Subject {
  public:
-  Subject(NoiseScene s, const Options& o, const std::string& sampler) {
+  Subject(NoiseScene s, const Options& o, const std::string& sampler) : halves_(o.halves) {
     for (scene::Scene* const at : {&s.opening, s.closing ? &*s.closing : nullptr}) {
       if (at == nullptr) continue;
       at->image = {o.width, o.width * 9 / 16};
@@ -111,6 +116,7 @@ class Subject {
   render::Result adaptive(std::uint32_t seed, double noise, int most) {
     render::Settings settings;
     settings.noise = noise;
+    settings.layers.halves = halves_;
     return run(seed, most, settings);
   }
   render::Result uniform(std::uint32_t seed, int samples) { return run(seed, samples, {}); }
@@ -123,6 +129,7 @@ class Subject {
     return render::render(compiled_, *accel_, settings);
   }
 
+  bool halves_;
   compile::CompiledScene compiled_;
   std::unique_ptr<accel::Accel> accel_;
 };

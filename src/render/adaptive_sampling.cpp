@@ -2,9 +2,11 @@
 #include "render/adaptive_sampling.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstdio>
 #include <limits>
+#include <utility>
 #include <vector>
 
 #include "accel/accel.h"
@@ -23,8 +25,10 @@ namespace {
 
 /// Minimum samples of a half before errors are estimated: with fewer, rare light in a pixel would be missed for good.
 constexpr std::uint32_t kFirstSamples = 8;
-/// The same for an image with halves, which will be denoised: with fewer, figures look worse.
-constexpr std::uint32_t kFirstDenoisedSamples = 4;
+/// The same for an image with halves, which will be denoised; pixels at edges get twice as many.
+constexpr std::uint32_t kFirstDenoisedSamples = 2;
+/// Contrast of a pixel's neighbours from which it is at an edge.
+constexpr float kEdgeContrast = 0.2F;
 
 /// Maximum samples of a half: the second half's sample numbers begin where the first's end.
 constexpr std::uint32_t kMaxSamples = kernel::Sampler::kSecondHalf - 1;
@@ -39,6 +43,9 @@ std::string noise_text(double reached, double wanted) {
   std::snprintf(text, sizeof(text), "noise %.3g of %.3g", reached, wanted);
   return text;
 }
+
+/// Means of albedo, normal and inverse depth of a pixel.
+using Seen = std::array<float, 7>;
 
 class AdaptiveSampling {
  public:
@@ -82,6 +89,7 @@ class AdaptiveSampling {
       state_.goals.assign(state_.pixel_count(), n);
       if (!run_iteration()) return false;
     }
+    if (!sample_edges()) return false;
     const double wanted = settings_.noise * settings_.noise;
     for (;;) {
       noise_ = estimate_noise(pixels_, pool_);
@@ -146,6 +154,65 @@ class AdaptiveSampling {
     } else {
       progress_.expect(static_cast<std::uint64_t>(std::min(limit, 0x1p62)), "samples");
     }
+  }
+
+  /// Doubles the first samples of pixels at edges in an image with halves: no neighbour has the same mixture of
+  /// objects, so that the denoiser leaves their noise. Their neighbours decide, see errors_of_one_sample().
+  ///
+  /// Result     false if cancelled
+  bool sample_edges() {
+    const auto is_first = [this](std::uint32_t n) { return n == first_samples_; };
+    const std::uint32_t goal = std::min(2 * first_samples_, max_samples_);
+    if (!settings_.layers.halves || goal == first_samples_ ||
+        !std::all_of(state_.counts.begin(), state_.counts.end(), is_first))
+      return true;
+    const auto each_pixel = [this](const auto& use) {
+      const auto row = [&](std::size_t y, TileWorker&) {
+        for (int x = 0; x < pixels_.width; ++x) use(x, static_cast<int>(y));
+      };
+      pool_.run(static_cast<std::size_t>(pixels_.height), row);
+    };
+    std::vector<Seen> seen(pixels_.samples.size());
+    each_pixel([&](int x, int y) { seen[pixels_.at(x, y)] = seen_in(pixels_.at(x, y)); });
+    base::ZeroVector<std::uint32_t> goals = state_.counts;
+    each_pixel([&](int x, int y) {
+      if (contrast_around(seen, x, y) > kEdgeContrast) goals[pixels_.at(x, y)] = goal;
+    });
+    const auto edges = static_cast<std::uint64_t>(std::count(goals.begin(), goals.end(), goal));
+    if (edges == 0 || affordable(kShareOfTime) < edges * (goal - first_samples_)) return true;
+    state_.goals = std::move(goals);
+    return run_iteration();
+  }
+
+  /// What the paths of a pixel see first.
+  Seen seen_in(std::size_t i) const {
+    kernel::GuideSum sum = state_.guides_of(0, i);
+    sum += state_.guides_of(1, i);
+    const auto count = static_cast<double>(std::max<std::int64_t>(sum.weight, 1));
+    Seen out{};
+    for (std::size_t k = 0; k < 3; ++k) {
+      out[k] = static_cast<float>(static_cast<double>(sum.albedo[k]) * kernel::kGuideUnit / count);
+      out[3 + k] = static_cast<float>(static_cast<double>(sum.normal[k]) * kernel::kGuideUnit / count);
+    }
+    out[6] = static_cast<float>(kernel::from_fixed_point(sum.inverse_depth) / count);
+    return out;
+  }
+
+  /// By how much the neighbours of a pixel differ: squared ranges of albedo, normal and depth, weighted as in the
+  /// denoiser.
+  float contrast_around(const std::vector<Seen>& seen, int x, int y) const {
+    Seen low, high;
+    low.fill(std::numeric_limits<float>::max());
+    high.fill(std::numeric_limits<float>::lowest());
+    for (int v = std::max(y - 1, 0); v <= std::min(y + 1, pixels_.height - 1); ++v)
+      for (int u = std::max(x - 1, 0); u <= std::min(x + 1, pixels_.width - 1); ++u)
+        for (std::size_t k = 0; k < low.size() && (u != x || v != y); ++k) {
+          low[k] = std::min(low[k], seen[pixels_.at(u, v)][k]);
+          high[k] = std::max(high[k], seen[pixels_.at(u, v)][k]);
+        }
+    const auto square = [&](std::size_t k) { return (high[k] - low[k]) * (high[k] - low[k]); };
+    const float depth = high[6] > 0 ? (high[6] - low[6]) / high[6] : 0;
+    return 2 * (square(0) + square(1) + square(2)) + (square(3) + square(4) + square(5)) / 2 + depth * depth / 8;
   }
 
   /// Renders all pixels up to their goals.

@@ -64,11 +64,26 @@ TEST(RenderAdaptiveSampling, LowerTargetNoiseTakesMoreSamples) {
 }
 
 /// Below a target that is easily reached, the first estimate decides.
-TEST(RenderAdaptiveSampling, AnImageThatWillBeDenoisedTakesHalfOfTheSamples) {
+TEST(RenderAdaptiveSampling, AnImageThatWillBeDenoisedTakesFewSamplesExceptAtEdges) {
+  scene::Scene s;
+  s.image = {40, 40};
+  s.background.type = scene::BackgroundType::kConstant;
+  s.materials = {{"grey", scene::Lambertian{{0.5, 0.5, 0.5}}}};
+  s.spheres = {{{0, 0, -3}, 1, 0, "ball"}};
+  const compile::CompiledScene compiled = compile::compile(s);
   Settings settings = noise(10);
-  EXPECT_EQ(render(world_of(), settings).statistics.min_samples, 16u);
-  settings.layers.halves = true;
-  EXPECT_EQ(render(world_of(), settings).statistics.min_samples, 8u);
+  EXPECT_EQ(render(compiled, settings).statistics.max_samples, 16u);
+  settings.layers.halves = settings.layers.samples = settings.layers.object_id = true;
+  const Result r = render(compiled, settings);
+  const auto &samples = r.picture.find("samples.X")->values, &ids = r.picture.find("object_id.X")->values;
+  const auto at = [](int x, int y) { return static_cast<std::size_t>(40 * y + x); };
+  EXPECT_EQ(samples[at(20, 20)], 4.0f);
+  EXPECT_EQ(samples[at(0, 0)], 4.0f);
+  for (int x = 1; x < 40; ++x)
+    if (ids[at(x, 20)] != ids[at(x - 1, 20)]) {
+      EXPECT_EQ(std::max(samples[at(x - 1, 20)], samples[at(x, 20)]), 8.0f) << x;
+    }
+  EXPECT_EQ(r.statistics.max_samples, 8u);
 }
 
 TEST(RenderAdaptiveSampling, RequestedSampleCountIsALimit) {
