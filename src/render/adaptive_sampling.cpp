@@ -45,7 +45,7 @@ std::string noise_text(double reached, double wanted) {
 }
 
 /// Means of albedo, normal and inverse depth of a pixel.
-using Seen = std::array<float, 7>;
+using MeanGuides = std::array<float, 7>;
 
 class AdaptiveSampling {
  public:
@@ -172,11 +172,11 @@ class AdaptiveSampling {
       };
       pool_.run(static_cast<std::size_t>(pixels_.height), row);
     };
-    std::vector<Seen> seen(pixels_.samples.size());
-    each_pixel([&](int x, int y) { seen[pixels_.at(x, y)] = seen_in(pixels_.at(x, y)); });
+    std::vector<MeanGuides> guides(pixels_.samples.size());
+    each_pixel([&](int x, int y) { guides[pixels_.at(x, y)] = guides_in(pixels_.at(x, y)); });
     base::ZeroVector<std::uint32_t> goals = state_.counts;
     each_pixel([&](int x, int y) {
-      if (contrast_around(seen, x, y) > kEdgeContrast) goals[pixels_.at(x, y)] = goal;
+      if (contrast_around(guides, x, y) > kEdgeContrast) goals[pixels_.at(x, y)] = goal;
     });
     const auto edges = static_cast<std::uint64_t>(std::count(goals.begin(), goals.end(), goal));
     if (edges == 0 || affordable(kShareOfTime) < edges * (goal - first_samples_)) return true;
@@ -185,11 +185,11 @@ class AdaptiveSampling {
   }
 
   /// What the paths of a pixel see first.
-  Seen seen_in(std::size_t i) const {
+  MeanGuides guides_in(std::size_t i) const {
     kernel::GuideSum sum = state_.guides_of(0, i);
     sum += state_.guides_of(1, i);
     const auto count = static_cast<double>(std::max<std::int64_t>(sum.weight, 1));
-    Seen out{};
+    MeanGuides out{};
     for (std::size_t k = 0; k < 3; ++k) {
       out[k] = static_cast<float>(static_cast<double>(sum.albedo[k]) * kernel::kGuideUnit / count);
       out[3 + k] = static_cast<float>(static_cast<double>(sum.normal[k]) * kernel::kGuideUnit / count);
@@ -200,15 +200,15 @@ class AdaptiveSampling {
 
   /// By how much the neighbours of a pixel differ: squared ranges of albedo, normal and depth, weighted as in the
   /// denoiser.
-  float contrast_around(const std::vector<Seen>& seen, int x, int y) const {
-    Seen low, high;
+  float contrast_around(const std::vector<MeanGuides>& guides, int x, int y) const {
+    MeanGuides low, high;
     low.fill(std::numeric_limits<float>::max());
     high.fill(std::numeric_limits<float>::lowest());
     for (int v = std::max(y - 1, 0); v <= std::min(y + 1, pixels_.height - 1); ++v)
       for (int u = std::max(x - 1, 0); u <= std::min(x + 1, pixels_.width - 1); ++u)
         for (std::size_t k = 0; k < low.size() && (u != x || v != y); ++k) {
-          low[k] = std::min(low[k], seen[pixels_.at(u, v)][k]);
-          high[k] = std::max(high[k], seen[pixels_.at(u, v)][k]);
+          low[k] = std::min(low[k], guides[pixels_.at(u, v)][k]);
+          high[k] = std::max(high[k], guides[pixels_.at(u, v)][k]);
         }
     const auto square = [&](std::size_t k) { return (high[k] - low[k]) * (high[k] - low[k]); };
     const float depth = high[6] > 0 ? (high[6] - low[6]) / high[6] : 0;

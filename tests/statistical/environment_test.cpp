@@ -84,8 +84,8 @@ void judge_all(D d, const kernel::Environment& env, Rows& out) {
 void sample_double(const kernel::Environment& env, Rows& out) { sample_all(hn::ScalableTag<double>(), env, out); }
 void sample_float(const kernel::Environment& env, Rows& out) { sample_all(hn::ScalableTag<float>(), env, out); }
 void sample_one(const kernel::Environment& env, Rows& out) { sample_all(hn::FixedTag<double, 1>(), env, out); }
-void judge_double(const kernel::Environment& env, Rows& out) { judge_all(hn::ScalableTag<double>(), env, out); }
-void judge_float(const kernel::Environment& env, Rows& out) { judge_all(hn::ScalableTag<float>(), env, out); }
+void judge_map_double(const kernel::Environment& env, Rows& out) { judge_all(hn::ScalableTag<double>(), env, out); }
+void judge_map_float(const kernel::Environment& env, Rows& out) { judge_all(hn::ScalableTag<float>(), env, out); }
 
 /// Fills u and v with the numbers of a pixel's samples at one vertex.
 void draw_numbers(kernel::SamplerKind kind, std::uint32_t pixel, std::uint32_t first, Rows& out) {
@@ -105,7 +105,7 @@ HWY_AFTER_NAMESPACE();
 namespace orrery::test {
 
 using OfRows = void(const kernel::Environment& env, Rows& out);
-ORRERY_DECLARE_INSTANCES(OfRows sample_double, sample_float, sample_one, judge_double, judge_float;
+ORRERY_DECLARE_INSTANCES(OfRows sample_double, sample_float, sample_one, judge_map_double, judge_map_float;
                          void draw_numbers(kernel::SamplerKind kind, std::uint32_t pixel, std::uint32_t first,
                                            Rows& out);)
 
@@ -115,8 +115,6 @@ using compile::EnvironmentMap;
 using compile::EnvironmentSampling;
 using compile::EnvironmentSettings;
 using scene::LatLongMap;
-
-constexpr double kPi = std::numbers::pi;
 
 /// Texels of very different brightness, a quarter of them black.
 std::shared_ptr<LatLongMap> wild_image(int width, int height) {
@@ -153,7 +151,7 @@ class Rectangles {
   Rectangles(const kernel::Environment& env, int split) : env_(env), split_(split) {
     const int height = static_cast<int>(env.height);
     cosines_.push_back(1);
-    for (int j = 1; j <= height; ++j) cosines_.push_back(std::cos(kPi * (j - 0.5) / height));
+    for (int j = 1; j <= height; ++j) cosines_.push_back(std::cos(std::numbers::pi * (j - 0.5) / height));
     cosines_.push_back(-1);
   }
   std::size_t columns() const { return env_.width * static_cast<std::size_t>(split_); }
@@ -165,7 +163,7 @@ class Rectangles {
   }
   double solid_angle(std::size_t row) const {
     const auto at = static_cast<double>(row);
-    return (cosine(at) - cosine(at + 1)) * 2 * kPi / static_cast<double>(columns());
+    return (cosine(at) - cosine(at + 1)) * 2 * std::numbers::pi / static_cast<double>(columns());
   }
   /// Directions of all midpoints, and some more at the end to fill a row.
   Rows midpoints() const {
@@ -173,7 +171,7 @@ class Rectangles {
     for (std::size_t i = 0; i < columns() * rows(); ++i) {
       const double c = cosine(static_cast<double>(i / columns()) + 0.5), s = std::sqrt(1 - c * c);
       const double across = (static_cast<double>(i % columns()) + 0.5) / split_ + 0.5;  // texels from the left edge
-      const double longitude = 2 * kPi * (0.5 + env_.turn - across / env_.width);
+      const double longitude = 2 * std::numbers::pi * (0.5 + env_.turn - across / env_.width);
       out.x[i] = s * std::sin(longitude);
       out.y[i] = c;
       out.z[i] = s * std::cos(longitude);
@@ -181,7 +179,7 @@ class Rectangles {
     return out;
   }
   std::size_t index(double x, double y, double z) const {
-    const double u = 0.5 - std::atan2(x, z) / (2 * kPi) + env_.turn - 0.5 / env_.width;
+    const double u = 0.5 - std::atan2(x, z) / (2 * std::numbers::pi) + env_.turn - 0.5 / env_.width;
     const auto column =
         std::min(static_cast<std::size_t>((u - std::floor(u)) * static_cast<double>(columns())), columns() - 1);
     std::size_t low = 0, high = rows();
@@ -220,7 +218,7 @@ TEST(StatisticalEnvironment, DensityIntegratesToOne) {
       if (!map.view().is_sampled) continue;
       const Rectangles cells(map.view(), 1);
       Rows at = cells.midpoints();
-      ORRERY_BEST_INSTANCE(judge_double)(map.view(), at);
+      ORRERY_BEST_INSTANCE(judge_map_double)(map.view(), at);
       double total = 0;
       for (std::size_t i = 0; i < cells.columns() * cells.rows(); ++i)
         total += at.pdf[i] * cells.solid_angle(i / cells.columns());
@@ -237,7 +235,7 @@ TEST(StatisticalEnvironment, SamplesHaveTheDensity) {
       if (!map.view().is_sampled) continue;
       const Rectangles parts(map.view(), 2);
       Rows at = parts.midpoints();
-      ORRERY_BEST_INSTANCE(judge_double)(map.view(), at);
+      ORRERY_BEST_INSTANCE(judge_map_double)(map.view(), at);
       for (const bool in_double : {true, false}) {
         std::vector<double> expected(parts.columns() * parts.rows());
         std::vector<std::uint64_t> counts(expected.size());
@@ -269,7 +267,7 @@ TEST(StatisticalEnvironment, CompleteSamplingReachesEveryDirection) {
   ORRERY_BEST_INSTANCE(sample_double)(map.view(), batch);
   double sum = 0;
   for (const double inverse : batch.inverse) sum += inverse;
-  EXPECT_NEAR(sum / static_cast<double>(batch.u.size()), 4 * kPi, 0.02);
+  EXPECT_NEAR(sum / static_cast<double>(batch.u.size()), 4 * std::numbers::pi, 0.02);
 }
 
 TEST(StatisticalEnvironment, TheSunIsSampledByItsShareOfThePower) {
@@ -277,7 +275,7 @@ TEST(StatisticalEnvironment, TheSunIsSampledByItsShareOfThePower) {
   image->sun = low_sun();
   const EnvironmentMap map = map_of(image, EnvironmentSampling::kComplete);
   const kernel::Environment& env = map.view();
-  const double sun_power = 2 * kPi * 1.081e-5 * 3e5 * 2;
+  const double sun_power = 2 * std::numbers::pi * 1.081e-5 * 3e5 * 2;
   EXPECT_NEAR(env.sun_probability, sun_power / env.power, 1e-12);
 
   constexpr int kSide = 16;
@@ -286,7 +284,7 @@ TEST(StatisticalEnvironment, TheSunIsSampledByItsShareOfThePower) {
   ORRERY_BEST_INSTANCE(draw_numbers)(kernel::SamplerKind::kIndependent, 0, 0, batch);
   ORRERY_BEST_INSTANCE(sample_double)(env, batch);
   Rows judged = batch;
-  ORRERY_BEST_INSTANCE(judge_double)(env, judged);
+  ORRERY_BEST_INSTANCE(judge_map_double)(env, judged);
   std::uint64_t inside = 0;
   const auto dot = [&](const math::Vec3d& a, std::size_t i) {
     return a.x * batch.x[i] + a.y * batch.y[i] + a.z * batch.z[i];
@@ -299,7 +297,7 @@ TEST(StatisticalEnvironment, TheSunIsSampledByItsShareOfThePower) {
     const double versine = square / (1 + std::sqrt(1 - square)) / env.sun_one_minus_cos;
     if (versine >= 1 || dot(env.sun, i) < 0) continue;
     ++inside;
-    const double turn = std::atan2(up, across) / (2 * kPi) + 0.5;
+    const double turn = std::atan2(up, across) / (2 * std::numbers::pi) + 0.5;
     ++counts[static_cast<std::size_t>(std::min(kSide - 1, static_cast<int>(versine * kSide)) * kSide +
                                       std::min(kSide - 1, static_cast<int>(turn * kSide)))];
   }
@@ -387,8 +385,8 @@ TEST(StatisticalEnvironment, SinglePrecisionAgreesWithDouble) {
   ORRERY_BEST_INSTANCE(draw_numbers)(kernel::SamplerKind::kIndependent, 0, 0, wide);
   ORRERY_BEST_INSTANCE(sample_float)(map.view(), wide);  // directions that a float holds
   Rows narrow = wide;
-  ORRERY_BEST_INSTANCE(judge_double)(map.view(), wide);
-  ORRERY_BEST_INSTANCE(judge_float)(map.view(), narrow);
+  ORRERY_BEST_INSTANCE(judge_map_double)(map.view(), wide);
+  ORRERY_BEST_INSTANCE(judge_map_float)(map.view(), narrow);
   std::size_t on_the_rim = 0;
   for (std::size_t i = 0; i < wide.u.size(); ++i) {
     if (std::abs(narrow.r[i] - wide.r[i]) > 1e4) {  // the rim of the sun

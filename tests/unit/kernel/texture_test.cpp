@@ -97,9 +97,10 @@ HWY_AFTER_NAMESPACE();
 #ifndef ORRERY_OTHER_SET
 namespace orrery::kernel {
 
-using Look = void(const Texture& texture, std::vector<TextureLook>& looks);
+using LookUp = void(const Texture& texture, std::vector<TextureLook>& looks);
 using Evaluate = void(const Texture& texture, std::vector<SolidPoint>& points);
-ORRERY_DECLARE_INSTANCES(Look look_exact, look_book, look_fast; Evaluate evaluate_double, evaluate_float, evaluate_one)
+ORRERY_DECLARE_INSTANCES(LookUp look_exact, look_book, look_fast;
+                         Evaluate evaluate_double, evaluate_float, evaluate_one)
 
 namespace {
 
