@@ -1,11 +1,19 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "image/input.h"
 
+#include <fcntl.h>
+#include <sys/mman.h>
+#include <unistd.h>
+
 #include <algorithm>
 #include <array>
 #include <cctype>
 #include <cstdint>
+#include <cstdio>
+#include <cstring>
 #include <fstream>
+#include <mutex>
+#include <sstream>
 #include <string_view>
 #include <vector>
 
@@ -25,6 +33,48 @@ namespace {
 
 /// Rows decoded at a time: a multiple of the block height of every EXR compression except dwab.
 constexpr int kRowsAtATime = 64;
+
+/// libpng prints its errors to standard error, and OpenImageIO, which reports them too, has no switch for that.
+/// Collects what is printed while a PNG file is read, and prints the lines of others at the end.
+class QuietPng {
+ public:
+  explicit QuietPng(const OIIO::ImageInput& in) {
+    if (std::strcmp(in.format_name(), "png") != 0) return;
+    static std::mutex one;
+    lock_ = std::unique_lock(one);
+    std::fflush(stderr);
+    printed_ = memfd_create("stderr", MFD_CLOEXEC);
+    stderr_ = fcntl(STDERR_FILENO, F_DUPFD_CLOEXEC, 0);
+    is_active_ = printed_ >= 0 && stderr_ >= 0 && dup2(printed_, STDERR_FILENO) >= 0;
+  }
+  ~QuietPng() {
+    if (is_active_) {
+      std::fflush(stderr);
+      dup2(stderr_, STDERR_FILENO);
+      print_others();
+    }
+    for (const int file : {printed_, stderr_})
+      if (file >= 0) close(file);
+  }
+  QuietPng(const QuietPng&) = delete;
+  QuietPng& operator=(const QuietPng&) = delete;
+
+ private:
+  void print_others() const {
+    std::string text;
+    char block[4096];
+    lseek(printed_, 0, SEEK_SET);
+    for (ssize_t got = 0; (got = read(printed_, block, sizeof(block))) > 0;)
+      text.append(block, static_cast<std::size_t>(got));
+    std::istringstream lines(text);
+    for (std::string line; std::getline(lines, line);)
+      if (!line.starts_with("libpng ")) std::fprintf(stderr, "%s\n", line.c_str());
+  }
+
+  std::unique_lock<std::mutex> lock_;
+  int printed_ = -1, stderr_ = -1;
+  bool is_active_ = false;
+};
 
 constexpr const char* kTruncated = "the file is truncated";
 
@@ -106,6 +156,7 @@ void check_spec(const std::filesystem::path& file, const OIIO::ImageSpec& spec) 
 int Input::row_step() const { return spec.tile_width == 0 ? kRowsAtATime : spec.tile_height; }
 
 bool Input::decode(int begin, int end, int first_channel, int end_channel, OIIO::TypeDesc type, void* out) const {
+  const QuietPng quiet(*in);
   if (spec.tile_width == 0) return in->read_scanlines(part, 0, begin, end, 0, first_channel, end_channel, type, out);
   return in->read_tiles(part, 0, spec.x, spec.x + spec.width, begin, end, 0, 1, first_channel, end_channel, type, out);
 }
@@ -136,6 +187,7 @@ Input open_input(const std::filesystem::path& file, Alpha alpha) {
                       fmt::format("this OpenImageIO cannot read {}{}", file.string(), OIIO::geterror()));
   OIIO::ImageSpec settings;
   if (alpha == Alpha::kAsInFile) settings.attribute("oiio:UnassociatedAlpha", 1);
+  const QuietPng quiet(*out.in);
   if (!out.in->open(file.string(), out.spec, settings)) fail_to_read(file, first_message(out.in->geterror()));
   check_spec(file, out.spec);
   return out;
