@@ -287,6 +287,7 @@ http::Response Site::state() const {
   Json out = {{"number", state.number},
               {"client", state.wish.client},
               {"asked", state.asked},
+              {"read", state.read},
               {"served", state.served},
               {"options", json_of(state.wish.options)},
               {"chosen", subject.chosen},

@@ -117,9 +117,11 @@ std::uint64_t Viewer::ask(Wish wish) {
     cancel_ = true;
     drop_live();
   }
+  const bool is_read = state_.read == state_.asked && wish.options == state_.wish.options;
   state_.wish = std::move(wish);
   before.swap(finished_);
   ++state_.asked;
+  if (is_read) state_.read = state_.asked;
   announce();
   return state_.asked;
 }
@@ -171,6 +173,13 @@ void Viewer::set_activity(const std::string& activity, double progress) {
   const std::lock_guard lock(mutex_);
   state_.activity = activity;
   state_.progress = progress;
+  announce();
+}
+
+void Viewer::set_read(std::uint64_t wish) {
+  const std::lock_guard lock(mutex_);
+  if (state_.read >= wish) return;
+  state_.read = wish;
   announce();
 }
 
@@ -243,6 +252,7 @@ void Viewer::run() {
     std::string problem;
     try {
       if (made_options_ != wish.options) make_subject(wish, number);
+      set_read(number);
       const auto is_of_other = [other = other_size_](const std::string& setting) { return setting.starts_with(other); };
       if (std::any_of(wish.camera.begin(), wish.camera.end(), is_of_other)) {
         wish.camera.clear();

@@ -77,6 +77,7 @@ struct State {
   std::optional<scene::Camera> camera;               ///< of the scene that is shown
   std::optional<std::array<math::Vec3d, 2>> bounds;  ///< of the scene that is shown: see Picker
   int width = 0, height = 0;                         ///< of the finished image
+  std::uint64_t read = 0;                            ///< number of the last wish whose options `subject` has
   std::uint64_t served = 0;           ///< number of the last wish that was granted, or refused as `problem` says
   std::string activity;               ///< "reading" or a phase of job::Hooks; empty: rendering or finished
   double progress = 0;                ///< of the activity, 0 to 1; 0: unknown; 1: what follows a read is under way
@@ -132,6 +133,7 @@ class Viewer {
   void finish(Image& image);
   void announce();
   void set_activity(const std::string& activity, double progress = 0);
+  void set_read(std::uint64_t wish);
   void set_served(std::uint64_t wish, const std::string& problem);
   void drop_live();
   void refresh(Live& live);

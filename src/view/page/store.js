@@ -210,7 +210,7 @@ function changed(moves) {
 }
 
 // Whether the scene of the last change has been read.
-export const isRead = () => Boolean(state?.camera) && state.asked === lastWish && !isSending && !isMoving && !state.activity && !state.problem;
+export const isRead = () => Boolean(state?.camera) && state.read === lastWish && !isSending && !isMoving && !state.activity && !state.problem;
 
 // Why the last change cannot be shown; "": it can, or was stopped.
 export const problem = () => state && state.problem !== "stopped" ? state.problem : "";

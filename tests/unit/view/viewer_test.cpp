@@ -9,6 +9,7 @@
 #include <chrono>
 #include <filesystem>
 #include <string>
+#include <thread>
 #include <vector>
 
 #include "base/stop_point.h"
@@ -122,6 +123,26 @@ TEST(ViewViewer, ACameraOfAnotherKindThanTheScenesIsIgnored) {
   EXPECT_TRUE(viewer.state().wish.camera.empty());
   EXPECT_EQ(viewer.state().words, std::vector<std::string>());
   EXPECT_EQ(viewer.state().camera->look_from, (math::Vec3d{0, 0, 3}));
+}
+
+TEST(ViewViewer, AWishHasBeenReadOnceTheSubjectHasItsOptions) {
+  std::atomic<bool> may_read = false;
+  const auto make = [&](const std::vector<std::string>& words) {
+    while (!words.empty() && !may_read) std::this_thread::sleep_for(1ms);
+    return subject_of({});
+  };
+  Viewer viewer(make, {}, {});
+  finished(viewer);
+  EXPECT_EQ(viewer.state().read, viewer.state().asked);
+  Wish wish{{{"--samples", {"1"}}}};
+  std::uint64_t number = viewer.ask(wish);
+  EXPECT_LT(viewer.state().read, number);
+  may_read = true;
+  while (viewer.state().served < number) viewer.frame(1000000, 1ms, viewer.state().number);
+  EXPECT_EQ(viewer.state().read, number);
+  wish.camera = camera_at(0.1);
+  number = viewer.ask(wish);
+  EXPECT_EQ(viewer.state().read, number) << "a moved camera needs no other subject";
 }
 
 TEST(ViewViewer, AReadThatIsNotWantedAnyMoreStops) {
