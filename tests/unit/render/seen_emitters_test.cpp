@@ -193,6 +193,12 @@ TEST(RenderSeenEmitters, GlintsAreThoseOfCameraRays) {
       {"glass", glint(scene::Dielectric{1.5, scene::Fresnel::kExact})},
       {"bubble", glint(scene::Dielectric{0.6})},
       {"coat", glint(scene::Plastic{{0.2, 0.2, 0.2}, 1.5, 0})},
+      // Its base scatters to the lamp, which is not the image that is sampled.
+      {"base below a coat", changed(glint(scene::Plastic{{0.9, 0.9, 0.9}, 1.5, 0}),
+                                    [](scene::Scene& s) {
+                                      s.spheres[0] = {{-0.6, 6, 3}, 5, 0, ""};
+                                      s.spheres[1].radius = 0.1;
+                                    })},
       {"sun", in_the_sun(mirror)},
       {"lens", changed(mirror,
                        [](scene::Scene& s) {
