@@ -63,9 +63,8 @@ void add_merge(Command& program) {
   command.add_flag("-v,--verbose", options->verbose, "Also print the time of each phase");
   command.details(
       "Writes the files that a single render would have written; --set can choose another display transform. Lists "
-      "every shard that is missing, damaged, "
-      "unfinished, overlapping, or of another scene or setting, and the samples that no shard has. --denoise needs "
-      "shards that were rendered with --denoise.");
+      "every shard that is missing, damaged, unfinished, overlapping, or of another scene or setting, and the samples "
+      "that no shard has. --denoise needs shards that were rendered with --denoise.");
   command.footer(
       "Examples:\n"
       "  orrery merge shard.*.exr -o final.exr -o final.png\n"

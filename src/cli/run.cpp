@@ -10,6 +10,7 @@
 #include <sstream>
 #include <string>
 #include <string_view>
+#include <system_error>
 #include <utility>
 #include <vector>
 
@@ -116,7 +117,8 @@ std::string unknown_command(const std::string& word, const CLI::App& command) {
 }
 
 std::string unexpected(const std::string& word, const CLI::App& command) {
-  if (word.starts_with('-') && std::filesystem::exists(word))
+  std::error_code unknown;
+  if (word.starts_with('-') && std::filesystem::exists(word, unknown))
     return fmt::format("`{0}` is read as an option; for the file of this name, write ./{0}", word);
   if (word.size() > 1 && word[0] == '-') return unknown_flag(word.substr(0, word.find('=')), command);
   if (!command_names(command).empty()) return unknown_command(word, command);

@@ -138,6 +138,12 @@ TEST_F(CliProgram, OneKeyIsSetOnce) {
   EXPECT_TRUE(contains(r.err, "--samples and --set render.samples=5 set the same key")) << r.err;
 }
 
+TEST_F(CliProgram, AFileWhoseNameBeginsWithADashIsTakenForAnOption) {
+  write("-dash.toml", "");
+  EXPECT_TRUE(contains(run("render -dash.toml -o a.png").err, "write ./-dash.toml"));
+  EXPECT_EQ(run("render -" + std::string(5000, 'x') + " -o a.png").status, 2) << "longer than the name of any file";
+}
+
 TEST_F(CliProgram, OptionsWithoutEffectAreNamed) {
   EXPECT_TRUE(contains(run("render good.toml -o a.exr --bits 16").err,
                        "warning: --bits has no effect: the bits are those of PNG and TIFF, and none is written\n"));

@@ -24,12 +24,16 @@
 namespace orrery::test {
 namespace {
 
+/// Uniform in an interval.
+struct RandomNumber {
+  std::mt19937 random;
+
+  double operator()(double low, double high) { return low + (high - low) * (static_cast<double>(random()) * 0x1p-32); }
+};
+
 /// Lamps, mirror balls and screens at random places, through a random camera.
 scene::Scene random_stars(unsigned seed) {
-  std::mt19937 random(seed);
-  const auto number = [&](double low, double high) {
-    return low + (high - low) * (static_cast<double>(random()) * 0x1p-32);
-  };
+  RandomNumber number{std::mt19937(seed)};
   scene::Scene s;
   s.image = {24, 16};
   s.image.pixel_aspect = seed % 5 == 0 ? 1.5 : 1;
@@ -62,10 +66,7 @@ scene::Scene random_stars(unsigned seed) {
 
 /// Sharp balls with images of lamps and the sun that are smaller than a pixel.
 scene::Scene random_glints(unsigned seed) {
-  std::mt19937 random(seed);
-  const auto number = [&](double low, double high) {
-    return low + (high - low) * (static_cast<double>(random()) * 0x1p-32);
-  };
+  RandomNumber number{std::mt19937(seed)};
   scene::Scene s;
   s.image = {24, 16};
   s.camera.look_from = {0, 0, 10};
